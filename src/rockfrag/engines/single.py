@@ -19,6 +19,7 @@ from rockfrag.system import geometry
 from rockfrag.system.system import System
 
 Records = NDArray[np.void]
+Link = tuple[Floats, ...]
 
 
 class Single(PureRocking):
@@ -139,10 +140,10 @@ class SingleRun:
             **{name: int(summary[name]) for name in ("impacts", "grazings", "given_way")},
         )
 
-    def _links(self, theta: Floats, state: NDArray[Any]) -> tuple[Floats, list[Floats]]:
+    def _links(self, theta: Floats, state: NDArray[Any]) -> tuple[Floats, list[Link]]:
         """Centres of gravity relative to the ground [m], (n, blocks, 2), and the links between pivots and them.
 
-        Of each link x, y [m] and the acceleration of its tip [m/s²], (4, n): to the lower centre, to the foot
+        Of each link x, y [m] and the acceleration of its tip [m/s²], each (n,): to the lower centre, to the foot
         of the upper body, from there to its centre, and along the top of the pedestal.
         """
         from rockfrag.engines.kernels.jit import compiling_alone
@@ -154,10 +155,13 @@ class SingleRun:
             fill_sines(theta, sine, cosine)
         omega, alpha = self.of("omega"), self.of("alpha")
 
-        def link(arms: Any, body: int) -> Floats:
+        def turned(arms: Any, body: int) -> Link:
             (ax, ay), s, c = np.transpose(arms), sine[:, body], cosine[:, body]
-            x, y, w, q = ax * c + ay * s, -ax * s + ay * c, omega[:, body], alpha[:, body]
-            return np.array([x, y, q * y - w * w * x, -q * x - w * w * y])
+            return ax * c + ay * s, -ax * s + ay * c
+
+        def link(arms: Any, body: int) -> Link:
+            (x, y), w, q = turned(arms, body), omega[:, body], alpha[:, body]
+            return x, y, q * y - w * w * x, -q * x - w * w * y
 
         lower, side, ways = self.system.shapes[0], (state < 0).astype(np.int64), (+1, -1)
         arm = np.array([geometry.arm(lower, way) for way in ways])[side[:, 0]]
@@ -171,14 +175,15 @@ class SingleRun:
             links += [
                 link(feet[side[:, 0], side[:, 1]], 0),
                 link(above[side[:, 1]], 1),
-                link(top, 0),
+                turned(top, 0),
             ]
-            centres.append(links[1][:2] + links[2][:2])
-        position = np.stack([centre.T for centre in centres], axis=1)
+            (xd, yd, *_), (x, y, *_) = links[1:3]
+            centres.append((xd + x, yd + y))
+        position = np.stack([np.column_stack(each) for each in centres], axis=1)
         position[..., 0] += lower.x - arm[:, :1]
         return position, links
 
-    def _forces(self, ground: Floats, links: list[Floats]) -> tuple[Floats, Floats]:
+    def _forces(self, ground: Floats, links: list[Link]) -> tuple[Floats, Floats]:
         """Normal and friction force of each interface, across and along the face that carries [N], (n, blocks)."""
         gravity = np.full(ground.size, float(self.record["gravity"]))
         up = self.shaking.scale * self.shaking.vertical[: ground.size]
@@ -191,7 +196,8 @@ class SingleRun:
         level = pile.upper.mass * (ground + foot[2] + upper[2])
         upright = pile.upper.mass * (gravity + foot[3] + upper[3])
         # of the interface so far upright and level: the pedestal's top turns with it
-        tx, ty = top[:2] / hypot(*(float(x) for x in np.subtract(pile.right, pile.left)))
+        length = hypot(*(float(x) for x in np.subtract(pile.right, pile.left)))
+        tx, ty = top[0] / length, top[1] / length
         return (
             np.column_stack([normal + upright, tx * upright - ty * level]),
             np.column_stack([friction + level, tx * level + ty * upright]),
