@@ -21,13 +21,16 @@ from concurrent.futures import ThreadPoolExecutor
 from functools import partial
 from pathlib import Path
 
-from rockfrag.files import write_text
+import pandas as pd
 
+from ..validation.made import document, markdown
 from . import kills, trials
-from .studies import ROOT, Study, Tally, write_shipped
+from .studies import Study, Tally, write_shipped
 
-PAGE = ROOT / "docs" / "reliability.md"
-BEGIN, END = "<!-- results of make torture -->\n", "<!-- end of results -->\n"
+COLUMNS = {
+    "kind": "trial", "trials": "runs", "steps": "steps by hand", "differing": "differing files",
+    "outside": "files outside", "seconds": "time [s]",
+}  # fmt: skip
 
 KINDS: Mapping[str, Callable[[Study, Tally, random.Random], None]] = {
     **kills.KINDS,
@@ -62,25 +65,18 @@ def main() -> int:
             rng = random.Random(f"{options.seed} {name}")
             KINDS[name](whole.twin(Path(scratch) / name), tally, rng)
             tally.seconds = time.monotonic() - started
-            print("\n".join([tally.row, *tally.noise]), file=sys.stderr, flush=True)
+            print("\n".join([str(tally), *tally.noise]), file=sys.stderr, flush=True)
             return tally
 
         with ThreadPoolExecutor(2) as lanes:
             tallies = list(lanes.map(tried, (name for name in KINDS if options.only in name)))
-    table = "\n".join(
-        [
-            "| trial | runs | steps by hand | differing files | files outside | time |",
-            "|---|--:|--:|--:|--:|--:|",
-            *(tally.row for tally in tallies),
-        ]
-    )
-    print(f"{table}\n\n{time.monotonic() - begin:.0f} s")
     failed = any(
         tally.steps or tally.differing or tally.outside or tally.noise for tally in tallies
     )
+    table = pd.DataFrame([vars(tally) for tally in tallies])[list(COLUMNS)].rename(columns=COLUMNS)
+    print(f"{markdown(table, 0)}\n\n{time.monotonic() - begin:.0f} s")
     if not failed and len(tallies) == len(KINDS):
-        before, _, rest = PAGE.read_text(encoding="utf-8").partition(BEGIN)
-        write_text(f"{before}{BEGIN}{table}\n{END}{rest.partition(END)[2]}", PAGE)
+        document("reliability.md", "results of make torture", table, 0)
     return int(failed)
 
 

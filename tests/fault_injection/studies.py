@@ -12,7 +12,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from ..workflow.conftest import study_content, write_record, write_study
+from ..end_to_end.studies import Foreign, write
 
 ROOT = Path(__file__).resolve().parents[2]
 COMMAND = (sys.executable, str(ROOT / "workflow" / "run.py"), "study.yaml", "--cores", "2")
@@ -20,6 +20,18 @@ SCREEN = ("--logger", "rockfrag")
 
 PATIENCE_S = 1200.0
 """A run may take as long as a loaded machine needs; here only what never ends is ended."""
+
+
+def write_small(folder: Path, names: tuple[str, ...] = ("T1", "T2", "P")) -> str:
+    """Write a study of two objects and more under synthetic motions on floors of a building; return its name."""
+    content = {
+        "bodies": {"specimens": "blocks.csv"},
+        "fragility": {"measures": ["pga_g", "pgv_cm_s"], "confidence": 0.9},
+    }
+    blocks = dict.fromkeys(names[:-1], (12.4, 37.2, 2.172)) | {names[-1]: (18.4, 20.8, 2.3)}
+    records = {"motion 0": "First", "motion 1": "Second", "motion 2": "Third"}
+    write(Foreign(blocks, {}, records, {"ground": 0, "top": 2}, content), folder)
+    return "own"
 
 
 @dataclass
@@ -34,12 +46,6 @@ class Tally:
     seconds: float = 0.0
     noise: list[str] = field(default_factory=list)
 
-    @property
-    def row(self) -> str:
-        """Row of the table."""
-        counts = f"{self.trials} | {self.steps} | {self.differing} | {self.outside}"
-        return f"| {self.kind} | {counts} | {self.seconds:.0f} s |"
-
 
 class Study:
     """A study in a folder of its own, the bytes of its undisturbed run, and studies that are disturbed with it."""
@@ -47,12 +53,12 @@ class Study:
     def __init__(
         self,
         scratch: Path,
-        write: Callable[[Path], str] | None = None,
+        write: Callable[[Path], str] = write_small,
         more: Mapping[str, str] = {},
     ) -> None:
         self.folder = scratch / "a study"
         self.folder.mkdir(parents=True)
-        self.name = write_small(self.folder) if write is None else write(self.folder)
+        self.name = write(self.folder)
         self.more = dict(more)
         self.beside: list[Study] = []
         started = time.monotonic()
@@ -148,33 +154,6 @@ class Study:
             tally.noise.append("ended well where it could not")
         if "Traceback" in said.stderr or len(said.stderr.splitlines()) > 8:
             tally.noise.append(f"says too much: {said.stderr[-300:]!r}")
-
-
-def write_small(folder: Path, names: tuple[str, ...] = ("T1", "T2", "P")) -> str:
-    """Write a study of two objects and more under synthetic motions on floors of a building; return its name."""
-    rows = ["name,earthquake,source,file,unit"]
-    for number, earthquake in enumerate(("First", "Second", "Third")):
-        write_record(folder / f"record{number}.txt", number)
-        rows.append(f"motion {number},{earthquake},folder,record{number}.txt,g")
-    (folder / "motions.csv").write_text("\n".join(rows) + "\n")
-    blocks = ["name,width_cm,height_cm,mass_g"]
-    for name in names[:-1]:
-        quoted = name.replace('"', '""')
-        blocks.append(f'"{quoted}",12.4,37.2,2172')
-    blocks.append(f'"{names[-1]}",18.4,20.8,2300')
-    (folder / "specimens.csv").write_text("\n".join(blocks) + "\n", encoding="utf-8")
-    (folder / "building.yaml").write_text(
-        "storey_heights_m: [3, 3]\nmasses_kg: [20000, 20000]\nfirst_period_s: 0.2\n"
-        "floors: {ground: 0, top: 2}\n"
-    )
-    content = study_content() | {
-        "building": "building.yaml",
-        "bodies": {"specimens": "specimens.csv"},
-        "amplitudes": {"lowest_g": 0.2, "highest_g": 1.6, "step_percent": 16},
-        "fragility": {"measures": ["pga_g", "pgv_cm_s"], "confidence": 0.9},
-    }
-    write_study(folder, content)
-    return "tiny"
 
 
 def write_shipped(folder: Path, name: str) -> str:

@@ -67,11 +67,11 @@ def little_memory(study: Study, tally: Tally, rng: random.Random) -> None:
 
 def read_only(study: Study, tally: Tally, rng: random.Random) -> None:
     """Forbid writing to the folder of all results, of the study's, and of its figures."""
-    for name in ("results", "results/tiny", "results/tiny/figures"):
+    for name in ("results", "results/own", "results/own/figures"):
         study.forget("report.html")
         folder = study.folder / name
         if name == "results":
-            shutil.rmtree(folder / "tiny")
+            shutil.rmtree(folder / "own")
         # root writes wherever permissions forbid it, but not where the folder itself may not change
         locked = _lock(folder, True)
         said = study.run()
@@ -94,7 +94,7 @@ def _lock(folder: Path, closed: bool) -> bool:
 
 def damaged(study: Study, tally: Tally, rng: random.Random) -> None:
     """Damage what a run keeps beside its results, what was compiled, and what it downloads."""
-    for name in (".snakemake/metadata", "results/tiny/.run", ".snakemake/incomplete"):
+    for name in (".snakemake/metadata", "results/own/.run", ".snakemake/incomplete"):
         study.forget("report.html")
         place = study.folder / name
         files = [path for path in place.rglob("*") if path.is_file()] if place.is_dir() else [place]
@@ -118,7 +118,7 @@ def damaged(study: Study, tally: Tally, rng: random.Random) -> None:
         (shelf / "gmspy-0.1.3-py3-none-any.whl").write_bytes(content)
         table = study.folder / "motions.csv"
         usual = table.read_text(encoding="utf-8")
-        table.write_text(usual + "fetched,Friuli,gmspy,Friuli.dat,\n", encoding="utf-8")
+        table.write_text(usual + "fetched,Friuli,,,,,,gmspy,Friuli.dat,,,,\n", encoding="utf-8")
         study.refused(tally, study.run({"PIP_NO_INDEX": "1", "PIP_FIND_LINKS": shelf.as_uri()}))
         shutil.rmtree(shelf)
         table.write_text(usual, encoding="utf-8")
@@ -146,7 +146,7 @@ def at_once(study: Study, tally: Tally, rng: random.Random) -> None:
     """Start the same study while it runs."""
     study.anew()
     first = study.start()
-    lock = study.folder / "results" / "tiny" / ".run"
+    lock = study.folder / "results" / "own" / ".run"
     while first.poll() is None and not (lock.is_file() and lock.stat().st_size):
         time.sleep(0.05)
     second = study.run()
@@ -164,9 +164,9 @@ def foreign_names(study: Study, tally: Tally, rng: random.Random) -> None:
         other.anew()
         other.judge(tally, other.run())
         for name in ("../T1", "..", "=1+1", "-rf", "x" * 300, "a\x07b"):
-            table = other.folder / "specimens.csv"
+            table = other.folder / "blocks.csv"
             usual = table.read_text(encoding="utf-8")
-            table.write_text(usual + f'"{name}",12.4,37.2,2172\n', encoding="utf-8")
+            table.write_text(usual + f'"{name}",12.4,37.2,2.172\n', encoding="utf-8")
             before = other.others()
             said = other.run()
             if name != "../T1":

@@ -20,11 +20,13 @@ from pathlib import Path
 
 import numpy as np
 import pandas as pd
-import yaml
 
 from rockfrag.files import write_table
 from rockfrag.motions.synthetic import evolutionary
 from rockfrag.study.study import Amplitudes
+
+from ..validation.made import markdown
+from ..workflow.conftest import study_content, write_study
 
 ROOT = Path(__file__).resolve().parents[2]
 SAMPLES, DT = 2000, 0.01
@@ -54,13 +56,13 @@ def main() -> int:
             rows += measured(folder, motions, asked.amplitudes, asked.cores)
     table = pd.DataFrame(rows)
     write_table(table, ROOT / "results" / "bench" / "scale.csv")
-    print(in_words(table))
+    print(markdown(shown(table), 0))
     return 0
 
 
 def measured(folder: Path, motions: int, amplitudes: int, cores: int) -> list[dict[str, object]]:
     """Run one study, and say what each of its stages took."""
-    write_study(folder, motions, amplitudes)
+    write_scale(folder, motions, amplitudes)
     project = folder / "project"
     shutil.rmtree(project, ignore_errors=True)
     project.mkdir()
@@ -101,30 +103,18 @@ def _of_children() -> float:
     return used.ru_utime + used.ru_stime
 
 
-def in_words(table: pd.DataFrame) -> str:
-    """Return the measured table in Markdown: processor time of each stage, the largest process, the wall."""
-    stages = list(dict.fromkeys(table["stage"]))
-    lines = [
-        "| motions | histories | "
-        + " | ".join(stages)
-        + " | all but IDA curve | memory [MiB] | wall [s] |"
-    ]
-    lines.append("|--:" * (len(stages) + 5) + "|")
-    for (motions, histories), rows in table.groupby(["motions", "histories"], sort=False):
-        seconds = rows.set_index("stage")["processor_s"]
-        cells = [f"{motions}", f"{histories:,}".replace(",", " ")]
-        cells += [f"{seconds[stage]:.0f}" for stage in stages]
-        fraction = 1 - seconds["ida"] / seconds.sum()
-        cells += [
-            f"{fraction:.0%}",
-            f"{rows['memory_mib'].max():.0f}",
-            f"{rows['wall_s'].iloc[0]:.0f}",
-        ]
-        lines.append("| " + " | ".join(cells) + " |")
-    return "\n".join(lines)
+def shown(table: pd.DataFrame) -> pd.DataFrame:
+    """Return processor time of each stage, the largest process and the wall time, a row a study."""
+    by = ["motions", "histories"]
+    seconds = table.pivot_table("processor_s", by, "stage")
+    found = seconds[table["stage"].unique()].round().astype(int).add_suffix(" [s]")
+    found["all but IDA curve"] = (1 - seconds["ida"] / seconds.sum(axis=1)).map("{:.0%}".format)
+    found["memory [MiB]"] = table.groupby(by)["memory_mib"].max()
+    found["wall [s]"] = table.groupby(by)["wall_s"].first()
+    return found.reset_index()
 
 
-def write_study(folder: Path, motions: int, amplitudes: int) -> None:
+def write_scale(folder: Path, motions: int, amplitudes: int) -> None:
     """Write a study's configuration and its records."""
     (folder / "records").mkdir(parents=True, exist_ok=True)
     rows = ["name,earthquake,source,file,unit"]
@@ -142,18 +132,14 @@ def write_study(folder: Path, motions: int, amplitudes: int) -> None:
     step = 100 * math.expm1(math.log(HIGHEST_G / LOWEST_G) / (amplitudes - 1)) * (1 - 1e-9)
     if len(Amplitudes(LOWEST_G, HIGHEST_G, step).values_g) != amplitudes:
         raise RuntimeError(f"{amplitudes} amplitudes do not come out of a step of {step} %")
-    content = {
+    content = study_content() | {
         "study": "scale",
         "title": f"{motions} synthetic motions",
-        "seed": 1,
-        "motions": {"catalogue": "motions.csv"},
-        "bodies": {"specimens": "specimens.csv", "configurations": "configurations.csv"},
         "amplitudes": {"lowest_g": LOWEST_G, "highest_g": HIGHEST_G, "step_percent": step},
         "protocol": {"step_percent": 5},
         "fragility": {"measures": ["pga_g", "pgv_cm_s"], "confidence": 0.9},
     }
-    text = yaml.safe_dump(content, sort_keys=False)
-    (folder / "study.yaml").write_text(text, encoding="utf-8")
+    write_study(folder, content)
 
 
 def acceleration(number: int) -> np.ndarray:
