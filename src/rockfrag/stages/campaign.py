@@ -14,7 +14,7 @@ from rockfrag.campaign.comparison import HALF, NEAR_CRITICAL, MeasuredTests
 from rockfrag.campaign.laboratory import MEASURED, Campaign, read_campaign
 from rockfrag.campaign.standing import Trials, sample_trials, simulate_tests
 from rockfrag.errors import InputError
-from rockfrag.fragility.vector_tables import VectorTables, vector_tables
+from rockfrag.fragility.vector import VectorTables, vector_tables
 from rockfrag.motions.processing import process, scale_to_pga
 from rockfrag.motions.pulses import commanded_cosine
 from rockfrag.records.motion import Motion

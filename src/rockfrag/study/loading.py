@@ -31,12 +31,6 @@ from rockfrag.system.system import System
 from rockfrag.units import peak_warning
 from rockfrag.yaml_file import read_yaml
 
-OF_ONE_COMPONENT = (
-    *("strong_part", "bracketed_part"),
-    *("scale_to_pga", "scale_to_pgv", "scale_to_sa", "scale_to_arias"),
-)
-"""Steps that choose a part or a factor by the component itself."""
-
 AnyStudy = Study | MeasuredTable | CampaignStudy | SpaceStudy
 
 
@@ -149,18 +143,14 @@ def _measured(
     if content is None:
         return tuple(chosen)
     key = f"{source}: key bodies.restitution"
-    measured = {}
-    for name, value in content["blocks"].items():
+    measured, law = content["blocks"], content.get("law", law_names()[0])
+    for name in measured:
         if name not in specimens:
             raise InputError(
                 f"{key}.blocks: expected names of the specimens {', '.join(specimens)}, found {name}."
             )
-        measured[name] = tuple(value) if isinstance(value, list) else value
-    law = content.get("law", law_names()[0])
     with errors_of(key):
-        return tuple(
-            arrangements.with_restitution(configuration, measured, law) for configuration in chosen
-        )
+        return tuple(arrangements.with_restitution(each, measured, law) for each in chosen)
 
 
 def _check_names(study: Study) -> None:
@@ -184,7 +174,7 @@ def _check_names(study: Study) -> None:
 
 
 def _check_vertical(study: Study) -> None:
-    """Refuse vertical motion of which the catalogue names no record, or that processing would cut elsewhere."""
+    """Refuse vertical motion of which the catalogue names no record."""
     if not study.vertical:
         return
     for row in study.catalogue.to_dict("records"):
@@ -192,12 +182,6 @@ def _check_vertical(study: Study) -> None:
             raise InputError(
                 f"{study.source}: key vertical: {study.catalogue_file} names no vertical component of "
                 f"{row['name']}; give it in the column vertical."
-            )
-    for i, step in enumerate(study.processing):
-        if step["step"] in OF_ONE_COMPONENT:
-            raise InputError(
-                f"{study.source}: key motions.processing[{i}]: {step['step']} looks at one component, and the "
-                "vertical one would no longer belong to it; leave it out or use trim and scale."
             )
 
 
