@@ -44,7 +44,7 @@ def _block(row: Row) -> Block:
     stated = {"inertia": "inertia_kg_m2", "cg_height": "cg_height_m"}
     columns |= {name: column for name, column in stated.items() if row.has(column)}
     values: dict[str, Any] = {
-        name: row.positive_quantity(column) for name, column in columns.items()
+        name: row.quantity(column, above=0) for name, column in columns.items()
     }
     if row.has("cg_offset_m"):
         values["cg_offset"] = row.quantity("cg_offset_m")

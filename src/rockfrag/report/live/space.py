@@ -9,7 +9,8 @@ import numpy as np
 from markupsafe import Markup
 
 from rockfrag.records.motion import GroundMotion
-from rockfrag.report.page import TEMPLATES, base64_text, json_text, scripts_of, zipped_text
+from rockfrag.report.live import samples_text
+from rockfrag.report.page import TEMPLATES, json_text, scripts_of, zipped_text
 from rockfrag.rocking.browser import driver_text, module_bytes
 from rockfrag.system.blocks import Block
 from rockfrag.system.body import Circle, RigidBody
@@ -110,7 +111,5 @@ def _motion(motion: GroundMotion) -> dict[str, Any]:
         "name": motion.name,
         "dt": motion.dt,
         "peak_g": peak_of(motion) / GRAVITY,
-        "samples": [
-            base64_text(np.asarray(component.acceleration, "<f8").tobytes()) for component in each
-        ],
+        "samples": list(map(samples_text, each)),
     }
