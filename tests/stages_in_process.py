@@ -10,7 +10,6 @@ from rockfrag.stages import (
     campaign,
     fragility,
     ida,
-    measured_tests,
     motions,
     pedestal,
     space,
@@ -40,7 +39,7 @@ def stages_of(study: AnyStudy) -> list[Stage]:
         (pedestal.run, study.has_pairs),
         (sensitivity_analysis.run, settings_of(study).sensitivity_analysis),
         (building_sensitivity.run, settings_of(study).sensitivity),
-        (measured_tests.run, study.measured_tests),
+        (pedestal.run_measured, study.measured_tests),
         (hypotheses.run, settings_of(study).compares),
         (study_report.run, True),
     )

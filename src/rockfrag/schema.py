@@ -184,7 +184,7 @@ def _broken_rule(error: "ValidationError") -> str:
         return ""
     instance: Any = error.instance
     missing = [name for name in schema.get("required", ()) if name not in instance]
-    named = {"key": _key(error), "name": _key(error).rpartition(".")[2]}
+    named = {"key": _key(error), "name": _key(error).rpartition(".")[2], "found": instance}
     return str(schema["says"]).format(missing=next(iter(missing), ""), **named)
 
 

@@ -131,40 +131,31 @@ class Row:
             raise self.error(column, "expected a name, found nothing")
         return value
 
-    def positive(self, column: str) -> float:
-        """Return a cell that must be a finite number above zero."""
-        value = self.number(column)
-        if value <= 0:
-            raise self.error(column, f"expected a number above 0, found {self.cells[column]}")
-        return value
-
-    def number(self, column: str) -> float:
-        """Return a cell that must be a finite number."""
+    def number(self, column: str, above: float = -math.inf) -> float:
+        """Return a cell that must be a finite number above another."""
         text = self.cells.get(column, "")
         value = math.nan
         with suppress(ValueError):
             value = float(text)
         if not math.isfinite(value):
             raise self.error(column, f"expected a number, found {text or 'nothing'}")
+        if value <= above:
+            raise self.error(column, f"expected a number above {above:g}, found {text}")
         return value
 
-    def quantity(self, column: str) -> float:
-        """Return a cell in the unit of the column's usual name, whatever unit it is given in."""
+    def quantity(self, column: str, above: float = -math.inf) -> float:
+        """Return a cell in the unit of the column's usual name, whatever unit it is given in, above a number."""
         usual = split_name(column)[1]
         text = self.cells.get(column, "")
         if not text:
             raise self.error(column, f"expected a number of {usual}, found nothing")
         unit = other_names(column)[self.titles.get(column, column)]
         try:
-            return quantity(text, usual, unit)
+            value = quantity(text, usual, unit)
         except InputError as error:
             raise self.error(column, str(error)) from None
-
-    def positive_quantity(self, column: str) -> float:
-        """Return a quantity that must be above zero."""
-        value = self.quantity(column)
-        if value <= 0:
-            raise self.error(column, f"expected more than 0, found {self.cells[column]}")
+        if value <= above:
+            raise self.error(column, f"expected more than {above:g}, found {text}")
         return value
 
 

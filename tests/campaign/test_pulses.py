@@ -8,7 +8,7 @@ from rockfrag.campaign.comparison import REPEATS, majority_of_repeats
 from rockfrag.campaign.laboratory import read_campaign
 from rockfrag.errors import InputError
 from rockfrag.motions.pulses import commanded_cosine
-from rockfrag.report.campaign_page import _against_rivals
+from rockfrag.report.campaign_page import _findings
 from rockfrag.study.loading import load_any
 
 STUDY = """
@@ -105,8 +105,16 @@ def test_what_a_pulse_does_not_follow_from_is_said(study, old, new, sentence):
 
 def test_the_ceiling_is_no_rival():
     row = {"right": 0.9, "better": 0.1, "better_lower": 0.02, "better_upper": 0.2, "p": 0.001}
-    row |= {"lower": 0.8, "upper": 0.95, "tests": 60}
+    row |= {"lower": 0.8, "upper": 0.95, "tests": 60, "false_alarms": 3.0, "missed": 3.0}
     rivals = [row | {"who": "threshold on PGV"}, row | {"who": REPEATS, "right": 1.0}]
-    (found,) = _against_rivals(rivals)
-    assert "threshold on PGV, the best of 1 alternative" in found.headline
-    assert _against_rivals(rivals[1:]) == []
+    tables = {
+        "fragility": pd.DataFrame(
+            {"who": ["measured"], "measure": "pga_g", "beta": 0.4, "theta_ratio": np.nan}
+        ),
+        "tests": pd.DataFrame({"near_critical": [False], "right": [True]}),
+    }
+    for others, said in ((rivals, "threshold on PGV, the best of 1 alternative"), (rivals[1:], "")):
+        agreement = pd.DataFrame([row | {"who": "rockfrag"}, *others])
+        found = _findings(tables | {"agreement": agreement})[1:]
+        assert len(found) == bool(said)
+        assert all(said in finding.headline for finding in found)

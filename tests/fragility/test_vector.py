@@ -6,8 +6,13 @@ import pytest
 import statsmodels.api as sm
 
 from rockfrag.errors import InputError
-from rockfrag.fragility.vector import fit_vector, linearly_separable
-from rockfrag.fragility.vector_tables import check_vector, monotone_probability, vector_tables
+from rockfrag.fragility.vector import (
+    check_vector,
+    fit_vector,
+    linearly_separable,
+    monotone_probability,
+    vector_tables,
+)
 from rockfrag.report.sections.curves import two_measures_figure
 
 MEASURES = ("pga_g", "pgv_over_pga_s")

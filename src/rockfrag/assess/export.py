@@ -2,7 +2,10 @@
 
 import json
 import math
+from dataclasses import is_dataclass
 from typing import Any
+
+import numpy as np
 
 from rockfrag import __version__
 from rockfrag.assess.answer import Assessment
@@ -37,35 +40,33 @@ def as_json(found: Assessment) -> str:
         "interval_level": LEVEL,
         "rocks_from": found.rocks_from,
         "does_not_move": does_not_move(found),
-        "fraction_rocking": _estimate(found.rocking),
+        "fraction_rocking": found.rocking,
         "counts": found.counts
         and dict(zip(("motions", "rock", "topple"), found.counts, strict=True)),
         "fraction_toppling_with_sliding": found.sliding_fraction,
-        "fraction_toppling": _estimate(found.fraction),
-        "probability": _estimate(found.probability),
-        "amplitude_toppling": {f"{p:g}": _estimate(e) for p, e in found.amplitudes.items()},
+        "fraction_toppling": found.fraction,
+        "probability": found.probability,
+        "amplitude_toppling": {f"{p:g}": e for p, e in found.amplitudes.items()},
         "arrangements": found.by_arrangement,
         "in_space": found.motions.both,
         "in_one_plane": found.planar,
         "flip_rate": found.flip_rate,
-        "directions": found.directions and vars(found.directions),
-        "mitigations": [vars(mitigation) for mitigation in found.mitigations],
-        "rules_of_thumb": [vars(rule) for rule in found.rules],
-        "effects": [vars(effect) for effect in found.effects],
+        "directions": found.directions,
+        "mitigations": found.mitigations,
+        "rules_of_thumb": found.rules,
+        "effects": found.effects,
         "fragility": {
-            "levels": outcomes.intensity_levels.levels.tolist(),
-            "fraction": outcomes.fractions().tolist(),
-            "other_states": {
-                name: outcomes.fractions(state=name).tolist() for name in outcomes.others
-            },
+            "levels": outcomes.intensity_levels.levels,
+            "fraction": outcomes.fractions(),
+            "other_states": {name: outcomes.fractions(state=name) for name in outcomes.others},
             **curve,
         },
         "two_measures": _two_measures(found),
         "hazard": found.hazard
         and {
             "source": found.hazard.source,
-            "levels": found.hazard.levels.tolist(),
-            "annual_rates": found.hazard.rates.tolist(),
+            "levels": found.hazard.levels,
+            "annual_rates": found.hazard.rates,
         },
         "motions": [
             {"name": motion.name, "earthquake": earthquake, "value": value}
@@ -75,13 +76,6 @@ def as_json(found: Assessment) -> str:
         "quality_flags": quality_flags(found),
     }
     return json.dumps(_plain(answer), indent=2, ensure_ascii=False, allow_nan=False) + "\n"
-
-
-def _estimate(estimate: Estimate | None) -> dict[str, Any] | None:
-    if estimate is None:
-        return None
-    limits = {"value": estimate.value, "lower": estimate.lower, "upper": estimate.upper}
-    return limits | {"standard_deviations": dict(estimate.sources)}
 
 
 def _two_measures(found: Assessment) -> dict[str, Any] | None:
@@ -106,6 +100,13 @@ def _two_measures(found: Assessment) -> dict[str, Any] | None:
 
 def _plain(value: Any) -> Any:
     """Values as JSON knows them."""
+    if isinstance(value, Estimate):
+        limits = {"value": value.value, "lower": value.lower, "upper": value.upper}
+        return _plain({**limits, "standard_deviations": dict(value.sources)})
+    if is_dataclass(value):
+        return _plain(vars(value))
+    if isinstance(value, np.ndarray):
+        return _plain(value.tolist())
     if isinstance(value, dict):
         return {str(key): _plain(inner) for key, inner in value.items()}
     if isinstance(value, list | tuple):

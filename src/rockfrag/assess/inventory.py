@@ -10,6 +10,7 @@ import os
 import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -276,7 +277,7 @@ def _own_name(row: Row, taken: dict[str, str]) -> str:
 
 def _request(row: Row, name: str, shared: Mapping[str, Any]) -> Request:
     own: dict[str, Any] = {"name": name}
-    own |= {key: row.positive_quantity(key) for key in SIZES if row.has(key)}
+    own |= {key: row.quantity(key, above=0) for key in SIZES if row.has(key)}
     pedestals = _pedestals(row)
     if pedestals:
         own["pedestal"] = pedestals if len(pedestals) > 1 else pedestals[0]
@@ -304,7 +305,7 @@ def _pedestals(row: Row) -> list[dict[str, float]]:
                 found.append({})
             if cell.strip():
                 part = replace(row, cells={key: cell.strip()})
-                found[i][key.removeprefix("pedestal_")] = part.positive_quantity(key)
+                found[i][key.removeprefix("pedestal_")] = part.quantity(key, above=0)
     return found
 
 
@@ -315,8 +316,9 @@ def _yes(row: Row, column: str) -> bool:
     return said in YES
 
 
+_above_0 = partial(Row.number, above=0)
 OTHERS: Mapping[str, Callable[[Row, str], Any]] = {
-    "floor": Row.text, "restitution": Row.positive, "round": _yes, "value": Row.positive
+    "floor": Row.text, "restitution": _above_0, "round": _yes, "value": _above_0
 }  # fmt: skip
 """What else a column may say, and how it is read."""
 

@@ -117,25 +117,18 @@ def compare(
 ) -> list[Mitigation]:
     """Estimate again with each change of the object."""
     before, found = target.value(now), []
+    weights = earthquake_weights(now.earthquakes)
+    groups = len(weights)
     for name, outcomes in changed.items():
         after, factor, limits = target.value(outcomes), math.nan, (math.nan, math.nan)
         if math.isfinite(before) and before > 0 and math.isfinite(after):
             factor = after / before
-            limits = _limits(target, now, outcomes, factor)
+            # by a jackknife over earthquakes; none where one of them decides alone
+            pairs = np.array([[target.value(v, w) for v in (outcomes, now)] for w in weights])
+            if groups > 1 and np.isfinite(pairs).all() and (pairs > 0).all():
+                error = jackknife_error(np.log(pairs[:, 0] / pairs[:, 1]))
+                half = float(student(LEVEL, groups) * error)
+                limits = (factor * math.exp(-half), factor * math.exp(half))
         helps = after > before if math.isinf(target.certain) else after < before
         found.append(Mitigation(name, after, factor, *limits, helps))
     return found
-
-
-def _limits(
-    target: Target, now: ObjectOutcomes, changed: ObjectOutcomes, factor: float
-) -> tuple[float, float]:
-    """Limits of a factor by a jackknife over earthquakes; NaN where one of them decides alone."""
-    weights = earthquake_weights(now.earthquakes)
-    groups = len(weights)
-    pairs = np.array([[target.value(v, w) for v in (changed, now)] for w in weights])
-    if groups < 2 or not np.isfinite(pairs).all() or (pairs <= 0).any():
-        return math.nan, math.nan
-    ratios = np.log(pairs[:, 0] / pairs[:, 1])
-    half = float(student(LEVEL, groups) * jackknife_error(ratios))
-    return factor * math.exp(-half), factor * math.exp(half)

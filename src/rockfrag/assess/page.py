@@ -29,7 +29,7 @@ from rockfrag.records.motion import GroundMotion, Motion
 from rockfrag.report.live import carried, live_kernel
 from rockfrag.report.live.space import Standing, live_in_space
 from rockfrag.report.page import Page, text_table
-from rockfrag.report.part import Answer, FigureSpec, Finding, Section
+from rockfrag.report.part import Answer, Finding, Section
 from rockfrag.sentences import PART, number, sentence
 
 MOTIONS_SHOWN = 15  # Rows of the table of motions that topple the object first
@@ -53,9 +53,12 @@ def page_of(found: Assessment) -> str:
     pairs = [line.split(PART) for line in page_says("words_used", found)]
     pairs.sort(key=lambda pair: pair[0].lower())
     caption = "Words and abbreviations of this page."
+    drawn = []
+    if found.main.sources:
+        drawn.append(page_says.figure("sources", lambda: sources_figure(found)))
     sections = [
         *_compared(found),
-        _sure(found),
+        page_says.section("sure", [*drawn, _sources(found), _effects(found)], found),
         page_says.section("assumed", [], found),
         *([_rules(found)] if found.rules else []),
         *(_levels(found), _motions(found)),
@@ -109,13 +112,6 @@ def _compared(found: Assessment) -> list[Section]:
         page_says.section("mitigations", [changes], found),
         page_says.section("arrangements", [stands], found),
     ]
-
-
-def _sure(found: Assessment) -> Section:
-    parts: list[Markup | FigureSpec] = [_sources(found), _effects(found)]
-    if found.main.sources:
-        parts.insert(0, page_says.figure("sources", lambda: sources_figure(found)))
-    return page_says.section("sure", parts, found)
 
 
 def _sources(found: Assessment) -> Markup:

@@ -34,10 +34,8 @@ from .user_table import (
 )
 from .vector import (
     Interaction as Interaction,
-    VectorFragility as VectorFragility,
-    fit_vector as fit_vector,
-)
-from .vector_tables import (
     VectorChecks as VectorChecks,
+    VectorFragility as VectorFragility,
     check_vector as check_vector,
+    fit_vector as fit_vector,
 )

@@ -14,7 +14,7 @@ from rockfrag.fragility.ida_curves import fragility_row, table_hash
 from rockfrag.fragility.measure_selection import MeasureSelection, recommend_measure
 from rockfrag.fragility.observations import Observations, observations_from_table
 from rockfrag.fragility.tests_file import Measures, read_tests
-from rockfrag.fragility.vector_tables import VectorTables, vector_tables
+from rockfrag.fragility.vector import VectorTables, vector_tables
 from rockfrag.short_repr import short_repr
 
 

@@ -13,7 +13,7 @@ from rockfrag import figure_style as style
 from rockfrag.campaign.comparison import FEWEST_VOTERS, REPEATS
 from rockfrag.campaign.standing import preferred_edges
 from rockfrag.fragility.observations import name_and_unit
-from rockfrag.fragility.vector_tables import VectorTables
+from rockfrag.fragility.vector import VectorTables
 from rockfrag.report.page import (
     Column,
     Row,

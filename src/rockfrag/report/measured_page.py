@@ -3,11 +3,11 @@
 from collections.abc import Mapping
 from functools import partial
 from itertools import cycle
+from typing import Any
 
 import numpy as np
 import pandas as pd
 from markupsafe import Markup
-from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import PercentFormatter
 
@@ -19,7 +19,7 @@ from rockfrag.fragility.observations import Floats, Observations
 from rockfrag.fragility.user_table import UserFragility, fit_user_table
 from rockfrag.report.figures import GREY
 from rockfrag.report.page import Column, estimated, p_values, table_html
-from rockfrag.report.part import Answer, FigureSpec, Finding, Says, Section
+from rockfrag.report.part import Answer, FigureSpec, Says, Section
 from rockfrag.report.sections.curves import (
     axis_label,
     draw_fractions,
@@ -37,17 +37,9 @@ says = Says("rockfrag.report", "measured_page.j2")
 def run(job: Job[MeasuredTable]) -> Results:
     """Yield the fitted tables; draw the figures and write the page, ``report.html``."""
     study = job.study
-    found = fit_user_table(
-        study.table,
-        study.measures,
-        overturned=study.overturned,
-        motion=study.motion,
-        earthquake=study.earthquake,
-        given=study.given,
-        level=study.confidence,
-        replicates=study.replicates,
-        seed=study.seed,
-    )
+    names = ("overturned", "motion", "earthquake", "given", "replicates", "seed")
+    settings: dict[str, Any] = {name: getattr(study, name) for name in names}
+    found = fit_user_table(study.table, study.measures, level=study.confidence, **settings)
     goodness = pd.DataFrame(
         [(name, g.deviance, g.p_value, g.brier, g.words) for name, g in found.goodness.items()],
         columns=["measure", "deviance", "p_value", "brier", "finding"],
@@ -59,8 +51,12 @@ def run(job: Job[MeasuredTable]) -> Results:
     yield "goodness", goodness
     measures, calibration = _figures(found)
     answer = _answer(study, found, measures)
+    choice = found.choice.table
+    given = [name for name in map(str, choice.columns) if name.startswith("p_")]
+    columns = [*_CHOICE, *(p_values(name, f"p, {name.removeprefix('p_')}") for name in given)]
+    table = table_html(choice, columns, "Measures compared on the same tests, best first.")
     sections = [
-        _choice(found.choice.table, answer.sentences[0]),
+        says.section("measure", [table], answer.sentences[0]),
         _curves(study, found.table, goodness, calibration),
     ]
     both = found.two_measures and two_measures_section(found.two_measures, study.confidence)
@@ -83,10 +79,8 @@ def _figures(found: UserFragility) -> tuple[FigureSpec, FigureSpec]:
     if found.goodness:
         calibration = partial(calibration_figure, found.goodness)
     best = found.choice.words
-    return (
-        says.figure("measures", over, best),
-        says.figure("calibration", calibration, best),
-    )
+    figures = says.figure("measures", over, best), says.figure("calibration", calibration, best)
+    return figures
 
 
 def _answer(study: MeasuredTable, found: UserFragility, measures: FigureSpec) -> Answer:
@@ -143,13 +137,6 @@ _FITS = (
 )
 
 
-def _choice(choice: pd.DataFrame, best: Finding) -> Section:
-    given = [name for name in map(str, choice.columns) if name.startswith("p_")]
-    columns = [*_CHOICE, *(p_values(name, f"p, {name.removeprefix('p_')}") for name in given)]
-    table = table_html(choice, columns, "Measures compared on the same tests, best first.")
-    return says.section("measure", [table], best)
-
-
 def _curves(
     study: MeasuredTable, fitted: pd.DataFrame, goodness: pd.DataFrame, calibration: FigureSpec
 ) -> Section:
@@ -177,7 +164,11 @@ def measures_figure(
         for axes, (label, curve) in zip(grid_of_axes.flat, curves.items(), strict=False):
             data = outcomes[label]
             grid = _grid(curve, data)
-            _outcomes(axes, data, grid)
+            draw_fractions(axes, fraction_in_bins(data).rename(columns={"im": "x"}), style.BLACK)
+            inside = grid[(grid >= data.im.min()) & (grid <= data.im.max())]
+            if inside.size and np.ptp(data.log_im) > 0:
+                local = local_fraction(data, inside)
+                axes.plot(inside, local, "--", color=style.BLACK, linewidth=0.8)
             lower, upper = curve.interval.band(grid)
             if np.isfinite(lower).any():
                 axes.fill_between(grid, lower, upper, color=style.BLUE, alpha=0.18, linewidth=0)
@@ -210,13 +201,6 @@ def calibration_figure(judged: Mapping[str, GoodnessOfFit]) -> Figure:
         axes.set(xlabel="Fitted probability", ylabel="Fraction overturned")
         axes.legend(loc="upper left", handletextpad=0.3)
         return figure
-
-
-def _outcomes(axes: Axes, data: Observations, grid: Floats) -> None:
-    draw_fractions(axes, fraction_in_bins(data).rename(columns={"im": "x"}), style.BLACK)
-    inside = grid[(grid >= data.im.min()) & (grid <= data.im.max())]
-    if inside.size and np.ptp(data.log_im) > 0:
-        axes.plot(inside, local_fraction(data, inside), "--", color=style.BLACK, linewidth=0.8)
 
 
 def _grid(curve: Fragility, data: Observations) -> Floats:

@@ -4,6 +4,7 @@ import base64
 import json
 import math
 import re
+import zlib
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -333,6 +334,11 @@ def scripts_of(*names: str) -> Markup:
 def base64_text(content: bytes) -> str:
     """Return bytes as text of a page."""
     return base64.b64encode(content).decode("ascii")
+
+
+def zipped_text(content: bytes) -> str:
+    """Return bytes, compressed, as text of a page."""
+    return base64_text(zlib.compress(content, 9))
 
 
 def json_text(data: Any) -> Markup:

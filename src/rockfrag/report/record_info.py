@@ -168,7 +168,11 @@ def record_figure(motion: Motion) -> Figure:
         frequency, amplitude = fourier_amplitude(motion)
         _logarithmic(lower, frequency[1:], amplitude[1:], style.PURPLE)
         lower.set(xlabel="Frequency [Hz]", ylabel="Fourier amplitude [m/s]")
-        figure.suptitle(_title(motion), fontsize=9)
+        told = {key: str(value or "") for key, value in motion.metadata.items()}
+        station = f"{told.get('station', '')} {told.get('station_name', '')}".strip()
+        found = ", ".join(filter(None, (station, told.get("component"), told.get("earthquake"))))
+        titles = [shorten(line, 100, placeholder="…") for line in (motion.name, found) if line]
+        figure.suptitle("\n".join(titles), fontsize=9)
         return figure
 
 
@@ -193,10 +197,3 @@ def _logarithmic(panel: Axes, x: NDArray[np.float64], y: NDArray[np.float64], co
     panel.set_ylim(0.7 * lowest, 2 * largest)
     style.plain_log(panel, "xy")
     panel.grid(visible=True, which="major")
-
-
-def _title(motion: Motion) -> str:
-    told = {key: str(value or "") for key, value in motion.metadata.items()}
-    station = f"{told.get('station', '')} {told.get('station_name', '')}".strip()
-    found = ", ".join(filter(None, (station, told.get("component"), told.get("earthquake"))))
-    return "\n".join(shorten(line, 100, placeholder="…") for line in (motion.name, found) if line)

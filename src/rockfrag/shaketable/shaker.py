@@ -6,6 +6,7 @@ records of Table 3.3.
 """
 
 import os
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal
@@ -25,14 +26,7 @@ FILTER_ORDER = 4  # order of the zero-phase Butterworth high-pass that makes roo
 CORNERS_HZ = tuple(float(corner) for corner in np.round(np.arange(0.02, 5.001, 0.02), 2))
 """Corners tried, from the mildest on [Hz]."""
 
-_FIELDS = {
-    "stroke_m": "stroke",
-    "force_n": "force",
-    "armature_mass_kg": "armature_mass",
-    "table_mass_kg": "table_mass",
-    "velocity_m_s": "velocity",
-}
-"""Fields of a shaker by the keys of its file that are called otherwise."""
+_UNIT = re.compile(r"_(?:m_s|m|n|kg)$")  # what keys of a shaker's file have more than its fields
 
 
 @dataclass(frozen=True)
@@ -134,7 +128,7 @@ def read_shaker(path: str | os.PathLike[str]) -> Shaker:
     """
     values = checked(read_yaml(path), "shaker", str(path))
     with errors_of(str(path)):
-        return Shaker(**{_FIELDS.get(key, key): value for key, value in values.items()})
+        return Shaker(**{_UNIT.sub("", key): value for key, value in values.items()})
 
 
 def required_corner(

@@ -107,7 +107,7 @@ def _test(row: Row, bounds: tuple[str, str], in_g: float) -> dict[str, object]:
         )
     if body == "pedestal" and row.cells["pedestal"] == "NP":
         raise row.error("overturned_body", "is pedestal in a test without one")
-    repetition = row.positive("repetition")
+    repetition = row.number("repetition", above=0)
     if repetition != int(repetition):
         raise row.error("repetition", f"must be a whole number from 1, got {repetition:g}")
     texts = {name: row.text(name) for name in ("test", "object", "earthquake", "floor")}
@@ -131,7 +131,7 @@ def _bounds(row: Row, low: str, high: str, censored: bool) -> tuple[float, float
         raise row.error(low, f"must be zero or more, got {row.cells[low]}")
     if censored and row.has(high):
         raise row.error(high, "must be empty where the test is censored")
-    upper = math.nan if censored else row.positive(high)
+    upper = math.nan if censored else row.number(high, above=0)
     if upper < lower:
         raise row.error(high, f"must not be below {low} ({lower:g}), got {upper:g}")
     return lower, upper
@@ -140,7 +140,7 @@ def _bounds(row: Row, low: str, high: str, censored: bool) -> tuple[float, float
 def _reported(row: Row, lower_g: float, censored: bool) -> float:
     """Figure of the laboratory [g]: its own column, else the largest amplitude survived."""
     figures = [
-        row.positive(f"amplitude_{unit}") * in_g
+        row.number(f"amplitude_{unit}", above=0) * in_g
         for unit, in_g in _IN_G.items()
         if row.has(f"amplitude_{unit}")
     ]

@@ -2,19 +2,19 @@
 
 import logging
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 import pandas as pd
 
-from rockfrag.arrays import Flags, Floats
+from rockfrag.arrays import Flags
 from rockfrag.campaign import comparison, laboratory
 from rockfrag.campaign.comparison import HALF, NEAR_CRITICAL, MeasuredTests
 from rockfrag.campaign.laboratory import MEASURED, Campaign, read_campaign
-from rockfrag.campaign.standing import Trials, sample_trials, simulate_tests
+from rockfrag.campaign.standing import sample_trials, simulate_tests
 from rockfrag.errors import InputError
-from rockfrag.fragility.vector_tables import VectorTables, vector_tables
+from rockfrag.fragility.vector import VectorTables, vector_tables
 from rockfrag.motions.processing import process, scale_to_pga
 from rockfrag.motions.pulses import commanded_cosine
 from rockfrag.records.motion import Motion
@@ -42,29 +42,22 @@ SCANS = 50  # repetitions of a scan, with its noise, behind the limits of a crit
 
 def run(job: Job[CampaignStudy]) -> Results:
     """Yield the tables of the campaign (``TABLES``), each as soon as it is there."""
-    study = job.study
-    campaign, motions = campaign_with_motions(study, job.log)
-    thing = standing_object(study)
-    trials = sample_trials(thing, study.unknowns, study.trials, study.seed)
-    outcomes, rocked = simulate_tests(trials.systems, motions, job.threads)
-    measured = measured_tests(study, campaign)
-    votes = measured.cross_validate(outcomes)
+    found = _Simulated(job)
+    campaign, measured, mean = found.campaign, found.measured, found.votes.mean(axis=0)
     job.log.info(
         "%d tests under %d motions: %.1f %% of the outcomes right",
         len(campaign.tests), measured.groups.max() + 1,
-        100 * ((votes >= HALF) == measured.overturned).mean(),
+        100 * ((found.votes >= HALF) == measured.overturned).mean(),
     )  # fmt: skip
-    mean = votes.mean(axis=0)
     judged = campaign.tests.assign(
         votes_to_overturn=mean,
         simulated=mean >= HALF,
         right=(mean >= HALF) == campaign.tests["overturned"],
         near_critical=(mean > NEAR_CRITICAL[0]) & (mean < NEAR_CRITICAL[1]),
     )
-    found = _Simulated(job, campaign, motions, thing, trials, outcomes, rocked, measured, votes)
     yield "tests", judged
-    right = (outcomes == measured.overturned).mean(axis=1)
-    table = trials.table.assign(right_in_sample=right, plausible=found.plausible)
+    right = (found.outcomes == measured.overturned).mean(axis=1)
+    table = found.trials.table.assign(right_in_sample=right, plausible=found.plausible)
     yield (
         "trials",
         table.sort_values("right_in_sample", ascending=False, kind="stable", ignore_index=True),
@@ -179,20 +172,19 @@ def measured_tests(study: CampaignStudy, campaign: Campaign) -> MeasuredTests:
     )
 
 
-@dataclass(frozen=True)
 class _Simulated:
     """A campaign whose tests were simulated, each method a table of it."""
 
-    job: Job[CampaignStudy]
-    campaign: Campaign
-    motions: list[Motion]
-    thing: Shape | Block | Column
-    trials: Trials
-    # whether the object overturned, and whether anything rocked, shape (trials, tests)
-    outcomes: Flags
-    rocked: Flags
-    measured: MeasuredTests
-    votes: Floats  # of plausible trials, chosen by tests with other motions, shape (repeats, tests)
+    def __init__(self, job: Job[CampaignStudy]) -> None:
+        self.job, study = job, job.study
+        self.campaign, self.motions = campaign_with_motions(study, job.log)
+        self.thing = standing_object(study)
+        self.trials = sample_trials(self.thing, study.unknowns, study.trials, study.seed)
+        # whether the object overturned, and whether anything rocked, shape (trials, tests)
+        self.outcomes, self.rocked = simulate_tests(self.trials.systems, self.motions, job.threads)
+        self.measured = measured_tests(study, self.campaign)
+        # of plausible trials, chosen by tests with other motions, shape (repeats, tests)
+        self.votes = self.measured.cross_validate(self.outcomes)
 
     @property
     def plausible(self) -> Flags:

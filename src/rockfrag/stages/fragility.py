@@ -66,7 +66,7 @@ def run(job: Job[Study]) -> Results:
 def _two_measures(job: Job[Study], measures: pd.DataFrame) -> Results:
     """Fits in the pairs of measures that the study names; tables without rows where it names none."""
     from rockfrag.fragility.ida_curves import with_measures
-    from rockfrag.fragility.vector_tables import vector_tables
+    from rockfrag.fragility.vector import vector_tables
 
     pairs = job.study.fragility.pairs
     columns = list(dict.fromkeys(measure for pair in pairs for measure in pair))

@@ -9,7 +9,6 @@ from typing import Any, cast
 from rockfrag.building.settings import read_building
 from rockfrag.errors import InputError, errors_of
 from rockfrag.files import distinct_file_names, file_name, is_file
-from rockfrag.laws import law_names
 from rockfrag.plugins import plugins_asked
 from rockfrag.records.catalogue import own_records, read_catalogue, repeated_motions
 from rockfrag.schema import checked
@@ -26,16 +25,8 @@ from rockfrag.study.campaign import (
 from rockfrag.study.heading import check_file, checked_steps, existing_file, heading_of
 from rockfrag.study.space import SPACE_KEY, SpaceStudy, space_study_from
 from rockfrag.study.study import RECORDS_FOLDER, Amplitudes, FragilitySettings, Study
-from rockfrag.system.blocks import Block
-from rockfrag.system.system import System
 from rockfrag.units import peak_warning
 from rockfrag.yaml_file import read_yaml
-
-OF_ONE_COMPONENT = (
-    *("strong_part", "bracketed_part"),
-    *("scale_to_pga", "scale_to_pgv", "scale_to_sa", "scale_to_arias"),
-)
-"""Steps that choose a part or a factor by the component itself."""
 
 AnyStudy = Study | MeasuredTable | CampaignStudy | SpaceStudy
 
@@ -76,12 +67,9 @@ def _study(content: Mapping[str, Any], source: Path) -> Study:
     by_name = {configuration.name: configuration for configuration in known}
     tested = _used(source, "bodies", bodies.get("use"), list(by_name), "configurations")
     chosen = [by_name[name] for name in tested]
-    configurations = _measured(source, chosen, specimens, bodies.get("restitution"))
+    configurations = arrangements.with_contacts(chosen, specimens, content, str(source))
     with errors_of(f"{source}"):
         amplitudes = Amplitudes(**content["amplitudes"])
-    if (friction := content.get("friction")) is not None:
-        with errors_of(f"{source}: key friction"):
-            configurations = tuple(arrangements.with_friction(c, friction) for c in configurations)
     catalogue = read_catalogue(catalogue_file).set_index("name", drop=False)
     shaken = _used(source, "motions", motions.get("use"), list(catalogue.index), "motions")
     study = Study(
@@ -139,30 +127,6 @@ def _used(
     return list(known if names is None else names)
 
 
-def _measured(
-    source: Path,
-    chosen: Sequence[System],
-    specimens: Mapping[str, Block],
-    content: Mapping[str, Any] | None,
-) -> tuple[System, ...]:
-    """Return the configurations with what the study says of their impacts."""
-    if content is None:
-        return tuple(chosen)
-    key = f"{source}: key bodies.restitution"
-    measured = {}
-    for name, value in content["blocks"].items():
-        if name not in specimens:
-            raise InputError(
-                f"{key}.blocks: expected names of the specimens {', '.join(specimens)}, found {name}."
-            )
-        measured[name] = tuple(value) if isinstance(value, list) else value
-    law = content.get("law", law_names()[0])
-    with errors_of(key):
-        return tuple(
-            arrangements.with_restitution(configuration, measured, law) for configuration in chosen
-        )
-
-
 def _check_names(study: Study) -> None:
     """Refuse names of motions and floors that could not stand in tables and file names."""
     motions, floors = list(study.catalogue["name"]), list(study.floors)
@@ -184,7 +148,7 @@ def _check_names(study: Study) -> None:
 
 
 def _check_vertical(study: Study) -> None:
-    """Refuse vertical motion of which the catalogue names no record, or that processing would cut elsewhere."""
+    """Refuse vertical motion of which the catalogue names no record."""
     if not study.vertical:
         return
     for row in study.catalogue.to_dict("records"):
@@ -192,12 +156,6 @@ def _check_vertical(study: Study) -> None:
             raise InputError(
                 f"{study.source}: key vertical: {study.catalogue_file} names no vertical component of "
                 f"{row['name']}; give it in the column vertical."
-            )
-    for i, step in enumerate(study.processing):
-        if step["step"] in OF_ONE_COMPONENT:
-            raise InputError(
-                f"{study.source}: key motions.processing[{i}]: {step['step']} looks at one component, and the "
-                "vertical one would no longer belong to it; leave it out or use trim and scale."
             )
 
 

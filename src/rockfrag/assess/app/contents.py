@@ -35,7 +35,6 @@ from rockfrag.fragility import held_out, vector
 from rockfrag.fragility.model_error import CUT, MODEL_ERRORS
 from rockfrag.motions.intensity import IntensityMeasure
 from rockfrag.motions.spectra import oscillator_matrix
-from rockfrag.records.motion import Motion
 from rockfrag.rocking.browser import driver_text
 
 SCRIPTS = ("statistics", "risk", "conversion", "building", "space", "objects", "answer")
@@ -201,6 +200,14 @@ def in_space(motions: MotionSet, measures: Iterable[IntensityMeasure]) -> dict[s
     both = motions.with_both_components()
     fewer = both.thinned()
     names = [motion.name for motion in both.ground]
+    levels = {}
+    for measure in measures:
+        few, fewest = (
+            outcomes.make_intensity_levels(each, measure, (), outcomes.FEW_LEVELS).levels.tolist()
+            for each in (both, fewer)
+        )
+        about = {"levels": few, "fewer": fewest, "values": both.values(measure).tolist()}
+        levels[measure.imt] = {**about, "ratios": ratios_of(both, measure)}
     turns = [math.radians(angle) for angle in range(0, 180, outcomes.STEP_DEG)]
     return {
         "records": [
@@ -208,7 +215,7 @@ def in_space(motions: MotionSet, measures: Iterable[IntensityMeasure]) -> dict[s
             for pair in both.pairs
         ],
         "fewer": [names.index(motion.name) for motion in fewer.ground],
-        "measures": {measure.imt: _measure_in_space(both, fewer, measure) for measure in measures},
+        "measures": levels,
         "turns": [[math.cos(angle), math.sin(angle)] for angle in turns],
         "aside": objects.ASIDE,
         "higher": objects.HIGHER,
@@ -218,34 +225,17 @@ def in_space(motions: MotionSet, measures: Iterable[IntensityMeasure]) -> dict[s
 
 def _times(motions: MotionSet, pair: tuple[int, int]) -> list[dict[str, Any] | None]:
     """Which times of each component are common to both; None where it is all of them."""
-    found = []
+    found: list[dict[str, Any] | None] = []
     for own, common in zip(pair, motions.components(pair), strict=True):
-        found.append(None if common is motions.base[own] else _part(motions.base[own], common))
+        if common is motions.base[own]:
+            found.append(None)
+            continue
+        step = common.provenance[-1]
+        begin = float(step["left_out_at_beginning_s"])
+        skip = None if step["interpolated"] else round(begin / motions.base[own].dt)
+        about = {"begin": begin, "skip": skip, "count": common.acceleration.size, "dt": common.dt}
+        found.append(about)
     return found
-
-
-def _part(own: Motion, common: Motion) -> dict[str, Any]:
-    step = common.provenance[-1]
-    begin = float(step["left_out_at_beginning_s"])
-    return {
-        "begin": begin,
-        "skip": None if step["interpolated"] else round(begin / own.dt),
-        "count": common.acceleration.size,
-        "dt": common.dt,
-    }
-
-
-def _measure_in_space(
-    both: MotionSet, fewer: MotionSet, measure: IntensityMeasure
-) -> dict[str, Any]:
-    few, fewest = (
-        outcomes.make_intensity_levels(each, measure, (), outcomes.FEW_LEVELS).levels.tolist()
-        for each in (both, fewer)
-    )
-    return {
-        "levels": few, "fewer": fewest, "values": both.values(measure).tolist(),
-        "ratios": ratios_of(both, measure),
-    }  # fmt: skip
 
 
 def ratios_of(motions: MotionSet, measure: IntensityMeasure) -> dict[str, Any] | None:

@@ -17,7 +17,7 @@ from rockfrag.assess.sources import SOURCES
 from rockfrag.errors import InputError
 from rockfrag.files import write_text
 from rockfrag.records.motion import Motion
-from rockfrag.report.page import TEMPLATES, base64_text, json_text, scripts_of
+from rockfrag.report.page import TEMPLATES, base64_text, json_text, scripts_of, zipped_text
 from rockfrag.rocking.browser import driver_text, module_bytes
 from rockfrag.units import GRAVITY
 
@@ -46,8 +46,7 @@ def write_app(
     formulas.
     """
     page = page_of(motions, form, request, made=made)
-    size = len(page.encode())
-    if size > MOST_BYTES:
+    if (size := len(page.encode())) > MOST_BYTES:
         raise InputError(
             f"--record: with these motions the page has {size / 1e6:.1f} MB, more than {MOST_BYTES / 1e6:g}; give "
             "fewer or shorter records."
@@ -60,38 +59,27 @@ def page_of(
 ) -> str:
     """Return the page as HTML, which loads nothing."""
     packed, about = packed_samples(motions.ground)
-    modules = {
-        "fused": "ensemble-fused",
-        "plain": "ensemble",
-        "history": "integrate",
-        "space": "space",
-    }
+    modules = {"fused": "ensemble-fused", "plain": "ensemble"}
+    modules |= {"history": "integrate", "space": "space"}
     data = {
         **data_of(motions, request),
         "form": dict(form),
         "made": made,
         "texts": {language: texts(language) for language in LANGUAGES},
-        "modules": {
-            name: base64_text(zlib.compress(module_bytes(of), 9)) for name, of in modules.items()
-        },
+        "modules": {name: zipped_text(module_bytes(of)) for name, of in modules.items()},
         "samples": about,
         "packed": base64_text(packed),
     }
     style = TEMPLATES.get_template("style.css").render() + script("app.css")
     parts = ("building", "space", "objects", "words", "lists", "scene", "page")
-    scripts = "\n".join(
-        [
-            driver_text("integrate", "space"),
-            scripts_of("view"),
-            *(script(f"{name}.js") for name in parts),
-        ]
-    )
+    scripts = [driver_text("integrate", "space"), scripts_of("view")]
+    scripts += [script(f"{name}.js") for name in parts]
     return TEMPLATES.from_string(script("app.html.j2")).render(
         title=data["texts"]["en"]["title"],
         style=Markup(style),
         data=json_text(data),
         computing=Markup(f"{computing()}\n{script('worker.js')}"),
-        scripts=Markup(scripts),
+        scripts=Markup("\n".join(scripts)),
     )
 
 
@@ -127,11 +115,8 @@ def packed_samples(motions: Sequence[Motion]) -> tuple[bytes, dict[str, Any]]:
         if (power >= 0).all():
             content = _by_rank(whole.astype("<i4")) + power.astype(np.uint8).tobytes()
             return zlib.compress(content, 9), {**about, "factor": factor, "decimal": True}
-    return zlib.compress(_by_rank(samples.astype("<f8")), 9), {
-        **about,
-        "factor": 1.0,
-        "decimal": False,
-    }
+    content = _by_rank(samples.astype("<f8"))
+    return zlib.compress(content, 9), {**about, "factor": 1.0, "decimal": False}
 
 
 def _by_rank(values: np.ndarray) -> bytes:

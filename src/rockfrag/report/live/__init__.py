@@ -119,33 +119,25 @@ def _start(bodies: Mapping[str, System], rows: list[list[str]]) -> tuple[int, in
     """Place of the body and of the motion that are shown first."""
     kinds = list(bodies.values())
     order = sorted(range(len(kinds)), key=lambda number: -kinds[number].count)
-    for body in order:
-        for motion, row in enumerate(rows[body]):
-            if "1" in row[1:] and row[0] == "0":
-                return body, motion
-    return order[0], 0
+    places = ((body, motion) for body in order for motion in range(len(rows[body])))
+    falls = (at for at in places if rows[at[0]][at[1]].find("1") > 0)
+    return next(falls, (order[0], 0))
 
 
 def _motion(motion: Motion) -> dict[str, Any]:
-    samples = np.ascontiguousarray(motion.acceleration, dtype="<f8")
-    return {
-        "name": motion.name,
-        "dt": motion.dt,
-        "pga": motion.pga,
-        "pga_g": motion.pga / GRAVITY,
-        "samples": base64_text(samples.tobytes()),
-    }
+    peaks = {"pga": motion.pga, "pga_g": motion.pga / GRAVITY}
+    return {"name": motion.name, "dt": motion.dt, **peaks, "samples": samples_text(motion)}
+
+
+def samples_text(motion: Motion) -> str:
+    """Return the samples of a motion as text of a page."""
+    return base64_text(np.asarray(motion.acceleration, "<f8").tobytes())
 
 
 def _body(name: str, system: System) -> dict[str, Any]:
     *below, upper = map(_block, system.in_plane().bodies, system.contacts)
-    offset = system.contacts[-1].offset[0]
-    return {
-        "name": name,
-        "statue": upper,
-        "pedestal": below[0] if below else None,
-        "offset": offset,
-    }
+    about = {"name": name, "statue": upper, "pedestal": below[0] if below else None}
+    return {**about, "offset": system.contacts[-1].offset[0]}
 
 
 def _block(body: RigidBody, contact: Contact) -> dict[str, float]:

@@ -1,7 +1,6 @@
 """The simulation of bodies in space in a page: the kernel itself, and what it needs."""
 
 import math
-import zlib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -10,7 +9,8 @@ import numpy as np
 from markupsafe import Markup
 
 from rockfrag.records.motion import GroundMotion
-from rockfrag.report.page import TEMPLATES, base64_text, json_text, scripts_of
+from rockfrag.report.live import samples_text
+from rockfrag.report.page import TEMPLATES, json_text, scripts_of, zipped_text
 from rockfrag.rocking.browser import driver_text, module_bytes
 from rockfrag.system.blocks import Block
 from rockfrag.system.body import Circle, RigidBody
@@ -43,7 +43,7 @@ def live_in_space(
     total = np.cumsum([motion.x.acceleration.size for motion in motions])
     kept = motions[: max(1, int((total <= MOST_SAMPLES).sum()))]
     data = {
-        "module": base64_text(zlib.compress(module_bytes("space"), 9)),
+        "module": zipped_text(module_bytes("space")),
         "bodies": [_body(name, body) for name, body in bodies.items()],
         "motions": [_motion(motion) for motion in kept],
         "amplitudes": AMPLITUDES_G,
@@ -111,7 +111,5 @@ def _motion(motion: GroundMotion) -> dict[str, Any]:
         "name": motion.name,
         "dt": motion.dt,
         "peak_g": peak_of(motion) / GRAVITY,
-        "samples": [
-            base64_text(np.asarray(component.acceleration, "<f8").tobytes()) for component in each
-        ],
+        "samples": list(map(samples_text, each)),
     }

@@ -17,7 +17,7 @@ from rockfrag.files import file_name
 from rockfrag.pedestal.paired_tests import with_counterparts
 from rockfrag.report import figures, findings
 from rockfrag.report.page import Column, table_html
-from rockfrag.report.part import FigureSpec, Results, Section, says
+from rockfrag.report.part import Results, Section, says
 from rockfrag.sentences import amplitude, label, shortened
 
 _MOTION = (Column("earthquake", "Earthquake"), Column("floor", "Floor"), Column("motion", "Motion"))
@@ -103,20 +103,16 @@ def comparisons(results: Results) -> Section | None:
         by_floor = partial(draw, "floor", tests, means)
         parts.append(says.figure("amplitudes_by_floor", by_floor, of_floors))
     if study.has_pairs:
-        parts.append(_scatter(results))
+        sides = findings.sides_of(study)
+        ratio = findings.ratio_of(results.table("pedestal/effects"), sides)("whole", "all")
+        paired, _ = with_counterparts(tests, study.counterparts)
+        scatter = partial(figures.pedestal_scatter, paired, ratio, sides)
+        parts.append(says.figure("with_and_without_pedestal", scatter, sides, ratio))
     if len(whole) > 1:
         parts.append(table_html(whole, _MEANS, "Means over the same motions."))
     if len(set(floors["floor"])) > 1:
         parts.append(table_html(floors, _MEANS, "Means over the same records and objects."))
     return says.section("comparisons", parts, found, words)
-
-
-def _scatter(results: Results) -> FigureSpec:
-    about = findings.sides_of(results.study)
-    ratio = findings.ratio_of(results.table("pedestal/effects"), about)("whole", "all")
-    tests, _ = with_counterparts(results.tests, results.study.counterparts)
-    draw = partial(figures.pedestal_scatter, tests, ratio, about)
-    return says.figure("with_and_without_pedestal", draw, about, ratio)
 
 
 MOST_MOTIONS = 30

@@ -16,8 +16,7 @@ from rockfrag.files import file_name
 from rockfrag.fragility.checks import REJECTION, TAILS
 from rockfrag.fragility.curve_facts import REJECTED, compared_curves
 from rockfrag.fragility.observations import Floats, name_and_unit
-from rockfrag.fragility.vector import INTERACTION_LEVEL
-from rockfrag.fragility.vector_tables import VectorTables, describe_pair
+from rockfrag.fragility.vector import INTERACTION_LEVEL, VectorTables, describe_pair
 from rockfrag.outcomes.limit_states import OVERTURNS, limit_states
 from rockfrag.report.answer import has_one_record
 from rockfrag.report.figures import GREY

@@ -77,20 +77,19 @@ def pedestal(results: Results) -> Section | None:
             Column("remark", "Remark"),
         ]
         caption = "All pairs, by other methods and other ways to read the amplitude."
-        parts = [_forest(here, about), _table(here, ratio), table_html(methods, columns, caption)]
+        parts = [_forest(here, about), table_html(methods, columns, caption)]
+        caption = "Effect by scope, step protocol."
+        if len(here) > page.MOST_TABLE_ROWS:
+            of_earthquakes = here["scope"] == "earthquake"
+            caption += (
+                f" Each of the {of_earthquakes.sum()} earthquakes is in pedestal/effects.csv."
+            )
+            here = here[~of_earthquakes]
+        file, columns = "pedestal/effects.csv", effect_columns(ratio)
+        parts.insert(1, table_html(shown_effects(here), columns, caption, file))
     notes = results.table("pedestal/notes")
     notes = notes[notes["definition"] == DEFINITION] if len(notes) else notes
     return says.section("pedestal", parts, found, about, study.counterparts, notes["note"])
-
-
-def _table(effects: pd.DataFrame, ratio: str) -> Markup:
-    caption = "Effect by scope, step protocol."
-    if len(effects) > page.MOST_TABLE_ROWS:
-        of_earthquakes = effects["scope"] == "earthquake"
-        caption += f" Each of the {of_earthquakes.sum()} earthquakes is in pedestal/effects.csv."
-        effects = effects[~of_earthquakes]
-    file = "pedestal/effects.csv"
-    return table_html(shown_effects(effects), effect_columns(ratio), caption, file)
 
 
 def _forest(effects: pd.DataFrame, about: Sides) -> FigureSpec:
