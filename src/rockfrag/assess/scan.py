@@ -92,6 +92,7 @@ def make_scan(
     """
     accuracy = mesh.get("scan_accuracy_m")
     unknowns = unknowns_of(SCAN, None if accuracy is None else 1e3 * accuracy)
+    median = unknowns["contact_tolerance_mm"](0.5)
     del unknowns["restitution_ratio"]
     exact = {}
     if "edge_retreat_m" in mesh:
@@ -100,8 +101,7 @@ def make_scan(
         exact["direction_deg"] = float(mesh["direction_deg"])
     given = mesh.get("contact_tolerance_m")
     if given is not None or contact_spread is not None:
-        unknown = unknowns["contact_tolerance_mm"]
-        middle = unknown(0.5) if given is None else 1e3 * given
+        middle = median if given is None else 1e3 * given
         spread = KNOWN_CONTACT_SPREAD if contact_spread is None else contact_spread
         unknowns["contact_tolerance_mm"] = partial(lognormal, middle, spread)
     # what is wrong with the mesh is said of its middle tolerance
@@ -110,9 +110,9 @@ def make_scan(
     ways = ways_to_stand(shape, open_ones, WAYS, 1, exact).table
     ways["least_deg"] = [_least_angle_deg(shape, way) for way in ways.to_dict("records")]
     assumed = [
-        assume("unmeasured", SOURCE_OF[name], quantity=quantity)
-        for name, quantity in open_ones.items()
-        if name != "contact_tolerance_mm" or given is None
+        assume("unmeasured", source, unknown=source, median=median, accuracy=accuracy)
+        for source in map(SOURCE_OF.__getitem__, open_ones)
+        if source != "contact" or given is None
     ]
     upright = ways[ways["least_deg"] >= LEAST_ANGLE_DEG]
     carries = [name for name in open_ones if name != "direction_deg"]

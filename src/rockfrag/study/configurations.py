@@ -7,7 +7,8 @@ from typing import Any
 
 from rockfrag.errors import InputError, errors_of
 from rockfrag.files import distinct_file_names
-from rockfrag.rocking.options import Measured, MeasuredRestitution, system_of
+from rockfrag.laws import law_names
+from rockfrag.rocking.options import MeasuredRestitution, system_of
 from rockfrag.system.blocks import Block, stacked
 from rockfrag.system.system import System
 from rockfrag.tabular import Row, read_rows
@@ -106,30 +107,42 @@ def each_alone(blocks: Mapping[str, Block]) -> list[System]:
     return [configuration_of(name, [name], blocks) for name in blocks]
 
 
-def with_restitution(system: System, measured: Mapping[str, Measured], law: str) -> System:
-    """Return a system whose bodies come off impacts as was measured of each alone, a stack by a law.
+def with_contacts(
+    systems: Sequence[System], blocks: Mapping[str, Block], content: Mapping[str, Any], source: str
+) -> tuple[System, ...]:
+    """Return systems whose contacts are as a study's configuration states, which was read from ``source``.
 
-    By block ``measured`` has the ratio of angular velocities [-], or two of impacts that end on the right and on
-    the left corner; a block that is not named conserves momentum.
+    A block that ``bodies.restitution`` does not name, measured alone, conserves momentum; a stack follows a law.
     """
-    each = tuple(measured.get(name) for name in system.names)
-    if all(value is None for value in each):
-        return system
+    found = tuple(systems)
+    if (restitution := content["bodies"].get("restitution")) is not None:
+        key, measured = f"{source}: key bodies.restitution", restitution["blocks"]
+        for name in measured:
+            if name not in blocks:
+                raise InputError(
+                    f"{key}.blocks: expected names of the specimens {', '.join(blocks)}, found {name}."
+                )
+        law = restitution.get("law", law_names()[0])
+        with errors_of(key):
+            found = tuple(_with_restitution(system, measured, law) for system in found)
+    if (friction := content.get("friction")) is not None:
+        with errors_of(f"{source}: key friction"):
+            found = tuple(system_of(system, _friction(system, friction)) for system in found)
+    return found
+
+
+def _with_restitution(system: System, measured: Mapping[str, Any], law: str) -> System:
+    each = [measured.get(name) for name in system.names]
     value = each if system.count > 1 else each[0]
     return system_of(system, restitution=MeasuredRestitution(value, law))  # type: ignore[arg-type]
 
 
-def with_friction(system: System, content: float | Mapping[str, Any]) -> System:
-    """Return a system whose contacts have the friction that a study states.
-
-    That is a coefficient [-] of all contacts, or a mapping with ``ground`` and ``interface``, each a coefficient
-    or a mapping with ``static`` and ``kinetic``; a lone object has the friction of the ground.
-    """
-    if not isinstance(content, Mapping):
-        return system_of(system, content)
-    friction = {
+def _friction(system: System, friction: Any) -> Any:
+    """Friction of all contacts, or of each; a lone object has that of the ground."""
+    if not isinstance(friction, Mapping):
+        return friction
+    return {
         place: (mu["static"], mu["kinetic"]) if isinstance(mu, Mapping) else mu
-        for place, mu in content.items()
+        for place, mu in friction.items()
         if place == "ground" or system.count > 1
     }
-    return system_of(system, friction)

@@ -9,7 +9,6 @@ from typing import Any, cast
 from rockfrag.building.settings import read_building
 from rockfrag.errors import InputError, errors_of
 from rockfrag.files import distinct_file_names, file_name, is_file
-from rockfrag.laws import law_names
 from rockfrag.plugins import plugins_asked
 from rockfrag.records.catalogue import own_records, read_catalogue, repeated_motions
 from rockfrag.schema import checked
@@ -26,8 +25,6 @@ from rockfrag.study.campaign import (
 from rockfrag.study.heading import check_file, checked_steps, existing_file, heading_of
 from rockfrag.study.space import SPACE_KEY, SpaceStudy, space_study_from
 from rockfrag.study.study import RECORDS_FOLDER, Amplitudes, FragilitySettings, Study
-from rockfrag.system.blocks import Block
-from rockfrag.system.system import System
 from rockfrag.units import peak_warning
 from rockfrag.yaml_file import read_yaml
 
@@ -70,12 +67,9 @@ def _study(content: Mapping[str, Any], source: Path) -> Study:
     by_name = {configuration.name: configuration for configuration in known}
     tested = _used(source, "bodies", bodies.get("use"), list(by_name), "configurations")
     chosen = [by_name[name] for name in tested]
-    configurations = _measured(source, chosen, specimens, bodies.get("restitution"))
+    configurations = arrangements.with_contacts(chosen, specimens, content, str(source))
     with errors_of(f"{source}"):
         amplitudes = Amplitudes(**content["amplitudes"])
-    if (friction := content.get("friction")) is not None:
-        with errors_of(f"{source}: key friction"):
-            configurations = tuple(arrangements.with_friction(c, friction) for c in configurations)
     catalogue = read_catalogue(catalogue_file).set_index("name", drop=False)
     shaken = _used(source, "motions", motions.get("use"), list(catalogue.index), "motions")
     study = Study(
@@ -131,26 +125,6 @@ def _used(
                 f"{source}: key {key}.use[{i}]: expected one of the {what} {', '.join(known)}, found {name}."
             )
     return list(known if names is None else names)
-
-
-def _measured(
-    source: Path,
-    chosen: Sequence[System],
-    specimens: Mapping[str, Block],
-    content: Mapping[str, Any] | None,
-) -> tuple[System, ...]:
-    """Return the configurations with what the study says of their impacts."""
-    if content is None:
-        return tuple(chosen)
-    key = f"{source}: key bodies.restitution"
-    measured, law = content["blocks"], content.get("law", law_names()[0])
-    for name in measured:
-        if name not in specimens:
-            raise InputError(
-                f"{key}.blocks: expected names of the specimens {', '.join(specimens)}, found {name}."
-            )
-    with errors_of(key):
-        return tuple(arrangements.with_restitution(each, measured, law) for each in chosen)
 
 
 def _check_names(study: Study) -> None:
