@@ -1,5 +1,6 @@
 """Fixtures that every folder of tests may use."""
 
+import os
 import subprocess
 import sys
 from collections.abc import Callable
@@ -111,6 +112,14 @@ def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
     done = subprocess.run(command, capture_output=True, text=True, check=False, cwd=ROOT)
     assert done.returncode == 0, done.stderr[-3000:]
     return folder
+
+
+def printed_alone(*program: str, **environment: str) -> str:
+    """What a program prints in a process of its own, with more in its environment."""
+    command, whole = [sys.executable, *program], os.environ | environment
+    done = subprocess.run(command, env=whole, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    return done.stdout.strip()
 
 
 MADE_EARTHQUAKES = 6

@@ -1,15 +1,14 @@
 """Machine code on disk may be half there; what is computed is not."""
 
 import importlib.util
-import os
-import subprocess
-import sys
 from pathlib import Path
 
 import numba
 import pytest
 
 from rockfrag.stages import job
+
+from .conftest import printed_alone
 
 PROGRAM = """
 from rockfrag.machine_code import cached_njit
@@ -59,12 +58,9 @@ print(thrice(2), "numba.np.arraymath" in sys.modules)
 def test_machine_code_is_read_without_what_compiling_needs(tmp_path):
     path = tmp_path / "alone.py"
     path.write_text(ALONE)
-    environment = dict(os.environ, NUMBA_CACHE_DIR=str(tmp_path / "cache"))
     for compiles in (True, False):
-        done = subprocess.run(
-            [sys.executable, str(path)], env=environment, capture_output=True, text=True, check=True
-        )
-        assert done.stdout.split() == ["6", str(compiles)]
+        said = printed_alone(str(path), NUMBA_CACHE_DIR=str(tmp_path / "cache"))
+        assert said == f"6 {compiles}"
 
 
 def test_without_a_folder_for_it_the_function_is_compiled_all_the_same(tmp_path, monkeypatch):

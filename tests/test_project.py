@@ -15,7 +15,7 @@ import yaml
 
 import rockfrag
 
-from .conftest import SUBPACKAGES
+from .conftest import SUBPACKAGES, printed_alone
 
 ROOT = Path(__file__).resolve().parents[1]
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
@@ -100,10 +100,7 @@ def test_what_is_slow_to_load_is_loaded_only_when_it_is_used():
     names = ", ".join(f"rockfrag{package}" for package in (*SUBPACKAGES, ".cli"))
     heavy = ("numba", "pandas", "obspy", "scipy", "statsmodels", "matplotlib")
     program = f"import sys, {names}; print([one for one in {heavy} if one in sys.modules])"
-    done = subprocess.run(
-        [sys.executable, "-c", program], capture_output=True, text=True, check=True
-    )
-    assert done.stdout.strip() == "[]"
+    assert printed_alone("-c", program) == "[]"
 
 
 WORKFLOWS = ROOT / ".github" / "workflows"

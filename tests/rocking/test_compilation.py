@@ -1,8 +1,6 @@
 """What is compiled, how often, and what happens where numba's private parts are not known."""
 
 import ast
-import subprocess
-import sys
 from pathlib import Path
 from typing import NamedTuple
 
@@ -18,6 +16,8 @@ from rockfrag.engines.kernels.lanes.block import integrate_blocks
 from rockfrag.engines.kernels.lanes.scheduler import integrate_stacks
 from rockfrag.rocking.ensemble import overturns
 from rockfrag.system.blocks import Block, Stack
+
+from ..conftest import printed_alone
 
 BLOCK = Block(0.3, 1.2, 200.0)
 STACK = Stack(Block(0.4, 0.3, 100.0), BLOCK)
@@ -105,11 +105,4 @@ print(found.peak_velocity.ravel().tolist())
 @pytest.mark.slow
 def test_an_unknown_numba_gives_the_same_bits(tmp_path):
     known = overturns(BLOCK, MOTION, 0.01, [0.5, 1.0]).peak_velocity.ravel().tolist()
-    done = subprocess.run(
-        [sys.executable, "-c", UNKNOWN],
-        env={"NUMBA_CACHE_DIR": str(tmp_path)},
-        capture_output=True,
-        text=True,
-        check=True,
-    )
-    assert done.stdout.strip() == str(known)
+    assert printed_alone("-c", UNKNOWN, NUMBA_CACHE_DIR=str(tmp_path)) == str(known)

@@ -7,9 +7,6 @@ even one flat.  The restitution is measured on the same row under the lone statu
 """
 
 import math
-import os
-import subprocess
-import sys
 from pathlib import Path
 
 import numpy as np
@@ -26,6 +23,7 @@ from rockfrag.laws import law_names
 from rockfrag.rocking import MeasuredRestitution
 from rockfrag.rocking.options import largest_restitution, system_of
 
+from ..conftest import printed_alone
 from ..oracle.rocking_model import Model
 from ..oracle.standing import upper_on_contact
 
@@ -247,14 +245,7 @@ assert not np.isclose(turning(first("ratio", 0.8)["omega_after"]), wanted, rtol=
 @pytest.mark.slow
 def test_a_law_with_a_rate_of_its_own_is_inlined_by_the_kernels(tmp_path: Path) -> None:
     # kept code is that of the laws it was compiled with
-    done = subprocess.run(
-        [sys.executable, "-c", SCRIPT],
-        env={**os.environ, "NUMBA_CACHE_DIR": str(tmp_path)},
-        capture_output=True,
-        text=True,
-        check=False,
-    )
-    assert done.returncode == 0, done.stderr
+    printed_alone("-c", SCRIPT, NUMBA_CACHE_DIR=str(tmp_path))
 
 
 G = 9.81
