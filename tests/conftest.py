@@ -84,6 +84,14 @@ def white_noise(
     return Motion(samples, dt, **{"name": f"noise {seed}", **about})
 
 
+def shaking(
+    seed: int, lowest_hz: float, highest_hz: float, peak_g: float, count: int = 800, **about: Any
+) -> Motion:
+    """Noise of a band of frequencies that grows and dies down, scaled to a peak."""
+    raw = white_noise(seed, count, tapered=True, **about)
+    return scale_to_pga(bandpass(raw, lowest_hz, highest_hz), peak_g)
+
+
 @pytest.fixture(scope="session")
 def noise() -> Callable[..., Motion]:
     """Maker of motions of white noise."""
@@ -115,8 +123,9 @@ def motions_of_noise(count: int) -> tuple[Motion, ...]:
     for i in range(count):
         earthquake = i % MADE_EARTHQUAKES
         about = {"earthquake": f"earthquake {earthquake}", "station": f"station {i // 2}"}
-        raw = white_noise(i, 1500, tapered=True, name=f"motion {i}", metadata=about)
-        found.append(scale_to_pga(bandpass(raw, 0.2, 1.0 + 0.5 * earthquake), 0.2 + 0.01 * i))
+        highest_hz, peak_g = 1.0 + 0.5 * earthquake, 0.2 + 0.01 * i
+        name = f"motion {i}"
+        found.append(shaking(i, 0.2, highest_hz, peak_g, 1500, name=name, metadata=about))
     return tuple(found)
 
 

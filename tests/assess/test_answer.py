@@ -13,7 +13,7 @@ from rockfrag.assess.export import as_json
 from rockfrag.assess.page import write_answer
 from rockfrag.assess.request import make_request, read_request
 from rockfrag.assess.risk import Estimate
-from rockfrag.assess.words import estimate_words, five_lines, headline, quality_flags
+from rockfrag.assess.words import estimate_words, five_lines, says
 from rockfrag.cli import main
 from rockfrag.errors import InputError
 
@@ -39,10 +39,10 @@ def test_below_b_over_h_nothing_rocks_and_far_above_everything_topples(motions):
     assert (weak.rocking.value, weak.fraction.value) == (0, 0)
     assert strong.fraction.value > 0.5
     # an edge that is 2 % further in, or a centre of gravity 5 % higher, would let it rock at 0.28 g
-    assert "not expected to move" in headline(weak)
+    assert "not expected to move" in says.line("headline", weak)
     assert 0 < weak.fraction.upper <= weak.rocking.upper == 1
     rest = assess_with(asked(**FIGURE, pga="0.25 g"), motions, brief=True)
-    assert "does not move at PGA 0.25 g" in headline(rest)
+    assert "does not move at PGA 0.25 g" in says.line("headline", rest)
     assert rest.fraction.upper == rest.rocking.upper == 0
     assert "starts to rock at PGA 0.29 g" in five_lines(rest)[0]
     assert "No change is needed" in five_lines(rest)[3]
@@ -151,7 +151,7 @@ def test_a_hazard_in_another_unit_is_doubted(motions, tmp_path):
     found = assess_with(
         make_request(FIGURE | {"hazard": ["h.csv"]}, "test", tmp_path), motions, brief=True
     )
-    assert any("unusual" in quality_flag for quality_flag in quality_flags(found))
+    assert any("unusual" in quality_flag for quality_flag in says("quality_flags", found))
 
 
 def test_a_file_says_what_the_command_line_says(tmp_path):

@@ -26,7 +26,7 @@ from rockfrag.assess.page import page_of
 from rockfrag.assess.request import Records, make_request
 from rockfrag.assess.risk import toppling_rate
 from rockfrag.assess.sources import SOURCES, SPACE, parts_of
-from rockfrag.assess.words import assumptions, five_lines, quality_flags
+from rockfrag.assess.words import five_lines, says
 from rockfrag.fragility.model_error import CUT, MODEL_ERRORS
 
 from .conftest import asked, outcomes_of
@@ -238,7 +238,7 @@ def test_what_is_known_of_velocity_is_no_longer_a_source(found):
         # what is left of it is the error of the weight of velocity
         assert found[name].conversion.spread == 0 < found["nothing"].conversion.spread
         assert "together" in sources
-        assert "two measures" in " ".join(assumptions(found[name]))
+        assert "two measures" in " ".join(says("assumptions", found[name]))
 
 
 def test_nothing_known_leaves_counted_fractions(found):
@@ -252,7 +252,9 @@ def test_the_level_is_given_in_both(motions):
     assert "PGA 0.6 g and PGV 40 cm/s" in five_lines(found)[0]
     assert found.conversion.known.spread == 0
     # the made motions are quicker than that
-    assert any("PGV of 66.7 cm/s per g" in quality_flag for quality_flag in quality_flags(found))
+    assert any(
+        "PGV of 66.7 cm/s per g" in quality_flag for quality_flag in says("quality_flags", found)
+    )
 
 
 def test_the_export_says_which_errors_are_not_in_it(found):

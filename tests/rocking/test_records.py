@@ -15,6 +15,8 @@ from rockfrag.rocking.rules_of_thumb import RULES, asce_43, bias, predicted, sta
 from rockfrag.rocking.spectra import rocking_spectrum, uniform_block
 from rockfrag.rocking.worst_direction import worst_direction
 
+from ..conftest import shaking
+
 ALPHA = math.atan(1 / 4)
 PERIODS = np.linspace(0.8, 4.0, 9)
 
@@ -103,16 +105,7 @@ def test_no_direction_is_no_question():
 
 
 def test_the_worst_direction_in_a_plane_is_no_bound_for_a_body_in_space():
-    t = np.arange(0, 6, 0.01)
-    rng = np.random.default_rng(0)
-
-    def component():
-        waves = zip(rng.uniform(0.4, 2, 3), rng.uniform(0, 6, 3), strict=True)
-        return Motion(
-            sum(np.sin(2 * np.pi * f * t + p) for f, p in waves) * np.sin(np.pi * t / 6) ** 2, 0.01
-        )
-
-    first, second = component(), component()
+    first, second = (shaking(seed, 0.4, 2, 0.3, 600) for seed in (18, 19))
     table = worst_direction(
         Block(0.3, 1.2, 100.0), first, second, 2.0, directions_deg=range(0, 360, 30)
     ).table

@@ -12,6 +12,7 @@ from rockfrag import Block, Response, Stack, overturns, simulate
 from rockfrag.rocking.ensemble import LightBodies
 from rockfrag.rocking.restitution import quarter_period
 
+from ..conftest import shaking
 from .reference_bodies import T1, T2, T3, P, polyline
 
 G = 9.81
@@ -23,16 +24,9 @@ OFF_CENTRE = Stack(
 DT = 0.005
 
 
-def shaking(seed: int, peak_g: float, seconds: float = 6.0) -> np.ndarray:
-    """Sum of sines under an envelope, scaled to a peak [m/s²]."""
-    rng = np.random.default_rng(seed)
-    t = np.arange(int(seconds / DT)) * DT
-    waves = sum(
-        rng.normal() * np.sin(2 * np.pi * f * t + rng.uniform(0, 2 * np.pi))
-        for f in rng.uniform(0.5, 5, 8)
-    )
-    shape = waves * np.sin(np.pi * t / t[-1])
-    return peak_g * G * shape / np.abs(shape).max()
+def shaken(body: Block | Stack, seed: int, peak_g: float) -> Response:
+    motion = shaking(seed, 0.5, 5, peak_g)
+    return simulate(body, motion.acceleration, motion.dt)
 
 
 BODIES = [T2, Stack(P, T1), Stack(P, T3), OFF_CENTRE]
@@ -46,7 +40,7 @@ CASES = [
 @pytest.fixture(params=CASES)
 def response(request: pytest.FixtureRequest) -> Response:
     body, seed, peak = request.param
-    found = simulate(body, shaking(seed, peak), DT)
+    found = shaken(body, seed, peak)
     assert found.impacts > 3
     return found
 
@@ -104,7 +98,7 @@ def test_friction_at_the_threshold_is_b_over_h() -> None:
 
 
 def test_forces_of_a_rocking_block_follow_from_newton() -> None:
-    response = simulate(T2, shaking(3, 0.3), DT)
+    response = shaken(T2, 3, 0.3)
     rows = np.flatnonzero((response.state[:, 0] != 0) & (np.abs(response.theta[:, 0]) < 0.2))
     pivot = response.state[rows, 0]
     theta, omega, alpha = (x[rows, 0] for x in (response.theta, response.omega, response.alpha))
@@ -124,10 +118,10 @@ def test_a_heavy_blow_is_reported_as_a_jump() -> None:
 
 def test_overturning_has_a_time_and_a_body() -> None:
     stack = Stack(P, T3)
-    response = simulate(stack, shaking(2, 0.6), DT)
+    response = shaken(stack, 2, 0.6)
     assert response.overturned and response.overturned_body == "upper body"
     assert 0 < response.overturning_time <= response.time[-1]
-    calm = simulate(stack, shaking(2, 0.15), DT)
+    calm = shaken(stack, 2, 0.15)
     assert not calm.overturned and calm.overturned_body == "" and math.isnan(calm.overturning_time)
     assert calm.contact_events.empty
 

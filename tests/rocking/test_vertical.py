@@ -1,5 +1,7 @@
 """A ground that moves vertically too: gravity is g + a_v(t), in one history and in ensembles."""
 
+from itertools import product
+
 import numpy as np
 import pytest
 
@@ -74,19 +76,17 @@ def test_ensembles_and_histories_agree_under_vertical_motion():
     assert differ <= 1
 
 
-@pytest.mark.parametrize("seed", range(6))
-def test_histories_follow_the_plain_integrator_under_vertical_motion(seed):
-    follow_the_plain_one(seed, None)
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("law", [None, *law_names()])
-@pytest.mark.parametrize("seed", range(6, 46))
-def test_histories_follow_the_plain_integrator_with_every_law_and_vertical_motion(seed, law):
-    follow_the_plain_one(seed, law)
-
-
-def follow_the_plain_one(seed, law):
+@pytest.mark.parametrize(
+    ("seed", "law"),
+    [
+        *((seed, None) for seed in range(6)),
+        *(
+            pytest.param(seed, law, marks=pytest.mark.slow)
+            for seed, law in product(range(6, 46), (None, *law_names()))
+        ),
+    ],
+)
+def test_histories_follow_the_plain_integrator_under_vertical_motion(seed, law):
     """Up to the sixth contact event, before a contact grazes."""
     body, motion, up = list(cases(seed + 1))[-1]
     rng = np.random.default_rng(seed)

@@ -17,20 +17,9 @@ from rockfrag_thesis.hypotheses.setting import bisect, make_setting, moves, star
 from rockfrag_thesis.hypotheses.spectra import dispersion_ratio, exchanges
 from rockfrag_thesis.hypotheses.stacks import LIFTED, SETTLES, STILL, after_impacts, free_fall
 
+from ..conftest import shaking
 
-def made_motion(seed: int) -> Motion:
-    """Broad-band shaking of 8 s under an envelope, peak 4 m/s²."""
-    rng = np.random.default_rng(seed)
-    t = np.arange(800) * 0.01
-    waves = sum(
-        rng.normal() / f * np.sin(2 * np.pi * f * t + rng.uniform(0, 2 * np.pi))
-        for f in np.geomspace(0.3, 8, 24)
-    )
-    shape = waves * np.sin(np.pi * t / t[-1]) ** 2
-    return Motion(4.0 * shape / np.abs(shape).max(), 0.01, f"made {seed}")
-
-
-MOTIONS = [made_motion(seed) for seed in range(4)]
+MOTIONS = [shaking(seed, 0.3, 8, 0.4) for seed in range(4)]
 
 
 @pytest.fixture(scope="module")

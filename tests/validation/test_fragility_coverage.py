@@ -16,6 +16,8 @@ from rockfrag.fragility.observations import Observations
 
 from .made import document, drawn
 
+pytestmark = pytest.mark.slow
+
 THETA, BETA, SHARED = 0.35, 0.4, 0.3
 DESIGNS = {4: (4, 1), 12: (4, 3), 44: (22, 2)}
 # kinds of data are to be known to ± half a percent
@@ -106,26 +108,22 @@ def kinds() -> pd.DataFrame:
     return found.set_index("data sets of")
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("name", [kind for kind in KINDS if kind not in (*WARNED, *COARSE)])
 def test_limits_hold_the_truth_whatever_the_kind_of_data(kinds, name):
     # 4000 data sets know a coverage to ± half a percent
     assert ((kinds.loc[[name], ["θ", "β"]] - 0.90).abs() < 0.035).all(axis=None)
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("name", COARSE)
 def test_capacities_in_one_step_have_limits_that_hold(kinds, name):
     assert kinds.loc[[name], ["θ", "β"]].min(axis=None) >= 0.86
     assert kinds.loc[[name], "without limits"].max() < 0.02
 
 
-@pytest.mark.slow
 def test_estimate_lies_within_its_own_limits(kinds):
     assert (kinds["β within its own limits"] == 1.0).all()
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("name", WARNED)
 def test_heavy_tails_cost_the_limits_of_beta_and_not_those_of_theta(kinds, name):
     assert kinds.loc[[name], "θ"].min() >= 0.86
@@ -148,7 +146,6 @@ def methods() -> pd.DataFrame:
     return found
 
 
-@pytest.mark.slow
 def test_default_limits_hold_the_truth_in_87_to_93_percent(methods):
     default = methods[methods["resampled"] == "earthquakes"]
     assert len(default) == 6 and (default["warns"] == 0).all()
@@ -159,7 +156,6 @@ def test_default_limits_hold_the_truth_in_87_to_93_percent(methods):
     assert ((default["θ"] - 0.90).abs() < 0.035).all(), default
 
 
-@pytest.mark.slow
 def test_other_limits_hold_the_truth_or_warn(methods):
     # only a clear miss must have been warned of
     clear_miss = (methods[["θ", "β"]] < 0.82).any(axis=1)
@@ -190,6 +186,5 @@ def nonparametric() -> pd.DataFrame:
     return found
 
 
-@pytest.mark.slow
 def test_limits_that_assume_no_form_hold_whatever_the_tails(nonparametric):
     assert nonparametric[["median", "half of 16 to 84 %"]].min(axis=None) >= 0.86

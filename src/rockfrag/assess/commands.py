@@ -162,10 +162,10 @@ def _one(options: argparse.Namespace, given: dict[str, Any]) -> int:
     from rockfrag.assess.answer import assess
     from rockfrag.assess.export import as_json
     from rockfrag.assess.page import write_answer
-    from rockfrag.assess.words import five_lines, quality_flags
+    from rockfrag.assess.words import five_lines, says
 
     found = assess(_request(options, given), options.records)
-    for quality_flag in quality_flags(found):
+    for quality_flag in says("quality_flags", found):
         print(f"warning: {quality_flag}", file=sys.stderr)
     place = write_answer(found, options.output)
     if options.pdf:

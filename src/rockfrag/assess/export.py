@@ -10,7 +10,7 @@ import numpy as np
 from rockfrag import __version__
 from rockfrag.assess.answer import Assessment
 from rockfrag.assess.risk import LEVEL, Estimate
-from rockfrag.assess.words import assumptions, does_not_move, five_lines, quality_flags
+from rockfrag.assess.words import does_not_move, five_lines, says
 from rockfrag.fragility.exports import identifiers, model_text
 from rockfrag.fragility.model_error import MODEL_ERRORS
 from rockfrag.outcomes.limit_states import OVERTURNS, limit_states
@@ -72,8 +72,8 @@ def as_json(found: Assessment) -> str:
             {"name": motion.name, "earthquake": earthquake, "value": value}
             for motion, earthquake, value in motions
         ],
-        "assumed": assumptions(found),
-        "quality_flags": quality_flags(found),
+        "assumed": says("assumptions", found),
+        "quality_flags": says("quality_flags", found),
     }
     return json.dumps(_plain(answer), indent=2, ensure_ascii=False, allow_nan=False) + "\n"
 

@@ -17,9 +17,9 @@ from rockfrag.assess.sources import SOURCES, parts_of
 from rockfrag.assess.words import (
     NAMES,
     fraction_words,
-    headline,
     mitigation_words,
     page_says,
+    says,
     value_words,
 )
 from rockfrag.figure_style import BLUE, COLUMN_WIDTH, OKABE_ITO, one_panel, plain_log
@@ -70,7 +70,7 @@ def page_of(found: Assessment) -> str:
         "Hazard": found.hazard.source if found.hazard else "none",
     }
     lead, answer, live = page_says.line("lead", found), _answer(found), live_of(found)
-    return Page(headline(found), lead, answer, sections, provenance, live=live).html()
+    return Page(says.line("headline", found), lead, answer, sections, provenance, live=live).html()
 
 
 def _answer(found: Assessment) -> Answer:

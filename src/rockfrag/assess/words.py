@@ -157,21 +157,6 @@ says, page_says, gallery_says = (
 """The macros of the answer, of its page, and of a gallery."""
 
 
-def headline(found: Assessment) -> str:
-    """Say in a few words whether the object rocks and topples; the heading of the page."""
-    return says.line("headline", found)
-
-
-def assumptions(found: Assessment) -> list[str]:
-    """Sentences of all that was assumed and of all that a reader must know."""
-    return says("assumptions", found)
-
-
-def quality_flags(found: Assessment) -> list[str]:
-    """Sentences of what looks wrong."""
-    return says("quality_flags", found)
-
-
 def five_lines(found: Assessment) -> list[str]:
     """Return the answer in five lines."""
     return says("five_lines", found)

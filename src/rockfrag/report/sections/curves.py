@@ -68,18 +68,14 @@ def fragility(results: Results) -> Section:
     without = list(dict.fromkeys(curves.loc[~known, "configuration"]))
     found = strength_found(known_curves, results.level)
     rejected = int((known_curves["p_fit"] < REJECTED).sum())
-    total, notes = len(known_curves), _notes(curves)
+    total = len(known_curves)
+    # without warnings that the tables show number by number
+    kept = [REJECTION.sub("", str(note)).strip() for note in curves["warnings"] if note]
+    others = dict.fromkeys(rest for note in kept if (rest := note.replace(TAILS, "").strip()))
+    notes = [*others, *([TAILS] if any(TAILS in note for note in kept) else [])]
     figures, tables = _figures(results, curves), _tables(known_curves, results.level)
     about = (found, results.level, rejected, total, REJECTED, without, notes)
     return says.section("fragility", [*figures, *tables], *about)
-
-
-def _notes(curves: pd.DataFrame) -> list[str]:
-    """Warnings of the curves, without those that the tables show number by number."""
-    notes = [REJECTION.sub("", str(note)).strip() for note in curves["warnings"] if note]
-    tails = any(TAILS in note for note in notes)
-    others = dict.fromkeys(rest for note in notes if (rest := note.replace(TAILS, "").strip()))
-    return [*others, *([TAILS] if tails else [])]
 
 
 def _figures(results: Results, curves: pd.DataFrame) -> list[FigureSpec]:

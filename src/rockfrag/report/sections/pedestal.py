@@ -148,11 +148,6 @@ def _label(level: str, units: int, unit: str) -> str:
     return f"{name} ({counted(int(units), 'earthquake' if unit == 'earthquake' else unit)})"
 
 
-def _too_near(ticks: Sequence[float], low: float, high: float) -> bool:
-    places = np.log(ticks) / np.log(high / low)
-    return bool(len(ticks) > 1 and np.diff(places).min() < _LEAST_APART)
-
-
 def ratio_axis(
     axes: Axes, values: NDArray[np.float64] | Sequence[float], sides: Sides = WITH_PEDESTAL
 ) -> None:
@@ -166,7 +161,8 @@ def ratio_axis(
     axes.set_xlim(low, high)
     ticks = [tick for tick in _TICKS if low <= tick <= high]
     for crowded in ((0.9, 1.1), (0.7, 1.2), (0.8, 1.5), (0.3, 3)):
-        if len(ticks) > _MOST_TICKS or _too_near(ticks, low, high):
+        apart = np.diff(np.log(ticks) / np.log(high / low))
+        if len(ticks) > _MOST_TICKS or apart.min(initial=np.inf) < _LEAST_APART:
             ticks = [tick for tick in ticks if tick not in crowded]
     axes.set_xticks(ticks, [f"{tick:g}" for tick in ticks])
     axes.minorticks_off()
