@@ -290,6 +290,13 @@ def test_without_the_keys_nothing_slides_and_nothing_moves_up_and_down():
         ({"friction": "rough"}, "friction: expected a coefficient"),
         ({"vertical": "yes"}, "vertical: expected true"),
         ({"vertical": True}, "names no vertical component of .*; give it in the column vertical"),
+        (
+            {
+                "vertical": True,
+                "motions": {"catalogue": "motions.csv", "processing": [{"step": "strong_part"}]},
+            },
+            r"key motions.processing\[0\]: strong_part looks at one component, .*; leave it out",
+        ),
     ],
 )
 def test_what_cannot_be_is_refused_when_the_study_is_read(keys, message):
