@@ -32,7 +32,7 @@ STACK = Stack(Block(0.6, 0.4, 300.0), STATUE)
 def public() -> dict[str, object]:
     """Functions and classes that the package and its subpackages export, by their full names."""
     found = {}
-    for subpackage in set(SUBPACKAGES) - {".outcomes", ".system"}:
+    for subpackage in SUBPACKAGES:
         package = importlib.import_module(f"rockfrag{subpackage}")
         for name in package.__all__:
             value = getattr(package, name)

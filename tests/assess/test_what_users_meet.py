@@ -16,7 +16,7 @@ from rockfrag.assess.place import PERIOD_FACTORS
 from rockfrag.assess.request import read_request
 from rockfrag.assess.risk import Estimate, Evidence, fraction_target, step_of
 from rockfrag.assess.sources import is_wide, narrowed
-from rockfrag.assess.words import assumptions, five_lines, range_words
+from rockfrag.assess.words import five_lines, range_words, says
 from rockfrag.building.floors import floor_motions
 from rockfrag.cli import main
 from rockfrag.errors import InputError
@@ -195,7 +195,7 @@ def test_a_probability_stands_on_a_scale_with_what_to_do(on_pedestal):
 def test_the_worst_direction_and_what_was_assumed_are_said(on_pedestal):
     lines = five_lines(on_pedestal)
     assert "not counted" in lines[2]
-    said = [line for line in assumptions(on_pedestal) if "worst direction" in line]
+    said = [line for line in says("assumptions", on_pedestal) if "worst direction" in line]
     assert said and all("counted" in line for line in said)
     assumed = lines[4].partition("Assumed: ")[2]
     assert "first period of 0.29 s" in assumed
@@ -378,8 +378,8 @@ def test_a_round_base_topples_earlier_and_says_why(motions):
         assess_with(asked(**STATUE, **more), motions, brief=True) for more in ({}, {"round": True})
     )
     assert rounded.amplitudes[0.5].value < 0.8 * square.amplitudes[0.5].value
-    assert any("rectangular" in line for line in assumptions(square))
-    assert any("in space under both components" in line for line in assumptions(rounded))
+    assert any("rectangular" in line for line in says("assumptions", square))
+    assert any("in space under both components" in line for line in says("assumptions", rounded))
     assert "in space under both components" in five_lines(rounded)[2]
 
 

@@ -23,18 +23,27 @@ VISIBLE = 0.001  # slip above which a body counts as having slid [m]: a displace
 
 @dataclass(frozen=True)
 class LimitState:
-    """One limit state."""
+    """One limit state.
 
-    name: str  # short, such as ``"overturns"``
-    order: int  # its place among the others, the milder first
-    label: str  # what figures and reports call it
-    reached: Predicate  # which cases have reached it, shape (systems, motions, scales)
-    # damage, repair: what it means for the object, and what is done then, for models of damage
+    Attributes
+    ----------
+    name : short, such as ``"overturns"``
+    order : its place among the others, the milder first
+    label : what figures and reports call it
+    reached : which cases have reached it, shape (systems, motions, scales)
+    damage, repair : what it means for the object, and what is done then, for models of damage
+    exact : whether it is reached at a peak acceleration that is known exactly, so that IDA curves do not count it
+    slipping : whether only systems with friction reach it
+    """
+
+    name: str
+    order: int
+    label: str
+    reached: Predicate
     damage: str = ""
     repair: str = ""
-    # whether it is reached at a peak acceleration that is known exactly, so that IDA curves do not count it
     exact: bool = False
-    slipping: bool = False  # whether only systems with friction reach it
+    slipping: bool = False
 
     @property
     def column(self) -> str:
@@ -50,7 +59,17 @@ _STATES: dict[str, LimitState] = {}
 
 
 def limit_state(name: str, order: int, label: str, **more: Any) -> Callable[[Predicate], Predicate]:
-    """Declare the function below as the predicate of a :class:`LimitState`; its name is one word."""
+    """Declare the function below as the predicate of a limit state.
+
+    Parameters
+    ----------
+    name : one word, by which curves, exports and figures know it
+    order, label, **more : see :class:`LimitState`
+
+    Returns
+    -------
+    What takes the predicate and returns it as it is.
+    """
     if not name.isidentifier():
         raise InputError(f"limit state {name!r}: expected one word of letters, digits and _.")
 
@@ -66,7 +85,12 @@ def limit_state(name: str, order: int, label: str, **more: Any) -> Callable[[Pre
 
 
 def limit_states() -> tuple[LimitState, ...]:
-    """Return all limit states, the milder first."""
+    """All limit states that are declared.
+
+    Returns
+    -------
+    The limit states, the milder first.
+    """
     return tuple(sorted(_STATES.values(), key=lambda state: (state.order, state.name)))
 
 

@@ -411,7 +411,16 @@ def is_system(thing: object) -> TypeGuard[SystemLike]:
 
 
 def as_system(thing: SystemLike) -> System:
-    """Return a system as it is, or the one that a block, a stack or a column writes; InputError if it is none."""
+    """Take a system as it is, and make one of a block, a stack or a column.
+
+    Parameters
+    ----------
+    thing : what is shaken; InputError if it is none of these
+
+    Returns
+    -------
+    The system.
+    """
     if not is_system(thing):
         raise InputError(
             f"body: expected a Block, a Stack, a Column or a System, got {shown(thing)}."

@@ -19,7 +19,12 @@ Tensor = tuple[Vector3, Vector3, Vector3]
 
 
 class Interval(NamedTuple):
-    """Base or face of a planar body: its two ends, left < right [m]."""
+    """Base or face of a planar body.
+
+    Attributes
+    ----------
+    left, right : its two ends, left < right [m]
+    """
 
     left: float
     right: float
@@ -31,13 +36,23 @@ class Interval(NamedTuple):
 
 
 class Polygon(NamedTuple):
-    """Base or face of a body in space: the vertices of a convex polygon, anticlockwise seen from above [m]."""
+    """Base or face of a body in space: a convex polygon.
+
+    Attributes
+    ----------
+    vertices : (x, y) of each, anticlockwise seen from above [m]
+    """
 
     vertices: tuple[tuple[float, float], ...]
 
 
 class Circle(NamedTuple):
-    """Round base or face of a body in space: radius and centre [m]."""
+    """Round base or face of a body in space.
+
+    Attributes
+    ----------
+    radius, centre : the latter as (x, y) [m]
+    """
 
     radius: float
     centre: tuple[float, float] = (0.0, 0.0)

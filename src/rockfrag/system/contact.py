@@ -16,18 +16,28 @@ carries a shear then slides off, as in the limit, and no case of its own is need
 
 
 class Friction(NamedTuple):
-    """Coefficients of friction of one contact [-], at most ``ROUGHEST``."""
+    """Friction of one contact.
+
+    Attributes
+    ----------
+    static, kinetic : its coefficients [-], at most ``ROUGHEST``
+    """
 
     static: float
     kinetic: float
 
 
 class ImpactLaw(NamedTuple):
-    """How a contact comes off an impact."""
+    """How a contact comes off an impact.
 
-    name: str = "momentum"  # of a law in ``rockfrag.laws``
-    # right, left: measured ratio of the angular velocities after and before an impact of the lone body on a rigid
-    # support [-], of impacts that end on its right and on its left end; NaN where the law has no number
+    Attributes
+    ----------
+    name : of a law in ``rockfrag.laws``
+    right, left : measured ratio of the angular velocities after and before an impact of the lone body on a rigid
+        support [-], of impacts that end on its right and on its left end; NaN where the law has no number
+    """
+
+    name: str = "momentum"
     right: float = math.nan
     left: float = math.nan
 

@@ -19,12 +19,17 @@ MOST_BODIES = 12  # bodies of a column
 
 @dataclass(frozen=True)
 class Start:
-    """How the bodies begin, relative to the moving ground."""
+    """How the bodies begin, relative to the moving ground.
 
-    # of each body from below, from how it stands: clockwise [rad] of planar bodies, a rotation vector (x, y, z)
-    # [rad] of bodies in space
+    Attributes
+    ----------
+    rotation : of each body from below, from how it stands: clockwise [rad] of planar bodies, a rotation vector
+        (x, y, z) [rad] of bodies in space
+    velocity : angular velocity of each body, likewise [rad/s]
+    """
+
     rotation: tuple[Any, ...]
-    velocity: tuple[Any, ...]  # angular velocity of each body, likewise [rad/s]
+    velocity: tuple[Any, ...]
 
 
 @dataclass(frozen=True)
