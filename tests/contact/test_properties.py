@@ -31,7 +31,7 @@ def random_case(seed: int) -> tuple[Block | Stack, np.ndarray, np.ndarray, objec
     return body, motion, up, as_friction(random_frictions(rng, body))
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(seeds)
 # two contacts close within a tenth of a microsecond, soon after one has opened
 @example(2037)
@@ -55,7 +55,7 @@ def test_energy_is_balanced_forces_push_and_friction_keeps_its_limit(seed: int) 
     assert (np.abs(response.friction_force) <= limits * response.normal_force + 1e-8 * weight).all()
 
 
-@settings(max_examples=15, deadline=None)
+@settings(max_examples=15)
 @given(seeds)
 def test_a_later_motion_is_followed_later(seed: int) -> None:
     body, motion, up, friction = random_case(seed)
@@ -68,7 +68,7 @@ def test_a_later_motion_is_followed_later(seed: int) -> None:
     np.testing.assert_allclose(first.theta[:n], other.theta[37 : n + 37], atol=1e-9)
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=30)
 @given(seeds)
 def test_below_b_over_h_nothing_rocks_whatever_the_horizontal_motion(seed: int) -> None:
     rng = np.random.default_rng(seed)
@@ -81,7 +81,7 @@ def test_below_b_over_h_nothing_rocks_whatever_the_horizontal_motion(seed: int) 
     assert not response.overturned
 
 
-@settings(max_examples=15, deadline=None)
+@settings(max_examples=15)
 @given(seeds)
 def test_a_stack_on_a_ground_below_b_over_h_never_rocks(seed: int) -> None:
     """What slides below carries less than what it carries needs to turn, alone and joined to its pedestal."""

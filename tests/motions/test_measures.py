@@ -196,7 +196,7 @@ def test_rocking_measures_have_no_dimension(harmonic):
     assert measures["frequency_ratio"] == pytest.approx(2 * math.pi / pulse.period / p)
 
 
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=20)
 @given(st.integers(0, 10_000), st.floats(0.01, 100.0))
 def test_measures_grow_with_amplitude_as_they_should(noise, seed, factor):
     motion = noise(seed, tapered=True)
@@ -210,7 +210,7 @@ def test_measures_grow_with_amplitude_as_they_should(noise, seed, factor):
         assert measure(scaled) == pytest.approx(measure(motion), rel=1e-9)
 
 
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=20)
 @given(st.integers(0, 10_000), st.floats(0.2, 5.0))
 def test_compressed_time_follows_similitude(noise, seed, factor):
     motion = noise(seed, tapered=True)

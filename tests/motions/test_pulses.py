@@ -36,7 +36,7 @@ PULSES = {
 
 
 @pytest.mark.parametrize("name", list(PULSES))
-@settings(max_examples=15, deadline=None)
+@settings(max_examples=15)
 @given(amplitude=st.floats(-5, 5), period=st.floats(0.1, 3.0))
 def test_every_pulse_starts_and_ends_at_zero_and_says_what_it_is(name, amplitude, period):
     pulse = PULSES[name](amplitude, period)
@@ -127,7 +127,7 @@ def test_impossible_pulses_are_refused(pulse, message):
         pulse()
 
 
-@settings(max_examples=8, deadline=None)
+@settings(max_examples=8)
 @given(
     period=st.floats(0.4, 4.0),
     phase=st.floats(-179, 179),

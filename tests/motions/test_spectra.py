@@ -97,7 +97,7 @@ def test_stiff_oscillator_moves_with_the_ground_and_soft_one_stays_behind(ended)
     assert during == pytest.approx(pgd(motion), rel=1e-3)
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=25)
 @given(st.integers(0, 10_000), st.floats(0.02, 3.0), st.sampled_from([0.0, 0.05, 0.5, 1.0, 2.0]))
 @example(579, 1.0234, 0.5)  # the displacement turns twice within one step
 def test_peaks_do_not_depend_on_how_finely_the_lines_are_sampled(ended, seed, period, damping):

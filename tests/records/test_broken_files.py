@@ -17,7 +17,6 @@ from rockfrag.records.read import FORMATS, read_motion, read_record
 
 QUICK = settings(
     max_examples=6,
-    deadline=None,
     database=None,
     derandomize=True,
     suppress_health_check=[HealthCheck.function_scoped_fixture],

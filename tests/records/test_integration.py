@@ -31,7 +31,7 @@ def test_table_3_3_to_the_printed_digit(four_records, name, npts, pga_g, pgv_cm_
     assert round(100 * peak_displacement(motion.acceleration, motion.dt), 3) == pgd_cm
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=150)
 @given(accelerations)
 def test_integrals_and_their_peaks_are_those_of_scipys_piecewise_polynomials(acceleration):
     dt = 0.5

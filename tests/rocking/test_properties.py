@@ -23,9 +23,7 @@ pytestmark = [
 G = 9.81
 DT = 0.01
 
-few = settings(
-    max_examples=25, deadline=None, derandomize=True, suppress_health_check=list(HealthCheck)
-)
+few = settings(max_examples=25, derandomize=True, suppress_health_check=list(HealthCheck))
 
 
 @st.composite

@@ -115,7 +115,7 @@ def test_a_clipped_accelerometer_gives_a_lower_bound_only():
     assert measured(Outcome(0.3, 0.4), Accelerometer(0.5), "T1") == Outcome(0.3, 0.4)
 
 
-@settings(deadline=None, derandomize=True)
+@settings(derandomize=True)
 @given(outcomes=ida_curves, step=st.floats(0.003, 0.3), start=st.floats(0.01, 0.5))
 def test_the_bounds_hold_a_survival_and_an_overturning(outcomes, step, start):
     amplitudes = grid(outcomes)
@@ -127,7 +127,7 @@ def test_the_bounds_hold_a_survival_and_an_overturning(outcomes, step, start):
         assert known[outcome.upper_g]
 
 
-@settings(deadline=None, derandomize=True)
+@settings(derandomize=True)
 @given(outcomes=ida_curves, step=st.floats(0.003, 0.3))
 def test_no_protocol_overturns_below_the_first_overturning_which_fine_steps_find(outcomes, step):
     amplitudes = grid(outcomes)
@@ -140,7 +140,7 @@ def test_no_protocol_overturns_below_the_first_overturning_which_fine_steps_find
     assert outcome.censored or outcome.upper_g >= first.upper_g
 
 
-@settings(deadline=None, derandomize=True)
+@settings(derandomize=True)
 @given(growth=st.floats(0.01, 0.5), threshold=st.floats(0.1, 1.5))
 def test_a_monotone_specimen_is_bracketed_within_one_step(growth, threshold):
     protocol = Protocol(GeometricSteps(0.05, growth), limit_g=3.0)

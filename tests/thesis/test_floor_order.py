@@ -43,7 +43,7 @@ def test_margins_are_the_logarithms_they_are_said_to_be():
     assert margins["C38"] == pytest.approx(math.log(0.95))
 
 
-@settings(max_examples=4, deadline=None, derandomize=True)
+@settings(max_examples=4, derandomize=True)
 @given(
     gain=st.floats(0.001, 0.5),
     loss=st.floats(-0.5, -0.001),

@@ -110,7 +110,7 @@ def test_a_turned_and_a_mirrored_case_are_the_same_case():
         assert first.turn == pytest.approx(-second.turn, abs=1e-6)
 
 
-@settings(max_examples=25, deadline=None, derandomize=True)
+@settings(max_examples=25, derandomize=True)
 @given(
     seed=st.integers(0, 10_000),
     friction=st.floats(math.log(0.2), math.log(20)).map(math.exp),
