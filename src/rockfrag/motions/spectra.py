@@ -2,10 +2,11 @@
 
 Of the peak displacements of many oscillators sixteen are found side by side, with the steps and the peaks
 between them of :func:`response_spectrum`, to the last bit.  What is saved is the look between two steps: a peak
-there is worth it only if it can be the largest so far.  So a stretch of steps is taken without a look first, and
-gone through again if it may hold such a peak.  Where u turns, u'' is bounded by the ground's and the spring's
-share, |u''| (1 - ch) ≤ PGA + k |u| with c = 2ζω, k = ω² and step h.  One end of the step is within h/2 of the
-turn, so that the peak exceeds the larger of the two ends by q (PGA/k + |u|) at most, q = k (h/2)²/2/(1 - ch).
+there is worth it only if it can be the largest of all.  So all steps are taken without a look first, and those
+stretches of them alone are gone through again that may hold such a peak.  Where u turns, u'' is bounded by the
+ground's and the spring's share, |u''| (1 - ch) ≤ PGA + k |u| with c = 2ζω, k = ω² and step h.  One end of the
+step is within h/2 of the turn, so that the peak exceeds the larger of the two ends by q (PGA/k + |u|) at most,
+with q = k (h/2)²/2/(1 - ch).
 
 The integration ends where nothing larger can come: the free vibration only decays, and the rest of the motion
 moves the oscillator by (1 + r)/(1 - r) times its peak over k at most, with r = exp(-πζ/√(1 - ζ²)) the ratio of one
@@ -29,11 +30,11 @@ from rockfrag.machine_code import cached_njit
 from rockfrag.records.motion import Motion
 from rockfrag.short_repr import short_repr
 
-STEPS_PER_PERIOD = 40
+STEPS_PER_PERIOD = 12
 """Least number of steps in one natural period; twice the damping times as many above half critical.
 
-Between two steps the cubic through both values and both slopes says *when* a response turns; its
-value there is then exact, and so what a wrong instant costs is of second order.
+Between two steps the cubic through both values and both slopes says *when* a response turns, and a step of
+Newton's from there says it better; the value is then exact, and so what a wrong instant costs is of second order.
 """
 
 
@@ -141,14 +142,30 @@ def state_after(
 
 @cached_njit()
 def _response(
-    order: int, u: float, v: float, ground: float, c: float, k: float
-) -> tuple[float, float]:
-    """u, u' or the total acceleration for order 0, 1 or 2, and its slope."""
-    if order == 0:
-        return u, v
+    order: int, start: tuple[float, float, float, float], c: float, k: float, t: float
+) -> tuple[float, float, float]:
+    """u, u' or the total acceleration for order 0, 1 or 2 a short time t later, its slope and its curvature."""
+    u, v, a, s = start
+    u, v = state_after(u, v, a, s, c, k, t)
     total = -(c * v + k * u)
-    relative = total - ground
-    return (v, relative) if order == 1 else (total, -(c * relative + k * v))
+    relative = total - (a + t * s)
+    if order == 0:
+        return u, v, relative
+    jerk = -(c * relative + k * v)
+    if order == 1:
+        return v, relative, jerk - s
+    return total, jerk, -(c * (jerk - s) + k * relative)
+
+
+@cached_njit()
+def _peak_near(
+    order: int, start: tuple[float, float, float, float], c: float, k: float, t: float, h: float
+) -> float:
+    """Largest value of a response within a step of length h, of which it turns about t after its beginning."""
+    _, slope, curvature = _response(order, start, c, k, t)
+    if curvature != 0.0:
+        t = min(max(t - slope / curvature, 0.0), h)
+    return float(abs(_response(order, start, c, k, t)[0]))
 
 
 @cached_njit()
@@ -165,24 +182,21 @@ def peak_within(
 
     ``first`` and ``last`` are its value, slope and curvature at both ends, ``start`` is (u, u', a, s).
     """
-    (x0, m0, n0), (x1, m1, n1), (u, v, a, s) = first, last, start
+    (x0, m0, n0), (x1, m1, n1) = first, last
     if m0 * m1 < 0:
-        t = turning_time(x0, m0, x1, m1, h)
-        there = state_after(u, v, a, s, c, k, t)
-        return float(abs(_response(order, there[0], there[1], a + t * s, c, k)[0]))
+        return float(_peak_near(order, start, c, k, turning_time(x0, m0, x1, m1, h), h))
     if n0 * n1 >= 0:
         return 0.0
     # between two turns lies one of the slope
     middle = turning_time(m0, n0, m1, n1, h)
-    there = state_after(u, v, a, s, c, k, middle)
-    x, m = _response(order, there[0], there[1], a + middle * s, c, k)
+    x, m, _ = _response(order, start, c, k, middle)
     if m * m0 >= 0:
         return 0.0
-    peak = 0.0
-    for t in (turning_time(x0, m0, x, m, middle), middle + turning_time(x, m, x1, m1, h - middle)):
-        there = state_after(u, v, a, s, c, k, t)
-        peak = max(peak, abs(_response(order, there[0], there[1], a + t * s, c, k)[0]))
-    return peak
+    early = turning_time(x0, m0, x, m, middle)
+    late = middle + turning_time(x, m, x1, m1, h - middle)
+    return float(
+        max(_peak_near(order, start, c, k, early, h), _peak_near(order, start, c, k, late, h))
+    )
 
 
 @cached_njit()
@@ -389,19 +403,29 @@ def _integrate(
 ) -> None:
     """Take all lanes through a motion and ``quiet`` samples after it; the peaks are in the table then."""
     end = acceleration.size - 1 + quiet
-    ground, begin = np.empty((2, LOOK_EVERY * parts)), np.empty(2 * LANES)
+    ground = np.empty((2, LOOK_EVERY * parts))
+    # of each stretch the state at its beginning and its largest displacement
+    stretches = np.empty((-(-end // LOOK_EVERY), 3 * LANES))
+    count = 0
     for first in range(0, end, LOOK_EVERY):
         if _settled(x, _sample(to_come, first)):
             break
         steps = _fill_ground(acceleration, first, min(first + LOOK_EVERY, end), step, parts, ground)
-        begin[:] = x[_U : _U + 2 * LANES]
+        stretches[count, : 2 * LANES] = x[_U : _U + 2 * LANES]
         for i in range(LANES):
             x[_HIGHEST + i] = abs(x[_U + i])
         for j in range(steps):
             _advance(x, ground[0, j], ground[1, j])
-        if not _may_hold_the_peak(x):
+        for i in range(LANES):
+            stretches[count, 2 * LANES + i] = x[_HIGHEST + i]
+            x[_LARGEST + i] = max(x[_LARGEST + i], x[_HIGHEST + i])
+        count += 1
+    for number in range(count):
+        if not _may_hold_the_peak(x, stretches[number]):
             continue
-        x[_U : _U + 2 * LANES] = begin
+        x[_U : _U + 2 * LANES] = stretches[number, : 2 * LANES]
+        first = number * LOOK_EVERY
+        steps = _fill_ground(acceleration, first, min(first + LOOK_EVERY, end), step, parts, ground)
         for j in range(steps):
             for i in range(LANES):
                 x[_U0 + i], x[_V0 + i] = x[_U + i], x[_V + i]
@@ -439,12 +463,11 @@ def _settled(x: Floats, to_come: float) -> bool:
 
 
 @cached_njit(error_model="numpy")
-def _may_hold_the_peak(x: Floats) -> bool:
-    """Count the largest displacements of a stretch in; whether a peak between its steps can be larger."""
+def _may_hold_the_peak(x: Floats, stretch: Floats) -> bool:
+    """Whether a peak between two steps of a stretch can be the largest displacement of a lane."""
     may = False
     for i in range(LANES):
-        x[_LARGEST + i] = max(x[_LARGEST + i], x[_HIGHEST + i])
-        may |= x[_HIGHEST + i] + x[_ADDED + i] > x[_KEPT + i] * x[_LARGEST + i]
+        may |= stretch[2 * LANES + i] + x[_ADDED + i] > x[_KEPT + i] * x[_LARGEST + i]
     return may
 
 
