@@ -183,7 +183,7 @@ class _Counts:
         self.fell += fell.reshape(trials.shape)
         # one after the other, so that parts give the sum of the whole
         terms = np.append(self.total, log_im)
-        self.total = np.bincount(np.append(np.arange(CELLS), cell), terms)
+        self.total[:] = np.bincount(np.append(np.arange(CELLS), cell), terms)
 
     def outcomes(self) -> CountedObservations:
         block, cell = np.nonzero(self.trials)
