@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from rockfrag.arrays import fields, whole
 from rockfrag.elementary import atan2, sin_cos
-from rockfrag.engines.records import after_impact
+from rockfrag.engines.lanes import after_impact
 from rockfrag.system import geometry
 from rockfrag.system.contact import ROUGHEST
 from rockfrag.system.system import System
