@@ -9,7 +9,7 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from rockfrag import Block, simulate
-from rockfrag.engines.spatial.outcome import history_table, run_case
+from rockfrag.engines.spatial.engine import history_table, run_case
 from rockfrag.figure_style import (
     BLACK,
     BLUE,

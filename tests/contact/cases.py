@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from rockfrag.engines.contract import Case, Request
-from rockfrag.engines.planar.cases import ContactRun
+from rockfrag.engines.planar.engine import ContactRun
 from rockfrag.engines.response import Response
 from rockfrag.rocking.inputs import ground_motion
 from rockfrag.rocking.options import system_of

@@ -10,7 +10,7 @@ import pytest
 from rockfrag.engines.contract import Case
 from rockfrag.engines.kernels.jit import entry_kernel
 from rockfrag.engines.kernels.single import Shaking
-from rockfrag.engines.planar.cases import ContactRun
+from rockfrag.engines.planar.engine import ContactRun
 from rockfrag.engines.planar.impact import kinetic_energy, strike
 from rockfrag.engines.planar.integrate import contact_event_columns, integrate
 from rockfrag.engines.planar.records import MOST, posed, system_record, working_memory

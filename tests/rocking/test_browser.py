@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from rockfrag import Block, Stack, overturns, simulate
-from rockfrag.engines.records import body_record
+from rockfrag.engines.lanes import body_record
 from rockfrag.engines.steps import STEP, free_samples, step_count
 from rockfrag.rocking.browser import module_bytes
 from rockfrag.rocking.options import system_of

@@ -17,7 +17,7 @@ from rockfrag import Block, Stack, overturns, simulate
 from rockfrag.engines.kernels.equations import STATE
 from rockfrag.engines.kernels.impact import impact
 from rockfrag.engines.kernels.jit import entry_kernel
-from rockfrag.engines.records import body_record
+from rockfrag.engines.lanes import body_record
 from rockfrag.errors import InputError
 from rockfrag.laws import law_names
 from rockfrag.rocking import MeasuredRestitution

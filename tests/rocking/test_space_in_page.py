@@ -7,7 +7,7 @@ import pytest
 
 from rockfrag import Block
 from rockfrag.engines.spatial.body import kernel_body
-from rockfrag.engines.spatial.outcome import AFTER, run_case
+from rockfrag.engines.spatial.engine import AFTER, run_case
 from rockfrag.system.body import Polygon, RigidBody
 from rockfrag.system.contact import Contact, Friction
 from rockfrag.system.system import System, turned_about_vertical

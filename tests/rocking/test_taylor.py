@@ -18,7 +18,7 @@ from rockfrag.engines.kernels.lanes.stack_constants import (
     number_of,
 )
 from rockfrag.engines.kernels.taylor import ORDER, SERIES, Step, fill_series, rates_of_two
-from rockfrag.engines.records import body_record
+from rockfrag.engines.lanes import body_record
 
 BODY = body_record(Stack(Block(0.4, 0.3, 100.0), Block(0.3, 1.2, 200.0, cg_offset=0.01)).system())
 H, GROUND, RISE = 0.01, 2.0, -1.5

@@ -9,7 +9,7 @@ import numpy as np
 from rockfrag.assess.objects import Objects, stretched_block
 from rockfrag.assess.outcomes import ObjectOutcomes
 from rockfrag.assess.risk import LEVEL, Target, earthquake_weights
-from rockfrag.fragility.intervals import jackknife_error, student
+from rockfrag.fragility.intervals import half_width
 from rockfrag.system.blocks import Block, Body, Stack, stacked
 
 WIDER = 1.25  # Width of a foot plate over that of the base
@@ -118,16 +118,14 @@ def compare(
     """Estimate again with each change of the object."""
     before, found = target.value(now), []
     weights = earthquake_weights(now.earthquakes)
-    groups = len(weights)
     for name, outcomes in changed.items():
         after, factor, limits = target.value(outcomes), math.nan, (math.nan, math.nan)
         if math.isfinite(before) and before > 0 and math.isfinite(after):
             factor = after / before
             # by a jackknife over earthquakes; none where one of them decides alone
             pairs = np.array([[target.value(v, w) for v in (outcomes, now)] for w in weights])
-            if groups > 1 and np.isfinite(pairs).all() and (pairs > 0).all():
-                error = jackknife_error(np.log(pairs[:, 0] / pairs[:, 1]))
-                half = float(student(LEVEL, groups) * error)
+            if len(weights) > 1 and np.isfinite(pairs).all() and (pairs > 0).all():
+                half = float(half_width(np.log(pairs[:, 0] / pairs[:, 1]), LEVEL))
                 limits = (factor * math.exp(-half), factor * math.exp(half))
         helps = after > before if math.isinf(target.certain) else after < before
         found.append(Mitigation(name, after, factor, *limits, helps))

@@ -162,12 +162,9 @@ def by_wishes(engine: Any, system: System, motion: GroundMotion, request: Reques
     return Support(wishes(system, motion, request) - engine.meets)
 
 
-BUILT_IN = (
-    "rockfrag.engines.pure_rocking:LONE_BLOCKS",
-    "rockfrag.engines.pure_rocking:TWO_BLOCKS",
-    "rockfrag.engines.single:ENGINE",
-    "rockfrag.engines.planar.engine:ENGINE",
-    "rockfrag.engines.spatial.engine:ENGINE",
+BUILT_IN = tuple(
+    f"rockfrag.engines.built_in:{name}"
+    for name in ("LONE_BLOCKS", "TWO_BLOCKS", "SINGLE", "PLANAR", "SPATIAL")
 )
 """Engines in the order in which they are asked; loaded when one is first wanted."""
 

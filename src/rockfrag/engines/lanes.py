@@ -1,19 +1,81 @@
-"""What engines that integrate many cases side by side share: motions as the lanes sample them, and the threads."""
+"""Engines of ensembles in pure rocking, from rest, and what all engines of pure rocking share."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from itertools import pairwise
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from rockfrag.arrays import Floats
+from rockfrag.engines.built_in import LONE_BLOCKS, TWO_BLOCKS
 from rockfrag.engines.contract import Cases
+from rockfrag.engines.kernels.equations import BODY
 from rockfrag.engines.kernels.jit import compiling_alone
-from rockfrag.engines.kernels.lanes.case import BLOCK, Motions
-from rockfrag.engines.steps import step_count
-from rockfrag.outcomes.outcomes import Outcomes
+from rockfrag.engines.kernels.lanes import block, stack_case
+from rockfrag.engines.kernels.lanes.case import BLOCK, OUTCOME, Ensemble, Motions
+from rockfrag.engines.kernels.lanes.scheduler import integrate_stacks
+from rockfrag.engines.steps import STACK_STEP, free_samples, step_count
+from rockfrag.errors import InputError
+from rockfrag.input_checks import positive_number
+from rockfrag.laws import Told, law_named, momentum, ratio
+from rockfrag.outcomes.outcomes import Outcomes, empty_outcomes
+from rockfrag.system import geometry
+from rockfrag.system.contact import ImpactLaw
+from rockfrag.system.system import System
+from rockfrag.units import GRAVITY
+
+BY_MOMENTUM: Told = (momentum.NUMBER, 1.0)
+FIELDS = ("after1r", "after1l", "after2r", "after2l")
+
+
+def body_record(system: System, linear: bool = False, g: float = GRAVITY) -> np.void:
+    """Return the record of a system of one or two bodies that the kernels read (``kernels.equations.BODY``).
+
+    ``linear`` uses the linearised equations: eq. 2.9 for one body, eq. 2.60-2.65 for two.
+    """
+    positive_number("g", g, "m/s²")
+    p: np.void = np.zeros(1, BODY)[0]
+    found = afters(system)
+    for name, after in zip(FIELDS, found, strict=True):
+        p[name] = after
+    p["gravity"] = g
+    # its fields are attributes, as those of records are in kernels
+    named = SimpleNamespace()
+    if system.count == 1:
+        geometry.fill_block(named, system.shapes[0])
+        p["linear"] = 2 if linear else 0
+    else:
+        geometry.fill_pile(named, system.pile)
+        p["linear"] = 1 if linear else 0
+    for name, value in vars(named).items():
+        p[name] = value
+    p["measured"] = any(after != BY_MOMENTUM for after in found)
+    return p
+
+
+def afters(system: System) -> tuple[Told, ...]:
+    """Return how ground and interface come off impacts that end on their right and left pivots.
+
+    Of a lone body, which the interface stands for, all laws are the same.
+    """
+    if system.count == 1:
+        law = system.contacts[0].law
+        if law.name == "momentum":
+            return (BY_MOMENTUM,) * 4
+        return BY_MOMENTUM, BY_MOMENTUM, (ratio.NUMBER, law.right), (ratio.NUMBER, law.left)
+    return tuple(
+        after_impact(contact.law, shape, pivot)
+        for contact, shape in zip(system.contacts, system.carried, strict=True)
+        for pivot in (+1, -1)
+    )
+
+
+def after_impact(law: ImpactLaw, shape: geometry.Shape, pivot: int) -> Told:
+    """What the kernels are told of the impacts of a contact that end on a pivot of the body above it."""
+    return law_named(law.name).tell(shape, law.right if pivot > 0 else law.left, pivot)
 
 
 def intervals_of(cases: Cases) -> Floats:
@@ -96,26 +158,92 @@ def refined(values: Floats, times: int) -> Floats:
     return np.asarray(np.interp(at, np.arange(closed.size), closed))
 
 
-def write_rocking(
-    into: Outcomes, rows: Sequence[int], found: NDArray[np.void], peaks: str = "peak"
-) -> None:
-    """Write what the kernels tell (OUTCOME, or SUMMARY with ratios as ``peaks``) of systems of as many bodies."""
-    count, place = into.counts[rows[0]], np.asarray(rows, dtype=np.intp)
-    # a lone body is the kernels' block 2
-    fell = np.where(found["fallen"] > 0, found["fallen"] - (2 - count), 0)
-    into.overturned[place] = fell > 0
-    into.overturned_body[place] = fell
-    for k in range(count):
-        peak = found[peaks + ("2" if k == count - 1 else "1")]
-        into.peak_rotation[place, ..., k] = np.where(fell == k + 1, np.inf, peak)
-        into.slip[place, ..., k] = into.peak_slip[place, ..., k] = 0.0
-    into.impacts[place] = found["impacts"]
-    into.given_way[place] = found["given_way"]
-    into.unstable_distance[place] = found["unstable_distance"]
+BLOCKS = ("1", "2")  # what the kernels call the two bodies; a lone one is the second
 
 
-def write_lanes(into: Outcomes, found: NDArray[np.void], interval: Floats) -> None:
-    """Write what lanes tell of cases, which count time in samples of ``interval`` [s], into outcomes."""
-    write_rocking(into, range(len(into.names)), found)
-    into.certain_time[:] = np.where(into.overturned, found["certain"] * interval, np.nan)
-    into.peak_velocity[..., -1] = found["fast"] / interval
+def blocks_of(outcomes: Outcomes) -> Iterator[tuple[NDArray[np.intp], int, str]]:
+    """Yield the systems that have a body, its place among theirs, and what the kernels call it."""
+    counts = np.array(outcomes.counts)
+    for count in np.unique(counts).tolist():
+        for k, number in enumerate(BLOCKS[-count:]):
+            yield np.flatnonzero(counts == count), k, number
+
+
+def write_rocking(into: Outcomes, found: NDArray[np.void], peaks: str = "peak") -> None:
+    """Write what the kernels tell (OUTCOME, or SUMMARY with ratios as ``peaks``) of cases."""
+    lone = np.array(into.counts)[:, np.newaxis, np.newaxis] == 1
+    fell = np.where(found["fallen"] > 0, found["fallen"] - lone, 0)
+    into.overturned[:] = fell > 0
+    into.overturned_body[:] = fell
+    for rows, k, number in blocks_of(into):
+        peak = found[peaks + number][rows]
+        into.peak_rotation[rows, ..., k] = np.where(fell[rows] == k + 1, np.inf, peak)
+        into.slip[rows, ..., k] = into.peak_slip[rows, ..., k] = 0.0
+    for name in ("impacts", "given_way", "unstable_distance"):
+        getattr(into, name)[:] = found[name]
+
+
+# --------------------------------------------------------------------------- the two engines
+
+
+def run_blocks(cases: Cases) -> Outcomes:
+    """Return the outcomes of lone bodies."""
+    g, made = cases.request.g, sampled(cases, 1.0)
+    intervals = made[2]
+    pivots = np.empty((*intervals.shape, 2), block.PIVOT)
+    for i, system in enumerate(cases.systems):
+        pivots[i] = _pivots(system, g)
+    pivots["swing"] *= intervals[:, :, np.newaxis] ** 2
+    pivots["per_swing"] /= intervals[:, :, np.newaxis] ** 2
+    parts, free = np.ones(intervals.shape), np.zeros(intervals.shape, np.int64)
+    told = {"bodies": pivots, "factors": cases.scales / g, "parts": parts, "free": free}
+    return _by_lanes(LONE_BLOCKS.name, cases, block.integrate_blocks, block.worker, made, **told)
+
+
+def _pivots(system: System, g: float) -> NDArray[np.void]:
+    """Constants of a lone body's right and left pivot, with p² where p² dt² belongs."""
+    pivots = np.empty(2, block.PIVOT)
+    shape, law = system.shapes[0], system.contacts[0].law
+    # of the impact that ends rocking on a pivot and comes down on the other
+    for at, pivot, measured in ((0, +1, law.left), (1, -1, law.right)):
+        p, alpha = geometry.frequency(shape, pivot, g), geometry.critical_angle(shape, pivot)
+        if not p * p * alpha * alpha > 0:
+            raise InputError(
+                "body: lengths, mass and inertia are too far apart; check their units."
+            )
+        by_momentum = geometry.momentum_restitution(shape, -pivot)
+        e = by_momentum if law.name == "momentum" else measured
+        pivots[at] = geometry.pivot_constants(shape, pivot, e, g)
+    return pivots
+
+
+def run_stacks(cases: Cases) -> Outcomes:
+    """Return the outcomes of two bodies on each other."""
+    g, step = cases.request.g, STACK_STEP * cases.request.step
+    made = sampled(cases, 1.0 / g)
+    each = list(zip(cases.systems, made[2], strict=True))
+    return _by_lanes(
+        *(TWO_BLOCKS.name, cases, integrate_stacks, stack_case.worker, made),
+        bodies=np.array([body_record(system, g=g) for system in cases.systems], BODY),
+        factors=cases.scales,
+        parts=1.0 / np.array([step_count(system, h, g, step) for system, h in each]),
+        free=np.array([free_samples(system, h, g) for system, h in each]),
+    )
+
+
+def _by_lanes(
+    name: str, cases: Cases, kernel: Any, worker: Callable[[], Any], sampled: Any, **told: Any
+) -> Outcomes:
+    """Return what lanes make of motions ``sampled`` for an ensemble, and of what its kernel is ``told``."""
+    motions, rows, intervals = sampled
+    count = len(cases.systems) * cases.scales.size
+    ensemble = Ensemble(np.array([0]), count, rows=rows, intervals=intervals, **told)
+    found = np.empty(count, OUTCOME)
+    integrate(kernel, worker, cases.threads, ensemble, motions, found)
+    outcomes = empty_outcomes(cases.names, cases.scales, (name,))
+    found, interval = found.reshape(cases.shape), intervals[:, :, np.newaxis]
+    # lanes count time in samples
+    write_rocking(outcomes, found)
+    outcomes.certain_time[:] = np.where(outcomes.overturned, found["certain"] * interval, np.nan)
+    outcomes.peak_velocity[..., -1] = found["fast"] / interval
+    return outcomes

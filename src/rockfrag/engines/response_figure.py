@@ -15,7 +15,7 @@ from rockfrag.system.system import System
 from rockfrag.units import GRAVITY
 
 if TYPE_CHECKING:
-    from rockfrag.engines.spatial.outcome import SpatialOutcome
+    from rockfrag.engines.spatial.engine import SpatialOutcome
 
 MOST_ROCKING_MODES = len(style.OKABE_ITO)  # rows of patterns; more are counted
 GREY = "#999999"

@@ -9,8 +9,13 @@ from numpy.typing import NDArray
 
 from rockfrag.arrays import Floats
 from rockfrag.elementary import hypot
-from rockfrag.engines.contract import Case, Cases, Wish
-from rockfrag.engines.pure_rocking import PureRocking
+from rockfrag.engines.built_in import SINGLE
+from rockfrag.engines.contract import Case, Cases
+from rockfrag.engines.kernels import record as kept
+from rockfrag.engines.kernels.equations import STATE
+from rockfrag.engines.kernels.jit import compiling_alone
+from rockfrag.engines.kernels.single import Shaking, integrate, scratch
+from rockfrag.engines.lanes import BLOCKS, blocks_of, body_record, write_rocking
 from rockfrag.engines.response import Response, contact_event_table, energy_table
 from rockfrag.engines.steps import MOST_SAMPLES, free_samples, step_count
 from rockfrag.errors import InputError
@@ -22,50 +27,41 @@ Records = NDArray[np.void]
 Link = tuple[Floats, ...]
 
 
-class Single(PureRocking):
-    """One or two planar bodies that rock and never slide, case by case (``kernels.single``)."""
+def run(cases: Cases) -> Outcomes:
+    """Return the outcomes of cases, whose histories are not kept."""
+    records = [
+        body_record(system, cases.request.linear, cases.request.g) for system in cases.systems
+    ]
+    starts = [initial_state(system) for system in cases.systems]
+    summaries = np.zeros(cases.shape, kept.SUMMARY)
+    nothing = np.empty(0, kept.SAMPLE), np.empty(0, kept.CONTACT_EVENT)
 
-    name = "single histories"
-    meets = frozenset(
-        {
-            *(Wish.TWO_BODIES, Wish.VERTICAL, Wish.RESTITUTION, Wish.START, Wish.LINEAR),
-            *(Wish.FORCES, Wish.HISTORY),
-        }
-    )
+    def work(place: tuple[int, int, int]) -> None:
+        i, j, k = place
+        case = Case(cases.systems[i], cases.motions[j], float(cases.scales[j, k]), cases.request)
+        shaking = shaking_of(case, case.request.g)
+        summaries[place] = run_integration(records[i], shaking, starts[i], *nothing)[1]
 
-    def run(self, cases: Cases) -> Outcomes:
-        """Return the outcomes of cases, whose histories are not kept."""
-        from rockfrag.engines.kernels.record import CONTACT_EVENT, SAMPLE, SUMMARY
-        from rockfrag.engines.lanes import write_rocking
-        from rockfrag.engines.records import body_record
+    with ThreadPoolExecutor(cases.threads) as pool:
+        list(pool.map(work, np.ndindex(*cases.shape)))
+    outcomes = empty_outcomes(cases.names, cases.scales, (SINGLE.name,))
+    write_rocking(outcomes, summaries, "ratio")
+    outcomes.overturning_time[:] = summaries["fall_time"]
+    for rows, k, number in blocks_of(outcomes):
+        place, found = (rows, ..., k), summaries[rows]
+        if number == "2":
+            outcomes.peak_velocity[place] = found["speed2"]
+        if cases.request.forces:
+            outcomes.friction_demand[place] = found["demand"]["friction" + number]
+            outcomes.least_normal_force[place] = found["demand"]["normal" + number]
+    if cases.request.forces:
+        outcomes.lost_contact[:] = summaries["lost_contact"]
+    return outcomes
 
-        g, linear = cases.request.g, cases.request.linear
-        records = [body_record(system, linear, g) for system in cases.systems]
-        starts = [initial_state(system) for system in cases.systems]
-        summaries = np.zeros(cases.shape, SUMMARY)
-        nothing = np.empty(0, SAMPLE), np.empty(0, CONTACT_EVENT)
 
-        def work(place: tuple[int, int, int]) -> None:
-            i, j, k = place
-            case = Case(
-                cases.systems[i], cases.motions[j], float(cases.scales[j, k]), cases.request
-            )
-            summaries[place] = run_integration(
-                records[i], shaking_of(case, case.request.g), starts[i], *nothing
-            )[1]
-
-        with ThreadPoolExecutor(cases.threads) as pool:
-            list(pool.map(work, np.ndindex(*cases.shape)))
-        outcomes = empty_outcomes(cases.names, cases.scales, (self.name,))
-        for count in sorted(set(outcomes.counts)):
-            rows = [i for i, system in enumerate(cases.systems) if system.count == count]
-            write_rocking(outcomes, rows, summaries[rows], "ratio")
-            _write_summaries(outcomes, rows, summaries[rows], cases.request.forces)
-        return outcomes
-
-    def history(self, case: Case) -> Response:
-        """Return the response of a case."""
-        return SingleRun(case).response()
+def history(case: Case) -> Response:
+    """Return the response of a case."""
+    return SingleRun(case).response()
 
 
 class SingleRun:
@@ -76,8 +72,6 @@ class SingleRun:
     """
 
     def __init__(self, case: Case, room: int = 4096) -> None:
-        from rockfrag.engines.kernels.record import CONTACT_EVENT, SAMPLE
-        from rockfrag.engines.records import body_record
 
         self.system, self.count = case.system, case.system.count
         self.record = body_record(case.system, case.request.linear, case.request.g)
@@ -88,9 +82,9 @@ class SingleRun:
                 f"motion: {most} samples, with the free rocking after it, are more than the "
                 f"{MOST_SAMPLES} allowed."
             )
-        told = self.record, self.shaking, initial_state(case.system), np.zeros(most, SAMPLE)
+        told = self.record, self.shaking, initial_state(case.system), np.zeros(most, kept.SAMPLE)
         while True:
-            found = np.zeros(room, CONTACT_EVENT)
+            found = np.zeros(room, kept.CONTACT_EVENT)
             done, self.summary = run_integration(*told, found)
             count = int(self.summary["contact_events"])
             if count <= room or not room:
@@ -146,13 +140,10 @@ class SingleRun:
         Of each link x, y [m] and the acceleration of its tip [m/s²], each (n,): to the lower centre, to the foot
         of the upper body, from there to its centre, and along the top of the pedestal.
         """
-        from rockfrag.engines.kernels.jit import compiling_alone
-        from rockfrag.engines.kernels.record import fill_sines
-
         sine, cosine = np.empty((2, *theta.shape))
-        with compiling_alone(fill_sines):
+        with compiling_alone(kept.fill_sines):
             # the same on every processor
-            fill_sines(theta, sine, cosine)
+            kept.fill_sines(theta, sine, cosine)
         omega, alpha = self.of("omega"), self.of("alpha")
 
         def turned(arms: Any, body: int) -> Link:
@@ -205,11 +196,14 @@ class SingleRun:
 
     def _contact_events(self) -> pd.DataFrame:
         """Make the table of contact events."""
-        from rockfrag.engines.kernels.record import CHATTER, CLOSING, LIFTING, OPENING
-
         found = self.contact_events
         before, after = found["before"], found["after"]
-        kinds = {OPENING: "opening", CLOSING: "impact", CHATTER: "chatter", LIFTING: "lift-off"}
+        kinds = {
+            kept.OPENING: "opening",
+            kept.CLOSING: "impact",
+            kept.CHATTER: "chatter",
+            kept.LIFTING: "lift-off",
+        }
         return contact_event_table(
             found["time"],
             [kinds[kind] for kind in found["kind"].tolist()],
@@ -221,13 +215,9 @@ class SingleRun:
 
     def _energies(self) -> pd.DataFrame:
         """Balance of energy by cause over time [J]."""
-        from rockfrag.engines.kernels.equations import STATE
-        from rockfrag.engines.kernels.jit import compiling_alone
-        from rockfrag.engines.kernels.record import OPENING, fill_energies
-
         kinetic, potential = np.empty((2, len(self.history)))
-        with compiling_alone(fill_energies):
-            fill_energies(self.record, self.history, kinetic, potential, np.zeros(1, STATE)[0])
+        with compiling_alone(kept.fill_energies):
+            kept.fill_energies(self.record, self.history, kinetic, potential, np.zeros(1, STATE)[0])
         # an impact closes the ground if the lower body's contact changed, the interface otherwise
         found = self.contact_events
         before = found["before"]["c1"]
@@ -235,32 +225,13 @@ class SingleRun:
         lost = found["energy_before"] - found["energy_after"]
         # of a lone body, the kernels' second, the interface is the ground
         closed = np.where(by_ground, 0, self.count - 1)
-        losses = found["time"], closed, np.where(found["kind"] == OPENING, 0.0, lost)
+        losses = found["time"], closed, np.where(found["kind"] == kept.OPENING, 0.0, lost)
         balance = kinetic, potential, self.history["work"], losses
         return energy_table(self.time, *balance, contacts=self.count)
 
 
-def _write_summaries(into: Outcomes, rows: list[int], summaries: Records, forces: bool) -> None:
-    """Write what single histories tell beside what lanes do."""
-    count = into.counts[rows[0]]
-    into.overturning_time[rows] = summaries["fall_time"]
-    into.peak_velocity[rows, ..., count - 1] = summaries["speed2"]
-    if not forces:
-        return
-    into.lost_contact[rows] = summaries["lost_contact"]
-    # a lone body is the kernels' block 2
-    for k, number in enumerate(BLOCKS[-count:]):
-        into.friction_demand[rows, ..., k] = summaries["demand"]["friction" + number]
-        into.least_normal_force[rows, ..., k] = summaries["demand"]["normal" + number]
-
-
-BLOCKS = ("1", "2")  # what the kernels call the two bodies
-
-
 def initial_state(system: System) -> np.void:
     """Return the STATE that the integration begins with."""
-    from rockfrag.engines.kernels.equations import STATE
-
     initial: np.void = np.zeros(1, STATE)[0]
     if system.start is not None:
         for name, values in (("theta", system.start.rotation), ("omega", system.start.velocity)):
@@ -273,8 +244,6 @@ def shaking_of(case: Case, unit: float) -> Any:
 
     The vertical acceleration is over ``unit`` [m/s²].
     """
-    from rockfrag.engines.kernels.single import Shaking
-
     motion, request = case.motion, case.request
     return Shaking(
         samples=motion.x.acceleration,
@@ -290,14 +259,7 @@ def run_integration(
     record: np.void, shaking: Any, initial: np.void, history: Records, contact_events: Records
 ) -> tuple[int, np.void]:
     """Integrate one system; return the number of samples done and the summary."""
-    from rockfrag.engines.kernels.jit import compiling_alone
-    from rockfrag.engines.kernels.record import SUMMARY
-    from rockfrag.engines.kernels.single import integrate, scratch
-
-    summary: np.void = np.zeros(1, SUMMARY)[0]
+    summary: np.void = np.zeros(1, kept.SUMMARY)[0]
     with compiling_alone(integrate):
         done = integrate(record, shaking, initial, history, contact_events, summary, scratch())
     return int(done), summary
-
-
-ENGINE = Single()

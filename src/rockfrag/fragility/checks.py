@@ -214,8 +214,7 @@ def checks_of_outcomes(
 
     ``dependence`` and ``seed`` are those of :func:`rockfrag.fragility.checks.goodness_of_fit`.
     """
-    p_fit, residual, test = float("nan"), float("nan"), "none"
-    found = None
+    p_fit, test, residual, found = float("nan"), "none", float("nan"), None
     if np.isfinite(fit.theta):
         found = goodness_of_fit(outcomes, fit, dependence=dependence, seed=seed)
         p_fit, test = found.p_value, f"deviance, parametric bootstrap of {found.dependence}"
@@ -223,7 +222,8 @@ def checks_of_outcomes(
         residual = float(apart[np.abs(apart).argmax()])
     groups = outcomes.groups(interval.over)
     fractions = fractions_of_outcomes(outcomes, groups, interval.level)
-    return _checks(fit, interval, groups, (p_fit, test, residual, found), fractions)
+    notes = tuple(_say("notes", fit, interval, p_fit, fractions))
+    return Checks(p_fit, test, residual, *_influence(interval, groups), fractions, notes, found)
 
 
 def checks_of_brackets(brackets: Brackets, fit: FragilityFit, interval: Interval) -> Checks:
@@ -231,7 +231,7 @@ def checks_of_brackets(brackets: Brackets, fit: FragilityFit, interval: Interval
     lower, upper = brackets.lower, brackets.upper
     closed = np.isfinite(upper) & (lower > 0)
     middle = 0.5 * np.log(lower[closed] * upper[closed])
-    p_fit, residual, test = float("nan"), float("nan"), "none: too few, or open brackets"
+    p_fit, test, residual = float("nan"), "none: too few, or open brackets", float("nan")
     if closed.all() and middle.size > 3 and np.ptp(middle) > 0 and np.isfinite(fit.theta):
         p_fit = float(lilliefors(middle, dist="norm")[1])
         test = "Lilliefors, middles of the brackets"
@@ -243,20 +243,8 @@ def checks_of_brackets(brackets: Brackets, fit: FragilityFit, interval: Interval
     capacity = np.where(lower > 0, middles, -np.inf)
     groups = brackets.groups(interval.over)
     fractions = fractions_of_capacities(capacity, groups, interval.level)
-    return _checks(fit, interval, groups, (p_fit, test, residual, None), fractions)
-
-
-def _checks(
-    fit: FragilityFit,
-    interval: Interval,
-    groups: NDArray[np.object_],
-    judged: tuple[float, str, float, GoodnessOfFit | None],
-    fractions: Fractions,
-) -> Checks:
-    p_fit, test, residual, goodness = judged
     notes = tuple(_say("notes", fit, interval, p_fit, fractions))
-    name, influence = _influence(interval, groups)
-    return Checks(p_fit, test, residual, name, influence, fractions, notes, goodness)
+    return Checks(p_fit, test, residual, *_influence(interval, groups), fractions, notes)
 
 
 def _influence(interval: Interval, groups: NDArray[np.object_]) -> tuple[str, float]:

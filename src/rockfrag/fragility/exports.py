@@ -226,19 +226,16 @@ def _function(taxonomy: str, states: Mapping[str, StateCurve], by: str) -> dict[
     if lowered > CROSSING or any(curve.levels.size for curve in states.values()):
         by_state = {state: chance.tolist() for state, chance in chances.items()}
         return {"imt": imt, "levels": levels.tolist(), "chances": by_state}
-    parameters = {state: (curve.theta * factor, curve.beta) for state, curve in states.items()}
-    # mean and standard deviation, linear as NRML wants them, from median θ and β
-    means = {state: theta * math.exp(0.5 * beta**2) for state, (theta, beta) in parameters.items()}
-    return {
-        "imt": imt,
+    moments, lows, highs = {}, [], []
+    for state, curve in states.items():
+        theta, beta = curve.theta * factor, curve.beta
+        # mean and standard deviation, linear as NRML wants them, from median θ and β
+        mean = theta * math.exp(0.5 * beta**2)
+        moments[state] = mean, mean * math.sqrt(math.expm1(beta**2))
         # the range in which OpenQuake may evaluate it: from a chance of 3e-5 to one of 1 - 3e-5
-        "low": min(theta * math.exp(-4.0 * beta) for theta, beta in parameters.values()),
-        "high": max(theta * math.exp(4.0 * beta) for theta, beta in parameters.values()),
-        "moments": {
-            state: (mean, mean * math.sqrt(math.expm1(parameters[state][1] ** 2)))
-            for state, mean in means.items()
-        },
-    }
+        lows.append(theta * math.exp(-4.0 * beta))
+        highs.append(theta * math.exp(4.0 * beta))
+    return {"imt": imt, "low": min(lows), "high": max(highs), "moments": moments}
 
 
 def _nested(

@@ -158,7 +158,7 @@ def _fractions(
         theta_limits = min(float(low), theta), max(float(high), theta)
     fewer = motions * weights.mean(axis=1)
     betas = np.array([_dispersion(middle, *pair) for pair in zip(left_out, fewer, strict=True)])
-    beta_limits = _dispersion_limits(beta, betas, level)
+    beta_limits = intervals.beta_limits(beta, betas, level) if np.isfinite(beta) else UNKNOWN
     return Fractions(im, fraction, lower, upper, theta, theta_limits, beta, beta_limits)
 
 
@@ -214,16 +214,3 @@ def _dispersion(middle: Floats, fraction: Floats, motions: float) -> float:
         weight[-1] += 1.0 - reached[-1]
         points.append(float(weight @ middle))
     return 0.5 * (points[1] - points[0])
-
-
-def _dispersion_limits(beta: float, left_out: Floats, level: float) -> Limits:
-    if not np.isfinite(beta):
-        return UNKNOWN
-    if len(left_out) < 3 or not (np.isfinite(left_out).all() and (left_out > 0).all() and beta > 0):
-        return 0.0, float("inf")
-    power = beta**intervals.BETA_POWER
-    half = intervals.student(level, len(left_out)) * float(
-        intervals.jackknife_error(left_out**intervals.BETA_POWER)
-    )
-    upper = (power - half) ** (1 / intervals.BETA_POWER) if power > half else float("inf")
-    return float((power + half) ** (1 / intervals.BETA_POWER)), float(upper)

@@ -65,8 +65,7 @@ class Interval:
             return np.full(x.shape, np.nan), np.full(x.shape, np.nan)
         predictors = self.replicates[:, :1] + self.replicates[:, 1:] * x
         centre = self.estimate[0] + self.estimate[1] * x
-        half = student(self.level, len(self.replicates)) * jackknife_error(predictors)
-        half = np.where(np.isfinite(half), half, np.inf)
+        half = half_width(predictors, self.level)
         return special.ndtr(centre - half), special.ndtr(centre + half)
 
 
@@ -208,10 +207,12 @@ def resampled_interval(
         return without_limits(
             f"All {over}s agree within the steps of the amplitude, which gives no limits."
         )
-    own = float(_beta(estimate[None, :])[0])
-    theta, beta = _jackknife_limits(estimate, deleted, level)
-    # to more digits than two ways of fitting agree to
-    beta = (min(beta[0], own * (1 - 1e-9)), max(beta[1], own * (1 + 1e-9)))
+    log_theta, half = _log_theta(estimate[None])[0], half_width(_log_theta(deleted), level)
+    theta = float(np.exp(log_theta - half)), float(np.exp(log_theta + half))
+    own = 1.0 / centre[1]
+    low, high = beta_limits(own, _beta(deleted), level, unbiased=True)
+    # stretched to hold the estimate, to more digits than two ways of fitting agree to
+    beta = min(low, own * (1 - 1e-9)), max(high, own * (1 + 1e-9))
     return Interval(theta, beta, level, "jackknife", groups, over, centre, deleted, notes)
 
 
@@ -246,11 +247,6 @@ def blocks_of(groups: int, seed: int = 0) -> NDArray[np.intp]:
     return np.asarray(np.random.default_rng(seed).permutation(groups) % MOST_BLOCKS)
 
 
-def student(level: float, groups: int) -> float:
-    """Quantile of Student's t with one degree of freedom less than there are groups."""
-    return float(stats.t.ppf(0.5 + 0.5 * level, groups - 1))
-
-
 def jackknife_error(left_out: Floats) -> Floats:
     """Return the standard error from delete-one-group values along the first axis (Tukey)."""
     groups = len(left_out)
@@ -260,29 +256,31 @@ def jackknife_error(left_out: Floats) -> Floats:
     return np.asarray(np.sqrt((groups - 1) / groups * np.sum(offset**2, axis=0)))
 
 
-def _jackknife_limits(
-    estimate: Floats, deleted: Floats, level: float
-) -> tuple[tuple[float, float], tuple[float, float]]:
-    groups = len(deleted)
-    factor = student(level, groups)
-    log_theta = float(_log_theta(estimate[None, :])[0])
-    half = factor * float(jackknife_error(_log_theta(deleted)))
-    # β of few groups has a long lower tail, also in its logarithm; this power of it has less of one
-    power = float(_beta(estimate[None, :])[0] ** BETA_POWER)
-    with np.errstate(divide="ignore"):
-        left_out = _beta(deleted) ** BETA_POWER
-    # the jackknife also takes out the first-order bias of β, which few groups make too small; where
-    # that puts the limits beside the estimate, they are stretched to hold it
-    centre = groups * power - (groups - 1) * float(left_out.mean())
-    half_beta = factor * float(jackknife_error(left_out))
-    if not np.isfinite(half):
-        half = np.inf
-    theta = (float(np.exp(log_theta - half)), float(np.exp(log_theta + half)))
+def half_width(left_out: Floats, level: float) -> Floats:
+    """Half the interval of Student's t from delete-one-group values along the first axis; infinite without end."""
+    half = stats.t.ppf(0.5 + 0.5 * level, len(left_out) - 1) * jackknife_error(left_out)
+    return np.where(np.isfinite(half), half, np.inf)
+
+
+def beta_limits(
+    beta: float, left_out: Floats, level: float, *, unbiased: bool = False
+) -> tuple[float, float]:
+    """Limits of a dispersion from its values without each group, shape (groups,), in a power of it.
+
+    β of few groups has a long lower tail, also in its logarithm; this power of it has less of one. ``unbiased``
+    also takes out the first-order bias of β, which few groups make too small.
+    """
+    groups = len(left_out)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        powers = left_out**BETA_POWER
     # of two groups each alone has no scatter, so two say nothing about β; nor do those without which
     # there is no curve
-    known = np.isfinite(left_out).all() and (left_out > 0).all()
-    if groups < 3 or not known or not centre + half_beta > 0:
-        return theta, (0.0, np.inf)
-    lower = (centre + half_beta) ** (1 / BETA_POWER)
-    upper = (centre - half_beta) ** (1 / BETA_POWER) if centre > half_beta else np.inf
-    return theta, (float(lower), float(upper))
+    if groups < 3 or not (beta > 0 and np.isfinite(powers).all() and (powers > 0).all()):
+        return 0.0, np.inf
+    half, centre = float(half_width(powers, level)), float(beta**BETA_POWER)
+    if unbiased:
+        centre = groups * centre - (groups - 1) * float(powers.mean())
+    if not centre + half > 0:
+        return 0.0, np.inf
+    upper = (centre - half) ** (1 / BETA_POWER) if centre > half else np.inf
+    return float((centre + half) ** (1 / BETA_POWER)), float(upper)

@@ -136,7 +136,7 @@ def recommend_measure(
     """
     if not measures:
         raise InputError("measures: name at least one column with an intensity measure.")
-    rows, data = [], {}
+    rows, data, scores = [], {}, []
     extra = {column: numbers(table, column, source) for column in given}
     for column in measures:
         outcomes = observations.observations_from_table(
@@ -147,83 +147,76 @@ def recommend_measure(
             earthquake=earthquake,
             source=source,
         )
+        fit, interval = fit_lognormal(outcomes), interval_over_motions(outcomes, level=level)
+        p = {name: sufficiency(outcomes, fit, values) for name, values in extra.items()}
+        rows.append(_row(column, fit, interval, outcomes, p))
+        group = pd.factorize(pd.Series(outcomes.earthquake))[0]
+        logs, fell, trials = outcomes.log_im[:, None], outcomes.overturned, outcomes.trials
+        scores.append(held_out.outcome_scores(logs, fell, trials, group))
         data[column] = outcomes
-        fit = fit_lognormal(outcomes)
-        interval = interval_over_motions(outcomes, level=level)
-        rows.append(
-            measure_row(column, fit, interval, outcomes)
-            | {f"p_{name}": sufficiency(outcomes, fit, values) for name, values in extra.items()}
-        )
-    first = data[measures[0]]
-    group = pd.factorize(pd.Series(first.earthquake))[0]
-    scores = np.array(
-        [
-            held_out.outcome_scores(tests.log_im[:, None], tests.overturned, tests.trials, group)
-            for tests in data.values()
-        ]
-    )
-    compared = ranked(pd.DataFrame(rows), scores, first.n, replicates, seed)
-    words = recommendation(compared, len(scores.T), given)
-    if compared["theta"].isna().all():
-        return MeasureSelection("", "", compared, words)
-    best = str(compared["measure"].iloc[0])
-    pair, p_pair, gain = _best_pair(data, best, group)
+    found = _selection(rows, np.array(scores), outcomes.n, given, (replicates, seed))
+    pair, p_pair, gain = _best_pair(data, found.recommended, group)
     if pair:
-        words = " ".join([words, *_say("pair", data[pair].name, p_pair, gain)])
-    return MeasureSelection(best, str(compared["im"].iloc[0]), compared, words)
+        words = " ".join([found.words, *_say("pair", data[pair].name, p_pair, gain)])
+        return replace(found, words=words)
+    return found
 
 
-def ranked(
-    compared: pd.DataFrame,
+def _row(
+    column: str,
+    fit: FragilityFit,
+    interval: Interval,
+    outcomes: Observations,
+    p: Mapping[str, float],
+    **more: float,
+) -> dict[str, float | str]:
+    """What the table says of one measure before its scores; ``p`` of sufficiency by what is given."""
+    lower, upper = interval.beta
+    return {
+        **{"measure": column, "im": fit.im, "unit": fit.unit, "theta": fit.theta},
+        **{"beta": fit.beta, "beta_lower": lower, "beta_upper": upper, **more},
+        **{"aic": fit.aic, "auc": area_under_curve(outcomes)},
+        **{f"p_{name}": value for name, value in p.items()},
+    }
+
+
+def _selection(
+    rows: Sequence[Mapping[str, float | str]],
     scores: Floats,
     tests: int,
-    replicates: int,
-    seed: int,
+    given: Sequence[str],
+    drawn: tuple[int, int],
     efficiency: str = "beta",
-) -> pd.DataFrame:
-    """Sort measures, a row each: best held-out score first, equals by efficiency, those without a curve last.
+    needed: str = "theta",
+) -> MeasureSelection:
+    """Sort measures: best held-out score first, equals by efficiency, those without a curve last; and recommend.
 
     ``scores`` are log scores by group (:mod:`rockfrag.fragility.held_out`), shape (measures, groups), of so many
-    ``tests``; the column ``efficiency`` orders equals.
+    ``tests``; ``drawn`` are replicates and seed of the bootstrap. Where all lack the column ``needed`` none is
+    recommended.
     """
+    compared = pd.DataFrame(rows)
     rising = compared["theta"].notna().to_numpy()
     known = rising & np.isfinite(scores).all(axis=1)
     total = np.where(known, scores.sum(axis=1), -np.inf)
-    best = int(total.argmax())
-    p_worse = np.array(
-        [held_out.paired_p(scores[best], score) if known[best] else np.nan for score in scores]
-    )
-    fraction = np.zeros(len(scores))
+    p_worse, fraction = np.full(len(scores), np.nan), np.zeros(len(scores))
     if known.any():
-        fraction[known] = held_out.fraction_best(scores[known], replicates, seed)
+        best = scores[total.argmax()]
+        p_worse[:] = [held_out.paired_p(best, score) for score in scores]
+        fraction[known] = held_out.fraction_best(scores[known], *drawn)
     near = known & ~(p_worse < DIFFERENCE_P)
-    order = compared.assign(
+    table = compared.assign(
         score=np.where(known, total / tests, np.nan),
         p_worse=p_worse,
         chosen_fraction=fraction,
         late=~rising,
         rank=np.where(near, compared[efficiency], np.inf),
         total=-total,
-    ).sort_values(["late", "rank", "total", "measure"], kind="stable")
-    return order.drop(columns=["late", "rank", "total"]).reset_index(drop=True)
-
-
-def measure_row(
-    column: str, fit: FragilityFit, interval: Interval, outcomes: Observations, **more: float
-) -> dict[str, float | str]:
-    """What the table says of one measure before its scores; ``more`` stands behind the limits of β."""
-    return {
-        "measure": column,
-        "im": fit.im,
-        "unit": fit.unit,
-        "theta": fit.theta,
-        "beta": fit.beta,
-        "beta_lower": interval.beta[0],
-        "beta_upper": interval.beta[1],
-        **more,
-        "aic": fit.aic,
-        "auc": area_under_curve(outcomes),
-    }
+    ).sort_values(["late", "rank", "total", "measure"], kind="stable", ignore_index=True)
+    table = table.drop(columns=["late", "rank", "total"])
+    words = _recommendation(table, scores.shape[1], given)
+    first = table.iloc[0] if table[needed].notna().any() else {"measure": "", "im": ""}
+    return MeasureSelection(str(first["measure"]), str(first["im"]), table, words)
 
 
 def _best_pair(
@@ -231,7 +224,7 @@ def _best_pair(
 ) -> tuple[str, float, float]:
     """Measure that adds most to the best one, the p value of what it adds, and the gain of score."""
     found = ("", float("nan"), -np.inf)
-    for name, other in data.items():
+    for name, other in data.items() if best else ():
         logs = np.column_stack([data[best].log_im, other.log_im])
         proportional = np.linalg.matrix_rank(np.column_stack([np.ones(len(logs)), logs])) < 3
         # proportional measures (PGA and a/(g tan α) of one block) tell nothing together
@@ -256,7 +249,7 @@ _say = Macros(
 )
 
 
-def recommendation(table: pd.DataFrame, groups: int, given: Sequence[str]) -> str:
+def _recommendation(table: pd.DataFrame, groups: int, given: Sequence[str]) -> str:
     """Put a ranked table of measures into words that say what to use and how sure that is."""
     scored = table[table["score"].notna()]
     if scored.empty:
@@ -306,7 +299,8 @@ def recommend_ida_measure(
     extra = {column: numbers(measures, column, "measures")[place] for column in given}
     recorded = known.loc[list(amplitude.motion)]
     pga = observations.positive(recorded, "pga_g", "measures")
-    rows, brackets = [], []
+    group = pd.factorize(pd.Series(amplitude.earthquake))[0]
+    rows, scores = [], []
     for column, power in powers.items():
         unit_value = observations.positive(recorded, column, "measures") / pga**power
         outcomes = ida.outcomes(column)
@@ -321,19 +315,14 @@ def recommend_ida_measure(
         interval = censored.bracket_interval(scaled, level=level)
         # residual of ln capacity of the motions that overturned above a survived step
         seen = np.isfinite(scaled.upper) & (scaled.lower > 0)
-        middle = 0.5 * np.log(scaled.lower[seen] * scaled.upper[seen])
-        residual = middle - np.log(fit.theta)
-        row = measure_row(column, fit, interval, outcomes, beta_amplitude=fit.beta / power)
-        for name, values in extra.items():
-            row[f"p_{name}"] = dependence_p_value(residual, values[seen], scaled.earthquake[seen])
-        rows.append(row)
-        brackets.append(scaled)
-    group = pd.factorize(pd.Series(amplitude.earthquake))[0]
-    scores = np.array([held_out.capacity_scores(bracket, group) for bracket in brackets])
-    tests = len(amplitude.lower)
-    table = ranked(pd.DataFrame(rows), scores, tests, replicates, seed, "beta_amplitude")
-    words = recommendation(table, scores.shape[1], given)
-    if table["score"].isna().all():
-        return MeasureSelection("", "", table, words)
-    best = table.iloc[0]
-    return MeasureSelection(str(best["measure"]), str(best["im"]), table, words)
+        residual = 0.5 * np.log(scaled.lower[seen] * scaled.upper[seen]) - np.log(fit.theta)
+        p = {
+            name: dependence_p_value(residual, values[seen], scaled.earthquake[seen])
+            for name, values in extra.items()
+        }
+        rows.append(_row(column, fit, interval, outcomes, p, beta_amplitude=fit.beta / power))
+        scores.append(held_out.capacity_scores(scaled, group))
+    drawn = (replicates, seed)
+    return _selection(
+        rows, np.array(scores), group.size, given, drawn, "beta_amplitude", needed="score"
+    )

@@ -19,7 +19,7 @@ from rockfrag.fragility.batch_glm import fit_batch
 from rockfrag.fragility.checks import binned_deviance, refitted_deviance
 from rockfrag.fragility.curve_facts import REJECTED
 from rockfrag.fragility.held_out import outcome_scores
-from rockfrag.fragility.intervals import FEWEST_GROUPS, all_but_one, jackknife_error, student
+from rockfrag.fragility.intervals import FEWEST_GROUPS, all_but_one, half_width
 from rockfrag.fragility.observations import Floats
 from rockfrag.sentences import Macros
 
@@ -113,8 +113,7 @@ class VectorFragility:
         left_out = _log_contour(self.replicates, probability, other, of, self.interaction.kept)
         half = np.full(other.shape, np.inf)
         if len(left_out) > 1:
-            half = student(self.level, len(left_out)) * jackknife_error(left_out)
-            half = np.where(np.isfinite(half), half, np.inf)
+            half = half_width(left_out, self.level)
         return np.exp(centre), np.exp(centre - half), np.exp(centre + half)
 
     def mean_over(self, first: ArrayLike, second: ArrayLike, weights: ArrayLike = 1.0) -> Floats:

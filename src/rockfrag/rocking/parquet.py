@@ -16,8 +16,8 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 from numpy.typing import ArrayLike
 
+from rockfrag.engines.built_in import SINGLE
 from rockfrag.engines.contract import Case, engine_for
-from rockfrag.engines.single import ENGINE as SINGLE
 from rockfrag.engines.single import SingleRun
 from rockfrag.engines.steps import step_count
 from rockfrag.errors import InputError

@@ -14,6 +14,7 @@ from typing import Unpack
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from rockfrag.engines.lanes import refined
 from rockfrag.errors import InputError
 from rockfrag.input_checks import real_number, whole_number
 from rockfrag.keywords import named_keywords
@@ -204,8 +205,6 @@ def find_step_size_sensitive(
 
 def _doubled(motion: GroundMotion) -> GroundMotion:
     """Sample a ground motion, which is zero one sample after its last, twice as densely."""
-    # the kernels are loaded only by those who shake
-    from rockfrag.engines.lanes import refined
 
     def dense(component: Motion) -> Motion:
         return replace(

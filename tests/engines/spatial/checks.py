@@ -7,7 +7,7 @@ from scipy.spatial.transform import Rotation
 
 from rockfrag.engines.spatial._body import SIZE
 from rockfrag.engines.spatial.body import solid_body
-from rockfrag.engines.spatial.outcome import history_table, run_case
+from rockfrag.engines.spatial.engine import history_table, run_case
 from rockfrag.system.body import Circle
 from rockfrag.units import GRAVITY
 

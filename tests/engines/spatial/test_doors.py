@@ -10,8 +10,7 @@ from rockfrag.engines.contract import Case
 from rockfrag.engines.spatial import body as bodies
 from rockfrag.engines.spatial import run_in_space
 from rockfrag.engines.spatial.body import kernel_body
-from rockfrag.engines.spatial.engine import ENGINE
-from rockfrag.engines.spatial.outcome import run_case
+from rockfrag.engines.spatial.engine import ENGINE, run_case
 from rockfrag.errors import InputError
 from rockfrag.records.motion import GroundMotion, Motion
 from rockfrag.report.live.space import AMPLITUDES_G

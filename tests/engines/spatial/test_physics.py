@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from rockfrag import Block, simulate
 from rockfrag.engines.spatial.body import standing
-from rockfrag.engines.spatial.outcome import history_table, run_case
+from rockfrag.engines.spatial.engine import history_table, run_case
 
 from .checks import (
     ANGLES,

@@ -8,7 +8,7 @@ import pytest
 from rockfrag.engines.kernels.equations import STATE, equations
 from rockfrag.engines.kernels.impact import impact
 from rockfrag.engines.kernels.jit import entry_kernel
-from rockfrag.engines.records import body_record
+from rockfrag.engines.lanes import body_record
 
 from ...oracle.rocking_model import Model
 from . import motion, single_block, transitions

@@ -1,18 +1,23 @@
-"""The engine in space behind the contract of engines."""
+"""The engine in space: many outcomes, or one analysis with its history (``docs/space.md``)."""
 
 import math
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pandas as pd
 from numpy.typing import ArrayLike, NDArray
 
-from rockfrag.engines.contract import Case, Cases, Request, Support, Wish, by_wishes
+from rockfrag.arrays import Floats
+from rockfrag.engines.built_in import SPATIAL as ENGINE
+from rockfrag.engines.contract import Case, Cases, Request
+from rockfrag.engines.kernels.jit import compiling_alone
+from rockfrag.engines.spatial import _integrate as kernel
+from rockfrag.engines.spatial import _modes as modes
+from rockfrag.engines.spatial._forces import CASE
 from rockfrag.engines.spatial.body import kernel_body, later_peaks, perturbed, standing
-from rockfrag.engines.spatial.outcome import AFTER, SpatialOutcome, history_table, run_case
 from rockfrag.errors import InputError
 from rockfrag.outcomes.outcomes import Outcomes, empty_outcomes
 from rockfrag.records.motion import GroundMotion
@@ -22,6 +27,36 @@ from rockfrag.units import GRAVITY
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
+
+TOLERANCE = 1e-9  # largest error of a step: position [m], attitude [-], velocities [m/s, rad/s]
+CUT_OFF = 1e-6  # energy over rest, as a part of what a fall takes, at which a body rests [-]
+AFTER = 30.0  # time after the motion at which an analysis ends at the latest [s]
+RESTS = 99
+
+
+@dataclass(frozen=True)
+class SpatialOutcome:
+    """What became of a body in space."""
+
+    overturned: bool  # whether it fell
+    certain_time: float  # instant from which the fall was certain [s]; NaN without one
+    fall_direction: float  # from x towards y [rad]; NaN without a fall
+    fell_over: str  # "edge 1-2", "vertex 2", "rim", "flight"; empty without a fall
+    # largest tilt over that with the centre of mass above the outline [-]; infinite if it fell
+    peak_rotation: float
+    peak_tilt: float  # largest tilt until the outcome was known [rad]
+    peak_velocity: float  # largest angular velocity until then [rad/s]
+    # displacement of the base's point below the centre of mass, (x, y) at the end [m]
+    walk: tuple[float, float]
+    turn: float  # rotation about the vertical at the end [rad], several turns counted
+    impacts: int  # number of impacts
+    slidings: int  # number of contacts that began to slide
+    flights: int  # number of flights
+    ambiguous: int  # impacts and changes of mode with more than one admissible outcome
+    paradoxes: int  # impacts and changes without one, and jams: contacts that no finite force holds
+    dissipated: tuple[float, float]  # energy lost in impacts, and by friction [J/kg]
+    residual: float  # what the balance of energy does not close by [J/kg]
+    gained: float  # energy that events of contact added, by rounding or as a rim leaves rest tilted [J/kg]
 
 
 @dataclass(frozen=True)
@@ -56,57 +91,133 @@ class SpatialResponse:
         return math.nan
 
 
-class SpatialEngine:
-    """One rigid body on a polygon or a circle, contact event by contact event (``docs/space.md``)."""
+def run(cases: Cases, spread: float = 0.0, seed: int = 0) -> Outcomes:
+    """Return the outcomes of cases that it supports; spread and seed are those of :func:`run_in_space`."""
+    result = empty_outcomes(cases.names, cases.scales, [ENGINE.name])
+    g = cases.request.g
+    bodies = [kernel_body(system, g) for system in cases.systems]
+    tasks = [(i, j) for i in range(len(bodies)) for j in range(len(cases.motions))]
 
-    name = "space"
-    meets = frozenset({Wish.SPACE, Wish.VERTICAL, Wish.FRICTION, Wish.HISTORY})
+    def run_pair(task: tuple[int, int]) -> None:
+        i, j = task
+        motion, body, turned = cases.motions[j], bodies[i], 0.0
+        if spread > 0:
+            rng = np.random.default_rng([seed, i, j])
+            system, turned = perturbed(cases.systems[i], spread, rng)
+            body = kernel_body(system, g)
+        ground, start = motion.accelerations, standing(body, turned)
+        later = later_peaks(ground)
+        for k, scale in enumerate(cases.scales[j].tolist()):
+            found, _ = run_case(body, ground, motion.dt, scale, g=g, peaks=later, start=start)
+            least_gravity_ratio = 1.0 + scale * float(ground[:, 2].min()) / g
+            _write(result, (i, j, k), found, least_gravity_ratio)
 
-    def supports(self, system: System, motion: GroundMotion, request: Request) -> Support:
-        """Say whether it computes this system under this motion as requested, and if not, why."""
-        found = by_wishes(self, system, motion, request)
-        if found and system.planar:
-            return Support(reason="a planar body moves in its own plane only; give its depth")
-        return found
-
-    def run(self, cases: Cases, spread: float = 0.0, seed: int = 0) -> Outcomes:
-        """Return the outcomes of cases that it supports; spread and seed are those of :func:`run_in_space`."""
-        result = empty_outcomes(cases.names, cases.scales, [self.name])
-        g = cases.request.g
-        bodies = [kernel_body(system, g) for system in cases.systems]
-        tasks = [(i, j) for i in range(len(bodies)) for j in range(len(cases.motions))]
-
-        def run_pair(task: tuple[int, int]) -> None:
-            i, j = task
-            motion, body, turned = cases.motions[j], bodies[i], 0.0
-            if spread > 0:
-                rng = np.random.default_rng([seed, i, j])
-                system, turned = perturbed(cases.systems[i], spread, rng)
-                body = kernel_body(system, g)
-            ground, start = motion.accelerations, standing(body, turned)
-            later = later_peaks(ground)
-            for k, scale in enumerate(cases.scales[j].tolist()):
-                found, _ = run_case(body, ground, motion.dt, scale, g=g, peaks=later, start=start)
-                least_gravity_ratio = 1.0 + scale * float(ground[:, 2].min()) / g
-                _write(result, (i, j, k), found, least_gravity_ratio)
-
-        with ThreadPoolExecutor(cases.threads) as pool:
-            list(pool.map(run_pair, tasks))
-        return result
-
-    def history(self, case: Case) -> SpatialResponse:
-        """Return outcome and history of a case that it supports."""
-        g = case.request.g
-        body = kernel_body(case.system, g)
-        ground = case.motion.accelerations
-        samples = len(ground) + math.ceil(AFTER / case.motion.dt) + 2
-        found, history = run_case(body, ground, case.motion.dt, case.scale, g=g, samples=samples)
-        table = history_table(history, case.motion.dt, float(body["height"]))
-        outline = np.array(body["points"][: body["count"], :2])
-        return SpatialResponse(found, table, outline)
+    with ThreadPoolExecutor(cases.threads) as pool:
+        list(pool.map(run_pair, tasks))
+    return result
 
 
-ENGINE = SpatialEngine()
+def history(case: Case) -> SpatialResponse:
+    """Return outcome and history of a case that it supports."""
+    g = case.request.g
+    body = kernel_body(case.system, g)
+    ground = case.motion.accelerations
+    samples = len(ground) + math.ceil(AFTER / case.motion.dt) + 2
+    found, history = run_case(body, ground, case.motion.dt, case.scale, g=g, samples=samples)
+    table = history_table(history, case.motion.dt, float(body["height"]))
+    outline = np.array(body["points"][: body["count"], :2])
+    return SpatialResponse(found, table, outline)
+
+
+def run_case(
+    body: np.void,
+    acceleration: Floats,
+    dt: float,
+    scale: float = 1.0,
+    *,
+    g: float = GRAVITY,
+    peaks: Floats | None = None,
+    samples: int = 0,
+    tolerance: float = TOLERANCE,
+    start: Floats | None = None,
+) -> tuple[SpatialOutcome, Floats]:
+    """Integrate one analysis; the outcome, and the history, shape (m, COLUMNS), of at most so many samples.
+
+    ``acceleration`` is the ground's (x, y, up), shape (n, 3) [m/s²], ``peaks`` those of :func:`later_peaks`, and
+    ``start`` a state to begin with, shape (SIZE,).
+    """
+    acceleration = np.ascontiguousarray(acceleration)
+    y = standing(body) if start is None else start.copy()
+    history = np.full((samples, kernel.COLUMNS), math.nan)
+    out = np.zeros(kernel.OUTCOME)
+    case: Any = np.zeros(1, CASE)[0]
+    later = later_peaks(acceleration) if peaks is None else peaks
+    steps = dt, g, math.ceil(AFTER / dt), tolerance, CUT_OFF
+    with compiling_alone(kernel.integrate):
+        kernel.integrate(body, acceleration, later, scale, *steps, y, history, out, case)
+    kept = ~np.isnan(history[:, 0])
+    return _outcome(body, out, case["counters"], y), history[kept]
+
+
+def _outcome(body: np.void, out: Floats, counters: NDArray[np.int64], y: Floats) -> SpatialOutcome:
+    fell = bool(out[kernel.FELL])
+    return SpatialOutcome(
+        overturned=fell,
+        certain_time=float(out[kernel.CERTAIN_TIME]),
+        fall_direction=float(out[kernel.FALL_AZIMUTH]) if fell else math.nan,
+        fell_over=_named(body, out) if fell else "",
+        peak_rotation=math.inf if fell else float(out[kernel.PEAK_RATIO]),
+        peak_tilt=float(out[kernel.PEAK_TILT]),
+        peak_velocity=float(out[kernel.PEAK_SPEED]),
+        walk=(float(out[kernel.WALK_X]), float(out[kernel.WALK_Y])),
+        turn=float(out[kernel.TURN]),
+        impacts=int(counters[modes.IMPACTS]),
+        slidings=int(counters[modes.SLIDINGS]),
+        flights=int(counters[modes.FLIGHTS]),
+        ambiguous=int(counters[modes.AMBIGUOUS]),
+        paradoxes=int(counters[modes.UNSOLVED] + counters[modes.JAMS]),
+        dissipated=(float(out[kernel.LOST]), float(y[14])),
+        residual=float(out[kernel.ENERGY_BALANCE]),
+        gained=float(out[kernel.GAINED]),
+    )
+
+
+def _named(body: np.void, out: Floats) -> str:
+    """Say over what a body fell."""
+    first, second = int(out[kernel.FALL_FIRST]), int(out[kernel.FALL_SECOND])
+    if first < 0:
+        return "flight"
+    if body["rim"] > 0:
+        return "rim"
+    if second < 0:
+        return f"vertex {first + 1}"
+    low, high = sorted((first, second))
+    return f"edge {low + 1}-{high + 1}"
+
+
+def history_table(history: Floats, dt: float, height: float) -> pd.DataFrame:
+    """Return a history of :func:`run_case` as the table of a :class:`rockfrag.engines.spatial.SpatialResponse`."""
+    w, x, y, z = history[:, 3:7].T
+    axis = np.stack([2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y)])
+    closed = np.where(history[:, 14] == RESTS, math.nan, history[:, 14])
+    return pd.DataFrame(
+        {
+            "time_s": np.arange(len(history)) * dt,
+            "x_m": history[:, 0],
+            "y_m": history[:, 1],
+            "z_m": history[:, 2],
+            "tilt_rad": np.arctan2(np.hypot(axis[0], axis[1]), axis[2]),
+            "axis_x": axis[0],
+            "axis_y": axis[1],
+            "turn_rad": history[:, 13],
+            "base_x_m": history[:, 0] - height * axis[0],
+            "base_y_m": history[:, 1] - height * axis[1],
+            "omega_x_rad_s": history[:, 10],
+            "omega_y_rad_s": history[:, 11],
+            "omega_z_rad_s": history[:, 12],
+            "contacts": closed,
+        }
+    )
 
 
 def _write(
@@ -152,4 +263,4 @@ def run_in_space(
     factors = np.broadcast_to(
         np.atleast_2d(np.asarray(scales, dtype=np.float64)), (len(motions), np.shape(scales)[-1])
     )
-    return ENGINE.run(Cases(systems, tuple(motions), factors, request, threads), spread, seed)
+    return run(Cases(systems, tuple(motions), factors, request, threads), spread, seed)

@@ -7,8 +7,8 @@ from pathlib import Path
 
 import numpy as np
 
+from rockfrag.engines.built_in import PureRocking
 from rockfrag.engines.contract import Request, Support, Wish
-from rockfrag.engines.pure_rocking import PureRocking
 from rockfrag.records.motion import GroundMotion, Motion
 from rockfrag.system.system import System
 
@@ -28,13 +28,10 @@ def driver_text(*names: str) -> str:
     )
 
 
-class InPage(PureRocking):
-    """The module under the contract of engines, which answers in a page alone: what a page may simulate."""
-
-    name = "page"
-    meets = frozenset({Wish.TWO_BODIES, Wish.HISTORY})
+IN_PAGE = PureRocking("page", frozenset({Wish.TWO_BODIES, Wish.HISTORY}))
+"""The module under the contract of engines, which answers in a page alone: what a page may simulate."""
 
 
 def in_page(system: System) -> Support:
     """Say whether a page simulates a system under horizontal motions."""
-    return InPage().supports(system, GroundMotion(Motion(np.zeros(1), 1.0)), Request(history=True))
+    return IN_PAGE.supports(system, GroundMotion(Motion(np.zeros(1), 1.0)), Request(history=True))

@@ -27,7 +27,7 @@ from rockfrag.engines.kernels.record import CONTACT_EVENT, SAMPLE
 from rockfrag.engines.spatial import _integrate as spatial
 from rockfrag.engines.spatial._body import MOST_VERTICES
 from rockfrag.engines.spatial.body import NEVER_SLIDES
-from rockfrag.engines.spatial.outcome import AFTER, CUT_OFF, RESTS, TOLERANCE
+from rockfrag.engines.spatial.engine import AFTER, CUT_OFF, RESTS, TOLERANCE
 from rockfrag.engines.steps import FREE_TIME, STACK_STEP, STEP
 from rockfrag.rocking.browser import ensemble
 from rockfrag.rocking.browser.entry import CALL, describe, integrate_call

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from rockfrag.arrays import Flags, Floats
 from rockfrag.engines.contract import Cases, Request
-from rockfrag.engines.planar.cases import contact_outcomes
+from rockfrag.engines.planar.engine import contact_outcomes
 from rockfrag.motions.processing import factors_to_pga
 from rockfrag.pedestal.cluster_means import mean_effects
 from rockfrag.records.motion import GroundMotion, Motion

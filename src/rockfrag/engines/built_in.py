@@ -1,0 +1,110 @@
+"""The engines that come with the package: what each can meet, and the functions that answer.
+
+These are loaded, and the kernels with them, when one is first called.
+"""
+
+from dataclasses import dataclass
+from pkgutil import resolve_name
+from typing import Any
+
+from rockfrag.engines.contract import Case, Cases, Request, Support, Wish, by_wishes
+from rockfrag.outcomes.outcomes import Outcomes
+from rockfrag.records.motion import GroundMotion
+from rockfrag.system import geometry
+from rockfrag.system.system import System
+
+
+@dataclass(eq=False)
+class BuiltIn:
+    """An engine by its name, what it can meet, and where its ``run`` and ``history`` stand."""
+
+    name: str
+    meets: frozenset[Wish]
+    runs: str = ""  # function of cases
+    tells: str = ""  # function of one case, of an engine that meets Wish.HISTORY
+
+    def supports(self, system: System, motion: GroundMotion, request: Request) -> Support:
+        """Say whether it computes this system under this motion as requested, and if not, why."""
+        return by_wishes(self, system, motion, request)
+
+    def run(self, cases: Cases) -> Outcomes:
+        """Return the outcomes of cases that it supports."""
+        found: Outcomes = resolve_name(self.runs)(cases)
+        return found
+
+    def history(self, case: Case) -> Any:
+        """Return the response of a case that it supports."""
+        return resolve_name(self.tells)(case)
+
+
+_REASONS = {
+    geometry.BESIDE: "the upper body does not stand on the lower one",
+    geometry.OFF_CONTACT: "the upper body's centre of gravity is not above its contact",
+    geometry.TILTED_OFF: "a centre of gravity is not above its base as the bodies stand",
+    geometry.REACHES_GROUND: "the upper body reaches so far beyond the lower one that it could touch the ground",
+}
+
+
+class PureRocking(BuiltIn):
+    """One or two planar bodies that rock and never slide; the lower one is as wide above as below."""
+
+    def supports(self, system: System, motion: GroundMotion, request: Request) -> Support:
+        """Say whether it computes this system under this motion as requested, and if not, why."""
+        found = super().supports(system, motion, request)
+        if not found or system.count != 2:
+            return found
+        lower = system.in_plane().bodies[0]
+        if lower.face != lower.base:
+            return Support(reason="the lower body's face is not as wide as its base")
+        return Support(reason=_REASONS.get(geometry.failed_stability_check(system.pile), ""))
+
+
+class SpatialEngine(BuiltIn):
+    """One rigid body on a polygon or a circle, contact event by contact event (``docs/space.md``)."""
+
+    def supports(self, system: System, motion: GroundMotion, request: Request) -> Support:
+        """Say whether it computes this system under this motion as requested, and if not, why."""
+        found = super().supports(system, motion, request)
+        if found and system.planar:
+            return Support(reason="a planar body moves in its own plane only; give its depth")
+        return found
+
+
+_STANDING = Wish.VERTICAL, Wish.RESTITUTION
+
+LONE_BLOCKS = PureRocking(
+    "lanes of lone blocks", frozenset(_STANDING), "rockfrag.engines.lanes:run_blocks"
+)
+"""Lone bodies, from rest: 64 lanes side by side (``kernels.lanes.block``)."""
+
+TWO_BLOCKS = PureRocking(
+    "lanes of two blocks",
+    frozenset({Wish.TWO_BODIES, *_STANDING}),
+    "rockfrag.engines.lanes:run_stacks",
+)
+"""Two bodies on each other, from rest: lanes of stacks side by side (``kernels.lanes.stack_case``)."""
+
+SINGLE = PureRocking(
+    "single histories",
+    frozenset({Wish.TWO_BODIES, *_STANDING, Wish.START, Wish.LINEAR, Wish.FORCES, Wish.HISTORY}),
+    "rockfrag.engines.single:run",
+    "rockfrag.engines.single:history",
+)
+"""One or two bodies, case by case (``kernels.single``)."""
+
+PLANAR = BuiltIn(
+    "planar contact",
+    frozenset({Wish.TWO_BODIES, Wish.MANY_BODIES, *_STANDING})
+    | {Wish.FRICTION, Wish.START, Wish.HISTORY},
+    "rockfrag.engines.planar.engine:run",
+    "rockfrag.engines.planar.engine:history",
+)
+"""Planar bodies that stick, slide, rock, fly and land (``docs/contact.md``)."""
+
+SPATIAL = SpatialEngine(
+    "space",
+    frozenset({Wish.SPACE, Wish.VERTICAL, Wish.FRICTION, Wish.HISTORY}),
+    "rockfrag.engines.spatial.engine:run",
+    "rockfrag.engines.spatial.engine:history",
+)
+"""One body in space."""
