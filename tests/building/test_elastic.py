@@ -10,7 +10,6 @@ from rockfrag.building.model import stiffnesses_for_period as for_period
 from rockfrag.building.response import find_modes, respond_elastically
 from rockfrag.building.settings import make_building, read_building
 from rockfrag.errors import InputError
-from rockfrag.motions.spectra import oscillator_response
 from rockfrag.records.motion import Motion
 
 MASSES = (350e3,) * 5 + (245e3,)
@@ -96,15 +95,6 @@ def test_modes_take_up_the_whole_mass_and_every_floor_moves_with_the_ground():
     modes = find_modes(reference())
     assert modes.mass_fraction.sum() == pytest.approx(1, rel=1e-12)
     assert modes.shape @ modes.participation == pytest.approx(np.ones(6), rel=1e-12)
-
-
-def test_one_storey_is_an_oscillator(noise):
-    motion = noise(3, 400, name="noise")
-    building = ShearBuilding((2e5,), (4.0,), for_period((2e5,), (4.0,), 0.4), ModalDamping(0.03))
-    displacement, _, total = oscillator_response(motion, 0.4, 0.03)
-    found = respond_elastically(building, motion)
-    assert found.acceleration[1] == pytest.approx(total, rel=1e-12, abs=1e-12)
-    assert found.drift[0] == pytest.approx(displacement / 4.0, rel=1e-12, abs=1e-15)
 
 
 def test_a_rigid_building_passes_the_ground_motion_unchanged():

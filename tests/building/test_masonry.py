@@ -245,19 +245,6 @@ RAYLEIGH = {"kind": "rayleigh", "ratio": 0.05, "modes": [1, 2]}
 
 
 @pytest.mark.peers
-def test_elastic_floor_motions_are_those_of_opensees(opensees, settings):
-    building, motion = make_building(settings | {"damping": RAYLEIGH}), strong_motion()
-
-    def spring(i, tag):
-        opensees.uniaxialMaterial("Elastic", tag, building.stiffnesses[i])
-
-    total, drift = shaken(opensees, building, motion, 40, spring)
-    found = respond_elastically(building, motion)
-    assert np.abs(found.acceleration[1:] - total).max() < 1e-3 * np.abs(total).max()
-    assert np.abs(found.drift - drift).max() < 1e-3 * np.abs(drift).max()
-
-
-@pytest.mark.peers
 @pytest.mark.parametrize(("damage", "tolerance"), [(0.0, 1e-3), (0.02, 0.03)])
 def test_hysteretic_floor_motions_under_a_record_are_those_of_opensees(
     opensees, masonry, four_records, damage, tolerance

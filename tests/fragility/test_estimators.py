@@ -97,13 +97,6 @@ def test_brackets_of_all_kinds_agree_with_direct_maximisation():
     assert fit.log_likelihood == pytest.approx(-best.fun, abs=1e-8)
 
 
-def test_exact_amplitudes_give_the_mean_and_standard_deviation_of_their_logarithms():
-    a = capacities(20, 7)
-    fit = fit_brackets(brackets_from_table(pd.DataFrame({"lower_g": a, "upper_g": a}), motion=None))
-    assert fit.theta == pytest.approx(np.exp(np.log(a).mean()), rel=1e-9)
-    assert fit.beta == pytest.approx(np.log(a).std(), rel=1e-9)
-
-
 def test_brackets_without_resolution_or_without_overturning_are_stated():
     shared_point = pd.DataFrame({"lower_g": [0.2, 0.25], "upper_g": [0.3, 0.35]})
     fit = fit_brackets(brackets_from_table(shared_point, motion=None))

@@ -10,6 +10,9 @@ from rockfrag.errors import InputError
 from rockfrag.fragility.tests_file import read_tests
 from rockfrag.fragility.user_table import fit_user_table
 
+from ..workflow.conftest import write_synthetic
+
+PGV = ["pga_g", "pgv_over_pga_s", 980.665]
 ROWS = [("r1", 0.35, "no"), ("r2", 0.5, "yes"), ("r3", 0.25, "no")]
 
 
@@ -47,8 +50,8 @@ def test_same_table_in_every_form(tmp_path, form):
 )
 def test_western_european_labels_and_outcomes_are_read(tmp_path, yes, no):
     path = tmp_path / "t.csv"
-    path.write_bytes(f"record,pga_g,overturned\nGröbming,0.3,{yes}\nB,0.2,{no}\n".encode("cp1252"))
-    table = read_tests(path, ["pga_g"], motion="record")
+    path.write_bytes(f"record,pga_g,fell\nGröbming,0.3,{yes}\nB,0.2,{no}\n".encode("cp1252"))
+    table = read_tests(path, ["pga_g"], overturned="fell", motion="record")
     assert table["motion"].tolist() == ["Gröbming", "B"]
     assert table["overturned"].tolist() == [1, 0]
 
@@ -139,48 +142,24 @@ def test_peaks_in_a_wrong_unit_are_doubted_on_both_sides(tmp_path, title, value,
         read_tests(path, [title])
 
 
-@pytest.fixture
-def csv(tmp_path):
-    """200 synthetic tests in which a velocity decides and the acceleration only follows it."""
-    rng = np.random.default_rng(1)
-    velocity = np.exp(rng.normal(np.log(30.0), 0.8, 200))
-    ratio = np.exp(rng.normal(np.log(0.1), 0.5, 200))
-    capacity = np.exp(rng.normal(np.log(30.0), 0.25, 200))
-    table = pd.DataFrame(
-        {
-            "Record": [f"r{k % 40}" for k in range(200)],
-            "pga_g": velocity / 980.665 / ratio,
-            "ratio_s": ratio,
-            "fell": np.where(velocity > capacity, "yes", "no"),
-            "magnitude": rng.uniform(5, 7.5, 200),
-        }
-    )
-    path = tmp_path / "rock.csv"
-    table.to_csv(path, index=False)
-    return path
-
-
-MEASURES = {"pga_g": ["pga_g"], "pgv_cm_s": ["pga_g", "ratio_s", 980.665]}
-
-
-def test_the_measure_that_decides_is_recommended_with_its_reasons(csv):
-    result = fit_user_table(
-        csv, MEASURES, overturned="fell", motion="Record", given=["magnitude"], replicates=50
-    )
+def test_the_measure_that_decides_is_recommended_with_its_reasons(tmp_path):
+    path, measures = write_synthetic(tmp_path), {"pga_g": ["pga_g"], "pgv_cm_s": PGV}
+    given = {"motion": "record", "given": ["pgv_over_pga_s"], "replicates": 50}
+    result = fit_user_table(path, measures, **given)
     assert (result.choice.recommended, result.choice.name) == ("pgv_cm_s", "PGV")
     fit = result.fits["pgv_cm_s"].fit
-    assert fit.theta == pytest.approx(30.0, rel=0.1)
-    assert fit.beta == pytest.approx(0.25, abs=0.1)
-    assert result.fits["pgv_cm_s"].interval.groups == 40
+    assert fit.theta == pytest.approx(40.0, rel=0.1)
+    assert fit.beta == pytest.approx(0.2, abs=0.1)
+    assert result.fits["pgv_cm_s"].interval.groups == 30
     compared = result.choice.table.set_index("im")
     assert compared.loc["PGV", "beta"] < compared.loc["PGA", "beta"]
     assert compared.loc["PGV", "auc"] > compared.loc["PGA", "auc"]
     assert compared.loc["PGV", "chosen_fraction"] > 0.95
-    assert compared.loc["PGV", "p_magnitude"] > 0.01
+    assert compared.loc["PGV", "p_pgv_over_pga_s"] > 0.01 > compared.loc["PGA", "p_pgv_over_pga_s"]
     assert "one measure is enough" in result.choice.words
     assert result.goodness["pgv_cm_s"].p_value > 0.05
     assert set(result.table["measure"]) == {"pga_g", "pgv_cm_s"}
-    assert result.bins.groupby("measure").tests.sum().tolist() == [200, 200]
+    assert result.bins.groupby("measure").tests.sum().tolist() == [150, 150]
 
 
 def test_a_table_in_which_all_survived_gives_a_bound_and_no_recommendation(tmp_path):
@@ -193,7 +172,7 @@ def test_a_table_in_which_all_survived_gives_a_bound_and_no_recommendation(tmp_p
 
 def test_the_granite_rock_follows_its_velocity(shared):
     path = shared / "measured" / "granite_rock_1.csv"
-    measures = {"pga_g": ["pga_g"], "pgv_cm_s": ["pga_g", "pgv_over_pga_s", 980.665]}
+    measures = {"pga_g": ["pga_g"], "pgv_cm_s": PGV}
     result = fit_user_table(path, measures, motion="record", replicates=50)
     assert result.fits["pga_g"].fit.aic == pytest.approx(656.0, abs=0.1)
     assert result.fits["pgv_cm_s"].fit.aic == pytest.approx(309.0, abs=0.1)

@@ -6,12 +6,12 @@ import re
 
 import numpy as np
 import pytest
-from scipy.signal import butter, sosfilt, sosfreqz
+from scipy.signal import butter, sosfilt
 
 from rockfrag import motions as m
 from rockfrag.errors import InputError
 from rockfrag.motions import intensity, processing
-from rockfrag.records.motion import Motion, integrate, read_motion_set, write_motion_set
+from rockfrag.records.motion import Motion, read_motion_set, write_motion_set
 from rockfrag.units import GRAVITY as G
 
 
@@ -220,37 +220,16 @@ def test_pads_change_nothing_but_the_time(record):
 # --- filters and sampling
 
 
-def test_filters_are_butterworth_forwards_and_backwards(record):
-    sos = butter(4, [1.0, 10.0], "bandpass", fs=100.0, output="sos")
+@pytest.mark.parametrize("order", [2, 4])
+@pytest.mark.parametrize(
+    ("kind", "corners"), [("highpass", [1.0]), ("lowpass", [1.0]), ("bandpass", [1.0, 10.0])]
+)
+def test_filters_are_butterworth_forwards_and_backwards(record, kind, corners, order):
+    sos = butter(order, np.squeeze(corners), kind, fs=100.0, output="sos")
     forwards = sosfilt(sos, record.acceleration)
     expected = sosfilt(sos, forwards[::-1])[::-1]
-    np.testing.assert_allclose(
-        processing.bandpass(record, 1, 10).acceleration, expected, atol=1e-10
-    )
-
-
-@pytest.mark.parametrize("order", [2, 4])
-@pytest.mark.parametrize("hertz", [0.5, 1.0, 3.0])
-def test_filters_have_the_square_of_the_butterworth_gain_and_no_delay(order, hertz):
-    motion = tone(hertz)
-    for name, step in (("highpass", processing.highpass), ("lowpass", processing.lowpass)):
-        sos = butter(order, 1.0, name, fs=100.0, output="sos")
-        _, gain = sosfreqz(sos, [hertz], fs=100.0)
-        filtered = step(motion, 1.0, order)
-        np.testing.assert_allclose(
-            middle(filtered.acceleration),
-            abs(gain[0]) ** 2 * middle(motion.acceleration),
-            atol=2e-4,
-        )
-
-
-def test_filtered_motion_with_pads_comes_to_rest(record):
-    # 1.5 × order / corner seconds of zeros in all (Converse & Brady)
-    motion = Motion(record.acceleration + 0.02, 0.01)
-    filtered = processing.highpass(processing.pad(motion, 30.0, 30.0), 0.1, 4)
-    velocity, displacement = integrate(filtered.acceleration, filtered.dt)
-    assert abs(velocity[-1]) < 1e-3 * np.abs(velocity).max()
-    assert abs(displacement[-1]) < 0.02 * np.abs(displacement).max()
+    filtered = getattr(processing, kind)(record, *corners, order)
+    np.testing.assert_allclose(filtered.acceleration, expected, atol=1e-10)
 
 
 @pytest.mark.parametrize("dt", [0.005, 0.02, 0.0125])
@@ -297,13 +276,9 @@ def test_a_filter_without_pads_says_what_it_leaves_at_the_ends():
 
 @pytest.mark.parametrize("order", [2, 4])
 def test_a_causal_filter_is_the_butterworth_filter_itself(order):
-    """Nothing before the motion begins, half the power at the corner, and SciPy's filter to the digit."""
     impulse = np.zeros(4000)
     impulse[1000] = 1.0
     filtered = processing.lowpass(Motion(impulse, 0.01), 5.0, order, causal=True).acceleration
-    assert np.abs(filtered[:1000]).max() == 0
-    gain = np.abs(np.fft.rfft(filtered))[np.argmin(np.abs(np.fft.rfftfreq(4000, 0.01) - 5.0))]
-    assert gain == pytest.approx(math.sqrt(0.5), rel=1e-3)
     sections = butter(order, 5.0, "lowpass", fs=100, output="sos")
     np.testing.assert_allclose(filtered, sosfilt(sections, impulse), atol=1e-12)
     with pytest.raises(InputError, match="causal must be true or false"):

@@ -237,15 +237,6 @@ def test_a_component_of_the_fema_sets_is_read_from_hdf5(tmp_path):
         read_component(tmp_path / "broken.hdf5", "1/a")
 
 
-def test_columns_that_do_not_matter_may_be_missing(tmp_path, builders):
-    built = builders["plain_csv"](tmp_path)
-    path = tmp_path / "motions.csv"
-    path.write_text(f"name,earthquake,file\nA,E,{built.path.name}\n")
-    (motion,) = load_motions(path)
-    assert motion.metadata["source"] == "folder"
-    assert motion.acceleration.size == built.samples.shape[1]
-
-
 def test_semicolons_and_decimal_commas_are_understood(tmp_path, builders):
     built = builders["rows_of_numbers"](tmp_path)
     path = tmp_path / "motions.csv"
@@ -254,7 +245,7 @@ def test_semicolons_and_decimal_commas_are_understood(tmp_path, builders):
     )
     (motion,) = load_motions(path)
     assert motion.dt == 0.02
-    assert motion.metadata["magnitude"] == 6.5
+    assert motion.metadata.items() >= {"magnitude": 6.5, "source": "folder"}.items()
     assert motion.pga == pytest.approx(1.5 * np.abs(built.samples).max() * 9.81, rel=1e-6)
     assert motion.provenance[-1] == {"step": "scale", "factor": 1.5}
 

@@ -155,6 +155,7 @@ def test_a_file_of_another_quantity_is_refused(builders, tmp_path, kind, words, 
         "NPTS=  43, DT= 5.0E-03 SEC",
         "DT= 5.0D-03 SEC, npts = 43",
         "  43    0.0050    NPTS, DT",
+        *(f"NPTS= 43, DT= {words}" for words in ("5 MSEC", "5. msec", "5 ms")),
     ],
 )
 def test_dialects_of_the_size_line_of_peer(builders, tmp_path, line):

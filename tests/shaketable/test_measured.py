@@ -7,8 +7,6 @@ import pandas as pd
 import pytest
 
 from rockfrag.errors import InputError
-from rockfrag.fragility.censored import brackets_from_table, fit_brackets
-from rockfrag.pedestal.paired_tests import pair_tests
 from rockfrag.shaketable.definitions import tests_from_ida as read_ida
 from rockfrag.shaketable.protocols import GeometricSteps, Protocol
 from rockfrag.shaketable.tests_table import COLUMNS, read_measured
@@ -169,11 +167,3 @@ def test_measured_and_simulated_tests_are_the_same_table(simulated, measured):
     pd.testing.assert_frame_equal(
         measured.drop(columns="definition"), simulated.drop(columns="definition")
     )
-
-
-def test_measured_tests_go_through_the_statistics_of_the_simulated_ones(simulated, measured):
-    pd.testing.assert_frame_equal(pair_tests(measured).table, pair_tests(simulated).table)
-    fits = [fit_brackets(brackets_from_table(table)) for table in (measured, simulated)]
-    assert fits[0].theta == fits[1].theta
-    assert fits[0].beta == fits[1].beta
-    assert fits[0].theta == pytest.approx(0.3, rel=0.15)

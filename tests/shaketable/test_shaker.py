@@ -117,16 +117,13 @@ def test_a_force_that_no_filter_helps_is_refused():
         ({"start": "left"}, "off-centre or centred"),
         ({"table_mass": -1.0}, "table_mass: expected a number of kg that is not negative"),
         ({"armature_mass": 0.0, "table_mass": 0.0}, "nothing moves"),
+        ({"payload": -1.0}, "payload: expected a number of kg that is not negative"),
     ],
 )
 def test_shakers_that_make_no_sense_are_refused(change, message):
+    payload = change.pop("payload", 0.0)
     with pytest.raises(InputError, match=message):
-        Shaker(**change).moved_mass(0.0)
-
-
-def test_a_negative_payload_is_refused():
-    with pytest.raises(InputError, match="payload: expected a number of kg that is not negative"):
-        Shaker().moved_mass(-1.0)
+        Shaker(**change).moved_mass(payload)
 
 
 def test_the_shaker_of_the_thesis_is_what_the_configuration_holds():
