@@ -105,7 +105,7 @@ def on_feet(tmp_path_factory):
     return path
 
 
-def test_how_a_scan_stands_is_a_source_until_it_is_measured(on_feet, motions):
+def test_how_a_scan_stands_is_a_source_until_it_is_measured(on_feet, few):
     def of(**mesh):
         return asked(mesh={"file": str(on_feet), **mesh}, mass="200 kg", pga="0.6 g")
 
@@ -120,7 +120,7 @@ def test_how_a_scan_stands_is_a_source_until_it_is_measured(on_feet, motions):
     assert measured.objects.block.width == pytest.approx(0.3, rel=1e-3)
 
     def sources(item):
-        return assess_with(item, motions, brief=True).amplitudes[0.5].sources
+        return assess_with(item, few, brief=True).amplitudes[0.5].sources
 
     blind, known, faced = (sources(item) for item in (request, measured, of(direction_deg=0)))
     assert blind["contact"] > 0.1 and "facing" not in faced
