@@ -23,7 +23,7 @@ from rockfrag.assess.inventory import (
 from rockfrag.assess.page import write_answer
 from rockfrag.assess.risk import probability_in
 from rockfrag.assess.words import estimate_words, gallery_says, mitigation_words
-from rockfrag.figure_style import BLUE, COLUMN_WIDTH, PAGE_WIDTH, one_panel, plain_log
+from rockfrag.figure_style import BLUE, COLUMN_WIDTH, PAGE_WIDTH, panels, plain_log
 from rockfrag.files import write_table, write_text
 from rockfrag.report.page import Column, Page, table_html
 from rockfrag.report.part import Answer, FigureSpec, Finding, Section
@@ -133,7 +133,7 @@ def numbers_figure(joint: JointRisk, years: float) -> Figure:
         for name in ("probability", "probability_lower", "probability_upper")
     )
     bars = [np.maximum(middle - low, 0), np.maximum(high - middle, 0)]
-    with one_panel(COLUMN_WIDTH, 2.5) as (figure, axes):
+    with panels(COLUMN_WIDTH, 2.5) as (figure, axes):
         axes.errorbar(at, middle, yerr=bars, fmt="o", color=BLUE, capsize=2)
         _set_logarithmic(axes, "Objects that topple in one earthquake, at least", years)
         axes.set_xticks(at, [f"{n:g}" for n in at])
@@ -145,7 +145,7 @@ def losses_figure(joint: JointRisk, years: float) -> Figure:
     """How probably a loss is exceeded in one earthquake."""
     losses = joint.losses
     chance = [100 * probability_in(rate, years) for rate in losses["annual_rate"]]
-    with one_panel(COLUMN_WIDTH, 2.5) as (figure, axes):
+    with panels(COLUMN_WIDTH, 2.5) as (figure, axes):
         axes.step(losses["loss"], chance, where="pre", color=BLUE)
         _set_logarithmic(axes, "Loss in one earthquake [unit of the values]", years)
         axes.xaxis.set_major_formatter(EngFormatter(sep=""))
@@ -165,7 +165,7 @@ def correlation_figure(joint: JointRisk) -> Figure:
     names = list(joint.objects["name"][:MOST_DRAWN])
     table = joint.correlation.loc[names, names].to_numpy()
     side = min(PAGE_WIDTH, 2.4 + 0.11 * len(names))
-    with one_panel(side, 0.8 * side) as (figure, axes):
+    with panels(side, 0.8 * side) as (figure, axes):
         image = axes.imshow(table, vmin=0, vmax=1, cmap="Blues")
         short = [name if len(name) <= 18 else f"{name[:17]}…" for name in names]
         axes.set_xticks(range(len(names)), short, rotation=90, fontsize=6)

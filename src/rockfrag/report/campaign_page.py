@@ -305,7 +305,7 @@ _BINS = 8
 def agreement_figure(agreement: pd.DataFrame) -> Figure:
     """Draw the fraction of outcomes that the simulation and others predict right, with intervals."""
     rows = agreement.iloc[::-1].reset_index(drop=True)
-    with style.one_panel(style.COLUMN_WIDTH, 0.7 + 0.24 * len(rows)) as (figure, axes):
+    with style.panels(style.COLUMN_WIDTH, 0.7 + 0.24 * len(rows)) as (figure, axes):
         for place, row in enumerate(rows.to_dict("records")):
             colour = style.BLUE if place == len(rows) - 1 else style.BLACK
             filled = row["judged"] == "by other motions"
@@ -325,7 +325,7 @@ def beside_figure(tests: pd.DataFrame, curves: pd.DataFrame, measure: str, label
     x = np.geomspace(values.min(), values.max(), 200)
     edges = np.unique(np.quantile(values, np.linspace(0, 1, _BINS + 1)))
     bins = np.clip(np.searchsorted(edges, values, side="right") - 1, 0, len(edges) - 2)
-    with style.one_panel(style.COLUMN_WIDTH, 2.4) as (figure, axes):
+    with style.panels(style.COLUMN_WIDTH, 2.4) as (figure, axes):
         middle = [np.exp(np.log(values[bins == k]).mean()) for k in range(len(edges) - 1)]
         for who, column, name, colour, marker, line in (
             ("measured", "overturned", "measured", style.BLACK, "o", "-"),
@@ -345,7 +345,7 @@ def beside_figure(tests: pd.DataFrame, curves: pd.DataFrame, measure: str, label
 
 def tests_figure(tests: pd.DataFrame, x: str, y: str, labels: tuple[str, str]) -> Figure:
     """Draw every test in two measures: what happened by colour, wrong predictions as crosses."""
-    with style.one_panel(style.COLUMN_WIDTH, 2.8) as (figure, axes):
+    with style.panels(style.COLUMN_WIDTH, 2.8) as (figure, axes):
         for right, fell, colour, word in (
             (True, False, _GREY, "survived"),
             (True, True, style.ORANGE, "overturned"),
@@ -363,7 +363,7 @@ def tests_figure(tests: pd.DataFrame, x: str, y: str, labels: tuple[str, str]) -
 
 def footprint_figure(footprint: pd.DataFrame, trials: pd.DataFrame) -> Figure:
     """Draw the object from above: outline, contact polygons, centre of gravity, plausible directions."""
-    with style.one_panel(style.COLUMN_WIDTH, 3.2) as (figure, axes):
+    with style.panels(style.COLUMN_WIDTH, 3.2) as (figure, axes):
         styles = {
             "outline": (_GREY, "-", "outline"),
             "contact, low": (style.GREEN, ":", None),

@@ -156,9 +156,11 @@ def measures_figure(
     """Draw the curve of each measure in a panel of its own, with AIC and β, to compare measures."""
     columns = min(len(curves), 2)
     rows = -(-len(curves) // columns)
-    with style.figure_style():
-        figure = style.new_figure(style.COLUMN_WIDTH if columns == 1 else style.WIDEST, 2.4 * rows)
-        grid_of_axes = figure.subplots(rows, columns, squeeze=False, sharey=True)
+    width, shape = style.COLUMN_WIDTH if columns == 1 else style.WIDEST, (rows, columns)
+    with style.panels(width, 2.4 * rows, *shape, squeeze=False, sharey=True) as (
+        figure,
+        grid_of_axes,
+    ):
         for axes in grid_of_axes.flat[len(curves) :]:
             axes.set_visible(False)
         for axes, (label, curve) in zip(grid_of_axes.flat, curves.items(), strict=False):
@@ -186,7 +188,7 @@ def measures_figure(
 
 def calibration_figure(judged: Mapping[str, GoodnessOfFit]) -> Figure:
     """Draw observed against fitted fractions in bins; points on the diagonal are well calibrated."""
-    with style.one_panel(style.COLUMN_WIDTH, 3.0) as (figure, axes):
+    with style.panels(style.COLUMN_WIDTH, 3.0) as (figure, axes):
         axes.plot([0, 1], [0, 1], color=GREY, linewidth=0.8)
         marks = zip(judged.items(), cycle("os^Dv"), cycle(style.OKABE_ITO))
         for (label, fit), mark, colour in marks:

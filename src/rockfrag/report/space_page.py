@@ -85,7 +85,7 @@ def _bases(medians: pd.DataFrame) -> pd.Series:
 
 def ratios_figure(medians: pd.DataFrame) -> Figure:
     """Draw medians in space over the planar ones, with their limits."""
-    with style.one_panel(style.PAGE_WIDTH, 0.6 + 0.2 * len(medians)) as (figure, panel):
+    with style.panels(style.PAGE_WIDTH, 0.6 + 0.2 * len(medians)) as (figure, panel):
         places = -np.arange(len(medians), dtype=float)
         for k, name in enumerate(PLANAR):
             low, high, off = (
@@ -112,9 +112,8 @@ def fractions_figure(fractions: pd.DataFrame) -> Figure:
     bodies = list(fractions.groupby(["base", "slenderness", "height_m"], sort=False))
     columns = min(len(bodies), 6)
     rows = -(-len(bodies) // columns)
-    with style.figure_style():
-        figure = style.new_figure(style.PAGE_WIDTH, 0.6 + 1.35 * rows)
-        panels = figure.subplots(rows, columns, sharey=True, squeeze=False)
+    size, shape = (style.PAGE_WIDTH, 0.6 + 1.35 * rows), (rows, columns)
+    with style.panels(*size, *shape, sharey=True, squeeze=False) as (figure, panels):
         for panel, ((base, slenderness, height), part) in zip(panels.flat, bodies, strict=False):
             first = part[part["planar_impacts"] == part["planar_impacts"].iloc[0]]
             panel.plot(first["level_g"], first["space"], color=style.RED, label="in space")

@@ -14,8 +14,7 @@ from matplotlib.figure import Figure
 from rockfrag import figure_style as style
 from rockfrag.files import file_name, write_table, write_text
 from rockfrag.report.page import Column, Page, table_html
-from rockfrag.report.part import Answer, FigureSpec, Finding, Section
-from rockfrag.sentences import Macros
+from rockfrag.report.part import Answer, Finding, Says, Section
 from rockfrag.survival.reweight import DECISION_RATE, LIMITS, RULED_OUT, Constrained
 
 BRANCHES = (
@@ -87,7 +86,7 @@ def json_of(found: Constrained) -> str:
     return json.dumps(content, indent=2, ensure_ascii=False) + "\n"
 
 
-_say = Macros("rockfrag.survival", "page.j2", RULED_OUT=RULED_OUT, LIMITS=LIMITS)
+_say = Says("rockfrag.survival", "page.j2", RULED_OUT=RULED_OUT, LIMITS=LIMITS)
 
 
 def _sentences(found: Constrained) -> list[str]:
@@ -113,10 +112,8 @@ def page_of(found: Constrained) -> str:
     evidence, hangs_on = told
     names = ", ".join(body.name for body in found.site.objects)
     title, lead = _say("head", found, names)
-    alt, below = _say("curves", hazard)
-    curves = FigureSpec("curves", alt, below, lambda: curves_figure(found))
-    alt, below = _say("weights")
-    weights = FigureSpec("weights", alt, below, lambda: weights_figure(found))
+    curves = _say.figure("curves", lambda: curves_figure(found), hazard)
+    weights = _say.figure("weights", lambda: weights_figure(found))
     file = f"{file_name(found.site.name)}-weights.csv"
     caption = "Branches of the hazard with their weights."
     branch_table = table_html(found.result.table(), BRANCHES, caption, file)
@@ -165,7 +162,7 @@ def curves_figure(found: Constrained) -> Figure:
     measure = found.site.measure
     curves = found.result.curves()
     level = curves["level"].to_numpy()
-    with style.one_panel(style.COLUMN_WIDTH, 2.8) as (figure, axes):
+    with style.panels(style.COLUMN_WIDTH, 2.8) as (figure, axes):
         for when, colour, line, words in (
             ("before", style.ORANGE, "--", "before"),
             ("after", style.BLUE, "-", "after survival"),
@@ -192,7 +189,7 @@ def weights_figure(found: Constrained) -> Figure:
     order = largest.sort_values(ascending=False, kind="stable").index
     table = table.loc[order[:MOST_BRANCHES_SHOWN]].sort_values("weight_after", kind="stable")
     before, after, place = table["weight_before"], table["weight_after"], np.arange(len(table))
-    with style.one_panel(style.WIDEST, 0.7 + 0.2 * len(table)) as (figure, axes):
+    with style.panels(style.WIDEST, 0.7 + 0.2 * len(table)) as (figure, axes):
         axes.hlines(place, before, after, color="#999999", linewidth=0.8)
         axes.plot(before, place, "o", color=style.ORANGE, markerfacecolor="none", label="before")
         axes.plot(after, place, "s", color=style.BLUE, label="after survival")

@@ -138,7 +138,7 @@ def recorded_map(recorded: pd.DataFrame) -> Figure:
     )
     table = table.reindex(index=rows, columns=names).astype(float)
     sensitive = shown[shown["fraction_near"].between(0, 1, inclusive="neither")]
-    with style.one_panel(style.WIDEST, 1.35 + 0.185 * len(rows)) as (figure, axes):
+    with style.panels(style.WIDEST, 1.35 + 0.185 * len(rows)) as (figure, axes):
         colours = _SHADES.with_extremes(over=_OVERTURNED, bad="#ffffff")
         edges = (np.arange(count + 1) - 0.5 for count in (len(names), len(rows)))
         mesh = axes.pcolormesh(
@@ -178,7 +178,7 @@ def outcome_map(ida: pd.DataFrame, configurations: Sequence[str]) -> Figure:
             bottom = line[motion] + 0.4 - (list(configurations).index(str(name)) + 1) * height
             bars[str(name)] += _bars(group, bottom, height)
     low, high = rows["amplitude_g"].min(), rows["amplitude_g"].max()
-    with style.one_panel(style.WIDEST, 0.9 + 0.22 * len(motions)) as (figure, axes):
+    with style.panels(style.WIDEST, 0.9 + 0.22 * len(motions)) as (figure, axes):
         handles = []
         for name, colour in zip(configurations, style.CONFIGURATION_COLOURS, strict=False):
             axes.add_collection(PolyCollection(bars[name], facecolor=colour, linewidth=0))

@@ -213,9 +213,9 @@ def fragility_figure(
     used, other = ("fraction", "probability") if nonparametric else ("probability", None)
     lower, upper = ("fraction_lower", "fraction_upper") if nonparametric else ("lower", "upper")
     first = curves.iloc[0]
-    with style.figure_style():
-        figure = style.new_figure(style.COLUMN_WIDTH, 0.75 + 1.65 * len(curves))
-        panels = figure.subplots(len(curves), 1, sharex=True, sharey=True, squeeze=False)[:, 0]
+    size, shape = (style.COLUMN_WIDTH, 0.75 + 1.65 * len(curves)), {"nrows": len(curves)}
+    with style.panels(*size, **shape, sharex=True, sharey=True, squeeze=False) as (figure, grid):
+        panels = grid[:, 0]
         for k, (panel, curve) in enumerate(zip(panels, rows.to_dict("records"), strict=True)):
             colour = style.CONFIGURATION_COLOURS[k % len(style.CONFIGURATION_COLOURS)]
             own = str(curve["configuration"])
@@ -278,7 +278,7 @@ def two_measures_figure(contours: pd.DataFrame, cells: pd.DataFrame) -> Figure:
     """
     first, second = str(cells["first"].iloc[0]), str(cells["second"].iloc[0])
     x, y = cells["at_first"].to_numpy(), cells["at_second"].to_numpy()
-    with style.one_panel(style.COLUMN_WIDTH, 3.2) as (figure, axes):
+    with style.panels(style.COLUMN_WIDTH, 3.2) as (figure, axes):
         size, shades = 6 + 30 * np.sqrt(cells["tests"] / cells["tests"].max()), cells["probability"]
         shown = axes.scatter(x, y, size, shades, marker="s", cmap="Greys", vmin=0, vmax=1)
         shown.set(edgecolor="#999999", linewidth=0.3)

@@ -122,7 +122,7 @@ def forest_figure(effects: pd.DataFrame, sides: Sides = WITH_PEDESTAL) -> Figure
     columns = ["lower", "ratio", "upper", "p_holm"]
     figures = effects[columns].to_numpy(dtype=float)
     height = 0.9 + 0.19 * float(place[-1] + 1)
-    with style.one_panel(style.COLUMN_WIDTH + 1.1, height) as (figure, axes):
+    with style.panels(style.COLUMN_WIDTH + 1.1, height) as (figure, axes):
         axes.axvspan(*NONE, color=BAND, lw=0)
         axes.axvline(1.0, color=GREY, lw=0.8)
         for y, (lower, ratio, upper, p) in zip(place, figures, strict=True):
@@ -210,7 +210,7 @@ def measured(results: Results) -> Section | None:
 def measured_beside(beside: pd.DataFrame) -> Figure:
     """Draw measured against simulated figures."""
     known = figures.drawn_tests(beside.dropna(subset=["simulated_g"]))
-    with style.one_panel(style.COLUMN_WIDTH, 3.2) as (figure, axes):
+    with style.panels(style.COLUMN_WIDTH, 3.2) as (figure, axes):
         largest = 1.15 * float(known[["a", "simulated_g"]].to_numpy(dtype=float).max())
         axes.plot([0, largest], [0, largest], color=figures.GREY, lw=0.8)
         for side, name in figures.SIDE_NAME.items():

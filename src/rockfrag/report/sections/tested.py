@@ -157,7 +157,7 @@ def shaker_limits(limits: pd.DataFrame, tests: pd.DataFrame) -> Figure:
     rows = drawn_tests(lone if len(lone) else tests)
     rows = rows[rows["motion"].isin(motions)]
     names = list(dict.fromkeys(rows["configuration"]))
-    with style.one_panel(style.WIDEST, 1.2 + 0.22 * len(motions)) as (figure, axes):
+    with style.panels(style.WIDEST, 1.2 + 0.22 * len(motions)) as (figure, axes):
         largest = limits.set_index("motion")["limit_g"]
         axes.barh(range(len(motions)), largest[motions], color="#dddddd", height=0.8)
         handles: list[Artist] = [
@@ -190,21 +190,18 @@ MOST_PANELS = 8
 def acceleration_histories(motions: Sequence[Motion]) -> Figure:
     """Draw the acceleration of ``MOST_PANELS`` motions over time with its peak, a panel a motion, on one scale."""
     shown = motions[:MOST_PANELS]
-    with style.figure_style():
-        figure = style.new_figure(style.COLUMN_WIDTH, 0.5 + 0.95 * len(shown))
-        panels = figure.subplots(len(shown), 1, sharex=True, sharey=True, squeeze=False)[:, 0]
+    size, shape = (style.COLUMN_WIDTH, 0.5 + 0.95 * len(shown)), {"nrows": len(shown)}
+    with style.panels(*size, **shape, sharex=True, sharey=True, squeeze=False) as (figure, grid):
+        panels = grid[:, 0]
         highest = 1.12 * max(motion.pga for motion in shown) / GRAVITY
         for panel, motion in zip(panels, shown, strict=True):
             values = motion.acceleration / GRAVITY
-            peak = int(np.abs(values).argmax())
-            panel.axhline(0, color="#999999", linewidth=0.6, zorder=1)
-            panel.plot(motion.time, values, color=style.BLUE, linewidth=0.5)
-            panel.plot(motion.time[peak], values[peak], "o", color=style.RED, markersize=3)
+            peak = style.draw_history(panel, motion.time, values, linewidth=0.5)
             panel.set_ylim(-highest, highest)
             name, earthquake = motion.name, str(motion.metadata.get("earthquake") or "")
             if earthquake.casefold() not in name.casefold():
                 name = f"{earthquake}, {name}"
-            panel.set_title(f"{shortened(name, 44)}: {abs(values[peak]):.2f} g", loc="left")
+            panel.set_title(f"{shortened(name, 44)}: {peak:.2f} g", loc="left")
         style.letter_panels(panels, size=6.5)
         panels[-1].set_xlabel("Time [s]")
         panels[-1].set_xlim(0, max(motion.time[-1] for motion in shown))
