@@ -13,6 +13,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
+from rockfrag.arrays import Floats
 from rockfrag.files import whole_file
 
 BLACK, ORANGE, SKY, GREEN = "#000000", "#E69F00", "#56B4E9", "#009E73"
@@ -78,11 +79,20 @@ def new_figure(width: float = PAGE_WIDTH, height: float = 3.0) -> Figure:
 
 
 @contextmanager
-def one_panel(width: float, height: float) -> Iterator[tuple[Figure, Axes]]:
-    """Draw an empty figure [in] and its only panel inside this block."""
+def panels(width: float, height: float, *shape: int, **shared: Any) -> Iterator[tuple[Figure, Any]]:
+    """Draw an empty figure [in] and its panels inside this block: one, or as ``Figure.subplots`` makes them."""
     with figure_style():
         figure = new_figure(width, height)
-        yield figure, figure.subplots()
+        yield figure, figure.subplots(*shape, **shared)
+
+
+def draw_history(panel: Axes, time: Floats, values: Floats, **line: Any) -> float:
+    """Draw values over time with zero and a dot at the largest, and return that in magnitude; shapes (n,)."""
+    peak = int(np.abs(values).argmax())
+    panel.axhline(0, color="#999999", linewidth=0.6, zorder=1)
+    panel.plot(time, values, **{"color": BLUE, "linewidth": 0.6, **line})
+    panel.plot(time[peak], values[peak], "o", color=RED, markersize=3)
+    return float(abs(values[peak]))
 
 
 def plain_log(axes: Axes, which: str) -> None:

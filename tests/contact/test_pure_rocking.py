@@ -53,8 +53,10 @@ def test_where_the_ground_takes_weight_away_pure_rocking_says_that_it_may_be_wro
     drawn = [draw(rng) for draw in (random_block, random_stack) for _ in range(10)]
     motions, ups = ([random_motion(rng) for _ in range(6)] for _ in range(2))
     scales = [0.4, 0.7, 1.0, 1.4, 2.0]
-    with pytest.warns(LightBodies, match="keeps less than half of its weight, in .* none at all"):
+    words = "keeps less than half of its weight, in .* none at all"
+    with pytest.warns(LightBodies, match=words) as told:
         pure = overturns(drawn, motions, DT, scales, vertical=ups)
+    assert {each.filename for each in told} == {__file__}
     free = overturns(drawn, motions, DT, scales, vertical=ups, friction=np.inf)
     light = pure.minimum_gravity_ratio < LIGHT
     other = pure.overturned != free.overturned

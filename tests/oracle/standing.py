@@ -32,8 +32,9 @@ def upper_on_contact(stack: Stack) -> Block:
     pile = stack.pile
     if pile.upper is pile.above:
         return stack.upper
-    aside = Vector((pile.low + pile.high) / 2 - stack.offset, 0.0)
-    centre = stack.upper.centre.minus(aside).turned(-stack.upper.lean)
+    aside = (pile.low + pile.high) / 2 - stack.offset
+    x, y = stack.upper.centre
+    centre = Vector(x - aside, y).turned(-stack.upper.lean)
     made = Block(
         *(pile.high - pile.low, stack.upper.height, stack.upper.mass),
         *(stack.upper.centroidal_inertia, centre.y, centre.x, stack.upper.lean),

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from rockfrag import Block, Column, Stack, overturns
+from rockfrag import Block, Column, Stack, overturns, simulate
 from rockfrag.errors import InputError
 from rockfrag.records.motion import GroundMotion, Motion
 from rockfrag.report.live import MOST_SAMPLES, carried, frames_svg, live_kernel, outlines, swept
@@ -103,9 +103,15 @@ def test_a_page_carries_no_more_motions_than_it_has_room_for():
     assert len(carried([motion("long", 2 * MOST_SAMPLES)])) == 1
 
 
+def drawn(system, theta):
+    """Outlines of bodies that are let go at rotations."""
+    response = simulate(system, np.zeros(2), 0.01, theta0=theta)
+    return outlines(system, response.position[0], response.theta[0])
+
+
 @pytest.mark.parametrize("theta", [0.2, -0.2])
 def test_a_block_is_drawn_on_the_edge_on_which_it_rocks(theta: float):
-    (corners,) = outlines(STATUE.system(), [theta])
+    (corners,) = drawn(STATUE.system(), theta)
     low = min(corners, key=lambda item: item.y)
     assert low.y == pytest.approx(0, abs=1e-12)
     assert low.x == pytest.approx(math.copysign(0.15, theta))
@@ -117,9 +123,9 @@ def test_a_block_is_drawn_on_the_edge_on_which_it_rocks(theta: float):
 def test_a_statue_is_drawn_on_its_pedestal(theta: tuple[float, float]):
     """The corner on which it rocks is on the pedestal's top, and no corner is below it."""
     stack = BODIES["figure </script> on plinth"]
-    pedestal, statue = outlines(stack, theta)
-    along, corners = pedestal[2].minus(pedestal[3]), [at.minus(pedestal[3]) for at in statue]
-    heights = [(along.x * at.y - along.y * at.x) / math.hypot(*along) for at in corners]
+    pedestal, statue = map(np.array, drawn(stack, theta))
+    along, corners = pedestal[2] - pedestal[3], statue - pedestal[3]
+    heights = [(along[0] * y - along[1] * x) / math.hypot(*along) for x, y in corners]
     assert min(heights) == pytest.approx(0, abs=1e-12)
 
 

@@ -23,26 +23,21 @@ from rockfrag.assess.inventory import (
 from rockfrag.assess.page import write_answer
 from rockfrag.assess.risk import probability_in
 from rockfrag.assess.words import estimate_words, gallery_says, mitigation_words
-from rockfrag.figure_style import BLUE, COLUMN_WIDTH, PAGE_WIDTH, one_panel, plain_log
+from rockfrag.figure_style import BLUE, COLUMN_WIDTH, PAGE_WIDTH, panels, plain_log
 from rockfrag.files import write_table, write_text
-from rockfrag.report.page import Column, Page, table_html
+from rockfrag.report.page import Page, table_html
 from rockfrag.report.part import Answer, FigureSpec, Finding, Section
 
 MOST_DRAWN = 40  # Objects of which the correlation is drawn: those that add most
 
 RANKING = (
-    Column("name", "Object"),
-    Column("place", "Stands"),
-    Column("probability", "Topples (90 % interval)", numeric=True),
-    Column("contribution", "Part of the mean [%]", 1),
-    Column("change", "What helps most"),
+    "name = Object; place = Stands; probability = Topples (90 % interval) #",
+    "contribution = Part of the mean [%] .1; change = What helps most",
 )
 NUMBERS = (
-    Column("at_least", "At least so many", 0),
-    Column("rate", "Earthquakes that topple so many [1/year]", numeric=True),
-    Column("probability", "Probability [%]", 2),
-    Column("probability_lower", "Lower limit [%]", 2),
-    Column("probability_upper", "Upper limit [%]", 2),
+    "at_least = At least so many .0; rate = Earthquakes that topple so many [1/year] #",
+    "probability = Probability [%] .2; probability_lower = Lower limit [%] .2",
+    "probability_upper = Upper limit [%] .2",
 )
 
 
@@ -104,7 +99,8 @@ def _ranking(inventory: Inventory, joint: JointRisk, mean: str) -> Section:
         change = mitigation_words(found, best) if best else "–"
         part = 100 * float(parts[request.name])
         rows.append((request.name, request.place.words, estimate_words(found.main), part, change))
-    ranked = pd.DataFrame(rows, columns=[column.name for column in RANKING])
+    names = ["name", "place", "probability", "contribution", "change"]
+    ranked = pd.DataFrame(rows, columns=names)
     caption = (
         "The objects, the one that adds most first; each change is simulated as a body of its own."
     )
@@ -133,7 +129,7 @@ def numbers_figure(joint: JointRisk, years: float) -> Figure:
         for name in ("probability", "probability_lower", "probability_upper")
     )
     bars = [np.maximum(middle - low, 0), np.maximum(high - middle, 0)]
-    with one_panel(COLUMN_WIDTH, 2.5) as (figure, axes):
+    with panels(COLUMN_WIDTH, 2.5) as (figure, axes):
         axes.errorbar(at, middle, yerr=bars, fmt="o", color=BLUE, capsize=2)
         _set_logarithmic(axes, "Objects that topple in one earthquake, at least", years)
         axes.set_xticks(at, [f"{n:g}" for n in at])
@@ -145,7 +141,7 @@ def losses_figure(joint: JointRisk, years: float) -> Figure:
     """How probably a loss is exceeded in one earthquake."""
     losses = joint.losses
     chance = [100 * probability_in(rate, years) for rate in losses["annual_rate"]]
-    with one_panel(COLUMN_WIDTH, 2.5) as (figure, axes):
+    with panels(COLUMN_WIDTH, 2.5) as (figure, axes):
         axes.step(losses["loss"], chance, where="pre", color=BLUE)
         _set_logarithmic(axes, "Loss in one earthquake [unit of the values]", years)
         axes.xaxis.set_major_formatter(EngFormatter(sep=""))
@@ -165,7 +161,7 @@ def correlation_figure(joint: JointRisk) -> Figure:
     names = list(joint.objects["name"][:MOST_DRAWN])
     table = joint.correlation.loc[names, names].to_numpy()
     side = min(PAGE_WIDTH, 2.4 + 0.11 * len(names))
-    with one_panel(side, 0.8 * side) as (figure, axes):
+    with panels(side, 0.8 * side) as (figure, axes):
         image = axes.imshow(table, vmin=0, vmax=1, cmap="Blues")
         short = [name if len(name) <= 18 else f"{name[:17]}…" for name in names]
         axes.set_xticks(range(len(names)), short, rotation=90, fontsize=6)

@@ -22,7 +22,7 @@ from rockfrag.assess.words import (
     says,
     value_words,
 )
-from rockfrag.figure_style import BLUE, COLUMN_WIDTH, OKABE_ITO, one_panel, plain_log
+from rockfrag.figure_style import BLUE, COLUMN_WIDTH, OKABE_ITO, panels, plain_log
 from rockfrag.files import file_name, write_text
 from rockfrag.outcomes.limit_states import ROCKS, limit_states
 from rockfrag.records.motion import GroundMotion, Motion
@@ -119,7 +119,7 @@ def _sources(found: Assessment) -> Markup:
     rows = []
     for name, part in parts_of(found.main.sources).items():
         source = SOURCES[name]
-        narrows = sentence(source.measurement.words) if source.measurement else "–"
+        narrows = sentence(source.measurement) if source.measurement else "–"
         rows.append((sentence(source.words), f"{100 * part:.0f} %", source.basis, narrows))
     titles = ("Not known", "Part of the variance", "Where its size comes from")
     caption = "Sources of the interval, the largest first."
@@ -251,7 +251,7 @@ _REACHED = 0.995  # Fraction of motions up to which the curves are shown
 
 def fractions_figure(found: Assessment) -> Figure:
     """Fraction of the motions that topple the object over the level of shaking, for each arrangement."""
-    with one_panel(COLUMN_WIDTH, 2.7) as (figure, axes):
+    with panels(COLUMN_WIDTH, 2.7) as (figure, axes):
         ends = []
         for colour, (name, outcomes) in zip(OKABE_ITO, found.arrangements.items(), strict=False):
             levels, fractions = outcomes.intensity_levels.levels, outcomes.fractions()
@@ -285,7 +285,7 @@ def sources_figure(found: Assessment) -> Figure:
     """How much each source of uncertainty adds to the interval."""
     ranked = sorted(found.main.sources.items(), key=lambda item: item[1])
     known = {NAMES[name]: value for name, value in ranked if np.isfinite(value)}
-    with one_panel(COLUMN_WIDTH, 0.6 + 0.24 * len(known)) as (figure, axes):
+    with panels(COLUMN_WIDTH, 0.6 + 0.24 * len(known)) as (figure, axes):
         axes.barh(list(known), list(known.values()), color=BLUE, height=0.6)
         axes.set(xlabel="Standard deviation on the scale of the interval")
     return figure

@@ -12,6 +12,7 @@ from scipy import special
 
 from rockfrag.assess.risk import Estimate
 from rockfrag.fragility.model_error import MODEL_ERRORS
+from rockfrag.sentences import PART, Macros
 
 SPACE = 0.13
 """Standard deviation of ln level of the second horizontal component, |ln(0.47 g / 0.54 g)|: the median level of
@@ -20,106 +21,28 @@ them."""
 
 
 @dataclass(frozen=True)
-class Measurement:
-    """Something that a user could measure or find out."""
-
-    words: str  # What it is
-    # What it leaves of the standard deviation [-]: an estimate of ours, of a measurement made with care
-    left: float
-
-
-@dataclass(frozen=True)
 class Source:
-    """A source of uncertainty."""
+    """A source of uncertainty, as ``sources.j2`` words it."""
 
     words: str  # What it is, as a reader may know it
     basis: str  # Where its size comes from
-    measurement: Measurement | None = None  # What would make it smaller; None where no user can
+    measurement: str = (
+        ""  # What a user could measure or find out that makes it smaller; empty for nothing
+    )
+    # What that leaves of the standard deviation [-]: an estimate of ours, of a measurement made with care
+    left: float = 1.0
 
+
+_LEFT = {
+    **{"width": 0.25, "contact": 1 / 3, "retreat": 0.2, "facing": 0.0, "cg_height": 0.2},
+    **{"restitution": 0.2, "mass": 0.1, "period": 1 / 6, "damping": 0.4, "conversion": 0.0},
+    "hazard": 0.5,
+}
+_SAYS = Macros("rockfrag.assess", "sources.j2", MODEL_ERRORS=MODEL_ERRORS, SPACE=SPACE)
 
 SOURCES: Mapping[str, Source] = {
-    "motions": Source(
-        "how much earthquakes differ",
-        "Jackknife that leaves out an earthquake at a time (Efron and Stein 1981)",
-    ),
-    "width": Source(
-        "the width on which it stands",
-        "± 2 %, of ours: rounded and chipped edges carry some millimetres further in",
-        Measurement("the width on which it stands to 0.5 %", 0.25),
-    ),
-    "contact": Source(
-        "which points of the scan carry",
-        "Contact tolerance about twice the accuracy of the scan, ± 50 %; ± 30 % where the accuracy and "
-        "± 20 % where the tolerance is given, of ours; for a granite rock on a shaking table 0.5 "
-        "to 1.9 mm were plausible",
-        Measurement("the points on which it stands, traced at its foot", 1 / 3),
-    ),
-    "retreat": Source(
-        "how round its edges are",
-        "Edges carry 0 to 10 mm further in, all alike, of ours: natural and worn edges are round",
-        Measurement("the radius of its edges at the foot to 1 mm", 0.2),
-    ),
-    "facing": Source(
-        "the direction in which it faces the shaking",
-        "Any direction is as probable as any other; in space half the difference of two at a right angle",
-        Measurement("the direction from which its shaking comes", 0.0),
-    ),
-    "cg_height": Source(
-        "the height of its centre of gravity",
-        "± 5 %, of ours: half the height is a guess, a drawing is better",
-        Measurement("the height of its centre of gravity to 1 %", 0.2),
-    ),
-    "restitution": Source(
-        "the energy that impacts take",
-        "± 5 % of what momentum leaves (Housner 1963), of ours; 0.7 to 1 times it where a scan stands "
-        "on few points",
-        Measurement("its restitution to 1 %", 0.2),
-    ),
-    "mass": Source(
-        "its mass",
-        "± 20 %, of ours: stones differ in density, and statues fill a part of their box",
-        Measurement("its mass to 2 %", 0.1),
-    ),
-    "period": Source(
-        "the building's first period",
-        "± 30 % of the rule of EN 1998-1, ± 10 % of one that is given, of ours",
-        Measurement("the building's first period to 5 %", 1 / 6),
-    ),
-    "damping": Source(
-        "the building's damping",
-        "± 40 %, of ours",
-        Measurement("the building's damping to 15 %", 0.4),
-    ),
-    "model": Source(
-        "the error of the planar rocking model",
-        "Simulated against measured medians, "
-        + "; ".join(
-            f"{kind}: {error.beyond:g} of ln level, {error.words}"
-            for kind, error in MODEL_ERRORS.items()
-        )
-        + "; no campaign of a round base or of a body in space is at hand, and that of cut blocks stands for them",
-    ),
-    "space": Source(
-        "both horizontal components at once",
-        f"{SPACE:g} of ln level: a square box in space has 0.88 of the median of one component; not counted for "
-        "round bases",
-    ),
-    "conversion": Source(
-        "the ground velocity, which the given measure does not fix",
-        "How far the mean PGV of a site's motions may be from that of the set, by magnitude, distance, ground "
-        "and site",
-        Measurement("the ground velocity (PGV) of the site", 0.0),
-    ),
-    "together": Source(
-        "how peak acceleration and velocity occur together",
-        "± 25 % of the spread of ln PGV at a given level, of ours; two hazard curves do not say it, and about "
-        "magnitude, distance and ground it is that of the set",
-    ),
-    "hazard": Source(
-        "the hazard curve",
-        "Its quantiles; exponents of 2.4 to 3.6 where one level was given (EN 1998-1)",
-        Measurement("a hazard curve of the site", 0.5),
-    ),
+    name: Source(words, basis, "".join(measured), _LEFT.get(name, 1.0))
+    for name, words, basis, *measured in (line.split(PART) for line in _SAYS("sources"))
 }
 """Sources of uncertainty by name."""
 
@@ -138,10 +61,10 @@ LEAST_GAIN = 0.15  # Fraction of the variance that a measurement must take away 
 MOST_NAMED = 2  # Measurements that are named together
 
 
-MEASUREMENTS: Mapping[str, Measurement] = {
-    name: source.measurement for name, source in SOURCES.items() if source.measurement is not None
+MEASUREMENTS: Mapping[str, Source] = {
+    name: source for name, source in SOURCES.items() if source.measurement
 }
-"""Measurements by the source of uncertainty that they narrow."""
+"""Sources of uncertainty that a measurement would narrow."""
 
 
 def is_wide(estimate: Estimate) -> bool:
@@ -159,15 +82,15 @@ def narrowed(estimate: Estimate) -> tuple[list[str], Estimate] | None:
         # limits that are at the ends whatever is known
         return None
     gains = {
-        name: variances.get(name, 0.0) * (1 - measurement.left**2) / total
-        for name, measurement in MEASUREMENTS.items()
+        name: variances.get(name, 0.0) * (1 - source.left**2) / total
+        for name, source in MEASUREMENTS.items()
     }
     known = sorted((n for n in gains if gains[n] >= LEAST_GAIN), key=lambda n: -gains[n])
     known = known[:MOST_NAMED]
     if not known:
         return None
     left = {
-        name: value * (MEASUREMENTS[name].left if name in known else 1.0)
+        name: value * (SOURCES[name].left if name in known else 1.0)
         for name, value in estimate.sources.items()
     }
     ratio = math.sqrt(sum(value**2 for value in left.values()) / total)

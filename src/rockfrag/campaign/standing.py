@@ -18,14 +18,13 @@ import pandas as pd
 from numpy.typing import NDArray
 from scipy.stats import norm, qmc
 
-from rockfrag.engines.spatial import run_in_space
 from rockfrag.errors import InputError
 from rockfrag.fragility.model_error import CUT, SCAN
 from rockfrag.records.motion import GroundMotion, Motion
 from rockfrag.rocking.ensemble import LightBodies, overturns
-from rockfrag.rocking.inputs import checked_threads
-from rockfrag.rocking.options import largest_restitution, system_of
+from rockfrag.rocking.options import system_of
 from rockfrag.short_repr import short_repr
+from rockfrag.system import geometry
 from rockfrag.system.blocks import Block, Column
 from rockfrag.system.contact import Contact, Friction
 from rockfrag.system.mesh import Shape
@@ -116,11 +115,8 @@ def simulate_tests(
         with warnings.catch_warnings():
             # a guess may be squat where the object is not
             warnings.simplefilter("ignore", LightBodies)
-            if systems[0].planar:
-                result = overturns(systems, batch, threads=threads)
-            else:
-                shaking = [GroundMotion(motion) for motion in batch]
-                result = run_in_space(systems, shaking, threads=checked_threads(threads))
+            shaking = batch if systems[0].planar else list(map(GroundMotion, batch))
+            result = overturns(systems, shaking, threads=threads)
         overturned[:, first : first + len(batch)] = result.overturned[:, :, 0]
         rocked[:, first : first + len(batch)] = (result.peak_rotation[:, :, 0] > 0).any(axis=-1)
     return overturned, rocked
@@ -179,7 +175,8 @@ def body_of(thing: Shape | Block | Column, guess: Mapping[str, float]) -> Block 
 
 def possible_restitution(block: Block, restitution: float) -> float | None:
     """Return a restitution that gains no energy: as given, or None, which conserves momentum, where it would."""
-    return restitution if restitution < largest_restitution(block) else None
+    largest = min(geometry.largest_restitution(block.shape, pivot) for pivot in (+1, -1))
+    return restitution if restitution < largest else None
 
 
 SCAN_ACCURACY_MM = 0.5

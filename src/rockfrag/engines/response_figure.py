@@ -1,6 +1,6 @@
 """Figures of one response, of planar bodies over time, and of a body in space along the path of its axis."""
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pandas as pd
@@ -30,9 +30,8 @@ def response_figure(response: Response, title: str) -> Figure:
     colours = [style.BLUE, style.ORANGE, *style.OKABE_ITO[2:]][: len(names)][::-1]
     slides = bool((response.slides != 0).any())
     heights = [2, 3, 2, 2] if slides else [2, 3, 2]
-    with style.figure_style():
-        figure = style.new_figure(style.COLUMN_WIDTH, 0.6 * sum(heights))
-        panels = figure.subplots(len(heights), 1, sharex=True, height_ratios=heights)
+    shape: Any = {"nrows": len(heights), "sharex": True, "height_ratios": heights}
+    with style.panels(style.COLUMN_WIDTH, 0.6 * sum(heights), **shape) as (figure, panels):
         ground, rotation, *between, rocking_mode = panels
         acceleration = response.ground_acceleration / GRAVITY
         ground.plot(response.time, acceleration, color=style.BLACK, lw=0.5)
@@ -105,9 +104,7 @@ def spatial_figure(
     outcome: "SpatialOutcome", history: pd.DataFrame, outline: NDArray[np.float64], title: str
 ) -> Figure:
     """Draw the path of the axis [rad] and the plan [m] of a response, whose base has this outline, (n, 2) [m]."""
-    with style.figure_style():
-        figure = style.new_figure(style.COLUMN_WIDTH, 6.0)
-        axis, plan = figure.subplots(2, 1)
+    with style.panels(style.COLUMN_WIDTH, 6.0, 2) as (figure, (axis, plan)):
         figure.suptitle(title, x=0.02, ha="left")
         _path_of_axis(axis, outcome, history)
         _plan(plan, history, outline)

@@ -16,7 +16,6 @@ from rockfrag.fragility.empirical import TableIda
 from rockfrag.fragility.ida_curves import scale_power
 from rockfrag.fragility.intervals import blocks_of
 from rockfrag.fragility.observations import Floats, Observations, name_and_unit, positive
-from rockfrag.machine_code import cached_njit
 from rockfrag.shaketable.definitions import Swept
 
 CELLS = 2000  # cells of equal width in the logarithm of a measure
@@ -76,55 +75,17 @@ class CountedObservations(Observations):
         starts = np.flatnonzero(np.diff(cell[first], prepend=-1))
         ends = np.append(self._edge_below(values[starts[1:]]), np.inf)
         rise, scale = self.of.rise, self.of.scale
+        # a motion's amplitudes below the beginning of every cell and in all; those up to its capacity stand
         before = [np.searchsorted(rise, end - scale) for end in ends]
-        below = np.column_stack([np.zeros(scale.size, dtype=np.int64), *before])
-        return np.asarray(_fallen(capacity - scale, rise, below))
+        below = np.array([np.zeros(scale.size, dtype=np.intp), *before])
+        stood = np.searchsorted(rise, capacity - scale, side="right")
+        fallen = [np.diff(np.maximum(below, of_motion).sum(axis=1)) for of_motion in stood]
+        return np.array(fallen, dtype=np.float64)
 
     def _edge_below(self, im: ArrayLike) -> Floats:
         """Lower end of the cell that holds each value [ln IM]."""
         edges = self.of.edges
         return np.asarray(edges[np.searchsorted(edges, np.log(im), side="right") - 1])
-
-
-@cached_njit(error_model="numpy")
-def _fallen(capacity: Floats, rise: Floats, below: NDArray[np.intp]) -> Floats:
-    """Outcomes by cell, (replicates, cells), of motions that fall above a capacity each, (replicates, motions).
-
-    ``below`` has the number of each motion's amplitudes below the beginning of every cell and, last, in all.
-    """
-    motions, ends = below.shape
-    found = np.zeros((len(capacity), ends - 1))
-    for row in range(len(capacity)):
-        for motion in range(motions):
-            survived = np.searchsorted(rise, capacity[row, motion], side="right")
-            for cell in range(ends - 1):
-                begin = max(below[motion, cell], survived)
-                found[row, cell] += max(below[motion, cell + 1] - begin, 0)
-    return found
-
-
-@cached_njit(error_model="numpy")
-def _count(
-    scale: Floats,
-    rise: Floats,
-    overturned: NDArray[np.bool_],
-    block: NDArray[np.intp],
-    edges: Floats,
-    trials: Floats,
-    fell: Floats,
-    total: Floats,
-) -> None:
-    """Add outcomes of motions, (motions, n), to those of blocks, (blocks, cells), and ln IM to its sum."""
-    cells = total.size
-    width = (edges[-1] - edges[0]) / cells
-    for motion in range(scale.size):
-        row = block[motion]
-        for j in range(rise.size):
-            log_im = scale[motion] + rise[j]
-            cell = min(max(int((log_im - edges[0]) / width), 0), cells - 1)
-            trials[row, cell] += 1.0
-            fell[row, cell] += overturned[motion, j]
-            total[cell] += log_im
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -212,11 +173,17 @@ class _Counts:
 
     def add(self, rows: NDArray[np.intp], overturned: NDArray[np.bool_]) -> None:
         used = self.of_motion[rows] >= 0
-        own, fell = self.of_motion[rows][used], overturned[used]
-        _count(
-            *(self.scale[own], self.rise, fell, self.row[own], self.edges),
-            *(self.trials, self.fell, self.total),
-        )
+        own, trials = self.of_motion[rows][used], self.trials
+        log_im = self.scale[own, np.newaxis] + self.rise
+        width = (self.edges[-1] - self.edges[0]) / CELLS
+        cell = np.clip(((log_im - self.edges[0]) / width).astype(np.intp), 0, CELLS - 1)
+        flat = self.row[own, np.newaxis] * CELLS + cell
+        trials += np.bincount(flat.ravel(), minlength=trials.size).reshape(trials.shape)
+        fell = np.bincount(flat[overturned[used]], minlength=trials.size)
+        self.fell += fell.reshape(trials.shape)
+        # one after the other, so that parts give the sum of the whole
+        terms = np.append(self.total, log_im)
+        self.total[:] = np.bincount(np.append(np.arange(CELLS), cell), terms)
 
     def outcomes(self) -> CountedObservations:
         block, cell = np.nonzero(self.trials)

@@ -247,7 +247,7 @@ def _replicates(design: Floats, outcome: Floats, group: NDArray[np.intp], start:
     groups = int(group.max()) + 1
     if groups < 2:
         return np.empty((0, design.shape[1]))
-    weights = all_but_one(groups, 0)[:, group]
+    weights = all_but_one(groups)[:, group]
     fit = fit_batch(design, weights * outcome, weights, start=start)
     coefficients = fit.coefficients.copy()
     wild = ~fit.converged | ~(np.abs(coefficients) < LARGEST_COEFFICIENT).all(axis=1)
@@ -375,18 +375,17 @@ def check_vector(
 
 def _surface_table(fit: VectorFragility, logs: list[Floats], outcome: Floats) -> pd.DataFrame:
     (row, first), (column, second) = (observations.cells(values, MOST_CELLS) for values in logs)
-    shape = (first.size, second.size)
-    flat = row * shape[1] + column
-    tests = np.bincount(flat, minlength=first.size * second.size).reshape(shape)
-    fell = np.bincount(flat, outcome, minlength=first.size * second.size).reshape(shape)
-    probability = monotone_probability(fell.astype(np.float64), tests.astype(np.float64))
+    tests, fell = (
+        observations.counts(row, column, each) for each in (np.ones(outcome.size), outcome)
+    )
+    probability = monotone_probability(fell, tests)
     i, j = np.nonzero(tests)
     x, y = np.exp(first[i]), np.exp(second[j])
     return pd.DataFrame(
         {
             fit.measures[0]: x,
             fit.measures[1]: y,
-            "tests": tests[i, j],
+            "tests": tests[i, j].astype(np.int64),
             "overturned": fell[i, j].astype(np.int64),
             "probability": probability[i, j],
             "fitted": fit.probability(x, y),

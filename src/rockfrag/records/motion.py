@@ -85,7 +85,7 @@ class Motion:
     def plot(self) -> "Figure":
         """Draw acceleration [g], velocity [cm/s] and displacement [cm]; a dot marks the largest sample of each."""
         # matplotlib is loaded only by those who draw
-        from rockfrag.figure_style import BLUE, COLUMN_WIDTH, RED, figure_style, new_figure
+        from rockfrag import figure_style as style
 
         velocity, displacement = integrate(self.acceleration, self.dt)
         drawn = (
@@ -93,14 +93,9 @@ class Motion:
             ("Velocity [cm/s]", 100 * velocity),
             ("Displacement [cm]", 100 * displacement),
         )
-        with figure_style():
-            figure = new_figure(COLUMN_WIDTH, 4.2)
-            panels = figure.subplots(3, 1, sharex=True)
+        with style.panels(style.COLUMN_WIDTH, 4.2, 3, sharex=True) as (figure, panels):
             for panel, (label, values) in zip(panels, drawn, strict=True):
-                peak = int(np.abs(values).argmax())
-                panel.axhline(0, color="#999999", linewidth=0.6, zorder=1)
-                panel.plot(self.time, values, color=BLUE, linewidth=0.6)
-                panel.plot(self.time[peak], values[peak], "o", color=RED, markersize=3)
+                style.draw_history(panel, self.time, values)
                 panel.set_ylabel(label)
             panels[0].set_title(self.name, loc="left")
             panels[-1].set_xlabel("Time [s]")

@@ -8,7 +8,7 @@ import pandas as pd
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from rockfrag.figure_style import BLACK, COLUMN_WIDTH, one_panel, plain_log
+from rockfrag.figure_style import BLACK, COLUMN_WIDTH, panels, plain_log
 from rockfrag.report import findings
 from rockfrag.report.figures import GREY, SIDE_COLOUR, SIDE_NAME, drawn_tests
 from rockfrag.report.part import Answer, Finding, Results, Says
@@ -110,7 +110,7 @@ MOST_ROWS = 24
 def strength_figure(tests: pd.DataFrame, curves: pd.DataFrame, names: Sequence[str]) -> Figure:
     """Draw a row for each configuration: its tests, and its curves with medians of PGA [g], if any."""
     shown = list(names)[:MOST_ROWS]
-    with one_panel(COLUMN_WIDTH, 0.8 + 0.33 * len(shown)) as (figure, axes):
+    with panels(COLUMN_WIDTH, 0.8 + 0.33 * len(shown)) as (figure, axes):
         for y, name in enumerate(shown):
             rows = drawn_tests(tests[tests["configuration"] == name])
             colour = SIDE_COLOUR[str(rows["pedestal"].iloc[0])]

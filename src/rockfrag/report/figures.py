@@ -85,7 +85,7 @@ def amplitudes_by(by: str, tests: pd.DataFrame, means: pd.DataFrame) -> Figure:
     means = means[means["by"] == ("configuration" if by == "object" else by)]
     levels, rows = list(dict.fromkeys(tests[by])), drawn_tests(tests)
     width = style.PAGE_WIDTH if by == "object" and len(levels) > 5 else style.COLUMN_WIDTH
-    with style.one_panel(width, 2.8) as (figure, axes):
+    with style.panels(width, 2.8) as (figure, axes):
         _sides_panel(axes, rows, by, levels, means)
         axes.set_ylim(0, highest_box(rows, by) if len(rows) > MOST_MARKS else top(rows))
         _finish_sides(figure, axes, tests, bool(means["mean_g"].notna().any()))
@@ -150,7 +150,7 @@ def pedestal_scatter(tests: pd.DataFrame, title: str, sides: Sides = WITH_PEDEST
     pairs = rows[rows["pedestal"] == "P"].merge(without, on=keys, suffixes=("_p", "_np"))
     objects = list(dict.fromkeys(pairs["object"]))
     upper = 1.08 * float(pairs[["a_p", "a_np"]].to_numpy(dtype=float).max())
-    with style.one_panel(style.COLUMN_WIDTH, 0.6 + style.COLUMN_WIDTH) as (figure, axes):
+    with style.panels(style.COLUMN_WIDTH, 0.6 + style.COLUMN_WIDTH) as (figure, axes):
         line = np.array([0.0, upper])
         # the line of equality with its band of ±10 %
         axes.fill_between(line, line / 1.1, line * 1.1, color=BAND, lw=0)

@@ -18,7 +18,7 @@ from rockfrag.fragility.estimators import Fragility
 from rockfrag.fragility.observations import Floats, Observations
 from rockfrag.fragility.user_table import UserFragility, fit_user_table
 from rockfrag.report.figures import GREY
-from rockfrag.report.page import Column, estimated, p_values, table_html
+from rockfrag.report.page import Columns, p_values, table_html
 from rockfrag.report.part import Answer, FigureSpec, Says, Section
 from rockfrag.report.sections.curves import (
     axis_label,
@@ -53,7 +53,10 @@ def run(job: Job[MeasuredTable]) -> Results:
     answer = _answer(study, found, measures)
     choice = found.choice.table
     given = [name for name in map(str, choice.columns) if name.startswith("p_")]
-    columns = [*_CHOICE, *(p_values(name, f"p, {name.removeprefix('p_')}") for name in given)]
+    columns: Columns = [
+        *_CHOICE,
+        *(p_values(name, f"p, {name.removeprefix('p_')}") for name in given),
+    ]
     table = table_html(choice, columns, "Measures compared on the same tests, best first.")
     sections = [
         says.section("measure", [table], answer.sentences[0]),
@@ -113,28 +116,11 @@ def _level(study: MeasuredTable) -> str:
 
 
 _CHOICE = (
-    Column("im", "Measure"),
-    Column("unit", "Unit"),
-    Column("theta", "Median θ", 3),
-    Column("beta", "β", 3),
-    Column("aic", "AIC", 1),
-    Column("auc", "AUC", 3),
-    Column("chosen_fraction", "Fraction of bootstrap samples in which it is best", 2),
+    "im = Measure; unit; theta = Median θ .3; beta = β .3; aic = AIC .1; auc = AUC .3",
+    "chosen_fraction = Fraction of bootstrap samples in which it is best .2",
 )
-_CURVES = (
-    Column("im", "Measure"),
-    Column("unit", "Unit"),
-    estimated("theta", "Median θ"),
-    estimated("beta", "β"),
-    Column("aic", "AIC", 1),
-)
-_FITS = (
-    Column("measure", "Measure"),
-    Column("deviance", "Deviance", 1),
-    p_values("p_value", "p"),
-    Column("brier", "Brier score", 3),
-    Column("finding", "Finding"),
-)
+_CURVES = ("im = Measure; unit; theta = Median θ ±; beta = β ±; aic = AIC .1",)
+_FITS = ("measure; deviance .1; p_value = p p; brier = Brier score .3; finding",)
 
 
 def _curves(
@@ -156,9 +142,11 @@ def measures_figure(
     """Draw the curve of each measure in a panel of its own, with AIC and β, to compare measures."""
     columns = min(len(curves), 2)
     rows = -(-len(curves) // columns)
-    with style.figure_style():
-        figure = style.new_figure(style.COLUMN_WIDTH if columns == 1 else style.WIDEST, 2.4 * rows)
-        grid_of_axes = figure.subplots(rows, columns, squeeze=False, sharey=True)
+    width, shape = style.COLUMN_WIDTH if columns == 1 else style.WIDEST, (rows, columns)
+    with style.panels(width, 2.4 * rows, *shape, squeeze=False, sharey=True) as (
+        figure,
+        grid_of_axes,
+    ):
         for axes in grid_of_axes.flat[len(curves) :]:
             axes.set_visible(False)
         for axes, (label, curve) in zip(grid_of_axes.flat, curves.items(), strict=False):
@@ -186,7 +174,7 @@ def measures_figure(
 
 def calibration_figure(judged: Mapping[str, GoodnessOfFit]) -> Figure:
     """Draw observed against fitted fractions in bins; points on the diagonal are well calibrated."""
-    with style.one_panel(style.COLUMN_WIDTH, 3.0) as (figure, axes):
+    with style.panels(style.COLUMN_WIDTH, 3.0) as (figure, axes):
         axes.plot([0, 1], [0, 1], color=GREY, linewidth=0.8)
         marks = zip(judged.items(), cycle("os^Dv"), cycle(style.OKABE_ITO))
         for (label, fit), mark, colour in marks:

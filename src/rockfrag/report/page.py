@@ -19,7 +19,7 @@ from rockfrag.figure_style import BLUE, GREEN, PURPLE, RED, save_figure
 from rockfrag.processes import in_processes
 from rockfrag.report.figures import BAND, GREY
 from rockfrag.report.part import Answer, FigureSpec, Section
-from rockfrag.sentences import estimates, number, probability
+from rockfrag.sentences import PART, Macros, estimates, number, probability, sentence
 
 TEMPLATES = Environment(
     loader=PackageLoader("rockfrag.report"),
@@ -57,13 +57,38 @@ Words = Callable[[pd.DataFrame], Iterable[str]]
 
 @dataclass(frozen=True)
 class Column:
-    """A column of a table on the page."""
+    """A column of a table on the page, see :func:`column`."""
 
     name: str  # Column of the data
     title: str  # What its head says, with the unit
     # Decimals of numbers, or what words the column of a table; None for text
     shown: int | Words | None = None
     numeric: bool = False  # Whether text is of numbers and stands to the right, as they do
+
+
+_SPEC = re.compile(r"(\w+)(?: = (.+?))?(?: ([.±#p])(\d?))?")
+_UNITS = {unit: unit for unit in ("m", "cm", "mm", "kg", "g", "rad", "bit")} | {"deg": "°"}
+
+
+Columns = Sequence[str | Column]
+"""Columns of a table, of which a text names some: ``width_cm .1; ratio = Height / width .2; floor``."""
+
+
+def column(words: str) -> Column:
+    """Read a column such as ``width_cm .1`` or ``ratio = Height / width .2``.
+
+    A title that is not given is the name in words with its unit, ``Width [cm]``. Behind it stand the decimals of
+    numbers (``.2``) or of estimates (``±2``, or ``±``), ``p`` of p values, and ``#`` of texts that are numeric.
+    """
+    spec = _SPEC.fullmatch(words)
+    assert spec is not None
+    name, title, kind, digits = spec.groups()
+    stem, _, unit = name.rpartition("_")
+    usual = f"{stem} [{_UNITS[unit]}]" if stem and unit in _UNITS else name
+    title, decimals = title or sentence(usual.replace("_", " ")), int(digits) if digits else None
+    if kind == "±":
+        return estimated(name, title, decimals)
+    return p_values(name, title) if kind == "p" else Column(name, title, decimals, kind == "#")
 
 
 def by_row(words: Callable[[Row], str]) -> Words:
@@ -100,12 +125,13 @@ MOST_TABLE_ROWS = 500
 """Rows of a table on the page; of more the first so many, and the name of the file that has all."""
 
 
-def table_html(
-    table: pd.DataFrame, columns: Sequence[Column], caption: str, file: str = ""
-) -> Markup:
+def table_html(table: pd.DataFrame, shown: Columns, caption: str, file: str = "") -> Markup:
     """Render a table, empty without rows; where the file with all rows is named ``MOST_TABLE_ROWS`` are shown."""
     if table.empty:
         return Markup("")
+    columns: list[Column] = []
+    for part in shown:
+        columns += map(column, part.split("; ")) if isinstance(part, str) else [part]
     if file and len(table) > MOST_TABLE_ROWS:
         caption += f" The first {MOST_TABLE_ROWS} of {len(table)}; {file} has all."
         table = table.iloc[:MOST_TABLE_ROWS]
@@ -196,49 +222,8 @@ def inline_svg(svg: str, name: str, alt: str) -> Markup:
     ).format(box[1] if box else "", alt, Markup(inner.strip()))
 
 
-TERMS: Mapping[str, str] = {
-    "NP": "no pedestal: the object alone on its floor; P is the object on its pedestal.",
-    "P/NP": "overturning amplitude with the pedestal divided by that without it, of the same object under the "
-    "same motion. Above 1 the object overturns later with its pedestal.",
-    "NP/P": "the inverse: overturning amplitude without the pedestal divided by that with it.",
-    "amplitude": "peak acceleration of the motion that shakes the object, in units of g.",
-    "overturning amplitude": "largest peak acceleration survived before the first overturning, as the motion "
-    "is raised in steps.",
-    "PGA, PGV, PGD": "peak ground acceleration, velocity and displacement.",
-    "PFA, PFV": "peak floor acceleration and velocity: peaks of the motion of a floor.",
-    "AvgSA": "average spectral acceleration: geometric mean of SA over a range of periods.",
-    "SA": "spectral acceleration: peak acceleration of a damped oscillator of the stated period.",
-    "Arias intensity": "integral of the squared acceleration, a measure of the energy of a motion.",
-    "Housner intensity": "integral of the velocity spectrum over periods.",
-    "intensity measure": "a number that says how strong a motion is, such as its peak acceleration.",
-    "fragility": "probability of overturning as a function of an intensity measure.",
-    "θ": "median of a fragility curve: the intensity at which the probability of overturning is one half.",
-    "β": "dispersion of a fragility curve: standard deviation of the logarithm of the intensity that overturns.",
-    "lognormal": "curve of the form Φ(ln(IM/θ)/β), with Φ the normal distribution and IM the intensity measure.",
-    "nonparametric": "without an assumed shape: the monotone curve that is closest to the simulated outcomes.",
-    "bound only": "the test says only that the amplitude is above (or below) a value, because nothing "
-    "overturned (or everything did).",
-    "open": "of a limit: the data set none on this side.",
-    "undecided": "of a statement: the data neither confirm nor refute it.",
-    "structural resurrection": "stronger motions are survived although a weaker one overturned the object.",
-    "robust": "of an outcome: the same for the motion scaled by anything within ±10 %.",
-    "p value": "probability of data at least this far off if there were no effect; small values speak "
-    "against that.",
-    "Holm": "adjustment of p values that limits the chance of any false finding in a family of tests (Holm 1979).",
-    "Benjamini–Hochberg": "adjustment of p values that limits the expected fraction of false findings among all "
-    "findings (Benjamini and Hochberg 1995).",
-    "Bonferroni": "adjustment of p values: each is multiplied by the number of tests.",
-    "95 % interval": "range of values with which the data are compatible; 95 % of such ranges contain the true "
-    "value.",
-    "AUC": "probability that an overturned test had the larger intensity than a survived one; 0.5 is guessing.",
-    "AIC": "Akaike’s information criterion; of two models the one with the smaller value predicts better.",
-    "restitution": "rotational speed just after an impact divided by that just before it.",
-    "critical angle": "rotation at which a body at rest would be in balance on its edge.",
-    "step protocol": "the motion is raised in steps until the object overturns; the amplitude is read one step "
-    "before.",
-    "near-critical": "of a test: plausible ways to set up the object disagree about its outcome.",
-    "perturbed parameter": "property of the ideal model that is changed, one at a time, to see what it does.",
-}
+_says = Macros("rockfrag.report", "terms.j2")
+TERMS: Mapping[str, str] = dict(line.split(PART) for line in _says("terms"))
 """Meaning by term; a term such as ``PGA, PGV`` is used where one of its parts is."""
 
 

@@ -179,11 +179,7 @@ def record_figure(motion: Motion) -> Figure:
 def _history(
     panel: Axes, motion: Motion, values: NDArray[np.float64], label: str, colour: str, peak: str
 ) -> None:
-    largest = int(np.abs(values).argmax())
-    panel.axhline(0, color="#999999", linewidth=0.6)
-    panel.plot(motion.time, values, color=colour, linewidth=0.6)
-    panel.plot(motion.time[largest], values[largest], "o", color=style.RED, markersize=3)
-    highest = 1.2 * abs(values[largest]) or 1.0
+    highest = 1.2 * style.draw_history(panel, motion.time, values, color=colour) or 1.0
     panel.set_ylim(-highest, highest)
     panel.set_ylabel(label)
     panel.set_title(f"peak {peak}", loc="right", pad=2)

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from rockfrag import figure_style as style
 from rockfrag.records.motion import GroundMotion, Motion
 from rockfrag.report.live.space import Standing, live_in_space
-from rockfrag.report.page import Column, estimated, table_html
+from rockfrag.report.page import table_html
 from rockfrag.report.part import Answer, Says, Section
 from rockfrag.report.study_report import write_page
 from rockfrag.rocking.space_medians import LOSS, NO_LOSS, PLANAR, body_of
@@ -68,12 +68,9 @@ WORDS = {
     "worst_direction": "worst direction",
 }
 _MEDIANS = (
-    Column("body", "Base"),
-    Column("slenderness", "Height over width", 1),
-    Column("height_m", "Height [m]", 1),
-    Column("space_g", "Median in space [g]", 2),
-    *(estimated(name, f"Over {WORDS[name]}", 2) for name in PLANAR),
-    Column("flip_rate", "Flip rate", 2),
+    "body = Base; slenderness = Height over width .1; height_m .1; space_g = Median in space [g] .2",
+    *(f"{name} = Over {WORDS[name]} ±2" for name in PLANAR),
+    "flip_rate .2",
 )
 COLOURS = dict(zip(PLANAR, (style.BLUE, style.ORANGE, style.GREEN), strict=True))
 
@@ -85,7 +82,7 @@ def _bases(medians: pd.DataFrame) -> pd.Series:
 
 def ratios_figure(medians: pd.DataFrame) -> Figure:
     """Draw medians in space over the planar ones, with their limits."""
-    with style.one_panel(style.PAGE_WIDTH, 0.6 + 0.2 * len(medians)) as (figure, panel):
+    with style.panels(style.PAGE_WIDTH, 0.6 + 0.2 * len(medians)) as (figure, panel):
         places = -np.arange(len(medians), dtype=float)
         for k, name in enumerate(PLANAR):
             low, high, off = (
@@ -112,9 +109,8 @@ def fractions_figure(fractions: pd.DataFrame) -> Figure:
     bodies = list(fractions.groupby(["base", "slenderness", "height_m"], sort=False))
     columns = min(len(bodies), 6)
     rows = -(-len(bodies) // columns)
-    with style.figure_style():
-        figure = style.new_figure(style.PAGE_WIDTH, 0.6 + 1.35 * rows)
-        panels = figure.subplots(rows, columns, sharey=True, squeeze=False)
+    size, shape = (style.PAGE_WIDTH, 0.6 + 1.35 * rows), (rows, columns)
+    with style.panels(*size, *shape, sharey=True, squeeze=False) as (figure, panels):
         for panel, ((base, slenderness, height), part) in zip(panels.flat, bodies, strict=False):
             first = part[part["planar_impacts"] == part["planar_impacts"].iloc[0]]
             panel.plot(first["level_g"], first["space"], color=style.RED, label="in space")

@@ -139,12 +139,10 @@ def _ida_curves(
     job: Job[Study], measures: pd.DataFrame
 ) -> tuple[dict[str, "TableIda"], "StateIdaCurves", pd.DataFrame]:
     """IDA curves by configuration, and by limit state, configuration and floor; resurrections of all."""
+    from rockfrag.fragility.counted import count_ida
     from rockfrag.fragility.empirical import resurrections_of
 
     study = job.study
-    if study.is_large:
-        # compiled, which other studies need not wait for
-        from rockfrag.fragility.counted import count_ida
     floors = {name: floor_measures(level) for name, level in study.floors.items()}
     wanted = {"": tuple(dict.fromkeys([*study.fragility.measures, *candidates()])), **floors}
     of_all: dict[str, TableIda] = {}

@@ -13,27 +13,17 @@ from matplotlib.figure import Figure
 
 from rockfrag import figure_style as style
 from rockfrag.files import file_name, write_table, write_text
-from rockfrag.report.page import Column, Page, table_html
-from rockfrag.report.part import Answer, FigureSpec, Finding, Section
-from rockfrag.sentences import Macros
+from rockfrag.report.page import Page, table_html
+from rockfrag.report.part import Answer, Finding, Says, Section
 from rockfrag.survival.reweight import DECISION_RATE, LIMITS, RULED_OUT, Constrained
 
-BRANCHES = (
-    Column("branch", "Branch"),
-    Column("weight_before", "Weight before", 4),
-    Column("weight_after", "Weight after", 4),
-    Column("survival", "Probability that all stand", 4),
-)
+BRANCHES = ("branch; weight_before .4; weight_after .4; survival = Probability that all stand .4",)
 OBJECTS = (
-    Column("object", "Object"),
-    Column("information_bit", "Information alone [bit]", 2),
-    Column("level_ratio_alone", "Level at 1e-4 with it alone, after / before", 2),
-    Column("level_ratio_without", "Level at 1e-4 without it, after / before", 2),
+    "object; information_bit = Information alone [bit] .2",
+    "level_ratio_alone = Level at 1e-4 with it alone, after / before .2",
+    "level_ratio_without = Level at 1e-4 without it, after / before .2",
 )
-ASSUMED = (
-    Column("assumption", "Assumption"),
-    Column("level_ratio", "Level at 1e-4, after / before", 2),
-)
+ASSUMED = ("assumption; level_ratio = Level at 1e-4, after / before .2",)
 
 
 def write_constrained(found: Constrained, folder: str | os.PathLike[str]) -> Path:
@@ -87,7 +77,7 @@ def json_of(found: Constrained) -> str:
     return json.dumps(content, indent=2, ensure_ascii=False) + "\n"
 
 
-_say = Macros("rockfrag.survival", "page.j2", RULED_OUT=RULED_OUT, LIMITS=LIMITS)
+_say = Says("rockfrag.survival", "page.j2", RULED_OUT=RULED_OUT, LIMITS=LIMITS)
 
 
 def _sentences(found: Constrained) -> list[str]:
@@ -113,10 +103,8 @@ def page_of(found: Constrained) -> str:
     evidence, hangs_on = told
     names = ", ".join(body.name for body in found.site.objects)
     title, lead = _say("head", found, names)
-    alt, below = _say("curves", hazard)
-    curves = FigureSpec("curves", alt, below, lambda: curves_figure(found))
-    alt, below = _say("weights")
-    weights = FigureSpec("weights", alt, below, lambda: weights_figure(found))
+    curves = _say.figure("curves", lambda: curves_figure(found), hazard)
+    weights = _say.figure("weights", lambda: weights_figure(found))
     file = f"{file_name(found.site.name)}-weights.csv"
     caption = "Branches of the hazard with their weights."
     branch_table = table_html(found.result.table(), BRANCHES, caption, file)
@@ -146,13 +134,11 @@ def page_of(found: Constrained) -> str:
 def _hazard(found: Constrained) -> Markup:
     unit, table = found.site.measure.unit, found.result.ratios()
     table = table.assign(rate=table["annual_rate"].map("{:g}".format))
-    shown = [
-        Column("rate", "Annual rate [1/year]", numeric=True),
-        Column("level_before", f"Before [{unit}]", 3),
-        Column("level_after", f"After [{unit}]", 3),
-        Column("level_ratio", "Level after / before", 2),
-        Column("rate_ratio", "Rate of the level before, after / before", 2),
-    ]
+    shown = (
+        f"rate = Annual rate [1/year] #; level_before = Before [{unit}] .3",
+        f"level_after = After [{unit}] .3; level_ratio = Level after / before .2",
+        "rate_ratio = Rate of the level before, after / before .2",
+    )
     return table_html(table, shown, "Mean hazard at annual rates of 1e-2 to 1e-5.")
 
 
@@ -165,7 +151,7 @@ def curves_figure(found: Constrained) -> Figure:
     measure = found.site.measure
     curves = found.result.curves()
     level = curves["level"].to_numpy()
-    with style.one_panel(style.COLUMN_WIDTH, 2.8) as (figure, axes):
+    with style.panels(style.COLUMN_WIDTH, 2.8) as (figure, axes):
         for when, colour, line, words in (
             ("before", style.ORANGE, "--", "before"),
             ("after", style.BLUE, "-", "after survival"),
@@ -192,7 +178,7 @@ def weights_figure(found: Constrained) -> Figure:
     order = largest.sort_values(ascending=False, kind="stable").index
     table = table.loc[order[:MOST_BRANCHES_SHOWN]].sort_values("weight_after", kind="stable")
     before, after, place = table["weight_before"], table["weight_after"], np.arange(len(table))
-    with style.one_panel(style.WIDEST, 0.7 + 0.2 * len(table)) as (figure, axes):
+    with style.panels(style.WIDEST, 0.7 + 0.2 * len(table)) as (figure, axes):
         axes.hlines(place, before, after, color="#999999", linewidth=0.8)
         axes.plot(before, place, "o", color=style.ORANGE, markerfacecolor="none", label="before")
         axes.plot(after, place, "s", color=style.BLUE, label="after survival")

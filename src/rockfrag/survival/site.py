@@ -10,7 +10,7 @@ OpenQuake's exports (``realizations_….csv`` and a file of hazard curves for ea
 import math
 import os
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
@@ -62,8 +62,16 @@ def read_branches(
     """
     if not paths:
         raise InputError("hazard: name at least one file with hazard curves of branches.")
-    found = _of_openquake(paths, realizations) if realizations else _of_tables(paths)
-    where = str(realizations or paths[0])
+    named = _realizations(realizations) if realizations else {}
+    for path in paths:
+        curves = (
+            [_of_openquake(path, realizations, named)] if realizations else _of_table(path, named)
+        )
+        for name, branch, curve in curves:
+            if curve.measure in branch.curves:
+                raise InputError(f"{path}: {curve.measure.imt} of {name} is given twice.")
+            branch.curves[curve.measure] = curve
+    found, where = list(named.values()), str(realizations or paths[0])
     if len(found) > MOST_BRANCHES:
         raise InputError(
             f"{where}: {len(found)} branches are more than the {MOST_BRANCHES} allowed."
@@ -97,33 +105,14 @@ def _names(branch: Branch) -> str:
     return " and ".join(sorted(measure.imt for measure in branch.curves)) or "nothing"
 
 
-def _of_tables(paths: Sequence[str | os.PathLike[str]]) -> list[Branch]:
-    """Branches of plain tables."""
-    found: dict[str, Branch] = {}
-    for path in paths:
-        for name, (weight, curve) in _table(path).items():
-            branch = found.setdefault(name, Branch(name, weight))
-            if branch.weight != weight:
-                raise InputError(
-                    f"{path}: branch {name[:60]} has the weight {weight:g}, and {branch.weight:g} elsewhere."
-                )
-            _add(curve, branch, f"branch {name[:60]}", path)
-    return list(found.values())
-
-
-def _add(curve: HazardCurve, branch: Branch, name: str, path: str | os.PathLike[str]) -> None:
-    if curve.measure in branch.curves:
-        raise InputError(f"{path}: {curve.measure.imt} of {name} is given twice.")
-    branch.curves[curve.measure] = curve
-
-
-def _table(path: str | os.PathLike[str]) -> dict[str, tuple[float, HazardCurve]]:
-    """Weight and curve of every branch of one table."""
+def _of_table(
+    path: str | os.PathLike[str], named: dict[str, Branch]
+) -> Iterator[tuple[str, Branch, HazardCurve]]:
+    """Yield what messages call it, branch and curve of every branch of a table; new ones come to those named."""
     every, curve = read_levels(path, labels=("branch", "weight"))
     rows: dict[str, list[Row]] = {}
     for row in every:
         rows.setdefault(row.text("branch"), []).append(row)
-    found = {}
     for name, mine in rows.items():
         weight = mine[0].number("weight")
         for row in mine:
@@ -131,25 +120,35 @@ def _table(path: str | os.PathLike[str]) -> dict[str, tuple[float, HazardCurve]]
                 raise row.error(
                     "weight", f"branch {name} has the weight {weight:g} in an earlier row"
                 )
-        found[name] = (weight, curve(mine, f"{path}, branch {name[:60]}"))
-    return found
+        branch, called = named.setdefault(name, Branch(name, weight)), f"branch {name[:60]}"
+        if branch.weight != weight:
+            raise InputError(
+                f"{path}: {called} has the weight {weight:g}, and {branch.weight:g} elsewhere."
+            )
+        yield called, branch, curve(mine, f"{path}, {called}")
 
 
 def _of_openquake(
-    paths: Sequence[str | os.PathLike[str]], realizations: str | os.PathLike[str]
-) -> list[Branch]:
-    """Branches of OpenQuake's exports."""
-    found = _realizations(realizations)
-    for path in paths:
-        number = _realization_of(path)
-        if number not in found:
-            raise InputError(f"{path}: realization {number} is not in {realizations}.")
-        curve, _ = read_openquake(read_text(path, LARGEST_FILE), str(path))
-        _add(curve, found[number], f"realization {number}", path)
-    return list(found.values())
+    path: str | os.PathLike[str], realizations: object, named: Mapping[str, Branch]
+) -> tuple[str, Branch, HazardCurve]:
+    """Return what messages call it, branch and curve of a file of OpenQuake's, by its first line or its name."""
+    text = read_text(path, LARGEST_FILE)
+    found = _RLZ.search(text.partition("\n")[0]) or _RLZ.search(Path(path).name)
+    if found is None:
+        raise InputError(
+            f"{path}: neither its first line nor its name says which realization it is of (such as rlz-003); "
+            "export with individual_rlzs = true."
+        )
+    number = str(int(found[1]))
+    if number not in named:
+        raise InputError(f"{path}: realization {number} is not in {realizations}.")
+    return f"realization {number}", named[number], read_openquake(text, str(path))[0]
 
 
-def _realizations(path: str | os.PathLike[str]) -> dict[int, Branch]:
+_RLZ = re.compile(r"rlz-(\d+)")
+
+
+def _realizations(path: str | os.PathLike[str]) -> dict[str, Branch]:
     """Branches without curves, by the number of the realization."""
     table = read_table(path)
     if not {"rlz_id", "weight"} <= set(table.titles):
@@ -157,32 +156,17 @@ def _realizations(path: str | os.PathLike[str]) -> dict[int, Branch]:
             f"{path}: expected OpenQuake's realizations with the columns rlz_id, branch_path and weight; found "
             f"{', '.join(table.titles)[:120] or 'nothing'}."
         )
-    found: dict[int, Branch] = {}
+    found: dict[str, Branch] = {}
     for row in table.rows(table.titles):
         try:
             number = int(row.cells["rlz_id"])
         except ValueError:
             raise row.error("rlz_id", "expected a whole number") from None
-        if number in found:
+        if str(number) in found:
             raise InputError(f"{path}: realization {number} is given twice.")
         name = f"rlz-{number:03d} {row.cells.get('branch_path', '')}".strip()
-        found[number] = Branch(name, row.number("weight"))
+        found[str(number)] = Branch(name, row.number("weight"))
     return found
-
-
-_RLZ = re.compile(r"rlz-(\d+)")
-
-
-def _realization_of(path: str | os.PathLike[str]) -> int:
-    """Which realization a file of hazard curves is of: its first line says so, or its name."""
-    head = read_text(path, LARGEST_FILE).partition("\n")[0]
-    found = _RLZ.search(head) or _RLZ.search(Path(path).name)
-    if found is None:
-        raise InputError(
-            f"{path}: neither its first line nor its name says which realization it is of (such as rlz-003); "
-            "export with individual_rlzs = true."
-        )
-    return int(found[1])
 
 
 GRID = 600  # Levels on which a hazard curve is integrated

@@ -34,10 +34,6 @@ class Vector(NamedTuple):
         """Turn clockwise by ``angle`` [rad]: R(angle)(x, y)."""
         return Vector(*geometry.turned(self.x, self.y, angle))
 
-    def minus(self, other: "Vector") -> "Vector":
-        """Return the vector from ``other``'s tip to this one's."""
-        return Vector(self.x - other.x, self.y - other.y)
-
 
 LARGEST = 1e6
 """Width and height of a block are no larger: one of 1e12 m falls for days, which takes minutes to compute [m]."""

@@ -66,7 +66,7 @@ def data_of(motions: MotionSet, asked: Request | None = None) -> dict[str, Any]:
     measures = dict.fromkeys((PGA, PGV, *level, *(each.measure for each in hazard)))
     intervals = sorted({motion.dt for motion in motions.ground})
     names = list(dict.fromkeys(motions.earthquakes))
-    left = {name: measurement.left for name, measurement in sources.MEASUREMENTS.items()}
+    left = {name: source.left for name, source in sources.MEASUREMENTS.items()}
     # modes of buildings of which only the storeys are known, as they are and with each property moved
     storeys = range(1, TABLED_STOREYS + 1)
     usual = {n: place.make_place({"floor": f"1/{n}"}, Path()) for n in storeys}

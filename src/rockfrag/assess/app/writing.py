@@ -13,7 +13,7 @@ from rockfrag.assess.app.contents import computing, data_of, script
 from rockfrag.assess.motions import MotionSet
 from rockfrag.assess.request import Request
 from rockfrag.assess.risk import SCALE_WORDS, STEPS
-from rockfrag.assess.sources import SOURCES
+from rockfrag.assess.sources import MEASUREMENTS, SOURCES
 from rockfrag.errors import InputError
 from rockfrag.files import write_text
 from rockfrag.records.motion import Motion
@@ -90,9 +90,7 @@ def texts(language: str) -> dict[str, Any]:
         return own
     return own | {
         "sources": {name: source.words for name, source in SOURCES.items()},
-        "measurements": {
-            name: source.measurement.words for name, source in SOURCES.items() if source.measurement
-        },
+        "measurements": {name: source.measurement for name, source in MEASUREMENTS.items()},
         "steps": [step.name for step in STEPS],
         "advice": [step.advice for step in STEPS],
         "scale": SCALE_WORDS,

@@ -100,7 +100,8 @@ WORK = np.dtype(
         *whole("old_closed", MOST, 2),
         *whole("old_slides", MOST),
         *whole("flip", 3),  # interface, what and how: the change that mends the worst of a mode
-        *whole("tried", TRIES),  # numbers of the modes that a search has tried ...
+        *whole("count"),  # of the modes that a search has tried ...
+        *whole("tried", TRIES),  # ... their numbers ...
         *fields("wrong", TRIES),  # ... and how far each is from consistent
         # laws of an impact: fraction of an end's impulse that the other end gets too, end that leaves at a given
         # speed (-1: none), and that speed

@@ -15,6 +15,7 @@ from rockfrag.engines.planar.solve import bias, eliminate, end_of, fill_row
 CONSISTENT = 2e-13
 UNSOLVED = 1e-6  # relative motion of a closed end where a mode was singular but for rounding [-]
 ROUNDING = 1e-10  # violation up to which a mode is taken where none is consistent
+FAILS, SEEN = -1, -2  # what a mode that is tried is, unless it is consistent
 SLIP = 2  # what changes between modes: whether the end 0 or 1 is closed, or how an interface slides
 
 
@@ -259,49 +260,45 @@ def _closed_ends(p, number):
 
 
 @kernel
-def _is_tried(w, count, number):
-    found = False
-    for i in range(count):
-        found = found or w.tried[i] == number
+def _place_of(w, number):
+    """Place of a mode in the list of those that have been tried, -1 if it is not there."""
+    for i in range(w.count):
+        if w.tried[i] == number:
+            return i
+    return -1
+
+
+@kernel
+def _try_anew(p, w, impact, force, motion, exclude):
+    """Try the mode in ``w`` and list it; its number if it is consistent, FAILS, or SEEN if it was tried before.
+
+    ``exclude``: number of a mode that is known to fail.  A full list takes no more.
+    """
+    number = mode_number(p, w.closed, w.slides)
+    if w.count == w.tried.size or _place_of(w, number) >= 0:
+        return SEEN
+    margin = try_mode(p, w, impact, force, motion)
+    w.tried[w.count] = number
+    w.wrong[w.count] = math.inf if number == exclude else max(0.0, -margin)
+    w.count += 1
+    return number if margin >= -CONSISTENT and number != exclude else FAILS
+
+
+@kernel
+def _descend(p, w, impact, force, motion, exclude):
+    """Mend the worst of the mode in ``w`` until none is left, its number, or a mode comes back."""
+    found = _try_anew(p, w, impact, force, motion, exclude)
+    while found == FAILS and w.flip[0] >= 0:
+        change(w, w.flip[0], w.flip[1], w.flip[2], impact)
+        found = _try_anew(p, w, impact, force, motion, exclude)
     return found
 
 
 @kernel
-def _try_next(p, w, impact, force, motion, exclude, count):
-    """Try the mode in ``w`` and enter it at place ``count`` of the list; whether it is consistent."""
-    margin = try_mode(p, w, impact, force, motion)
-    number = mode_number(p, w.closed, w.slides)
-    w.tried[count] = number
-    w.wrong[count] = math.inf if number == exclude else max(0.0, -margin)
-    return margin >= -CONSISTENT and number != exclude
-
-
-@kernel
-def _descend(p, w, impact, force, motion, exclude, count):
-    """Mend the worst of the mode in ``w`` until none is left or a mode comes back.
-
-    ``exclude``: number of a mode that is known to fail.  What is tried is added to the ``count`` in the list.
-    Returned are the number of modes in it, and the number of the consistent mode found (-1: none).
-    """
-    while count < w.tried.size:
-        number = mode_number(p, w.closed, w.slides)
-        if _is_tried(w, count, number):
-            return count, -1
-        consistent = _try_next(p, w, impact, force, motion, exclude, count)
-        count += 1
-        if consistent:
-            return count, number
-        if w.flip[0] < 0:
-            return count, -1
-        change(w, w.flip[0], w.flip[1], w.flip[2], impact)
-    return count, -1
-
-
-@kernel
-def _try_neighbours(p, w, impact, force, motion, exclude, count):
+def _try_neighbours(p, w, impact, force, motion, exclude):
     """Try all that differs in one thing from what has been tried, and so on; as :func:`_descend`."""
     at = 0
-    while at < count:
+    while at < w.count:
         for k in range(p.count):
             for what in range(5):
                 take_number(p, w, w.tried[at])
@@ -315,24 +312,18 @@ def _try_neighbours(p, w, impact, force, motion, exclude, count):
                     if not impact and w.moves[k] != 0 and what - 3 != w.moves[k]:
                         continue
                     w.slides[k] = what - 3
-                number = mode_number(p, w.closed, w.slides)
-                if count == w.tried.size:
-                    return count, -1
-                if _is_tried(w, count, number):
-                    continue
-                consistent = _try_next(p, w, impact, force, motion, exclude, count)
-                count += 1
-                if consistent:
-                    return count, number
+                found = _try_anew(p, w, impact, force, motion, exclude)
+                if found >= 0:
+                    return found
         at += 1
-    return count, -1
+    return FAILS
 
 
 @kernel
-def _least_wrong(w, count):
+def _least_wrong(w):
     """Place in the list of the mode that is least violated."""
     best = 0
-    for i in range(1, count):
+    for i in range(1, w.count):
         if w.wrong[i] < w.wrong[best]:
             best = i
     return best
@@ -350,8 +341,8 @@ def _only_touching(p, w):
 
 
 @kernel
-def _try_slips(p, w, impact, force, motion, found, count):
-    """Try the other ways to slide of a consistent mode; modes in the list, the one to take, whether more were."""
+def _try_slips(p, w, impact, force, motion, found):
+    """Try the other ways to slide of a consistent mode; the one to take, and whether more were consistent."""
     several = False
     for k in range(p.count):
         taken = (found >> (4 * k)) & 15
@@ -363,16 +354,11 @@ def _try_slips(p, w, impact, force, motion, found, count):
             if way == w.slides[k]:
                 continue
             w.slides[k] = way
-            number = mode_number(p, w.closed, w.slides)
-            if count == w.tried.size or _is_tried(w, count, number):
-                continue
-            consistent = _try_next(p, w, impact, force, motion, -1, count)
-            count += 1
-            if consistent:
-                several = True
-                if way == 0:
-                    found = number
-    return count, found, several
+            other = _try_anew(p, w, impact, force, motion, -1)
+            several = several or other >= 0
+            if other >= 0 and way == 0:
+                found = other
+    return found, several
 
 
 @kernel
@@ -402,29 +388,23 @@ def search(p, w, ah, av, impact, force, motion, exclude):
         for k in range(p.count):
             if w.moves[k] != 0 and w.closed[k, 0] + w.closed[k, 1] > 0:
                 w.slides[k] = w.moves[k]
-    count, found, several = 0, -1, False
+    w.count, found, several = 0, -1, False
     for start in range(3):
         if start > 0:
             _set_all(p, w, start - 1)
-        count, other = _descend(p, w, impact, force, motion, exclude, count)
+        other = _descend(p, w, impact, force, motion, exclude)
         if other >= 0:
             several = several or found >= 0
             if found < 0 or _closed_ends(p, other) < _closed_ends(p, found):
                 found = other
     if found >= 0:
-        count, found, more = _try_slips(p, w, impact, force, motion, found, count)
+        found, more = _try_slips(p, w, impact, force, motion, found)
         several = several or more
     if several:
         w.told.several_modes += 1
-    best = _least_wrong(w, count)
-    if found < 0 and w.wrong[best] > ROUNDING:
-        count, found = _try_neighbours(p, w, impact, force, motion, exclude, count)
-        best = _least_wrong(w, count)
+    if found < 0 and w.wrong[_least_wrong(w)] > ROUNDING:
+        found = _try_neighbours(p, w, impact, force, motion, exclude)
     if found < 0:
-        found = w.tried[best]
+        found = w.tried[_least_wrong(w)]
     take_number(p, w, found)
-    wrong = 0.0
-    for i in range(count):
-        if w.tried[i] == found:
-            wrong = w.wrong[i]
-    return wrong
+    return w.wrong[_place_of(w, found)]

@@ -9,6 +9,7 @@ import numpy as np
 import pandas as pd
 from markupsafe import Markup
 
+from rockfrag.arrays import Floats
 from rockfrag.engines.response import Response
 from rockfrag.motions.processing import factors_to_pga, scale_to_pga
 from rockfrag.records.motion import Motion
@@ -159,35 +160,20 @@ _FALLING = 0.7
 """Rotation at which a falling body is drawn [rad]."""
 
 
-def outlines(system: System, theta: Sequence[float]) -> list[list[Vector]]:
-    """Corners of each of one or two bodies at rotations [rad], from the middle of the base [m]; from below."""
-    bodies, tilts = system.in_plane().bodies, [contact.tilt for contact in system.contacts]
-    first = theta[0]
-    pivot = Vector(math.copysign(system.shapes[0].b, first), 0.0)
-    corners = [[_turned_about(at, first, pivot) for at in _corners(bodies[0], tilts[0])]]
-    if system.count == 2:
-        pile, second = system.pile, theta[1]
-        side = 1 if second >= first else -1
-        foot = Vector(side * pile.upper.b, 0.0).turned(pile.lean)
-        upper = _turned_about(Vector(*(pile.right if side > 0 else pile.left)), first, pivot)
-        aside = Vector(pile.above.x - pile.upper.x, 0.0)
-        rest = [at.minus(aside).turned(pile.lean) for at in _corners(bodies[1], tilts[1])]
-        corners.append([_turned_about(at, second, foot, upper) for at in rest])
-    return corners
-
-
-def _corners(body: RigidBody, tilt: float) -> list[Vector]:
-    """Corners of the box around a body as it stands, from the middle of its base [m]."""
-    half, tall = body.width / 2, body.height
-    box = ((-half, 0.0), (half, 0.0), (half, tall), (-half, tall))
-    return [Vector(*corner).turned(tilt) for corner in box]
-
-
-def _turned_about(point: Vector, angle: float, pivot: Vector, to: Vector | None = None) -> Vector:
-    """Turn a point about a pivot, which goes to another place if one is given."""
-    x, y = point.minus(pivot).turned(angle)
-    at = to or pivot
-    return Vector(at.x + x, at.y + y)
+def outlines(system: System, position: Floats, theta: Floats) -> list[list[Vector]]:
+    """Corners of the box around each body, centres of gravity and rotations as in a sample of a response [m]."""
+    lean, found = 0.0, []
+    each = zip(system.in_plane().bodies, system.contacts, system.shapes, strict=True)
+    for k, (body, contact, shape) in enumerate(each):
+        half, tall, centre = body.width / 2, body.height, Vector(*position[k].tolist())
+        corners = []
+        for x, y in ((-half, 0.0), (half, 0.0), (half, tall), (-half, tall)):
+            stands = Vector(x, y).turned(contact.tilt)
+            arm = Vector(stands.x - shape.x, stands.y - shape.y).turned(lean + float(theta[k]))
+            corners.append(Vector(centre.x + arm.x, centre.y + arm.y))
+        found.append(corners)
+        lean += contact.tilt
+    return found
 
 
 def frames_svg(system: System, motion: Motion, amplitudes_g: Sequence[float]) -> tuple[Markup, str]:
@@ -197,10 +183,10 @@ def frames_svg(system: System, motion: Motion, amplitudes_g: Sequence[float]) ->
     parts, words = [], []
     for place, peak in enumerate(amplitudes_g):
         response = simulate(system, scale_to_pga(motion, peak))
-        theta, outcome = _moment(response)
+        k, outcome = _moment(response)
         shift = (place + 0.5) * _WIDTH
-        colours = ("--red", "--blue")[-len(theta) :]
-        for block, colour in zip(outlines(system, theta), colours, strict=True):
+        shown = outlines(system, response.position[k], response.theta[k])
+        for block, colour in zip(shown, ("--red", "--blue")[-system.count :], strict=True):
             places = (f"{shift + scale * x:.1f},{_GROUND - scale * y:.1f}" for x, y in block)
             polygon = Markup('<polygon points="{}" fill="var({})"/>')
             parts.append(polygon.format(" ".join(places), colour))
@@ -216,12 +202,12 @@ def frames_svg(system: System, motion: Motion, amplitudes_g: Sequence[float]) ->
     return drawing.format(*about), said
 
 
-def _moment(response: Response) -> tuple[list[float], str]:
-    """Rotations at the moment that says most, and what becomes of the body."""
+def _moment(response: Response) -> tuple[int, str]:
+    """Sample of the moment that says most, and what becomes of the body."""
     turned = np.abs(response.theta).max(axis=1)
     if response.overturned:
         k = int(np.argmax(turned > _FALLING))
-        return response.theta[k].tolist(), f"overturns at {number(response.overturning_time, 1)} s"
+        return k, f"overturns at {number(response.overturning_time, 1)} s"
     k = int(turned.argmax())
     angle = number(math.degrees(float(turned[k])), 1)
-    return response.theta[k].tolist(), f"rocks to {angle}°" if turned[k] > 0 else "stays at rest"
+    return k, f"rocks to {angle}°" if turned[k] > 0 else "stays at rest"

@@ -22,42 +22,23 @@ from rockfrag.sentences import label, number, shortened
 from rockfrag.stages.tests import LIMITED, MOST_TESTED
 from rockfrag.units import CENTIMETRES_PER_METRE, GRAVITY
 
-_LEFT_OUT = (Column("motion", "Record"), Column("reason", "Why it could not be used"))
+_LEFT_OUT = ("motion = Record; reason = Why it could not be used",)
 _SHAKER = (
-    Column("motion", "Motion"),
-    Column("travel_cm_per_g", "Peak to peak [cm/g]", 2),
-    Column("excursion_cm_per_g", "From the start [cm/g]", 2),
-    Column("limit_g", "Fits up to [g]", 3),
-    Column("limited_by", "Limited by"),
+    "motion; travel_cm_per_g = Peak to peak [cm/g] .2",
+    "excursion_cm_per_g = From the start [cm/g] .2; limit_g = Fits up to [g] .3; limited_by",
 )
 _BODIES = (
-    Column("configuration", "Configuration"),
-    Column("stands_on", "Stands on"),
-    Column("width_cm", "Width [cm]", 1),
-    Column("height_cm", "Height [cm]", 1),
-    Column("mass_kg", "Mass [kg]", 3),
-    Column("slenderness", "Height / width", 2),
-    Column("critical_angle_rad", "Critical angle [rad]", 3),
-    Column("frequency_1_s", "Frequency parameter p [1/s]", 2),
-    Column("uplift_g", "Starts to rock at [g]", 3),
+    "configuration; stands_on; width_cm .1; height_cm .1; mass_kg .3",
+    "slenderness = Height / width .2; critical_angle_rad .3",
+    "frequency_1_s = Frequency parameter p [1/s] .2; uplift_g = Starts to rock at [g] .3",
 )
 _VALIDITY = (
-    Column("object", "Object"),
-    Column("side", "Pedestal"),
-    Column("tests", "Tests", 0),
-    Column("median", "Friction needed, median", 2),
-    Column("largest", "largest", 2),
-    Column("beyond", "No friction is enough", 0),
-    Column("lifted", "Lifts off", 0),
+    "object; side = Pedestal; tests .0; median = Friction needed, median .2; largest = largest .2",
+    "beyond = No friction is enough .0; lifted = Lifts off .0",
 )
 _SLIDING = (
-    Column("configuration", "Configuration"),
-    Column("cases", "Analyses", 0),
-    Column("slid", "Slides", 0),
-    Column("flew", "Flies", 0),
-    Column("largest_slip_cm", "Largest slip [cm]", 1),
-    Column("saved", "Saved by sliding", 0),
-    Column("felled", "Overturned by it", 0),
+    "configuration; cases = Analyses .0; slid = Slides .0; flew = Flies .0; largest_slip_cm .1",
+    "saved = Saved by sliding .0; felled = Overturned by it .0",
 )
 
 
@@ -157,7 +138,7 @@ def shaker_limits(limits: pd.DataFrame, tests: pd.DataFrame) -> Figure:
     rows = drawn_tests(lone if len(lone) else tests)
     rows = rows[rows["motion"].isin(motions)]
     names = list(dict.fromkeys(rows["configuration"]))
-    with style.one_panel(style.WIDEST, 1.2 + 0.22 * len(motions)) as (figure, axes):
+    with style.panels(style.WIDEST, 1.2 + 0.22 * len(motions)) as (figure, axes):
         largest = limits.set_index("motion")["limit_g"]
         axes.barh(range(len(motions)), largest[motions], color="#dddddd", height=0.8)
         handles: list[Artist] = [
@@ -190,21 +171,18 @@ MOST_PANELS = 8
 def acceleration_histories(motions: Sequence[Motion]) -> Figure:
     """Draw the acceleration of ``MOST_PANELS`` motions over time with its peak, a panel a motion, on one scale."""
     shown = motions[:MOST_PANELS]
-    with style.figure_style():
-        figure = style.new_figure(style.COLUMN_WIDTH, 0.5 + 0.95 * len(shown))
-        panels = figure.subplots(len(shown), 1, sharex=True, sharey=True, squeeze=False)[:, 0]
+    size, shape = (style.COLUMN_WIDTH, 0.5 + 0.95 * len(shown)), {"nrows": len(shown)}
+    with style.panels(*size, **shape, sharex=True, sharey=True, squeeze=False) as (figure, grid):
+        panels = grid[:, 0]
         highest = 1.12 * max(motion.pga for motion in shown) / GRAVITY
         for panel, motion in zip(panels, shown, strict=True):
             values = motion.acceleration / GRAVITY
-            peak = int(np.abs(values).argmax())
-            panel.axhline(0, color="#999999", linewidth=0.6, zorder=1)
-            panel.plot(motion.time, values, color=style.BLUE, linewidth=0.5)
-            panel.plot(motion.time[peak], values[peak], "o", color=style.RED, markersize=3)
+            peak = style.draw_history(panel, motion.time, values, linewidth=0.5)
             panel.set_ylim(-highest, highest)
             name, earthquake = motion.name, str(motion.metadata.get("earthquake") or "")
             if earthquake.casefold() not in name.casefold():
                 name = f"{earthquake}, {name}"
-            panel.set_title(f"{shortened(name, 44)}: {abs(values[peak]):.2f} g", loc="left")
+            panel.set_title(f"{shortened(name, 44)}: {peak:.2f} g", loc="left")
         style.letter_panels(panels, size=6.5)
         panels[-1].set_xlabel("Time [s]")
         panels[-1].set_xlim(0, max(motion.time[-1] for motion in shown))

@@ -5,7 +5,7 @@ from functools import partial
 import pandas as pd
 from matplotlib.figure import Figure
 
-from rockfrag.figure_style import COLUMN_WIDTH, OKABE_ITO, one_panel
+from rockfrag.figure_style import COLUMN_WIDTH, OKABE_ITO, panels
 from rockfrag.report.figures import GREY, MARKERS
 from rockfrag.report.page import Column, table_html
 from rockfrag.report.part import Results, Section
@@ -66,7 +66,7 @@ def floor_amplitudes(means: pd.DataFrame, axis: str) -> Figure:
     labels = list(dict.fromkeys(rows["label"]))
     place = {label: number for number, label in enumerate(labels)}
     values = [f"{value:g}" for value in rows.drop_duplicates("label")["value"]]
-    with one_panel(COLUMN_WIDTH, 2.8) as (figure, axes):
+    with panels(COLUMN_WIDTH, 2.8) as (figure, axes):
         for number, (floor, own) in enumerate(rows.groupby("floor", sort=False)):
             axes.plot(
                 own["label"].map(place),

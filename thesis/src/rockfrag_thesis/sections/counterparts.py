@@ -49,9 +49,7 @@ def slenderness_figure(
     known = means[(means["by"] == "configuration") & means["mean_g"].notna()]
     earthquakes = list(dict.fromkeys(tests["earthquake"]))
     crowded = len(tests) > amplitudes.MOST_MARKS
-    with style.figure_style():
-        figure = style.new_figure(style.COLUMN_WIDTH, 3.0)
-        grid = figure.subplots(1, 2, sharex=True, sharey=True)
+    with style.panels(style.COLUMN_WIDTH, 3.0, 1, 2, sharex=True, sharey=True) as (figure, grid):
         for axes, side in zip(grid, amplitudes.SIDES, strict=True):
             part = rows[rows["pedestal"] == side]
             if crowded:

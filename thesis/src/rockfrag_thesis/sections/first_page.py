@@ -11,7 +11,7 @@ import pandas as pd
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from rockfrag.figure_style import BLUE, COLUMN_WIDTH, ORANGE, one_panel
+from rockfrag.figure_style import BLUE, COLUMN_WIDTH, ORANGE, panels
 from rockfrag.report.answer import could_change, questions, rests_on, study_answer
 from rockfrag.report.figures import BAND, GREY
 from rockfrag.report.findings import FRICTION, ratio_text
@@ -173,7 +173,7 @@ def ratios_figure(effects: pd.DataFrame) -> Figure:
     whole, floors = effects[effects["scope"] == "whole"], effects[effects["scope"] == "floor"]
     rows = [("all pairs", row) for row in whole.to_dict("records")]
     rows += [(str(row["level"]), row) for row in floors.to_dict("records")]
-    with one_panel(COLUMN_WIDTH, 1.0 + 0.33 * len(rows)) as (figure, axes):
+    with panels(COLUMN_WIDTH, 1.0 + 0.33 * len(rows)) as (figure, axes):
         axes.axvspan(*NONE, color=BAND, lw=0)
         axes.axvline(1.0, color=GREY, lw=0.8)
         drawn = [1 / 1.25, 1.25]

@@ -12,7 +12,7 @@ from matplotlib.colors import SymLogNorm
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
-from rockfrag.figure_style import BLUE, COLUMN_WIDTH, GREEN, ORANGE, WIDEST, one_panel
+from rockfrag.figure_style import BLUE, COLUMN_WIDTH, GREEN, ORANGE, WIDEST, panels
 from rockfrag.report.page import Column, table_html
 from rockfrag.report.part import FigureSpec, Results, Section
 from rockfrag.shaketable.definitions import DEFINITION
@@ -79,7 +79,7 @@ def floor_order(means: pd.DataFrame, margins: pd.DataFrame, definition: str) -> 
     by_floor = means.pivot_table(index="value", columns="floor", values="mean_g", dropna=False)
     margins = margins[(margins["axis"] == "first_period_s") & (margins["hypothesis"] == "order")]
     order = margins[margins["definition"] == definition].sort_values("value")
-    with one_panel(COLUMN_WIDTH, 2.9) as (figure, axes):
+    with panels(COLUMN_WIDTH, 2.9) as (figure, axes):
         for floor, (name, colour, marker) in FLOOR_STYLES.items():
             of_floor = by_floor[floor]
             axes.plot(by_floor.index, of_floor, color=colour, marker=marker, ms=3, label=name)
@@ -114,7 +114,7 @@ def floor_hypotheses(margins: pd.DataFrame, axis: str, definition: str) -> Figur
     values = [f"{value:g}" for value in dict.fromkeys(chosen["value"])]
     table = chosen.pivot_table(index="hypothesis", columns="label", values="margin")
     table = table.reindex(index=list(HYPOTHESES), columns=labels)
-    with one_panel(WIDEST, 4.6) as (figure, axes):
+    with panels(WIDEST, 4.6) as (figure, axes):
         largest = 100 * max(0.1, float(np.nanmax(np.abs(table.to_numpy()), initial=0.0)))
         norm = SymLogNorm(linthresh=1, vmin=-largest, vmax=largest)
         image = axes.imshow(100 * table.to_numpy(), norm=norm, cmap="PuOr", aspect="auto")

@@ -11,7 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from rockfrag.figure_style import BLACK, OKABE_ITO, WIDEST, one_panel
+from rockfrag.figure_style import BLACK, OKABE_ITO, WIDEST, panels
 from rockfrag.pedestal.cluster_means import benjamini_hochberg
 from rockfrag.report.figures import BAND, GREY, MARKERS
 from rockfrag.report.findings import ratio_text
@@ -198,7 +198,7 @@ def sensitivity_analysis_figure(effects: pd.DataFrame, order: Sequence[str] = ()
         floor: {"color": OKABE_ITO[k % len(OKABE_ITO)], "marker": MARKERS[k % len(MARKERS)]}
         for k, floor in enumerate(floors if len(floors) > 1 else [])
     }
-    with one_panel(WIDEST, 1.0 + 0.26 * len(rows)) as (figure, axes):
+    with panels(WIDEST, 1.0 + 0.26 * len(rows)) as (figure, axes):
         axes.axvspan(*NONE, color=BAND, lw=0)
         axes.axvline(1.0, color=GREY, lw=0.8)
         drawn: list[float] = []
