@@ -22,8 +22,9 @@ from rockfrag.errors import InputError
 from rockfrag.fragility.model_error import CUT, SCAN
 from rockfrag.records.motion import GroundMotion, Motion
 from rockfrag.rocking.ensemble import LightBodies, overturns
-from rockfrag.rocking.options import largest_restitution, system_of
+from rockfrag.rocking.options import system_of
 from rockfrag.short_repr import short_repr
+from rockfrag.system import geometry
 from rockfrag.system.blocks import Block, Column
 from rockfrag.system.contact import Contact, Friction
 from rockfrag.system.mesh import Shape
@@ -174,7 +175,8 @@ def body_of(thing: Shape | Block | Column, guess: Mapping[str, float]) -> Block 
 
 def possible_restitution(block: Block, restitution: float) -> float | None:
     """Return a restitution that gains no energy: as given, or None, which conserves momentum, where it would."""
-    return restitution if restitution < largest_restitution(block) else None
+    largest = min(geometry.largest_restitution(block.shape, pivot) for pivot in (+1, -1))
+    return restitution if restitution < largest else None
 
 
 SCAN_ACCURACY_MM = 0.5

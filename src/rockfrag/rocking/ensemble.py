@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from typing import TypedDict, Unpack
@@ -192,8 +192,9 @@ def shaken(cases: Cases) -> Outcomes:
     held = [not system.loose and system.count < 3 for system in cases.systems]
     stuck = np.array(held) & np.array([system.planar or not in_space for system in cases.systems])
     if stuck.any() and not cases.request.forces:
-        _warn_of_weight(outcomes.minimum_gravity_ratio[stuck])
-        _warn_of_lifting(cases, outcomes, stuck)
+        for words in _light_words(cases, outcomes, stuck):
+            # past the door that shakes, and its keywords
+            warnings.warn(words, LightBodies, stacklevel=4)
     return outcomes
 
 
@@ -222,21 +223,16 @@ def overturned_cases(
     return overturned
 
 
-def _warn_of_weight(ratio: Floats) -> None:
-    """Warn of cases in which bodies may leave the ground because it drops."""
+def _light_words(cases: Cases, outcomes: Outcomes, stuck: NDArray[np.bool_]) -> Iterator[str]:
+    """Say in how many cases bodies may leave the ground: it drops, or squat ones rock in strong motions."""
+    ratio = outcomes.minimum_gravity_ratio[stuck]
     light, none = int((ratio < LIGHT).sum()), int((ratio <= 0).sum())
     if light:
-        warnings.warn(
+        yield (
             f"vertical: in {light} of {ratio.size} cases the ground drops so fast that a body keeps less than "
             f"half of its weight, in {none} of them none at all; pure rocking holds it on the ground there. "
-            "Give friction= to let it fly, or forces=True to see when contact is lost.",
-            LightBodies,
-            stacklevel=4,
+            "Give friction= to let it fly, or forces=True to see when contact is lost."
         )
-
-
-def _warn_of_lifting(cases: Cases, outcomes: Outcomes, stuck: NDArray[np.bool_]) -> None:
-    """Warn of bodies whose own rocking may take the weight off a contact: squat ones in strong motions."""
     unscaled = np.array([motion.x.pga for motion in cases.motions])
     peaks = unscaled[:, np.newaxis] * np.abs(cases.scales)
     # a body that rocks at less is too slender or too squat to lift itself
@@ -247,12 +243,10 @@ def _warn_of_lifting(cases: Cases, outcomes: Outcomes, stuck: NDArray[np.bool_])
     with np.errstate(invalid="ignore"):
         found = int((strong & (outcomes.peak_rotation > 0).any(axis=-1)).sum())
     if found:
-        warnings.warn(
+        yield (
             f"in {found} cases a squat body rocks so fast that its own motion may take the weight off a contact, "
             "which pure rocking holds shut. Give friction= to let it leave, or forces=True to see when contact is "
-            "lost.",
-            LightBodies,
-            stacklevel=4,
+            "lost."
         )
 
 

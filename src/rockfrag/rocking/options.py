@@ -12,7 +12,7 @@ from rockfrag.errors import InputError
 from rockfrag.input_checks import real_array, real_number, shown
 from rockfrag.laws import law_named, law_names, ratio
 from rockfrag.system import geometry
-from rockfrag.system.blocks import Block, SystemLike, as_system
+from rockfrag.system.blocks import SystemLike, as_system
 from rockfrag.system.contact import BY_MOMENTUM, Friction, ImpactLaw, checked_friction
 from rockfrag.system.system import Start, System, each_contact
 
@@ -74,13 +74,6 @@ class Sweep:
     resamples: int  # times that earthquakes are drawn again for intervals
     # largest displacement of each vertex of a base over its extent [-], and turn [rad]
     spread: float
-
-
-def largest_restitution(block: Block, pivot: int | None = None) -> float:
-    """Largest ratio with which no impact of the lone block (on a ``pivot``, or on either) gains energy [-]."""
-    if pivot is None:
-        return min(largest_restitution(block, +1), largest_restitution(block, -1))
-    return geometry.largest_restitution(block.shape, pivot)
 
 
 def system_of(

@@ -130,18 +130,10 @@ def ida_table(
     result = _shaken(configuration, motions, scales, threads, vertical)
     each = len(amplitudes_g)
 
-    def of_motions(texts: Sequence[str]) -> pa.DictionaryArray:
-        return _texts(texts, np.repeat(np.arange(len(motions)), each))
-
+    which = np.repeat(np.arange(len(motions)), each)
+    about = _about(configuration, motions)
     made = {
-        **{
-            key: of_motions([text] * len(motions)) for key, text in labels_of(configuration).items()
-        },
-        "motion": of_motions([motion.name for motion in motions]),
-        "earthquake": of_motions(
-            [motion.metadata.get("earthquake") or motion.name for motion in motions]
-        ),
-        "floor": of_motions([motion.metadata["floor"] for motion in motions]),
+        **{name: _texts(texts, which) for name, texts in about.items()},
         "amplitude_g": np.tile(amplitudes_g, len(motions)),
         **{
             state.column: state.reached(result)[0].ravel()
@@ -159,6 +151,16 @@ def ida_table(
     elif vertical is not None:
         made |= result.wide(0, ("minimum_gravity_ratio",))
     return pa.table(made)
+
+
+def _about(configuration: System, motions: Sequence[Motion]) -> dict[str, list[str]]:
+    """What tables call a configuration and each motion."""
+    labels = {key: [text] * len(motions) for key, text in labels_of(configuration).items()}
+    return labels | {
+        "motion": [motion.name for motion in motions],
+        "earthquake": [motion.metadata.get("earthquake") or motion.name for motion in motions],
+        "floor": [motion.metadata["floor"] for motion in motions],
+    }
 
 
 def _texts(texts: Sequence[str], which: NDArray[np.integer[Any]]) -> pa.DictionaryArray:
@@ -200,10 +202,7 @@ def as_recorded(
     itself = len(NEAR) // 2
     table = pd.DataFrame(
         {
-            **labels_of(configuration),
-            "motion": [motion.name for motion in motions],
-            "earthquake": [motion.metadata.get("earthquake") or motion.name for motion in motions],
-            "floor": [motion.metadata["floor"] for motion in motions],
+            **_about(configuration, motions),
             "pga_g": [motion.pga / GRAVITY for motion in motions],
             "rocked": limit_state_named(ROCKS).reached(result)[0, :, itself],
             "overturned": result.overturned[0, :, itself],

@@ -6,13 +6,12 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from rockfrag.engines.spatial._body import SIZE
-from rockfrag.engines.spatial.body import solid_body
 from rockfrag.engines.spatial.engine import history_table, run_case
 from rockfrag.system.body import Circle
 from rockfrag.units import GRAVITY
 
 from ...oracle.space_stepping import falls
-from .samples import DT, box, cylinder, synthetic_motion
+from .samples import DT, box, cylinder, solid, synthetic_motion
 
 ANGLES = np.arange(0.9, 44.2, 0.9)
 RADII = (1.0, 3.0, 10.0, 30.0)
@@ -106,7 +105,7 @@ def near_flat_pass(disk, speed, tilt=0.05, radius=0.3, g=9.81):
     """Turn of the contact in a pass near flat from a tilt at rest, and the tilt that is regained."""
     if disk:
         inertia = np.diag([radius**2 / 4, radius**2 / 4, radius**2 / 2])
-        body = solid_body(Circle(radius), inertia, (0.0, 0.0, 1e-12), (1e6, 1e6), g)
+        body = solid(Circle(radius), inertia, 1e-12, 1e6, g)
     else:
         body = cylinder(radius, radius, friction=1e6)
     # sideways: the lowest point goes round at this speed times the tilt

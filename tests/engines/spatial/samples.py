@@ -5,8 +5,10 @@ import math
 import numpy as np
 from scipy.signal import butter, sosfilt
 
-from rockfrag.engines.spatial.body import solid_body
-from rockfrag.system.body import Circle, Polygon
+from rockfrag.engines.spatial.body import kernel_body
+from rockfrag.system.body import Circle, Polygon, RigidBody
+from rockfrag.system.contact import Contact
+from rockfrag.system.system import System
 from rockfrag.units import GRAVITY
 
 DT = 0.01
@@ -18,12 +20,20 @@ def turned(vectors, angle):
     return np.asarray(vectors) @ np.array([[c, s], [-s, c]])
 
 
+def solid(base, inertia, height, friction, g=GRAVITY):
+    """A body of a unit of mass, whose centre is above the origin; its friction may be any."""
+    bodies = (RigidBody(1.0, inertia, (0.0, 0.0, height), base, 1.0),)
+    body = kernel_body(System(bodies, (Contact(),)), g)
+    body["static"] = body["kinetic"] = friction
+    return body
+
+
 def box(width, depth, height, friction=20.0):
     """A uniform box."""
     x, y = width / 2, depth / 2
     base = Polygon(((-x, -y), (x, -y), (x, y), (-x, y)))
     inertia = np.diag([depth**2 + height**2, width**2 + height**2, width**2 + depth**2]) / 12
-    return solid_body(base, inertia, (0.0, 0.0, height / 2), (friction, friction))
+    return solid(base, inertia, height / 2, friction)
 
 
 def cylinder(radius, height, friction=20.0, sides=0):
@@ -34,7 +44,7 @@ def cylinder(radius, height, friction=20.0, sides=0):
         base = Polygon(tuple(zip(radius * np.cos(angle), radius * np.sin(angle), strict=True)))
     across = (3 * radius**2 + height**2) / 12
     inertia = np.diag([across, across, radius**2 / 2])
-    return solid_body(base, inertia, (0.0, 0.0, height / 2), (friction, friction))
+    return solid(base, inertia, height / 2, friction)
 
 
 def synthetic_motion(rng, components=2, seconds=20.0, dt=DT):

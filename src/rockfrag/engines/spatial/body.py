@@ -1,7 +1,6 @@
 """Bodies as the kernels know them, made of a system of one body in space."""
 
 import math
-from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -24,28 +23,14 @@ NEVER_SLIDES = 20.0
 
 def kernel_body(system: System, g: float = GRAVITY) -> np.void:
     """Return the one body in space of a system, and its contact with the ground, as the kernels know it."""
-    body, contact = system.bodies[0], system.contacts[0]
-    static, kinetic = NEVER_SLIDES, NEVER_SLIDES
-    if contact.friction is not None:
-        static, kinetic = (min(value, NEVER_SLIDES) for value in contact.friction)
-    assert isinstance(body.base, (Circle, Polygon))
-    return solid_body(body.base, body.tensor / body.mass, body.centre, (static, kinetic), g)
-
-
-def solid_body(
-    base: Circle | Polygon,
-    inertia: Floats,
-    centre: Sequence[float],
-    friction: tuple[float, float],
-    g: float = GRAVITY,
-) -> np.void:
-    """Return a body on a base, with its tensor over its mass [m²] and its centre of mass over the base [m]."""
+    given, contact = system.bodies[0], system.contacts[0]
+    base, below = given.base, np.array(given.centre[:2])
     made = np.zeros(1, BODY)
     body: np.void = made[0]
-    below = np.array(centre[:2])
     if isinstance(base, Circle):
         body["rim"], body["centre"] = base.radius, np.array(base.centre) - below
     else:
+        assert isinstance(base, Polygon)
         count = len(base.vertices)
         if count > MOST_VERTICES:
             raise InputError(
@@ -53,8 +38,9 @@ def solid_body(
                 "leave out those that hardly turn the outline, or give a circle."
             )
         body["count"], body["points"][:count, :2] = count, np.array(base.vertices) - below
-    body["height"], body["inertia"] = centre[2], inertia
-    body["static"], body["kinetic"] = friction
+    body["height"], body["inertia"] = given.centre[2], given.tensor / given.mass
+    static, kinetic = contact.friction or (NEVER_SLIDES, NEVER_SLIDES)
+    body["static"], body["kinetic"] = min(static, NEVER_SLIDES), min(kinetic, NEVER_SLIDES)
     if not fill_body(made.view(np.recarray)[0], g):
         raise InputError(
             "base: the centre of mass is not above the base, so the body cannot stand."
