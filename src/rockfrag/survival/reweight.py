@@ -128,22 +128,16 @@ def reweight(site: Site, samples: int = SAMPLES) -> Reweighted:
     )
     curves = [branch.curves for branch in site.branches]
     shaking = shaking_rates(curves, wanted, site.velocity, reach)
-    expected = _expected_topplings(objects, shaking, errors, years, site.same_earthquakes)
+    expected = _expected_topplings(site, shaking, errors, years)
     log_survival = special.logsumexp(-expected, axis=0) - np.log(samples)
     logs = np.log([branch.weight for branch in site.branches]) + log_survival
     weights = np.exp(logs - special.logsumexp(logs))
     return Reweighted(site, np.asarray(log_survival), weights)
 
 
-def _expected_topplings(
-    objects: Sequence[StandingObject],
-    shaking: ShakingRates,
-    errors: Floats,
-    years: Floats,
-    same_earthquakes: bool,
-) -> Floats:
+def _expected_topplings(site: Site, shaking: ShakingRates, errors: Floats, years: Floats) -> Floats:
     """Expected number of earthquakes that topple an object that stands, (samples, branches)."""
-    indices = [body.index(shaking) for body in objects]
+    indices = [body.index(shaking) for body in site.objects]
     expected = np.zeros((len(errors), len(shaking.rates)))
     for at, (error, exposure) in enumerate(zip(errors, years, strict=True)):
         stands = np.ones(shaking.rates.shape[1])
@@ -151,8 +145,8 @@ def _expected_topplings(
         order = np.argsort(-exposure, kind="stable")
         until = np.append(exposure[order[1:]], 0.0)
         for k, next_exposure in zip(order, until, strict=True):
-            topples = objects[k].probability(indices[k], error[k])
-            if same_earthquakes:
+            topples = site.objects[k].probability(indices[k], error[k])
+            if site.same_earthquakes:
                 stands = stands * (1.0 - topples)
                 expected[at] += (exposure[k] - next_exposure) * (shaking.rates @ (1.0 - stands))
             else:
