@@ -55,10 +55,11 @@ class Integrator:
 
     ``motions`` are the horizontal and vertical acceleration of the ground [m/s²], shape (2, n), zero from the last
     sample on; ``longest`` is the longest step and ``tail`` the longest free motion after the last sample [s].
-    A model adds ``y``, coordinates and velocities; ``take(y)``, which goes on from there; ``row()``, rotations [rad]
-    and slips [m]; ``resting()``, whether all stands in full contact; ``rates(t, y)`` of change of y; ``watched(t, y)``,
-    what must stay positive until the next contact event; ``approaches(y)``, rates at which open contacts part; and
-    ``apply(t, keys)``, which changes the contact state where these have vanished, or the motion begins or ends.
+    A model adds ``y``, coordinates and velocities; ``take(y)``, which goes on from there; ``row()``, rotations
+    [rad] and slips [m]; ``resting()``, whether all stands in full contact; ``rates(t, y)`` of change of y;
+    ``watched(t, y)``, what must stay positive until the next contact event; ``approaches(y)``, rates at which open
+    contacts part; and ``apply(t, keys)``, which changes the contact state where these have vanished, or where the
+    motion begins or ends.
     """
 
     def __init__(self, motions: Array, dt: float, longest: float, tail: float) -> None:
