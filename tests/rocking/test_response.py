@@ -90,14 +90,6 @@ def test_forces_of_a_resting_stack_are_its_weights() -> None:
     assert response.friction_demand == pytest.approx([1.5 / G] * 2, rel=1e-12)
 
 
-def test_friction_at_the_threshold_is_b_over_h() -> None:
-    # just below rocking the friction that a rigid block needs is a/g = b/h
-    a = 0.9999 * T2.b / T2.h * G
-    response = simulate(T2, np.full(20, a), DT)
-    assert response.friction_demand[0] == pytest.approx(0.9999 * T2.b / T2.h, rel=1e-9)
-    assert response.least_normal_force[0] == pytest.approx(T2.mass * G, rel=1e-12)
-
-
 def test_forces_of_a_rocking_block_follow_from_newton() -> None:
     response = shaken(T2, 3, 0.3)
     rows = np.flatnonzero((response.state[:, 0] != 0) & (np.abs(response.theta[:, 0]) < 0.2))

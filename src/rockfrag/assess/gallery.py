@@ -25,24 +25,19 @@ from rockfrag.assess.risk import probability_in
 from rockfrag.assess.words import estimate_words, gallery_says, mitigation_words
 from rockfrag.figure_style import BLUE, COLUMN_WIDTH, PAGE_WIDTH, panels, plain_log
 from rockfrag.files import write_table, write_text
-from rockfrag.report.page import Column, Page, table_html
+from rockfrag.report.page import Page, table_html
 from rockfrag.report.part import Answer, FigureSpec, Finding, Section
 
 MOST_DRAWN = 40  # Objects of which the correlation is drawn: those that add most
 
 RANKING = (
-    Column("name", "Object"),
-    Column("place", "Stands"),
-    Column("probability", "Topples (90 % interval)", numeric=True),
-    Column("contribution", "Part of the mean [%]", 1),
-    Column("change", "What helps most"),
+    "name = Object; place = Stands; probability = Topples (90 % interval) #",
+    "contribution = Part of the mean [%] .1; change = What helps most",
 )
 NUMBERS = (
-    Column("at_least", "At least so many", 0),
-    Column("rate", "Earthquakes that topple so many [1/year]", numeric=True),
-    Column("probability", "Probability [%]", 2),
-    Column("probability_lower", "Lower limit [%]", 2),
-    Column("probability_upper", "Upper limit [%]", 2),
+    "at_least = At least so many .0; rate = Earthquakes that topple so many [1/year] #",
+    "probability = Probability [%] .2; probability_lower = Lower limit [%] .2",
+    "probability_upper = Upper limit [%] .2",
 )
 
 
@@ -104,7 +99,8 @@ def _ranking(inventory: Inventory, joint: JointRisk, mean: str) -> Section:
         change = mitigation_words(found, best) if best else "–"
         part = 100 * float(parts[request.name])
         rows.append((request.name, request.place.words, estimate_words(found.main), part, change))
-    ranked = pd.DataFrame(rows, columns=[column.name for column in RANKING])
+    names = ["name", "place", "probability", "contribution", "change"]
+    ranked = pd.DataFrame(rows, columns=names)
     caption = (
         "The objects, the one that adds most first; each change is simulated as a body of its own."
     )

@@ -143,7 +143,7 @@ def _fractions(
     nothing = np.full(fraction.shape, np.nan)
     if groups < 2:
         return Fractions(im, fraction, nothing, nothing, theta, UNKNOWN, beta, UNKNOWN)
-    weights = intervals.all_but_one(groups, 0)
+    weights = intervals.all_but_one(groups)
     left_out = np.array(
         [_rising(f, t) for f, t in zip(weights @ fell, weights @ total, strict=True)]
     )

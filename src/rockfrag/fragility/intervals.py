@@ -232,19 +232,17 @@ def _beta(coefficients: Floats) -> Floats:
     return np.asarray(np.where(np.isnan(slope), np.nan, value))
 
 
-def all_but_one(groups: int, seed: int = 0) -> Floats:
+def all_but_one(groups: int) -> Floats:
     """Weights that leave one group out in turn, or one of ``MOST_BLOCKS`` blocks of many groups."""
-    if groups <= MOST_BLOCKS:
-        return np.asarray(1.0 - np.eye(groups))
-    block = blocks_of(groups, seed)
-    return np.asarray(block != np.arange(MOST_BLOCKS)[:, None], dtype=np.float64)
+    block = blocks_of(groups)
+    return np.asarray(block != np.arange(min(groups, MOST_BLOCKS))[:, None], dtype=np.float64)
 
 
-def blocks_of(groups: int, seed: int = 0) -> NDArray[np.intp]:
+def blocks_of(groups: int) -> NDArray[np.intp]:
     """Block of each group, shape (groups,): itself, or one of ``MOST_BLOCKS`` of many groups."""
     if groups <= MOST_BLOCKS:
         return np.arange(groups)
-    return np.asarray(np.random.default_rng(seed).permutation(groups) % MOST_BLOCKS)
+    return np.asarray(np.random.default_rng(0).permutation(groups) % MOST_BLOCKS)
 
 
 def jackknife_error(left_out: Floats) -> Floats:

@@ -137,13 +137,13 @@ def _check_amplitudes(clean: pd.DataFrame) -> None:
     clean.loc[left, "lower_g"] = 0.0
     clean.loc[~right, "lower_g"] = clean["lower_g"].fillna(clean["amplitude_g"])
     clean.loc[~right, "upper_g"] = clean["upper_g"].fillna(clean["amplitude_g"])
-    known = clean["amplitude_g"].where(~right, clean["lower_g"]).where(~left, clean["upper_g"])
-    for row in clean.index[~(np.isfinite(known) & (known > 0))]:
-        name = "lower_g" if right[row] else "upper_g" if left[row] else "amplitude_g"
-        raise InputError(
-            f"Table of tests, row {row + 1}: {name} is {known[row]}; give the positive number of g at which the "
-            "test overturned, or censored = right with the largest amplitude survived as lower_g."
+    for name, here in (("amplitude_g", ~(right | left)), ("lower_g", right), ("upper_g", left)):
+        known = np.isfinite(clean[name]) & (clean[name] > 0)
+        words = (
+            "is {}; give the positive number of g at which the test overturned, or censored = right with the "
+            "largest amplitude survived as lower_g."
         )
+        _refuse(clean, here & ~known, name, words)
     for row in clean.index[~right & ~(clean["lower_g"] <= clean["upper_g"])]:
         raise InputError(
             f"Table of tests, row {row + 1}: lower_g {clean['lower_g'].iloc[row]} exceeds "

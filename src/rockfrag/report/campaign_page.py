@@ -14,16 +14,7 @@ from rockfrag.campaign.comparison import FEWEST_VOTERS, REPEATS
 from rockfrag.campaign.standing import preferred_edges
 from rockfrag.fragility.observations import name_and_unit
 from rockfrag.fragility.vector import VectorTables
-from rockfrag.report.page import (
-    Column,
-    Row,
-    Words,
-    by_row,
-    estimated,
-    p_values,
-    table_html,
-    text_table,
-)
+from rockfrag.report.page import Column, Columns, Row, Words, by_row, table_html, text_table
 from rockfrag.report.part import Answer, FigureSpec, Finding, Says, Section
 from rockfrag.report.sections.curves import two_measures_section
 from rockfrag.report.study_report import write_page
@@ -137,27 +128,19 @@ def _ordering(fragility: pd.DataFrame) -> str:
 
 
 _RIGHT = Column("right", "Right", by_row(_percent))
-_ERRORS = (Column("false_alarms", "False alarms", 1), Column("missed", "Missed", 1))
-_AGREEMENT = (
-    Column("who", "Predicted by"),
-    Column("tests", "Tests", 0),
+_ERRORS = "false_alarms .1; missed .1"
+_AGREEMENT: Columns = (
+    "who = Predicted by; tests .0",
     _RIGHT,
-    *_ERRORS,
+    _ERRORS,
     Column("better", "Simulation better by [percentage points]", by_row(_better)),
-    p_values("p", "p"),
-    Column("judged", "Judged"),
+    "p = p p; judged",
 )
 _ROCKING = (
     _RIGHT,
-    Column("false_alarms", "Rocked in the simulation only", 1),
-    Column("missed", "Rocked in the laboratory only", 1),
+    "false_alarms = Rocked in the simulation only .1; missed = Rocked in the laboratory only .1",
 )
-_CONDITIONING = (
-    Column("conditioning", "Conditioning"),
-    Column("trials", "Trials", 0),
-    _RIGHT,
-    *_ERRORS,
-)
+_CONDITIONING = ("conditioning; trials .0", _RIGHT, _ERRORS)
 
 
 def _agreement(tables: dict[str, pd.DataFrame], found: Finding, level: str) -> Section:
@@ -179,12 +162,8 @@ _OUTCOMES = {
     VOTES: "simulated, votes",
 }
 _FRAGILITY = (
-    Column("measure", "Measure"),
-    Column("who", "Outcomes"),
-    estimated("theta", "Median θ", 3),
-    estimated("beta", "Dispersion β", 2),
-    estimated("theta_ratio", "θ over measured", 2),
-    estimated("beta_ratio", "β over measured", 2),
+    "measure; who = Outcomes; theta = Median θ ±3; beta = Dispersion β ±2",
+    "theta_ratio = θ over measured ±2; beta_ratio = β over measured ±2",
 )
 
 
@@ -216,21 +195,15 @@ def _tests(study: CampaignStudy, tables: dict[str, pd.DataFrame]) -> Section:
         return by_row(lambda row: f"{row[f'{name}_from']:.3g} to {row[f'{name}_to']:.3g}")
 
     shown = regions[regions["tests"] > 0].assign(right=100 * regions["right"])
-    columns = (
+    columns: Columns = (
         *(Column(name, labels[name], spans(name)) for name in names),
-        Column("tests", "Tests", 0),
-        Column("overturned", "Overturned", 0),
-        Column("simulated", "Simulated", 0),
-        Column("right", "Right [%]", 0),
+        "tests .0; overturned .0; simulated .0; right = Right [%] .0",
     )
     wrong = tests[~tests["right"]].assign(votes=lambda t: 100 * t["votes_to_overturn"])
-    wrong_columns = (
-        Column("test", "Test"),
-        Column("group", "Input motion"),
+    wrong_columns: Columns = (
+        "test; group = Input motion",
         *(Column(name, labels[name], 3) for name in listed),
-        Column("overturned", "Overturned"),
-        Column("votes", "Votes to overturn [%]", 0),
-        Column("near_critical", "Near-critical"),
+        "overturned; votes = Votes to overturn [%] .0; near_critical = Near-critical",
     )
     parts: list[Markup | FigureSpec] = []
     if len(names) == 2:
@@ -255,15 +228,10 @@ _PROPERTIES = {
     "alpha_deg": "Smaller critical angle [°]",
 }
 _CONTACT = (
-    Column("contact_tolerance_mm", "Contact tolerance [mm]", 2),
-    Column("worst_direction_deg", "Worst direction [°]", 0),
-    Column("alpha_deg", "Critical angle [°]", 1),
-    Column("alpha_lower_deg", "5 % of scans", 1),
-    Column("alpha_upper_deg", "95 % of scans", 1),
-    Column("trials", "Trials near it", 0),
-    Column("width_m", "Their base [cm]", 1),
-    Column("overturned", "Overturn in [% of tests]", 0),
-    Column("right", "Right, in sample [%]", 0),
+    "contact_tolerance_mm .2; worst_direction_deg .0; alpha_deg = Critical angle [°] .1",
+    "alpha_lower_deg = 5 % of scans .1; alpha_upper_deg = 95 % of scans .1",
+    "trials = Trials near it .0; width_m = Their base [cm] .1",
+    "overturned = Overturn in [% of tests] .0; right = Right, in sample [%] .0",
 )
 
 

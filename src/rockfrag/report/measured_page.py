@@ -18,7 +18,7 @@ from rockfrag.fragility.estimators import Fragility
 from rockfrag.fragility.observations import Floats, Observations
 from rockfrag.fragility.user_table import UserFragility, fit_user_table
 from rockfrag.report.figures import GREY
-from rockfrag.report.page import Column, estimated, p_values, table_html
+from rockfrag.report.page import Columns, p_values, table_html
 from rockfrag.report.part import Answer, FigureSpec, Says, Section
 from rockfrag.report.sections.curves import (
     axis_label,
@@ -53,7 +53,10 @@ def run(job: Job[MeasuredTable]) -> Results:
     answer = _answer(study, found, measures)
     choice = found.choice.table
     given = [name for name in map(str, choice.columns) if name.startswith("p_")]
-    columns = [*_CHOICE, *(p_values(name, f"p, {name.removeprefix('p_')}") for name in given)]
+    columns: Columns = [
+        *_CHOICE,
+        *(p_values(name, f"p, {name.removeprefix('p_')}") for name in given),
+    ]
     table = table_html(choice, columns, "Measures compared on the same tests, best first.")
     sections = [
         says.section("measure", [table], answer.sentences[0]),
@@ -113,28 +116,11 @@ def _level(study: MeasuredTable) -> str:
 
 
 _CHOICE = (
-    Column("im", "Measure"),
-    Column("unit", "Unit"),
-    Column("theta", "Median θ", 3),
-    Column("beta", "β", 3),
-    Column("aic", "AIC", 1),
-    Column("auc", "AUC", 3),
-    Column("chosen_fraction", "Fraction of bootstrap samples in which it is best", 2),
+    "im = Measure; unit; theta = Median θ .3; beta = β .3; aic = AIC .1; auc = AUC .3",
+    "chosen_fraction = Fraction of bootstrap samples in which it is best .2",
 )
-_CURVES = (
-    Column("im", "Measure"),
-    Column("unit", "Unit"),
-    estimated("theta", "Median θ"),
-    estimated("beta", "β"),
-    Column("aic", "AIC", 1),
-)
-_FITS = (
-    Column("measure", "Measure"),
-    Column("deviance", "Deviance", 1),
-    p_values("p_value", "p"),
-    Column("brier", "Brier score", 3),
-    Column("finding", "Finding"),
-)
+_CURVES = ("im = Measure; unit; theta = Median θ ±; beta = β ±; aic = AIC .1",)
+_FITS = ("measure; deviance .1; p_value = p p; brier = Brier score .3; finding",)
 
 
 def _curves(

@@ -19,7 +19,7 @@ from rockfrag.figure_style import BLUE, GREEN, PURPLE, RED, save_figure
 from rockfrag.processes import in_processes
 from rockfrag.report.figures import BAND, GREY
 from rockfrag.report.part import Answer, FigureSpec, Section
-from rockfrag.sentences import PART, Macros, estimates, number, probability
+from rockfrag.sentences import PART, Macros, estimates, number, probability, sentence
 
 TEMPLATES = Environment(
     loader=PackageLoader("rockfrag.report"),
@@ -57,13 +57,38 @@ Words = Callable[[pd.DataFrame], Iterable[str]]
 
 @dataclass(frozen=True)
 class Column:
-    """A column of a table on the page."""
+    """A column of a table on the page, see :func:`column`."""
 
     name: str  # Column of the data
     title: str  # What its head says, with the unit
     # Decimals of numbers, or what words the column of a table; None for text
     shown: int | Words | None = None
     numeric: bool = False  # Whether text is of numbers and stands to the right, as they do
+
+
+_SPEC = re.compile(r"(\w+)(?: = (.+?))?(?: ([.±#p])(\d?))?")
+_UNITS = {unit: unit for unit in ("m", "cm", "mm", "kg", "g", "rad", "bit")} | {"deg": "°"}
+
+
+Columns = Sequence[str | Column]
+"""Columns of a table, of which a text names some: ``width_cm .1; ratio = Height / width .2; floor``."""
+
+
+def column(words: str) -> Column:
+    """Read a column such as ``width_cm .1`` or ``ratio = Height / width .2``.
+
+    A title that is not given is the name in words with its unit, ``Width [cm]``. Behind it stand the decimals of
+    numbers (``.2``) or of estimates (``±2``, or ``±``), ``p`` of p values, and ``#`` of texts that are numeric.
+    """
+    spec = _SPEC.fullmatch(words)
+    assert spec is not None
+    name, title, kind, digits = spec.groups()
+    stem, _, unit = name.rpartition("_")
+    usual = f"{stem} [{_UNITS[unit]}]" if stem and unit in _UNITS else name
+    title, decimals = title or sentence(usual.replace("_", " ")), int(digits) if digits else None
+    if kind == "±":
+        return estimated(name, title, decimals)
+    return p_values(name, title) if kind == "p" else Column(name, title, decimals, kind == "#")
 
 
 def by_row(words: Callable[[Row], str]) -> Words:
@@ -100,12 +125,13 @@ MOST_TABLE_ROWS = 500
 """Rows of a table on the page; of more the first so many, and the name of the file that has all."""
 
 
-def table_html(
-    table: pd.DataFrame, columns: Sequence[Column], caption: str, file: str = ""
-) -> Markup:
+def table_html(table: pd.DataFrame, shown: Columns, caption: str, file: str = "") -> Markup:
     """Render a table, empty without rows; where the file with all rows is named ``MOST_TABLE_ROWS`` are shown."""
     if table.empty:
         return Markup("")
+    columns: list[Column] = []
+    for part in shown:
+        columns += map(column, part.split("; ")) if isinstance(part, str) else [part]
     if file and len(table) > MOST_TABLE_ROWS:
         caption += f" The first {MOST_TABLE_ROWS} of {len(table)}; {file} has all."
         table = table.iloc[:MOST_TABLE_ROWS]

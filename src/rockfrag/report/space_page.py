@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from rockfrag import figure_style as style
 from rockfrag.records.motion import GroundMotion, Motion
 from rockfrag.report.live.space import Standing, live_in_space
-from rockfrag.report.page import Column, estimated, table_html
+from rockfrag.report.page import table_html
 from rockfrag.report.part import Answer, Says, Section
 from rockfrag.report.study_report import write_page
 from rockfrag.rocking.space_medians import LOSS, NO_LOSS, PLANAR, body_of
@@ -68,12 +68,9 @@ WORDS = {
     "worst_direction": "worst direction",
 }
 _MEDIANS = (
-    Column("body", "Base"),
-    Column("slenderness", "Height over width", 1),
-    Column("height_m", "Height [m]", 1),
-    Column("space_g", "Median in space [g]", 2),
-    *(estimated(name, f"Over {WORDS[name]}", 2) for name in PLANAR),
-    Column("flip_rate", "Flip rate", 2),
+    "body = Base; slenderness = Height over width .1; height_m .1; space_g = Median in space [g] .2",
+    *(f"{name} = Over {WORDS[name]} ±2" for name in PLANAR),
+    "flip_rate .2",
 )
 COLOURS = dict(zip(PLANAR, (style.BLUE, style.ORANGE, style.GREEN), strict=True))
 

@@ -13,26 +13,17 @@ from matplotlib.figure import Figure
 
 from rockfrag import figure_style as style
 from rockfrag.files import file_name, write_table, write_text
-from rockfrag.report.page import Column, Page, table_html
+from rockfrag.report.page import Page, table_html
 from rockfrag.report.part import Answer, Finding, Says, Section
 from rockfrag.survival.reweight import DECISION_RATE, LIMITS, RULED_OUT, Constrained
 
-BRANCHES = (
-    Column("branch", "Branch"),
-    Column("weight_before", "Weight before", 4),
-    Column("weight_after", "Weight after", 4),
-    Column("survival", "Probability that all stand", 4),
-)
+BRANCHES = ("branch; weight_before .4; weight_after .4; survival = Probability that all stand .4",)
 OBJECTS = (
-    Column("object", "Object"),
-    Column("information_bit", "Information alone [bit]", 2),
-    Column("level_ratio_alone", "Level at 1e-4 with it alone, after / before", 2),
-    Column("level_ratio_without", "Level at 1e-4 without it, after / before", 2),
+    "object; information_bit = Information alone [bit] .2",
+    "level_ratio_alone = Level at 1e-4 with it alone, after / before .2",
+    "level_ratio_without = Level at 1e-4 without it, after / before .2",
 )
-ASSUMED = (
-    Column("assumption", "Assumption"),
-    Column("level_ratio", "Level at 1e-4, after / before", 2),
-)
+ASSUMED = ("assumption; level_ratio = Level at 1e-4, after / before .2",)
 
 
 def write_constrained(found: Constrained, folder: str | os.PathLike[str]) -> Path:
@@ -143,13 +134,11 @@ def page_of(found: Constrained) -> str:
 def _hazard(found: Constrained) -> Markup:
     unit, table = found.site.measure.unit, found.result.ratios()
     table = table.assign(rate=table["annual_rate"].map("{:g}".format))
-    shown = [
-        Column("rate", "Annual rate [1/year]", numeric=True),
-        Column("level_before", f"Before [{unit}]", 3),
-        Column("level_after", f"After [{unit}]", 3),
-        Column("level_ratio", "Level after / before", 2),
-        Column("rate_ratio", "Rate of the level before, after / before", 2),
-    ]
+    shown = (
+        f"rate = Annual rate [1/year] #; level_before = Before [{unit}] .3",
+        f"level_after = After [{unit}] .3; level_ratio = Level after / before .2",
+        "rate_ratio = Rate of the level before, after / before .2",
+    )
     return table_html(table, shown, "Mean hazard at annual rates of 1e-2 to 1e-5.")
 
 

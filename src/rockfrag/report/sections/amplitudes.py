@@ -16,17 +16,12 @@ from rockfrag import figure_style as style
 from rockfrag.files import file_name
 from rockfrag.pedestal.paired_tests import with_counterparts
 from rockfrag.report import figures, findings
-from rockfrag.report.page import Column, table_html
+from rockfrag.report.page import Column, Columns, table_html
 from rockfrag.report.part import Results, Section, says
 from rockfrag.sentences import amplitude, label, shortened
 
-_MOTION = (Column("earthquake", "Earthquake"), Column("floor", "Floor"), Column("motion", "Motion"))
-_MEANS = (
-    Column("what", "Of"),
-    Column("mean_g", "Geometric mean [g]", 3),
-    Column("motions", "Tests each", 0),
-    Column("of", "of", 0),
-)
+_MOTION = "earthquake; floor; motion"
+_MEANS = ("what = Of; mean_g = Geometric mean [g] .3; motions = Tests each .0; of = of .0",)
 
 
 def _wide(table: pd.DataFrame, texts: list[str], about: tuple[str, ...]) -> pd.DataFrame:
@@ -42,7 +37,7 @@ def as_recorded(results: Results) -> Section:
     """What the motions do as strong as they were recorded."""
     recorded = results.table("as_recorded")
     names = recorded["configuration"].unique()
-    columns = [*_MOTION, Column("pga_g", "Peak [g]", 3), *(Column(name, name) for name in names)]
+    columns: Columns = [_MOTION, "pga_g = Peak [g] .3", *(Column(name, name) for name in names)]
     found = findings.recorded_found(recorded)
     motions = recorded["motion"].nunique()
     draw = partial(recorded_map, recorded)
@@ -66,7 +61,7 @@ def amplitudes(results: Results) -> Section:
     resurrections = findings.resurrections_found(survived, results.table("tests"))
     tests = tests[tests["repetition"] == tests["repetition"].min()]
     names = tests["configuration"].unique()
-    columns = [*_MOTION, *(Column(name, f"{name} [g]", numeric=True) for name in names)]
+    columns: Columns = [_MOTION, *(Column(name, f"{name} [g]", numeric=True) for name in names)]
     texts = [amplitude(test) for test in tests.to_dict("records")]
     shown = _wide(tests, texts, ("earthquake", "floor", "motion"))
     caption = "Overturning amplitude of every test (step protocol)."

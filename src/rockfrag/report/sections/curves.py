@@ -21,37 +21,22 @@ from rockfrag.outcomes.limit_states import OVERTURNS, limit_states
 from rockfrag.report.answer import has_one_record
 from rockfrag.report.figures import GREY
 from rockfrag.report.findings import ONE_MOTION, strength_found
-from rockfrag.report.page import Column, Row, estimated, p_values, table_html
+from rockfrag.report.page import Row, table_html
 from rockfrag.report.part import FigureSpec, Results, Section, says
 from rockfrag.sentences import decimals_of, estimates, number, sentence, shortened
 from rockfrag.stages.fragility import best_of
 
 _TWO_MEASURES = (
-    Column("configuration", "Object"),
-    Column("pair", "Measures"),
-    Column("c0", "b₀", 2),
-    Column("c1", "b₁", 2),
-    Column("c2", "b₂", 2),
-    Column("c12", "b₁₂", 2),
-    Column("aic", "AIC", 1),
-    Column("p_interaction", "p of no interaction", 3),
-    Column("p_fit", "p of the fit", 3),
+    "configuration = Object; pair = Measures; c0 = b₀ .2; c1 = b₁ .2; c2 = b₂ .2; c12 = b₁₂ .2",
+    "aic = AIC .1; p_interaction = p of no interaction .3; p_fit = p of the fit .3",
 )
 _FLOORS = (
-    Column("configuration", "Configuration"),
-    Column("floor", "Floor"),
-    Column("state_text", "Limit state"),
-    Column("im", "Measure"),
-    Column("theta_text", "Median θ [g]", numeric=True),
-    estimated("beta", "Dispersion β"),
+    "configuration; floor; state_text = Limit state; im = Measure; theta_text = Median θ [g] #",
+    "beta = Dispersion β ±",
 )
 _MEASURES = (
-    Column("configuration", "Configuration"),
-    Column("im", "Recommended"),
-    Column("beta_amplitude", "β", 3),
-    Column("auc", "AUC", 3),
-    Column("chosen_fraction", "Fraction of bootstrap samples in which it is best", 2),
-    Column("words", "Reasons"),
+    "configuration; im = Recommended; beta_amplitude = β .3; auc = AUC .3",
+    "chosen_fraction = Fraction of bootstrap samples in which it is best .2; words = Reasons",
 )
 
 
@@ -109,17 +94,13 @@ def _tables(curves: pd.DataFrame, level: str) -> list[Markup]:
     ):
         shown = rows.assign(lean=[_lean(row) for row in rows.to_dict("records")])
         columns = [
-            Column("configuration", "Configuration"),
-            estimated("theta", f"Median θ [{unit}]"),
-            estimated("beta", "Dispersion β"),
-            p_values("p_fit", "p of the fit"),
-            Column("lean", "Most influential"),
+            f"configuration; theta = Median θ [{unit}] ±; beta = Dispersion β ±",
+            "p_fit = p of the fit p; lean = Most influential",
         ]
         if (rows["p_fit"] < REJECTED).any():
-            columns += [
-                estimated("theta_isotonic", "Nonparametric median"),
-                estimated("beta_isotonic", "Nonparametric β"),
-            ]
+            columns.append(
+                "theta_isotonic = Nonparametric median ±; beta_isotonic = Nonparametric β ±"
+            )
         caption = f"{sentence(str(measure))}, {str(definition).replace('_', ' ')}, with {level} intervals."
         tables.append(table_html(shown, columns, caption))
     return tables

@@ -16,7 +16,7 @@ from rockfrag import figure_style as style
 from rockfrag.report import figures, page
 from rockfrag.report.figures import BAND, GREY
 from rockfrag.report.findings import WITH_PEDESTAL, Sides, pedestal_effect, ratio_of, sides_of
-from rockfrag.report.page import Column, by_row, estimated, table_html
+from rockfrag.report.page import Column, Columns, by_row, estimated, table_html
 from rockfrag.report.part import FigureSpec, Results, Section, says
 from rockfrag.sentences import amplitude, counted, has_interval, sentence, shortened
 from rockfrag.shaketable.definitions import DEFINITION
@@ -27,18 +27,13 @@ MOST_ROWS = 45
 _SCOPES = {"whole": "all pairs", "cell": "floor and object"}
 
 
-def effect_columns(ratio: str = "With/without pedestal") -> list[Column]:
+def effect_columns(ratio: str = "With/without pedestal") -> Columns:
     """What is shown of :func:`rockfrag.pedestal.study.effects_table` after :func:`shown_effects`."""
-    return [
-        Column("scope", "Scope"),
-        Column("level", "Of"),
-        Column("pairs", "Pairs", 0),
-        Column("at_bound", "of which bounds", 0),
+    return (
+        "scope; level = Of; pairs .0; at_bound = of which bounds .0",
         estimated("ratio", f"{ratio} [95 % interval]", 3, limits=("lower", "upper")),
-        Column("detectable_ratio", "Detectable ratio", 2),
-        Column("within", "Within ±10 %"),
-        page.p_values("p_holm", "p (Holm)"),
-    ]
+        "detectable_ratio .2; within = Within ±10 %; p_holm = p (Holm) p",
+    )
 
 
 def shown_effects(effects: pd.DataFrame) -> pd.DataFrame:
@@ -68,14 +63,11 @@ def pedestal(results: Results) -> Section | None:
     parts: list[Any] = []
     if len(here):
         methods = whole.assign(definition=whole["definition"].str.replace("_", " "))
-        columns = [
-            Column("definition", "Definition"),
-            Column("method", "Method"),
+        columns: Columns = (
+            "definition; method",
             estimated("estimate", f"{ratio} [95 % interval]", 3, limits=("lower", "upper")),
-            page.p_values("p", "p"),
-            page.p_values("smallest_p", "Smallest possible p"),
-            Column("remark", "Remark"),
-        ]
+            "p = p p; smallest_p = Smallest possible p p; remark",
+        )
         caption = "All pairs, by other methods and other ways to read the amplitude."
         parts = [_forest(here, about), table_html(methods, columns, caption)]
         caption = "Effect by scope, step protocol."
@@ -170,19 +162,11 @@ def ratio_axis(
 
 
 _MEASURED = (
-    Column("object", "Object"),
-    Column("pedestal", "Side"),
-    Column("earthquake", "Earthquake"),
-    Column("floor", "Floor"),
+    "object; pedestal = Side; earthquake; floor",
     Column("amplitude_g", "Measured [g]", by_row(amplitude)),
-    Column("simulated_g", "Simulated [g]", 3),
-    Column("ratio", "Measured / simulated", 2),
+    "simulated_g .3; ratio = Measured / simulated .2",
 )
-_MEASURED_CURVES = (
-    Column("configuration", "Configuration"),
-    estimated("theta", "Median θ [g]"),
-    Column("beta", "β", 3),
-)
+_MEASURED_CURVES = ("configuration; theta = Median θ [g] ±; beta = β .3",)
 
 
 def measured(results: Results) -> Section | None:

@@ -22,42 +22,23 @@ from rockfrag.sentences import label, number, shortened
 from rockfrag.stages.tests import LIMITED, MOST_TESTED
 from rockfrag.units import CENTIMETRES_PER_METRE, GRAVITY
 
-_LEFT_OUT = (Column("motion", "Record"), Column("reason", "Why it could not be used"))
+_LEFT_OUT = ("motion = Record; reason = Why it could not be used",)
 _SHAKER = (
-    Column("motion", "Motion"),
-    Column("travel_cm_per_g", "Peak to peak [cm/g]", 2),
-    Column("excursion_cm_per_g", "From the start [cm/g]", 2),
-    Column("limit_g", "Fits up to [g]", 3),
-    Column("limited_by", "Limited by"),
+    "motion; travel_cm_per_g = Peak to peak [cm/g] .2",
+    "excursion_cm_per_g = From the start [cm/g] .2; limit_g = Fits up to [g] .3; limited_by",
 )
 _BODIES = (
-    Column("configuration", "Configuration"),
-    Column("stands_on", "Stands on"),
-    Column("width_cm", "Width [cm]", 1),
-    Column("height_cm", "Height [cm]", 1),
-    Column("mass_kg", "Mass [kg]", 3),
-    Column("slenderness", "Height / width", 2),
-    Column("critical_angle_rad", "Critical angle [rad]", 3),
-    Column("frequency_1_s", "Frequency parameter p [1/s]", 2),
-    Column("uplift_g", "Starts to rock at [g]", 3),
+    "configuration; stands_on; width_cm .1; height_cm .1; mass_kg .3",
+    "slenderness = Height / width .2; critical_angle_rad .3",
+    "frequency_1_s = Frequency parameter p [1/s] .2; uplift_g = Starts to rock at [g] .3",
 )
 _VALIDITY = (
-    Column("object", "Object"),
-    Column("side", "Pedestal"),
-    Column("tests", "Tests", 0),
-    Column("median", "Friction needed, median", 2),
-    Column("largest", "largest", 2),
-    Column("beyond", "No friction is enough", 0),
-    Column("lifted", "Lifts off", 0),
+    "object; side = Pedestal; tests .0; median = Friction needed, median .2; largest = largest .2",
+    "beyond = No friction is enough .0; lifted = Lifts off .0",
 )
 _SLIDING = (
-    Column("configuration", "Configuration"),
-    Column("cases", "Analyses", 0),
-    Column("slid", "Slides", 0),
-    Column("flew", "Flies", 0),
-    Column("largest_slip_cm", "Largest slip [cm]", 1),
-    Column("saved", "Saved by sliding", 0),
-    Column("felled", "Overturned by it", 0),
+    "configuration; cases = Analyses .0; slid = Slides .0; flew = Flies .0; largest_slip_cm .1",
+    "saved = Saved by sliding .0; felled = Overturned by it .0",
 )
 
 
