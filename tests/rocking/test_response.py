@@ -11,6 +11,7 @@ import pytest
 from rockfrag import Block, Response, Stack, overturns, simulate
 from rockfrag.rocking.ensemble import LightBodies
 from rockfrag.rocking.restitution import quarter_period
+from rockfrag.system import geometry
 
 from ..conftest import shaking
 from .reference_bodies import T1, T2, T3, P, polyline
@@ -226,3 +227,12 @@ def test_an_ensemble_asks_what_its_histories_do():
     contacts = found.table("contacts")
     assert contacts["friction_demand"].notna().all()
     assert overturns(T2, motion, 0.01).table("contacts")["friction_demand"].isna().all()
+
+
+def test_a_statue_that_reaches_beyond_its_pedestal_is_drawn_over_the_angle_of_their_contact() -> (
+    None
+):
+    wide = Stack(Block(0.5, 0.2, 300.0), Block(0.6, 1.2, 180.0))
+    angle = geometry.critical_angle(wide.pile.upper, 1)
+    response = simulate(wide, np.zeros(9), DT, theta0=(0.0, 0.05))
+    assert response.plot().axes[1].lines[1].get_ydata()[0] == pytest.approx(0.05 / angle)
