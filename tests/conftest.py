@@ -3,7 +3,7 @@
 import os
 import subprocess
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from pathlib import Path
 from types import ModuleType
 from typing import Any
@@ -149,10 +149,10 @@ def made_motions() -> Callable[[int], tuple[Motion, ...]]:
     return motions_of_noise
 
 
-def write_records(folder: Path, count: int) -> Path:
-    """Write made motions as texts of seconds and g, with their catalogue, whose path comes back."""
+def write_records(folder: Path, motions: Iterable[Motion]) -> Path:
+    """Write motions as texts of seconds and g, with their catalogue, whose path comes back."""
     rows = ["name,earthquake,station,file,unit"]
-    for motion in motions_of_noise(count):
+    for motion in motions:
         file = f"{motion.name.replace(' ', '')}.txt"
         values = zip(motion.time, motion.acceleration / 9.81, strict=True)
         (folder / file).write_text("".join(f"{t:.2f} {a:.7f}\n" for t, a in values))
@@ -165,4 +165,4 @@ def write_records(folder: Path, count: int) -> Path:
 @pytest.fixture(scope="session")
 def own_records(tmp_path_factory) -> Path:
     """A folder of records that are texts of seconds and g, with a catalogue."""
-    return write_records(tmp_path_factory.mktemp("records"), 12).parent
+    return write_records(tmp_path_factory.mktemp("records"), motions_of_noise(12)).parent

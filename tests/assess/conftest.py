@@ -11,7 +11,7 @@ from rockfrag.assess.motions import MotionSet
 from rockfrag.assess.outcomes import IntensityLevels, ObjectOutcomes
 from rockfrag.assess.request import Request, make_request
 
-from ..conftest import write_records
+from ..conftest import motions_of_noise, write_records
 
 
 @pytest.fixture(scope="session")
@@ -31,7 +31,7 @@ def few(motions) -> MotionSet:
 @pytest.fixture(scope="session")
 def few_records(tmp_path_factory) -> Path:
     """Catalogue of six records of as many earthquakes, which are soon simulated."""
-    return write_records(tmp_path_factory.mktemp("few"), 6)
+    return write_records(tmp_path_factory.mktemp("few"), motions_of_noise(6))
 
 
 def outcomes_of(fell, levels, earthquakes, *, all_rock=False) -> ObjectOutcomes:

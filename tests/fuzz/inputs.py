@@ -23,7 +23,7 @@ from rockfrag.study.loading import load_any
 
 from ..assess import asking
 from ..assess.samples import SAMPLES, table_csv
-from ..conftest import write_records
+from ..conftest import motions_of_noise, write_records
 from ..end_to_end import asking_studies
 from .damage import Attempt, changed, damage, damaged
 
@@ -184,7 +184,7 @@ def objects(folder: Path) -> Callable[[random.Random], Attempt]:
 
 def requests(folder: Path) -> Callable[[random.Random], Attempt]:
     """Return what asks `rockfrag assess` at random (``tests/assess/asking.py``)."""
-    records, hazard = write_records(folder, 6), folder / "hazard.csv"
+    records, hazard = write_records(folder, motions_of_noise(6)), folder / "hazard.csv"
     hazard.write_text(table_csv())
 
     def draw(rng: random.Random) -> Attempt:

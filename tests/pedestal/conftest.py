@@ -1,12 +1,11 @@
 """Synthetic tests with known effects, for everything about the pedestal."""
 
+from itertools import product
+
 import numpy as np
-import pandas as pd
 import pytest
 
-EARTHQUAKES = ("Friuli", "Kobe", "Loma Prieta", "Northridge")
-FLOORS = ("GF", "F3", "F5")
-TOWERS = {"T1": 0.46, "T2": 0.36, "T3": 0.29}
+from ..thesis.conftest import EARTHQUAKES, FLOORS, build
 
 
 def synthetic_tests(
@@ -14,24 +13,16 @@ def synthetic_tests(
 ):
     """Tests of the thesis's design: ln(P/NP) is effect + floor + earthquake + motion + pair."""
     rng = np.random.default_rng(seed)
-    rows = []
-    for earthquake in EARTHQUAKES:
-        by_earthquake = rng.normal(0, sd_earthquake)
-        level_earthquake = rng.normal(0, 0.1)
-        for floor in FLOORS:
-            by_motion = rng.normal(0, sd_motion)
-            level = level_earthquake + rng.normal(0, 0.1)
-            for object_name, amplitude in TOWERS.items():
-                # the scatter of d is shared evenly by the two tests of a pair
-                noise, own = rng.normal(0, sd_pair / np.sqrt(2), 2)
-                d = effect + by_earthquake + by_motion + own
-                d += (floor_effect or {}).get(floor, 0.0)
-                common = np.log(amplitude) + level + rng.normal(0, 0.1)
-                about = (object_name, earthquake, floor, f"{earthquake}-{floor}")
-                rows += [(*about, "NP", np.exp(common - noise)), (*about, "P", np.exp(common + d))]
-    names = ["object", "earthquake", "floor", "motion", "pedestal", "amplitude_g"]
-    table = pd.DataFrame(rows, columns=names).assign(censored="none", repetition=1)
-    return table.assign(lower_g=table["amplitude_g"], upper_g=table["amplitude_g"])
+    of_earthquake = dict(zip(EARTHQUAKES, rng.normal(0, sd_earthquake, 4), strict=True))
+    of_motion = {place: rng.normal(0, sd_motion) for place in product(EARTHQUAKES, FLOORS)}
+
+    def log_ratio(_, earthquake, floor):
+        own = of_earthquake[earthquake] + of_motion[earthquake, floor]
+        return effect + own + (floor_effect or {}).get(floor, 0.0)
+
+    # the scatter of d is shared evenly by the two tests of a pair
+    tests = build(log_ratio, noise=sd_pair / np.sqrt(2), seed=seed, of_motion=0.2)
+    return tests.assign(repetition=1, lower_g=tests["amplitude_g"], upper_g=tests["amplitude_g"])
 
 
 @pytest.fixture

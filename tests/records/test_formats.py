@@ -96,94 +96,111 @@ def test_motions_are_in_metres_per_second_squared(built):
         assert motion.provenance[0]["sha256"] == read_record(built.path, built.dt_to_give).sha256
 
 
-def test_a_csmip_header_of_another_network_is_read(builders, tmp_path):
-    built = builders["csmip_v2_modern"](tmp_path)
-    text = built.path.read_text().replace("STATION NO. 36456", "Station Id. WLT  ")
-    built.path.write_text(text.replace("36456-S4384-83123.01", "15481673.CI.WLT.--.HN"))
-    assert claims(str(built.path)) == ["CSMIP"]
-    stats = obspy.read(built.path)[0].stats
-    assert (stats.network, stats.station) == ("CI", "WLT")
+SIZE = "NPTS=  43, DT= .00500 SEC"
+KIND = "ACCELERATION TIME HISTORY IN UNITS OF G. FILTER POINTS: HP=0.1 Hz LP=40.0 Hz"
+SIZES = [
+    *("NPTS=   43, DT= .00500 SEC", "NPTS= 43, DT= .0050 SEC,      ", "npts:43;dt:0.005"),
+    *("DT= .005 SEC NPTS = 43", "43   .0050   NPTS, DT", "  .0050  43 DT, NPTS"),
+    *("NPTS, DT=  43, .0050", "NPTS=  43, DT= 5.0E-03 SEC", "DT= 5.0D-03 SEC, npts = 43"),
+    *("  43    0.0050    NPTS, DT", "NPTS= 43, DT= 5 MSEC", "NPTS= 43, DT= 5. msec"),
+    "NPTS= 43, DT= 5 ms",
+]
+UNITS = {
+    "ACCELERATION TIME SERIES IN UNITS OF CM/SEC/SEC": "cm/s2",
+    "ACCELERATION TIME HISTORY IN UNITS OF CM/S**2": "cm/s2",
+    "The units are (g)": "g",
+    "Acceleration in m/s^2": "m/s2",
+    "ACCELERATION TIME HISTORY": "",
+}
+WLT = {
+    "STATION NO. 36456": "Station Id. WLT  ",
+    "36456-S4384-83123.01": "15481673.CI.WLT.--.HN",
+}
+IN_A_COMMENT = {
+    "Sta Chan  1: 340 deg": "Sta Chan   ?:Other  ",
+    "     340": "    -999",
+    "| 43 ": "|<SCNL>J2236.BNZ.CE.--    <AUTH> 2019/02/01 21:38:15.000",
+}
+NO_START = [
+    ("agram", "YEAR=1987", "YEAR=99999999999"),
+    ("cwa", "2018/02/06-23:50:29", "9999/12/31-23:59:59"),
+    ("smc", "      1989       291", "      9999       365"),
+    ("unam", "2004/01/01", "9999/12/31"),
+    ("csmip_v2", "05/02/83, 16:42:48.2 PDT", "13/45/83, 16:42:48.2 PDT"),
+    ("csmip_v2", "05/02/83, 16:42:48.2 PDT", "05/02/83, 16:42:48.2 XYZ"),
+]
+DIALECTS = [
+    *(("at2_peer", {SIZE: line}, {"npts": 43, "delta": 0.005}) for line in SIZES),
+    *(("at2_peer", {KIND: words}, {"unit": unit}) for words, unit in UNITS.items()),
+    ("csmip_v2_modern", WLT, {"network": "CI", "station": "WLT"}),
+    ("cosmos_v1", IN_A_COMMENT, {"channel": "BNZ", "component": "BNZ"}),
+    *((kind, {old: new}, {"start_time_stated": False}) for kind, old, new in NO_START),
+]
 
 
-def test_a_cosmos_channel_may_be_named_in_a_comment_alone(builders, tmp_path):
-    built = builders["cosmos_v1"](tmp_path)
-    text = built.path.read_text().replace("Sta Chan  1: 340 deg", "Sta Chan   ?:Other  ")
-    whole = text.replace("     340", "    -999").split("\n")
-    at = next(i for i, line in enumerate(whole) if line.startswith("| "))
-    whole[at] = "|<SCNL>J2236.BNZ.CE.--    <AUTH> 2019/02/01 21:38:15.000"
-    built.path.write_text("\n".join(whole))
-    stats = obspy.read(built.path)[0].stats
-    assert (stats.channel, stats.rockfrag.component) == ("BNZ", "BNZ")
+def altered(built, changes):
+    """The path of a built record in which words are exchanged."""
+    content = built.path.read_bytes()
+    for old, new in changes.items():
+        assert old.encode() in content
+        content = content.replace(old.encode(), new.encode("latin-1"))
+    built.path.write_bytes(content)
+    return built.path
 
 
-@pytest.mark.parametrize(
-    ("kind", "words", "others", "held"),
-    [
-        ("at2_peer", "ACCELERATION TIME HISTORY", "VELOCITY, CM/S", "velocity"),
-        ("at2_peer", "ACCELERATION TIME HISTORY", "DISPLACEMENT", "displacement"),
-        ("esm", "ACCELERATION", "VELOCITY", ""),
-        ("esm", "ACCELERATION", "DISPLACEMENT", ""),
-        ("esm", "cm/s^2", "cm/s", ""),
-        ("smc", "2 CORRECTED ACCELEROGRAM", "3 VELOCITY", ""),
-        ("smc", "2 CORRECTED ACCELEROGRAM", "4 DISPLACEMENT", ""),
-        ("smc", "2 CORRECTED ACCELEROGRAM", "5 RESPONSE SPECTRA", ""),
-        ("cosmos_v1", "acceleration pts, approx", "velocity pts, approx", "velocity"),
-        ("cosmos_v1", "units=cm/sec2(04)", "units=counts (50)", "raw counts"),
-    ],
-)
-def test_a_file_of_another_quantity_is_refused(builders, tmp_path, kind, words, others, held):
-    path = builders[kind](tmp_path).path
-    text = path.read_text(encoding="utf-8")
-    assert words in text
-    path.write_text(text.replace(words, others), encoding="utf-8")
-    with pytest.raises(
-        InputError, match=held if held == "raw counts" else f"{held}.* not acceleration"
-    ):
-        obspy.read(path)
+@pytest.mark.parametrize(("kind", "changes", "facts"), DIALECTS)
+def test_dialects_of_headers_are_read(builders, tmp_path, kind, changes, facts):
+    built = builders[kind](tmp_path)
+    path = altered(built, changes)
+    assert claims(str(path)) == [built.format]
+    stats = obspy.read(path)[0].stats
+    assert facts.items() <= {**stats, **stats.rockfrag}.items()
 
 
-@pytest.mark.parametrize(
-    "line",
-    [
-        "NPTS=   43, DT= .00500 SEC",
-        "NPTS= 43, DT= .0050 SEC,      ",
-        "npts:43;dt:0.005",
-        "DT= .005 SEC NPTS = 43",
-        "43   .0050   NPTS, DT",
-        "  .0050  43 DT, NPTS",
-        "NPTS, DT=  43, .0050",
-        "NPTS=  43, DT= 5.0E-03 SEC",
-        "DT= 5.0D-03 SEC, npts = 43",
-        "  43    0.0050    NPTS, DT",
-        *(f"NPTS= 43, DT= {words}" for words in ("5 MSEC", "5. msec", "5 ms")),
-    ],
-)
-def test_dialects_of_the_size_line_of_peer(builders, tmp_path, line):
-    built = builders["at2_peer"](tmp_path)
-    text = built.path.read_text().split("\n")
-    text[3] = line
-    built.path.write_text("\n".join(text))
-    assert claims(str(built.path)) == ["AT2"]
-    trace = obspy.read(built.path)[0]
-    assert (trace.stats.npts, trace.stats.delta) == (43, 0.005)
+NO_ACCELERATION = "not acceleration"
+COUNTS = {
+    "at2_peer": "NPTS=  {}",
+    "cosmos_v1": "   {}  acceleration pts",
+    "csmip_v2": " {} POINTS OF ACCEL DATA",
+    "csmip_v1_pairs": "NO. OF POINTS =  {}",
+    "smc": "{:10}",
+    "esm": "NDATA: {}",
+    "plain_one_column": "{} 0.0100",
+    "renadic": "NO. OF POINTS =  {}",
+    # fields that touch are no separated numbers; the counts matter all the same
+    "cosmos_touching": "{} acceleration pts",
+}
+REFUSED = [
+    ("at2_peer", "ACCELERATION TIME HISTORY", "VELOCITY, CM/S", "velocity.* not acceleration"),
+    ("at2_peer", "ACCELERATION TIME HISTORY", "DISPLACEMENT", "displacement.* not acceleration"),
+    ("esm", "ACCELERATION", "VELOCITY", NO_ACCELERATION),
+    ("esm", "ACCELERATION", "DISPLACEMENT", NO_ACCELERATION),
+    ("esm", "cm/s^2", "cm/s", NO_ACCELERATION),
+    ("smc", "2 CORRECTED ACCELEROGRAM", "3 VELOCITY", NO_ACCELERATION),
+    ("smc", "2 CORRECTED ACCELEROGRAM", "4 DISPLACEMENT", NO_ACCELERATION),
+    ("smc", "2 CORRECTED ACCELEROGRAM", "5 RESPONSE SPECTRA", NO_ACCELERATION),
+    ("cosmos_v1", "acceleration pts, approx", "velocity pts, approx", "velocity.* not acceler"),
+    ("cosmos_v1", "units=cm/sec2(04)", "units=counts (50)", "raw counts"),
+    ("esm", "Ελλάς", "Forlì", r"line 9: byte 0xec is not UTF-8"),
+    # times that lie far apart are refused before they are filled in
+    ("csmip_v1_pairs", f"{990 + 42 * 0.02:7.3f}", " 1e+12 ", r"old\.V1.* apart on average"),
+    *(
+        (kind, form.format(43), form.format(wrong), ".")
+        for kind, form in COUNTS.items()
+        for wrong in (42, 44, 0, 10**9)
+    ),
+]
 
 
-@pytest.mark.parametrize(
-    ("words", "unit"),
-    [
-        ("ACCELERATION TIME SERIES IN UNITS OF CM/SEC/SEC", "cm/s2"),
-        ("ACCELERATION TIME HISTORY IN UNITS OF CM/S**2", "cm/s2"),
-        ("The units are (g)", "g"),
-        ("Acceleration in m/s^2", "m/s2"),
-        ("ACCELERATION TIME HISTORY", ""),
-    ],
-)
-def test_units_that_peer_like_headers_state(builders, tmp_path, words, unit):
-    built = builders["at2_peer"](tmp_path)
-    lines = built.path.read_text().split("\n")
-    lines[2] = words
-    built.path.write_text("\n".join(lines))
-    assert obspy.read(built.path)[0].stats.rockfrag.unit == unit
+@pytest.mark.parametrize(("kind", "old", "new", "words"), REFUSED)
+def test_a_header_that_cannot_be_meant_is_refused(builders, tmp_path, kind, old, new, words):
+    built = builders[kind](tmp_path)
+    path = altered(built, {old: new})
+    with pytest.raises(InputError, match=words) as refused:
+        read_motion(path, unit=None if built.unit else "g", channel="1")
+    assert path.name in str(refused.value)
+    with pytest.raises(InputError, match=words):
+        obspy.read(path, format=built.format)
 
 
 @pytest.mark.parametrize(

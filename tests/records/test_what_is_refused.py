@@ -172,22 +172,3 @@ def test_a_damaged_packed_file_is_told(tmp_path):
     path.write_bytes(gzip.compress(b"PEER" * 1000)[:-20])
     with pytest.raises(InputError, match=r"a\.AT2\.gz"):
         read_motion(path)
-
-
-@pytest.mark.parametrize(
-    ("name", "stated", "wrong"),
-    [
-        ("agram", "YEAR=1987", "YEAR=99999999999"),
-        ("cwa", "2018/02/06-23:50:29", "9999/12/31-23:59:59"),
-        ("smc", "      1989       291", "      9999       365"),
-        ("unam", "2004/01/01", "9999/12/31"),
-        ("csmip_v2", "05/02/83, 16:42:48.2 PDT", "13/45/83, 16:42:48.2 PDT"),
-        ("csmip_v2", "05/02/83, 16:42:48.2 PDT", "05/02/83, 16:42:48.2 XYZ"),
-    ],
-)
-def test_a_start_that_cannot_be_meant_counts_as_not_stated(builders, tmp_path, name, stated, wrong):
-    path = builders[name](tmp_path).path
-    content = path.read_bytes()
-    assert stated.encode() in content
-    path.write_bytes(content.replace(stated.encode(), wrong.encode()))
-    assert read_motion(path, channel="1").metadata["start_time"] is None

@@ -23,8 +23,10 @@ import pandas as pd
 
 from rockfrag.files import write_table
 from rockfrag.motions.synthetic import evolutionary
+from rockfrag.records.motion import Motion
 from rockfrag.study.study import Amplitudes
 
+from ..conftest import write_records
 from ..validation.made import markdown
 from ..workflow.conftest import study_content, write_study
 
@@ -116,16 +118,8 @@ def shown(table: pd.DataFrame) -> pd.DataFrame:
 
 def write_scale(folder: Path, motions: int, amplitudes: int) -> None:
     """Write a study's configuration and its records."""
-    (folder / "records").mkdir(parents=True, exist_ok=True)
-    rows = ["name,earthquake,source,file,unit"]
-    for number in range(motions):
-        name = f"records/{number:05d}.txt"
-        if not (folder / name).exists():
-            values = np.round(acceleration(number), 6).astype(str)
-            lines = [f"{k * DT:.2f} {value}" for k, value in enumerate(values)]
-            (folder / name).write_text("\n".join(lines) + "\n", encoding="utf-8")
-        rows.append(f"motion {number},earthquake {number // OF_AN_EARTHQUAKE},folder,{name},g")
-    (folder / "motions.csv").write_text("\n".join(rows) + "\n", encoding="utf-8")
+    folder.mkdir(parents=True, exist_ok=True)
+    write_records(folder, map(strong_motion, range(motions)))
     for name in ("specimens.csv", "configurations.csv"):
         shutil.copy(ROOT / "config" / name, folder / name)
     # a hair less than the step that fits exactly, lest rounding lose the last amplitude
@@ -134,6 +128,7 @@ def write_scale(folder: Path, motions: int, amplitudes: int) -> None:
         raise RuntimeError(f"{amplitudes} amplitudes do not come out of a step of {step} %")
     content = study_content() | {
         "study": "scale",
+        "motions": {"catalogue": "catalogue.csv"},
         "title": f"{motions} synthetic motions",
         "amplitudes": {"lowest_g": LOWEST_G, "highest_g": HIGHEST_G, "step_percent": step},
         "protocol": {"step_percent": 5},
@@ -142,11 +137,11 @@ def write_scale(folder: Path, motions: int, amplitudes: int) -> None:
     write_study(folder, content)
 
 
-def acceleration(number: int) -> np.ndarray:
-    """Return a stochastic motion of 20 s [g], of a strong earthquake on firm ground."""
+def strong_motion(number: int) -> Motion:
+    """Return a stochastic motion of 20 s, of a strong earthquake on firm ground."""
     rng = np.random.default_rng(number)
     duration = rng.uniform(4.0, 12.0)
-    motion = evolutionary(
+    made = evolutionary(
         number,
         arias_m_s=rng.uniform(0.5, 3.0),
         d5_95_s=duration,
@@ -155,10 +150,11 @@ def acceleration(number: int) -> np.ndarray:
         slope_hz_s=rng.uniform(-0.25, 0.0),
         filter_damping=rng.uniform(0.1, 0.5),
         dt=DT,
-    ).acceleration[:SAMPLES]
-    values = np.zeros(SAMPLES)
-    values[: motion.size] = motion / 9.81
-    return values
+    )
+    samples = np.zeros(SAMPLES)
+    samples[: made.acceleration.size] = made.acceleration[:SAMPLES]
+    about = {"earthquake": f"earthquake {number // OF_AN_EARTHQUAKE}", "station": ""}
+    return Motion(samples, DT, f"motion {number}", about)
 
 
 if __name__ == "__main__":

@@ -103,28 +103,22 @@ def test_a_wrong_field_is_named_by_line_and_column(table, change, place):
     assert str(refused.value).endswith(".")
 
 
-def test_the_same_repetition_twice_is_refused(table):
-    with pytest.raises(InputError, match=r"line 4, column test: 'a', repetition 1, is on line 3"):
-        read_measured(table(ROWS[0], ROWS[0]))
-
-
-@pytest.mark.parametrize(
-    ("header", "message"),
-    [
-        (HEADER.replace("earthquake,", ""), "column earthquake is missing"),
-        (HEADER + ",colour", "column 'colour' is not known"),
-        (HEADER + ",remark", "column 'remark' is given twice"),
-        (HEADER.replace("upper_g", "upper_m_s2"), "either lower_g and upper_g or"),
-    ],
-)
-def test_a_wrong_header_is_refused(table, header, message):
-    with pytest.raises(InputError, match=message):
-        read_measured(table(header=header))
+WRONG_HEADERS = {
+    HEADER.replace("earthquake,", ""): "column earthquake is missing",
+    HEADER + ",colour": "column 'colour' is not known",
+    HEADER + ",remark": "column 'remark' is given twice",
+    HEADER.replace("upper_g", "upper_m_s2"): "either lower_g and upper_g or",
+}
 
 
 @pytest.mark.parametrize(
     ("content", "message"),
     [
+        *((header.encode(), message) for header, message in WRONG_HEADERS.items()),
+        (
+            "\n".join([HEADER, *ROWS[:1] * 2]).encode(),
+            r"line 3.* test: 'a', repetition 1, is on line 2",
+        ),
         (None, "cannot be read"),
         (b"# nothing\n", "holds no table"),
         ("# Erschütterung\n".encode("latin-1"), "not UTF-8"),
