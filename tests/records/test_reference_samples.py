@@ -93,13 +93,6 @@ def test_peaks_that_headers_state_are_those_of_the_motions(shared, file, channel
     assert (left_out in motion.provenance) == (file == SMC_OF_ONE_LINE_MORE)
 
 
-def test_the_wrong_time_column_is_reported(shared):
-    path = shared / "records/formats/plain/coolwater_wrong_time_column.txt"
-    with pytest.raises(InputError, match=r"steps by 0\.003 s.*0\.0025 and 0\.0035.*dt="):
-        read_motion(path, unit="g")
-    assert read_motion(path, unit="g", dt=0.0025).dt == 0.0025
-
-
 def test_every_file_of_the_collection_is_claimed_by_exactly_one_plugin(shared):
     by_obspy = {".mseed", ".sac", ".EW", ".EW1", ".EW2", ".NS2", ".UD2", ".knet", ".gz"}
     files = [

@@ -78,22 +78,19 @@ def test_no_filter_is_needed_below_the_limit_and_a_milder_one_just_above(records
     assert 0 < corners[0] <= corners[1] <= corners[2] < 1.0
 
 
-def test_the_produced_motion_fits_and_returns_to_where_it_started(records):
+@pytest.mark.parametrize("name", ["Friuli", "Kobe", "Loma_Prieta", "Northridge"])
+def test_the_produced_motion_fits_and_returns_to_where_it_started(records, name):
+    """A fifth of the peak may be missing: the filter takes out what the stroke cannot hold."""
     shaker = Shaker()
-    produced = produced_motion(shaker, records["Loma_Prieta"], 0.5)
+    produced = produced_motion(shaker, records[name], 0.5)
     velocity, displacement = integrate(produced.acceleration, produced.dt)
     assert np.ptp(displacement) <= shaker.stroke
     assert abs(velocity[-1]) < 1e-3 * np.abs(velocity).max()
     assert abs(displacement[-1]) < 0.01 * np.abs(displacement).max()
-    assert produced.provenance[-1]["corner_hz"] == 0.5
-
-
-def test_the_produced_motion_says_what_became_of_its_peak(records):
-    """A fifth may be missing: the filter takes out what the stroke cannot hold."""
-    for name, motion in records.items():
-        step = produced_motion(Shaker(), motion, 0.5).provenance[-1]
-        assert step["peak_before_m_s2"] == pytest.approx(0.5 * 9.81), name
-        assert step["peak_after_m_s2"] == produced_motion(Shaker(), motion, 0.5).pga
+    step = produced.provenance[-1]
+    assert step["corner_hz"] == 0.5
+    assert step["peak_before_m_s2"] == pytest.approx(0.5 * 9.81)
+    assert step["peak_after_m_s2"] == produced.pga
 
 
 def test_what_the_band_cannot_hold_is_not_produced():
