@@ -57,8 +57,13 @@ def test_twins_on_one_floor_topple_together_and_others_less(gallery):
 
 def test_numbers_and_losses_follow_from_the_objects(gallery):
     joint = gallery[0].joint
-    numbers = joint.numbers.set_index("at_least")["annual_rate"]
+    table = joint.numbers.set_index("at_least")
+    assert {1, 2, 3, 5} <= set(table.index)
+    numbers = table["annual_rate"]
     assert numbers.is_monotonic_decreasing
+    # at the level of the site too the mean number is the sum of the fractions
+    sums = sum(item.fraction.value for item in gallery[0].found)
+    assert table.loc[1, "at_the_site"] <= sums <= 5 * table.loc[1, "at_the_site"]
     # one of them topples at most as often as all rates together, and at least as often as the worst one
     rates = joint.objects["annual_rate"]
     assert rates.max() * (1 - 1e-9) <= numbers[1] <= rates.sum()
@@ -78,21 +83,6 @@ def test_what_adds_most_comes_first(gallery):
     assert table["name"].iloc[0] == "figurine"
     assert any("For figurine" in line for line in joint_lines(found))
     assert table["factor"].dropna().lt(1).all()
-
-
-def test_the_mean_number_is_the_sum_of_the_fractions(own_records, tmp_path):
-    """On one floor, where all motions count for all objects, the mean number that topples is exact."""
-    path = tmp_path / "gallery.csv"
-    path.write_text(
-        "name,width,height\n" + "".join(f"o{i},{10 + 3 * i} cm,90 cm\n" for i in range(6))
-    )
-    found = assess_inventory(
-        path, {**SHARED, "records": {"paths": [str(own_records / "catalogue.csv")]}}
-    )
-    numbers = found.joint.numbers.set_index("at_least")
-    assert {1, 2, 3, 5} <= set(numbers.index)
-    sums = sum(item.fraction.value for item in found.found)
-    assert numbers.loc[1, "at_the_site"] <= sums <= 6 * numbers.loc[1, "at_the_site"]
 
 
 def test_mitigations_are_bodies():

@@ -13,7 +13,6 @@ from rockfrag.assess.inventory import read_inventory
 from rockfrag.assess.mitigations import compare
 from rockfrag.assess.page import page_of
 from rockfrag.assess.place import PERIOD_FACTORS
-from rockfrag.assess.request import read_request
 from rockfrag.assess.risk import Estimate, Evidence, fraction_target, step_of
 from rockfrag.assess.sources import is_wide, narrowed
 from rockfrag.assess.words import five_lines, range_words, says
@@ -81,11 +80,10 @@ def test_pedestals_on_each_other_are_given_from_above(own_records, tmp_path, cap
     assert "pedestal 2 weighs" in page.lower()
 
 
-def test_each_joint_of_a_column_may_be_fixed(motions):
+def test_each_joint_of_a_column_may_be_fixed(few):
     plinths = [{"width": "60 cm", "height": "90 cm"}, {"width": "80 cm", "height": "30 cm"}]
     request = asked(**STATUE, pedestal=plinths, pga="0.5 g")
     assert [block.width for block in request.objects.body.blocks] == [0.8, 0.6, 0.42]
-    few = replace(motions, ground=motions.ground[:6], base=motions.base[:6], pairs=())
     found = assess_with(request, few)
     names = {mitigation.name for mitigation in found.mitigations}
     assert {"fixing the object to pedestal 1", "fixing pedestal 1 to pedestal 2"} <= names
@@ -123,8 +121,7 @@ def test_limits_near_certainty_are_told_apart():
     assert range_words(0.12, 1.0) == "12 to 100 %"
 
 
-def test_friction_and_a_measured_restitution_go_together(motions):
-    few = replace(motions, ground=motions.ground[:6], base=motions.base[:6], pairs=())
+def test_friction_and_a_measured_restitution_go_together(few):
     request = asked(**STATUE, pga="0.9 g", friction=1.5, restitution=0.93)
     found = assess_with(request, few)
     assert abs(found.sliding_fraction - found.fraction.value) <= 0.34
@@ -203,7 +200,7 @@ def test_the_worst_direction_and_what_was_assumed_are_said(on_pedestal):
     assert "see the page" not in lines[4]
 
 
-def test_a_building_is_described_as_conservators_know_it(tmp_path):
+def test_a_building_is_described_as_conservators_know_it():
     heights = asked(**STATUE, floor="2/3", building={"storey_heights_m": [5.2, 4.4, 3.9]})
     assert heights.place.building.heights == (5.2, 4.4, 3.9)
     assert "0.35 s" in heights.place.assumed[0].words  # 0.05 · 13.5^0.75
@@ -224,12 +221,8 @@ def test_a_building_is_described_as_conservators_know_it(tmp_path):
     assert inline.place.words == "on the floor attic, level 2 of 2"
     with pytest.raises(InputError, match="2 heights are given for 3 storeys"):
         asked(**STATUE, floor="2/3", building={"storey_heights_m": [5.2, 4.4]})
-    path = tmp_path / "statue.yaml"
-    path.write_text(
-        "width: 42 cm\nheight: 1.65 m\nfloor: 2/3\nbuilding: {storey_height: 4.5 m}\nreturn_period: 475 years\n"
-        "pga: 0.2 g\n"
-    )
-    assert read_request(path).place.building.heights == (4.5,) * 3
+    same = asked(**STATUE, floor="2/3", building={"storey_height": "4.5 m"})
+    assert same.place.building.heights == (4.5,) * 3
 
 
 def test_a_longer_period_is_that_of_the_floor(motions):
@@ -381,6 +374,7 @@ def test_a_round_base_topples_earlier_and_says_why(motions):
     assert any("rectangular" in line for line in says("assumptions", square))
     assert any("in space under both components" in line for line in says("assumptions", rounded))
     assert "in space under both components" in five_lines(rounded)[2]
+    assert "space" in square.main.sources and "space" not in rounded.main.sources
 
 
 def test_a_round_base_of_an_inventory(tmp_path):

@@ -10,7 +10,7 @@ from rockfrag.engines.planar.engine import ContactRun
 from rockfrag.engines.response import Response
 from rockfrag.rocking.inputs import ground_motion
 from rockfrag.rocking.options import system_of
-from rockfrag.system import Block, Body, Column, Stack, System, as_system
+from rockfrag.system import Block, Body, Column, Stack, as_system
 from rockfrag.system.contact import checked_friction
 from rockfrag.system.system import Start
 from rockfrag.units import GRAVITY
@@ -102,14 +102,3 @@ def with_contacts(thing, frictions, laws=None):
         for contact, friction, law in zip(system.contacts, frictions, laws, strict=False)
     )
     return replace(system, contacts=tuple(contacts))
-
-
-def is_critical(system: System, motion: np.ndarray, dt: float, vertical: np.ndarray) -> bool:
-    """Whether up to a hundredth more or less of the motions changes whether the system falls."""
-    factors = 1 + 0.01 * np.array(
-        [0, -1, 1, -0.5, 0.5, -0.2, 0.2, -0.1, 0.1, -0.05, 0.05, -0.02, 0.02]
-    )
-    fell = {
-        run(system, f * motion, dt, vertical=f * vertical, closing=1e-4).overturned for f in factors
-    }
-    return len(fell) == 2

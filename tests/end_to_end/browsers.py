@@ -281,9 +281,9 @@ def waited(browser: Browser, script: str) -> None:
     """Wait until something is so in the page."""
     until = time.monotonic() + 60
     while not browser.run(script):
-        page = browser.run("document.body.innerText")
-        assert time.monotonic() < until, f"{script}: {page[:2000]}"
-        time.sleep(0.05)
+        if time.monotonic() > until:
+            raise AssertionError(f"{script}: {browser.run('document.body.innerText')[:2000]}")
+        time.sleep(0.02)
 
 
 def barriers(browser: Browser) -> list[list[str]]:
@@ -298,12 +298,12 @@ def barriers(browser: Browser) -> list[list[str]]:
     )
 
 
-READY = """
-new Promise(done => {
-  const look = () => document.getElementById('live').dataset.ready ? done(true) : setTimeout(look, 20);
-  look();
-})
-"""
+READY = "document.getElementById('live').dataset.ready"
+ANSWERED = "document.body.dataset.stage === 'complete' && !document.querySelector('.stale')"
+"""When a page with a simulation, and the page of ``rockfrag app``, have done what they were asked."""
+
+FITS = "document.documentElement.scrollWidth <= innerWidth"
+"""Nothing is wider than the window."""
 
 
 def opened(
@@ -311,4 +311,4 @@ def opened(
 ) -> None:
     """Open a page in a window of a size, and wait until it is ready."""
     browser.open(page, *size, dark=dark)
-    assert browser.run(ready)
+    waited(browser, ready)

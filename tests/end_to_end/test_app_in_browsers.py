@@ -14,17 +14,10 @@ from rockfrag.assess.words import five_lines
 from rockfrag.cli import main
 
 from ..app_forms import options_of, settings_of, some_form
-from .browsers import QUICK_IN_ONE, Browser, barriers, opened, put, put_file, waited
+from .browsers import ANSWERED, FITS, QUICK_IN_ONE, Browser, barriers, opened, put, put_file, waited
 
 FORM = {"width": "25 cm", "height": "1 m", "measure": "PGA", "level": "0.4 g", "years": "475"}
 SETTINGS = {"width": "25 cm", "height": "1 m", "pga": "0.4 g", "return_period": "475"}
-
-STAGE = """
-new Promise(done => {
-  const look = () => document.body.dataset.stage === 'complete' ? done(true) : setTimeout(look, 20);
-  look();
-})
-"""
 
 
 @pytest.fixture(scope="module")
@@ -40,13 +33,13 @@ def lines_of(browser: Browser) -> list[str]:
 
 @pytest.mark.parametrize(("width", "dark"), [(1400, False), (390, True)])
 def test_it_answers_in_the_words_of_assess(browser, app_page, motions, width, dark):
-    opened(browser, app_page, width, 900, ready=STAGE, dark=dark)
+    opened(browser, app_page, width, 900, ready=ANSWERED, dark=dark)
     request = make_request(SETTINGS, "form")
     found = assess_with(request, motions.at(request.place))
     said = [line.partition(": ")[2] for line in five_lines(found)]
     lines = lines_of(browser)
     assert [lines[i] for i in (0, 1, 3)] == [said[i] for i in (0, 1, 3)]
-    assert browser.run("document.documentElement.scrollWidth <= innerWidth")
+    assert browser.run(FITS)
     assert browser.console == []
 
 
@@ -67,7 +60,7 @@ def test_its_figures_are_those_of_the_command(browser, own_records, tmp_path, ca
     records, rng = ["--record", str(own_records / "catalogue.csv")], random.Random(11)
     page = tmp_path / "assess.html"
     assert main(["app", *records, *options_of(FORM), "--output", str(page)]) == 0
-    opened(browser, page, ready=STAGE)
+    opened(browser, page, ready=ANSWERED)
     compared = 0
     while compared < count:
         form = some_form(rng)
@@ -101,10 +94,10 @@ def test_it_loads_nothing(browser, app_page, tmp_path):
     """There is no network in these tests, the page asks for none, and all ways to ask for one are refused."""
     path = tmp_path / "refused.html"
     path.write_text(app_page.read_text().replace("<head>", f"<head>{REFUSED}", 1))
-    opened(browser, path, ready=STAGE)
+    opened(browser, path, ready=ANSWERED)
     assert browser.run("location.protocol") == "file:"
     assert browser.run("window.asked") == []
-    opened(browser, app_page, ready=STAGE)
+    opened(browser, app_page, ready=ANSWERED)
     loaded = browser.run("performance.getEntriesByType('resource').map(entry => entry.name)")
     assert [name for name in loaded if not name.startswith("blob:")] == []
     refused = browser.run("fetch('data:,x').then(() => false, () => true)")
@@ -112,19 +105,19 @@ def test_it_loads_nothing(browser, app_page, tmp_path):
 
 
 def test_the_last_key_stroke_is_answered(browser, app_page):
-    opened(browser, app_page, ready=STAGE)
+    opened(browser, app_page, ready=ANSWERED)
     for text in ("10 cm", "2 m", "45,5 cm"):
         put(browser, "#field-width", text)
         time.sleep(0.15)
     waited(browser, "document.getElementById('lines').textContent.includes('45.5 cm')")
-    assert browser.run(STAGE)
+    waited(browser, ANSWERED)
     assert "45.5 cm" in " ".join(lines_of(browser))
     assert browser.console == []
 
 
 @QUICK_IN_ONE
 def test_what_cannot_be_used_gets_a_sentence_beside_it(browser, app_page):
-    opened(browser, app_page, ready=STAGE)
+    opened(browser, app_page, ready=ANSWERED)
     for field, text in (
         ("width", "<img src=x onerror=document.title='hit'>"),
         ("height", "${document.title='hit'}"),
@@ -168,14 +161,14 @@ def test_a_browser_that_is_not_allowed_to_compute_says_so(
 
 
 def test_objects_are_kept_and_opened_again(browser, app_page, tmp_path):
-    opened(browser, app_page, ready=STAGE)
+    opened(browser, app_page, ready=ANSWERED)
     browser.run(
         "URL.createObjectURL = blob => { blob.text().then(text => { window.saved = text; }); return 'blob:x'; }"
     )
     press = "[...document.querySelectorAll('#tools button')][{}].click()"
     put(browser, "#field-name", "=HYPERLINK(1)")
     waited(browser, "document.getElementById('lines').textContent.includes('=HYPERLINK')")
-    assert browser.run(STAGE)
+    waited(browser, ANSWERED)
     browser.run(press.format(0))
     waited(browser, "document.querySelectorAll('#objects tr').length === 1")
     browser.run(press.format(1))
@@ -203,12 +196,12 @@ def test_objects_are_kept_and_opened_again(browser, app_page, tmp_path):
 
 def test_readers_of_every_kind_can_use_it(browser, app_page):
     for width, dark in ((1400, False), (1400, True), (390, False), (390, True)):
-        opened(browser, app_page, width, 900, ready=STAGE, dark=dark)
+        opened(browser, app_page, width, 900, ready=ANSWERED, dark=dark)
         browser.run("document.getElementById('keep').click()")
         waited(browser, "document.querySelectorAll('#objects tr').length === 1")
         browser.run("document.querySelectorAll('details').forEach(one => { one.open = true; })")
         assert barriers(browser) == [], (width, dark)
-        assert browser.run("document.documentElement.scrollWidth <= innerWidth")
+        assert browser.run(FITS)
 
 
 SHAKEN = {"measure": "PGA", "level": "0.3 g", "years": "475"}
@@ -223,7 +216,7 @@ PICTURE = "document.getElementById('scene').toDataURL()"
 def test_the_page_says_and_shows_what_moves_in_space(browser, motions, tmp_path, form, width):
     path = tmp_path / "assess.html"
     write_app(motions, {key: str(value) for key, value in form.items()}, path, made=True)
-    opened(browser, path, width, 1200, ready=STAGE)
+    opened(browser, path, width, 1200, ready=ANSWERED)
     found = assess_with(make_request(settings_of(form), "form"), motions)
     said = browser.run("document.getElementById('lines').innerText")
     for line in five_lines(found)[:4]:
@@ -236,7 +229,7 @@ def test_the_page_says_and_shows_what_moves_in_space(browser, motions, tmp_path,
     press = "new KeyboardEvent('keydown', {key: 'ArrowLeft'})"
     browser.run(f"document.getElementById('scene').dispatchEvent({press})")
     assert browser.run(PICTURE) != before
-    assert browser.run("document.documentElement.scrollWidth <= innerWidth")
+    assert browser.run(FITS)
     put(browser, "#field-depth", "1 parsec")
     waited(browser, "document.querySelector('[aria-invalid=true]') !== null")
     assert browser.console == []

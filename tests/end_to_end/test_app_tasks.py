@@ -8,9 +8,8 @@ import pytest
 
 from rockfrag.cli import main
 
-from .browsers import QUICK_IN_ONE, Browser, put, put_file, waited
+from .browsers import ANSWERED, FITS, QUICK_IN_ONE, Browser, opened, put, put_file, waited
 
-STAGE = "document.body.dataset.stage === 'complete' && !document.querySelector('.stale')"
 LINES = "[...document.querySelectorAll('#lines dd')].map(line => line.textContent)"
 
 
@@ -41,9 +40,9 @@ def type_into(browser: Browser, **fields: str) -> None:
 
 def answered(browser: Browser, *, of: str) -> list[str]:
     """The lines of the answer about an object of this name."""
-    waited(browser, f"{STAGE} && {LINES}[0].includes({json.dumps(of)})")
+    waited(browser, f"{ANSWERED} && {LINES}[0].includes({json.dumps(of)})")
     time.sleep(0.3)
-    waited(browser, STAGE)
+    waited(browser, ANSWERED)
     return browser.run(LINES)
 
 
@@ -55,8 +54,7 @@ def printed(browser: Browser) -> str:
 
 @QUICK_IN_ONE
 def test_a_bust_on_a_plinth_on_the_first_floor_of_a_masonry_house(browser, page):
-    browser.open(page, 1400, 1000)
-    waited(browser, STAGE)
+    opened(browser, page, 1400, 1000, ready=ANSWERED)
     type_into(browser, name="Marble bust", width="28 cm", height="62 cm", mass="85 kg")
     reach(browser, "#form summary")  # what more is known of it: nothing
     browser.press("Tab")
@@ -78,8 +76,7 @@ def test_a_bust_on_a_plinth_on_the_first_floor_of_a_masonry_house(browser, page)
 
 @QUICK_IN_ONE
 def test_a_vase_in_a_gallery_on_a_phone_in_italian(browser, page):
-    browser.open(page, 390, 844)
-    waited(browser, STAGE)
+    opened(browser, page, 390, 844, ready=ANSWERED)
     reach(browser, "#language")
     put(browser, "#language", "it", "change")
     type_into(browser, name="Vaso", width="16 cm", height="48 cm", mass="6,5 kg")
@@ -101,7 +98,7 @@ def test_a_vase_in_a_gallery_on_a_phone_in_italian(browser, page):
     before, after = (float(text.replace(",", ".").split()[0]) for text in browser.run(cells)[1:])
     assert after < before
     assert "Vaso" in printed(browser)
-    assert browser.run("document.documentElement.scrollWidth <= innerWidth")
+    assert browser.run(FITS)
     assert browser.console == []
 
 
@@ -117,8 +114,7 @@ Trolley,40 cm,1.3 m,60 kg,0/5,PGA,0.2 g,475
 
 @QUICK_IN_ONE
 def test_cabinets_of_a_hospital_with_a_hazard_curve(browser, page):
-    browser.open(page, 1400, 1000, dark=True)
-    waited(browser, STAGE)
+    opened(browser, page, 1400, 1000, dark=True, ready=ANSWERED)
     type_into(browser, name="Server rack", width="60 cm", height="2 m", mass="350 kg")
     browser.run("document.getElementById('field-floor').closest('details').open = true")
     type_into(browser, floor="3/5", level=" ", years=" ")

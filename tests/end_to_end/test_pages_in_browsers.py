@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from .browsers import Browser, barriers, opened, put
+from .browsers import FITS, Browser, barriers, opened, put
 
 pytestmark = pytest.mark.slow
 
@@ -36,7 +36,7 @@ def test_nothing_is_cut_and_no_error_is_written(browser, page, width, dark):
     # Firefox's windows are no narrower than this
     assert abs(seen - max(width, 450)) <= 60 or seen == width
     assert browser.run(TOO_WIDE) == []
-    assert browser.run("document.documentElement.scrollWidth <= innerWidth")
+    assert browser.run(FITS)
     assert browser.console == []
 
 
@@ -105,4 +105,4 @@ def test_readers_of_every_kind_can_use_the_site(browser, site, width, dark):
     for page in pages_of(site):
         browser.open(page, width, 900, dark=dark)
         assert barriers(browser) == [], page.name
-        assert browser.run("document.documentElement.scrollWidth <= innerWidth"), page.name
+        assert browser.run(FITS), page.name

@@ -16,13 +16,6 @@ PAIR = Stack(Block(0.4, 0.3, 50.0), Block(0.15, 0.6, 20.0))
 WIDER = Stack(Block(0.5, 0.3, 50.0), Block(0.15, 0.6, 20.0))
 
 
-def test_vertical_motion_that_throws_a_body_off_the_ground_is_warned_of():
-    with pytest.warns(LightBodies, match="at 0.9.* s the body would have left the ground"):
-        response = simulate(B, SHAKE, 0.01, vertical=UP)
-    assert response.lost_contact == pytest.approx(0.93, abs=0.01)
-    assert simulate(B, SHAKE, 0.01, vertical=UP, friction=0.5).overturned
-
-
 def test_a_fall_keeps_to_the_friction_that_was_given():
     t = np.arange(0, 6, 0.01)
     a = 4 * np.sin(2 * np.pi * 0.7 * t) * np.sin(np.pi * t / 6)

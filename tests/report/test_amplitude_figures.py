@@ -63,15 +63,6 @@ def test_every_test_is_drawn_and_those_that_never_overturned_have_arrows(unfinis
         assert sum(drawn(axes, arrows=True) for axes in figure.axes) == unfinished
 
 
-def test_an_unfinished_test_does_not_move_a_mean_against_the_other_side():
-    """Both means leave the same motion out, so their ratio stays that of the pairs."""
-    expected, found = (
-        mean_amplitudes(tests).query("by == 'configuration'").set_index("configuration")["mean_g"]
-        for tests in (laboratory().query("motion != 'Alpha_cellar'"), laboratory(1))
-    )
-    assert found.to_dict() == pytest.approx(expected.to_dict())
-
-
 def test_pairs_are_points_and_unfinished_ones_have_arrows():
     figure = pedestal_scatter(laboratory(2), "P/NP 1.00")
     (axes,) = figure.axes

@@ -81,12 +81,6 @@ def test_one_sine_overturns_after_an_impact_then_not_then_without(linear, limits
     assert shaken(8.0).impacts == 0
 
 
-def test_rocking_starts_exactly_where_the_ground_reaches_b_over_h() -> None:
-    response = simulate(T2, np.linspace(0.0, -4.0, 3), 1.0)
-    start = response.contact_events["time"].iloc[0]
-    assert start == pytest.approx(G * T2.b / T2.h / 2.0, rel=1e-9)
-
-
 def test_housners_velocity_is_of_the_order_of_fema_s_vertical_files() -> None:
     inch = 0.0254
     for depth, median in ((15, 0.498), (24, 1.229)):

@@ -8,7 +8,6 @@ import pytest
 from rockfrag import Block, Stack, simulate
 from rockfrag.errors import InputError
 from rockfrag.motions import half_sine, scale_to_pga
-from rockfrag.motions.pulses import one_sine
 from rockfrag.records.motion import GroundMotion, Motion
 from rockfrag.rocking.ensemble import overturns
 from rockfrag.rocking.rules_of_thumb import RULES, asce_43, bias, predicted, static, three_models
@@ -59,17 +58,6 @@ def test_a_block_below_its_threshold_has_no_ordinate() -> None:
     weak = Motion(0.99 * math.tan(ALPHA) * 9.81 * np.sin(np.linspace(0, 20, 500)), 0.01)
     spectrum = rocking_spectrum(weak, PERIODS, [ALPHA])
     assert not spectrum.rotation.any() and not spectrum.velocity.any()
-
-
-def test_pulses_of_similar_blocks_share_one_curve() -> None:
-    # same α, ωp/p and a/(αg): same max |θ|/α and max |θ'|/p at every size
-    found = []
-    for period in (1.0, 2.0, 5.0):
-        pulse = one_sine(1.6 * ALPHA * 9.81, period / 3, dt=period / 3000)
-        found.append(rocking_spectrum(pulse, [period], [ALPHA]))
-    for other in found[1:]:
-        assert other.rotation == pytest.approx(found[0].rotation, rel=1e-8)
-        assert other.velocity == pytest.approx(found[0].velocity, rel=1e-8)
 
 
 def straight(angle_deg):

@@ -23,12 +23,23 @@ def test_the_example_names_the_table_that_the_user_must_give():
         load_any(ROOT / "config" / "measured-example.yaml")
 
 
-def test_a_wrong_key_of_a_measured_table_is_named(tmp_path: Path):
+LACKED = "expected a column of .*pga_g"
+
+
+@pytest.mark.parametrize(
+    ("key", "value", "words"),
+    [
+        ("confidence", 90, "key confidence: expected a probability"),
+        ("measures", {"pga_g": "pga_g"}, r"key measures\.pga_g"),
+        ("measures", {"pgv_cm_s": ["pgv"]}, r"measures\.pgv_cm_s\[0\]"),
+        ("columns", {"overturned": "fell"}, LACKED),
+        ("columns", {"overturned": "overturned", "earthquake": "quake"}, LACKED),
+    ],
+)
+def test_a_wrong_key_of_a_measured_table_is_named(tmp_path: Path, key, value, words):
     write_synthetic(tmp_path)
-    with pytest.raises(InputError, match="key confidence: expected a probability"):
-        load_any(write_example(tmp_path, "synthetic.csv", confidence=90))
-    with pytest.raises(InputError, match=r"key measures\.pga_g"):
-        load_any(write_example(tmp_path, "synthetic.csv", measures={"pga_g": "pga_g"}))
+    with pytest.raises(InputError, match=words):
+        load_any(write_example(tmp_path, "synthetic.csv", **{key: value}))
 
 
 def test_a_synthetic_table_runs_from_csv_to_report(tmp_path: Path):

@@ -203,7 +203,19 @@ def find_conversion(
     weight, error = _weight(fit, middle)
     if not math.isfinite(weight):
         return None
-    known, spread = _known(measure, motions, given, level, curves)
+    relation = VelocityRelation.of(motions.about, motions.log_ratios(measure, of_all=True))
+    own = math.sqrt(1 - OF_THE_SITE) * relation.scatter
+    known, spread = None, 0.0
+    if len(curves) > 1:
+        known = SiteVelocity.of_two_curves(curves[0], curves[1], relation.scatter)
+    elif level is not None and math.isfinite(level.pgv):
+        ratio = math.log(level.pgv / level.value / VELOCITY_PER_G)
+        # of a hazard curve other levels count too, with velocities of their own
+        known = SiteVelocity.constant(ratio, own if curves else 0.0)
+    else:
+        spread = relation.unknown(given)
+        if not (math.isnan(given.magnitude) and math.isnan(given.distance_km)):
+            known = SiteVelocity.constant(relation.mean(given), own)
     away = 0.0
     if known is not None:
         away = float(np.abs(known.log_ratio(outcomes.intensity_levels.levels) - middle).mean())
@@ -244,28 +256,6 @@ def _weight(fit: VectorFragility, log_ratio: float) -> tuple[float, float]:
     if len(fit.replicates) > 1:
         error = float(jackknife_error(weight(fit.replicates, log_level)))
     return float(np.clip(own, 0.0, OF_DISPLACEMENT)), error if math.isfinite(error) else 0.0
-
-
-def _known(
-    measure: IntensityMeasure,
-    motions: MotionSet,
-    given: Records,
-    level: Level | None,
-    curves: Sequence[HazardCurve],
-) -> tuple[SiteVelocity | None, float]:
-    """What is known of the velocity at a site, and the standard deviation of the mean of ln ratio."""
-    relation = VelocityRelation.of(motions.about, motions.log_ratios(measure, of_all=True))
-    own = math.sqrt(1 - OF_THE_SITE) * relation.scatter
-    if len(curves) > 1:
-        return SiteVelocity.of_two_curves(curves[0], curves[1], relation.scatter), 0.0
-    if level is not None and math.isfinite(level.pgv):
-        ratio = math.log(level.pgv / level.value / VELOCITY_PER_G)
-        # of a hazard curve other levels count too, with velocities of their own
-        return SiteVelocity.constant(ratio, own if curves else 0.0), 0.0
-    spread = relation.unknown(given)
-    if math.isnan(given.magnitude) and math.isnan(given.distance_km):
-        return None, spread
-    return SiteVelocity.constant(relation.mean(given), own), spread
 
 
 @dataclass(frozen=True)

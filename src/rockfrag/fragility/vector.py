@@ -260,38 +260,29 @@ def _replicates(design: Floats, outcome: Floats, group: NDArray[np.intp], start:
 def _interaction(
     plain: _Fit, full: _Fit, design: Floats, outcome: Floats, group: NDArray[np.intp]
 ) -> Interaction:
-    """Test whether the product of the logarithms adds to the fit without it."""
-    p = interaction_p(plain.coefficients, design, outcome, group)
+    """Test whether the product of the logarithms, the last column, adds to the fit without it.
+
+    The p value is two-sided, of a score test over groups of dependent tests: the efficient score of the product,
+    with what the others explain of it taken out, is summed by group; Student's t of these sums has one degree of
+    freedom less than there are groups.
+    """
+    groups, p = int(group.max()) + 1, float("nan")
+    others, last = design[:, :-1], design[:, -1]
+    if groups > 2:
+        eta = np.clip(others @ plain.coefficients, -8.0, 8.0)
+        density = stats.norm.pdf(eta)
+        variance = special.ndtr(eta) * special.ndtr(-eta)
+        weighted = others * (density**2 / variance)[:, np.newaxis]
+        left = last - others @ np.linalg.solve(weighted.T @ others, weighted.T @ last)
+        score = np.bincount(group, left * (outcome - special.ndtr(eta)) * density / variance)
+        spread = float(np.sqrt(groups * score.var(ddof=1)))
+        if spread != 0:
+            p = float(2.0 * stats.t.sf(abs(score.sum()) / spread, groups - 1))
     ratio = 2.0 * (full.log_likelihood - plain.log_likelihood)
     tests = (design[:, 1:], outcome, np.ones(outcome.size), group)
     gain = (outcome_scores(*tests) - outcome_scores(*tests, fitted=2)).sum()
     kept = bool(p < INTERACTION_LEVEL and gain > 0 and "penalised" not in full.method)
     return Interaction(p, ratio, kept)
-
-
-def interaction_p(
-    coefficients: Floats, design: Floats, outcome: Floats, group: NDArray[np.intp]
-) -> float:
-    """Two-sided p value of the last column of a probit design, by a score test over groups of dependent tests [-].
-
-    The efficient score of the last column, with what the others explain of it taken out, is summed by group;
-    Student's t of these sums has one degree of freedom less than there are groups.  NaN with fewer than three
-    groups.  ``coefficients``, shape (k - 1,), are those of the fit without the last column.
-    """
-    groups = int(group.max()) + 1
-    if groups < 3:
-        return float("nan")
-    others, last = design[:, :-1], design[:, -1]
-    eta = np.clip(others @ coefficients, -8.0, 8.0)
-    density = stats.norm.pdf(eta)
-    variance = special.ndtr(eta) * special.ndtr(-eta)
-    weighted = others * (density**2 / variance)[:, np.newaxis]
-    left = last - others @ np.linalg.solve(weighted.T @ others, weighted.T @ last)
-    score = np.bincount(group, left * (outcome - special.ndtr(eta)) * density / variance)
-    spread = float(np.sqrt(groups * score.var(ddof=1)))
-    if spread == 0:
-        return float("nan")
-    return float(2.0 * stats.t.sf(abs(score.sum()) / spread, groups - 1))
 
 
 BINS = 10  # bins of the fitted probability in which observed and fitted numbers are compared

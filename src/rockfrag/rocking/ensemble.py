@@ -192,9 +192,9 @@ def shaken(cases: Cases) -> Outcomes:
     held = [not system.loose and system.count < 3 for system in cases.systems]
     stuck = np.array(held) & np.array([system.planar or not in_space for system in cases.systems])
     if stuck.any() and not cases.request.forces:
-        for doubt in _doubts(cases, outcomes, stuck):
+        for words in _light_words(cases, outcomes, stuck):
             # past the door that shakes, and its keywords
-            warnings.warn(doubt, LightBodies, stacklevel=4)
+            warnings.warn(words, LightBodies, stacklevel=4)
     return outcomes
 
 
@@ -223,7 +223,7 @@ def overturned_cases(
     return overturned
 
 
-def _doubts(cases: Cases, outcomes: Outcomes, stuck: NDArray[np.bool_]) -> Iterator[str]:
+def _light_words(cases: Cases, outcomes: Outcomes, stuck: NDArray[np.bool_]) -> Iterator[str]:
     """Say in how many cases bodies may leave the ground: it drops, or squat ones rock in strong motions."""
     ratio = outcomes.minimum_gravity_ratio[stuck]
     light, none = int((ratio < LIGHT).sum()), int((ratio <= 0).sum())

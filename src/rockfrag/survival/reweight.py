@@ -19,7 +19,6 @@ from scipy import special
 from rockfrag.arrays import Floats
 from rockfrag.errors import InputError
 from rockfrag.survival.site import (
-    ShakingRates,
     Site,
     StandingObject,
     draw_errors,
@@ -128,23 +127,9 @@ def reweight(site: Site, samples: int = SAMPLES) -> Reweighted:
     )
     curves = [branch.curves for branch in site.branches]
     shaking = shaking_rates(curves, wanted, site.velocity, reach)
-    expected = _expected_topplings(objects, shaking, errors, years, site.same_earthquakes)
-    log_survival = special.logsumexp(-expected, axis=0) - np.log(samples)
-    logs = np.log([branch.weight for branch in site.branches]) + log_survival
-    weights = np.exp(logs - special.logsumexp(logs))
-    return Reweighted(site, np.asarray(log_survival), weights)
-
-
-def _expected_topplings(
-    objects: Sequence[StandingObject],
-    shaking: ShakingRates,
-    errors: Floats,
-    years: Floats,
-    same_earthquakes: bool,
-) -> Floats:
-    """Expected number of earthquakes that topple an object that stands, (samples, branches)."""
     indices = [body.index(shaking) for body in objects]
-    expected = np.zeros((len(errors), len(shaking.rates)))
+    # number of earthquakes that topple an object that stands, (samples, branches)
+    expected = np.zeros((samples, len(shaking.rates)))
     for at, (error, exposure) in enumerate(zip(errors, years, strict=True)):
         stands = np.ones(shaking.rates.shape[1])
         # from the object that has stood longest: each next one adds to what may topple since then
@@ -152,12 +137,15 @@ def _expected_topplings(
         until = np.append(exposure[order[1:]], 0.0)
         for k, next_exposure in zip(order, until, strict=True):
             topples = objects[k].probability(indices[k], error[k])
-            if same_earthquakes:
+            if site.same_earthquakes:
                 stands = stands * (1.0 - topples)
                 expected[at] += (exposure[k] - next_exposure) * (shaking.rates @ (1.0 - stands))
             else:
                 expected[at] += exposure[k] * (shaking.rates @ topples)
-    return expected
+    log_survival = special.logsumexp(-expected, axis=0) - np.log(samples)
+    logs = np.log([branch.weight for branch in site.branches]) + log_survival
+    weights = np.exp(logs - special.logsumexp(logs))
+    return Reweighted(site, np.asarray(log_survival), weights)
 
 
 def scaled(

@@ -367,34 +367,24 @@ def read_site(path: str | os.PathLike[str], records: str | Path = RECORDS) -> Si
 
     Paths in it are relative to it; ``records`` is the folder of fetched records, for objects that are simulated.
     """
-    known = checked(read_yaml(path), "site", str(path))
+    known, folder = checked(read_yaml(path), "site", str(path)), Path(path).parent
+    hazard, velocity = known["hazard"], known["hazard"].get("velocity")
+    realizations = hazard.get("realizations")
     try:
-        return _site(known, Path(path).parent, Path(records))
+        curves = [folder / name for name in hazard["curves"]]
+        branches = read_branches(curves, folder / realizations if realizations else None)
+        site = Site(
+            name=known.get("name", "the site"),
+            branches=tuple(branches),
+            objects=(),
+            shared_error=float(known.get("shared_error", 0.0)),
+            same_earthquakes=bool(known.get("same_earthquakes", True)),
+            velocity=velocity and VelocityRatio(**velocity),
+        )
+        return replace(site, objects=tuple(_objects(known["objects"], site, folder, Path(records))))
     except InputError as error:
         text = str(error)
-        raise InputError(
-            text if text.startswith(str(Path(path).parent)) else f"{path}: {text}"
-        ) from None
-
-
-def _site(known: Mapping[str, Any], folder: Path, records: Path) -> Site:
-    hazard = known["hazard"]
-    realizations = hazard.get("realizations")
-    velocity = hazard.get("velocity")
-    site = Site(
-        name=known.get("name", "the site"),
-        branches=tuple(
-            read_branches(
-                [folder / name for name in hazard["curves"]],
-                folder / realizations if realizations else None,
-            )
-        ),
-        objects=(),
-        shared_error=float(known.get("shared_error", 0.0)),
-        same_earthquakes=bool(known.get("same_earthquakes", True)),
-        velocity=velocity and VelocityRatio(**velocity),
-    )
-    return replace(site, objects=tuple(_objects(known["objects"], site, folder, records)))
+        raise InputError(text if text.startswith(str(folder)) else f"{path}: {text}") from None
 
 
 def _objects(
