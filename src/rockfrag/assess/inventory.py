@@ -77,10 +77,17 @@ def joint_risk(found: Sequence[Assessment]) -> JointRisk | None:
     rates = np.array([toppling_rate(levels, each.fractions(), hazard) for each in outcomes])
     names = [assessment.request.name for assessment in found]
     correlation = _correlation(fell, allowed, per_level)
+    # how often losses are exceeded, from the least object to everything
+    lost, steps = np.tensordot(worth, fell, axes=1), np.zeros(0)
+    if lost.any():
+        steps = np.geomspace(max(lost[lost > 0].min(), 1e-6 * lost.max()), lost.max(), LOSSES)
+    # rounding must not take away what reaches a step exactly
+    reached = [replace(together, overturned=lost >= step * (1 - 1e-12)) for step in steps]
+    exceeded = [float(each.fractions() @ per_level) for each in reached]
     return JointRisk(
         _by_object(names, rates, worth),
         _numbers(found[0], together, fell.sum(axis=0)),
-        _losses(together, fell, worth, per_level),
+        pd.DataFrame({"loss": steps, "annual_rate": exceeded}),
         pd.DataFrame(correlation, index=pd.Index(names, name="name"), columns=names),
     )
 
@@ -119,22 +126,6 @@ def _numbers(first: Assessment, together: ObjectOutcomes, count: NDArray[np.int6
             }
         )
     return pd.DataFrame(rows)
-
-
-def _losses(
-    together: ObjectOutcomes, fell: Flags, worth: Floats, per_level: Floats
-) -> pd.DataFrame:
-    """How often losses are exceeded, from the least object to everything."""
-    lost = np.tensordot(worth, fell, axes=1)
-    if not lost.any():
-        return pd.DataFrame({"loss": [], "annual_rate": []})
-    steps = np.geomspace(max(lost[lost > 0].min(), 1e-6 * lost.max()), lost.max(), LOSSES)
-    # rounding must not take away what reaches a step exactly
-    rates = [
-        float(replace(together, overturned=lost >= step * (1 - 1e-12)).fractions() @ per_level)
-        for step in steps
-    ]
-    return pd.DataFrame({"loss": steps, "annual_rate": rates})
 
 
 def _correlation(fell: Flags, allowed: Flags, per_level: Floats) -> Floats:

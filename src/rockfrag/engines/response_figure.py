@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from rockfrag import figure_style as style
 from rockfrag.engines.response import Response
+from rockfrag.engines.steps import rocking_shapes
 from rockfrag.system import geometry
 from rockfrag.system.system import System
 from rockfrag.units import GRAVITY
@@ -64,10 +65,8 @@ def response_figure(response: Response, title: str) -> Figure:
 
 
 def critical_angles(system: System) -> list[float]:
-    """Smaller critical angle of each body [rad]: of the uppermost by itself, of lower ones with all above them."""
-    shapes = list(system.shapes)
-    if system.count == 2:
-        shapes[0] = geometry.joined(system.pile)
+    """Smaller critical angle of each body [rad] on its contact: of the lower of two with what it carries."""
+    shapes = rocking_shapes(system)
     return [min(geometry.critical_angle(shape, side) for side in (+1, -1)) for shape in shapes]
 
 

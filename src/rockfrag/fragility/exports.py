@@ -170,10 +170,13 @@ def write_nrml(
         comment = f"{name}: {' '.join(said)}".replace("--", "- -")
         warned += [str(row.get("warnings") or "") for row in rows.values()]
         functions.append({"id": name, "comment": comment, **_function(name, curves[name], by)})
+    # each once, without what is said of a single rejected curve
+    plain = [REJECTION.sub("", note).strip() for note in warned]
+    sentences = [part for note in plain for part in re.split(r"(?<=\.)\s+(?=[A-Z])", note)]
     description = [
         "Free-standing bodies in earthquakes. The comment before each function gives its limits, its "
         "goodness of fit and the number of its motions.",
-        *said_once(warned),
+        *dict.fromkeys(filter(None, sentences)),
     ]
     write_text(model_text(" ".join(description), known, functions, identifier), path)
 
@@ -193,16 +196,6 @@ def model_text(
     loaded.filters["escaped"] = escape
     about = {"description": description, "states": states, "identifier": identifier}
     return str(loaded.get_template("nrml.j2").render(functions=functions, **about)) + "\n"
-
-
-def said_once(notes: Sequence[str]) -> list[str]:
-    """Sentences of several warnings, each once, without what is said of a single rejected curve."""
-    sentences = [
-        sentence
-        for note in notes
-        for sentence in re.split(r"(?<=\.)\s+(?=[A-Z])", REJECTION.sub("", note).strip())
-    ]
-    return [sentence for sentence in dict.fromkeys(sentences) if sentence]
 
 
 def _function(taxonomy: str, states: Mapping[str, StateCurve], by: str) -> dict[str, object]:

@@ -29,7 +29,12 @@ def outcome_scores(
     ``logs`` are logarithms of one or more measures, shape (n, k), of which the curve knows the first ``fitted``;
     the others only share in putting tests into cells, so that scores with and without them compare.
     """
-    cell, values = _cells(logs)
+    # cells of rows that are near each other in every measure, and their means
+    most = int(MOST_VALUES ** (1.0 / logs.shape[1])) if len(logs) > MOST_VALUES else len(logs)
+    parts = [cells(column, most)[0] for column in logs.T]
+    cell = np.unique(np.column_stack(parts), axis=0, return_inverse=True)[1].ravel()
+    n = np.bincount(cell)
+    values = np.column_stack([np.bincount(cell, column) / n for column in logs.T])
     fell, total = counts(group, cell, overturned), counts(group, cell, trials)
     fold = np.arange(len(fell)) % FOLDS
     if fold.max() == 0:
@@ -48,15 +53,6 @@ def outcome_scores(
     log_fell = np.maximum(special.log_ndtr(eta), WORST_SCORE)[fold]
     log_stood = np.maximum(special.log_ndtr(-eta), WORST_SCORE)[fold]
     return np.asarray((fell * log_fell + (total - fell) * log_stood).sum(axis=1))
-
-
-def _cells(logs: Floats) -> tuple[NDArray[np.intp], Floats]:
-    """Cells of rows that are near each other in every measure, and their means, (cells, k)."""
-    most = int(MOST_VALUES ** (1.0 / logs.shape[1])) if len(logs) > MOST_VALUES else len(logs)
-    parts = [cells(column, most)[0] for column in logs.T]
-    cell = np.unique(np.column_stack(parts), axis=0, return_inverse=True)[1].ravel()
-    n = np.bincount(cell)
-    return cell, np.column_stack([np.bincount(cell, column) / n for column in logs.T])
 
 
 def capacity_scores(brackets: Brackets, group: NDArray[np.intp]) -> Floats:

@@ -214,9 +214,17 @@ def _selection(
         total=-total,
     ).sort_values(["late", "rank", "total", "measure"], kind="stable", ignore_index=True)
     table = table.drop(columns=["late", "rank", "total"])
-    words = _recommendation(table, scores.shape[1], given)
+    if known.any():
+        scored = table[table["score"].notna()]
+        differs = scored["p_worse"] < DIFFERENCE_P
+        equal = scored[~differs].iloc[1:].to_dict("records")
+        worse = scored[differs].sort_values("score", ascending=False).to_dict("records")
+        about = (len(table) > 1, equal, worse, scores.shape[1], given)
+        words = _say("choice", table.to_dict("records")[0], *about)
+    else:
+        words = _say("no_choice", rising.any())
     first = table.iloc[0] if table[needed].notna().any() else {"measure": "", "im": ""}
-    return MeasureSelection(str(first["measure"]), str(first["im"]), table, words)
+    return MeasureSelection(str(first["measure"]), str(first["im"]), table, " ".join(words))
 
 
 def _best_pair(
@@ -247,18 +255,6 @@ _say = Macros(
     FEWEST_GROUPS_TO_CHOOSE=FEWEST_GROUPS_TO_CHOOSE,
     COLUMNS={"mean_period_s": "mean period", "d5_95_s": "significant duration"},
 )
-
-
-def _recommendation(table: pd.DataFrame, groups: int, given: Sequence[str]) -> str:
-    """Put a ranked table of measures into words that say what to use and how sure that is."""
-    scored = table[table["score"].notna()]
-    if scored.empty:
-        return " ".join(_say("no_choice", table["theta"].notna().any()))
-    differs = scored["p_worse"] < DIFFERENCE_P
-    equal = scored[~differs].iloc[1:].to_dict("records")
-    worse = scored[differs].sort_values("score", ascending=False).to_dict("records")
-    best = table.to_dict("records")[0]
-    return " ".join(_say("choice", best, len(table) > 1, equal, worse, groups, given))
 
 
 def recommend_ida_measure(
