@@ -147,7 +147,8 @@ def test_the_model_error_is_of_an_object_alone(tmp_path, laboratory, capsys):
 
 
 def test_without_measures_the_motions_are_measured(tmp_path, laboratory):
-    tests = run(without_measures(configured(tmp_path, laboratory)), tmp_path)["tests"]
+    path = configured(tmp_path, laboratory, trials=16)
+    tests = run(without_measures(path), tmp_path)["tests"]
     peaks = [np.abs(motion).max() / 9.81 for motion in laboratory.motions.values()]
     assert tests["pga_g"].to_numpy() == pytest.approx(peaks)
     assert (tests["pgv_cm_s"] > 0).all()
@@ -157,7 +158,7 @@ def test_amplitudes_of_overturning_are_simulated_on_both_sides(tmp_path, laborat
     rows = laboratory.table.drop_duplicates("input")
     found = pd.DataFrame({"test": rows["test"], "motion": rows["motion"], "low": 0.05, "high": 2.5})
     columns = {"test": "test", "motion": "motion", "lower_g": "low", "upper_g": "high"}
-    path = with_table(tmp_path, laboratory, found, campaign__columns=columns)
+    path = with_table(tmp_path, laboratory, found, campaign__columns=columns, trials=16)
     tests = run(without_measures(path), tmp_path)["tests"]
     # nothing falls at a twentieth of g, everything at two and a half
     assert tests["right"].all()

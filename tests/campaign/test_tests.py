@@ -12,6 +12,7 @@ from rockfrag.units import GRAVITY
 
 COLUMNS = {"test": "test", "motion": "motion", "group": "input", "overturned": "fell"}
 BRACKETED = {"test": "test", "motion": "motion", "lower_g": "low", "upper_g": "high"}
+FELL_BELOW = "test,motion,low,high\nA,1,0.3,0.2\n"
 GOOD = "test,motion,input,fell,pga_g\nA,1,x,yes,0.2\nB,2,x,0,0.1\nC,3,y,1,0.3\n"
 
 
@@ -39,24 +40,20 @@ def test_an_amplitude_of_overturning_makes_one_test_survived_and_one_overturned(
 
 
 @pytest.mark.parametrize(
-    ("wrong", "right", "sentence"),
+    ("text", "columns", "sentence"),
     [
-        ("B,2,x,0,0.1", "A,2,x,0,0.1", "test A stands twice"),
-        ("B,2,x,0,0.1", "B,2,x,perhaps,0.1", "no outcome"),
-        ("B,2,x,0,0.1", "B,2,x,0,-1", "above zero"),
-        ("B,2,x,0,0.1", "B,,x,0,0.1", "label is missing"),
-        ("fell", "outcome", "there is no column 'fell'"),
+        (GOOD.replace("B,2,x,0,0.1", "A,2,x,0,0.1"), COLUMNS, "test A stands twice"),
+        (GOOD.replace("B,2,x,0,0.1", "B,2,x,perhaps,0.1"), COLUMNS, "no outcome"),
+        (GOOD.replace("B,2,x,0,0.1", "B,2,x,0,-1"), COLUMNS, "above zero"),
+        (GOOD.replace("B,2,x,0,0.1", "B,,x,0,0.1"), COLUMNS, "label is missing"),
+        (GOOD.replace("fell", "outcome"), COLUMNS, "there is no column 'fell'"),
+        (FELL_BELOW, BRACKETED, "row 2: lower_g is not below upper_g"),
     ],
 )
-def test_a_bad_table_ends_in_one_sentence(tmp_path, wrong, right, sentence):
-    path = table(tmp_path, GOOD.replace(wrong, right))
+def test_a_bad_table_ends_in_one_sentence(tmp_path, text, columns, sentence):
+    measures = {"pga_g": ["pga_g"]} if columns is COLUMNS else {}
     with pytest.raises(InputError, match=sentence):
-        read_campaign(path, COLUMNS, {"pga_g": ["pga_g"]})
-
-
-def test_an_object_that_fell_below_what_it_survived_is_refused(tmp_path):
-    with pytest.raises(InputError, match="row 2: lower_g is not below upper_g"):
-        read_campaign(table(tmp_path, "test,motion,low,high\nA,1,0.3,0.2\n"), BRACKETED, {})
+        read_campaign(table(tmp_path, text), columns, measures)
 
 
 def test_outcomes_of_other_programs_follow_the_tests_as_far_as_they_are_given(tmp_path):
@@ -64,12 +61,9 @@ def test_outcomes_of_other_programs_follow_the_tests_as_far_as_they_are_given(tm
     found = read_campaign(table(tmp_path, GOOD), COLUMNS, {}, codes).codes
     assert found["dem"].isna().tolist() == [False, True, False]
     assert found.dropna().to_dict("list") == {"dem": [0, 1], "fem": [1, 0]}
-
-
-def test_a_table_of_other_tests_is_refused(tmp_path):
-    codes = table(tmp_path, "test,dem\nX,1\nY,0\n", "codes.csv")
+    others = table(tmp_path, "test,dem\nX,1\nY,0\n", "codes.csv")
     with pytest.raises(InputError, match="has none of the 3 tests"):
-        read_campaign(table(tmp_path, GOOD), COLUMNS, {}, codes)
+        read_campaign(table(tmp_path, GOOD), COLUMNS, {}, others)
 
 
 def test_the_template_has_the_columns_of_a_campaign(tmp_path):
@@ -123,23 +117,19 @@ def test_conditioning_takes_away_offset_and_spikes(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("options", "sentence"),
+    ("factor", "options", "sentence"),
     [
-        ({"names": ["a", "b"]}, "no motion for 1 of 2 tests, b first"),
-        ({"unit": None}, "states neither unit nor interval"),
-        ({"unit": "V"}, "not a unit of acceleration"),
-        ({"unit": "volt"}, "not a unit of acceleration"),
+        (65, {}, r"peaks at 19.* g, which no shake table reaches"),
+        (1, {"names": ["a", "b"]}, "no motion for 1 of 2 tests, b first"),
+        (1, {"unit": None}, "states neither unit nor interval"),
+        (1, {"unit": "V"}, "not a unit of acceleration"),
+        (1, {"unit": "volt"}, "not a unit of acceleration"),
     ],
 )
-def test_what_is_missing_is_asked_for(tmp_path, options, sentence):
-    path = archive(tmp_path, a=SHAKING)
+def test_what_is_missing_or_of_another_unit_is_said(tmp_path, factor, options, sentence):
+    path = archive(tmp_path, a=factor * SHAKING)
     with pytest.raises(InputError, match=sentence):
         motions_of(path, **options)
-
-
-def test_a_motion_in_volts_is_too_large_for_any_table(tmp_path):
-    with pytest.raises(InputError, match=r"peaks at 19.* g, which no shake table reaches"):
-        motions_of(archive(tmp_path, a=65 * SHAKING))
 
 
 @pytest.mark.parametrize("content", [None, b"", b"PK\x03\x04 cut", b"no archive"])

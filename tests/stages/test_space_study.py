@@ -120,16 +120,18 @@ def test_the_pairs_of_a_catalogue_shake_bodies_in_space(pairs_of_a_catalogue, ma
     assert "the records of mine.csv" in (folder / "report.html").read_text(encoding="utf-8")
 
 
-def test_a_record_of_one_component_and_two_sources_of_records_are_told(pairs_of_a_catalogue):
+def test_a_record_of_one_component_two_sources_of_records_and_no_base_are_told(
+    pairs_of_a_catalogue,
+):
     catalogue = pairs_of_a_catalogue / "mine.csv"
     catalogue.write_text(catalogue.read_text() + "c,third,0.txt,,g,,\n")
     with pytest.raises(InputError, match="motion c has no second component"):
         of_a_catalogue(pairs_of_a_catalogue)
-    both = SMALL | {"space": SMALL["space"] | {"catalogue": "mine.csv"}}
-    with pytest.raises(InputError, match="give either every"):
-        any_study(both, pairs_of_a_catalogue / "space.yaml")
-
-
-def test_a_base_that_is_not_known_is_told():
-    with pytest.raises(InputError, match="bases"):
-        any_study(SMALL | {"space": SMALL["space"] | {"bases": ["oval"]}}, "space.yaml")
+    for changed, words in (
+        ({"catalogue": "mine.csv"}, "give either every"),
+        ({"bases": ["oval"]}, "bases"),
+    ):
+        with pytest.raises(InputError, match=words):
+            any_study(
+                SMALL | {"space": SMALL["space"] | changed}, catalogue.with_name("space.yaml")
+            )
