@@ -5,7 +5,6 @@ motion, where the acceleration is linear, with every contact event located on it
 """
 
 import math
-from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator
 from functools import cache
 from typing import NamedTuple
@@ -51,11 +50,16 @@ class Response(NamedTuple):
     overturned: bool
 
 
-class Integrator(ABC):
+class Integrator:
     """One response as it unfolds; time inside a sample interval is counted from its start.
 
     ``motions`` are the horizontal and vertical acceleration of the ground [m/s²], shape (2, n), zero from the last
     sample on; ``longest`` is the longest step and ``tail`` the longest free motion after the last sample [s].
+    A model adds ``y``, coordinates and velocities; ``take(y)``, which goes on from there; ``row()``, rotations
+    [rad] and slips [m]; ``resting()``, whether all stands in full contact; ``rates(t, y)`` of change of y;
+    ``watched(t, y)``, what must stay positive until the next contact event; ``approaches(y)``, rates at which open
+    contacts part; and ``apply(t, keys)``, which changes the contact state where these have vanished, or where the
+    motion begins or ends.
     """
 
     def __init__(self, motions: Array, dt: float, longest: float, tail: float) -> None:
@@ -64,39 +68,6 @@ class Integrator(ABC):
         self.fallen = False
         self.start = 0.0
         self.load = np.zeros((2, 2)).tolist()
-
-    @property
-    @abstractmethod
-    def y(self) -> Array:
-        """Coordinates and velocities."""
-
-    @abstractmethod
-    def take(self, y: Array) -> None:
-        """Go on from there."""
-
-    @abstractmethod
-    def row(self) -> tuple[list[float], list[float]]:
-        """Rotations [rad] and slips [m]."""
-
-    @abstractmethod
-    def resting(self) -> bool:
-        """Whether everything stands in full contact."""
-
-    @abstractmethod
-    def rates(self, t: float, y: Array) -> Array:
-        """Rates of change of y."""
-
-    @abstractmethod
-    def watched(self, t: float, y: Array) -> dict[Key, float]:
-        """Every quantity that must stay positive until the next contact event."""
-
-    @abstractmethod
-    def approaches(self, y: Array) -> list[float]:
-        """Rates at which the open contacts part."""
-
-    @abstractmethod
-    def apply(self, t: float, keys: set[Key]) -> None:
-        """Change the contact state where these have vanished, or where the motion begins or ends."""
 
     def response(self, duration: float | None) -> Response:
         """Run to the end, at the latest ``duration`` [s], and collect the samples."""

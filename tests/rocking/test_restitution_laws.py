@@ -14,9 +14,6 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from rockfrag import Block, Stack, overturns, simulate
-from rockfrag.engines.kernels.equations import STATE
-from rockfrag.engines.kernels.impact import impact
-from rockfrag.engines.kernels.jit import entry_kernel
 from rockfrag.engines.lanes import body_record
 from rockfrag.errors import InputError
 from rockfrag.laws import law_names
@@ -27,9 +24,9 @@ from rockfrag.system import geometry
 from ..conftest import printed_alone
 from ..oracle.rocking_model import Model
 from ..oracle.standing import upper_on_contact
+from .kernel_impact import kernel_impact, state_record
 
 STILL = np.zeros(300)
-OUTCOME = np.dtype([("c", np.int64, 2), ("omega", np.float64, 2), ("gave_way", np.int64)])
 IMPACTS = [  # old contacts, and which of them close
     ((0, 1), (False, True)),
     ((1, 0), (True, False)),
@@ -39,14 +36,6 @@ IMPACTS = [  # old contacts, and which of them close
     ((1, -1), (True, False)),
 ]
 EVERY_IMPACT = [*IMPACTS, ((1, 1), (True, True)), ((1, -1), (True, True))]
-
-
-@entry_kernel
-def impact_of(body, state, closes1, closes2, out):
-    n1, n2, w1, w2, gave_way = impact(body, state, closes1, closes2)
-    out.c[0], out.c[1] = n1, n2
-    out.omega[0], out.omega[1] = w1, w2
-    out.gave_way = gave_way
 
 
 def random_stack(rng):
@@ -76,12 +65,9 @@ def random_impact(rng, kind):
 
 def compiled(body, restitution, old, closes, theta, omega):
     """What the kernels say comes of an impact."""
-    state, out = np.zeros(1, STATE)[0], np.zeros(1, OUTCOME)[0]
-    state["c1"], state["c2"] = old
-    state["theta1"], state["theta2"] = theta
-    state["omega1"], state["omega2"] = omega
-    impact_of(body_record(system_of(body, restitution=restitution)), state, *closes, out)
-    return tuple(out["c"].tolist()), tuple(out["omega"].tolist()), int(out["gave_way"])
+    record = body_record(system_of(body, restitution=restitution))
+    n1, n2, w1, w2, gave_way = kernel_impact(record, state_record(old, theta, omega), *closes)
+    return (n1, n2), (w1, w2), gave_way
 
 
 def plain(body, restitution, old, closes, theta, omega):

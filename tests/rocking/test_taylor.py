@@ -20,6 +20,8 @@ from rockfrag.engines.kernels.lanes.stack_constants import (
 from rockfrag.engines.kernels.taylor import ORDER, SERIES, Step, fill_series, rates_of_two
 from rockfrag.engines.lanes import body_record
 
+from .kernel_impact import state_record
+
 BODY = body_record(Stack(Block(0.4, 0.3, 100.0), Block(0.3, 1.2, 200.0, cg_offset=0.01)).system())
 H, GROUND, RISE = 0.01, 2.0, -1.5
 GRAVITY, LIFT = 9.0, 3.0
@@ -91,10 +93,9 @@ CASES = [((0.10, -0.05), (0.4, -0.9)), ((0.02, 0.0), (-1.0, 2.0)), ((0.3, 0.05),
 
 @pytest.mark.parametrize(("theta", "omega"), CASES)
 def test_the_series_of_one_history_are_those_of_the_recurrence(theta, omega):
-    state = np.zeros(1, eq.STATE)
-    state[0] = (1, -1, theta[0], omega[0], theta[1], omega[1], 0.0, GRAVITY)
+    state = state_record((1, -1), theta, omega, (0.0, GRAVITY))
     series = np.zeros(1, SERIES)[0]
-    fill(BODY, state[0], Step(H, GROUND, RISE, GRAVITY, LIFT), series)
+    fill(BODY, state, Step(H, GROUND, RISE, GRAVITY, LIFT), series)
     plain = series_by_recurrence(*step_of(theta, omega))
     np.testing.assert_allclose(series["one"]["angle"], plain[0], rtol=1e-9, atol=1e-18)
     np.testing.assert_allclose(series["two"]["angle"], plain[1], rtol=1e-9, atol=1e-18)

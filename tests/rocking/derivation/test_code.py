@@ -5,12 +5,12 @@ import itertools
 import numpy as np
 import pytest
 
-from rockfrag.engines.kernels.equations import STATE, equations
-from rockfrag.engines.kernels.impact import impact
+from rockfrag.engines.kernels.equations import equations
 from rockfrag.engines.kernels.jit import entry_kernel
 from rockfrag.engines.lanes import body_record
 
 from ...oracle.rocking_model import Model
+from ..kernel_impact import kernel_impact, state_record
 from . import motion, single_block, transitions
 from .systems import Equation, System, error, impact_map, random_systems
 
@@ -24,18 +24,6 @@ N = len(S.b1)
 @entry_kernel
 def kernel_equations(body, sigma1, sigma2, at):
     return equations(body, sigma1, sigma2, at)
-
-
-@entry_kernel
-def kernel_impact(body, at, closes1, closes2):
-    return impact(body, at, closes1, closes2)
-
-
-def record(c, theta, omega, pull: tuple[float, float]) -> np.void:
-    """The kernels' record of contacts and motion; ``pull``: acceleration of the ground, and gravity."""
-    made = np.zeros(1, STATE)
-    made[0] = (*c, theta[0], omega[0], theta[1], omega[1], *pull)
-    return made[0]
 
 
 STACKS = S.stacks()
@@ -61,7 +49,7 @@ def pull(k: int) -> tuple[float, float]:
 def test_equations_of_motion(pivots, linear):
     def kernel(k):
         p = body_record(STACKS[k].system(), linear=linear, g=S.g[k])
-        found = kernel_equations(p, *pivots, record(pivots, *state(S, k), pull(k)))
+        found = kernel_equations(p, *pivots, state_record(pivots, *state(S, k), pull(k)))
         m11, m12, m22, f1, f2 = found
         q1, q2 = S.q1[k], S.q2[k]
         return m11 * q1 + m12 * q2 + f1, m12 * q1 + m22 * q2 + f2
@@ -144,7 +132,7 @@ def test_an_impact_has_one_outcome_which_takes_energy_and_which_the_fast_kernel_
         assert model.kinetic_energy(new, theta, after) <= before * (1 + 1e-12)
         p = body_record(STACKS[k].system(), g=S.g[k])
         n1, n2, w1, w2, fast_gave_way = kernel_impact(
-            p, record(old, theta, omega, (0.0, S.g[k])), closing[0] != 0, closing[1] != 0
+            p, state_record(old, theta, omega, (0.0, S.g[k])), closing[0] != 0, closing[1] != 0
         )
         assert (n1, n2) == new and not gave_way and not fast_gave_way
         assert (w1, w2) == pytest.approx(after, rel=1e-10, abs=1e-12)
