@@ -1,7 +1,6 @@
 """Damaged records: every format, archives and catalogues, cut, flipped, doubled and mixed."""
 
 import gzip
-import io
 import random
 import zipfile
 from collections.abc import Callable, Iterable
@@ -88,14 +87,8 @@ def _binary(folder: Path) -> Iterable[tuple[str, bytes]]:
     kinds = {"a.mseed": "MSEED", "a.sac": "SAC", "a.gse": "GSE2", "a.slist": "SLIST"}
     for name, kind in kinds.items():
         data = samples.astype(np.float32) if kind == "SAC" else samples
-        buffer = io.BytesIO()
-        trace = Trace(data.copy(), dict(header))
-        try:
-            Stream([trace]).write(buffer, format=kind)
-        except TypeError:
-            Stream([trace]).write(str(folder / name), format=kind)
-            buffer.write((folder / name).read_bytes())
-        yield name, buffer.getvalue()
+        Stream([Trace(data.copy(), dict(header))]).write(str(folder / name), format=kind)
+        yield name, (folder / name).read_bytes()
     yield "AOM001.EW", built_records.knet_text().encode()
 
 

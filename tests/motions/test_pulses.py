@@ -68,19 +68,15 @@ def test_pulses_leave_their_impulse_and_displacement(pulse, velocity, displaceme
         assert left[1] == pytest.approx(displacement, rel=1e-4, abs=1e-9)
 
 
-@pytest.mark.parametrize("wavelet", [m.ricker_symmetric, m.ricker_antisymmetric])
-def test_ricker_wavelets_come_to_rest_and_have_their_period_in_the_spectrum(wavelet):
+@pytest.mark.parametrize(
+    ("wavelet", "sign"), [(m.ricker_symmetric, 1), (m.ricker_antisymmetric, -1)]
+)
+def test_ricker_wavelets_come_to_rest_and_have_their_symmetry_and_period(wavelet, sign):
     pulse = wavelet(2.0, 0.7, DT)
+    np.testing.assert_allclose(pulse.acceleration, sign * pulse.acceleration[::-1], atol=1e-12)
     assert at_the_end(pulse) == pytest.approx((0.0, 0.0), abs=1e-8)
     frequency, amplitude = spectra.fourier_amplitude(pulse, 200_000)
     assert 1 / frequency[np.argmax(amplitude)] == pytest.approx(0.7, rel=0.01)
-
-
-def test_symmetry_of_ricker_wavelets_is_what_they_are_called_for():
-    even = m.ricker_symmetric(2.0, 0.7, DT).acceleration
-    odd = m.ricker_antisymmetric(2.0, 0.7, DT).acceleration
-    np.testing.assert_allclose(even, even[::-1], atol=1e-12)
-    np.testing.assert_allclose(odd, -odd[::-1], atol=1e-12)
 
 
 @pytest.mark.parametrize("cycles", [1.0, 1.5, 2.7])

@@ -32,7 +32,7 @@ def test_every_column_has_a_unit_and_a_meaning_and_no_role_in_its_name():
     assert len({column.title for column in columns()}) == len(columns())
 
 
-def test_tables_are_tidy():
+def test_tables_are_tidy_and_what_no_engine_told_is_nan():
     made = shaken()
     cases, bodies, contacts = (made.table(which) for which in ("cases", "bodies", "contacts"))
     assert len(cases) == 4
@@ -43,10 +43,6 @@ def test_tables_are_tidy():
     assert bodies["peak_rotation"].tolist() == [0.0, 0.5, 0.0, 0.0, 0.2, np.inf]
     assert set(cases["engine"]) == {"lanes"}
     assert "peak_slip_m" in contacts
-
-
-def test_what_no_engine_told_is_nan():
-    bodies = shaken().table("bodies")
     assert bodies["turn_rad"].isna().all()
     assert (bodies["fell_over"] == "").all()
 

@@ -28,22 +28,28 @@ def partners(draft):
     }
 
 
-def test_names_that_differ_in_the_component_are_of_one_record(tmp_path):
-    names = ["A-CLS000", "A-CLS090", "120111", "120112", "ISE-WE", "ISE-NS", "b_E", "b_N", "lone7"]
-    for seed, name in enumerate(names):
-        write(tmp_path / f"{name}.txt", seed)
+PAIRS = {
+    **{("A-CLS000", "A-CLS090"): "", ("120111", "120112"): "", ("ISE-WE", "ISE-NS"): ""},
+    **{("b_E", "b_N"): "", ("H-E10050", "H-E10320"): "H-E10-UP", ("C08050", "C08320"): "C08-UP"},
+    **{("H-E04140", "H-E04230"): "H-E04-UP", ("CLW-LN", "CLW-TR"): "CLW-UP"},
+}
+"""Names of two horizontal components, and of their vertical one."""
+
+
+@pytest.mark.parametrize("prefix", ["", "RSN173_IMPVALL.H_"])
+def test_names_that_differ_in_the_component_are_of_one_record(tmp_path, prefix):
+    names = [name for pair, vertical in PAIRS.items() for name in (*pair, vertical) if name]
+    for seed, name in enumerate([*names, "lone7"]):
+        write(tmp_path / f"{prefix}{name}.txt", seed)
     draft = make_catalogue([tmp_path], unit="g", folder=tmp_path)
-    assert partners(draft) == {
-        "A-CLS000.txt": "A-CLS090.txt",
-        "A-CLS090.txt": "A-CLS000.txt",
-        "120111.txt": "120112.txt",
-        "120112.txt": "120111.txt",
-        "ISE-WE.txt": "ISE-NS.txt",
-        "ISE-NS.txt": "ISE-WE.txt",
-        "b_E.txt": "b_N.txt",
-        "b_N.txt": "b_E.txt",
-        "lone7.txt": "",
-    }
+    table = draft.table.set_index("file")
+    for pair, vertical in PAIRS.items():
+        first, other, upright = (
+            f"{prefix}{name}.txt" if name else "" for name in (*pair, vertical)
+        )
+        assert table["second"][[first, other]].tolist() == [other, first]
+        assert set(table["vertical"][[first, other]]) == {upright}
+    assert table.loc[f"{prefix}lone7.txt", "second"] == ""
     assert any("lone7.txt: its other horizontal component" in line for line in draft.warnings)
 
 
@@ -127,26 +133,6 @@ def test_the_vertical_of_a_unam_file_is_no_horizontal(tmp_path, builders):
     assert [file.rpartition("#")[2] for file in draft.table["vertical"]] == ["V", "V"]
     assert is_vertical("V;+")
     assert azimuth_of("N90E;") == 90
-
-
-@pytest.mark.parametrize(
-    "pair",
-    [
-        ("H-E10050", "H-E10320"),
-        ("H-E04140", "H-E04230"),
-        ("C08050", "C08320"),
-        ("CLW-LN", "CLW-TR"),
-    ],
-)
-def test_pairs_of_peers_arrays_are_found(tmp_path, pair):
-    for seed, name in enumerate(pair):
-        write(tmp_path / f"RSN173_IMPVALL.H_{name}.txt", seed)
-    stem = pair[0][:-3].rstrip("-")
-    write(tmp_path / f"RSN173_IMPVALL.H_{stem}-UP.txt", 2)
-    draft = make_catalogue([tmp_path], unit="g", folder=tmp_path)
-    first, other = (f"RSN173_IMPVALL.H_{name}.txt" for name in pair)
-    assert partners(draft) == {first: other, other: first}
-    assert set(draft.table["vertical"]) == {f"RSN173_IMPVALL.H_{stem}-UP.txt"}
 
 
 def test_a_record_beside_its_archives_is_there_once(tmp_path):

@@ -104,11 +104,14 @@ def test_a_step_that_looks_rounded_is_reported_and_can_be_replaced(tmp_path):
     assert read_motion(path, unit="g", dt=0.003).dt == 0.003
 
 
-@pytest.mark.parametrize("dt", [0.02, 0.01, 0.005, 0.004, 0.0025, 0.00244, 1 / 256, 1 / 300, 0.001])
-def test_rounded_print_of_times_gives_the_exact_interval(tmp_path, dt):
-    times = np.arange(4000) * dt
+INTERVALS = (0.02, 0.01, 0.005, 0.004, 0.0025, 0.00244, 1 / 256, 1 / 300, 0.001)
+
+
+@pytest.mark.parametrize(("dt", "form"), [*((dt, ".6f") for dt in INTERVALS), (0.00125, ".6g")])
+def test_rounded_print_of_times_gives_the_exact_interval(tmp_path, dt, form):
+    times = np.arange(20_000 if form == ".6g" else 4000) * dt
     path = tmp_path / "t.txt"
-    path.write_text("".join(f"{t:.6f} {np.sin(t):.6f}\n" for t in times))
+    path.write_text("".join(f"{t:{form}} {np.sin(t):.6f}\n" for t in times))
     assert read_motion(path, unit="g").dt == pytest.approx(dt, rel=2e-6)
 
 

@@ -45,15 +45,6 @@ def weighed(branches, objects, samples=SAMPLES, **more) -> Reweighted:
     return reweight(Site("here", tuple(branches), tuple(objects), **more), samples)
 
 
-def test_rate_of_toppling_under_a_power_law_is_the_closed_form():
-    years = 100.0
-    found = weighed(made_branches(1.0, 3.0), [rock(years, 0.4, 0.3)])
-    # λ = k0 θ^-k exp(k² β² / 2) (Cornell and others 2002)
-    of_one = 1e-4 * 0.4**-SLOPE * math.exp((SLOPE * 0.3) ** 2 / 2)
-    expected = [-years * factor * of_one for factor in (1.0, 3.0)]
-    assert found.log_survival == pytest.approx(expected, rel=1e-3)
-
-
 def test_weights_integrate_what_is_linear_in_the_logarithm_exactly():
     curve = power_law(1e-3)
     levels = np.geomspace(0.05, 2.0, 7)
@@ -81,15 +72,6 @@ def test_independent_objects_multiply_and_identical_ones_with_shared_error_do_no
     assert apart.log_survival == pytest.approx(2 * alone, rel=5e-3)
     together = weighed(branches, [first, other], shared_error=1.0, same_earthquakes=False)
     assert (together.log_survival > 2 * alone + 0.02).all()
-
-
-def test_a_twin_that_topples_with_its_brother_says_nothing_new():
-    branches = made_branches(0.5, 2.0)
-    sharp = [rock(2000, beta=0.05, name=name) for name in ("one", "other")]
-    alone = weighed(branches, sharp[:1]).log_survival
-    # the weaker of two normal capacities lies 0.5642 standard deviations below the mean
-    expected = alone * math.exp(SLOPE * 0.5642 * 0.05)
-    assert weighed(branches, sharp).log_survival == pytest.approx(expected, rel=5e-3)
 
 
 def test_an_object_that_came_later_is_exposed_to_fewer_earthquakes():

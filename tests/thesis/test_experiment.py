@@ -6,7 +6,6 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from rockfrag.errors import InputError
 from rockfrag_thesis.hypotheses import (
     COLUMNS,
     HYPOTHESES,
@@ -340,11 +339,6 @@ def test_spelling_of_earthquake_names_does_not_matter(made):
     tests = made(on_earthquake(LomaPrieta=0.3))
     tests["earthquake"] = tests["earthquake"].str.lower().str.replace(" ", "_")
     assert finding(47, tests) is FOR
-
-
-def test_unusable_table_is_an_input_error(made):
-    with pytest.raises(InputError):
-        hypothesis_table(Evidence(made().assign(amplitude_g=np.nan, lower_g=np.nan), "simulated"))
 
 
 def test_there_are_58_statements_each_with_text_source_rule_and_error_rate():
