@@ -127,6 +127,13 @@ def printed_alone(*program: str, **environment: str) -> str:
     return done.stdout.strip()
 
 
+def wave(name: str = "wave", samples: int = 600) -> Motion:
+    """A burst of waves of 1.1 Hz [m/s²]."""
+    time = np.arange(samples) * 0.01
+    values = np.sin(2 * np.pi * 1.1 * time) * np.exp(-(((time - 2) / 1.2) ** 2))
+    return Motion(4.0 * values, 0.01, name, {})
+
+
 MADE_EARTHQUAKES = 6
 """Earthquakes of which made motions are."""
 

@@ -1,6 +1,8 @@
 """Hazard files as their makers document them, made here of one power law."""
 
 import json
+from math import expm1
+from pathlib import Path
 
 LEVELS = [0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0]
 """Levels of PGA [g]."""
@@ -13,8 +15,6 @@ def rate(level: float, at_a_tenth: float = 0.01) -> float:
 
 def poe(level: float, years: float = 50.0, at_a_tenth: float = 0.01) -> float:
     """Probability of exceedance in some years."""
-    from math import expm1
-
     return -expm1(-years * rate(level, at_a_tenth))
 
 
@@ -32,6 +32,17 @@ def openquake_csv(
         f"{poe(level, years, at_a_tenth):.6E}" for level in LEVELS
     )
     return f'#{blanks},"{comment}"\n{header}\n{row}\n'
+
+
+QUANTILES = {"mean": 0.01, "quantile-0.16": 0.006, "quantile-0.84": 0.015}
+
+
+def quantile_files(folder: Path, imt: str) -> list[str]:
+    """Write OpenQuake's files of a mean and of two quantiles."""
+    paths = {kind: folder / f"hazard_curve-{kind}-{imt}_1.csv" for kind in QUANTILES}
+    for kind, path in paths.items():
+        path.write_text(openquake_csv(imt, kind, QUANTILES[kind]))
+    return list(map(str, paths.values()))
 
 
 def usgs_json(imt: str = "PGA") -> str:

@@ -166,18 +166,6 @@ def test_a_file_says_what_the_command_line_says(tmp_path):
     assert request.level.words == "PGA 0.25 g"
 
 
-def test_command_answers_with_own_records(own_records, tmp_path, capsys):
-    arguments = [
-        *("assess", "--width", "35cm", "--height", "120cm", "--mass", "180kg", "--pga", "0.5g"),
-        *("--record", str(own_records / "catalogue.csv"), "--output", str(tmp_path / "out")),
-    ]
-    assert main(arguments) == 0
-    shown = capsys.readouterr()
-    assert len(shown.out.splitlines()) == 5
-    assert "12 own motions of 6 earthquakes" in shown.out
-    assert (tmp_path / "out" / "the-object.json").is_file()
-
-
 def test_without_records_and_network_there_is_one_sentence(tmp_path, capsys, monkeypatch):
     monkeypatch.setenv("PIP_NO_INDEX", "1")
     arguments = ["assess", "--width", "35cm", "--height", "120cm", "--records", str(tmp_path)]

@@ -22,7 +22,7 @@ from rockfrag.errors import InputError
 from rockfrag.rocking.browser import driver_text
 
 from ..app_forms import settings_of, some_form
-from .samples import openquake_csv
+from .samples import quantile_files
 
 NODE = shutil.which("node")
 needs_node = pytest.mark.skipif(NODE is None, reason="Node is not installed")
@@ -259,12 +259,8 @@ def test_a_building_that_is_given_has_the_bits_of_the_package(
 @needs_node
 @pytest.mark.parametrize("measure", ["PGA", "SA(0.3)"])
 def test_a_hazard_that_is_given_brings_its_quantiles_and_its_measure(tmp_path, motions, measure):
-    files = []
-    for kind, rate in (("mean", 0.01), ("quantile-0.16", 0.006), ("quantile-0.84", 0.015)):
-        path = tmp_path / f"hazard_curve-{kind}-{measure}_1.csv"
-        path.write_text(openquake_csv(measure, kind, rate))
-        files.append(str(path))
-    settings = {"width": "15 cm", "height": "80 cm", "hazard": files}
+    settings = {"width": "15 cm", "height": "80 cm"}
+    settings |= {"hazard": quantile_files(tmp_path, measure)}
     request = make_request(settings, "test")
     assert set(request.hazard[0].quantiles) == {0.16, 0.84}
     form = form_of(settings, request) | {"width": "15 cm", "height": "80 cm"}

@@ -39,11 +39,7 @@ def test_measures_are_known_by_all_their_names():
 
 
 def test_quantiles_belong_to_the_mean(tmp_path):
-    files = [
-        write(tmp_path, f"{kind}.csv", samples.openquake_csv(kind=kind, at_a_tenth=rate))
-        for kind, rate in (("mean", 0.01), ("quantile-0.16", 0.006), ("quantile-0.84", 0.015))
-    ]
-    (curve,) = read_hazard(files)
+    (curve,) = read_hazard(samples.quantile_files(tmp_path, "PGA"))
     assert list(curve.quantiles) == [0.16, 0.84]
     assert curve.quantiles[0.84].rate(0.1) == pytest.approx(0.015, rel=1e-4)
 

@@ -172,7 +172,7 @@ def test_an_object_that_velocity_topples_has_the_rate_of_that_velocity(random):
     # the PGV of the site as it follows from ln PGV = ln(0.07 s) + ln PGA + 0.4 z
     velocity = power_law(PGV, K0 * math.exp((K * 0.4) ** 2 / 2), middle=0.1 * 0.07 * VELOCITY_PER_G)
     outcomes = topples_from(30.0, logs)
-    known = SiteVelocity.of_two_curves(acceleration, velocity, 0.4)
+    known = SiteVelocity(0.4, curves=(acceleration, velocity))
     assert known.log_ratio(np.array([0.05, 1.0])) == pytest.approx(math.log(0.07), abs=1e-9)
     at_site = conversion_of(logs, known).at_site(outcomes)
     rate = toppling_rate(at_site.intensity_levels.levels, at_site.fractions(), acceleration)
@@ -191,7 +191,7 @@ def test_an_object_that_velocity_topples_has_the_rate_of_that_velocity(random):
 def test_velocity_says_nothing_of_an_object_that_acceleration_topples(random):
     outcomes = topples_from(30.0, np.full(40, math.log(0.1)))
     logs = math.log(0.1) + 0.5 * random.standard_normal(40)
-    known = SiteVelocity.constant(math.log(0.3), 0.3)
+    known = SiteVelocity(0.3, math.log(0.3))
     at_site = conversion_of(logs, known, weight=0.0).at_site(outcomes)
     assert at_site.fractions() == pytest.approx(outcomes.fractions(), abs=1e-12)
 
@@ -199,7 +199,7 @@ def test_velocity_says_nothing_of_an_object_that_acceleration_topples(random):
 def test_what_differs_between_earthquakes_is_in_the_fraction(random):
     """Under ln PGV/PGA normal about the site's mean, fractions follow the normal distribution function."""
     logs = math.log(0.1) + 0.5 * random.standard_normal(200)
-    known = SiteVelocity.constant(math.log(0.07), 0.3)
+    known = SiteVelocity(0.3, math.log(0.07))
     at_site = conversion_of(logs, known).at_site(topples_from(30.0, logs))
     x = at_site.intensity_levels.levels
     exact = stats.norm.cdf(np.log(x * 0.07 * VELOCITY_PER_G / 30.0) / 0.3)

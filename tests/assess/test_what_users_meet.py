@@ -5,6 +5,7 @@ import re
 from dataclasses import replace
 
 import numpy as np
+import pandas as pd
 import pytest
 
 from rockfrag.assess.answer import assess_with
@@ -151,13 +152,23 @@ def test_an_interval_that_says_nothing_is_called_so_with_what_would_narrow_it(on
     assert "the ground velocity (PGV) of the site and the building's first period to 5 %" in line
 
 
-def test_all_faults_of_an_inventory_are_listed_and_good_rows_ranked(few_records, tmp_path, capsys):
+def test_all_faults_of_an_inventory_are_listed_and_good_rows_ranked(own_records, tmp_path, capsys):
     path = tmp_path / "gallery.csv"
     path.write_text(
-        "name;width;height;floor\nsaint;35 cm;1,6 m;\nvase;abc;70 cm;\nbust;30 cm;70;\n"
-        "torso;30 cm;70 cm;7/3\nhead;20 cm\namphora;18 cm;60,5 cm;\nsaint;30 cm;1 m;\n"
+        "name;width;height;mass;pedestal_width;pedestal_height;floor\nstout;60 cm;0,9 m;500 kg;;;\n"
+        "vase;abc;70 cm;;;;\nbust;30 cm;70;;;;\ntorso;30 cm;70 cm;;;;7/3\nhead;20 cm\n"
+        "slender;20 cm;120,5 cm;60 kg;;;\nstout;30 cm;1 m;;;;\n"
+        "Hermes;50 cm;120 cm;400 kg;60 cm|80 cm;50 cm|20 cm;\nVenus;35 cm;120 cm;180 kg;50 cm;90 cm;1/2\n"
     )
-    options = ["--pga", "0.5g", "--record", str(few_records), "--output", str(tmp_path)]
+    options = [
+        "--pga",
+        "0.4g",
+        "--return-period",
+        "475",
+        "--record",
+        str(own_records / "catalogue.csv"),
+    ]
+    options += ["--output", str(tmp_path)]
     assert main(["assess", str(path), *options]) == 2
     said = capsys.readouterr().err
     for line, what in ((3, "abc"), (4, "without a unit"), (5, "7/3"), (6, "cells"), (8, "twice")):
@@ -166,7 +177,11 @@ def test_all_faults_of_an_inventory_are_listed_and_good_rows_ranked(few_records,
     assert main(["assess", str(path), *options, "--keep-going"]) == 0
     shown = capsys.readouterr()
     assert shown.err.count("left out") == 5
-    assert "2 objects" in shown.out and "5 rows left out" in shown.out
+    assert "4 objects" in shown.out and "5 rows left out" in shown.out
+    lines = shown.out.splitlines()
+    assert len(lines) == 7
+    assert "slender" in lines[1] and "stout" in lines[4]
+    assert pd.read_csv(tmp_path / "inventory.csv")["probability"].is_monotonic_decreasing
 
 
 def test_none_of_n_motions_is_said_as_that_and_bounds_are_called_bounds(on_pedestal):

@@ -273,10 +273,9 @@ def test_the_laboratory_s_own_files_are_read_as_the_archive_holds_them(shared):
     from rockfrag.campaign.laboratory import table_motions
 
     folder = shared / "measured" / "granite"
-    (text,) = table_motions(
-        folder / "Test{motion}.txt", ["100"], unit="g", channel="Amplitude - Plot 0"
-    )
-    (array,) = table_motions(folder / "table_accelerations.npz", ["100"], unit="g", dt=0.00125)
+    pattern, arrays = f"{folder}/Test{{motion}}.txt", f"{folder}/table_accelerations.npz"
+    (text,) = table_motions(pattern, ["100"], "g", None, "Amplitude - Plot 0")
+    (array,) = table_motions(arrays, ["100"], "g", 0.00125, None)
     assert text.dt == pytest.approx(array.dt)
     assert text.acceleration == pytest.approx(array.acceleration, abs=1e-5)
 

@@ -11,6 +11,9 @@ import numpy as np
 from rockfrag.files import file_name
 from rockfrag.report.answer import study_answer
 from rockfrag.report.part import Results
+from rockfrag.study.loading import load_any
+
+from .studies import Foreign, run
 
 PLUGIN = re.compile(
     r"thesis|towers?\b|\bT[123]\b|\bGF\b|\bF[35]\b|\bC\d\d?\b|Tables? [34]\.\d|figures? [34]\.\d"
@@ -23,7 +26,6 @@ NOUNS = "record|test|motion|earthquake|pair|floor|object|configuration|outcome|p
 PLURALS = re.compile(rf"\b1 (?:simulated |overturning )?(?:{NOUNS})s\b")
 SINGULARS = re.compile(rf"\b(?:[2-9]|[1-9]\d+) (?:{NOUNS})\b(?! on a pedestal)")
 VOID = {"meta", "link", "br", "img", "input", "hr"}
-
 
 MOST_WORDS = 900
 """Words of a page before anything on it is opened."""
@@ -84,7 +86,7 @@ def check_report(results: Path, names: Iterable[str] = (), plugin: bool = False)
         assert found is None, (
             f"“{found[0]}” in “…{whole[max(0, found.start() - 90) : found.end() + 60]}…”"
         )
-    assert words_before_opening(text) < MOST_WORDS
+    assert len(open_words(text)) < MOST_WORDS
     _check_intervals(whole)
     _check_tables(page)
     _check_figures(results, page)
@@ -143,6 +145,14 @@ def _check_figures(results: Path, page: Page) -> None:
     assert all(path.stat().st_size > 500 for path in (results / "figures").glob("*.*g"))
 
 
+def run_and_check(study: Foreign, folder: Path) -> tuple[Path, Page]:
+    """Run a study to its report, which must be fit to be shown; return its results and its page."""
+    results = run(study, folder)
+    page = check_report(results, study.names)
+    check_first_page(Results(load_any(folder / "study.yaml"), results))
+    return results, page
+
+
 def check_first_page(results: Results) -> None:
     """Assert that each number of what stands first is in the study's tables, and that it is short."""
     answer = study_answer(results)
@@ -166,13 +176,8 @@ def check_first_page(results: Results) -> None:
     assert not strange, f"numbers that are in no table: {strange} in {text}"
 
 
-def words_before_opening(page: str) -> int:
-    """Words of a page outside its drawings before anything is opened, with the summaries of what can be."""
-    return len(open_words(page))
-
-
 def open_words(page: str) -> list[str]:
-    """Words that stand open on a page, outside its drawings."""
+    """Words of a page outside its drawings before anything is opened, with the summaries of what can be."""
     shown = re.sub(r"<(script|style|svg|head)\b.*?</\1>", " ", page, flags=re.DOTALL)
     inside = r"(?:(?!<details\b).)*?"
     innermost = rf"<details\b[^>]*>\s*<summary\b[^>]*>({inside})</summary>{inside}</details>"

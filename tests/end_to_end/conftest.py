@@ -3,14 +3,13 @@
 from collections.abc import Iterator
 from pathlib import Path
 
-import numpy as np
 import pytest
 
 from rockfrag import Block, Stack
 from rockfrag.assess.motions import MotionSet
-from rockfrag.records.motion import Motion
 from rockfrag.report.play_page import write_play_page
 
+from ..conftest import wave
 from .browsers import BROWSERS, Browser
 from .studies import STUDIES, run
 
@@ -41,9 +40,7 @@ def motions(made_motions) -> MotionSet:
 @pytest.fixture(scope="session")
 def play_page(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The page of one stack under one record."""
-    time = np.arange(600) * 0.01
-    wave = np.sin(2 * np.pi * 1.1 * time) * np.exp(-(((time - 2) / 1.2) ** 2))
     path = tmp_path_factory.mktemp("play") / "play.html"
     body = Stack(Block(0.5, 0.6, 350.0), Block(0.3, 1.2, 110.0))
-    write_play_page(body, Motion(4.0 * wave, 0.01, "wave", {}), path)
+    write_play_page(body, wave(), path)
     return path

@@ -14,8 +14,8 @@ from rockfrag.motions.intensity import forget_intensity_measure, intensity_measu
 from rockfrag.outcomes.limit_states import forget_limit_state, limit_state
 from rockfrag.outcomes.outcomes import empty_outcomes
 
-from .checked_report import check_report
-from .studies import Foreign, alone, run
+from .checked_report import run_and_check
+from .studies import Foreign, alone
 
 
 class Needles:
@@ -73,8 +73,7 @@ def test_one_declaration_each_reaches_the_report(additions, tmp_path):
     blocks["needle"] = (0.05, 60.0, 0.2)
     standing = {**alone("column"), "both": ("column", "plinth"), **alone("needle")}
     study = Foreign(blocks, standing, {name: name for name in "abcdef"}, content=content)
-    results = run(study, tmp_path)
-    page = check_report(results, study.names)
+    results, page = run_and_check(study, tmp_path)
     # the engine answered for the needle, and only for it
     fell = pd.read_parquet(results / "ida/needle.parquet")["overturned"]
     column = pd.read_parquet(results / "ida/column.parquet")

@@ -10,11 +10,9 @@ import pytest
 
 from rockfrag.records.motion import read_motion_set
 from rockfrag.records.read import read_motion
-from rockfrag.report.part import Results
-from rockfrag.study.loading import load_any
 
 from .asking_studies import draw, fate, wrong_limits
-from .checked_report import check_first_page, check_report
+from .checked_report import run_and_check
 from .studies import STUDIES, Foreign, run
 
 LONG = (
@@ -32,9 +30,7 @@ LONG = (
 )
 def test_the_study_runs_and_its_report_fits_it(name: str, tmp_path: Path):
     study = STUDIES[name]
-    results = run(study, tmp_path)
-    page = check_report(results, study.names)
-    check_first_page(Results(load_any(tmp_path / "study.yaml"), results))
+    results, page = run_and_check(study, tmp_path)
     words = " ".join(page.words)
     tests = pd.read_parquet(results / "tests.parquet")
     tests = tests[tests["definition"] == "step_protocol"]

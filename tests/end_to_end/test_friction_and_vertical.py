@@ -8,25 +8,16 @@ import pytest
 
 from rockfrag import Block, overturns, simulate
 from rockfrag.records.motion import Motion, read_motion_set
-from rockfrag.report.part import Results
 from rockfrag.rocking.ensemble import LIGHT, LightBodies
-from rockfrag.study.loading import load_any
 from rockfrag.units import GRAVITY
 
-from .checked_report import Page, check_first_page, check_report
-from .studies import Foreign, alone, run
+from .checked_report import run_and_check
+from .studies import Foreign, alone
 
 SLENDER = {"figure": (30.0, 60.0, 60.0), "column": (30.0, 120.0, 110.0)}
 SLENDER |= {"plinth": (50.0, 60.0, 350.0)}
 STANDING = alone("figure", "column") | {"column on plinth": ("column", "plinth")}
 RECORDS = {"a": "one", "b": "two"}
-
-
-def run_and_check(study: Foreign, folder: Path) -> tuple[Path, Page]:
-    results = run(study, folder)
-    page = check_report(results, study.names)
-    check_first_page(Results(load_any(folder / "study.yaml"), results))
-    return results, page
 
 
 def table(results: Path, name: str) -> pd.DataFrame:

@@ -19,17 +19,13 @@ from rockfrag.report.play_page import write_play_page
 from rockfrag.rocking.options import system_of
 from rockfrag.system.system import turned_about_vertical
 
+from ..conftest import wave as motion
+
 STATUE = Block(0.3, 1.2, 110.0)
 BODIES = {
     "figure": STATUE.system(),
     "figure </script> on plinth": Stack(Block(0.5, 0.6, 350.0), STATUE).system(),
 }
-
-
-def motion(name: str = "wave", samples: int = 600) -> Motion:
-    time = np.arange(samples) * 0.01
-    wave = np.sin(2 * np.pi * 1.1 * time) * np.exp(-(((time - 2) / 1.2) ** 2))
-    return Motion(4.0 * wave, 0.01, name, {})
 
 
 def data_of(html: str) -> dict:

@@ -1,6 +1,7 @@
 """Stages: IDA curves, curves by floor, and forces of a sample of tests that each has by itself."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pandas as pd
@@ -50,9 +51,13 @@ def curves():
         ("statue", str(floor)): TableIda(with_measures(part, measures, columns))
         for floor, part in ida.groupby("floor", sort=False)
     }
-    return floor_curves(
-        {"overturns": ida_curves}, measures, FLOORS, {"statue": STATUE.system()}, "abc", 0.90
-    )[0]
+    study = SimpleNamespace(
+        floors=FLOORS,
+        configurations=[replace(STATUE.system(), name="statue")],
+        fragility=SimpleNamespace(confidence=0.90),
+        **{"slides": False, "vertical": False},
+    )
+    return floor_curves({"overturns": ida_curves}, measures, study, "abc")[0]
 
 
 def test_floors_never_share_a_curve_and_measures_are_named_after_them(curves):

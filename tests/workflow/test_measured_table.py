@@ -1,6 +1,7 @@
 """A table of measured tests goes from its CSV to a report, and an absent one is named."""
 
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pandas as pd
@@ -64,8 +65,9 @@ def tables(folder: Path, rows: list[str]) -> dict[str, pd.DataFrame]:
     path = folder / "synthetic.csv"
     path.write_text("\n".join([HEADER, *rows]) + "\n")
     tests = read_measured(path)
-    slenderness = {"T1": 3.0, "T2": 4.0, "T3": 5.0}
-    return measured_tables(tests, tests, slenderness, seed=1, level=0.9)
+    known = {"slenderness": {"T1": 3.0, "T2": 4.0, "T3": 5.0}, "seed": 1}
+    settings = SimpleNamespace(confidence=0.9)
+    return measured_tables(tests, tests, SimpleNamespace(**known, fragility=settings))
 
 
 def test_an_empty_table_says_that_it_is_empty(tmp_path: Path):

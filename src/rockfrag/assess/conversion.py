@@ -7,7 +7,7 @@ earthquake to the next and belongs into the fractions; its mean is not known and
 """
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -51,41 +51,29 @@ MOST_LEVELS = 8  # Levels of a motion that are fitted; tests under one motion de
 class SiteVelocity:
     """PGV that comes with levels of another measure at a site: ln of their ratio [s] is normal."""
 
-    # Mean of ln ratio at levels of the measure, with the spread
-    mean: Callable[[Floats, float], Floats]
     spread: float  # Its standard deviation from one earthquake to the next [-]
-    is_open: bool = False  # Whether the spread at a given level is not known
+    # Its mean, the same at all levels, where no curves are known
+    constant: float = math.nan
+    # Hazard curves of the measure and of PGV, with which it agrees; the spread at a given level is then not known
+    curves: tuple[HazardCurve, ...] = ()
 
     def log_ratio(self, levels: Floats) -> Floats:
-        """Mean of ln ratio at levels of the measure, of their shape."""
-        return self.mean(levels, self.spread)
-
-    @classmethod
-    def constant(cls, log_ratio: float, spread: float) -> "SiteVelocity":
-        """The same at all levels."""
-        return cls(lambda levels, _: np.full(levels.shape, log_ratio), spread)
-
-    @classmethod
-    def of_two_curves(
-        cls, first: HazardCurve, velocity: HazardCurve, spread: float
-    ) -> "SiteVelocity":
-        """What agrees with the hazard curves of a measure and of PGV, with a standard deviation of ln PGV.
+        """Mean of ln ratio at levels of the measure, of their shape.
 
         If ln PGV is normal about a line in ln measure with the standard deviation s, and the rate of PGV falls
         with the exponent k, the level of PGV at a rate lies k s²/2 above the mean of ln PGV at the measure's level
         of that rate.
         """
-
-        def mean(levels: Floats, spread: float) -> Floats:
-            rates = first.rate(levels)
-            logs = [
-                np.log([velocity.level(rate * factor) for rate in rates])
-                for factor in (1.0, math.exp(-1), math.e)
-            ]
-            slope = 2.0 / (logs[1] - logs[2])
-            return np.asarray(logs[0] - slope * spread**2 / 2 - np.log(levels * VELOCITY_PER_G))
-
-        return cls(mean, spread, is_open=True)
+        if not self.curves:
+            return np.full(levels.shape, self.constant)
+        first, velocity = self.curves
+        rates = first.rate(levels)
+        logs = [
+            np.log([velocity.level(rate * factor) for rate in rates])
+            for factor in (1.0, math.exp(-1), math.e)
+        ]
+        slope = 2.0 / (logs[1] - logs[2])
+        return np.asarray(logs[0] - slope * self.spread**2 / 2 - np.log(levels * VELOCITY_PER_G))
 
 
 @dataclass(frozen=True)
@@ -118,13 +106,12 @@ class Conversion:
         """Least and largest PGV over the measure of the motions [cm/s per unit]."""
         return [VELOCITY_PER_G * math.exp(log) for log in (self.logs.min(), self.logs.max())]
 
-    def site_log(self, level: Level | None) -> float:
+    def site_log(self, level: Level) -> float:
         """Mean of ln (PGV over the measure [s]) at the site's level, where something is known of it."""
         assert self.known is not None
-        at = 1.0 if level is None else level.value
-        return float(self.known.log_ratio(np.array([at]))[0])
+        return float(self.known.log_ratio(np.array([level.value]))[0])
 
-    def at_level(self, level: Level | None) -> float:
+    def at_level(self, level: Level) -> float:
         """The same as PGV over the measure [cm/s per unit]."""
         return VELOCITY_PER_G * math.exp(self.site_log(level))
 
@@ -135,7 +122,7 @@ class Conversion:
     def sides(self, outcomes: ObjectOutcomes) -> tuple[ObjectOutcomes, ObjectOutcomes] | None:
         """The same with less and more spread of velocities at a given level; None where that is not open."""
         known = self.known
-        if known is None or not known.is_open:
+        if known is None or not known.curves:
             return None
         lower, upper = (
             self._moved(outcomes, replace(known, spread=known.spread * factor))
@@ -181,8 +168,8 @@ def find_conversion(
     outcomes: ObjectOutcomes,
     motions: MotionSet,
     given: Records,
-    level: Level | None,
-    curves: Sequence[HazardCurve],
+    level: Level,
+    curves: tuple[HazardCurve, ...],
     *,
     by_statics: bool,
     brief: bool,
@@ -203,20 +190,20 @@ def find_conversion(
     weight, error = _weight(fit, middle)
     if not math.isfinite(weight):
         return None
+    # what is known of the velocity at the site, and the standard deviation of the mean of ln ratio
     relation = VelocityRelation.of(motions.about, motions.log_ratios(measure, of_all=True))
     own = math.sqrt(1 - OF_THE_SITE) * relation.scatter
-    known, spread = None, 0.0
+    known, spread, away = None, 0.0, 0.0
     if len(curves) > 1:
-        known = SiteVelocity.of_two_curves(curves[0], curves[1], relation.scatter)
-    elif level is not None and math.isfinite(level.pgv):
-        ratio = math.log(level.pgv / level.value / VELOCITY_PER_G)
+        known = SiteVelocity(relation.scatter, curves=curves)
+    elif math.isfinite(level.pgv):
         # of a hazard curve other levels count too, with velocities of their own
-        known = SiteVelocity.constant(ratio, own if curves else 0.0)
+        ratio = math.log(level.pgv / level.value / VELOCITY_PER_G)
+        known = SiteVelocity(own if curves else 0.0, ratio)
     else:
         spread = relation.unknown(given)
         if not (math.isnan(given.magnitude) and math.isnan(given.distance_km)):
-            known = SiteVelocity.constant(relation.mean(given), own)
-    away = 0.0
+            known = SiteVelocity(own, relation.mean(given))
     if known is not None:
         away = float(np.abs(known.log_ratio(outcomes.intensity_levels.levels) - middle).mean())
     shift = math.hypot(weight * spread, error * away)
@@ -244,17 +231,13 @@ def _fitted(outcomes: ObjectOutcomes, logs: Floats, brief: bool) -> VectorFragil
 
 def _weight(fit: VectorFragility, log_ratio: float) -> tuple[float, float]:
     """Effect of ln ratio over that of ln measure at half toppling, within its bounds, and its standard error."""
-
-    def weight(c: Floats, log_level: float) -> Floats:
-        more = c[:, 3] if c.shape[1] > 3 else 0.0
-        return np.asarray((c[:, 2] + more * log_level) / (c[:, 1] + more * log_ratio))
-
     middle, *_ = fit.contour(0.5, math.exp(log_ratio))
     log_level = float(np.log(middle[0]))
-    own = float(weight(np.array([fit.coefficients]), log_level)[0])
-    error = 0.0
-    if len(fit.replicates) > 1:
-        error = float(jackknife_error(weight(fit.replicates, log_level)))
+    # of the fit and of those without an earthquake each
+    c = np.vstack([fit.coefficients, fit.replicates])
+    more = c[:, 3] if c.shape[1] > 3 else 0.0
+    own, *left_out = (c[:, 2] + more * log_level) / (c[:, 1] + more * log_ratio)
+    error = float(jackknife_error(np.array(left_out))) if len(left_out) > 1 else 0.0
     return float(np.clip(own, 0.0, OF_DISPLACEMENT)), error if math.isfinite(error) else 0.0
 
 

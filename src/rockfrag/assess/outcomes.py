@@ -375,15 +375,10 @@ def find_directions(
     upright = all(contact.tilt == contact.offset[0] == 0 for contact in system.contacts)
     symmetric = upright and all(shape.x == 0 for shape in system.shapes)
     angles = range(0, 180 if symmetric else 360, STEP_DEG)
-    values = motions.values(measure)
-    shaking: list[Motion] = []
-    scales: list[Floats] = []
-    for pair in motions.pairs:
-        middle = float(np.sqrt(values[pair[0]] * values[pair[1]]))
-        shaking += motions.turned(pair, angles)
-        scales += [levels / middle] * len(angles)
-    believable = np.minimum(np.array(scales), believable_scales(shaking))
-    found, _ = simulated([system], shaking, believable)
+    shaking = [motion for pair in motions.pairs for motion in motions.turned(pair, angles)]
+    first = np.repeat([pair[0] for pair in motions.pairs], len(angles))
+    scales = scaled_to(levels, motions.with_both_components(), measure).scales[first]
+    found, _ = simulated([system], shaking, np.minimum(scales, believable_scales(shaking)))
     fallen = found.overturned[0]
     by_record = fallen.reshape(len(motions.pairs), len(angles), -1)
     anyhow, worst = by_record.mean(axis=(0, 1)), by_record.any(axis=1).mean(axis=0)

@@ -132,12 +132,6 @@ def _given(settings: Mapping[str, Any], floor: Any, folder: Path) -> Place:
         if floor is None:
             raise InputError("key floor is missing; give the level over the storeys, such as 2/4.")
         return _sketched(str(floor), checked(given, "known_of_building", "building"), settings)
-    return _described(building, where, floor, _tolerances(settings, TOLERANCES))
-
-
-def _described(
-    building: ShearBuilding, where: str, floor: Any, tolerances: Mapping[str, float]
-) -> Place:
     if building.model != "elastic":
         raise InputError(
             f"key building: {where} is not elastic, and one object is assessed with an elastic building; set "
@@ -157,7 +151,7 @@ def _described(
     building.level(label)
     name = "" if found or label.isdecimal() else label
     said = assume("building", "period", "damping")
-    return Place(building, label, tolerances, name, (said,))
+    return Place(building, label, _tolerances(settings, TOLERANCES), name, (said,))
 
 
 def _sketched(floor: str, known: Mapping[str, Any], settings: Mapping[str, Any]) -> Place:

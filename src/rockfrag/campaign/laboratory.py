@@ -5,8 +5,8 @@ A row of the table is a test, what the table was told to do and what the object 
 
 import os
 import zipfile
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -17,7 +17,7 @@ from rockfrag.errors import InputError
 from rockfrag.files import is_file
 from rockfrag.fragility.tests_file import product_of, read_columns, read_titles
 from rockfrag.motions.intensity import pga, pgv
-from rockfrag.motions.processing import highpass, process
+from rockfrag.motions.processing import highpass
 from rockfrag.records.motion import Motion
 from rockfrag.records.parsing.quantities import TO_SI, asked_unit
 from rockfrag.records.read import read_motion
@@ -150,37 +150,39 @@ _CAUSES = {
 
 
 def table_motions(
-    source: str | os.PathLike[str],
-    names: Sequence[str],
-    *,
-    unit: str | None = None,
-    dt: float | None = None,
-    channel: str | None = None,
-    conditioning: Sequence[Mapping[str, Any]] = (),
+    source: str, names: Sequence[str], unit: str | None, dt: float | None, channel: str | None
 ) -> list[Motion]:
-    """Read and condition the measured motion of the table in each test, in the order of the tests [m/s²].
+    """Read the measured motion of the table in each test, in the order of the tests [m/s²].
 
     ``source`` is an ``.npz`` archive with one array per motion, or a pattern of file names such as
     ``motions/Test{motion}.txt``; ``names`` are keys of the archive, or what to put for ``{motion}``. ``unit``,
-    ``dt`` [s] and ``channel`` are for files that do not state them; ``conditioning`` has steps as in
-    :func:`rockfrag.motions.process`.
+    ``dt`` [s] and ``channel`` are for files that do not state them.
     """
-    found = []
-    for motion in _read(str(source), list(names), unit, dt, channel):
+    absent = missing_motions(source, names)
+    if absent:
+        raise InputError(
+            f"{source}: has no motion for {len(absent)} of {len(names)} tests, {', '.join(absent[:3])} first; "
+            "add them, or set without_motion: leave_out."
+        )
+    if source.endswith(".npz"):
+        found = _of_archive(source, names, unit, dt)
+    else:
+        read = (read_motion(_path(source, name), unit, channel, dt) for name in names)
+        found = [replace(motion, name=name) for motion, name in zip(read, names, strict=True)]
+    for motion in found:
         if motion.pga > LARGEST_PEAK:
             raise InputError(
                 f"{source}: motion {motion.name} peaks at {motion.pga / GRAVITY:.3g} g, which no shake "
                 "table reaches; it may be in volts or counts, or another column: check unit and channel."
             )
-        found.append(process(motion, conditioning))
     return found
 
 
-def missing_motions(source: str | os.PathLike[str], names: Sequence[str]) -> list[str]:
+def missing_motions(source: str, names: Sequence[str]) -> list[str]:
     """Return the names of which there is no motion."""
-    if not str(source).endswith(".npz"):
-        return [name for name in names if not is_file(Path(_path(str(source), name)))]
-    with _archive(str(source)) as content:
+    if not source.endswith(".npz"):
+        return [name for name in names if not is_file(Path(_path(source, name)))]
+    with _archive(source) as content:
         return [name for name in names if name not in content.files]
 
 
@@ -204,37 +206,23 @@ def _archive(source: str) -> Any:
         raise InputError(f"{source}: cannot be read as an .npz archive ({error}).") from error
 
 
-def _read(
-    source: str, names: list[str], unit: str | None, dt: float | None, channel: str | None
-) -> Iterator[Motion]:
-    absent = missing_motions(source, names)
-    if absent:
-        raise InputError(
-            f"{source}: has no motion for {len(absent)} of {len(names)} tests, {', '.join(absent[:3])} first; "
-            "add them, or set without_motion: leave_out."
-        )
-    if not source.endswith(".npz"):
-        for name in names:
-            motion = read_motion(_path(source, name), unit, channel, dt)
-            yield Motion(motion.acceleration, motion.dt, name, motion.metadata, motion.provenance)
-        return
+def _of_archive(
+    source: str, names: Sequence[str], unit: str | None, dt: float | None
+) -> list[Motion]:
     if unit is None or dt is None:
         raise InputError(
             f"{source}: an .npz archive states neither unit nor interval; give unit and dt."
         )
-    factor = TO_SI[asked_unit(unit)]
+    factor, found = TO_SI[asked_unit(unit)], []
+    about = ({"step": "read", "file": Path(source).name, "unit": unit},)
     with _archive(source) as content:
         for name in names:
             try:
                 values = np.asarray(content[name], dtype=np.float64)
             except (ValueError, OSError, EOFError, zipfile.BadZipFile) as error:
                 raise InputError(f"{source}: motion {name} cannot be read ({error}).") from error
-            yield Motion(
-                values * factor,
-                dt,
-                name,
-                provenance=({"step": "read", "file": Path(source).name, "unit": unit},),
-            )
+            found.append(Motion(values * factor, dt, name, provenance=about))
+    return found
 
 
 def measured_peaks(motions: Sequence[Motion]) -> pd.DataFrame:

@@ -71,7 +71,7 @@ def sentences(results: Results) -> list[Finding]:
     found = [findings.strength_found(curves, results.level) or amplitudes, recorded]
     if results.study.has_pairs:
         return [*found, findings.pedestal_effect(table("pedestal/effects"), about)[0]]
-    compared = findings.objects_compared(table("mean_amplitudes"), results.slenderness)
+    compared = findings.objects_compared(table("mean_amplitudes"), results.study.slenderness)
     resurrections = findings.resurrections_found(table("resurrections"), table("tests"))
     return [*found, *compared, resurrections][:3]
 

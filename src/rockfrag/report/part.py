@@ -168,11 +168,6 @@ class Results:
         return list(dict.fromkeys(each.names[-1] for each in self.study.configurations))
 
     @property
-    def slenderness(self) -> dict[str, float]:
-        """Height over width of each specimen by its name."""
-        return {name: block.slenderness for name, block in self.study.specimens.items()}
-
-    @property
     def level(self) -> str:
         """Confidence of the intervals of curves, in words."""
         return f"{100 * self.study.fragility.confidence:g} %"

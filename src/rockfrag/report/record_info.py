@@ -157,8 +157,10 @@ def record_figure(motion: Motion) -> Figure:
         figure = style.new_figure(style.PAGE_WIDTH, 4.2)
         left, right = figure.subfigures(1, 2, squeeze=False, width_ratios=(1.7, 1))[0]
         panels = left.subplots(3, 1, sharex=True)
-        for panel, history in zip(panels, histories, strict=True):
-            _history(panel, motion, *history)
+        for panel, (values, label, colour, peak) in zip(panels, histories, strict=True):
+            highest = 1.2 * style.draw_history(panel, motion.time, values, color=colour) or 1.0
+            panel.set(ylim=(-highest, highest), ylabel=label)
+            panel.set_title(f"peak {peak}", loc="right", pad=2)
         panels[-1].set_xlabel("Time [s]")
         panels[-1].set_xlim(0, max(motion.time[-1], motion.dt))
         upper, lower = right.subplots(2, 1)
@@ -174,15 +176,6 @@ def record_figure(motion: Motion) -> Figure:
         titles = [shorten(line, 100, placeholder="…") for line in (motion.name, found) if line]
         figure.suptitle("\n".join(titles), fontsize=9)
         return figure
-
-
-def _history(
-    panel: Axes, motion: Motion, values: NDArray[np.float64], label: str, colour: str, peak: str
-) -> None:
-    highest = 1.2 * style.draw_history(panel, motion.time, values, color=colour) or 1.0
-    panel.set_ylim(-highest, highest)
-    panel.set_ylabel(label)
-    panel.set_title(f"peak {peak}", loc="right", pad=2)
 
 
 def _logarithmic(panel: Axes, x: NDArray[np.float64], y: NDArray[np.float64], colour: str) -> None:

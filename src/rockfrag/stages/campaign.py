@@ -108,24 +108,18 @@ def campaign_with_motions(
 
 
 def _motions(study: CampaignStudy, campaign: Campaign, conditioning: Any) -> list[Motion]:
+    """Motion of the table in each test, conditioned, and scaled where the table of tests says so."""
+    tests = campaign.tests
     if study.pulse_cycles:
-        settings = campaign.tests[list(PULSE_MEASURES)].to_numpy()
-        return [
-            process(commanded_cosine(a * GRAVITY, ratio, study.pulse_cycles), conditioning)
-            for a, ratio in settings
-        ]
-    motions = laboratory.table_motions(
-        study.motions,
-        list(campaign.tests["motion"]),
-        unit=study.unit,
-        dt=study.dt_s,
-        channel=study.channel,
-        conditioning=conditioning,
-    )
-    peaks = campaign.tests["amplitude_g"]
+        settings = tests[list(PULSE_MEASURES)].to_numpy()
+        told = [commanded_cosine(a * GRAVITY, ratio, study.pulse_cycles) for a, ratio in settings]
+        return [process(motion, conditioning) for motion in told]
+    unstated = study.unit, study.dt_s, study.channel
+    motions = laboratory.table_motions(study.motions, list(tests["motion"]), *unstated)
+    shaken = (process(motion, conditioning) for motion in motions)
     return [
         motion if np.isnan(peak) else scale_to_pga(motion, peak)
-        for motion, peak in zip(motions, peaks, strict=True)
+        for motion, peak in zip(shaken, tests["amplitude_g"], strict=True)
     ]
 
 

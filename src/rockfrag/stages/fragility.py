@@ -17,7 +17,7 @@ from rockfrag.shaketable.definitions import Swept
 from rockfrag.stages.ida import ida_curves_of
 from rockfrag.stages.job import Job, Results
 from rockfrag.study.study import Study
-from rockfrag.system.system import System, uplift_ratios
+from rockfrag.system.system import uplift_ratios
 
 if TYPE_CHECKING:
     # every job reads this module for the list of stages; only curves need scipy
@@ -49,10 +49,7 @@ def run(job: Job[Study]) -> Results:
     yield from _two_measures(job, measures)
     choice = measure_selection(of_all, measures, settings.confidence, job.study.seed)
     yield "measure_selection", choice
-    systems = {system.name: system for system in job.study.configurations}
-    at_once = not (job.study.slides or job.study.vertical)
-    about = (job.study.floors, systems, record_set, settings.confidence, at_once)
-    by_floor, floor_fractions = floor_curves(of_floors, measures, *about)
+    by_floor, floor_fractions = floor_curves(of_floors, measures, job.study, record_set)
     yield "fragility_floors", by_floor
     yield "fragility_floors_fractions", floor_fractions
     exports = job.folder / "exports"
@@ -203,19 +200,12 @@ def floor_measures(level: int) -> tuple[str, ...]:
 
 
 def floor_curves(
-    ida_curves: "StateIdaCurves",
-    measures: pd.DataFrame,
-    floors: Mapping[str, int],
-    systems: Mapping[str, System],
-    record_set: str,
-    level: float,
-    rocks_at_once: bool = True,
+    ida_curves: "StateIdaCurves", measures: pd.DataFrame, study: Study, record_set: str
 ) -> tuple[pd.DataFrame, pd.DataFrame]:
     """Fragility of every configuration on every floor; motions of different floors are never mixed.
 
     For each limit state ``ida_curves`` has those of each configuration on each floor, ``measures`` are of the
-    motions as recorded, ``floors`` the level of each by its label (0 moves as the ground does). ``rocks_at_once``
-    tells that bodies rock as soon as the peak of a motion exceeds their threshold, as they do where nothing slides
+    motions as recorded. Bodies rock as soon as the peak of a motion exceeds their threshold where nothing slides
     and nothing moves vertically; the state ``rocks`` is left out where they may not. Rocking starts at an exact
     peak acceleration, whose value in another measure varies from motion to motion.
 
@@ -228,10 +218,12 @@ def floor_curves(
     from rockfrag.fragility.ida_curves import fraction_points, fragility_row, with_measures
 
     floor_labels = {measure.label: measure.floor_label for measure in intensity_measures()}
+    systems = {system.name: system for system in study.configurations}
+    rocks_at_once, level = not (study.slides or study.vertical), study.fragility.confidence
     fractions = []
     rows = []
     for (name, floor), ida in ida_curves[OVERTURNS].items():
-        height = floors[floor]
+        height = study.floors[floor]
         columns = floor_measures(height)
         motions = ida.motions()
         threshold = min(uplift_ratios(systems[name]))

@@ -17,7 +17,7 @@ def run(job: Job[Study]) -> Results:
     """Yield the pedestal's effect in every form."""
     from rockfrag.pedestal.paired_tests import with_counterparts
 
-    slenderness = {name: block.slenderness for name, block in job.study.specimens.items()}
+    slenderness = job.study.slenderness
     tests, origin = with_counterparts(job.table("tests"), job.study.counterparts)
     slenderness |= {name: slenderness[tested] for name, tested in origin.items()}
     found = pedestal_tables(tests, job.study.seed, slenderness)
@@ -74,23 +74,14 @@ def run_measured(job: Job[Study]) -> Results:
     if study.measured_tests is None:
         raise ValueError("the study has no measured tests")
     simulated = job.table("tests")
-    found = measured_tables(
-        read_measured(study.measured_tests),
-        simulated[simulated["definition"] == DEFINITION],
-        {name: block.slenderness for name, block in study.specimens.items()},
-        study.seed,
-        study.fragility.confidence,
-    )
+    simulated = simulated[simulated["definition"] == DEFINITION]
+    found = measured_tables(read_measured(study.measured_tests), simulated, study)
     yield from found.items()
     job.log.info("measured tests: %d", len(found["measured/tests"]))
 
 
 def measured_tables(
-    measured: pd.DataFrame,
-    simulated: pd.DataFrame,
-    slenderness: Mapping[str, float],
-    seed: int,
-    level: float,
+    measured: pd.DataFrame, simulated: pd.DataFrame, study: Study
 ) -> dict[str, pd.DataFrame]:
     """Fit fragility and the pedestal's effect to tests as :func:`rockfrag.shaketable.read_measured` returns them.
 
@@ -102,12 +93,12 @@ def measured_tables(
     if measured.empty:
         notes.append("The table of measured tests has no rows yet.")
     try:
-        found = pedestal_tables(measured, seed, slenderness)
+        found = pedestal_tables(measured, study.seed, study.slenderness)
         effects = found["effects"]
         notes += list(found["notes"]["note"])
     except InputError as error:
         notes.append(f"No effect of the pedestal: {error}")
-    curves = _curves(measured, level, notes)
+    curves = _curves(measured, study.fragility.confidence, notes)
     return {
         "measured/tests": measured,
         "measured/beside": beside(measured, simulated),

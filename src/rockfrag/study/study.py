@@ -129,6 +129,11 @@ class Study(Heading):
         ]
 
     @property
+    def slenderness(self) -> dict[str, float]:
+        """Height over width of each specimen by its name."""
+        return {name: block.slenderness for name, block in self.specimens.items()}
+
+    @property
     def has_pairs(self) -> bool:
         """Whether an arrangement is tested together with what it is compared with."""
         return bool(self.counterparts) or self.with_and_alone

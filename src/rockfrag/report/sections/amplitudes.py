@@ -84,7 +84,7 @@ def comparisons(results: Results) -> Section | None:
     study, tests, means = results.study, results.tests, results.table("mean_amplitudes")
     if len(tests) < 2:
         return None
-    found = findings.objects_compared(means, results.slenderness)
+    found = findings.objects_compared(means, results.study.slenderness)
     words = findings.mean_sentence(means)
     known = means[means["mean_g"].notna()]
     whole = known[known["by"] == "configuration"].assign(what=lambda t: t["configuration"])

@@ -22,14 +22,14 @@ def counterparts(results: Results) -> Section | None:
         return comparisons(results)
     tests, means = results.tests, results.table("mean_amplitudes")
     ratio = ratio_of(results.table("pedestal/effects"))
-    found, words = objects_compared(means, results.slenderness), mean_sentence(means)
+    found, words = objects_compared(means, results.study.slenderness), mean_sentence(means)
     levels = [
         f"{level}: {ratio(scope, level)}"
         for scope in ("floor", "earthquake")
         for level in dict.fromkeys(tests[scope])
     ]
     whole = ratio("whole", "all")
-    draw = partial(slenderness_figure, tests, means, results.slenderness)
+    draw = partial(slenderness_figure, tests, means, results.study.slenderness)
     scatter = partial(amplitudes.pedestal_scatter, tests, whole)
     by_floor = partial(amplitudes.amplitudes_by, "floor", tests, means)
     parts = [
