@@ -28,16 +28,23 @@ def in_contact(block: Block, a: float, friction: object) -> str:
 
 @pytest.mark.parametrize(
     ("mu", "a", "slope"),
-    [(0.2, 5.0, 0), (0.3, 3.2, 0), (0.45, 9.0, 0), (0.35, 6.0, 0.1), (0.35, 6.0, -0.15)],
+    [
+        (0.2, 5.0, 0),
+        (0.3, 3.2, 0),
+        (0.45, 9.0, 0),
+        ((0.4, 0.2), 5.0, 0),
+        (0.35, 6.0, 0.1),
+        (0.35, 6.0, -0.15),
+    ],
 )
-def test_a_pulse_moves_a_block_as_far_as_newmark_says(mu: float, a: float, slope: float) -> None:
+def test_a_pulse_moves_a_block_as_far_as_newmark_says(mu, a: float, slope: float) -> None:
     """Gravity along a slope is an acceleration of the support: the block slides on until its speed is spent."""
     along, across = G * math.sin(slope), G * (math.cos(slope) - 1)
     motion = pulse(a, 0.4, 6.0) + along
     response = simulate_with_friction(
         SQUAT, motion, DT, friction=mu, vertical=np.full(motion.size, across)
     )
-    hold = mu * G * math.cos(slope)
+    hold = np.atleast_1d(mu)[-1] * G * math.cos(slope)
     # relative to the support: a + along - hold drives, hold - along brakes; half of the last ramp counts
     spent = 0.4 - DT / 2
     speed = (a + along - hold) * spent
@@ -82,14 +89,9 @@ def test_from_rest_a_block_does_what_the_map_of_shenton_says() -> None:
     assert len(seen) == 4
 
 
-def test_static_friction_holds_longer_than_kinetic_friction_brakes() -> None:
+def test_static_friction_holds_longer_than_kinetic() -> None:
     assert in_contact(SQUAT, 0.39 * G, (0.4, 0.2)) == "stands"
     assert in_contact(SQUAT, 0.41 * G, (0.4, 0.2)) == "slides left"
-    a = 5.0
-    response = simulate_with_friction(SQUAT, pulse(a, 0.4), DT, friction=(0.4, 0.2))
-    speed = a * (0.4 - DT / 2)
-    expected = speed**2 / (2 * 0.2 * G) * (1 - 0.2 * G / a)
-    assert -response.slip[-1, 0] == pytest.approx(expected, rel=2e-5)
 
 
 def test_a_ground_that_falls_away_leaves_the_block_on_a_parabola() -> None:

@@ -129,31 +129,24 @@ def test_empty_folder_and_dangling_link_say_what_they_are(tmp_path):
         read_motion(tmp_path / "absent.AT2")
 
 
-LONGER = r"line \d+: the line is longer"
 AT2_HEADER = b"PEER\nA, B, 090\nIN UNITS OF G\nNPTS= 3, DT= .01 SEC\n"
 
 
-@pytest.mark.parametrize(
-    ("header", "repeated", "words"),
-    [
-        *((header, b"1", LONGER) for header in (b"", AT2_HEADER, b"0 0\n1 1\n2 2\n")),
-        *((b"", zeros, "") for zeros in (b"\x00", b"0\n", b"0 0\n", b"0 0 0 0 0\n", b"0")),
-    ],
-)
-def test_an_endless_file_is_given_up_at_once(tmp_path, header, repeated, words):
-    """64 MiB stand for more: the file is read in blocks, and an endless line given up in the first."""
+@pytest.mark.parametrize("header", [b"", AT2_HEADER, b"0 0\n1 1\n2 2\n"])
+def test_an_endless_line_of_digits_is_not_slurped(tmp_path, header):
+    """64 MiB of digits stand for more: the file is read in blocks and given up in the first."""
     path = tmp_path / "digits.txt"
-    path.write_bytes(header + repeated * (64 * 2**20 // len(repeated)))
+    path.write_bytes(header + b"1" * (64 * 2**20))
     tracemalloc.start()
     start = time.perf_counter()
-    with pytest.raises(InputError, match=rf"digits\.txt.*{words}"):
-        read_motion(path, unit="g", dt=None if header else 0.01)
+    with pytest.raises(InputError, match=r"digits\.txt, line \d+: the line is longer"):
+        read_motion(path, unit="g")
     for candidate in FORMATS:
         candidate.is_format(str(path))
     assert time.perf_counter() - start < 2.0
     _, peak = tracemalloc.get_traced_memory()
     tracemalloc.stop()
-    assert peak < (16 if words else 64) * 2**20
+    assert peak < 16 * 2**20
 
 
 def test_a_file_too_large_for_a_record_is_refused_unread(tmp_path):

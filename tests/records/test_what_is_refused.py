@@ -46,6 +46,16 @@ def test_what_is_no_record_is_told_by_its_kind(tmp_path, content, words):
         read_motion(path, unit="g")
 
 
+@pytest.mark.parametrize("zeros", [b"\x00", b"0\n", b"0 0\n", b"0 0 0 0 0\n", b"0"])
+def test_fifty_megabytes_of_zeros_are_refused_in_two_seconds(tmp_path, zeros):
+    path = tmp_path / "zeros.txt"
+    path.write_bytes(zeros * (50 * 2**20 // len(zeros)))
+    start = time.perf_counter()
+    with pytest.raises(InputError):
+        read_motion(path, unit="g", dt=0.01)
+    assert time.perf_counter() - start < 2
+
+
 @pytest.mark.parametrize(
     "text",
     [

@@ -1,4 +1,4 @@
-"""Closed forms against independently computed figures, and simulated blocks against closed forms."""
+"""Simulated blocks against closed forms and figures computed independently."""
 
 import math
 
@@ -15,14 +15,6 @@ G = 9.81
 BLOCK = uniform(2.14, 0.25)
 
 
-@pytest.mark.parametrize(("ratio", "expected"), [(2.0, 2.3499), (5.0, 7.1681)])
-def test_sine_pulses(ratio: float, expected: float) -> None:
-    assert cf.one_sine_pulse(2.14 * ratio, 2.14) == pytest.approx(expected, abs=1e-3)
-
-
-# --------------------------------------------------------------------------- simulated
-
-
 def falls(shape: np.ndarray, dt: float, x: float, impacts: bool = False) -> bool:
     """Whether x α g times ``shape`` overturns the linear T2; falls after an impact count if asked for."""
     response = simulate(T2, x * T2.alpha * G * shape, dt, linear=True)
@@ -34,8 +26,8 @@ def test_the_linear_block_overturns_above_the_closed_form_and_not_below(ratio):
     omega = ratio * T2.frequency()
     phase = np.linspace(0, 2 * math.pi, 401)
     x = cf.one_sine_pulse(omega, T2.frequency())
-    assert not falls(np.sin(phase), phase[1] / omega, 0.999 * x)
-    assert falls(np.sin(phase), phase[1] / omega, 1.001 * x)
+    assert not falls(np.sin(phase), phase[1] / omega, (1 - 1.4e-4) * x)
+    assert falls(np.sin(phase), phase[1] / omega, (1 + 1.4e-4) * x)
 
 
 @pytest.mark.parametrize("seed", range(4))

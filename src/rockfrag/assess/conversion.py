@@ -231,17 +231,13 @@ def _fitted(outcomes: ObjectOutcomes, logs: Floats, brief: bool) -> VectorFragil
 
 def _weight(fit: VectorFragility, log_ratio: float) -> tuple[float, float]:
     """Effect of ln ratio over that of ln measure at half toppling, within its bounds, and its standard error."""
-
-    def weight(c: Floats, log_level: float) -> Floats:
-        more = c[:, 3] if c.shape[1] > 3 else 0.0
-        return np.asarray((c[:, 2] + more * log_level) / (c[:, 1] + more * log_ratio))
-
     middle, *_ = fit.contour(0.5, math.exp(log_ratio))
     log_level = float(np.log(middle[0]))
-    own = float(weight(np.array([fit.coefficients]), log_level)[0])
-    error = 0.0
-    if len(fit.replicates) > 1:
-        error = float(jackknife_error(weight(fit.replicates, log_level)))
+    # of the fit and of those without an earthquake each
+    c = np.vstack([fit.coefficients, fit.replicates])
+    more = c[:, 3] if c.shape[1] > 3 else 0.0
+    own, *left_out = (c[:, 2] + more * log_level) / (c[:, 1] + more * log_ratio)
+    error = float(jackknife_error(np.array(left_out))) if len(left_out) > 1 else 0.0
     return float(np.clip(own, 0.0, OF_DISPLACEMENT)), error if math.isfinite(error) else 0.0
 
 

@@ -107,10 +107,13 @@ class VectorFragility:
         does not rise with the measure, limits are 0 and infinity where the earthquakes set none.
         """
         other = np.log(np.atleast_1d(np.asarray(second, dtype=np.float64)))
-        centre = _log_contour(
-            np.array([self.coefficients]), probability, other, of, self.interaction.kept
-        )[0]
-        left_out = _log_contour(self.replicates, probability, other, of, self.interaction.kept)
+        # of the fit and of those without an earthquake each, (coefficients, fits, 1)
+        c = np.vstack([self.coefficients, self.replicates]).T[:, :, np.newaxis]
+        slope = c[1 + of] + (c[3] if self.interaction.kept else 0.0) * other
+        level = float(stats.norm.ppf(probability)) - c[0] - c[2 - of] * other
+        with np.errstate(divide="ignore", invalid="ignore"):
+            logs = np.where(slope > 0, level / slope, np.nan)
+        centre, left_out = logs[0], logs[1:]
         half = np.full(other.shape, np.inf)
         if len(left_out) > 1:
             half = half_width(left_out, self.level)
@@ -126,18 +129,6 @@ class VectorFragility:
         y = np.asarray(second, dtype=np.float64)
         w = np.broadcast_to(np.asarray(weights, dtype=np.float64), y.shape[-1:])
         return np.asarray(self.probability(x, y) @ w / w.sum())
-
-
-def _log_contour(
-    coefficients: Floats, probability: float, other: Floats, of: int, interaction: bool
-) -> Floats:
-    """Logarithm of the measure asked for, shape (fits, n); NaN where the probability does not rise with it."""
-    c = coefficients.T[:, :, np.newaxis]
-    product = c[3] if interaction else 0.0
-    slope = c[1 + of] + product * other
-    level = float(stats.norm.ppf(probability)) - c[0] - c[2 - of] * other
-    with np.errstate(divide="ignore", invalid="ignore"):
-        return np.asarray(np.where(slope > 0, level / slope, np.nan))
 
 
 def fit_vector(
