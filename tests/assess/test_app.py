@@ -127,6 +127,15 @@ def check_words(found: Assessment, said) -> None:
             assert said["lines"][titles[title]] == words
 
 
+def check_all(motions: MotionSet, settings, said) -> None:
+    """The page's figures and words are those of the package for the same object."""
+    request = make_request(settings, "form")
+    found = assess_with(request, motions.at(request.place))
+    assert "answer" in said, (settings, said)
+    check(found, said)
+    check_words(found, said)
+
+
 def some_form_in_space(rng: random.Random) -> dict[str, str]:
     """A random box or round object, without a measured restitution, on pedestals too."""
     form = some_form(rng)
@@ -145,14 +154,10 @@ def compare(folder, motions, forms) -> int:
     for form, said in zip(forms, in_node(folder, motions, forms), strict=True):
         assert "failed" not in said, said
         try:
-            request = make_request(settings_of(form), "form")
-            found = assess_with(request, motions.at(request.place))
+            check_all(motions, settings_of(form), said)
         except InputError as error:
             assert "answer" not in said, (form, error)
             continue
-        assert "answer" in said, (form, said)
-        check(found, said)
-        check_words(found, said)
         answered += 1
     return answered
 
@@ -217,8 +222,7 @@ def test_a_pasted_curve_is_the_hazard(tmp_path, motions):
     form |= {"hazard": "pga rate\n0.1; 2e-2\n0.3; 2e-3\n0.9; 1e-4\n"}
     (tmp_path / "curve.csv").write_text("pga_g,annual_rate\n0.1,2e-2\n0.3,2e-3\n0.9,1e-4\n")
     settings = {"width": "20 cm", "height": "1 m", "hazard": [str(tmp_path / "curve.csv")]}
-    request = make_request(settings, "form")
-    check(assess_with(request, motions.at(request.place)), in_node(tmp_path, motions, [form])[0])
+    check_all(motions, settings, in_node(tmp_path, motions, [form])[0])
 
 
 BUILDING = {
@@ -250,10 +254,7 @@ def test_a_building_that_is_given_has_the_bits_of_the_package(
     given = make_request(settings, "test")
     first, said = in_node(tmp_path, motions, [form, form | typed], given)
     assert not first["computed"]
-    request = make_request(settings | typed, "test")
-    found = assess_with(request, motions.at(request.place))
-    check(found, said)
-    check_words(found, said)
+    check_all(motions, settings | typed, said)
 
 
 @needs_node
