@@ -176,7 +176,7 @@ COLUMNS = ("pga_g", "pgv_cm_s", "arias_m_s")
 
 @pytest.fixture(scope="module")
 def counted():
-    """IDA curves of eight earthquakes, most with a resurrection, as a table and as counts of whole and of parts."""
+    """Curves of eight earthquakes, most with a resurrection, as a table and as counts of whole and of parts."""
     rng = np.random.default_rng(4)
     levels, capacity = np.geomspace(0.05, 2.0, 120), 0.4 * np.exp(0.35 * rng.normal(size=MOTIONS))
     near = np.abs(np.log(levels / capacity[:, None])) < 0.15

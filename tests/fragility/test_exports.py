@@ -168,7 +168,7 @@ def test_the_tidy_table_has_every_reading_with_limits_over_earthquakes():
     assert (table.theta_lower < table.theta).all() and (table.theta < table.theta_upper).all()
     assert (table.record_set_sha256 == "abc").all()
     # without structural resurrections first and always are the same amplitude
-    theta = table.pivot(index="configuration", columns="estimator", values="theta")
+    theta = table.pivot_table(index="configuration", columns="estimator", values="theta")
     first, always = theta["first_overturning"], theta["always_overturning"]
     assert first.to_numpy() == pytest.approx(always.to_numpy(), rel=1e-12)
     assert first["T1"] == pytest.approx(0.5, rel=0.35)
