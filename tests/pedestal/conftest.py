@@ -22,7 +22,7 @@ def synthetic_tests(
         return effect + own + (floor_effect or {}).get(floor, 0.0)
 
     # the scatter of d is shared evenly by the two tests of a pair
-    tests = build(log_ratio, noise=sd_pair / np.sqrt(2), seed=seed, of_motion=0.2)
+    tests = build(log_ratio, noise=sd_pair / np.sqrt(2), seed=[seed, 1], of_motion=0.2)
     return tests.assign(repetition=1, lower_g=tests["amplitude_g"], upper_g=tests["amplitude_g"])
 
 
