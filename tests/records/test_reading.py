@@ -15,6 +15,8 @@ from rockfrag.records.quality_flags import quality_flags
 from rockfrag.records.read import read_motion
 from rockfrag.records.write import motions_of_study, write_motion, write_motions
 
+from .built_records import build
+
 
 def two_columns(path, times, values):
     path.write_text(
@@ -64,9 +66,9 @@ def test_a_named_unit_is_used(bare, unit, peak):
         ("geonet_v1a", {}, "1: N10E; 2: N80W; 3: Up"),
     ],
 )
-def test_a_wish_that_contradicts_the_file_is_refused(builders, tmp_path, kind, wish, words):
+def test_a_wish_that_contradicts_the_file_is_refused(tmp_path, kind, wish, words):
     with pytest.raises(InputError, match=words):
-        read_motion(builders[kind](tmp_path).path, **wish)
+        read_motion(build(kind, tmp_path).path, **wish)
 
 
 @pytest.mark.parametrize(
@@ -76,8 +78,8 @@ def test_spellings_of_one_unit(words):
     assert canonical_unit(words) == "cm/s2"
 
 
-def test_several_channels_are_listed_and_chosen_by_name_orientation_or_number(builders, tmp_path):
-    built = builders["geonet_v1a"](tmp_path)
+def test_several_channels_are_listed_and_chosen_by_name_orientation_or_number(tmp_path):
+    built = build("geonet_v1a", tmp_path)
     for wanted, number in (("N10E", 0), ("010", 0), ("10 deg", 0), ("280", 1), ("up", 2), ("2", 1)):
         motion = read_motion(built.path, channel=wanted)
         np.testing.assert_allclose(motion.acceleration, built.samples[number] / 1000, atol=1e-9)
@@ -337,8 +339,8 @@ def test_info_says_quality_flags_status_and_values_as_json_and_csv(tmp_path, cap
     assert lines[3].endswith("unreadable")
 
 
-def test_velocities_in_a_folder_are_no_bad_files_but_named_ones_are(tmp_path, builders, capsys):
-    built = builders["at2_peer"](tmp_path)
+def test_velocities_in_a_folder_are_no_bad_files_but_named_ones_are(tmp_path, capsys):
+    built = build("at2_peer", tmp_path)
     text = built.path.read_text().replace("ACCELERATION", "VELOCITY").replace("OF G", "OF CM/S")
     (tmp_path / "peer.VT2").write_text(text)
     assert main(["info", str(tmp_path)]) == 0
@@ -346,8 +348,8 @@ def test_velocities_in_a_folder_are_no_bad_files_but_named_ones_are(tmp_path, bu
     capsys.readouterr()
 
 
-def test_a_picture_of_every_channel(tmp_path, builders, capsys):
-    built = builders["geonet_v1a"](tmp_path)
+def test_a_picture_of_every_channel(tmp_path, capsys):
+    built = build("geonet_v1a", tmp_path)
     assert main(["info", str(built.path), "--pictures", str(tmp_path / "pictures")]) == 0
     assert len(list((tmp_path / "pictures").glob("*.png"))) == 3
     capsys.readouterr()
