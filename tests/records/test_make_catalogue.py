@@ -62,13 +62,19 @@ def test_components_that_are_not_perpendicular_or_not_alike_are_no_pair(tmp_path
 
 
 def test_components_of_one_file_have_its_vertical(tmp_path):
-    path = build("geonet_v1a", tmp_path).path
-    draft = make_catalogue([path], folder=tmp_path)
-    assert draft.table["file"].tolist() == ["hses.V1A#N10E", "hses.V1A#N80W"]
-    assert draft.table["second"].tolist() == ["hses.V1A#N80W", "hses.V1A#N10E"]
-    assert set(draft.table["vertical"]) == {"hses.V1A#Up"}
-    assert draft.table["date"].tolist() == ["2016-11-13"] * 2
-    assert draft.table["magnitude"].tolist() == [7.82, 7.82]
+    build("geonet_v1a", tmp_path)
+    build("unam_senses", tmp_path)
+    table = make_catalogue([tmp_path], folder=tmp_path).table
+    unam, geonet = "RAC_04042010222544.dat", "hses.V1A"
+    pairs = [(f"{unam}#N90E", f"{unam}#N00E"), (f"{geonet}#N10E", f"{geonet}#N80W")]
+    assert table["file"].tolist() == [file for pair in pairs for file in pair]
+    assert table["second"].tolist() == [file for pair in pairs for file in pair[::-1]]
+    assert table["vertical"].tolist() == [f"{unam}#V"] * 2 + [f"{geonet}#Up"] * 2
+    assert table["component"].tolist() == ["N90E", "N00E", "N10E", "N80W"]
+    assert table["date"].tolist() == ["2004-01-02"] * 2 + ["2016-11-13"] * 2
+    assert table["magnitude"].tolist() == [5.8, 5.8, 7.82, 7.82]
+    assert is_vertical("V;+")
+    assert azimuth_of("N90E;") == 90
 
 
 def test_a_packed_download_of_peer_is_read(tmp_path):
@@ -124,15 +130,6 @@ def test_unreadable_files_copies_and_unstated_units_are_said(tmp_path, capsys):
     assert "plain.txt: the file does not state its unit" in told.err
     with pytest.raises(InputError, match="no horizontal component"):
         make_catalogue([tmp_path / "plain.txt"])
-
-
-def test_the_vertical_of_a_unam_file_is_no_horizontal(tmp_path):
-    path = build("unam_senses", tmp_path).path
-    draft = make_catalogue([path], folder=tmp_path)
-    assert draft.table["component"].tolist() == ["N90E", "N00E"]
-    assert [file.rpartition("#")[2] for file in draft.table["vertical"]] == ["V", "V"]
-    assert is_vertical("V;+")
-    assert azimuth_of("N90E;") == 90
 
 
 def test_a_record_beside_its_archives_is_there_once(tmp_path):

@@ -71,7 +71,9 @@ def test_every_file_of_the_collection_is_claimed_by_exactly_one_plugin(shared):
         assert len(ours) == (0 if path.suffix in by_obspy else 1), (path, ours)
 
 
-@pytest.mark.parametrize("sample", CASES["of_the_world"], ids=lambda sample: sample[0].split("/")[-1])
+@pytest.mark.parametrize(
+    "sample", CASES["of_the_world"], ids=lambda sample: sample[0].split("/")[-1]
+)
 def test_a_record_of_the_world_gives_the_values_read_independently(shared, sample):
     file, dt, name, npts, step, unit, peaks = sample
     record = read_record(shared / "records/world" / file, dt)
