@@ -5,7 +5,7 @@ from itertools import product
 import numpy as np
 import pytest
 
-from ..thesis.conftest import EARTHQUAKES, FLOORS, build
+from ..paired_tests import EARTHQUAKES, FLOORS, build
 
 
 def synthetic_tests(
