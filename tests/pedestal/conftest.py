@@ -4,7 +4,7 @@ from itertools import product
 
 import numpy as np
 
-from ..thesis.conftest import EARTHQUAKES, FLOORS, build
+from ..paired_tests import EARTHQUAKES, FLOORS, build
 
 SLENDERNESS = {"T1": 3.0, "T2": 4.0, "T3": 5.0}
 
