@@ -65,7 +65,9 @@ def local_fraction(outcomes: Observations, im: ArrayLike) -> Floats:
     The kernel's standard deviation in ln IM is 0.53 s n^(-1/5), half of Silverman's, which would flatten a steep
     rise; the tests have different values, so that it is above zero.
     """
-    bandwidth = 0.53 * outcomes.log_spread * outcomes.n ** (-0.2)
+    mean = np.average(outcomes.log_im, weights=outcomes.trials)
+    variance = np.average((outcomes.log_im - mean) ** 2, weights=outcomes.trials)
+    bandwidth = 0.53 * float(np.sqrt(variance)) * outcomes.n ** (-0.2)
     outcomes = outcomes.by_value()
     x = outcomes.log_im
     fraction = outcomes.overturned / outcomes.trials
@@ -125,28 +127,21 @@ def resurrections_of(parts: Iterable[Swept]) -> pd.DataFrame:
 
 
 def _resurrections(amplitude: Floats, overturned: NDArray[np.bool_]) -> dict[str, float | int]:
-    nan = float("nan")
-    padded = np.concatenate([[0.0], amplitude, [nan]])
     fell, stood = np.flatnonzero(overturned), np.flatnonzero(~overturned)
-    first = int(fell[0]) if fell.size else amplitude.size
-    always = int(stood[-1]) + 1 if stood.size else 0
-    between = np.concatenate([~overturned[first:always], [False]])
-    starts = np.flatnonzero(between[1:] & ~between[:-1]) + 1 + first
-    ends = np.flatnonzero(~between[1:] & between[:-1]) + first
+    first = fell[0] if fell.size else amplitude.size
+    always = stood[-1] + 1 if stood.size else 0
+    bounds = [0.0, *amplitude.tolist(), float("nan")]
+    # between the first overturning and the end outcomes change in turns, to survived and back
     middles = np.sqrt(amplitude[1:] * amplitude[:-1])
-    width = 0.0
-    closed = 0
-    for start, end in zip(starts, ends, strict=True):
-        if end + 1 < amplitude.size:
-            closed += 1
-            width += float(np.log(middles[end] / middles[start - 1]))
+    changes = middles[np.flatnonzero(np.diff(overturned))][0 if overturned[0] else 1 :]
+    windows = list(zip(changes[::2], changes[1::2], strict=False))
     return {
-        "first_lower": float(padded[first]),
-        "first_upper": float(padded[first + 1]),
-        "always_lower": float(padded[always]),
-        "always_upper": float(padded[always + 1]),
-        "resurrections": closed,
-        "window_width": width,
+        "first_lower": bounds[first],
+        "first_upper": bounds[first + 1],
+        "always_lower": bounds[always],
+        "always_upper": bounds[always + 1],
+        "resurrections": len(windows),
+        "window_width": sum((float(np.log(high / low)) for low, high in windows), 0.0),
     }
 
 
