@@ -6,7 +6,7 @@ these stand beside it.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Hashable, Iterable
 from dataclasses import dataclass
 
 import numpy as np
@@ -36,25 +36,19 @@ def fraction_in_bins(outcomes: Observations, level: float = 0.90) -> pd.DataFram
     ``im`` is the geometric mean of a bin. In the binomial limits several rows of one motion in a bin count once.
     """
     code = observations.cells(outcomes.im, 10, outcomes.trials)[0]
-    rows = []
+    rows, once = [], []
     for k in np.unique(code):
         inside = code == k
-        motions, counted_once = outcomes.independent(inside)
-        n = outcomes.trials[inside].sum()
-        rows.append(
-            {
-                "im": np.exp(np.average(outcomes.log_im[inside], weights=outcomes.trials[inside])),
-                "im_lower": outcomes.im[inside].min(),
-                "im_upper": outcomes.im[inside].max(),
-                "tests": int(n),
-                "motions": motions,
-                "overturned": int(outcomes.overturned[inside].sum()),
-                "fraction": outcomes.overturned[inside].sum() / n,
-                "alone": counted_once,
-            }
+        im, trials, fell = (
+            values[inside] for values in (outcomes.im, outcomes.trials, outcomes.overturned)
         )
-    table = pd.DataFrame(rows)
-    alone = table.pop("alone").to_numpy()
+        motions, counted_once = outcomes.independent(inside)
+        middle = np.exp(np.average(outcomes.log_im[inside], weights=trials))
+        numbers = (int(trials.sum()), motions, int(fell.sum()), fell.sum() / trials.sum())
+        rows.append([middle, im.min(), im.max(), *numbers])
+        once.append(counted_once)
+    names = ["im", "im_lower", "im_upper", "tests", "motions", "overturned", "fraction"]
+    table, alone = pd.DataFrame(rows, columns=names), np.array(once)
     lower, upper = wilson_interval(table["fraction"].to_numpy() * alone, alone, level)
     return table.assign(fraction_lower=lower, fraction_upper=upper)
 
@@ -97,12 +91,10 @@ def find_resurrections(
     values = observations.positive(ida, amplitude)
     fell = observations.read_observations(ida, "overturned") == 1
     table = ida[keys].assign(amplitude=values, overturned=fell)
-    doubled = table.duplicated([*keys, "amplitude"])
-    if doubled.any():
-        row = int(np.flatnonzero(doubled)[0])
+    for row in np.flatnonzero(table.duplicated([*keys, "amplitude"])):
+        curve = ", ".join(table[keys].iloc[row].astype(str))
         raise InputError(
-            f"table, row {row + 1}, column {amplitude!r}: the IDA curve of "
-            f"{', '.join(str(table[key].iloc[row]) for key in keys)} already has the amplitude "
+            f"table, row {row + 1}, column {amplitude!r}: the IDA curve of {curve} already has the amplitude "
             f"{values[row]:g}; leave the repetition out."
         )
     rows = []
@@ -116,13 +108,10 @@ def find_resurrections(
 def resurrections_of(parts: Iterable[Swept]) -> pd.DataFrame:
     """Structural resurrections of parts of IDA curves, as :func:`find_resurrections` has those of a table."""
     keys = ["configuration", "earthquake", "floor", "motion"]
-    rows = [
-        {**about, **_resurrections(part.amplitude_g, overturned)}
-        for part in parts
-        for about, overturned in zip(
-            part.about[keys].to_dict("records"), part.overturned, strict=True
-        )
-    ]
+    rows: list[dict[Hashable, object]] = []
+    for part in parts:
+        curves = zip(part.about[keys].to_dict("records"), part.overturned, strict=True)
+        rows += [about | _resurrections(part.amplitude_g, fell) for about, fell in curves]
     return pd.DataFrame(rows).sort_values(keys, ignore_index=True)
 
 

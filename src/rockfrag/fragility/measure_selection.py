@@ -171,8 +171,13 @@ def _row(
     **more: float,
 ) -> dict[str, float | str]:
     """What the table says of one measure before its scores; ``p`` of sufficiency by what is given."""
-    about = {"measure": column, "im": fit.im, "unit": fit.unit, "theta": fit.theta}
-    beta = {"beta": fit.beta, "beta_lower": interval.beta[0], "beta_upper": interval.beta[1]}
+    about = {"measure": column, "im": fit.im, "unit": fit.unit}
+    beta = {
+        "theta": fit.theta,
+        "beta": fit.beta,
+        "beta_lower": interval.beta[0],
+        "beta_upper": interval.beta[1],
+    }
     fitted = {"aic": fit.aic, "auc": area_under_curve(outcomes)}
     return {**about, **beta, **more, **fitted, **{f"p_{name}": value for name, value in p.items()}}
 
