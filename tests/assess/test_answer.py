@@ -19,7 +19,7 @@ from rockfrag.errors import InputError
 
 from .asking import answered, contradictions, request
 from .conftest import asked
-from .samples import table_csv
+from .samples import SAMPLES
 
 FIGURE = {"width": "35 cm", "height": "120 cm", "mass": "180 kg"}
 ON_PLINTH = FIGURE | {"pedestal": {"width": "50cm", "height": "90cm", "mass": "400kg"}}
@@ -230,7 +230,7 @@ def test_random_requests_are_answered_without_contradiction_or_refused_in_a_sent
     part, few_records, tmp_path
 ):
     hazard = tmp_path / "hazard.csv"
-    hazard.write_text(table_csv())
+    hazard.write_text(SAMPLES["table.csv"])
     rng = random.Random(part)
     for _ in range(DRAWS // 3):
         options = request(rng, few_records, hazard)
