@@ -46,7 +46,7 @@ def test_files_of_one_measure_are_a_curve_with_its_quantiles_which_none_is_twice
     assert (curve.measure.imt, spectral.measure.imt) == ("PGA", "SA(0.3)")
     assert list(curve.quantiles) == [0.16, 0.84]
     assert curve.quantiles[0.84].rate(0.1) == pytest.approx(0.015, rel=1e-4)
-    with pytest.raises(InputError, match="only quantile.* of PGA is given"):
+    with pytest.raises(InputError, match=r"only quantile.* of PGA is given"):
         read_hazard(paths[1:])
     with pytest.raises(InputError, match="twice"):
         read_hazard([other, other])
