@@ -196,8 +196,8 @@ class TextFile:
             found.append(values)
         if not found:
             # of the layouts the one that most lines fit
-            error = max(wrong, key=lambda each: each.line)
-            self.fail(str(error), start + error.line)
+            last = max(wrong, key=lambda each: each.line)
+            self.fail(str(last), start + last.line)
         self.check_count(count or 0, found[0].size, start)
         return found[0]
 
