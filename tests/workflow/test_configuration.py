@@ -29,7 +29,15 @@ from rockfrag.system.contact import BY_MOMENTUM, ImpactLaw
 from rockfrag.yaml_file import read_yaml
 
 from ..case_tables import case_tables
-from .conftest import CATALOGUE, CONFIG, study_content, write_record, write_study
+from .conftest import (
+    CATALOGUE,
+    CONFIG,
+    study_content,
+    write_example,
+    write_record,
+    write_study,
+    write_synthetic,
+)
 from .running import ROOT, SNAKEFILE, called, finished, snakemake
 
 CASES = case_tables(__file__)
@@ -90,7 +98,7 @@ synthetic 4,T1,P,Second,GF,0.65,,right,,1,synthetic
 """
 
 
-def full_study(folder: Path) -> Path:
+def full_study(folder: Path) -> None:
     """Write a study with every optional part, each as small as it can be."""
     for name in ("building.yaml", "experiment/shaker.yaml"):
         shutil.copy(CONFIG / name, folder / Path(name).name)
@@ -105,14 +113,18 @@ def full_study(folder: Path) -> Path:
         "building_sensitivity": {"first_period_s": [0.5], "floors": [{"F3": 3, "F5": 6}]},
         "sensitivity_analysis": SENSITIVITY_ANALYSIS,
     }
-    return write_study(folder, changed(study_content(), changes))
+    write_study(folder, changed(study_content(), changes))
 
 
 @pytest.mark.parametrize(("name", "changes", "words"), CASES["keys"])
 def test_a_wrong_key_or_value_is_named_with_what_was_expected(study_folder, name, changes, words):
     source = CONFIG / f"{name}.yaml"
-    if name in ("small", "full"):
-        source = full_study(study_folder) if name == "full" else study_folder / "study.yaml"
+    if not source.exists():
+        source = study_folder / "study.yaml"
+    if name == "full":
+        full_study(study_folder)
+    elif name == "measured":
+        write_example(study_folder, write_synthetic(study_folder).name)
     with pytest.raises(InputError) as caught:
         any_study(changed(read_yaml(source), changes), source)
     message = str(caught.value)
