@@ -7,7 +7,6 @@ import pandas as pd
 import pytest
 from matplotlib.axes import Axes
 from matplotlib.path import Path as Outline
-from matplotlib.text import Text
 
 from rockfrag.figure_style import figure_style, new_figure, save_figure
 from rockfrag.report.figures import amplitudes_by, pedestal_scatter
@@ -16,10 +15,8 @@ from rockfrag.report.sections.curves import fragility_figure
 from rockfrag.report.sections.pedestal import forest_figure, ratio_axis
 from rockfrag.report.sections.tested import shaker_limits
 from rockfrag.shaketable.definitions import mean_amplitudes
-from rockfrag_thesis.sections.counterparts import slenderness_figure
 
 OBJECTS = ("vase", "column & capital")
-SLENDERNESS = dict(zip(OBJECTS, (3.0, 4.0), strict=True))
 
 
 def laboratory(unfinished: int = 0) -> pd.DataFrame:
@@ -57,7 +54,6 @@ def test_every_test_is_drawn_and_those_that_never_overturned_have_arrows(unfinis
     for figure in (
         amplitudes_by("object", tests, means),
         amplitudes_by("floor", tests, means),
-        slenderness_figure(tests, means, SLENDERNESS),
     ):
         assert sum(drawn(axes) for axes in figure.axes) == 24
         assert sum(drawn(axes, arrows=True) for axes in figure.axes) == unfinished
@@ -156,20 +152,10 @@ def many(tests: pd.DataFrame, times: int) -> pd.DataFrame:
 
 def test_a_crowd_of_tests_is_drawn_as_its_distribution():
     tests = many(laboratory(), 20)
-    means = mean_amplitudes(tests)
-    floors = amplitudes_by("floor", tests, means)
-    for figure in (slenderness_figure(tests, means, SLENDERNESS), floors):
-        labels = [text.get_text() for text in figure.legends[0].get_texts()]
-        assert "median, 25–75 %, 5–95 %" in labels
-        assert all(drawn(axes) < 20 for axes in figure.axes)
-
-
-def test_panels_have_letters_and_axes_no_empty_units():
-    tests = laboratory()
-    figure = slenderness_figure(tests, mean_amplitudes(tests), SLENDERNESS)
-    assert [axes.get_title(loc="left")[:3] for axes in figure.axes] == ["(a)", "(b)"]
-    words = [text.get_text() for text in figure.findobj(Text)]
-    assert not any("[-]" in word for word in words)
+    figure = amplitudes_by("floor", tests, mean_amplitudes(tests))
+    labels = [text.get_text() for text in figure.legends[0].get_texts()]
+    assert "median, 25–75 %, 5–95 %" in labels
+    assert all(drawn(axes) < 20 for axes in figure.axes)
 
 
 @pytest.mark.parametrize("span", [(0.55, 1.25), (0.2, 5.0), (0.9, 1.1), (0.7, 1.3)])
