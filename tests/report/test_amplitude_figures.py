@@ -7,7 +7,6 @@ import pandas as pd
 import pytest
 from matplotlib.axes import Axes
 from matplotlib.path import Path as Outline
-from matplotlib.text import Text
 
 from rockfrag.figure_style import figure_style, new_figure, save_figure
 from rockfrag.report.figures import amplitudes_by, pedestal_scatter
@@ -16,10 +15,8 @@ from rockfrag.report.sections.curves import fragility_figure
 from rockfrag.report.sections.pedestal import forest_figure, ratio_axis
 from rockfrag.report.sections.tested import shaker_limits
 from rockfrag.shaketable.definitions import mean_amplitudes
-from rockfrag_thesis.sections.counterparts import slenderness_figure
 
 OBJECTS = ("vase", "column & capital")
-SLENDERNESS = dict(zip(OBJECTS, (3.0, 4.0), strict=True))
 
 
 def laboratory(unfinished: int = 0) -> pd.DataFrame:
@@ -54,13 +51,10 @@ def test_every_test_is_drawn_and_those_that_never_overturned_have_arrows():
     for unfinished in (0, 5):
         tests = laboratory(unfinished)
         means = mean_amplitudes(tests)
-        slender = slenderness_figure(tests, means, SLENDERNESS)
-        for figure in (*(amplitudes_by(by, tests, means) for by in ("object", "floor")), slender):
+        for by in ("object", "floor"):
+            figure = amplitudes_by(by, tests, means)
             assert sum(drawn(axes) for axes in figure.axes) == 24
             assert sum(drawn(axes, arrows=True) for axes in figure.axes) == unfinished
-    # panels have letters and axes no empty units
-    assert [axes.get_title(loc="left")[:3] for axes in slender.axes] == ["(a)", "(b)"]
-    assert not any("[-]" in text.get_text() for text in slender.findobj(Text))
     # the first two tests are both sides of one pair
     (axes,) = pedestal_scatter(laboratory(2), "P/NP 1.00").axes
     assert (drawn(axes), drawn(axes, arrows=True)) == (12, 2)
@@ -79,12 +73,10 @@ def test_a_crowd_of_tests_is_drawn_as_its_distribution():
     tests = laboratory()
     tests = pd.concat(tests.assign(motion=tests["motion"] + f"_{k}") for k in range(20))
     tests = tests.reset_index(drop=True)
-    means = mean_amplitudes(tests)
-    floors = amplitudes_by("floor", tests, means)
-    for figure in (slenderness_figure(tests, means, SLENDERNESS), floors):
-        labels = [text.get_text() for text in figure.legends[0].get_texts()]
-        assert "median, 25–75 %, 5–95 %" in labels
-        assert all(drawn(axes) < 20 for axes in figure.axes)
+    figure = amplitudes_by("floor", tests, mean_amplitudes(tests))
+    labels = [text.get_text() for text in figure.legends[0].get_texts()]
+    assert "median, 25–75 %, 5–95 %" in labels
+    assert all(drawn(axes) < 20 for axes in figure.axes)
 
 
 def test_the_forest_draws_an_interval_only_where_there_is_one():

@@ -7,7 +7,7 @@ To add one, write its row, decide its kind (`hypothesis.Kind`), and enter a func
 named differences that are all positive if it is true with ``@order_hypothesis(...)``, or else a `Result` with
 ``@hypothesis(...)``. State the rule so that a reader can apply it to the printed interval, and its error rate;
 raise `Undecidable` with the reason where the data cannot speak. Add the outcomes that it must get in the synthetic
-laboratories to ``tests/thesis/test_laboratories.py``.
+laboratories to ``thesis/tests/test_laboratories.py``.
 """
 
 from rockfrag_thesis.hypotheses.contradictions import contradictions as contradictions

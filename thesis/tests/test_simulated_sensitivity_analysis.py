@@ -47,15 +47,26 @@ from rockfrag_thesis.sensitivity_analysis.simulated import (
     with_references,
 )
 from rockfrag_thesis.standing import SIZES, standing_definitions
-
-from ..rocking.reference_bodies import polyline
-from .conftest import bursts
+from tests.rocking.reference_bodies import polyline
 
 TOWER = Block(0.124, 0.496, 2.79)
 STACK = Stack(Block(0.184, 0.208, 2.3), TOWER)
 # so wide and heavy that neither a motion nor an impact of the object moves it
 ROCK = Stack(Block(3.0, 2.4, 1e6), TOWER)
 INTENSITY_LEVELS = 0.1 * 1.08 ** np.arange(32)
+
+
+def bursts(seed: int, earthquakes: str, floor: str, count: int, middle: float) -> list[Motion]:
+    """One burst of waves an earthquake, of so many samples of 10 ms [m/s²]."""
+    time = np.arange(count) * 0.01
+    rng = np.random.default_rng(seed)
+    found = []
+    for name in earthquakes:
+        waves = np.sin(2 * np.pi * np.outer(time, rng.uniform(0.6, 4, 12)) + rng.uniform(0, 6, 12))
+        values = waves.sum(axis=1) * np.exp(-(((time - middle) / (middle / 2)) ** 2))
+        about = {"earthquake": name, "floor": floor}
+        found.append(Motion(values, 0.01, f"{name}_{floor}", about))
+    return found
 
 
 @pytest.fixture(scope="module")

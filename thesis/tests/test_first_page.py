@@ -15,9 +15,8 @@ from rockfrag_thesis.sections.first_page import first_page
 from rockfrag_thesis.sections.signs import perturbations_by_floor
 from rockfrag_thesis.sensitivity_analysis.explain import explain
 from rockfrag_thesis.sensitivity_analysis.simulated import REFERENCE
-
-from ..end_to_end.checked_report import open_words
-from .conftest import build
+from tests.end_to_end.checked_report import open_words
+from tests.paired_tests import build
 
 WORDS_WITH_DIGITS = ("3rd", "5th", "F3", "F5", "95 %", "10 %", "at 5 % over 1 test")
 WORDS_WITH_DIGITS += ("above 1", "below 1")

@@ -16,8 +16,7 @@ from rockfrag_thesis.hypotheses.hypothesis_table import THEORY
 from rockfrag_thesis.hypotheses.setting import bisect, make_setting, moves, starts_at
 from rockfrag_thesis.hypotheses.spectra import dispersion_ratio, exchanges
 from rockfrag_thesis.hypotheses.stacks import LIFTED, SETTLES, STILL, after_impacts, free_fall
-
-from ..conftest import shaking
+from tests.conftest import shaking
 
 MOTIONS = [shaking(seed, 0.3, 8, 0.4) for seed in range(4)]
 
