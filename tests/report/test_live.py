@@ -108,9 +108,9 @@ def drawn(system, theta):
 @pytest.mark.parametrize("theta", [0.2, -0.2])
 def test_a_block_is_drawn_on_the_edge_on_which_it_rocks(theta: float):
     (corners,) = drawn(STATUE.system(), theta)
-    low = min(corners, key=lambda item: item.y)
-    assert low.y == pytest.approx(0, abs=1e-12)
-    assert low.x == pytest.approx(math.copysign(0.15, theta))
+    x, y = min(corners, key=lambda item: item[1])
+    assert y == pytest.approx(0, abs=1e-12)
+    assert x == pytest.approx(math.copysign(0.15, theta))
     for a, b, length in zip(corners, corners[1:], (0.3, 1.2, 0.3), strict=False):
         assert math.dist(a, b) == pytest.approx(length)
 

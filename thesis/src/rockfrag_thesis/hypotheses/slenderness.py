@@ -7,6 +7,7 @@ import numpy as np
 import pandas as pd
 
 from rockfrag.pedestal.cluster_means import Estimate, t_estimate
+from rockfrag.system import geometry
 from rockfrag.system.blocks import Stack
 from rockfrag_thesis.hypotheses.contrasts import contrast, power_note, slope_effect
 from rockfrag_thesis.hypotheses.evidence import PEDESTAL, Evidence
@@ -133,8 +134,8 @@ def stack_slenderness(tests: Evidence) -> pd.DataFrame:
     base = bodies[PEDESTAL]
     rows = []
     for name in sorted(set(bodies) - {PEDESTAL}):
-        arm = Stack(base, bodies[name]).common_arm(1)
-        rows.append((name, bodies[name].h / bodies[name].b, arm.y / base.b))
+        height = geometry.common_arm(Stack(base, bodies[name]).pile, 1)[1]
+        rows.append((name, bodies[name].h / bodies[name].b, height / base.b))
     return pd.DataFrame(rows, columns=["object", "alone", "stacked"])
 
 
