@@ -10,7 +10,7 @@ from rockfrag.errors import InputError
 from rockfrag.motions import half_sine, scale_to_pga
 from rockfrag.records.motion import GroundMotion, Motion
 from rockfrag.rocking.ensemble import overturns
-from rockfrag.rocking.rules_of_thumb import RULES, asce_43, bias, predicted, static, three_models
+from rockfrag.rocking.rules_of_thumb import RULES, asce_43, bias, predicted, static
 from rockfrag.rocking.spectra import rocking_spectrum, uniform_block
 from rockfrag.rocking.worst_direction import worst_direction
 
@@ -133,7 +133,7 @@ def test_larger_blocks_of_one_shape_bear_more_in_all_rules_but_the_static_one(no
 def test_an_object_on_a_pedestal_is_checked_alone_and_as_one_body(noise):
     stack = Stack(Block(0.5, 0.9, 400.0), Block(0.35, 1.2, 180.0))
     motion = noise(4, 800, tapered=True)
-    alone, joined = three_models(stack)
+    alone, joined = stack.upper, stack.rigidly_joined()
     for rule in RULES.values():
         assert predicted(stack, motion, rule) == min(rule(alone, motion), rule(joined, motion))
 

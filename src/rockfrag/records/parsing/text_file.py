@@ -195,7 +195,9 @@ class TextFile:
                 return values
             found.append(values)
         if not found:
-            self.fail(str(wrong[0]), start + wrong[0].line)
+            # of the layouts the one that most lines fit
+            error = max(wrong, key=lambda each: each.line)
+            self.fail(str(error), start + error.line)
         self.check_count(count or 0, found[0].size, start)
         return found[0]
 

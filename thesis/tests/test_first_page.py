@@ -15,9 +15,8 @@ from rockfrag_thesis.sections.first_page import first_page
 from rockfrag_thesis.sections.signs import perturbations_by_floor
 from rockfrag_thesis.sensitivity_analysis.explain import explain
 from rockfrag_thesis.sensitivity_analysis.simulated import REFERENCE
-
-from ..end_to_end.checked_report import open_words
-from .conftest import build
+from tests.end_to_end.checked_report import open_words
+from tests.paired_tests import build
 
 WORDS_WITH_DIGITS = ("3rd", "5th", "F3", "F5", "95 %", "10 %", "at 5 % over 1 test")
 WORDS_WITH_DIGITS += ("above 1", "below 1")
@@ -193,13 +192,6 @@ def test_arithmetic_is_told_apart_from_simulation_and_counts_in_no_adjustment(ef
     both = perturbations_by_floor(pd.concat([simulated, computed])).set_index("factor")
     assert both.loc["table_not_counted", "arithmetic"]
     assert pd.isna(both.loc["table_not_counted", "p_adjusted"])
-
-
-def test_signs_of_means_are_not_those_of_intervals():
-    means = perturbations_by_floor(departing({"GF": 1.001, "F3": 0.999, "F5": 0.999})).iloc[0]
-    assert means["signs"] or not means["beyond_chance"]
-    clear = perturbations_by_floor(departing({"GF": 1.2, "F3": 0.8, "F5": 0.8})).iloc[0]
-    assert clear["signs"] and clear["beyond_chance"]
 
 
 def test_why_is_said_only_where_the_simulations_show_it(effects, hypotheses):

@@ -11,8 +11,7 @@ from rockfrag_thesis.floor_order import HYPOTHESES, floor_margins
 from rockfrag_thesis.hypotheses.floors import FLOORS
 from rockfrag_thesis.sections.building import floor_amplitudes
 from rockfrag_thesis.sections.floor_order import floor_hypotheses, floor_order
-
-from .conftest import build
+from tests.paired_tests import build
 
 
 def table_of(order=(1.2, 1.0, 1.1), gains=(0.1, -0.05, -0.05)):

@@ -14,8 +14,7 @@ from scipy import stats
 
 from rockfrag_thesis.hypotheses import Evidence, hypothesis_table
 from rockfrag_thesis.hypotheses.hypothesis import EXCLUDED
-
-from .conftest import EARTHQUAKES, STEP, TOWERS, build
+from tests.paired_tests import EARTHQUAKES, STEP, TOWERS, build
 
 PAIR_SCATTER = 0.134
 """Scatter of ln P/NP of a pair through tolerances of geometry and restitution alone [-]."""

@@ -1,27 +1,10 @@
-"""Synthetic tables of tests, in which hypotheses are true or false by construction."""
+"""Synthetic tables of paired tests, in which effects of the pedestal are there or not by construction."""
 
 import itertools
 from collections.abc import Callable, Sequence
 
 import numpy as np
 import pandas as pd
-import pytest
-
-from rockfrag.records.motion import Motion
-
-
-def bursts(seed: int, earthquakes: str, floor: str, count: int, middle: float) -> list[Motion]:
-    """One burst of waves an earthquake, of so many samples of 10 ms [m/s²]."""
-    time = np.arange(count) * 0.01
-    rng = np.random.default_rng(seed)
-    found = []
-    for name in earthquakes:
-        waves = np.sin(2 * np.pi * np.outer(time, rng.uniform(0.6, 4, 12)) + rng.uniform(0, 6, 12))
-        values = waves.sum(axis=1) * np.exp(-(((time - middle) / (middle / 2)) ** 2))
-        about = {"earthquake": name, "floor": floor}
-        found.append(Motion(values, 0.01, f"{name}_{floor}", about))
-    return found
-
 
 EARTHQUAKES = ("Friuli", "Kobe", "Loma Prieta", "Northridge")
 FLOORS = ("GF", "F3", "F5")
@@ -77,8 +60,3 @@ def build(
         step_number = np.ceil(np.log(upper / 0.01) / np.log1p(step))
         table["amplitude_g"] = upper = 0.01 * (1 + step) ** step_number
     return table.assign(censored="none", lower_g=upper / (1 + (step or 0.02)), upper_g=upper)
-
-
-@pytest.fixture
-def made() -> Callable[..., pd.DataFrame]:
-    return build
