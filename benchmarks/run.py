@@ -45,6 +45,7 @@ from measures import (
     vertical_ratio,
     wall_seconds,
 )  # fmt: skip
+
 from tests.oracle.cases import Cases, cases, columns, motions
 from tests.oracle.competitors import mujoco_outcome, numpy_lone, scipy_lone, scipy_stack
 

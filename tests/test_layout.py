@@ -87,7 +87,7 @@ def test_the_library_has_no_word_of_the_thesis():
 def test_tests_import_neither_tests_nor_benchmarks():
     tests = Path(__file__).parent
     benchmarks = {path.stem for path in (tests.parent / "benchmarks").glob("*.py")} | {"benchmarks"}
-    for path in tests.rglob("*.py"):
+    for path in [*tests.rglob("*.py"), *(THESIS.parent / "tests").rglob("*.py")]:
         homes = [name.split(".") for name in imported(path)]
         assert not [home for home in homes if home[-1].startswith("test_")], path
         assert not {home[0] for home in homes} & benchmarks, path

@@ -30,12 +30,12 @@ def wilson_interval(
     return np.asarray(lower, dtype=np.float64), np.asarray(upper, dtype=np.float64)
 
 
-def fraction_in_bins(outcomes: Observations, bins: int = 10, level: float = 0.90) -> pd.DataFrame:
-    """Fraction of overturned tests in bins of about equal numbers of tests; up to ``bins`` levels keep a bin each.
+def fraction_in_bins(outcomes: Observations, level: float = 0.90) -> pd.DataFrame:
+    """Fraction of overturned tests in ten bins of about equal numbers of tests; up to ten levels keep a bin each.
 
     ``im`` is the geometric mean of a bin. In the binomial limits several rows of one motion in a bin count once.
     """
-    code = observations.cells(outcomes.im, bins, outcomes.trials)[0]
+    code = observations.cells(outcomes.im, 10, outcomes.trials)[0]
     rows = []
     for k in np.unique(code):
         inside = code == k
@@ -59,21 +59,15 @@ def fraction_in_bins(outcomes: Observations, bins: int = 10, level: float = 0.90
     return table.assign(fraction_lower=lower, fraction_upper=upper)
 
 
-def local_fraction(outcomes: Observations, im: ArrayLike, bandwidth: float | None = None) -> Floats:
+def local_fraction(outcomes: Observations, im: ArrayLike) -> Floats:
     """Fraction of overturned tests near each ``im``, weighted by a normal kernel in ln IM; may fall.
 
-    The kernel's standard deviation in ln IM is 0.53 s n^(-1/5) by default, half of Silverman's, which would
-    flatten a steep rise.
+    The kernel's standard deviation in ln IM is 0.53 s n^(-1/5), half of Silverman's, which would flatten a steep
+    rise; the tests have different values, so that it is above zero.
     """
-    if bandwidth is None:
-        bandwidth = 0.53 * outcomes.log_spread * outcomes.n ** (-0.2)
+    bandwidth = 0.53 * outcomes.log_spread * outcomes.n ** (-0.2)
     outcomes = outcomes.by_value()
     x = outcomes.log_im
-    if not bandwidth > 0:
-        raise InputError(
-            f"bandwidth: the kernel needs a width above zero in ln IM, got {bandwidth:g}; give "
-            "one if all tests share one value."
-        )
     fraction = outcomes.overturned / outcomes.trials
     found = []
     # one after the other, so that memory holds one row of weights
