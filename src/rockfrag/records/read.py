@@ -96,8 +96,7 @@ def _archived(file: str, wanted: str, dt: float | None, cut_short: bool) -> Reco
         for member in chosen or (m for m in members if not is_no_record(m.name)):
             try:
                 form, found = _channels(member.path, dt, cut_short)
-                # read before the folder goes, and to know which members are damaged
-                found = [replace(c, samples=c.samples().copy, member=member.name) for c in found]
+                found = [replace(channel, member=member.name) for channel in found]
             except InputError as error:
                 # the user knows the archive's names, not where they lie unpacked
                 told = type(error)(str(error).replace(str(member.path), f"{file}#{member.name}"))
@@ -183,7 +182,7 @@ def motion_of(
     record: Record, channel: Channel, unit: str | None = None, force: bool = False
 ) -> Motion:
     """Return one channel of a record as a motion in m/s²; ``unit`` and ``force`` as of :func:`read_motion`."""
-    samples = channel.samples()
+    samples = channel.samples
     stored = _settled_unit(record, channel, samples, unit)
     factor = quantities.TO_SI[stored]
     acceleration = _in_si(record, samples, factor)

@@ -73,7 +73,7 @@ def _component(text: TextFile, first: int) -> Generator[Channel, None, int]:
         "longitude": numbers[11],
     }
     dt = text.interval(dt, at_reals + 2)
-    yield Channel(counts[0], dt, values.copy, "mm/s2").saying(facts)
+    yield Channel(counts[0], dt, values, "mm/s2").saying(facts)
     return line
 
 

@@ -190,7 +190,7 @@ def _channel(trace: Trace, format_name: str, path: Path, cut_short: bool) -> Cha
     channel = Channel(
         npts=samples.size,
         dt=float(stats.delta),
-        samples=samples.copy,
+        samples=samples,
         unit=unit,
         start_time=stats.starttime,
         network=stats.network,

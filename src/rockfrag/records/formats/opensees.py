@@ -56,7 +56,7 @@ def _series(text: TextFile, line: int, stop: int, unit: str, promised: int | Non
     return Channel(
         npts=samples.size,
         dt=dt,
-        samples=samples.copy,
+        samples=samples,
         unit=unit if unit in TO_SI else "",
         component=tag[1] if tag else "",
         details={"factor": scale},

@@ -12,6 +12,7 @@ from obspy import UTCDateTime
 
 from rockfrag.records.parsing import format as form
 from rockfrag.records.parsing.text_file import TextFile
+from rockfrag.records.parsing.timestamps import time_of
 
 _TITLE = re.compile(r"^\s*ARCHIVO\s+EST.NDAR\s+DE\s+ACELERACI.N", re.I)
 _DATA = re.compile(rb"^[ \t]*DATOS DE ACELERACI", re.I | re.M)
@@ -50,7 +51,7 @@ def _parse(text: TextFile) -> list[form.Channel]:
     shared = form.Channel(
         npts=max(table.shape[0], promised),
         dt=dt,
-        samples=table.copy,
+        samples=table,
         start_time=_start(facts),
         steps=(step,) if extra > 0 else (),
     ).saying(_facts(facts))
@@ -70,15 +71,12 @@ def _list(facts: dict[str, str], key: str) -> list[str]:
 
 def _start(facts: dict[str, str]) -> UTCDateTime | None:
     """Return the time of the first sample, on the day of the earthquake or the one beside it."""
-    day, origin = facts["fecha del sismo"], facts["hora epicentro"]
-    first = facts["hora de la primera muestra"]
-    try:
-        start = UTCDateTime(f"{day} {first}")
-        late = start - UTCDateTime(f"{day} {origin}")
-    except Exception:  # UTCDateTime raises several kinds
+    clocks = (facts["hora de la primera muestra"], facts["hora epicentro"])
+    start, origin = (time_of(f"{facts['fecha del sismo']} {clock}") for clock in clocks)
+    if start is None or origin is None:
         return None
-    shift = 86400 if late < -_HALF_A_DAY else -86400 if late > _HALF_A_DAY else 0
-    return start + shift
+    late = start - origin
+    return start + (86400 if late < -_HALF_A_DAY else -86400 if late > _HALF_A_DAY else 0)
 
 
 def _facts(facts: dict[str, str]) -> dict[str, object]:
