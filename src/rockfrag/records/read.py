@@ -210,13 +210,8 @@ def motion_of(
     name = printable(Path(own).name.removesuffix(".gz").rsplit(".", 1)[0])
     if len(record.channels) > 1:
         name = f"{name} {channel.code or channel.component}".strip()
-    return Motion(
-        acceleration=acceleration,
-        dt=channel.dt,
-        name=name,
-        metadata=_metadata(record, channel, stored),
-        provenance=tuple(steps),
-    )
+    metadata = _metadata(record, channel, stored)
+    return Motion(acceleration, channel.dt, name, metadata, tuple(steps))
 
 
 def _in_si(record: Record, samples: NDArray[np.float64], factor: float) -> NDArray[np.float64]:
@@ -246,9 +241,7 @@ def _check_peak(record: Record, acceleration: NDArray[np.float64], unit: str) ->
 def _metadata(record: Record, channel: Channel, unit: str) -> dict[str, Any]:
     start = channel.start_time
     facts = {
-        "network": channel.network,
-        "station": channel.station,
-        "location": channel.location,
+        **{key: getattr(channel, key) for key in ("network", "station", "location")},
         "channel": channel.code or channel.component,
         "component": channel.component or channel.code,
         "earthquake": channel.details.get("earthquake", ""),

@@ -179,9 +179,7 @@ def _channel(trace: Trace, format_name: str, path: Path, cut_short: bool) -> Cha
         samples=samples,
         unit=unit,
         start_time=stats.starttime,
-        network=stats.network,
-        station=stats.station,
-        location=stats.location,
+        **{key: stats[key] for key in ("network", "station", "location")},
         code=stats.channel,
         # MiniSEED of floating point has been computed: its mean is meant
         raw=not (format_name == "MSEED" and trace.data.dtype.kind == "f"),
