@@ -194,13 +194,6 @@ def test_arithmetic_is_told_apart_from_simulation_and_counts_in_no_adjustment(ef
     assert pd.isna(both.loc["table_not_counted", "p_adjusted"])
 
 
-def test_signs_of_means_are_not_those_of_intervals():
-    means = perturbations_by_floor(departing({"GF": 1.001, "F3": 0.999, "F5": 0.999})).iloc[0]
-    assert means["signs"] or not means["beyond_chance"]
-    clear = perturbations_by_floor(departing({"GF": 1.2, "F3": 0.8, "F5": 0.8})).iloc[0]
-    assert clear["signs"] and clear["beyond_chance"]
-
-
 def test_why_is_said_only_where_the_simulations_show_it(effects, hypotheses):
     assert "lifts the pedestal" in said(first_page(effects, hypotheses))
     estimate = hypotheses["estimate"].where(hypotheses["number"] != 12, 0.98)

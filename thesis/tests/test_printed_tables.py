@@ -3,7 +3,6 @@
 from dataclasses import astuple, replace
 from pathlib import Path
 
-import pandas as pd
 import pytest
 
 from rockfrag.errors import InputError
@@ -70,9 +69,7 @@ def test_a_printed_value_that_is_no_number_is_named(tmp_path: Path):
 
 
 def test_an_eccentric_block_uplifts_about_its_nearer_edge():
-    straight, leaning = Block(1, 4, 10), Block(1, 4, 10, cg_offset=0.1)
-    assert uplift_accelerations(straight)[1] == pytest.approx(0.25 * 9.81)
-    assert uplift_accelerations(leaning)[1] == pytest.approx(0.2 * 9.81)
+    assert uplift_accelerations(Block(1, 4, 10, cg_offset=0.1))[1] == pytest.approx(0.2 * 9.81)
 
 
 def test_a_heavy_pedestal_takes_the_threshold_of_pattern_3_to_its_own():
@@ -80,11 +77,3 @@ def test_a_heavy_pedestal_takes_the_threshold_of_pattern_3_to_its_own():
     both, alone = uplift_accelerations(Stack(pedestal, statue))
     assert both == pytest.approx(9.81, rel=1e-6)
     assert alone == pytest.approx(0.25 * 9.81)
-
-
-def test_comparison_keeps_the_printed_decimals(tmp_path: Path):
-    table = compare(THESIS_BODIES, TABLE_3_1, FOLDER / "table_3_1.csv")
-    path = tmp_path / "table.csv"
-    table.to_csv(path, index=False)
-    again = pd.read_csv(path, dtype={"printed": str})
-    assert again["printed"].tolist() == table["printed"].tolist()

@@ -44,7 +44,6 @@ from rockfrag_thesis.sensitivity_analysis.simulated import (
     level_amplitudes,
     mass_error_rows,
     perturbed_cases,
-    with_references,
 )
 from rockfrag_thesis.standing import SIZES, standing_definitions
 from tests.rocking.reference_bodies import polyline
@@ -101,15 +100,6 @@ def test_mass_that_is_not_counted_scales_every_ratio_by_the_masses(motions):
     assert factor["pedestal_not_counted"] == pytest.approx((10 + 2.79 + 2.3) / (10 + 2.79))
     table = (12.79 + 2.3) / (2.79 + 2.3) / (12.79 / 2.79)
     assert factor["table_not_counted"] == pytest.approx(table)
-
-
-def test_the_table_is_one_that_the_sensitivity_analysis_takes(motions):
-    ideal = case_ratios([ideal_case("T2", STACK)], motions, INTENSITY_LEVELS)
-    cases = factor_cases("T2", STACK, {"pedestal_width_cm": (13.0,), "pedestal_lean_deg": (2.0,)})
-    effects = explain(with_references(case_ratios(cases, motions, INTENSITY_LEVELS), ideal))
-    assert set(effects["factor"]) == {"pedestal_width_cm", "pedestal_lean_deg"}
-    ideal_rows = effects[effects["level"] == "ideal"]
-    assert set(ideal_rows["effect"]) == {1.0} and set(ideal_rows["judgement"]) == {""}
 
 
 def test_perturbed_copies_follow_from_the_seed_and_differ_on_the_two_sides():
