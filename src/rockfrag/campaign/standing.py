@@ -171,7 +171,7 @@ def body_of(thing: Shape | Block | Column, guess: Mapping[str, float]) -> Block 
     if isinstance(thing, Shape):
         return thing.block(guess["direction_deg"], guess["contact_tolerance_mm"] / 1e3, retreat)
     narrow = tuple(replace(block, width=block.width - 2 * retreat) for block in thing.blocks)
-    return narrow[0] if isinstance(thing, Block) else replace(thing, blocks=narrow)
+    return replace(thing, blocks=narrow) if isinstance(thing, Column) else narrow[0]
 
 
 def possible_restitution(block: Block, restitution: float) -> float | None:
