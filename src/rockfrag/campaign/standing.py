@@ -9,7 +9,7 @@ has a distribution.  Whoever measures one of the unknowns puts its value in the 
 import math
 import warnings
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -174,8 +174,7 @@ def body_of(thing: Shape | Block | Column, guess: Mapping[str, float]) -> Block 
     retreat = guess["edge_retreat_mm"] / 1e3
     if isinstance(thing, Shape):
         return thing.block(guess["direction_deg"], guess["contact_tolerance_mm"] / 1e3, retreat)
-    narrow = tuple(replace(block, width=block.width - 2 * retreat) for block in thing.blocks)
-    return replace(thing, blocks=narrow) if isinstance(thing, Column) else narrow[0]
+    return thing.narrowed(retreat)
 
 
 def possible_restitution(block: Block, restitution: float) -> float | None:

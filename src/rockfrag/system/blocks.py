@@ -136,6 +136,10 @@ class Block:
         """Return all blocks as one: this one."""
         return self
 
+    def narrowed(self, retreat: float) -> "Block":
+        """Return the block with both edges by ``retreat`` [m] further in."""
+        return replace(self, width=self.width - 2 * retreat)
+
     @cached_property
     def body(self) -> RigidBody:
         """The block as a body of a system."""
@@ -335,6 +339,10 @@ class Column:
             inertia += block.centroidal_inertia + block.mass * apart
         height = sum(block.height for block in self.blocks)
         return Block(self.blocks[0].width, height, self.mass, inertia, y, cg_offset=x)
+
+    def narrowed(self, retreat: float) -> "Column":
+        """Return the column with both edges of every block by ``retreat`` [m] further in."""
+        return replace(self, blocks=tuple(block.narrowed(retreat) for block in self.blocks))
 
     def system(self) -> System:
         """Return the column as a system: it rocks, never slides, and conserves momentum in impacts."""
