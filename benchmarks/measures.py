@@ -13,7 +13,6 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from tests.oracle.cases import Cases
 
 from rockfrag.engines.kernels.jit import entry_kernel
 from rockfrag.engines.kernels.lanes import block, scheduler, stack_one, stack_two
@@ -22,6 +21,7 @@ from rockfrag.outcomes.outcomes import Outcomes
 from rockfrag.rocking.ensemble import overturns
 from rockfrag.rocking.simulation import simulate
 from rockfrag.system.blocks import Block, Stack
+from tests.oracle.cases import Cases
 
 SEPARATE = Path(__file__).with_name("separate.py")
 Array = NDArray[np.float64]

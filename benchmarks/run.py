@@ -46,6 +46,7 @@ from measures import (
     vertical_ratio,
     wall_seconds,
 )  # fmt: skip
+
 from tests.oracle.cases import Cases, cases, columns, motions
 from tests.oracle.mujoco_model import mujoco_outcome
 

@@ -20,9 +20,6 @@ from rockfrag.study.campaign import CampaignStudy
 from rockfrag.study.loading import AnyStudy
 from rockfrag.study.space import SpaceStudy
 from rockfrag.study.study import Study
-from rockfrag_thesis import building_sensitivity
-from rockfrag_thesis.settings import settings_of
-from rockfrag_thesis.stages import hypotheses, sensitivity_analysis
 
 Stage = Callable[[Job], Results]
 
@@ -35,16 +32,26 @@ def stages_of(study: AnyStudy) -> list[Stage]:
         return [space.run, space_page.run]
     if not isinstance(study, Study):
         return [measured_page.run]
+    asked = [motions.run, _swept, tests.run, fragility.run]
+    asked += [pedestal.run] if study.has_pairs else []
+    asked += [pedestal.run_measured] if study.measured_tests else []
+    asked += _of_the_thesis(study) if study.added else []
+    return [*asked, study_report.run]
+
+
+def _of_the_thesis(study: Study) -> list[Stage]:
+    """Stages of a plugin that only the studies with its keys need installed."""
+    from rockfrag_thesis import building_sensitivity
+    from rockfrag_thesis.settings import settings_of
+    from rockfrag_thesis.stages import hypotheses, sensitivity_analysis
+
+    settings = settings_of(study)
     optional = (
-        (pedestal.run, study.has_pairs),
-        (sensitivity_analysis.run, settings_of(study).sensitivity_analysis),
-        (building_sensitivity.run, settings_of(study).sensitivity),
-        (pedestal.run_measured, study.measured_tests),
-        (hypotheses.run, settings_of(study).compares),
-        (study_report.run, True),
+        (sensitivity_analysis.run, settings.sensitivity_analysis),
+        (building_sensitivity.run, settings.sensitivity),
+        (hypotheses.run, settings.compares),
     )
-    asked = [stage for stage, wanted in optional if wanted]
-    return [motions.run, _swept, tests.run, fragility.run, *asked]
+    return [stage for stage, wanted in optional if wanted]
 
 
 def _swept(job: Job[Study]) -> Results:

@@ -16,7 +16,7 @@ from rockfrag.fragility.model_error import CUT, MODEL_ERRORS, SCAN
 from rockfrag.stages.model_error import BlindAnswer, blind_answer, main, model_error
 from rockfrag.system.blocks import Block
 
-from .conftest import configured, granite
+from .conftest import PEDESTAL, configured, granite
 
 
 def fallen(measure, theta, beta, random):
@@ -75,7 +75,11 @@ def test_the_command_prints_the_error_of_a_synthetic_laboratory(tmp_path, labora
     # the outcomes are those of the model itself, with edges up to 2 mm of 40 mm further out than the guesses
     assert -2 * 2 / 40 < error < 0.03
     assert re.search(rf"{CUT}: blind 0\.\d+, beyond the ways to stand 0\.\d+ of ln median", said)
-    assert main([str(tmp_path / "absent.yaml")]) == 2
+    unknowns = {"edge_retreat_mm": [0, 2], "friction": [0.1, 0.2]}
+    path = configured(tmp_path, laboratory, object__pedestal=PEDESTAL, unknowns=unknowns)
+    for wrong, words in ((path, "object.pedestal"), (tmp_path / "absent.yaml", "absent.yaml")):
+        assert main([str(wrong)]) == 2
+        assert words in capsys.readouterr().err
 
 
 @pytest.fixture(scope="module")

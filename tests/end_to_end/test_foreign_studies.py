@@ -1,7 +1,6 @@
 """Studies of other people's things run from configuration to report, and the report fits them."""
 
 import random
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -11,7 +10,7 @@ import pytest
 from rockfrag.records.motion import read_motion_set
 from rockfrag.records.read import read_motion
 
-from .asking_studies import draw, fate, wrong_limits
+from .asking_studies import draw, fate
 from .checked_report import run_and_check
 from .studies import STUDIES, Foreign, run
 
@@ -31,7 +30,6 @@ LONG = (
 def test_the_study_runs_and_its_report_fits_it(name: str, tmp_path: Path):
     study = STUDIES[name]
     results, page = run_and_check(study, tmp_path)
-    words = " ".join(page.words)
     tests = pd.read_parquet(results / "tests.parquet")
     tests = tests[tests["definition"] == "step_protocol"]
     assert len(tests) == len(study.configurations) * len(study.records) * len(study.floors or [1])
@@ -39,15 +37,9 @@ def test_the_study_runs_and_its_report_fits_it(name: str, tmp_path: Path):
     bounds = tests[tests["amplitude_g"].isna()]
     shown = [cell for table in page.tables for row in table for cell in row]
     assert sum(cell.startswith((">", "<")) for cell in shown) >= len(bounds)
-    assert ("no interval" in words) or ("[" in words) or "not known" in words or not _pairs(study)
     for object_name in study.blocks:
         used = any(object_name in pair for pair in study.configurations.values())
         assert not used or any(object_name in word for word in page.words)
-
-
-def _pairs(study: Foreign) -> bool:
-    sides = {(name, pedestal is None) for name, pedestal, *_ in study.configurations.values()}
-    return any((name, True) in sides and (name, False) in sides for name, _ in sides)
 
 
 @pytest.mark.parametrize("number", (9, 15, 21))
@@ -55,28 +47,19 @@ def test_random_studies_end_with_a_report_or_are_refused_in_a_sentence(number, t
     assert fate(draw(random.Random(f"0 {number}")), tmp_path)[1] == []
 
 
-def test_the_checker_sees_limits_that_do_not_hold_their_estimate():
-    table = pd.DataFrame({"theta": [0.3], "theta_lower": [0.1], "theta_upper": [0.2]})
-    assert len(wrong_limits(table)) == 1
-    assert wrong_limits(table.assign(theta_upper=0.4)) == []
-
-
-WRITTEN = Foreign(
-    blocks={"cabinet": (50.0, 160.0, 90.0)},
-    configurations={"cabinet": ("cabinet", None)},
-    records={"quake": "quake"},
-    floors={"roof": 3, "cellar": 0},
-)
-
-
-@pytest.mark.parametrize("format", ["AT2", "CSV"])
-def test_the_motions_of_all_floors_are_written(tmp_path: Path, format: str):
-    results = run(replace(WRITTEN, content={"write_motions": format}), tmp_path)
+def test_the_motions_of_all_floors_are_written(tmp_path: Path):
+    study = Foreign(
+        blocks={"cabinet": (50.0, 160.0, 90.0)},
+        configurations={"cabinet": ("cabinet", None)},
+        records={"quake": "quake"},
+        floors={"roof": 3, "cellar": 0},
+        content={"write_motions": "AT2"},
+    )
+    results = run(study, tmp_path)
     motions = read_motion_set(results / "motions" / "floors.parquet")
     assert {motion.metadata["floor"] for motion in motions} == {"roof", "cellar"}
     for motion in motions:
-        (path,) = (results / "motions" / "written").glob(f"{motion.name}.*")
-        again = read_motion(path)
+        again = read_motion(results / "motions" / "written" / f"{motion.name}.AT2")
         assert again.dt == pytest.approx(motion.dt)
         limit = 1e-6 * np.abs(motion.acceleration).max()
         np.testing.assert_allclose(again.acceleration, motion.acceleration, atol=limit)

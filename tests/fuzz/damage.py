@@ -2,7 +2,8 @@
 
 import copy
 import random
-from collections.abc import Callable, Sequence
+import re
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -74,32 +75,23 @@ def damaged(folder: Path, seeds: Sequence[Seed]) -> Callable[[random.Random], At
 
 def _exchange_number(data: bytearray, at: int, rng: random.Random) -> None:
     """Put another number where the next one stands."""
-    start = at
-    while start < len(data) and not chr(data[start]).isdigit():
-        start += 1
-    stop = start
-    while stop < len(data) and chr(data[stop]) in "0123456789.":
-        stop += 1
     choices = [b"0", b"-5", b"1e308", b"99999999999", b"3.7", b"1e-30", b"007", b"4294967296"]
-    data[start:stop] = rng.choice(choices)
+    if number := re.compile(rb"\d[\d.]*").search(data, at):
+        data[slice(*number.span())] = rng.choice(choices)
+
+
+def _places(node: Any) -> Iterator[tuple[Any, Any]]:
+    """Yield every dictionary or list in a configuration with each of its keys."""
+    keys = node if isinstance(node, dict) else range(len(node)) if isinstance(node, list) else ()
+    for key in keys:
+        yield node, key
+        yield from _places(node[key])
 
 
 def changed(content: Any, rng: random.Random) -> Any:
     """Return a copy of a configuration with one value exchanged, removed, renamed or repeated."""
     content = copy.deepcopy(content)
-    places: list[tuple[Any, Any]] = []
-
-    def walk(node: Any) -> None:
-        if isinstance(node, dict):
-            for key, value in node.items():
-                places.append((node, key))
-                walk(value)
-        elif isinstance(node, list):
-            for index, value in enumerate(node):
-                places.append((node, index))
-                walk(value)
-
-    walk(content)
+    places = list(_places(content))
     if not places:
         return rng.choice(VALUES)
     node, key = rng.choice(places)
@@ -111,8 +103,7 @@ def changed(content: Any, rng: random.Random) -> Any:
         node[word[:100]] = node.pop(key)
     elif kind == 2:
         other, inner = rng.choice(places)
-        value = other[inner] if not isinstance(other, list) or inner < len(other) else None
-        node[key] = copy.deepcopy(value)
+        node[key] = copy.deepcopy(other[inner])
     else:
         node[key] = copy.deepcopy(rng.choice(VALUES))
     return content

@@ -22,11 +22,13 @@ from rockfrag.study.configurations import read_configurations, read_specimens
 from rockfrag.study.loading import load_any
 
 from ..assess import asking
-from ..assess.samples import SAMPLES, table_csv
+from ..assess.samples import SAMPLES
+from ..case_tables import case_tables
 from ..conftest import motions_of_noise, write_records
 from ..end_to_end import asking_studies
 from .damage import Attempt, changed, damage, damaged
 
+CASES = case_tables(__file__)
 ROOT = Path(__file__).resolve().parents[2]
 LOADER = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
 DUMPER = getattr(yaml, "CSafeDumper", yaml.SafeDumper)
@@ -131,28 +133,6 @@ def _used(smoke: dict[str, Any], name: str, damaged: Path) -> Path:
     return path
 
 
-STATUES: tuple[dict[str, Any], ...] = (
-    {
-        "name": "A saint", "width": "35 cm", "height": "1.6 m", "depth": "30 cm", "mass_kg": 310,
-        "restitution": 0.9, "floor": "2/4", "pga": "0.25 g", "return_period_years": 475,
-        "pedestal": {"width": "50 cm", "height": "90 cm", "mass_kg": 400},
-        "tolerances": {"width": 0.02, "cg_height": 0.1}, "years": 50, "magnitude": 6.5,
-        "distance_km": 12.0,
-    },
-    {
-        "width_m": 0.3, "height_m": 1.1, "cg_height_m": 0.5, "cg_offset_m": 0.01, "friction": 0.6,
-        "inertia_kg_m2": 20.0, "mass_kg": 200.0, "building": "building.yaml", "floor": 2,
-        "hazard": ["table.csv"], "sa": ["0.3 s", "0.6 g"],
-        "records": {"paths": ["records"], "recorded_on": "floor", "unit": "g", "dt_s": 0.01},
-    },
-)  # fmt: skip
-INVENTORY = """name,width_cm,height_cm,depth,mass_kg,cg_height_cm,pedestal_width,pedestal_height,floor,restitution
-saint,35,160,30 cm,310,70,50 cm,0.9 m,2/4,0.9
-vase,20,55,,12,,,,,
-Größe,12.5,90,0.12 m,,40,,,1/4,0.85
-"""
-
-
 def hazard_files(folder: Path) -> Callable[[random.Random], Attempt]:
     """Return what makes a hazard file with damaged bytes."""
     return damaged(
@@ -165,18 +145,19 @@ def objects(folder: Path) -> Callable[[random.Random], Attempt]:
     """Return what makes a statue, with other values or damaged bytes, or an inventory."""
     (folder / "table.csv").write_text(SAMPLES["table.csv"])
     (folder / "building.yaml").write_bytes((ROOT / "config" / "building.yaml").read_bytes())
-    texts = [yaml.dump(statue, Dumper=DUMPER, sort_keys=False).encode() for statue in STATUES]
+    statues = CASES["statues"]
+    texts = [yaml.dump(statue, Dumper=DUMPER, sort_keys=False).encode() for statue in statues]
     path, table = folder / "statue.yaml", folder / "inventory.csv"
 
     def one(rng: random.Random) -> Attempt:
         kind = rng.randrange(3)
         if kind == 0:
-            _write_changed(path, rng.choice(STATUES), rng)
+            _write_changed(path, rng.choice(statues), rng)
         elif kind == 1:
             path.write_bytes(damage(rng.choice(texts), rng.choice(texts), rng))
         if kind < 2:
             return path, lambda: read_request(path)
-        table.write_bytes(damage(INVENTORY.encode(), texts[0], rng))
+        table.write_bytes(damage(CASES["inventory"].encode(), texts[0], rng))
         return table, lambda: read_inventory(table, {"pga": "0.3 g"})
 
     return one
@@ -185,7 +166,7 @@ def objects(folder: Path) -> Callable[[random.Random], Attempt]:
 def requests(folder: Path) -> Callable[[random.Random], Attempt]:
     """Return what asks `rockfrag assess` at random (``tests/assess/asking.py``)."""
     records, hazard = write_records(folder, motions_of_noise(6)), folder / "hazard.csv"
-    hazard.write_text(table_csv())
+    hazard.write_text(SAMPLES["table.csv"])
 
     def draw(rng: random.Random) -> Attempt:
         asked = asking.request(rng, records, hazard)

@@ -15,8 +15,9 @@ from rockfrag.records.catalogue import load_motions
 from rockfrag.records.make_catalogue import make_catalogue
 from rockfrag.records.read import motion_of, read_record
 
-from ..records import built_records
+from ..records.built_records import KINDS, build, knet_text, pack, pack_tar, written
 from .damage import Attempt, Seed, damaged
+from .inputs import CASES
 
 
 def records(folder: Path) -> Callable[[random.Random], Attempt]:
@@ -36,47 +37,39 @@ def _naming(read: Callable[[Path], object], path: Path) -> None:
         raise
 
 
-def _read_all(path: Path) -> None:
+def _read_all(path: Path, dt: float | None = None) -> None:
     for cut_short in (False, True):
-        record = read_record(path, None, cut_short)
+        record = read_record(path, dt, cut_short)
         for channel in record.channels:
             motion = motion_of(record, channel, None if channel.unit else "g")
             assert np.isfinite(motion.acceleration).all()
-
-
-def _read_with_dt(path: Path) -> None:
-    record = read_record(path, 0.02)
-    for channel in record.channels:
-        motion_of(record, channel, None if channel.unit else "g")
 
 
 def _catalogue_of(path: Path) -> None:
     make_catalogue([path])
 
 
+def _load_all(path: Path) -> None:
+    load_motions(path)
+
+
 def _seeds(folder: Path) -> Iterable[Seed]:
     """Yield name, content and reader of every kind of input."""
     inside = folder / "built"
     inside.mkdir()
-    texts = {}
-    for kind, build in built_records.BUILDERS.items():
-        built = build(inside)
-        texts[f"{kind}-{built.path.name}"] = built.path.read_bytes()
-        reader = _read_all if built.stated_dt else _read_with_dt
+    for kind in KINDS:
+        built = build(kind, inside)
+        reader = partial(_read_all, dt=built.dt_to_give)
         yield f"{kind}-{built.path.name}", built.path.read_bytes(), reader
     for name, content in _binary(inside):
         yield name, content, _read_all
-    for name, content in _archives(inside, texts):
+    for name, content in _archives(inside):
         yield name, content, _read_all
         yield f"c-{name}", content, _catalogue_of
-    (folder / "a.txt").write_bytes(texts["plain_csv-plain.csv"])
-    catalogue = (
-        "name,earthquake,date,station,component,magnitude,distance_km,source,file,sha256,unit,dt\n"
-        "A,E,1976-05-06,S,090,6.5,20.1,folder,a.txt,,,\n"
-    )
-    for name, text in (("motions.csv", catalogue), ("motions2.csv", catalogue.replace(",", ";"))):
-        yield name, text.encode(), lambda path: load_motions(path) and None
-    yield "_SearchResults.csv", built_records.search_results(4).encode(), _catalogue_of
+    build("plain_csv", folder)
+    for name, text in CASES["catalogues"].items():
+        yield name, text.encode(), _load_all
+    yield "_SearchResults.csv", written("search_results", count=4).encode(), _catalogue_of
 
 
 def _binary(folder: Path) -> Iterable[tuple[str, bytes]]:
@@ -89,14 +82,14 @@ def _binary(folder: Path) -> Iterable[tuple[str, bytes]]:
         data = samples.astype(np.float32) if kind == "SAC" else samples
         Stream([Trace(data.copy(), dict(header))]).write(str(folder / name), format=kind)
         yield name, (folder / name).read_bytes()
-    yield "AOM001.EW", built_records.knet_text().encode()
+    yield "AOM001.EW", knet_text().encode()
 
 
-def _archives(folder: Path, texts: dict[str, bytes]) -> Iterable[tuple[str, bytes]]:
-    some = {name: texts[name] for name in ("csmip_v2-csmip.V2", "at2_peer-peer.AT2")}
-    stored = built_records.pack(folder / "stored.zip", some)
-    packed = built_records.pack(folder / "packed.zip", some, zipfile.ZIP_DEFLATED)
-    nested = built_records.pack(folder / "nested.zip", {"inner.zip": packed.read_bytes()})
-    tars = [built_records.pack_tar(folder / name, some) for name in ("some.tar", "some.tar.gz")]
+def _archives(folder: Path) -> Iterable[tuple[str, bytes]]:
+    some = {name: (folder / name).read_bytes() for name in ("csmip.V2", "peer.AT2")}
+    stored = pack(folder / "stored.zip", some)
+    packed = pack(folder / "packed.zip", some, zipfile.ZIP_DEFLATED)
+    nested = pack(folder / "nested.zip", {"inner.zip": packed.read_bytes()})
+    tars = [pack_tar(folder / name, some) for name in ("some.tar", "some.tar.gz")]
     yield from ((path.name, path.read_bytes()) for path in (stored, packed, nested, *tars))
-    yield "peer.AT2.gz", gzip.compress(some["at2_peer-peer.AT2"])
+    yield "peer.AT2.gz", gzip.compress(some["peer.AT2"])

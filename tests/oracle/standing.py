@@ -5,8 +5,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from rockfrag.system import System
-from rockfrag.system.blocks import Block, Stack, Vector
+from rockfrag.system import System, geometry
+from rockfrag.system.blocks import Block, Stack
 
 
 class StandingBody(NamedTuple):
@@ -33,11 +33,11 @@ def upper_on_contact(stack: Stack) -> Block:
     if pile.upper is pile.above:
         return stack.upper
     aside = (pile.low + pile.high) / 2 - stack.offset
-    x, y = stack.upper.centre
-    centre = Vector(x - aside, y).turned(-stack.upper.lean)
+    standing = stack.upper.shape
+    x, y = geometry.turned(standing.x - aside, standing.y, -stack.upper.lean)
     made = Block(
         *(pile.high - pile.low, stack.upper.height, stack.upper.mass),
-        *(stack.upper.centroidal_inertia, centre.y, centre.x, stack.upper.lean),
+        *(stack.upper.centroidal_inertia, y, x, stack.upper.lean),
     )
     # to the last bit what the kernels know, without the turn there and back
     vars(made)["shape"] = pile.upper

@@ -3,13 +3,14 @@
 from itertools import product
 
 import numpy as np
-import pytest
 
-from ..thesis.conftest import EARTHQUAKES, FLOORS, build
+from ..paired_tests import EARTHQUAKES, FLOORS, build
+
+SLENDERNESS = {"T1": 3.0, "T2": 4.0, "T3": 5.0}
 
 
 def synthetic_tests(
-    seed, *, effect=0.1, floor_effect=None, sd_earthquake=0.05, sd_motion=0.05, sd_pair=0.134
+    seed=1, *, effect=0.1, floor_effect=None, sd_earthquake=0.05, sd_motion=0.05, sd_pair=0.134
 ):
     """Tests of the thesis's design: ln(P/NP) is effect + floor + earthquake + motion + pair."""
     rng = np.random.default_rng(seed)
@@ -21,10 +22,10 @@ def synthetic_tests(
         return effect + own + (floor_effect or {}).get(floor, 0.0)
 
     # the scatter of d is shared evenly by the two tests of a pair
-    tests = build(log_ratio, noise=sd_pair / np.sqrt(2), seed=seed, of_motion=0.2)
+    tests = build(log_ratio, noise=sd_pair / np.sqrt(2), seed=[seed, 1], of_motion=0.2)
     return tests.assign(repetition=1, lower_g=tests["amplitude_g"], upper_g=tests["amplitude_g"])
 
 
-@pytest.fixture
-def tests_table():
-    return synthetic_tests
+def without_scatter(effect=0.0):
+    """The same tests of which all pairs have one effect."""
+    return synthetic_tests(effect=effect, sd_earthquake=0, sd_motion=0, sd_pair=0)

@@ -23,13 +23,8 @@ from rockfrag.pedestal.cluster_means import (
 )
 from rockfrag.pedestal.paired_tests import pair_tests
 from rockfrag.pedestal.study import rank_probabilities
-from rockfrag_thesis.hypotheses.contrasts import (
-    contrast,
-    power_note,
-    power_of_t,
-    slope_effect,
-    units_needed,
-)
+
+from .conftest import synthetic_tests
 
 
 def test_t_on_units_is_the_one_sample_t_test():
@@ -38,129 +33,81 @@ def test_t_on_units_is_the_one_sample_t_test():
     theirs = stats.ttest_1samp(x, 0)
     assert ours.p == pytest.approx(theirs.pvalue, rel=1e-12)
     assert (ours.lower, ours.upper) == pytest.approx(tuple(theirs.confidence_interval(0.95)))
+    # units that all jump alike are not certain beyond what the steps allow
+    alike = t_estimate([0.1, 0.1, 0.1, 0.1], resolution=0.05)
+    assert 0 < alike.p < 0.05 and alike.lower == pytest.approx(0.05)
 
 
-def test_units_without_scatter_have_a_stated_result():
-    same = t_estimate([0.0, 0.0, 0.0])
-    assert np.isnan([same.p, same.lower, same.upper]).all()
-    assert np.isnan(t_estimate([0.2]).p)
-
-
-@pytest.mark.parametrize(
-    ("values", "p", "smallest"),
-    [
-        ([0.5, 0.6, 0.7, 0.8], 0.125, 0.125),
-        # of the eight patterns four have sums of three or more
-        ([1.0, 2.0, 0.0], 0.5, 0.25),
-    ],
-)
-def test_flipped_signs_of_few_are_all_counted(values, p, smallest):
-    found = sign_flip_test(values)
-    assert (found.p, found.smallest_p, found.exact) == (p, smallest, True)
-
-
-def test_drawn_sign_flips_agree_with_enumerated_ones(monkeypatch):
+def test_flipped_signs_are_counted_or_drawn_or_normal_and_agree(monkeypatch):
+    few = sign_flip_test([0.5, 0.6, 0.7, 0.8])
+    assert (few.p, few.smallest_p, few.exact) == (0.125, 0.125, True)
+    # of the eight patterns four have sums of three or more
+    assert sign_flip_test([1.0, 2.0, 0.0]).p == 0.5
     x = np.random.default_rng(2).normal(0.1, 0.2, 12)
     exact = sign_flip_test(x).p
-    monkeypatch.setattr("rockfrag.pedestal.cluster_means.DRAWS", 2_000)
+    values = np.random.default_rng(4).normal(0.08, 1.0, 400)
+    many = sign_flip_test(values)
+    monkeypatch.setattr(cluster_means, "DRAWS", 2_000)
     drawn = sign_flip_test(x, seed=5)
-    assert not drawn.exact
+    assert not drawn.exact and drawn == sign_flip_test(x, seed=5)
     assert drawn.p == pytest.approx(exact, abs=4 * np.sqrt(exact * (1 - exact) / 2e3))
-    assert drawn == sign_flip_test(x, seed=5)
+    monkeypatch.setattr(cluster_means, "MOST_DRAWN", 100)
+    assert sign_flip_test(values).p == pytest.approx(many.p, abs=0.015)
 
 
-def test_effect_is_mean_of_pairs_and_its_units_are_earthquakes(tests_table):
-    table = pair_tests(tests_table(3)).table
+def test_effect_is_mean_of_pairs_and_its_units_are_earthquakes():
+    table = pair_tests(synthetic_tests(3)).table
     effect = mean_effect(table)
     assert effect.mean == pytest.approx(table["d"].mean(), abs=1e-14)
     assert effect.units == 4
-    item = mean_effect(table[table["earthquake"] == "Kobe"])
-    assert item.units == 3
+    assert mean_effect(table[table["earthquake"] == "Kobe"]).units == 3
     # one with more motions than another counts once
     fewer = table[~((table["earthquake"] == "Kobe") & (table["floor"] == "F5"))]
     assert mean_effect(fewer).mean == pytest.approx(earthquake_means(fewer).mean())
     assert len(earthquake_means(fewer)) == 4
 
 
-def test_slope_on_slenderness_is_recovered_without_noise(tests_table):
-    table = pair_tests(tests_table(3), {"T1": 3.0, "T2": 4.0, "T3": 5.0}).table
-    table = table.assign(d=0.1 - 0.07 * table["s_c"])
-    slope = slope_effect(table)
-    assert slope.mean == pytest.approx(-0.07, abs=1e-12)
-
-
-def test_contrast_of_floors_is_taken_inside_each_earthquake(tests_table):
-    table = pair_tests(tests_table(3)).table
-    # a shift of a whole earthquake must not matter to a difference of floors
-    moved = table.assign(d=table["d"] + 5.0 * (table["earthquake"] == "Kobe"))
-    first, other = (contrast(t, "floor", "GF", "F3") for t in (table, moved))
-    assert first.mean == pytest.approx(other.mean) and first.se == pytest.approx(other.se)
-
-
-def test_leaving_an_earthquake_out_finds_the_one_that_matters(tests_table):
-    table = pair_tests(tests_table(3, sd_earthquake=0, sd_motion=0, sd_pair=0.01)).table
+def test_leaving_an_earthquake_out_finds_the_one_that_matters(monkeypatch):
+    table = pair_tests(synthetic_tests(3, sd_earthquake=0, sd_motion=0, sd_pair=0.01)).table
     table = table.assign(d=table["d"] + 1.0 * (table["earthquake"] == "Friuli"))
     result = leave_one_earthquake_out(table)
     assert result.loc[result["largest_change"], "without"].tolist() == ["Friuli"]
     assert len(result) == 4
     for row in result.to_dict("records"):
         assert row["ratio"] == mean_effect(table[table["earthquake"] != row["without"]]).ratio
-
-
-def test_of_very_many_earthquakes_none_is_left_out(tests_table, monkeypatch):
-    table = pair_tests(tests_table(3)).table
-    monkeypatch.setattr("rockfrag.pedestal.cluster_means.MOST_LEFT_OUT", 3)
+    monkeypatch.setattr(cluster_means, "MOST_LEFT_OUT", 3)
     assert leave_one_earthquake_out(table).empty
 
 
-def test_flipped_signs_of_many_are_those_that_are_drawn(monkeypatch):
-    values = np.random.default_rng(4).normal(0.08, 1.0, 400)
-    drawn = sign_flip_test(values)
-    monkeypatch.setattr(cluster_means, "MOST_DRAWN", 100)
-    assert sign_flip_test(values).p == pytest.approx(drawn.p, abs=0.015)
-
-
-def test_clear_order_of_floors_is_found_with_certainty(tests_table):
-    tests = tests_table(1, floor_effect={"GF": 0.5, "F3": -0.5}, sd_pair=0.02)
-    ranks = rank_probabilities(pair_tests(tests).table, "floor", "earthquake", 1).set_index("level")
+def test_ranks_are_certain_of_a_clear_order_and_share_ties():
+    tests = synthetic_tests(floor_effect={"GF": 0.5, "F3": -0.5}, sd_pair=0.02)
+    table = pair_tests(tests).table
+    ranks = rank_probabilities(table, "floor", "earthquake", 1).set_index("level")
     assert ranks.loc["GF", "p_largest"] == ranks.loc["F3", "p_smallest"] == 1.0
-
-
-def test_what_levels_share_does_not_blur_their_order(tests_table):
-    """A large earthquake effect moves all floors together, so the ranks must not notice it."""
-    table = pair_tests(tests_table(1)).table
-    shift = table["earthquake"].map(
-        {"Friuli": 3.0, "Kobe": -3.0, "Loma Prieta": 1.0, "Northridge": 0.0}
-    )
-    same = rank_probabilities(table, "floor", "earthquake", 1)
-    moved = rank_probabilities(table.assign(d=table["d"] + shift), "floor", "earthquake", 1)
-    assert moved["p_largest"].tolist() == same["p_largest"].tolist()
-
-
-def test_probabilities_add_to_one_and_ties_share(tests_table):
-    table = pair_tests(tests_table(1)).table
-    for factor, cluster, within in (("object", "motion", False), ("earthquake", "motion", True)):
-        ranks = rank_probabilities(table, factor, cluster, 1, within=within)
-        assert ranks["p_largest"].sum() == pytest.approx(1)
-        assert ranks["p_smallest"].sum() == pytest.approx(1)
+    inside = rank_probabilities(table, "earthquake", "motion", 1, within=True)
+    assert inside[["p_largest", "p_smallest"]].sum().tolist() == pytest.approx([1, 1])
     tied = rank_probabilities(table.assign(d=0.0), "object", "motion", 1)
     assert tied["p_largest"].tolist() == pytest.approx([1 / 3] * 3)
 
 
-P = np.array([0.01, 0.04, 0.039, 0.2, 0.6])
+def test_what_levels_share_does_not_blur_their_order():
+    """A large earthquake effect moves all floors together, so the ranks must not notice it."""
+    table = pair_tests(synthetic_tests()).table
+    shift = table["earthquake"].str.len() - 7.0
+    same, moved = (
+        rank_probabilities(table.assign(d=table["d"] + by), "floor", "earthquake", 1)
+        for by in (0.0, shift)
+    )
+    assert moved["p_largest"].tolist() == same["p_largest"].tolist()
 
 
 @pytest.mark.parametrize(("ours", "name"), [(holm, "holm"), (benjamini_hochberg, "fdr_bh")])
-def test_adjusted_p_values_are_those_of_statsmodels(ours, name):
-    assert ours(P) == pytest.approx(multipletests(P, method=name)[1], abs=1e-15)
-
-
-def test_tests_that_could_not_be_made_do_not_count():
-    with_nan = holm([*P, math.nan])
-    assert np.isnan(with_nan[-1])
-    assert with_nan[:-1] == pytest.approx(holm(P))
+def test_adjusted_p_values_are_those_of_statsmodels_and_unknown_ones_do_not_count(ours, name):
+    p = np.array([0.01, 0.04, 0.039, 0.2, 0.6])
+    theirs = multipletests(p, method=name)[1]
+    assert ours([*p, math.nan]) == pytest.approx([*theirs, math.nan], abs=1e-15, nan_ok=True)
     with pytest.raises(ValueError, match="outside 0 to 1"):
-        holm([0.2, 1.2])
+        ours([0.2, 1.2])
 
 
 @pytest.mark.parametrize(("pairs_an_earthquake", "percent"), [(9, 10.0), (3, 17.9)])
@@ -171,22 +118,10 @@ def test_four_earthquakes_show_what_the_documentation_says(pairs_an_earthquake, 
     assert 100 * (detectable_ratio(effect) - 1) == pytest.approx(percent, abs=0.05)
 
 
-def test_detectable_change_and_units_needed_have_the_power_by_definition():
-    effect = t_estimate([0.1, -0.05, 0.08, 0.02])
-    detectable = power_of_t(detectable_ratio(effect), effect.sd, effect.units)
-    assert detectable == pytest.approx(0.8, abs=1e-6)
-    n = int(units_needed(effect))
-    fewer, enough = (power_of_t(effect.ratio, effect.sd, k) for k in (n - 1, n))
-    assert fewer < 0.8 <= enough
-    assert f"{n} earthquakes" in power_note(effect)
-
-
-def test_power_of_degenerate_data_is_stated():
-    assert detectable_ratio(t_estimate([0.1])) == math.inf
-    assert math.isnan(detectable_ratio(t_estimate([0.0, 0.0, 0.0])))
-    assert units_needed(t_estimate([0.1, -0.1])) == math.inf
-    assert "no power" in power_note(t_estimate([0.1]))
-    assert "steps are not known" in power_note(t_estimate([0.0, 0.0, 0.0]))
+def test_degenerate_units_have_a_stated_result():
+    same, alone = t_estimate([0.0, 0.0, 0.0]), t_estimate([0.2])
+    assert np.isnan([same.p, same.lower, same.upper, alone.p, detectable_ratio(same)]).all()
+    assert detectable_ratio(alone) == math.inf
 
 
 def test_equivalence_agrees_with_the_90_percent_interval():

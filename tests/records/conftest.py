@@ -1,20 +1,11 @@
-"""Fixtures of the built records."""
-
-from collections.abc import Callable
-from pathlib import Path
+"""Fixture of the built records."""
 
 import pytest
 
-from .built_records import BUILDERS, Built
+from .built_records import KINDS, Built, build
 
 
-@pytest.fixture(scope="session", params=sorted(BUILDERS))
+@pytest.fixture(scope="session", params=KINDS)
 def built(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Built:
     """Each built record in turn."""
-    return BUILDERS[request.param](tmp_path_factory.mktemp(request.param))
-
-
-@pytest.fixture(scope="session")
-def builders() -> dict[str, Callable[[Path], Built]]:
-    """The builders by name."""
-    return BUILDERS
+    return build(request.param, tmp_path_factory.mktemp(request.param))

@@ -14,13 +14,13 @@ from rockfrag.records.parsing.text_file import NotAcceleration
 from rockfrag.records.read import read_motion, read_record
 from rockfrag.records.sources import archive as archives
 
-from .built_records import pack, pack_tar
+from .built_records import build, pack, pack_tar
 
 
 @pytest.mark.parametrize("packer", [(pack, "a.zip"), (pack_tar, "a.tar"), (pack_tar, "a.tar.gz")])
-def test_a_member_keeps_the_unit_of_its_file(tmp_path, builders, packer):
+def test_a_member_keeps_the_unit_of_its_file(tmp_path, packer):
     """The unit of a CSMIP file is cm/s²: taken for g it would be 981 times as much."""
-    built = builders["csmip_v2"](tmp_path)
+    built = build("csmip_v2", tmp_path)
     path = packer[0](tmp_path / packer[1], {"V/csmip.V2": built.path.read_bytes()})
     motion = read_motion(path, channel="90")
     np.testing.assert_allclose(motion.acceleration, built.samples[0] / 100, rtol=1e-12)
@@ -29,8 +29,8 @@ def test_a_member_keeps_the_unit_of_its_file(tmp_path, builders, packer):
         read_motion(path, unit="g", channel="90")
 
 
-def test_members_are_named_and_chosen_by_name_channel_or_number(tmp_path, builders):
-    first, second = builders["csmip_v2"](tmp_path), builders["at2_peer"](tmp_path)
+def test_members_are_named_and_chosen_by_name_channel_or_number(tmp_path):
+    first, second = build("csmip_v2", tmp_path), build("at2_peer", tmp_path)
     contents = {f"data/{b.path.name}": b.path.read_bytes() for b in (first, second)}
     path = pack(tmp_path / "two.zip", {**contents, "README.txt": b"words", "x.xml": b"<?xml?>"})
     with pytest.raises(
@@ -54,8 +54,8 @@ def test_members_are_named_and_chosen_by_name_channel_or_number(tmp_path, builde
         read_motion(f"{path}#z")
 
 
-def test_an_archive_in_an_archive_is_unpacked_once(tmp_path, builders):
-    built = builders["at2_peer"](tmp_path)
+def test_an_archive_in_an_archive_is_unpacked_once(tmp_path):
+    built = build("at2_peer", tmp_path)
     inner = pack(tmp_path / "inner.zip", {"peer.AT2": built.path.read_bytes()})
     outer = pack(tmp_path / "outer.zip", {"inner.zip": inner.read_bytes()})
     record = read_record(outer)
@@ -66,8 +66,8 @@ def test_an_archive_in_an_archive_is_unpacked_once(tmp_path, builders):
         read_record(deeper)
 
 
-def test_a_broken_member_is_named_and_does_not_hide_the_others(tmp_path, builders):
-    built = builders["at2_peer"](tmp_path)
+def test_a_broken_member_is_named_and_does_not_hide_the_others(tmp_path):
+    built = build("at2_peer", tmp_path)
     content = built.path.read_bytes()
     path = pack(tmp_path / "a.zip", {"good.AT2": content, "cut.AT2": content[:-40]})
     record = read_record(path)
@@ -79,16 +79,16 @@ def test_a_broken_member_is_named_and_does_not_hide_the_others(tmp_path, builder
         read_motion(f"{path}#cut.AT2")
 
 
-def test_an_archive_of_velocities_is_no_record(tmp_path, builders):
-    built = builders["at2_peer"](tmp_path)
+def test_an_archive_of_velocities_is_no_record(tmp_path):
+    built = build("at2_peer", tmp_path)
     text = built.path.read_text().replace("ACCELERATION", "VELOCITY").replace("OF G", "OF CM/S")
     path = pack(tmp_path / "v.zip", {"a.VT2": text})
     with pytest.raises(NotAcceleration, match="velocity"):
         read_record(path)
 
 
-def test_names_that_lead_out_of_the_folder_stay_inside(tmp_path, builders):
-    built = builders["at2_peer"](tmp_path)
+def test_names_that_lead_out_of_the_folder_stay_inside(tmp_path):
+    built = build("at2_peer", tmp_path)
     inside = tmp_path / "deep" / "er"
     inside.mkdir(parents=True)
     path = pack(inside / "a.zip", {"../../evil.AT2": built.path.read_bytes()})

@@ -12,11 +12,11 @@ from rockfrag.records.catalogue import load_motions, read_catalogue, repeated_mo
 from rockfrag.records.make_catalogue import make_catalogue, read_search_results
 from rockfrag.records.parsing.quantities import azimuth_of, is_vertical
 
-from .built_records import pack, peer_download, wave
+from .built_records import build, pack, peer_download, wave
 
 
 def write(path, seed, dt=0.01):
-    rows = [f"{i * dt:.3f} {value}" for i, value in enumerate(wave(seed, 0.3, 5))]
+    rows = [f"{i * dt:.3f} {value}" for i, value in enumerate(wave(seed))]
     path.write_text("\n".join(rows) + "\n")
 
 
@@ -61,14 +61,20 @@ def test_components_that_are_not_perpendicular_or_not_alike_are_no_pair(tmp_path
     assert set(partners(make_catalogue([tmp_path], unit="g", folder=tmp_path)).values()) == {""}
 
 
-def test_components_of_one_file_have_its_vertical(tmp_path, builders):
-    path = builders["geonet_v1a"](tmp_path).path
-    draft = make_catalogue([path], folder=tmp_path)
-    assert draft.table["file"].tolist() == ["hses.V1A#N10E", "hses.V1A#N80W"]
-    assert draft.table["second"].tolist() == ["hses.V1A#N80W", "hses.V1A#N10E"]
-    assert set(draft.table["vertical"]) == {"hses.V1A#Up"}
-    assert draft.table["date"].tolist() == ["2016-11-13"] * 2
-    assert draft.table["magnitude"].tolist() == [7.82, 7.82]
+def test_components_of_one_file_have_its_vertical(tmp_path):
+    build("geonet_v1a", tmp_path)
+    build("unam_senses", tmp_path)
+    table = make_catalogue([tmp_path], folder=tmp_path).table
+    unam, geonet = "RAC_04042010222544.dat", "hses.V1A"
+    pairs = [(f"{unam}#N90E", f"{unam}#N00E"), (f"{geonet}#N10E", f"{geonet}#N80W")]
+    assert table["file"].tolist() == [file for pair in pairs for file in pair]
+    assert table["second"].tolist() == [file for pair in pairs for file in pair[::-1]]
+    assert table["vertical"].tolist() == [f"{unam}#V"] * 2 + [f"{geonet}#Up"] * 2
+    assert table["component"].tolist() == ["N90E", "N00E", "N10E", "N80W"]
+    assert table["date"].tolist() == ["2004-01-02"] * 2 + ["2016-11-13"] * 2
+    assert table["magnitude"].tolist() == [5.8, 5.8, 7.82, 7.82]
+    assert is_vertical("V;+")
+    assert azimuth_of("N90E;") == 90
 
 
 def test_a_packed_download_of_peer_is_read(tmp_path):
@@ -87,7 +93,7 @@ def test_a_packed_download_of_peer_is_read(tmp_path):
     assert (first["earthquake"], first["distance_km"]) == ("Loma Prieta 1989", 5.0)
     assert (table["vertical"] == "").sum() == 4
     motions = load_motions(catalogue)
-    np.testing.assert_allclose(motions[3].acceleration, 1.1 * wave(101, 0.3, 5) * 9.81, atol=1e-6)
+    np.testing.assert_allclose(motions[3].acceleration, 1.1 * wave(101) * 9.81, atol=1e-6)
     assert motions[3].metadata["station"] == "Station 1"
 
 
@@ -111,8 +117,8 @@ def test_a_search_file_cut_short_or_without_its_section_is_refused(tmp_path):
         read_search_results(path)
 
 
-def test_unreadable_files_copies_and_unstated_units_are_said(tmp_path, builders, capsys):
-    built = builders["at2_peer"](tmp_path)
+def test_unreadable_files_copies_and_unstated_units_are_said(tmp_path, capsys):
+    built = build("at2_peer", tmp_path)
     (tmp_path / "copy.AT2").write_bytes(built.path.read_bytes())
     (tmp_path / "cut.AT2").write_bytes(built.path.read_bytes()[:-30])
     write(tmp_path / "plain.txt", 1)
@@ -124,15 +130,6 @@ def test_unreadable_files_copies_and_unstated_units_are_said(tmp_path, builders,
     assert "plain.txt: the file does not state its unit" in told.err
     with pytest.raises(InputError, match="no horizontal component"):
         make_catalogue([tmp_path / "plain.txt"])
-
-
-def test_the_vertical_of_a_unam_file_is_no_horizontal(tmp_path, builders):
-    path = builders["unam_senses"](tmp_path).path
-    draft = make_catalogue([path], folder=tmp_path)
-    assert draft.table["component"].tolist() == ["N90E", "N00E"]
-    assert [file.rpartition("#")[2] for file in draft.table["vertical"]] == ["V", "V"]
-    assert is_vertical("V;+")
-    assert azimuth_of("N90E;") == 90
 
 
 def test_a_record_beside_its_archives_is_there_once(tmp_path):
@@ -151,8 +148,8 @@ def test_a_record_beside_its_archives_is_there_once(tmp_path):
     assert draft.table["file"].tolist() == ["inner.zip#A-CLS000.txt", "inner.zip#A-CLS090.txt"]
 
 
-def test_one_day_with_two_names_of_an_earthquake_is_said(tmp_path, builders):
-    text = builders["at2_peer"](tmp_path).path.read_text()
+def test_one_day_with_two_names_of_an_earthquake_is_said(tmp_path):
+    text = build("at2_peer", tmp_path).path.read_text()
     (tmp_path / "other.AT2").write_text(
         text.replace("LOMA PRIETA 10/18/89 00:05", "Loma Prieta, 10/18/1989").replace(".1", ".2")
     )
@@ -184,8 +181,8 @@ def test_many_warnings_are_told_by_kind_with_one_example(tmp_path, capsys):
     )
 
 
-def test_messages_name_the_options_of_the_command_line(tmp_path, capsys, builders):
-    builders["at2_peer"](tmp_path)
+def test_messages_name_the_options_of_the_command_line(tmp_path, capsys):
+    build("at2_peer", tmp_path)
     write(tmp_path / "a.txt", 1)
     (tmp_path / "b.txt").write_text("0.1\n0.2\n0.3\n0.1\n")
     main(["catalogue", str(tmp_path)])

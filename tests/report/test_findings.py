@@ -18,13 +18,20 @@ from rockfrag.report.findings import (
     strength_found,
 )
 
+from ..case_tables import case_tables
+
 NAN = math.nan
+CASES = case_tables(__file__)
 
 
-def table_of(*amplitudes: float, pedestal: str = "NP", fallen: str = "statue") -> pd.DataFrame:
-    """Tests with these amplitudes; NaN never overturned up to 2 g, 0 at the first step of 0.1 g."""
+@pytest.mark.parametrize(
+    ("amplitudes", "pedestal", "fallen", "headline", "more"), CASES["amplitudes"]
+)
+def test_what_overturned_is_said_with_what_is_not_known(
+    amplitudes, pedestal, fallen, headline, more
+):
     a = np.array(amplitudes)
-    return pd.DataFrame(
+    table = pd.DataFrame(
         {
             "test": [f"test {number}" for number in range(a.size)],
             "object": "figure",
@@ -35,33 +42,9 @@ def table_of(*amplitudes: float, pedestal: str = "NP", fallen: str = "statue") -
             "overturned_body": np.where(np.isnan(a), "", fallen),
         }
     )
-
-
-@pytest.mark.parametrize(
-    ("amplitudes", "headline", "numbers"),
-    [
-        ((0.5, NAN), "1 of 2 simulated tests overturns, at 0.50 g", "by up to 2.00 g: test 1."),
-        ((NAN, NAN), "No simulated test overturns", ""),
-        (
-            (0.0, 0.0),
-            "All 2 simulated tests overturn, at the first step",
-            "known: test 0 and test 1.",
-        ),
-    ],
-)
-def test_amplitudes_are_spoken_of_where_something_overturned_after_the_first_step(
-    amplitudes, headline, numbers
-):
-    finding = amplitudes_found(table_of(*amplitudes))
-    assert finding.headline == headline
-    assert numbers in finding.numbers
-
-
-def test_only_what_stood_on_a_pedestal_can_be_said_to_have_fallen_from_it():
-    assert "pedestal" not in amplitudes_found(table_of(0.5, 0.6)).said
-    assert "never what it stood on" in amplitudes_found(table_of(0.5, pedestal="P")).said
-    fallen = amplitudes_found(table_of(0.5, 0.6, pedestal="P", fallen="pedestal"))
-    assert "What the object stood on fell first" in fallen.said
+    found = amplitudes_found(table)
+    assert found.headline == headline and more in found.said
+    assert pedestal == "P" or "pedestal" not in found.said
 
 
 def means_of(**objects: float) -> pd.DataFrame:
@@ -77,9 +60,8 @@ def test_slenderness_is_spoken_of_only_where_objects_differ_in_it():
     assert "low 0.600 g and high 0.300 g" in found.numbers
     (found,) = objects_compared(means_of(high=0.7, low=0.6), slenderness)
     assert "not simply follow" in found.headline
-    assert objects_compared(means_of(low=0.6), slenderness) == []
-    assert objects_compared(means_of(high=0.6, also=0.5), slenderness) == []
-    assert objects_compared(means_of(high=NAN, low=NAN), slenderness) == []
+    for alike in ({"low": 0.6}, {"high": 0.6, "also": 0.5}, {"high": NAN, "low": NAN}):
+        assert objects_compared(means_of(**alike), slenderness) == []
 
 
 def test_it_is_said_over_which_motions_means_are_taken():
@@ -88,39 +70,18 @@ def test_it_is_said_over_which_motions_means_are_taken():
     assert "no means" in mean_sentence(means_of(a=NAN).assign(motions=0))
 
 
-def effects(lower: float, ratio: float, upper: float, **changes: object) -> pd.DataFrame:
+def effects(limits: list[float], **changes: object) -> pd.DataFrame:
     row = {"definition": "step_protocol", "scope": "whole", "level": "all", "pairs": 36}
-    row |= {"unit": "earthquake", "units": 4, "ratio": ratio, "lower": lower, "upper": upper}
-    row |= {"equivalent": False, "detectable_ratio": 1.2, "at_bound": 0}
-    return pd.DataFrame([row | {"tied": 0, "resolution_ratio": 1.0} | changes])
+    row |= dict(zip(("lower", "ratio", "upper"), limits, strict=True))
+    row |= {"unit": "earthquake", "units": 4, "equivalent": False, "detectable_ratio": 1.2}
+    return pd.DataFrame([row | {"at_bound": 0, "tied": 0, "resolution_ratio": 1.0} | changes])
 
 
-BY_PAIR = effects(NAN, 1.1, NAN, pairs=1, units=1)
-TIED = effects(0.98, 1.0, 1.02, tied=30, resolution_ratio=1.05)
-
-
-@pytest.mark.parametrize(
-    ("table", "headline", "more"),
-    [
-        (effects(1.05, 1.2, 1.4), "raises the overturning amplitude by 20.0 %", ""),
-        (effects(0.7, 0.8, 0.9), "lowers the overturning amplitude by 20.0 %", ""),
-        (effects(0.8, 1.1, 1.5), "not distinguishable from zero", ""),
-        (effects(0.98, 1.01, 1.03, equivalent=True), "less than 10 %", ""),
-        (BY_PAIR, "The pedestal raises the amplitude by 10.0 % in 1 pair", "there is no interval"),
-        (BY_PAIR, "", "from 1 earthquake there is no interval"),
-        (effects(1, 1, 1), "The amplitudes with and without pedestal are the same", ""),
-        (
-            effects(1.05, 1.2, 1.4, at_bound=3),
-            "",
-            "3 of which have one test that gives a bound only",
-        ),
-        (TIED, "", "30 of 36 pairs overturned in the same step"),
-        (TIED, "", "hide effects below 5.0 %"),
-        (effects(1, 1, 1).iloc[:0], "not known", ""),
-    ],
-)
-def test_the_pedestal_has_an_effect_only_where_the_interval_excludes_none(table, headline, more):
-    (found,) = pedestal_effect(table)
+@pytest.mark.parametrize(("limits", "changes", "headline", "more"), CASES["effects"])
+def test_the_pedestal_has_an_effect_only_where_the_interval_excludes_none(
+    limits, changes, headline, more
+):
+    (found,) = pedestal_effect(effects(limits, **changes))
     assert headline in found.headline and more in found.said
     assert "nan" not in found.said
     same = found.headline.endswith("are the same")
@@ -128,91 +89,69 @@ def test_the_pedestal_has_an_effect_only_where_the_interval_excludes_none(table,
 
 
 def test_floors_are_compared_where_there_are_two():
-    item = effects(0.9, 1.0, 1.1)
-    floors = [effects(1.1, 1.2, 1.3, scope="floor", level=name) for name in ("cellar", "attic")]
+    item = effects([0.9, 1.0, 1.1])
+    assert "not known" in pedestal_effect(item.iloc[:0])[0].headline
+    floors = [effects([1.1, 1.2, 1.3], scope="floor", level=name) for name in ("cellar", "attic")]
     assert len(pedestal_effect(pd.concat([item, floors[0]]))) == 1
-    found = pedestal_effect(pd.concat([item, *floors]))
-    assert "all 2 floors" in found[1].headline
-
-
-def validity(friction: list[float], force: list[float], sides: str = "") -> pd.DataFrame:
-    """Tests without a pedestal, or with (P) and without one (N) as ``sides`` says."""
-    pedestal = [{"P": "P", "N": "NP"}[side] for side in sides or "N" * len(friction)]
-    return pd.DataFrame(
-        {"pedestal": pedestal, "friction_demand": friction, "least_normal_force_n": force}
-    )
+    assert "all 2 floors" in pedestal_effect(pd.concat([item, *floors]))[1].headline
 
 
 def test_friction_counts_the_tests_that_need_more_than_a_usual_surface_has():
-    found = model_allowed(validity([0.3, 0.5, 1.3, math.inf], [5, 5, 5, -1]))
+    needed = {"friction_demand": [0.3, 0.5, 1.3, math.inf], "least_normal_force_n": [5, 5, 5, -1]}
+    found = model_allowed(pd.DataFrame(needed).assign(pedestal="NP"))
     assert found.headline == "2 of 4 tests require a friction coefficient above 0.6"
     assert "0.30 to 1.30" in found.numbers
     assert "No friction would be enough in 1 of 4 tests" in found.numbers
     assert "would have lifted off in 1 of 4 tests" in found.numbers
     assert "inf" not in found.said
-
-
-def test_what_friction_says_of_the_pedestal_is_said_where_both_sides_were_tested():
-    found = model_allowed(validity([0.2, 0.3, 0.7, 1.4], [5, 5, 5, 5], "NNPP"))
+    # what it says of the pedestal is said where both sides were tested
+    needed = {"friction_demand": [0.2, 0.3, 0.7, 1.4], "pedestal": ["NP", "NP", "P", "P"]}
+    found = model_allowed(pd.DataFrame(needed).assign(least_normal_force_n=5))
     beyond = "All 2 tests with the pedestal require a friction coefficient above 0.6"
     assert found.headline == f"{beyond}, and none of 2 tests without"
     assert "with the pedestal 0.70 to 1.40" in found.numbers
     assert "without 0.20 to 0.30" in found.numbers
 
 
-def resurrections(*counts: int) -> pd.DataFrame:
-    return pd.DataFrame({"first_upper": 0.5, "resurrections": list(counts)})
-
-
 def test_survival_windows_are_counted_over_the_ida_curves_that_overturn():
     definitions = ["first_overturning", "always_overturning"]
     tests = pd.DataFrame({"test": "a", "definition": definitions, "amplitude_g": [0.5, 1.0]})
-    found = resurrections_found(resurrections(2, 0), tests)
+    windows = pd.DataFrame({"first_upper": 0.5, "resurrections": [2, 0]})
+    found = resurrections_found(windows, tests)
     assert found.headline.startswith("Non-monotone response: in 1 of 2 analyses")
     assert "2.00 times" in found.numbers
-    none = resurrections_found(resurrections(0, 0), tests)
+    none = resurrections_found(windows.assign(resurrections=0), tests)
     assert none.headline.startswith("Every motion stronger")
-    standing = resurrections_found(resurrections(0).assign(first_upper=NAN), tests)
+    standing = resurrections_found(windows.assign(first_upper=NAN), tests)
     assert standing.headline.startswith("Nothing overturns")
 
 
 def curves(**medians: tuple[float, float, float]) -> pd.DataFrame:
-    if not medians:
-        return pd.DataFrame()
     table = pd.DataFrame(medians.values(), columns=["theta_lower", "theta", "theta_upper"])
-    table = table.join(
-        1.1 * table.rename(columns=lambda name: name.replace("theta", "theta_isotonic"))
-    )
+    isotonic = 1.1 * table.rename(columns=lambda name: name.replace("theta", "theta_isotonic"))
     about = {"im": "peak base acceleration", "unit": "g", "estimator": "mean_probability"}
-    return table.assign(configuration=list(medians), p_fit=0.5, **about)
+    return table.join(isotonic).assign(configuration=list(medians), p_fit=0.5, **about)
 
 
-def numbers(text: str) -> set[str]:
-    return set(re.findall(r"\d+(?:\.\d+)?", text))
-
-
-def test_how_strong_it_must_be_names_the_weakest_first_and_keeps_the_other_medians_behind_a_click():
+def test_the_weakest_is_named_first_and_the_other_medians_stand_behind_a_click():
     table = curves(bust=(0.411, 0.523, 0.666), urn=(0.7, 0.8, 0.9))
     found = strength_found(table, "90 %")
     assert found.headline.startswith("bust is the most fragile: a peak base acceleration of 0.52 g")
     assert found.headline.endswith("urn needs 0.80 g")
     assert "with 90 % intervals" in found.numbers
     assert "bust 0.52 [0.41, 0.67], urn 0.80 [0.70, 0.90]" in found.numbers
+    assert "lognormal curves" in found.numbers and "nonparametric" not in found.numbers
     assert "[" not in found.shown
-    assert numbers(found.said) == {"0.52", "0.80", "50", "90", "0.41", "0.67", "0.70", "0.90"}
+    numbers = set(re.findall(r"\d+(?:\.\d+)?", found.said))
+    assert numbers == {"0.52", "0.80", "50", "90", "0.41", "0.67", "0.70", "0.90"}
 
 
 def test_one_estimator_serves_all_configurations_of_a_comparison():
-    table = curves(bust=(0.4, 0.5, 0.6), urn=(0.7, 0.8, 0.9))
-    plain = strength_found(table, "90 %")
-    assert "lognormal curves" in plain.numbers and "nonparametric" not in plain.numbers
     # one rejected curve changes the estimator of all, or the list would compare estimators
-    found = strength_found(table.assign(p_fit=[0.01, 0.5]), "90 %")
+    table = curves(bust=(0.4, 0.5, 0.6), urn=(0.7, 0.8, 0.9)).assign(p_fit=[0.01, 0.5])
+    found = strength_found(table, "90 %")
     assert "bust 0.55 [0.44, 0.66], urn 0.88 [0.77, 0.99]" in found.numbers
     assert "rejected for bust" in found.numbers
-
-
-def test_the_estimator_cannot_turn_the_order_of_two_bodies_round():
     # lognormal and nonparametric medians of both have the same order; a choice body by body has not
     table = curves(slender=(0.3, 0.40, 0.5), squat=(0.4, 0.47, 0.6)).assign(
         theta_isotonic=[0.32, 0.39], p_fit=[0.07, 0.01]
@@ -228,31 +167,18 @@ def test_objects_that_no_shown_digit_tells_apart_are_named_together():
 
 
 def test_without_limits_no_interval_is_spoken_of():
-    found = strength_found(curves(bust=(math.nan, 0.523, math.nan)), "90 %")
+    found = strength_found(curves(bust=(NAN, 0.523, NAN)), "90 %")
     assert "interval" not in found.said and "[" not in found.said
     only = "A peak base acceleration of 0.52 g overturns bust with 50 % probability"
     assert found.headline == only
-    assert strength_found(curves(), "90 %") is None
+    assert strength_found(pd.DataFrame(), "90 %") is None
 
 
-@pytest.mark.parametrize(
-    ("names", "overturned", "near", "headline", "sure"),
-    [
-        ("a", [1], [1.0], "the only motion overturns everything", "No outcome changes"),
-        (
-            *("aa", [0, 0], [0.0, 0.4], "the 2 motions overturn nothing"),
-            "1 of 2 outcomes flips if the motion is scaled within ±10 %",
-        ),
-        (
-            *("aabb", [1, 0, 1, 1], [1.0, 0.0, 0.9, 1.0]),
-            *("1 (a) to 2 (b) of 2 motions overturn the object", "1 of 4 outcomes flips"),
-        ),
-    ],
-)
+@pytest.mark.parametrize(("names", "overturned", "near", "headline", "sure"), CASES["recorded"])
 def test_motions_as_recorded_say_what_overturns_and_which_outcomes_are_sensitive(
     names, overturned, near, headline, sure
 ):
     table = pd.DataFrame({"configuration": list(names), "fraction_near": near})
-    found = recorded_found(table.assign(overturned=np.array(overturned, dtype=bool)))
+    found = recorded_found(table.assign(overturned=overturned))
     assert found.headline == f"At recorded strength {headline}"
     assert sure in found.text

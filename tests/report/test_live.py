@@ -72,25 +72,19 @@ def test_what_the_kernel_of_the_page_does_not_know_is_left_out_by_name():
     assert live_kernel({"measured": held}, [motion()]) == ""
 
 
-def test_the_outcomes_are_those_of_the_table_it_is_given():
+def test_the_outcomes_are_those_of_a_table_or_are_tried():
     item = motion()
-    table = swept(BODIES, [item])
+    table = swept({"figure": STATUE.system()}, [item])
+    scales = table["amplitude_g"].to_numpy() * 9.81 / item.pga
+    fell = overturns([STATUE], [item.acceleration], [item.dt], scales).overturned.ravel()
+    assert table["overturned"].to_numpy(dtype=bool).tolist() == fell.tolist()
+    assert 0 < fell.sum() < fell.size
     table["overturned"] = table["amplitude_g"] > 0.7
     data = data_of(live_kernel({"figure": STATUE.system()}, [item], table))
     assert data["start"]["body"] == 0
     assert data["start"]["amplitude"] == pytest.approx(0.7, rel=0.03)
     expected = "".join("1" if g > 0.7 else "0" for g in data["amplitudes"])
     assert data["outcomes"][0][0] == expected
-
-
-def test_without_a_table_the_amplitudes_are_tried():
-    item = motion()
-    table = swept(BODIES, [item])
-    own = table[table["configuration"] == "figure"]
-    scales = own["amplitude_g"].to_numpy() * 9.81 / item.pga
-    fell = overturns([STATUE], [item.acceleration], [item.dt], scales).overturned.ravel()
-    assert own["overturned"].to_numpy(dtype=bool).tolist() == fell.tolist()
-    assert 0 < fell.sum() < fell.size
 
 
 def test_a_page_carries_no_more_motions_than_it_has_room_for():
@@ -105,17 +99,14 @@ def drawn(system, theta):
     return outlines(system, response.position[0], response.theta[0])
 
 
-@pytest.mark.parametrize("theta", [0.2, -0.2])
-def test_a_block_is_drawn_on_the_edge_on_which_it_rocks(theta: float):
-    (corners,) = drawn(STATUE.system(), theta)
-    low = min(corners, key=lambda item: item.y)
-    assert low.y == pytest.approx(0, abs=1e-12)
-    assert low.x == pytest.approx(math.copysign(0.15, theta))
+def test_a_block_is_drawn_on_the_edge_on_which_it_rocks():
+    (corners,) = drawn(STATUE.system(), -0.2)
+    assert min(corners, key=lambda item: item[1]) == pytest.approx((-0.15, 0), abs=1e-12)
     for a, b, length in zip(corners, corners[1:], (0.3, 1.2, 0.3), strict=False):
         assert math.dist(a, b) == pytest.approx(length)
 
 
-@pytest.mark.parametrize("theta", [(0.1, 0.3), (0.1, -0.2), (-0.1, -0.4), (0.0, 0.2), (0.2, 0.2)])
+@pytest.mark.parametrize("theta", [(0.1, 0.3), (0.1, -0.2), (0.0, 0.2)])
 def test_a_statue_is_drawn_on_its_pedestal(theta: tuple[float, float]):
     """The corner on which it rocks is on the pedestal's top, and no corner is below it."""
     stack = BODIES["figure </script> on plinth"]

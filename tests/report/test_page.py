@@ -1,4 +1,4 @@
-"""The page: self-contained, escaped, and the same bytes every time."""
+"""The page: self-contained, escaped, short until it is opened, and with its terms explained."""
 
 import math
 import re
@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 from rockfrag.errors import InputError
 from rockfrag.figure_style import figure_style, new_figure
 from rockfrag.report import pdf
-from rockfrag.report.page import MOST_TABLE_ROWS, Column, Page, table_html
+from rockfrag.report.page import MOST_TABLE_ROWS, TERMS, Column, Page, table_html, terms_used
 from rockfrag.report.part import Answer, FigureSpec, Finding, Section
 
 
@@ -25,22 +25,17 @@ def drawing() -> Figure:
     return figure
 
 
-def spec(name: str = "one") -> FigureSpec:
+def spec(name: str) -> FigureSpec:
     return FigureSpec(name, "It rises & falls.", "Caption <u>", drawing)
 
 
-def page(folder: Path) -> str:
-    table = pd.DataFrame({"name": ["<b>", "P&T1"], "value": [1.23456, math.nan]})
-    columns = [Column("name", "Name"), Column("value", "Value [g]", 2)]
-    specs = [spec("one"), spec("two")]
-    parts = [table_html(table, columns, "A"), *specs]
-    answer = Answer("Does it fall?", [Finding("Found", "this")], specs[0])
-    section = Section("one", "One", "Message <s>", ["Text & more"], [parts[0], specs[1]])
-    return Page("T", "lead", answer, [section]).html(folder)
-
-
 def test_the_page_loads_nothing_from_outside_and_escapes_what_users_name(tmp_path):
-    text = page(tmp_path)
+    table = pd.DataFrame({"name": ["<b>", "P&T1"], "value": [1.23456, math.nan]})
+    shown = table_html(table, [Column("name", "Name"), Column("value", "Value [g]", 2)], "A")
+    first, second = spec("one"), spec("two")
+    answer = Answer("Does it fall?", [Finding("Found", "this")], first)
+    section = Section("one", "One", "Message <s>", ["Text & more"], [shown, second])
+    text = Page("T", "lead", answer, [section]).html(tmp_path)
     sources = re.findall(r'(?:src|href)="([^"]*)"', text)
     sources += re.findall(r"url\(([^)]*)\)", text)
     assert sources
@@ -58,10 +53,6 @@ def test_the_page_loads_nothing_from_outside_and_escapes_what_users_name(tmp_pat
     assert set(wanted) <= set(identifiers)
 
 
-def test_an_empty_table_is_not_shown():
-    assert table_html(pd.DataFrame({"a": []}), [Column("a", "A")], "Nothing") == ""
-
-
 def test_a_long_table_names_the_file_that_has_all():
     table = pd.DataFrame({"a": range(MOST_TABLE_ROWS + 1)})
     shown = table_html(table, [Column("a", "A", 0)], "Many.", "many.csv")
@@ -69,28 +60,45 @@ def test_a_long_table_names_the_file_that_has_all():
     assert f"The first {MOST_TABLE_ROWS} of {MOST_TABLE_ROWS + 1}; many.csv has all." in shown
 
 
-def test_the_page_and_its_figures_are_the_same_bytes_every_time(tmp_path: Path):
-    (tmp_path / "a").mkdir()
-    (tmp_path / "b").mkdir()
-    assert page(tmp_path / "a") == page(tmp_path / "b")
-    for name in ("one.svg", "one.png"):
-        assert (tmp_path / "a" / name).read_bytes() == (tmp_path / "b" / name).read_bytes()
+def page(said: str = "AvgSA predicts best.", **answer) -> str:
+    given = {"asked": "How strong?", "sentences": [Finding("It holds", "So far", "P/NP 1.01")]}
+    section = Section("a", "A", "Short.", [said])
+    return Page("T", "lead", Answer(**given | answer), [section]).html()
+
+
+def test_what_to_do_stands_open_and_numbers_wait_behind_a_click():
+    text = page(advice=["Secure the urn first."], could_change=["Sliding."])
+    before, _, after = text.partition("<details")
+    assert "It holds" in before and "P/NP 1.01" not in before
+    assert "P/NP 1.01" in after and "Secure the urn first." in after
+    assert "What could change this result" in after
+
+
+def test_a_page_explains_the_terms_that_it_uses_and_no_others():
+    text = page()
+    assert "<dt>P/NP</dt>" in text and "<dt>AvgSA</dt>" in text
+    assert "<dt>AUC</dt>" not in text
+    assert "Glossary" not in page("", sentences=[Finding("So")])
+    # as words of their own
+    assert set(terms_used("The PGAs of P&NP")) == set()
+    assert set(terms_used("PGA and beta")) == {"PGA, PGV, PGD"}
+    assert all(meaning.endswith(".") for meaning in TERMS.values())
 
 
 def test_a_page_is_printed_beside_itself(tmp_path: Path):
     if not any(map(shutil.which, pdf.BROWSERS)):
         pytest.skip("no browser that prints is installed")
-    page = tmp_path / "report.html"
-    page.write_text("<details><summary>closed</summary>behind it</details>")
-    assert pdf.print_page(page) == tmp_path / "report.pdf"
+    file = tmp_path / "report.html"
+    file.write_text("<details><summary>closed</summary>behind it</details>")
+    assert pdf.print_page(file) == tmp_path / "report.pdf"
     assert (tmp_path / "report.pdf").read_bytes().startswith(b"%PDF")
 
 
 def test_without_a_page_or_a_browser_one_sentence_says_what_to_do(tmp_path, monkeypatch):
-    page = tmp_path / "report.html"
+    file = tmp_path / "report.html"
     with pytest.raises(InputError, match="run the study first"):
-        pdf.print_page(page)
-    page.write_text("words")
+        pdf.print_page(file)
+    file.write_text("words")
     monkeypatch.setattr(pdf, "BROWSERS", ())
     with pytest.raises(InputError, match="in any browser and print it"):
-        pdf.print_page(page)
+        pdf.print_page(file)

@@ -53,20 +53,15 @@ def test_any_motion_overturns_without_impact_where_the_integral_exceeds_one(seed
     assert falls(shape, t[1], (1 + 1e-4) * limit, impacts=True)
 
 
-@pytest.mark.parametrize(
-    ("linear", "limits"),
-    [(True, (3.0186, 6.3181, 7.1681)), (False, (3.032, 6.743, 7.493))],
-    ids=["linear", "nonlinear"],
-)
-def test_one_sine_overturns_after_an_impact_then_not_then_without(linear, limits):
-    # one sine of ωp = 5 p and amplitude x α g, measured restitution 0.9
+def test_one_sine_overturns_after_an_impact_then_not_then_without():
+    # the linear block under one sine of ωp = 5 p and amplitude x α g, measured restitution 0.9
     pulse = BLOCK.alpha * G * np.sin(np.linspace(0, 2 * math.pi, 201))
     dt = 2 * math.pi / (5 * BLOCK.frequency()) / 200
 
     def shaken(x: float):
-        return simulate(BLOCK, x * pulse, dt, restitution=0.9, linear=linear)
+        return simulate(BLOCK, x * pulse, dt, restitution=0.9, linear=True)
 
-    for limit, above in zip(limits, (True, False, True), strict=True):
+    for limit, above in ((3.0186, True), (6.3181, False), (7.1681, True)):
         assert shaken(0.998 * limit).overturned is not above
         assert shaken(1.002 * limit).overturned is above
     assert shaken(5.0).impacts == 1

@@ -1,12 +1,12 @@
 """Ensembles: the same numbers however cases are grouped, and the same as one by one."""
 
 from dataclasses import replace
+from itertools import product
 
 import numpy as np
 import pytest
 
 from rockfrag.outcomes.outcomes import Outcomes, columns
-from rockfrag.records.motion import Motion
 from rockfrag.rocking.ensemble import overturns
 from rockfrag.rocking.simulation import simulate
 from rockfrag.system.blocks import Block, Stack
@@ -44,37 +44,24 @@ def picked(result: Outcomes, *index) -> Outcomes:
 
 @pytest.fixture(scope="module")
 def whole() -> Outcomes:
-    return overturns(BODIES, MOTIONS, benchmark_cases.DT, SCALES, threads=1)
+    found = overturns(BODIES, MOTIONS, benchmark_cases.DT, SCALES, threads=1)
+    assert all((found.overturned_body == number).any() for number in (1, 2))
+    assert 0.1 < found.overturned.mean() < 0.9
+    assert (found.impacts > 20).any()
+    return found
 
 
-def test_the_cases_hold_falls_and_survivals_of_blocks_and_stacks(whole):
-    for number in (1, 2):
-        assert (whole.overturned_body == number).any()
-    fraction = whole.overturned.mean()
-    assert 0.1 < fraction < 0.9
-    assert (whole.impacts > 20).any()
-
-
-@pytest.mark.parametrize("threads", [2, 3, 16])
-def test_threads_do_not_change_a_bit(whole, threads):
-    same(whole, overturns(BODIES, MOTIONS, benchmark_cases.DT, SCALES, threads=threads))
-
-
-def test_order_does_not_change_a_bit(whole):
+def test_neither_threads_nor_order_nor_company_change_a_bit(whole):
+    same(whole, overturns(BODIES, MOTIONS, benchmark_cases.DT, SCALES, threads=3))
     rng = np.random.default_rng(3)
     i, j, k = (rng.permutation(n) for n in whole.overturned.shape)
     bodies, motions = [BODIES[n] for n in i], [MOTIONS[n] for n in j]
     shuffled = overturns(bodies, motions, benchmark_cases.DT, SCALES[j][:, k], threads=1)
     same(picked(whole, *np.ix_(i, j, k)), shuffled)
-
-
-def test_each_case_alone_gives_the_bits_it_gives_in_company(whole):
     for i, j, k in ((0, 1, 2), (1, 0, 1), (4, 2, 0), (9, 3, 2)):
         alone = overturns(BODIES[i], MOTIONS[j], benchmark_cases.DT, SCALES[j, k : k + 1])
         same(picked(whole, np.s_[i : i + 1], np.s_[j : j + 1], np.s_[k : k + 1]), alone)
-
-
-def test_a_body_that_needs_shorter_steps_changes_no_other(whole):
+    # this one needs shorter steps
     small = Block(width=0.01, height=0.04, mass=0.01)
     more = overturns([small, *BODIES], MOTIONS, benchmark_cases.DT, SCALES, threads=1)
     same(whole, picked(more, np.s_[1:]))
@@ -83,69 +70,45 @@ def test_a_body_that_needs_shorter_steps_changes_no_other(whole):
 def test_single_simulations_of_blocks_agree_in_outcomes_and_peaks(whole):
     """simulate() follows every impact with Taylor series of higher order."""
     checked = 0
-    for i, body in enumerate(BODIES):
-        if not isinstance(body, Block):
+    for at in np.ndindex(len(BODIES), 2, SCALES.shape[1]):
+        body, motion, scale = BODIES[at[0]], MOTIONS[at[1]], SCALES[at[1:]]
+        if isinstance(body, Stack) or whole.unstable_distance[at] < 1e-3:
             continue
-        for j in range(2):
-            for k in range(SCALES.shape[1]):
-                response = simulate(body, SCALES[j, k] * MOTIONS[j], benchmark_cases.DT)
-                at = (i, j, k)
-                near = whole.unstable_distance[at] < 1e-3
-                assert near or response.overturned == whole.overturned[at]
-                if response.overturned or near:
-                    continue
-                top = response.theta[:, -1]
-                pivot = [body.critical_angle(s) for s in (1, -1)]
-                peak = max(top.max() / pivot[0], -top.min() / pivot[1])
-                # between samples a flight rises by at most (p dt)² α / 4 above them
-                between = (body.frequency() * benchmark_cases.DT) ** 2 / 4 + 1e-6
-                assert peak - 1e-6 <= whole.peak_rotation[(*at, 0)] <= peak + between
-                assert whole.peak_velocity[(*at, 0)] >= np.abs(response.omega).max() - 1e-6
-                checked += 1
+        response = simulate(body, scale * motion, benchmark_cases.DT)
+        assert response.overturned == whole.overturned[at]
+        if response.overturned:
+            continue
+        top = response.theta[:, -1]
+        peak = max(top.max() / body.critical_angle(1), -top.min() / body.critical_angle(-1))
+        # between samples a flight rises by at most (p dt)² α / 4 above them
+        between = (body.frequency() * benchmark_cases.DT) ** 2 / 4 + 1e-6
+        assert peak - 1e-6 <= whole.peak_rotation[(*at, 0)] <= peak + between
+        assert whole.peak_velocity[(*at, 0)] >= np.abs(response.omega).max() - 1e-6
+        checked += 1
     assert checked > 5
 
 
 def test_single_simulations_of_stacks_agree_in_outcomes_and_peaks():
     """Over some seconds: an ensemble closes chatter to 1e-7 rad/s, and stacks are chaotic in the long run."""
     checked = 0
-    for body in STACKS:
-        for motion in MOTIONS:
-            for scale in (0.25, 0.4, 0.6, 0.9):
-                start = int(np.argmax(np.abs(scale * motion) > 2.0))
-                # with still ground at its end, as an ensemble stops when nothing can fall any more
-                part = np.append(scale * motion[start : start + 400], np.zeros(500))
-                response = simulate(body, part, benchmark_cases.DT)
-                item = overturns(body, part, benchmark_cases.DT, [1.0])
-                if item.unstable_distance[0, 0, 0] < 0.02:
-                    continue
-                assert response.overturned == item.overturned[0, 0, 0]
-                if response.overturned or response.impacts == 0:
-                    continue
-                # the ensemble looks at its speed before impacts, and at samples
-                fastest = np.abs(response.omega[:, -1]).max()
-                assert item.peak_velocity[0, 0, 0, -1] >= fastest - 1e-3
-                assert item.unstable_distance[0, 0, 0] == pytest.approx(
-                    response.unstable_distance, rel=0.01
-                )
-                checked += 1
+    for body, motion, scale in product(STACKS, MOTIONS, (0.25, 0.4, 0.6, 0.9)):
+        start = int(np.argmax(np.abs(scale * motion) > 2.0))
+        # with still ground at its end, as an ensemble stops when nothing can fall any more
+        part = np.append(scale * motion[start : start + 400], np.zeros(500))
+        response = simulate(body, part, benchmark_cases.DT)
+        item = overturns(body, part, benchmark_cases.DT, [1.0])
+        distance = item.unstable_distance.item()
+        if distance < 0.02:
+            continue
+        assert response.overturned == item.overturned.item()
+        if response.overturned or response.impacts == 0:
+            continue
+        # the ensemble looks at its speed before impacts, and at samples
+        fastest = np.abs(response.omega[:, -1]).max()
+        assert item.peak_velocity[0, 0, 0, -1] >= fastest - 1e-3
+        assert distance == pytest.approx(response.unstable_distance, rel=0.01)
+        checked += 1
     assert checked > 10
-
-
-def test_an_ensemble_of_motions_gives_a_table():
-    motions = [
-        Motion(values, benchmark_cases.DT, name=str(i)) for i, values in enumerate(MOTIONS[:2])
-    ]
-    result = overturns(BODIES[:3], motions, scales=SCALES[:2])
-    same(result, overturns(BODIES[:3], MOTIONS[:2], benchmark_cases.DT, SCALES[:2]))
-    table = result.table()
-    assert len(table) == result.overturned.size
-    row = table.query("system == 2 and motion == 1").iloc[2]
-    assert row["scale"] == SCALES[1, 2]
-    assert row["overturned"] == result.overturned[2, 1, 2]
-    bodies = result.table("bodies")
-    upper = bodies.query("system == 2 and motion == 1 and body == 2").iloc[2]
-    assert upper["peak_velocity_rad_s"] == result.peak_velocity[2, 1, 2, 1]
-    assert upper["name"] == "upper body"
 
 
 @pytest.mark.parametrize("linear", [False, True])

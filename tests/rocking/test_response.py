@@ -17,41 +17,12 @@ from ..conftest import shaking
 from .reference_bodies import T1, T2, T3, P, polyline
 
 G = 9.81
-OFF_CENTRE = Stack(
-    Block(0.30, 0.25, 20.0, cg_offset=0.01, lean=0.004),
-    Block(0.20, 0.80, 15.0, inertia=1.1, cg_height=0.34, cg_offset=-0.012),
-    offset=0.02,
-)
 DT = 0.005
 
 
 def shaken(body: Block | Stack, seed: int, peak_g: float) -> Response:
     motion = shaking(seed, 0.5, 5, peak_g)
     return simulate(body, motion.acceleration, motion.dt)
-
-
-BODIES = [T2, Stack(P, T1), Stack(P, T3), OFF_CENTRE]
-CASES = [
-    pytest.param((body, seed, peak), id=f"{name}-{seed}")
-    for name, body in zip(("T2", "P&T1", "P&T3", "off-centre"), BODIES, strict=True)
-    for seed, peak in ((1, 0.35), (2, 0.6))
-]
-
-
-@pytest.fixture(params=CASES)
-def response(request: pytest.FixtureRequest) -> Response:
-    body, seed, peak = request.param
-    found = shaken(body, seed, peak)
-    assert found.impacts > 3
-    return found
-
-
-def test_positions_agree_with_the_contact_states(response: Response) -> None:
-    theta, state = response.theta, response.state
-    relative = np.diff(theta, axis=1, prepend=0.0)
-    standing = np.abs(theta).max(axis=1) < 1.0
-    assert (relative * state >= -1e-9)[standing].all()
-    assert (np.abs(relative[state == 0]) < 1e-9).all()
 
 
 @pytest.mark.parametrize(
@@ -99,14 +70,6 @@ def test_forces_of_a_rocking_block_follow_from_newton() -> None:
     assert response.normal_force[rows, 0] == pytest.approx(T2.mass * (G + rise), rel=1e-9)
 
 
-@pytest.mark.filterwarnings("ignore::rockfrag.rocking.ensemble.LightBodies")
-def test_a_heavy_blow_is_reported_as_a_jump() -> None:
-    # thrown off the ground: a rotation this fast needs a pull at the pivot
-    response = simulate(T2, np.zeros(10), 0.001, theta0=0.0, omega0=12.0)
-    assert response.least_normal_force[0] < 0
-    assert math.isinf(response.friction_demand[0])
-
-
 def test_overturning_has_a_time_and_a_body() -> None:
     stack = Stack(P, T3)
     response = shaken(stack, 2, 0.6)
@@ -115,9 +78,7 @@ def test_overturning_has_a_time_and_a_body() -> None:
     calm = shaken(stack, 2, 0.15)
     assert not calm.overturned and calm.overturned_body == "" and math.isnan(calm.overturning_time)
     assert calm.contact_events.empty
-
-
-def test_a_pedestal_that_is_tall_and_thin_falls_with_its_statue() -> None:
+    # a pedestal that is tall and thin falls with its statue
     column = Stack(Block(0.3, 1.5, 50.0), Block(0.3, 0.3, 10.0))
     response = simulate(column, np.r_[np.full(80, 4.0), np.zeros(50)], 0.01)
     assert response.overturned and response.overturned_body == "lower body"
@@ -133,14 +94,7 @@ def test_unstable_distance_tells_how_near_the_outcome_was() -> None:
         low, high = (low, middle) if fell else (middle, high)
     near = simulate(T2, low * T2.alpha * G * pulse, dt)
     far = simulate(T2, 0.7 * low * T2.alpha * G * pulse, dt)
-    assert not near.overturned and near.unstable_distance < 1e-3
-    assert far.unstable_distance > 0.1
-
-
-def test_rocking_modes_have_the_thesis_s_names() -> None:
-    response = simulate(Stack(P, T2), np.zeros(5), DT, theta0=(0.0, 0.05))
-    assert response.rocking_mode[0] == "4a"
-    assert simulate(T2, np.zeros(5), DT, theta0=-0.05).rocking_mode[0] == "4b"
+    assert not near.overturned and near.unstable_distance < 1e-3 < 0.1 < far.unstable_distance
 
 
 SHAKING = polyline(0, 3000)
@@ -229,10 +183,9 @@ def test_an_ensemble_asks_what_its_histories_do():
     assert overturns(T2, motion, 0.01).table("contacts")["friction_demand"].isna().all()
 
 
-def test_a_statue_that_reaches_beyond_its_pedestal_is_drawn_over_the_angle_of_their_contact() -> (
-    None
-):
+def test_a_statue_that_reaches_beyond_its_pedestal_is_drawn_over_the_angle_of_their_contact():
     wide = Stack(Block(0.5, 0.2, 300.0), Block(0.6, 1.2, 180.0))
     angle = geometry.critical_angle(wide.pile.upper, 1)
     response = simulate(wide, np.zeros(9), DT, theta0=(0.0, 0.05))
+    assert response.rocking_mode[0] == "4a"
     assert response.plot().axes[1].lines[1].get_ydata()[0] == pytest.approx(0.05 / angle)

@@ -13,7 +13,8 @@ from rockfrag.rocking.restitution import (
     restitution_from_peaks,
 )
 
-T2 = Block(0.124, 0.496, 2.790)
+from .reference_bodies import T2
+
 STATUE = Block(0.40, 1.20, 300.0, inertia=45.0, cg_height=0.50, cg_offset=0.04)
 
 

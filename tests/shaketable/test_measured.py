@@ -75,16 +75,11 @@ def test_the_template_is_an_empty_table():
         ({"lower_g": "0.4O"}, r"line 3, column lower_g: .* 0.4O"),
         ({"lower_g": "0.45"}, "line 3, column upper_g: must not be below"),
         ({"lower_g": "-0.1"}, "column lower_g: must be zero or more"),
-        ({"lower_g": "nan"}, "column lower_g: expected a number, found nan"),
-        ({"lower_g": ""}, "column lower_g: expected a number, found nothing"),
-        ({"upper_g": ""}, "column upper_g: expected a number, found nothing"),
         ({"censored": "right", "overturned_body": ""}, "column upper_g: must be empty"),
         ({"censored": "left"}, "column censored: must be one of none, right"),
-        ({"pedestal": "yes"}, "column pedestal: must be one of P, NP"),
         ({"overturned_body": ""}, "column overturned_body: names what overturned"),
         ({"overturned_body": "pedestal"}, "column overturned_body: is pedestal in"),
-        ({"repetition": "one"}, "column repetition: expected a number, found one"),
-        ({"repetition": "0"}, "column repetition: expected a number above 0"),
+        ({"repetition": "1.5"}, "column repetition: must be a whole number from 1, got 1.5"),
         ({"test": ""}, "column test: expected a name"),
         ({"remark": "a,b"}, "line 3: expected 11 cells"),
     ],
@@ -96,61 +91,37 @@ def test_a_wrong_field_is_named_by_line_and_column(table, change, place):
     assert str(refused.value).endswith(".")
 
 
-WRONG_HEADERS = {
-    HEADER.replace("earthquake,", ""): "column earthquake is missing",
-    HEADER + ",colour": "column 'colour' is not known",
-    HEADER + ",remark": "column 'remark' is given twice",
-    HEADER.replace("upper_g", "upper_m_s2"): "either lower_g and upper_g or",
-}
-
-
 @pytest.mark.parametrize(
-    ("content", "message"),
+    ("header", "message"),
     [
-        *((header.encode(), message) for header, message in WRONG_HEADERS.items()),
-        (
-            "\n".join([HEADER, *ROWS[:1] * 2]).encode(),
-            r"line 3.* test: 'a', repetition 1, is on line 2",
-        ),
-        (None, "cannot be read"),
-        (b"# nothing\n", "holds no table"),
-        ("# Erschütterung\n".encode("latin-1"), "not UTF-8"),
+        (HEADER.replace("earthquake", "motion"), "column earthquake is missing"),
+        (HEADER.replace("floor", "remark"), "column 'remark' is given twice"),
+        (HEADER.replace("upper_g", "upper_m_s2"), "either lower_g and upper_g or"),
+        (HEADER, r"line 4.* test: 'a', repetition 1, is on line 3"),
     ],
 )
-def test_files_that_hold_no_table_are_refused(tmp_path, content, message):
-    path = tmp_path / "measured.csv"
-    if content:
-        path.write_bytes(content)
+def test_files_that_hold_no_table_are_refused(table, header, message):
     with pytest.raises(InputError, match=message):
-        read_measured(path)
+        read_measured(table(ROWS[0], ROWS[0], header=header))
 
 
-@pytest.fixture
-def simulated():
+def test_measured_and_simulated_tests_are_the_same_table(tmp_path):
     """Tests of synthetic objects that overturn above a threshold of their own, one of them censored."""
     rng = np.random.default_rng(7)
     ida_curves = []
     for name, earthquake, floor, side in product(TOWERS, "ABCD", FLOORS, ("P", "NP")):
         over = 0.3 * np.exp(0.3 * rng.normal()) < AMPLITUDES
         ida_curves.append(ida_table(over, AMPLITUDES, name, side, earthquake, floor))
-    return read_ida(
+    simulated = read_ida(
         pd.concat(ida_curves),
         Protocol(GeometricSteps(0.05, 0.05)),
         definitions=["step_protocol"],
         limits_g={"A_GF": 0.3},
     )
-
-
-@pytest.fixture
-def measured(simulated, tmp_path):
-    """The same tests, written down as a laboratory would and read as a measured table."""
-    path = tmp_path / "measured.csv"
-    simulated[HEADER.split(",")].to_csv(path, index=False)
-    return read_measured(path)
-
-
-def test_measured_and_simulated_tests_are_the_same_table(simulated, measured):
     assert (simulated["censored"] == "right").any()
+    path = tmp_path / "measured.csv"
+    # written down as a laboratory would, and read as a measured table
+    simulated[HEADER.split(",")].to_csv(path, index=False)
     pd.testing.assert_frame_equal(
-        measured.drop(columns="definition"), simulated.drop(columns="definition")
+        read_measured(path).drop(columns="definition"), simulated.drop(columns="definition")
     )

@@ -59,13 +59,6 @@ def test_three_readings_of_one_ida_differ():
     assert always_overturning(GRID, WINDOW) == Outcome(0.50, 0.51)
 
 
-def test_repetitions_start_within_a_step_of_each_other():
-    protocol = Protocol(LinearSteps(0.05, 0.1), limit_g=1.0, repetitions=2)
-    table = read_ida(vase(), protocol, definitions=["step_protocol"])
-    assert table["repetition"].tolist() == [1, 2]
-    assert table["upper_g"].tolist() == pytest.approx([0.55, 0.30])
-
-
 def test_a_table_of_tests_has_the_schema_of_the_contract():
     table = read_ida(vase(), Protocol(LinearSteps(0.05, 0.05)))
     assert tuple(table.columns) == COLUMNS
@@ -73,31 +66,32 @@ def test_a_table_of_tests_has_the_schema_of_the_contract():
     assert (table["amplitude_g"] == table["lower_g"]).all()
     assert (table["overturned_body"] == "statue").all()
     assert read_ida(vase().iloc[:0], Protocol(LinearSteps(1, 1))).dtypes.equals(table.dtypes)
-
-
-def test_at_overturning_reports_the_upper_bound():
-    protocol = Protocol(LinearSteps(0.05, 0.05), definition="at")
-    table = read_ida(vase(), protocol)
+    table = read_ida(vase(), Protocol(LinearSteps(0.05, 0.05), definition="at"))
     assert (table["amplitude_g"] == table["upper_g"]).all()
 
 
+def test_repetitions_start_within_a_step_of_each_other():
+    protocol = Protocol(LinearSteps(0.05, 0.1), limit_g=1.0, repetitions=2)
+    table = read_ida(vase(), protocol, definitions=["step_protocol"])
+    assert table["repetition"].tolist() == [1, 2]
+    assert table["upper_g"].tolist() == pytest.approx([0.55, 0.30])
+
+
 def test_the_shakers_limit_censors_the_step_protocol_only():
-    table = read_ida(
-        vase(), Protocol(LinearSteps(0.05, 0.05)), limits_g={"Kobe_ground": 0.272}
-    ).set_index("definition")
-    lab = table.loc["step_protocol"]
+    limits = {"Kobe_ground": 0.272}
+    table = read_ida(vase(), Protocol(LinearSteps(0.05, 0.05)), limits_g=limits)
+    lab, first, _ = table.to_dict("records")
     assert lab["lower_g"] == pytest.approx(0.25)
     assert math.isnan(lab["upper_g"]) and math.isnan(lab["amplitude_g"])
     assert (lab["censored"], lab["overturned_body"]) == ("right", "")
-    assert table.loc["first_overturning", "upper_g"] == pytest.approx(0.30)
+    assert first["upper_g"] == pytest.approx(0.30)
 
 
 def test_overturning_at_the_first_step_leaves_nothing_to_report_before_it():
     table = read_ida(vase(np.ones(GRID.size, bool)), Protocol(LinearSteps(0.2, 0.1)))
-    assert (table["lower_g"] == 0).all()
-    assert table["amplitude_g"].isna().all()
-    assert (table["censored"] == "none").all()
-    assert (table["remark"] == "overturned at the first step").all()
+    expected = {"lower_g": 0, "censored": "none", "remark": "overturned at the first step"}
+    for row in table.to_dict("records"):
+        assert expected.items() <= row.items() and math.isnan(row["amplitude_g"])
 
 
 def test_unaccounted_mass_raises_light_specimens_more():
@@ -175,51 +169,37 @@ def test_ida_curves_with_missing_columns_or_doubled_amplitudes_are_refused():
         read_ida(pd.concat([vase(), vase()]), protocol)
 
 
-def table_of(amplitudes: dict[tuple[str, str], list[float]]) -> pd.DataFrame:
-    """Tests of objects and sides by motions a, b, c … of the floor up, NaN where one never overturned."""
+def table_of(amplitudes: dict[str, list[float]], floor: str = "up") -> pd.DataFrame:
+    """Tests of a vase on each side by motions a, b, c … of a floor, NaN where one never overturned."""
     rows = [
-        {
-            "configuration": f"{name} {side}",
-            "object": name,
-            "pedestal": side,
-            "earthquake": "abc"[i],
-            "floor": "up",
-            "motion": f"{'abc'[i]}_up",
-            "amplitude_g": value,
-            "repetition": 1,
-        }
-        for (name, side), values in amplitudes.items()
+        (f"vase {side}", side, "abc"[i], f"{'abc'[i]}_{floor}", value)
+        for side, values in amplitudes.items()
         for i, value in enumerate(values)
     ]
-    return pd.DataFrame(rows)
+    names = ["configuration", "pedestal", "earthquake", "motion", "amplitude_g"]
+    return pd.DataFrame(rows, columns=names).assign(object="vase", floor=floor, repetition=1)
 
 
-def means(table: pd.DataFrame, by: str) -> dict[str, float]:
-    rows = table[table["by"] == by]
-    return dict(zip(rows["configuration"], rows["mean_g"], strict=True))
+def means(tests: pd.DataFrame, by: str) -> pd.DataFrame:
+    table = mean_amplitudes(tests)
+    return table[table["by"] == by].set_index(by)[["mean_g", "motions", "of"]]
 
 
 def test_the_ratio_of_the_means_is_the_mean_ratio_of_the_pairs_that_both_overturned():
     # with its pedestal the vase survives the strongest motion: the mean of what is left would fall
-    tests = table_of({("vase", "NP"): [0.4, 0.5, 1.5], ("vase", "P"): [0.5, 0.6, np.nan]})
-    found = means(mean_amplitudes(tests), "configuration")
+    found = means(table_of({"NP": [0.4, 0.5, 1.5], "P": [0.5, 0.6, np.nan]}), "configuration")
     expected = np.sqrt(0.5 / 0.4 * 0.6 / 0.5)
-    assert found["vase P"] / found["vase NP"] == pytest.approx(expected)
-    assert mean_amplitudes(tests)["motions"].tolist()[:2] == [2, 2]
+    assert found["mean_g"]["vase P"] / found["mean_g"]["vase NP"] == pytest.approx(expected)
+    assert found["motions"].tolist() == [2, 2]
 
 
 def test_without_a_motion_that_overturned_everything_there_is_no_mean():
-    tests = table_of({("vase", "NP"): [0.4, np.nan], ("jug", "NP"): [np.nan, 0.5]})
-    found = mean_amplitudes(tests)
-    rows = found[found["by"] == "configuration"]
-    assert rows["mean_g"].isna().all()
-    assert rows["motions"].tolist() == [0, 0]
-    assert rows["of"].tolist() == [2, 2]
+    found = means(table_of({"NP": [0.4, np.nan], "P": [np.nan, 0.5]}), "configuration")
+    assert found["mean_g"].isna().all()
+    assert found[["motions", "of"]].to_numpy().tolist() == [[0, 2], [0, 2]]
 
 
 def test_floors_are_compared_over_the_same_records():
-    tests = table_of({("vase", "NP"): [0.4, 0.5]})
-    lower = tests.assign(floor="down", motion=["a_down", "b_down"], amplitude_g=[0.8, np.nan])
-    found = mean_amplitudes(pd.concat([tests, lower], ignore_index=True))
-    rows = found[found["by"] == "floor"].set_index("floor")["mean_g"]
-    assert rows.to_dict() == pytest.approx({"up": 0.4, "down": 0.8})
+    tests = [table_of({"NP": [0.4, 0.5]}), table_of({"NP": [0.8, np.nan]}, "down")]
+    found = means(pd.concat(tests, ignore_index=True), "floor")
+    assert found["mean_g"].to_dict() == pytest.approx({"up": 0.4, "down": 0.8})

@@ -22,30 +22,23 @@ def versine(frequency, cycles=40, dt=0.001):
     return Motion(np.cos(2 * np.pi * frequency * t), dt, f"{frequency} Hz")
 
 
-@pytest.mark.parametrize(("frequency", "limit"), [(0.5, 0.146), (0.75, 0.33), (1.0, 0.58)])
-def test_the_stroke_limits_harmonic_motions(frequency, limit):
+@pytest.mark.parametrize("frequency", [0.5, 1.0])
+def test_the_stroke_limits_harmonic_motions(frequency):
     # acceleration a gives the travel 2 a / ω²
-    found, governing = Shaker().limit(versine(frequency))
-    assert found == pytest.approx(limit, abs=0.006)
-    assert found == pytest.approx(0.145 * (2 * np.pi * frequency) ** 2 / 9.81, rel=1e-4)
-    assert governing == "stroke"
+    limit = pytest.approx(0.145 * (2 * np.pi * frequency) ** 2 / 9.81, rel=1e-4)
+    assert Shaker().limit(versine(frequency)) == (limit, "stroke")
 
 
-@pytest.mark.parametrize(
-    ("column", "printed"),
-    [
-        ("travel_cm_per_g", ["19.61", "52.11", "72.30", "25.96"]),
-        ("excursion_cm_per_g", ["11.58", "28.12", "53.39", "15.90"]),
-    ],
-)
-def test_the_strokes_of_the_records_are_reproduced_and_the_force_never_governs(
-    records, column, printed
-):
+def test_the_strokes_of_the_records_are_reproduced_and_the_force_never_governs(records):
     heaviest = 3.456 + 2.300
-    table = shaker_table(Shaker(), list(records.values()), heaviest).set_index("motion")
+    table = shaker_table(Shaker(), list(records.values()), heaviest)
+    assert table["motion"].tolist() == ["Friuli", "Kobe", "Loma_Prieta", "Northridge"]
     assert set(table["limited_by"]) == {"stroke"}
-    names = ["Friuli", "Kobe", "Loma_Prieta", "Northridge"]
-    assert [f"{value:.2f}" for value in table.loc[names, column]] == printed
+    printed = {
+        "travel_cm_per_g": [19.61, 52.11, 72.30, 25.96],
+        "excursion_cm_per_g": [11.58, 28.12, 53.39, 15.90],
+    }
+    assert table[[*printed]].round(2).to_dict("list") == printed
 
 
 def test_loma_prieta_fits_up_to_the_published_amplitudes(records):
@@ -109,7 +102,6 @@ def test_a_force_that_no_filter_helps_is_refused():
     [
         ({"stroke": 0.0}, "stroke: expected a positive"),
         ({"velocity": -1.0}, "velocity: expected a positive"),
-        ({"lowest_hz": 300.0}, "is empty"),
         ({"start": "left"}, "off-centre or centred"),
         ({"table_mass": -1.0}, "table_mass: expected a number of kg that is not negative"),
         ({"armature_mass": 0.0, "table_mass": 0.0}, "nothing moves"),
@@ -122,10 +114,6 @@ def test_shakers_that_make_no_sense_are_refused(change, message):
         Shaker(**change).moved_mass(payload)
 
 
-def test_the_shaker_of_the_thesis_is_what_the_configuration_holds():
-    assert read_shaker(SHAKER) == Shaker()
-
-
 @pytest.mark.parametrize(
     ("text", "message"),
     [
@@ -134,13 +122,11 @@ def test_the_shaker_of_the_thesis_is_what_the_configuration_holds():
         ("stroke: 0.29", "key stroke: .* without a unit"),
         ("stroke_m: -1", "shaker.yaml: key stroke_m: expected a length above 0 m"),
         ("lowest_hz: 300", "shaker.yaml: shaker: the band from 300 to 200.0 Hz is empty"),
-        (None, "cannot be read"),
     ],
 )
 def test_files_that_describe_no_shaker_are_refused(tmp_path, text, message):
     path = tmp_path / "shaker.yaml"
-    if text:
-        path.write_text(text)
+    path.write_text(text)
     with pytest.raises(InputError, match=message):
         read_shaker(path)
 
@@ -149,3 +135,5 @@ def test_lengths_and_masses_may_be_given_in_any_unit(tmp_path):
     path = tmp_path / "shaker.yaml"
     path.write_text("stroke: 29 cm\ntable_mass_g: 2500")
     assert read_shaker(path) == Shaker(stroke=0.29, table_mass=2.5)
+    # that of the thesis
+    assert read_shaker(SHAKER) == Shaker()

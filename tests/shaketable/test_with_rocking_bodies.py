@@ -1,5 +1,4 @@
 from dataclasses import replace
-from itertools import product
 from pathlib import Path
 
 import numpy as np
@@ -25,38 +24,29 @@ TOWERS = {
     "T2": Block(0.124, 0.496, 2.790),
     "T3": Block(0.124, 0.620, 3.456),
 }
-PEDESTAL = Block(0.184, 0.208, 2.300)
-BLOCKS = {**TOWERS, "P": PEDESTAL}
-SPECIMENS = each_alone(TOWERS)
+BLOCKS = {**TOWERS, "P": Block(0.184, 0.208, 2.300)}
 
 
-def amplitudes(lowest, highest, step):
-    return lowest * (1 + step) ** np.arange(int(np.log(highest / lowest) / np.log(1 + step)) + 1)
-
-
-def ida(motions, values):
+def test_the_full_stroke_censors_loma_prieta_with_t1_and_nothing_else(records):
+    motions, steps = list(records.values()), GeometricSteps(0.2, 0.01)
+    table = shaker_table(Shaker(), motions).set_index("motion")
+    amplitudes = steps.amplitudes(0.7)
     result = overturns(
         list(TOWERS.values()),
         [motion.acceleration for motion in motions],
         [motion.dt for motion in motions],
-        [values * 9.81 / motion.pga for motion in motions],
+        [amplitudes * 9.81 / motion.pga for motion in motions],
     )
-    curves = product(enumerate(TOWERS), enumerate(motions))
-    return pd.concat(
-        ida_table(result.overturned[i, j], values, name, earthquake=motion.name)
-        for (i, name), (j, motion) in curves
-    )
-
-
-def test_the_full_stroke_censors_loma_prieta_with_t1_and_nothing_else(records):
-    motions = list(records.values())
-    table = shaker_table(Shaker(), motions).set_index("motion")
-    limits = {f"{name}_ground": limit for name, limit in table["limit_g"].items()}
+    curves = [
+        ida_table(result.overturned[i, j], amplitudes, name, earthquake=motion.name)
+        for i, name in enumerate(TOWERS)
+        for j, motion in enumerate(motions)
+    ]
     tests = read_ida(
-        ida(motions, amplitudes(0.2, 0.7, 0.01)),
-        Protocol(GeometricSteps(0.2, 0.01)),
+        pd.concat(curves),
+        Protocol(steps),
         definitions=["step_protocol"],
-        limits_g=limits,
+        limits_g={f"{name}_ground": limit for name, limit in table["limit_g"].items()},
     )
     censored = tests[tests["censored"] == "right"]
     assert censored[["object", "motion"]].to_numpy().tolist() == [["T1", "Loma_Prieta_ground"]]
@@ -75,18 +65,18 @@ def wave(frequency, name):
 
 
 def test_a_variant_equal_to_the_reference_gives_the_same_tests(settings):
+    alone, steps = each_alone(TOWERS), GeometricSteps(0.2, 0.05)
     stacks = [configuration_of(f"P&{name}", ("P", name), BLOCKS) for name in TOWERS]
     tests = building_sensitivity(
         building_variants(settings, {"first_period_s": [0.35, 0.9]}),
         [wave(1.5, "one"), wave(3.0, "two")],
-        SPECIMENS[:1] + stacks[:1] + SPECIMENS[1:2] + stacks[1:2],
-        amplitudes(0.2, 1.2, 0.05),
-        Protocol(GeometricSteps(0.2, 0.05), limit_g=1.2),
+        [alone[0], stacks[0], alone[1], stacks[1]],
+        steps.amplitudes(1.2),
+        Protocol(steps, limit_g=1.2),
     )
-    same = tests.drop(columns=["axis", "value", "credible"])
     by_label = {
-        label: table.drop(columns="label").reset_index(drop=True)
-        for label, table in same.groupby("label")
+        label: rows.drop(columns=["axis", "value", "credible", "label"]).reset_index(drop=True)
+        for label, rows in tests.groupby("label")
     }
     pd.testing.assert_frame_equal(by_label["reference"], by_label["first period 0.35 s"])
     assert not by_label["reference"].equals(by_label["first period 0.9 s"])
@@ -97,15 +87,9 @@ def test_a_variant_equal_to_the_reference_gives_the_same_tests(settings):
 
 
 def test_each_axis_changes_what_it_names(settings):
-    variants = building_variants(
-        settings,
-        {
-            "damping_ratio": [0.08],
-            "base_shear": [0.15],
-            "ground_scale": [0.25],
-            "floors": [{"F3": 2, "F5": 4}],
-        },
-    )
+    values = {"damping_ratio": 0.08, "base_shear": 0.15, "ground_scale": 0.25}
+    values["floors"] = {"F3": 2, "F5": 4}
+    variants = building_variants(settings, {name: [value] for name, value in values.items()})
     reference, damped, strong, weak_motion, other_levels = variants
     assert damped.building == replace(reference.building, damping=damped.building.damping)
     assert damped.building.damping.ratio == 0.08

@@ -53,11 +53,8 @@ def test_a_study_of_bodies_in_space_gives_medians_and_a_report(tmp_path, monkeyp
     assert isinstance(study, SpaceStudy)
     folder = run_stages(study, tmp_path)
     medians = stage.pd.read_parquet(folder / "medians.parquet")
-    assert list(zip(medians["base"], medians["planar_impacts"], strict=True)) == [
-        ("square", "momentum"),
-        ("round", "momentum"),
-        ("round", "none"),
-    ]
+    assert list(medians["base"]) == ["square", "round", "round"]
+    assert list(medians["planar_impacts"]) == ["momentum", "momentum", "none"]
     assert (medians["flip_rate"].between(0, 1)).all()
     for name in PLANAR:
         assert (medians[f"{name}_lower"] <= medians[f"{name}_upper"]).all()
@@ -72,16 +69,11 @@ def test_a_study_of_bodies_in_space_gives_medians_and_a_report(tmp_path, monkeyp
     page = (folder / "report.html").read_text(encoding="utf-8")
     assert "Base round: in space" in page
     live = json.loads(page.split('id="live-data">')[1].split("</script>")[0])
-    assert [body["name"] for body in live["bodies"]] == [
-        "square, height over width 4, 1 m",
-        "round, height over width 4, 1 m",
-    ]
-    assert live["motions"]
-    for shown, pair in zip(live["motions"], pairs, strict=False):
-        for text, component in zip(shown["samples"], pair, strict=True):
-            np.testing.assert_array_equal(
-                np.frombuffer(base64.b64decode(text)), component.acceleration
-            )
+    names = [body["name"] for body in live["bodies"]]
+    assert names == [f"{base}, height over width 4, 1 m" for base in ("square", "round")]
+    for text, component in zip(live["motions"][0]["samples"], pairs[0], strict=True):
+        samples = np.frombuffer(base64.b64decode(text))
+        np.testing.assert_array_equal(samples, component.acceleration)
 
 
 def test_bodies_whose_base_differs_from_record_to_record_are_not_shown_live(made_motions):
@@ -103,8 +95,9 @@ def pairs_of_a_catalogue(tmp_path, made_motions):
 
 
 def of_a_catalogue(folder):
-    space = {key: value for key, value in SMALL["space"].items() if key != "every"}
-    return any_study(SMALL | {"space": space | {"catalogue": "mine.csv"}}, folder / "space.yaml")
+    space = SMALL["space"] | {"catalogue": "mine.csv"}
+    del space["every"]
+    return any_study(SMALL | {"space": space}, folder / "space.yaml")
 
 
 def test_the_pairs_of_a_catalogue_shake_bodies_in_space(pairs_of_a_catalogue, made_motions):
@@ -118,20 +111,7 @@ def test_the_pairs_of_a_catalogue_shake_bodies_in_space(pairs_of_a_catalogue, ma
             np.testing.assert_allclose(motion.acceleration, factor * made.acceleration, atol=1e-5)
     folder = run_stages(study, pairs_of_a_catalogue / "results")
     assert "the records of mine.csv" in (folder / "report.html").read_text(encoding="utf-8")
-
-
-def test_a_record_of_one_component_two_sources_of_records_and_no_base_are_told(
-    pairs_of_a_catalogue,
-):
-    catalogue = pairs_of_a_catalogue / "mine.csv"
-    catalogue.write_text(catalogue.read_text() + "c,third,0.txt,,g,,\n")
+    with (pairs_of_a_catalogue / "mine.csv").open("a") as catalogue:
+        catalogue.write("c,third,0.txt,,g,,\n")
     with pytest.raises(InputError, match="motion c has no second component"):
         of_a_catalogue(pairs_of_a_catalogue)
-    for changed, words in (
-        ({"catalogue": "mine.csv"}, "give either every"),
-        ({"bases": ["oval"]}, "bases"),
-    ):
-        with pytest.raises(InputError, match=words):
-            any_study(
-                SMALL | {"space": SMALL["space"] | changed}, catalogue.with_name("space.yaml")
-            )

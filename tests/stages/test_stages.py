@@ -1,5 +1,6 @@
 """Stages: IDA curves, curves by floor, and forces of a sample of tests that each has by itself."""
 
+import itertools
 from dataclasses import replace
 from types import SimpleNamespace
 
@@ -10,10 +11,11 @@ import pytest
 from rockfrag.fragility.empirical import TableIda
 from rockfrag.fragility.ida_curves import with_measures
 from rockfrag.records.motion import Motion
+from rockfrag.shaketable.tests_table import read_measured
 from rockfrag.stages import tests as tests_stage
 from rockfrag.stages.fragility import export_curves, floor_curves
 from rockfrag.stages.ida import as_recorded
-from rockfrag.stages.pedestal import pedestal_tables
+from rockfrag.stages.pedestal import measured_tables, pedestal_tables
 from rockfrag.study.study import Amplitudes
 from rockfrag.system.blocks import Block, Stack
 
@@ -24,32 +26,23 @@ FLOORS = {"hall": 0, "loft": 2}
 MEASURES = ("pga_g", "pgv_cm_s", "sa_0_3s_g", "sa_1_0s_g", "avgsa_g")
 
 
-def ida_of(motion, earthquake, floor, **capacities):
-    """The IDA curve of a statue that reaches each state above a capacity."""
-    amplitude = np.geomspace(0.1, 2.0, 60)
-    about = {"configuration": "statue", "motion": motion, "earthquake": earthquake, "floor": floor}
-    reached = {state: amplitude > capacity for state, capacity in capacities.items()}
-    return pd.DataFrame({"amplitude_g": amplitude} | about | reached)
-
-
 @pytest.fixture
 def curves():
     """Eight motions on two floors; the loft shakes twice as long, so bodies fall at lower peaks."""
     rng = np.random.default_rng(3)
-    rows, measures = [], []
-    for k in range(8):
-        for floor in FLOORS:
-            name = f"m{k}_{floor}"
-            peak = 0.3 * np.exp(0.2 * rng.normal())
-            velocity = 60 * peak * np.exp(0.2 * rng.normal())
-            measures.append((name, peak, velocity, 2 * peak, peak, peak))
-            capacity = (0.6 if floor == "hall" else 0.4) * np.exp(0.2 * rng.normal())
-            rows.append(ida_of(name, f"e{k}", floor, overturned=capacity))
-    ida, measures = pd.concat(rows), pd.DataFrame(measures, columns=["name", *MEASURES])
-    columns = [name for name in measures if name not in ("name", "floor")]
+    amplitude, rows, measures = np.geomspace(0.1, 2.0, 60), [], []
+    for k, floor in itertools.product(range(8), FLOORS):
+        name = f"m{k}_{floor}"
+        peak, velocity, capacity = np.exp(0.2 * rng.normal(size=3)) * [0.3, 60, 0.4]
+        measures.append((name, peak, peak * velocity, 2 * peak, peak, peak))
+        capacity *= 1.5 if floor == "hall" else 1
+        about = {"configuration": "statue", "motion": name, "earthquake": f"e{k}", "floor": floor}
+        swept = {"amplitude_g": amplitude, "overturned": amplitude > capacity}
+        rows.append(pd.DataFrame(swept | about))
+    measures = pd.DataFrame(measures, columns=["name", *MEASURES])
     ida_curves = {
-        ("statue", str(floor)): TableIda(with_measures(part, measures, columns))
-        for floor, part in ida.groupby("floor", sort=False)
+        ("statue", str(floor)): TableIda(with_measures(part, measures, list(MEASURES)))
+        for floor, part in pd.concat(rows).groupby("floor", sort=False)
     }
     study = SimpleNamespace(
         floors=FLOORS,
@@ -60,24 +53,20 @@ def curves():
     return floor_curves({"overturns": ida_curves}, measures, study, "abc")[0]
 
 
-def test_floors_never_share_a_curve_and_measures_are_named_after_them(curves):
+def test_floors_never_share_a_curve_and_measures_are_named_after_them(curves, tmp_path):
     names = curves.groupby("floor")["im"].unique()
     assert set(names["hall"]) == {"PGA", "PGV", "SA(0.3s)", "SA(1s)", "AvgSA"}
     assert set(names["loft"]) == {"PFA", "PFV"}
-    fallen = curves[curves.state == "overturns"].set_index(["floor", "measure"])
-    assert (fallen.n_motions == 8).all()
-    assert fallen.loc[("hall", "pga_g"), "theta"] == pytest.approx(0.6, rel=0.2)
-    assert fallen.loc[("loft", "pga_g"), "theta"] == pytest.approx(0.4, rel=0.2)
-
-
-def test_rocking_starts_at_b_over_h_and_varies_in_other_measures(curves):
-    rocks = curves[(curves.state == "rocks") & (curves.floor == "hall")].set_index("measure")
+    assert (curves.loc[curves.state == "overturns", "n_motions"] == 8).all()
+    found = curves.set_index(["state", "floor", "measure"]).sort_index()
+    fallen, rocks = found.loc["overturns", "theta"], found.loc[("rocks", "hall")]
+    assert fallen["hall", "pga_g"] == pytest.approx(0.6, rel=0.2)
+    assert fallen["loft", "pga_g"] == pytest.approx(0.4, rel=0.2)
+    # rocking starts at b/h, and varies in other measures
     assert rocks.loc["pga_g", "theta"] == pytest.approx(0.2 / 0.8)
     assert rocks.loc["pgv_cm_s", "theta"] == pytest.approx(60 * 0.25, rel=0.2)
     assert 0.05 < rocks.loc["pgv_cm_s", "beta"] < 0.5
-
-
-def test_files_are_one_per_floor_and_measure(curves, tmp_path):
+    # files are one per floor and measure
     written = export_curves(curves, tmp_path)
     assert {"fragility_pga.xml", "fragility_avgsa.xml", "fragility_pfa_loft.csv"} <= set(written)
     assert not [name for name in written if name.endswith(".xml") and "loft" in name]
@@ -95,10 +84,7 @@ def test_of_many_tests_some_evenly_among_them_are_looked_at(monkeypatch, noise):
 
 
 def test_amplitudes_grow_by_the_step_up_to_the_highest():
-    values = Amplitudes(0.5, 2.0, 100).values_g
-    assert values == pytest.approx([0.5, 1.0, 2.0])
-    values = Amplitudes(0.2, 1.0, 10).values_g
-    assert values[1:] / values[:-1] == pytest.approx(1.1)
+    assert Amplitudes(0.5, 2.0, 100).values_g == pytest.approx([0.5, 1.0, 2.0])
 
 
 def test_a_statue_that_its_pedestal_carries_along_rocks_and_does_not_stay():
@@ -138,3 +124,36 @@ def test_a_reading_without_any_pair_leaves_the_numbers_of_the_others_numbers():
     other = other.assign(censored="right", upper_g=np.inf)
     found = pedestal_tables(pd.concat([known, other]), seed=1, slenderness={"T1": 3.0})
     assert found["effects"]["lower"].dtype == float
+
+
+def measured(folder, rows):
+    """What the statistics of a laboratory's table say, set beside itself."""
+    header = "test,object,pedestal,earthquake,floor,lower_g,upper_g,censored,overturned_body,repetition,remark"
+    (folder / "synthetic.csv").write_text("\n".join([header, *rows]) + "\n")
+    tests = read_measured(folder / "synthetic.csv")
+    slenderness = {"T1": 3.0, "T2": 4.0, "T3": 5.0}
+    level = SimpleNamespace(confidence=0.9)
+    study = SimpleNamespace(slenderness=slenderness, seed=1, fragility=level)
+    return measured_tables(tests, tests, study)
+
+
+def test_measured_tests_say_what_they_can_carry(tmp_path):
+    found = measured(tmp_path, [])
+    assert found["measured/notes"]["note"].iloc[0].endswith("has no rows yet.")
+    # one test is set beside the simulation and carries no statistics
+    found = measured(tmp_path, ["s,T1,NP,A,GF,0.5,0.55,none,statue,1,synthetic"])
+    assert found["measured/beside"]["ratio"].tolist() == [1.0]
+    assert len(found["measured/notes"]) == 1
+    # a full table has curves and an effect
+    rng, rows = np.random.default_rng(2), []
+    levels = {"T1": 0.5, "T2": 0.4, "T3": 0.3}
+    for name, *where in itertools.product(levels, "ABCD", ("GF", "F3", "F5"), ("P", "NP")):
+        earthquake, floor, side = where
+        a = levels[name] * np.exp(0.1 * rng.normal())
+        about = f"synthetic {len(rows)},{name},{side},{earthquake},{floor}"
+        rows.append(f"{about},{a:.4f},{1.05 * a:.4f},none,statue,1,")
+    found = measured(tmp_path, rows)
+    whole = found["measured/effects"].query("scope == 'whole'")["ratio"].iloc[0]
+    assert 0.9 < whole < 1.1
+    curves = found["measured/fragility"].set_index("configuration")["theta"]
+    assert curves["T1"] > curves["T2"] > curves["T3"]

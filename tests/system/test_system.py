@@ -7,11 +7,10 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from rockfrag.errors import InputError
-from rockfrag.system.blocks import Block, Column, Stack, as_system
+from rockfrag.system.blocks import Block, Column, Stack
 from rockfrag.system.body import Circle, Interval, Polygon, RigidBody
-from rockfrag.system.contact import Contact, Friction, checked_friction
-from rockfrag.system.system import Start, System, each_contact, stands, uplift_ratios
+from rockfrag.system.contact import Friction, checked_friction
+from rockfrag.system.system import each_contact, uplift_ratios
 
 from ..oracle.standing import upper_on_contact
 
@@ -29,88 +28,34 @@ def test_a_system_has_the_same_bits_as_the_blocks_that_wrote_it(width, height, a
     assert stack.system().carried == (stack.lower.shape, stack.pile.upper)
 
 
-def test_a_statue_that_reaches_beyond_its_pedestal_rocks_on_the_overlap():
+def test_a_statue_that_reaches_beyond_its_pedestal_rocks_on_the_overlap_in_a_column_too():
     stack = Stack(Block(0.4, 0.3, 150.0), Block(0.5, 1.2, 100.0), offset=0.01)
-    assert stack.system().carried[1] == upper_on_contact(stack).shape
     three = Column((stack.lower, stack.upper, Block(0.2, 0.4, 10.0)), (0.01, 0.0))
     lower, upper = three.system().carried[1], upper_on_contact(stack).shape
     assert lower.b == pytest.approx(upper.b, rel=1e-15)
     assert lower.x == pytest.approx(upper.x, rel=1e-12)
 
 
-def test_a_uniform_box_in_space_is_the_planar_block_in_its_plane():
+def test_boxes_and_cylinders_in_space_are_seen_as_planar_blocks():
     box = Block(0.3, 1.0, 50.0, depth=0.2)
     assert box.system().in_plane().shapes == (Block(0.3, 1.0, 50.0).shape,)
     assert box.body.seen_along(90.0).base == pytest.approx(Interval(-0.1, 0.1))
     assert box.body.seen_along(90.0).inertia == pytest.approx(50 * (0.2**2 + 1.0) / 12)
-
-
-def test_a_round_block_is_a_cylinder_and_the_same_from_all_sides():
-    round_ = Block(0.4, 1.0, 50.0, round=True)
-    body = round_.body
-    assert body.base == Circle(0.2)
-    assert np.diag(body.tensor) == pytest.approx([50 * (0.12 + 1) / 12] * 2 + [50 * 0.04 / 2])
-    for angle in (0.0, 30.0, 217.0):
-        assert body.seen_along(angle).inertia == pytest.approx(round_.centroidal_inertia, rel=1e-14)
+    drum = Block(0.4, 1.0, 50.0, round=True)
+    assert drum.body.base == Circle(0.2)
+    assert np.diag(drum.body.tensor) == pytest.approx([50 * 1.12 / 12] * 2 + [50 * 0.04 / 2])
+    assert drum.body.seen_along(217.0).inertia == pytest.approx(drum.centroidal_inertia, rel=1e-14)
 
 
 def test_a_body_turned_by_some_angle_is_seen_as_its_tensor_says():
     tensor = ((2.0, 0.3, 0.1), (0.3, 1.5, -0.2), (0.1, -0.2, 1.0))
-    body = RigidBody(
-        10.0,
-        tensor,
-        (0.01, 0.02, 0.5),
-        Polygon(((-0.9, -0.4), (0.6, -0.7), (0.8, 0.3), (-0.2, 0.9))),
-        1.0,
-    )
-    angle = math.radians(37.0)
+    base = Polygon(((-0.9, -0.4), (0.6, -0.7), (0.8, 0.3), (-0.2, 0.9)))
+    body, angle = RigidBody(10.0, tensor, (0.01, 0.02, 0.5), base, 1.0), math.radians(37.0)
     axis = np.array([-math.sin(angle), math.cos(angle), 0.0])
-    seen = body.seen_along(37.0)
+    seen, back = body.seen_along(37.0), body.seen_along(217.0).base
     assert seen.inertia == pytest.approx(axis @ np.array(tensor) @ axis)
     assert seen.centre[0] == pytest.approx(0.01 * math.cos(angle) + 0.02 * math.sin(angle))
-    back = body.seen_along(217.0).base
-    assert isinstance(back, Interval)
-    assert isinstance(seen.base, Interval)
     assert (back.left, back.right) == pytest.approx((-seen.base.right, -seen.base.left))
-
-
-def test_a_column_falls_apart_where_a_part_of_it_has_no_support():
-    low, high = Block(0.4, 0.3, 50.0), Block(0.2, 0.3, 10.0)
-    assert stands(Column((low, high, high), (0.05, 0.05)).system())
-    # each block stands on the one below, and the upper two together do not
-    with pytest.raises(InputError, match="beside it"):
-        Column((low, high, high, high), (0.15, 0.09, 0.09))
-
-
-@pytest.mark.parametrize(
-    ("make", "words"),
-    [
-        (lambda: Block(0.3, 1.0, 50.0, depth=0.2, round=True), "leave depth out"),
-        (lambda: Block(0.3, 1.0, 50.0, depth=0.2, inertia=3.0), "tensor"),
-        (lambda: Block(0.3, 1.0, 50.0, round=1), "True or False"),
-        (lambda: Column(()), "1 to 12"),
-        (lambda: Column((Block(0.3, 1.0, 50.0),) * 13), "1 to 12"),
-        (lambda: Column((Block(0.3, 1.0, 50.0),), (0.1,)), "0 offset"),
-        (lambda: System((), ()), "1 to 12"),
-        (lambda: RigidBody(1.0, ((1, 0, 0), (0, 1, 0), (0, 0, 3)), (0, 0, 1), Circle(1.0), 2.0), "no body"),
-        (lambda: RigidBody(1.0, 1.0, (0, 0, 1), Circle(1.0), 2.0), "planar body"),
-        (lambda: as_system("block"), "expected a Block"),
-    ],
-)  # fmt: skip
-def test_what_is_no_system_is_refused_in_one_sentence(make, words):
-    with pytest.raises(InputError, match=words):
-        make()
-
-
-def test_bodies_of_a_system_need_a_face_below_them_and_a_start_for_each():
-    body = Block(0.3, 1.0, 50.0).body
-    bare = RigidBody(body.mass, body.inertia, body.centre, body.base, body.height)
-    with pytest.raises(InputError, match="no face"):
-        System((bare, body), (Contact(), Contact()))
-    with pytest.raises(InputError, match="at the start"):
-        System((body, body), (Contact(), Contact()), Start((0.1,), (0.0,)))
-    with pytest.raises(InputError, match="cannot stand on each other"):
-        System((body, Block(0.3, 1.0, 50.0, depth=0.3).body), (Contact(), Contact()))
 
 
 def test_contacts_are_named_so_that_no_pair_can_be_misread():
@@ -118,29 +63,18 @@ def test_contacts_are_named_so_that_no_pair_can_be_misread():
     assert each_contact("friction", {"ground": 0.6, "interface": 0.2}, 2) == (0.6, 0.2)
     assert each_contact("friction", {"ground": 0.6}, 3) == (0.6, None, None)
     assert each_contact("friction", {"interface": [0.3, 0.2]}, 3) == (None, 0.3, 0.2)
-    with pytest.raises(InputError, match="no contact"):
-        each_contact("friction", {"interface": 0.2}, 1)
-    with pytest.raises(InputError, match="no contact"):
-        each_contact("friction", {"floor": 0.2}, 2)
-
-
-def test_friction_of_a_contact():
-    assert checked_friction("friction", (0.6, 0.3)) == Friction(0.6, 0.3)
     assert checked_friction("friction", math.inf) == Friction(1e6, 1e6)
     # a number in an array without axes is a number
     assert checked_friction("friction", np.array(0.4)) == Friction(0.4, 0.4)
-    with pytest.raises(InputError, match="less than the kinetic"):
-        checked_friction("friction", (0.2, 0.3))
 
 
 def test_each_contact_opens_at_the_least_width_over_height_of_what_stands_on_it():
     upper = Block(0.2, 0.8, 50.0)
     assert uplift_ratios(upper.system()) == pytest.approx((0.25,))
-    assert uplift_ratios(Stack(Block(0.4, 0.4, 60.0), upper).system())[1] == pytest.approx(0.25)
     # a slender pedestal goes before its statue, at the b/h of the two together
     slender = Stack(Block(0.2, 1.2, 60.0), upper)
     both = slender.rigidly_joined()
-    assert min(uplift_ratios(slender.system())) == pytest.approx(both.b / both.h)
+    assert uplift_ratios(slender.system()) == pytest.approx((both.b / both.h, 0.25))
     assert both.b / both.h < 0.25
 
 
@@ -148,7 +82,5 @@ def test_a_column_opens_as_the_blocks_that_it_is_made_of_do():
     blocks = (Block(0.5, 0.3, 90.0, lean=0.01), Block(0.35, 0.7, 60.0, cg_offset=0.02))
     of_two = uplift_ratios(Stack(*blocks, offset=0.03).system())
     # a light slip of a third block changes what stands on each contact by its mass alone
-    third = Block(0.3, 1e-6, 1e-9)
-    assert uplift_ratios(Column((*blocks, third), (0.03, 0.0)).system())[:2] == pytest.approx(
-        of_two
-    )
+    column = Column((*blocks, Block(0.3, 1e-6, 1e-9)), (0.03, 0.0))
+    assert uplift_ratios(column.system())[:2] == pytest.approx(of_two)

@@ -40,10 +40,10 @@ def write_study(folder: Path, content: dict) -> Path:
     return path
 
 
-def write_record(path: Path, seed: int) -> None:
+def write_record(path: Path, seed: int, samples: int = 800, dt: float = 0.01) -> None:
     """Two columns, seconds and g: a seeded burst of band-limited noise."""
     rng = np.random.default_rng(seed)
-    time = np.arange(800) * 0.01
+    time = np.arange(samples) * dt
     envelope = np.exp(-(((time - 2.5) / 1.2) ** 2))
     phases = rng.uniform(0, 2 * np.pi, 30)
     frequencies = rng.uniform(0.5, 5.0, 30)

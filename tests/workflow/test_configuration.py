@@ -1,119 +1,76 @@
-"""A study that cannot run is refused before anything runs, in one sentence with file and key."""
+"""What can be known before the first job is said before it, in one short sentence with file and key."""
 
-import copy
+import hashlib
+import re
 import shutil
+import sys
 from pathlib import Path
+from typing import Any
 from xml.etree import ElementTree
 
 import numpy as np
 import pandas as pd
 import pytest
-import yaml
 
 from rockfrag.building.floors import vertical_motions
 from rockfrag.building.settings import make_building
 from rockfrag.cli import main
 from rockfrag.errors import InputError
+from rockfrag.files import check_name
+from rockfrag.fragility.ida_curves import scale_power
 from rockfrag.motions.directions import motions_of_row
+from rockfrag.motions.measures import measure_motion
 from rockfrag.records.catalogue import read_catalogue
 from rockfrag.records.motion import Motion
-from rockfrag.rocking import overturns
+from rockfrag.schema import registered
+from rockfrag.study.configurations import read_specimens
 from rockfrag.study.loading import any_study, load_any
 from rockfrag.system.contact import BY_MOMENTUM, ImpactLaw
 from rockfrag.yaml_file import read_yaml
 
-from .conftest import CATALOGUE, CONFIG, SPECIMENS, study_content, write_record, write_study
-from .running import ROOT, finished, snakemake
+from ..case_tables import case_tables
+from .conftest import (
+    CATALOGUE,
+    CONFIG,
+    study_content,
+    write_example,
+    write_record,
+    write_study,
+    write_synthetic,
+)
+from .running import ROOT, SNAKEFILE, called, finished, snakemake
+
+CASES = case_tables(__file__)
 
 
-def refused(folder: Path, content: dict, words: list[str]) -> None:
-    """See that a study is refused with some words, behind its folder."""
-    path = write_study(folder, content)
-    with pytest.raises(InputError) as caught:
-        load_any(path)
-    message = str(caught.value)
-    assert message.startswith(str(folder))
-    assert [word for word in words if word not in message] == []
+def said(capsys: pytest.CaptureFixture[str], path: Path) -> str:
+    """What check-config says of a wrong configuration."""
+    assert main(["check-config", str(path)]) == 2
+    shown = capsys.readouterr()
+    assert shown.out == ""
+    assert shown.err.count("\n") == 1
+    assert len(shown.err) <= 501
+    assert "Traceback" not in shown.err
+    return shown.err
+
+
+def changed(content: dict[str, Any], changes: dict[str, Any]) -> dict[str, Any]:
+    """A configuration in which keys, the parts of each behind dots, have other values or are gone."""
+    for path, value in changes.items():
+        *parts, key = path.split(".")
+        inner = content
+        for part in parts:
+            inner = inner[part]
+        if value == "gone":
+            del inner[key]
+        else:
+            inner[key] = value
+    return content
 
 
 def test_the_studies_of_the_project_are_right():
     for name in ("thesis", "smoke", "wide"):
         assert load_any(CONFIG / f"{name}.yaml").name == name
-
-
-@pytest.mark.parametrize(
-    ("change", "words"),
-    [
-        (lambda c: c["amplitudes"].update(hihgest_g=2), ["amplitudes.hihgest_g", "highest_g"]),
-        (lambda c: c["amplitudes"].pop("lowest_g"), ["amplitudes.lowest_g", "missing", "of g"]),
-        (lambda c: c["amplitudes"].update(lowest_g=-0.1), ["amplitudes.lowest_g", "-0.1"]),
-        (lambda c: c["amplitudes"].update(lowest_g="0.1 m/s2"), ["amplitudes.lowest_g", "of g"]),
-        (lambda c: c["amplitudes"].update(lowest_g=3), ["amplitudes.highest_g", "more than"]),
-        (lambda c: c["amplitudes"].update(highest_g=float("nan")), ["amplitudes.highest_g"]),
-        (lambda c: c["amplitudes"].update(highest_g=float("inf")), ["amplitudes.highest_g"]),
-        (lambda c: c["protocol"].update(step_percent=0), ["protocol.step_percent", "percent"]),
-        (lambda c: c["bodies"].update(use=["T9"]), ["bodies.use[0]", "P&T1", "T9"]),
-        (lambda c: c["motions"].update(use=["Nowhere"]), ["motions.use[0]", "motion 0"]),
-        (lambda c: c["motions"].update(catalogue="no.csv"), ["motions.catalogue", "no.csv"]),
-        (lambda c: c["motions"].update(processing=[{"step": "smooth"}]), ["smooth", "highpass"]),
-        (lambda c: c["motions"].update(processing=[{"step": "highpass"}]), ["corner_hz"]),
-        (lambda c: c.update(building="no.yaml"), ["building", "no.yaml"]),
-        (lambda c: c.update(compare_with="nobody"), ["compare_with", "thesis", "nobody"]),
-        (lambda c: c.update(study="../elsewhere"), ["study", "lower-case"]),
-        (lambda c: c.update(seed=1.5), ["seed", "whole number"]),
-        (lambda c: c.update(seed=True), ["seed", "whole number"]),
-        (lambda c: c.update(seed=10**300), ["seed", "expected a number of at most"]),
-        (lambda c: c.pop("seed"), ["seed", "missing"]),
-        (lambda c: c.update(study="tiny\n"), ["key study"]),
-        (lambda c: c.update(title="two\nlines"), ["key title: expected one line"]),
-        (lambda c: c["fragility"].update(measures=["PGA"]), ["measures[0]: expected one"]),
-        (lambda c: c["fragility"].update(measures=["d5_95_s"]), ["found d5_95_s"]),
-        (
-            lambda c: c["fragility"].update(measures=["pga_g", ["pga_g"]]),
-            ["a pair of intensity measures"],
-        ),
-        (lambda c: c.update(fragility=None), ["fragility", "mapping"]),
-    ],
-)
-def test_a_wrong_key_or_value_is_named_with_what_was_expected(study_folder, change, words):
-    content = copy.deepcopy(study_content())
-    change(content)
-    refused(study_folder, content, words)
-
-
-@pytest.mark.parametrize(
-    ("table", "words"),
-    [
-        (
-            SPECIMENS.replace("12.4,37.2", "-12.4,37.2"),
-            ["line 2", "width_cm", "more than 0", "-12.4"],
-        ),
-        (SPECIMENS.replace("width_cm", "width_inch"), ["width_inch", "width_m"]),
-        (SPECIMENS.replace("2172", "2 cm"), ["line 2", "mass_g", "2 cm"]),
-        (SPECIMENS.replace("2172", "2"), ["line 2", "density", "less than any solid"]),
-        (SPECIMENS.replace("width_cm", "width_m"), ["line 2", "kg/m³", "less than any solid"]),
-        (SPECIMENS.replace("height_cm", "width_m"), ["twice"]),
-        (SPECIMENS.replace("12.4,37.2", "12 kg,37.2"), ["line 2", "expected a length"]),
-        (SPECIMENS.replace("mass_g", "mass"), ["line 2", "column mass", "without a unit"]),
-        (SPECIMENS.replace("2172", "nan"), ["line 2", "mass_g"]),
-        (SPECIMENS.replace("2172", "1e400"), ["line 2", "mass_g"]),
-        (SPECIMENS.replace("T2,", "T1,"), ["line 3", "T1", "twice"]),
-        (SPECIMENS.replace("2172", "2172,7"), ["line 2", "4 cells"]),
-        ("", ["header"]),
-        (
-            SPECIMENS.replace("P,18.4,20.8", "P,4,2").replace("2300", "50"),
-            ["configurations.csv, line 4", "ground"],
-        ),
-    ],
-)
-def test_a_wrong_cell_is_named_with_line_and_column(study_folder, table, words):
-    (study_folder / "specimens.csv").write_text(table)
-    refused(study_folder, study_content(), words)
-
-
-def test_an_unknown_block_in_a_configuration_is_named(study_folder: Path):
-    (study_folder / "configurations.csv").write_text("name,object,pedestal\nX,T7,\n")
-    refused(study_folder, study_content(), ["line 2, column object", "T7"])
 
 
 SENSITIVITY_ANALYSIS = {
@@ -132,63 +89,273 @@ SENSITIVITY_ANALYSIS = {
     "replicates": 1,
 }
 
-SYNTHETIC_TESTS = (
-    "test,object,pedestal,earthquake,floor,lower_g,upper_g,censored,overturned_body,repetition,remark\nsynthetic "
-    "1,T1,NP,First,GF,0.5,0.55,none,statue,1,synthetic\nsynthetic "
-    "2,T1,P,First,GF,0.45,0.5,none,statue,1,synthetic\nsynthetic "
-    "3,T1,NP,Second,GF,0.6,0.65,none,statue,1,synthetic\nsynthetic 4,T1,P,Second,GF,0.65,,right,,1,synthetic\n"
-)
+SYNTHETIC_TESTS = """\
+test,object,pedestal,earthquake,floor,lower_g,upper_g,censored,overturned_body,repetition,remark
+synthetic 1,T1,NP,First,GF,0.5,0.55,none,statue,1,synthetic
+synthetic 2,T1,P,First,GF,0.45,0.5,none,statue,1,synthetic
+synthetic 3,T1,NP,Second,GF,0.6,0.65,none,statue,1,synthetic
+synthetic 4,T1,P,Second,GF,0.65,,right,,1,synthetic
+"""
 
 
-def full_study(folder: Path) -> Path:
+def full_study(folder: Path) -> None:
     """Write a study with every optional part, each as small as it can be."""
     for name in ("building.yaml", "experiment/shaker.yaml"):
-        shutil.copy(ROOT / "config" / name, folder / Path(name).name)
+        shutil.copy(CONFIG / name, folder / Path(name).name)
     (folder / "tests.csv").write_text(SYNTHETIC_TESTS)
-    content = study_content()
-    content["motions"]["use"] = ["motion 0", "motion 2", "motion 4"]
-    content["amplitudes"]["step_percent"] = 15
-    return write_study(
-        folder,
-        {
-            **content,
-            "building": "building.yaml",
-            "compare_with": "thesis",
-            "shaker": "shaker.yaml",
-            "measured_tests": "tests.csv",
-            "building_sensitivity": {"first_period_s": [0.5], "floors": [{"F3": 3, "F5": 6}]},
-            "sensitivity_analysis": SENSITIVITY_ANALYSIS,
-        },
+    changes = {
+        "motions.use": ["motion 0", "motion 2", "motion 4"],
+        "amplitudes.step_percent": 15,
+        "building": "building.yaml",
+        "compare_with": "thesis",
+        "shaker": "shaker.yaml",
+        "measured_tests": "tests.csv",
+        "building_sensitivity": {"first_period_s": [0.5], "floors": [{"F3": 3, "F5": 6}]},
+        "sensitivity_analysis": SENSITIVITY_ANALYSIS,
+    }
+    write_study(folder, changed(study_content(), changes))
+
+
+@pytest.mark.parametrize(("name", "changes", "words"), CASES["keys"])
+def test_a_wrong_key_or_value_is_named_with_what_was_expected(study_folder, name, changes, words):
+    source = CONFIG / f"{name}.yaml"
+    if not source.exists():
+        source = study_folder / "study.yaml"
+    if name == "full":
+        full_study(study_folder)
+    elif name == "measured":
+        write_example(study_folder, write_synthetic(study_folder).name)
+    with pytest.raises(InputError) as caught:
+        any_study(changed(read_yaml(source), changes), source)
+    message = str(caught.value)
+    assert message.startswith(str(source.parent))
+    assert [word for word in words if word not in message] == []
+
+
+@pytest.mark.parametrize(("table", "cell", "wrong", "words"), CASES["cells"])
+def test_a_wrong_cell_is_named_with_line_and_column(
+    study_folder, capsys, table, cell, wrong, words
+):
+    (study_folder / "record{3}.txt").write_text("")
+    path = study_folder / f"{table}.csv"
+    path.write_text(path.read_text().replace(cell, wrong))
+    message = said(capsys, study_folder / "study.yaml")
+    assert [word for word in words if word not in message] == []
+
+
+ALIAS_BOMB = ["a0: &a0 [x, x, x, x, x, x, x, x, x]"]
+ALIAS_BOMB += [f"a{i}: &a{i} [" + ", ".join([f"*a{i - 1}"] * 9) + "]" for i in range(1, 12)]
+NO_TEXTS = [
+    ("study: " + "[" * 2000 + "]" * 2000 + "\n", "nested too deeply"),
+    ("? " + "x" * 5000 + "\n: 1\n", "is not known"),
+    ("study: " + "x" * 5000 + "\n", "key"),
+    ("study: [" + "1," * 30_000 + "1]\n", "more than 20000"),
+    ("# " + "x" * 300_000, "larger than 256 KiB"),
+    ("\n".join(ALIAS_BOMB), "alias"),
+    (b"PK\x03\x04\x14\x00", "spreadsheet or archive"),
+    (b"study: \xff\xfe\n", "is not UTF-8"),
+]
+
+
+@pytest.mark.parametrize(("content", "words"), [*CASES["texts"], *NO_TEXTS])
+def test_what_is_no_mapping_of_plain_data_is_refused(tmp_path, capsys, content, words):
+    path = tmp_path / "study.yaml"
+    path.write_bytes(content if isinstance(content, bytes) else content.encode())
+    assert words in said(capsys, path)
+
+
+def test_folders_devices_and_buildings_that_are_no_text_are_refused(study_folder, capsys):
+    assert "folder or a device" in said(capsys, study_folder)
+    assert "folder or a device" in said(capsys, Path("/dev/zero"))
+    (study_folder / "other.yaml").write_bytes(b"name: \xff\xfe\n")
+    path = write_study(study_folder, study_content() | {"building": "other.yaml"})
+    assert "other.yaml: is not UTF-8" in said(capsys, path)
+
+
+@pytest.mark.parametrize("name", ["", ".", "..", "---", "a\nb", "x" * 300, "\x00"])
+def test_names_that_cannot_be_files_are_refused(name: str):
+    with pytest.raises(InputError, match="expected a name"):
+        check_name(name)
+
+
+def test_motions_stay_apart_on_every_floor(study_folder: Path, capsys: pytest.CaptureFixture[str]):
+    table = study_folder / "motions.csv"
+    text = table.read_text().replace("motion 0", "A").replace("motion 1", "A_1")
+    table.write_text(text)
+    (study_folder / "building.yaml").write_text(
+        "storey_heights_m: [3, 3]\nmasses_kg: [1000, 1000]\nfirst_period_s: 0.2\nfloors: {g: 0, 1_2: 1, 2: 2}\n"
     )
+    path = write_study(study_folder, {**study_content(), "building": "building.yaml"})
+    assert "A_1 and A become one" in said(capsys, path)
 
 
-@pytest.mark.parametrize(
-    ("change", "words"),
-    [
-        ({"shaker": "no.yaml"}, ["key shaker", "no.yaml"]),
-        ({"measured_tests": "no.csv"}, ["key measured_tests", "no.csv"]),
-        ({"building_sensitivity": {"periods": [1]}}, ["building_sensitivity.periods"]),
-        ({"building_sensitivity": {"floors": [{"F5": 9}]}}, ["floors[0].F5", "up to 6", "9"]),
-        ({"building_sensitivity": {"floors": [{"attic": 6}]}}, ["floors[0].attic", "GF, F3, F5"]),
-        (
-            {"sensitivity_analysis": {**SENSITIVITY_ANALYSIS, "replicates": 0}},
-            ["sensitivity_analysis.replicates"],
-        ),
-        (
-            {"sensitivity_analysis": {**SENSITIVITY_ANALYSIS, "friction": {"ground": [0.4]}}},
-            ["sensitivity_analysis.friction", "interface"],
-        ),
-        ({"building": None}, ["building"]),
-        (
-            {"bodies": {**study_content()["bodies"], "use": ["T1", "T2"]}},
-            ["key sensitivity_analysis", "with and without"],
-        ),
-    ],
+def test_fetched_files_stay_in_the_folder(tmp_path: Path, capsys: pytest.CaptureFixture[str]):
+    content = read_yaml(CONFIG / "granite.yaml")
+    digest = hashlib.sha256(b"").hexdigest()
+    for name in ("/tmp/x.csv", "../../../../x.csv"):
+        content["fetch"] = [{"url": "https://example.org/x", "sha256": digest, "file": name}]
+        assert "outside of this folder" in said(capsys, write_study(tmp_path, content))
+
+
+def test_a_study_does_not_overwrite_the_results_of_another(study_folder, capsys, monkeypatch):
+    monkeypatch.chdir(study_folder)
+    other = study_folder / "other.yaml"
+    other.write_text((study_folder / "study.yaml").read_text())
+    owner = study_folder / "results" / "tiny" / "configuration.txt"
+    owner.parent.mkdir(parents=True)
+    owner.write_text("study.yaml\n")
+    assert "holds the results of study.yaml" in said(capsys, other)
+    assert main(["check-config", "study.yaml"]) == 0
+
+
+def test_a_record_that_cannot_be_read_is_named_by_command_and_workflow(study_folder, capsys):
+    (study_folder / "record3.txt").rename(study_folder / "away.txt")
+    assert "record3.txt" in said(capsys, study_folder / "study.yaml")
+    (study_folder / "record3.txt").write_text("no record at all\n")
+    assert "motion 3" in said(capsys, study_folder / "study.yaml")
+    done = snakemake(study_folder, "--cores", "1", "--logger", "rockfrag")
+    assert done.returncode != 0
+    assert "motion 3" in done.stderr
+    assert "Traceback" not in done.stderr
+    assert not (study_folder / "results").exists()
+
+
+def test_a_failed_job_is_one_sentence_and_the_path_of_its_log(study_folder, monkeypatch):
+    # a machine whose numba cannot be imported, which no check of the study can see
+    (study_folder / "sitecustomize.py").write_text("import sys\nsys.modules['numba'] = None\n")
+    monkeypatch.setenv("PYTHONPATH", str(study_folder))
+    how = ("--cores", "1", "--logger", "rockfrag", "--workflow-profile", "none")
+    done = snakemake(study_folder, *how)
+    assert done.returncode != 0
+    assert "Traceback" not in done.stderr
+    *before, last_line = done.stderr.splitlines()
+    last = re.fullmatch(r"(\w+) failed: .*numba.* \(log: (.*)\)", last_line)
+    assert last is not None, done.stderr
+    assert last[2] == f"results/tiny/logs/{last[1]}.log"
+    assert "Traceback" in (study_folder / last[2]).read_text()
+    assert all(line.startswith("[") for line in before)
+
+
+def test_rules_parse_where_the_package_is_not_installed(study_folder: Path):
+    program = (
+        "import importlib.util as util, sys\nfind = util.find_spec\nutil.find_spec = lambda name, *rest: None "
+        "if name == 'rockfrag' else find(name, *rest)\nfrom snakemake.cli import main\nmain()\n"
+    )
+    study = ("--directory", str(study_folder), "--configfile", str(study_folder / "study.yaml"))
+    command = (sys.executable, "-c", program, "--snakefile", SNAKEFILE, "--dry-run")
+    done = finished(called(ROOT, *command, *study))
+    assert "results/tiny/report.html" in done.stdout + done.stderr
+    assert "rule study" in done.stdout + done.stderr
+
+
+def test_values_are_those_of_yaml_1_2(tmp_path: Path):
+    path = tmp_path / "study.yaml"
+    path.write_text("a: 1e-3\nb: no\nc: 12:30\nd: 0x10\ne: -2.\nf: ~\ng: true\nh: 010\ni: 1_000\n")
+    assert read_yaml(path) == {
+        **{"a": 0.001, "b": "no", "c": "12:30", "d": "0x10", "e": -2.0, "f": None},
+        **{"g": True, "h": 10, "i": "1_000"},
+    }
+    path.write_text("floors: {1: 1, 2.5: 2}\nname: 1976-05-06\n")
+    assert read_yaml(path) == {"floors": {"1": 1, "2.5": 2}, "name": "1976-05-06"}
+    path.write_bytes("name: Köln\n".encode("utf-16"))
+    assert read_yaml(path) == {"name": "Köln"}
+
+
+SAME_BLOCK = (
+    "name,width_cm,height_cm,mass_g\nA,35,120,180000\n",
+    "name;width;height;mass\nA;35 cm;1200 mm;0.18 t\n",
+    "name\twidth_mm\theight_m\tmass\nA\t350\t1.2\t180 kg\n",
 )
-def test_a_wrong_optional_part_is_named(study_folder: Path, change: dict, words: list[str]):
-    path = full_study(study_folder)
-    content = {**yaml.safe_load(path.read_text()), **change}
-    refused(study_folder, {k: v for k, v in content.items() if v is not None}, words)
+
+
+def test_blocks_are_the_same_in_whatever_unit_and_separator(tmp_path: Path):
+    for table in SAME_BLOCK:
+        (tmp_path / "bodies.csv").write_text(table)
+        block = read_specimens(tmp_path / "bodies.csv")["A"]
+        assert (block.width, block.height, block.mass) == (0.35, 1.2, 180.0)
+
+
+def test_every_measure_that_a_study_may_ask_for_is_measured_and_grows_with_the_amplitude():
+    wave = Motion([0.0, 1.0, -1.0, 0.5] * 200, 0.01, "wave")
+    pair, single = registered("intensity measure"), registered("growing intensity measure")
+    assert list(measure_motion(wave))[3:] == list(pair)
+    assert set(single) < set(pair)
+    assert all(scale_power(name) > 0 for name in single)
+    assert all(scale_power(name) == 0 for name in set(pair) - set(single))
+
+
+def test_what_a_study_leaves_out_is_the_plain_case(study_folder: Path):
+    content = study_content() | {"building": None}
+    content["bodies"] = {"specimens": "specimens.csv", "use": ["T1", "T2"]}
+    study = load_any(write_study(study_folder, content))
+    assert study.building is None and study.floors == {"ground": 0}
+    # without a table of configurations each block stands alone
+    assert [configuration.name for configuration in study.configurations] == ["T1", "T2"]
+    assert not study.has_pairs
+    assert (study.slides, study.vertical) == (False, False)
+    (on,) = study.configurations[0].contacts
+    assert on.friction is None and on.law == BY_MOMENTUM
+
+
+def contacts(**keys: Any) -> dict[str, list]:
+    """Contacts of each configuration of the small study of the project, with more keys."""
+    source = CONFIG / "smoke.yaml"
+    study = any_study(changed(read_yaml(source), keys), source)
+    return {each.name: list(each.contacts) for each in study.configurations}
+
+
+def test_each_contact_has_the_friction_and_the_impacts_that_the_study_states():
+    blocks = {"law": "ratio", "blocks": {"T1": 0.9, "P": [0.3, 0.35]}}
+    friction = {"ground": 0.4, "interface": {"static": 0.6, "kinetic": 0.5}}
+    found = contacts(friction=friction, **{"bodies.restitution": blocks})
+    pedestal, tower = ImpactLaw("ratio", 0.3, 0.35), ImpactLaw("ratio", 0.9, 0.9)
+    assert [(on.friction, on.law) for on in found["T1"]] == [((0.4, 0.4), tower)]
+    assert [on.friction for on in found["P&T1"]] == [(0.4, 0.4), (0.6, 0.5)]
+    assert [on.law for on in found["P&T1"]] == [pedestal, tower]
+    assert [on.law for on in found["P&T3"]] == [pedestal, BY_MOMENTUM]
+    assert {on.friction for on in contacts(friction=0.3)["P&T1"]} == {(0.3, 0.3)}
+
+
+@pytest.fixture
+def with_vertical(study_folder: Path) -> Path:
+    """The small study with a vertical component of every record, twice as long as it must be."""
+    header = CATALOGUE.replace(",sha256", ",vertical,sha256").replace("lic", "scale_factor,lic")
+    rows = [header]
+    for number in range(2):
+        write_record(study_folder / f"up{number}.txt", seed=50 + number)
+        files = f"record{number}.txt,up{number}.txt"
+        rows.append(f"motion {number},E{number},,,,,,folder,{files},,g,2,made up\n")
+    (study_folder / "motions.csv").write_text("".join(rows))
+    return study_folder
+
+
+def test_the_vertical_component_is_the_catalogues_with_the_factor_of_its_row(with_vertical, capsys):
+    row = read_catalogue(with_vertical / "motions.csv").to_dict("records")[0]
+    motion, up = motions_of_row(
+        {str(k): v for k, v in row.items()}, with_vertical, with_vertical, vertical=True
+    )
+    raw = np.loadtxt(with_vertical / "up0.txt")[:, 1]
+    assert motion.name == up.name == "motion 0"
+    assert up.acceleration.size == motion.acceleration.size
+    np.testing.assert_allclose(up.acceleration / up.pga, raw / abs(raw).max(), atol=1e-12)
+    assert up.pga == pytest.approx(2 * motion.pga / 2, rel=1e-3)
+    path = write_study(with_vertical, {**study_content(), "vertical": True})
+    assert main(["check-config", str(path)]) == 0
+    (with_vertical / "up1.txt").write_text("Not a record.\n")
+    capsys.readouterr()
+    assert "up1.txt" in said(capsys, path)
+
+
+def test_a_building_says_which_floors_move_up_and_down_more_than_the_ground():
+    settings = read_yaml(CONFIG / "building.yaml") | {"floors": {"hall": 0, "loft": 2}}
+    up = Motion(np.sin(np.arange(50.0)), 0.01, "quake")
+    plain = vertical_motions(make_building(settings), up)
+    assert [item.name for item in plain] == ["quake_hall", "quake_loft"]
+    assert all((item.acceleration == up.acceleration).all() for item in plain)
+    soft = vertical_motions(make_building({**settings, "vertical_factors": {"loft": 1.5}}), up)
+    np.testing.assert_allclose(soft[1].acceleration, 1.5 * up.acceleration)
+    with pytest.raises(InputError, match="floor 'attic' is not defined"):
+        make_building({**settings, "vertical_factors": {"attic": 2}})
 
 
 @pytest.mark.slow
@@ -230,163 +397,3 @@ def test_every_optional_part_runs_from_records_to_report(study_folder: Path):
     for anchor in ("measures", "sensitivity_analysis", "shaker", "sensitivity", "measured"):
         assert f'id="{anchor}"' in page
     assert 'src="http' not in page
-
-
-SMOKE = CONFIG / "smoke.yaml"
-
-
-def smoke(**keys: object):
-    return any_study({**read_yaml(SMOKE), **keys}, SMOKE)
-
-
-def measured(**restitution: object) -> dict:
-    """Bodies of which impacts were measured."""
-    return {"bodies": {**read_yaml(SMOKE)["bodies"], "restitution": restitution}}
-
-
-@pytest.mark.parametrize(
-    ("friction", "alone", "stacked"),
-    [
-        (0.3, [(0.3, 0.3)], [(0.3, 0.3), (0.3, 0.3)]),
-        (
-            {"ground": 0.4, "interface": {"static": 0.6, "kinetic": 0.5}},
-            [(0.4, 0.4)],
-            [(0.4, 0.4), (0.6, 0.5)],
-        ),
-    ],
-)
-def test_each_contact_has_the_friction_that_the_study_states(friction, alone, stacked):
-    study = smoke(friction=friction)
-    found = {
-        configuration.name: [on.friction for on in configuration.contacts]
-        for configuration in study.configurations
-    }
-    assert found["T1"] == alone
-    assert found["P&T1"] == stacked
-
-
-def test_without_the_keys_nothing_slides_and_nothing_moves_up_and_down():
-    study = smoke()
-    assert not any(configuration.loose for configuration in study.configurations)
-    assert (study.slides, study.vertical) == (False, False)
-    under = [
-        contact for configuration in study.configurations for contact in configuration.contacts
-    ]
-    assert {contact.law.name for contact in under} == {"momentum"}
-
-
-@pytest.mark.parametrize(
-    ("keys", "message"),
-    [
-        ({"friction": -0.1}, "friction: expected a coefficient from 0 to 10"),
-        ({"friction": {"ground": 0.3}}, "friction.interface is missing; expected a coefficient"),
-        ({"friction": {"ground": 0.3, "interface": -1}}, "friction.interface: expected a coeff"),
-        (
-            {"friction": {"ground": {"static": 0.3, "kinetic": 0.5}, "interface": 1}},
-            "0.3 is less than the kinetic one 0.5",
-        ),
-        ({"friction": "rough"}, "friction: expected a coefficient"),
-        ({"vertical": "yes"}, "vertical: expected true"),
-        ({"vertical": True}, "names no vertical component of .*; give it in the column vertical"),
-        (
-            {
-                "vertical": True,
-                "motions": {"catalogue": "motions.csv", "processing": [{"step": "strong_part"}]},
-            },
-            r"key motions.processing\[0\]: strong_part looks at one component, .*; leave it out",
-        ),
-        (measured(blocks={"X": 0.9}), "blocks: expected names of the specimens T1, .*, found X"),
-        (measured(blocks={"T1": 1.1}), "1.1 would gain energy"),
-        (measured(law="newton", blocks={"T1": 0.9}), "expected one of position, couple, ratio"),
-        (measured(blocks={"T1": "a"}), "blocks.T1: expected a ratio"),
-        (measured(), "restitution"),
-    ],
-)
-def test_what_cannot_be_is_refused_when_the_study_is_read(keys, message):
-    with pytest.raises(InputError, match=message):
-        smoke(**keys)
-
-
-def test_measured_impacts_and_friction_may_be_given_together():
-    tower = smoke(friction=0.3, **measured(blocks={"T1": 0.9})).configurations[0]
-    assert tower.name == "T1"
-    assert tower.contacts[0].friction == (0.3, 0.3) and tower.contacts[0].law.right == 0.9
-    assert not overturns(tower, [np.zeros(10)], 0.01).overturned.any()
-
-
-@pytest.mark.parametrize("key", ["friction", "vertical"])
-def test_what_rocks_without_sliding_is_refused_beside_them(key):
-    source = CONFIG / "thesis.yaml"
-    content = {**read_yaml(source), key: 0.3 if key == "friction" else True}
-    with pytest.raises(
-        InputError, match=f"key {key}: the perturbed parameters of the key sensitivity_analysis"
-    ):
-        any_study(content, source)
-    del content["sensitivity_analysis"]
-    with pytest.raises(InputError, match=f"key {key}: what the key compare_with"):
-        any_study(content, source)
-
-
-@pytest.fixture
-def with_vertical(study_folder: Path) -> Path:
-    """The small study with a vertical component of every record, twice as long as it must be."""
-    header = CATALOGUE.replace(",sha256", ",vertical,sha256").replace(
-        "licence", "scale_factor,licence"
-    )
-    rows = [header]
-    for number in range(2):
-        write_record(study_folder / f"up{number}.txt", seed=50 + number)
-        cells = f"motion {number},E{number},,,,,,folder,record{number}.txt,up{number}.txt,,g,2,made up\n"
-        rows.append(cells)
-    (study_folder / "motions.csv").write_text("".join(rows))
-    return study_folder
-
-
-def test_the_vertical_component_is_the_catalogues_with_the_factor_of_its_row(with_vertical: Path):
-    row = read_catalogue(with_vertical / "motions.csv").to_dict("records")[0]
-    motion, up = motions_of_row(
-        {str(k): v for k, v in row.items()}, with_vertical, with_vertical, vertical=True
-    )
-    raw = np.loadtxt(with_vertical / "up0.txt")[:, 1]
-    assert motion.name == up.name == "motion 0"
-    assert up.acceleration.size == motion.acceleration.size
-    np.testing.assert_allclose(up.acceleration / up.pga, raw / abs(raw).max(), atol=1e-12)
-    assert up.pga == pytest.approx(2 * motion.pga / 2, rel=1e-3)
-
-
-def test_check_config_reads_the_vertical_components_too(with_vertical, capsys):
-    path = write_study(with_vertical, {**study_content(), "vertical": True})
-    assert main(["check-config", str(path)]) == 0
-    (with_vertical / "up1.txt").write_text("Not a record.\n")
-    assert main(["check-config", str(path)]) == 2
-    assert "up1.txt" in capsys.readouterr().err
-
-
-def test_a_building_says_which_floors_move_up_and_down_more_than_the_ground():
-    settings = {
-        "storey_heights_m": [3.0, 3.0],
-        "masses_kg": [1e5, 1e5],
-        "first_period_s": 0.2,
-        "floors": {"hall": 0, "loft": 2},
-    }
-    up = Motion(np.sin(np.arange(50.0)), 0.01, "quake")
-    plain = vertical_motions(make_building(settings), up)
-    assert [item.name for item in plain] == ["quake_hall", "quake_loft"]
-    assert all((item.acceleration == up.acceleration).all() for item in plain)
-    soft = vertical_motions(make_building({**settings, "vertical_factors": {"loft": 1.5}}), up)
-    np.testing.assert_allclose(soft[1].acceleration, 1.5 * up.acceleration)
-    with pytest.raises(InputError, match="floor 'attic' is not defined"):
-        make_building({**settings, "vertical_factors": {"attic": 2}})
-
-
-def test_each_block_brings_what_was_measured_of_it():
-    study = smoke(**measured(law="ratio", blocks={"T1": 0.9, "P": [0.3, 0.35]}))
-    found = {
-        configuration.name: [under.law for under in configuration.contacts]
-        for configuration in study.configurations
-    }
-    pedestal, tower = ImpactLaw("ratio", 0.3, 0.35), ImpactLaw("ratio", 0.9, 0.9)
-    assert found["T1"] == [tower]
-    assert found["P&T1"] == [pedestal, tower]
-    assert found["T3"] == [BY_MOMENTUM]
-    assert found["P&T3"] == [pedestal, BY_MOMENTUM]

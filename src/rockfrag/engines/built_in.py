@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pkgutil import resolve_name
 from typing import Any
 
-from rockfrag.engines.contract import Case, Cases, Request, Support, Wish, by_wishes
+from rockfrag.engines.contract import Case, Cases, Engine, Request, Support, Wish
 from rockfrag.outcomes.outcomes import Outcomes
 from rockfrag.records.motion import GroundMotion
 from rockfrag.system import geometry
@@ -15,17 +15,13 @@ from rockfrag.system.system import System
 
 
 @dataclass(eq=False)
-class BuiltIn:
+class BuiltIn(Engine):
     """An engine by its name, what it can meet, and where its ``run`` and ``history`` stand."""
 
     name: str
     meets: frozenset[Wish]
     runs: str = ""  # function of cases
     tells: str = ""  # function of one case, of an engine that meets Wish.HISTORY
-
-    def supports(self, system: System, motion: GroundMotion, request: Request) -> Support:
-        """Say whether it computes this system under this motion as requested, and if not, why."""
-        return by_wishes(self, system, motion, request)
 
     def run(self, cases: Cases) -> Outcomes:
         """Return the outcomes of cases that it supports."""

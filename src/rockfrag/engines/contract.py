@@ -30,7 +30,7 @@ from enum import Enum
 from functools import cache, cached_property
 from itertools import combinations
 from pkgutil import resolve_name
-from typing import Any, Protocol, runtime_checkable
+from typing import Any, Protocol
 
 import numpy as np
 
@@ -121,7 +121,6 @@ class Support:
         return not self.missing and not self.reason
 
 
-@runtime_checkable
 class Engine(Protocol):
     """Whoever computes outcomes; the rules stand at the top of this module."""
 
@@ -130,6 +129,7 @@ class Engine(Protocol):
 
     def supports(self, system: System, motion: GroundMotion, request: Request) -> Support:
         """Say whether it computes this system under this motion as requested, and if not, why."""
+        return Support(wishes(system, motion, request) - self.meets)
 
     def run(self, cases: Cases) -> Outcomes:
         """Return the outcomes of cases whose systems and motions it supports."""
@@ -157,11 +157,6 @@ def wishes(system: System, motion: GroundMotion, request: Request) -> frozenset[
     return frozenset(wish for wish, there in made.items() if there)
 
 
-def by_wishes(engine: Any, system: System, motion: GroundMotion, request: Request) -> Support:
-    """Return what ``meets`` alone says of an engine: the usual body of ``supports``."""
-    return Support(wishes(system, motion, request) - engine.meets)
-
-
 BUILT_IN = tuple(
     f"rockfrag.engines.built_in:{name}"
     for name in ("LONE_BLOCKS", "TWO_BLOCKS", "SINGLE", "PLANAR", "SPATIAL")
@@ -185,11 +180,6 @@ def register_engine(engine: Engine, before: str | None = None) -> Engine:
         raise InputError(f"engine {before!r} is not known; choose one of {', '.join(names)}.")
     _ENGINES.insert(len(names) if before is None else names.index(before), engine)
     return engine
-
-
-def forget_engine(name: str) -> None:
-    """Take an engine out of the registry, as a plugin that is unloaded does."""
-    _ENGINES[:] = [engine for engine in _ENGINES if engine.name != name]
 
 
 def engines() -> tuple[Engine, ...]:

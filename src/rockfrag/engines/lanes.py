@@ -19,7 +19,6 @@ from rockfrag.engines.kernels.lanes.case import BLOCK, OUTCOME, Ensemble, Motion
 from rockfrag.engines.kernels.lanes.scheduler import integrate_stacks
 from rockfrag.engines.steps import STACK_STEP, free_samples, step_count
 from rockfrag.errors import InputError
-from rockfrag.input_checks import positive_number
 from rockfrag.laws import Told, law_named, momentum, ratio
 from rockfrag.outcomes.outcomes import Outcomes, empty_outcomes
 from rockfrag.system import geometry
@@ -36,7 +35,6 @@ def body_record(system: System, linear: bool = False, g: float = GRAVITY) -> np.
 
     ``linear`` uses the linearised equations: eq. 2.9 for one body, eq. 2.60-2.65 for two.
     """
-    positive_number("g", g, "m/s²")
     p: np.void = np.zeros(1, BODY)[0]
     found = afters(system)
     for name, after in zip(FIELDS, found, strict=True):
@@ -78,11 +76,6 @@ def after_impact(law: ImpactLaw, shape: geometry.Shape, pivot: int) -> Told:
     return law_named(law.name).tell(shape, law.right if pivot > 0 else law.left, pivot)
 
 
-def intervals_of(cases: Cases) -> Floats:
-    """Sampling interval of each motion [s], shape (motions,)."""
-    return np.array([motion.dt for motion in cases.motions])
-
-
 def integrate(kernel: Any, worker: Callable[[], Any], threads: int, *arguments: Any) -> None:
     """Let threads call an entry kernel, each with memory of its own, until no case is left."""
     ensemble, *others = arguments
@@ -105,7 +98,7 @@ def integrate(kernel: Any, worker: Callable[[], Any], threads: int, *arguments: 
 def sampled(cases: Cases, per_gravity: float) -> tuple[Motions, NDArray[np.int64], Floats]:
     """Sample the motions as densely as systems need; which each uses, its interval [s]; vertical over gravity."""
     values = [motion.x.acceleration for motion in cases.motions]
-    dts = intervals_of(cases)
+    dts = np.array([motion.dt for motion in cases.motions])
     g, step = cases.request.g, cases.request.step
     times = np.array([step_count(system, dts, g, step) for system in cases.systems])
     # the next power of two

@@ -146,16 +146,15 @@ class Response:
     @property
     def rocking_mode(self) -> NDArray[np.str_]:
         """Pattern of rocking at each sample ("rest", "4a", …, "flight"), shape (n,)."""
-        return np.array([rocking_mode_name(states) for states in self.state.tolist()])
+        return np.array(_rocking_modes(self.state))
 
     @property
     def mode(self) -> NDArray[np.str_]:
         """What each interface does at each sample ("stands", "rocks right, slides left", …), shape (n, blocks)."""
-        codes = self.state * 3 + self.slides
-        known, which = np.unique(codes, return_inverse=True)
-        slides = (known + 1) % 3 - 1
-        names = [mode_name(int((c - s) // 3), int(s)) for c, s in zip(known, slides, strict=True)]
-        return np.asarray(np.array(names)[which.reshape(codes.shape)])
+        pairs = np.stack([self.state.ravel(), self.slides.ravel()], axis=1)
+        known, which = np.unique(pairs, axis=0, return_inverse=True)
+        names = np.array([mode_name(*pair) for pair in known.tolist()])
+        return np.asarray(names[which].reshape(self.state.shape))
 
 
 def sampled_demand(normal: Floats, friction: Floats) -> Floats:

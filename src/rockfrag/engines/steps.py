@@ -4,7 +4,6 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rockfrag.errors import InputError
-from rockfrag.input_checks import positive_number
 from rockfrag.system import geometry
 from rockfrag.system.blocks import Body, as_system
 from rockfrag.system.system import System
@@ -53,7 +52,6 @@ def free_samples(system: System | Body, dt: ArrayLike, g: float) -> NDArray[np.i
 
 def step_count(system: System | Body, dt: ArrayLike, g: float, step: float) -> NDArray[np.int64]:
     """Return the steps per sample for which p h does not exceed ``step``, for every sampling interval."""
-    positive_number("step", step)
     frequency = fastest_frequency(system, g)
     steps = np.ceil(frequency * np.asarray(dt) / step - 1e-9)
     if steps.max(initial=0) > 10_000:

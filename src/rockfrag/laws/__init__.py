@@ -83,8 +83,3 @@ def law_named(name: str) -> Law:
     if name not in _LAWS:
         raise InputError(f"restitution: the law {name!r} is none of {', '.join(law_names())}.")
     return _LAWS[name]
-
-
-def forget_law(name: str) -> None:
-    """Take back a declaration, as a plugin that is unloaded does."""
-    _LAWS.pop(name, None)

@@ -102,11 +102,6 @@ def limit_state_named(name: str) -> LimitState:
     return _STATES[name]
 
 
-def forget_limit_state(name: str) -> None:
-    """Take back a declaration, as a plugin that is unloaded does."""
-    _STATES.pop(name, None)
-
-
 _PUT_BACK = "Inspect and put back"
 
 

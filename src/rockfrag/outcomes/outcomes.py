@@ -71,10 +71,6 @@ class Outcomes:
     scales : factors on the motions, shape (motions, scales)
     engines : names of those that answered
     engine : which of them answered each case
-    overturned, overturned_body, overturning_time, certain_time, impacts, flights, given_way, paradoxes : of cases
-    parted_contact, several_modes, unstable_distance, minimum_gravity_ratio, lost_contact : of cases
-    peak_rotation, peak_velocity, turn, walk, fall_direction, fell_over : of bodies
-    slip, peak_slip, friction_demand, least_normal_force : of contacts
     """
 
     names: tuple[tuple[str, ...], ...]
@@ -219,27 +215,24 @@ class Outcomes:
         chosen = [
             known for known in columns(which) if columns_of is None or known.name in columns_of
         ]
-        values = {known.title: getattr(self, known.name) for known in chosen}
-        systems, motions, _ = shape = self.shape
-        system, motion = (
-            np.arange(systems)[:, np.newaxis, np.newaxis],
-            np.arange(motions)[:, np.newaxis],
-        )
-        made: dict[str, Any] = {"system": system, "motion": motion, "scale": self.scales}
-        if which == "cases":
-            made |= values | {"engine": np.array(self.engines, dtype=object)[self.engine]}
-            return pd.DataFrame(
-                {name: np.broadcast_to(a, shape).ravel() for name, a in made.items()}
-            )
-        most = max(self.counts, default=0)
-        full = (*shape, most)
-        made = {name: np.asarray(place)[..., np.newaxis] for name, place in made.items()}
-        made["body" if which == "bodies" else "contact"] = np.arange(1, most + 1)
-        padded = [[*names, *[""] * (most - len(names))] for names in self.names]
-        made["name"] = np.array(padded, dtype=object)[:, np.newaxis, np.newaxis, :]
+        whole = which == "cases"
+        (systems, motions, _), most = self.shape, 1 if whole else max(self.counts, default=0)
+        full = (*self.shape, most)
+        made: dict[str, Any] = {
+            "system": np.arange(systems)[:, np.newaxis, np.newaxis, np.newaxis],
+            "motion": np.arange(motions)[:, np.newaxis, np.newaxis],
+            "scale": self.scales[..., np.newaxis],
+        }
+        if not whole:
+            made["body" if which == "bodies" else "contact"] = np.arange(1, most + 1)
+            padded = [[*names, *[""] * (most - len(names))] for names in self.names]
+            made["name"] = np.array(padded, dtype=object)[:, np.newaxis, np.newaxis, :]
+        made |= {known.title: getattr(self, known.name).reshape(full) for known in chosen}
+        if whole:
+            engines = np.array(self.engines, dtype=object)
+            made["engine"] = engines[self.engine][..., np.newaxis]
         there = np.arange(most) < np.array(self.counts)[:, np.newaxis, np.newaxis, np.newaxis]
         rows = np.broadcast_to(there, full).ravel()
-        made |= values
         return pd.DataFrame(
             {name: np.broadcast_to(a, full).ravel()[rows] for name, a in made.items()}
         )

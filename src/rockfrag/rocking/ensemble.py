@@ -206,17 +206,10 @@ def overturned_cases(
 
     def run(number: int) -> None:
         mine = np.flatnonzero(system == number)
-        used, row = np.unique(motion[mine], return_inverse=True)
-        # the cases of a motion side by side; what is left over is a scale of zero, which costs nothing
-        order = np.argsort(row, kind="stable")
-        counts = np.bincount(row, minlength=used.size)
-        column = np.empty(mine.size, dtype=np.int64)
-        column[order] = np.arange(mine.size) - np.repeat(np.cumsum(counts) - counts, counts)
-        scales = np.zeros((used.size, int(counts.max())))
-        scales[row, column] = scale[mine]
-        systems, motions = (cases.systems[number],), tuple(cases.motions[m] for m in used)
+        systems, motions = (cases.systems[number],), tuple(cases.motions[m] for m in motion[mine])
+        scales = scale[mine, np.newaxis]
         some = replace(cases, systems=systems, motions=motions, scales=scales, threads=1)
-        overturned[mine] = run_cases(some).overturned[0, row, column]
+        overturned[mine] = run_cases(some).overturned[0, :, 0]
 
     with ThreadPoolExecutor(cases.threads) as pool:
         list(pool.map(run, np.unique(system).tolist()))

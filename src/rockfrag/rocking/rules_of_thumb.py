@@ -1,8 +1,8 @@
 """What engineers' rules say about the amplitude at which a motion topples a block: by how much are they off?
 
 Each rule gives the factor on a motion at which it expects the block to topple. They are for a symmetric
-block that stands alone; an object on a pedestal is looked at three times, as practice does: itself, and
-both as one body (:func:`three_models`).
+block that stands alone; an object on a pedestal is looked at twice, as practice does: itself, and
+both as one body.
 """
 
 import math
@@ -80,15 +80,9 @@ RULES: Mapping[str, Rule] = MappingProxyType(
 """Rules by name."""
 
 
-def three_models(body: Body) -> list[Block]:
-    """Blocks that practice checks for an object: itself, and with what it stands on as one body."""
-    # a block joined with nothing is the block
-    return list(dict.fromkeys((body.blocks[-1], body.rigidly_joined())))
-
-
 def predicted(body: Body, motion: Motion, rule: Rule) -> float:
     """Factor on a motion at which a rule expects an object to topple: the least of the models of practice."""
-    return min(rule(block, motion) for block in three_models(body))
+    return min(rule(block, motion) for block in {body.blocks[-1], body.rigidly_joined()})
 
 
 def bias(

@@ -11,7 +11,7 @@ import warnings
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any, NamedTuple, TypeGuard
+from typing import Any, TypeGuard
 
 from rockfrag.errors import InputError
 from rockfrag.input_checks import positive_number, real_number, shown
@@ -22,18 +22,6 @@ from rockfrag.system.body import Interval, RigidBody, Tensor, checked_tensor
 from rockfrag.system.contact import Contact
 from rockfrag.system.system import System
 from rockfrag.units import GRAVITY, block_warning
-
-
-class Vector(NamedTuple):
-    """A vector in the plane [m]: x to the right, y up."""
-
-    x: float
-    y: float
-
-    def turned(self, angle: float) -> "Vector":
-        """Turn clockwise by ``angle`` [rad]: R(angle)(x, y)."""
-        return Vector(*geometry.turned(self.x, self.y, angle))
-
 
 LARGEST = 1e6
 """Width and height of a block are no larger: one of 1e12 m falls for days, which takes minutes to compute [m]."""
@@ -168,10 +156,6 @@ class Block:
 
     def system(self) -> System:
         """Return the block as a system: it rocks, never slides, and conserves momentum in impacts."""
-        return self._system
-
-    @cached_property
-    def _system(self) -> System:
         return System((self.body,), (Contact(tilt=self.lean),))
 
     @cached_property
@@ -204,17 +188,8 @@ class Block:
         """Height over width, H/B [-]."""
         return self.height / self.width
 
-    @property
-    def centre(self) -> Vector:
-        """Centre of gravity of the standing block, from the middle of its base [m]."""
-        return Vector(self.shape.x, self.shape.y)
-
-    def arm(self, pivot: int) -> Vector:
-        """Vector from the pivot (+1 right, -1 left) to the centre of gravity as it stands [m]."""
-        return Vector(*geometry.arm(self.shape, pivot))
-
     def critical_angle(self, pivot: int) -> float:
-        """Rotation about ``pivot`` at which the block balances on it, a positive angle [rad]."""
+        """Rotation about ``pivot`` (+1 right, -1 left) at which the block balances, positive [rad]."""
         return geometry.critical_angle(self.shape, pivot)
 
     @property
@@ -293,10 +268,6 @@ class Stack:
 
     def system(self) -> System:
         """Return the stack as a system: it rocks, never slides, and conserves momentum in impacts."""
-        return self._system
-
-    @cached_property
-    def _system(self) -> System:
         return piled(self.blocks, (0.0, self.offset), ("lower body", "upper body"))
 
     @cached_property
@@ -304,10 +275,6 @@ class Stack:
         """The stack as the kernels know it."""
         lower, upper = self.lower, self.upper
         return geometry.pile_of(lower.shape, upper.shape, lower.height, lower.lean, self.offset)
-
-    def common_arm(self, ground_pivot: int) -> Vector:
-        """Vector from the pedestal's pivot to the common centre of gravity [m]."""
-        return Vector(*geometry.common_arm(self.pile, ground_pivot))
 
     @property
     def mass(self) -> float:

@@ -130,8 +130,6 @@ class System:
     @cached_property
     def pile(self) -> geometry.Pile:
         """The two bodies of a planar system as the kernels know them."""
-        if self.count != 2:
-            raise InputError(f"System: expected two bodies, got {self.count}.")
         lower, upper = self.in_plane().bodies
         aside = self.contacts[1].offset[0] + upper.ends[0].middle - lower.ends[1].middle
         below, above = self.shapes

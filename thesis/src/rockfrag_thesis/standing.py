@@ -1,7 +1,7 @@
 """Which definitions of a test stand when motion and body differ a little, and which are a matter of luck."""
 
-import math
-from collections.abc import Mapping, Sequence
+import warnings
+from collections.abc import Sequence
 
 import numpy as np
 import pandas as pd
@@ -10,7 +10,7 @@ from rockfrag.arrays import Flags, Floats
 from rockfrag.motions.processing import factors_to_pga
 from rockfrag.records.motion import Motion
 from rockfrag.rocking import overturns
-from rockfrag.rocking.ensemble import overturned_cases, prepared
+from rockfrag.rocking.ensemble import LightBodies
 from rockfrag.rocking.robustness import perturbed
 from rockfrag.shaketable.definitions import always_overturning, first_overturning, step_protocol
 from rockfrag.shaketable.protocols import Protocol
@@ -21,13 +21,6 @@ SIZES = (1e-9, 1e-6, 1e-4)
 
 COPIES = 4
 """Perturbed copies of a test for each of them."""
-
-Bounds = tuple[float, float]
-Copy = tuple[System, float]
-"""A perturbed system and the factor on its motion."""
-
-CLIMBING = ("step_protocol", "first_overturning")
-"""Readings that see nothing above the amplitude at which they end."""
 
 
 def standing_definitions(
@@ -50,31 +43,24 @@ def standing_definitions(
     rng = np.random.default_rng(seed)
     rows = []
     for configuration in configurations:
-        copies = [
-            [
-                (perturbed(configuration, size, rng), 1 + size * float(rng.uniform(-1, 1)))
-                for _ in range(COPIES)
-            ]
-            for size in SIZES
-        ]
-        fell = overturns(configuration, motions, scales=scales, threads=threads).overturned[0]
-        found = [_definitions(amplitudes_g, flags, protocol) for flags in fell]
+        fell = overturns(configuration, motions, scales=scales, threads=threads)
+        found = [_definitions(amplitudes_g, flags, protocol) for flags in fell.overturned[0]]
         stands = {
-            (k, i, name): True
-            for k in range(len(SIZES))
-            for i in range(len(motions))
-            for name in found[i]
+            (size, i, name): True
+            for size in SIZES
+            for i, bounds in enumerate(found)
+            for name in bounds
         }
-        for number in range(COPIES):
-            tried = [each[number] for each in copies]
-            wanted = _asked(amplitudes_g, found, stands)
-            ends = _outcomes(tried, motions, scales, wanted, threads)
-            for k, i in np.ndindex(wanted.shape[:2]):
-                # where a copy was not shaken its outcome changes no reading that is still in question
-                flags = np.where(wanted[k, i], ends[k, i], fell[i])
+        for size in np.repeat(SIZES, COPIES).tolist():
+            copy = perturbed(configuration, size, rng)
+            factor = 1 + size * float(rng.uniform(-1, 1))
+            with warnings.catch_warnings():
+                # of what is said of the test itself nothing is said again of its copies
+                warnings.simplefilter("ignore", LightBodies)
+                fell = overturns(copy, motions, scales=scales * factor, threads=threads)
+            for i, flags in enumerate(fell.overturned[0]):
                 for name, bounds in _definitions(amplitudes_g, flags, protocol).items():
-                    same = np.array_equal(bounds, found[i][name], equal_nan=True)
-                    stands[k, i, name] &= same
+                    stands[size, i, name] &= np.array_equal(bounds, found[i][name], equal_nan=True)
         for i, motion in enumerate(motions):
             rows += [
                 {
@@ -84,14 +70,16 @@ def standing_definitions(
                     "definition": name,
                     "lower_g": bounds[0],
                     "upper_g": bounds[1],
-                    **{f"stands_{size:.0e}": stands[k, i, name] for k, size in enumerate(SIZES)},
+                    **{f"stands_{size:.0e}": stands[size, i, name] for size in SIZES},
                 }
                 for name, bounds in found[i].items()
             ]
     return pd.DataFrame(rows)
 
 
-def _definitions(amplitudes_g: Floats, flags: Flags, protocol: Protocol) -> dict[str, Bounds]:
+def _definitions(
+    amplitudes_g: Floats, flags: Flags, protocol: Protocol
+) -> dict[str, tuple[float, float]]:
     """Bounds by definition."""
     outcomes = {
         "step_protocol": step_protocol(amplitudes_g, flags, protocol),
@@ -99,38 +87,3 @@ def _definitions(amplitudes_g: Floats, flags: Flags, protocol: Protocol) -> dict
         "always_overturning": always_overturning(amplitudes_g, flags),
     }
     return {name: (outcome.lower_g, outcome.upper_g) for name, outcome in outcomes.items()}
-
-
-def _asked(
-    amplitudes_g: Floats,
-    found: Sequence[Mapping[str, Bounds]],
-    stands: Mapping[tuple[int, int, str], bool],
-) -> Flags:
-    """Amplitudes that can tell whether a definition stands that does so far, shape (sizes, motions, amplitudes).
-
-    What climbs until the first overturning does not see the amplitudes above it; the amplitude from which
-    everything overturns does not see those below the last survived one.
-    """
-    asked = np.zeros((len(SIZES), len(found), len(amplitudes_g)), dtype=bool)
-    for (k, i, name), so_far in stands.items():
-        lower, upper = found[i][name]
-        if not so_far:
-            continue
-        if name in CLIMBING:
-            asked[k, i] |= amplitudes_g <= (math.inf if math.isnan(upper) else upper)
-        else:
-            asked[k, i] |= amplitudes_g >= lower
-    return asked
-
-
-def _outcomes(
-    copies: Sequence[Copy], motions: Sequence[Motion], scales: Floats, wanted: Flags, threads: int
-) -> Flags:
-    """Whether each copy overturns in the wanted cases, shape (copies, motions, amplitudes); False elsewhere."""
-    copy, motion, amplitude = np.nonzero(wanted)
-    factors = np.array([factor for _, factor in copies])
-    ends = np.zeros(wanted.shape, dtype=bool)
-    systems = [system for system, _ in copies]
-    cases = prepared(systems, motions, None, (1.0,), threads=threads)
-    ends[wanted] = overturned_cases(cases, copy, motion, scales[motion, amplitude] * factors[copy])
-    return ends

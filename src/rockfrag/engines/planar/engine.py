@@ -18,7 +18,6 @@ from rockfrag.engines import response as responses
 from rockfrag.engines.built_in import PLANAR
 from rockfrag.engines.contract import Case, Cases, Engine, Request, engines, run_cases
 from rockfrag.engines.kernels.single import GRAZING_SPEED
-from rockfrag.engines.lanes import intervals_of
 from rockfrag.engines.planar import integrate as contact
 from rockfrag.engines.planar import records
 from rockfrag.engines.response import FLIGHT, ROCKING_MODES, Response
@@ -120,7 +119,8 @@ def without_slip(response: Response) -> Response:
 
 def contact_outcomes(grid: Cases, wanted: NDArray[np.bool_] | None = None) -> NDArray[np.void]:
     """Integrate the ``wanted`` cases of systems × motions × scales, all if None; others are left zero."""
-    g, step, dts = grid.request.g, grid.request.step, intervals_of(grid)
+    g, step = grid.request.g, grid.request.step
+    dts = np.array([motion.dt for motion in grid.motions])
     described = [_described(system, g) for system in grid.systems]
     ups = [motion.z.acceleration for motion in grid.motions if motion.z is not None]
     sizes = [motion.x.acceleration.size for motion in grid.motions]

@@ -19,7 +19,6 @@ from rockfrag.rocking.browser import driver_text, in_page, module_bytes
 from rockfrag.rocking.ensemble import LightBodies
 from rockfrag.sentences import listed, number
 from rockfrag.system import geometry
-from rockfrag.system.blocks import Vector
 from rockfrag.system.body import RigidBody
 from rockfrag.system.contact import Contact
 from rockfrag.system.system import System
@@ -160,17 +159,16 @@ _FALLING = 0.7
 """Rotation at which a falling body is drawn [rad]."""
 
 
-def outlines(system: System, position: Floats, theta: Floats) -> list[list[Vector]]:
+def outlines(system: System, position: Floats, theta: Floats) -> list[list[tuple[float, float]]]:
     """Corners of the box around each body, centres of gravity and rotations as in a sample of a response [m]."""
     lean, found = 0.0, []
     each = zip(system.in_plane().bodies, system.contacts, system.shapes, strict=True)
     for k, (body, contact, shape) in enumerate(each):
-        half, tall, centre = body.width / 2, body.height, Vector(*position[k].tolist())
-        corners = []
-        for x, y in ((-half, 0.0), (half, 0.0), (half, tall), (-half, tall)):
-            stands = Vector(x, y).turned(contact.tilt)
-            arm = Vector(stands.x - shape.x, stands.y - shape.y).turned(lean + float(theta[k]))
-            corners.append(Vector(centre.x + arm.x, centre.y + arm.y))
+        half, tall, corners = body.width / 2, body.height, []
+        for corner in ((-half, 0.0), (half, 0.0), (half, tall), (-half, tall)):
+            x, y = geometry.turned(*corner, contact.tilt)
+            arm = geometry.turned(x - shape.x, y - shape.y, lean + float(theta[k]))
+            corners.append(tuple((position[k] + arm).tolist()))
         found.append(corners)
         lean += contact.tilt
     return found

@@ -28,11 +28,7 @@ from rockfrag_thesis.hypotheses.setting import (
 from rockfrag_thesis.printed_tables import FOLDER, TABLE_3_1, compare
 
 
-@hypothesis(
-    1,
-    evidence="balance of moments about a corner, and simulations of sudden accelerations",
-    rule="simulated blocks start between 1 - 1e-9 and 1 + 1e-9 of (b/h) g",
-)
+@hypothesis(1)
 def c1(setting: Setting) -> Result:
     """The closed form, and simulations on either side of it."""
     agree = [starts_at(block, setting.alone[name]) for name, block in setting.blocks.items()]
@@ -42,11 +38,7 @@ def c1(setting: Setting) -> Result:
     )
 
 
-@hypothesis(
-    3,
-    evidence="the specimens' dimensions",
-    rule="computed figures round to the printed digits (g = 9.81 m/s²)",
-)
+@hypothesis(3)
 def c3(setting: Setting) -> Result:
     """Critical angle, radius and frequency parameter from the dimensions."""
     require_thesis_specimens(setting)
@@ -69,12 +61,7 @@ def c3(setting: Setting) -> Result:
     )
 
 
-@hypothesis(
-    4,
-    evidence="conservation of momentum, and first impacts of simulated blocks of the specimens' "
-    "slendernesses in two sizes from two amplitudes",
-    rule="ω⁺/ω⁻ is 1 - 1.5 sin²α within 1e-9; about real blocks see C5",
-)
+@hypothesis(4)
 def c4(setting: Setting) -> Result:
     """Restitution of simulated impacts over sizes, speeds and slendernesses."""
     law = {name: 1 - 1.5 * math.sin(block.alpha) ** 2 for name, block in setting.blocks.items()}
@@ -97,13 +84,7 @@ QUOTED = 0.87 - 0.70
 1978)."""
 
 
-@hypothesis(
-    5,
-    evidence="restitution fitted to measured histories of free rocking, 95 % intervals",
-    rule="true if every interval excludes the computed value, false if every one contains it and none a "
-    f"value as far from it as the one that the thesis quotes ({QUOTED:.2f})",
-    error_rate="5 % for each history",
-)
+@hypothesis(5, quoted=QUOTED)
 def c5(setting: Setting) -> Result:
     """Restitution fitted to measured free rocking, against conservation of momentum."""
     if not setting.free_rocking:
@@ -143,13 +124,7 @@ def _first_impact(block: Block, theta0: float, linear: bool = False) -> float:
     return float(response.contact_events.query("kind == 'impact'")["time"].iloc[0])
 
 
-@hypothesis(
-    6,
-    evidence="four times the time to the first impact of simulations from 0.2 and 0.9 of the critical "
-    "angle",
-    rule="it is longer from the larger amplitude for every block, and eq. 2.20 holds within 1e-6 for the "
-    "linear equation",
-)
+@hypothesis(6)
 def c6(setting: Setting) -> Result:
     """Period of free rocking over amplitude."""
     ratios, law = {}, 0.0
@@ -182,12 +157,7 @@ def _least_half_sine(block: Block, linear: bool) -> float:
     )
 
 
-@hypothesis(
-    7,
-    evidence="simulations with the linearised and the nonlinear equation: time to the first impact from "
-    "half the critical angle, and least overturning half-sine pulse of ωp = 3 p",
-    rule=f"both change by less than {100 * SEEN:.0f} %, the least change that the experiment could show",
-)
+@hypothesis(7)
 def c7(setting: Setting) -> Result:
     """What the linearisation changes for blocks of H/B of 3 and more."""
     slender = {k: block for k, block in setting.blocks.items() if block.slenderness >= 3 - 1e-9}
@@ -235,13 +205,7 @@ def least_overturning_amplitudes(
     return np.where(found.overturned.any(axis=2), AMPLITUDES_G[first], np.nan)
 
 
-@hypothesis(
-    8,
-    evidence=f"least overturning amplitudes of {DRAWS} copies of each lone block, uniform within ±1 % of "
-    "width, ±0.5 % of height and ±0.02 of restitution",
-    rule="ln a scatters more than ln(b/h), on which alone it would depend in statics, for most blocks and "
-    "motions",
-)
+@hypothesis(8, draws=DRAWS)
 def c8(setting: Setting) -> Result:
     """Scatter of ln a when size and restitution change a little, over that of the static limit."""
     rng = np.random.default_rng(setting.seed)
@@ -271,12 +235,7 @@ def c8(setting: Setting) -> Result:
     )
 
 
-@hypothesis(
-    20,
-    evidence="restoring moment m g R sin(θc - θ), and simulations",
-    rule="no rotation under 0.999999 of the acceleration that starts rocking; the moment of simulations "
-    "follows the law within 1e-9 m g R, and its slope is negative up to the critical angle",
-)
+@hypothesis(20)
 def c20(setting: Setting) -> Result:
     """Rotation below the threshold, and slope of the restoring moment above it."""
     moved, slope, law = 0.0, -math.inf, 0.0

@@ -4,7 +4,6 @@ Most need no data: the sentences exclude each other.  Where a table of tests is 
 of the two holds there, if either.
 """
 
-import itertools
 from collections.abc import Callable, Mapping
 from pathlib import Path
 
@@ -17,24 +16,6 @@ from rockfrag_thesis.hypotheses.hypothesis import Undecidable
 from rockfrag_thesis.hypotheses.slenderness import stack_slenderness
 
 UPPER = (THIRD, FIFTH)
-
-
-def orderings_of_floor_means() -> int:
-    """Orders of the four means (P and NP on GF and 5th) that satisfy C35, C37, C42, C43 together.
-
-    The reason why these four contradict each other: there is none among the 24.
-    """
-    names = ("P GF", "P F5", "NP GF", "NP F5")
-    count = 0
-    for order in itertools.permutations(range(4)):
-        rank = dict(zip(names, order, strict=True))
-        count += (
-            rank["P GF"] > rank["NP GF"]
-            and rank["P F5"] < rank["NP F5"]
-            and rank["P F5"] > rank["P GF"]
-            and rank["NP GF"] > rank["NP F5"]
-        )
-    return count
 
 
 def _four_means(evidence: Evidence) -> str:
@@ -83,22 +64,18 @@ _SHOWN: Mapping[str, Callable[[Evidence], str]] = {
 """What a table of tests says of a contradiction, by the word in the column ``shown``."""
 
 
-def contradictions(evidence: Evidence | None = None) -> pd.DataFrame:
-    """Table of the thesis's contradictions with itself: hypotheses, what, why, in_these_tests.
-
-    The last column is empty without evidence, which shows what holds there.
-    """
+def contradictions(evidence: Evidence) -> pd.DataFrame:
+    """Table of the thesis's contradictions with itself: hypotheses, what, why, in_these_tests."""
     table = pd.read_csv(
         Path(__file__).with_name("contradictions.csv"), comment="#", keep_default_na=False
     )
     seen = [_seen(evidence, shown) for shown in table.pop("shown")]
-    why = [words.format(orders=orderings_of_floor_means()) for words in table["why"]]
-    return table.assign(why=why, in_these_tests=seen)
+    return table.assign(in_these_tests=seen)
 
 
-def _seen(evidence: Evidence | None, shown: str) -> str:
-    """What a table of tests says of one contradiction; nothing where there is none, or nothing to look at."""
-    if evidence is None or not shown:
+def _seen(evidence: Evidence, shown: str) -> str:
+    """What a table of tests says of one contradiction; empty where there is nothing to look at."""
+    if not shown:
         return ""
     try:
         return _SHOWN[shown](evidence)

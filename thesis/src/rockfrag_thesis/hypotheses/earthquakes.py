@@ -19,31 +19,16 @@ EARTHQUAKES = FRIULI, KOBE, LOMA_PRIETA, NORTHRIDGE = (
     "Loma Prieta",
     "Northridge",
 )
-OF_ONE_EARTHQUAKE = "pairs of tests, means by motion of the earthquake"
-FLOOR_BY_FLOOR = "pairs of tests, floor by floor"
 INFERENCE = "about motions of the same earthquakes on the tested floors"
 
 
-@order_hypothesis(
-    45,
-    evidence=OF_ONE_EARTHQUAKE,
-    rule="an increase in each of the three earthquakes",
-    several=True,
-    unit="motion",
-    more=lambda _: INFERENCE,
-)
+@order_hypothesis(45, unit="motion", more=lambda _: INFERENCE)
 def c45(tests: Evidence) -> Parts:
     """Three increases."""
     return {f"P/NP in {name}": Part(tests.effect(earthquake=name)) for name in EARTHQUAKES[:3]}
 
 
-@order_hypothesis(
-    46,
-    evidence=OF_ONE_EARTHQUAKE,
-    rule="a decrease in Northridge",
-    unit="motion",
-    more=lambda _: INFERENCE,
-)
+@order_hypothesis(46, unit="motion", more=lambda _: INFERENCE)
 def c46(tests: Evidence) -> Parts:
     """One decrease."""
     return {"NP/P in Northridge": Part(tests.effect(earthquake=NORTHRIDGE).times(-1))}
@@ -59,28 +44,14 @@ def _lead(tests: Evidence, top: str, others: tuple[str, ...], size: Size) -> Par
     }
 
 
-@order_hypothesis(
-    47,
-    evidence=FLOOR_BY_FLOOR,
-    rule="P/NP in Loma Prieta exceeds that in each other earthquake, floor by floor",
-    several=True,
-    unit="floor",
-    more=lambda _: f"{INFERENCE}; C48 says otherwise",
-)
+@order_hypothesis(47, unit="floor", more=lambda _: f"{INFERENCE}; C48 says otherwise")
 def c47(tests: Evidence) -> Parts:
     """Loma Prieta over the other earthquakes."""
     others = tuple(name for name in EARTHQUAKES if name != LOMA_PRIETA)
     return _lead(tests, LOMA_PRIETA, others, Size.SLIGHT)
 
 
-@order_hypothesis(
-    48,
-    evidence=FLOOR_BY_FLOOR,
-    rule="an increase in Friuli, and more than in Kobe and in Loma Prieta, floor by floor",
-    several=True,
-    unit="floor",
-    more=lambda _: f"{INFERENCE}; C47 says otherwise",
-)
+@order_hypothesis(48, unit="floor", more=lambda _: f"{INFERENCE}; C47 says otherwise")
 def c48(tests: Evidence) -> Parts:
     """Friuli's increase, and its lead over Kobe and Loma Prieta."""
     own = Part(tests.effect(earthquake=FRIULI), Size.NOTICEABLE)
@@ -134,14 +105,7 @@ def rank_correlation(joined: pd.DataFrame, measure: str) -> Estimate:
     )
 
 
-@hypothesis(
-    52,
-    evidence="mean effect of each motion and its PGV/PGA, mean period and significant duration",
-    rule="Spearman's correlation with each: true if |ρ| = "
-    f"{COULD_BE_FOUND:.2f}, what {MOTIONS} independent motions could show, is excluded for all; false if "
-    "one is not zero",
-    error_rate="about 2.5 % each way (jackknife over earthquakes; Bonferroni over the measures to be false)",
-)
+@hypothesis(52, least=COULD_BE_FOUND, motions=MOTIONS)
 def c52(tests: Evidence) -> Result:
     """Rank correlation of the motions' effects with what the motions are like."""
     joined = _motions_with_measures(tests)

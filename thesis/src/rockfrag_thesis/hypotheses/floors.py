@@ -13,9 +13,6 @@ from rockfrag_thesis.hypotheses.contrasts import contrast
 from rockfrag_thesis.hypotheses.evidence import Evidence
 from rockfrag_thesis.hypotheses.hypothesis import Finding, Result, Undecidable, hypothesis
 from rockfrag_thesis.hypotheses.orders import (
-    AMPLITUDES,
-    ONE_RULE,
-    PAIRS,
     Part,
     Parts,
     Size,
@@ -23,17 +20,13 @@ from rockfrag_thesis.hypotheses.orders import (
     order,
     order_hypothesis,
 )
-from rockfrag_thesis.hypotheses.outcomes import ONE_INTERVAL, SEEN
+from rockfrag_thesis.hypotheses.outcomes import SEEN
 
 GROUND, THIRD, FIFTH = FLOORS = ("GF", "F3", "F5")
 TOWERS = ("T1", "T2", "T3")
 
 
-@order_hypothesis(
-    34,
-    rule=f"an increase on GF; increases of {100 * SEEN:.0f} % or more excluded on F3 and F5",
-    several=True,
-)
+@order_hypothesis(34)
 def c34(tests: Evidence) -> Parts:
     """The ground floor's increase, and by how much those above stay below a noticeable one."""
     parts = {"P/NP on GF": Part(tests.effect(floor=GROUND), Size.NOTICEABLE)}
@@ -44,18 +37,16 @@ def c34(tests: Evidence) -> Parts:
     return parts
 
 
-effect_hypothesis(35, "an increase on GF", "P/NP on GF", floor=GROUND)
-effect_hypothesis(36, "a decrease on F3, however slight", "NP/P on F3", -1, floor=THIRD)
-effect_hypothesis(37, "a decrease on F5, however slight", "NP/P on F5", -1, floor=FIFTH)
+effect_hypothesis(35, "P/NP on GF", floor=GROUND)
+effect_hypothesis(36, "NP/P on F3", -1, floor=THIRD)
+effect_hypothesis(37, "NP/P on F5", -1, floor=FIFTH)
 
 
 SIGNS = {GROUND: (1, 1, 1), THIRD: (1, -1, -1), FIFTH: (-1, -1, -1)}
 """Signs of the effect that C38 claims, by floor for T1, T2, T3."""
 
 
-@order_hypothesis(
-    38, rule="increases of all towers on GF and of T1 on F3, decreases elsewhere", several=True
-)
+@order_hypothesis(38)
 def c38(tests: Evidence) -> Parts:
     """The effect in each of the nine cells, in the direction claimed."""
     return {
@@ -82,31 +73,19 @@ def _first_tower(tests: Evidence, floor: str, sign: int) -> Parts:
     }
 
 
-@order_hypothesis(
-    39,
-    rule="an increase of T1 on GF, and more than that of T2 and of T3, earthquake by earthquake",
-    several=True,
-)
+@order_hypothesis(39)
 def c39(tests: Evidence) -> Parts:
     """T1's increase on the ground floor, and its lead."""
     return _first_tower(tests, GROUND, +1)
 
 
-@order_hypothesis(
-    40,
-    rule="a decrease of T1 on F5, and more than that of T2 and of T3, earthquake by earthquake",
-    several=True,
-)
+@order_hypothesis(40)
 def c40(tests: Evidence) -> Parts:
     """T1's decrease on the 5th floor, and its lead."""
     return _first_tower(tests, FIFTH, -1)
 
 
-@order_hypothesis(
-    41,
-    rule="the change on GF exceeds that on F3 and F5 and the opposite of each, earthquake by earthquake",
-    error_rate="at most 5 % to be true (GF's change may have either sign), 2.5 % to be false",
-)
+@order_hypothesis(41)
 def c41(tests: Evidence) -> Parts:
     """Whether |x| > |y| for the effects x on GF and y above: x - y and x + y have the sign of x."""
     table = tests.table
@@ -134,36 +113,19 @@ def _leading_floor(tests: Evidence, side: str, floor: str) -> Parts:
     return {f"{side} on {top} over {other}": _over(rows, top, other) for other in others}
 
 
-@order_hypothesis(
-    42,
-    evidence=AMPLITUDES,
-    rule="ln a of P on F5 exceeds that on GF and on F3, earthquake by earthquake",
-    several=True,
-    more=lambda tests: _means(tests, "P"),
-)
+@order_hypothesis(42, more=lambda tests: _means(tests, "P"))
 def c42(tests: Evidence) -> Parts:
     """With the pedestal, the 5th floor over the others."""
     return _leading_floor(tests, "P", FIFTH)
 
 
-@order_hypothesis(
-    43,
-    evidence=AMPLITUDES,
-    rule="ln a of NP on GF exceeds that on F3 and on F5, earthquake by earthquake",
-    several=True,
-    more=lambda tests: _means(tests, "NP"),
-)
+@order_hypothesis(43, more=lambda tests: _means(tests, "NP"))
 def c43(tests: Evidence) -> Parts:
     """Without the pedestal, the ground floor over the others."""
     return _leading_floor(tests, "NP", GROUND)
 
 
-@order_hypothesis(
-    44,
-    evidence=AMPLITUDES,
-    rule="ln a on GF and on F5 exceeds that on F3 for every tower and side, earthquake by earthquake",
-    several=True,
-)
+@order_hypothesis(44)
 def c44(tests: Evidence) -> Parts:
     """The other floors over the 3rd, for every tower on both sides."""
     low, *others = (tests.level("floor", name) for name in (THIRD, GROUND, FIFTH))
@@ -174,13 +136,7 @@ def c44(tests: Evidence) -> Parts:
     }
 
 
-@hypothesis(
-    50,
-    evidence=PAIRS,
-    rule="a decrease on F3 and F5 together, with more pairs decreasing than increasing by more than their "
-    f"steps. {ONE_RULE}",
-    error_rate=ONE_INTERVAL,
-)
+@hypothesis(50)
 def c50(tests: Evidence) -> Result:
     """The decrease on both upper floors together, and how many pairs are exceptions."""
     floors = [tests.level("floor", name) for name in (THIRD, FIFTH)]
@@ -196,7 +152,7 @@ def c50(tests: Evidence) -> Result:
     return found
 
 
-@hypothesis(51, evidence=PAIRS, rule=f"an increase on GF. {ONE_RULE}", error_rate=ONE_INTERVAL)
+@hypothesis(51)
 def c51(tests: Evidence) -> Result:
     """The test that the thesis did not make."""
     rows = tests.part(floor=GROUND)

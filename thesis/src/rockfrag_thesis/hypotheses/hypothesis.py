@@ -1,13 +1,13 @@
 """What a hypothesis of the thesis is: its words, its kind, the rule that tests it, and what came out."""
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass
 from enum import StrEnum
 from pathlib import Path
 from typing import Any
 
-import pandas as pd
+import yaml
 
 
 class Kind(StrEnum):
@@ -103,8 +103,7 @@ class Hypothesis:
     """One hypothesis of the thesis, in our own words."""
 
     number: int  # Its number, 1 to 58 (written C1 to C58); it never changes
-    # What it says, where the thesis says it, and what sort of sentence it is: its row of
-    # ``statements.csv``
+    # What it says, where the thesis says it, and what sort of sentence it is, as in ``statements.yaml``
     text: str
     source: str
     kind: Kind
@@ -114,27 +113,36 @@ class Hypothesis:
     test: Test  # Function that applies the rule
 
 
-_STATEMENTS = pd.read_csv(
-    Path(__file__).with_name("statements.csv"), comment="#", index_col="number"
-).to_dict("index")
-
-_HYPOTHESES: dict[int, Hypothesis] = {}
-
-HYPOTHESES: Mapping[int, Hypothesis] = _HYPOTHESES
+HYPOTHESES: dict[int, Hypothesis] = {}
 """Hypothesis by number, as far as their modules are loaded; the package loads all 58."""
 
+_STATEMENTS = yaml.safe_load(
+    Path(__file__).with_name("statements.yaml").read_text(encoding="utf-8")
+)
 
-def hypothesis(
-    number: int, *, evidence: str, rule: str, error_rate: str = "none: nothing is sampled"
-) -> Callable[[Test], Test]:
-    """Enter the decorated function as the test of a hypothesis, see `Hypothesis`; a number is taken once."""
+_ONE_RULE = (
+    "The 95 % interval decides: above 1 for it, below 1 against it; if neither and it ends below 1.1, a change "
+    "of 10 % or more is excluded"
+)
+_SEVERAL_RULE = (
+    "The 95 % intervals decide: all above 1 for it, one below 1 against it (Bonferroni); if neither, 10 % or "
+    "more is excluded where all end below 1.1, or one of those called noticeable (Bonferroni)"
+)
+"""What is said beside every hypothesis about an order, so that a reader can apply it to the row."""
+
+
+def hypothesis(number: int, **figures: Any) -> Callable[[Test], Test]:
+    """Enter the decorated function as the test of a hypothesis; figures are those that its words leave open."""
 
     def enter(test: Test) -> Test:
-        if number in _HYPOTHESES:
-            raise ValueError(f"C{number} is there already")
-        stated = _STATEMENTS[number]
-        about = (stated["statement"], stated["source"], Kind(stated["kind"]))
-        _HYPOTHESES[number] = Hypothesis(number, *about, evidence, rule, error_rate, test)
+        said = _STATEMENTS[number]
+        evidence, rule = (
+            said[name].format(one=_ONE_RULE, several=_SEVERAL_RULE, **figures)
+            for name in ("evidence", "rule")
+        )
+        error_rate = said.get("error_rate", "none: nothing is sampled")
+        about = (said["statement"], said["source"], Kind(said["kind"]), evidence, rule, error_rate)
+        HYPOTHESES[number] = Hypothesis(number, *about, test)
         return test
 
     return enter

@@ -15,16 +15,11 @@ from rockfrag_thesis.hypotheses.evidence import Evidence
 from rockfrag_thesis.hypotheses.hypothesis import Finding, Result, hypothesis
 from rockfrag_thesis.hypotheses.outcomes import (
     LEVEL,
-    ONE_INTERVAL,
     SEEN,
-    SEVERAL_INTERVALS,
     finding_of,
     known,
     ratios,
 )
-
-PAIRS = "pairs of tests, means by earthquake"
-AMPLITUDES = "overturning amplitudes, means by earthquake"
 
 
 class Size(Enum):
@@ -123,55 +118,29 @@ def margin(parts: Parts) -> float:
     return min(part.estimate.mean for part in parts.values())
 
 
-ONE_RULE = (
-    "The 95 % interval decides: above 1 for it, below 1 against it; if neither and it ends below 1.1, a change "
-    "of 10 % or more is excluded"
-)
-SEVERAL_RULE = (
-    "The 95 % intervals decide: all above 1 for it, one below 1 against it (Bonferroni); if neither, 10 % or "
-    "more is excluded where all end below 1.1, or one of those called noticeable (Bonferroni)"
-)
-"""What is said beside every hypothesis about an order, so that a reader can apply it to the row."""
-
 Differences = Callable[[Evidence], Parts]
 
-_ORDERS: dict[int, Differences] = {}
-
-ORDERS: Mapping[int, Differences] = _ORDERS
+ORDERS: dict[int, Differences] = {}
 """What the hypotheses about orders say of a table of tests, by number."""
 
 
 def order_hypothesis(
-    number: int,
-    *,
-    rule: str,
-    evidence: str = PAIRS,
-    several: bool = False,
-    error_rate: str | None = None,
-    unit: str = "earthquake",
-    more: Callable[[Evidence], str] = lambda _: "",
+    number: int, *, unit: str = "earthquake", more: Callable[[Evidence], str] = lambda _: ""
 ) -> Callable[[Differences], Differences]:
     """Enter the decorated function, from tests to differences, as a hypothesis about their order, see `order`.
 
-    ``several`` says whether there is more than one difference; ``error_rate`` is where it is not that of the rule
-    for one or several; ``more`` is computed from the tests.
+    ``more`` is computed from the tests.
     """
-    rate = error_rate or (SEVERAL_INTERVALS if several else ONE_INTERVAL)
 
     def enter(differences: Differences) -> Differences:
-        def test(tests: Evidence) -> Result:
-            return order(differences(tests), unit=unit, more=more(tests))
-
-        stated = f"{rule}. {SEVERAL_RULE if several else ONE_RULE}"
-        entry = hypothesis(number, evidence=evidence, rule=stated, error_rate=rate)
-        entry(test)
-        _ORDERS[number] = differences
+        ORDERS[number] = differences
+        hypothesis(number)(lambda tests: order(differences(tests), unit=unit, more=more(tests)))
         return differences
 
     return enter
 
 
-def effect_hypothesis(number: int, rule: str, what: str, sign: int = 1, **levels: str) -> None:
+def effect_hypothesis(number: int, what: str, sign: int = 1, **levels: str) -> None:
     """Enter a hypothesis about the sign of the effect at some levels, see `Evidence.effect`."""
-    enter = order_hypothesis(number, rule=rule)
+    enter = order_hypothesis(number)
     enter(lambda tests: {what: Part(tests.effect(**levels).times(sign))})

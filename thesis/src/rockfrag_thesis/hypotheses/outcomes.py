@@ -23,9 +23,6 @@ SEEN = 0.10
 Four earthquakes, each with nine pairs that scatter by 0.134 through tolerances of geometry and
 restitution alone, show 10 % (power of t on four earthquake means)."""
 
-ONE_INTERVAL = "2.5 % each way"
-SEVERAL_INTERVALS = "at most 2.5 % each way (intersection-union to be true, Bonferroni to be false)"
-
 
 def known(p: float) -> float:
     """A p value; one unit alone has none, and shows nothing."""

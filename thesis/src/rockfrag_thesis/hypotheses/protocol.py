@@ -9,7 +9,7 @@ from rockfrag.units import GRAVITY
 from rockfrag_thesis.hypotheses.evidence import PEDESTAL, Evidence
 from rockfrag_thesis.hypotheses.hypothesis import Finding, Result, Undecidable, hypothesis
 from rockfrag_thesis.hypotheses.orders import Part, order
-from rockfrag_thesis.hypotheses.outcomes import ONE_INTERVAL, decided, same
+from rockfrag_thesis.hypotheses.outcomes import decided, same
 
 MOTIONS = 12
 UNCOUNTED = 10.0
@@ -19,11 +19,7 @@ SMOOTH, ROUGH = 0.25, 1.0
 specimens offers, and what none does (ranges of engineering handbooks)."""
 
 
-@hypothesis(
-    55,
-    evidence="the table of tests",
-    rule="twelve motions for every tower on both sides; open for a table of other tests",
-)
+@hypothesis(55)
 def c55(tests: Evidence) -> Result:
     """Motions per specimen, and how close to overturning the figure is."""
     clean = tests.clean
@@ -46,12 +42,7 @@ def c55(tests: Evidence) -> Result:
     )
 
 
-@hypothesis(
-    56,
-    evidence="recorded force and moved mass of each test against its reported acceleration",
-    rule="force over mass within one step of the protocol (median of the tests) of what was reported",
-    error_rate=ONE_INTERVAL,
-)
+@hypothesis(56)
 def c56(tests: Evidence) -> Result:
     """Force over mass, where both were recorded; else how much miscounted mass would matter."""
     clean = tests.clean
@@ -90,12 +81,7 @@ def c56(tests: Evidence) -> Result:
     )
 
 
-@hypothesis(
-    57,
-    evidence="friction and contact forces that pure rocking needs in simulations of the tests",
-    rule="true if contacts stay closed in every test and none needs more friction than the least that "
-    "dry wood offers; false if a contact opens or needs more than rubber on concrete offers",
-)
+@hypothesis(57)
 def c57(tests: Evidence) -> Result:
     """Whether the model may leave sliding and jumping out; it says nothing about the experiment."""
     clean = tests.clean
@@ -122,12 +108,7 @@ def c57(tests: Evidence) -> Result:
     )
 
 
-@hypothesis(
-    58,
-    evidence="overturning amplitudes of simulations with and without sliding",
-    rule="with sliding allowed the mean amplitude is higher, t over earthquakes",
-    error_rate=ONE_INTERVAL,
-)
+@hypothesis(58)
 def c58(tests: Evidence) -> Result:
     """Overturning amplitude with sliding allowed against without."""
     if tests.sliding is None:

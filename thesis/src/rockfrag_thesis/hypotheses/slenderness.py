@@ -7,13 +7,12 @@ import numpy as np
 import pandas as pd
 
 from rockfrag.pedestal.cluster_means import Estimate, t_estimate
+from rockfrag.system import geometry
 from rockfrag.system.blocks import Stack
 from rockfrag_thesis.hypotheses.contrasts import contrast, power_note, slope_effect
 from rockfrag_thesis.hypotheses.evidence import PEDESTAL, Evidence
 from rockfrag_thesis.hypotheses.hypothesis import Finding, Result, Undecidable, hypothesis
 from rockfrag_thesis.hypotheses.orders import (
-    AMPLITUDES,
-    PAIRS,
     Part,
     Parts,
     effect_hypothesis,
@@ -22,9 +21,6 @@ from rockfrag_thesis.hypotheses.orders import (
 )
 from rockfrag_thesis.hypotheses.outcomes import (
     LEVEL,
-    ONE_INTERVAL,
-    SEEN,
-    SEVERAL_INTERVALS,
     all_of,
     decided,
     p_nonzero,
@@ -49,12 +45,7 @@ def _earthquake_means(tests: Evidence) -> pd.DataFrame:
     return means[names].dropna()
 
 
-@hypothesis(
-    25,
-    evidence=AMPLITUDES,
-    rule=f"ln a falls with H/B; mean of T2 within ±{100 * SEEN:.0f} % of the middle between T1 and T3",
-    error_rate=SEVERAL_INTERVALS,
-)
+@hypothesis(25)
 def c25(tests: Evidence) -> Result:
     """The slope, and the bend at T2; equilibrium alone (a as B/H) has a bend of -6 %."""
     means = _earthquake_means(tests)
@@ -74,12 +65,7 @@ def c25(tests: Evidence) -> Result:
     )
 
 
-@order_hypothesis(
-    26,
-    evidence=AMPLITUDES,
-    rule="ln a falls with H/B inside each earthquake, with and without pedestal",
-    several=True,
-)
+@order_hypothesis(26)
 def c26(tests: Evidence) -> Parts:
     """The fall on both sides."""
     rows = tests.amplitudes
@@ -89,25 +75,14 @@ def c26(tests: Evidence) -> Parts:
     }
 
 
-@hypothesis(
-    27,
-    evidence=PAIRS,
-    rule=f"decrease from T1 to T3 with P over that without, earthquake by earthquake, within ±{100 * SEEN:.0f} %",
-    error_rate=ONE_INTERVAL,
-)
+@hypothesis(27)
 def c27(tests: Evidence) -> Result:
     """Equal relative decrease from T1 to T3."""
     difference = tests.lead("object", "T3", "T1")
     return same(difference, f"decrease with P over decrease without {difference.text()}")
 
 
-@hypothesis(
-    28,
-    evidence=AMPLITUDES,
-    rule="decrease from the squattest to the most slender tower of one floor over that of another, earthquake "
-    f"by earthquake: true if any pair of floors differs, false if all are within ±{100 * SEEN:.0f} %",
-    error_rate="at most 2.5 % to be true (Bonferroni over the pairs of floors) or to be false",
-)
+@hypothesis(28)
 def c28(tests: Evidence) -> Result:
     """Decreases by floor; as a description of plots it says no more than that the figures differ."""
     span = float(np.ptp(list(tests.slenderness.values()))) if tests.slenderness else 0.0
@@ -159,17 +134,12 @@ def stack_slenderness(tests: Evidence) -> pd.DataFrame:
     base = bodies[PEDESTAL]
     rows = []
     for name in sorted(set(bodies) - {PEDESTAL}):
-        arm = Stack(base, bodies[name]).common_arm(1)
-        rows.append((name, bodies[name].h / bodies[name].b, arm.y / base.b))
+        height = geometry.common_arm(Stack(base, bodies[name]).pile, 1)[1]
+        rows.append((name, bodies[name].h / bodies[name].b, height / base.b))
     return pd.DataFrame(rows, columns=["object", "alone", "stacked"])
 
 
-@hypothesis(
-    30,
-    evidence="dimensions and masses of the specimens",
-    rule="height of the common centre of gravity over half the pedestal's width against the tower's H/B: "
-    "false if no stack is the more slender",
-)
+@hypothesis(30)
 def c30(tests: Evidence) -> Result:
     """Geometry of the stack; about its strength see C29."""
     table = stack_slenderness(tests)
@@ -197,21 +167,16 @@ def _changed(tests: Evidence) -> str:
     )
 
 
-effect_hypothesis(29, "an increase over all pairs", "P/NP of all pairs")
+effect_hypothesis(29, "P/NP of all pairs")
 
 
-@order_hypothesis(49, rule="as C29, which says the same", more=_changed)
+@order_hypothesis(49, more=_changed)
 def c49(tests: Evidence) -> Parts:
     """The effect over all pairs."""
     return {"P/NP of all pairs": Part(tests.effect())}
 
 
-@hypothesis(
-    31,
-    evidence=PAIRS,
-    rule=f"slope of ln P/NP on H/B inside each earthquake: over the range of H/B within ±{100 * SEEN:.0f} %",
-    error_rate=ONE_INTERVAL,
-)
+@hypothesis(31)
 def c31(tests: Evidence) -> Result:
     """No trend of the effect with slenderness."""
     table = tests.table.assign(slenderness=tests.table["object"].map(tests.slenderness))
@@ -219,9 +184,7 @@ def c31(tests: Evidence) -> Result:
     return same(over, f"P/NP of the most slender over that of the least {over.text()}")
 
 
-@order_hypothesis(
-    32, rule="P/NP of T3 exceeds that of T1 and of T2, earthquake by earthquake", several=True
-)
+@order_hypothesis(32)
 def c32(tests: Evidence) -> Parts:
     """T3's effect over T1's and T2's."""
     return {
@@ -230,17 +193,10 @@ def c32(tests: Evidence) -> Parts:
     }
 
 
-effect_hypothesis(
-    33, "an increase of T2; “nearly opposite” cannot be tested", "P/NP of T2", object="T2"
-)
+effect_hypothesis(33, "P/NP of T2", object="T2")
 
 
-@order_hypothesis(
-    53,
-    evidence=AMPLITUDES,
-    rule="ln a of T1 exceeds that of T2, and that of T2 that of T3, earthquake by earthquake",
-    several=True,
-)
+@order_hypothesis(53)
 def c53(tests: Evidence) -> Parts:
     """T1 above T2 above T3."""
     names = [tests.level("object", name) for name in TOWERS]
@@ -252,13 +208,7 @@ def c53(tests: Evidence) -> Parts:
     }
 
 
-@hypothesis(
-    54,
-    evidence=AMPLITUDES,
-    rule="the trends a on H/B (the thesis's), ln a on H/B and a on B/H through T1 and T2 prolonged to T3: "
-    f"true if all miss its mean, false if the thesis's own is within ±{100 * SEEN:.0f} %",
-    error_rate=SEVERAL_INTERVALS,
-)
+@hypothesis(54)
 def c54(tests: Evidence) -> Result:
     """Error of three extrapolations to T3; scatter alone makes none of them miss the mean."""
     means = _earthquake_means(tests)

@@ -26,6 +26,7 @@ from rockfrag_thesis.hypotheses.outcomes import (
 from rockfrag_thesis.hypotheses.setting import PERIODS, SIZES, Setting
 
 DAMPINGS = (0.02, 0.10)
+PERCENTS = tuple(100 * damping for damping in DAMPINGS)
 LONG = 200.0
 """A period that counts as infinite [s]."""
 ROCKS = 0.01
@@ -34,12 +35,7 @@ CHANGE = 0.05
 """Small change of slenderness or damping whose effects are compared with it [-]."""
 
 
-@hypothesis(
-    14,
-    evidence=f"max |θ|/θc of {SIZES.size} blocks with 2π/p from {SIZES[0]:g} to {SIZES[-1]:g} s of each "
-    "specimen's slenderness, motions as recorded",
-    rule="Spearman's ρ with 2π/p is nearer to -1 than to 0 in most spectra",
-)
+@hypothesis(14, blocks=SIZES.size, ends=SIZES[[0, -1]])
 def c14(setting: Setting) -> Result:
     """Rank correlation of peak rotation with 2π/p, and fraction of steps that rise."""
     correlations, rises = [], []
@@ -63,12 +59,7 @@ def c14(setting: Setting) -> Result:
     )
 
 
-@hypothesis(
-    15,
-    evidence=f"5 % damped Sd from {PERIODS[0]:g} to {PERIODS[-1]:g} s, and at {LONG:g} s within the record",
-    rule="true if up to its maximum Sd grows in rank with the period (Spearman's ρ nearer to 1 than to 0), "
-    f"and the oscillator of {LONG:g} s moves as the ground within its damping, for every motion",
-)
+@hypothesis(15, ends=PERIODS[[0, -1]], long=LONG)
 def c15(setting: Setting) -> Result:
     """Displacement spectrum: the rise to its maximum, and its value at a very long period."""
     rise, end, top = [], [], []
@@ -108,13 +99,7 @@ def _longest_band(inside: NDArray[np.bool_]) -> tuple[float, float]:
     return best
 
 
-@hypothesis(
-    16,
-    evidence=f"Sd at {100 * DAMPINGS[0]:.0f} % and {100 * DAMPINGS[1]:.0f} % damping from {PERIODS[0]:g} to "
-    f"{PERIODS[-1]:g} s",
-    rule=f"true if one motion has a range of a third of an octave or more in which the two are within "
-    f"{100 * SEEN:.0f} %; that others have none does not make it false",
-)
+@hypothesis(16, dampings=PERCENTS, ends=PERIODS[[0, -1]])
 def c16(setting: Setting) -> Result:
     """Ranges of period in which Sd at 2 % and at 10 % damping are nearly the same."""
     low, high = (setting.spectra.displacement(damping) for damping in DAMPINGS)
@@ -134,12 +119,7 @@ def c16(setting: Setting) -> Result:
     )
 
 
-@hypothesis(
-    17,
-    evidence=f"|change of ln max |θ|| when slenderness changes by ±{100 * CHANGE:.0f} %, median over the blocks "
-    "of each motion; beside it that of Sd when damping changes as much",
-    rule="the rotation changes by more than the slenderness does for most motions",
-)
+@hypothesis(17, change=100 * CHANGE)
 def c17(setting: Setting) -> Result:
     """Change of peak rotation with slenderness over the change of slenderness."""
     base = setting.spectra.rotation()
@@ -188,13 +168,7 @@ def exchanges(values: Floats, other: Floats) -> tuple[int, int]:
     return changed, total
 
 
-@hypothesis(
-    18,
-    evidence="pairs of motions: which spectrum exceeds the other over most abscissas, Sd at "
-    f"{100 * DAMPINGS[0]:.0f} % and {100 * DAMPINGS[1]:.0f} % damping, max |θ|/θc at the specimens' slendernesses",
-    rule="true if some pairs change their order between slendernesses, and a larger fraction of them than of "
-    "oscillators between dampings; false if a smaller fraction does; else open",
-)
+@hypothesis(18, dampings=PERCENTS)
 def c18(setting: Setting) -> Result:
     """Order of the motions' spectra at two dampings, and at two slendernesses."""
     if len(setting.motions) < 2:
@@ -243,14 +217,7 @@ def dispersion_ratio(measure: Floats, other: Floats, groups: list[str]) -> Estim
     return jackknife(whole, [ratio(member != name) for name in names])
 
 
-@hypothesis(
-    19,
-    evidence="scatter over motions of ln Sa (5 %, T = 2π/p of the block) at which each lone block first "
-    "overturns, against that of ln PGA and of ln PGV: a proxy would scatter least",
-    rule="true if Sa scatters more than PGA or more than PGV (95 % interval by jackknife over earthquakes), "
-    "false if less than both",
-    error_rate="about 5 % to be true (two comparisons), 2.5 % to be false, over earthquakes like these",
-)
+@hypothesis(19)
 def c19(setting: Setting) -> Result:
     """How much Sa, PGA and PGV scatter when a block overturns."""
     motions, blocks = setting.motions, list(setting.blocks.values())

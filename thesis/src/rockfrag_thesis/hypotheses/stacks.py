@@ -29,13 +29,7 @@ TABLE_4_1_ROCKING_MODE_3 = {"P&T1": 3.69, "P&T2": 3.04, "P&T3": 2.56}
 """Printed accelerations that start rocking [m/s²]; those of pattern 4 repeat those of lone towers."""
 
 
-@hypothesis(
-    2,
-    evidence="eq. 2.21 to 2.25, and simulations of sudden accelerations (of the stack held together for "
-    "pattern 3)",
-    rule="computed figures round to the printed digits; simulated bodies start between 1 - 1e-9 and "
-    "1 + 1e-9 of them",
-)
+@hypothesis(2)
 def c2(setting: Setting) -> Result:
     """The closed forms against Table 4.1, and simulations on either side of them."""
     require_thesis_specimens(setting)
@@ -70,12 +64,7 @@ SUDDEN = np.geomspace(1.01, 6.0, 20)
 """Sudden accelerations of C9 over the one that starts rocking [-]."""
 
 
-@hypothesis(
-    9,
-    evidence="first pattern of the stacks under the motions, and under sudden accelerations up to "
-    f"{SUDDEN[-1]:g} times the one that starts rocking",
-    rule="true under all motions; exceptions among sudden accelerations are said",
-)
+@hypothesis(9, most=SUDDEN[-1])
 def c9(setting: Setting) -> Result:
     """First pattern under records and under sudden accelerations."""
     first: Counter[str] = Counter()
@@ -110,12 +99,7 @@ def _counted(counts: Counter[str]) -> str:
     return ", ".join(f"{name} {n}" for name, n in sorted(counts.items()))
 
 
-@hypothesis(
-    10,
-    evidence="only patterns 3 and 4 have an interface in full contact that could open; openings in "
-    "simulations of the stacks",
-    rule="no simulated opening from pattern 1 or 2",
-)
+@hypothesis(10)
 def c10(setting: Setting) -> Result:
     """Patterns from which interfaces open without an impact."""
     sources: Counter[str] = Counter()
@@ -177,13 +161,7 @@ def _kinds(transitions: Counter[tuple[str, str]]) -> Counter[str]:
     return found
 
 
-@hypothesis(
-    11,
-    evidence="outcomes of all impacts of the stacks under the motions, and of random stacks whose statue "
-    "is tilted and released",
-    rule="after every impact under the motions both interfaces rock on, or what met stays together; "
-    "exceptions among random stacks are said",
-)
+@hypothesis(11)
 def c11(setting: Setting) -> Result:
     """Outcomes of impacts: both interfaces rocking, staying together, or another."""
     own = Counter(zip(setting.impacts["from"], setting.impacts["to"], strict=True))
@@ -281,13 +259,7 @@ def random_stacks(seed: int) -> tuple[Counter[str], Counter[tuple[str, str]]]:
     return first, every
 
 
-@hypothesis(
-    12,
-    evidence="what the pedestal does after a statue lands on it while it stood still: the stacks under the "
-    f"motions, and the first landing in free fall of {GEOMETRIES} random stacks",
-    rule="true if it stands still before the statue comes down next after more than half of the landings "
-    "under the motions; landings of random stacks after which it rocks on are said as exceptions",
-)
+@hypothesis(12, random=GEOMETRIES)
 def c12(setting: Setting) -> Result:
     """What a still pedestal does after the statue lands on it."""
     own: Counter[str] = Counter()
@@ -313,13 +285,7 @@ def c12(setting: Setting) -> Result:
     )
 
 
-@hypothesis(
-    13,
-    evidence="kinetic energy across impacts, velocities across openings, and the balance of energy, losses "
-    "and input between them in simulations of the stacks",
-    rule="no impact gains energy (1e-9), no opening changes a velocity, the balance closes to 1e-6 of the "
-    "largest energy",
-)
+@hypothesis(13)
 def c13(setting: Setting) -> Result:
     """Energy and velocities across contact events, and the balance between them."""
     gain, kink, residual, loss = -math.inf, 0.0, 0.0, []
@@ -354,11 +320,7 @@ SQUAT_ON_SLENDER = Stack(Block(0.1, 1.0, 10.0), Block(0.1, 0.05, 0.5))
 """A squat statue on a slender pedestal, the other way round than the thesis's [m, kg]."""
 
 
-@hypothesis(
-    21,
-    evidence="eq. 2.21 to 2.25 (C2)",
-    rule="true for every stack; a squat statue on a slender pedestal is the exception",
-)
+@hypothesis(21)
 def c21(setting: Setting) -> Result:
     """Threshold of pattern 4 over that of pattern 3."""
     ratio = {k: setting.rocking_mode_4[k] / setting.rocking_mode_3[k] for k in setting.assemblies}
@@ -370,11 +332,7 @@ def c21(setting: Setting) -> Result:
     )
 
 
-@hypothesis(
-    22,
-    evidence="eq. 2.1 and 2.24, 2.25: a still pedestal is like the ground",
-    rule="the two figures are equal within 1e-9",
-)
+@hypothesis(22)
 def c22(setting: Setting) -> Result:
     """Threshold of pattern 4 against that of the statue alone."""
     worst = max(
@@ -387,12 +345,7 @@ def c22(setting: Setting) -> Result:
     )
 
 
-@hypothesis(
-    23,
-    evidence="eq. 2.21, 2.22 against 2.1 for a statue that is held, simulations of sudden accelerations "
-    "for a free one",
-    rule="true for every stack; a squat statue on a slender pedestal is the exception",
-)
+@hypothesis(23)
 def c23(setting: Setting) -> Result:
     """Acceleration that moves the pedestal too, against that of the statue alone."""
     held = {k: setting.rocking_mode_3[k] / setting.rocking_mode_4[k] for k in setting.assemblies}
@@ -408,12 +361,7 @@ def c23(setting: Setting) -> Result:
     )
 
 
-@hypothesis(
-    24,
-    evidence="eq. 2.1 and 2.21 to 2.25 (C2)",
-    rule="the thresholds of lone towers, pattern 3 and pattern 4 fall from each tower to the next more "
-    "slender",
-)
+@hypothesis(24)
 def c24(setting: Setting) -> Result:
     """Thresholds in the order of slenderness."""
     if len(setting.blocks) < 2:
