@@ -11,10 +11,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
-from tests.oracle.rocking_integrator import LONGEST_TAIL, Run
-from tests.oracle.rocking_model import Model, rates
 
 from rockfrag.system.blocks import Block, Body
+from tests.oracle.rocking_integrator import LONGEST_TAIL, Run
+from tests.oracle.rocking_model import Model, rates
 
 G = 9.81
 Array = NDArray[np.float64]
