@@ -16,11 +16,12 @@ from rockfrag.system.system import System
 
 @dataclass(eq=False)
 class BuiltIn(Engine):
-    """An engine by its name, what it can meet, and where its ``run`` stands, with a ``history`` beside it."""
+    """An engine by its name, what it can meet, and where its ``run`` and ``history`` stand."""
 
     name: str
     meets: frozenset[Wish]
     runs: str = ""  # function of cases
+    tells: str = ""  # function of one case, of an engine that meets Wish.HISTORY
 
     def run(self, cases: Cases) -> Outcomes:
         """Return the outcomes of cases that it supports."""
@@ -29,7 +30,7 @@ class BuiltIn(Engine):
 
     def history(self, case: Case) -> Any:
         """Return the response of a case that it supports."""
-        return resolve_name(self.runs.replace(":run", ":history"))(case)
+        return resolve_name(self.tells)(case)
 
 
 _REASONS = {
@@ -83,6 +84,7 @@ SINGLE = PureRocking(
     "single histories",
     frozenset({Wish.TWO_BODIES, *_STANDING, Wish.START, Wish.LINEAR, Wish.FORCES, Wish.HISTORY}),
     "rockfrag.engines.single:run",
+    "rockfrag.engines.single:history",
 )
 """One or two bodies, case by case (``kernels.single``)."""
 
@@ -91,6 +93,7 @@ PLANAR = BuiltIn(
     frozenset({Wish.TWO_BODIES, Wish.MANY_BODIES, *_STANDING})
     | {Wish.FRICTION, Wish.START, Wish.HISTORY},
     "rockfrag.engines.planar.engine:run",
+    "rockfrag.engines.planar.engine:history",
 )
 """Planar bodies that stick, slide, rock, fly and land (``docs/contact.md``)."""
 
@@ -98,6 +101,7 @@ SPATIAL = SpatialEngine(
     "space",
     frozenset({Wish.SPACE, Wish.VERTICAL, Wish.FRICTION, Wish.HISTORY}),
     "rockfrag.engines.spatial.engine:run",
+    "rockfrag.engines.spatial.engine:history",
 )
 """One body in space."""
 
