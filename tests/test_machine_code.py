@@ -26,8 +26,7 @@ def fresh(path: Path):
     return module.thrice
 
 
-@pytest.mark.parametrize("damaged", ["*.nbi", "*.nbc", "*.nb?"])
-@pytest.mark.parametrize("left", [0, 20, 200])
+@pytest.mark.parametrize(("damaged", "left"), [("*.nbi", 20), ("*.nbc", 200), ("*.nb?", 0)])
 def test_damaged_machine_code_is_made_anew(tmp_path, monkeypatch, damaged, left):
     monkeypatch.setattr(numba.config, "CACHE_DIR", str(tmp_path / "cache"))
     path = tmp_path / "of_this_test.py"

@@ -176,7 +176,7 @@ def test_without_network_one_sentence_says_what_to_do(tmp_path, wheel, monkeypat
     def no_network(command, **_):
         assert command[1:4] == ["-m", "pip", "download"]
         assert "small==1.0" in command
-        return subprocess.CompletedProcess(command, 1, "", "no route to host")
+        raise subprocess.CalledProcessError(1, command, stderr="no route to host")
 
     monkeypatch.setattr(subprocess, "run", no_network)
     with pytest.raises(InputError, match=r"small 1\.0: pip could not.*fetch small --wheel PATH"):

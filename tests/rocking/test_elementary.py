@@ -6,7 +6,6 @@ import mpmath
 import numpy as np
 import pytest
 
-from rockfrag import elementary
 from rockfrag.elementary import acos, atan2, cos, hypot, sin, sin_cos
 from rockfrag.engines.kernels.jit import entry_kernel
 
@@ -102,20 +101,6 @@ def test_zeros_infinities_and_what_is_no_number(function, arguments, right):
     assert (found == right and math.copysign(1, found) == math.copysign(1, right)) or (
         math.isnan(found) and math.isnan(right)
     )
-
-
-def test_typed_constants_are_what_they_say():
-    half_pi = [getattr(elementary, f"_HALF_PI_{n}") for n in (1, 2, 3, 4)]
-    assert abs(sum(map(mpmath.mpf, half_pi)) - mpmath.pi / 2) < mpmath.mpf(2) ** -155
-    assert all((part * 2.0**n) % 1 == 0 for part, n in zip(half_pi[:3], (33, 67, 101), strict=True))
-    for k, (high, low) in enumerate(zip(elementary._ARC, elementary._ARC_LOW, strict=True)):
-        exact = mpmath.atan(mpmath.mpf(k) / 8)
-        assert (high, low) == (float(exact), float(exact - mpmath.mpf(float(exact))))
-    for high, low in (
-        (elementary._PI, elementary._PI_LOW), (elementary._HALF_PI, elementary._HALF_PI_LOW),
-    ):  # fmt: skip
-        exact = mpmath.pi * round(high / math.pi * 2) / 2
-        assert (high, low) == (float(exact), float(exact - mpmath.mpf(high)))
 
 
 @entry_kernel

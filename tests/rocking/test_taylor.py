@@ -118,15 +118,6 @@ def test_the_series_written_out_for_lanes_are_those_of_the_recurrence(theta, ome
         np.testing.assert_allclose(item, angle[1:] * np.arange(1, ORDER + 1), rtol=1e-9, atol=1e-17)
 
 
-def test_the_series_of_a_ground_that_keeps_its_height_are_those_of_one_that_rises_by_nothing():
-    mass, moments, _, _, rates, ground = step_of(*CASES[0])
-    found = [
-        written_out(mass, *moments, tuple(rates), ground, (GRAVITY, 0.0, rises))
-        for rises in (False, True)
-    ]
-    assert found[0] == found[1]
-
-
 @entry_kernel
 def closed_both_ways(body, hop, state, constants, scratch):
     """Velocities of a contact that stays closed, as it is closed at once and as an impact would close it."""

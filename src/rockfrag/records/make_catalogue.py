@@ -2,13 +2,12 @@
 
 import csv
 import hashlib
-import math
 import os
 import re
 from collections import defaultdict
 from collections.abc import Iterable, Mapping, Sequence
-from contextlib import suppress
 from dataclasses import dataclass, field
+from itertools import dropwhile, takewhile
 from pathlib import Path, PurePosixPath
 from typing import Any
 
@@ -72,17 +71,14 @@ def read_search_results(path: str | os.PathLike[str]) -> list[PeerRecord]:
         lines = Path(path).read_text(encoding="utf-8-sig", errors="replace").splitlines()
     except OSError as error:
         raise InputError(f"{path}: cannot be read ({error.strerror}).") from None
-    start = next((i for i, line in enumerate(lines) if _SECTION.search(line)), None)
+    start = next((i for i, line in enumerate(lines, start=1) if _SECTION.search(line)), None)
     if start is None:
         raise InputError(f"{path}: no section 'Summary of Metadata of Selected Records'.")
     titles: list[str] = []
     records: list[PeerRecord] = []
-    for number, line in enumerate(lines[start + 1 :], start=start + 2):
+    below = dropwhile(_is_empty, enumerate(lines[start:], start=start + 1))
+    for number, line in takewhile(lambda each: not _is_empty(each), below):
         where = f"{path}, line {number}"
-        if not line.strip(" ,"):
-            if titles:
-                break
-            continue
         try:
             cells = [cell.strip() for cell in next(csv.reader([line]))]
         except csv.Error as error:
@@ -98,6 +94,10 @@ def read_search_results(path: str | os.PathLike[str]) -> list[PeerRecord]:
     if not records:
         raise InputError(f"{path}: the section of records has no row; the file is cut short.")
     return records
+
+
+def _is_empty(numbered: tuple[int, str]) -> bool:
+    return not numbered[1].strip(" ,")
 
 
 def _peer_record(row: dict[str, str], where: str) -> PeerRecord:
@@ -120,9 +120,7 @@ def _peer_record(row: dict[str, str], where: str) -> PeerRecord:
 
 
 def _number(words: str) -> float | None:
-    value = math.nan
-    with suppress(ValueError):
-        value = float(words)
+    value = float(pd.to_numeric(words, errors="coerce"))
     return value if 0 < value < 1e6 else None
 
 
@@ -242,9 +240,7 @@ class CatalogueDraft:
         self, listed: PeerRecord, found: Sequence[Component], used: set[str]
     ) -> list[dict[str, Any]]:
         """Return the rows of one record of a download."""
-        by_name: dict[str, Component] = {}
-        for component in found:
-            by_name.setdefault(Path(component.path).name.lower(), component)
+        by_name = {Path(component.path).name.lower(): component for component in reversed(found)}
         # names may have the folder of PEER's disk before them
         own = [PurePosixPath(name.replace("\\", "/")).name.lower() for name in listed.files]
         first, second, vertical = (by_name.get(name) for name in own)

@@ -108,11 +108,7 @@ class Motion:
         return {"peak_before_m_s2": self.pga, "peak_after_m_s2": after}
 
     def after(
-        self,
-        step: str,
-        acceleration: Floats,
-        dt: float | None = None,
-        **parameters: Any,
+        self, step: str, acceleration: Floats, dt: float | None = None, **parameters: Any
     ) -> "Motion":
         """Return the motion that ``step`` made of this one, with the step in its provenance."""
         return replace(

@@ -83,7 +83,8 @@ def _channels(path: Path, dt: float | None, cut_short: bool) -> tuple[str, list[
 
 def _archived(file: str, wanted: str, dt: float | None, cut_short: bool) -> Record:
     """Read one member of an archive, or all that hold acceleration."""
-    records: list[tuple[str, str, list[Channel]]] = []
+    channels: list[Channel] = []
+    forms: set[str] = set()
     left_out: list[tuple[str, InputError]] = []
     with unpacked(file) as members:
         chosen = [m for m in members if wanted in (m.name, Path(m.name).name)]
@@ -94,9 +95,9 @@ def _archived(file: str, wanted: str, dt: float | None, cut_short: bool) -> Reco
             )
         for member in chosen or (m for m in members if not is_no_record(m.name)):
             try:
-                name, channels = _channels(member.path, dt, cut_short)
+                form, found = _channels(member.path, dt, cut_short)
                 # read before the folder goes, and to know which members are damaged
-                channels = [replace(c, samples=c.samples().copy) for c in channels]
+                found = [replace(c, samples=c.samples().copy, member=member.name) for c in found]
             except InputError as error:
                 # the user knows the archive's names, not where they lie unpacked
                 told = type(error)(str(error).replace(str(member.path), f"{file}#{member.name}"))
@@ -104,24 +105,18 @@ def _archived(file: str, wanted: str, dt: float | None, cut_short: bool) -> Reco
                     raise told from None
                 left_out.append((member.name, told))
                 continue
-            records.append((member.name, name, channels))
-    if not records:
+            channels += found
+            forms.add(form)
+    if not channels:
         why = f": {left_out[0][1]}" if left_out else "."
         kinds = {type(error) for _, error in left_out}
         problem = NotAcceleration if kinds == {NotAcceleration} else InputError
         raise problem(f"{file}: no member of the archive holds acceleration{why}")
-    named = len(records) > 1
-    return Record(
-        f"{file}#{wanted}" if wanted else file,
-        "+".join(sorted({name for _, name, _ in records})),
-        sha256_of(Path(file)),
-        tuple(
-            replace(channel, member=member) if named else channel
-            for member, _, channels in records
-            for channel in channels
-        ),
-        tuple(left_out),
-    )
+    if len({channel.member for channel in channels}) == 1:
+        channels = [replace(channel, member="") for channel in channels]
+    name = f"{file}#{wanted}" if wanted else file
+    digest = sha256_of(Path(file))
+    return Record(name, "+".join(sorted(forms)), digest, tuple(channels), tuple(left_out))
 
 
 @named_keywords

@@ -14,11 +14,7 @@ from numba.core.cgutils import normalize_ir_text
 from numba.core.codegen import JITCodeLibrary
 from numba.core.compiler import CompilerBase
 from numba.core.compiler_lock import global_compiler_lock
-from numba.core.ir_utils import build_definitions
-from numba.core.rewrites.static_getitem import RewriteConstGetitems, RewriteConstSetitems
-from numba.core.ssa import reconstruct_ssa
 from numba.core.targetconfig import ConfigStack
-from numba.core.transforms import canonicalize_cfg
 from numba.core.types.functions import Dispatcher
 from numba.core.types.misc import unliteral
 
@@ -91,32 +87,6 @@ def _callers_first(libraries: list[Any]) -> list[Any]:
     return order[::-1]
 
 
-class _Prepare:
-    """Prepares a kernel, as it is translated, for its types to be found."""
-
-    def run_pass(self, state: Any) -> None:
-        """Do so."""
-        code = state.func_ir
-        code.blocks = canonicalize_cfg(code.blocks)
-        # tuple[0] is then a part of the tuple, not a function of tuple and index to be compiled
-        for kind in (RewriteConstGetitems, RewriteConstSetitems):
-            rewrite = kind(state)
-            for key, block in code.blocks.items():
-                if rewrite.match(code, block, None, None):
-                    code.blocks[key] = rewrite.apply()
-        reconstruct_ssa(code)
-        code._definitions = build_definitions(code.blocks)
-
-
-class _StripPhis(typed_passes.PreLowerStripPhis):
-    """Takes choices by the way that was come out again, before lowering."""
-
-    def run_pass(self, state: Any) -> None:
-        """Do so."""
-        state.func_ir = self._strip_phi_nodes(state.func_ir)
-        state.func_ir._definitions = build_definitions(state.func_ir.blocks)
-
-
 class LowerPart(typed_passes.NativeLowering):
     """Make a kernel known to those that call it, without machine code."""
 
@@ -170,9 +140,12 @@ class _KernelCompiler(CompilerBase):
             for kind in (
                 untyped_passes.TranslateByteCode,
                 untyped_passes.FixupArgs,
-                _Prepare,
+                untyped_passes.IRProcessing,
+                # tuple[0] is then a part of the tuple, not a function of tuple and index to be compiled
+                untyped_passes.GenericRewrites,
+                untyped_passes.ReconstructSSA,
                 typed_passes.NopythonTypeInference,
-                _StripPhis,
+                typed_passes.PreLowerStripPhis,
                 self.lowering,
                 typed_passes.NoPythonBackend,
             ):

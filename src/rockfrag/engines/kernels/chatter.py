@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from rockfrag.arrays import fields
 from rockfrag.elementary import hypot
 from rockfrag.engines.kernels.contact_states import at_rest
-from rockfrag.engines.kernels.equations import accelerations, upper_balance
+from rockfrag.engines.kernels.equations import accelerations, turning
 from rockfrag.engines.kernels.impact import mass_matrix
 from rockfrag.engines.kernels.jit import inlined_kernel, kernel
 
@@ -70,7 +70,7 @@ def fill_restoring(body, restoring, scratch):
             still = _restoring(body, c1, c2, 0.0, scratch)
             restoring.still[i] = still
             restoring.per_ground[i] = _restoring(body, c1, c2, 1.0, scratch) - still
-    _, vx, vy, inertia = upper_balance(body, 1)
+    vx, vy, inertia = turning(body, 0, 1)
     # p² of a ground that does not move vertically
     frequency2 = body.gravity * hypot(vx, vy) / inertia
     restoring.frequency2 = frequency2

@@ -244,10 +244,16 @@ def metric(body, first, other, turn):
 @kernel
 def kinetic_energy(body, state):
     """Kinetic energy relative to the ground [J]."""
-    pivots = pivot(state.c1), pivot(state.c2)
+    return energy_with(body, state, (state.c1, state.c2), (state.omega1, state.omega2))
+
+
+@kernel
+def energy_with(body, state, contacts, omega):
+    """Kinetic energy of a state with other contacts and velocities [J]."""
+    pivots = pivot(contacts[0]), pivot(contacts[1])
     k11, k12, _, k22 = metric(body, pivots, pivots, turn_between(body, state))
-    omega1, omega2 = state.omega1, state.omega2
-    return 0.5 * (k11 * omega1 * omega1 + 2.0 * k12 * omega1 * omega2 + k22 * omega2 * omega2)
+    w1, w2 = omega
+    return 0.5 * (k11 * w1 * w1 + 2.0 * k12 * w1 * w2 + k22 * w2 * w2)
 
 
 @kernel
@@ -267,40 +273,33 @@ def potential_energy(body, state):
 
 
 @kernel
-def balance(body, c1, c2):
-    """Critical angle, first moment and inertia of the pedestal with what stands on it, on pivot c1."""
+def turning(body, c1, c2):
+    """First moment and inertia of what turns about an open pivot: the statue where c1 is 0, else all on c1's."""
     s1, s2 = pivot(c1), pivot(c2)
-    if c2 == 0:
-        v1x, v1y = first_moment1(body, s1, s2)
-        v2x, v2y = first_moment2(body, s2)
-        e, _ = coupling(body, s1, s2)
-        vx, vy = v1x + v2x, v1y + v2y
-        inertia = inertia1(body, s1, s2) + 2.0 * e + inertia2(body, s2)
-    else:
-        vx, vy = first_moment1(body, s1, s2)
-        inertia = inertia1(body, s1, s2)
-    return atan2(-c1 * vx, vy), vx, vy, inertia
+    x2, y2 = first_moment2(body, s2)
+    if c1 == 0:
+        return x2, y2, inertia2(body, s2)
+    x1, y1 = first_moment1(body, s1, s2)
+    if c2 != 0:
+        return x1, y1, inertia1(body, s1, s2)
+    e, _ = coupling(body, s1, s2)
+    return x1 + x2, y1 + y2, inertia1(body, s1, s2) + 2.0 * e + inertia2(body, s2)
 
 
 @kernel
-def upper_balance(body, c2):
-    """Critical angle, first moment and inertia of the statue (or lone block) on its pivot c2."""
-    vx, vy = first_moment2(body, pivot(c2))
-    return atan2(-c2 * vx, vy), vx, vy, inertia2(body, pivot(c2))
+def balance(body, c1, c2):
+    """Critical angle of what turns about an open pivot, its first moment and inertia (``turning``)."""
+    vx, vy, inertia = turning(body, c1, c2)
+    return atan2(-(c1 or c2) * vx, vy), vx, vy, inertia
 
 
 @kernel
 def barrier(body):
     """Least energy [J] that could overturn the body at rest without help from the ground."""
     least = math.inf
-    for s2 in (1.0, -1.0):
-        vx, vy = first_moment2(body, s2)
-        least = min(least, hypot(vx, vy) - vy)
-        if not body.fixed:
-            for s1 in (1.0, -1.0):
-                vx, vy = first_moment1(body, s1, s2)
-                least = min(least, hypot(vx, vy) - vy)
-                wx, wy = first_moment2(body, s2)
-                vx, vy = vx + wx, vy + wy
+    for c1 in (0, 1, -1):
+        for c2 in (0, 1, -1):
+            if (c1 != 0 or c2 != 0) and not (c1 != 0 and body.fixed):
+                vx, vy, _ = turning(body, c1, c2)
                 least = min(least, hypot(vx, vy) - vy)
     return least * body.gravity

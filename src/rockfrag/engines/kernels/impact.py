@@ -5,7 +5,13 @@ restitution then says at which rate the closing contact comes off, as far as ene
 """
 
 from rockfrag.engines.kernels.contact_states import side_of
-from rockfrag.engines.kernels.equations import kinetic_energy, metric, pivot, turn_between
+from rockfrag.engines.kernels.equations import (
+    energy_with,
+    kinetic_energy,
+    metric,
+    pivot,
+    turn_between,
+)
 from rockfrag.engines.kernels.jit import inlined_kernel, kernel
 from rockfrag.engines.kernels.laws import moves_impulse, rate
 
@@ -171,7 +177,7 @@ def _measured(body, state, closes, momentum):
     others = n1, n2
     n1, n2, w1, w2 = _with_rates(body, state, closes, others, (has1, want1), (has2, want2))
     limit = kinetic_energy(body, state) * (1.0 + GAIN)
-    if _energy_with(body, state, n1, n2, w1, w2) <= limit:
+    if energy_with(body, state, (n1, n2), (w1, w2)) <= limit:
         return n1, n2, w1, w2, 0 if exists else 1
     # as far from what momentum says as energy allows
     low, high = 0.0, 1.0
@@ -180,7 +186,7 @@ def _measured(body, state, closes, momentum):
         first = has1, rate1 + fraction * (want1 - rate1)
         two = has2, rate2 + fraction * (want2 - rate2)
         n1, n2, w1, w2 = _with_rates(body, state, closes, others, first, two)
-        if _energy_with(body, state, n1, n2, w1, w2) <= limit:
+        if energy_with(body, state, (n1, n2), (w1, w2)) <= limit:
             low = fraction
         else:
             high = fraction
@@ -188,14 +194,6 @@ def _measured(body, state, closes, momentum):
     two = has2, rate2 + low * (want2 - rate2)
     n1, n2, w1, w2 = _with_rates(body, state, closes, others, first, two)
     return n1, n2, w1, w2, 1
-
-
-@kernel
-def _energy_with(body, state, n1, n2, w1, w2):
-    """Kinetic energy in a state, with other contacts and velocities [J]."""
-    pivots = pivot(n1), pivot(n2)
-    k11, k12, _, k22 = metric(body, pivots, pivots, turn_between(body, state))
-    return 0.5 * (k11 * w1 * w1 + 2.0 * k12 * w1 * w2 + k22 * w2 * w2)
 
 
 @kernel

@@ -15,7 +15,7 @@ SUMMARY = np.dtype(
     [
         *whole("fallen"),  # 0 none, 1 pedestal (or both as one), 2 statue or lone block
         *fields("fall_time"),  # [s], NaN if none
-        *fields("peak1 peak2 speed1 speed2"),  # max |θ| [rad], max |θ'| [rad/s]
+        *fields("speed2"),  # max |θ'| of the statue [rad/s]
         # max θ/θcritical of the pedestal (with what stands on it), of the statue
         *fields("ratio1 ratio2"),
         *whole("impacts grazings"),  # a graze: a contact that closed without speed
@@ -69,6 +69,15 @@ def copy_state(source, target):
 
 
 @kernel
+def move_within(step, series, tau, state):
+    """Fill angles, rates, ground and gravity of a state at an instant of a step."""
+    first, two = series.one.angle, series.two.angle
+    state.theta1, state.omega1 = value(first, tau), slope(first, tau) / step.length
+    state.theta2, state.omega2 = value(two, tau), slope(two, tau) / step.length
+    state.ground, state.gravity = step.ground + step.rise * tau, step.gravity + step.lift * tau
+
+
+@kernel
 def begin(state, summary):
     """Set the summary to that of a history that has not moved yet."""
     summary.fallen, summary.fall_time = 0, math.nan
@@ -78,8 +87,7 @@ def begin(state, summary):
     no_demand(summary.demand)
     no_demand(summary.beyond)
     summary.ratio1, summary.ratio2 = 0.0, 0.0
-    summary.peak1, summary.speed1 = abs(state.theta1), abs(state.omega1)
-    summary.peak2, summary.speed2 = abs(state.theta2), abs(state.omega2)
+    summary.speed2 = abs(state.omega2)
 
 
 @kernel
@@ -87,15 +95,11 @@ def fill_balances(body, balances):
     """Fill the ways to balance, shape (8,)."""
     for c1 in (1, -1, 0):
         for c2 in (-1, 0, 1):
-            if c1 != 0:
+            if c1 != 0 or c2 != 0:
                 critical, vx, vy, inertia = equations.balance(body, c1, c2)
-            elif c2 != 0:
-                critical, vx, vy, inertia = equations.upper_balance(body, c2)
-            else:
-                continue
-            way = balances[_way_of(c1, c2)]
-            way.critical = critical
-            way.frequency2 = body.gravity * hypot(vx, vy) / inertia
+                way = balances[_way_of(c1, c2)]
+                way.critical = critical
+                way.frequency2 = body.gravity * hypot(vx, vy) / inertia
 
 
 @kernel
@@ -118,25 +122,11 @@ def _approach(way, side, theta, omega, summary):
 
 
 @kernel
-def _peak(angle, end, theta, rate_at_end, h):
-    """Largest |θ| of a step, between its ends too."""
-    peak = abs(theta)
-    if angle[1] * rate_at_end < 0.0:
-        # the rate changes sign within the step
-        tau = angle[1] / (angle[1] - rate_at_end * h) * end
-        peak = max(peak, abs(value(angle, tau)))
-    return peak
-
-
-@kernel
-def track(balances, state, series, end, h, summary):
-    """Update peaks and the closest approach to an unstable equilibrium; whether a block is beyond its balance."""
+def track(balances, state, summary):
+    """Update extremes and the closest approach to balance; whether a block is beyond its balance."""
     ratio1, ratio2 = 0.0, 0.0
     theta1, theta2 = state.theta1, state.theta2
     omega1, omega2 = state.omega1, state.omega2
-    summary.peak1 = max(summary.peak1, _peak(series.one.angle, end, theta1, omega1, h))
-    summary.peak2 = max(summary.peak2, _peak(series.two.angle, end, theta2, omega2, h))
-    summary.speed1 = max(summary.speed1, abs(omega1))
     summary.speed2 = max(summary.speed2, abs(omega2))
     c1, c2 = state.c1, state.c2
     if c2 != 0:
@@ -171,9 +161,7 @@ def note_demand(body, step, series, end, work, summary):
     trial.c1, trial.c2 = state.c1, state.c2
     for part in range(3):
         tau = 0.5 * part * end
-        trial.theta1, trial.omega1 = value(first, tau), slope(first, tau) / step.length
-        trial.theta2, trial.omega2 = value(two, tau), slope(two, tau) / step.length
-        trial.ground, trial.gravity = step.ground + step.rise * tau, step.gravity + step.lift * tau
+        move_within(step, series, tau, trial)
         before = least
         least = ask_forces(body, trial, bend(first, tau) * per, bend(two, tau) * per, demand)
         if least <= 0.0 and lifts == NEVER and inside:

@@ -145,9 +145,7 @@ def _through_sample(body, shaking, k, contact_events, summary, work):
                 summary.lost_contact, kind = clock, record.LIFTING
                 record.keep_contact_event(body, clock, kind, state, state, contact_events, summary)
             if moves:
-                work.beyond[0] = record.track(
-                    work.balances, state, series, at, step.length, summary
-                )
+                work.beyond[0] = record.track(work.balances, state, summary)
                 summary.work += record.work_of(body, state.c1, state.c2, series, at, step)
             tau += at * remaining
             if when > 1.0:
@@ -253,13 +251,7 @@ def resolve_impact(body, state, closes, restoring, ahead, chatter_tolerance, for
 @kernel
 def _hold_at(body, contact, step, series, tau, trial):
     """Least contact moment of a closed contact at τ; ``trial`` holds the contacts of the step."""
-    first, two = series.one.angle, series.two.angle
-    trial.theta1 = roots.value(first, tau)
-    trial.theta2 = roots.value(two, tau)
-    trial.omega1 = roots.slope(first, tau) / step.length
-    trial.omega2 = roots.slope(two, tau) / step.length
-    trial.ground = step.ground + step.rise * tau
-    trial.gravity = step.gravity + step.lift * tau
+    record.move_within(step, series, tau, trial)
     alpha1, alpha2 = equations.accelerations(body, trial.c1, trial.c2, trial)
     if contact == contact_states.GROUND:
         least, _ = equations.ground_hold(body, trial.c2, trial, alpha2)

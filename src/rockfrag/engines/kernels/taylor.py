@@ -164,19 +164,16 @@ def fill_series(body, state, step, series):
         return
     first.angle[1] = state.omega1 * step.length
     two.angle[1] = state.omega2 * step.length
-    s1, s2 = equations.pivot(c1), equations.pivot(c2)
+    if c1 != 0 and c2 != 0:
+        _fill_two(body, c1, c2, step, series)
+        return
+    vx, vy, inertia = equations.turning(body, c1, c2)
     if c1 == 0:
-        _fill_one(body, equations.first_moment2(body, s2), equations.inertia2(body, s2), step, two)
-    elif c2 == 0:
-        v1x, v1y = equations.first_moment1(body, s1, s2)
-        v2x, v2y = equations.first_moment2(body, s2)
-        e, _ = equations.coupling(body, s1, s2)
-        whole = equations.inertia1(body, s1, s2) + 2.0 * e + equations.inertia2(body, s2)
-        _fill_one(body, (v1x + v2x, v1y + v2y), whole, step, first)
+        _fill_one(body, (vx, vy), inertia, step, two)
+    else:
+        _fill_one(body, (vx, vy), inertia, step, first)
         for k in range(ORDER + 1):
             two.angle[k] = first.angle[k]
-    else:
-        _fill_two(body, c1, c2, step, series)
 
 
 # --------------------------------------------------------------------------- several cases at once

@@ -37,12 +37,9 @@ _UNITS_BY_CODE = {2: "g", 4: "cm/s2", 5: "cm/s", 6: "cm", 7: "in/s2", 8: "in/s",
 _UNITS_BY_CODE |= {10: "cm/s2", 11: "mg", 12: "ug", 50: "counts", 51: "volts"}
 """Table of physical units of the format (its table 2), as far as motion is concerned."""
 
-# places in the headers, counted from zero (tables 7 and 8 of the format)
-_RECORD_TIME = 39
-_AZIMUTH = 53
-_SECOND = 29
-_STEP_MS = 61
-_RECORDER_STEP = 33
+# places in the whole and the real numbers, counted from zero (tables 7 and 8 of the format)
+_RECORD_TIME, _AZIMUTH = 39, 53
+_SECOND, _RECORDER_STEP, _STEP_MS = 29, 33, 61
 _PLACE = ("latitude", "longitude")
 _NAMED_AZIMUTHS = {400: "UP", 401: "DOWN", 402: "VERT", 500: "RADL", 501: "TRAN", 600: "LONG"}
 _NAMED_AZIMUTHS |= {601: "TRAN", 700: "H1", 701: "H2", 800: "OTHER"}

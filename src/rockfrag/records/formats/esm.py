@@ -41,14 +41,9 @@ _DIGITS = r"^(?P<y>\d{4})(?P<m>\d\d)(?P<d>\d\d)[_ T](?P<h>\d\d)(?P<min>\d\d)(?P<
 
 def _header(lines: list[str]) -> tuple[dict[str, str], int]:
     """Return the keys and the number of lines above the samples."""
-    facts: dict[str, str] = {}
-    for number, line in enumerate(lines):
-        match = _KEY.match(line)
-        if match:
-            facts[match["key"]] = match["value"].strip()
-        elif facts or not re.match(r"\s*[A-Za-z]|\s*$", line):
-            return facts, number
-    return facts, len(lines)
+    keys = [(number, match) for number, line in enumerate(lines) if (match := _KEY.match(line))]
+    facts = {match["key"]: match["value"].strip() for _, match in keys}
+    return facts, keys[-1][0] + 1 if keys else 0
 
 
 def _recognise(lines: list[str], name: str) -> bool:

@@ -74,11 +74,9 @@ def _unpacked(path: Path) -> Iterator[Path]:
     with tempfile.TemporaryDirectory(prefix="rockfrag.") as scratch:
         plain = Path(scratch) / path.stem
         try:
-            with gzip.open(path, "rb") as packed, plain.open("wb") as out:
-                while block := packed.read(2**20):
-                    out.write(block)
-                    if out.tell() > MAX_BYTES:
-                        raise InputError(f"{path}: unpacks to more than {MAX_BYTES // 2**20} MiB.")
+            problem = f"{path}: unpacks to more than {MAX_BYTES // 2**20} MiB."
+            with gzip.open(path, "rb") as packed:
+                text_file.copy_within(packed, plain, MAX_BYTES, problem)
         except (OSError, EOFError, zlib.error) as error:
             raise InputError(f"{path}: cannot be unpacked ({error}).") from None
         yield plain

@@ -12,7 +12,6 @@ from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
-from obspy import Trace
 
 from rockfrag.errors import InputError
 from rockfrag.records.parsing.format import Channel, Format, headed, text_writer
@@ -27,7 +26,6 @@ _UNIT = re.compile(
     re.I | re.M,
 )
 _OPTION = r"-{name}\s+(?:\{{(?P<list>[^{{}}]*)\}}|\"(?P<quoted>[^\"]*)\"|(?P<word>[^\s{{}}\"]+))"
-_PER_LINE = 5
 
 
 def _parse(text: TextFile) -> Iterator[Channel]:
@@ -116,17 +114,5 @@ def _number(text: TextFile, line: int, script: str, name: str) -> float | None:
 
 
 FORMAT = Format("OPENSEES", headed(None, _SERIES, within=200), _parse)
-
-
-def _written(trace: Trace, samples: list[float], unit: str, dt: float) -> list[str]:
-    values = [repr(value) for value in samples]
-    return [
-        f"# acceleration in {unit}, {len(samples)} samples",
-        f"timeSeries Path 1 -dt {dt!r} -values {{",
-        *(" ".join(values[i : i + _PER_LINE]) for i in range(0, len(values), _PER_LINE)),
-        "}",
-    ]
-
-
-write = text_writer(_written)
+write = text_writer("opensees")
 """Write one trace as a Path series with its unit in a comment; OpenSees can ``source`` the file."""

@@ -3,8 +3,6 @@
 import re
 from collections.abc import Iterator
 
-from obspy import Trace
-
 from rockfrag.records.parsing.format import Channel, Format, header_keys, text_writer
 from rockfrag.records.parsing.quantities import canonical_unit, quantity_of
 from rockfrag.records.parsing.text_file import TextFile
@@ -42,7 +40,9 @@ def _parse(text: TextFile) -> Iterator[Channel]:
             f"the file holds {titles['quantity']}[{titles['unit']}], not acceleration", columns
         )
     header = header_keys(text.lines(0, columns))
-    table = text.table(columns + 1, 2)
+    values, widths = text.rows(columns + 1)
+    text.check_widths(widths, 2, columns + 1)
+    table = values.reshape(-1, 2)
     place = header["recording station"]
     # TOLMEZZO(000) or 090 CDMG STATION 47381
     found = _BEFORE_COMPONENT.match(place) or _BEHIND_COMPONENT.match(place)
@@ -61,21 +61,5 @@ def _parse(text: TextFile) -> Iterator[Channel]:
 
 
 FORMAT = Format("SEISMOSOFT", _recognise, _parse)
-
-
-def _written(trace: Trace, samples: list[float], unit: str, dt: float) -> list[str]:
-    facts = trace.stats.rockfrag
-    component = str(facts.get("component") or trace.stats.channel or "")
-    station = " ".join(str(trace.stats.station or "unknown").split())
-    return [
-        " ".join(str(facts.get("earthquake") or "Unknown earthquake").split()),
-        f"Source: {' '.join(str(facts.get('source') or 'rockfrag').split())}",
-        f"Recording station: {station}" + (f"({component})" if component else ""),
-        "Frequency range: not stated",
-        f"Time[s]\tAccel[{unit}]",
-        *(f"{i * dt:.12g}\t{value!r}" for i, value in enumerate(samples)),
-    ]
-
-
-write = text_writer(_written)
+write = text_writer("seismosoft")
 """Write one trace as a SeismoSoft accelerogram that reads back to the same samples."""

@@ -72,12 +72,12 @@ def column_titles(table: NumberTable, row: str) -> list[Column]:
     if not table.words:
         return []
     separators = [] if table.decimal_comma else [mark for mark in (";", ",", "\t") if mark in row]
-    above = list(table.words)
-    words = above[-1][1]
+    above = [words for _, words in table.words]
+    words = above[-1]
     units = next(iter(_splits(words, separators, table.columns)), [])
     stated = [canonical_unit(cell.strip("[](){}")) for cell in units]
     if len(above) > 1 and units and all(u in _NO_QUANTITY or quantity_of(u) for u in stated):
-        words = above[-2][1]
+        words = above[-2]
     else:
         units = [""] * table.columns
     for cells in _splits(words, separators, table.columns):

@@ -196,8 +196,8 @@ class TextFile:
             found.append(values)
         if not found:
             # of the layouts the one that most lines fit
-            error = max(wrong, key=lambda each: each.line)
-            self.fail(str(error), start + error.line)
+            last = max(wrong, key=lambda each: each.line)
+            self.fail(str(last), start + last.line)
         self.check_count(count or 0, found[0].size, start)
         return found[0]
 
@@ -238,32 +238,24 @@ class TextFile:
     def _body(self, start: int, stop: int | None) -> bytes:
         return self.data[self.offset(start) : self.offset(len(self) if stop is None else stop)]
 
-    def table(self, start: int, columns: int) -> NDArray[np.float64]:
-        """Parse lines as rows of numbers, shape (rows, columns), separated as in :meth:`rows`."""
-        values, widths = self.rows(start, columns=columns)
-        wrong = np.flatnonzero(widths != columns)
+    def check_widths(self, widths: NDArray[np.int64], columns: int, start: int) -> None:
+        """Check that rows from line ``start`` on which are not blank have as many numbers as the first."""
+        wrong = np.flatnonzero((widths != columns) & (widths > 0))
         if wrong.size:
             first = int(wrong[0])
             self.fail(
                 f"{widths[first]} columns here, {columns} in the rows above; the file is cut short or damaged",
                 start + first,
             )
-        return values.reshape(-1, columns)
 
     def rows(
-        self,
-        start: int,
-        stop: int | None = None,
-        decimal_comma: bool = False,
-        columns: int | None = None,
+        self, start: int, stop: int | None = None, decimal_comma: bool = False
     ) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
         """Parse lines as rows of numbers: all of them, shape (n,), and how many each line has.
 
         Numbers are separated by blanks, tabs, commas or semicolons, or touch where a sign tells them
         apart; a comma beside semicolons, or with ``decimal_comma``, is a decimal comma. Lines at the end
-        that have only separators, as spreadsheets leave, do not count. Where rows should have ``columns``
-        numbers, one of another width above what is no number is left to the caller to tell, and the values
-        are then empty.
+        that have only separators, as spreadsheets leave, do not count.
         """
         body = self._body(start, stop).rstrip(b" \t\r\n,;")
         if not body:
@@ -281,10 +273,7 @@ class TextFile:
             try:
                 values.append(parse_separated(piece))
             except NumberError as error:
-                wrong = np.flatnonzero(widths[-1] != columns) if columns else widths[-1][:0]
-                if not wrong.size or error.line <= int(wrong[0]):
-                    self.fail(str(error), start + line + error.line)
-                return np.empty(0), np.concatenate(widths)
+                self.fail(str(error), start + line + error.line)
             count += values[-1].size
             if count > MOST_NUMBERS:
                 self.fail(
@@ -339,6 +328,18 @@ def read_text(source: Source, encoding: str = "") -> TextFile:
     if not text.data.strip():
         raise InputError(f"{name}: the file is empty.")
     return text
+
+
+def copy_within(source: Any, target: Path, most: int, problem: str) -> int:
+    """Copy a stream into a file and return its size; more than ``most`` bytes are refused as a problem."""
+    size = 0
+    with target.open("wb") as out:
+        while block := source.read(_BLOCK):
+            size += len(block)
+            if size > most:
+                raise InputError(problem)
+            out.write(block)
+    return size
 
 
 def check_file(path: str | os.PathLike[str]) -> None:

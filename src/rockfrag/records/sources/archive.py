@@ -15,12 +15,11 @@ from tempfile import TemporaryDirectory
 from typing import IO
 
 from rockfrag.errors import InputError, errors_of
-from rockfrag.records.parsing.text_file import MAX_BYTES, read_head
+from rockfrag.records.parsing.text_file import MAX_BYTES, copy_within, read_head
 from rockfrag.tabular import printable
 
 MAX_MEMBERS = 5_000  # files of an archive; a download of a data centre has some hundred
 MAX_TOTAL = 2 * MAX_BYTES  # bytes that an archive may unpack to
-_BLOCK = 2**20
 _TAR_NAMES = (".tar", ".tgz", ".tar.gz", ".tar.bz2", ".tbz2", ".tar.xz", ".txz")
 _UNREADABLE = (
     *(OSError, EOFError, ValueError, RuntimeError, NotImplementedError, KeyError, IndexError),
@@ -87,14 +86,8 @@ class _Room:
         if target.exists():
             target = self.folder / str(self.count) / safe[-1]
         target.parent.mkdir(parents=True, exist_ok=True)
-        with target.open("wb") as out:
-            while block := file.read(_BLOCK):
-                self.size -= len(block)
-                if self.size < 0:
-                    raise InputError(
-                        f"{archive}: it unpacks to more than {MAX_TOTAL // 2**20} MiB."
-                    )
-                out.write(block)
+        problem = f"{archive}: it unpacks to more than {MAX_TOTAL // 2**20} MiB."
+        self.size -= copy_within(file, target, self.size, problem)
         return target
 
 

@@ -149,57 +149,6 @@ def _object(name: str, function: Any, arguments: tuple[Any, ...], fused: bool | 
     return made
 
 
-_FUSED = """
-declare <2 x double> @llvm.wasm.relaxed.madd.v2f64(<2 x double>, <2 x double>, <2 x double>)
-define internal <2 x double> @fma2(<2 x double> %a, <2 x double> %b, <2 x double> %c) alwaysinline {
-  %r = call <2 x double> @llvm.wasm.relaxed.madd.v2f64(<2 x double> %a, <2 x double> %b, <2 x double> %c)
-  ret <2 x double> %r
-}
-"""
-
-_BY_PARTS = """
-define internal <2 x double> @fma2(<2 x double> %a, <2 x double> %b, <2 x double> %c) alwaysinline {
-  %ka = fmul <2 x double> %a, <double 134217729.0, double 134217729.0>
-  %kb = fmul <2 x double> %b, <double 134217729.0, double 134217729.0>
-  %xa = fsub <2 x double> %ka, %a
-  %xb = fsub <2 x double> %kb, %b
-  %ah = fsub <2 x double> %ka, %xa
-  %bh = fsub <2 x double> %kb, %xb
-  %al = fsub <2 x double> %a, %ah
-  %bl = fsub <2 x double> %b, %bh
-  %p = fmul <2 x double> %a, %b
-  %hh = fmul <2 x double> %ah, %bh
-  %hl = fmul <2 x double> %ah, %bl
-  %lh = fmul <2 x double> %al, %bh
-  %ll = fmul <2 x double> %al, %bl
-  %e1 = fsub <2 x double> %hh, %p
-  %e2 = fadd <2 x double> %e1, %hl
-  %e3 = fadd <2 x double> %e2, %lh
-  %e = fadd <2 x double> %e3, %ll
-  %s = fadd <2 x double> %p, %c
-  %q = fsub <2 x double> %s, %p
-  %w = fsub <2 x double> %s, %q
-  %d1 = fsub <2 x double> %p, %w
-  %d2 = fsub <2 x double> %c, %q
-  %t = fadd <2 x double> %d1, %d2
-  %u = fadd <2 x double> %t, %e
-  %r = fadd <2 x double> %s, %u
-  ret <2 x double> %r
-}
-"""
-
-_ONE_OF_TWO = """
-define internal double @fma1(double %a, double %b, double %c) alwaysinline {
-  %va = insertelement <2 x double> zeroinitializer, double %a, i32 0
-  %vb = insertelement <2 x double> zeroinitializer, double %b, i32 0
-  %vc = insertelement <2 x double> zeroinitializer, double %c, i32 0
-  %r = call <2 x double> @fma2(<2 x double> %va, <2 x double> %vb, <2 x double> %vc)
-  %x = extractelement <2 x double> %r, i32 0
-  ret double %x
-}
-"""
-
-
 def _with_multiply_adds(text: str, fused: bool) -> str:
     """Say how multiply-adds round once: by an instruction that may fuse, or by the parts of a product (Dekker).
 
@@ -207,7 +156,12 @@ def _with_multiply_adds(text: str, fused: bool) -> str:
     """
     text = re.sub(r"^declare .*@llvm\.fmuladd\..*$", "", text, flags=re.MULTILINE)
     text = text.replace("@llvm.fmuladd.v2f64", "@fma2").replace("@llvm.fmuladd.f64", "@fma1")
-    return text + (_FUSED if fused else _BY_PARTS) + _ONE_OF_TWO
+    parts = ("fused" if fused else "by-parts"), "of-one"
+    return text + "".join(_beside(f"multiply-add-{part}.ll").read_text() for part in parts)
+
+
+def _beside(name: str) -> Path:
+    return Path(__file__).with_name(name)
 
 
 def _linked(objects: list[bytes], exports: list[str]) -> bytes:
@@ -271,7 +225,7 @@ if __name__ == "__main__":
             f"numba: the module is made with version {TESTED_NUMBA[0]}x; install that."
         )
     for name in sys.argv[1:]:
-        path = Path(__file__).with_name(f"{name}.wasm")
+        path = _beside(f"{name}.wasm")
         path.write_bytes(MODULES[name]())
         print(f"{path}: {path.stat().st_size} bytes")
     # what one process has compiled before changes the bytes

@@ -77,16 +77,10 @@ def describe_shaken(call):
             _note_uplift(call, geometry.arm(upper, pivot))
             call.largest = min(call.largest, geometry.largest_restitution(upper, pivot))
         return
-    pile = geometry.pile_of(lower, upper, call.pedestal.height, call.pedestal.lean, 0.0)
-    if not geometry.can_stand(lower):
-        call.fault = geometry.FALLS_ALONE
-    if call.fault == geometry.STANDS:
-        call.fault = geometry.failed_stability_check(pile)
-    geometry.fill_pile(body, pile)
+    pile = entry.stacked(call, body, lower, upper, 0.0)
     whole = geometry.joined(pile)
     call.centre[0], call.centre[1], call.centre[2] = whole.x, whole.y, whole.inertia
     _fill_laws(call, lower, pile.upper)
-    entry.note_frequencies_of_pile(call, pile, g)
     for pivot in (1, -1):
         _note_uplift(call, geometry.common_arm(pile, pivot))
         _note_uplift(call, geometry.upper_arm(pile, pivot))

@@ -73,17 +73,9 @@ def describe(call):
             _check_restitution(call, statue, call.interface)
         note_frequencies(call, statue, body.gravity)
         return
-    given = call.pedestal
-    pedestal = shape_of(given)
-    pile = geometry.pile_of(pedestal, statue, given.height, given.lean, call.offset)
-    if not geometry.can_stand(pedestal):
-        call.fault = geometry.FALLS_ALONE
-    if call.fault == geometry.STANDS:
-        call.fault = geometry.failed_stability_check(pile)
-    geometry.fill_pile(body, pile)
-    _measure(call, pedestal, call.ground, body.after1r, body.after1l)
+    pile = stacked(call, body, shape_of(call.pedestal), statue, call.offset)
+    _measure(call, pile.lower, call.ground, body.after1r, body.after1l)
     _measure(call, pile.upper, call.interface, body.after2r, body.after2l)
-    note_frequencies_of_pile(call, pile, body.gravity)
 
 
 @kernel
@@ -102,15 +94,21 @@ def note_frequencies(call, shape, g):
 
 
 @kernel
-def note_frequencies_of_pile(call, pile, g):
-    """Note those of a block on a pedestal, by itself and together with it."""
-    whole = geometry.joined(pile)
+def stacked(call, body, lower, upper, offset):
+    """Describe a block on a pedestal: whether it stands, its record, its frequencies; return it as a pile."""
+    pile = geometry.pile_of(lower, upper, call.pedestal.height, call.pedestal.lean, offset)
+    if not geometry.can_stand(lower):
+        call.fault = geometry.FALLS_ALONE
+    if call.fault == geometry.STANDS:
+        call.fault = geometry.failed_stability_check(pile)
+    geometry.fill_pile(body, pile)
+    whole, g = geometry.joined(pile), body.gravity
     call.fastest, call.slowest = 0.0, np.inf
     for pivot in (1, -1):
-        lower = geometry.frequency(pile.lower, pivot, g)
-        upper = geometry.frequency(pile.upper, pivot, g)
-        call.fastest = max(call.fastest, max(lower, upper))
-        call.slowest = min(call.slowest, min(upper, geometry.frequency(whole, pivot, g)))
+        above = geometry.frequency(pile.upper, pivot, g)
+        call.fastest = max(call.fastest, max(geometry.frequency(lower, pivot, g), above))
+        call.slowest = min(call.slowest, min(above, geometry.frequency(whole, pivot, g)))
+    return pile
 
 
 @kernel

@@ -157,15 +157,9 @@ def _is_safe(body, state, least):
         return False
     # low energy on this side of balance, not beyond it
     c1, c2 = state.c1, state.c2
-    if c2 != 0:
-        critical, _, _, _ = equations.upper_balance(body, c2)
-        if c2 * state.theta2 >= critical:
-            return False
-    if c1 != 0:
-        critical, _, _, _ = equations.balance(body, c1, c2)
-        if c1 * state.theta1 >= critical:
-            return False
-    return True
+    if c2 != 0 and c2 * state.theta2 >= equations.balance(body, 0, c2)[0]:
+        return False
+    return c1 == 0 or c1 * state.theta1 < equations.balance(body, c1, c2)[0]
 
 
 @inlined_kernel

@@ -68,10 +68,7 @@ def fill_constants(body, h, lanes_of_one, two, impacts, scratch):
 
 @kernel
 def _one_rotates(body, c1, c2, hh, lanes_of_one):
-    if c1 != 0:
-        critical, vx, vy, inertia = equations.balance(body, c1, c2)
-    else:
-        critical, vx, vy, inertia = equations.upper_balance(body, c2)
+    critical, vx, vy, inertia = equations.balance(body, c1, c2)
     for corner in (1.0, -1.0):
         hold = lanes_of_one.right if corner > 0.0 else lanes_of_one.left
         for n in range(HOLD):
@@ -96,7 +93,7 @@ def _both_rotate(body, c1, c2, hh, two):
     two.v1x, two.v1y = hh * vx, hh * vy
     two.per_angle1 = c1 / critical
     two.per_speed1 = inertia / (scale * hypot(vx, vy) * critical * critical)
-    critical, vx, vy, inertia = equations.upper_balance(body, c2)
+    critical, vx, vy, inertia = equations.balance(body, 0, c2)
     two.v2x, two.v2y = hh * vx, hh * vy
     two.per_angle2 = c2 / critical
     two.per_speed2 = inertia / (scale * hypot(vx, vy) * critical * critical)
@@ -131,18 +128,10 @@ def _interface_hold(body, s1, s2, hh, hold):
 def _closing(body, c1, c2, products):
     """Closing of one contact while the other stays open."""
     s1, s2 = equations.pivot(c1), equations.pivot(c2)
-    ax, ay = equations.arm1(body, s1)
-    bx, by = equations.arm1(body, -s1)
-    dx, dy = equations.reach(body, s1, s2)
-    ex, ey = equations.reach(body, -s1, s2)
-    products.ground = body.i1 + body.m1 * (ax * bx + ay * by) + body.m2 * (dx * ex + dy * ey)
-    ex, ey = equations.reach(body, s1, -s2)
-    rx, ry = equations.arm2(body, s2)
-    sx, sy = equations.arm2(body, -s2)
-    products.both11 = body.i1 + body.m1 * (ax * ax + ay * ay) + body.m2 * (dx * ex + dy * ey)
-    products.both12 = body.m2 * (ex * rx + ey * ry)
-    products.both21 = body.m2 * (dx * sx + dy * sy)
-    products.both22 = body.i2 + body.m2 * (rx * sx + ry * sy)
+    old, level = (s1, s2), (1.0, 0.0)
+    products.ground, _, _, _ = equations.metric(body, (-s1, s2), old, level)
+    k11, k12, k21, k22 = equations.metric(body, (s1, -s2), old, level)
+    products.both11, products.both12, products.both21, products.both22 = k11, k12, k21, k22
 
 
 @kernel
