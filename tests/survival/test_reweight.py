@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 from scipy import special
 
-from rockfrag.assess.hazard.curve import PGA, PGV, HazardCurve, rate_weights
-from rockfrag.errors import InputError
+from rockfrag.assess.hazard.curve import PGA, HazardCurve
 from rockfrag.survival.reweight import SAMPLES, Reweighted, reweight, scaled
 from rockfrag.survival.site import (
     Age,
@@ -16,7 +15,6 @@ from rockfrag.survival.site import (
     StandingObject,
     VelocityRatio,
     lognormal_coefficients,
-    shaking_rates,
 )
 
 SLOPE = 2.5
@@ -43,16 +41,6 @@ def rock(years: float, theta: float = 0.4, beta: float = 0.3, sd: float = 0.0, n
 
 def weighed(branches, objects, samples=SAMPLES, **more) -> Reweighted:
     return reweight(Site("here", tuple(branches), tuple(objects), **more), samples)
-
-
-def test_weights_integrate_what_is_linear_in_the_logarithm_exactly():
-    curve = power_law(1e-3)
-    levels = np.geomspace(0.05, 2.0, 7)
-    weights = rate_weights(curve, levels)
-    assert weights.sum() == pytest.approx(curve.rate(0.05).item())
-    # ∫ ln(x/x0) |dν| over a power law is ν0/k [1 - (x1/x0)^-k] when what lies above stays at ln(x1/x0)
-    expected = curve.rate(0.05).item() / SLOPE * (1 - (2.0 / 0.05) ** -SLOPE)
-    assert weights @ np.log(levels / 0.05) == pytest.approx(expected)
 
 
 def test_no_time_leaves_the_weights_as_do_equal_branches_and_long_time_leaves_the_gentlest():
@@ -97,16 +85,6 @@ def test_velocity_that_scatters_widens_a_fragility_in_two_measures_as_normal_the
     branches = made_branches(0.1, 0.3)
     found = weighed(branches, [body], velocity=VelocityRatio(0.08, s))
     assert found.log_survival == pytest.approx(weighed(branches, [merged]).log_survival, rel=2e-3)
-
-
-def test_fragility_in_velocity_needs_a_curve_or_a_relation():
-    body = StandingObject("rock", PGV, lognormal_coefficients(40.0, 0.4), 0.0, Age(1000, 1000))
-    with pytest.raises(InputError, match="needs PGV"):
-        weighed(made_branches(1.0), [body])
-    shaking = shaking_rates([{PGA: power_law(1e-4)}], {PGV}, VelocityRatio(0.1, 0.5), (0.1, 1.0))
-    assert shaking.rates.sum() == pytest.approx(
-        power_law(1e-4).rate(shaking.values[PGA].min()).item()
-    )
 
 
 def test_drawn_histories_of_sites_recover_the_weights():

@@ -334,18 +334,3 @@ def step_of(probability: float, years: float) -> Step:
     rate = -math.log1p(-min(probability, 1 - 1e-15)) / years
     in_fifty = probability_in(rate, REFERENCE_YEARS)
     return next(step for step in STEPS if in_fifty < step.below)
-
-
-def classes(probability: Estimate, years: float) -> Step:
-    """Step of a probability, named with those that its interval reaches; the advice is that of the estimate."""
-    worst = step_of(probability.upper, years)
-    if probability.value == 0:
-        return Step(f"at most {worst.name}", worst.below, worst.advice)
-    middle, best = step_of(probability.value, years), step_of(probability.lower, years)
-    if best == worst:
-        return middle
-    return Step(
-        f"{middle.name} (the interval reaches from {best.name} to {worst.name})",
-        middle.below,
-        middle.advice,
-    )
