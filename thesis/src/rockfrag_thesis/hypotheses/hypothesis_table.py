@@ -52,7 +52,7 @@ def theory_table(
     """Compute C1 to C24 for specimens and ground motions; returns ``COLUMNS``.
 
     A hypothesis about which they cannot speak (no stack, no motion) is open, with the reason. A specimen named "P"
-    is the pedestal: without ``assemblies``, stacks by name, each other block stands on it. Motions are as recorded.
+    is the pedestal: without ``assemblies``, stacks by name, others stand on it. Motions are as recorded.
     """
     setting = make_setting(specimens, motions, seed, threads, assemblies)
     return _table(_row(hypothesis, setting, "simulated") for hypothesis in _hypotheses(theory=True))
