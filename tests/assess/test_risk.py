@@ -2,12 +2,10 @@
 
 import json
 import math
-from itertools import pairwise
-from pathlib import Path
 
 import numpy as np
 import pytest
-from scipy import integrate, stats
+from scipy import stats
 
 from rockfrag.assess.answer import assess_with
 from rockfrag.assess.hazard.curve import PGA, HazardCurve, curve_of_one_level
@@ -39,35 +37,39 @@ def outcomes_from(capacities, earthquakes, **more) -> ObjectOutcomes:
     return outcomes_of(np.asarray(capacities)[:, None] <= LEVELS, LEVELS, earthquakes, **more)
 
 
-@pytest.mark.parametrize("hazard", [BENT, curve_of_one_level(PGA, 0.25, 475)])
-@pytest.mark.parametrize("seed", range(5))
-def test_probability_agrees_with_plain_integration_over_every_motion(hazard, seed):
-    random = np.random.default_rng(seed)
-    capacities = 0.5 * np.exp(0.5 * random.standard_normal(30))
-    outcomes = outcomes_from(capacities, range(30))
+@pytest.fixture(scope="module")
+def page(motions, tmp_path_factory):
+    """The page of an object under a bent hazard curve, beside which its numbers lie."""
+    folder = tmp_path_factory.mktemp("answer")
+    (folder / "hazard.csv").write_text(
+        "pga_g,annual_rate\n0.01,0.3\n0.05,0.04\n0.12,0.009\n0.4,0.0006\n1.1,0.00002\n6,1e-7\n"
+    )
+    settings = {"name": "figure", "width": "35 cm", "height": "120 cm", "hazard": ["hazard.csv"]}
+    return write_answer(assess_with(make_request(settings, "test", folder), motions), folder)
 
-    def of_one_motion(fell) -> float:
-        """∫ P |dH| of one motion, whose outcomes are joined by straight lines in ln level."""
 
-        def integrand(x: float) -> float:
-            step = 1e-5
-            density = (hazard.rate(math.exp(x - step)) - hazard.rate(math.exp(x + step))) / (
-                2 * step
-            )
-            return float(np.interp(x, np.log(LEVELS), fell) * density)
+@pytest.fixture(scope="module")
+def answer(page):
+    """All numbers of the answer."""
+    return json.loads(page.with_suffix(".json").read_text(encoding="utf-8"))
 
-        first = int(fell.argmax())
-        knots = np.union1d(np.log(LEVELS[max(first - 1, 0) :]), np.log(hazard.levels))
-        knots = knots[(knots >= np.log(LEVELS[max(first - 1, 0)])) & (knots <= np.log(LEVELS[-1]))]
-        inside = sum(
-            integrate.fixed_quad(np.vectorize(integrand), a, b, n=8)[0] for a, b in pairwise(knots)
-        )
-        return inside + float(hazard.rate(LEVELS[-1])) * float(fell[-1])
 
-    rate = np.mean([of_one_motion(fell.astype(float)) for fell in outcomes.overturned])
-    found = toppling_rate(LEVELS, outcomes.fractions(), hazard)
-    assert probability_in(found, 50) == pytest.approx(1 - math.exp(-50 * rate), abs=1e-6)
-    assert found == pytest.approx(rate, rel=2e-5)
+def rates_at(answer, levels):
+    """Annual rates of a power law between the points of the hazard curve of an answer."""
+    known, rates = (np.log(answer["hazard"][key]) for key in ("levels", "annual_rates"))
+    return np.exp(np.interp(np.log(levels), known, rates))
+
+
+def test_probability_agrees_with_a_plain_integration_of_what_the_answer_says(answer):
+    x, fraction = (np.array(answer["fragility"][key]) for key in ("levels", "fraction"))
+    # P straight in ln x, by a plain sum over very fine steps
+    fine = np.geomspace(x[0], x[-1], 400_001)
+    rates = rates_at(answer, fine)
+    middle = np.interp(np.log(np.sqrt(fine[1:] * fine[:-1])), np.log(x), fraction)
+    rate = (middle * -np.diff(rates)).sum() + fraction[-1] * rates[-1]
+    found = answer["probability"]["value"]
+    assert found == pytest.approx(1 - math.exp(-50 * rate), abs=1e-6)
+    assert -math.log1p(-found) / 50 == pytest.approx(rate, rel=2e-5)
 
 
 def test_an_object_that_bears_more_topples_less_often():
@@ -160,23 +162,16 @@ def test_all_of_the_motions_are_not_a_bit_less():
 
 
 @pytest.mark.peers
-def test_the_probability_is_that_of_openquakes_risk_calculator(motions, tmp_path):
+def test_the_probability_is_that_of_openquakes_risk_calculator(page, answer):
     scientific = pytest.importorskip(
         "openquake.risklib.scientific", reason="openquake.engine is not installed"
     )
     from openquake.hazardlib import nrml
 
-    (tmp_path / "hazard.csv").write_text(
-        "pga_g,annual_rate\n0.01,0.3\n0.05,0.04\n0.12,0.009\n0.4,0.0006\n1.1,0.00002\n6,1e-7\n"
-    )
-    settings = {"name": "figure", "width": "35 cm", "height": "120 cm", "hazard": ["hazard.csv"]}
-    page = write_answer(assess_with(make_request(settings, "test", tmp_path), motions), tmp_path)
-    answer = json.loads(page.with_suffix(".json").read_text(encoding="utf-8"))
-    levels = np.array(answer["fragility"]["levels"])
-    known, rates = (np.array(answer["hazard"][key]) for key in ("levels", "annual_rates"))
+    levels = answer["fragility"]["levels"]
     fine = np.geomspace(levels[0], levels[-1], 1000)
-    poes = 1 - np.exp(-50 * np.exp(np.interp(np.log(fine), np.log(known), np.log(rates))))
-    (function,) = nrml.to_python(str(Path(page).with_suffix(".xml"))).values()
+    poes = 1 - np.exp(-50 * rates_at(answer, fine))
+    (function,) = nrml.to_python(str(page.with_suffix(".xml"))).values()
     _, toppled = scientific.classical_damage(
         function.build(["overturned"], None, 0.0), fine, poes, 50, 50, 1
     )

@@ -1,8 +1,9 @@
-"""What differs between earthquakes is in the probability, what is not known in the interval."""
+"""What differs between earthquakes is in the probability, what is not known in the interval; documented tables."""
 
 import html
 import importlib.util
 import math
+import re
 from dataclasses import replace
 from pathlib import Path
 
@@ -23,9 +24,10 @@ from rockfrag.assess.hazard.curve import PGA, PGV, VELOCITY_PER_G, make_curve
 from rockfrag.assess.motions import MotionSet
 from rockfrag.assess.outcomes import ObjectOutcomes
 from rockfrag.assess.page import page_of
-from rockfrag.assess.request import Records, make_request
+from rockfrag.assess.request import Records
 from rockfrag.assess.risk import toppling_rate
-from rockfrag.assess.sources import SOURCES, SPACE, parts_of
+from rockfrag.assess.rules import rules_study
+from rockfrag.assess.sources import SOURCES, parts_of
 from rockfrag.assess.words import five_lines, says
 from rockfrag.fragility.model_error import CUT, MODEL_ERRORS
 
@@ -33,22 +35,14 @@ from .conftest import asked, outcomes_of
 
 
 def set_of(records: int, rng: np.random.Generator, noise) -> tuple[MotionSet, np.ndarray]:
-    """Motions of records with known magnitude, distance and ground; the numbers too."""
-    about = np.column_stack(
-        [rng.uniform(6, 8, records), rng.uniform(0, 4, records), rng.uniform(5, 7, records)]
-    )
-    motions = tuple(
-        replace(
-            noise(0, 20),
-            name=f"{i}",
-            metadata={
-                "earthquake": f"e{i // 3}", "station": f"s{i}", "magnitude": float(m),
-                "distance_km": math.exp(r), "vs30_m_s": math.exp(v),
-            },
-        )
-        for i, (m, r, v) in enumerate(about)
-    )  # fmt: skip
-    return MotionSet(motions, motions, (), "made"), about
+    """Motions of records with known magnitude, ln distance and ln Vs30; the numbers too."""
+    about = rng.uniform([6, 0, 5], [8, 4, 7], (records, 3))
+    motions = []
+    for i, (magnitude, distance, vs30) in enumerate(about.tolist()):
+        known = {"earthquake": f"e{i // 3}", "station": f"s{i}", "magnitude": magnitude}
+        known |= {"distance_km": math.exp(distance), "vs30_m_s": math.exp(vs30)}
+        motions.append(replace(noise(0, 20), name=f"{i}", metadata=known))
+    return MotionSet(tuple(motions), tuple(motions), (), "made"), about
 
 
 def test_what_is_known_of_the_earthquakes_is_no_ignorance(noise, random):
@@ -73,11 +67,13 @@ def test_what_differs_between_motions_of_one_site_is_not_all_ignorance(noise, ra
     assert few == pytest.approx(logs[:20].std(ddof=1) * math.sqrt(OF_THE_SITE))
 
 
+def figure(**settings):
+    return asked(width="35 cm", height="1.2 m", **settings)
+
+
 def test_every_source_says_where_its_size_comes_from(motions):
-    request = asked(
-        width="35 cm", height="1.2 m", pedestal={"width": "50 cm", "height": "90 cm"}, floor="2/4",
-        pga="0.5 g", return_period="475 years",
-    )  # fmt: skip
+    pedestal, shaking = {"width": "50 cm", "height": "90 cm"}, {"pga": "0.5 g", "floor": "2/4"}
+    request = figure(pedestal=pedestal, return_period="475 years", **shaking)
     found = assess_with(request, motions.at(request.place))
     assert {"space", "model", "period", "conversion", "hazard"} <= set(found.main.sources)
     assert set(found.main.sources) <= set(SOURCES)
@@ -128,26 +124,17 @@ def test_how_a_scan_stands_is_a_source_until_it_is_measured(on_feet, few):
     assert math.hypot(*(known.get(name, 0.0) for name in ways)) < 0.02
     assert math.hypot(*(blind.get(name, 0.0) for name in ways)) > 0.15
     # a scan whose ways to stand are sources of its own has no second one for them in the model's
-    assert blind["model"] < sources(asked(width="0.3 m", height="1 m", pga="0.6 g"))["model"]
+    cut = asked(width="0.3 m", height="1 m", pga="0.6 g")
+    assert blind["model"] < sources(cut)["model"]
+    # on few points it loses more in impacts than a cut block
+    tolerances = request.objects.tolerances
+    assert request.objects.livelier == pytest.approx((0.7 + 1) / 2)
+    assert tolerances["restitution"] == pytest.approx(0.3 / math.sqrt(12) / 0.85, rel=0.03)
+    assert cut.objects.livelier == 1
 
 
-def test_a_scan_on_few_points_loses_more_in_impacts_than_a_cut_block(on_feet):
-    scan = asked(mesh={"file": str(on_feet)}, mass="200 kg", pga="0.6 g").objects
-    assert scan.livelier == pytest.approx((0.7 + 1) / 2)
-    assert scan.tolerances["restitution"] == pytest.approx(0.3 / math.sqrt(12) / 0.85, rel=0.03)
-    assert asked(width="0.3 m", height="1 m", pga="0.6 g").objects.livelier == 1
-
-
-def test_what_both_components_add_to_the_level_is_what_was_measured():
-    assert pytest.approx(math.log(0.54 / 0.47), abs=0.01) == SPACE
-
-
+ROOT = Path(__file__).resolve().parents[2]
 K, K0 = 2.5, 1e-4
-TABLE = Path(__file__).parents[2] / "docs" / "tables" / "two_measures.py"
-
-
-def figure(**settings):
-    return make_request({"width": "35 cm", "height": "1.2 m", **settings}, "test")
 
 
 def power_law(measure, at_a_tenth=K0, slope=K, middle=0.1):
@@ -174,18 +161,16 @@ def test_an_object_that_velocity_topples_has_the_rate_of_that_velocity(random):
     outcomes = topples_from(30.0, logs)
     known = SiteVelocity(0.4, curves=(acceleration, velocity))
     assert known.log_ratio(np.array([0.05, 1.0])) == pytest.approx(math.log(0.07), abs=1e-9)
-    at_site = conversion_of(logs, known).at_site(outcomes)
-    rate = toppling_rate(at_site.intensity_levels.levels, at_site.fractions(), acceleration)
+
+    def rate_of(each: ObjectOutcomes) -> float:
+        return toppling_rate(each.intensity_levels.levels, each.fractions(), acceleration)
+
+    rate = rate_of(conversion_of(logs, known).at_site(outcomes))
     assert rate == pytest.approx(float(velocity.rate(30.0)), rel=0.03)
     # as recorded the motions say something else, and how PGA and PGV occur together matters little
-    as_recorded = toppling_rate(
-        outcomes.intensity_levels.levels, outcomes.fractions(), acceleration
-    )
-    assert as_recorded > 1.5 * rate
+    assert rate_of(outcomes) > 1.5 * rate
     for side in conversion_of(logs, known).sides(outcomes):
-        assert toppling_rate(
-            side.intensity_levels.levels, side.fractions(), acceleration
-        ) == pytest.approx(rate, rel=0.06)
+        assert rate_of(side) == pytest.approx(rate, rel=0.06)
 
 
 def test_velocity_says_nothing_of_an_object_that_acceleration_topples(random):
@@ -207,62 +192,57 @@ def test_what_differs_between_earthquakes_is_in_the_fraction(random):
     assert abs(at_site.fractions() - exact).mean() < 0.01
 
 
-@pytest.fixture(scope="module")
-def found(motions: MotionSet):
-    """The same object with less and more known of the velocity at the site."""
+def test_what_is_known_of_velocity_counts_and_is_no_longer_a_source(motions):
     middle = 0.6 * float(np.median(motions.values(PGV) / motions.values(PGA)))
-    return {
-        name: assess_with(figure(pga="0.6 g", return_period="475", **more), motions, brief=True)
-        for name, more in {
-            "nothing": {},
-            "slow": {"pgv": f"{0.75 * middle} cm/s"},
-            "fast": {"pgv": f"{1.3 * middle} cm/s"},
-        }.items()
-    }  # fmt: skip
-
-
-def test_faster_ground_topples_more_often(found):
-    slow, fast = (found[name].probability.value for name in ("slow", "fast"))
-    assert slow < fast
-
-
-def test_what_is_known_of_velocity_is_no_longer_a_source(found):
-    assert found["nothing"].fraction.sources["conversion"] > 0
-    for name in ("slow", "fast"):
-        sources = found[name].probability.sources
+    nothing, slow, fast = (
+        assess_with(figure(pga="0.6 g", return_period="475", **more), motions, brief=True)
+        for more in ({}, {"pgv": "40 cm/s"}, {"pgv": f"{1.3 * middle} cm/s"})
+    )
+    # nothing known leaves counted fractions
+    assert nothing.outcomes is nothing.counted and nothing.counts is not None
+    assert nothing.fraction.sources["conversion"] > 0
+    assert slow.probability.value < fast.probability.value
+    for found in (slow, fast):
         # what is left of it is the error of the weight of velocity
-        assert found[name].conversion.spread == 0 < found["nothing"].conversion.spread
-        assert "together" in sources
-        assert "two measures" in " ".join(says("assumptions", found[name]))
-
-
-def test_nothing_known_leaves_counted_fractions(found):
-    item = found["nothing"]
-    assert item.outcomes is item.counted
-    assert item.counts is not None
-
-
-def test_the_level_is_given_in_both(motions):
-    found = assess_with(figure(pga="0.6 g", pgv="40 cm/s"), motions)
+        assert found.conversion.known.spread > found.conversion.spread == 0
+        assert nothing.conversion.spread > 0
+        assert "together" in found.probability.sources
+        assert "two measures" in " ".join(says("assumptions", found))
+    # of a level in both the velocity is known, and the made motions are quicker
+    found = assess_with(figure(pga="0.6 g", pgv="40 cm/s"), motions, brief=True)
     assert "PGA 0.6 g and PGV 40 cm/s" in five_lines(found)[0]
     assert found.conversion.known.spread == 0
-    # the made motions are quicker than that
-    assert any(
-        "PGV of 66.7 cm/s per g" in quality_flag for quality_flag in says("quality_flags", found)
-    )
-
-
-def test_the_export_says_which_errors_are_not_in_it(found):
-    text = as_nrml(found["slow"])
+    assert any("PGV of 66.7 cm/s per g" in flag for flag in says("quality_flags", found))
+    # the export says which errors are not in it
+    text = as_nrml(slow)
     assert f"{MODEL_ERRORS[CUT].beyond:g} of ln level ({CUT}: " in text
     assert "no campaign of a cut block" in text
 
 
 @pytest.mark.slow
 def test_the_table_of_the_documentation_is_what_its_script_writes(default_records):
-    spec = importlib.util.spec_from_file_location("two_measures", TABLE)
+    spec = importlib.util.spec_from_file_location(
+        "two_measures", ROOT / "docs" / "tables" / "two_measures.py"
+    )
     script = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(script)
     about = script.objects()["bust"]
     line = script.line_of("bust", script.row_of(about, default_records))
     assert line in script.PAGE.read_text()
+
+
+@pytest.mark.slow
+def test_the_documented_bias_of_rules_is_the_computed_one(default_records):
+    table = rules_study(ROOT / "config" / "rules-of-thumb.yaml", default_records)
+    text = (ROOT / "docs" / "rules-of-thumb.md").read_text(encoding="utf-8")
+    header, _, *rows = re.findall(r"^\|(.*)\|$", text, re.MULTILINE)
+    rules = [cell.strip() for cell in header.split("|")][1:]
+    documented = {}
+    for row in rows:
+        name, *cells = (cell.strip() for cell in row.split("|"))
+        documented |= {(name, rule): cell for rule, cell in zip(rules, cells, strict=True)}
+    computed = {
+        (row.object, row.rule): f"{row.bias:.2f} ± {row.scatter:.2f}, {100 * row.unsafe:.0f} %"
+        for row in table.itertuples()
+    }
+    assert documented == computed

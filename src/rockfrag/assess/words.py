@@ -8,7 +8,7 @@ from rockfrag.assess.answer import Assessment
 from rockfrag.assess.assumed import Assumption
 from rockfrag.assess.mitigations import Mitigation
 from rockfrag.assess.outcomes import LARGEST_FACTOR
-from rockfrag.assess.risk import LEVEL, SCALE_WORDS, Estimate, classes, step_of
+from rockfrag.assess.risk import LEVEL, Estimate, step_of
 from rockfrag.assess.sources import MEASUREMENTS, SOURCES, is_wide, narrowed, parts_of
 from rockfrag.report.part import Says
 
@@ -116,11 +116,6 @@ def all_assumed(found: Assessment) -> list[Assumption]:
     return sorted(lines, key=size, reverse=True)
 
 
-def short_assumptions(found: Assessment) -> list[Assumption]:
-    """What was assumed and can be named in a few words, that first which matters most."""
-    return [assumption for assumption in all_assumed(found) if assumption.short]
-
-
 def _largest_sources(found: Assessment) -> list[str]:
     parts = parts_of(found.main.sources).items()
     named = [f"{100 * part:.0f} % from {NAMES[name]}" for name, part in parts if part >= LEAST_PART]
@@ -136,18 +131,18 @@ _WORDS: dict[str, Any] = {
     "LEVEL": LEVEL,
     "MANY": MANY,
     "FEW": FEW,
-    "SCALE_WORDS": SCALE_WORDS,
     "LARGEST_FACTOR": LARGEST_FACTOR,
     "MOST_ASSUMPTIONS": MOST_ASSUMPTIONS,
     "MEASUREMENTS": MEASUREMENTS,
+    "SOURCES": SOURCES,
     "exp": math.exp,
     "influential": _influential,
     "limits": _limits,
     "largest_sources": _largest_sources,
 }
 _FUNCTIONS = (
-    *(all_assumed, classes, does_not_move, estimate_words, fraction_words, mitigation_words),
-    *(narrowed, not_decidable, range_words, short_assumptions, step_of, value_words),
+    *(all_assumed, does_not_move, estimate_words, fraction_words, mitigation_words, narrowed),
+    *(not_decidable, parts_of, range_words, step_of, value_words),
 )
 _WORDS |= {function.__name__: function for function in _FUNCTIONS}
 

@@ -68,13 +68,6 @@ MOST_STOREYS = 100  # more storeys than this are a slip of the keyboard and not 
 _LEAST, _MOST = 1e-9, 1e21
 
 
-def _check_ratio(ratio: float) -> None:
-    if not (math.isfinite(ratio) and 0 <= ratio < 1):
-        raise InputError(
-            f"damping: ratio must be a fraction of critical from 0 up to 1, got {ratio}."
-        )
-
-
 @dataclass(frozen=True)
 class ModalDamping:
     """The same fraction of critical damping in every mode.
@@ -87,11 +80,14 @@ class ModalDamping:
     ratio: float = 0.05
 
     def __post_init__(self) -> None:
-        _check_ratio(self.ratio)
+        if not (math.isfinite(self.ratio) and 0 <= self.ratio < 1):
+            raise InputError(
+                f"damping: ratio must be a fraction of critical from 0 up to 1, got {self.ratio}."
+            )
 
 
 @dataclass(frozen=True)
-class RayleighDamping:
+class RayleighDamping(ModalDamping):
     """Damping proportional to mass and stiffness, with a given ratio in two of the modes.
 
     Attributes
@@ -100,19 +96,15 @@ class RayleighDamping:
     modes : numbers of the two, from 1; the only one of one storey, with damping proportional to the mass
     """
 
-    ratio: float = 0.05
     modes: tuple[int, int] = (1, 2)
 
     def __post_init__(self) -> None:
-        _check_ratio(self.ratio)
+        super().__post_init__()
         first, second = self.modes
         if not 1 <= first < second:
             raise InputError(
                 f"Rayleigh damping: modes must be two rising numbers from 1, got {self.modes}."
             )
-
-
-Damping = ModalDamping | RayleighDamping
 
 
 @dataclass(frozen=True)
@@ -135,7 +127,7 @@ class ShearBuilding:
     masses: tuple[float, ...]
     heights: tuple[float, ...]
     stiffnesses: tuple[float, ...]
-    damping: Damping = ModalDamping()
+    damping: ModalDamping = ModalDamping()
     floors: Mapping[str, int] = field(default_factory=lambda: {"ground": 0})
     model: Literal["elastic", "hysteretic"] = "elastic"
     masonry: MasonryLaw = field(default_factory=MasonryLaw)

@@ -118,12 +118,9 @@ class MeasuredTests:
             (np.atleast_2d(outcomes) == self.overturned).mean(axis=0) for outcomes in (ours, theirs)
         )
         difference = right - others
+        sums, rng = np.bincount(self.groups, difference), np.random.default_rng(self.seed)
         found = stats.permutation_test(
-            (np.bincount(self.groups, difference),),
-            np.sum,
-            permutation_type="samples",
-            n_resamples=9999,
-            rng=np.random.default_rng(self.seed),
+            (sums,), np.sum, permutation_type="samples", n_resamples=9999, rng=rng
         )
         mean, width = float(difference.mean()), self._half_width(difference)
         limits = {"better_lower": mean - width, "better_upper": mean + width}
@@ -146,25 +143,22 @@ class MeasuredTests:
         drawn = [np.bincount(draw, minlength=count)[self.groups] for draw in draws]
         weights = np.array([np.ones(len(measure)), *drawn])
         measured = curves_of(measure, self.overturned, weights)
-        rows = []
+        tails, rows = [(1 - self.level) / 2, (1 + self.level) / 2], []
         for name, outcomes in {"measured": self.overturned, **simulated}.items():
             curve = curves_of(measure, outcomes, weights)
-            shown = {"theta": curve[:, 0], "beta": curve[:, 1]}
+            shown = dict(zip(("theta", "beta"), curve.T, strict=True))
             if name != "measured":
                 ratio = curve / measured
-                shown |= {"theta_ratio": ratio[:, 0], "beta_ratio": ratio[:, 1]}
+                shown |= dict(zip(("theta_ratio", "beta_ratio"), ratio.T, strict=True))
             row: dict[str, object] = {"who": name}
             for parameter, values in shown.items():
                 row[parameter] = values[0]
-                row[f"{parameter}_lower"], row[f"{parameter}_upper"] = self._limits(values[1:])
+                # NaN where no resample gives a curve, as of one kind of outcome
+                known = values[1:][np.isfinite(values[1:])]
+                limits = np.quantile(known, tails) if known.size else (np.nan, np.nan)
+                row[f"{parameter}_lower"], row[f"{parameter}_upper"] = limits
             rows.append(row)
         return pd.DataFrame(rows)
-
-    def _limits(self, values: Floats) -> Floats:
-        """Quantiles of what is a number; NaN where no resample gives a curve, as of one kind of outcome."""
-        known = values[np.isfinite(values)]
-        tails = [(1 - self.level) / 2, (1 + self.level) / 2]
-        return np.quantile(known, tails) if known.size else np.full(2, np.nan)
 
 
 def clustered_error(values: Floats, groups: NDArray[np.int64]) -> float:

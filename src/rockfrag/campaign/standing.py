@@ -10,7 +10,6 @@ import math
 import warnings
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from functools import partial
 from typing import Any
 
 import numpy as np
@@ -55,9 +54,14 @@ class Trials:
     __repr__ = short_repr
 
 
-def uniform(low: float, high: float, fraction: float) -> float:
-    """Quantile of a uniform distribution."""
-    return low + (high - low) * fraction
+def uniform(low: float, high: float) -> Quantile:
+    """Quantile function of a uniform distribution."""
+    return lambda fraction: low + (high - low) * fraction
+
+
+def lognormal(median: float, spread: float) -> Quantile:
+    """Quantile function by the median and the standard deviation of the logarithm."""
+    return lambda fraction: median * math.exp(spread * float(norm.ppf(fraction)))
 
 
 def even_guesses(
@@ -79,7 +83,7 @@ def sample_trials(
     block whose edges were measured has no direction and tolerance; blocks on each other have ``friction`` too.
     """
     quantiles: dict[str, Quantile] = {
-        name: partial(uniform, *ranges[name]) for name in UNKNOWNS if name in ranges
+        name: uniform(*ranges[name]) for name in UNKNOWNS if name in ranges
     }
     if "contact_tolerance_mm" in ranges:
         low, high = ranges["contact_tolerance_mm"]
@@ -187,17 +191,12 @@ LEAST_ANGLE_DEG = 2.0
 floor out of level and a push reach."""
 
 
-def lognormal(median: float, spread: float, fraction: float) -> float:
-    """Quantile of a lognormal distribution by its median and the standard deviation of the logarithm."""
-    return median * math.exp(spread * float(norm.ppf(fraction)))
-
-
 def unknowns_of(kind: str, scan_accuracy_mm: float | None = None) -> dict[str, Quantile]:
     """Distributions, of ours, of what nobody measured of a ``cut block`` or a ``scan`` of this accuracy [mm]."""
     if kind == CUT:
         return {
             # edges of cut stone are broken by a millimetre or two
-            "edge_retreat_mm": partial(uniform, 0.0, 2.0),
+            "edge_retreat_mm": uniform(0.0, 2.0),
             # about Housner (1963)
             "restitution_ratio": lambda fraction: 1 + 0.05 * float(norm.ppf(fraction)),
         }
@@ -205,12 +204,12 @@ def unknowns_of(kind: str, scan_accuracy_mm: float | None = None) -> dict[str, Q
     # two standard deviations of a scanned height are what noise lowers the lowest of many points by
     median = 2 * (scan_accuracy_mm or SCAN_ACCURACY_MM)
     return {
-        "direction_deg": partial(uniform, 0.0, 360.0),
-        "contact_tolerance_mm": partial(lognormal, median, spread),
+        "direction_deg": uniform(0.0, 360.0),
+        "contact_tolerance_mm": lognormal(median, spread),
         # natural and worn edges are round
-        "edge_retreat_mm": partial(uniform, 0.0, 10.0),
+        "edge_retreat_mm": uniform(0.0, 10.0),
         # a body on few points takes more than momentum; 0.6 to 0.98 were plausible for a granite rock
-        "restitution_ratio": partial(uniform, 0.7, 1.0),
+        "restitution_ratio": uniform(0.7, 1.0),
     }
 
 

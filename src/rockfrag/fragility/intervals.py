@@ -194,7 +194,7 @@ def resampled_interval(
 
     if groups < 2:
         return without_limits(f"One {over} gives no interval for other {over}s.")
-    if not np.isfinite(estimate).all() or estimate[1] < LEAST_SLOPE:
+    if not np.isfinite(centre).all() or centre[1] < LEAST_SLOPE:
         return without_limits("There is no curve, so there is no interval.")
     if groups < FEWEST_GROUPS:
         few = (
@@ -207,29 +207,18 @@ def resampled_interval(
         return without_limits(
             f"All {over}s agree within the steps of the amplitude, which gives no limits."
         )
-    log_theta, half = _log_theta(estimate[None])[0], half_width(_log_theta(deleted), level)
+    slope = deleted[:, 1]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        # a curve that does not rise has no median, and then nothing limits that of all
+        left_out = np.where(slope > 0, -deleted[:, 0] / slope, np.nan)
+        betas = 1.0 / slope
+    log_theta, half = -centre[0] / centre[1], half_width(left_out, level)
     theta = float(np.exp(log_theta - half)), float(np.exp(log_theta + half))
     own = 1.0 / centre[1]
-    low, high = beta_limits(own, _beta(deleted), level, unbiased=True)
+    low, high = beta_limits(own, betas, level, unbiased=True)
     # stretched to hold the estimate, to more digits than two ways of fitting agree to
     beta = min(low, own * (1 - 1e-9)), max(high, own * (1 + 1e-9))
     return Interval(theta, beta, level, "jackknife", groups, over, centre, deleted, notes)
-
-
-def _log_theta(coefficients: Floats) -> Floats:
-    """Return ln θ of each replicate; NaN where the curve does not rise."""
-    intercept, slope = coefficients[:, 0], coefficients[:, 1]
-    with np.errstate(divide="ignore", invalid="ignore"):
-        value = np.where(slope > 0, -intercept / slope, np.nan)
-    return np.asarray(np.where(np.isinf(intercept), -intercept, value))
-
-
-def _beta(coefficients: Floats) -> Floats:
-    """Return β of each replicate; infinite where the curve does not rise, NaN where all agree."""
-    slope = coefficients[:, 1]
-    with np.errstate(divide="ignore", invalid="ignore"):
-        value = np.where(slope > 0, 1.0 / slope, np.inf)
-    return np.asarray(np.where(np.isnan(slope), np.nan, value))
 
 
 def all_but_one(groups: int) -> Floats:

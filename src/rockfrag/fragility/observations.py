@@ -89,12 +89,6 @@ class Observations(Grouped):
         """Whether motions have more than one row."""
         return self.n_motions < self.im.size
 
-    @property
-    def log_spread(self) -> float:
-        """Standard deviation of ln IM of the tests."""
-        mean = np.average(self.log_im, weights=self.trials)
-        return float(np.sqrt(np.average((self.log_im - mean) ** 2, weights=self.trials)))
-
     def ways(self) -> Floats:
         """Logarithm of the number of ways in which so many of a row's tests can overturn, shape (n,)."""
         stood = self.trials - self.overturned
@@ -193,7 +187,7 @@ def read_observations(table: pd.DataFrame, column: str, source: str = "table") -
 
 
 def labels(
-    table: pd.DataFrame, column: str | None, source: str, first: int = 1
+    table: pd.DataFrame, column: str | None, source: str = "table", first: int = 1
 ) -> NDArray[np.object_]:
     """Return a column of labels, shape (n,); one label per row where ``column`` is None."""
     if column is None:

@@ -492,8 +492,3 @@ def _contours(fit: VectorFragility, tests: pd.DataFrame) -> pd.DataFrame:
         limits = pd.DataFrame({"at": other, "value": value, "lower": lower, "upper": upper})
         parts.append(limits.assign(probability=probability, of=fit.measures[of]))
     return pd.concat(parts, ignore_index=True)
-
-
-def describe_pair(first: str, second: str) -> str:
-    """Two measures in words: ``PGA and PGV/PGA``."""
-    return f"{observations.name_and_unit(first)[0]} and {observations.name_and_unit(second)[0]}"

@@ -144,14 +144,10 @@ def _levels(
 ) -> NDArray[np.intp]:
     """Which amplitudes of an IDA curve the series of levels takes; levels beyond its end are not climbed."""
     levels = protocol.amplitudes(limit_g, repetition)
+    middles = (amplitudes[1:] + amplitudes[:-1]) / 2
     spacing = float(np.diff(amplitudes[-2:])[0]) if amplitudes.size > 1 else 0.0
     levels = levels[levels <= amplitudes[-1] + spacing / 2]
-    above = np.searchsorted(amplitudes, levels).clip(1, amplitudes.size - 1)
-    if amplitudes.size == 1:
-        above = np.zeros(levels.size, dtype=np.intp)
-    else:
-        above -= levels - amplitudes[above - 1] < amplitudes[above] - levels
-    nearest = np.unique(above)
+    nearest = np.unique(np.searchsorted(middles, levels, side="right"))
     limit = protocol.limit_g if limit_g is None else min(limit_g, protocol.limit_g)
     return np.asarray(nearest[amplitudes[nearest] <= limit * (1 + 1e-9)])
 
@@ -205,9 +201,15 @@ def tests_from_swept(
     """Read IDA curves as tests, part after part, as :func:`tests_from_ida` does those of a table."""
     rows: list[dict[str, object]] = []
     for part in parts:
-        _check_amplitudes(part)
-        levels = cache(partial(_levels, part.amplitude_g, protocol))
-        every = np.arange(part.amplitude_g.size)
+        amplitudes_g, first = part.amplitude_g, part.about.iloc[0]
+        rising = np.isfinite(amplitudes_g).all() and (np.diff(amplitudes_g, prepend=0.0) > 0).all()
+        if not (amplitudes_g.size and rising):
+            raise InputError(
+                f"{first['configuration']} {first['motion']}: amplitudes must be positive, rise, and occur once; "
+                "check the IDA curve's rows."
+            )
+        levels = cache(partial(_levels, amplitudes_g, protocol))
+        every = np.arange(amplitudes_g.size)
         for place, about in enumerate(part.about.to_dict("records")):
             limit = None if limits_g is None else limits_g.get(about["motion"])
             climbed = [levels(limit, number) for number in range(1, protocol.repetitions + 1)]
@@ -246,17 +248,6 @@ def _row(
     }
 
 
-def _check_amplitudes(part: Swept) -> None:
-    amplitudes = part.amplitude_g
-    rising = np.isfinite(amplitudes).all() and (np.diff(amplitudes, prepend=0.0) > 0).all()
-    if not (amplitudes.size and rising):
-        about = part.about.iloc[0]
-        raise InputError(
-            f"{about['configuration']} {about['motion']}: amplitudes must be positive, rise, and occur once; "
-            "check the IDA curve's rows."
-        )
-
-
 def mean_amplitudes(tests: pd.DataFrame) -> pd.DataFrame:
     """Geometric means of what is compared, over the motions that overturned all that is compared, a row a mean.
 
@@ -270,14 +261,10 @@ def mean_amplitudes(tests: pd.DataFrame) -> pd.DataFrame:
     A test that never overturned has no amplitude. Left out of one mean and not of another, it would make objects,
     floors or sides look different that were merely tested by other motions.
     """
-    known = tests.assign(
-        ln_a=np.log(tests["amplitude_g"]),
-        # the same record on another floor has another name: that of the record and the floor's
-        record=[
-            motion.removesuffix(f"_{floor}")
-            for motion, floor in tests[["motion", "floor"]].itertuples(index=False)
-        ],
-    )
+    # the same record on another floor has another name: that of the record and the floor's
+    names = tests[["motion", "floor"]].to_numpy().tolist()
+    record = [motion.removesuffix(f"_{floor}") for motion, floor in names]
+    known = tests.assign(ln_a=np.log(tests["amplitude_g"]), record=record)
     rows = _means("configuration", known, ["configuration"], ["record", "floor"])
     rows += _means("floor", known, ["pedestal", "floor"], ["record", "object"])
     for _, group in known.groupby("object", sort=False):
@@ -295,16 +282,11 @@ def _means(
     ]
     table = pd.concat(ln_a, axis=1)
     complete = table.dropna()
-    return [
-        {
-            "by": by,
-            **{
-                name: str(part[name].iloc[0]) if len(set(part[name])) == 1 else ""
-                for name in _LABELS
-            },
-            "mean_g": float(np.exp(complete.iloc[:, column].mean())) if len(complete) else np.nan,
-            "motions": len(complete),
-            "of": len(table),
-        }
-        for column, part in enumerate(parts)
-    ]
+    rows: list[dict[str, object]] = []
+    for column, part in enumerate(parts):
+        alike = (name for name in _LABELS if len(set(part[name])) == 1)
+        labels = dict.fromkeys(_LABELS, "") | {name: str(part[name].iloc[0]) for name in alike}
+        mean_g = float(np.exp(complete.iloc[:, column].mean()))
+        about = {"mean_g": mean_g, "motions": len(complete), "of": len(table)}
+        rows.append({"by": by, **labels, **about})
+    return rows

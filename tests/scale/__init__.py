@@ -1,1 +1,0 @@
-"""What a study costs against its size."""
