@@ -372,11 +372,10 @@ def _site_level(request: Request, hazard: HazardCurve | None) -> Level | None:
 def _counts(now: ObjectOutcomes, level: Level | None) -> tuple[int, int, int] | None:
     if level is None:
         return None
-    at = now.intensity_levels.place_of(level.value)
-    if now.intensity_levels.levels[at] != level.value:
-        return None
-    allowed = now.intensity_levels.allowed[:, at]
-    if not allowed.any():
+    levels = now.intensity_levels
+    at = levels.place_of(level.value)
+    allowed = levels.allowed[:, at]
+    if levels.levels[at] != level.value or not allowed.any():
         return None
     rocked, fell = (int(what[allowed, at].sum()) for what in (now.rocked, now.overturned))
     return int(allowed.sum()), rocked, fell

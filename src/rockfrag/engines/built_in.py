@@ -104,3 +104,6 @@ SPATIAL = SpatialEngine(
     "rockfrag.engines.spatial.engine:history",
 )
 """One body in space."""
+
+BUILT_IN = (LONE_BLOCKS, TWO_BLOCKS, SINGLE, PLANAR, SPATIAL)
+"""In the order in which they are asked."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -55,7 +56,7 @@ def mode_name(state: int, slides: int) -> str:
     return MODES[state] + (f", {way}" if way else "")
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Response:
     """Response of one body to one motion.
 
@@ -126,13 +127,13 @@ class Response:
     friction_force: Floats
     friction_demand: Floats
     least_normal_force: Floats
-    lost_contact: float
+    lost_contact: float = math.nan
     impacts: int
     grazings: int
-    paradoxes: int
-    forced: int
+    paradoxes: int = 0
+    forced: int = 0
     given_way: int
-    unstable_distance: float
+    unstable_distance: float = math.nan
 
     __repr__ = short_repr
 

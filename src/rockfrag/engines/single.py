@@ -129,8 +129,6 @@ class SingleRun:
             least_normal_force=np.array([demand["normal" + block] for block in blocks]),
             lost_contact=float(summary["lost_contact"]),
             unstable_distance=float(summary["unstable_distance"]),
-            paradoxes=0,
-            forced=0,
             **{name: int(summary[name]) for name in ("impacts", "grazings", "given_way")},
         )
 

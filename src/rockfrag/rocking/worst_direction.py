@@ -67,8 +67,7 @@ def worst_direction(
         raise InputError("worst_direction: directions_deg is empty; give at least one angle.")
     common, other = common_time([first, second])
     motions = [rotate(common, other, angle) for angle in directions_deg]
-    accelerations = [motion.acceleration for motion in motions]
-    search = body, accelerations, common.dt, highest
+    search = body, motions, None, highest
     found = find_thresholds(*search, tolerance=TOLERANCE, narrowest_resurrection=NARROWEST).table
     table = pd.DataFrame(
         {

@@ -8,7 +8,7 @@ from rockfrag.engines.kernels.jit import kernel
 from rockfrag.engines.kernels.laws import moves_impulse, scales_momentum
 from rockfrag.engines.kernels.laws import rate as lawful_rate
 from rockfrag.engines.planar.search import mode_number, search, take_number, try_mode
-from rockfrag.engines.planar.solve import bias, end_of, look_at, rate, solve, standing_bodies
+from rockfrag.engines.planar.solve import bias, copy, end_of, look_at, rate, solve, standing_bodies
 from rockfrag.laws.momentum import NUMBER as MOMENTUM
 
 NO_GAIN = 1e-12  # fraction of the kinetic energy below which a gain is rounding
@@ -144,12 +144,10 @@ def strike(p, w, ah, av, closing, push):
         _obey(p, w, ah, av, mass * scale, scale)
     lift_laws(p, w)
     remember_slides(p, w)
-    for d in range(3 * p.count):
-        w.v[d] = w.out[d]
+    copy(p, w.out, w.v)
     while _shut_weak(p, w, ah, av, closing):
         solve(p, w, w.q, w.v, ah, av, True, False)
-        for d in range(3 * p.count):
-            w.v[d] = w.out[d]
+        copy(p, w.out, w.v)
     project(p, w)
     w.struck += before - kinetic_energy(p, w.v)
     w.told.impacts += 1

@@ -114,7 +114,9 @@ WORK = np.dtype(
         # ledgers [J]: of the ground, lost to friction, lost in impacts
         *fields("work rubbed struck"),
         *fields("told", of=OUTCOME),
-        *whole("forced met resting"),  # counts; contact events met within the sample
+        *whole(
+            "forced met resting noted"
+        ),  # counts; contact events met within the sample, and in all
     ]
 )
 
