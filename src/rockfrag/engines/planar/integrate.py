@@ -157,8 +157,7 @@ def integrate(p, shaking, start, closing, kept, w):
             if fresh:
                 look_at(p, w, w.q)
                 solve(p, w, w.q, w.v, ah, av, False)
-                for d in range(3 * p.count):
-                    w.a[d] = w.out[d]
+                copy(p, w.out, w.a)
             stepping.start_step(p, w)
             while True:
                 stretch = stepping.Stretch(
@@ -260,21 +259,20 @@ def _now(shaking, i):
 
 @kernel
 def _begin(p, w, start):
+    """Set the start, and what is told of the case to nothing."""
     copy(p, start[0], w.q)
     copy(p, start[1], w.v)
     look_at(p, w, w.q)
     impact.lift_laws(p, w)
+    w.slides[:] = w.touching[:] = 0
     for k in range(p.count):
-        w.slides[k] = 0
         for end in range(2):
-            w.touching[k, end] = 0
             _, _, _, _, gap, _, w.kind[k, end] = end_of(p, w, w.q, k, end, -1)
             w.closed[k, end] = 1 if gap < 1e-11 * p.size else 0
     w.work = w.rubbed = w.struck = 0.0
-    for k in range(p.count):
-        w.told.peak_rotation[k] = w.told.peak_velocity[k] = w.told.peak_slip[k] = 0.0
-        w.told.slid[k] = w.told.flights[k] = 0
     told = w.told
+    told.peak_rotation[:] = told.peak_velocity[:] = told.peak_slip[:] = 0.0
+    told.slid[:] = told.flights[:] = 0
     told.impacts = told.paradoxes = told.overturned_body = told.parted_contact = 0
     told.several_modes = told.given_way = w.forced = w.met = w.resting = w.noted = 0
     told.overturning_time = math.nan
@@ -372,18 +370,15 @@ def _handle(p, w, now, closing, all_ends, exclude, kept):
                 hit = True
     if hit:
         impact.strike(p, w, now.ah, now.av, closing * p.speed, False)
-        _touch_closed(p, w)
         kind = IMPACT
         exclude = False
     if not impact.settle(p, w, now.ah, now.av, exclude):
         w.told.paradoxes += 1
         impact.strike(p, w, now.ah, now.av, closing * p.speed, True)
-        _touch_closed(p, w)
         impact.settle(p, w, now.ah, now.av, False)
         kind = PARADOX
     for k in range(p.count):
-        if w.closed[k, 0] + w.closed[k, 1] == 0 and w.old_closed[k, 0] + w.old_closed[k, 1] > 0:
-            w.told.flights[k] += 1
+        w.told.flights[k] += w.old_closed[k].any() and not w.closed[k].any()
     _note(p, w, now.time, kind, kept)
 
 
@@ -393,10 +388,9 @@ def _jolt(p, w, now, closing, kept):
     copy(p, w.q0, w.q)
     copy(p, w.v0, w.v)
     _remember(p, w)
-    _touch_closed(p, w)
+    impact.touch_closed(p, w)
     look_at(p, w, w.q)
     impact.strike(p, w, now.ah, now.av, closing * p.speed, True)
-    _touch_closed(p, w)
     impact.settle(p, w, now.ah, now.av, False)
     w.met += 1
     _note(p, w, now.time, PARADOX, kept)
@@ -413,20 +407,12 @@ def _remember(p, w):
 
 
 @kernel
-def _touch_closed(p, w):
-    """Let the ends that an impact has closed be those that touch."""
-    for k in range(p.count):
-        for end in range(2):
-            w.touching[k, end] = w.closed[k, end]
-
-
-@kernel
 def _shut(p, w):
     """Set the gaps of touching ends to zero."""
     for k in range(p.count):
-        if w.touching[k, 0] == 0 and w.touching[k, 1] == 0:
+        if not w.touching[k].any():
             continue
-        if w.touching[k, 0] == 1 and w.touching[k, 1] == 1:
+        if w.touching[k].all():
             w.q[3 * k + 2] = w.q[3 * k - 1] if k > 0 else 0.0
         end = 0 if w.touching[k, 0] == 1 else 1
         look_at(p, w, w.q)
