@@ -174,9 +174,8 @@ def _read_laws(p, w, push):
     for k in range(p.count):
         w.falls[k] = -1
         for end in range(2):
-            if push or w.touching[k, end] == 0 or w.touching[k, 1 - end] == 0:
-                continue
-            if w.old_closed[k, 1 - end] == 0 or w.old_closed[k, end] == 1:
+            other_holds = w.touching[k].all() and w.old_closed[k, 1 - end] == 1
+            if push or not other_holds or w.old_closed[k, end] == 1:
                 continue
             speed = approach(p, w, k, end)
             if speed < 0.0 and p.law[k, end] != MOMENTUM:

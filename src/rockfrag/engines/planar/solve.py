@@ -171,7 +171,9 @@ def _fill_equations(p, w, q, v, impact, rough, standing):
             end = w.drive[k]
             x, y, tx, ty, _, _, _ = end_of(p, w, q, k, end, w.kind[k, end])
             fill_row(q, k, x, y, -ty, tx, w.row[m])
-            _fill_couple(k, w.column[m])
+            # a couple turns body k, and what is below it the other way
+            w.column[m, :] = 0.0
+            w.column[m, 5], w.column[m, 2] = 1.0, -1.0 if k > 0 else 0.0
             w.owner[m] = 4 * k + COUPLE
             w.right[m] = w.depart[k]
             m += 1
@@ -187,16 +189,6 @@ def _add_fraction(p, w, q, k, end, friction, column):
     fill_row(q, k, x, y, -ty - friction * tx, tx - friction * ty, w.light)
     for d in range(6):
         column[d] += fraction * w.light[d]
-
-
-@kernel
-def _fill_couple(k, column):
-    """Fill what a couple between body k and what is below it turns."""
-    for d in range(6):
-        column[d] = 0.0
-    column[5] = 1.0
-    if k > 0:
-        column[2] = -1.0
 
 
 @kernel
