@@ -12,7 +12,7 @@ from rockfrag.records.motion import GroundMotion, Motion
 from rockfrag.rocking.ensemble import overturns
 from rockfrag.rocking.rules_of_thumb import RULES, asce_43, bias, predicted, static
 from rockfrag.rocking.spectra import rocking_spectrum, uniform_block
-from rockfrag.rocking.worst_direction import worst_direction
+from rockfrag.rocking.thresholds import worst_direction
 
 from ..conftest import shaking
 

@@ -22,5 +22,5 @@ from .robustness import (
 from .thresholds import (
     Thresholds as Thresholds,
     find_thresholds as find_thresholds,
+    worst_direction as worst_direction,
 )
-from .worst_direction import worst_direction as worst_direction
