@@ -47,7 +47,7 @@ def ensemble():
 
 def test_thresholds_are_those_of_the_grid(ensemble):
     # nothing topples the last one
-    bodies, motions = [*ensemble[0], Block(10.0, 10.0, 1.0)], ensemble[1]
+    bodies, motions = [*ensemble[0], Block(10.0, 5.0, 1.0)], ensemble[1]
     spacing, tolerance = 0.02, 0.002
     width = spacing / 16  # the first power of two that makes it no wider than the tolerance
     found = find_thresholds(

@@ -1,4 +1,4 @@
-from . import closed_forms as closed_forms, rules_of_thumb as rules_of_thumb
+from . import closed_forms as closed_forms
 from .ensemble import (
     LightBodies as LightBodies,
     overturns as overturns,
