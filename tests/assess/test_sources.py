@@ -1,8 +1,9 @@
-"""What differs between earthquakes is in the probability, what is not known in the interval."""
+"""What differs between earthquakes is in the probability, what is not known in the interval; documented tables."""
 
 import html
 import importlib.util
 import math
+import re
 from dataclasses import replace
 from pathlib import Path
 
@@ -25,6 +26,7 @@ from rockfrag.assess.outcomes import ObjectOutcomes
 from rockfrag.assess.page import page_of
 from rockfrag.assess.request import Records
 from rockfrag.assess.risk import toppling_rate
+from rockfrag.assess.rules import rules_study
 from rockfrag.assess.sources import SOURCES, parts_of
 from rockfrag.assess.words import five_lines, says
 from rockfrag.fragility.model_error import CUT, MODEL_ERRORS
@@ -131,8 +133,8 @@ def test_how_a_scan_stands_is_a_source_until_it_is_measured(on_feet, few):
     assert cut.objects.livelier == 1
 
 
+ROOT = Path(__file__).resolve().parents[2]
 K, K0 = 2.5, 1e-4
-TABLE = Path(__file__).parents[2] / "docs" / "tables" / "two_measures.py"
 
 
 def power_law(measure, at_a_tenth=K0, slope=K, middle=0.1):
@@ -219,9 +221,28 @@ def test_what_is_known_of_velocity_counts_and_is_no_longer_a_source(motions):
 
 @pytest.mark.slow
 def test_the_table_of_the_documentation_is_what_its_script_writes(default_records):
-    spec = importlib.util.spec_from_file_location("two_measures", TABLE)
+    spec = importlib.util.spec_from_file_location(
+        "two_measures", ROOT / "docs" / "tables" / "two_measures.py"
+    )
     script = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(script)
     about = script.objects()["bust"]
     line = script.line_of("bust", script.row_of(about, default_records))
     assert line in script.PAGE.read_text()
+
+
+@pytest.mark.slow
+def test_the_documented_bias_of_rules_is_the_computed_one(default_records):
+    table = rules_study(ROOT / "config" / "rules-of-thumb.yaml", default_records)
+    text = (ROOT / "docs" / "rules-of-thumb.md").read_text(encoding="utf-8")
+    header, _, *rows = re.findall(r"^\|(.*)\|$", text, re.MULTILINE)
+    rules = [cell.strip() for cell in header.split("|")][1:]
+    documented = {}
+    for row in rows:
+        name, *cells = (cell.strip() for cell in row.split("|"))
+        documented |= {(name, rule): cell for rule, cell in zip(rules, cells, strict=True)}
+    computed = {
+        (row.object, row.rule): f"{row.bias:.2f} ± {row.scatter:.2f}, {100 * row.unsafe:.0f} %"
+        for row in table.itertuples()
+    }
+    assert documented == computed

@@ -53,14 +53,8 @@ def _series(text: TextFile, line: int, stop: int, unit: str, promised: int | Non
             "the file is cut short, or its comment is wrong",
             line,
         )
-    return Channel(
-        npts=samples.size,
-        dt=dt,
-        samples=samples.copy,
-        unit=unit if unit in TO_SI else "",
-        component=tag[1] if tag else "",
-        details={"factor": scale},
-    )
+    known = {"component": tag[1] if tag else "", "factor": scale}
+    return Channel(samples.size, dt, samples, unit if unit in TO_SI else "").saying(known)
 
 
 def _command(text: TextFile, line: int, stop: int) -> str:

@@ -57,7 +57,7 @@ def _parse(text: TextFile) -> Iterator[Channel]:
         "recording_station": place,
     }
     dt = step_of_times(table[:, 0], text, columns + 1)
-    yield Channel(table.shape[0], dt, lambda: table[:, 1].copy()).saying(facts)
+    yield Channel(table.shape[0], dt, table[:, 1].copy()).saying(facts)
 
 
 FORMAT = Format("SEISMOSOFT", _recognise, _parse)
