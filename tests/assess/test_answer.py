@@ -105,10 +105,7 @@ def test_densities_and_hazards_that_are_unusual_are_doubted(motions, tmp_path):
 
 def test_a_file_says_what_the_command_line_says(tmp_path):
     path = tmp_path / "statue.yaml"
-    path.write_text(
-        "name: Venus\nwidth: 35 cm\nheight_cm: 120\nmass: 180 kg\npga: 0.25 g\n"
-        "pedestal: {width: 50 cm, height: 0.9 m, mass_kg: 400}\nfloor: 2/4\n"
-    )
+    path.write_text(CASES["files"]["statue.yaml"])
     request = read_request(path)
     assert request.objects.body == asked(**ON_PLINTH).objects.body
     assert request.place.words == "on level 2 of 4"
@@ -242,12 +239,7 @@ def test_an_interval_that_says_nothing_is_called_so_with_what_would_narrow_it(on
 
 def test_all_faults_of_an_inventory_are_listed_and_good_rows_ranked(own_records, tmp_path, capsys):
     path = tmp_path / "gallery.csv"
-    path.write_text(
-        "name;width;height;mass;pedestal_width;pedestal_height;floor\nstout;60 cm;0,9 m;500 kg;;;\n"
-        "vase;abc;70 cm;;;;\nbust;30 cm;70;;;;\ntorso;30 cm;70 cm;;;;7/3\nhead;20 cm\n"
-        "slender;20 cm;120,5 cm;60 kg;;;\nstout;30 cm;1 m;;;;\n"
-        "Hermes;50 cm;120 cm;400 kg;60 cm|80 cm;50 cm|20 cm;\nVenus;35 cm;120 cm;180 kg;50 cm;90 cm;1/2\n"
-    )
+    path.write_text(CASES["files"]["faulty.csv"])
     options = ["--pga", "0.4g", "--return-period", "475", "--output", str(tmp_path)]
     command = ["assess", str(path), *options, "--record", str(own_records / "catalogue.csv")]
     assert main(command) == 2
