@@ -148,14 +148,11 @@ def _is_inventory(options: argparse.Namespace) -> bool:
 
 def _refuse_unused(options: argparse.Namespace) -> None:
     """Refuse options that would have no effect."""
-    without = [
-        (_is_inventory(options), "an inventory, a .csv file", ("pages", "keep_going")),
-        (not _is_inventory(options), "one object, not an inventory", ("pdf", "json")),
-    ]
-    for there, needed, names in without:
-        for name in names:
-            if getattr(options, name) and not there:
-                raise InputError(f"--{name.replace('_', '-')} needs {needed}; leave it out.")
+    listed = _is_inventory(options)
+    for name in ("pages", "keep_going") if not listed else ("pdf", "json"):
+        if getattr(options, name):
+            needed = "one object, not an inventory" if listed else "an inventory, a .csv file"
+            raise InputError(f"--{name.replace('_', '-')} needs {needed}; leave it out.")
 
 
 def _one(options: argparse.Namespace, given: dict[str, Any]) -> int:
