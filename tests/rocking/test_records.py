@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 
 from rockfrag import Block, Stack, simulate
+from rockfrag.assess.rules import RULES, asce_43, bias, predicted, static
 from rockfrag.errors import InputError
 from rockfrag.motions import half_sine, scale_to_pga
 from rockfrag.records.motion import GroundMotion, Motion
 from rockfrag.rocking.ensemble import overturns
-from rockfrag.rocking.rules_of_thumb import RULES, asce_43, bias, predicted, static
 from rockfrag.rocking.spectra import rocking_spectrum, uniform_block
-from rockfrag.rocking.worst_direction import worst_direction
+from rockfrag.rocking.thresholds import worst_direction
 
 from ..conftest import shaking
 

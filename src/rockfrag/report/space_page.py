@@ -51,7 +51,7 @@ def run(job: Job[SpaceStudy]) -> Results:
 
 def _live(study: SpaceStudy, ground: Sequence[Motion]) -> Markup:
     """Bodies of the study under its first records, live; nothing where a body has another base for each record."""
-    if study.sweep.spread > 0:
+    if study.sweep["base_spread"] > 0:
         return Markup()
     bodies = {
         f"{base}, height over width {slenderness:g}, {height:g} m": Standing(

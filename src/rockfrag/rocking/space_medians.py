@@ -4,7 +4,8 @@ The level of a record is the geometric mean of the peaks of its two components, 
 """
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -15,7 +16,6 @@ from rockfrag.engines.spatial.body import PERTURBATION
 from rockfrag.motions.rotation import rotate
 from rockfrag.records.motion import GroundMotion, Motion
 from rockfrag.rocking.ensemble import overturns
-from rockfrag.rocking.options import Sweep
 from rockfrag.system.blocks import Block
 from rockfrag.units import GRAVITY, STONE
 
@@ -30,6 +30,7 @@ LOSS, NO_LOSS = "momentum", "none"
 INTERVAL = (0.05, 0.95)
 
 Pair = tuple[Motion, Motion]
+Sweep = Mapping[str, Any]  # levels and directions, as the key ``space`` of a study gives them
 
 
 def body_of(base: str, slenderness: float, height: float) -> Block:
@@ -71,15 +72,15 @@ def medians(
     with the fraction toppled in space and in each planar answer.
     """
     body = body_of(base, slenderness, height)
-    levels = np.geomspace(sweep.lowest, sweep.highest, sweep.levels) / slenderness
+    levels = np.geomspace(sweep["lowest"], sweep["highest"], sweep["levels"]) / slenderness
     peaks = np.array([np.sqrt(first.pga * other.pga) for first, other in pairs])
     scales = levels * GRAVITY / peaks[:, np.newaxis]
     shaking = [GroundMotion(first, other) for first, other in pairs]
-    common = {"seed": seed, "threads": threads}
-    space = run_in_space([body], shaking, scales, spread=sweep.spread, **common).overturned[0]
+    common, spread = {"seed": seed, "threads": threads}, float(sweep["base_spread"])
+    space = run_in_space([body], shaking, scales, spread=spread, **common).overturned[0]
     half = median(space.mean(axis=0), levels)
     near = 0 if math.isnan(half) else int(np.abs(np.log(levels / half)).argmin())
-    more = sweep.spread + PERTURBATION
+    more = spread + PERTURBATION
     other = run_in_space([body], shaking, scales[:, [near]], spread=more, **common).overturned[0]
     rows, fractions = [], []
     about = {"base": base, "slenderness": slenderness, "height_m": height}
@@ -97,7 +98,7 @@ def _in_plane(
 ) -> dict[str, Floats]:
     """Fraction of directions in which each record topples a planar body at each level, shape (records, levels)."""
     flat = Block(body.width, body.height, body.mass, float(body.body.tensor[1, 1]))
-    count = sweep.directions
+    count = sweep["directions"]
     angles = np.arange(count) * 180 / count
     turned = [rotate(first, other, angle) for first, other in pairs for angle in angles]
     restitution = [1.0] if loss == NO_LOSS else None
@@ -119,7 +120,7 @@ def _ratios(
     rng = np.random.default_rng(seed)
     draws = [np.arange(len(names))] + [
         np.concatenate([groups[k] for k in rng.integers(0, len(groups), len(groups))])
-        for _ in range(sweep.resamples)
+        for _ in range(sweep["resamples"])
     ]
     of = {
         name: np.array([median(fell[rows].mean(axis=0), levels) for rows in draws])
