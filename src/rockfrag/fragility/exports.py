@@ -108,7 +108,7 @@ _FACTORS = {"g": {"g": 1.0, "m/s²": 1.0 / constants.g}, "cm/s": {"cm/s": 1.0, "
 def intensity_measure_type(name: str, unit: str) -> tuple[str, float]:
     """OpenQuake's name of a measure and the factor to its unit (g, cm/s)."""
     measure = measure_labelled(name)
-    if measure is None or not measure.openquake or name == measure.floor_label:
+    if measure is None or not measure.openquake:
         known = ", ".join(dict.fromkeys(each.openquake for each in declared() if each.openquake))
         raise InputError(
             f"NRML: {name} is no intensity measure of ground motion in OpenQuake; export curves in one of {known}."

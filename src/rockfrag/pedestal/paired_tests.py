@@ -88,18 +88,18 @@ def check_tests(tests: pd.DataFrame) -> pd.DataFrame:
         clean[name] = clean[name].astype(str)
     if "motion" not in clean:
         clean["motion"] = clean["earthquake"] + "/" + clean["floor"]
-    if "censored" not in clean:
-        clean["censored"] = "none"
+    for name, usual in (("censored", "none"), ("repetition", 1)):
+        if name not in clean:
+            clean[name] = usual
     clean["censored"] = clean["censored"].fillna("none").astype(str)
-    if "repetition" not in clean:
-        clean["repetition"] = 1
     for name, allowed in (("pedestal", ("P", "NP")), ("censored", ("none", "right", "left"))):
         known = ", ".join(allowed)
         _refuse(clean, ~clean[name].isin(allowed), name, f"is {{!r}}; it must be one of {known}.")
-    if "definition" in clean and len(set(clean["definition"].astype(str))) > 1:
+    definitions = sorted(set(clean.get("definition", pd.Series(dtype=str)).astype(str)))
+    if len(definitions) > 1:
         raise InputError(
             "Table of tests: several definitions of the same IDA curve are mixed "
-            f"({', '.join(sorted(clean['definition'].astype(str).unique()))}); keep one of them."
+            f"({', '.join(definitions)}); keep one of them."
         )
     _check_amplitudes(clean)
     test = [*KEY, "pedestal", "repetition"]
@@ -144,10 +144,10 @@ def _check_amplitudes(clean: pd.DataFrame) -> None:
             "largest amplitude survived as lower_g."
         )
         _refuse(clean, here & ~known, name, words)
-    for row in clean.index[~right & ~(clean["lower_g"] <= clean["upper_g"])]:
+    for row in np.flatnonzero(~right & ~(clean["lower_g"] <= clean["upper_g"])):
+        lower, upper = clean[["lower_g", "upper_g"]].iloc[row]
         raise InputError(
-            f"Table of tests, row {row + 1}: lower_g {clean['lower_g'].iloc[row]} exceeds "
-            f"upper_g {clean['upper_g'].iloc[row]}; exchange them."
+            f"Table of tests, row {row + 1}: lower_g {lower} exceeds upper_g {upper}; exchange them."
         )
 
 
@@ -162,8 +162,6 @@ def pedestals_apart(tests: pd.DataFrame) -> tuple[pd.DataFrame, dict[str, str]]:
     on_pedestal = tests[tests["pedestal"] == "P"]
     names = on_pedestal.groupby("object")["configuration"].unique()
     several = names[names.map(len) > 1]
-    if several.empty:
-        return tests, {}
     parts = [tests[~tests["object"].isin(list(several.index))]]
     origin: dict[str, str] = {}
     for object_name, configurations in several.items():
@@ -187,11 +185,13 @@ def with_counterparts(
     origin: dict[str, str] = {}
     for name, other in counterparts.items():
         label = f"{name} against {other}"
-        for side, configuration in (("P", name), ("NP", other)):
-            rows = tests[tests["configuration"] == configuration]
-            parts.append(rows.assign(object=label, pedestal=side, configuration=configuration))
-            if side == "P" and len(rows):
-                origin[label] = str(rows["object"].iloc[0])
+        own, others = (tests[tests["configuration"] == each] for each in (name, other))
+        parts += [
+            own.assign(object=label, pedestal="P"),
+            others.assign(object=label, pedestal="NP"),
+        ]
+        if len(own):
+            origin[label] = str(own["object"].iloc[0])
     return pd.concat(parts, ignore_index=True), origin
 
 
@@ -237,10 +237,8 @@ def pair_tests(tests: pd.DataFrame, slenderness: Mapping[str, float] | None = No
     clean = check_tests(tests)
     if slenderness is None:
         slenderness = dict.fromkeys(clean["object"].unique(), math.nan)
-    slenderness = {
-        **slenderness,
-        **{name: slenderness[tested] for name, tested in origin.items() if tested in slenderness},
-    }
+    given = {name: slenderness[tested] for name, tested in origin.items() if tested in slenderness}
+    slenderness = {**slenderness, **given}
     slenderness_of(clean, slenderness)
     sides = _sides(clean)
     ln_a, width = (pd.DataFrame(sides[name]).astype(float) for name in ("ln_a", "width"))

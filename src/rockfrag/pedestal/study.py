@@ -74,17 +74,14 @@ def effects_table(table: pd.DataFrame, floors: Sequence[str] = ()) -> pd.DataFra
     """
     rows: list[list[object]] = []
     known = [name for name in floors if name in set(table["floor"])]
-    known += sorted(set(table["floor"]) - set(known))
-    table = table.assign(
-        floor=pd.Categorical(table["floor"], known),
-        tied=table["d"].abs() < cluster_means.ROUNDING,
-        at_bound=table["bound"] != "",
-    )
+    floor = pd.Categorical(table["floor"], [*known, *sorted(set(table["floor"]) - set(known))])
+    tied, at_bound = table["d"].abs() < cluster_means.ROUNDING, table["bound"] != ""
+    table = table.assign(floor=floor, tied=tied, at_bound=at_bound)
     for scope, columns in SCOPES.items():
         groups = table.groupby(list(columns) or np.zeros(len(table)), observed=True)
         sampled = cluster_means.sampled_units(table.assign(group=groups.ngroup()), "group")
         for place, (key, pairs) in enumerate(groups):
-            effect = cluster_means.effect_of(sampled[place])
+            effect = sampled[place].effect()
             flips = cluster_means.sign_flip_test(sampled[place].d)
             same = cluster_means.equivalence(effect)
             level = "/".join(map(str, key)) if isinstance(key, tuple) else "all"
@@ -98,10 +95,10 @@ def effects_table(table: pd.DataFrame, floors: Sequence[str] = ()) -> pd.DataFra
                     *pairs[["tied", "at_bound"]].sum(),
                 ]
             )
-    adjusted = ("p_holm", "p_bh")
-    result = pd.DataFrame(rows, columns=[name for name in EFFECT_COLUMNS if name not in adjusted])
-    result["p_holm"] = result.groupby("scope")["p"].transform(cluster_means.holm)
-    result["p_bh"] = cluster_means.benjamini_hochberg(result["p"])
+    given = [name for name in EFFECT_COLUMNS if name not in ("p_holm", "p_bh")]
+    result = pd.DataFrame(rows, columns=given)
+    holm = result.groupby("scope")["p"].transform(cluster_means.holm)
+    result = result.assign(p_holm=holm, p_bh=cluster_means.benjamini_hochberg(result["p"]))
     return result[EFFECT_COLUMNS]
 
 
@@ -129,13 +126,11 @@ def _ranks(table: pd.DataFrame, seed: int) -> pd.DataFrame:
     Floors share the earthquake and objects the motion, so they are drawn together.
     """
     parts = []
-    for factor, cluster, within in (
-        ("object", "motion", False),
-        ("floor", "earthquake", False),
-        ("earthquake", "motion", True),
-    ):
+    clusters = {"object": "motion", "floor": "earthquake", "earthquake": "motion"}
+    for factor, cluster in clusters.items():
         if table[factor].nunique() > MOST_RANKED:
             continue
+        within = factor == "earthquake"
         ranks = rank_probabilities(table, factor, cluster, seed, within=within)
         ranks.insert(0, "factor", factor)
         parts.append(ranks.assign(mean=np.exp(ranks["mean"])))
@@ -192,16 +187,13 @@ def rank_probabilities(
         drawn = np.column_stack([_resampled(of_level, rng) for of_level in means])
     else:
         cells = table.pivot_table(index=cluster, columns=factor, values="d", aggfunc="mean")
-        grid = cells[levels].dropna().to_numpy()
-        drawn = _resampled(grid, rng)
-    return pd.DataFrame(
-        {
-            "level": levels,
-            "mean": table.groupby(factor)["d"].mean()[levels].to_numpy(),
-            "p_largest": _fraction_of(drawn == drawn.max(axis=1, keepdims=True)),
-            "p_smallest": _fraction_of(drawn == drawn.min(axis=1, keepdims=True)),
-        }
+        drawn = _resampled(cells[levels].dropna().to_numpy(), rng)
+    mean = table.groupby(factor)["d"].mean()[levels].to_numpy()
+    largest, smallest = (
+        _fraction_of(drawn == extreme(drawn, axis=1, keepdims=True)) for extreme in (np.max, np.min)
     )
+    found = {"level": levels, "mean": mean, "p_largest": largest, "p_smallest": smallest}
+    return pd.DataFrame(found)
 
 
 def _resampled(means: Array, rng: np.random.Generator) -> Array:

@@ -23,7 +23,7 @@ from numpy.typing import NDArray
 from rockfrag.arrays import Flags, Floats
 from rockfrag.errors import InputError
 from rockfrag.outcomes.limit_states import OVERTURNS, limit_state_named
-from rockfrag.shaketable.protocols import Outcome, Protocol, measured
+from rockfrag.shaketable.protocols import Outcome, Protocol
 from rockfrag.shaketable.tests_table import as_tests_table
 from rockfrag.system.system import System
 
@@ -234,7 +234,9 @@ def _row(
     """Outcome of a motion at the amplitudes that were climbed."""
     bounds = always_overturning if definition == "always_overturning" else first_overturning
     true = bounds(part.amplitude_g[climbed], part.overturned[place][climbed])
-    shown = measured(true, protocol.measurement, str(about["configuration"]))
+    shown = true
+    if protocol.measurement is not None:
+        shown = protocol.measurement.show(true, str(about["configuration"]))
     upper = int(np.searchsorted(part.amplitude_g, true.upper_g))
     return {
         "test": f"{about['configuration']} {about['motion']}",

@@ -5,7 +5,6 @@ response no contact reached its friction, none opened as a whole and no mode was
 pure rocking, and the answer is that of the engine of pure rocking.
 """
 
-import math
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from typing import Any
@@ -212,8 +211,6 @@ class ContactRun:
             friction_force=shear,
             friction_demand=responses.sampled_demand(normal, shear),
             least_normal_force=np.asarray(normal.min(axis=0)),
-            lost_contact=math.nan,
-            unstable_distance=math.nan,
             grazings=int((table["kind"].eq("impact") & (meets < GRAZING_SPEED)).sum()),
             forced=int(self.work["forced"]),
             **{name: int(told[name]) for name in ("impacts", "paradoxes", "given_way")},

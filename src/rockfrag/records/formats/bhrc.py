@@ -50,7 +50,7 @@ def _parse(text: TextFile) -> Iterator[form.Channel]:
         azimuth = re.search(rf"\b{component or 'none'}\s*(\d{{1,3}})\b", facts.pop("azimuths"))
         facts |= {"network": "I1", "component": component}
         facts |= {"azimuth_deg": azimuth[1]} if azimuth else {}
-        yield form.Channel(count, dt, samples.copy).saying(facts)
+        yield form.Channel(count, dt, samples).saying(facts)
 
 
 def _step(text: TextFile, at_reals: int, count: int, duration: float) -> float:

@@ -44,14 +44,16 @@ _DEFAULT_UNITS = {"acceleration": "cm/s2", "velocity": "cm/s", "displacement": "
 _MAX_HEADER = 60
 
 
+_BEGINS = re.compile(f"{_FIRST.pattern}|{_SPECTRA.pattern}", re.I)
+_PARTS = (
+    re.compile(rf"^\s*{part}", re.I) for part in (r"station\s+(?:no|id)\b", r"chan\s*\d+\s*:")
+)
+_headed = form.headed(_BEGINS, *_PARTS, within=_MAX_HEADER)
+
+
 def _recognise(lines: list[str], name: str) -> bool:
-    header = lines[:_MAX_HEADER]
-    return (
-        bool(_FIRST.match(lines[0]) or _SPECTRA.match(lines[0]))
-        and any(re.match(r"\s*station\s+(?:no|id)\b", line, re.I) for line in header)
-        and any(re.match(r"\s*chan\s*\d+\s*:", line, re.I) for line in header)
-        and not any("RENADIC" in line.upper() for line in header)
-    )
+    others = any("RENADIC" in line.upper() for line in lines[:_MAX_HEADER])
+    return _headed(lines, name) and not others
 
 
 def _parse(text: TextFile) -> Iterator[form.Channel]:

@@ -29,8 +29,6 @@ _OPTION = r"-{name}\s+(?:\{{(?P<list>[^{{}}]*)\}}|\"(?P<quoted>[^\"]*)\"|(?P<wor
 
 
 def _parse(text: TextFile) -> Iterator[Channel]:
-    if text.find(_SERIES_BYTES) < 0:
-        text.fail("no timeSeries Path in this script")
     unit = _UNIT.search(text.data)
     stated = canonical_unit(unit["unit"].decode("ascii", errors="replace")) if unit else ""
     promised = int(unit["count"]) if unit and unit["count"] else None
@@ -53,14 +51,8 @@ def _series(text: TextFile, line: int, stop: int, unit: str, promised: int | Non
             "the file is cut short, or its comment is wrong",
             line,
         )
-    return Channel(
-        npts=samples.size,
-        dt=dt,
-        samples=samples.copy,
-        unit=unit if unit in TO_SI else "",
-        component=tag[1] if tag else "",
-        details={"factor": scale},
-    )
+    known = {"component": tag[1] if tag else "", "factor": scale}
+    return Channel(samples.size, dt, samples, unit if unit in TO_SI else "").saying(known)
 
 
 def _command(text: TextFile, line: int, stop: int) -> str:

@@ -66,7 +66,7 @@ def _parse(text: TextFile) -> Iterator[Channel]:
         values = pairs_of(samples, "cm/s2", text, start, count // 2)
     else:
         dt = float(f"{1 / rate:.9g}") if rate > 0 else 0.0
-        values = Channel(count, text.interval(dt, at_reals), samples.copy, "cm/s2")
+        values = Channel(count, text.interval(dt, at_reals), samples, "cm/s2")
     if left_out:
         step = {"step": "leave out values beyond the count of the header", "values": left_out}
         values = replace(values, steps=(step, *values.steps))

@@ -58,7 +58,7 @@ def _parse(text: TextFile) -> Iterator[form.Channel]:
             words = text.lines(first, min(sections[0][0], first + _MAX_HEADER))
             channel = _section(text, line, end, words)
             if channel.quantity == "acceleration":
-                _check_peak(text, words, channel.samples(), line)
+                _check_peak(text, words, channel.samples, line)
             yield place_of(words, channel)
 
 
@@ -81,7 +81,7 @@ def _in_words(text: TextFile, first: int, stop: int) -> form.Channel:
     text.check_count(promised, values.size, line)
     _check_peak(text, words, values, line)
     dt = text.interval(float(step["dt"]), first)
-    return place_of(words, form.Channel(promised, dt, values.copy, _unit(peak["unit"])))
+    return place_of(words, form.Channel(promised, dt, values, _unit(peak["unit"])))
 
 
 def _unit(words: str) -> str:

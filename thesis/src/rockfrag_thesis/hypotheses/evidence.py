@@ -38,9 +38,6 @@ class Evidence:
     measures: pd.DataFrame | None = None
     # Specimens by name, the pedestal as "P"; without them those of the thesis
     bodies: Mapping[str, Block] | None = None
-    # Pairs of simulations: earthquake, rocking_g, sliding_g (overturning amplitude with and without
-    # the possibility to slide) [g]
-    sliding: pd.DataFrame | None = None
 
     @property
     def specimens(self) -> Mapping[str, Block]:

@@ -7,7 +7,6 @@ from functools import cached_property
 
 import numpy as np
 import pandas as pd
-from numpy.typing import ArrayLike
 
 from rockfrag.arrays import Floats
 from rockfrag.engines.response import Response
@@ -21,8 +20,6 @@ from rockfrag.units import LARGEST_PEAK
 from rockfrag_thesis.hypotheses.evidence import PEDESTAL, THESIS_BODIES
 from rockfrag_thesis.hypotheses.hypothesis import Undecidable
 from rockfrag_thesis.printed_tables import uplift_accelerations
-
-FreeRocking = Mapping[str, tuple[ArrayLike, ArrayLike]]
 
 PEAKS_G = (0.3, 0.5, 0.8, 1.2)
 """Amplitudes to which the motions are scaled for the histories of the stacks [g]."""
@@ -85,7 +82,6 @@ class Setting:
     all_motions: Sequence[Motion]  # Ground motions, perhaps none
     # As in `rockfrag_thesis.hypotheses.hypothesis_table.theory_table`
     seed: int
-    free_rocking: FreeRocking | None
     threads: int | None
 
     @property
@@ -178,7 +174,6 @@ def make_setting(
     specimens: Mapping[str, Block],
     motions: Sequence[Motion],
     seed: int,
-    free_rocking: FreeRocking | None = None,
     threads: int | None = None,
     stacks: Mapping[str, Stack] | None = None,
 ) -> Setting:
@@ -187,7 +182,7 @@ def make_setting(
     pedestal = blocks.pop(PEDESTAL, None)
     if pedestal is not None and not stacks:
         stacks = {f"P&{name}": Stack(pedestal, block) for name, block in blocks.items()}
-    return Setting(blocks, pedestal, stacks or {}, list(motions), seed, free_rocking, threads)
+    return Setting(blocks, pedestal, stacks or {}, list(motions), seed, threads)
 
 
 def bisect(happens: Callable[[float], bool], low: float, high: float, tolerance: float) -> float:
