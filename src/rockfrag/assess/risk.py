@@ -60,20 +60,13 @@ def probability_in(rate: float, years: float) -> float:
 
 @dataclass(frozen=True)
 class Estimate:
-    """A probability with its interval, or a bound where no motion toppled the object.
+    """A probability with its interval, or a bound where no motion toppled the object."""
 
-    Attributes
-    ----------
-    value : probability [-]
-    lower : lower limit of the interval [-]
-    upper : upper limit [-]
-    sources : standard deviation on the scale of the interval by source [-]
-    """
-
-    value: float
+    value: float  # Probability [-]
+    # Limits of the interval [-]
     lower: float
     upper: float
-    sources: Mapping[str, float]
+    sources: Mapping[str, float]  # Standard deviation on the scale of the interval by source [-]
 
 
 @dataclass(frozen=True)

@@ -83,13 +83,8 @@ def integrate(kernel: Any, worker: Callable[[], Any], threads: int, *arguments: 
     def work(_: int) -> None:
         kernel(ensemble, *others[:-1], worker(), others[-1])
 
-    needed = min(threads, int(ensemble.count))
-    if needed <= 1:
-        # starting a thread takes longer than a single short case
-        work(0)
-        return
-    with ThreadPoolExecutor(needed) as pool:
-        list(pool.map(work, range(needed)))
+    with ThreadPoolExecutor(threads) as pool:
+        list(pool.map(work, range(min(threads, int(ensemble.count)))))
 
 
 def sampled(cases: Cases, per_gravity: float) -> tuple[Motions, NDArray[np.int64], Floats]:
@@ -141,8 +136,6 @@ def _extremes(samples: Floats, offsets: NDArray[np.int64]) -> tuple[Floats, Floa
 
 def refined(values: Floats, times: int) -> Floats:
     """Sample a piecewise linear motion that ends in zero ``times`` as densely, up to that zero at least."""
-    if times == 1:
-        return values
     closed = np.append(values, 0.0)
     at = np.arange((closed.size - 1) * times + 1) / times
     return np.asarray(np.interp(at, np.arange(closed.size), closed))

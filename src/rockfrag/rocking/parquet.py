@@ -5,7 +5,7 @@ from __future__ import annotations
 import itertools
 import math
 import os
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from functools import partial
@@ -16,9 +16,7 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 from numpy.typing import ArrayLike
 
-from rockfrag.engines.built_in import SINGLE
 from rockfrag.engines.contract import Case, Cases, engine_for
-from rockfrag.engines.single import SingleRun
 from rockfrag.engines.steps import step_count
 from rockfrag.errors import InputError
 from rockfrag.files import whole_file
@@ -125,7 +123,7 @@ def _groups(most: int, shape: tuple[int, int, int]) -> Iterator[tuple[slice, ...
 
 # --------------------------------------------------------------------------- histories
 
-AHEAD = 4  # histories that are computed or wait to be written at a time, for each thread
+AHEAD = 16  # histories that are in memory at a time
 
 SCHEMA = pa.schema(
     PLACE
@@ -169,59 +167,37 @@ def stream_histories(
         _ = cases.answering
         for system in cases.systems:
             step_count(system, [motion.dt for motion in cases.motions], request.g, request.step)
-    total, workers = len(cases.systems) * cases.scales.size, cases.threads
-    places, history = iter(np.ndindex(*cases.shape)), partial(_history_table, cases)
+    total, places = len(cases.systems) * cases.scales.size, iter(np.ndindex(*cases.shape))
     with (
         whole_file(path) as file,
         pq.ParquetWriter(file, SCHEMA, compression="zstd") as writer,
-        ThreadPoolExecutor(workers) as pool,
+        ThreadPoolExecutor(cases.threads) as pool,
     ):
         written = 0
-        batches = iter(lambda: list(itertools.islice(places, AHEAD * workers)), [])
-        tables = itertools.chain.from_iterable(pool.map(history, batch) for batch in batches)
-        for group in _row_groups(tables):
-            writer.write_table(pa.concat_tables(group), row_group_size=ROWS)
-            written += len(group)
+        while batch := list(itertools.islice(places, AHEAD)):
+            tables = pool.map(partial(_history_table, cases), batch)
+            writer.write_table(pa.concat_tables(tables), row_group_size=ROWS)
+            written += len(batch)
             if progress is not None:
                 progress(written, total)
     return total
-
-
-def _row_groups(tables: Iterable[pa.Table]) -> Iterator[list[pa.Table]]:
-    """Gather tables of at most ROWS rows together; a longer one stays alone."""
-    group: list[pa.Table] = []
-    rows = 0
-    for table in tables:
-        if group and rows + len(table) > ROWS:
-            yield group
-            group, rows = [], 0
-        group.append(table)
-        rows += len(table)
-    if group:
-        yield group
 
 
 def _history_table(cases: Cases, place: tuple[int, ...]) -> pa.Table:
     """Make the rows of one history, of a system, a motion and a scale."""
     b, m, s = place
     case = Case(cases.systems[b], cases.motions[m], float(cases.scales[m, s]), cases.request)
-    engine = engine_for(case.system, case.motion, case.request)
-    if engine is SINGLE:
-        # without its tables of contact events and energy, which take most of its time
-        run = SingleRun(case, room=0)
-        time, theta, omega, state = run.time, *map(run.of, ("theta", "omega", "c"))
-    else:
-        response = engine.history(case)
-        time, theta, omega, state = response.time, response.theta, response.omega, response.state
+    response = engine_for(case.system, case.motion, case.request).history(case)
+    theta = response.theta
     samples, bodies = theta.shape
     values = {
         "system": np.full(theta.size, b),
         "motion": np.full(theta.size, m),
         "scale": np.full(theta.size, case.scale),
-        "time_s": np.repeat(time, bodies),
+        "time_s": np.repeat(response.time, bodies),
         "body": np.tile(np.arange(1, bodies + 1), samples),
         "theta_rad": theta.ravel(),
-        "omega_rad_s": omega.ravel(),
-        "state": state.ravel(),
+        "omega_rad_s": response.omega.ravel(),
+        "state": response.state.ravel(),
     }
     return pa.Table.from_pydict(values, schema=SCHEMA)

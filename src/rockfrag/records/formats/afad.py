@@ -23,9 +23,8 @@ _MAX_HEADER = 40
 
 def _parse(text: TextFile) -> list[form.Channel]:
     header = text.lines(0, _MAX_HEADER)
-    titles = next((i for i, line in enumerate(header) if _TITLES.match(line)), -1)
-    if titles < 0:
-        text.fail("no line of orientations (N-S E-W U-D) above the samples")
+    # orientations (N-S E-W U-D) above the samples
+    titles = [_TITLES.match(line) is not None for line in header].index(True)
     facts = form.header_keys(header[:titles])
     count = int(_number_of(text, facts, "number of data"))
     dt = text.interval(_number_of(text, facts, "sampling interval"), 0)

@@ -29,8 +29,6 @@ _OPTION = r"-{name}\s+(?:\{{(?P<list>[^{{}}]*)\}}|\"(?P<quoted>[^\"]*)\"|(?P<wor
 
 
 def _parse(text: TextFile) -> Iterator[Channel]:
-    if text.find(_SERIES_BYTES) < 0:
-        text.fail("no timeSeries Path in this script")
     unit = _UNIT.search(text.data)
     stated = canonical_unit(unit["unit"].decode("ascii", errors="replace")) if unit else ""
     promised = int(unit["count"]) if unit and unit["count"] else None

@@ -134,10 +134,8 @@ class Format:
     name: str  # name of the ObsPy plugin
     # tells from the first lines of a file (and its name) whether it is of this format
     recognise: Callable[[list[str], str], bool]
-    # gives the channels of a file of this format, of any quantity
-    parse: Callable[[text_file.TextFile], Iterable[Channel]]
-    # encoding of text that is not UTF-8, where the format's network writes in one
-    encoding: str = ""
+    parse: Callable[[text_file.TextFile], Iterable[Channel]]  # gives channels of any quantity
+    encoding: str = ""  # of text that is not UTF-8, where the format's network writes in one
 
     def is_format(self, source: text_file.Source) -> bool:
         """Tell whether a file is of this format, from a bounded piece of its head; never raises."""
@@ -165,8 +163,7 @@ class Format:
                 raise
         # without a last line that does not end
         whole = text.data[: text.data.rfind(b"\n") + 1]
-        text = replace(text, data=whole, cut_short=True)
-        return [_shortened(channel) for channel in self._parsed(text)]
+        return [*map(_shortened, self._parsed(replace(text, data=whole, cut_short=True)))]
 
     def _parsed(self, text: text_file.TextFile) -> list[Channel]:
         try:
@@ -189,17 +186,11 @@ class Format:
         self,
         source: text_file.Source,
         headonly: bool = False,
-        starttime: UTCDateTime | None = None,
-        endtime: UTCDateTime | None = None,
-        nearest_sample: bool = True,
         dt: float | None = None,
         **_: Any,
     ) -> Stream:
         """Return the acceleration channels of a file as an ObsPy stream, in the unit of the file."""
-        stream = Stream([channel.trace(headonly) for channel in self.channels(source, dt)])
-        if not headonly and (starttime is not None or endtime is not None):
-            stream.trim(starttime, endtime, nearest_sample=nearest_sample)
-        return stream
+        return Stream([channel.trace(headonly) for channel in self.channels(source, dt)])
 
 
 def headed(
