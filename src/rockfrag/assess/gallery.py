@@ -44,10 +44,7 @@ NUMBERS = (
 def write_inventory(
     inventory: Inventory, folder: str | os.PathLike[str], *, pages: bool = False
 ) -> Path:
-    """Write ranking and joint risk as tables and a page; return the path of the ranking.
-
-    With ``pages`` each object is assessed in full and has a page of its own.
-    """
+    """Write tables, a page, and with ``pages`` a full one of each object; return the path of the ranking."""
     place, joint = Path(folder) / "inventory.csv", inventory.joint
     write_table(inventory_table(inventory), place)
     if joint is not None:
