@@ -302,7 +302,7 @@ def test_a_building_is_described_as_conservators_know_it():
 
 @pytest.mark.parametrize(("floor", "name"), CASES["floors"])
 def test_levels_are_named_as_europe_and_america_do(floor, name):
-    assert asked(**STATUE, floor=floor).place.floor_name == name
+    assert says.line("floor_name", asked(**STATUE, floor=floor).place) == name
 
 
 @pytest.mark.parametrize(("options", "words"), [(row[0], row[1:]) for row in CASES["messages"]])

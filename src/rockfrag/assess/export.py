@@ -31,7 +31,7 @@ def as_json(found: Assessment) -> str:
         "rockfrag": __version__,
         "name": request.name,
         "place": request.place.words,
-        "floor": request.place.floor_name,
+        "floor": says.line("floor_name", request.place),
         "lines": five_lines(found),
         "measure": found.measure.imt,
         "unit": found.measure.unit,
