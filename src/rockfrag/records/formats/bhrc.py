@@ -1,10 +1,9 @@
 """Iran Strong Motion Network (BHRC), volume 1: three components L, V and T in g/10.
 
-Each component has a text header that begins with ``* VOL1DS FILE`` and has its size and unit in
-``NO. OF POINTS = … DURATION = …`` and ``UNITS ARE SECONDS AND G/10``, seven lines of integers, seven
-of reals, then the samples in rows (E13.6), and ends with ``/&``. Header lines are cut after 70
-columns, so that only what is left of those is read. The interval is one over the rate, the ninth
-real number, and must agree with the duration.
+Each component has a text header that begins with ``* VOL1DS FILE`` and has its size and unit in ``NO. OF POINTS =
+… DURATION = …`` and ``UNITS ARE SECONDS AND G/10``, seven lines of integers, seven of reals, then the samples in
+rows (E13.6), and ends with ``/&``. Header lines are cut after 70 columns, so that only what is left of those is
+read. The interval is one over the rate, the ninth real number, and must agree with the duration.
 """
 
 import re

@@ -1,7 +1,6 @@
 """RENADIC (University of Chile) volume 1: pairs of time and acceleration, three channels.
 
-The header has no station; the files are named by the station and the record's number, which is the
-second line.
+The header has no station; the files are named by the station and the record's number, which is the second line.
 """
 
 import re

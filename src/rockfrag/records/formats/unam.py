@@ -1,9 +1,8 @@
 """UNAM "archivo estándar de aceleración" (Mexico), version 2: ``KEY : value`` lines, a column a channel.
 
-Lists of channels are written ``/first/second/…``. Below ``DATOS DE ACELERACION`` stand the names and
-the orientations of the channels between two rulers, then one row a sample in the Fortran format
-that the header gives (``3F10.3``). The total of samples is that of the nominal duration: up to a second
-of samples more may follow.
+Lists of channels are written ``/first/second/…``. Below ``DATOS DE ACELERACION`` stand the names and the
+orientations of the channels between two rulers, then one row a sample in the Fortran format that the header gives
+(``3F10.3``). The total of samples is that of the nominal duration: up to a second of samples more may follow.
 """
 
 import re
