@@ -14,7 +14,7 @@ from rockfrag.records.parsing.text_file import TextFile
 from rockfrag.records.parsing.timestamps import time_of
 
 _TITLE = re.compile(r"^\s*ARCHIVO\s+EST.NDAR\s+DE\s+ACELERACI.N", re.I)
-_DATA = re.compile(rb"^[ \t]*DATOS DE ACELERACI", re.I | re.M)
+_DATA = re.compile(r"^\s*DATOS DE ACELERACI", re.I)
 _RULER = re.compile(r"^-+\+-+\+[-+]*$")
 _MAX_HEADER = 200
 _HALF_A_DAY = 12 * 3600

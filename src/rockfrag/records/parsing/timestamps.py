@@ -210,7 +210,7 @@ def pairs_of(
 
 def _flat(text: TextFile, start: int, stop: int, count: int) -> NDArray[np.float64]:
     """Return ``count`` numbers of fields that may touch: 10F7.3, the first one wider by a blank."""
-    body = text.data[text.offset(start) : text.offset(stop)]
+    body = text.body(start, stop)
     try:
         values = parse_separated(body)
     except NumberError:
