@@ -147,14 +147,7 @@ def test_hostile_input_gets_a_sentence(tmp_path, motions):
     assert sum("refused" in said for said in refused) > 0.9 * len(forms)
 
 
-BUILDING = {
-    "storey_heights_m": [4.5, 3.8, 3.8],
-    "masses_kg": [350e3, 350e3, 245e3],
-    "first_period_s": 0.28,
-    "damping": {"kind": "modal", "ratio": 0.04},
-    "floors": {"gallery": 1, "attic": 3},
-    "model": "elastic",
-}
+BUILDING = case_tables(__file__)["building"]
 KNOWN = {"storey_height": "4 m", "material": "concrete"}
 SLENDER = {"width": "20 cm", "height": "80 cm", "measure": "PGA", "level": "0.3 g"}
 

@@ -18,19 +18,13 @@ from rockfrag.system.blocks import Block
 from ..case_tables import case_tables
 from .conftest import asked
 
-GALLERY = """name,width,height,mass,pedestal_width,pedestal_height,floor,value
-twin,20 cm,80 cm,90 kg,,,1/2,10
-other twin,20 cm,80 cm,90 kg,,,1/2,10
-giant,150 cm,500 cm,20 t,,,,10
-figurine,6 cm,30 cm,2 kg,,,2/2,1000
-Venus,35 cm,120 cm,180 kg,50 cm,90 cm,1/2,50
-"""
+CASES = case_tables(__file__)
 
 
 @pytest.fixture(scope="module")
 def gallery(own_records, tmp_path_factory):
     path = tmp_path_factory.mktemp("gallery") / "gallery.csv"
-    path.write_text(GALLERY)
+    path.write_text(CASES["files"]["gallery.csv"])
     shared = {"pga": "0.4 g", "return_period": "475 years"}
     shared |= {"records": {"paths": [str(own_records / "catalogue.csv")]}}
     return assess_inventory(path, shared)
@@ -124,7 +118,7 @@ def test_pad_and_gallery_from_the_command_line(own_records, tmp_path, capsys):
     assert len(lines.splitlines()) == 5
     assert "12 own motions of 6 earthquakes" in lines
     path = tmp_path / "gallery.csv"
-    path.write_text(GALLERY)
+    path.write_text(CASES["files"]["gallery.csv"])
     assert main(["assess", str(path), "--return-period", "475", "--pga", "0.5g", *records]) == 0
     said = capsys.readouterr().out
     assert "At least so many topple in one earthquake" in said
@@ -136,7 +130,7 @@ def test_pad_and_gallery_from_the_command_line(own_records, tmp_path, capsys):
     assert page.count("<svg") == 3
 
 
-@pytest.mark.parametrize(("text", "words"), case_tables(__file__)["refused"])
+@pytest.mark.parametrize(("text", "words"), CASES["refused"])
 def test_a_wrong_row_is_named(text, words, tmp_path):
     path = tmp_path / "gallery.csv"
     path.write_text(text)

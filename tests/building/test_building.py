@@ -365,16 +365,7 @@ def test_an_elastic_building_is_believed_up_to_its_strength(settings):
     assert "cannot break" in outcomes[-1].statement
 
 
-@pytest.mark.parametrize(
-    ("drift", "state", "credible"),
-    [
-        (1e-5, "uncracked", True),
-        (8e-4, "cracked", True),
-        (2e-3, "beyond yield", True),
-        (6e-3, "beyond the shear limit", True),
-        (9e-3, "beyond the rocking limit", False),
-    ],
-)
+@pytest.mark.parametrize(("drift", "state", "credible"), CASES["judged"])
 def test_masonry_is_judged_by_the_drift_limits(masonry, drift, state, credible):
     outcome = judged(masonry(), 3, drift)
     assert (outcome.storey, outcome.state, outcome.credible) == (3, state, credible)

@@ -151,15 +151,6 @@ def test_ages_are_certain_uniform_or_lognormal_and_end_with_fragility():
 
 CASES = case_tables(__file__)
 
-SITE = """
-name: Hill
-hazard: {curves: [branches.csv]}
-objects:
-  - {name: rock A, median: 0.4 g, beta: 0.3, median_sd_ln: 0.2, age_years: 3000}
-  - {name: rock B, median: 0.5 g, beta: 0.3, age_years: [2000, 6000], fragile_for_years: 3000}
-shared_error: 0.5
-"""
-
 
 def write_branches(path):
     """A table of three branches, power laws."""
@@ -175,7 +166,7 @@ def write_branches(path):
 def site(tmp_path):
     write_branches(tmp_path / "branches.csv")
     path = tmp_path / "site.yaml"
-    path.write_text(SITE)
+    path.write_text(CASES["files"]["site.yaml"])
     return path
 
 
@@ -265,16 +256,9 @@ def test_a_simulated_object_is_refused_in_one_sentence(own_records, tmp_path, ca
 
 def test_curves_that_end_before_the_level_decided_on_give_no_number_that_is_none(tmp_path, capsys):
     # velocities that are exceeded oftener than once in ten thousand years, whatever the branch
-    rows = [
-        f"{branch},0.5,{level},{rate * factor}"
-        for branch, factor in (("a", 1), ("b", 4))
-        for level, rate in ((5, 0.02), (20, 0.002), (80, 0.0003))
-    ]
-    (tmp_path / "b.csv").write_text("\n".join(["branch,weight,pgv_cm_s,annual_rate", *rows]))
-    standing = "measure: PGV, beta: 0.4, median_sd_ln: 0.3, age_years: 600"
-    objects = f"[{{name: pinnacle, median: 45 cm/s, {standing}}}, {{name: urn, median: 60 cm/s, {standing}}}]"
+    (tmp_path / "b.csv").write_text(CASES["files"]["ending.csv"])
     site = tmp_path / "site.yaml"
-    site.write_text(f"name: Chapel\nhazard: {{curves: [b.csv]}}\nobjects: {objects}\n")
+    site.write_text(CASES["files"]["ending.yaml"])
     assert main(["constrain", str(site), "--output", str(tmp_path / "out")]) == 0
     shown = capsys.readouterr().out
     assert not re.search(r"\bnan\b", shown + (tmp_path / "out" / "Chapel.html").read_text())
@@ -283,12 +267,6 @@ def test_curves_that_end_before_the_level_decided_on_give_no_number_that_is_none
 
 YEARS = 50.0
 THETA, BETA, AGE = 0.25, 0.3, 4000.0
-OF_EXPORTS = f"""
-name: site
-hazard: {{realizations: realizations_7.csv, curves: [%s]}}
-objects: [{{name: rock, median: {THETA} g, beta: {BETA}, age_years: {AGE:g}}}]
-"""
-
 RUN = """
 from openquake.commonlib import logs
 logs.dbcmd("upgrade_db")
@@ -355,11 +333,7 @@ def exported(folder):
     for number, rate in rates.items():
         path = folder / f"hazard_curve-rlz-{number:03d}-PGA_7.csv"
         path.write_text(openquake_csv("PGA", f"rlz-{number:03d}", rate))
-    (folder / "realizations_7.csv").write_text(
-        "#,,\"generated_by='OpenQuake engine 3.26.2', start_date='2026-01-01T00:00:00', checksum=1\"\n"
-        "rlz_id,branch_path,weight\n"
-        "0,AA~A,2.0000000e-01\n1,AB~A,5.0000000e-01\n2,AC~A,3.0000000e-01\n"
-    )
+    (folder / "realizations_7.csv").write_text(CASES["files"]["realizations.csv"])
     return rates
 
 
@@ -367,7 +341,8 @@ def test_exports_are_read_reweighted_and_read_back(tmp_path, monkeypatch):
     rates = exported(tmp_path)
     monkeypatch.chdir(tmp_path)
     names = sorted(path.name for path in tmp_path.glob("hazard_curve-*.csv"))
-    (tmp_path / "site.yaml").write_text(OF_EXPORTS % ", ".join(names))
+    site = CASES["files"]["of_exports.yaml"].replace("CURVES", ", ".join(names))
+    (tmp_path / "site.yaml").write_text(site)
     assert main(["constrain", "site.yaml"]) == 0
     table = pd.read_csv("constrained/site-weights.csv")
     assert table["rlz_id"].tolist() == [0, 1, 2]

@@ -9,14 +9,11 @@ from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from itertools import groupby
 from operator import attrgetter
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 from rockfrag.errors import InputError, errors_of
 from rockfrag.schema import read_schema
 from rockfrag.units import convert, quantity
-
-if TYPE_CHECKING:
-    from rockfrag.assess.request import Request
 
 _INVENTORY = ".csv"
 _UNITS = re.compile("_(kg_m2|years|km|kg|deg|m|s)$")
@@ -361,7 +358,7 @@ def _app(options: argparse.Namespace) -> int:
     return 0
 
 
-def form_of(settings: Mapping[str, Any], request: "Request") -> dict[str, str]:
+def form_of(settings: Mapping[str, Any], request: Any) -> dict[str, str]:
     """What stands in the form at first."""
     form = {key: str(settings[key]) for key in _FORM if key in settings}
     form |= {"facing": str(settings["facing_deg"])} if "facing_deg" in settings else {}
@@ -378,7 +375,7 @@ def form_of(settings: Mapping[str, Any], request: "Request") -> dict[str, str]:
     return form | _shaking(settings, request) | {"years": str(settings.get("return_period", ""))}
 
 
-def _shaking(settings: Mapping[str, Any], request: "Request") -> dict[str, str]:
+def _shaking(settings: Mapping[str, Any], request: Any) -> dict[str, str]:
     """The level and the hazard curve as they stand in the form."""
     given = [key for key in _LEVELS if key in settings]
     if len(given) > 1:

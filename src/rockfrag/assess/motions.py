@@ -220,11 +220,10 @@ def _own(records: Records, folder: Path) -> MotionSet:
     still = [motion.name for motion in motions if motion.pga == 0]
     if still:
         raise InputError(f"record {still[0]}: is zero throughout and shakes nothing; leave it out.")
-    names = [motion.name for motion in motions]
     pairs = _pairs(motions)
     found = MotionSet(tuple(motions), tuple(motions), pairs, "", tuple(warnings))
     earthquakes = len(set(found.earthquakes))
-    if len(set(names)) < len(names):
+    if len({motion.name for motion in motions}) < len(motions):
         raise InputError(
             "records: two motions have the same name; leave one out or give a catalogue."
         )
