@@ -20,7 +20,6 @@ from rockfrag.system.contact import Contact
 from rockfrag.system.mesh import read_shape
 from rockfrag.system.system import (
     System,
-    diagonal,
     round_inertia,
     turned_about_vertical,
     uplift_ratios,
@@ -160,7 +159,8 @@ class Objects:
         if self.round:
             across = top.centroidal_inertia
             along = top.mass * top.width * top.width / 8
-            return replace(top, round=True, inertia=diagonal(across, across, along)).system()
+            tensor = checked_tensor(np.diag((across, across, along)))
+            return replace(top, round=True, inertia=tensor).system()
         return turned_about_vertical(self._box(top, whole=whole).system(), self.facing_deg)
 
     def _changed(self, scanned: RigidBody, top: Block) -> RigidBody:
@@ -181,7 +181,8 @@ class Objects:
         if whole:
             along += (top.mass - mass) * top.width * top.width / 6
             depth = max(depth, top.width)
-        return replace(top, depth=depth, inertia=diagonal(across + aside, across, along))
+        tensor = checked_tensor(np.diag((across + aside, across, along)))
+        return replace(top, depth=depth, inertia=tensor)
 
     def variants(self) -> list[Moved["Objects"]]:
         """The object with each property smaller and larger by its standard deviation."""

@@ -12,7 +12,6 @@ from pathlib import Path
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
 from rockfrag.assess.hazard.curve import PGA
 from rockfrag.assess.motions import MotionSet, motion_set
@@ -25,7 +24,7 @@ from rockfrag.motions.spectra import response_spectrum
 from rockfrag.records.motion import Motion
 from rockfrag.rocking.closed_forms import housner_velocity
 from rockfrag.schema import checked
-from rockfrag.system.blocks import Block, Body
+from rockfrag.system.blocks import Block
 from rockfrag.units import GRAVITY
 from rockfrag.yaml_file import read_yaml
 
@@ -88,22 +87,6 @@ RULES: dict[str, Rule] = {
 """Rules by name."""
 
 
-def predicted(body: Body, motion: Motion, rule: Rule) -> float:
-    """Factor on a motion at which a rule expects an object to topple: the least of the models of practice."""
-    return min(rule(block, motion) for block in {body.blocks[-1], body.rigidly_joined()})
-
-
-def bias(
-    predicted_factors: NDArray[np.float64], simulated: NDArray[np.float64]
-) -> tuple[float, float]:
-    """Median of predicted over simulated factors, where there are, and the deviation of its logarithm [-]."""
-    ratio = np.log(predicted_factors / simulated)
-    ratio = ratio[np.isfinite(ratio)]
-    if not ratio.size:
-        return math.nan, math.nan
-    return float(np.exp(np.median(ratio))), float(ratio.std(ddof=1)) if ratio.size > 1 else math.nan
-
-
 @dataclass(frozen=True)
 class RuleCheck:
     """A rule held against simulations of one object."""
@@ -122,13 +105,16 @@ def check_rules(objects: Objects, motions: MotionSet, outcomes: ObjectOutcomes) 
     first = outcomes.first()
     scales = outcomes.intensity_levels.scales[np.arange(first.size), first]
     simulated = np.where(first >= 0, scales, np.nan)
-    found = []
+    known = np.isfinite(simulated)
+    models, found = {objects.body.blocks[-1], objects.body.rigidly_joined()}, []
     for name, rule in RULES.items():
-        factors = np.array([predicted(objects.body, motion, rule) for motion in motions.base])
-        middle, scatter = bias(factors, simulated)
-        known = np.isfinite(simulated)
-        unsafe = float((factors > simulated)[known].mean()) if known.any() else float("nan")
-        found.append(RuleCheck(name, middle, scatter, unsafe, int(known.sum())))
+        # the least of the models of practice
+        least = [min(rule(block, motion) for block in models) for motion in motions.base]
+        factors = np.array(least)
+        ratio = pd.Series(np.log(factors / simulated)[known])
+        unsafe = float(pd.Series((factors > simulated)[known]).mean())
+        bias, scatter = float(np.exp(ratio.median())), float(ratio.std())
+        found.append(RuleCheck(name, bias, scatter, unsafe, len(ratio)))
     return found
 
 

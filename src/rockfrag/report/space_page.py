@@ -13,8 +13,8 @@ from rockfrag.report.live.space import Standing, live_in_space
 from rockfrag.report.page import table_html
 from rockfrag.report.part import Answer, Says, Section
 from rockfrag.report.study_report import write_page
-from rockfrag.rocking.space_medians import LOSS, NO_LOSS, PLANAR, body_of
 from rockfrag.stages.job import Job, Results
+from rockfrag.stages.space import LOSS, NO_LOSS, PLANAR, body_of
 from rockfrag.study.space import SpaceStudy
 
 says = Says("rockfrag.report", "space_page.j2")
