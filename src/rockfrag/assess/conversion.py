@@ -52,8 +52,7 @@ class SiteVelocity:
     """PGV that comes with levels of another measure at a site: ln of their ratio [s] is normal."""
 
     spread: float  # Its standard deviation from one earthquake to the next [-]
-    # Its mean, the same at all levels, where no curves are known
-    constant: float = math.nan
+    constant: float = math.nan  # Its mean, the same at all levels, where no curves are known
     # Hazard curves of the measure and of PGV, with which it agrees; the spread at a given level is then not known
     curves: tuple[HazardCurve, ...] = ()
 
@@ -81,8 +80,7 @@ class Conversion:
     """What is known of the velocity at a site whose shaking is given in another measure."""
 
     measure: IntensityMeasure  # The measure that is known
-    # P(topples | measure, PGV over the measure), columns ``im`` and ``ratio_s``
-    fragility: VectorFragility
+    fragility: VectorFragility  # P(topples | ``im``, ``ratio_s``): the measure, and PGV over it
     # Effect of ln ratio over that of ln measure: 0 where PGV says nothing beside the measure, 1
     # where it says all, up to 2 where displacement does [-]
     weight: float

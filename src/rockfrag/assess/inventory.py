@@ -49,8 +49,7 @@ class JointRisk:
     # ``probability`` of one in the years asked for with limits (``probability_lower``,
     # ``probability_upper``), and ``at_the_site``, the fraction of motions at the site's level
     numbers: pd.DataFrame
-    # A row a loss: ``loss`` and ``annual_rate`` with which an earthquake exceeds it
-    losses: pd.DataFrame
+    losses: pd.DataFrame  # A row a loss: ``loss``, and ``annual_rate`` with which one exceeds it
     # Correlation of the toppling of each two objects in time: the rate of earthquakes that topple
     # both over the geometric mean of the rates of each [-].  NaN where one never topples
     correlation: pd.DataFrame

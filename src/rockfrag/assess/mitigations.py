@@ -32,8 +32,7 @@ class Mitigation:
     # Limits of the factor, of the same motions with and without it; NaN where there are none
     lower: float
     upper: float
-    # Whether the object is better off with it: what is estimated shrinks, or an amplitude grows
-    helps: bool
+    helps: bool  # Whether the object is better off: the risk shrinks, or an amplitude grows
 
 
 def mitigations_of(objects: Objects) -> dict[str, Body]:

@@ -91,8 +91,7 @@ class ObjectOutcomes:
     overturned: NDArray[np.bool_]
     rocked: NDArray[np.bool_]
     earthquakes: NDArray[np.object_]  # Earthquake of each motion, shape (motions,)
-    # Whether a body that was simulated with it may have left the ground, which the model holds shut
-    light: bool = False
+    light: bool = False  # Whether it may have left the ground, which the model holds shut
     # Which cases reached each other declared limit state, by its name, shape (motions, levels) each
     others: Mapping[str, NDArray[np.bool_]] = field(default_factory=dict)
 

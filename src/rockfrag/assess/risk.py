@@ -79,10 +79,8 @@ class Target:
     forward: Callable[[float], float]
     back: Callable[[float], float]
     state: str = OVERTURNS  # Name of the limit state whose fractions they are
-    # What is added of earthquakes for the widths of sources, see :meth:`on_scale`
-    added: float = 0.0
-    # The number where all motions agree that it happens; infinite for a level that none reaches
-    certain: float = 1.0
+    added: float = 0.0  # Earthquakes added for the widths of sources, see :meth:`on_scale`
+    certain: float = 1.0  # The number where it always happens; infinite for a level never reached
 
     def on_scale(
         self,

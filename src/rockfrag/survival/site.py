@@ -251,10 +251,8 @@ class Age:
 
     low: float  # ends of a range in which every value is equally probable; equal for a certain age
     high: float
-    # standard deviation of the logarithm of a lognormal age with the median ``low``; 0 for the others
-    sd_ln: float = 0.0
-    # longest time for which it has been so fragile, which limits the age; infinite if none is given
-    fragile_for: float = math.inf
+    sd_ln: float = 0.0  # standard deviation of ln of a lognormal age of median ``low``, else 0
+    fragile_for: float = math.inf  # longest time of being so fragile, which limits the age
 
     def exposure(self, uniform: Floats) -> Floats:
         """Years of exposure at given probabilities, shape (n,)."""
