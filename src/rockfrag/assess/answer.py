@@ -126,9 +126,8 @@ class Shaken:
     arrangements: Mapping[str, ObjectOutcomes]  # Outcomes of each way to stand, its own first
     moved: Sequence[Moved[ObjectOutcomes]]  # Outcomes with each property moved to both sides
     before: ObjectOutcomes  # Outcomes as it stands under the motions by which changes are compared
-    # Outcomes as it stands in one plane, along one component at a time; None where that is the answer
-    planar: ObjectOutcomes | None
-    changed: Mapping[str, ObjectOutcomes]
+    planar: ObjectOutcomes | None  # Outcomes in one plane; None where those are the answer
+    changed: Mapping[str, ObjectOutcomes]  # Outcomes with each mitigation under the same motions
     alike: Mapping[str, str]  # Mitigations that give one of the arrangements, and its name
 
 

@@ -31,8 +31,7 @@ magnitude, a factor of two in distance, and a class of ground (EN 1998-1: 180, 3
 OF_THE_SITE = 0.5
 """Part of the variance about the relation that all motions of a site share [-]: an estimate of ours."""
 
-FEWEST_RECORDS = 30
-"""Records from which three coefficients are fitted; with fewer, all of their spread counts."""
+FEWEST_RECORDS = 30  # From which three coefficients are fitted; of fewer all of their spread counts
 
 TOGETHER = 0.25
 """Relative standard deviation of the spread of ln PGV at a given level, which two hazard curves do not say: of

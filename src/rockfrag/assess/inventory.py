@@ -143,8 +143,7 @@ def _correlation(fell: Flags, allowed: Flags, per_level: Floats) -> Floats:
 
 SIZES = ("width_m", "height_m", "depth_m", "mass_kg", "cg_height_m")
 PEDESTAL = ("pedestal_width_m", "pedestal_height_m", "pedestal_depth_m", "pedestal_mass_kg")
-YES, NO = ("yes", "true", "1", "x"), ("no", "false", "0")
-"""What a cell may say to whether a base is round."""
+YES, NO = ("yes", "true", "1", "x"), ("no", "false", "0")  # What says whether a base is round
 
 MOST_OBJECTS = 10_000  # Rows of an inventory
 

@@ -26,8 +26,7 @@ from rockfrag.system.system import (
 )
 from rockfrag.units import DENSITIES, STONE, check_density, size_warning
 
-COMMON = (150.0, 9000.0)
-"""Densities of the box around an object that are usual, from hollow wood to solid bronze [kg/m³]."""
+COMMON = (150.0, 9000.0)  # Usual densities of the box around an object, from wood to bronze [kg/m³]
 
 TOLERANCES = {"width": 0.02, "cg_height": 0.05, "restitution": 0.05, "mass": 0.2}
 """Relative standard deviations of what was measured or assumed, unless stated."""
@@ -39,8 +38,7 @@ uniform from 0.7 to 1 (:mod:`rockfrag.campaign.standing`)."""
 ROLLING = 1.0  # Restitution of a round base: its rim rolls from edge to edge and loses nothing
 HIGHER = 1.0 + 1e-9  # Height of a body that is another one than the object, over that of the object
 
-ASIDE = 45.0
-"""Angle to both sides of how it faces the shaking, where nobody said it [degrees]: two at a right angle."""
+ASIDE = 45.0  # To both sides of how it faces the shaking, where nobody said it [degrees]
 
 ALONE = "on the floor"  # How an object stands without a pedestal
 

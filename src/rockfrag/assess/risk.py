@@ -24,8 +24,7 @@ from rockfrag.outcomes.limit_states import OVERTURNS, ROCKS
 
 LEVEL = 0.90  # Confidence of the intervals
 
-HALF = 0.5
-"""Part of an earthquake that is added on either side of counted fractions (Haldane 1956, Anscombe 1956)."""
+HALF = 0.5  # Part of an earthquake added on either side of fractions (Haldane, Anscombe 1956)
 
 _Z = float(stats.norm.ppf(0.5 + LEVEL / 2))
 

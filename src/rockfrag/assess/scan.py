@@ -37,8 +37,7 @@ SOURCE_OF = {
 
 WAYS = 256  # Ways to stand that are drawn
 
-KNOWN_CONTACT_SPREAD = 0.2
-"""Relative standard deviation of a contact tolerance that was given: of ours."""
+KNOWN_CONTACT_SPREAD = 0.2  # Relative standard deviation of a given contact tolerance: of ours
 
 _BINS = 8
 

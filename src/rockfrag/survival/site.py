@@ -36,8 +36,7 @@ from rockfrag.yaml_file import read_yaml
 
 MOST_BRANCHES = 10_000  # Branches of one site
 
-WEIGHT_ERROR = 1e-3
-"""By how much the sum of weights may differ from 1, which rounding to four digits explains."""
+WEIGHT_ERROR = 1e-3  # Of the sum of weights from 1, which rounding to four digits explains
 
 
 @dataclass(frozen=True)
@@ -325,8 +324,7 @@ def draw_errors(objects: int, shared: float, samples: int) -> tuple[Floats, Floa
 
 RECORDS = "resources/records"  # Folder of fetched records
 
-ANY_LEVEL = {"PGA": 0.1, "SA": 0.1, "PGV": 10.0}
-"""A level in each measure: only fractions over all levels are used."""
+ANY_LEVEL = {"PGA": 0.1, "SA": 0.1, "PGV": 10.0}  # One a measure: fractions at all levels count
 
 SHAKING = ("pga", "pgv", "sa", "hazard", "return_period", "return_period_years", "years")
 """Keys of ``statue.yaml`` that say what shakes the site, which the branches of the hazard do here."""

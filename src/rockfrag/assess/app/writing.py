@@ -24,8 +24,7 @@ from rockfrag.units import GRAVITY
 
 MOST_BYTES = 6_000_000  # Largest page [bytes], which a memory stick and a mail take
 
-LANGUAGES = ("en", "it")
-"""Languages of the page, each a file of texts; what one lacks is said in the first."""
+LANGUAGES = ("en", "it")  # Of the page, each a file of texts; what one lacks is said in the first
 
 _FACTORS = (GRAVITY, 0.01, 1.0)  # Factors of units in which records state decimals [m/s²]
 
