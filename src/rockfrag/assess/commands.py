@@ -281,10 +281,7 @@ _KEY = re.compile(
 
 
 def on_command_line(words: str, given: Collection[str] | None = None) -> str:
-    """A message that names keys of ``statue.yaml`` as ``key pga``, with options in place of those that were given.
-
-    All of them are taken as given if None.
-    """
+    """A message with options for keys of ``statue.yaml``, written ``key pga``, of those given or of all."""
     names = {_UNITS.sub("", key): name for name, key, *_ in _all_options()}
     names |= {"records": "record", "building.storey_heights": "storey-height"}
 

@@ -171,10 +171,9 @@ def find_conversion(
     by_statics: bool,
     brief: bool,
 ) -> Conversion | None:
-    """Fit the fragility in two measures, and gather what is known of the velocity at the site.
+    """Fit the fragility in two measures, and gather what is known of the site's velocity; None in PGV or unfitted.
 
-    Returns None in PGV, or where the outcomes allow no fit. ``curves`` are the hazard in the measure and, if
-    known, in PGV; with ``by_statics`` the level alone decides what rocks; ``brief`` fits without an interaction.
+    ``curves`` are the hazard in the measure and, if known, in PGV; ``brief`` fits without an interaction.
     """
     measure = outcomes.intensity_levels.measure
     if measure == PGV:

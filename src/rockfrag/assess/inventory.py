@@ -56,10 +56,7 @@ class JointRisk:
 
 
 def joint_risk(found: Sequence[Assessment]) -> JointRisk | None:
-    """Count what topples together; an object of no given value counts as 1.
-
-    None without a hazard, or where objects are counted in different measures.
-    """
+    """Count what topples together, no value as 1; None without a hazard, or with objects in several measures."""
     hazard = found[0].hazard
     if hazard is None or any(assessment.measure != found[0].measure for assessment in found):
         return None

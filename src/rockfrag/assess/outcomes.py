@@ -316,10 +316,7 @@ def fraction_at(level: float, levels: Floats, fractions: Floats, shift: float = 
 def simulated(
     systems: Sequence[System], shaking: Sequence[Motion], scales: Floats
 ) -> tuple[Outcomes, list[bool]]:
-    """What happened, and for which systems an assessment warns that a body may have left the ground.
-
-    Factors on the motions have the shape (motions, levels).
-    """
+    """What happened under factors of shape (motions, levels), and which systems may have left the ground."""
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always", LightBodies)
         result = overturns(systems, shaking, scales=scales)
@@ -351,10 +348,7 @@ class Directions:
 def find_directions(
     objects: Objects, motions: MotionSet, measure: IntensityMeasure, level: float | None
 ) -> Directions | None:
-    """Turn every record of two components through all directions; None where no record has two.
-
-    The level of a record is the geometric mean of its components, so that it does not turn with it.
-    """
+    """Turn records of two components, of which levels are the geometric mean; None where no record has two."""
     if not motions.pairs:
         return None
     asked = [] if level is None else [level]

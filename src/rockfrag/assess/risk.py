@@ -178,10 +178,7 @@ class Evidence:
     shifts: Mapping[str, float] = field(default_factory=dict)
 
     def estimate(self, target: Target, fixed: Mapping[str, float] | None = None) -> Estimate:
-        """Estimate a probability with its interval.
-
-        ``fixed`` are further standard deviations on the target's scale, such as of the hazard.
-        """
+        """Estimate with an interval; ``fixed`` are further standard deviations on its scale, as of the hazard."""
         middle = target.on_scale(self.outcomes)
         if not math.isfinite(middle):
             return self._bounded(target, middle)
@@ -255,10 +252,9 @@ class Evidence:
         return Estimate(0.0, 0.0, target.back(limit), {})
 
     def rocking(self, level: float, *, exact: bool) -> Estimate:
-        """Estimate the fraction of motions at a level that make the object rock.
+        """Estimate the fraction of motions at a level that make the object rock, which is statics and no model.
 
-        The error of the rocking model does not enter: a contact opens by statics. Where the level alone decides
-        (``exact``), as a peak acceleration of what it stands on does, other earthquakes say the same.
+        Where the level alone decides (``exact``), as peak acceleration does, other earthquakes say the same.
         """
         target = fraction_target(level, state=ROCKS)
         found = replace(self, shifts={}).estimate(target)

@@ -66,10 +66,7 @@ class Reweighted:
         )
 
     def curves(self) -> pd.DataFrame:
-        """Mean and fractile curves before and after in the site's measure: annual rates by ``level``.
-
-        Columns such as ``mean_before`` and ``fractile_0.84_after``.
-        """
+        """Annual rates by ``level`` in the site's measure: ``mean_before``, ``fractile_0.84_after`` and so on."""
         stated = [branch.curves[self.site.measure] for branch in self.site.branches]
         levels = np.unique(np.concatenate([curve.levels for curve in stated]))
         rates = np.array([curve.rate(levels) for curve in stated])
@@ -193,11 +190,7 @@ class Constrained:
 
 
 def constrain(site: Site) -> Constrained:
-    """Reweight the branches of a site by the survival of its objects.
-
-    Returns weights, curves, contributions of objects and sensitivities; that no branch lets all of them stand is
-    an InputError.
-    """
+    """Reweight branches of a site by the survival of its objects; InputError if none lets all of them stand."""
     result = reweight(site)
     if float(result.log_survival.max()) < np.log(LEAST_SURVIVAL):
         alone = {}

@@ -100,8 +100,7 @@ def texts(language: str) -> dict[str, Any]:
 def packed_samples(motions: Sequence[Motion]) -> tuple[bytes, dict[str, Any]]:
     """Return the samples of motions, packed, and what a page needs to get every bit of them again.
 
-    Records are decimals of few digits: each sample is a whole number over a power of ten, times the factor of the
-    unit. Where one is not, all are written as they are.
+    Of records, decimals of few digits, they are whole numbers over powers of ten times the factor of the unit.
     """
     samples = np.concatenate([motion.acceleration for motion in motions])
     about: dict[str, Any] = {
