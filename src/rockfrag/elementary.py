@@ -165,12 +165,8 @@ def _octant(small: float, small_low: float, big: float, big_low: float) -> tuple
     if small < big * _NOTHING:
         return small / big, 0.0
     if big > _HUGE:
-        small, small_low, big, big_low = (
-            small * _DOWN,
-            small_low * _DOWN,
-            big * _DOWN,
-            big_low * _DOWN,
-        )
+        small, small_low = small * _DOWN, small_low * _DOWN
+        big, big_low = big * _DOWN, big_low * _DOWN
     # less the arc tangent of the nearest eighth c: (small - c big) / (big + c small)
     k = math.floor(8.0 * (small / big) + 0.5)
     c = 0.125 * k

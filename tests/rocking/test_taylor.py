@@ -15,7 +15,6 @@ from rockfrag.engines.kernels.lanes.stack_constants import (
     ONE,
     TWO,
     fill_constants,
-    number_of,
 )
 from rockfrag.engines.kernels.taylor import ORDER, SERIES, Step, fill_series, rates_of_two
 from rockfrag.engines.lanes import body_record
@@ -123,7 +122,7 @@ def closed_both_ways(body, hop, state, constants, scratch):
     """Velocities of a contact that stays closed, as it is closed at once and as an impact would close it."""
     ones, twos, impacts = constants
     fill_constants(body, 1.0, ones, twos, impacts, scratch)
-    at_once = closed(hop, twos[number_of(state.c1, state.c2)])
+    at_once = closed(hop, twos[eq.number_of(state.c1, state.c2)])
     c1, c2 = (0, state.c2) if hop.ground else (state.c1, 0)
     return at_once, stuck(body, state, c1, c2)
 

@@ -5,14 +5,12 @@ over g, ψ'' = p² (W sin ψ + A cos ψ) on either pivot (Housner, 1963).  Time 
 """
 
 import math
-from typing import Any, NamedTuple
 
 import numpy as np
 
 from rockfrag.arrays import fields, whole
 from rockfrag.elementary import acos, cos
 from rockfrag.engines.kernels import taylor
-from rockfrag.engines.kernels.by_reference import by_reference
 from rockfrag.engines.kernels.chatter import Ahead, block_dies_out
 from rockfrag.engines.kernels.contact_states import HALF_TURN
 from rockfrag.engines.kernels.impact import block_impact
@@ -63,17 +61,16 @@ LANE = np.dtype(
 """The lanes: a row of LANES numbers for each quantity."""
 
 
-@by_reference
-class Worker(NamedTuple):
-    """Memory that a thread works in: ``worker()``."""
+# the lanes, and what their cases have come to so far; the pedestal's part stays zero
+MEMORY = np.dtype(
+    [*fields("lane", of=LANE), *fields("tallies", LANES, of=cases.OUTCOME)], align=True
+)
+"""Memory that a thread works in."""
 
-    lane: Any  # LANE
-    tallies: Any  # (LANES,) of OUTCOME, of the lanes' cases so far; the pedestal's part stays zero
 
-
-def worker() -> Worker:
+def worker() -> np.void:
     """Memory for one thread."""
-    return Worker(np.zeros(1, LANE)[0], np.zeros(LANES, cases.OUTCOME))
+    return np.zeros(1, MEMORY)[0]
 
 
 @kernel
