@@ -1,12 +1,9 @@
 """Sine, cosine, arc tangent and their like, of plain arithmetic: the same bits on every processor.
 
-The mathematical library of a computer, and the Math object of a browser, choose their own ways to compute
-these, some of them by the processor, and differ in the last digit.  Here are only additions, multiplications,
-divisions and square roots, each rounded once as IEEE 754 says, no multiply-adds, and operations that are exact
-by definition.  Errors are below one unit in the last place.
-
-The functions are ordinary Python, so that bodies can be described with them without a compiler; ``jit``
-makes them known to kernels, under the same names.
+Libraries choose their ways by the processor, and differ in the last digit.  Here are only additions,
+multiplications, divisions and square roots, each rounded once as IEEE 754 says, no multiply-adds, and operations
+that are exact by definition.  Errors are below one unit in the last place.
+Kernels call these functions too (``jit``).
 """
 
 import math

@@ -105,7 +105,6 @@ def test_the_outcome_does_not_depend_on_where_the_plain_integrator_calls_hops_ch
     assert np.abs(coarse.theta[:n] - fine.theta[:n]).max() < 1e-3
 
 
-DT = 0.01  # sampling interval of the motions [s]
 STATUE = Block(0.3, 1.2, 200.0)
 STACK = Stack(Block(0.4, 0.3, 100.0), STATUE)
 PULSE = np.sin(2 * np.pi * np.arange(101) * DT)

@@ -91,28 +91,22 @@ CASES = [((0.10, -0.05), (0.4, -0.9)), ((0.02, 0.0), (-1.0, 2.0)), ((0.3, 0.05),
 
 
 @pytest.mark.parametrize(("theta", "omega"), CASES)
-def test_the_series_of_one_history_are_those_of_the_recurrence(theta, omega):
+def test_the_series_of_histories_and_of_lanes_are_those_of_the_recurrence(theta, omega):
+    mass, moments, gravity, _, rates, ground = step_of(theta, omega)
+    plain = series_by_recurrence(*step_of(theta, omega))
     state = state_record((1, -1), theta, omega, (0.0, GRAVITY))
     series = np.zeros(1, SERIES)[0]
     fill(BODY, state, Step(H, GROUND, RISE, GRAVITY, LIFT), series)
-    plain = series_by_recurrence(*step_of(theta, omega))
-    np.testing.assert_allclose(series["one"]["angle"], plain[0], rtol=1e-9, atol=1e-18)
-    np.testing.assert_allclose(series["two"]["angle"], plain[1], rtol=1e-9, atol=1e-18)
-
-
-@pytest.mark.parametrize(("theta", "omega"), CASES)
-def test_the_series_written_out_for_lanes_are_those_of_the_recurrence(theta, omega):
-    mass, moments, gravity, _, rates, ground = step_of(theta, omega)
+    for name, angle in zip(("one", "two"), plain, strict=True):
+        np.testing.assert_allclose(series[name]["angle"], angle, rtol=1e-9, atol=1e-18)
     m11, m22, e, f = mass
-    delta = theta[1] - theta[0]
-    c, s = math.cos(delta), math.sin(delta)
+    c, s = math.cos(theta[1] - theta[0]), math.sin(theta[1] - theta[0])
     weights = [
         (vy * math.cos(t) - vx * math.sin(t), vx * math.cos(t) + vy * math.sin(t))
         for t, (vx, vy) in zip(theta, moments, strict=True)
     ]
     coupled = m11, m22, e * c + f * s, f * c - e * s
     found = written_out(coupled, *weights, tuple(rates), ground, (*gravity, True))
-    plain = series_by_recurrence(*step_of(theta, omega))
     for item, angle in zip(found, plain, strict=True):
         np.testing.assert_allclose(item, angle[1:] * np.arange(1, ORDER + 1), rtol=1e-9, atol=1e-17)
 

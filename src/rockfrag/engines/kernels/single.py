@@ -152,7 +152,9 @@ def _through_sample(body, shaking, k, contact_events, summary, work):
                 kind = record.OPENING
                 state.c1, state.c2 = contact_states.release(body, state, fails, at == 0.0)
             else:
-                _count_impact(state, closes1, summary)
+                summary.impacts += 1
+                speed = abs(state.omega1 if closes1 else state.omega2 - state.omega1)
+                summary.grazings += 1 if speed < GRAZING_SPEED else 0
                 part = (sub + tau) / substeps
                 ahead = Ahead(samples, shaking.vertical, scale, n - 1, k, part, shaking.dt)
                 forced = count > MAX_CONTACT_EVENTS_PER_STEP
@@ -189,14 +191,6 @@ def _move(state, series, tau, h):
     state.omega1 = roots.slope(first, tau) / h if open1 else 0.0
     state.theta2 = roots.value(two, tau) if open2 else state.theta1
     state.omega2 = roots.slope(two, tau) / h if open2 else state.omega1
-
-
-@kernel
-def _count_impact(state, closes1, summary):
-    """Count an impact, and whether it grazes."""
-    summary.impacts += 1
-    if (abs(state.omega1) if closes1 else abs(state.omega2 - state.omega1)) < GRAZING_SPEED:
-        summary.grazings += 1
 
 
 @kernel

@@ -88,11 +88,7 @@ def _advance(lane, upward):
 
     Everything is stored in every lane: conditional stores cost many times as much.
 
-    A fall is certain, whatever the ground does, in this case.  Let B = ``bound`` be the most that A can be in the
-    rest of the motion, and V and W the least and the most of gravity.  ψ'' ≤ κ (V sin ψ + (W - V) max(0, sin ψ)
-    + B cos ψ), whose right side grows with ψ: a block that these cannot bring back is brought back by no others.
-    With ψ' < 0 that pendulum passes its upper equilibrium if ψ'²/2 is at least the integral of the right side from
-    there, which is at most κ (√(V² + B²) + (W - V) - W cos ψ + B sin ψ).
+    When a fall is certain, whatever the ground does: ``docs/kernels.md``, "A certain fall".
     """
     for i in range(LANES):
         psi = lane.psi[i]
@@ -428,11 +424,8 @@ def _take_up(lane, i, number, ensemble, motions):
 def _place(lane, i, ensemble, motions):
     """Place what a lane rocks on with; a lane without a case stands still at a harmless place."""
     if lane.case[i] < 0:
-        lane.k[i], lane.last[i], lane.psi[i], lane.omega[i] = 0, 0, 0.0, 0.0
-        lane.ground[i], lane.ground_end[i], lane.factor[i], lane.signed[i] = 0.0, 0.0, 0.0, 0.0
-        lane.kappa[i], lane.bound[i], lane.crest[i] = 0.0, 0.0, 10.0
-        lane.weight[i], lane.weight_end[i], lane.heavy[i] = 1.0, 1.0, 1.0
-        lane.part_left[i], lane.angle[i] = 1.0, 1.0
+        lane.k[i], lane.last[i], lane.part_left[i], lane.angle[i] = 0, 0, 1.0, 1.0
+        lane.psi[i], lane.omega[i], lane.kappa[i] = 0.0, 0.0, 0.0
         return
     k, side, tau = lane.k[i], lane.side[i], lane.tau[i]
     factor = lane.factor[i]
