@@ -21,7 +21,7 @@ from rockfrag.rocking.ensemble import overturns
 from rockfrag.rocking.simulation import simulate
 from rockfrag.system.blocks import Block, Body, Stack
 
-# the random cases and the other programs lie with the oracles of the tests
+# the random cases lie with the oracles of the tests
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 from tests.oracle.cases import DT, blocks, cases, motions, stacks
 

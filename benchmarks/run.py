@@ -27,8 +27,9 @@ from rockfrag.rocking.parquet import stream_overturns
 from rockfrag.rocking.robustness import find_step_size_sensitive
 from rockfrag.system.blocks import Block, Body, Stack
 
-# the random cases and the other programs lie with the oracles of the tests
+# the random cases and MuJoCo lie with the oracles of the tests
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+from competitors import numpy_lone, scipy_lone, scipy_stack
 from figure import draw_benchmark
 from measures import (
     all_cases,
@@ -47,7 +48,7 @@ from measures import (
 )  # fmt: skip
 
 from tests.oracle.cases import Cases, cases, columns, motions
-from tests.oracle.competitors import mujoco_outcome, numpy_lone, scipy_lone, scipy_stack
+from tests.oracle.mujoco_model import mujoco_outcome
 
 BEGIN, END = "<!-- results of make bench -->", "<!-- end of results -->"
 NAMES = {"lone": "single block", "stack": "two blocks"}

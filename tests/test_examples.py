@@ -85,9 +85,9 @@ def test_an_example_shows_what_it_says(name):
         assert not report, "".join(report)
 
 
-@pytest.mark.parametrize("name", SHOWN_FIRST)
-def test_what_is_used_first_shows_what_comes_back(name):
-    assert "Examples\n--------" in inspect.getdoc(getattr(rockfrag, name))
+def test_what_is_used_first_shows_what_comes_back():
+    for name in SHOWN_FIRST:
+        assert "Examples\n--------" in inspect.getdoc(getattr(rockfrag, name))
 
 
 @pytest.mark.parametrize("name", sorted(PUBLIC))
@@ -138,8 +138,8 @@ def test_a_wrong_keyword_is_answered_with_the_right_one(call, sentence):
     assert sentence in str(caught.value)
 
 
-@pytest.mark.parametrize("motion", ["Kobe.dat", "records/Kobe.dat"])
-def test_a_file_name_in_place_of_a_motion_is_answered_with_how_to_read_it(motion):
+def test_a_file_name_in_place_of_a_motion_is_answered_with_how_to_read_it():
+    motion = "records/Kobe.dat"
     for call in (
         lambda: simulate(STATUE, motion),
         lambda: overturns(STATUE, motion),
@@ -154,7 +154,7 @@ def test_a_file_name_in_place_of_a_motion_is_answered_with_how_to_read_it(motion
 
 
 @pytest.mark.parametrize("body", [STATUE, STACK])
-@pytest.mark.parametrize("peak", [0.26, 0.34, 1.0, 2.0])
+@pytest.mark.parametrize("peak", [0.26, 2.0])
 def test_accelerations_in_g_are_warned_of_by_what_they_would_lift(body, peak):
     with pytest.warns(UnitWarning, match=r"less than the 2\.45 m/s² that start rocking"):
         assert not simulate(body, peak * PULSE, 0.01).overturned
@@ -191,13 +191,9 @@ def test_a_block_in_centimetres_or_millimetres_is_doubted():
     assert Block(0.2, 0.8, 50_000.0).mass == 50_000.0
 
 
-@pytest.mark.parametrize("inertia", [1e9, 1e-9])
-def test_an_inertia_of_another_body_is_doubted(inertia):
+def test_an_inertia_or_a_centre_of_gravity_of_another_body_is_doubted_or_refused():
     with pytest.warns(UnlikelyBlock, match="radius of gyration"):
-        Block(0.2, 0.8, 50.0, inertia=inertia)
-
-
-def test_a_centre_of_gravity_above_the_top_is_refused():
+        Block(0.2, 0.8, 50.0, inertia=1e-9)
     with pytest.raises(InputError, match=r"cg_height 2 m is above the top, .* height 1\.65 m"):
         Block(0.42, 1.65, 410, cg_height=2)
 

@@ -22,6 +22,7 @@ from rockfrag.errors import InputError
 from rockfrag.rocking.browser import driver_text
 
 from ..app_forms import settings_of, some_form
+from ..case_tables import case_tables
 from .samples import quantile_files
 
 NODE = shutil.which("node")
@@ -30,110 +31,56 @@ needs_node = pytest.mark.skipif(NODE is None, reason="Node is not installed")
 RELAXED = "--experimental-wasm-relaxed-simd"
 """Option of Node for multiply-adds that fuse; those that need none have no such option."""
 
-RUN = """
-const fs = require("fs");
-const { data, forms, modules, packed } = JSON.parse(fs.readFileSync(process.argv[2]));
-const bytes = (text) => Uint8Array.from(Buffer.from(text, "base64"));
-const finite = (key, v) => (typeof v === "number" && !Number.isFinite(v) ? null : v);
-const plain = (value) => JSON.parse(JSON.stringify(value, finite));
-const unpacked = Object.fromEntries(Object.entries(modules).map(([name, text]) => [name, bytes(text)]));
-begin({ data, modules: unpacked, samples: bytes(packed) }).then(() => {
-  const lines = words(data, data.texts.en);
-  const found = forms.map((form, id) => {
-    try {
-      const request = tools.bodies.requestOf(form), count = data.earthquakes.length;
-      const runs = TASKS.plan({ id, request }).roles;
-      const parts = runs.map((_, run) => [[0, 10], [10, count]].map(([first, last]) => (
-        { first, ...TASKS.count({ id, request, run, first, last }) })));
-      const answer = TASKS.answer({ id, request, parts });
-      const at = runs.findIndex(({ role }) => role === "first");
-      const only = parts.map((part, i) => (i === at ? part : null));
-      const early = at < 0 ? null : plain(TASKS.answer({ id, request, parts: only }));
-      const { place } = request, computed = Boolean(place.computed);
-      const shaken = (motion) => [...building.floorMotion(place.floors[""], motion).samples];
-      const floor = computed ? tools.motions.map(shaken) : [];
-      return { answer: plain(answer), early, lines: lines(request, answer), computed, floor };
-    } catch (error) {
-      if (!error.field) return { failed: error.stack };
-      const { en } = data.texts;
-      const sentence = en[`${error.id}_refused`] ?? en[error.id] ?? ROCKFRAG_FAULTS[Number(error.id.slice(6))];
-      return { refused: [error.field, error.id, sentence.endsWith(".")] };
-    }
-  });
-  console.log(JSON.stringify(found));
-});
-"""
-
-
-def page_data(motions, form=None, request=None):
-    """What a page holds."""
-    page = page_of(motions, form or {}, request, made=True)
-    start = page.index('id="data">') + len('id="data">')
-    return json.loads(page[start : page.index("</script>", start)])
+READING = Path(__file__).with_name("page_in_node.js").read_text(encoding="utf-8")
 
 
 def in_node(folder, motions, forms, request=None):
     """What the scripts of a page, written for a request, make of forms."""
-    data = page_data(motions, forms[0], request)
-    (folder / "in.json").write_text(
-        json.dumps(
-            {"data": data, "forms": forms, "modules": data["modules"], "packed": data["packed"]}
-        )
-    )
-    (folder / "run.cjs").write_text(
-        "\n".join(["let onmessage;", computing(), script("worker.js"), script("words.js"), RUN])
-    )
+    page = page_of(motions, forms[0], request, made=True)
+    data = json.loads(page.partition('id="data">')[2].partition("</script>")[0])
+    (folder / "in.json").write_text(json.dumps({"data": data, "forms": forms}))
+    parts = ["let onmessage;", computing(), script("worker.js"), script("words.js"), READING]
+    (folder / "run.cjs").write_text("\n".join(parts))
     known = subprocess.run([NODE, RELAXED, "-e", "0"], capture_output=True).returncode == 0
     command = [NODE, *([RELAXED] if known else []), folder / "run.cjs", folder / "in.json"]
     done = subprocess.run(command, capture_output=True, text=True, check=True)
     return json.loads(done.stdout)
 
 
-def check(found: Assessment, said) -> None:
+def check_all(motions: MotionSet, settings, said) -> Assessment:
+    """The page's figures and words are those of the package for the same object, which come back."""
+    request = make_request(settings, "form")
+    found = assess_with(request, motions.at(request.place))
+    assert "answer" in said, (settings, said)
+    check_figures(found, said["answer"])
+    assert (said["early"] is not None) == found.motions.both
+    if early := said["early"]:  # the first figures are final, and no more than is known
+        assert early["counts"] == said["answer"]["counts"]
+        assert (early["value"], early["probabilityValue"]) == (said["answer"]["value"], None)
+    # the lines that both have in full are the same; options of the command line are no words of a page
+    titles = {"Result": "result", "What helps": "helps"}
+    titles |= {"Risk": "risk"} if found.probability else {}
+    titles |= {"Position": "position"} if found.motions.both else {}
+    for line in five_lines(found):
+        title, _, words = line.partition(": ")
+        if title in titles:
+            assert said["lines"][titles[title]] == words
+    return found
+
+
+def check_figures(found: Assessment, answer) -> None:
     """The same shares to the bit, and the same intervals to 1e-9."""
-    answer = said["answer"]
     assert answer["shares"] == found.outcomes.fractions().tolist()
     assert answer["counts"] == (None if found.counts is None else list(found.counts))
     for name in ("fraction", "rocking", "probability"):
         own, estimate = answer.get(name), getattr(found, name)
         assert (own is None) == (estimate is None)
-        if own is not None:
-            for key in ("value", "lower", "upper"):
-                assert own[key] == pytest.approx(getattr(estimate, key), rel=1e-9, abs=1e-12), (
-                    name,
-                    key,
-                )
-    assert (said["early"] is not None) == found.motions.both
-    if early := said["early"]:  # the first figures are final, and no more than is known
-        assert early["counts"] == answer["counts"]
-        assert (early["value"], early["probabilityValue"]) == (answer["value"], None)
+        for key in ("value", "lower", "upper") if own else ():
+            expected = pytest.approx(getattr(estimate, key), rel=1e-9, abs=1e-12)
+            assert own[key] == expected, (name, key)
     his = [(item.value, item.factor) for item in found.mitigations]
-    mine = [
-        (item["value"], np.nan if item["factor"] is None else item["factor"])
-        for item in answer["mitigations"]
-    ]
-    np.testing.assert_allclose(mine, his, rtol=1e-9, atol=1e-12)
-
-
-def check_words(found: Assessment, said) -> None:
-    """The lines that both have in full are the same."""
-    titles = {"Result": "result", "Risk": "risk", "What helps": "helps"}
-    titles |= {"Position": "position"} if found.motions.both else {}
-    for line in five_lines(found):
-        title, _, words = line.partition(": ")
-        if title == "Risk" and found.probability is None:
-            continue  # options of the command line are no words of a page
-        if title in titles:
-            assert said["lines"][titles[title]] == words
-
-
-def check_all(motions: MotionSet, settings, said) -> None:
-    """The page's figures and words are those of the package for the same object."""
-    request = make_request(settings, "form")
-    found = assess_with(request, motions.at(request.place))
-    assert "answer" in said, (settings, said)
-    check(found, said)
-    check_words(found, said)
+    mine = np.array([(item["value"], item["factor"]) for item in answer["mitigations"]], float)
+    np.testing.assert_allclose(mine.reshape(-1, 2), np.reshape(his, (-1, 2)), rtol=1e-9, atol=1e-12)
 
 
 def some_form_in_space(rng: random.Random) -> dict[str, str]:
@@ -146,26 +93,6 @@ def some_form_in_space(rng: random.Random) -> dict[str, str]:
     if rng.random() < 0.5:
         form["facing"] = f"{rng.uniform(0, 360):.1f}"
     return form
-
-
-def compare(folder, motions, forms) -> int:
-    """Hold the page's answers against those of the package; how many there were."""
-    answered = 0
-    for form, said in zip(forms, in_node(folder, motions, forms), strict=True):
-        assert "failed" not in said, said
-        try:
-            check_all(motions, settings_of(form), said)
-        except InputError as error:
-            assert "answer" not in said, (form, error)
-            continue
-        answered += 1
-    return answered
-
-
-def few_records(motions) -> MotionSet:
-    """Six records with both components, and one with one."""
-    ground = motions.ground[:13]
-    return MotionSet(ground, ground, motions.pairs[:6], "made motions")
 
 
 def some_round_form_on_a_pedestal(rng: random.Random) -> dict[str, str]:
@@ -189,26 +116,30 @@ def some_round_form_on_a_pedestal(rng: random.Random) -> dict[str, str]:
 )
 def test_the_page_says_what_assess_does(tmp_path, motions, some, few, seed, objects, least):
     rng = random.Random(seed)
-    used = few_records(motions) if few else motions
-    assert compare(tmp_path, used, [some(rng) for _ in range(objects)]) >= least
+    if few:  # six records with both components, and one with one
+        ground = motions.ground[:13]
+        motions = MotionSet(ground, ground, motions.pairs[:6], "made motions")
+    forms, answered = [some(rng) for _ in range(objects)], 0
+    for form, said in zip(forms, in_node(tmp_path, motions, forms), strict=True):
+        assert "failed" not in said, said
+        try:
+            check_all(motions, settings_of(form), said)
+        except InputError as error:
+            assert "answer" not in said, (form, error)
+            continue
+        answered += 1
+    assert answered >= least
 
 
-HOSTILE = (
-    *("<img src=x onerror=alert(1)>", "1e999 m", "-5 cm", "12", "NaN kg", "0x10 m", "１ m"),
-    *("a" * 5000, "1,2,3 m", "5 g"),
-)
 USUAL = {"width": "35 cm", "height": "1,2 m", "measure": "PGA", "level": "0,3 g", "years": "475"}
 
 
 @needs_node
 def test_hostile_input_gets_a_sentence(tmp_path, motions):
-    fields = ["width", "height", "depth", "mass", "cg_height", "cg_offset", "restitution"]
-    fields += ["pedestal_width", "floor", "level", "years"]
-    forms = [USUAL | {field: text} for field in fields for text in HOSTILE]
-    forms += [
-        USUAL | {"years": "", "hazard": text}
-        for text in (*HOSTILE, "0.1 0.1\n0.2 0.2", "0.1 1e-2", "1 2 3\n4 5 6")
-    ]
+    given = case_tables(__file__)
+    forms = [USUAL | {field: text} for field in given["fields"] for text in given["hostile"]]
+    hazards = given["hazards"] + given["hostile"]
+    forms += [USUAL | {"years": "", "hazard": text} for text in hazards]
     forms += [USUAL | more for more in ({"round": True}, {"width": ""}, {"floor": "5/4"})]
     refused = in_node(tmp_path, motions, forms)
     assert not [said for said in refused if "failed" in said]
@@ -216,40 +147,20 @@ def test_hostile_input_gets_a_sentence(tmp_path, motions):
     assert sum("refused" in said for said in refused) > 0.9 * len(forms)
 
 
-@needs_node
-def test_a_pasted_curve_is_the_hazard(tmp_path, motions):
-    form = {"width": "20 cm", "height": "1 m", "measure": "PGA", "level": ""}
-    form |= {"hazard": "pga rate\n0.1; 2e-2\n0.3; 2e-3\n0.9; 1e-4\n"}
-    (tmp_path / "curve.csv").write_text("pga_g,annual_rate\n0.1,2e-2\n0.3,2e-3\n0.9,1e-4\n")
-    settings = {"width": "20 cm", "height": "1 m", "hazard": [str(tmp_path / "curve.csv")]}
-    check_all(motions, settings, in_node(tmp_path, motions, [form])[0])
-
-
-BUILDING = {
-    "storey_heights_m": [4.5, 3.8, 3.8],
-    "masses_kg": [350e3, 350e3, 245e3],
-    "first_period_s": 0.28,
-    "damping": {"kind": "modal", "ratio": 0.04},
-    "floors": {"gallery": 1, "attic": 3},
-    "model": "elastic",
-}
+BUILDING = case_tables(__file__)["building"]
+KNOWN = {"storey_height": "4 m", "material": "concrete"}
+SLENDER = {"width": "20 cm", "height": "80 cm", "measure": "PGA", "level": "0.3 g"}
 
 
 @needs_node
 @pytest.mark.parametrize(
     ("floor", "building", "typed"),
-    [
-        ("gallery", BUILDING, {}),
-        ("2/3", BUILDING, {}),
-        ("2/4", {"storey_height": "4 m", "material": "concrete"}, {}),
-        ("2/4", {"storey_height": "4 m", "material": "concrete"}, {"floor": "3/4"}),
-    ],
+    [("gallery", BUILDING, {}), ("2/3", BUILDING, {}), ("2/4", KNOWN, {"floor": "3/4"})],
 )
 def test_a_building_that_is_given_has_the_bits_of_the_package(
     tmp_path, motions, floor, building, typed
 ):
-    form = {"width": "20 cm", "height": "80 cm", "measure": "PGA", "level": "0.3 g", "years": "475"}
-    form |= {"floor": floor} | (building if "material" in building else {})
+    form = SLENDER | {"years": "475", "floor": floor} | (KNOWN if building is KNOWN else {})
     settings = settings_of(form) | {"building": building}
     given = make_request(settings, "test")
     first, said = in_node(tmp_path, motions, [form, form | typed], given)
@@ -259,16 +170,17 @@ def test_a_building_that_is_given_has_the_bits_of_the_package(
 
 @needs_node
 @pytest.mark.parametrize("measure", ["PGA", "SA(0.3)"])
-def test_a_hazard_that_is_given_brings_its_quantiles_and_its_measure(tmp_path, motions, measure):
-    settings = {"width": "15 cm", "height": "80 cm"}
-    settings |= {"hazard": quantile_files(tmp_path, measure)}
-    request = make_request(settings, "test")
+def test_a_hazard_that_is_given_or_pasted_counts_with_its_quantiles(tmp_path, motions, measure):
+    size, files = {"width": "15 cm", "height": "80 cm"}, quantile_files(tmp_path, measure)
+    request = make_request(size | {"hazard": files}, "test")
     assert set(request.hazard[0].quantiles) == {0.16, 0.84}
-    form = form_of(settings, request) | {"width": "15 cm", "height": "80 cm"}
-    (said,) = in_node(tmp_path, motions, [form], request)
-    found = assess_with(request, motions)
-    check(found, said)
-    assert said["answer"]["probability"]["sources"]["hazard"] > 0
+    form = form_of(size | {"hazard": files}, request) | size
+    pasted = form | {"hazard": "level rate\n" + form["hazard"].replace(" ", "; ")}
+    given, mean_alone = in_node(tmp_path, motions, [form, pasted], request)
+    check_figures(assess_with(request, motions), given["answer"])
+    assert given["answer"]["probability"]["sources"]["hazard"] > 0
+    request = make_request(size | {"hazard": files[:1]}, "test")
+    check_figures(assess_with(request, motions), mean_alone["answer"])
 
 
 @needs_node
@@ -277,14 +189,12 @@ def test_floors_of_other_buildings_are_the_same_but_for_rounding(tmp_path, motio
     rng, forms = random.Random(8), []
     for _ in range(6):
         storeys = rng.randint(1, 20)
-        height, material = f"{rng.uniform(2.5, 5):.2f} m", rng.choice(["masonry", "steel"])
-        forms.append(
-            {"width": "20 cm", "height": "80 cm", "measure": "PGA", "level": "0.3 g"}
-            | {"floor": f"{storeys}/{storeys}", "storey_height": height, "material": material}
-        )
+        known = {"storey_height": f"{rng.uniform(2.5, 5):.2f} m"}
+        known["material"] = rng.choice(["masonry", "steel"])
+        forms.append(SLENDER | {"floor": f"{storeys}/{storeys}"} | known)
     for form, said in zip(forms, in_node(tmp_path, motions, forms), strict=True):
         assert said["computed"]
-        known = {key: form[key] for key in ("storey_height", "material")}
+        known = {key: form[key] for key in KNOWN}
         request = make_request(settings_of(form) | {"building": known}, "test")
         moved = motions.at(request.place)
         for mine, his in zip(said["floor"], moved.base, strict=True):
@@ -299,38 +209,23 @@ def test_all_languages_have_the_same_texts():
     english = texts("en") | {f"fault_{i}": fault for i, fault in enumerate(faults, start=1)}
     italian = texts("it")
     assert len(faults) == 6
-    assert italian.keys() <= english.keys()
-    missing = set(english) - set(italian)
-    assert not missing, sorted(missing)
+    assert set(italian) == set(english)
+    del italian["motions"]  # whose words are English, and their number Italian
+    places = re.compile(r"\{(\w+)\}")
     for key, text in italian.items():
-        if (
-            isinstance(text, str) and key != "motions"
-        ):  # whose words are English, and their number Italian
-            assert set(_places(text)) == set(_places(english[key])), key
+        if isinstance(text, str):
+            assert set(places.findall(text)) == set(places.findall(english[key])), key
 
 
-def _places(text: str) -> list[str]:
-    return re.findall(r"\{(\w+)\}", text)
-
-
-@pytest.fixture
-def command(own_records) -> list[str]:
-    """The command of a page with records of one's own."""
-    records = str(own_records / "catalogue.csv")
-    return ["app", "--record", records, "--width", "20cm", "--height", "1m", "--pga", "0.3g"]
-
-
-def test_the_command_writes_a_page(tmp_path, command):
+def test_the_command_writes_a_page_and_refuses_what_it_cannot_say(own_records, tmp_path, capsys):
     path = tmp_path / "assess.html"
-    assert main([*command, "--output", str(path)]) == 0
+    records = ["--record", str(own_records / "catalogue.csv"), "--output", str(path)]
+    command = ["app", "--width", "20cm", "--height", "1m", "--pga", "0.3g", *records]
+    for more in (["--friction", "0.5"], ["--pga", "0.4g"], ["--pgv", "20cm/s"], ["--up", "y"]):
+        assert main([*command, *more]) == 2
+        assert len(capsys.readouterr().err.splitlines()) == 1
+    assert not path.exists()
+    assert main(command) == 0
     page = path.read_text()
     assert len(page) < 6_000_000
     assert "http:" not in page.replace("http-equiv", "") and "https:" not in page
-
-
-def test_what_the_page_cannot_say_is_refused(tmp_path, command, capsys):
-    refused = (["--friction", "0.5"], ["--pga", "0.4g"], ["--pgv", "20cm/s"], ["--up", "y"])
-    for more in refused:
-        assert main([*command, *more, "--output", str(tmp_path / "a.html")]) == 2
-        assert len(capsys.readouterr().err.splitlines()) == 1
-    assert not Path(tmp_path / "a.html").exists()

@@ -12,7 +12,7 @@ from rockfrag.rocking.inputs import ground_motion
 from rockfrag.rocking.options import system_of
 from rockfrag.system import Block, Body, Column, Stack, as_system
 from rockfrag.system.contact import checked_friction
-from rockfrag.system.system import Start
+from rockfrag.system.system import System
 from rockfrag.units import GRAVITY
 
 DT = 0.01
@@ -39,28 +39,18 @@ def random_stack(rng: np.random.Generator) -> Stack:
     return Stack(lower, upper, offset=rng.uniform(-0.01, 0.01))
 
 
-def random_frictions(rng: np.random.Generator, body: Body) -> tuple[float, ...]:
-    """Coefficients of 0.15 to 0.9 for each interface."""
-    mus = rng.uniform(0.15, 0.9, 2)
-    return (float(mus[0]),) if isinstance(body, Block) else (float(mus[0]), float(mus[1]))
+def random_contacts(rng: np.random.Generator, body: Body) -> System:
+    """Body with coefficients of 0.15 to 0.9 for each interface."""
+    return with_contacts(body, rng.uniform(0.15, 0.9, 2).tolist())
 
 
-def as_friction(mus: tuple[float, ...]) -> float | tuple[float, ...]:
-    """Frictions as `simulate` takes them."""
-    return mus[0] if len(mus) == 1 else mus
-
-
-def run(system, motion, dt=DT, *, vertical=None, theta=None, closing=1e-6, g=GRAVITY) -> Response:
+def run(
+    thing, motion, dt=DT, *, friction=None, vertical=None, omega0=None, closing=1e-6, g=GRAVITY
+):
     """Simulate a system by the contact kernels, never by pure rocking, until it rests or has fallen."""
-    if theta:
-        system = replace(system, start=Start(tuple(theta), (0.0,) * system.count))
+    system = system_of(thing, friction, omega0=omega0)
     case = Case(system, ground_motion(motion, dt, vertical), request=Request(g=g))
     return ContactRun(case, closing).response()
-
-
-def simulate_with_friction(body, motion, dt, *, friction, omega0=None, **more) -> Response:
-    """Simulate what :func:`rockfrag.rocking.simulate` does, never by pure rocking."""
-    return run(system_of(body, friction, omega0=omega0), motion, dt, **more)
 
 
 def imbalance(response: Response) -> float:

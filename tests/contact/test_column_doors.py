@@ -21,14 +21,6 @@ TIME = np.arange(0, 3, DT)
 MOTION = 5 * np.sin(2 * np.pi * 0.9 * TIME) * np.sin(np.pi * TIME / 3)
 
 
-def test_a_column_of_two_is_the_stack() -> None:
-    pair = Column((BASE, STATUE))
-    found = simulate(pair, MOTION, DT, friction=0.5)
-    stack = simulate(Stack(BASE, STATUE), MOTION, DT, friction=0.5)
-    np.testing.assert_array_equal(found.theta, stack.theta)
-    assert found.overturned == stack.overturned
-
-
 def test_history_and_outcome_of_a_column_agree() -> None:
     for friction in (None, 0.5, {"ground": 0.6, "interface": [0.5, 0.4]}):
         response = simulate(COLUMN, MOTION, DT, friction=friction)
@@ -36,6 +28,12 @@ def test_history_and_outcome_of_a_column_agree() -> None:
         assert response.theta.shape[1] == 3
         assert bool(outcomes.overturned[0, 0, 0]) == response.overturned
         assert len(outcomes.table("bodies")) == len(outcomes.table("contacts")) == 3
+    # a column of two is the stack
+    pair, stack = (
+        simulate(body, MOTION, DT, friction=0.5)
+        for body in (Column((BASE, STATUE)), Stack(BASE, STATUE))
+    )
+    np.testing.assert_array_equal(pair.theta, stack.theta)
 
 
 def test_who_fell_first_and_where_the_column_parted() -> None:
@@ -54,44 +52,36 @@ def test_only_bodies_that_pure_rocking_holds_are_said_to_leave_the_ground() -> N
         overturns(COLUMN, [MOTION], DT, [1.0, 10.0], vertical=[upwards])
 
 
-def arrangements(folder: Path, row: str) -> list:
-    """Read one arrangement of three blocks."""
+def arrangements(folder: Path, *rows: str) -> tuple:
+    """Read arrangements of three blocks."""
     (folder / "blocks.csv").write_text(
         "name,width_m,height_m,mass_kg\nplinth,0.8,0.4,500\nbase,0.5,0.3,150\nvenus,0.3,1.0,100\n"
     )
-    (folder / "arrangements.csv").write_text(f"name,object,pedestal\n{row}\n")
-    blocks = read_specimens(folder / "blocks.csv")
-    return read_configurations(folder / "arrangements.csv", blocks)[0]
+    table = folder / "arrangements.csv"
+    table.write_text("\n".join(["name,object,pedestal,counterpart", *rows]))
+    return read_configurations(table, read_specimens(folder / "blocks.csv"))
 
 
-def test_an_arrangement_names_another_one_as_its_counterpart(tmp_path: Path) -> None:
-    (tmp_path / "blocks.csv").write_text(
-        "name,width_m,height_m,mass_kg\nplinth,0.8,0.4,500\nvenus,0.3,1.0,100\n"
-    )
-    table, blocks = tmp_path / "arrangements.csv", read_specimens(tmp_path / "blocks.csv")
-    head = "name,object,pedestal,counterpart\nalone,venus,,\n"
-    table.write_text(head + "on,venus,plinth,alone\n")
-    systems, counterparts = read_configurations(table, blocks)
-    assert len(systems) == 2 and counterparts == {"on": "alone"}
-    for wrong in ("on", "elsewhere"):
-        table.write_text(head + f"on,venus,plinth,{wrong}\n")
-        with pytest.raises(InputError, match="expected another arrangement"):
-            read_configurations(table, blocks)
-
-
-@pytest.mark.parametrize("row", ["all,venus,base|plinth", "all,venus | base | plinth,"])
+@pytest.mark.parametrize("row", ["all,venus,base|plinth,", "all,venus | base | plinth,,"])
 def test_an_arrangement_names_its_blocks_from_above(tmp_path: Path, row: str) -> None:
-    (found,) = arrangements(tmp_path, row)
+    ((found,), _) = arrangements(tmp_path, row)
     assert labels_of(found) == {"configuration": "all", "object": "venus", "pedestal": "P"}
     assert [body.width for body in found.bodies] == [0.8, 0.5, 0.3]
     assert fallen_names(found) == ("", "plinth", "base", "venus")
 
 
-def test_an_arrangement_that_names_what_stands_below_twice_is_refused(tmp_path: Path) -> None:
-    with pytest.raises(InputError, match="named behind it already"):
-        arrangements(tmp_path, "all,venus|base,plinth")
-    with pytest.raises(InputError, match="expected one of the specimens"):
-        arrangements(tmp_path, "all,venus,base|socle")
+def test_an_arrangement_names_another_one_as_its_counterpart(tmp_path: Path) -> None:
+    alone = "alone,venus,,"
+    systems, counterparts = arrangements(tmp_path, alone, "on,venus,plinth,alone")
+    assert len(systems) == 2 and counterparts == {"on": "alone"}
+    for row, said in (
+        ("on,venus,plinth,on", "expected another arrangement"),
+        ("on,venus,plinth,elsewhere", "expected another arrangement"),
+        ("all,venus|base,plinth,", "named behind it already"),
+        ("all,venus,base|socle,", "expected one of the specimens"),
+    ):
+        with pytest.raises(InputError, match=said):
+            arrangements(tmp_path, alone, row)
 
 
 def test_a_stack_with_friction_that_holds_is_answered_by_pure_rocking() -> None:

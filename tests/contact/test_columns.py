@@ -7,7 +7,6 @@ from functools import partial
 import numpy as np
 import pytest
 
-from rockfrag.engines.response import Response
 from rockfrag.rocking import overturns
 from rockfrag.system import Block, Column, System
 from rockfrag.system.body import Interval, RigidBody
@@ -17,12 +16,6 @@ from ..oracle.cases import drum_column, drum_pulse
 from ..oracle.rocking_integrator import simulate_reference as rock
 from ..rocking.reference_bodies import random_motion
 from .cases import DT, imbalance, random_column, run, samples_until, with_contacts
-
-
-def opening(found: Response) -> float:
-    """Return the instant at which a joint opens or slides first: a column that falls throws its bodies off."""
-    opens = found.contact_events["modes"].map(lambda modes: set(modes[1:]) != {"stands"})
-    return float(found.contact_events["time"][opens].min())
 
 
 def on_a_foot(rng: np.random.Generator, bodies: int) -> tuple[System, Block]:
@@ -50,7 +43,10 @@ def test_joints_that_do_not_open_leave_one_block(bodies: int) -> None:
         motion = 2.5 * random_motion(rng)
         many, single = run(column, motion), run(whole.system(), motion)
         assert many.overturned or not single.overturned
-        n = min(samples_until(single, 6), int(np.searchsorted(many.time, opening(many))))
+        # a column that falls throws its bodies off
+        opens = many.contact_events["modes"].map(lambda modes: set(modes[1:]) != {"stands"})
+        opening = many.contact_events["time"][opens].min()
+        n = min(samples_until(single, 6), int(np.searchsorted(many.time, opening)))
         for k in range(bodies):
             np.testing.assert_allclose(many.theta[:n, k], single.theta[:n, 0], atol=1e-7)
         assert many.overturned == single.overturned
@@ -58,25 +54,8 @@ def test_joints_that_do_not_open_leave_one_block(bodies: int) -> None:
     assert 0 < fell < 6
 
 
-def capped(column, part):
-    """A column with a light block on top of it."""
-    top = Block(0.5 * column.blocks[-1].width, 0.1, part * column.mass)
-    return Column((*column.blocks, top), (*(column.offsets or ()), 0.0)), 0.5
-
-
-def with_a_sheet(column, part):
-    """A column with a sheet as wide as the upper body's base between both, glued to it by friction alone."""
-    lower, upper = column.blocks
-    sheet = Block(upper.width, part * upper.height, part * upper.mass)
-    return Column((lower, sheet, upper), ((column.offsets or (0.0,))[0], 0.0)), 1e6
-
-
-@pytest.mark.parametrize(
-    ("more", "seed", "until", "others"),
-    [(capped, 2, 4, slice(0, 2)), (with_a_sheet, 5, 3, slice(0, 3, 2))],
-)
-def test_a_light_body_changes_the_others_in_proportion_to_its_mass(more, seed, until, others):
-    rng, compared = np.random.default_rng(seed), 0
+def test_a_light_body_on_top_changes_the_others_in_proportion_to_its_mass():
+    rng, compared = np.random.default_rng(2), 0
     for _ in range(8):
         column = random_column(rng, 2)
         mus, motion = list(rng.uniform(0.3, 0.8, 2)), random_motion(rng)
@@ -84,22 +63,22 @@ def test_a_light_body_changes_the_others_in_proportion_to_its_mass(more, seed, u
         if len(bare.contact_events) < 4:
             continue
         differences = []
-        for part in (1e-2, 1e-4, 1e-6):
-            taller, mu = more(column, part)
-            found = run(with_contacts(taller, [*mus, mu]), motion)
-            n = min(samples_until(bare, until), len(found.time))
-            differences.append(float(np.abs(found.theta[:n, others] - bare.theta[:n]).max()))
+        for part in (1e-2, 1e-6):
+            top = Block(0.5 * column.blocks[-1].width, 0.1, part * column.mass)
+            capped = Column((*column.blocks, top), (*(column.offsets or ()), 0.0))
+            found = run(with_contacts(capped, [*mus, 0.5]), motion)
+            n = min(samples_until(bare, 4), len(found.time))
+            differences.append(float(np.abs(found.theta[:n, :2] - bare.theta[:n]).max()))
         compared += 1
-        assert differences[2] < 1e-4
-        assert differences[2] <= 0.05 * differences[0] + 1e-9
+        assert differences[1] < 1e-4
+        assert differences[1] <= 0.05 * differences[0] + 1e-9
     assert compared >= 3
 
 
-def closes(rng, bodies):
-    """Whether the balance of energy of a random column closes under random motions."""
+def shaken_column(rng, bodies):
+    """Draw a column with friction, a motion and a vertical one."""
     column = with_contacts(random_column(rng, bodies), list(rng.uniform(0.2, 0.9, bodies)))
-    motion, up = random_motion(rng), 0.3 * random_motion(rng)
-    return imbalance(run(column, motion, vertical=up)) < 2e-8
+    return column, random_motion(rng), 0.3 * random_motion(rng)
 
 
 @pytest.mark.parametrize(
@@ -107,16 +86,15 @@ def closes(rng, bodies):
 )
 def test_the_energy_balance_of_a_column_closes(bodies, columns):
     rng = np.random.default_rng(bodies)
-    assert all(closes(rng, bodies) for _ in range(columns))
+    for _ in range(columns):
+        column, motion, up = shaken_column(rng, bodies)
+        assert imbalance(run(column, motion, vertical=up)) < 2e-8
 
 
 def test_sliding_that_jams_between_a_light_and_heavy_bodies_keeps_the_energy_balance():
     rng = np.random.default_rng(12)
-    for _ in range(13):
-        column = with_contacts(random_column(rng, 12), list(rng.uniform(0.2, 0.9, 12)))
-        motion, up = random_motion(rng), 0.3 * random_motion(rng)
-    found = run(column, motion[:60], vertical=up[:60])
-    assert imbalance(found) < 2e-8
+    column, motion, up = [shaken_column(rng, 12) for _ in range(13)][-1]
+    assert imbalance(run(column, motion[:60], vertical=up[:60])) < 2e-8
 
 
 def mirrored(block: Block) -> Block:
@@ -185,19 +163,6 @@ def test_a_contact_too_rough_to_slide_takes_no_shear_without_pressure(seed: int)
     assert imbalance(found) < 2e-8
     assert found.paradoxes > 0 and found.forced == 0
     assert len(found.contact_events) < 1000
-
-
-def test_a_column_tilted_as_one_falls_as_one_until_a_joint_opens() -> None:
-    drums = Column(tuple(Block(1.0, 0.8, 900.0) for _ in range(6)))
-    whole = Block(1.0, 4.8, 5400.0)
-    tilt = 1.05 * whole.alpha
-    many = run(drums.system(), np.zeros(300), theta=[tilt] * 6)
-    single = run(whole.system(), np.zeros(300), theta=[tilt])
-    assert many.overturned_body == many.system.names[0] and single.overturned
-    n = samples_until(many, 0)
-    assert n > 50
-    for k in range(6):
-        np.testing.assert_allclose(many.theta[:n, k], single.theta[:n, 0], atol=1e-9)
 
 
 def test_rough_columns_rock_as_the_plain_integrator_of_pure_rocking_says() -> None:

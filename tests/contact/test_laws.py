@@ -7,17 +7,11 @@ from typing import NamedTuple
 import numpy as np
 import pytest
 
-from rockfrag.engines.contract import Case
 from rockfrag.engines.kernels.jit import entry_kernel
-from rockfrag.engines.kernels.single import Shaking
-from rockfrag.engines.planar.engine import ContactRun
 from rockfrag.engines.planar.impact import kinetic_energy, strike
-from rockfrag.engines.planar.integrate import contact_event_columns, integrate
-from rockfrag.engines.planar.records import MOST, posed, system_record, working_memory
+from rockfrag.engines.planar.records import posed, system_record, working_memory
 from rockfrag.engines.planar.solve import look_at
-from rockfrag.engines.steps import STEP, step_count
 from rockfrag.rocking import MeasuredRestitution, simulate
-from rockfrag.rocking.inputs import ground_motion
 from rockfrag.system import ImpactLaw, System, geometry
 
 from ..rocking.reference_bodies import random_motion
@@ -177,27 +171,8 @@ def test_with_much_friction_impacts_are_those_of_pure_rocking(
     assert compared >= 3
 
 
-def stops_by_momentum(system: System, motion: np.ndarray, when: float) -> bool:
-    """Whether the impact at an instant would stop all bodies under conservation of momentum too.
-
-    A couple multiplies what that leaves, which of squat bodies may be nothing.
-    """
-    i, n = int(when / DT), 3 * system.count
-    history = ContactRun(Case(system, ground_motion(motion, DT)), 1e-6).history
-    mus = [contact.friction for contact in system.contacts]
-    p = system_record(with_contacts(system, mus, [ImpactLaw()] * system.count), G)
-    start = np.zeros((2, 3 * MOST))
-    start[:, :n] = history[i, : 2 * n].reshape(2, n)
-    found = np.zeros((9, contact_event_columns(system.count)))
-    substeps = int(step_count(system, DT, G, STEP))
-    shaking = Shaking(motion[i : i + 2], np.zeros(0), 1.0, DT, substeps, 0)
-    _, count = integrate(p, shaking, start, 1e-6, np.zeros((0, 0)), found, working_memory())
-    at = found[:count]
-    return bool((at[np.abs(at[:, 0] + i * DT - when) < 1e-9, 5] == 0).any())
-
-
 @pytest.mark.parametrize("cases", [18, pytest.param(1000, marks=pytest.mark.slow)])
-def test_histories_with_friction_and_restitution_gain_nothing_and_do_not_stop_dead(cases):
+def test_histories_with_friction_and_restitution_gain_nothing(cases):
     """Random blocks, stacks and columns with laws of impact, and with all numbers moved a little."""
     rng = np.random.default_rng(11)
     impacts = jumped = 0
@@ -213,8 +188,6 @@ def test_histories_with_friction_and_restitution_gain_nothing_and_do_not_stop_de
         unit = 1e-9 * float(system.mass * G)
         impacts += len(struck)
         assert (after <= before * (1 + 1e-9) + unit).all()
-        for when in struck["time"][(after == 0) & (before > 1e4 * unit)]:
-            assert stops_by_momentum(lawful, motion, when)
         assert imbalance(found) < 2e-8
         near = run(with_contacts(system, list(mus * (1 + 1e-9)), laws), motion)
         n = min(samples_until(found, 4), len(near.time))

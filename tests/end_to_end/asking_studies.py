@@ -15,36 +15,24 @@ from rockfrag.errors import LONGEST_MESSAGE, InputError
 from rockfrag.report.part import Results
 from rockfrag.study.loading import load_any
 
+from ..case_tables import case_tables
 from .checked_report import check_first_page, check_report
-from .studies import Foreign, run_stages, write
+from .studies import Foreign, alone, run_stages, write
 
-NAMES = ("vase", "Büste", "saint on a plinth", "rack 3", "x_1", "50 % marble", "<b>urn</b>")
-EARTHQUAKES = ("Irpinia", "Friuli", "quake & co", "L'Aquila")
-MEASURES = ("pga_g", "pgv_cm_s", "pgd_cm", "arias_m_s", "sa_0_3s_g", "sa_1_0s_g", "housner_cm")
-PAIRS = (["pga_g", "pgv_over_pga_s"], ["pga_g", "pgv_cm_s"], ["pga_g", "mean_period_s"])
-FLOORS: tuple[dict[str, int] | None, ...] = (
-    None, None, {"ground": 0, "top": 3}, {"piano nobile": 1}, {"cellar": 0, "gallery": 2, "attic": 3},
-)  # fmt: skip
-SHAKER = {"stroke_m": 0.29, "force_n": 500, "lowest_hz": 0.5, "highest_hz": 200}
-SHAKER |= {"start": "off-centre", "armature_mass_kg": 5, "table_mass_kg": 5}
-SENSITIVITY_ANALYSIS: dict[str, Any] = {
-    "statue_restitution": [0.97], "interface_restitution": [1.03], "ground_restitution": [0.9],
-    "pedestal_lean_deg": [0.5], "statue_offset_mm": [5], "statue_cg_offset_mm": [3], "pedestal_width_cm": [60],
-    "table_mass_kg": [20], "step_percent": [10],
-    "tolerance_percent": 1, "tolerance_restitution": 0.01, "replicates": 2,
-}  # fmt: skip
+TABLES = case_tables(__file__)
 PARTICULAR = ("sensitivity_analysis", "building_sensitivity")
+"""Keys that ask for pairs, and for a building."""
 
 
 def draw(rng: random.Random) -> Foreign:
     """Draw a study; most make sense, some ask for what cannot be."""
-    names = rng.sample(NAMES, rng.randint(1, 3))
+    names = rng.sample(TABLES["names"], rng.randint(1, 3))
     if rng.random() < 0.04:
         names[0] = "=1+1"
     blocks = {
         name: (rng.uniform(15, 60), rng.uniform(60, 200), rng.uniform(20, 400)) for name in names
     }
-    configurations: dict[str, tuple[str, str | None]] = {name: (name, None) for name in names}
+    configurations = alone(*names)
     if rng.random() < 0.6:
         blocks["plinth"] = (rng.uniform(20, 90), rng.uniform(10, 100), rng.uniform(50, 900))
         on = rng.sample(names, rng.randint(1, len(names)))
@@ -54,73 +42,47 @@ def draw(rng: random.Random) -> Foreign:
         elif rng.random() < 0.3:
             blocks["step"] = (rng.uniform(60, 120), rng.uniform(10, 30), 400.0)
             configurations["three"] = (names[0], "plinth|step")
-    records = {f"record {k}": rng.choice(EARTHQUAKES) for k in range(rng.choice((1, 2, 2, 3, 5)))}
-    floors = {"roof": 4} if rng.random() < 0.03 else rng.choice(FLOORS)
+    count = rng.choice((1, 2, 2, 3, 5))
+    records = {f"record {k}": rng.choice(TABLES["earthquakes"]) for k in range(count)}
+    floors = {"roof": 4} if rng.random() < 0.03 else rng.choice(TABLES["floors"])
     keys = _keys(rng, names)
     if len(configurations) == len(names) or floors is None:
-        # these two keys ask for pairs, and for a building
         keep = rng.random() < 0.1
         keys = {key: value for key, value in keys.items() if keep or key not in PARTICULAR}
     return Foreign(blocks, configurations, records, floors, keys)
 
 
 def _keys(rng: random.Random, names: list[str]) -> dict[str, Any]:
-    chosen: dict[str, Any] = {
-        "amplitudes": {
-            "lowest_g": rng.choice((0.05, 0.1, 0.15)),
-            "highest_g": rng.choice((0.2, 0.7, 1.5, 2.5)),
-            "step_percent": rng.choice((15, 25, 40)),
-        },
-        "protocol": {"step_percent": rng.choice((40, 50, 10))},
-        "fragility": {
-            "measures": [
-                *rng.sample(MEASURES, rng.randint(1, 3)),
-                *([rng.choice(PAIRS)] if rng.random() < 0.3 else []),
-            ],
-            "confidence": rng.choice((0.9, 0.68)),
-        },
+    measures = rng.sample(TABLES["measures"], rng.randint(1, 3))
+    measures += [rng.choice(TABLES["pairs"])] if rng.random() < 0.3 else []
+    amplitudes = {
+        "lowest_g": rng.choice((0.05, 0.1, 0.15)),
+        "highest_g": rng.choice((0.2, 0.7, 1.5, 2.5)),
+        "step_percent": rng.choice((15, 25, 40)),
     }
-    others: dict[str, tuple[float, Any]] = {
-        "friction": (0.2, rng.choice((0.3, 0.7, {"ground": 0.8, "interface": 0.4}))),
-        "vertical": (0.2, True),
-        "keep_going": (0.2, True),
-        "write_motions": (0.2, rng.choice(("AT2", "CSV", "MSEED", "OPENSEES"))),
-        "shaker": (0.1, "shaker.yaml"),
-        "building_sensitivity": (
-            0.1,
-            rng.choice(({"first_period_s": [0.2, 0.5]}, {"ground_scale": [0.8]}, {"base_shear": [0.2]})),
-        ),
-        "sensitivity_analysis": (0.08, SENSITIVITY_ANALYSIS),
-        "seed": (0.1, rng.choice((0, 7))),
-        "colour": (0.03, "red"),
-        "write_motions ": (0.03, "GSE"),
-        "compare_with": (0.03, "thesis"),
-    }  # fmt: skip
-    chosen |= {key: value for key, (likely, value) in others.items() if rng.random() < likely}
-    motions: dict[str, Any] = {"catalogue": "motions.csv"}
-    if rng.random() < 0.3:
-        motions["processing"] = rng.choice(
-            (
-                [{"step": "demean"}],
-                [{"step": "bandpass", "low_hz": 0.3, "high_hz": 20}],
-                [{"step": "trim", "start": 0.5, "end": 3}],
-                [{"step": "taper"}, {"step": "scale", "factor": 1.5}],
-                *([[{"step": "polish"}]] if rng.random() < 0.1 else []),
-            )
-        )
-    if rng.random() < 0.15:
-        motions["use"] = ["record 0"] if rng.random() < 0.8 else ["record 9"]
+    chosen = {
+        "amplitudes": amplitudes,
+        "protocol": {"step_percent": rng.choice((40, 50, 10))},
+        "fragility": {"measures": measures, "confidence": rng.choice((0.9, 0.68))},
+        "motions": {"catalogue": "motions.csv"} | _some(rng, "motions"),
+    }
     if rng.random() < 0.1:
         restitution = {"blocks": dict.fromkeys(names, rng.choice((0.9, 0.97, 1.1)))}
         chosen["bodies"] = {"specimens": "blocks.csv", "configurations": "configurations.csv"}
         chosen["bodies"]["restitution"] = restitution
-    return chosen | {"motions": motions}
+    return chosen | _some(rng, "keys")
+
+
+def _some(rng: random.Random, table: str) -> dict[str, Any]:
+    """Keys of a table, each as often as it says, with one of its values."""
+    each = TABLES[table].items()
+    return {key: rng.choice(values) for key, (often, values) in each if rng.random() < often}
 
 
 def fate(study: Foreign, folder: Path) -> tuple[int, list[str]]:
     """Run a study to its report; return 0 if it ran and 2 if it was refused, and what is wrong with it."""
     path = write(study, folder)
-    (folder / "shaker.yaml").write_text(yaml.safe_dump(SHAKER))
+    (folder / "shaker.yaml").write_text(yaml.safe_dump(TABLES["shaker"]))
     try:
         loaded = load_any(path)
     except InputError as error:

@@ -2,11 +2,12 @@
 
 import math
 import re
+from collections import Counter
 from collections.abc import Iterable
-from html.parser import HTMLParser
 from pathlib import Path
 
 import numpy as np
+from lxml import html
 
 from rockfrag.files import file_name
 from rockfrag.report.answer import study_answer
@@ -31,48 +32,26 @@ MOST_WORDS = 900
 """Words of a page before anything on it is opened."""
 
 
-class Page(HTMLParser):
+class Page:
     """Texts of a page and of its drawings, its tables cell by cell, and whether its tags close."""
 
     def __init__(self, text: str) -> None:
-        super().__init__(convert_charrefs=True)
-        self.words: list[str] = []
-        self.drawings: list[str] = []
-        self.labels: list[str] = []
-        self.tables: list[list[list[str]]] = []
-        self.open: list[str] = []
-        self.feed(text)
-        self.close()
-        assert not self.open, f"tags are left open: {self.open}"
+        markup = re.sub(r"<(script|style)\b.*?</\1>|<!--.*?-->", "", text, flags=re.DOTALL)
+        opened = Counter(re.findall(r"<(\w+)\b[^>]*(?<!/)>", markup))
+        assert set(opened - Counter(re.findall(r"</(\w+)>", markup))) <= VOID, "a tag is left open"
+        root = html.document_fromstring(markup)
+        self.words = _lines(root.xpath("//text()[not(ancestor::svg)]"))
+        self.drawings = _lines(root.xpath("//svg//text()"))
+        self.labels = [drawing.get("aria-label", "") for drawing in root.iter("svg")]
+        self.tables = [
+            [["".join(_lines(cell.itertext())) for cell in row] for row in table.iter("tr")]
+            for table in root.iter("table")
+        ]
 
-    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
-        if tag in VOID:
-            return
-        self.open.append(tag)
-        about = dict(attrs)
-        if tag == "svg":
-            self.labels.append(about.get("aria-label") or "")
-        elif tag == "table":
-            self.tables.append([])
-        elif tag == "tr":
-            self.tables[-1].append([])
-        elif tag in ("td", "th"):
-            self.tables[-1][-1].append("")
 
-    def handle_startendtag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
-        """Elements of drawings close themselves."""
-
-    def handle_endtag(self, tag: str) -> None:
-        assert self.open and self.open[-1] == tag, f"</{tag}> closes {self.open[-1:]}"
-        self.open.pop()
-
-    def handle_data(self, data: str) -> None:
-        text = " ".join(data.split())
-        if not text or {"style", "script"} & set(self.open):
-            return
-        (self.drawings if "svg" in self.open else self.words).append(text)
-        if self.open[-1:] and {"td", "th"} & set(self.open):
-            self.tables[-1][-1][-1] += text
+def _lines(texts: Iterable[str]) -> list[str]:
+    """Texts that say anything, each with one blank between its words."""
+    return [line for text in texts if (line := " ".join(text.split()))]
 
 
 def check_report(results: Path, names: Iterable[str] = (), plugin: bool = False) -> Page:

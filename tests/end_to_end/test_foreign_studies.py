@@ -42,7 +42,7 @@ def test_the_study_runs_and_its_report_fits_it(name: str, tmp_path: Path):
         assert not used or any(object_name in word for word in page.words)
 
 
-@pytest.mark.parametrize("number", (9, 15, 21))
+@pytest.mark.parametrize("number", (2, 12, 22))
 def test_random_studies_end_with_a_report_or_are_refused_in_a_sentence(number, tmp_path):
     assert fate(draw(random.Random(f"0 {number}")), tmp_path)[1] == []
 

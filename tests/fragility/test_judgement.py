@@ -9,8 +9,9 @@ from scipy import stats
 
 from rockfrag.errors import InputError
 from rockfrag.fragility.checks import goodness_of_fit
+from rockfrag.fragility.empirical import TableIda
 from rockfrag.fragility.estimators import fragility_of
-from rockfrag.fragility.ida_curves import fragility_table
+from rockfrag.fragility.ida_curves import fragility_table, with_measures
 from rockfrag.fragility.lognormal import fit_lognormal
 from rockfrag.fragility.measure_selection import (
     area_under_curve,
@@ -124,14 +125,15 @@ def test_ida_curves_recommend_the_measure_that_decides(decides):
         ]
     )
     columns = ["pga_g", "pgv_cm_s", "arias_m_s"]
-    choice = recommend_ida_measure(ida, measures, columns, given=["magnitude"], replicates=50)
+    curves = TableIda(with_measures(ida, measures, columns))
+    choice = recommend_ida_measure(curves, measures, columns, given=["magnitude"])
     assert choice.recommended == decides
     best = choice.table.iloc[0]
     assert best["beta_amplitude"] == pytest.approx(0.2, abs=0.06)
     assert best["theta"] == pytest.approx(1.0, rel=0.2 * power)
     assert best["chosen_fraction"] > 0.9 and best["p_magnitude"] > 0.01
     with pytest.raises(InputError, match="does not grow with the amplitude"):
-        recommend_ida_measure(ida, measures.assign(d5_95_s=1.0), ["d5_95_s"])
+        recommend_ida_measure(curves, measures, ["d5_95_s"])
 
 
 def test_capacities_of_two_kinds_are_found_not_lognormal_and_the_shares_are_offered():

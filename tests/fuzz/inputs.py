@@ -22,7 +22,7 @@ from rockfrag.study.configurations import read_configurations, read_specimens
 from rockfrag.study.loading import load_any
 
 from ..assess import asking
-from ..assess.samples import SAMPLES, table_csv
+from ..assess.samples import SAMPLES
 from ..case_tables import case_tables
 from ..conftest import motions_of_noise, write_records
 from ..end_to_end import asking_studies
@@ -166,7 +166,7 @@ def objects(folder: Path) -> Callable[[random.Random], Attempt]:
 def requests(folder: Path) -> Callable[[random.Random], Attempt]:
     """Return what asks `rockfrag assess` at random (``tests/assess/asking.py``)."""
     records, hazard = write_records(folder, motions_of_noise(6)), folder / "hazard.csv"
-    hazard.write_text(table_csv())
+    hazard.write_text(SAMPLES["table.csv"])
 
     def draw(rng: random.Random) -> Attempt:
         asked = asking.request(rng, records, hazard)

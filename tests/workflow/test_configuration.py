@@ -73,47 +73,12 @@ def test_the_studies_of_the_project_are_right():
         assert load_any(CONFIG / f"{name}.yaml").name == name
 
 
-SENSITIVITY_ANALYSIS = {
-    "statue_restitution": [0.9],
-    "interface_restitution": [0.95],
-    "ground_restitution": [1.5],
-    "pedestal_lean_deg": [2],
-    "statue_offset_mm": [5],
-    "statue_cg_offset_mm": [2],
-    "pedestal_width_cm": [14],
-    "table_mass_kg": [10],
-    "step_percent": [8],
-    "friction": {"ground": [0.4], "interface": [0.3, 0.6]},
-    "tolerance_percent": 1,
-    "tolerance_restitution": 0.02,
-    "replicates": 1,
-}
-
-SYNTHETIC_TESTS = """\
-test,object,pedestal,earthquake,floor,lower_g,upper_g,censored,overturned_body,repetition,remark
-synthetic 1,T1,NP,First,GF,0.5,0.55,none,statue,1,synthetic
-synthetic 2,T1,P,First,GF,0.45,0.5,none,statue,1,synthetic
-synthetic 3,T1,NP,Second,GF,0.6,0.65,none,statue,1,synthetic
-synthetic 4,T1,P,Second,GF,0.65,,right,,1,synthetic
-"""
-
-
 def full_study(folder: Path) -> None:
-    """Write a study with every optional part, each as small as it can be."""
+    """Write a study with every optional part."""
     for name in ("building.yaml", "experiment/shaker.yaml"):
         shutil.copy(CONFIG / name, folder / Path(name).name)
-    (folder / "tests.csv").write_text(SYNTHETIC_TESTS)
-    changes = {
-        "motions.use": ["motion 0", "motion 2", "motion 4"],
-        "amplitudes.step_percent": 15,
-        "building": "building.yaml",
-        "compare_with": "thesis",
-        "shaker": "shaker.yaml",
-        "measured_tests": "tests.csv",
-        "building_sensitivity": {"first_period_s": [0.5], "floors": [{"F3": 3, "F5": 6}]},
-        "sensitivity_analysis": SENSITIVITY_ANALYSIS,
-    }
-    write_study(folder, changed(study_content(), changes))
+    (folder / "tests.csv").write_text(CASES["tests"])
+    write_study(folder, changed(study_content(), CASES["full"]))
 
 
 @pytest.mark.parametrize(("name", "changes", "words"), CASES["keys"])
@@ -380,7 +345,11 @@ def test_every_optional_part_runs_from_records_to_report(study_folder: Path):
     margins = pd.read_csv(results / "building_sensitivity" / "margins.csv")
     assert set(margins["label"]) == {"reference", "first period 0.5 s", "levels F3 3, F5 6"}
     effects = pd.read_csv(results / "sensitivity_analysis" / "effects.csv")
-    single = {name for name, levels in SENSITIVITY_ANALYSIS.items() if isinstance(levels, list)}
+    single = {
+        name
+        for name, levels in CASES["full"]["sensitivity_analysis"].items()
+        if isinstance(levels, list)
+    }
     single.remove("table_mass_kg")
     # restitutions by every law that they may follow, and the table's mass in two ways
     laws = {"statue_restitution_ratio", "interface_restitution_ratio", "ground_restitution_ratio"}

@@ -4,6 +4,7 @@ import os
 from dataclasses import replace
 from importlib.metadata import version
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from markupsafe import Markup
@@ -13,15 +14,7 @@ from rockfrag.assess.answer import Assessment
 from rockfrag.assess.export import as_json, as_nrml
 from rockfrag.assess.motions import MotionSet
 from rockfrag.assess.objects import Objects
-from rockfrag.assess.sources import SOURCES, parts_of
-from rockfrag.assess.words import (
-    NAMES,
-    fraction_words,
-    mitigation_words,
-    page_says,
-    says,
-    value_words,
-)
+from rockfrag.assess.words import NAMES, page_says, says
 from rockfrag.figure_style import BLUE, COLUMN_WIDTH, OKABE_ITO, panels, plain_log
 from rockfrag.files import file_name, write_text
 from rockfrag.outcomes.limit_states import ROCKS, limit_states
@@ -30,7 +23,7 @@ from rockfrag.report.live import carried, live_kernel
 from rockfrag.report.live.space import Standing, live_in_space
 from rockfrag.report.page import Page, text_table
 from rockfrag.report.part import Answer, Finding, Section
-from rockfrag.sentences import PART, number, sentence
+from rockfrag.sentences import PART, number
 
 MOTIONS_SHOWN = 15  # Rows of the table of motions that topple the object first
 
@@ -50,19 +43,21 @@ def write_answer(found: Assessment, folder: str | os.PathLike[str]) -> Path:
 
 def page_of(found: Assessment) -> str:
     """Return the page as HTML, which loads nothing from outside."""
-    pairs = [line.split(PART) for line in page_says("words_used", found)]
-    pairs.sort(key=lambda pair: pair[0].lower())
-    caption = "Words and abbreviations of this page."
     drawn = []
     if found.main.sources:
         drawn.append(page_says.figure("sources", lambda: sources_figure(found)))
+    first, others = slice(1, 2), slice(1, None)
+    earliest = np.argsort(found.counted.first_levels(), kind="stable")[:MOTIONS_SHOWN]
+    sure = [_table("sources", found, first), _table("effects", found, others)]
     sections = [
-        *_compared(found),
-        page_says.section("sure", [*drawn, _sources(found), _effects(found)], found),
+        page_says.section("mitigations", [_table("mitigations", found, first)], found),
+        page_says.section("arrangements", [_table("arrangements", found, others)], found),
+        page_says.section("sure", [*drawn, *sure], found),
         page_says.section("assumed", [], found),
-        *([_rules(found)] if found.rules else []),
-        *(_levels(found), _motions(found)),
-        page_says.section("glossary", [text_table(("Word", "What it means here"), pairs, caption)]),
+        *([page_says.section("rules", [_table("rules", found, others)])] if found.rules else []),
+        _levels(found),
+        page_says.section("motions", [_table("motions", found, slice(2, None), earliest)], found),
+        page_says.section("glossary", [_table("glossary", found, slice(0))]),
     ]
     provenance = {
         "Program": f"rockfrag {version('rockfrag')}",
@@ -90,65 +85,11 @@ def _answer(found: Assessment) -> Answer:
     )
 
 
-def _compared(found: Assessment) -> list[Section]:
-    """What each change of the object does, and other ways in which it can stand."""
-    rows = [
-        (
-            sentence(change.name),
-            value_words(found, change.value),
-            sentence(mitigation_words(found, change)),
-        )
-        for change in found.mitigations
-    ]
-    titles = ("Change", "With it", "What it does (90 % interval)")
-    caption = (
-        "Each change is simulated with the same motions and compared with the object as it stands."
-    )
-    changes = text_table(titles, rows, caption, titles[1:2])
-    ways = [(name, value_words(found, value)) for name, value in found.by_arrangement.items()]
-    heads, caption = ("How it stands", "Estimate"), "The same object under the same motions."
-    stands = text_table(heads, ways, caption, heads[1:])
-    return [
-        page_says.section("mitigations", [changes], found),
-        page_says.section("arrangements", [stands], found),
-    ]
-
-
-def _sources(found: Assessment) -> Markup:
-    """The sources of the interval, what each adds to it, where its size comes from, and what would narrow it."""
-    rows = []
-    for name, part in parts_of(found.main.sources).items():
-        source = SOURCES[name]
-        narrows = sentence(source.measurement) if source.measurement else "–"
-        rows.append((sentence(source.words), f"{100 * part:.0f} %", source.basis, narrows))
-    titles = ("Not known", "Part of the variance", "Where its size comes from")
-    caption = "Sources of the interval, the largest first."
-    return text_table((*titles, "What would narrow it"), rows, caption, titles[1:2])
-
-
-def _effects(found: Assessment) -> Markup:
-    titles = ("What is not known exactly", "Standard deviation", "If less", "If more")
-    rows = [
-        (
-            sentence(NAMES[effect.name]),
-            f"± {100 * effect.spread:g} %",
-            *(value_words(found, side) for side in effect.sides),
-        )
-        for effect in found.effects
-    ]
-    caption = "What the answer is with each property moved by its standard deviation."
-    return text_table(titles, rows, caption, titles[1:])
-
-
-def _rules(found: Assessment) -> Section:
-    rows = [
-        (rule.rule, number(rule.bias, 2), number(rule.scatter, 2), fraction_words(rule.unsafe))
-        for rule in found.rules
-    ]
-    numbers = ("Its amplitude over the simulated one (median)", "Scatter (ln)")
-    titles = ("Rule", *numbers, "Motions that topple it earlier")
-    caption = "Rules held against every motion that topples the object."
-    return page_says.section("rules", [text_table(titles, rows, caption, titles[1:])])
+def _table(name: str, found: Assessment, numeric: slice, *more: Any) -> Markup:
+    """A table of which a macro says caption, titles and rows, a line each; some of its columns are of numbers."""
+    lines = page_says(f"{name}_table", found, *more)
+    (caption,), titles, *rows = (line.split(PART) for line in lines)
+    return text_table(titles, rows, caption, titles[numeric])
 
 
 def _levels(found: Assessment) -> Section:
@@ -184,22 +125,6 @@ def _years(period: float) -> str:
     """A return period to two digits: 475 years stand for some 480."""
     rounded = float(f"{period:.2g}")
     return f"{rounded:,.0f}".replace(",", " ") if rounded >= 10 else f"{rounded:g}"
-
-
-def _motions(found: Assessment) -> Section:
-    first = found.counted.first_levels()
-    order = np.argsort(first, kind="stable")[:MOTIONS_SHOWN]
-    unit, recorded = found.measure.unit, found.motions.values(found.measure)
-    rows = []
-    for i in order:
-        motion = found.motions.ground[i]
-        places = [found.motions.earthquakes[i], str(motion.metadata.get("station", ""))]
-        at = ", ".join(dict.fromkeys(places)).strip(", ")
-        rows.append((motion.name, at, number(recorded[i], 2), number(first[i], 2)))
-    numbers = (f"As recorded [{unit}]", f"Topples it from [{unit}]")
-    titles = ("Motion", "Earthquake and station", *numbers)
-    table = text_table(titles, rows, "The motions that need the least shaking.", numbers)
-    return page_says.section("motions", [table], found)
 
 
 LIVE = (0.0, 0.1, 0.25, 0.5, 0.75)

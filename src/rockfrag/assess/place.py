@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from rockfrag.assess.assumed import Assumption, Moved, assume, moved_to_both_sides
+from rockfrag.assess.assumed import Assumption, Moved, assume, moved_to_both_sides, tolerances_in
 from rockfrag.building.floors import floor_motions
 from rockfrag.building.model import ModalDamping, ShearBuilding, stiffnesses_for_period
 from rockfrag.building.settings import make_building, read_building
@@ -26,12 +26,6 @@ TOLERANCE_OF_KNOWN_PERIOD = 0.1  # That of a first period that was given [-]
 PERIOD_FACTORS = {"steel": 0.085, "concrete": 0.075, "masonry": 0.05}
 """C_t of T = C_t H^(3/4) with H in metres: frames of steel and of concrete, all other buildings
 (EN 1998-1:2004, 4.3.3.2.2(3))."""
-
-ORDINALS = (
-    *("ground", "first", "second", "third", "fourth", "fifth"),
-    *("sixth", "seventh", "eighth", "ninth", "tenth"),
-)
-"""Names of floors."""
 
 _FLOOR = re.compile(r"\s*(\d+)\s*(?:/|of)\s*(\d+)\s*")
 
@@ -55,16 +49,6 @@ class Place:
             return f"on the floor {self.label}" if self.label else "on the ground"
         level = f"level {self.building.level(self.floor)} of {self.building.storeys}"
         return f"on the floor {self.label}, {level}" if self.label else f"on {level}"
-
-    @property
-    def floor_name(self) -> str:
-        """What Europe and America call the level, such as ``second floor in Europe, third in America``."""
-        if self.building is None:
-            return ""
-        level = self.building.level(self.floor)
-        if level == self.building.storeys:
-            return "the roof"
-        return f"{_ordinal(level)} floor in Europe, {_ordinal(level + 1)} in America"
 
     @property
     def shakes_as_ground(self) -> bool:
@@ -115,11 +99,6 @@ def make_place(settings: Mapping[str, Any], folder: Path) -> Place:
     return _sketched(str(floor), {}, settings)
 
 
-def _tolerances(settings: Mapping[str, Any], usual: Mapping[str, float]) -> dict[str, float]:
-    given = settings.get("tolerances", {})
-    return dict(usual) | {key: float(given[key]) for key in given if key in TOLERANCES}
-
-
 def _given(settings: Mapping[str, Any], floor: Any, folder: Path) -> Place:
     """The building of a file, or a mapping that describes all of it or what is known of it."""
     given = settings["building"]
@@ -151,7 +130,7 @@ def _given(settings: Mapping[str, Any], floor: Any, folder: Path) -> Place:
     building.level(label)
     name = "" if found or label.isdecimal() else label
     said = assume("building", "period", "damping")
-    return Place(building, label, _tolerances(settings, TOLERANCES), name, (said,))
+    return Place(building, label, tolerances_in(settings, TOLERANCES), name, (said,))
 
 
 def _sketched(floor: str, known: Mapping[str, Any], settings: Mapping[str, Any]) -> Place:
@@ -177,7 +156,7 @@ def _sketched(floor: str, known: Mapping[str, Any], settings: Mapping[str, Any])
     usual = TOLERANCES | (
         {"period": TOLERANCE_OF_KNOWN_PERIOD} if "first_period_s" in known else {}
     )
-    return Place(building, "floor", _tolerances(settings, usual), assumed=(said,))
+    return Place(building, "floor", tolerances_in(settings, usual), assumed=(said,))
 
 
 def _heights(known: Mapping[str, Any], storeys: int) -> tuple[float, ...]:
@@ -213,11 +192,3 @@ def _level(floor: str) -> tuple[int, int]:
             f"which is at most {HIGHEST_BUILDING}."
         )
     return level, storeys
-
-
-def _ordinal(number: int) -> str:
-    if number < len(ORDINALS):
-        return ORDINALS[number]
-    # 21 and 31 end as 1 does; 11 to 13 are exceptions
-    ending = "th" if number % 100 in (11, 12, 13) else {1: "st", 2: "nd", 3: "rd"}.get(number % 10)
-    return f"{number}{ending or 'th'}"

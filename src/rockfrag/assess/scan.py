@@ -9,7 +9,6 @@ effects; of the order, since a foot that carries from some tolerance on makes th
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from functools import partial
 from typing import Any
 
 import numpy as np
@@ -103,7 +102,7 @@ def make_scan(
     if given is not None or contact_spread is not None:
         middle = median if given is None else 1e3 * given
         spread = KNOWN_CONTACT_SPREAD if contact_spread is None else contact_spread
-        unknowns["contact_tolerance_mm"] = partial(lognormal, middle, spread)
+        unknowns["contact_tolerance_mm"] = lognormal(middle, spread)
     # what is wrong with the mesh is said of its middle tolerance
     shape.contact_polygon(unknowns["contact_tolerance_mm"](0.5) / 1e3)
     open_ones = {name: unknown for name, unknown in unknowns.items() if name not in exact}

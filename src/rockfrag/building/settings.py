@@ -78,7 +78,7 @@ def _building(settings: Mapping[str, Any]) -> model.ShearBuilding:
     return building
 
 
-def _damping(settings: Mapping[str, Any]) -> model.Damping:
+def _damping(settings: Mapping[str, Any]) -> model.ModalDamping:
     ratio = float(settings.get("ratio", 0.05))
     if settings.get("kind", "modal") == "rayleigh":
         first, second = settings.get("modes", (1, 2))

@@ -1,8 +1,7 @@
 """Simulation against measurement as a referee wants it: trials chosen by some motions and judged by others.
 
-A trial that was chosen by a test cannot be judged by it: trials that agree with the tests of four folds about as
-well as the best one vote on the fifth.  The best trial alone would follow the noise of the choice
-(``docs/campaigns.md``).
+Trials that agree with the tests of four folds about as well as the best one vote on the fifth.  The best trial
+alone would follow the noise of the choice (``docs/campaigns.md``).
 """
 
 from collections.abc import Iterator, Mapping
@@ -67,8 +66,7 @@ class MeasuredTests:
         the outcomes that they are chosen by. Returned is the fraction of plausible trials that say so of each
         test, shape (repeats, tests).
         """
-        right = simulated == self.overturned
-        answers = simulated if asked is None else asked
+        right, answers = simulated == self.overturned, simulated if asked is None else asked
         votes = np.empty((self.repeats, len(self.overturned)))
         for repeat, chosen_by in self.divisions():
             voters = plausible_trials(right[:, chosen_by], self.groups[chosen_by])
@@ -118,12 +116,9 @@ class MeasuredTests:
             (np.atleast_2d(outcomes) == self.overturned).mean(axis=0) for outcomes in (ours, theirs)
         )
         difference = right - others
+        sums, rng = np.bincount(self.groups, difference), np.random.default_rng(self.seed)
         found = stats.permutation_test(
-            (np.bincount(self.groups, difference),),
-            np.sum,
-            permutation_type="samples",
-            n_resamples=9999,
-            rng=np.random.default_rng(self.seed),
+            (sums,), np.sum, permutation_type="samples", n_resamples=9999, rng=rng
         )
         mean, width = float(difference.mean()), self._half_width(difference)
         limits = {"better_lower": mean - width, "better_upper": mean + width}
@@ -146,25 +141,22 @@ class MeasuredTests:
         drawn = [np.bincount(draw, minlength=count)[self.groups] for draw in draws]
         weights = np.array([np.ones(len(measure)), *drawn])
         measured = curves_of(measure, self.overturned, weights)
-        rows = []
+        tails, rows = [(1 - self.level) / 2, (1 + self.level) / 2], []
         for name, outcomes in {"measured": self.overturned, **simulated}.items():
             curve = curves_of(measure, outcomes, weights)
-            shown = {"theta": curve[:, 0], "beta": curve[:, 1]}
+            shown = dict(zip(("theta", "beta"), curve.T, strict=True))
             if name != "measured":
                 ratio = curve / measured
-                shown |= {"theta_ratio": ratio[:, 0], "beta_ratio": ratio[:, 1]}
+                shown |= dict(zip(("theta_ratio", "beta_ratio"), ratio.T, strict=True))
             row: dict[str, object] = {"who": name}
             for parameter, values in shown.items():
                 row[parameter] = values[0]
-                row[f"{parameter}_lower"], row[f"{parameter}_upper"] = self._limits(values[1:])
+                # NaN where no resample gives a curve, as of one kind of outcome
+                known = values[1:][np.isfinite(values[1:])]
+                limits = np.quantile(known, tails) if known.size else (np.nan, np.nan)
+                row[f"{parameter}_lower"], row[f"{parameter}_upper"] = limits
             rows.append(row)
         return pd.DataFrame(rows)
-
-    def _limits(self, values: Floats) -> Floats:
-        """Quantiles of what is a number; NaN where no resample gives a curve, as of one kind of outcome."""
-        known = values[np.isfinite(values)]
-        tails = [(1 - self.level) / 2, (1 + self.level) / 2]
-        return np.quantile(known, tails) if known.size else np.full(2, np.nan)
 
 
 def clustered_error(values: Floats, groups: NDArray[np.int64]) -> float:
@@ -213,15 +205,12 @@ def curves_of(measure: Floats, outcomes: Flags | Floats, weights: Floats) -> Flo
 def by_region(judged: pd.DataFrame, first: str, second: str) -> pd.DataFrame:
     """Thirds of two measures, a row each: limits, ``tests``, ``overturned``, ``simulated``, ``right``."""
     ends = {name: np.quantile(judged[name], [0, 1 / 3, 2 / 3, 1]) for name in (first, second)}
-    third = {
-        name: np.clip(np.searchsorted(limits, judged[name], side="right") - 1, 0, 2)
-        for name, limits in ends.items()
-    }
     rows = []
-    for i, j in product(range(3), repeat=2):
-        inside = judged[(third[first] == i) & (third[second] == j)]
-        row: dict[str, object] = {}
-        for name, k in ((first, i), (second, j)):
+    for thirds in product(range(3), repeat=2):
+        inside, row = judged, dict[str, object]()
+        for name, k in zip((first, second), thirds, strict=True):
+            third = np.searchsorted(ends[name], inside[name], side="right") - 1
+            inside = inside[np.clip(third, 0, 2) == k]
             row[f"{name}_from"], row[f"{name}_to"] = ends[name][k : k + 2]
         counts = {name: int(inside[name].sum()) for name in ("overturned", "simulated")}
         rows.append({**row, "tests": len(inside), **counts, "right": inside["right"].mean()})

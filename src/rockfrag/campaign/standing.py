@@ -1,16 +1,14 @@
 """How an object stands, which nobody measured: guesses of all of it, from distributions with their sources.
 
-A scan says where the surface is, not which of its points carry; nor is it known where the object faces and what
-its impacts take.  A cut block stands on the edges that were measured, so that little is open.  A campaign study
-gives a range for each unknown, and its tests judge the trials that fill the ranges; where there are no tests, each
-has a distribution.  Whoever measures one of the unknowns puts its value in the place of the distribution.
+A scan says where the surface is, not which of its points carry, where the object faces or what its impacts take.
+A campaign study gives a range for each unknown, and its tests judge the trials that fill the ranges; where there
+are no tests, each has a distribution.
 """
 
 import math
 import warnings
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from functools import partial
 from typing import Any
 
 import numpy as np
@@ -55,9 +53,14 @@ class Trials:
     __repr__ = short_repr
 
 
-def uniform(low: float, high: float, fraction: float) -> float:
-    """Quantile of a uniform distribution."""
-    return low + (high - low) * fraction
+def uniform(low: float, high: float) -> Quantile:
+    """Quantile function of a uniform distribution."""
+    return lambda fraction: low + (high - low) * fraction
+
+
+def lognormal(median: float, spread: float) -> Quantile:
+    """Quantile function by the median and the standard deviation of the logarithm."""
+    return lambda fraction: median * math.exp(spread * float(norm.ppf(fraction)))
 
 
 def even_guesses(
@@ -79,7 +82,7 @@ def sample_trials(
     block whose edges were measured has no direction and tolerance; blocks on each other have ``friction`` too.
     """
     quantiles: dict[str, Quantile] = {
-        name: partial(uniform, *ranges[name]) for name in UNKNOWNS if name in ranges
+        name: uniform(*ranges[name]) for name in UNKNOWNS if name in ranges
     }
     if "contact_tolerance_mm" in ranges:
         low, high = ranges["contact_tolerance_mm"]
@@ -109,7 +112,7 @@ def simulate_tests(
     systems: Sequence[System], motions: Sequence[Motion], threads: int | None = None
 ) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
     """Whether a body overturns, and whether any rocks, shape (trials, tests)."""
-    overturned, rocked = np.zeros((2, len(systems), len(motions)), dtype=bool)
+    overturned, rocked = [], []
     for first in range(0, len(motions), BATCH):
         batch = motions[first : first + BATCH]
         with warnings.catch_warnings():
@@ -117,9 +120,9 @@ def simulate_tests(
             warnings.simplefilter("ignore", LightBodies)
             shaking = batch if systems[0].planar else list(map(GroundMotion, batch))
             result = overturns(systems, shaking, threads=threads)
-        overturned[:, first : first + len(batch)] = result.overturned[:, :, 0]
-        rocked[:, first : first + len(batch)] = (result.peak_rotation[:, :, 0] > 0).any(axis=-1)
-    return overturned, rocked
+        overturned.append(result.overturned[:, :, 0])
+        rocked.append((result.peak_rotation[:, :, 0] > 0).any(axis=-1))
+    return np.hstack(overturned), np.hstack(rocked)
 
 
 def _in_plane(planar: Block | Column, guess: Mapping[str, float]) -> System:
@@ -153,15 +156,14 @@ def preferred_edges(
 ) -> dict[str, str]:
     """Say at which ends of their ranges plausible trials crowd: ``low end`` or ``high end`` by unknown."""
     found = {}
-    for name, limits in ranges.items():
-        if name == "direction_deg" and limits[1] - limits[0] >= 360:
+    for name, (low, high) in ranges.items():
+        if name == "direction_deg" and high - low >= 360:
             continue
         # by rank, so that where few trials can stand few are expected
         rank = trials[name].rank(pct=True)[plausible]
-        ends = ((limits[0], "low end", rank <= OUTER), (limits[1], "high end", rank > 1 - OUTER))
-        for limit, edge, at in ends:
+        for limit, edge, at in ((low, "low", rank <= OUTER), (high, "high", rank > 1 - OUTER)):
             if at.mean() > CROWDED and (name, limit) not in _NOTHING_BEYOND:
-                found[name] = edge
+                found[name] = f"{edge} end"
     return found
 
 
@@ -187,17 +189,12 @@ LEAST_ANGLE_DEG = 2.0
 floor out of level and a push reach."""
 
 
-def lognormal(median: float, spread: float, fraction: float) -> float:
-    """Quantile of a lognormal distribution by its median and the standard deviation of the logarithm."""
-    return median * math.exp(spread * float(norm.ppf(fraction)))
-
-
 def unknowns_of(kind: str, scan_accuracy_mm: float | None = None) -> dict[str, Quantile]:
     """Distributions, of ours, of what nobody measured of a ``cut block`` or a ``scan`` of this accuracy [mm]."""
     if kind == CUT:
         return {
             # edges of cut stone are broken by a millimetre or two
-            "edge_retreat_mm": partial(uniform, 0.0, 2.0),
+            "edge_retreat_mm": uniform(0.0, 2.0),
             # about Housner (1963)
             "restitution_ratio": lambda fraction: 1 + 0.05 * float(norm.ppf(fraction)),
         }
@@ -205,12 +202,12 @@ def unknowns_of(kind: str, scan_accuracy_mm: float | None = None) -> dict[str, Q
     # two standard deviations of a scanned height are what noise lowers the lowest of many points by
     median = 2 * (scan_accuracy_mm or SCAN_ACCURACY_MM)
     return {
-        "direction_deg": partial(uniform, 0.0, 360.0),
-        "contact_tolerance_mm": partial(lognormal, median, spread),
+        "direction_deg": uniform(0.0, 360.0),
+        "contact_tolerance_mm": lognormal(median, spread),
         # natural and worn edges are round
-        "edge_retreat_mm": partial(uniform, 0.0, 10.0),
+        "edge_retreat_mm": uniform(0.0, 10.0),
         # a body on few points takes more than momentum; 0.6 to 0.98 were plausible for a granite rock
-        "restitution_ratio": partial(uniform, 0.7, 1.0),
+        "restitution_ratio": uniform(0.7, 1.0),
     }
 
 

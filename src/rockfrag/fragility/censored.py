@@ -53,29 +53,26 @@ def brackets_from_table(
     motion: str | None = "motion",
     earthquake: str | None = None,
     measure: str = "pga_g",
-    source: str = "table",
 ) -> Brackets:
     """Read the bounds of the overturning amplitude out of a table of tests, one row per test.
 
-    A missing upper bound means right-censored. ``measure`` is a column name that tells the measure and its unit;
-    ``source`` is what messages call the table.
+    A missing upper bound means right-censored. ``measure`` is a column name that tells the measure and its unit.
     """
     if len(table) == 0:
-        raise InputError(f"{source}: there is no row; give at least one test.")
-    low = numbers(table, lower, source)
+        raise InputError("table: there is no row; give at least one test.")
+    low = numbers(table, lower)
     if upper not in table:
-        raise InputError(f"{source}: there is no column {upper!r}; correct the name of the column.")
+        raise InputError(f"table: there is no column {upper!r}; correct the name of the column.")
     high = pd.to_numeric(table[upper], errors="coerce").to_numpy(dtype=np.float64)
     high = np.where(np.isnan(high), np.inf, high)
-    bad = np.flatnonzero((low < 0) | (high <= 0) | (high < low) | ((low == 0) & np.isinf(high)))
-    if bad.size:
-        row = bad[0]
+    bad = (low < 0) | (high <= 0) | (high < low) | ((low == 0) & np.isinf(high))
+    for row in np.flatnonzero(bad):
         raise InputError(
-            f"{source}, row {row + 1}, columns {lower!r} and {upper!r}: {low[row]:g} to {high[row]:g} is no "
+            f"table, row {row + 1}, columns {lower!r} and {upper!r}: {low[row]:g} to {high[row]:g} is no "
             "bracket of an amplitude; give 0 ≤ lower ≤ upper and leave upper empty if it never overturned."
         )
-    motions = labels(table, motion, source)
-    earthquakes = motions if earthquake is None else labels(table, earthquake, source)
+    motions = labels(table, motion)
+    earthquakes = motions if earthquake is None else labels(table, earthquake)
     return Brackets(low, high, motions, earthquakes, *name_and_unit(measure))
 
 
@@ -94,23 +91,21 @@ def fit_brackets(brackets: Brackets) -> lognormal.FragilityFit:
     elif brackets.lower.max() == 0:
         method, case = "none: all tests overturned at once", "at once"
     else:
-        weights = np.ones((1, low.size))
-        found = _fit_weighted(low, high, weights)
+        found = _fit_weighted(low, high, np.ones((1, low.size)))
         coefficients, information, log_likelihood = found[0][0], found[1][0], float(found[2][0])
-        covariance = information * np.nan
-        if np.isfinite(information).all():
-            covariance = np.linalg.pinv(information, hermitian=True)
+        # where all brackets share an amplitude there is no information
+        overlap = not np.isfinite(information).all()
         if not np.isfinite(coefficients).all():
             method, case = "none: one level of the measure", "one level"
         elif coefficients[1] < lognormal.LEAST_SLOPE:
             method, case = "none: no curve in the brackets", "flat"
+        elif overlap:
+            method, case = "interval estimate (brackets overlap)", "overlap"
+            curve = lognormal.curve_parameters(coefficients, information)
         else:
-            curve = lognormal.curve_parameters(coefficients, covariance)
             method = "lognormal, interval- and right-censored maximum likelihood"
-            left, right = _shared(low, high, weights)
-            if left[0] <= right[0]:
-                method, case = "interval estimate (brackets overlap)", "overlap"
-                curve, log_likelihood = (*curve[:2], lognormal.NO_COVARIANCE), float("nan")
+            covariance = np.linalg.pinv(information, hermitian=True)
+            curve = lognormal.curve_parameters(coefficients, covariance)
     counted = (low.size, brackets.n_overturned, brackets.n_motions)
     notes = tuple(lognormal.SAY("brackets", brackets, case))
     return lognormal.FragilityFit(
@@ -147,12 +142,8 @@ def bracket_log_scores(brackets: Brackets, weights: Floats) -> Floats:
     Equal bounds, which have no probability, score by their density in the logarithm.
     """
     low, high = _logs(brackets)
-    coefficients = _fit_weighted(low, high, weights)[0]
-    c0, c1 = coefficients[:, :1], coefficients[:, 1:]
-    with np.errstate(invalid="ignore"):
-        exact = np.log(c1) - 0.5 * (c0 + c1 * np.where(low == high, low, 0.0)) ** 2
-        closed = _log_difference(c0 + c1 * low, c0 + c1 * high)
-    scores = np.where(low == high, exact - _LOG_ROOT_TWO_PI, closed)
+    with np.errstate(all="ignore"):
+        scores = _pulls(low, high, _fit_weighted(low, high, weights)[0])[0]
     return np.asarray(np.where(np.isnan(scores), -np.inf, scores))
 
 
@@ -166,11 +157,10 @@ def _without_a_block(low: Floats, high: Floats, weights: Floats) -> Floats:
 
     What the step neglects is of second order in a block's fraction of all, a hundredth.
     """
-    whole = np.ones((1, low.size))
     left, right = _shared(low, high, weights)
     if (left <= right).any():
         return _fit_weighted(low, high, weights)[0]
-    coefficients, _, value = _newton(low, high, whole)
+    coefficients, _, value = _newton(low, high, np.ones((1, low.size)))
     if not (np.isfinite(value).all() and coefficients[0, 1] >= lognormal.LEAST_SLOPE):
         return _fit_weighted(low, high, weights)[0]
     pulls = np.concatenate(_pulls(low, high, coefficients))
@@ -187,19 +177,17 @@ def _shared(low: Floats, high: Floats, weights: Floats) -> tuple[Floats, Floats]
 
 def _fit_weighted(low: Floats, high: Floats, weights: Floats) -> tuple[Floats, Floats, Floats]:
     """Fit (intercept, slope) for each row of weights, shape (batch, n)."""
-    batch = len(weights)
-    coefficients = np.full((batch, 2), np.nan)
-    information = np.full((batch, 2, 2), np.nan)
-    log_likelihood = np.full(batch, np.nan)
+    coefficients, information, log_likelihood = (
+        np.full((len(weights), *shape), np.nan) for shape in ((2,), (2, 2), ())
+    )
     left, right = _shared(low, high, weights)
     overlap = left <= right
     if overlap.any():
         closed = np.asarray(((weights[overlap] > 0) & np.isfinite(high - low)).any(axis=1))
         coefficients[overlap] = _common_bracket(left[overlap], right[overlap], closed)
-    rest = np.flatnonzero(~overlap)
-    if rest.size:
-        found = _newton(low, high, weights[rest])
-        coefficients[rest], information[rest], log_likelihood[rest] = found
+    if not overlap.all():
+        found = _newton(low, high, weights[~overlap])
+        coefficients[~overlap], information[~overlap], log_likelihood[~overlap] = found
     return coefficients, information, log_likelihood
 
 
@@ -256,19 +244,12 @@ def _newton(low: Floats, high: Floats, weights: Floats) -> tuple[Floats, Floats,
     return coefficients, -hessian, value
 
 
-_AT_ONCE = 50_000  # brackets times weightings in memory at a time; no result depends on it
-
-
 def _likelihood(
     low: Floats, high: Floats, weights: Floats, coefficients: Floats
 ) -> tuple[Floats, Floats, Floats]:
     """Return log-likelihood, score and Hessian in (intercept, slope), for each row of weights."""
-    rows = max(1, _AT_ONCE // low.size)
-    parts = []
-    for i in range(0, len(weights), rows):
-        pulls = _pulls(low, high, coefficients[i : i + rows])
-        parts.append([(weights[i : i + rows] * pull).sum(axis=1) for pull in pulls])
-    value, score0, score1, h00, h01, h11 = np.concatenate(parts, axis=1)
+    pulls = _pulls(low, high, coefficients)
+    value, score0, score1, h00, h01, h11 = ((weights * pull).sum(axis=1) for pull in pulls)
     hessian = np.stack([h00, h01, h01, h11], axis=1).reshape(-1, 2, 2)
     return value, np.stack([score0, score1], axis=1), hessian
 

@@ -111,18 +111,9 @@ def goodness_of_fit(
     ).sort_values("im", ignore_index=True)
     miss = outcomes.overturned * (1 - probability) ** 2
     miss += (outcomes.trials - outcomes.overturned) * probability**2
-    outcome = "not rejected"
-    if p_value < REJECTED:
-        outcome = "rejected; use the nonparametric monotone curve"
-    return GoodnessOfFit(
-        deviance,
-        p_value,
-        dependence,
-        float(miss.sum() / outcomes.n),
-        calibration,
-        f"Deviance {deviance:.1f} in {len(calibration)} bins, p = {p_value:.3f} (parametric bootstrap of "
-        f"{dependence}): the curve is {outcome}.",
-    )
+    brier = float(miss.sum() / outcomes.n)
+    (words,) = _say("goodness", deviance, len(calibration), p_value, dependence)
+    return GoodnessOfFit(deviance, p_value, dependence, brier, calibration, words)
 
 
 def binned_deviance(observed: Floats, expected: Floats, trials: Floats) -> Floats:

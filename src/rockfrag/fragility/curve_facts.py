@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Hashable, Mapping
+from numbers import Real
 from typing import Any, NamedTuple
 
 import pandas as pd
@@ -30,16 +31,10 @@ _say = Macros(
     **{"INFINITE": math.inf, "NAN": math.nan},
 )
 
-NUMBERS = (
-    *("n_motions", "n_earthquakes", "theta_lower", "beta_lower", "beta", "p_fit"),
-    "theta_isotonic",
-)
-
 
 def curve_facts(row: Mapping[Hashable, Any]) -> str:
     """Say of a row of a fragility table what it rests on, in sentences; empty where nothing is known."""
-    values = {name: row.get(name) for name in NUMBERS}
-    known = {name for name, x in values.items() if x is not None and math.isfinite(float(x))}
+    known = {name for name, x in row.items() if isinstance(x, Real) and math.isfinite(x)}
     return " ".join(_say("facts", row, known, float(row.get("beta_statistical", math.nan))))
 
 

@@ -6,7 +6,7 @@ these stand beside it.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Hashable, Iterable
 from dataclasses import dataclass
 
 import numpy as np
@@ -36,25 +36,19 @@ def fraction_in_bins(outcomes: Observations, level: float = 0.90) -> pd.DataFram
     ``im`` is the geometric mean of a bin. In the binomial limits several rows of one motion in a bin count once.
     """
     code = observations.cells(outcomes.im, 10, outcomes.trials)[0]
-    rows = []
+    rows, once = [], []
     for k in np.unique(code):
         inside = code == k
-        motions, counted_once = outcomes.independent(inside)
-        n = outcomes.trials[inside].sum()
-        rows.append(
-            {
-                "im": np.exp(np.average(outcomes.log_im[inside], weights=outcomes.trials[inside])),
-                "im_lower": outcomes.im[inside].min(),
-                "im_upper": outcomes.im[inside].max(),
-                "tests": int(n),
-                "motions": motions,
-                "overturned": int(outcomes.overturned[inside].sum()),
-                "fraction": outcomes.overturned[inside].sum() / n,
-                "alone": counted_once,
-            }
+        im, trials, fell = (
+            values[inside] for values in (outcomes.im, outcomes.trials, outcomes.overturned)
         )
-    table = pd.DataFrame(rows)
-    alone = table.pop("alone").to_numpy()
+        motions, counted_once = outcomes.independent(inside)
+        middle = np.exp(np.average(outcomes.log_im[inside], weights=trials))
+        numbers = (int(trials.sum()), motions, int(fell.sum()), fell.sum() / trials.sum())
+        rows.append([middle, im.min(), im.max(), *numbers])
+        once.append(counted_once)
+    names = ["im", "im_lower", "im_upper", "tests", "motions", "overturned", "fraction"]
+    table, alone = pd.DataFrame(rows, columns=names), np.array(once)
     lower, upper = wilson_interval(table["fraction"].to_numpy() * alone, alone, level)
     return table.assign(fraction_lower=lower, fraction_upper=upper)
 
@@ -65,7 +59,9 @@ def local_fraction(outcomes: Observations, im: ArrayLike) -> Floats:
     The kernel's standard deviation in ln IM is 0.53 s n^(-1/5), half of Silverman's, which would flatten a steep
     rise; the tests have different values, so that it is above zero.
     """
-    bandwidth = 0.53 * outcomes.log_spread * outcomes.n ** (-0.2)
+    mean = np.average(outcomes.log_im, weights=outcomes.trials)
+    variance = np.average((outcomes.log_im - mean) ** 2, weights=outcomes.trials)
+    bandwidth = 0.53 * float(np.sqrt(variance)) * outcomes.n ** (-0.2)
     outcomes = outcomes.by_value()
     x = outcomes.log_im
     fraction = outcomes.overturned / outcomes.trials
@@ -95,12 +91,10 @@ def find_resurrections(
     values = observations.positive(ida, amplitude)
     fell = observations.read_observations(ida, "overturned") == 1
     table = ida[keys].assign(amplitude=values, overturned=fell)
-    doubled = table.duplicated([*keys, "amplitude"])
-    if doubled.any():
-        row = int(np.flatnonzero(doubled)[0])
+    for row in np.flatnonzero(table.duplicated([*keys, "amplitude"])):
+        curve = ", ".join(table[keys].iloc[row].astype(str))
         raise InputError(
-            f"table, row {row + 1}, column {amplitude!r}: the IDA curve of "
-            f"{', '.join(str(table[key].iloc[row]) for key in keys)} already has the amplitude "
+            f"table, row {row + 1}, column {amplitude!r}: the IDA curve of {curve} already has the amplitude "
             f"{values[row]:g}; leave the repetition out."
         )
     rows = []
@@ -114,39 +108,29 @@ def find_resurrections(
 def resurrections_of(parts: Iterable[Swept]) -> pd.DataFrame:
     """Structural resurrections of parts of IDA curves, as :func:`find_resurrections` has those of a table."""
     keys = ["configuration", "earthquake", "floor", "motion"]
-    rows = [
-        {**about, **_resurrections(part.amplitude_g, overturned)}
-        for part in parts
-        for about, overturned in zip(
-            part.about[keys].to_dict("records"), part.overturned, strict=True
-        )
-    ]
+    rows: list[dict[Hashable, object]] = []
+    for part in parts:
+        curves = zip(part.about[keys].to_dict("records"), part.overturned, strict=True)
+        rows += [about | _resurrections(part.amplitude_g, fell) for about, fell in curves]
     return pd.DataFrame(rows).sort_values(keys, ignore_index=True)
 
 
 def _resurrections(amplitude: Floats, overturned: NDArray[np.bool_]) -> dict[str, float | int]:
-    nan = float("nan")
-    padded = np.concatenate([[0.0], amplitude, [nan]])
     fell, stood = np.flatnonzero(overturned), np.flatnonzero(~overturned)
-    first = int(fell[0]) if fell.size else amplitude.size
-    always = int(stood[-1]) + 1 if stood.size else 0
-    between = np.concatenate([~overturned[first:always], [False]])
-    starts = np.flatnonzero(between[1:] & ~between[:-1]) + 1 + first
-    ends = np.flatnonzero(~between[1:] & between[:-1]) + first
+    first = fell[0] if fell.size else amplitude.size
+    always = stood[-1] + 1 if stood.size else 0
+    bounds = [0.0, *amplitude.tolist(), float("nan")]
+    # between the first overturning and the end outcomes change in turns, to survived and back
     middles = np.sqrt(amplitude[1:] * amplitude[:-1])
-    width = 0.0
-    closed = 0
-    for start, end in zip(starts, ends, strict=True):
-        if end + 1 < amplitude.size:
-            closed += 1
-            width += float(np.log(middles[end] / middles[start - 1]))
+    changes = middles[np.flatnonzero(np.diff(overturned))][0 if overturned[0] else 1 :]
+    windows = list(zip(changes[::2], changes[1::2], strict=False))
     return {
-        "first_lower": float(padded[first]),
-        "first_upper": float(padded[first + 1]),
-        "always_lower": float(padded[always]),
-        "always_upper": float(padded[always + 1]),
-        "resurrections": closed,
-        "window_width": width,
+        "first_lower": bounds[first],
+        "first_upper": bounds[first + 1],
+        "always_lower": bounds[always],
+        "always_upper": bounds[always + 1],
+        "resurrections": len(windows),
+        "window_width": sum((float(np.log(high / low)) for low, high in windows), 0.0),
     }
 
 

@@ -108,7 +108,7 @@ _FACTORS = {"g": {"g": 1.0, "m/s²": 1.0 / constants.g}, "cm/s": {"cm/s": 1.0, "
 def intensity_measure_type(name: str, unit: str) -> tuple[str, float]:
     """OpenQuake's name of a measure and the factor to its unit (g, cm/s)."""
     measure = measure_labelled(name)
-    if measure is None or not measure.openquake or name == measure.floor_label:
+    if measure is None or not measure.openquake:
         known = ", ".join(dict.fromkeys(each.openquake for each in declared() if each.openquake))
         raise InputError(
             f"NRML: {name} is no intensity measure of ground motion in OpenQuake; export curves in one of {known}."
@@ -129,10 +129,7 @@ def write_nrml(
     by: str = "configuration",
     fractions: pd.DataFrame | None = None,
 ) -> None:
-    """Write rows of a fragility table as an NRML 0.5 fragility model.
-
-    NRML has no place for confidence limits and numbers of motions, so a comment before each function gives them.
-    The description has what is to be warned of, each sentence once.
+    """Write rows of a fragility table as an NRML 0.5 fragility model, with its facts and warnings in words.
 
     Parameters
     ----------
@@ -142,37 +139,34 @@ def write_nrml(
         state (``rockfrag.outcomes.limit_states``), without it all are ``overturns``. A column ``floor`` must be
         empty: only motions of the ground are known to OpenQuake. No function may lack a state that another has.
     path, identifier : file to write, and name of the model
-    by
-        Column whose value names the function (OpenQuake's taxonomy); what OpenQuake
-        does not take in a name becomes ``_``.
+    by : column that names the function (OpenQuake's taxonomy), but for letters that OpenQuake does not take
     fractions
         Points of the non-parametric fragility function (:func:`rockfrag.fragility.ida_curves.fraction_points`),
-        with columns ``by`` and ``state``. A function of which a state has such points is written as discrete
-        levels; so is one whose lognormal curves would make a state more probable than the one that comes before
-        it.
+        with columns ``by`` and ``state``. A function that has such points is written as discrete levels; so is
+        one whose lognormal curves would make a state more probable than the one that comes before it.
     """
     # OpenQuake takes letters, digits, "_", "-" and ":" in a name
     curves = curves_by_name("NRML", table, by, "_:-", fractions)
     used = {state for states in curves.values() for state in states}
     known = [state.name for state in limit_states() if state.name in used]
     functions: list[dict[str, object]] = []
-    warned: list[str] = []
+    sentences: list[str] = []
     for name in sorted(curves):
-        lacking = [state for state in known if state not in curves[name]]
-        if lacking:
-            raise InputError(
-                f"NRML: {name!r} has no curve for the limit state {lacking[0]}, which others have; leave "
-                "it or that state out."
-            )
-        rows = {state: curve.row for state, curve in curves[name].items()}
-        said = (f"{state}: {curve_facts({**row, 'warnings': ''})}" for state, row in rows.items())
+        for state in known:
+            if state not in curves[name]:
+                raise InputError(
+                    f"NRML: {name!r} has no curve for the limit state {state}, which others have; leave "
+                    "it or that state out."
+                )
+        said = []
+        for state, curve in curves[name].items():
+            said.append(f"{state}: {curve_facts({**curve.row, 'warnings': ''})}")
+            # without what is said of a single rejected curve
+            note = REJECTION.sub("", str(curve.row.get("warnings") or "")).strip()
+            sentences += re.split(r"(?<=\.)\s+(?=[A-Z])", note)
         # two hyphens would end the comment
         comment = f"{name}: {' '.join(said)}".replace("--", "- -")
-        warned += [str(row.get("warnings") or "") for row in rows.values()]
         functions.append({"id": name, "comment": comment, **_function(name, curves[name], by)})
-    # each once, without what is said of a single rejected curve
-    plain = [REJECTION.sub("", note).strip() for note in warned]
-    sentences = [part for note in plain for part in re.split(r"(?<=\.)\s+(?=[A-Z])", note)]
     description = [
         "Free-standing bodies in earthquakes. The comment before each function gives its limits, its "
         "goodness of fit and the number of its motions.",
@@ -214,21 +208,19 @@ def _function(taxonomy: str, states: Mapping[str, StateCurve], by: str) -> dict[
             f"NRML: the limit states of {taxonomy!r} are in {' and '.join(sorted(factors))}; one "
             "function has one measure."
         )
-    ((imt, factor),) = factors.items()
     levels, chances, lowered = _nested(states, factor)
     if lowered > CROSSING or any(curve.levels.size for curve in states.values()):
         by_state = {state: chance.tolist() for state, chance in chances.items()}
         return {"imt": imt, "levels": levels.tolist(), "chances": by_state}
-    moments, lows, highs = {}, [], []
+    moments, ends = {}, []
     for state, curve in states.items():
         theta, beta = curve.theta * factor, curve.beta
         # mean and standard deviation, linear as NRML wants them, from median θ and β
         mean = theta * math.exp(0.5 * beta**2)
         moments[state] = mean, mean * math.sqrt(math.expm1(beta**2))
         # the range in which OpenQuake may evaluate it: from a chance of 3e-5 to one of 1 - 3e-5
-        lows.append(theta * math.exp(-4.0 * beta))
-        highs.append(theta * math.exp(4.0 * beta))
-    return {"imt": imt, "low": min(lows), "high": max(highs), "moments": moments}
+        ends += [theta * math.exp(sign * 4.0 * beta) for sign in (-1, 1)]
+    return {"imt": imt, "low": min(ends), "high": max(ends), "moments": moments}
 
 
 def _nested(
@@ -289,14 +281,13 @@ def write_simcenter(
         As of :func:`write_nrml`; a state that has such points is written with the family
         ``multilinear_CDF``.
     """
-    rows = []
-    notes: dict[str, object] = {
-        "_GeneralInformation": {
-            "ShortName": "rockfrag",
-            "Description": "Overturning of free-standing blocks in earthquakes",
-            "Version": "1.0",
-        }
+    about = {
+        "ShortName": "rockfrag",
+        "Description": "Overturning of free-standing blocks in earthquakes",
+        "Version": "1.0",
     }
+    notes: dict[str, object] = {"_GeneralInformation": about}
+    rows = []
     for name, states in curves_by_name("SimCenter", table, by, "_", fractions, "ROCKFRAG.").items():
         line, notes[name] = _component(name, states, by)
         rows.append(line)
@@ -307,26 +298,24 @@ def write_simcenter(
 def _component(
     identifier: str, states: Mapping[str, StateCurve], by: str
 ) -> tuple[dict[str, object], dict[str, object]]:
-    demands: set[tuple[str, str]] = set()
+    """Row of the table and entry of the notes of what has curves of some limit states."""
+    known, demands, said = _demands(), set(), []
     limit_states: dict[str, object] = {}
-    line: dict[str, object] = {}
-    said = []
-    known = _demands()
+    parameters: dict[str, object] = {}
     for number, (state, curve) in enumerate(states.items(), start=1):
         row, levels, fraction = curve.row, curve.levels, curve.fraction
-        name, im, unit = str(row[by]), str(row["im"]), str(row["unit"])
+        im, unit = str(row["im"]), str(row["unit"])
         if im not in known or unit not in known[im][1]:
             raise InputError(
                 f"SimCenter: {im} in {unit or 'no unit'} is no demand of this export; choose PGA or PFA "
                 "in g, PGV or PFV in cm/s."
             )
-        demand, units = known[im]
-        demands.add((demand, units[unit]))
-        parameters: tuple[object, ...] = "lognormal", curve.theta, curve.beta, ""
+        demands.add((known[im][0], known[im][1][unit]))
+        family: tuple[object, ...] = "lognormal", curve.theta, curve.beta, ""
         if levels.size:
-            parameters = "multilinear_CDF", _multilinear(levels, fraction), "", ""
+            family = "multilinear_CDF", _multilinear(levels, fraction), "", ""
         keys = ("Family", "Theta_0", "Theta_1", "DamageStateWeights")
-        line |= {f"LS{number}-{key}": x for key, x in zip(keys, parameters, strict=True)}
+        parameters |= {f"LS{number}-{key}": x for key, x in zip(keys, family, strict=True)}
         reached = limit_state_named(state)
         words = reached.damage or reached.label
         damage = {"Description": words, "RepairAction": reached.repair}
@@ -339,19 +328,12 @@ def _component(
         raise InputError(
             f"SimCenter: the limit states of {identifier} have two demands; choose one."
         )
-    demand, demand_unit = demands.pop()
-    line = {
-        "ID": identifier,
-        "Incomplete": 0,
-        "Demand-Type": demand,
-        "Demand-Unit": demand_unit,
-        "Demand-Offset": 0,
-        # the curves are for one horizontal component; a block falls about either of its edges
-        "Demand-Directional": 1,
-        **line,
-    }
+    ((demand, demand_unit),) = demands
+    about = {"ID": identifier, "Incomplete": 0, "Demand-Type": demand, "Demand-Unit": demand_unit}
+    # the curves are for one horizontal component; a block falls about either of its edges
+    line = {**about, "Demand-Offset": 0, "Demand-Directional": 1, **parameters}
     note: dict[str, object] = {
-        "Description": f"Free-standing {name}",
+        "Description": f"Free-standing {row[by]}",
         "Comments": " ".join(said),
         "SuggestedComponentBlockSize": "1 EA",
         "RoundUpToIntegerQuantity": "True",

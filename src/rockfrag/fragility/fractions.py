@@ -102,8 +102,7 @@ def fractions_of_capacities(
     finite = np.isfinite(log_capacity)
     if not finite.any():
         nothing = np.empty(0)
-        nan = float("nan")
-        return Fractions(nothing, nothing, nothing, nothing, nan, UNKNOWN, nan, UNKNOWN)
+        return Fractions(*(nothing, nothing, nothing, nothing), np.nan, UNKNOWN, np.nan, UNKNOWN)
     # many neighbouring capacities are one
     cell, values = cells(log_capacity[finite])
     capacity = log_capacity.copy()
@@ -140,16 +139,13 @@ def _fractions(
         at, value = knots_of(im, fraction)
         theta = float(np.exp(np.interp(0.5, value, np.log(at))))
     beta = _dispersion(middle, fraction, motions)
-    nothing = np.full(fraction.shape, np.nan)
     if groups < 2:
+        nothing = np.full(fraction.shape, np.nan)
         return Fractions(im, fraction, nothing, nothing, theta, UNKNOWN, beta, UNKNOWN)
     weights = intervals.all_but_one(groups)
-    left_out = np.array(
-        [_rising(f, t) for f, t in zip(weights @ fell, weights @ total, strict=True)]
-    )
-    seen = np.full(fraction.shape, float(witnesses or 0))
-    if witnesses is None:
-        seen = _witnesses(fraction, total)
+    pairs = zip(weights @ fell, weights @ total, strict=True)
+    left_out = np.array([_rising(*pair) for pair in pairs])
+    seen = _witnesses(fraction, total) if witnesses is None else np.float64(witnesses)
     lower, upper = _limits(fraction, intervals.jackknife_error(left_out), seen, motions, level)
     theta_limits = UNKNOWN
     if np.isfinite(theta):
@@ -165,28 +161,23 @@ def _fractions(
 def _rising(fell: Floats, total: Floats) -> Floats:
     """Never-falling fraction; where nothing was tried that of the value before, 0 before the first."""
     tried = total > 0
-    fraction = np.zeros(total.shape)
-    if tried.any():
-        fitted = optimize.isotonic_regression(fell[tried] / total[tried], weights=total[tried]).x
-        place = np.cumsum(tried)
-        fraction = np.concatenate([[0.0], np.clip(fitted, 0.0, 1.0)])[place]
-    return np.asarray(fraction)
+    if not tried.any():
+        return np.zeros(total.shape)
+    fitted = optimize.isotonic_regression(fell[tried] / total[tried], weights=total[tried]).x
+    fraction = np.concatenate([[0.0], np.clip(fitted, 0.0, 1.0)])
+    return np.asarray(fraction[np.cumsum(tried)])
 
 
 def _witnesses(fraction: Floats, total: Floats) -> Floats:
     """Groups that bear witness to a fraction of 0 (none fell there or above) or 1, shape (values,)."""
-    tried = (total > 0).astype(np.int64)
-    here = np.zeros(fraction.shape)
-    none, every = fraction <= 0.0, fraction >= 1.0
-    above = np.cumsum((tried * none)[:, ::-1], axis=1)[:, ::-1]
-    below = np.cumsum(tried * every, axis=1)
-    here[none] = (above > 0).sum(axis=0)[none]
-    here[every] = (below > 0).sum(axis=0)[every]
-    return here
+    tried, none, every = total > 0, fraction <= 0.0, fraction >= 1.0
+    above = np.logical_or.accumulate((tried & none)[:, ::-1], axis=1)[:, ::-1].sum(axis=0)
+    below = np.logical_or.accumulate(tried & every, axis=1).sum(axis=0)
+    return np.asarray(above * none + below * every, dtype=np.float64)
 
 
 def _limits(
-    fraction: Floats, error: Floats, witnesses: Floats, motions: int, level: float
+    fraction: Floats, error: Floats, witnesses: Floats | np.float64, motions: int, level: float
 ) -> tuple[Floats, Floats]:
     """Pointwise limits of shares with a standard error over groups."""
     with np.errstate(divide="ignore", invalid="ignore"):

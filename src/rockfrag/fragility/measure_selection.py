@@ -13,7 +13,7 @@ from statsmodels.tools.tools import add_constant
 from rockfrag.errors import InputError
 from rockfrag.fragility import censored, held_out, observations
 from rockfrag.fragility.empirical import TableIda
-from rockfrag.fragility.ida_curves import scale_power, with_measures
+from rockfrag.fragility.ida_curves import scale_power
 from rockfrag.fragility.intervals import Interval, interval_over_motions
 from rockfrag.fragility.lognormal import FragilityFit, fit_lognormal
 from rockfrag.fragility.observations import Floats, Observations, numbers
@@ -32,9 +32,7 @@ class MeasureSelection:
 
     Attributes
     ----------
-    recommended, name
-        Column of the recommended measure, and what the field calls it, for example ``PGV``; empty where no measure
-        has a rising curve.
+    recommended, name : its column and what the field calls it, such as ``PGV``; empty where no curve rises
     table
         One row per measure, best first: ``measure``, ``im``, ``unit``, ``theta``, ``beta``
         (efficiency: the smaller the better), ``beta_lower``, ``beta_upper``, ``aic``, ``auc``,
@@ -74,12 +72,10 @@ def area_under_curve(outcomes: Observations) -> float:
 
 
 def sufficiency(outcomes: Observations, fit: FragilityFit, column: Floats) -> float:
-    """Test a linear dependence of the outcome's residual on ``column``, shape (n,); p value.
+    """Return the p value of a linear dependence of outcome less fitted probability on a column, (n,).
 
-    The residual is outcome minus fitted probability; the regression's standard error is robust to
-    dependence within a motion (earthquake where known). A measure is sufficient for a property, such as
-    magnitude or distance, on which nothing of its residual depends (Luco and Cornell, 2007,
-    Earthquake Spectra 23: 357-392). NaN with fewer than three groups or a constant column.
+    A measure is sufficient for a property, such as magnitude or distance, on which nothing of its residual depends
+    (Luco and Cornell, 2007, Earthquake Spectra 23: 357-392).
     """
     if not np.isfinite(fit.theta):
         return float("nan")
@@ -88,7 +84,10 @@ def sufficiency(outcomes: Observations, fit: FragilityFit, column: Floats) -> fl
 
 
 def dependence_p_value(residual: Floats, column: Floats, groups: NDArray[np.object_]) -> float:
-    """Test a linear dependence of residuals on a column, robust to dependence within groups."""
+    """Return the p value of a linear dependence of residuals on a column, robust to dependence within groups.
+
+    NaN with fewer than three groups or a constant column.
+    """
     codes, names = pd.factorize(pd.Series(groups))
     if len(names) < 3 or np.ptp(column) == 0:
         return float("nan")
@@ -96,9 +95,7 @@ def dependence_p_value(residual: Floats, column: Floats, groups: NDArray[np.obje
     result = OLS(residual, add_constant(scaled)).fit(
         cov_type="cluster", cov_kwds={"groups": codes, "use_correction": True}
     )
-    error = float(np.sqrt(result.cov_params()[1, 1]))
-    if error == 0:
-        return float("nan")
+    error = float(np.sqrt(result.cov_params()[1, 1])) or float("nan")
     return float(2.0 * stats.t.sf(abs(float(result.params[1])) / error, len(names) - 1))
 
 
@@ -156,10 +153,10 @@ def recommend_measure(
         data[column] = outcomes
     found = _selection(rows, np.array(scores), outcomes.n, given, (replicates, seed))
     pair, p_pair, gain = _best_pair(data, found.recommended, group)
-    if pair:
-        words = " ".join([found.words, *_say("pair", data[pair].name, p_pair, gain)])
-        return replace(found, words=words)
-    return found
+    if not pair:
+        return found
+    words = [found.words, *_say("pair", data[pair].name, p_pair, gain)]
+    return replace(found, words=" ".join(words))
 
 
 def _row(
@@ -171,13 +168,15 @@ def _row(
     **more: float,
 ) -> dict[str, float | str]:
     """What the table says of one measure before its scores; ``p`` of sufficiency by what is given."""
-    lower, upper = interval.beta
-    return {
-        **{"measure": column, "im": fit.im, "unit": fit.unit, "theta": fit.theta},
-        **{"beta": fit.beta, "beta_lower": lower, "beta_upper": upper, **more},
-        **{"aic": fit.aic, "auc": area_under_curve(outcomes)},
-        **{f"p_{name}": value for name, value in p.items()},
+    about = {"measure": column, "im": fit.im, "unit": fit.unit}
+    beta = {
+        "theta": fit.theta,
+        "beta": fit.beta,
+        "beta_lower": interval.beta[0],
+        "beta_upper": interval.beta[1],
     }
+    fitted = {"aic": fit.aic, "auc": area_under_curve(outcomes)}
+    return {**about, **beta, **more, **fitted, **{f"p_{name}": value for name, value in p.items()}}
 
 
 def _selection(
@@ -258,28 +257,23 @@ _say = Macros(
 
 
 def recommend_ida_measure(
-    ida: pd.DataFrame | TableIda,
+    ida: TableIda,
     measures: pd.DataFrame,
     columns: Sequence[str],
     *,
     given: Sequence[str] = (),
-    earthquake: str | None = "earthquake",
     level: float = 0.90,
-    replicates: int = 200,
     seed: int = 0,
 ) -> MeasureSelection:
     """Compare measures on the IDA curves of one body and recommend one, in words.
 
     A motion scaled up and down gives many outcomes but one capacity, so the measures are compared by how well
     they predict the bracket of the first overturning of earthquakes that were held out: one observation a motion.
-    ``ida`` has one row per motion and amplitude of one body, with ``motion``, ``amplitude_g``, ``overturned``,
-    or is IDA curves in another form that know the measures; ``measures`` one row per motion as recorded, with
-    ``name`` and ``pga_g``. ``columns`` are compared, and must grow with the amplitude; sufficiency is tested
-    against ``given`` ones, such as ``d5_95_s`` or magnitude. The table has also ``beta_amplitude``: β over the
-    power with which the measure grows with the amplitude, which compares Arias intensity fairly with peaks.
+    ``ida`` knows the ``columns`` that are compared, which must grow with the amplitude; ``measures`` has one row
+    per motion as recorded, with ``name`` and ``pga_g``. Sufficiency is tested against ``given`` columns, such as
+    ``d5_95_s`` or magnitude. The table has also ``beta_amplitude``: β over the power with which the measure grows
+    with the amplitude, which compares Arias intensity fairly with peaks.
     """
-    if not columns:
-        raise InputError("columns: name at least one intensity measure.")
     powers = {column: scale_power(column) for column in columns}
     fixed = [column for column, power in powers.items() if power == 0]
     if fixed:
@@ -287,13 +281,9 @@ def recommend_ida_measure(
             f"measure {fixed[0]!r} does not grow with the amplitude, so no amplitude overturns by "
             "it; name it among the given columns instead."
         )
-    if isinstance(ida, pd.DataFrame):
-        ida = TableIda(with_measures(ida, measures, columns), earthquake)
     amplitude = ida.brackets(ida.resurrections("amplitude_g"), "first", "amplitude_g")
-    known = measures.set_index("name")
-    place = known.index.get_indexer(pd.Index(amplitude.motion))
-    extra = {column: numbers(measures, column, "measures")[place] for column in given}
-    recorded = known.loc[list(amplitude.motion)]
+    recorded = measures.set_index("name").loc[list(amplitude.motion)]
+    extra = {column: numbers(recorded, column, "measures") for column in given}
     pga = observations.positive(recorded, "pga_g", "measures")
     group = pd.factorize(pd.Series(amplitude.earthquake))[0]
     rows, scores = [], []
@@ -318,7 +308,5 @@ def recommend_ida_measure(
         }
         rows.append(_row(column, fit, interval, outcomes, p, beta_amplitude=fit.beta / power))
         scores.append(held_out.capacity_scores(scaled, group))
-    drawn = (replicates, seed)
-    return _selection(
-        rows, np.array(scores), group.size, given, drawn, "beta_amplitude", needed="score"
-    )
+    about = (rows, np.array(scores), group.size, given, (200, seed))
+    return _selection(*about, "beta_amplitude", needed="score")

@@ -2,13 +2,12 @@
 
 import csv
 import hashlib
-import math
 import os
 import re
 from collections import defaultdict
 from collections.abc import Iterable, Mapping, Sequence
-from contextlib import suppress
 from dataclasses import dataclass, field
+from itertools import dropwhile, takewhile
 from pathlib import Path, PurePosixPath
 from typing import Any
 
@@ -72,17 +71,14 @@ def read_search_results(path: str | os.PathLike[str]) -> list[PeerRecord]:
         lines = Path(path).read_text(encoding="utf-8-sig", errors="replace").splitlines()
     except OSError as error:
         raise InputError(f"{path}: cannot be read ({error.strerror}).") from None
-    start = next((i for i, line in enumerate(lines) if _SECTION.search(line)), None)
+    start = next((i for i, line in enumerate(lines, start=1) if _SECTION.search(line)), None)
     if start is None:
         raise InputError(f"{path}: no section 'Summary of Metadata of Selected Records'.")
     titles: list[str] = []
     records: list[PeerRecord] = []
-    for number, line in enumerate(lines[start + 1 :], start=start + 2):
+    below = dropwhile(_is_empty, enumerate(lines[start:], start=start + 1))
+    for number, line in takewhile(lambda each: not _is_empty(each), below):
         where = f"{path}, line {number}"
-        if not line.strip(" ,"):
-            if titles:
-                break
-            continue
         try:
             cells = [cell.strip() for cell in next(csv.reader([line]))]
         except csv.Error as error:
@@ -98,6 +94,10 @@ def read_search_results(path: str | os.PathLike[str]) -> list[PeerRecord]:
     if not records:
         raise InputError(f"{path}: the section of records has no row; the file is cut short.")
     return records
+
+
+def _is_empty(numbered: tuple[int, str]) -> bool:
+    return not numbered[1].strip(" ,")
 
 
 def _peer_record(row: dict[str, str], where: str) -> PeerRecord:
@@ -120,9 +120,7 @@ def _peer_record(row: dict[str, str], where: str) -> PeerRecord:
 
 
 def _number(words: str) -> float | None:
-    value = math.nan
-    with suppress(ValueError):
-        value = float(words)
+    value = float(pd.to_numeric(words, errors="coerce"))
     return value if 0 < value < 1e6 else None
 
 
@@ -210,10 +208,8 @@ class CatalogueDraft:
         """Read every component of a file; what is wrong with it goes into the errors."""
         try:
             record, dt_given = read_untold(file, self.dt)
-        except NotAcceleration:
-            return []
         except InputError as error:
-            self.errors.append(str(error))
+            self.errors += [] if isinstance(error, NotAcceleration) else [str(error)]
             return []
         self.errors += [str(e) for _, e in record.left_out if not isinstance(e, NotAcceleration)]
         relative = Path(os.path.relpath(file, self.folder)).as_posix()
@@ -242,9 +238,7 @@ class CatalogueDraft:
         self, listed: PeerRecord, found: Sequence[Component], used: set[str]
     ) -> list[dict[str, Any]]:
         """Return the rows of one record of a download."""
-        by_name: dict[str, Component] = {}
-        for component in found:
-            by_name.setdefault(Path(component.path).name.lower(), component)
+        by_name = {Path(component.path).name.lower(): component for component in reversed(found)}
         # names may have the folder of PEER's disk before them
         own = [PurePosixPath(name.replace("\\", "/")).name.lower() for name in listed.files]
         first, second, vertical = (by_name.get(name) for name in own)
@@ -273,11 +267,9 @@ class CatalogueDraft:
         file, npts = component.file, component.npts
         self.notes += [(file, quality_flag) for quality_flag in component.quality_flags]
         if other and file < other.file and abs(npts - other.npts) > 0.1 * npts:
-            unlike = f"{npts} samples, but {other.npts} in {other.file} of the same record"
-            self.note(file, unlike)
-        earthquake = component.row["earthquake"]
-        if not earthquake:
-            earthquake = component.stem
+            self.note(file, f"{npts} samples, but {other.npts} in {other.file} of the same record")
+        earthquake = component.row["earthquake"] or component.stem
+        if not component.row["earthquake"]:
             column = f"the column earthquake has {earthquake!r}"
             self.note(file, f"its earthquake is not stated; {column}")
         return component.row | {
@@ -338,18 +330,15 @@ def _component(
     name = plain if _OF_KNET.search(plain) else plain.rsplit(".", 1)[0] or plain
     stem, suffix = (name, "") if several else _parts(name)
     orientation = str(facts.get("component") or ("" if suffix in {"1", "2", "3"} else suffix))
-    azimuth = facts.get("azimuth_deg")
-    container = str(file) if channel.member else ""
+    azimuth, container = facts.get("azimuth_deg"), str(file) if channel.member else ""
     time = facts.get("network"), facts.get("station"), facts.get("start_time")
     row = {
         **own_row,
         "name": f"{name} {facts.get('channel', '')}".strip() if several else name,
         "earthquake": str(facts.get("earthquake") or ""),
         "date": _date(facts),
-        "station": facts.get("station", ""),
         "component": orientation,
-        "magnitude": facts.get("magnitude"),
-        "distance_km": facts.get("distance_km"),
+        **{key: facts.get(key) for key in ("station", "magnitude", "distance_km")},
         "source": "folder",
         "sha256": motion.provenance[0]["sha256"],
     }
@@ -439,8 +428,6 @@ def _records_of(components: Sequence[Component]) -> list[list[Component]]:
 def _is_record(group: Sequence[Component]) -> bool:
     """Tell whether components are two horizontals at a right angle and at most one vertical."""
     flat = _horizontal(group)
-    if len(flat) == 3 and sorted(component.suffix for component in flat) == ["1", "2", "3"]:
-        return False
     if len(flat) != 2 or len(group) > 3 or abs(flat[0].dt - flat[1].dt) > 1e-9:
         return False
     first, second = flat[0].azimuth, flat[1].azimuth

@@ -108,11 +108,7 @@ class Motion:
         return {"peak_before_m_s2": self.pga, "peak_after_m_s2": after}
 
     def after(
-        self,
-        step: str,
-        acceleration: Floats,
-        dt: float | None = None,
-        **parameters: Any,
+        self, step: str, acceleration: Floats, dt: float | None = None, **parameters: Any
     ) -> "Motion":
         """Return the motion that ``step`` made of this one, with the step in its provenance."""
         return replace(
@@ -126,8 +122,7 @@ class Motion:
 def write_motion_set(motions: Sequence[Motion], path: str | os.PathLike[str]) -> None:
     """Write motions to one Parquet file, a row per motion.
 
-    Columns: ``name``, ``dt_s``, ``npts``, ``acceleration_m_s2`` (list), ``metadata`` and
-    ``provenance`` (JSON).
+    Columns: ``name``, ``dt_s``, ``npts``, ``acceleration_m_s2`` (list), ``metadata`` and ``provenance`` (JSON).
     """
     table = pd.DataFrame(
         {

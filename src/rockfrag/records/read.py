@@ -83,7 +83,8 @@ def _channels(path: Path, dt: float | None, cut_short: bool) -> tuple[str, list[
 
 def _archived(file: str, wanted: str, dt: float | None, cut_short: bool) -> Record:
     """Read one member of an archive, or all that hold acceleration."""
-    records: list[tuple[str, str, list[Channel]]] = []
+    channels: list[Channel] = []
+    forms: set[str] = set()
     left_out: list[tuple[str, InputError]] = []
     with unpacked(file) as members:
         chosen = [m for m in members if wanted in (m.name, Path(m.name).name)]
@@ -94,9 +95,8 @@ def _archived(file: str, wanted: str, dt: float | None, cut_short: bool) -> Reco
             )
         for member in chosen or (m for m in members if not is_no_record(m.name)):
             try:
-                name, channels = _channels(member.path, dt, cut_short)
-                # read before the folder goes, and to know which members are damaged
-                channels = [replace(c, samples=c.samples().copy) for c in channels]
+                form, found = _channels(member.path, dt, cut_short)
+                found = [replace(channel, member=member.name) for channel in found]
             except InputError as error:
                 # the user knows the archive's names, not where they lie unpacked
                 told = type(error)(str(error).replace(str(member.path), f"{file}#{member.name}"))
@@ -104,24 +104,18 @@ def _archived(file: str, wanted: str, dt: float | None, cut_short: bool) -> Reco
                     raise told from None
                 left_out.append((member.name, told))
                 continue
-            records.append((member.name, name, channels))
-    if not records:
+            channels += found
+            forms.add(form)
+    if not channels:
         why = f": {left_out[0][1]}" if left_out else "."
         kinds = {type(error) for _, error in left_out}
         problem = NotAcceleration if kinds == {NotAcceleration} else InputError
         raise problem(f"{file}: no member of the archive holds acceleration{why}")
-    named = len(records) > 1
-    return Record(
-        f"{file}#{wanted}" if wanted else file,
-        "+".join(sorted({name for _, name, _ in records})),
-        sha256_of(Path(file)),
-        tuple(
-            replace(channel, member=member) if named else channel
-            for member, _, channels in records
-            for channel in channels
-        ),
-        tuple(left_out),
-    )
+    if len({channel.member for channel in channels}) == 1:
+        channels = [replace(channel, member="") for channel in channels]
+    name = f"{file}#{wanted}" if wanted else file
+    digest = sha256_of(Path(file))
+    return Record(name, "+".join(sorted(forms)), digest, tuple(channels), tuple(left_out))
 
 
 @named_keywords
@@ -188,7 +182,7 @@ def motion_of(
     record: Record, channel: Channel, unit: str | None = None, force: bool = False
 ) -> Motion:
     """Return one channel of a record as a motion in m/s²; ``unit`` and ``force`` as of :func:`read_motion`."""
-    samples = channel.samples()
+    samples = channel.samples
     stored = _settled_unit(record, channel, samples, unit)
     factor = quantities.TO_SI[stored]
     acceleration = _in_si(record, samples, factor)
@@ -216,13 +210,8 @@ def motion_of(
     name = printable(Path(own).name.removesuffix(".gz").rsplit(".", 1)[0])
     if len(record.channels) > 1:
         name = f"{name} {channel.code or channel.component}".strip()
-    return Motion(
-        acceleration=acceleration,
-        dt=channel.dt,
-        name=name,
-        metadata=_metadata(record, channel, stored),
-        provenance=tuple(steps),
-    )
+    metadata = _metadata(record, channel, stored)
+    return Motion(acceleration, channel.dt, name, metadata, tuple(steps))
 
 
 def _in_si(record: Record, samples: NDArray[np.float64], factor: float) -> NDArray[np.float64]:
@@ -252,9 +241,7 @@ def _check_peak(record: Record, acceleration: NDArray[np.float64], unit: str) ->
 def _metadata(record: Record, channel: Channel, unit: str) -> dict[str, Any]:
     start = channel.start_time
     facts = {
-        "network": channel.network,
-        "station": channel.station,
-        "location": channel.location,
+        **{key: getattr(channel, key) for key in ("network", "station", "location")},
         "channel": channel.code or channel.component,
         "component": channel.component or channel.code,
         "earthquake": channel.details.get("earthquake", ""),

@@ -111,15 +111,12 @@ def _write_mseed(stream: Stream, path: str | os.PathLike[str]) -> None:
     data = np.ascontiguousarray(stream[0].data, dtype=np.float64)
     trace = Trace(data, {**codes, "delta": stats.delta, "starttime": start})
     sensitivity = InstrumentSensitivity(1.0, 1.0, "M/S**2", "M/S**2")
+    response = Response(instrument_sensitivity=sensitivity)
+    # neither place nor depth is known
     channel = Channel(
-        codes["channel"],
-        codes["location"],
-        latitude=0,
-        longitude=0,
-        elevation=0,
-        depth=0,
+        *(codes["channel"], codes["location"], 0, 0, 0, 0),
         sample_rate=1 / stats.delta,
-        response=Response(instrument_sensitivity=sensitivity),
+        response=response,
     )
     station = Station(codes["station"], 0, 0, 0, channels=[channel])
     inventory = Inventory([Network(codes["network"], [station])], source="rockfrag")

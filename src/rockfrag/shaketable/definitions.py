@@ -1,11 +1,8 @@
 """Incremental dynamic analyses as matrices, motion by amplitude, and three definitions of one as tables of tests.
 
 A file of an IDA curve has a row per motion and amplitude, motion after motion, each raised through the same
-amplitudes. What statistics need of it is a byte a history.
-
-The step protocol of the laboratory, the first overturning and the amplitude above which the
-specimen always overturns are three different figures; between the last two lie structural resurrections.  Means of
-them are compared over the same motions, all of them overturning.
+amplitudes. The step protocol of the laboratory, the first overturning and the amplitude above which the specimen
+always overturns are three different figures; between the last two lie structural resurrections.
 """
 
 import math
@@ -23,7 +20,7 @@ from numpy.typing import NDArray
 from rockfrag.arrays import Flags, Floats
 from rockfrag.errors import InputError
 from rockfrag.outcomes.limit_states import OVERTURNS, limit_state_named
-from rockfrag.shaketable.protocols import Outcome, Protocol, measured
+from rockfrag.shaketable.protocols import Outcome, Protocol
 from rockfrag.shaketable.tests_table import as_tests_table
 from rockfrag.system.system import System
 
@@ -68,9 +65,8 @@ def read_swept(paths: Iterable[Path], *, state: str = OVERTURNS) -> Iterator[Swe
     """Yield the outcomes of IDA curves in a limit state, some motions at a time, so that memory holds one part."""
     reached = limit_state_named(state).column
     columns = [*ABOUT, "amplitude_g", reached, "overturned_body"]
-    texts = [*ABOUT, "overturned_body"]
     for path in paths:
-        with pq.ParquetFile(path, read_dictionary=texts) as file:
+        with pq.ParquetFile(path, read_dictionary=[*ABOUT, "overturned_body"]) as file:
             for group in range(file.num_row_groups):
                 yield _swept(file.read_row_group(group, columns=columns), reached, path)
 
@@ -111,7 +107,6 @@ def swept_of(ida: pd.DataFrame) -> Iterator[Swept]:
 DEFINITIONS = ("step_protocol", "first_overturning", "always_overturning")
 DEFINITION = "step_protocol"  # as in a laboratory: statistics rest on it, the others stand beside
 _LABELS = ("configuration", "object", "pedestal", "floor")
-_NEEDED = (*ABOUT, "amplitude_g", "overturned", "overturned_body")
 
 
 def first_overturning(amplitudes: Floats, overturned: Flags) -> Outcome:
@@ -144,14 +139,10 @@ def _levels(
 ) -> NDArray[np.intp]:
     """Which amplitudes of an IDA curve the series of levels takes; levels beyond its end are not climbed."""
     levels = protocol.amplitudes(limit_g, repetition)
+    middles = (amplitudes[1:] + amplitudes[:-1]) / 2
     spacing = float(np.diff(amplitudes[-2:])[0]) if amplitudes.size > 1 else 0.0
     levels = levels[levels <= amplitudes[-1] + spacing / 2]
-    above = np.searchsorted(amplitudes, levels).clip(1, amplitudes.size - 1)
-    if amplitudes.size == 1:
-        above = np.zeros(levels.size, dtype=np.intp)
-    else:
-        above -= levels - amplitudes[above - 1] < amplitudes[above] - levels
-    nearest = np.unique(above)
+    nearest = np.unique(np.searchsorted(middles, levels, side="right"))
     limit = protocol.limit_g if limit_g is None else min(limit_g, protocol.limit_g)
     return np.asarray(nearest[amplitudes[nearest] <= limit * (1 + 1e-9)])
 
@@ -182,10 +173,11 @@ def tests_from_ida(
     Table of tests, see :mod:`rockfrag.shaketable.tests_table`; in the order in which
     the IDA curves first appear, then by definition and repetition.
     """
-    for column in _NEEDED:
+    needed = (*ABOUT, "amplitude_g", "overturned", "overturned_body")
+    for column in needed:
         if column not in ida.columns:
             raise InputError(
-                f"IDA curve: column {column!r} is missing; it needs {', '.join(_NEEDED)}."
+                f"IDA curve: column {column!r} is missing; it needs {', '.join(needed)}."
             )
     for definition in definitions:
         if definition not in DEFINITIONS:
@@ -205,9 +197,15 @@ def tests_from_swept(
     """Read IDA curves as tests, part after part, as :func:`tests_from_ida` does those of a table."""
     rows: list[dict[str, object]] = []
     for part in parts:
-        _check_amplitudes(part)
-        levels = cache(partial(_levels, part.amplitude_g, protocol))
-        every = np.arange(part.amplitude_g.size)
+        amplitudes_g, first = part.amplitude_g, part.about.iloc[0]
+        rising = np.isfinite(amplitudes_g).all() and (np.diff(amplitudes_g, prepend=0.0) > 0).all()
+        if not (amplitudes_g.size and rising):
+            raise InputError(
+                f"{first['configuration']} {first['motion']}: amplitudes must be positive, rise, and occur once; "
+                "check the IDA curve's rows."
+            )
+        levels = cache(partial(_levels, amplitudes_g, protocol))
+        every = np.arange(amplitudes_g.size)
         for place, about in enumerate(part.about.to_dict("records")):
             limit = None if limits_g is None else limits_g.get(about["motion"])
             climbed = [levels(limit, number) for number in range(1, protocol.repetitions + 1)]
@@ -232,7 +230,9 @@ def _row(
     """Outcome of a motion at the amplitudes that were climbed."""
     bounds = always_overturning if definition == "always_overturning" else first_overturning
     true = bounds(part.amplitude_g[climbed], part.overturned[place][climbed])
-    shown = measured(true, protocol.measurement, str(about["configuration"]))
+    shown = true
+    if protocol.measurement is not None:
+        shown = protocol.measurement.show(true, str(about["configuration"]))
     upper = int(np.searchsorted(part.amplitude_g, true.upper_g))
     return {
         "test": f"{about['configuration']} {about['motion']}",
@@ -246,17 +246,6 @@ def _row(
     }
 
 
-def _check_amplitudes(part: Swept) -> None:
-    amplitudes = part.amplitude_g
-    rising = np.isfinite(amplitudes).all() and (np.diff(amplitudes, prepend=0.0) > 0).all()
-    if not (amplitudes.size and rising):
-        about = part.about.iloc[0]
-        raise InputError(
-            f"{about['configuration']} {about['motion']}: amplitudes must be positive, rise, and occur once; "
-            "check the IDA curve's rows."
-        )
-
-
 def mean_amplitudes(tests: pd.DataFrame) -> pd.DataFrame:
     """Geometric means of what is compared, over the motions that overturned all that is compared, a row a mean.
 
@@ -266,18 +255,11 @@ def mean_amplitudes(tests: pd.DataFrame) -> pd.DataFrame:
     ``pedestal`` and ``floor`` are empty where all are taken together; ``mean_g`` [g] is missing where no motion
     overturned all; of ``of`` motions ``motions`` did. Repetitions are averaged in the logarithm, and count only if
     each of them overturned.
-
-    A test that never overturned has no amplitude. Left out of one mean and not of another, it would make objects,
-    floors or sides look different that were merely tested by other motions.
     """
-    known = tests.assign(
-        ln_a=np.log(tests["amplitude_g"]),
-        # the same record on another floor has another name: that of the record and the floor's
-        record=[
-            motion.removesuffix(f"_{floor}")
-            for motion, floor in tests[["motion", "floor"]].itertuples(index=False)
-        ],
-    )
+    # the same record on another floor has another name: that of the record and the floor's
+    names = tests[["motion", "floor"]].to_numpy().tolist()
+    record = [motion.removesuffix(f"_{floor}") for motion, floor in names]
+    known = tests.assign(ln_a=np.log(tests["amplitude_g"]), record=record)
     rows = _means("configuration", known, ["configuration"], ["record", "floor"])
     rows += _means("floor", known, ["pedestal", "floor"], ["record", "object"])
     for _, group in known.groupby("object", sort=False):
@@ -295,16 +277,11 @@ def _means(
     ]
     table = pd.concat(ln_a, axis=1)
     complete = table.dropna()
-    return [
-        {
-            "by": by,
-            **{
-                name: str(part[name].iloc[0]) if len(set(part[name])) == 1 else ""
-                for name in _LABELS
-            },
-            "mean_g": float(np.exp(complete.iloc[:, column].mean())) if len(complete) else np.nan,
-            "motions": len(complete),
-            "of": len(table),
-        }
-        for column, part in enumerate(parts)
-    ]
+    rows: list[dict[str, object]] = []
+    for column, part in enumerate(parts):
+        alike = (name for name in _LABELS if len(set(part[name])) == 1)
+        labels = dict.fromkeys(_LABELS, "") | {name: str(part[name].iloc[0]) for name in alike}
+        mean_g = float(np.exp(complete.iloc[:, column].mean()))
+        about = {"mean_g": mean_g, "motions": len(complete), "of": len(table)}
+        rows.append({"by": by, **labels, **about})
+    return rows

@@ -1,15 +1,13 @@
 """The shaking table: what it can do, what a motion asks of it, and what it would really have produced.
 
-Displacements come from integrating the acceleration, linear between samples, exactly and from rest.
-They are taken at the samples; between them a peak is larger by less than 2 parts in 10 000 for the
-records of Table 3.3.
+Displacements, at the samples, come from integrating the acceleration exactly, linear between samples, from rest.
 """
 
 import os
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Literal
+from typing import Literal, NamedTuple
 
 import numpy as np
 import pandas as pd
@@ -51,7 +49,7 @@ class Shaker:
 
     def __post_init__(self) -> None:
         for name in ("stroke", "force", "lowest_hz", "velocity"):
-            if name != "velocity" or self.velocity is not None:
+            if getattr(self, name) is not None:
                 positive_number(f"shaker: {name}", getattr(self, name))
         if not self.lowest_hz < self.highest_hz:
             raise InputError(
@@ -59,21 +57,21 @@ class Shaker:
             )
         if self.start not in ("off-centre", "centred"):
             raise InputError(f"shaker: start must be off-centre or centred, got {self.start!r}.")
-        number_from_zero("shaker: armature_mass", self.armature_mass, "kg")
-        number_from_zero("shaker: table_mass", self.table_mass, "kg")
+        for name in ("armature_mass", "table_mass"):
+            number_from_zero(f"shaker: {name}", getattr(self, name), "kg")
 
     def demand(self, motion: Motion, amplitude_g: float, payload: float = 0.0) -> "Demand":
         """What a motion scaled to a peak of ``amplitude_g`` [g] asks, with ``payload`` [kg] on it."""
         velocity, displacement = integrate(
             scale_to_pga(motion, amplitude_g).acceleration, motion.dt
         )
-        return Demand(
-            shaker=self,
-            travel=float(np.ptp(displacement)),
-            excursion=float(np.abs(displacement).max()),
-            velocity=float(np.abs(velocity).max()),
-            force=amplitude_g * GRAVITY * self.moved_mass(payload),
-        )
+        travel, excursion = float(np.ptp(displacement)), float(np.abs(displacement).max())
+        force, speed = amplitude_g * GRAVITY * self.moved_mass(payload), np.abs(velocity).max()
+        reach = 2 * excursion if self.start == "centred" else travel
+        uses = {"stroke": reach / self.stroke, "force": force / self.force}
+        if self.velocity is not None:
+            uses["velocity"] = float(speed) / self.velocity
+        return Demand(travel, excursion, float(speed), force, uses)
 
     def moved_mass(self, payload: float) -> float:
         """Mass that moves with ``payload`` on the table [kg]; the specimen as if it were bolted on."""
@@ -85,34 +83,24 @@ class Shaker:
 
     def limit(self, motion: Motion, payload: float = 0.0) -> tuple[float, str]:
         """Largest amplitude of a motion as it is [g], and which limit sets it."""
-        uses = self.demand(motion, 1.0, payload).uses()
+        uses = self.demand(motion, 1.0, payload).uses
         governing = max(uses, key=uses.__getitem__)
         return 1 / uses[governing], governing
 
 
-@dataclass(frozen=True)
-class Demand:
-    """What one motion at one amplitude asks of a shaker: peak-to-peak travel [m], velocity [m/s], force [N]."""
+class Demand(NamedTuple):
+    """What one motion at one amplitude asks of a shaker."""
 
-    shaker: Shaker
-    travel: float
+    travel: float  # peak-to-peak displacement [m]
     excursion: float  # largest displacement from the start [m]
-    velocity: float
-    force: float
-
-    def uses(self) -> dict[str, float]:
-        """Fraction of each limit that is used [-]."""
-        shaker = self.shaker
-        reach = 2 * self.excursion if shaker.start == "centred" else self.travel
-        uses = {"stroke": reach / shaker.stroke, "force": self.force / shaker.force}
-        if shaker.velocity is not None:
-            uses["velocity"] = self.velocity / shaker.velocity
-        return uses
+    velocity: float  # [m/s]
+    force: float  # [N]
+    uses: dict[str, float]  # fraction of each limit that is used [-]
 
     @property
     def fits(self) -> bool:
         """Whether every limit is kept."""
-        return max(self.uses().values()) <= 1
+        return max(self.uses.values()) <= 1
 
 
 def read_shaker(path: str | os.PathLike[str]) -> Shaker:
@@ -147,9 +135,7 @@ def required_corner(
     if shaker.demand(motion, amplitude_g, payload).fits:
         return 0.0
     wanted = scale_to_pga(motion, amplitude_g)
-    for corner in CORNERS_HZ:
-        if corner >= 0.5 / motion.dt:
-            break
+    for corner in (corner for corner in CORNERS_HZ if corner < 0.5 / motion.dt):
         filtered = _filtered(wanted, corner)
         if shaker.demand(filtered, filtered.pga / GRAVITY, payload).fits:
             return corner
@@ -164,10 +150,9 @@ def produced_motion(
 ) -> Motion:
     """Motion that the table would really have produced.
 
-    It is high-passed at the lower end of the shaker's band, or higher where the stroke needs it
-    (:func:`required_corner`). Its peak is not the wanted ``amplitude_g`` [g], as the filter takes out what the
-    stroke cannot hold: a fifth less for a long pulse, a tenth more where the filter takes what was opposed to the
-    peak. The provenance has both.
+    It is high-passed at the lower end of the shaker's band, or higher where the stroke needs it. Its peak is not
+    the wanted ``amplitude_g`` [g], as the filter takes out what the stroke cannot hold: a fifth less for a long
+    pulse, a tenth more where the filter takes what was opposed to the peak. The provenance has both.
 
     Parameters
     ----------
@@ -192,19 +177,15 @@ def shaker_table(shaker: Shaker, motions: Sequence[Motion], payload: float = 0.0
     for motion in motions:
         demand = shaker.demand(motion, 1.0, payload)
         limit_g, governing = shaker.limit(motion, payload)
-        rows.append(
-            {
-                "motion": motion.name,
-                "earthquake": motion.metadata.get("earthquake", ""),
-                "floor": motion.metadata.get("floor", ""),
-                "travel_cm_per_g": demand.travel * CENTIMETRES_PER_METRE,
-                "excursion_cm_per_g": demand.excursion * CENTIMETRES_PER_METRE,
-                "velocity_cm_s_per_g": demand.velocity * CENTIMETRES_PER_METRE,
-                "force_n_per_g": demand.force,
-                "limit_g": limit_g,
-                "limited_by": governing,
-            }
-        )
+        labels = {key: motion.metadata.get(key, "") for key in ("earthquake", "floor")}
+        asked = {
+            "travel_cm_per_g": demand.travel * CENTIMETRES_PER_METRE,
+            "excursion_cm_per_g": demand.excursion * CENTIMETRES_PER_METRE,
+            "velocity_cm_s_per_g": demand.velocity * CENTIMETRES_PER_METRE,
+            "force_n_per_g": demand.force,
+        }
+        limit = {"limit_g": limit_g, "limited_by": governing}
+        rows.append({"motion": motion.name, **labels, **asked, **limit})
     return pd.DataFrame(rows)
 
 

@@ -113,10 +113,7 @@ class Reweighted:
 
 
 def reweight(site: Site, samples: int = SAMPLES) -> Reweighted:
-    """Weigh branches of the hazard by how probably they let all objects stand.
-
-    ``samples`` of errors and ages are a power of two.
-    """
+    """Weigh branches of the hazard by how probably they let all objects stand; ``samples`` are a power of two."""
     objects = site.objects
     wanted = set().union(*(body.measures for body in objects))
     reach = (min(b.reach[0] for b in objects), max(b.reach[1] for b in objects))
@@ -175,15 +172,6 @@ RULED_OUT = 0.01
 IN_SPACE = 0.84
 """Median of toppling of boxes under two horizontal components over that of planar rocking under one [-]; see
 ``docs/space.md``.  Round bases: about a half."""
-
-LIMITS = (
-    "Survival tells how strong shaking at the site has been since the objects stand, not how strong it will be "
-    "in the next 50 years if rates change.",
-    "The fragility is that of today; an object that was broader or lower, buried or supported was less fragile "
-    "then, and counts for less: state since when with fragile_for_years.",
-    "The branches are reweighted, not validated: if none of them is right, none of the new weights is.",
-)
-"""What a reader of reweighted hazard must know."""
 
 
 @dataclass(frozen=True)

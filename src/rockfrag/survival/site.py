@@ -1,10 +1,7 @@
 """A site as ``site.yaml`` describes it: branches of its hazard, and what stands there, how fragile and how old.
 
-Branches are a logic tree's end branches, each with its weight and a hazard curve a measure. Two ways to give them:
-OpenQuake's exports (``realizations_….csv`` and a file of hazard curves for each realization,
-``hazard_curve-rlz-000-PGA_….csv``), or plain tables with the columns ``branch``, ``weight``, a level (``pga_g``,
-``pgv_cm_s``, ``sa_0_3s_g``) and how often it is exceeded (``annual_rate``, ``return_period_years`` or such as
-``poe_50_years``), a row a level; a second table may give another measure of the same branches.
+Branches are a logic tree's end branches, each with its weight and a hazard curve a measure: OpenQuake's exports or
+tables of levels with the columns ``branch`` and ``weight``.
 """
 
 import math
@@ -60,8 +57,6 @@ def read_branches(
     ``paths`` are tables of branches, one a measure; or, with OpenQuake's file of ``realizations``, its files of
     hazard curves.
     """
-    if not paths:
-        raise InputError("hazard: name at least one file with hazard curves of branches.")
     named = _realizations(realizations) if realizations else {}
     for path in paths:
         curves = (
@@ -83,7 +78,7 @@ def read_branches(
 
 def _check(branches: Sequence[Branch], where: str) -> None:
     for branch in branches:
-        if not (math.isfinite(branch.weight) and branch.weight > 0):
+        if branch.weight <= 0:
             raise InputError(
                 f"{where}: branch {branch.name[:60]} has the weight {branch.weight:g}; a weight is above 0."
             )
@@ -175,14 +170,10 @@ NODES = 15  # Nodes of Gauss and Hermite over the velocity that comes with a lev
 
 @dataclass(frozen=True)
 class VelocityRatio:
-    """How fast the ground moves at a site when its peak acceleration is known: ln(PGV/PGA) is normal.
+    """How fast the ground moves at a site when its peak acceleration is known: ln(PGV/PGA) is normal."""
 
-    ``median_s`` is the median of PGV/PGA [s], ``sd_ln`` the standard deviation of its logarithm from one
-    earthquake to the next [-].
-    """
-
-    median_s: float
-    sd_ln: float
+    median_s: float  # Median of PGV/PGA [s]
+    sd_ln: float  # Standard deviation of its logarithm from one earthquake to the next [-]
 
 
 @dataclass(frozen=True)
@@ -321,13 +312,13 @@ def lognormal_coefficients(theta: float, beta: float) -> tuple[float, float]:
     return -math.log(theta) / beta, 1.0 / beta
 
 
-def draw_errors(objects: int, shared: float, samples: int, seed: int = 0) -> tuple[Floats, Floats]:
+def draw_errors(objects: int, shared: float, samples: int) -> tuple[Floats, Floats]:
     """Draw errors of fragilities and positions in ages, evenly spread (Sobol; a power of two).
 
     Returns standard normal errors, correlated between objects as ``shared`` says [-], and independent uniform
     numbers, each of shape (samples, objects).
     """
-    sobol = stats.qmc.Sobol(2 * objects + 1, scramble=True, rng=np.random.default_rng(seed))
+    sobol = stats.qmc.Sobol(2 * objects + 1, scramble=True, rng=np.random.default_rng(0))
     drawn = sobol.random(samples)
     normal = special.ndtri(np.clip(drawn[:, : objects + 1], 1e-12, 1 - 1e-12))
     common, own = normal[:, :1], normal[:, 1:]

@@ -94,10 +94,8 @@ class RigidBody:
             positive_number("RigidBody: inertia", self.inertia, "kg m²")
         else:
             object.__setattr__(self, "inertia", checked_tensor(self.inertia))
-        spatial = {
-            isinstance(outline, Interval) for outline in (self.base, self.face) if outline
-        } | {self.planar}
-        if len(spatial) > 1:
+        outlines = self.base, self.face or self.base
+        if any(isinstance(outline, Interval) is not self.planar for outline in outlines):
             raise InputError(
                 "RigidBody: a planar body has a number as inertia and intervals as base and face, a body in "
                 "space a tensor and polygons or circles."
@@ -124,12 +122,8 @@ class RigidBody:
 
     @property
     def tensor(self) -> NDArray[np.float64]:
-        """Tensor of inertia about the centre of gravity [kg m²], shape (3, 3); NaN but yy of a planar body."""
-        if isinstance(self.inertia, tuple):
-            return np.array(self.inertia)
-        unknown = np.full((3, 3), math.nan)
-        unknown[1, 1] = self.inertia
-        return unknown
+        """Tensor of inertia of a body in space about its centre of gravity [kg m²], shape (3, 3)."""
+        return np.array(self.inertia)
 
     def seen_along(self, direction_deg: float = 0.0) -> "RigidBody":
         """Return the planar body that moves in the vertical plane of a direction, from x towards y [degrees]."""
@@ -140,17 +134,14 @@ class RigidBody:
                 )
             return self
         angle = math.radians(direction_deg)
-        # an axis of the body is met exactly
-        along = (math.cos(angle), math.sin(angle)) if direction_deg else (1.0, 0.0)
+        # the body's x axis is met exactly
+        along = math.cos(angle), math.sin(angle)
         x, y, z = self.centre
         (xx, xy, _), (_, yy, _), _ = self.inertia  # type: ignore[misc]
-        inertia = yy
-        if direction_deg:
-            inertia = along[1] ** 2 * xx - 2 * along[0] * along[1] * xy + along[0] ** 2 * yy
         return replace(
             self,
-            inertia=inertia,
-            centre=(x * along[0] + y * along[1] if direction_deg else x, 0.0, z),
+            inertia=along[1] ** 2 * xx - 2 * along[0] * along[1] * xy + along[0] ** 2 * yy,
+            centre=(x * along[0] + y * along[1], 0.0, z),
             base=interval_of(self.base, along),
             face=None if self.face is None else interval_of(self.face, along),
         )

@@ -5,7 +5,6 @@ response no contact reached its friction, none opened as a whole and no mode was
 pure rocking, and the answer is that of the engine of pure rocking.
 """
 
-import math
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from typing import Any
@@ -97,7 +96,9 @@ def history(case: Case) -> Response:
     found = ContactRun(case)
     pure = replace(case, system=case.system.held())
     engine = _pure(pure.system, case.motion, pure.request)
-    if found.loose or engine is None:
+    told = found.work["told"]
+    loose = told["slid"].any() or told["flights"].any() or told["paradoxes"] > 0
+    if loose or engine is None:
         return found.response()
     return without_slip(replace(engine.history(pure), system=case.system))
 
@@ -136,7 +137,8 @@ def contact_outcomes(grid: Cases, wanted: NDArray[np.bool_] | None = None) -> ND
         free_samples=np.array([free_samples(system, dts, g) for system in grid.systems]),
     )
     numbers = np.flatnonzero(np.ones(grid.shape) if wanted is None else wanted)
-    outcome, nothing = np.zeros(grid.shape, records.OUTCOME), np.zeros((0, 0))
+    outcome = np.zeros(grid.shape, records.OUTCOME)
+    nothing = contact.Kept(np.zeros(0, contact.SAMPLE), np.zeros(0, contact.CONTACT_EVENT))
 
     def work(chunk: Ints) -> None:
         memory = records.working_memory()
@@ -161,39 +163,32 @@ class ContactRun:
     """One planar system that may slide, rock and fly, integrated by the contact kernels."""
 
     def __init__(self, case: Case, closing: float = CLOSING) -> None:
-        self.case, self.count, self.work = case, case.system.count, records.working_memory()
+        self.case, self.work = case, records.working_memory()
         self.body, start = _described(case.system, case.request.g)
         shaking = shaking_of(case, 1.0)
-        samples, most = shaking.samples.size + shaking.free_samples, 4096
-        history = np.zeros((samples, contact.history_columns(self.count)))
+        history = np.zeros(shaking.samples.size + shaking.free_samples, contact.SAMPLE)
+        most = 4096
         while True:
-            contact_events = np.zeros((most, contact.contact_event_columns(self.count)))
-            done, found = contact.integrate(
-                self.body, shaking, start, closing, history, contact_events, self.work
-            )
+            kept = contact.Kept(history, np.zeros(most, contact.CONTACT_EVENT))
+            done = contact.integrate(self.body, shaking, start, closing, kept, self.work)
+            found = int(self.work["noted"])
             if found <= most:
                 break
             most = found
-        # rows of the columns that the kernels write
-        self.history, self.contact_events = history[:done], contact_events[:found]
-
-    @property
-    def loose(self) -> bool:
-        """Whether a contact reached its friction, opened as a whole or had no consistent mode."""
-        told = self.work["told"]
-        return bool(told["slid"].any() or told["flights"].any() or told["paradoxes"] > 0)
+        self.history, self.contact_events = history[:done], kept.contact_events[:found]
 
     def response(self) -> Response:
         """Return the response that the contact kernels wrote."""
-        case, told, history, blocks = self.case, self.work["told"], self.history, self.count
-        done, fallen = len(history), int(told["overturned_body"])
+        case, told, history = self.case, self.work["told"], self.history
+        done, count, fallen = len(history), case.system.count, int(told["overturned_body"])
         values, ground = case.scale * case.motion.x.acceleration, np.zeros(done)
         ground[: values.size] = values[:done]
-        centres, speeds = history[:, : 6 * blocks].reshape(done, 2, blocks, 3).swapaxes(0, 1)
-        rest = history[:, 6 * blocks : 10 * blocks].reshape(done, 4, blocks)
-        slips, normal, shear, alpha = rest.swapaxes(0, 1)
-        state, slides = _modes(history[:, -1], blocks)
-        table = _contact_events(self.contact_events, blocks)
+        centres, speeds = (history[name][:, : 3 * count].reshape(done, count, 3) for name in "qv")
+        slips, normal, shear, alpha = (
+            history[name][:, :count] for name in ("slip", "normal", "shear", "alpha")
+        )
+        state, slides = _modes(history["mode"], count)
+        table = _contact_events(self.contact_events, count)
         meets = np.array([np.abs(np.diff([0.0, *w])).max() for w in table["omega_before"]])
         time = np.arange(done, dtype=np.float64) * case.motion.dt
         return Response(
@@ -216,8 +211,6 @@ class ContactRun:
             friction_force=shear,
             friction_demand=responses.sampled_demand(normal, shear),
             least_normal_force=np.asarray(normal.min(axis=0)),
-            lost_contact=math.nan,
-            unstable_distance=math.nan,
             grazings=int((table["kind"].eq("impact") & (meets < GRAZING_SPEED)).sum()),
             forced=int(self.work["forced"]),
             **{name: int(told[name]) for name in ("impacts", "paradoxes", "given_way")},
@@ -225,47 +218,48 @@ class ContactRun:
 
     def _energies(self, time: Array) -> pd.DataFrame:
         """Balance of energy by cause over time [J]."""
-        p, history, blocks = self.body, self.history, self.count
-        inertia, at = 1.0 / p["inverse"][: 3 * blocks], slice(1, 3 * blocks, 3)
-        kinetic = (inertia * history[:, 3 * blocks : 6 * blocks] ** 2).sum(axis=1) / 2
-        potential = float(p["g"]) * (p["mass"][:blocks] * history[:, at]).sum(axis=1)
-        when, kind, old, new, before, after = self.contact_events[:, :6].T
-        struck = np.isin(kind, (contact.IMPACT, contact.PARADOX))
+        p, history, struck = self.body, self.history, self.contact_events
+        count = self.case.system.count
+        inertia, at = 1.0 / p["inverse"][: 3 * count], slice(1, 3 * count, 3)
+        kinetic = (inertia * history["v"][:, : 3 * count] ** 2).sum(axis=1) / 2
+        potential = float(p["g"]) * (p["mass"][:count] * history["q"][:, at]).sum(axis=1)
+        lost = struck["energy_before"] - struck["energy_after"]
+        lost[~np.isin(struck["kind"], (contact.IMPACT, contact.PARADOX))] = 0.0
         # the lowest contact whose mode changes as it comes down, or the uppermost
-        opened, closed = (_modes(mode, blocks)[0] for mode in (old, new))
+        opened, closed = (_modes(struck[name], count)[0] for name in ("before", "after"))
         closes = (opened != 0) & (opened != closed)
         closes[:, -1] = True
-        losses = when, closes.argmax(axis=1), np.where(struck, before - after, 0.0)
-        balance = kinetic, potential, history[:, -4], losses, history[:, -3]
-        return responses.energy_table(time, *balance, contacts=blocks)
+        losses = struck["time"], closes.argmax(axis=1), lost
+        balance = kinetic, potential, history["work"], losses, history["rubbed"]
+        return responses.energy_table(time, *balance, contacts=count)
 
 
-def _modes(numbers: Array, blocks: int) -> tuple[Ints, Ints]:
+def _modes(numbers: Ints, blocks: int) -> tuple[Ints, Ints]:
     """Contact states and signs of slip in the numbers that the kernels keep, each of shape (n, blocks)."""
-    digits = (numbers.astype(np.int64)[:, np.newaxis] >> (4 * np.arange(blocks))) & 15
+    digits = (numbers[:, np.newaxis] >> (4 * np.arange(blocks))) & 15
     return _STATES[digits & 3], (digits >> 2) - 1
 
 
-def _contact_events(contact_events: Array, blocks: int) -> pd.DataFrame:
+def _contact_events(found: NDArray[Any], blocks: int) -> pd.DataFrame:
     """Make the table of contact events of a response."""
-    before, slid = _modes(contact_events[:, 2], blocks)
-    after, slides = _modes(contact_events[:, 3], blocks)
-    slip, theta, old, new = contact_events[:, 6:].reshape(-1, 4, blocks).transpose(1, 0, 2)
-    changes = zip(before, after, slid, slides, strict=True)
+    before, slid = _modes(found["before"], blocks)
+    after, slides = _modes(found["after"], blocks)
+    slip, theta, old, new = (
+        found[name][:, :blocks] for name in ("slip", "theta", "omega_before", "omega_after")
+    )
     kinds = [
-        _KINDS.get(int(kind)) or _kind_of_change(*change)
-        for kind, change in zip(contact_events[:, 1], changes, strict=True)
+        _KINDS.get(kind) or _kind_of_change(*change)
+        for kind, *change in zip(found["kind"].tolist(), before, after, slid, slides, strict=True)
     ]
-    energies = contact_events[:, 4], contact_events[:, 5]
+    energies = found["energy_before"], found["energy_after"]
     table = responses.contact_event_table(
-        contact_events[:, 0], kinds, (before, after), (old, new), theta, energies
+        found["time"], kinds, (before, after), (old, new), theta, energies
     )
     return responses.with_slips(table, after, slides, slip)
 
 
 def _kind_of_change(before: Ints, after: Ints, slid: Ints, slides: Ints) -> str:
     """Name of a contact event without an impact: what opens first, then what slides."""
-    assert contact.CHANGE not in _KINDS
     if np.any((after == FLIGHT) & (before != FLIGHT)):
         return "flight"
     if np.any((after != 0) & (before == 0)):

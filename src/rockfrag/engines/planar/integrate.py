@@ -6,12 +6,14 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from rockfrag.arrays import fields, whole
 from rockfrag.engines.kernels.jit import entry_kernel, kernel
 from rockfrag.engines.kernels.single import Shaking
 from rockfrag.engines.planar import impact
 from rockfrag.engines.planar import step as stepping
+from rockfrag.engines.planar.records import MOST
 from rockfrag.engines.planar.search import mode_number
-from rockfrag.engines.planar.solve import end_of, look_at, solve
+from rockfrag.engines.planar.solve import copy, end_of, look_at, solve
 
 # contact events within a sample after which accumulating ones are ended ten times as coarsely, and again
 MOST_CONTACT_EVENTS = 300
@@ -24,21 +26,38 @@ BURST = 100.0  # margin at the end of a step beyond which a shorter one is taken
 LEAST_STEP = 1e-9  # ... down to this part of a sample
 
 
-def history_columns(count: int) -> int:
-    """Columns of a history: q, v (3 n each), slip, normal, shear, θ'' (n each), work, rubbed, struck and mode."""
-    return 10 * count + 4
+SAMPLE = np.dtype(
+    [
+        *fields("q v", 3 * MOST),  # coordinates of the bodies and their rates
+        *fields("slip normal shear alpha", MOST),  # of each interface and, α = θ'', of each body
+        *fields("work rubbed struck"),  # ledgers so far, as in WORK [J]
+        *whole("mode"),
+    ]
+)
+"""What is kept of a sample."""
 
-
-def contact_event_columns(count: int) -> int:
-    """Columns of contact events: time, kind, modes and energies before and after, slip, θ, both θ' (n each)."""
-    return 6 + 4 * count
-
+CONTACT_EVENT = np.dtype(
+    [
+        *fields("time"),
+        *whole("kind before after"),  # its kind, and the modes before and after
+        *fields("energy_before energy_after"),
+        *fields("slip theta omega_before omega_after", MOST),
+    ]
+)
+"""What is kept of a contact event."""
 
 CHANGE, IMPACT, PARADOX, FALLEN, PASSING = 0, 1, 2, 3, 4
 """Kinds of contact events: the last is a corner that passes an edge while nothing else changes."""
 
 
 Array = NDArray[np.float64]
+
+
+class Kept(NamedTuple):
+    """Tables that an integration fills as far as they have rows."""
+
+    history: NDArray[Any]  # (n,) SAMPLE
+    contact_events: NDArray[Any]  # (n,) CONTACT_EVENT
 
 
 class Cases(NamedTuple):
@@ -67,7 +86,7 @@ class Instant(NamedTuple):
 
 @entry_kernel
 def integrate_cases(numbers, cases, closing, nothing, w, outcome):
-    """Integrate the cases of some ``numbers``, and keep their outcomes; ``nothing`` is a table without rows."""
+    """Integrate the cases of some ``numbers``, and keep their outcomes; ``nothing`` is a KEPT without rows."""
     motions, scales = cases.factors.shape
     for number in numbers:
         b = number // (motions * scales)
@@ -82,7 +101,7 @@ def integrate_cases(numbers, cases, closing, nothing, w, outcome):
             cases.substeps[b, m],
             cases.free_samples[b, m],
         )
-        integrate(cases.bodies[b], shaking, cases.starts[b], closing, nothing, nothing, w)
+        integrate(cases.bodies[b], shaking, cases.starts[b], closing, nothing, w)
         look_at(cases.bodies[b], w, w.q)
         for k in range(cases.bodies[b].count):
             w.told.slip[k] = slip(cases.bodies[b], w, k)
@@ -90,22 +109,21 @@ def integrate_cases(numbers, cases, closing, nothing, w, outcome):
 
 
 @entry_kernel
-def integrate(p, shaking, start, closing, history, contact_events, w):
+def integrate(p, shaking, start, closing, kept, w):
     """Integrate one column, a BODY, from ``start`` through its shaking and on until it rests or has fallen.
 
-    ``closing`` is the speed over √(g b) below which a contact stays closed after an impact; ``history``, of
-    ``history_columns``, and ``contact_events``, of ``contact_event_columns``, may have no rows; ``w`` is a WORK.
-    Returned are the samples done, and the contact events met.
+    ``closing`` is the speed over √(g b) below which a contact stays closed after an impact; ``kept`` is a
+    :class:`Kept`, ``w`` a WORK, which tells the number of contact events.  Returned are the samples done.
     """
     _begin(p, w, start)
     dt, substeps = shaking.dt, shaking.substeps
     n = shaking.samples.size
-    energy_balance = history.shape[0] > 0
+    energy_balance = kept.history.shape[0] > 0
     now = _now(shaking, 0)
-    count = _handle(p, w, now, closing, True, False, contact_events, 0)
+    _handle(p, w, now, closing, False, kept)
     fresh = True  # the acceleration in w.a is not that of this state and mode
     if energy_balance:
-        _keep(p, w, 0, now, history)
+        _keep(p, w, kept.history[0], now)
     known_rest = False
     done = 1
     idle = 0
@@ -127,7 +145,9 @@ def integrate(p, shaking, start, closing, history, contact_events, w):
                 fresh = True
                 ah, av = stepping.ground_at(sample, tau)
                 instant = Instant((i + tau) * dt, ah, av)
-                count = _handle(p, w, instant, closing, True, True, contact_events, count)
+                # what fails is that all rests
+                w.fails[:] = 0
+                _handle(p, w, instant, closing, True, kept)
                 w.met += 1
                 if w.resting == 1:
                     # it failed by rounding only
@@ -139,8 +159,7 @@ def integrate(p, shaking, start, closing, history, contact_events, w):
             if fresh:
                 look_at(p, w, w.q)
                 solve(p, w, w.q, w.v, ah, av, False)
-                for d in range(3 * p.count):
-                    w.a[d] = w.out[d]
+                copy(p, w.out, w.a)
             stepping.start_step(p, w)
             while True:
                 stretch = stepping.Stretch(
@@ -173,14 +192,13 @@ def integrate(p, shaking, start, closing, history, contact_events, w):
                 if when <= 1.0:
                     jolts += 1
                     instant = Instant((i + tau) * dt, ah, av)
-                    count = _jolt(p, w, instant, closing, contact_events, count)
+                    _jolt(p, w, instant, closing, kept)
                     fresh = True
                     continue
             if when > 1.0:
-                for d in range(3 * p.count):
-                    w.q[d] = w.q1[d]
-                    w.v[d] = w.v1[d]
-                    w.a[d] = w.a1[d]
+                copy(p, w.q1, w.q)
+                copy(p, w.v1, w.v)
+                copy(p, w.a1, w.a)
                 fresh = False
                 jolts = 0
                 impact.project(p, w)
@@ -193,14 +211,12 @@ def integrate(p, shaking, start, closing, history, contact_events, w):
                     work, rubbed = stepping.take_step(
                         p, w, stepping.beginning(stretch, when), energy_balance
                     )
-                    for d in range(3 * p.count):
-                        w.q[d] = w.q1[d]
-                        w.v[d] = w.v1[d]
+                    copy(p, w.q1, w.q)
+                    copy(p, w.v1, w.v)
                 else:
                     work = rubbed = 0.0
-                    for d in range(3 * p.count):
-                        w.q[d] = w.q0[d]
-                        w.v[d] = w.v0[d]
+                    copy(p, w.q0, w.q)
+                    copy(p, w.v0, w.v)
                 impact.project(p, w)
                 tau += when * step
                 idle = idle + 1 if when < 1e-9 else 0
@@ -211,7 +227,7 @@ def integrate(p, shaking, start, closing, history, contact_events, w):
                     w.forced += 1
                 ah, av = stepping.ground_at(sample, tau)
                 instant = Instant((i + tau) * dt, ah, av)
-                count = _handle(p, w, instant, coarser, False, False, contact_events, count)
+                _handle(p, w, instant, coarser, False, kept)
                 fresh = True
                 if w.met > 10 * MOST_CONTACT_EVENTS:
                     tau = 1.0
@@ -224,12 +240,12 @@ def integrate(p, shaking, start, closing, history, contact_events, w):
         done = i + 2
         now = late
         if energy_balance:
-            _keep(p, w, i + 1, now, history)
+            _keep(p, w, kept.history[i + 1], now)
         if w.told.overturned_body > 0:
             break
         if i >= n - 1 and w.resting == 1:
             break
-    return done, count
+    return done
 
 
 @kernel
@@ -245,25 +261,22 @@ def _now(shaking, i):
 
 @kernel
 def _begin(p, w, start):
-    for d in range(3 * p.count):
-        w.q[d] = start[0, d]
-        w.v[d] = start[1, d]
-        w.a[d] = 0.0
+    """Set the start, and what is told of the case to nothing."""
+    copy(p, start[0], w.q)
+    copy(p, start[1], w.v)
     look_at(p, w, w.q)
     impact.lift_laws(p, w)
+    w.slides[:] = w.touching[:] = w.fails[:] = 0
     for k in range(p.count):
-        w.slides[k] = 0
         for end in range(2):
-            w.touching[k, end] = 0
             _, _, _, _, gap, _, w.kind[k, end] = end_of(p, w, w.q, k, end, -1)
             w.closed[k, end] = 1 if gap < 1e-11 * p.size else 0
     w.work = w.rubbed = w.struck = 0.0
-    for k in range(p.count):
-        w.told.peak_rotation[k] = w.told.peak_velocity[k] = w.told.peak_slip[k] = 0.0
-        w.told.slid[k] = w.told.flights[k] = 0
     told = w.told
+    told.peak_rotation[:] = told.peak_velocity[:] = told.peak_slip[:] = 0.0
+    told.slid[:] = told.flights[:] = 0
     told.impacts = told.paradoxes = told.overturned_body = told.parted_contact = 0
-    told.several_modes = told.given_way = w.forced = w.met = w.resting = 0
+    told.several_modes = told.given_way = w.forced = w.met = w.resting = w.noted = 0
     told.overturning_time = math.nan
 
 
@@ -303,53 +316,48 @@ def _contact_event_in_step(p, w, at_end, stretch):
 
 
 @kernel
-def _handle(p, w, now, closing, all_ends, exclude, contact_events, count):
-    """Change the mode at a contact event, whose failing channels are in ``w.fails``; the number of them so far.
+def _handle(p, w, now, closing, exclude, kept):
+    """Change the mode at a contact event, whose failing channels are in ``w.fails``.
 
-    ``all_ends``: the state is new (start, end of rest), and only ends that touch count.  ``exclude``: the old
-    mode is known to fail.
+    ``exclude``: the old mode is known to fail.
     """
     _remember(p, w)
-    passes = False
-    if not all_ends:
-        for k in range(p.count):
-            if w.fails[k, stepping.FALL] == 1:
-                w.told.overturned_body = k + 1
-                w.told.parted_contact = _parted(w, k)
-                return _note(p, w, now.time, FALLEN, contact_events, count)
+    for k in range(p.count):
+        if w.fails[k, stepping.FALL] == 1:
+            w.told.overturned_body = k + 1
+            w.told.parted_contact = _parted(w, k)
+            _note(p, w, now.time, FALLEN, kept)
+            return
     look_at(p, w, w.q)
+    passes = False
     for k in range(p.count):
         leaves = -1
-        if not all_ends:
-            for end in range(2):
-                if w.closed[k, end] == 1 and w.fails[k, stepping.GAP + end] == 1:
-                    exclude = True
-                if w.closed[k, end] == 1 and w.fails[k, stepping.EDGE + end] == 1:
-                    passes = True
-                    if w.closed[k, 1 - end] == 1:
-                        w.kind[k, end] = 1 - w.kind[k, end]
-                    else:
-                        leaves = end
-            if w.fails[k, stepping.FRICTION] == 1:
-                if w.slides[k] == 0:
-                    exclude = True
-                else:
-                    w.slides[k] = 0
-                    # what slip speed the step has left goes by an impulse: a shift of the speed could add energy
-                    solve(p, w, w.q, w.v, now.ah, now.av, True, False)
-                    for d in range(3 * p.count):
-                        w.v[d] = w.out[d]
-                    impact.project(p, w)
-                    w.resting = 0
         for end in range(2):
-            touches = w.closed[k, end] == 1
-            if not touches:
+            if w.closed[k, end] == 1 and w.fails[k, stepping.GAP + end] == 1:
+                exclude = True
+            if w.closed[k, end] == 1 and w.fails[k, stepping.EDGE + end] == 1:
+                passes = True
+                if w.closed[k, 1 - end] == 1:
+                    w.kind[k, end] = 1 - w.kind[k, end]
+                else:
+                    leaves = end
+        if w.fails[k, stepping.FRICTION] == 1 and w.slides[k] == 0:
+            exclude = True
+        elif w.fails[k, stepping.FRICTION] == 1:
+            w.slides[k] = 0
+            # what slip speed the step has left goes by an impulse: a shift of the speed could add energy
+            solve(p, w, w.q, w.v, now.ah, now.av, True, False)
+            copy(p, w.out, w.v)
+            impact.project(p, w)
+            w.resting = 0
+        for end in range(2):
+            w.touching[k, end] = w.closed[k, end]
+            if w.closed[k, end] == 0:
                 _, _, _, _, gap, _, kind = end_of(p, w, w.q, k, end, -1)
-                lands = not all_ends and w.fails[k, stepping.GAP + end] == 1
-                touches = lands or gap < 1e-11 * p.size
-                if touches:
-                    w.kind[k, end] = kind
-            w.touching[k, end] = 1 if touches and end != leaves else 0
+                if w.fails[k, stepping.GAP + end] == 1 or gap < 1e-11 * p.size:
+                    w.touching[k, end], w.kind[k, end] = 1, kind
+        if leaves >= 0:
+            w.touching[k, leaves] = 0
     _shut(p, w)
     kind = PASSING if passes else CHANGE
     hit = False
@@ -359,42 +367,36 @@ def _handle(p, w, now, closing, all_ends, exclude, contact_events, count):
                 hit = True
     if hit:
         impact.strike(p, w, now.ah, now.av, closing * p.speed, False)
-        _touch_closed(p, w)
         kind = IMPACT
         exclude = False
     if not impact.settle(p, w, now.ah, now.av, exclude):
         w.told.paradoxes += 1
         impact.strike(p, w, now.ah, now.av, closing * p.speed, True)
-        _touch_closed(p, w)
         impact.settle(p, w, now.ah, now.av, False)
         kind = PARADOX
     for k in range(p.count):
-        if w.closed[k, 0] + w.closed[k, 1] == 0 and w.old_closed[k, 0] + w.old_closed[k, 1] > 0:
-            w.told.flights[k] += 1
-    return _note(p, w, now.time, kind, contact_events, count)
+        w.told.flights[k] += w.old_closed[k].any() and not w.closed[k].any()
+    _note(p, w, now.time, kind, kept)
 
 
 @kernel
-def _jolt(p, w, now, closing, contact_events, count):
+def _jolt(p, w, now, closing, kept):
     """End by an impulse, as where no mode is consistent, what repeats on the spot as a step begins."""
-    for d in range(3 * p.count):
-        w.q[d] = w.q0[d]
-        w.v[d] = w.v0[d]
+    copy(p, w.q0, w.q)
+    copy(p, w.v0, w.v)
     _remember(p, w)
-    _touch_closed(p, w)
+    impact.touch_closed(p, w)
     look_at(p, w, w.q)
     impact.strike(p, w, now.ah, now.av, closing * p.speed, True)
-    _touch_closed(p, w)
     impact.settle(p, w, now.ah, now.av, False)
     w.met += 1
-    return _note(p, w, now.time, PARADOX, contact_events, count)
+    _note(p, w, now.time, PARADOX, kept)
 
 
 @kernel
 def _remember(p, w):
     """Keep velocities and mode as they are before a contact event."""
-    for d in range(3 * p.count):
-        w.old_v[d] = w.v[d]
+    copy(p, w.v, w.old_v)
     for k in range(p.count):
         w.old_slides[k] = w.slides[k]
         for end in range(2):
@@ -402,20 +404,12 @@ def _remember(p, w):
 
 
 @kernel
-def _touch_closed(p, w):
-    """Let the ends that an impact has closed be those that touch."""
-    for k in range(p.count):
-        for end in range(2):
-            w.touching[k, end] = w.closed[k, end]
-
-
-@kernel
 def _shut(p, w):
     """Set the gaps of touching ends to zero."""
     for k in range(p.count):
-        if w.touching[k, 0] == 0 and w.touching[k, 1] == 0:
+        if not w.touching[k].any():
             continue
-        if w.touching[k, 0] == 1 and w.touching[k, 1] == 1:
+        if w.touching[k].all():
             w.q[3 * k + 2] = w.q[3 * k - 1] if k > 0 else 0.0
         end = 0 if w.touching[k, 0] == 1 else 1
         look_at(p, w, w.q)
@@ -461,26 +455,21 @@ def _rest_ends(p, w, tau, early, late):
 
 
 @kernel
-def _note(p, w, time, kind, contact_events, count):
-    """Write a contact event, if there is room; return the number of contact events so far."""
+def _note(p, w, time, kind, kept):
+    """Count a contact event, and write it if there is room."""
     before = mode_number(p, w.old_closed, w.old_slides)
     after = mode_number(p, w.closed, w.slides)
     if kind == CHANGE and before == after:
-        return count
-    if count < contact_events.shape[0]:
-        contact_event = contact_events[count]
-        contact_event[0] = time
-        contact_event[1] = kind
-        contact_event[2] = before
-        contact_event[3] = after
-        contact_event[4] = impact.kinetic_energy(p, w.old_v)
-        contact_event[5] = impact.kinetic_energy(p, w.v)
+        return
+    if w.noted < kept.contact_events.shape[0]:
+        found = kept.contact_events[w.noted]
+        found.time, found.kind, found.before, found.after = time, kind, before, after
+        found.energy_before = impact.kinetic_energy(p, w.old_v)
+        found.energy_after = impact.kinetic_energy(p, w.v)
         for k in range(p.count):
-            contact_event[6 + k] = slip(p, w, k)
-            contact_event[6 + p.count + k] = w.q[3 * k + 2]
-            contact_event[6 + 2 * p.count + k] = w.old_v[3 * k + 2]
-            contact_event[6 + 3 * p.count + k] = w.v[3 * k + 2]
-    return count + 1
+            found.slip[k], found.theta[k] = slip(p, w, k), w.q[3 * k + 2]
+            found.omega_before[k], found.omega_after[k] = w.old_v[3 * k + 2], w.v[3 * k + 2]
+    w.noted += 1
 
 
 @kernel
@@ -512,17 +501,15 @@ def _parted(w, body):
 
 
 @kernel
-def _keep(p, w, i, now, history):
+def _keep(p, w, sample, now):
+    """Fill a sample of the history."""
     look_at(p, w, w.q)
     solve(p, w, w.q, w.v, now.ah, now.av, False)
-    n = p.count
-    for d in range(3 * n):
-        history[i, d] = w.q[d]
-        history[i, 3 * n + d] = w.v[d]
-    for k in range(n):
-        history[i, 6 * n + k] = slip(p, w, k)
-        history[i, 7 * n + k] = w.normal[k, 0] + w.normal[k, 1]
-        history[i, 8 * n + k] = w.shear[k]
-        history[i, 9 * n + k] = w.out[3 * k + 2]
-    history[i, 10 * n], history[i, 10 * n + 1] = w.work, w.rubbed
-    history[i, 10 * n + 2], history[i, 10 * n + 3] = w.struck, mode_number(p, w.closed, w.slides)
+    copy(p, w.q, sample.q)
+    copy(p, w.v, sample.v)
+    for k in range(p.count):
+        sample.slip[k], sample.shear[k] = slip(p, w, k), w.shear[k]
+        sample.normal[k] = w.normal[k, 0] + w.normal[k, 1]
+        sample.alpha[k] = w.out[3 * k + 2]
+    sample.work, sample.rubbed, sample.struck = w.work, w.rubbed, w.struck
+    sample.mode = mode_number(p, w.closed, w.slides)

@@ -5,9 +5,20 @@ import math
 from rockfrag.elementary import sin_cos
 from rockfrag.engines.kernels.jit import inlined_kernel, kernel
 
+SHEAR, COUPLE = (
+    2,
+    3,
+)  # what an unknown of an interface is, besides the normal force at its ends 0 and 1
 AT_EDGE = 1e-9
 """A corner counts as over the face until it is this fraction of the half width beyond the edge: bases as wide as
 their face stand on it and not on its edges."""
+
+
+@inlined_kernel
+def copy(p, of, into):
+    """Copy a number for each coordinate of the bodies."""
+    for d in range(3 * p.count):
+        into[d] = of[d]
 
 
 @inlined_kernel
@@ -25,7 +36,7 @@ def corner_of(p, w, q, k, end):
     return q[3 * k] + cx * c + cy * s, q[3 * k + 1] - cx * s + cy * c
 
 
-@kernel
+@inlined_kernel
 def end_of(p, w, q, k, end, kind):
     """End of interface k in the configuration ``q``.
 
@@ -109,13 +120,11 @@ def solve(p, w, q, v, ah, av, impact, rough=True):
     keep the mode.  Normal forces (impulses) of closed ends go to ``w.normal``, shear of interfaces to ``w.shear``.
     ``look_at`` must have been called with ``q``.
     """
-    if p.count == 1 and not impact:
-        return _solve_lone(p, w, q, v, ah, av)
     standing = 0 if impact else standing_bodies(p, w)
-    if p.count == 2:
-        flat = w.closed[1, 0] == 1 and w.closed[1, 1] == 1
-        if standing > 0 and not (flat and w.slides[1] == 0):
-            return _solve_upper(p, w, q, v, ah, av)
+    if p.count < 3:
+        if not impact and (p.count == 1 or standing == 1):
+            _solve_top(p, w, q, v, ah, av)
+            return True
         standing = 0
     if not solve_generally(p, w, q, v, ah, av, impact, rough, standing):
         return False
@@ -124,20 +133,11 @@ def solve(p, w, q, v, ah, av, impact, rough=True):
     return True
 
 
-@inlined_kernel
-def accelerate(p, w, q, v, ah, av):
-    """Accelerations of the mode in ``w`` into ``w.out``: :func:`solve` where steps spend their time."""
-    if p.count == 1:
-        _solve_lone(p, w, q, v, ah, av)
-    else:
-        solve(p, w, q, v, ah, av, False)
-
-
 @kernel
 def standing_bodies(p, w):
     """Number of bodies, from the ground up, that stand on what stands."""
     for k in range(p.count):
-        if w.closed[k, 0] == 0 or w.closed[k, 1] == 0 or w.slides[k] != 0:
+        if not w.closed[k].all() or w.slides[k] != 0:
             return k
     return p.count
 
@@ -154,21 +154,16 @@ def _fill_equations(p, w, q, v, impact, rough, standing):
                 continue
             x, y, tx, ty, _, _, kind = end_of(p, w, q, k, end, w.kind[k, end])
             fill_row(q, k, x, y, -ty, tx, w.row[m])
-            w.owner[m] = 3 * k + end
+            w.owner[m] = 4 * k + end
             w.right[m] = 0.0 if impact else -bias(q, v, k, x, y, -ty, tx, kind)
-            if w.slides[k] != 0:
-                fill_row(q, k, x, y, -ty - friction * tx, tx - friction * ty, w.column[m])
-            else:
-                for d in range(6):
-                    w.column[m, d] = w.row[m, d]
+            fill_row(q, k, x, y, -ty - friction * tx, tx - friction * ty, w.column[m])
             if impact and w.fraction[k, end] > 0.0:
                 _add_fraction(p, w, q, k, end, friction, w.column[m])
             m += 1
             if first and w.slides[k] == 0:
                 fill_row(q, k, x, y, tx, ty, w.row[m])
-                for d in range(6):
-                    w.column[m, d] = w.row[m, d]
-                w.owner[m] = 3 * k + 2
+                fill_row(q, k, x, y, tx, ty, w.column[m])
+                w.owner[m] = 4 * k + SHEAR
                 w.right[m] = 0.0 if impact else -bias(q, v, k, x, y, tx, ty, kind)
                 m += 1
             first = False
@@ -176,8 +171,10 @@ def _fill_equations(p, w, q, v, impact, rough, standing):
             end = w.drive[k]
             x, y, tx, ty, _, _, _ = end_of(p, w, q, k, end, w.kind[k, end])
             fill_row(q, k, x, y, -ty, tx, w.row[m])
-            _fill_couple(k, w.column[m])
-            w.owner[m] = -1 - k
+            # a couple turns body k, and what is below it the other way
+            w.column[m, :] = 0.0
+            w.column[m, 5], w.column[m, 2] = 1.0, -1.0 if k > 0 else 0.0
+            w.owner[m] = 4 * k + COUPLE
             w.right[m] = w.depart[k]
             m += 1
         w.upto[k] = m
@@ -195,22 +192,6 @@ def _add_fraction(p, w, q, k, end, friction, column):
 
 
 @kernel
-def _fill_couple(k, column):
-    """Fill what a couple between body k and what is below it turns."""
-    for d in range(6):
-        column[d] = 0.0
-    column[5] = 1.0
-    if k > 0:
-        column[2] = -1.0
-
-
-@kernel
-def _interface_of(w, i):
-    """Interface of an equation."""
-    return w.owner[i] // 3 if w.owner[i] >= 0 else -1 - w.owner[i]
-
-
-@kernel
 def solve_generally(p, w, q, v, ah, av, impact, rough, standing):
     """Solve any mode by elimination above the first ``standing`` bodies, as :func:`solve` does in formulas."""
     m = _fill_equations(p, w, q, v, impact, rough, standing)
@@ -221,7 +202,7 @@ def solve_generally(p, w, q, v, ah, av, impact, rough, standing):
             w.out[3 * k], w.out[3 * k + 1] = -ah, -(p.g + av)
         w.normal[k, 0] = w.normal[k, 1] = w.shear[k] = 0.0
     for i in range(m):
-        k = _interface_of(w, i)
+        k = w.owner[i] // 4
         total = w.right[i]
         begin = 3 if k == standing else 0
         for d in range(begin, 6):
@@ -231,32 +212,22 @@ def solve_generally(p, w, q, v, ah, av, impact, rough, standing):
         low = w.upto[k - 2] if k - 2 >= standing else 0
         high = w.upto[k + 2] if k + 2 < p.count else m
         for j in range(low, high):
-            other = _interface_of(w, j)
-            total = 0.0
-            if other == k:
-                for d in range(begin, 6):
-                    total += w.light[d] * w.column[j, d]
-            elif other == k - 1:
-                for d in range(3):
-                    total += w.light[d] * w.column[j, d + 3]
-            elif other == k + 1:
-                for d in range(3):
-                    total += w.light[d + 3] * w.column[j, d]
+            # both move the bodies between them alone
+            total, shift = 0.0, 3 * (w.owner[j] // 4 - k)
+            for d in range(max(begin, shift), min(6, 6 + shift)):
+                total += w.light[d] * w.column[j, d - shift]
             w.matrix[i, j] = total
     if not eliminate(p, w, m, standing):
         return False
     for i in range(m):
-        force = w.right[i]
-        k = _interface_of(w, i)
-        if w.owner[i] >= 0:
-            end = w.owner[i] - 3 * k
-            if end == 2:
-                w.shear[k] += force
-            else:
-                fraction = w.fraction[k, end] if impact else 0.0
-                w.normal[k, end] += force
-                w.normal[k, 1 - end] += fraction * force
-                w.shear[k] -= w.slides[k] * p.kinetic[k] * (force + fraction * force)
+        force, k, end = w.right[i], w.owner[i] // 4, w.owner[i] % 4
+        if end == SHEAR:
+            w.shear[k] += force
+        elif end < SHEAR:
+            fraction = w.fraction[k, end] if impact else 0.0
+            w.normal[k, end] += force
+            w.normal[k, 1 - end] += fraction * force
+            w.shear[k] -= w.slides[k] * p.kinetic[k] * (force + fraction * force)
         for d in range(3 if k == standing else 0, 6):
             w.out[3 * k - 3 + d] += p.inverse[3 * k - 3 + d] * w.column[i, d] * force
     return True
@@ -264,140 +235,93 @@ def solve_generally(p, w, q, v, ah, av, impact, rough, standing):
 
 @kernel
 def _carry(p, w, q, ah, av, standing):
-    """Forces under the bodies that stand still: what they carry, and what the ground's acceleration asks for."""
-    for k in range(standing, 0, -1):
-        body = k - 1
+    """Forces under the bodies that stand still, from the uppermost down."""
+    for body in range(standing - 1, -1, -1):
         # of what is above on the body, the moment clockwise about its centre
         push_x, push_y, moment = 0.0, 0.0, 0.0
-        if k < p.count:
-            first = True
-            for end in range(2):
-                if w.closed[k, end] == 0:
-                    continue
-                x, y, tx, ty, _, _, _ = end_of(p, w, q, k, end, w.kind[k, end])
-                fx, fy = -w.normal[k, end] * ty, w.normal[k, end] * tx
-                if first:
-                    fx += w.shear[k] * tx
-                    fy += w.shear[k] * ty
-                first = False
-                push_x += fx
-                push_y += fy
-                moment -= fx * (y - q[3 * body + 1]) - fy * (x - q[3 * body])
+        above = body + 1
+        shear = w.shear[above] if above < p.count else 0.0
+        for end in range(2):
+            if above == p.count or w.closed[above, end] == 0:
+                continue
+            x, y, tx, ty, _, _, _ = end_of(p, w, q, above, end, w.kind[above, end])
+            fx = shear * tx - w.normal[above, end] * ty
+            fy = shear * ty + w.normal[above, end] * tx
+            # at the first closed end
+            shear = 0.0
+            push_x += fx
+            push_y += fy
+            moment -= fx * (y - q[3 * body + 1]) - fy * (x - q[3 * body])
         push_x += p.mass[body] * ah
         push_y += p.mass[body] * (p.g + av)
-        x, y, tx, ty, _, _, _ = end_of(p, w, q, body, 0, w.kind[body, 0])
-        far_x, far_y, _, _, _, _, _ = end_of(p, w, q, body, 1, w.kind[body, 1])
-        rx, ry = x - q[3 * body], y - q[3 * body + 1]
-        shear = push_x * tx + push_y * ty
-        push = push_y * tx - push_x * ty
-        near = -ty * ry - tx * rx
-        far = -ty * (far_y - q[3 * body + 1]) - tx * (far_x - q[3 * body])
-        w.shear[body] = shear
-        w.normal[body, 1] = -(moment + shear * (tx * ry - ty * rx) + push * near) / (far - near)
-        w.normal[body, 0] = push - w.normal[body, 1]
+        _hold_still(p, w, q, body, push_x, push_y, moment)
 
 
 @kernel
-def _solve_lone(p, w, q, v, ah, av):
-    """Accelerations and forces of a lone block, whose equations are solved by hand: those of :func:`solve`."""
-    fx, fy = -ah, -(p.g + av)
-    turn = v[2]
-    light, slow = p.inverse[0], p.inverse[2]
-    slides = w.slides[0]
-    w.normal[0, 0] = w.normal[0, 1] = 0.0
-    push, shear, twist = 0.0, 0.0, 0.0
-    if w.closed[0, 0] == 1 and w.closed[0, 1] == 1:
-        left, _ = corner_of(p, w, q, 0, 0)
-        right, y = corner_of(p, w, q, 0, 1)
-        rx0, rx1, ry = left - q[0], right - q[0], y - q[1]
-        push = -fy / light
-        shear = -slides * p.kinetic[0] * push if slides != 0 else -fx / light
-        # no turning: N0 rx0 + N1 rx1 = T ry
-        w.normal[0, 1] = (shear * ry - push * rx0) / (rx1 - rx0)
-        w.normal[0, 0] = push - w.normal[0, 1]
-    elif w.closed[0, 0] == 1 or w.closed[0, 1] == 1:
-        end = 0 if w.closed[0, 0] == 1 else 1
-        x, y = corner_of(p, w, q, 0, end)
-        rx, ry = x - q[0], y - q[1]
-        across = light + rx * rx * slow
-        both = -rx * ry * slow
-        need = turn * turn * ry - fy
-        if slides != 0:
-            push = need / (across - slides * p.kinetic[0] * both)
-            shear = -slides * p.kinetic[0] * push
-        else:
-            along = light + ry * ry * slow
-            also = turn * turn * rx - fx
-            whole = across * along - both * both
-            push = (need * along - also * both) / whole
-            shear = (also * across - need * both) / whole
-        w.normal[0, end] = push
-        twist = ry * shear - rx * push
-    w.shear[0] = shear
-    w.out[0] = fx + shear * light
-    w.out[1] = fy + push * light
-    w.out[2] = twist * slow
-    return True
+def _hold_still(p, w, q, k, push_x, push_y, moment):
+    """Forces at interface k under a push at the centre of body k and a moment, clockwise, that do not move it."""
+    x, y, tx, ty, _, _, _ = end_of(p, w, q, k, 0, w.kind[k, 0])
+    far_x, far_y, _, _, _, _, _ = end_of(p, w, q, k, 1, w.kind[k, 1])
+    rx, ry = x - q[3 * k], y - q[3 * k + 1]
+    shear = push_x * tx + push_y * ty
+    push = push_y * tx - push_x * ty
+    near = -ty * ry - tx * rx
+    far = -ty * (far_y - q[3 * k + 1]) - tx * (far_x - q[3 * k])
+    w.shear[k] = shear
+    w.normal[k, 1] = -(moment + shear * (tx * ry - ty * rx) + push * near) / (far - near)
+    w.normal[k, 0] = push - w.normal[k, 1]
 
 
-@kernel
-def _solve_upper(p, w, q, v, ah, av):
-    """Accelerations and forces where the pedestal stands and the statue does not: those of :func:`solve`."""
+@inlined_kernel
+def _solve_top(p, w, q, v, ah, av):
+    """What :func:`solve` does where of at most two bodies only the upper one moves, solved by hand."""
+    k = p.count - 1
     fx, fy = -ah, -(p.g + av)
-    light, slow = p.inverse[3], p.inverse[5]
-    w.normal[1, 0] = w.normal[1, 1] = w.shear[1] = 0.0
-    pull_x, pull_y, twist, moment = 0.0, 0.0, 0.0, 0.0
-    if w.closed[1, 0] == 1 and w.closed[1, 1] == 1:
-        # it slides flat: what accelerates it apart vanishes, and it does not turn
-        x, y, tx, ty, _, _, _ = end_of(p, w, q, 1, 0, w.kind[1, 0])
-        rx, ry = x - q[3], y - q[4]
-        first, two = -ty * ry - tx * rx, tx * ry - ty * rx
-        x1, y1, _, _, _, _, _ = end_of(p, w, q, 1, 1, w.kind[1, 1])
-        other = -ty * (y1 - q[4]) - tx * (x1 - q[3])
-        push = (ty * fx - tx * fy) / light
-        shear = -w.slides[1] * p.kinetic[1] * push
-        w.normal[1, 1] = (two * shear + first * push) / (first - other)
-        w.normal[1, 0] = push - w.normal[1, 1]
-        w.shear[1] = shear
-        pull_x, pull_y = shear * tx - push * ty, push * tx + shear * ty
-        moment = pull_y * (x - q[0]) - pull_x * (y - q[1])
-        moment += w.normal[1, 1] * (tx * (x1 - x) + ty * (y1 - y))
-    elif w.closed[1, 0] == 1 or w.closed[1, 1] == 1:
-        end = 0 if w.closed[1, 0] == 1 else 1
-        x, y, tx, ty, _, _, kind = end_of(p, w, q, 1, end, w.kind[1, end])
-        rx, ry = x - q[3], y - q[4]
+    light, slow = p.inverse[3 * k], p.inverse[3 * k + 2]
+    w.normal[k, 0] = w.normal[k, 1] = 0.0
+    shear, pull_x, pull_y, twist, moment = 0.0, 0.0, 0.0, 0.0, 0.0
+    if w.closed[k, 0] == 1 or w.closed[k, 1] == 1:
+        end = 0 if w.closed[k, 0] == 1 else 1
+        rubs = -w.slides[k] * p.kinetic[k]
+        x, y, tx, ty, _, _, kind = end_of(p, w, q, k, end, w.kind[k, end])
+        rx, ry = x - q[3 * k], y - q[3 * k + 1]
         # arms of normal (-ty, tx) and tangent (tx, ty)
         first, two = -ty * ry - tx * rx, tx * ry - ty * rx
-        across = light + first * first * slow
-        both = first * two * slow
-        need = ty * fx - tx * fy - bias(q, v, 1, x, y, -ty, tx, kind)
-        if w.slides[1] != 0:
-            push = need / (across - w.slides[1] * p.kinetic[1] * both)
-            shear = -w.slides[1] * p.kinetic[1] * push
+        far_x, far_y, far_push = x, y, 0.0
+        if w.closed[k, 1 - end] == 1:
+            # flat: what accelerates it apart vanishes, and it does not turn
+            far_x, far_y, _, _, _, _, _ = end_of(p, w, q, k, 1, w.kind[k, 1])
+            other = -ty * (far_y - q[3 * k + 1]) - tx * (far_x - q[3 * k])
+            push = (ty * fx - tx * fy) / light
+            shear = rubs * push if w.slides[k] != 0 else -(tx * fx + ty * fy) / light
+            far_push = (two * shear + first * push) / (first - other)
+            w.normal[k, 1] = far_push
         else:
-            along = light + two * two * slow
-            also = -tx * fx - ty * fy - bias(q, v, 1, x, y, tx, ty, kind)
-            whole = across * along - both * both
-            push = (need * along - also * both) / whole
-            shear = (also * across - need * both) / whole
-        w.normal[1, end] = push
-        w.shear[1] = shear
+            across = light + first * first * slow
+            both = first * two * slow
+            need = ty * fx - tx * fy - bias(q, v, k, x, y, -ty, tx, kind)
+            if w.slides[k] != 0:
+                push = need / (across + rubs * both)
+                shear = rubs * push
+            else:
+                along = light + two * two * slow
+                also = -tx * fx - ty * fy - bias(q, v, k, x, y, tx, ty, kind)
+                whole = across * along - both * both
+                push = (need * along - also * both) / whole
+                shear = (also * across - need * both) / whole
+            twist = first * push + two * shear
+        w.normal[k, end] = push - far_push
         pull_x, pull_y = shear * tx - push * ty, push * tx + shear * ty
-        twist = first * push + two * shear
-        moment = pull_y * (x - q[0]) - pull_x * (y - q[1])
-    left, _ = corner_of(p, w, q, 0, 0)
-    right, y = corner_of(p, w, q, 0, 1)
-    rx0, rx1, ry = left - q[0], right - q[0], y - q[1]
-    shear = pull_x - p.mass[0] * fx
-    push = pull_y - p.mass[0] * fy
-    w.normal[0, 1] = (shear * ry + moment - push * rx0) / (rx1 - rx0)
-    w.normal[0, 0] = push - w.normal[0, 1]
-    w.shear[0] = shear
-    w.out[0] = w.out[1] = w.out[2] = 0.0
-    w.out[3] = fx + pull_x * light
-    w.out[4] = fy + pull_y * light
-    w.out[5] = twist * slow
-    return True
+        if k > 0:
+            moment = pull_y * (x - q[0]) - pull_x * (y - q[1])
+            moment += far_push * (tx * (far_x - x) + ty * (far_y - y))
+    w.shear[k] = shear
+    w.out[3 * k] = fx + pull_x * light
+    w.out[3 * k + 1] = fy + pull_y * light
+    w.out[3 * k + 2] = twist * slow
+    if k > 0:
+        w.out[0] = w.out[1] = w.out[2] = 0.0
+        _hold_still(p, w, q, 0, pull_x + p.mass[0] * ah, pull_y + p.mass[0] * (p.g + av), moment)
 
 
 @kernel

@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 from rockfrag.engines.kernels.dormand_prince import INSTANTS, WEIGHTS
 from rockfrag.engines.kernels.jit import kernel
-from rockfrag.engines.planar.solve import AT_EDGE, accelerate, end_of, look_at, rate, solve
+from rockfrag.engines.planar.solve import AT_EDGE, copy, end_of, look_at, rate, solve
 
 # slack before a contact event is seen, so that what has just begun is not taken for its end [-]: forces over
 # weight; speeds over √(g b) and lengths over b
@@ -48,10 +48,9 @@ def ground_at(stretch, part):
 @kernel
 def start_step(p, w):
     """Take ``q``, ``v`` and ``a`` as the start of a step; ``look_at`` must have been called with ``q``."""
-    for d in range(3 * p.count):
-        w.q0[d] = w.q[d]
-        w.v0[d] = w.v[d]
-        w.a0[d] = w.a[d]
+    copy(p, w.q, w.q0)
+    copy(p, w.v, w.v0)
+    copy(p, w.a, w.a0)
     for k in range(p.count):
         for end in range(2):
             w.early[k, end] = 0.0
@@ -91,7 +90,7 @@ def take_step(p, w, stretch, energy_balance):
             w.q1[d] = w.q0[d] + h * speed
         look_at(p, w, w.q1)
         ah, av = ground_at(stretch, INSTANTS[stage])
-        accelerate(p, w, w.q1, w.v1, ah, av)
+        solve(p, w, w.q1, w.v1, ah, av, False)
         for d in range(size):
             w.kv[d, stage] = w.v1[d]
             w.ka[d, stage] = w.out[d]
@@ -99,8 +98,7 @@ def take_step(p, w, stretch, energy_balance):
             first, two = _powers(p, w, w.q1, w.v1, ah, av)
             work += WEIGHTS[6, stage] * first
             rubbed += WEIGHTS[6, stage] * two
-    for d in range(size):
-        w.a1[d] = w.out[d]
+    copy(p, w.out, w.a1)
     return work * h, rubbed * h
 
 
@@ -220,7 +218,7 @@ def margin_at(p, w, tau, stretch):
     interpolate(p, w, tau, stretch.length)
     look_at(p, w, w.q)
     ah, av = ground_at(stretch, tau)
-    accelerate(p, w, w.q, w.v, ah, av)
+    solve(p, w, w.q, w.v, ah, av, False)
     return least_margin(p, w, w.q, w.v)
 
 

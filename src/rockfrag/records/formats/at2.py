@@ -8,8 +8,6 @@ any case), then values in rows. The header may be longer and freer in files made
 import re
 from collections.abc import Iterator
 
-from obspy import Trace
-
 from rockfrag.records.parsing.format import QUANTITIES, Channel, Format, stated, text_writer
 from rockfrag.records.parsing.quantities import canonical_unit, quantity_of
 from rockfrag.records.parsing.text_file import TextFile, last_row
@@ -112,8 +110,8 @@ def _parse(text: TextFile) -> Iterator[Channel]:
     start, stop = size + 1, last_row(text, size + 1)
     # PEER's columns, where neighbours may touch
     widths = (None, _WIDTH) if len(text.raw(start).rstrip()) == 5 * _WIDTH else ()
-    values = Channel(npts, dt, lambda: text.numbers(start, stop, *widths, count=npts), unit)
-    yield values.saying(_facts(header[:-1]))
+    values = text.numbers(start, stop, *widths, count=npts)
+    yield Channel(npts, dt, values, unit).saying(_facts(header[:-1]))
 
 
 def _facts(header: list[str]) -> dict[str, str]:
@@ -141,24 +139,5 @@ def _facts(header: list[str]) -> dict[str, str]:
 
 
 FORMAT = Format("AT2", _recognise, _parse)
-
-
-def _written(trace: Trace, samples: list[float], unit: str, dt: float) -> list[str]:
-    facts = trace.stats.rockfrag
-    place = [
-        str(facts.get("earthquake") or "UNKNOWN EARTHQUAKE"),
-        str(trace.stats.station or "UNKNOWN STATION"),
-        str(facts.get("component") or trace.stats.channel or "UNKNOWN"),
-    ]
-    values = [f"{value:24.16E}" for value in samples]
-    return [
-        "PEER STRONG MOTION DATABASE RECORD. WRITTEN BY ROCKFRAG.",
-        ", ".join(" ".join(words.split()) for words in place),
-        f"ACCELERATION TIME SERIES IN UNITS OF {unit.upper()}",
-        f"NPTS= {len(samples):6d}, DT= {dt:.12g} SEC",
-        *("".join(values[i : i + 5]) for i in range(0, len(values), 5)),
-    ]
-
-
-write = text_writer(_written)
+write = text_writer("at2")
 """Write one trace of acceleration as an AT2 file that reads back to the same samples."""

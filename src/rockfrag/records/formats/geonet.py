@@ -8,29 +8,12 @@ prepended, appended, acceleration, velocity and displacement samples.
 import re
 from collections.abc import Generator, Iterator
 
-from rockfrag.records.parsing.format import Channel, Format, stated
+from rockfrag.records.parsing.format import Channel, Format, headed, stated
 from rockfrag.records.parsing.text_file import TextFile
-from rockfrag.records.parsing.timestamps import clock_time
+from rockfrag.records.parsing.timestamps import time_at
 
 _FIRST = re.compile(r"^\s*(?:un)?corrected accelerogram\s+\S+", re.I)
 _TEXT_LINES, _INTEGER_LINES, _REAL_LINES, _A_LINE, _WIDTH = 16, 4, 6, 10, 8
-
-# places in the headers, counted from zero
-_START = (8, 9, 18, 19, 38)
-_START_MS = 39
-_DIGITISED = 30
-_COUNTS = (33, 34, 35)
-_DIGITISED_STEP, _STEP = 24, 25
-_MAGNITUDE, _LATITUDE, _LONGITUDE = 14, 10, 11
-
-
-def _recognise(lines: list[str], name: str) -> bool:
-    return (
-        len(lines) > _TEXT_LINES
-        and bool(_FIRST.match(lines[0]))
-        and bool(re.match(r"^\s*site\s+\S+", lines[1], re.I))
-        and any(re.match(r"^\s*component\s+\S+", line, re.I) for line in lines[:_TEXT_LINES])
-    )
 
 
 def _parse(text: TextFile) -> Iterator[Channel]:
@@ -54,11 +37,11 @@ def _component(text: TextFile, first: int) -> Generator[Channel, None, int]:
         text.fail("the header has 26 lines; the file is cut short", len(text) - 1)
     whole = text.integers(at_integers, at_reals, _WIDTH, 40)
     numbers = text.reals(at_reals, start, _WIDTH, 60)
-    counts = [whole[place] for place in _COUNTS]
-    dt = numbers[_STEP]
+    # places in the headers, counted from zero
+    counts, digitised_dt, dt = whole[33:36], *numbers[24:26]
     if counts[0] == 0:
         # V1A has the digitised samples only
-        counts[0], dt = whole[_DIGITISED], dt or numbers[_DIGITISED_STEP]
+        counts[0], dt = whole[30], dt or digitised_dt
     if min(counts) < 0 or counts[0] < 1:
         text.fail(f"the header promises {counts[0]} samples of acceleration", at_integers + 3)
     found = []
@@ -67,22 +50,23 @@ def _component(text: TextFile, first: int) -> Generator[Channel, None, int]:
         found.append(text.numbers(line, after, _WIDTH, count=count))
         line = after
     values = found[0] * float(stated(r"\bunits of\s+([\d.]+)\s*mm/s/s", words) or 1)
-    year, month, day, hour, minute = (str(whole[place]) for place in _START)
-    began = clock_time(year, month, day, hour, minute, "0") if whole[_START[0]] > 0 else None
+    (year, month), (day, hour), (minute, milliseconds) = whole[8:10], whole[18:20], whole[38:40]
+    seconds, clock = milliseconds / 1000, {"day": day, "hour": hour, "minute": minute}
     facts = {
-        "start_time": began and began + whole[_START_MS] / 1000,
+        "start_time": time_at(seconds, year=year, month=month, **clock) if year > 0 else None,
         "network": "NZ",
         "station": stated(r"\bsite\s+(\S+)", words),
         "component": stated(r"\bcomponent\s+(\S+)", words),
         "station_name": words[2].strip(),
         "earthquake": ", ".join(" ".join(line.split()) for line in words[6:8]),
-        "magnitude": numbers[_MAGNITUDE] or None,
-        "latitude": -abs(numbers[_LATITUDE]),
-        "longitude": numbers[_LONGITUDE],
+        "magnitude": numbers[14] or None,
+        "latitude": -abs(numbers[10]),
+        "longitude": numbers[11],
     }
     dt = text.interval(dt, at_reals + 2)
-    yield Channel(counts[0], dt, values.copy, "mm/s2").saying(facts)
+    yield Channel(counts[0], dt, values, "mm/s2").saying(facts)
     return line
 
 
-FORMAT = Format("GEONET", _recognise, _parse)
+_PARTS = (re.compile(rf"^\s*{part}\s+\S+", re.I) for part in ("site", "component"))
+FORMAT = Format("GEONET", headed(_FIRST, *_PARTS, within=_TEXT_LINES), _parse)

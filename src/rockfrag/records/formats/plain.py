@@ -13,7 +13,6 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from obspy import Trace
 
 from rockfrag.errors import InputError
 from rockfrag.records.formats import HEADED
@@ -84,7 +83,7 @@ class _Layout:
         return Channel(
             npts=self.npts or samples.size,
             dt=self.text.interval(step, self.line),
-            samples=samples.copy,
+            samples=samples.copy(),
             unit=column.unit or stated,
             component=component,
             station=self.facts.details.get("station", ""),
@@ -119,12 +118,12 @@ def _parse(text: TextFile) -> list[Channel]:
     stop = last_row(text, layout.line)
     values, widths = text.rows(layout.line, stop, layout.table.decimal_comma)
     # only the last row of a series is shorter
-    _check_widths(layout, widths, None if columns == 1 else widths.size - 1)
+    text.check_widths(widths if columns == 1 else widths[:-1], columns, layout.line)
     if columns == 1:
         return [_series(layout, _without_leading(layout, values))]
     filled = widths[widths > 0]
     if layout.titles or _is_timed(values, columns) or _are_channels(layout, values, filled):
-        _check_widths(layout, widths)
+        text.check_widths(widths, columns, layout.line)
         return _channels(layout, values.reshape(-1, columns))
     return [_series(layout, values)]
 
@@ -248,17 +247,6 @@ def _are_channels(layout: _Layout, values: NDArray[np.float64], widths: NDArray[
         )
     layout.steps.append({"step": "take numbers as " + ("columns" if side_by_side else "rows")})
     return side_by_side
-
-
-def _check_widths(layout: _Layout, widths: NDArray[np.int64], stop: int | None = None) -> None:
-    """Check that rows which are not blank, up to the row ``stop``, have as many numbers as the first."""
-    wrong = np.flatnonzero((widths[:stop] != layout.table.columns) & (widths[:stop] > 0))
-    if wrong.size:
-        layout.text.fail(
-            f"{widths[wrong[0]]} columns here, {layout.table.columns} in the rows above; "
-            "the file is cut short or damaged",
-            layout.line + int(wrong[0]),
-        )
 
 
 def _series(layout: _Layout, values: NDArray[np.float64]) -> Channel:
@@ -447,12 +435,5 @@ def _interval(
 
 
 FORMAT = Format("PLAINTEXT", _recognise, _parse, encoding="latin-1")
-
-
-def _written(trace: Trace, samples: list[float], unit: str, dt: float) -> list[str]:
-    title = f"Time [s],Acceleration [{unit}]" if unit else "Time [s],Acceleration"
-    return [title, *(f"{i * dt:.12g},{value!r}" for i, value in enumerate(samples))]
-
-
-write = text_writer(_written, with_unit=False)
+write = text_writer("csv", with_unit=False)
 """Write one trace as CSV, time and acceleration, that read back to the same samples."""

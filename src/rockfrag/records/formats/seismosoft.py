@@ -3,8 +3,6 @@
 import re
 from collections.abc import Iterator
 
-from obspy import Trace
-
 from rockfrag.records.parsing.format import Channel, Format, header_keys, text_writer
 from rockfrag.records.parsing.quantities import canonical_unit, quantity_of
 from rockfrag.records.parsing.text_file import TextFile
@@ -21,28 +19,27 @@ _KEYS = re.compile(r"\s*(?:recording station|source|frequency range)\s*:", re.I)
 _MAX_HEADER = 40
 
 
-def _titles(lines: list[str]) -> Iterator[tuple[int, re.Match[str]]]:
+def _titles(lines: list[str]) -> list[tuple[int, re.Match[str]]]:
     matches = enumerate(map(_COLUMNS.match, lines[:_MAX_HEADER]))
-    return ((number, match) for number, match in matches if match)
+    return [(number, match) for number, match in matches if match]
 
 
 def _recognise(lines: list[str], name: str) -> bool:
     # the titles of the columns alone are a plain two-column file
-    above = next((lines[:number] for number, _ in _titles(lines)), [])
-    return any(map(_KEYS.match, above))
+    return any(_KEYS.match(line) for number, _ in _titles(lines)[:1] for line in lines[:number])
 
 
 def _parse(text: TextFile) -> Iterator[Channel]:
-    columns, titles = next(_titles(text.lines(0, _MAX_HEADER)), (-1, None))
-    if titles is None:
-        text.fail("no line 'Time[s] Accel[g]' above the data")
+    columns, titles = _titles(text.lines(0, _MAX_HEADER))[0]
     unit = canonical_unit(titles["unit"])
     if quantity_of(unit) != "acceleration":
         text.refuse(
             f"the file holds {titles['quantity']}[{titles['unit']}], not acceleration", columns
         )
     header = header_keys(text.lines(0, columns))
-    table = text.table(columns + 1, 2)
+    values, widths = text.rows(columns + 1)
+    text.check_widths(widths, 2, columns + 1)
+    table = values.reshape(-1, 2)
     place = header["recording station"]
     # TOLMEZZO(000) or 090 CDMG STATION 47381
     found = _BEFORE_COMPONENT.match(place) or _BEHIND_COMPONENT.match(place)
@@ -57,25 +54,9 @@ def _parse(text: TextFile) -> Iterator[Channel]:
         "recording_station": place,
     }
     dt = step_of_times(table[:, 0], text, columns + 1)
-    yield Channel(table.shape[0], dt, lambda: table[:, 1].copy()).saying(facts)
+    yield Channel(table.shape[0], dt, table[:, 1].copy()).saying(facts)
 
 
 FORMAT = Format("SEISMOSOFT", _recognise, _parse)
-
-
-def _written(trace: Trace, samples: list[float], unit: str, dt: float) -> list[str]:
-    facts = trace.stats.rockfrag
-    component = str(facts.get("component") or trace.stats.channel or "")
-    station = " ".join(str(trace.stats.station or "unknown").split())
-    return [
-        " ".join(str(facts.get("earthquake") or "Unknown earthquake").split()),
-        f"Source: {' '.join(str(facts.get('source') or 'rockfrag').split())}",
-        f"Recording station: {station}" + (f"({component})" if component else ""),
-        "Frequency range: not stated",
-        f"Time[s]\tAccel[{unit}]",
-        *(f"{i * dt:.12g}\t{value!r}" for i, value in enumerate(samples)),
-    ]
-
-
-write = text_writer(_written)
+write = text_writer("seismosoft")
 """Write one trace as a SeismoSoft accelerogram that reads back to the same samples."""

