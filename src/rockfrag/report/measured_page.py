@@ -7,7 +7,6 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
-from markupsafe import Markup
 from matplotlib.figure import Figure
 from matplotlib.ticker import PercentFormatter
 
@@ -18,7 +17,7 @@ from rockfrag.fragility.estimators import Fragility
 from rockfrag.fragility.observations import Floats, Observations
 from rockfrag.fragility.user_table import UserFragility, fit_user_table
 from rockfrag.report.figures import GREY
-from rockfrag.report.page import Columns, p_values, table_html
+from rockfrag.report.page import p_values
 from rockfrag.report.part import Answer, FigureSpec, Says, Section
 from rockfrag.report.sections.curves import (
     axis_label,
@@ -53,13 +52,9 @@ def run(job: Job[MeasuredTable]) -> Results:
     answer = _answer(study, found, measures)
     choice = found.choice.table
     given = [name for name in map(str, choice.columns) if name.startswith("p_")]
-    columns: Columns = [
-        *_CHOICE,
-        *(p_values(name, f"p, {name.removeprefix('p_')}") for name in given),
-    ]
-    table = table_html(choice, columns, "Measures compared on the same tests, best first.")
+    columns = [p_values(name, f"p, {name.removeprefix('p_')}") for name in given]
     sections = [
-        says.section("measure", [table], answer.sentences[0]),
+        says.section("measure", [says.table("choice", choice, more=columns)], answer.sentences[0]),
         _curves(study, found.table, goodness, calibration),
     ]
     both = found.two_measures and two_measures_section(found.two_measures, study.confidence)
@@ -115,24 +110,12 @@ def _level(study: MeasuredTable) -> str:
     return f"{100 * study.confidence:g} %"
 
 
-_CHOICE = (
-    "im = Measure; unit; theta = Median θ .3; beta = β .3; aic = AIC .1; auc = AUC .3",
-    "chosen_fraction = Fraction of bootstrap samples in which it is best .2",
-)
-_CURVES = ("im = Measure; unit; theta = Median θ ±; beta = β ±; aic = AIC .1",)
-_FITS = ("measure; deviance .1; p_value = p p; brier = Brier score .3; finding",)
-
-
 def _curves(
     study: MeasuredTable, fitted: pd.DataFrame, goodness: pd.DataFrame, calibration: FigureSpec
 ) -> Section:
     warnings = dict.fromkeys(note for note in fitted["warnings"] if note)
     level, notes = _level(study), [*goodness["finding"], *warnings]
-    parts: list[Markup | FigureSpec] = [
-        table_html(fitted, _CURVES, f"Medians and dispersions, {level} intervals."),
-        table_html(goodness, _FITS, "Goodness of fit."),
-        calibration,
-    ]
+    parts = [says.table("curves", fitted, level), says.table("fits", goodness), calibration]
     return says.section("fragility", parts, len(goodness), level, notes)
 
 

@@ -10,7 +10,6 @@ from matplotlib.figure import Figure
 from rockfrag import figure_style as style
 from rockfrag.records.motion import GroundMotion, Motion
 from rockfrag.report.live.space import Standing, live_in_space
-from rockfrag.report.page import table_html
 from rockfrag.report.part import Answer, Says, Section
 from rockfrag.report.study_report import write_page
 from rockfrag.rocking.space_medians import LOSS, NO_LOSS, PLANAR, body_of
@@ -39,7 +38,7 @@ def run(job: Job[SpaceStudy]) -> Results:
         could_change=says("could_change", medians["flip_rate"].max()),
     )
     shown = medians.assign(body=_bases(medians))
-    table = table_html(shown, _MEDIANS, "Medians in space over planar ones, with 90 % intervals.")
+    table = says.table("medians", shown, WORDS)
     sections = [
         Section("medians", "Medians", f"{findings[0].headline}.", [], [table, ratios]),
         Section("fractions", "Fractions by level", "What the medians come from.", [], [levels]),
@@ -67,11 +66,6 @@ WORDS = {
     "mean_direction": "mean of directions",
     "worst_direction": "worst direction",
 }
-_MEDIANS = (
-    "body = Base; slenderness = Height over width .1; height_m .1; space_g = Median in space [g] .2",
-    *(f"{name} = Over {WORDS[name]} ±2" for name in PLANAR),
-    "flip_rate .2",
-)
 COLOURS = dict(zip(PLANAR, (style.BLUE, style.ORANGE, style.GREEN), strict=True))
 
 

@@ -16,7 +16,7 @@ from rockfrag import figure_style as style
 from rockfrag.report import figures, page
 from rockfrag.report.figures import BAND, GREY
 from rockfrag.report.findings import WITH_PEDESTAL, Sides, pedestal_effect, ratio_of, sides_of
-from rockfrag.report.page import Column, Columns, by_row, estimated, table_html
+from rockfrag.report.page import Columns, estimated, table_html
 from rockfrag.report.part import FigureSpec, Results, Section, says
 from rockfrag.sentences import amplitude, counted, has_interval, sentence, shortened
 from rockfrag.shaketable.definitions import DEFINITION
@@ -161,14 +161,6 @@ def ratio_axis(
     axes.set_xlabel(sides.axis)
 
 
-_MEASURED = (
-    "object; pedestal = Side; earthquake; floor",
-    Column("amplitude_g", "Measured [g]", by_row(amplitude)),
-    "simulated_g .3; ratio = Measured / simulated .2",
-)
-_MEASURED_CURVES = ("configuration; theta = Median θ [g] ±; beta = β .3",)
-
-
 def measured(results: Results) -> Section | None:
     """Measured tests, their curves and the effect of the pedestal in them."""
     if results.study.measured_tests is None:
@@ -180,10 +172,8 @@ def measured(results: Results) -> Section | None:
     if beside["simulated_g"].notna().any():
         parts.append(says.figure("measured_beside", lambda: measured_beside(beside), words))
     curves, effects = results.table("measured/fragility"), results.table("measured/effects")
-    parts += [
-        table_html(beside, _MEASURED, "Measured tests beside simulated ones."),
-        table_html(curves, _MEASURED_CURVES, "Fragility from the measured tests."),
-    ]
+    shown = beside.assign(measured=[amplitude(row) for row in beside.to_dict("records")])
+    parts += [says.table("measured", shown), says.table("measured_curves", curves)]
     if len(effects):
         caption = "Measured effect of the pedestal."
         parts.append(table_html(shown_effects(effects), effect_columns(), caption))
