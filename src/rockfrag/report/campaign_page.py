@@ -145,18 +145,11 @@ def _agreement(tables: dict[str, pd.DataFrame], found: Finding, level: str) -> S
     return says.section("agreement", parts, found)
 
 
-_OUTCOMES = {
-    "measured": "measured",
-    OURS: "simulated, majority of votes",
-    VOTES: "simulated, votes",
-}
-
-
 def _fragility(tables: dict[str, pd.DataFrame], level: str) -> Section:
     fragility, tests = tables["fragility"], tables["tests"]
     shown = fragility.assign(
         measure=["{} [{}]".format(*name_and_unit(name)) for name in fragility["measure"]],
-        who=fragility["who"].map(_OUTCOMES),
+        who=fragility["who"].map({"measured": "measured"} | says.pairs("outcomes", OURS, VOTES)),
     )
     measure = _ordering(fragility)
     name, unit = name_and_unit(measure)
@@ -189,18 +182,6 @@ def _tests(study: CampaignStudy, tables: dict[str, pd.DataFrame]) -> Section:
     return says.section("tests", parts, tests)
 
 
-_PROPERTIES = {
-    "direction_deg": "Direction of shaking [°]",
-    "contact_tolerance_mm": "Contact tolerance [mm]",
-    "edge_retreat_mm": "Retreat of the edges [mm]",
-    "restitution": "Restitution [-]",
-    "friction": "Coefficient of friction [-]",
-    "left_m": "Left edge to the centre of gravity [m]",
-    "right_m": "Right edge to the centre of gravity [m]",
-    "alpha_deg": "Smaller critical angle [°]",
-}
-
-
 def _object(study: CampaignStudy, tables: dict[str, pd.DataFrame]) -> Section:
     trials, contact, footprint = tables["trials"], tables["contact"], tables["footprint"]
     likely = trials[trials["plausible"]]
@@ -208,9 +189,10 @@ def _object(study: CampaignStudy, tables: dict[str, pd.DataFrame]) -> Section:
     if not footprint.empty:
         draw = partial(footprint_figure, footprint, trials)
         parts.append(says.figure("footprint", draw, 100 * (likely["left_m"] + likely["right_m"])))
+    titles = says.pairs("properties")
     rows = [
         (words, _range(trials[name]), _range(likely[name]), f"{likely[name].median():.3g}")
-        for name, words in _PROPERTIES.items()
+        for name, words in titles.items()
         if name in trials
     ]
     properties = pd.DataFrame(rows, columns=["property", "tried", "plausible", "median"])
@@ -219,7 +201,7 @@ def _object(study: CampaignStudy, tables: dict[str, pd.DataFrame]) -> Section:
     parts.append(says.table("contact", contact.assign(**in_percent)))
     # ranges that end where the tests would have them go on
     edges = [
-        f"{_PROPERTIES[name].split(' [')[0].lower()} ({edge})"
+        f"{titles[name].split(' [')[0].lower()} ({edge})"
         for name, edge in preferred_edges(trials, likely.index, study.unknowns).items()
     ]
     blocks = len(study.object.get("pedestal", ()))

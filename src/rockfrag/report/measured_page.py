@@ -3,7 +3,6 @@
 from collections.abc import Mapping
 from functools import partial
 from itertools import cycle
-from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -36,9 +35,8 @@ says = Says("rockfrag.report", "measured_page.j2")
 def run(job: Job[MeasuredTable]) -> Results:
     """Yield the fitted tables; draw the figures and write the page, ``report.html``."""
     study = job.study
-    names = ("overturned", "motion", "earthquake", "given", "replicates", "seed")
-    settings: dict[str, Any] = {name: getattr(study, name) for name in names}
-    found = fit_user_table(study.table, study.measures, level=study.confidence, **settings)
+    settings = {"level": study.confidence, "replicates": study.replicates, "seed": study.seed}
+    found = fit_user_table(study.table, study.measures, **study.columns, **settings)
     goodness = pd.DataFrame(
         [(name, g.deviance, g.p_value, g.brier, g.words) for name, g in found.goodness.items()],
         columns=["measure", "deviance", "p_value", "brier", "finding"],
@@ -77,8 +75,7 @@ def _figures(found: UserFragility) -> tuple[FigureSpec, FigureSpec]:
     if found.goodness:
         calibration = partial(calibration_figure, found.goodness)
     best = found.choice.words
-    figures = says.figure("measures", over, best), says.figure("calibration", calibration, best)
-    return figures
+    return says.figure("measures", over, best), says.figure("calibration", calibration, best)
 
 
 def _answer(study: MeasuredTable, found: UserFragility, measures: FigureSpec) -> Answer:
@@ -90,11 +87,8 @@ def _answer(study: MeasuredTable, found: UserFragility, measures: FigureSpec) ->
     if len(best):
         (theta,), (beta,) = (estimates(best.head(1), key) for key in ("theta", "beta"))
         sentences.append(says.finding("median", best.iloc[0], theta, beta, _level(study)))
-    doubtful = [
-        found.fits[measure].fit.im
-        for measure, goodness in found.goodness.items()
-        if goodness.p_value < 0.05
-    ]
+    judged = found.goodness.items()
+    doubtful = [found.fits[name].fit.im for name, fit in judged if fit.p_value < 0.05]
     if found.goodness:
         sentences.append(says.finding("shape", doubtful, len(found.goodness)))
     return Answer(
@@ -126,13 +120,10 @@ def measures_figure(
     columns = min(len(curves), 2)
     rows = -(-len(curves) // columns)
     width, shape = style.COLUMN_WIDTH if columns == 1 else style.WIDEST, (rows, columns)
-    with style.panels(width, 2.4 * rows, *shape, squeeze=False, sharey=True) as (
-        figure,
-        grid_of_axes,
-    ):
-        for axes in grid_of_axes.flat[len(curves) :]:
+    with style.panels(width, 2.4 * rows, *shape, squeeze=False, sharey=True) as (figure, panels):
+        for axes in panels.flat[len(curves) :]:
             axes.set_visible(False)
-        for axes, (label, curve) in zip(grid_of_axes.flat, curves.items(), strict=False):
+        for axes, (label, curve) in zip(panels.flat, curves.items(), strict=False):
             data = outcomes[label]
             grid = _grid(curve, data)
             draw_fractions(axes, fraction_in_bins(data).rename(columns={"im": "x"}), style.BLACK)
@@ -145,13 +136,12 @@ def measures_figure(
                 axes.fill_between(grid, lower, upper, color=style.BLUE, alpha=0.18, linewidth=0)
             axes.plot(grid, curve.fit.probability(grid), color=style.BLUE)
             probability_axis(axes, grid)
-            axes.set_title(
-                f"{curve.fit.im}: AIC {curve.fit.aic:.1f}, β = {curve.fit.beta:.2f}", loc="left"
-            )
-            axes.set_xlabel(axis_label(curve.fit.im, curve.fit.unit))
-        for axes in grid_of_axes[:, 0]:
+            fit = curve.fit
+            axes.set_title(f"{fit.im}: AIC {fit.aic:.1f}, β = {fit.beta:.2f}", loc="left")
+            axes.set_xlabel(axis_label(fit.im, fit.unit))
+        for axes in panels[:, 0]:
             axes.set_ylabel("Probability of overturning")
-        style.letter_panels(grid_of_axes.flat[: len(curves)])
+        style.letter_panels(panels.flat[: len(curves)])
         return figure
 
 

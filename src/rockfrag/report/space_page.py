@@ -79,18 +79,13 @@ def ratios_figure(medians: pd.DataFrame) -> Figure:
     with style.panels(style.PAGE_WIDTH, 0.6 + 0.2 * len(medians)) as (figure, panel):
         places = -np.arange(len(medians), dtype=float)
         for k, name in enumerate(PLANAR):
-            low, high, off = (
-                medians[f"{name}_lower"],
-                medians[f"{name}_upper"],
-                places + 0.2 * (1 - k),
-            )
+            low, high = (medians[f"{name}_{end}"] for end in ("lower", "upper"))
+            off = places + 0.2 * (1 - k)
             panel.hlines(off, low, high, color=COLOURS[name], lw=1.0)
             panel.plot(medians[name], off, "os^"[k], color=COLOURS[name], ms=3.5, label=WORDS[name])
         panel.axvline(1.0, color=style.BLACK, lw=0.8, ls="--")
-        sizes = medians["slenderness"].map(", {:g}".format) + medians["height_m"].map(
-            ", {:g} m".format
-        )
-        panel.set_yticks(places, _bases(medians) + sizes)
+        slenderness = _bases(medians) + medians["slenderness"].map(", {:g}".format)
+        panel.set_yticks(places, slenderness + medians["height_m"].map(", {:g} m".format))
         panel.set_ylim(places[-1] - 0.6, 0.6)
         panel.set_xlabel("Median level in space over that of planar rocking [-]; unsafe below 1")
         panel.set_ylabel("Base, height over width, height")

@@ -12,10 +12,9 @@ from rockfrag.records.sources.wheel import fetch_wheel
 from rockfrag.rocking.space_medians import Pair, medians
 from rockfrag.stages.job import Job, Results
 from rockfrag.study.space import SpaceStudy
+from rockfrag.study.study import RECORDS_FOLDER
 
-RECORDS = Path("resources/records")
-
-TABLES = ("medians", "fractions")
+RECORDS = Path(RECORDS_FOLDER)
 
 
 def run(job: Job[SpaceStudy]) -> Results:
@@ -29,8 +28,8 @@ def run(job: Job[SpaceStudy]) -> Results:
         arguments = (*about, pairs, earthquakes, study.sweep)
         found.append(medians(*arguments, seed=study.seed, threads=job.threads))
         job.log.info("%s, H/B %g, %g m", *about)
-    for k, name in enumerate(TABLES):
-        yield name, pd.concat([tables[k] for tables in found], ignore_index=True)
+    for name, tables in zip(("medians", "fractions"), zip(*found, strict=True), strict=True):
+        yield name, pd.concat(tables, ignore_index=True)
 
 
 def own_pairs(study: SpaceStudy) -> tuple[list[Pair], list[str]]:

@@ -104,8 +104,7 @@ def comparisons(results: Results) -> Section | None:
     return says.section("comparisons", parts, found, words)
 
 
-MOST_MOTIONS = 30
-"""More motions than this are not legible; the strongest are drawn."""
+MOST_MOTIONS = 30  # more motions than this are not legible; the strongest are drawn
 
 _SHADES = ListedColormap(["#ffffff", "#d6e6f2", "#a9cbe3", "#74abd2", "#3d86bb"])
 """Rotation from none to the critical angle; darker is nearer to overturning."""
@@ -149,8 +148,7 @@ def recorded_map(recorded: pd.DataFrame) -> Figure:
         return figure
 
 
-MOST_ROWS = 24
-"""More motions than this are not legible; the first are drawn."""
+MOST_ROWS = 24  # more motions than this are not legible; the first are drawn
 
 _TICKS = (0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10)
 

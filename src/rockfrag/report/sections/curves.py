@@ -226,8 +226,7 @@ def axis_label(name: str, unit: str) -> str:
     return f"{name} [{unit}]" if unit else name
 
 
-LINES = {0.1: "dotted", 0.5: "solid", 0.9: "dashed"}
-"""How contours of probabilities are drawn."""
+LINES = {0.1: "dotted", 0.5: "solid", 0.9: "dashed"}  # how contours of probabilities are drawn
 
 MEDIAN = 0.5
 

@@ -95,13 +95,11 @@ def _forest(effects: pd.DataFrame, about: Sides) -> FigureSpec:
     return says.figure("pedestal_effect", draw, about, left_out, ratio)
 
 
-NONE = (1 / 1.1, 1.1)
-"""Ratios between which an effect counts as none."""
+NONE = (1 / 1.1, 1.1)  # ratios between which an effect counts as none
 
 _TICKS = (0.1, 0.2, 0.3, 0.5, 0.7, 0.8, 0.9, 1, 1.1, 1.2, 1.5, 2, 3, 5, 10)
 _MOST_TICKS = 7
-_LEAST_APART = 0.11
-"""Ticks nearer than this part of the axis would print over each other."""
+_LEAST_APART = 0.11  # ticks nearer than this part of the axis would print over each other
 
 
 def forest_figure(effects: pd.DataFrame, sides: Sides = WITH_PEDESTAL) -> Figure:
@@ -158,7 +156,8 @@ def ratio_axis(
             ticks = [tick for tick in ticks if tick not in crowded]
     axes.set_xticks(ticks, [f"{tick:g}" for tick in ticks])
     axes.minorticks_off()
-    axes.set_xlabel(sides.axis)
+    words = "with / without pedestal" if sides == WITH_PEDESTAL else "over the other's"
+    axes.set_xlabel(f"Amplitude {words}")
 
 
 def measured(results: Results) -> Section | None:

@@ -141,8 +141,7 @@ def shaker_limits(limits: pd.DataFrame, tests: pd.DataFrame) -> Figure:
         return figure
 
 
-MOST_PANELS = 8
-"""More motions than this do not fit one figure; the first are drawn."""
+MOST_PANELS = 8  # more motions than this do not fit one figure; the first are drawn
 
 
 def acceleration_histories(motions: Sequence[Motion]) -> Figure:
