@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 from functools import partial
 from itertools import cycle
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -35,8 +36,9 @@ says = Says("rockfrag.report", "measured_page.j2")
 def run(job: Job[MeasuredTable]) -> Results:
     """Yield the fitted tables; draw the figures and write the page, ``report.html``."""
     study = job.study
-    settings = {"level": study.confidence, "replicates": study.replicates, "seed": study.seed}
-    found = fit_user_table(study.table, study.measures, **study.columns, **settings)
+    settings: dict[str, Any] = {"level": study.confidence, "replicates": study.replicates}
+    settings |= {**study.columns, "seed": study.seed}
+    found = fit_user_table(study.table, study.measures, **settings)
     goodness = pd.DataFrame(
         [(name, g.deviance, g.p_value, g.brier, g.words) for name, g in found.goodness.items()],
         columns=["measure", "deviance", "p_value", "brier", "finding"],
@@ -109,8 +111,8 @@ def _curves(
 ) -> Section:
     warnings = dict.fromkeys(note for note in fitted["warnings"] if note)
     level, notes = _level(study), [*goodness["finding"], *warnings]
-    parts = [says.table("curves", fitted, level), says.table("fits", goodness), calibration]
-    return says.section("fragility", parts, len(goodness), level, notes)
+    tables = says.table("curves", fitted, level), says.table("fits", goodness)
+    return says.section("fragility", [*tables, calibration], len(goodness), level, notes)
 
 
 def measures_figure(

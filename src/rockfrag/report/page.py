@@ -283,8 +283,9 @@ class Page:
 
     def html(self, folder: Path | None = None, processes: int = 1) -> str:
         """Return the page, which loads nothing from outside; its figures are drawn into a folder, if any."""
-        spaces = {"trim_blocks": True, "lstrip_blocks": True, "keep_trailing_newline": True}
-        environment = TEMPLATES.overlay(**spaces)
+        environment = TEMPLATES.overlay(
+            trim_blocks=True, lstrip_blocks=True, keep_trailing_newline=True
+        )
         style = ["style.css", "live.css"] if self.live else ["style.css"]
         with TemporaryDirectory(prefix="rockfrag.") as scratch:
             specs = [spec for spec, _ in self.figures.values()]

@@ -57,8 +57,8 @@ def run(job: Job[CampaignStudy]) -> Results:
     yield "tests", judged
     right = (found.outcomes == measured.overturned).mean(axis=1)
     table = found.trials.table.assign(right_in_sample=right, plausible=found.plausible)
-    best_first = {"ascending": False, "kind": "stable", "ignore_index": True}
-    yield "trials", table.sort_values("right_in_sample", **best_first)
+    best_first = table.sort_values("right_in_sample", ascending=False, kind="stable")
+    yield "trials", best_first.reset_index(drop=True)
     yield "agreement", found.agreement()
     yield "rocking", found.rocking()
     yield "fragility", found.fragility()

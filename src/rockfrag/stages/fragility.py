@@ -261,7 +261,7 @@ def export_curves(curves: pd.DataFrame, folder: Path, fractions: pd.DataFrame) -
         points = fractions[(fractions["floor"] == floor) & (fractions["measure"] == column)]
         # SA(0.3s) becomes sa_0_3s
         name = re.sub(r"[\W_]", "_", str(usable["im"].iloc[0]).lower()).strip("_")
-        stem = f"fragility_{name}" + (f"_{file_name(str(floor))}" if height else "")
+        stem = f"fragility_{name}" + (f"_{file_name(str(floor))}" if height != 0 else "")
         xml, *both = (folder / f"{stem}.{end}" for end in ("xml", "csv", "json"))
         if height == 0:
             # the formats know the ground by an empty floor, whatever its user calls it

@@ -67,16 +67,13 @@ def limited_tests(
 
     Return tests of the definition ``LIMITED``; the remark of a test that the shaker ended says so.
     """
-    known = limits.set_index("motion").to_dict("index")
-    largest = {str(motion): float(limit["limit_g"]) for motion, limit in known.items()}
+    known = limits.set_index("motion")
+    largest = {str(motion): float(limit) for motion, limit in known["limit_g"].items()}
     tests = tests_from_swept(ida_curves, protocol, definitions=[DEFINITION], limits_g=largest)
-    remarks = []
-    for test in tests.to_dict("records"):
-        limit = known[test["motion"]]
-        ended = test["censored"] == "right" and limit["limit_g"] < protocol.limit_g
-        reached = f"shaker's {limit['limited_by']} reached at {limit['limit_g']:.3f} g"
-        remarks.append(reached if ended else test["remark"])
-    return tests.assign(remark=remarks, definition=LIMITED)
+    at, by = (tests["motion"].map(known[name]) for name in ("limit_g", "limited_by"))
+    ended = (tests["censored"] == "right") & (at < protocol.limit_g)
+    reached = "shaker's " + by + " reached at " + at.map("{:.3f} g".format)
+    return tests.assign(remark=reached.where(ended, tests["remark"]), definition=LIMITED)
 
 
 def bodies_table(configurations: Sequence[System]) -> pd.DataFrame:
