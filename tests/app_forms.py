@@ -6,7 +6,7 @@ from typing import Any
 
 
 def some_form(rng: random.Random) -> dict[str, str]:
-    """A random object at a random place, as it is typed; some with decimal commas."""
+    """A random object at a random place, as it is typed."""
     width = rng.uniform(0.05, 0.8)
     height = width * rng.uniform(2, 6)
     form = {"width": f"{100 * width:.3g} cm", "height": f"{height:.3g} m"}

@@ -31,8 +31,11 @@ from .rocking.simulation import simulate as simulate
 from .rocking.spectra import rocking_spectrum as rocking_spectrum
 from .rocking.robustness import find_step_size_sensitive as find_step_size_sensitive
 from .rocking.robustness import outcome_robustness as outcome_robustness
-from .rocking.thresholds import Thresholds as Thresholds, find_thresholds as find_thresholds
-from .rocking.worst_direction import worst_direction as worst_direction
+from .rocking.thresholds import (
+    Thresholds as Thresholds,
+    find_thresholds as find_thresholds,
+    worst_direction as worst_direction,
+)
 from .system.blocks import Block as Block, Column as Column, Stack as Stack
 from .system.system import System as System
 

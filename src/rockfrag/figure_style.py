@@ -3,6 +3,7 @@
 import os
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
+from pathlib import Path
 from typing import Any
 
 import matplotlib as mpl
@@ -29,38 +30,12 @@ DOTS_PER_INCH = 200
 CONFIGURATION_COLOURS = (ORANGE, BLUE, *OKABE_ITO[2:])
 """Colours of the configurations of one object; alone and on its pedestal as in all other figures."""
 
-STYLE: dict[Any, Any] = {
-    "font.family": "sans-serif",
-    "font.sans-serif": ["DejaVu Sans", "Verdana", "Arial"],
-    "font.size": 8,
-    "axes.titlesize": 8.5,
-    "axes.labelsize": 8,
-    "xtick.labelsize": 7.5,
-    "ytick.labelsize": 7.5,
-    "legend.fontsize": 7.5,
-    "legend.frameon": False,
-    "axes.spines.top": False,
-    "axes.spines.right": False,
-    "axes.linewidth": 0.7,
-    "axes.grid": False,
-    "axes.axisbelow": True,
-    "grid.color": "#dddddd",
-    "grid.linewidth": 0.6,
-    "lines.linewidth": 1.2,
-    "lines.markersize": 4.5,
+STYLE = {
+    **mpl.rc_params_from_file(Path(__file__).with_suffix(".mplstyle"), use_default_template=False),
     "axes.prop_cycle": cycler(color=OKABE_ITO),
-    "figure.constrained_layout.use": True,
-    "figure.constrained_layout.w_pad": 0.06,
     # laid out for the same dots as written: lengths of text depend on them
     "figure.dpi": DOTS_PER_INCH,
     "savefig.dpi": DOTS_PER_INCH,
-    # identifiers inside an SVG are random unless they are salted
-    "svg.hashsalt": "rockfrag",
-    # text stays text: it can be searched and read aloud
-    "svg.fonttype": "none",
-    # a dollar in a name is a dollar
-    "text.parse_math": False,
-    "path.simplify": True,
 }
 
 

@@ -1,7 +1,6 @@
 """Motions of assessments: made ones, which need no network, and the default set."""
 
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -10,8 +9,6 @@ from rockfrag.assess.hazard.curve import PGA
 from rockfrag.assess.motions import MotionSet
 from rockfrag.assess.outcomes import IntensityLevels, ObjectOutcomes
 from rockfrag.assess.request import Request, make_request
-
-from ..conftest import motions_of_noise, write_records
 
 
 @pytest.fixture(scope="session")
@@ -28,12 +25,6 @@ def few(motions) -> MotionSet:
     return replace(motions, ground=ground, base=base, pairs=motions.pairs[:4])
 
 
-@pytest.fixture(scope="session")
-def few_records(tmp_path_factory) -> Path:
-    """Catalogue of six records of as many earthquakes, which are soon simulated."""
-    return write_records(tmp_path_factory.mktemp("few"), motions_of_noise(6))
-
-
 def outcomes_of(fell, levels, earthquakes, *, all_rock=False) -> ObjectOutcomes:
     """Outcomes of motions at levels of PGA, a row a motion; what falls rocks, and the others if all do."""
     scales, allowed = np.broadcast_to(levels, fell.shape), np.ones(fell.shape, dtype=bool)
@@ -45,9 +36,3 @@ def outcomes_of(fell, levels, earthquakes, *, all_rock=False) -> ObjectOutcomes:
 def asked(**settings) -> Request:
     """A request of these keys of ``statue.yaml``."""
     return make_request(settings, "test")
-
-
-@pytest.fixture
-def random() -> np.random.Generator:
-    """Random numbers, the same in every run."""
-    return np.random.default_rng(7)

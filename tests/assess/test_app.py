@@ -22,6 +22,7 @@ from rockfrag.errors import InputError
 from rockfrag.rocking.browser import driver_text
 
 from ..app_forms import settings_of, some_form
+from ..case_tables import case_tables
 from .samples import quantile_files
 
 NODE = shutil.which("node")
@@ -130,20 +131,15 @@ def test_the_page_says_what_assess_does(tmp_path, motions, some, few, seed, obje
     assert answered >= least
 
 
-HOSTILE = ("<img src=x onerror=alert(1)>", "1e999 m", "-5 cm", "12", "NaN kg", "0x10 m", "１ m")
-HOSTILE += ("a" * 5000, "1,2,3 m", "5 g")
 USUAL = {"width": "35 cm", "height": "1,2 m", "measure": "PGA", "level": "0,3 g", "years": "475"}
 
 
 @needs_node
 def test_hostile_input_gets_a_sentence(tmp_path, motions):
-    fields = ["width", "height", "depth", "mass", "cg_height", "cg_offset", "restitution"]
-    fields += ["pedestal_width", "floor", "level", "years"]
-    forms = [USUAL | {field: text} for field in fields for text in HOSTILE]
-    forms += [
-        USUAL | {"years": "", "hazard": text}
-        for text in (*HOSTILE, "0.1 0.1\n0.2 0.2", "0.1 1e-2", "1 2 3\n4 5 6")
-    ]
+    given = case_tables(__file__)
+    forms = [USUAL | {field: text} for field in given["fields"] for text in given["hostile"]]
+    hazards = given["hazards"] + given["hostile"]
+    forms += [USUAL | {"years": "", "hazard": text} for text in hazards]
     forms += [USUAL | more for more in ({"round": True}, {"width": ""}, {"floor": "5/4"})]
     refused = in_node(tmp_path, motions, forms)
     assert not [said for said in refused if "failed" in said]
@@ -151,14 +147,7 @@ def test_hostile_input_gets_a_sentence(tmp_path, motions):
     assert sum("refused" in said for said in refused) > 0.9 * len(forms)
 
 
-BUILDING = {
-    "storey_heights_m": [4.5, 3.8, 3.8],
-    "masses_kg": [350e3, 350e3, 245e3],
-    "first_period_s": 0.28,
-    "damping": {"kind": "modal", "ratio": 0.04},
-    "floors": {"gallery": 1, "attic": 3},
-    "model": "elastic",
-}
+BUILDING = case_tables(__file__)["building"]
 KNOWN = {"storey_height": "4 m", "material": "concrete"}
 SLENDER = {"width": "20 cm", "height": "80 cm", "measure": "PGA", "level": "0.3 g"}
 

@@ -1,5 +1,6 @@
-"""The fast kernel beside a plain time stepping, under made and measured motions."""
+"""The fast kernel beside a plain event-driven integrator and time stepping, under made and measured motions."""
 
+import math
 from pathlib import Path
 from typing import NamedTuple
 
@@ -12,6 +13,7 @@ from rockfrag.engines.response import Response
 from rockfrag.records.motion import Motion
 from rockfrag.system import Block, Body, Column
 
+from ..oracle.contact_reference import simulate_reference
 from ..oracle.time_stepping import time_stepping
 from ..rocking.reference_bodies import random_motion
 from . import cases as drawn
@@ -52,6 +54,43 @@ def random_case(rng: np.random.Generator, bodies: int) -> Case:
     body = drawn.random_stack(rng) if bodies == 2 else drawn.random_block(rng)
     mus = tuple(rng.uniform(0.15, 0.9, 2)[:bodies])
     return Case(body, mus, random_motion(rng), 0.5 * random_motion(rng))
+
+
+LENGTH = 3.2
+"""How long the reference integrates, a little more than the motions last [s]."""
+
+
+@pytest.mark.parametrize(
+    ("bodies", "cases", "seed", "least"),
+    [
+        *((1, 4, 20, 2), (2, 4, 20, 2), (3, 1, 6, 1)),
+        *(pytest.param(n, 60, 21, 30, marks=pytest.mark.slow) for n in (1, 2)),
+        pytest.param(3, 3, 6, 2, marks=pytest.mark.slow),
+    ],
+)
+def test_histories_are_those_of_the_reference(bodies, cases, seed, least):
+    """Up to the eighth contact event, of columns up to the sixth.
+
+    The reference, which takes a second for a hundred contact events, stops soon after the last contact event up
+    to which histories are compared; outcomes are those up to then.
+    """
+    rng, eventful, last = np.random.default_rng(seed), 0, 8 if bodies < 3 else 6
+    for _ in range(cases):
+        case = random_case(rng, bodies)
+        fast, length = case.history(), LENGTH
+        if len(fast.contact_events) > last + 2:
+            length = min(LENGTH, fast.contact_events["time"].iloc[last + 2] + 2 * DT)
+        more = {"friction": case.friction, "vertical": case.vertical, "duration": length}
+        plain = simulate_reference(case.body, case.horizontal, DT, **more)
+        times = [contact_event.time for contact_event in plain.contact_events]
+        assert len(times) > last or length == LENGTH
+        until = times[last] if len(times) > last else math.inf
+        n = min(np.searchsorted(plain.time, until), len(plain.time) - 1, len(fast.time) - 1)
+        np.testing.assert_allclose(fast.theta[:n], plain.theta[:n], atol=2e-6)
+        np.testing.assert_allclose(fast.slip[:n], plain.slip[:n], atol=2e-6)
+        eventful += len(times) > 4
+        assert plain.overturned == (fast.overturned and fast.overturning_time < length)
+    assert eventful >= least
 
 
 def beside_stepping(cases: list[Case], step: float) -> pd.DataFrame:

@@ -1,5 +1,6 @@
 """The search for a mode beside the trial of all modes, and formulas of modes beside the elimination."""
 
+import itertools
 from collections import Counter
 
 import numpy as np
@@ -9,11 +10,11 @@ from rockfrag.engines.kernels.jit import entry_kernel
 from rockfrag.engines.planar.records import MOST, posed, system_record, working_memory
 from rockfrag.engines.planar.search import (
     CONSISTENT,
+    Trial,
     mode_number,
     search,
     take_number,
     try_mode,
-    weigh,
 )
 from rockfrag.engines.planar.solve import look_at, solve, solve_generally
 from rockfrag.rocking.options import system_of
@@ -67,12 +68,13 @@ def compare_searches(number: int, seed: int) -> Counter:
             continue
         loads, speed = rng.normal(0, [4.0, 2.0]), float(np.abs(w["v"]).max())
         units = (float(p["mass"].sum()) * speed, speed) if impact else (float(p["weight"]), G)
+        trial = Trial(*loads.tolist(), impact, *units)
         start = w["closed"].copy(), w["slides"].copy()
         modes = modes_of(w["touching"][:bodies], w["moves"], impact)
         margins = np.zeros(modes.size)
-        try_all(p, w, *loads, impact, *units, modes, margins)
+        try_all(p, w, trial, modes, margins)
         w["closed"], w["slides"] = start
-        found = search_quickly(p, w, *loads, impact, *units)
+        found = search_quickly(p, w, trial)
         good = margins >= -CONSISTENT
         if not good.any():
             # the one that violates least is taken, or another
@@ -100,37 +102,30 @@ def test_the_search_finds_a_consistent_mode_wherever_there_is_one(number: int, s
 
 
 def modes_of(touching: np.ndarray, moves: np.ndarray, impact: bool) -> np.ndarray:
-    """Numbers of all modes of touching ends, in the order in which they are tried."""
-    listed = [(0, 0)]
-    for k, ends in enumerate(touching):
-        choices = []
-        for code in range(4):
-            if (code & 1) > ends[0] or (code >> 1) > ends[1]:
-                continue
-            ways = [0] if code == 0 else [0, 1, -1]
-            if code and not impact and moves[k]:
-                ways = [moves[k]]
-            closed = (code & 1) + (code >> 1)
-            choices += [((code + 4 * (way + 1)) << (4 * k), closed) for way in ways]
-        listed = [(n + a, c + b) for n, c in listed for a, b in choices]
-    return np.array([number for number, _ in sorted(listed, key=lambda item: item[1])])
+    """Numbers of all modes of touching ends, fewer closed ends first."""
+    choices = []
+    for k, (left, right) in enumerate(touching.tolist()):
+        ways = [int(moves[k])] if moves[k] and not impact else [0, 1, -1]
+        closed = [code for code in (1, 2, 3) if code & ~(left + 2 * right) == 0]
+        own = [(0, 0), *itertools.product(closed, ways)]
+        choices.append([(code + 4 * (way + 1)) << (4 * k) for code, way in own])
+    return np.array(sorted(map(sum, itertools.product(*choices)), key=closed_ends))
 
 
 @entry_kernel
-def try_all(p, w, ah, av, impact, force, motion, numbers, margins):
+def try_all(p, w, trial, numbers, margins):
     """Least margin of every mode."""
     look_at(p, w, w.q)
-    weigh(p, w, ah, av, impact)
     for i in range(numbers.size):
         take_number(p, w, numbers[i])
-        margins[i] = try_mode(p, w, impact, force, motion)
+        margins[i] = try_mode(p, w, trial)
 
 
 @entry_kernel
-def search_quickly(p, w, ah, av, impact, force, motion):
+def search_quickly(p, w, trial):
     """Number of the mode that the package takes."""
     look_at(p, w, w.q)
-    search(p, w, ah, av, impact, force, motion, -1)
+    search(p, w, trial, -1)
     return mode_number(p, w.closed, w.slides)
 
 

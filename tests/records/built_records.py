@@ -13,6 +13,8 @@ import numpy as np
 import yaml
 from jinja2 import DictLoader, Environment
 from numpy.typing import NDArray
+from obspy.core.inventory import Channel, Inventory, Network, Response, Station
+from obspy.core.inventory.response import InstrumentSensitivity, ResponseStage
 
 N = 43
 """Samples of a built record: no multiple of any row length, so that last rows are short."""
@@ -177,3 +179,18 @@ def peer_download(folder: Path, count: int) -> Path:
                 text = written("peer_file", **about, wave=wave(100 * i + number))
                 (folder / f"RSN{700 + i}_LOMAP_S{i:02d}{component}.{ending}").write_text(text)
     return folder
+
+
+CMB = {"network": "BK", "station": "CMB", "location": "00", "delta": 0.01}
+
+
+def inventory_of_cmb(sensitivity: float, *stages: ResponseStage) -> Inventory:
+    """Return what StationXML says of two channels of a station, in counts per m/s²."""
+    whole = InstrumentSensitivity(sensitivity, 1.0, "M/S**2", "COUNTS")
+    response = Response(instrument_sensitivity=whole, response_stages=[*stages])
+    channels = [
+        Channel(code, CMB["location"], 0, 0, 0, 0, sample_rate=100, response=response)
+        for code in ("HNE", "HNN")
+    ]
+    station = Station(CMB["station"], 0, 0, 0, channels=channels)
+    return Inventory([Network(CMB["network"], [station])], "test")

@@ -42,7 +42,7 @@ def at_once(seconds=2.0):
 
 def read_all(path, dt=None):
     """Read every channel, in any unit."""
-    return [channel.samples() for channel in read_record(path, dt).channels]
+    return [channel.samples for channel in read_record(path, dt).channels]
 
 
 def outcome(path, dt=None):

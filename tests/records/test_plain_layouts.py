@@ -162,7 +162,7 @@ def test_greek_network(write, header):
     assert [(c.component, c.unit, c.dt) for c in record.channels] == [
         (name, "cm/s2", 0.01) for name in "ENZ"
     ]
-    np.testing.assert_allclose(record.channels[2].samples(), 0.5 * WAVE, atol=1e-6)
+    np.testing.assert_allclose(record.channels[2].samples, 0.5 * WAVE, atol=1e-6)
 
 
 @pytest.mark.parametrize("header", ["% dt = 0.005 s\n% unit: m/s2\n", "% m/s^2, dt 0.005\n"])

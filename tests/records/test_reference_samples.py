@@ -80,7 +80,7 @@ def test_a_record_of_the_world_gives_the_values_read_independently(shared, sampl
     assert record.format == name
     for wanted, peak in peaks.items():
         channel = choose_channel(record, wanted)
-        samples = channel.samples()
+        samples = channel.samples
         assert (samples.size, channel.dt, channel.unit) == (npts, step, unit)
         assert np.abs(samples).max() == pytest.approx(peak, rel=1e-9)
 
@@ -125,7 +125,7 @@ def test_a_sensitivity_without_stages_divides_the_counts(shared):
     path = shared / "records/world/stationxml/CI.MIKB..BNE.mseed"
     record = read_record(path)
     counts = obspy.read(path)[0].data
-    samples = record.channels[0].samples()
+    samples = record.channels[0].samples
     np.testing.assert_allclose(samples * 427685.0769343, counts, rtol=1e-12)
     motion = motion_of(record, record.channels[0])
     assert motion.metadata["unit"] == "m/s2"

@@ -4,8 +4,12 @@ import math
 
 import numpy as np
 
-from rockfrag import Block
+from rockfrag import Block, Stack
+from rockfrag.rocking import MeasuredRestitution
 from rockfrag.rocking.spectra import uniform_block
+from rockfrag.system import geometry
+
+from ..oracle.standing import upper_on_contact
 
 # the thesis's specimens (Table 3.1)
 T1 = Block(0.124, 0.372, 2.172)
@@ -35,3 +39,15 @@ def polyline(seed: int, samples: int) -> np.ndarray:
     """Straight lines between normal draws eight samples apart [m/s²]."""
     coarse = np.random.default_rng(seed).normal(size=samples // 8 + 1)
     return np.interp(np.arange(samples) / 8, np.arange(coarse.size), coarse)
+
+
+def measured(body: Block | Stack, factor: float, law: str) -> MeasuredRestitution:
+    """Every contact at a factor on what conserves momentum, as far as a lone block allows it."""
+    blocks = (body,) if isinstance(body, Block) else (body.lower, upper_on_contact(body))
+
+    def of(block: Block, pivot: int) -> float:
+        wanted = factor * max(0.05, block.momentum_restitution(-pivot))
+        return min(wanted, geometry.largest_restitution(block.shape, pivot))
+
+    values = tuple((of(block, 1), of(block, -1)) for block in blocks)
+    return MeasuredRestitution(values if len(values) > 1 else values[0], law)

@@ -5,14 +5,14 @@ import math
 import numpy as np
 import pytest
 
-from rockfrag import Block, Stack, simulate
+from rockfrag import Block, simulate
+from rockfrag.assess.rules import RULES, asce_43, static
 from rockfrag.errors import InputError
 from rockfrag.motions import half_sine, scale_to_pga
 from rockfrag.records.motion import GroundMotion, Motion
 from rockfrag.rocking.ensemble import overturns
-from rockfrag.rocking.rules_of_thumb import RULES, asce_43, bias, predicted, static
 from rockfrag.rocking.spectra import rocking_spectrum, uniform_block
-from rockfrag.rocking.worst_direction import worst_direction
+from rockfrag.rocking.thresholds import worst_direction
 
 from ..conftest import shaking
 
@@ -128,18 +128,3 @@ def test_larger_blocks_of_one_shape_bear_more_in_all_rules_but_the_static_one(no
             assert rule(large, motion) == pytest.approx(rule(COLUMN, motion))
         else:
             assert rule(large, motion) > rule(COLUMN, motion)
-
-
-def test_an_object_on_a_pedestal_is_checked_alone_and_as_one_body(noise):
-    stack = Stack(Block(0.5, 0.9, 400.0), Block(0.35, 1.2, 180.0))
-    motion = noise(4, 800, tapered=True)
-    alone, joined = stack.upper, stack.rigidly_joined()
-    for rule in RULES.values():
-        assert predicted(stack, motion, rule) == min(rule(alone, motion), rule(joined, motion))
-
-
-def test_bias_is_the_median_ratio_of_what_topples():
-    predictions = np.array([1.0, 2.0, 4.0, 3.0])
-    middle, scatter = bias(predictions, np.array([2.0, 4.0, 8.0, np.nan]))
-    assert middle == pytest.approx(0.5)
-    assert scatter == pytest.approx(0)

@@ -14,7 +14,7 @@ from rockfrag.rocking.restitution import quarter_period
 from rockfrag.system import geometry
 
 from ..conftest import shaking
-from .reference_bodies import T1, T2, T3, P, polyline
+from .reference_bodies import T2, T3, P, polyline
 
 G = 9.81
 DT = 0.005
@@ -25,28 +25,16 @@ def shaken(body: Block | Stack, seed: int, peak_g: float) -> Response:
     return simulate(body, motion.acceleration, motion.dt)
 
 
-@pytest.mark.parametrize(
-    ("block", "linear", "quarter"),
-    [
-        (T1, (0.45260, 0.85993, 1.95447), 0.215637),
-        (T2, (0.51681, 0.98192, 2.23173), 0.245912),
-        (T3, (0.57472, 1.09196, 2.48184), 0.273302),
-    ],
-    ids=["T1", "T2", "T3"],
-)
-def test_linear_periods_are_housner_s_and_the_quarter_period_that_of_the_integral(
-    block: Block, linear: tuple[float, ...], quarter: float
-) -> None:
+def test_linear_periods_are_housner_s_and_the_quarter_period_that_of_the_integral() -> None:
     def first_impact(start: float, linear: bool) -> float:
-        found = simulate(block, np.zeros(400), DT, theta0=start * block.alpha, linear=linear)
+        found = simulate(T2, np.zeros(400), DT, theta0=start * T2.alpha, linear=linear)
         return found.contact_events.query("kind == 'impact'")["time"].iloc[0]
 
-    for start, period in zip((0.2, 0.5, 0.9), linear, strict=True):
+    for start, period in ((0.2, 0.51681), (0.5, 0.98192), (0.9, 2.23173)):
         assert 4 * first_impact(start, True) == pytest.approx(period, abs=1e-5)
-    assert first_impact(0.5, False) == pytest.approx(quarter, abs=1e-6)
-    assert first_impact(0.5, False) == pytest.approx(
-        quarter_period(block, 0.5 * block.alpha), rel=1e-9
-    )
+    quarter = first_impact(0.5, False)
+    assert quarter == pytest.approx(0.245912, abs=1e-6)
+    assert quarter == pytest.approx(quarter_period(T2, 0.5 * T2.alpha), rel=1e-9)
 
 
 def test_forces_of_a_resting_stack_are_its_weights() -> None:

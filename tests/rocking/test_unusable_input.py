@@ -18,7 +18,7 @@ from .reference_bodies import T2, P
 STACK = Stack(P, T2)
 SHAKE = 4.0 * np.sin(np.arange(100) * 0.2)
 MOTION = Motion(SHAKE, 0.01)
-IN_SPACE = Block(0.3, 1.0, 50.0, depth=0.3)
+TABLES = case_tables(__file__)
 VALUES = {
     "two numbers": np.array([0.1, 0.2]),
     "complex number": 0.1 + 0.1j,
@@ -26,6 +26,9 @@ VALUES = {
     "too many": np.broadcast_to(1.0, 10**9),
     "pair": (0.6, 0.2),
     "P": P,
+    "T2": T2,
+    "base": T2.body.base,
+    "contact": Contact(),
     "stack": STACK,
     "wide": Block(0.7, 0.4, 5.0),
     "low": Block(0.4, 0.3, 50.0),
@@ -34,7 +37,7 @@ VALUES = {
     "circle": Circle(1.0),
     "body": T2.body,
     "faceless": replace(T2.body, face=None),
-    "body in space": IN_SPACE.body,
+    "body in space": Block(0.3, 1.0, 50.0, depth=0.3).body,
     "start of one": Start((0.1,), (0.0,)),
     "by couple": MeasuredRestitution((0.3, None), "couple"),
     "shake": SHAKE,
@@ -46,26 +49,6 @@ VALUES = {
     "slower": Motion(SHAKE, 0.02),
     "two components": np.zeros((400, 2)),
 }
-ONE = {"bodies": T2, "motions": MOTION, "dt": None}
-USABLE = {
-    "Block": {"width": 0.1, "height": 0.5, "mass": 3.0},
-    "Stack": {"lower": P, "upper": T2},
-    "Column": {"blocks": (P, T2)},
-    "RigidBody": {"mass": 1.0, "inertia": 1.0, "centre": (0, 0, 1), "base": T2.body.base, "height": 2.0},
-    "System": {"bodies": (T2.body, T2.body), "contacts": (Contact(), Contact())},
-    "MeasuredRestitution": {"value": 0.9},
-    "GroundMotion": {"x": MOTION},
-    "simulate": {"body": T2, "motion": SHAKE, "dt": 0.01},
-    "overturns": {"bodies": T2, "motions": SHAKE, "dt": 0.01, "scales": (1.0,)},
-    "find_step_size_sensitive": {**ONE, "scales": [1.0]},
-    "outcome_robustness": {**ONE, "scales": [1.0], "perturbation": 0.01},
-    "find_thresholds": {**ONE, "highest": 1.0, "tolerance": 0.1, "narrowest_resurrection": 0.5},
-    "stream_overturns": {**ONE, "scales": [1.0], "path": "outcomes.parquet"},
-    "rocking_spectrum": {"motion": MOTION, "periods": [1.0], "alpha": [0.2]},
-    "restitution_from_peaks": {"block": T2, "peaks": [0.1, 0.07, 0.05]},
-    "restitution_from_impacts": {"block": T2, "times": [0.0, 0.5, 0.8]},
-    "restitution_from_history": {"block": T2, "time": np.arange(9) / 100, "theta": np.ones(9) / 10},
-}  # fmt: skip
 
 
 def meant(given):
@@ -75,12 +58,13 @@ def meant(given):
     return [meant(each) for each in given] if isinstance(given, list) else given
 
 
-@pytest.mark.parametrize(("name", "changed", "words"), case_tables(__file__)["refused"])
+@pytest.mark.parametrize(("name", "changed", "words"), TABLES["refused"])
 def test_what_cannot_be_used_is_refused_in_one_sentence(name, changed, words):
     call = GroundMotion if name == "GroundMotion" else getattr(rocking, name, None)
     call = call or getattr(system, name)
+    given = TABLES["usable"][name] | changed
     with pytest.raises(InputError) as caught:
-        call(**USABLE[name] | {key: meant(value) for key, value in changed.items()})
+        call(**{key: meant(value) for key, value in given.items()})
     message = str(caught.value)
     assert words in message
     assert message.count(". ") == 0

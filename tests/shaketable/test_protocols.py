@@ -18,12 +18,10 @@ from rockfrag.shaketable.definitions import tests_from_ida as read_ida
 from rockfrag.shaketable.protocols import (
     Accelerometer,
     ForceOverMass,
-    ForceSteps,
     GeometricSteps,
     LinearSteps,
     Outcome,
     Protocol,
-    measured,
 )
 from rockfrag.shaketable.tests_table import COLUMNS
 
@@ -47,8 +45,6 @@ def vase(overturned=WINDOW):
 def test_level_series_climb_as_their_names_say():
     assert LinearSteps(0.1, 0.1).amplitudes(0.5) == pytest.approx([0.1, 0.2, 0.3, 0.4, 0.5])
     assert GeometricSteps(0.1, 1.0).amplitudes(0.8) == pytest.approx([0.1, 0.2, 0.4, 0.8])
-    force = ForceSteps(98.1, 98.1, moved_mass_kg=100.0)
-    assert force.amplitudes(0.35) == pytest.approx([0.1, 0.2, 0.3])
     assert LinearSteps(0.1, 0.1).amplitudes(0.05).size == 0
 
 
@@ -96,17 +92,18 @@ def test_overturning_at_the_first_step_leaves_nothing_to_report_before_it():
 
 def test_unaccounted_mass_raises_light_specimens_more():
     lab = ForceOverMass({"T1": 20.0, "P T1": 50.0}, unaccounted_mass=10.0)
-    assert measured(Outcome(0.2, 0.4), lab, "T1").upper_g == pytest.approx(0.6)
-    assert measured(Outcome(0.2, 0.4), lab, "P T1").upper_g == pytest.approx(0.48)
+    assert lab.show(Outcome(0.2, 0.4), "T1") == Outcome(pytest.approx(0.3), pytest.approx(0.6))
+    assert lab.show(Outcome(0.2, 0.4), "P T1").upper_g == pytest.approx(0.48)
     with pytest.raises(InputError, match="no mass is given for configuration 'T9'"):
-        lab.measure(1.0, "T9")
+        lab.show(Outcome(0.2, 0.4), "T9")
 
 
 def test_a_clipped_accelerometer_gives_a_lower_bound_only():
-    shown = measured(Outcome(0.45, 0.55), Accelerometer(0.5), "T1")
-    assert shown.censored and shown.lower_g == 0.45
-    assert measured(Outcome(0.55, 0.65), Accelerometer(0.5), "T1").lower_g == 0.5
-    assert measured(Outcome(0.3, 0.4), Accelerometer(0.5), "T1") == Outcome(0.3, 0.4)
+    protocol = Protocol(LinearSteps(0.05, 0.1), limit_g=1.0, measurement=Accelerometer(0.5))
+    shown = read_ida(vase(), protocol, definitions=["step_protocol"]).iloc[0]
+    assert (shown["lower_g"], shown["censored"]) == (pytest.approx(0.45), "right")
+    assert protocol.measurement.show(Outcome(0.55, 0.65), "T1").lower_g == 0.5
+    assert protocol.measurement.show(Outcome(0.3, 0.4), "T1") == Outcome(0.3, 0.4)
 
 
 @settings(derandomize=True)

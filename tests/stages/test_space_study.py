@@ -10,8 +10,8 @@ import pytest
 
 from rockfrag.errors import InputError
 from rockfrag.report.space_page import _live
-from rockfrag.rocking.space_medians import PLANAR, median
 from rockfrag.stages import space as stage
+from rockfrag.stages.space import PLANAR, median
 from rockfrag.study.loading import any_study
 from rockfrag.study.space import SpaceStudy
 

@@ -1,4 +1,4 @@
-"""The command `constrain` as a user meets it: an answer with its files, or one sentence."""
+"""Survival reweights hazard: closed forms, drawn histories, and the command with its files or one sentence."""
 
 import csv
 import json
@@ -11,26 +11,145 @@ import sys
 import numpy as np
 import pandas as pd
 import pytest
+from scipy import special
 
-from rockfrag.assess.hazard.curve import PGA, PGV
+from rockfrag.assess.hazard.curve import PGA, PGV, HazardCurve
 from rockfrag.cli import main
 from rockfrag.errors import InputError
-from rockfrag.survival.reweight import constrain
-from rockfrag.survival.site import read_branches, read_site
+from rockfrag.survival.reweight import SAMPLES, Reweighted, constrain, reweight, scaled
+from rockfrag.survival.site import (
+    Age,
+    Branch,
+    Site,
+    StandingObject,
+    VelocityRatio,
+    lognormal_coefficients,
+    read_branches,
+    read_site,
+)
 
 from ..assess.samples import openquake_csv
 from ..case_tables import case_tables
 
-CASES = case_tables(__file__)
+SLOPE = 2.5
 
-SITE = """
-name: Hill
-hazard: {curves: [branches.csv]}
-objects:
-  - {name: rock A, median: 0.4 g, beta: 0.3, median_sd_ln: 0.2, age_years: 3000}
-  - {name: rock B, median: 0.5 g, beta: 0.3, age_years: [2000, 6000], fragile_for_years: 3000}
-shared_error: 0.5
-"""
+
+def power_law(k0: float, slope: float = SLOPE) -> HazardCurve:
+    """H(x) = k0 x^-slope."""
+    levels = np.geomspace(0.01, 5.0, 25)
+    return HazardCurve(PGA, levels, k0 * levels**-slope, "made")
+
+
+def made_branches(*factors: float, weights: list[float] | None = None) -> list[Branch]:
+    fractions = weights or [1 / len(factors)] * len(factors)
+    return [
+        Branch(f"factor {f:g}", w, {PGA: power_law(1e-4 * f)})
+        for f, w in zip(factors, fractions, strict=True)
+    ]
+
+
+def rock(years: float, theta: float = 0.4, beta: float = 0.3, sd: float = 0.0, name: str = "rock"):
+    age = Age(years, years)
+    return StandingObject(name, PGA, lognormal_coefficients(theta, beta), sd, age)
+
+
+def weighed(branches, objects, samples=SAMPLES, **more) -> Reweighted:
+    return reweight(Site("here", tuple(branches), tuple(objects), **more), samples)
+
+
+def test_no_time_leaves_the_weights_as_do_equal_branches_and_long_time_leaves_the_gentlest():
+    found = weighed(made_branches(1.0, 1.0, 1.0), [rock(3000, sd=0.3)])
+    assert found.weights == pytest.approx([1 / 3] * 3)
+    assert found.information == pytest.approx(0.0, abs=1e-12)
+    branches = made_branches(0.5, 1.0, 2.0, weights=[0.2, 0.5, 0.3])
+    assert weighed(branches, [rock(1e-9)]).weights == pytest.approx([0.2, 0.5, 0.3])
+    assert weighed(branches, [rock(1e6)]).weights == pytest.approx([1.0, 0.0, 0.0], abs=1e-12)
+
+
+def test_independent_objects_multiply_and_identical_ones_with_shared_error_do_not():
+    branches = made_branches(0.5, 1.0, 2.0)
+    first, other = rock(2000, sd=0.4, name="one"), rock(2000, sd=0.4, name="other")
+    alone = weighed(branches, [first]).log_survival
+    apart = weighed(branches, [first, other], shared_error=0.0, same_earthquakes=False)
+    assert apart.log_survival == pytest.approx(2 * alone, rel=5e-3)
+    together = weighed(branches, [first, other], shared_error=1.0, same_earthquakes=False)
+    assert (together.log_survival > 2 * alone + 0.02).all()
+
+
+def test_an_object_that_came_later_is_exposed_to_fewer_earthquakes():
+    branches = made_branches(1.0, 2.0)
+    old, young = rock(2000, theta=0.4, name="old"), rock(500, theta=0.3, name="young")
+    found = weighed(branches, [old, young])
+    for k0, value in zip((1e-4, 2e-4), found.log_survival, strict=True):
+        x = np.geomspace(1e-3, 50, 20_001)
+        fall = -np.diff(k0 * x**-SLOPE)
+        middle = np.sqrt(x[1:] * x[:-1])
+        p_old, p_young = (special.ndtr(np.log(middle / theta) / 0.3) for theta in (0.4, 0.3))
+        both = 1 - (1 - p_old) * (1 - p_young)
+        assert value == pytest.approx(-(1500 * (p_old @ fall) + 500 * (both @ fall)), rel=2e-3)
+
+
+def test_velocity_that_scatters_widens_a_fragility_in_two_measures_as_normal_theory_says():
+    """Φ(c0 + c1 ln a + c2 (m + s Z)) averaged over Z is Φ((c0 + c1 ln a + c2 m) / √(1 + c2² s²))."""
+    body = StandingObject("rock", PGA, (10.0, 4.0, 3.0), 0.0, Age(1000, 1000))
+    m, s = math.log(0.08), 0.5
+    root = math.sqrt(1 + (3.0 * s) ** 2)
+    one = ((10.0 + 3.0 * m) / root, 4.0 / root)
+    merged = StandingObject("merged", PGA, one, 0.0, Age(1000, 1000))
+    branches = made_branches(0.1, 0.3)
+    found = weighed(branches, [body], velocity=VelocityRatio(0.08, s))
+    assert found.log_survival == pytest.approx(weighed(branches, [merged]).log_survival, rel=2e-3)
+
+
+def test_drawn_histories_of_sites_recover_the_weights():
+    """Draw a branch, then a history of T years, and keep the histories in which the object stands."""
+    rng = np.random.default_rng(12)
+    factors, weights, years = np.array([0.3, 1.0, 3.0]), [0.3, 0.4, 0.3], 2000.0
+    found = weighed(made_branches(*factors, weights=weights), [rock(years, sd=0.3)], samples=8192)
+    n = 20_000
+    branch = rng.choice(3, n, p=weights)
+    theta = 0.4 * np.exp(rng.normal(0, 0.3, n))
+    # earthquakes above 0.08 g in T years; hardly one below topples it
+    lowest = 0.08
+    counts = rng.poisson(years * 1e-4 * factors[branch] * lowest**-SLOPE)
+    history = np.repeat(np.arange(n), counts)
+    level = lowest * rng.random(history.size) ** (-1 / SLOPE)
+    topples = rng.random(history.size) < special.ndtr(np.log(level / theta[history]) / 0.3)
+    stands = np.bincount(history[topples], minlength=n) == 0
+    kept = np.bincount(branch[stands], minlength=3) / stands.sum()
+    error = np.sqrt(kept * (1 - kept) / stands.sum())
+    assert (np.abs(found.weights - kept) < 4 * error + 0.002).all()
+
+
+def test_curves_before_are_the_weighted_mean_and_ratios_follow_from_the_curves():
+    branches = made_branches(0.5, 1.0, 2.0, weights=[0.25, 0.5, 0.25])
+    found = weighed(branches, [rock(3000)])
+    curves = found.curves()
+    mean = sum(b.weight * b.curves[PGA].rate(curves["level"].to_numpy()) for b in branches)
+    assert curves["mean_before"].to_numpy() == pytest.approx(mean)
+    fractiles = curves.filter(regex="fractile.*before").to_numpy()
+    assert (np.diff(fractiles, axis=1) >= 0).all()
+    row = found.ratios().set_index("annual_rate").loc[1e-3]
+    assert row["rate_ratio"] == pytest.approx(row["level_ratio"] ** SLOPE, rel=1e-3)
+    assert row["level_after"] < row["level_before"]
+
+
+def test_more_capacity_or_less_age_tells_less():
+    branches, body = made_branches(0.5, 1.0, 2.0), rock(3000)
+    base = weighed(branches, [body]).information
+    assert weighed(branches, scaled([body], capacity=1.5)).information < base
+    assert weighed(branches, scaled([body], age=0.5)).information < base
+
+
+def test_ages_are_certain_uniform_or_lognormal_and_end_with_fragility():
+    uniform = np.array([0.0, 0.5, 1.0])
+    assert Age(3000, 3000).exposure(uniform) == pytest.approx([3000] * 3)
+    assert Age(1000, 3000).exposure(uniform) == pytest.approx([1000, 2000, 3000])
+    assert Age(9000, 9000, 0.3).exposure(np.array([0.5])) == pytest.approx([9000])
+    assert Age(9000, 9000, 0.3, 4000).exposure(np.array([0.5])) == pytest.approx([4000])
+
+
+CASES = case_tables(__file__)
 
 
 def write_branches(path):
@@ -47,7 +166,7 @@ def write_branches(path):
 def site(tmp_path):
     write_branches(tmp_path / "branches.csv")
     path = tmp_path / "site.yaml"
-    path.write_text(SITE)
+    path.write_text(CASES["files"]["site.yaml"])
     return path
 
 
@@ -137,16 +256,9 @@ def test_a_simulated_object_is_refused_in_one_sentence(own_records, tmp_path, ca
 
 def test_curves_that_end_before_the_level_decided_on_give_no_number_that_is_none(tmp_path, capsys):
     # velocities that are exceeded oftener than once in ten thousand years, whatever the branch
-    rows = [
-        f"{branch},0.5,{level},{rate * factor}"
-        for branch, factor in (("a", 1), ("b", 4))
-        for level, rate in ((5, 0.02), (20, 0.002), (80, 0.0003))
-    ]
-    (tmp_path / "b.csv").write_text("\n".join(["branch,weight,pgv_cm_s,annual_rate", *rows]))
-    standing = "measure: PGV, beta: 0.4, median_sd_ln: 0.3, age_years: 600"
-    objects = f"[{{name: pinnacle, median: 45 cm/s, {standing}}}, {{name: urn, median: 60 cm/s, {standing}}}]"
+    (tmp_path / "b.csv").write_text(CASES["files"]["ending.csv"])
     site = tmp_path / "site.yaml"
-    site.write_text(f"name: Chapel\nhazard: {{curves: [b.csv]}}\nobjects: {objects}\n")
+    site.write_text(CASES["files"]["ending.yaml"])
     assert main(["constrain", str(site), "--output", str(tmp_path / "out")]) == 0
     shown = capsys.readouterr().out
     assert not re.search(r"\bnan\b", shown + (tmp_path / "out" / "Chapel.html").read_text())
@@ -155,12 +267,6 @@ def test_curves_that_end_before_the_level_decided_on_give_no_number_that_is_none
 
 YEARS = 50.0
 THETA, BETA, AGE = 0.25, 0.3, 4000.0
-OF_EXPORTS = f"""
-name: site
-hazard: {{realizations: realizations_7.csv, curves: [%s]}}
-objects: [{{name: rock, median: {THETA} g, beta: {BETA}, age_years: {AGE:g}}}]
-"""
-
 RUN = """
 from openquake.commonlib import logs
 logs.dbcmd("upgrade_db")
@@ -227,11 +333,7 @@ def exported(folder):
     for number, rate in rates.items():
         path = folder / f"hazard_curve-rlz-{number:03d}-PGA_7.csv"
         path.write_text(openquake_csv("PGA", f"rlz-{number:03d}", rate))
-    (folder / "realizations_7.csv").write_text(
-        "#,,\"generated_by='OpenQuake engine 3.26.2', start_date='2026-01-01T00:00:00', checksum=1\"\n"
-        "rlz_id,branch_path,weight\n"
-        "0,AA~A,2.0000000e-01\n1,AB~A,5.0000000e-01\n2,AC~A,3.0000000e-01\n"
-    )
+    (folder / "realizations_7.csv").write_text(CASES["files"]["realizations.csv"])
     return rates
 
 
@@ -239,7 +341,8 @@ def test_exports_are_read_reweighted_and_read_back(tmp_path, monkeypatch):
     rates = exported(tmp_path)
     monkeypatch.chdir(tmp_path)
     names = sorted(path.name for path in tmp_path.glob("hazard_curve-*.csv"))
-    (tmp_path / "site.yaml").write_text(OF_EXPORTS % ", ".join(names))
+    site = CASES["files"]["of_exports.yaml"].replace("CURVES", ", ".join(names))
+    (tmp_path / "site.yaml").write_text(site)
     assert main(["constrain", "site.yaml"]) == 0
     table = pd.read_csv("constrained/site-weights.csv")
     assert table["rlz_id"].tolist() == [0, 1, 2]

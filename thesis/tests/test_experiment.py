@@ -244,15 +244,6 @@ def test_force_over_mass_is_checked_where_recorded():
     assert without.finding is OPEN and "17 % to 19 %" in without.figure
 
 
-def test_sliding_is_compared_where_given():
-    sliding = pd.DataFrame(
-        {"earthquake": list("ABCD"), "rocking_g": 0.3, "sliding_g": [0.4, 0.41, 0.39, 0.42]}
-    )
-    assert finding(58, build(), sliding=sliding) is FOR
-    sliding["sliding_g"] -= 0.2
-    assert finding(58, build(), sliding=sliding) is AGAINST
-
-
 def test_twelve_motions_per_specimen_are_counted():
     tests = build()
     assert finding(55, tests) is FOR

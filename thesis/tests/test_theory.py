@@ -6,8 +6,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from rockfrag import Block, Stack, simulate
-from rockfrag.errors import InputError
+from rockfrag import Block, Stack
 from rockfrag.records.motion import Motion
 from rockfrag_thesis.hypotheses import HYPOTHESES, Undecidable, theory_table
 from rockfrag_thesis.hypotheses.evidence import THESIS_BODIES
@@ -94,31 +93,6 @@ def test_landings_are_told_apart() -> None:
 def test_results_do_not_depend_on_threads_or_repetition(hypothesis_table: pd.DataFrame) -> None:
     again = theory_table(THESIS_BODIES, MOTIONS, seed=7, threads=1)
     pd.testing.assert_frame_equal(again, hypothesis_table.reset_index(drop=True))
-
-
-def history(name: str, e: float) -> tuple[np.ndarray, np.ndarray]:
-    block = THESIS_BODIES[name]
-    response = simulate(block, np.zeros(400), 0.005, theta0=0.7 * block.alpha, restitution=e)
-    noise = np.random.default_rng(5).normal(0, 0.001, 400)
-    return response.time[:400], response.theta[:400, 0] + noise
-
-
-@pytest.mark.parametrize(
-    ("restitution", "outcome"), [(0.87, "confirmed"), (None, "rejected")], ids=["real", "ideal"]
-)
-def test_measured_free_rocking_decides_about_restitution(restitution, outcome):
-    ideal = THESIS_BODIES["T3"].momentum_restitution()
-    e = restitution or ideal
-    table = theory_table(THESIS_BODIES, [], seed=1, free_rocking={"T3": history("T3", e)})
-    row = table.set_index("number").loc[5]
-    assert (row["outcome"], row["basis"]) == (outcome, "measured")
-    assert row["lower"] <= e - ideal <= row["upper"]
-
-
-def test_an_unusable_history_is_the_users_error() -> None:
-    wrong = {"T3": (np.arange(9), np.ones(8))}
-    with pytest.raises(InputError, match="one per time"):
-        theory_table({"T3": THESIS_BODIES["T3"]}, [], seed=1, free_rocking=wrong)
 
 
 @pytest.mark.parametrize(

@@ -1,5 +1,4 @@
 from .answer import Assessment as Assessment, assess as assess
 from .hazard.curve import HazardCurve as HazardCurve
 from .hazard.curve import read_hazard as read_hazard
-from .request import Request as Request, read_request as read_request
-from .risk import Estimate as Estimate
+from .request import read_request as read_request

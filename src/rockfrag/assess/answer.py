@@ -46,8 +46,7 @@ class Assessment:
     rocks_from : least level at which any motion makes it rock, in the measure's unit; infinite where none does
     fraction : fraction of the motions at the level that topple it; None without a level
     probability : probability of toppling in the years asked for; None without a hazard
-    counts : motions that reach the level, that rock and that topple it there; None where none can be
-        scaled to it
+    counts : motions that can be scaled to the level, that rock and that topple it there; None without any
     amplitudes : levels at which a tenth and half of the motions topple it, by fraction
     by_arrangement : what is estimated of each arrangement
     curve : lognormal curve of the motions as recorded, NaN where there is none; None with the site's velocity
@@ -57,10 +56,8 @@ class Assessment:
     mitigations : what helps, most helpful first
     effects : what is estimated with each property smaller and larger
     rules : engineers' rules held against the outcomes
-    sliding_fraction : fraction of the motions at the level that topple it if it may slide [-]; NaN without
-        friction or level
-    flip_rate : fraction of outcomes in space at the level that differ if the base does by a millionth [-]; or
-        NaN
+    sliding_fraction : fraction of motions at the level that topple it if it may slide [-]; or NaN
+    flip_rate : fraction of outcomes in space at the level that differ if the base does by 1e-6 [-]; or NaN
     """
 
     request: Request
@@ -372,11 +369,10 @@ def _site_level(request: Request, hazard: HazardCurve | None) -> Level | None:
 def _counts(now: ObjectOutcomes, level: Level | None) -> tuple[int, int, int] | None:
     if level is None:
         return None
-    at = now.intensity_levels.place_of(level.value)
-    if now.intensity_levels.levels[at] != level.value:
-        return None
-    allowed = now.intensity_levels.allowed[:, at]
-    if not allowed.any():
+    levels = now.intensity_levels
+    at = levels.place_of(level.value)
+    allowed = levels.allowed[:, at]
+    if levels.levels[at] != level.value or not allowed.any():
         return None
     rocked, fell = (int(what[allowed, at].sum()) for what in (now.rocked, now.overturned))
     return int(allowed.sum()), rocked, fell

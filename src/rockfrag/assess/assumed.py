@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import Generic, TypeVar
+from typing import Any, Generic, TypeVar
 
 from rockfrag.sentences import Macros
 
@@ -49,6 +49,12 @@ class Moved(Generic[T]):
     def turned(self, change: Callable[[T], U]) -> "Moved[U]":
         """Return what both sides become, by the same property and spread."""
         return Moved(self.name, self.spread, change(self.lower), change(self.upper))
+
+
+def tolerances_in(settings: Mapping[str, Any], usual: Mapping[str, float]) -> dict[str, float]:
+    """Standard deviations by property: the usual ones, in place of which ``statue.yaml`` may state others."""
+    given = settings.get("tolerances", {})
+    return {key: float(given.get(key, spread)) for key, spread in usual.items()}
 
 
 def moved_to_both_sides(

@@ -9,14 +9,11 @@ from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from itertools import groupby
 from operator import attrgetter
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 from rockfrag.errors import InputError, errors_of
 from rockfrag.schema import read_schema
 from rockfrag.units import convert, quantity
-
-if TYPE_CHECKING:
-    from rockfrag.assess.request import Request
 
 _INVENTORY = ".csv"
 _UNITS = re.compile("_(kg_m2|years|km|kg|deg|m|s)$")
@@ -148,14 +145,11 @@ def _is_inventory(options: argparse.Namespace) -> bool:
 
 def _refuse_unused(options: argparse.Namespace) -> None:
     """Refuse options that would have no effect."""
-    without = [
-        (_is_inventory(options), "an inventory, a .csv file", ("pages", "keep_going")),
-        (not _is_inventory(options), "one object, not an inventory", ("pdf", "json")),
-    ]
-    for there, needed, names in without:
-        for name in names:
-            if getattr(options, name) and not there:
-                raise InputError(f"--{name.replace('_', '-')} needs {needed}; leave it out.")
+    listed = _is_inventory(options)
+    for name in ("pages", "keep_going") if not listed else ("pdf", "json"):
+        if getattr(options, name):
+            needed = "one object, not an inventory" if listed else "an inventory, a .csv file"
+            raise InputError(f"--{name.replace('_', '-')} needs {needed}; leave it out.")
 
 
 def _one(options: argparse.Namespace, given: dict[str, Any]) -> int:
@@ -364,7 +358,7 @@ def _app(options: argparse.Namespace) -> int:
     return 0
 
 
-def form_of(settings: Mapping[str, Any], request: "Request") -> dict[str, str]:
+def form_of(settings: Mapping[str, Any], request: Any) -> dict[str, str]:
     """What stands in the form at first."""
     form = {key: str(settings[key]) for key in _FORM if key in settings}
     form |= {"facing": str(settings["facing_deg"])} if "facing_deg" in settings else {}
@@ -381,7 +375,7 @@ def form_of(settings: Mapping[str, Any], request: "Request") -> dict[str, str]:
     return form | _shaking(settings, request) | {"years": str(settings.get("return_period", ""))}
 
 
-def _shaking(settings: Mapping[str, Any], request: "Request") -> dict[str, str]:
+def _shaking(settings: Mapping[str, Any], request: Any) -> dict[str, str]:
     """The level and the hazard curve as they stand in the form."""
     given = [key for key in _LEVELS if key in settings]
     if len(given) > 1:

@@ -132,10 +132,4 @@ def as_nrml(found: Assessment) -> str:
         "chances": {state: outcomes.fractions(state=state).tolist() for state in states},
     }
     kind = found.request.objects.kind
-    error = MODEL_ERRORS[kind]
-    words = (
-        f"{name}, {found.request.place.words}: fractions of {found.motions.words}. What is not known of body, "
-        f"floor and model is not in them; of the model alone that is {error.beyond:g} of ln level ({kind}: "
-        f"{error.words})."
-    )
-    return model_text(words, states, [function])
+    return model_text(says.line("in_nrml", found, kind, MODEL_ERRORS[kind]), states, [function])

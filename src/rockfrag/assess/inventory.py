@@ -26,7 +26,7 @@ from rockfrag.assess.outcomes import ObjectOutcomes
 from rockfrag.assess.request import Request, make_request
 from rockfrag.assess.risk import Evidence, probability_in, risk_target, toppling_rate
 from rockfrag.assess.sources import SPACE
-from rockfrag.assess.words import gallery_says, mitigation_words
+from rockfrag.assess.words import gallery_says
 from rockfrag.errors import InputError
 from rockfrag.files import check_name, file_name
 from rockfrag.fragility.model_error import CUT, MODEL_ERRORS
@@ -344,17 +344,10 @@ def best_change(found: Assessment) -> Mitigation | None:
 
 def joint_lines(inventory: Inventory) -> list[str]:
     """What topples together, what is lost, and what helps the object that adds most, a sentence each."""
-    joint, first = inventory.joint, inventory.found[0]
-    if joint is None:
+    first = inventory.found[0]
+    if inventory.joint is None:
         return []
-    says, valued = gallery_says, math.isfinite(first.request.value)
-    rows = joint.numbers.to_dict("records")
-    lines = says("together", rows, first.request.years)
-    lines += says("adds_most", joint, joint.objects.iloc[0], valued)
-    best = best_change(first)
-    if best is not None:
-        lines.append(f"For {first.request.name}: {mitigation_words(first, best)}.")
-    return lines
+    return gallery_says("joint_lines", inventory.joint, first, best_change(first))
 
 
 def inventory_lines(inventory: Inventory) -> list[str]:

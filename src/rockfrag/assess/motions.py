@@ -188,16 +188,12 @@ def _nearest(
 
     def away(pair: tuple[Motion, Motion]) -> float:
         about = pair[0].metadata
-        total = 0.0
-        if math.isfinite(records.magnitude):
-            total += ((float(about["magnitude"]) - records.magnitude) / MAGNITUDE_SCALE) ** 2
-        if math.isfinite(records.distance_km):
-            # within a kilometre of the rupture distance means nothing any more
-            ratio = max(records.distance_km, 1.0) / max(float(about["distance_km"]), 1.0)
-            total += (math.log(ratio) / DISTANCE_SCALE) ** 2
-        return total
+        magnitude = (float(about["magnitude"]) - records.magnitude) / MAGNITUDE_SCALE
+        # within a kilometre of the rupture distance means nothing any more
+        ratio = max(records.distance_km, 1.0) / max(float(about["distance_km"]), 1.0)
+        return float(np.nansum([magnitude**2, (math.log(ratio) / DISTANCE_SCALE) ** 2]))
 
-    if not (math.isfinite(records.magnitude) or math.isfinite(records.distance_km)):
+    if math.isnan(records.magnitude) and math.isnan(records.distance_km):
         return list(pairs)
     return sorted(pairs, key=away)[: NEAREST // 2]
 
@@ -224,11 +220,10 @@ def _own(records: Records, folder: Path) -> MotionSet:
     still = [motion.name for motion in motions if motion.pga == 0]
     if still:
         raise InputError(f"record {still[0]}: is zero throughout and shakes nothing; leave it out.")
-    names = [motion.name for motion in motions]
     pairs = _pairs(motions)
     found = MotionSet(tuple(motions), tuple(motions), pairs, "", tuple(warnings))
     earthquakes = len(set(found.earthquakes))
-    if len(set(names)) < len(names):
+    if len({motion.name for motion in motions}) < len(motions):
         raise InputError(
             "records: two motions have the same name; leave one out or give a catalogue."
         )
@@ -250,7 +245,7 @@ def _is_catalogue(path: Path) -> bool:
 
 
 def _pairs(motions: Sequence[Motion]) -> tuple[tuple[int, int], ...]:
-    """Positions of the components of records whose rows name each other's file as the second one."""
+    """Positions of the components of records of two, by earthquake and station."""
     places: dict[tuple[str, str], list[int]] = {}
     for i, motion in enumerate(motions):
         key = (str(motion.metadata.get("earthquake", "")), str(motion.metadata.get("station", "")))

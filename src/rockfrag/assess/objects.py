@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from rockfrag.assess.assumed import Assumption, Moved, assume, moved_to_both_sides
+from rockfrag.assess.assumed import Assumption, Moved, assume, moved_to_both_sides, tolerances_in
 from rockfrag.assess.scan import Scan, make_scan
 from rockfrag.errors import InputError, errors_of
 from rockfrag.fragility.model_error import CUT, SCAN
@@ -270,9 +270,9 @@ def make_objects(settings: Mapping[str, Any], folder: Path) -> Objects:
     scan = None
     if "mesh" in settings:
         scan, block, plane = _from_mesh(settings, folder, assumed)
+        depth, facing = None, 0.0
     else:
-        block, plane = _from_dimensions(settings, assumed, quality_flags)
-    depth, facing = _in_plan(settings)
+        block, plane, depth, facing = _from_dimensions(settings, assumed, quality_flags)
     pedestals = _pedestals(settings, assumed)
     with errors_of("key pedestal"):
         stacked((*pedestals, block))
@@ -289,7 +289,9 @@ def make_objects(settings: Mapping[str, Any], folder: Path) -> Objects:
         pedestals=pedestals,
         restitution=settings.get("restitution"),
         friction=settings.get("friction"),
-        tolerances=_tolerances(settings, on_points),
+        tolerances=tolerances_in(
+            settings, TOLERANCES | ({"restitution": ON_POINTS["restitution"]} if on_points else {})
+        ),
         livelier=ON_POINTS["livelier"] if on_points else 1.0,
         plane=plane,
         round=is_round,
@@ -308,22 +310,6 @@ def make_objects(settings: Mapping[str, Any], folder: Path) -> Objects:
     return objects
 
 
-def _in_plan(settings: Mapping[str, Any]) -> tuple[float | None, float]:
-    """Side of a rectangular base across the plane in which it rocks, and the direction of that plane [degrees]."""
-    width, depth = settings.get("width_m"), settings.get("depth_m")
-    if depth is None or settings.get("round"):
-        return None, 0.0
-    # the plane is across the narrower side
-    across = depth < width
-    return max(width, depth), float(settings.get("facing_deg", 0.0)) + 90.0 * across
-
-
-def _tolerances(settings: Mapping[str, Any], on_points: bool) -> Mapping[str, float]:
-    given = settings.get("tolerances", {})
-    usual = TOLERANCES | ({"restitution": ON_POINTS["restitution"]} if on_points else {})
-    return usual | {key: float(given[key]) for key in given if key in TOLERANCES}
-
-
 def _check_restitution(objects: Objects) -> None:
     """Refuse a restitution with which an impact would gain energy."""
     e = objects.restitution
@@ -340,7 +326,11 @@ def _check_restitution(objects: Objects) -> None:
 
 def _from_dimensions(
     settings: Mapping[str, Any], assumed: list[Assumption], quality_flags: list[str]
-) -> tuple[Block, str]:
+) -> tuple[Block, str, float | None, float]:
+    """Block and the plane in which it rocks, across its narrower side; the other side and the plane's direction.
+
+    Side and direction [degrees] are those of a base that is known in space: None and 0 of others.
+    """
     width, height = float(settings["width_m"]), float(settings["height_m"])
     is_round = settings.get("round", False)
     if is_round and settings.get("depth_m", width) != width:
@@ -348,8 +338,8 @@ def _from_dimensions(
             "key depth: a round base has one width, its diameter; leave the depth out, or round."
         )
     depth = float(settings.get("depth_m", width))
-    plane = f"across its {100 * width:.4g} cm"
-    if depth < width:
+    plane, across = f"across its {100 * width:.4g} cm", depth < width
+    if across:
         plane = f"across its {100 * depth:.4g} cm, the narrower side"
         width, depth = depth, width
     elif "depth_m" not in settings and not is_round:
@@ -380,7 +370,10 @@ def _from_dimensions(
     usual = round_inertia(width, height, mass) if is_round else None
     inertia = settings.get("inertia_kg_m2", usual)
     offset = float(settings.get("cg_offset_m", 0.0))
-    return Block(width, height, mass, inertia, cg_height=cg_height, cg_offset=offset), plane
+    block = Block(width, height, mass, inertia, cg_height=cg_height, cg_offset=offset)
+    if is_round or "depth_m" not in settings:
+        return block, plane, None, 0.0
+    return block, plane, depth, float(settings.get("facing_deg", 0.0)) + 90.0 * across
 
 
 def _from_mesh(

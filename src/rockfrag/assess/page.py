@@ -4,6 +4,7 @@ import os
 from dataclasses import replace
 from importlib.metadata import version
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from markupsafe import Markup
@@ -46,6 +47,7 @@ def page_of(found: Assessment) -> str:
     if found.main.sources:
         drawn.append(page_says.figure("sources", lambda: sources_figure(found)))
     first, others = slice(1, 2), slice(1, None)
+    earliest = np.argsort(found.counted.first_levels(), kind="stable")[:MOTIONS_SHOWN]
     sure = [_table("sources", found, first), _table("effects", found, others)]
     sections = [
         page_says.section("mitigations", [_table("mitigations", found, first)], found),
@@ -53,7 +55,8 @@ def page_of(found: Assessment) -> str:
         page_says.section("sure", [*drawn, *sure], found),
         page_says.section("assumed", [], found),
         *([page_says.section("rules", [_table("rules", found, others)])] if found.rules else []),
-        *(_levels(found), _motions(found)),
+        _levels(found),
+        page_says.section("motions", [_table("motions", found, slice(2, None), earliest)], found),
         page_says.section("glossary", [_table("glossary", found, slice(0))]),
     ]
     provenance = {
@@ -82,9 +85,10 @@ def _answer(found: Assessment) -> Answer:
     )
 
 
-def _table(name: str, found: Assessment, numeric: slice) -> Markup:
+def _table(name: str, found: Assessment, numeric: slice, *more: Any) -> Markup:
     """A table of which a macro says caption, titles and rows, a line each; some of its columns are of numbers."""
-    (caption,), titles, *rows = (line.split(PART) for line in page_says(f"{name}_table", found))
+    lines = page_says(f"{name}_table", found, *more)
+    (caption,), titles, *rows = (line.split(PART) for line in lines)
     return text_table(titles, rows, caption, titles[numeric])
 
 
@@ -121,22 +125,6 @@ def _years(period: float) -> str:
     """A return period to two digits: 475 years stand for some 480."""
     rounded = float(f"{period:.2g}")
     return f"{rounded:,.0f}".replace(",", " ") if rounded >= 10 else f"{rounded:g}"
-
-
-def _motions(found: Assessment) -> Section:
-    first = found.counted.first_levels()
-    order = np.argsort(first, kind="stable")[:MOTIONS_SHOWN]
-    unit, recorded = found.measure.unit, found.motions.values(found.measure)
-    rows = []
-    for i in order:
-        motion = found.motions.ground[i]
-        places = [found.motions.earthquakes[i], str(motion.metadata.get("station", ""))]
-        at = ", ".join(dict.fromkeys(places)).strip(", ")
-        rows.append((motion.name, at, number(recorded[i], 2), number(first[i], 2)))
-    numbers = (f"As recorded [{unit}]", f"Topples it from [{unit}]")
-    titles = ("Motion", "Earthquake and station", *numbers)
-    table = text_table(titles, rows, "The motions that need the least shaking.", numbers)
-    return page_says.section("motions", [table], found)
 
 
 LIVE = (0.0, 0.1, 0.25, 0.5, 0.75)

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from rockfrag.assess.assumed import Assumption, Moved, assume, moved_to_both_sides
+from rockfrag.assess.assumed import Assumption, Moved, assume, moved_to_both_sides, tolerances_in
 from rockfrag.building.floors import floor_motions
 from rockfrag.building.model import ModalDamping, ShearBuilding, stiffnesses_for_period
 from rockfrag.building.settings import make_building, read_building
@@ -115,11 +115,6 @@ def make_place(settings: Mapping[str, Any], folder: Path) -> Place:
     return _sketched(str(floor), {}, settings)
 
 
-def _tolerances(settings: Mapping[str, Any], usual: Mapping[str, float]) -> dict[str, float]:
-    given = settings.get("tolerances", {})
-    return dict(usual) | {key: float(given[key]) for key in given if key in TOLERANCES}
-
-
 def _given(settings: Mapping[str, Any], floor: Any, folder: Path) -> Place:
     """The building of a file, or a mapping that describes all of it or what is known of it."""
     given = settings["building"]
@@ -151,7 +146,7 @@ def _given(settings: Mapping[str, Any], floor: Any, folder: Path) -> Place:
     building.level(label)
     name = "" if found or label.isdecimal() else label
     said = assume("building", "period", "damping")
-    return Place(building, label, _tolerances(settings, TOLERANCES), name, (said,))
+    return Place(building, label, tolerances_in(settings, TOLERANCES), name, (said,))
 
 
 def _sketched(floor: str, known: Mapping[str, Any], settings: Mapping[str, Any]) -> Place:
@@ -177,7 +172,7 @@ def _sketched(floor: str, known: Mapping[str, Any], settings: Mapping[str, Any])
     usual = TOLERANCES | (
         {"period": TOLERANCE_OF_KNOWN_PERIOD} if "first_period_s" in known else {}
     )
-    return Place(building, "floor", _tolerances(settings, usual), assumed=(said,))
+    return Place(building, "floor", tolerances_in(settings, usual), assumed=(said,))
 
 
 def _heights(known: Mapping[str, Any], storeys: int) -> tuple[float, ...]:

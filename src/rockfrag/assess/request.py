@@ -62,28 +62,16 @@ class Records:
 
 @dataclass(frozen=True)
 class Request:
-    """An object at a place, ready to be assessed.
+    """An object at a place, ready to be assessed."""
 
-    Attributes
-    ----------
-    name : what the object is called
-    objects : the object, its pedestal, and what is not known of them
-    place : the floor on which it stands
-    level : the level of shaking asked about
-    hazard : hazard curves of the site, one a measure
-    years : time for the probability [year]
-    records : where the motions come from
-    value : what the object is worth, in any unit; NaN if not given
-    """
-
-    name: str
-    objects: Objects
-    place: Place
-    level: Level | None = None
-    hazard: tuple[HazardCurve, ...] = ()
-    years: float = YEARS
-    records: Records = field(default_factory=Records)
-    value: float = math.nan
+    name: str  # What the object is called
+    objects: Objects  # The object, its pedestal, and what is not known of them
+    place: Place  # The floor on which it stands
+    level: Level | None = None  # The level of shaking asked about
+    hazard: tuple[HazardCurve, ...] = ()  # Hazard curves of the site, one a measure
+    years: float = YEARS  # Time for the probability [year]
+    records: Records = field(default_factory=Records)  # Where the motions come from
+    value: float = math.nan  # What the object is worth, in any unit; NaN if not given
 
 
 def read_request(path: str | os.PathLike[str]) -> Request:
@@ -95,7 +83,7 @@ def read_request(path: str | os.PathLike[str]) -> Request:
 
     Returns
     -------
-    The :class:`Request`.
+    What is asked, for :func:`rockfrag.assess.assess`.
     """
     return make_request(read_yaml(path), str(path), Path(path).parent)
 

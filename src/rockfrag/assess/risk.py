@@ -60,20 +60,13 @@ def probability_in(rate: float, years: float) -> float:
 
 @dataclass(frozen=True)
 class Estimate:
-    """A probability with its interval, or a bound where no motion toppled the object.
+    """A probability with its interval, or a bound where no motion toppled the object."""
 
-    Attributes
-    ----------
-    value : probability [-]
-    lower : lower limit of the interval [-]
-    upper : upper limit [-]
-    sources : standard deviation on the scale of the interval by source [-]
-    """
-
-    value: float
+    value: float  # Probability [-]
+    # Limits of the interval [-]
     lower: float
     upper: float
-    sources: Mapping[str, float]
+    sources: Mapping[str, float]  # Standard deviation on the scale of the interval by source [-]
 
 
 @dataclass(frozen=True)
@@ -220,7 +213,11 @@ class Evidence:
             quantile = float(stats.t.ppf(0.5 + LEVEL / 2, freedom))
         # what was added must not make an interval narrower than that of motions which all agree
         low, high = sorted((middle, here))
-        down, up = self._shifted(target, middle, quantile * math.hypot(*self.shifts.values()))
+        # with all levels shifted to the ends of the interval the fraction that topples may fall to nothing, which
+        # no multiple of its slope says
+        shift = quantile * math.hypot(*self.shifts.values())
+        ends = sorted(target.on_scale(self.outcomes, shift=sign * shift) for sign in (-1, 1))
+        down, up = max(0.0, middle - ends[0]), max(0.0, ends[1] - middle)
         others = [sources[name] for name in sources if name not in self.shifts]
         half = quantile * math.hypot(*others)
         return Estimate(
@@ -229,15 +226,6 @@ class Evidence:
             target.back(high + math.hypot(half, up)),
             sources,
         )
-
-    def _shifted(self, target: Target, middle: float, shift: float) -> tuple[float, float]:
-        """How far below and above the middle the value lies with all levels shifted to the ends of the interval.
-
-        The fraction that topples falls to nothing within less than the error of the level, which no multiple of
-        its slope says.
-        """
-        ends = sorted(target.on_scale(self.outcomes, shift=sign * shift) for sign in (-1, 1))
-        return max(0.0, middle - ends[0]), max(0.0, ends[1] - middle)
 
     def _bounded(self, target: Target, middle: float) -> Estimate:
         """Where every motion agrees: as many others could disagree as these earthquakes cannot exclude."""
@@ -321,12 +309,6 @@ STEPS = (
     Step("very high", math.inf, "Secure it now."),
 )
 """Steps of the scale, rising."""
-
-SCALE_WORDS = (
-    "low below 0.1 % in 50 years, moderate to 1 %, high to 10 %, then very high; ASCE 7 accepts 1 % for the "
-    "collapse of a new building"
-)
-"""The scale in words."""
 
 
 def step_of(probability: float, years: float) -> Step:

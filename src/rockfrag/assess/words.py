@@ -8,7 +8,7 @@ from rockfrag.assess.answer import Assessment
 from rockfrag.assess.assumed import Assumption
 from rockfrag.assess.mitigations import Mitigation
 from rockfrag.assess.outcomes import LARGEST_FACTOR
-from rockfrag.assess.risk import LEVEL, SCALE_WORDS, Estimate, step_of
+from rockfrag.assess.risk import LEVEL, Estimate, step_of
 from rockfrag.assess.sources import MEASUREMENTS, SOURCES, is_wide, narrowed, parts_of
 from rockfrag.report.part import Says
 
@@ -131,7 +131,6 @@ _WORDS: dict[str, Any] = {
     "LEVEL": LEVEL,
     "MANY": MANY,
     "FEW": FEW,
-    "SCALE_WORDS": SCALE_WORDS,
     "LARGEST_FACTOR": LARGEST_FACTOR,
     "MOST_ASSUMPTIONS": MOST_ASSUMPTIONS,
     "MEASUREMENTS": MEASUREMENTS,

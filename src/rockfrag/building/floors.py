@@ -76,7 +76,8 @@ def respond(building: ShearBuilding, motion: Motion) -> BuildingResponse:
 
     Returns
     -------
-    The :class:`BuildingResponse`.
+    Histories at the samples of the motion: ``time`` [s], absolute ``acceleration`` of ground and floors [m/s²],
+    shape (storeys + 1, n), ``drift`` of the storeys over height [-], and ``energy`` of a hysteretic model.
     """
     if building.model == "elastic":
         return respond_elastically(building, motion)
@@ -112,26 +113,17 @@ _HYSTERETIC = (
 
 @dataclass(frozen=True)
 class DriftOutcome:
-    """State of the storey that is worst off.
+    """State of the storey that is worst off."""
 
-    Attributes
-    ----------
-    storey : its number, from 1
-    drift : its largest drift over height [-]
-    strength_fraction : largest shear over the shear strength [-]; only an elastic model can exceed 1
-    state : ``uncracked``, ``cracked``, ``beyond strength`` (of an elastic model), ``beyond yield``,
-        ``beyond the shear limit`` or ``beyond the rocking limit``
-    credible : whether the model may be used there
-        An elastic one up to the shear strength, a hysteretic one up to the rocking limit, beyond which walls fall.
-    statement : one sentence for a report
-    """
-
-    storey: int
-    drift: float
+    storey: int  # Its number, from 1
+    drift: float  # Its largest drift over height [-]
+    # Largest shear over the shear strength [-]; only an elastic model can exceed 1
     strength_fraction: float
-    state: str
+    state: str  # One of the states of ``_ELASTIC`` and ``_HYSTERETIC``
+    # Whether the model may be used there: an elastic one up to the shear strength, a hysteretic one up to the
+    # rocking limit, beyond which walls fall
     credible: bool
-    statement: str
+    statement: str  # One sentence for a report
 
 
 def judge_drift(building: ShearBuilding, response: BuildingResponse) -> DriftOutcome:
@@ -143,7 +135,8 @@ def judge_drift(building: ShearBuilding, response: BuildingResponse) -> DriftOut
 
     Returns
     -------
-    The :class:`DriftOutcome`.
+    The ``storey`` that is worst off, its ``drift`` over height [-], ``strength_fraction`` (largest shear over the
+    shear strength [-]) and ``state``, whether the model is ``credible`` there, and a sentence (``statement``).
     """
     law, elastic = building.masonry, building.model == "elastic"
     shear = np.asarray(building.stiffnesses) * np.asarray(building.heights) * response.peak_drift

@@ -147,9 +147,8 @@ def _reload(x: float, zero: float, aim: float, force: float, stiffness: float, l
     return float(force * (law[0] + (1.0 - law[0]) * (x - pinch) / (aim - pinch)))
 
 
-LONGEST_STEP = (
-    2e-4  # [s]; halving it changes floor peaks of the reference building by less than 0.1 %
-)
+# [s]; halving it changes floor peaks of the reference building by less than 0.1 %
+LONGEST_STEP = 2e-4
 
 
 def respond_hysteretically(

@@ -17,32 +17,25 @@ class MasonryLaw:
 
     The limits are those of EN 1998-3 for walls governed by shear (0.4 %) and by rocking (0.8 %), beyond which a
     residue is left; the storey carries its shear strength from the yield drift to the shear limit.
-
-    Attributes
-    ----------
-    base_shear : shear strength of the ground storey over the weight of the building [-]
-    cracking : shear at which the elastic stiffness ends, over the shear strength [-]
-    yield_drift, shear_drift, rocking_drift : drift over storey height at yield and at the two limits [-]
-    residual : shear left beyond the rocking limit, over the shear strength [-]
-    pinch_force : force at the point through which a storey reloads, over the force it aims for [-]
-    pinch_drift : fraction of the way from zero force to the line of unloading through the aim at that point [-]
-        Both fractions 1 is no pinching.
-    damage_ductility, damage_energy : growth of the drift aimed for at each reversal [-]
-        Per unit of ductility beyond cracking, and of energy over the area under both sides of the envelope.
-    unloading : exponent by which the unloading stiffness falls with ductility [-]
     """
 
+    # Shear strength of the ground storey over the weight of the building [-]
     base_shear: float = 0.12
-    cracking: float = 0.5
+    cracking: float = 0.5  # Shear at which the elastic stiffness ends, over the shear strength [-]
+    # Drift over storey height at yield and at the two limits [-]
     yield_drift: float = 0.001
     shear_drift: float = 0.004
     rocking_drift: float = 0.008
-    residual: float = 0.4
+    residual: float = 0.4  # Shear left beyond the rocking limit, over the shear strength [-]
+    # Force at the point through which a storey reloads, over the force it aims for, and where that point lies on
+    # the way from zero force to the line of unloading through the aim [-]; both 1 is no pinching
     pinch_force: float = 0.4
     pinch_drift: float = 0.8
+    # Growth of the drift aimed for at each reversal, per unit of ductility beyond cracking, and of energy over the
+    # area under both sides of the envelope [-]
     damage_ductility: float = 0.0
     damage_energy: float = 0.02
-    unloading: float = 0.3
+    unloading: float = 0.3  # Exponent by which the unloading stiffness falls with ductility [-]
 
     def __post_init__(self) -> None:
         for known in fields(self):
@@ -88,14 +81,9 @@ class ModalDamping:
 
 @dataclass(frozen=True)
 class RayleighDamping(ModalDamping):
-    """Damping proportional to mass and stiffness, with a given ratio in two of the modes.
+    """Damping proportional to mass and stiffness, with the ratio in two of the modes."""
 
-    Attributes
-    ----------
-    ratio : fraction of critical damping in both modes, below 1 [-]
-    modes : numbers of the two, from 1; the only one of one storey, with damping proportional to the mass
-    """
-
+    # Numbers of the two, from 1; the only one of one storey, with damping proportional to the mass
     modes: tuple[int, int] = (1, 2)
 
     def __post_init__(self) -> None:

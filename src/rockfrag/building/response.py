@@ -70,22 +70,13 @@ def damping_matrix(building: ShearBuilding, modes: Modes) -> Floats:
 
 @dataclass(frozen=True)
 class EnergyBalance:
-    """Where the energy is, relative to the ground (Uang & Bertero 1990); each [J], shape (n,).
+    """Where the energy is, relative to the ground (Uang & Bertero 1990); each [J], shape (n,)."""
 
-    Attributes
-    ----------
-    input : work of the inertial forces -m a_g on the floors
-    kinetic : of the floors' velocities relative to the ground
-    strain : what the storeys would give back on unloading
-    damping : dissipated by viscous damping
-    hysteretic : dissipated by the storeys
-    """
-
-    input: Floats
-    kinetic: Floats
-    strain: Floats
-    damping: Floats
-    hysteretic: Floats
+    input: Floats  # Work of the inertial forces -m a_g on the floors
+    kinetic: Floats  # Of the floors' velocities relative to the ground
+    strain: Floats  # What the storeys would give back on unloading
+    damping: Floats  # Dissipated by viscous damping
+    hysteretic: Floats  # Dissipated by the storeys
 
     __repr__ = short_repr
 
@@ -98,20 +89,13 @@ class EnergyBalance:
 
 @dataclass(frozen=True)
 class BuildingResponse:
-    """Histories at the samples of the ground motion.
+    """Histories at the samples of the ground motion."""
 
-    Attributes
-    ----------
-    time : [s], shape (n,)
-    acceleration : absolute, of the ground and of every floor [m/s²], shape (storeys + 1, n)
-    drift : of every storey over its height [-], shape (storeys, n)
-    energy : up to each sample, if the model keeps the balance
-    """
-
-    time: Floats
+    time: Floats  # [s], shape (n,)
+    # Absolute, of the ground and of every floor [m/s²], shape (storeys + 1, n)
     acceleration: Floats
-    drift: Floats
-    energy: EnergyBalance | None = None
+    drift: Floats  # Of every storey over its height [-], shape (storeys, n)
+    energy: EnergyBalance | None = None  # Up to each sample, if the model keeps the balance
 
     __repr__ = short_repr
 

@@ -16,7 +16,7 @@ import pandas as pd
 from rockfrag.errors import InputError
 from rockfrag.files import is_file
 from rockfrag.fragility.tests_file import product_of, read_columns, read_titles
-from rockfrag.motions.intensity import pga, pgv
+from rockfrag.motions.intensity import pgv
 from rockfrag.motions.processing import highpass
 from rockfrag.records.motion import Motion
 from rockfrag.records.parsing.quantities import TO_SI, asked_unit
@@ -96,16 +96,14 @@ def _with_outcomes(
 ) -> pd.DataFrame:
     """Add outcome and amplitude; an amplitude of overturning makes one test survived and one overturned."""
     if "overturned" in columns:
-        tests[MEASURED] = raw[columns["overturned"]].astype(bool)
-        tests["amplitude_g"] = raw[columns["amplitude_g"]] if "amplitude_g" in columns else np.nan
-        return tests
+        amplitude = raw[columns["amplitude_g"]] if "amplitude_g" in columns else np.nan
+        seen = raw[columns["overturned"]].astype(bool)
+        return tests.assign(**{MEASURED: seen, "amplitude_g": amplitude})
     parts = []
     for key, fell in (("lower_g", False), ("upper_g", True)):
         amplitude = raw[columns[key]]
         names = [f"{test} at {a:g} g" for test, a in zip(tests["test"], amplitude, strict=True)]
-        part = tests.assign(test=names, amplitude_g=amplitude)
-        part[MEASURED] = fell
-        parts.append(part)
+        parts.append(tests.assign(test=names, amplitude_g=amplitude, **{MEASURED: fell}))
     wrong = np.flatnonzero(parts[0]["amplitude_g"] >= parts[1]["amplitude_g"])
     if wrong.size:
         raise InputError(
@@ -227,12 +225,8 @@ def _of_archive(
 
 def measured_peaks(motions: Sequence[Motion]) -> pd.DataFrame:
     """Peak acceleration and velocity of motions, ``pga_g`` and ``pgv_cm_s``."""
-    return pd.DataFrame(
-        {
-            "pga_g": [pga(motion) / GRAVITY for motion in motions],
-            "pgv_cm_s": [100 * pgv(highpass(motion, DRIFT_CORNER_HZ)) for motion in motions],
-        }
-    )
+    velocities = [100 * pgv(highpass(motion, DRIFT_CORNER_HZ)) for motion in motions]
+    return pd.DataFrame({"pga_g": [m.pga / GRAVITY for m in motions], "pgv_cm_s": velocities})
 
 
 def check_peaks(tests: pd.DataFrame, motions: Sequence[Motion], source: str) -> None:

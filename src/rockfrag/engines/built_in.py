@@ -66,23 +66,19 @@ class SpatialEngine(BuiltIn):
         return found
 
 
-_STANDING = Wish.VERTICAL, Wish.RESTITUTION
+_STANDING = frozenset({Wish.VERTICAL, Wish.RESTITUTION})
 
-LONE_BLOCKS = PureRocking(
-    "lanes of lone blocks", frozenset(_STANDING), "rockfrag.engines.lanes:run_blocks"
-)
+LONE_BLOCKS = PureRocking("lanes of lone blocks", _STANDING, "rockfrag.engines.lanes:run_blocks")
 """Lone bodies, from rest: 64 lanes side by side (``kernels.lanes.block``)."""
 
 TWO_BLOCKS = PureRocking(
-    "lanes of two blocks",
-    frozenset({Wish.TWO_BODIES, *_STANDING}),
-    "rockfrag.engines.lanes:run_stacks",
+    "lanes of two blocks", _STANDING | {Wish.TWO_BODIES}, "rockfrag.engines.lanes:run_stacks"
 )
 """Two bodies on each other, from rest: lanes of stacks side by side (``kernels.lanes.stack_case``)."""
 
 SINGLE = PureRocking(
     "single histories",
-    frozenset({Wish.TWO_BODIES, *_STANDING, Wish.START, Wish.LINEAR, Wish.FORCES, Wish.HISTORY}),
+    _STANDING | {Wish.TWO_BODIES, Wish.START, Wish.LINEAR, Wish.FORCES, Wish.HISTORY},
     "rockfrag.engines.single:run",
     "rockfrag.engines.single:history",
 )
@@ -90,8 +86,7 @@ SINGLE = PureRocking(
 
 PLANAR = BuiltIn(
     "planar contact",
-    frozenset({Wish.TWO_BODIES, Wish.MANY_BODIES, *_STANDING})
-    | {Wish.FRICTION, Wish.START, Wish.HISTORY},
+    _STANDING | {Wish.TWO_BODIES, Wish.MANY_BODIES, Wish.FRICTION, Wish.START, Wish.HISTORY},
     "rockfrag.engines.planar.engine:run",
     "rockfrag.engines.planar.engine:history",
 )
@@ -104,3 +99,6 @@ SPATIAL = SpatialEngine(
     "rockfrag.engines.spatial.engine:history",
 )
 """One body in space."""
+
+BUILT_IN = (LONE_BLOCKS, TWO_BLOCKS, SINGLE, PLANAR, SPATIAL)
+"""In the order in which they are asked."""

@@ -27,9 +27,8 @@
 
 from dataclasses import dataclass, field, replace
 from enum import Enum
-from functools import cache, cached_property
+from functools import cached_property
 from itertools import combinations
-from pkgutil import resolve_name
 from typing import Any, Protocol
 
 import numpy as np
@@ -157,18 +156,7 @@ def wishes(system: System, motion: GroundMotion, request: Request) -> frozenset[
     return frozenset(wish for wish, there in made.items() if there)
 
 
-BUILT_IN = tuple(
-    f"rockfrag.engines.built_in:{name}"
-    for name in ("LONE_BLOCKS", "TWO_BLOCKS", "SINGLE", "PLANAR", "SPATIAL")
-)
-"""Engines in the order in which they are asked; loaded when one is first wanted."""
-
 _ENGINES: list[Engine] = []
-
-
-@cache
-def _load_built_in() -> None:
-    _ENGINES[:0] = [resolve_name(name) for name in BUILT_IN]
 
 
 def register_engine(engine: Engine, before: str | None = None) -> Engine:
@@ -184,7 +172,11 @@ def register_engine(engine: Engine, before: str | None = None) -> Engine:
 
 def engines() -> tuple[Engine, ...]:
     """Return the engines in the order in which they are asked."""
-    _load_built_in()
+    if not _ENGINES:
+        # these know the contract, and are loaded when one is first wanted
+        from rockfrag.engines.built_in import BUILT_IN
+
+        _ENGINES[:] = BUILT_IN
     return tuple(_ENGINES)
 
 

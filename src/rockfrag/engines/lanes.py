@@ -3,7 +3,6 @@
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from itertools import pairwise
-from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -35,23 +34,21 @@ def body_record(system: System, linear: bool = False, g: float = GRAVITY) -> np.
 
     ``linear`` uses the linearised equations: eq. 2.9 for one body, eq. 2.60-2.65 for two.
     """
-    p: np.void = np.zeros(1, BODY)[0]
-    found = afters(system)
+    record, found = np.zeros(1, BODY), afters(system)
+    # its fields are attributes, as those of records are in kernels
+    p: Any = record.view(np.recarray)[0]
+    if system.count == 1:
+        geometry.fill_block(p, system.shapes[0])
+        p.linear = 2 if linear else 0
+    else:
+        geometry.fill_pile(p, system.pile)
+        p.linear = 1 if linear else 0
     for name, after in zip(FIELDS, found, strict=True):
         p[name] = after
-    p["gravity"] = g
-    # its fields are attributes, as those of records are in kernels
-    named = SimpleNamespace()
-    if system.count == 1:
-        geometry.fill_block(named, system.shapes[0])
-        p["linear"] = 2 if linear else 0
-    else:
-        geometry.fill_pile(named, system.pile)
-        p["linear"] = 1 if linear else 0
-    for name, value in vars(named).items():
-        p[name] = value
-    p["measured"] = any(after != BY_MOMENTUM for after in found)
-    return p
+    p.gravity = g
+    p.measured = any(after != BY_MOMENTUM for after in found)
+    filled: np.void = record[0]
+    return filled
 
 
 def afters(system: System) -> tuple[Told, ...]:
@@ -86,13 +83,8 @@ def integrate(kernel: Any, worker: Callable[[], Any], threads: int, *arguments: 
     def work(_: int) -> None:
         kernel(ensemble, *others[:-1], worker(), others[-1])
 
-    needed = min(threads, int(ensemble.count))
-    if needed <= 1:
-        # starting a thread takes longer than a single short case
-        work(0)
-        return
-    with ThreadPoolExecutor(needed) as pool:
-        list(pool.map(work, range(needed)))
+    with ThreadPoolExecutor(threads) as pool:
+        list(pool.map(work, range(min(threads, int(ensemble.count)))))
 
 
 def sampled(cases: Cases, per_gravity: float) -> tuple[Motions, NDArray[np.int64], Floats]:
@@ -144,8 +136,6 @@ def _extremes(samples: Floats, offsets: NDArray[np.int64]) -> tuple[Floats, Floa
 
 def refined(values: Floats, times: int) -> Floats:
     """Sample a piecewise linear motion that ends in zero ``times`` as densely, up to that zero at least."""
-    if times == 1:
-        return values
     closed = np.append(values, 0.0)
     at = np.arange((closed.size - 1) * times + 1) / times
     return np.asarray(np.interp(at, np.arange(closed.size), closed))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -55,7 +56,7 @@ def mode_name(state: int, slides: int) -> str:
     return MODES[state] + (f", {way}" if way else "")
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Response:
     """Response of one body to one motion.
 
@@ -126,13 +127,13 @@ class Response:
     friction_force: Floats
     friction_demand: Floats
     least_normal_force: Floats
-    lost_contact: float
+    lost_contact: float = math.nan
     impacts: int
     grazings: int
-    paradoxes: int
-    forced: int
+    paradoxes: int = 0
+    forced: int = 0
     given_way: int
-    unstable_distance: float
+    unstable_distance: float = math.nan
 
     __repr__ = short_repr
 
@@ -151,10 +152,8 @@ class Response:
     @property
     def mode(self) -> NDArray[np.str_]:
         """What each interface does at each sample ("stands", "rocks right, slides left", …), shape (n, blocks)."""
-        pairs = np.stack([self.state.ravel(), self.slides.ravel()], axis=1)
-        known, which = np.unique(pairs, axis=0, return_inverse=True)
-        names = np.array([mode_name(*pair) for pair in known.tolist()])
-        return np.asarray(names[which].reshape(self.state.shape))
+        rows = np.stack([self.state, self.slides], axis=-1).tolist()
+        return np.array([[mode_name(*pair) for pair in row] for row in rows])
 
 
 def sampled_demand(normal: Floats, friction: Floats) -> Floats:
@@ -197,11 +196,8 @@ def _tuples(rows: Floats) -> list[tuple[float, ...]]:
 
 
 def _rocking_modes(states: Ints) -> list[str]:
-    """Names of rows of contact states, each of the few that there are named once."""
-    code = (states + 1) @ 4 ** np.arange(states.shape[1])
-    _, first, which = np.unique(code, return_index=True, return_inverse=True)
-    names = [rocking_mode_name(states[at].tolist()) for at in first]
-    return [names[at] for at in which.tolist()]
+    """Names of rows of contact states."""
+    return [rocking_mode_name(row) for row in states.tolist()]
 
 
 def with_slips(table: pd.DataFrame, states: Ints, slides: Ints, slip: Floats) -> pd.DataFrame:

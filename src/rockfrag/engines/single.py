@@ -65,14 +65,13 @@ def history(case: Case) -> Response:
 
 
 class SingleRun:
-    """A case integrated by the kernel of single histories, with all its contact events, or none without room.
+    """A case integrated by the kernel of single histories, with all its contact events.
 
     Forces follow from the absolute accelerations of the centres of gravity: N2 = m2 (g + y2''), T2 = m2 x2'', and
     the sums over both blocks at the ground.
     """
 
-    def __init__(self, case: Case, room: int = 4096) -> None:
-
+    def __init__(self, case: Case) -> None:
         self.system, self.count = case.system, case.system.count
         self.record = body_record(case.system, case.request.linear, case.request.g)
         self.shaking = shaking_of(case, case.request.g)
@@ -83,13 +82,11 @@ class SingleRun:
                 f"{MOST_SAMPLES} allowed."
             )
         told = self.record, self.shaking, initial_state(case.system), np.zeros(most, kept.SAMPLE)
-        while True:
-            found = np.zeros(room, kept.CONTACT_EVENT)
+        room, count = 0, 4096
+        while count > room:
+            room, found = count, np.zeros(count, kept.CONTACT_EVENT)
             done, self.summary = run_integration(*told, found)
             count = int(self.summary["contact_events"])
-            if count <= room or not room:
-                break
-            room = count
         self.history, self.contact_events = told[-1][:done], found[:count]
         self.time = np.arange(done, dtype=np.float64) * case.motion.dt
 
@@ -129,8 +126,6 @@ class SingleRun:
             least_normal_force=np.array([demand["normal" + block] for block in blocks]),
             lost_contact=float(summary["lost_contact"]),
             unstable_distance=float(summary["unstable_distance"]),
-            paradoxes=0,
-            forced=0,
             **{name: int(summary[name]) for name in ("impacts", "grazings", "given_way")},
         )
 

@@ -53,9 +53,7 @@ class IncrementalFragility:
 
     Attributes
     ----------
-    first, always
-        First overturning amplitude of each motion (first passage), and that above which each always overturns, as
-        far as it was raised.
+    first, always : first overturning amplitude of each motion, and that above which each always overturns
     probability : mean P(overturn | amplitude) over the motions, structural resurrections included
     resurrections, fraction_with_resurrections
         Table of :func:`rockfrag.fragility.empirical.find_resurrections`; fraction of the motions that overturned
@@ -128,10 +126,8 @@ def fit_stripes(
 ) -> Fragility:
     """Fit a curve to counts at a few levels of the measure (multiple stripe analysis).
 
-    The curve maximises the product of the binomial likelihoods of the stripes (Baker, 2015,
-    Earthquake Spectra 31: 579-599, eq. 11). Rows are counts when ``trials`` names a column, else
-    single tests, which are pooled by level for the likelihood; the limits resample motions (each
-    stripe a motion of its own only when ``motion`` is None).
+    The curve maximises the product of the binomial likelihoods of the stripes (Baker, 2015, Earthquake Spectra 31:
+    579-599, eq. 11); single tests are pooled by level for it, and the limits resample motions.
 
     Parameters
     ----------
@@ -227,9 +223,8 @@ def fit_uplift(motions: pd.DataFrame, im: str, *, level: float = 0.90) -> Fragil
     gives its measure at uplift exactly; in the peak acceleration itself the curve is a step, given as a β of
     next to nothing.
     """
-    at = observations.positive(motions, im)
-    names = observations.labels(motions, "motion", "table")
-    earthquakes = observations.labels(motions, "earthquake", "table")
-    return fragility_of_brackets(
-        censored.Brackets(at, at, names, earthquakes, *observations.name_and_unit(im)), level
+    at = motions.assign(upper=motions[im])
+    brackets = censored.brackets_from_table(
+        at, lower=im, upper="upper", earthquake="earthquake", measure=im
     )
+    return fragility_of_brackets(brackets, level)

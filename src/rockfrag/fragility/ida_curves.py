@@ -13,7 +13,7 @@ from rockfrag.fragility.curve_facts import total_beta
 from rockfrag.fragility.empirical import TableIda, fraction_in_bins, local_fraction
 from rockfrag.fragility.estimators import Fragility, fit_incremental, fragility_of
 from rockfrag.fragility.fractions import knots_of
-from rockfrag.fragility.observations import Observations, positive
+from rockfrag.fragility.observations import Floats, Observations, positive
 from rockfrag.motions.intensity import declared, measure_of
 from rockfrag.records.motion import Motion
 
@@ -204,6 +204,17 @@ _TAIL = 2.6
 """Standard deviations on either side of the median within which a curve is drawn: 0.5 to 99.5 %."""
 
 
+def levels_drawn(curve: Fragility, outcomes: Observations, points: int) -> Floats:
+    """Levels of a measure, (points,), in equal ratios from where a curve leaves zero to where it reaches one."""
+    fit = curve.fit
+    low, high = widest = 0.8 * float(outcomes.im.min()), 1.25 * float(outcomes.im.max())
+    if np.isfinite(fit.theta):
+        # a nearly flat curve may not stretch the range, nor amplitudes far above it
+        low = max(low, fit.theta * np.exp(-_TAIL * fit.beta))
+        high = min(high, fit.theta * np.exp(_TAIL * fit.beta))
+    return np.asarray(np.geomspace(*((low, high) if low < high else widest), points))
+
+
 def curve_points(
     labels: Mapping[str, Any], curve: Fragility, outcomes: Observations
 ) -> pd.DataFrame:
@@ -213,30 +224,19 @@ def curve_points(
     tests are at one value), ``fraction`` with its limits the non-parametric fragility function. Without a curve
     ``probability`` is missing.
     """
-    fit = curve.fit
-    low, high = widest = 0.8 * float(outcomes.im.min()), 1.25 * float(outcomes.im.max())
-    if np.isfinite(fit.theta):
-        # a nearly flat curve may not stretch the range, nor amplitudes far above it
-        low = max(low, fit.theta * np.exp(-_TAIL * fit.beta))
-        high = min(high, fit.theta * np.exp(_TAIL * fit.beta))
-    x = np.geomspace(*((low, high) if low < high else widest), POINTS)
+    fit, x = curve.fit, levels_drawn(curve, outcomes, POINTS)
     nothing = np.full(POINTS, np.nan)
-    lower, upper = curve.interval.band(x) if np.isfinite(fit.theta) else (nothing, nothing)
+    probability = lower = upper = nothing
+    if np.isfinite(fit.theta):
+        probability, (lower, upper) = fit.probability(x), curve.interval.band(x)
     inside = (x >= outcomes.im.min()) & (x <= outcomes.im.max()) & (np.ptp(outcomes.log_im) > 0)
     local = nothing.copy()
     if inside.any():
         local[inside] = local_fraction(outcomes, x[inside])
-    fraction, fraction_lower, fraction_upper = curve.checks.fractions.at(x)
-    return _about(labels, curve, POINTS).assign(
-        x=x,
-        probability=fit.probability(x) if np.isfinite(fit.theta) else nothing,
-        lower=lower,
-        upper=upper,
-        local=local,
-        fraction=fraction,
-        fraction_lower=fraction_lower,
-        fraction_upper=fraction_upper,
-    )
+    names = ("fraction", "fraction_lower", "fraction_upper")
+    fractions = dict(zip(names, curve.checks.fractions.at(x), strict=True))
+    points = _about(labels, curve, POINTS).assign(x=x, probability=probability)
+    return points.assign(lower=lower, upper=upper, local=local, **fractions)
 
 
 def fraction_points(labels: Mapping[str, Any], curve: Fragility) -> pd.DataFrame:

@@ -29,19 +29,14 @@ MOST_ROWS = 100_000
 
 Covariance = tuple[tuple[float, float], tuple[float, float]]
 Curve = tuple[float, float, Covariance]  # θ, β and the covariance of (ln θ, β)
-_NAN = float("nan")
-NO_COVARIANCE: Covariance = ((_NAN, _NAN), (_NAN, _NAN))
-NO_CURVE: Curve = (_NAN, _NAN, NO_COVARIANCE)
+NO_CURVE: Curve = (np.nan, np.nan, ((np.nan, np.nan), (np.nan, np.nan)))
 
 SAY = Macros("rockfrag.fragility", "fits.j2")  # what a reader must know of a fit, in sentences
 
 
 @dataclass(frozen=True)
 class FragilityFit:
-    """A fragility curve P(overturn | IM) = F((ln IM - ln θ) / β) and how it was obtained.
-
-    F is the standard normal distribution (link ``probit``) or the standard logistic one
-    (``logit``).
+    """A fragility curve P(overturn | IM) = F((ln IM - ln θ) / β), F normal (``probit``) or logistic (``logit``).
 
     Attributes
     ----------
@@ -104,20 +99,17 @@ def curve_parameters(coefficients: Floats, covariance: Floats) -> Curve:
     """Turn intercept and slope into θ = exp(-c0/c1), β = 1/c1 and the covariance of (ln θ, β)."""
     c0, c1 = float(coefficients[0]), float(coefficients[1])
     jacobian = np.array([[-1.0 / c1, c0 / c1**2], [0.0, -1.0 / c1**2]])
-    spread = jacobian @ covariance @ jacobian.T
-    pairs = ((float(spread[0, 0]), float(spread[0, 1])), (float(spread[1, 0]), float(spread[1, 1])))
-    return float(np.exp(-c0 / c1)), 1.0 / c1, pairs
+    (a, b), (c, d) = (jacobian @ covariance @ jacobian.T).tolist()
+    return float(np.exp(-c0 / c1)), 1.0 / c1, ((a, b), (c, d))
 
 
 @named_keywords
 def fit_lognormal(outcomes: Observations, *, link: Link = "probit") -> FragilityFit:
     """Fit a curve to outcomes by maximum likelihood (statsmodels GLM, binomial).
 
-    Where one value of the measure separates survival from overturning the likelihood has no maximum
-    (θ is only known to an interval, β tends to zero); the fit is then penalised (Firth, 1993) and
-    its ``method`` and ``warnings`` say so. Where all tests agree, θ and β are NaN and a warning
-    says what the data do tell. Where the probability does not rise with the measure, or all tests are
-    at one value of it, there is no curve either.
+    Where one value of the measure separates survival from overturning the likelihood has no maximum; the fit is
+    then penalised (Firth, 1993), as ``method`` and ``warnings`` say. θ and β are NaN where all tests agree or are
+    at one value, or the probability does not rise; a warning says what the data do tell.
 
     Parameters
     ----------

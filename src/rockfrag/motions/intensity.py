@@ -184,10 +184,10 @@ def measure_of(column: str) -> IntensityMeasure | None:
 
 
 def measure_labelled(label: str) -> IntensityMeasure | None:
-    """Return the measure of a label: ``PGA``, ``SA(0.3s)`` or, of a floor, ``PFA``; None if there is none."""
+    """Return the measure of a label: ``PGA`` or ``SA(0.3s)``; None if there is none."""
     kind, _, rest = label.partition("(")
     for measure in declared():
-        if label in (measure.label, measure.floor_label):
+        if label == measure.label:
             return measure
         if measure.spectral and kind == measure.label and rest.endswith("s)"):
             return measure.at(float(rest.removesuffix("s)")))
@@ -292,17 +292,6 @@ intensity_measure("s", power=0, label="D5-75", name="d5_75")(
 intensity_measure(
     "s", power=0, label="D5-95", name="d5_95", decimals=1, title="Significant duration, 5–95 %"
 )(significant_duration)
-
-
-def bracketed_times(motion: Motion, threshold: float) -> tuple[float, float]:
-    """First and last time at which |a| reaches ``threshold`` [m/s²] [s]; NaN where it never does.
-
-    Bolt (1973, 5th World Conference on Earthquake Engineering); at samples.
-    """
-    above = np.flatnonzero(np.abs(motion.acceleration) >= threshold)
-    if above.size == 0:
-        return math.nan, math.nan
-    return float(above[0] * motion.dt), float(above[-1] * motion.dt)
 
 
 @intensity_measure("s", power=0, label="mean period", decimals=2, title="Mean period")

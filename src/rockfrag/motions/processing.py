@@ -164,14 +164,18 @@ def strong_part(motion: Motion, lower: float = 0.05, upper: float = 0.95) -> Mot
 
 
 def bracketed_part(motion: Motion, threshold_g: float = 0.05) -> Motion:
-    """Keep everything between the first and the last sample that reaches a threshold [g]."""
+    """Keep everything between the first and the last sample that reaches a threshold [g].
+
+    Bolt (1973, 5th World Conference on Earthquake Engineering).
+    """
     threshold_g = positive_number("step bracketed_part: threshold_g", threshold_g, "g")
-    start, end = intensity.bracketed_times(motion, threshold_g * GRAVITY)
-    if math.isnan(start):
+    above = np.flatnonzero(np.abs(motion.acceleration) >= threshold_g * GRAVITY)
+    if above.size == 0:
         raise InputError(
             f"step bracketed_part: motion {motion.name!r} never reaches {threshold_g} g "
             f"(its peak is {motion.pga / GRAVITY:.3g} g); lower threshold_g."
         )
+    start, end = (float(place * motion.dt) for place in above[[0, -1]])
     return _between(motion, "bracketed_part", start, end, threshold_g=threshold_g)
 
 

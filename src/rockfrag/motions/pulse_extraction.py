@@ -7,7 +7,7 @@ transform). No pulse explains more than lies in its window: places whose window 
 
 import math
 from dataclasses import dataclass
-from itertools import groupby
+from itertools import groupby, product
 
 import numpy as np
 from scipy.optimize import minimize_scalar
@@ -26,9 +26,6 @@ SHORTEST_PERIOD, LONGEST_PERIOD, PERIOD_RATIO = 0.1, 15.0, 1.05
 longer than the record.  The best is then refined between its neighbours."""
 
 SAMPLES_PER_PERIOD = 40  # a wavelet needs no finer; denser records are thinned for the search
-
-
-_TRIED = np.array(CYCLES[::-1])
 
 
 @dataclass(frozen=True)
@@ -111,11 +108,20 @@ def _best_of(velocity: Floats, dt: float, periods: Floats) -> tuple[float, float
     """What the best of the pulses that are tried explains [m²/s²], its period and its cycles."""
     best = (0.0, 0.0, 0.0)
     # long pulses first: they cost little and leave few places at which a short one could explain more
-    for every, some in groupby(periods[::-1], lambda T: max(1, int(T / (SAMPLES_PER_PERIOD * dt)))):
+    longest_first = periods[::-1].tolist()
+    for every, some in groupby(longest_first, lambda T: max(1, int(T / (SAMPLES_PER_PERIOD * dt)))):
         thinned = np.ascontiguousarray(velocity[::every])
-        best = best_pulse(
-            thinned, _energy(thinned), every * dt, every, np.array([*some]), _TRIED, best
-        )
+        energy, step, hopeless = _energy(thinned), every * dt, 0.0
+        for period, cycles in product(some, CYCLES[::-1]):
+            length = cycles * period
+            if length <= hopeless or 2 * half_length(length, step) + 1 > thinned.size:
+                continue
+            # less by what rounding may do, so that equals are looked at
+            known = best[0] / every * (1 - 1e-9)
+            gain = best_place(thinned, energy, step, period, cycles, known)[0]
+            best = max(best, (every * gain, period, cycles))
+            # a shorter window of the same samples holds no more
+            hopeless = length if gain == 0 else hopeless
     return best
 
 
@@ -182,37 +188,6 @@ def best_place(
             sum1 = (sum1 - gone * edge1.conjugate()) * turn1.conjugate() + come * edge1
             sum2 = (sum2 - gone * edge2.conjugate()) * turn2.conjugate() + come * edge2
     return gain, place, best.real / even_norm, best.imag / odd_norm
-
-
-@cached_njit(error_model="numpy")
-def best_pulse(
-    velocity: Floats,
-    energy: Floats,
-    dt: float,
-    every: int,
-    periods: Floats,
-    cycles: Floats,
-    best: tuple[float, float, float],
-) -> tuple[float, float, float]:
-    """Find the best of several pulses, if it explains more than the best so far.
-
-    ``best`` and what is returned: what the best pulse so far explains [m²/s²], its period [s] and its cycles [-].
-    The velocity has every ``every``-th sample of the record.
-    """
-    hopeless = 0.0
-    for period in periods:
-        for cycle in cycles:
-            length = cycle * period
-            if length <= hopeless or 2 * half_length(length, dt) + 1 > velocity.size:
-                continue
-            # less by what rounding may do, so that equals are looked at
-            known = best[0] / every * (1 - 1e-9)
-            gain = best_place(velocity, energy, dt, period, cycle, known)[0]
-            found = (every * gain, period, cycle)
-            best = found if found > best else best
-            # a shorter window of the same samples holds no more
-            hopeless = length if gain == 0 else hopeless
-    return best
 
 
 @cached_njit()

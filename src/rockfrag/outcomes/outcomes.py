@@ -17,8 +17,6 @@ Whole = NDArray[np.int64]
 Small = NDArray[np.int8]
 Words = NDArray[np.object_]
 
-NOT_TOLD = math.nan  # where an engine does not tell a number
-
 Table = Literal["cases", "bodies", "contacts"]
 """The three tables of outcomes: a row per case, per body of a case, per contact of a case."""
 
@@ -30,15 +28,12 @@ SUFFIXES = {"": "", "s": "_s", "rad": "_rad", "rad/s": "_rad_s", "m": "_m", "N":
 class Column:
     """One column of a table of outcomes: an attribute of :class:`rockfrag.outcomes.Outcomes`.
 
-    ``unit`` is empty for a number without one, a count or a statement; ``meaning`` says in one sentence what it
-    is, and what NaN means where it can be NaN; ``empty``, of the column's type, stands where no engine has
-    answered.
+    ``unit`` is empty for a number without one, a count or a statement; ``empty`` stands where no engine answered.
     """
 
     name: str
     table: Table
     unit: str
-    meaning: str
     empty: Any
 
     @property
@@ -52,9 +47,9 @@ class Column:
         return np.dtype(object) if isinstance(self.empty, str) else np.asarray(self.empty).dtype
 
 
-def column(meaning: str, empty: Any = NOT_TOLD, unit: str = "", table: Table = "cases") -> Any:
-    """Declare a column as a field of :class:`rockfrag.outcomes.Outcomes`."""
-    return field(metadata={"table": table, "unit": unit, "meaning": meaning, "empty": empty})
+def column(empty: Any = math.nan, unit: str = "", table: Table = "cases") -> Any:
+    """Declare a column as a field of :class:`rockfrag.outcomes.Outcomes`; NaN where an engine does not tell."""
+    return field(metadata={"table": table, "unit": unit, "empty": empty})
 
 
 @dataclass(frozen=True)
@@ -77,82 +72,48 @@ class Outcomes:
     scales: Floats
     engines: tuple[str, ...]
     engine: Small
-    overturned: Flags = column("Whether a body fell.", False)
-    overturned_body: Small = column(
-        "Number from below of the body that fell first, from 1; 0 without a fall.", np.int8(0)
-    )
-    overturning_time: Floats = column(
-        "Instant of the fall; NaN without a fall, or where the engine stops before it.", unit="s"
-    )
-    certain_time: Floats = column(
-        "Instant from which the fall was certain whatever followed; NaN without one or not told.",
-        unit="s",
-    )
-    impacts: Whole = column("Impacts until the outcome was known.", np.int64(0))
-    flights: Whole = column(
-        "Times that a body left what it stood on with all of its base.", np.int64(0)
-    )
-    given_way: Whole = column(
-        "Impacts in which the law of a restitution gave way, lest energy grow.", np.int64(0)
-    )
-    parted_contact: Small = column(
-        "Number from below, from 1, of the contact open furthest under what fell; 0: no fall, or not told.",
-        np.int8(0),
-    )
-    several_modes: Whole = column(
-        "Times that more than one mode of contact was found consistent.", np.int64(0)
-    )
-    paradoxes: Whole = column("Times that no mode of contact was consistent.", np.int64(0))
-    unstable_distance: Floats = column(
-        "Least distance to an unstable equilibrium; infinite if it never rocked, NaN not told.",
-        math.inf,
-    )
-    minimum_gravity_ratio: Floats = column(
-        "Least effective gravity over gravity while the ground moves.", 1.0
-    )
-    lost_contact: Floats = column(
-        "Instant at which pure rocking first needed a contact to pull; NaN if none or not told.",
-        unit="s",
-    )
-    peak_rotation: Floats = column(
-        "Largest rotation on what it stands on, over the critical angle of its side; infinite if it fell.",
-        table="bodies",
-    )
-    peak_velocity: Floats = column(
-        "Largest angular velocity until the outcome was known.", unit="rad/s", table="bodies"
-    )
-    turn: Floats = column(
-        "Rotation about the vertical at the end; NaN of a planar body.", unit="rad", table="bodies"
-    )
-    walk: Floats = column(
-        "Horizontal displacement of the centre of gravity at the end; NaN not told.",
-        unit="m",
-        table="bodies",
-    )
-    fall_direction: Floats = column(
-        "Direction of the fall from x towards y; NaN without a fall or not told.",
-        unit="rad",
-        table="bodies",
-    )
-    fell_over: Words = column(
-        "Edge or vertex (from 1) over which it fell, rim, or flight; empty without a fall or not told.",
-        "",
-        table="bodies",
-    )
-    slip: Floats = column(
-        "Displacement along the contact at the end, positive to the right.",
-        unit="m",
-        table="contacts",
-    )
-    peak_slip: Floats = column(
-        "Largest displacement along the contact.", unit="m", table="contacts"
-    )
-    friction_demand: Floats = column(
-        "Largest friction over normal force until the fall was due; NaN not told.", table="contacts"
-    )
-    least_normal_force: Floats = column(
-        "Least normal force until the fall was due; NaN not told.", unit="N", table="contacts"
-    )
+    overturned: Flags = column(False)  # whether a body fell
+    # number from below of the body that fell first, from 1; 0 without a fall
+    overturned_body: Small = column(np.int8(0))
+    # instant of the fall; NaN without a fall, or where the engine stops before it
+    overturning_time: Floats = column(unit="s")
+    # instant from which the fall was certain whatever followed; NaN without one or not told
+    certain_time: Floats = column(unit="s")
+    impacts: Whole = column(np.int64(0))  # until the outcome was known
+    # times that a body left what it stood on with all of its base
+    flights: Whole = column(np.int64(0))
+    # impacts in which the law of a restitution gave way, lest energy grow
+    given_way: Whole = column(np.int64(0))
+    # number from below, from 1, of the contact open furthest under what fell; 0: no fall, or not told
+    parted_contact: Small = column(np.int8(0))
+    # times that more than one mode of contact was found consistent
+    several_modes: Whole = column(np.int64(0))
+    paradoxes: Whole = column(np.int64(0))  # times that no mode of contact was consistent
+    # least distance to an unstable equilibrium; infinite if it never rocked, NaN not told
+    unstable_distance: Floats = column(math.inf)
+    # least effective gravity over gravity while the ground moves
+    minimum_gravity_ratio: Floats = column(1.0)
+    # instant at which pure rocking first needed a contact to pull; NaN if none or not told
+    lost_contact: Floats = column(unit="s")
+    # largest rotation on what it stands on, over the critical angle of its side; infinite if it fell
+    peak_rotation: Floats = column(table="bodies")
+    # largest angular velocity until the outcome was known
+    peak_velocity: Floats = column(unit="rad/s", table="bodies")
+    # rotation about the vertical at the end; NaN of a planar body
+    turn: Floats = column(unit="rad", table="bodies")
+    # horizontal displacement of the centre of gravity at the end; NaN not told
+    walk: Floats = column(unit="m", table="bodies")
+    # direction of the fall from x towards y; NaN without a fall or not told
+    fall_direction: Floats = column(unit="rad", table="bodies")
+    # edge or vertex (from 1) over which it fell, rim, or flight; empty without a fall or not told
+    fell_over: Words = column("", table="bodies")
+    # displacement along the contact at the end, positive to the right
+    slip: Floats = column(unit="m", table="contacts")
+    peak_slip: Floats = column(unit="m", table="contacts")  # largest displacement along the contact
+    # largest friction over normal force until the fall was due; NaN not told
+    friction_demand: Floats = column(table="contacts")
+    # least normal force until the fall was due; NaN not told
+    least_normal_force: Floats = column(unit="N", table="contacts")
 
     __repr__ = short_repr
 

@@ -1,10 +1,8 @@
 """The test that holds its level: t on the means of the units that were sampled, see ``docs/pedestal.md``.
 
-Pairs share motion and earthquake, so the mean of d over one earthquake is one observation; contrasts are computed
-inside each earthquake first.  Where pairs agree to the step of the series of levels a shift may hide in all of
-them: the resolution of a mean is that of the pairs that share the most frequent value, times their fraction.
-Beside it stand sign flips, the exact test that needs no normal distribution, what a design could have seen, and
-the adjustment of many tests at once.
+Pairs share motion and earthquake, so the mean of d over one earthquake is one observation. Where pairs agree to
+the step of the series of levels a shift may hide in all of them: the resolution of a mean is that of the pairs
+that share the most frequent value, times their fraction. Beside it stand sign flips, the exact test.
 """
 
 import math
@@ -113,14 +111,13 @@ def t_estimate(
     x = np.asarray(values, dtype=float)
     if x.size == 0 or not np.all(np.isfinite(x)):
         raise TooFewUnitsError("a mean needs at least one unit and finite values")
-    mean = float(x.mean())
+    mean, scatter = float(x.mean()), 0.0
     if x.size == 1:
         return Estimate(mean, math.nan, 1, math.nan, math.nan, math.nan, resolution)
-    scatter = 0.0
-    if np.ptp(x) < ROUNDING:
-        mean = 0.0 if abs(mean) < ROUNDING else mean
-    else:
+    if np.ptp(x) >= ROUNDING:
         scatter = float(x.std(ddof=1) / math.sqrt(x.size))
+    elif abs(mean) < ROUNDING:
+        mean = 0.0
     se = max(scatter, resolution / math.sqrt(3 * x.size))
     if se == 0:
         return Estimate(mean, 0.0, x.size, math.nan, math.nan, math.nan)
@@ -141,9 +138,7 @@ def tied_resolution(values: npt.ArrayLike, resolution: npt.ArrayLike) -> Array:
 
 def resolution_of(table: pd.DataFrame) -> Array:
     """Half-width to which each row's value is known; 0 where the table does not tell."""
-    if "resolution" not in table.columns:
-        return np.zeros(len(table))
-    return table["resolution"].to_numpy(dtype=float)
+    return np.asarray(table.get("resolution", np.zeros(len(table))), dtype=float)
 
 
 def earthquake_means(table: pd.DataFrame) -> pd.Series:
@@ -163,12 +158,7 @@ def mean_effect(table: pd.DataFrame) -> Estimate:
 def mean_effects(table: pd.DataFrame, by: str) -> dict[Hashable, Estimate]:
     """`mean_effect` of every group of rows with the same value of a column, all at once."""
     units = sampled_units(table, by)
-    return {name: effect_of(some) for name, some in units.items()}
-
-
-def effect_of(units: "Units") -> Estimate:
-    """Mean of sampled units with interval and p value."""
-    return t_estimate(units.d, resolution=float(units.hidden.mean()))
+    return {name: some.effect() for name, some in units.items()}
 
 
 class Units(NamedTuple):
@@ -176,6 +166,10 @@ class Units(NamedTuple):
 
     d: Array  # mean of d over each one's pairs [-], shape (k,)
     hidden: Array  # what the steps of these pairs hide of it [-], shape (k,)
+
+    def effect(self) -> Estimate:
+        """Mean with interval and p value."""
+        return t_estimate(self.d, resolution=float(self.hidden.mean()))
 
 
 def sampled_units(table: pd.DataFrame, by: str) -> dict[Hashable, Units]:
@@ -318,11 +312,11 @@ def leave_one_earthquake_out(table: pd.DataFrame) -> pd.DataFrame:
     earthquakes = sorted(table["earthquake"].unique())
     if not 1 < len(earthquakes) <= MOST_LEFT_OUT:
         return pd.DataFrame(columns=WITHOUT_COLUMNS)
-    rows, means = [], []
+    whole, rows = mean_effect(table).mean, []
     for name in earthquakes:
         effect = mean_effect(table[table["earthquake"] != name])
-        rows.append([name, effect.ratio, effect.ratio_lower, effect.ratio_upper, effect.p])
-        means.append(effect.mean)
-    shift = np.abs(np.array(means) - mean_effect(table).mean)
-    result = pd.DataFrame(rows, columns=WITHOUT_COLUMNS[:-1])
+        limits = (effect.ratio, effect.ratio_lower, effect.ratio_upper)
+        rows.append([name, *limits, effect.p, abs(effect.mean - whole)])
+    result = pd.DataFrame(rows, columns=WITHOUT_COLUMNS)
+    shift = result["largest_change"]
     return result.assign(largest_change=shift == shift.max())

@@ -39,12 +39,9 @@ class Pairs:
         the objects'; both NaN where it is not known), a_np_g, a_p_g [g], d, resolution (half-width to
         which d is known [-]; 0 where amplitudes came without brackets), bound ("at least" or "at most"
         where one of the tests never overturned and d is the bound that follows, else empty).
-    censored
-        One row per pair of which at least one test never overturned: object, earthquake, floor, motion,
-        d_lower, d_upper (infinite where unbounded). Those with both infinite are not in ``table``.
-    unpaired
-        One row per object and motion that was tested on one side only: object, earthquake, floor, motion,
-        missing ("P" or "NP").
+    censored, unpaired
+        Object, earthquake, floor, motion of pairs of which a test never overturned; d_lower, d_upper (infinite
+        if unbounded; not in ``table`` if both are), and of tests without a partner; missing ("P" or "NP").
     """
 
     table: pd.DataFrame
@@ -88,18 +85,18 @@ def check_tests(tests: pd.DataFrame) -> pd.DataFrame:
         clean[name] = clean[name].astype(str)
     if "motion" not in clean:
         clean["motion"] = clean["earthquake"] + "/" + clean["floor"]
-    if "censored" not in clean:
-        clean["censored"] = "none"
+    for name, usual in (("censored", "none"), ("repetition", 1)):
+        if name not in clean:
+            clean[name] = usual
     clean["censored"] = clean["censored"].fillna("none").astype(str)
-    if "repetition" not in clean:
-        clean["repetition"] = 1
     for name, allowed in (("pedestal", ("P", "NP")), ("censored", ("none", "right", "left"))):
         known = ", ".join(allowed)
         _refuse(clean, ~clean[name].isin(allowed), name, f"is {{!r}}; it must be one of {known}.")
-    if "definition" in clean and len(set(clean["definition"].astype(str))) > 1:
+    definitions = sorted(set(clean.get("definition", pd.Series(dtype=str)).astype(str)))
+    if len(definitions) > 1:
         raise InputError(
             "Table of tests: several definitions of the same IDA curve are mixed "
-            f"({', '.join(sorted(clean['definition'].astype(str).unique()))}); keep one of them."
+            f"({', '.join(definitions)}); keep one of them."
         )
     _check_amplitudes(clean)
     test = [*KEY, "pedestal", "repetition"]
@@ -144,10 +141,10 @@ def _check_amplitudes(clean: pd.DataFrame) -> None:
             "largest amplitude survived as lower_g."
         )
         _refuse(clean, here & ~known, name, words)
-    for row in clean.index[~right & ~(clean["lower_g"] <= clean["upper_g"])]:
+    for row in np.flatnonzero(~right & ~(clean["lower_g"] <= clean["upper_g"])):
+        lower, upper = clean[["lower_g", "upper_g"]].iloc[row]
         raise InputError(
-            f"Table of tests, row {row + 1}: lower_g {clean['lower_g'].iloc[row]} exceeds "
-            f"upper_g {clean['upper_g'].iloc[row]}; exchange them."
+            f"Table of tests, row {row + 1}: lower_g {lower} exceeds upper_g {upper}; exchange them."
         )
 
 
@@ -162,8 +159,6 @@ def pedestals_apart(tests: pd.DataFrame) -> tuple[pd.DataFrame, dict[str, str]]:
     on_pedestal = tests[tests["pedestal"] == "P"]
     names = on_pedestal.groupby("object")["configuration"].unique()
     several = names[names.map(len) > 1]
-    if several.empty:
-        return tests, {}
     parts = [tests[~tests["object"].isin(list(several.index))]]
     origin: dict[str, str] = {}
     for object_name, configurations in several.items():
@@ -187,11 +182,13 @@ def with_counterparts(
     origin: dict[str, str] = {}
     for name, other in counterparts.items():
         label = f"{name} against {other}"
-        for side, configuration in (("P", name), ("NP", other)):
-            rows = tests[tests["configuration"] == configuration]
-            parts.append(rows.assign(object=label, pedestal=side, configuration=configuration))
-            if side == "P" and len(rows):
-                origin[label] = str(rows["object"].iloc[0])
+        own, others = (tests[tests["configuration"] == each] for each in (name, other))
+        parts += [
+            own.assign(object=label, pedestal="P"),
+            others.assign(object=label, pedestal="NP"),
+        ]
+        if len(own):
+            origin[label] = str(own["object"].iloc[0])
     return pd.concat(parts, ignore_index=True), origin
 
 
@@ -237,10 +234,8 @@ def pair_tests(tests: pd.DataFrame, slenderness: Mapping[str, float] | None = No
     clean = check_tests(tests)
     if slenderness is None:
         slenderness = dict.fromkeys(clean["object"].unique(), math.nan)
-    slenderness = {
-        **slenderness,
-        **{name: slenderness[tested] for name, tested in origin.items() if tested in slenderness},
-    }
+    given = {name: slenderness[tested] for name, tested in origin.items() if tested in slenderness}
+    slenderness = {**slenderness, **given}
     slenderness_of(clean, slenderness)
     sides = _sides(clean)
     ln_a, width = (pd.DataFrame(sides[name]).astype(float) for name in ("ln_a", "width"))

@@ -32,8 +32,6 @@ EFFECT_COLUMNS = [
 ]
 WHOLE_COLUMNS = ["method", "estimate", "lower", "upper", "p", "smallest_p", "units", "remark"]
 EQUIVALENCE_LEVEL = 0.05  # equivalence is shown below this p value [-]
-STEPS_DECIDE = "; the limits are the width of the steps, not of the scatter"
-"""Said of a method whose own interval is narrower than what the steps of the amplitudes leave open."""
 RANK_COLUMNS = ["factor", "level", "ratio", "p_largest", "p_smallest"]
 DRAWS = 9_999  # samples drawn of motions or earthquakes
 DRAWN_AT_ONCE = 2_000_000
@@ -68,23 +66,19 @@ def effects_table(table: pd.DataFrame, floors: Sequence[str] = ()) -> pd.DataFra
     """Ratio P/NP for every scope of pairs (`Pairs.table`), with floors in the given order.
 
     Limits are of 95 %; p_holm adjusts within the scope, p_bh over all rows; p_equivalence is of ±10 %;
-    detectable_ratio has 80 % power with the scatter and number of units at hand; up to resolution_ratio the steps
-    of the amplitudes leave the mean open (no interval is narrower); tied pairs have equal amplitudes on both
-    sides; of those at_bound one test never overturned.
+    detectable_ratio has 80 % power; up to resolution_ratio the steps of the amplitudes leave the mean open; tied
+    pairs have equal amplitudes on both sides; of those at_bound one test never overturned.
     """
     rows: list[list[object]] = []
     known = [name for name in floors if name in set(table["floor"])]
-    known += sorted(set(table["floor"]) - set(known))
-    table = table.assign(
-        floor=pd.Categorical(table["floor"], known),
-        tied=table["d"].abs() < cluster_means.ROUNDING,
-        at_bound=table["bound"] != "",
-    )
+    floor = pd.Categorical(table["floor"], [*known, *sorted(set(table["floor"]) - set(known))])
+    tied, at_bound = table["d"].abs() < cluster_means.ROUNDING, table["bound"] != ""
+    table = table.assign(floor=floor, tied=tied, at_bound=at_bound)
     for scope, columns in SCOPES.items():
         groups = table.groupby(list(columns) or np.zeros(len(table)), observed=True)
         sampled = cluster_means.sampled_units(table.assign(group=groups.ngroup()), "group")
         for place, (key, pairs) in enumerate(groups):
-            effect = cluster_means.effect_of(sampled[place])
+            effect = sampled[place].effect()
             flips = cluster_means.sign_flip_test(sampled[place].d)
             same = cluster_means.equivalence(effect)
             level = "/".join(map(str, key)) if isinstance(key, tuple) else "all"
@@ -98,10 +92,10 @@ def effects_table(table: pd.DataFrame, floors: Sequence[str] = ()) -> pd.DataFra
                     *pairs[["tied", "at_bound"]].sum(),
                 ]
             )
-    adjusted = ("p_holm", "p_bh")
-    result = pd.DataFrame(rows, columns=[name for name in EFFECT_COLUMNS if name not in adjusted])
-    result["p_holm"] = result.groupby("scope")["p"].transform(cluster_means.holm)
-    result["p_bh"] = cluster_means.benjamini_hochberg(result["p"])
+    given = [name for name in EFFECT_COLUMNS if name not in ("p_holm", "p_bh")]
+    result = pd.DataFrame(rows, columns=given)
+    holm = result.groupby("scope")["p"].transform(cluster_means.holm)
+    result = result.assign(p_holm=holm, p_bh=cluster_means.benjamini_hochberg(result["p"]))
     return result[EFFECT_COLUMNS]
 
 
@@ -111,14 +105,12 @@ def _whole_tests(table: pd.DataFrame, seed: int) -> pd.DataFrame:
     flips = cluster_means.sign_flip_test(cluster_means.earthquake_means(table), seed)
     remark = "keeps its level in the crossed design; the conclusions rest on it"
     if effect.upper <= effect.mean + effect.resolution:
-        remark += STEPS_DECIDE
+        remark += "; the limits are the width of the steps, not of the scatter"
     estimate, nan = (effect.ratio, effect.ratio_lower, effect.ratio_upper, effect.p), math.nan
     drawn = "exact" if flips.exact else f"drawn with seed {seed}"
+    of_t = (f"t on the means of {unit}s", *estimate, nan, effect.units, remark)
     flipped = (effect.ratio, nan, nan, flips.p, flips.smallest_p, flips.units, drawn)
-    rows = [
-        [f"t on the means of {unit}s", *estimate, nan, effect.units, remark],
-        ["sign flips over earthquakes", *flipped],
-    ]
+    rows = [of_t, ("sign flips over earthquakes", *flipped)]
     return pd.DataFrame(rows, columns=WHOLE_COLUMNS)
 
 
@@ -129,13 +121,11 @@ def _ranks(table: pd.DataFrame, seed: int) -> pd.DataFrame:
     Floors share the earthquake and objects the motion, so they are drawn together.
     """
     parts = []
-    for factor, cluster, within in (
-        ("object", "motion", False),
-        ("floor", "earthquake", False),
-        ("earthquake", "motion", True),
-    ):
+    clusters = {"object": "motion", "floor": "earthquake", "earthquake": "motion"}
+    for factor, cluster in clusters.items():
         if table[factor].nunique() > MOST_RANKED:
             continue
+        within = factor == "earthquake"
         ranks = rank_probabilities(table, factor, cluster, seed, within=within)
         ranks.insert(0, "factor", factor)
         parts.append(ranks.assign(mean=np.exp(ranks["mean"])))
@@ -192,16 +182,13 @@ def rank_probabilities(
         drawn = np.column_stack([_resampled(of_level, rng) for of_level in means])
     else:
         cells = table.pivot_table(index=cluster, columns=factor, values="d", aggfunc="mean")
-        grid = cells[levels].dropna().to_numpy()
-        drawn = _resampled(grid, rng)
-    return pd.DataFrame(
-        {
-            "level": levels,
-            "mean": table.groupby(factor)["d"].mean()[levels].to_numpy(),
-            "p_largest": _fraction_of(drawn == drawn.max(axis=1, keepdims=True)),
-            "p_smallest": _fraction_of(drawn == drawn.min(axis=1, keepdims=True)),
-        }
+        drawn = _resampled(cells[levels].dropna().to_numpy(), rng)
+    mean = table.groupby(factor)["d"].mean()[levels].to_numpy()
+    largest, smallest = (
+        _fraction_of(drawn == extreme(drawn, axis=1, keepdims=True)) for extreme in (np.max, np.min)
     )
+    found = {"level": levels, "mean": mean, "p_largest": largest, "p_smallest": smallest}
+    return pd.DataFrame(found)
 
 
 def _resampled(means: Array, rng: np.random.Generator) -> Array:

@@ -18,7 +18,7 @@ from rockfrag.keywords import for_catalogue
 from rockfrag.records.motion import Motion
 from rockfrag.records.parsing.quantities import asked_unit
 from rockfrag.records.parsing.text_file import read_head
-from rockfrag.records.sources.archive import files_of
+from rockfrag.records.sources.archive import is_hidden, is_no_record
 from rockfrag.records.sources.wheel import WHEELS, fetch_wheel
 from rockfrag.tabular import read_rows
 from rockfrag.units import LONGEST_STEP, SHORTEST_STEP
@@ -52,9 +52,8 @@ _MOST_SHOWN = 400  # characters of the list of wrong cells in a message
 def read_catalogue(path: str | os.PathLike[str]) -> pd.DataFrame:
     """Read and check a catalogue (CSV), a row per motion, columns :data:`COLUMNS`.
 
-    Columns are separated by commas, semicolons or tabs; numbers may have a decimal comma. Columns
-    that are missing count as empty, ``source`` as ``folder``. Text columns are empty strings where
-    nothing is known, numbers NaN.
+    Columns are separated by commas, semicolons or tabs; numbers may have a decimal comma. Columns that are missing
+    count as empty, ``source`` as ``folder``. Text columns are empty strings where nothing is known, numbers NaN.
     """
     return _checked(path)[0]
 
@@ -244,11 +243,13 @@ def is_catalogue(path: Path) -> bool:
 
 
 def record_files(*paths: str | os.PathLike[str]) -> list[Path]:
-    """Return the files that may be records: those below each folder, and each other path itself."""
+    """Return the files that may be records: those below each folder, in order of name, or the path itself."""
     found: list[Path] = []
     for path in map(Path, paths):
-        inside = path.is_dir()
-        found += [f for f in files_of(path) if not is_catalogue(f)] if inside else [path]
+        files = sorted(file for file in path.rglob("*") if not file.is_dir())
+        shown = (f for f in files if not is_hidden(f.relative_to(path).as_posix()))
+        inside = (f for f in shown if not (is_no_record(f.name) or is_catalogue(f)))
+        found += inside if path.is_dir() else [path]
     return found
 
 

@@ -208,10 +208,8 @@ class CatalogueDraft:
         """Read every component of a file; what is wrong with it goes into the errors."""
         try:
             record, dt_given = read_untold(file, self.dt)
-        except NotAcceleration:
-            return []
         except InputError as error:
-            self.errors.append(str(error))
+            self.errors += [] if isinstance(error, NotAcceleration) else [str(error)]
             return []
         self.errors += [str(e) for _, e in record.left_out if not isinstance(e, NotAcceleration)]
         relative = Path(os.path.relpath(file, self.folder)).as_posix()
@@ -269,11 +267,9 @@ class CatalogueDraft:
         file, npts = component.file, component.npts
         self.notes += [(file, quality_flag) for quality_flag in component.quality_flags]
         if other and file < other.file and abs(npts - other.npts) > 0.1 * npts:
-            unlike = f"{npts} samples, but {other.npts} in {other.file} of the same record"
-            self.note(file, unlike)
-        earthquake = component.row["earthquake"]
-        if not earthquake:
-            earthquake = component.stem
+            self.note(file, f"{npts} samples, but {other.npts} in {other.file} of the same record")
+        earthquake = component.row["earthquake"] or component.stem
+        if not component.row["earthquake"]:
             column = f"the column earthquake has {earthquake!r}"
             self.note(file, f"its earthquake is not stated; {column}")
         return component.row | {
@@ -334,18 +330,15 @@ def _component(
     name = plain if _OF_KNET.search(plain) else plain.rsplit(".", 1)[0] or plain
     stem, suffix = (name, "") if several else _parts(name)
     orientation = str(facts.get("component") or ("" if suffix in {"1", "2", "3"} else suffix))
-    azimuth = facts.get("azimuth_deg")
-    container = str(file) if channel.member else ""
+    azimuth, container = facts.get("azimuth_deg"), str(file) if channel.member else ""
     time = facts.get("network"), facts.get("station"), facts.get("start_time")
     row = {
         **own_row,
         "name": f"{name} {facts.get('channel', '')}".strip() if several else name,
         "earthquake": str(facts.get("earthquake") or ""),
         "date": _date(facts),
-        "station": facts.get("station", ""),
         "component": orientation,
-        "magnitude": facts.get("magnitude"),
-        "distance_km": facts.get("distance_km"),
+        **{key: facts.get(key) for key in ("station", "magnitude", "distance_km")},
         "source": "folder",
         "sha256": motion.provenance[0]["sha256"],
     }
@@ -435,8 +428,6 @@ def _records_of(components: Sequence[Component]) -> list[list[Component]]:
 def _is_record(group: Sequence[Component]) -> bool:
     """Tell whether components are two horizontals at a right angle and at most one vertical."""
     flat = _horizontal(group)
-    if len(flat) == 3 and sorted(component.suffix for component in flat) == ["1", "2", "3"]:
-        return False
     if len(flat) != 2 or len(group) > 3 or abs(flat[0].dt - flat[1].dt) > 1e-9:
         return False
     first, second = flat[0].azimuth, flat[1].azimuth

@@ -96,8 +96,7 @@ def _archived(file: str, wanted: str, dt: float | None, cut_short: bool) -> Reco
         for member in chosen or (m for m in members if not is_no_record(m.name)):
             try:
                 form, found = _channels(member.path, dt, cut_short)
-                # read before the folder goes, and to know which members are damaged
-                found = [replace(c, samples=c.samples().copy, member=member.name) for c in found]
+                found = [replace(channel, member=member.name) for channel in found]
             except InputError as error:
                 # the user knows the archive's names, not where they lie unpacked
                 told = type(error)(str(error).replace(str(member.path), f"{file}#{member.name}"))
@@ -183,7 +182,7 @@ def motion_of(
     record: Record, channel: Channel, unit: str | None = None, force: bool = False
 ) -> Motion:
     """Return one channel of a record as a motion in m/s²; ``unit`` and ``force`` as of :func:`read_motion`."""
-    samples = channel.samples()
+    samples = channel.samples
     stored = _settled_unit(record, channel, samples, unit)
     factor = quantities.TO_SI[stored]
     acceleration = _in_si(record, samples, factor)
@@ -211,13 +210,8 @@ def motion_of(
     name = printable(Path(own).name.removesuffix(".gz").rsplit(".", 1)[0])
     if len(record.channels) > 1:
         name = f"{name} {channel.code or channel.component}".strip()
-    return Motion(
-        acceleration=acceleration,
-        dt=channel.dt,
-        name=name,
-        metadata=_metadata(record, channel, stored),
-        provenance=tuple(steps),
-    )
+    metadata = _metadata(record, channel, stored)
+    return Motion(acceleration, channel.dt, name, metadata, tuple(steps))
 
 
 def _in_si(record: Record, samples: NDArray[np.float64], factor: float) -> NDArray[np.float64]:
@@ -247,9 +241,7 @@ def _check_peak(record: Record, acceleration: NDArray[np.float64], unit: str) ->
 def _metadata(record: Record, channel: Channel, unit: str) -> dict[str, Any]:
     start = channel.start_time
     facts = {
-        "network": channel.network,
-        "station": channel.station,
-        "location": channel.location,
+        **{key: getattr(channel, key) for key in ("network", "station", "location")},
         "channel": channel.code or channel.component,
         "component": channel.component or channel.code,
         "earthquake": channel.details.get("earthquake", ""),

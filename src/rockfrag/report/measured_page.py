@@ -14,7 +14,8 @@ from rockfrag import figure_style as style
 from rockfrag.fragility.checks import GoodnessOfFit
 from rockfrag.fragility.empirical import fraction_in_bins, local_fraction
 from rockfrag.fragility.estimators import Fragility
-from rockfrag.fragility.observations import Floats, Observations
+from rockfrag.fragility.ida_curves import levels_drawn
+from rockfrag.fragility.observations import Observations
 from rockfrag.fragility.user_table import UserFragility, fit_user_table
 from rockfrag.report.figures import GREY
 from rockfrag.report.page import p_values
@@ -127,7 +128,7 @@ def measures_figure(
             axes.set_visible(False)
         for axes, (label, curve) in zip(panels.flat, curves.items(), strict=False):
             data = outcomes[label]
-            grid = _grid(curve, data)
+            grid = levels_drawn(curve, data, 400)
             draw_fractions(axes, fraction_in_bins(data).rename(columns={"im": "x"}), style.BLACK)
             inside = grid[(grid >= data.im.min()) & (grid <= data.im.max())]
             if inside.size and np.ptp(data.log_im) > 0:
@@ -164,11 +165,3 @@ def calibration_figure(judged: Mapping[str, GoodnessOfFit]) -> Figure:
         axes.set(xlabel="Fitted probability", ylabel="Fraction overturned")
         axes.legend(loc="upper left", handletextpad=0.3)
         return figure
-
-
-def _grid(curve: Fragility, data: Observations) -> Floats:
-    """Values from where a curve leaves zero to where it reaches one."""
-    low, high = (curve.fit.theta * np.exp(sign * 2.6 * curve.fit.beta) for sign in (-1, 1))
-    # neither a nearly flat curve nor amplitudes far above it may stretch the axis
-    low, high = max(low, 0.8 * float(data.im.min())), min(high, 1.25 * float(data.im.max()))
-    return np.asarray(np.geomspace(low, high, 400))

@@ -12,8 +12,8 @@ from rockfrag.records.motion import GroundMotion, Motion
 from rockfrag.report.live.space import Standing, live_in_space
 from rockfrag.report.part import Answer, Says, Section
 from rockfrag.report.study_report import write_page
-from rockfrag.rocking.space_medians import LOSS, NO_LOSS, PLANAR, body_of
 from rockfrag.stages.job import Job, Results
+from rockfrag.stages.space import LOSS, NO_LOSS, PLANAR, body_of
 from rockfrag.study.space import SpaceStudy
 
 says = Says("rockfrag.report", "space_page.j2")
@@ -50,7 +50,7 @@ def run(job: Job[SpaceStudy]) -> Results:
 
 def _live(study: SpaceStudy, ground: Sequence[Motion]) -> Markup:
     """Bodies of the study under its first records, live; nothing where a body has another base for each record."""
-    if study.sweep.spread > 0:
+    if study.sweep["base_spread"] > 0:
         return Markup()
     bodies = {
         f"{base}, height over width {slenderness:g}, {height:g} m": Standing(

@@ -1,4 +1,4 @@
-from . import closed_forms as closed_forms, rules_of_thumb as rules_of_thumb
+from . import closed_forms as closed_forms
 from .ensemble import (
     LightBodies as LightBodies,
     overturns as overturns,
@@ -22,5 +22,5 @@ from .robustness import (
 from .thresholds import (
     Thresholds as Thresholds,
     find_thresholds as find_thresholds,
+    worst_direction as worst_direction,
 )
-from .worst_direction import worst_direction as worst_direction

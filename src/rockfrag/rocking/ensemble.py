@@ -120,13 +120,11 @@ def overturns(
     --------
     A statue alone and on a pedestal, under a sine of one second at three amplitudes [m/s²]:
 
-    >>> import numpy as np
-    >>> from rockfrag import Block, Motion, Stack, overturns
-    >>> time = np.arange(0, 2, 0.01)
-    >>> motion = Motion(np.sin(2 * np.pi * time) * (time < 1), dt=0.01)
+    >>> from rockfrag import Block, Stack, overturns
+    >>> from rockfrag.motions import one_sine
     >>> upper = Block(width=0.3, height=1.2, mass=180.0)
     >>> stack = Stack(Block(width=0.6, height=0.4, mass=300.0), upper)
-    >>> overturns([upper, stack], motion, scales=[2.0, 3.0, 5.0]).overturned.shape
+    >>> overturns([upper, stack], one_sine(1.0, period=1.0), scales=[2.0, 3.0, 5.0]).overturned.shape
     (2, 1, 3)
     """
     cases = prepared(

@@ -174,10 +174,7 @@ def checked_scales(scales: ArrayLike, motions: Sequence[GroundMotion]) -> NDArra
     if isinstance(scales, np.ndarray):
         # before anything is asked of so many numbers
         check_case_count(scales.size)
-    factors = real_array("scales", scales)
-    count = len(motions)
-    if factors.ndim == 0:
-        factors = factors.reshape(1)
+    factors, count = np.atleast_1d(real_array("scales", scales)), len(motions)
     if factors.ndim == 1:
         factors = np.broadcast_to(factors, (count, factors.size))
     if factors.ndim != 2 or factors.shape[0] != count or not np.isfinite(factors).all():
@@ -186,8 +183,7 @@ def checked_scales(scales: ArrayLike, motions: Sequence[GroundMotion]) -> NDArra
         )
     check_case_count(factors.size)
     for i, motion in enumerate(motions):
-        parts = (motion.x, motion.y, motion.z)
-        peak = max(part.pga for part in parts if part is not None)
+        peak = max(getattr(motion, component).pga for component in motion.components)
         strongest = float(np.abs(factors[i]).max(initial=0.0)) * peak
         if strongest > STRONGEST:
             raise InputError(

@@ -62,20 +62,6 @@ Restitution = float | Sequence[Measured] | dict[str, Any] | MeasuredRestitution 
 """A measured restitution; numbers alone follow the law ``"position"``, and None conserves momentum."""
 
 
-@dataclass(frozen=True)
-class Sweep:
-    """Levels and directions that a comparison of bodies in space with planar ones tries."""
-
-    # lowest, highest: lowest and highest level over the uplift of the narrow side, b/h [-]
-    lowest: float
-    highest: float
-    levels: int  # number of levels, a constant factor apart
-    directions: int  # directions of planar rocking over half a turn
-    resamples: int  # times that earthquakes are drawn again for intervals
-    # largest displacement of each vertex of a base over its extent [-], and turn [rad]
-    spread: float
-
-
 def system_of(
     body: SystemLike,
     friction: FrictionInput | None = None,

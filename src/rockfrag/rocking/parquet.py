@@ -5,10 +5,10 @@ from __future__ import annotations
 import itertools
 import math
 import os
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from contextlib import contextmanager
 from dataclasses import replace
+from functools import partial
 from typing import Unpack
 
 import numpy as np
@@ -16,9 +16,7 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 from numpy.typing import ArrayLike
 
-from rockfrag.engines.built_in import SINGLE
-from rockfrag.engines.contract import Case, engine_for
-from rockfrag.engines.single import SingleRun
+from rockfrag.engines.contract import Case, Cases, engine_for
 from rockfrag.engines.steps import step_count
 from rockfrag.errors import InputError
 from rockfrag.files import whole_file
@@ -91,7 +89,7 @@ def stream_overturns(
     schema = pa.schema(PLACE | WITHIN[table] | types)
     total = len(cases.systems) * cases.scales.size
     done = 0
-    with new_table(path, schema) as writer:
+    with whole_file(path) as file, pq.ParquetWriter(file, schema, compression="zstd") as writer:
         parts = 1 if table == "cases" else max(system.count for system in cases.systems)
         for some, rows, cols in _groups(max(1, ROWS // parts), cases.shape):
             part = replace(
@@ -110,31 +108,22 @@ def stream_overturns(
     return total
 
 
-@contextmanager
-def new_table(path: str | os.PathLike[str], schema: pa.Schema) -> Iterator[pq.ParquetWriter]:
-    """Give a writer of a Parquet file that appears, whole, when the block ends without error."""
-    with whole_file(path) as part, pq.ParquetWriter(part, schema, compression="zstd") as writer:
-        yield writer
-
-
-def _groups(most: int, shape: tuple[int, int, int]) -> Iterator[tuple[slice, slice, slice]]:
+def _groups(most: int, shape: tuple[int, int, int]) -> Iterator[tuple[slice, ...]]:
     """Cut systems × motions × scales, in this order, into boxes of at most so many cases."""
-    n_systems, n_motions, n_scales = shape
-    if n_motions * n_scales == 0:
-        return
-    scales = min(n_scales, most)
-    motions = min(n_motions, max(1, most // n_scales))
-    systems = max(1, most // (n_motions * n_scales))
-    for i in range(0, n_systems, systems):
-        for j in range(0, n_motions, motions):
-            for k in range(0, n_scales, scales):
-                yield slice(i, i + systems), slice(j, j + motions), slice(k, k + scales)
+    _, n_motions, n_scales = shape
+    motions, systems = most // max(1, n_scales), most // max(1, n_motions * n_scales)
+    steps = (max(1, each) for each in (systems, min(motions, n_motions), min(most, n_scales)))
+    return itertools.product(
+        *(
+            [slice(i, i + step) for i in range(0, count, step)]
+            for count, step in zip(shape, steps, strict=True)
+        )
+    )
 
 
 # --------------------------------------------------------------------------- histories
 
-Place = tuple[int, int, int]  # positions of system, motion and scale
-AHEAD = 4  # histories that are computed or wait to be written at a time, for each thread
+AHEAD = 16  # histories that are in memory at a time
 
 SCHEMA = pa.schema(
     PLACE
@@ -172,66 +161,43 @@ def stream_histories(
     """
     cases = prepared(bodies, motions, dt, scales, **options)
     request = replace(cases.request, history=True)
+    cases = replace(cases, request=request)
     if cases.motions:
         # refused here and not in the middle of the file: the longest interval needs most steps
-        _ = replace(cases, request=request).answering
+        _ = cases.answering
         for system in cases.systems:
             step_count(system, [motion.dt for motion in cases.motions], request.g, request.step)
-    total = len(cases.systems) * cases.scales.size
-
-    def history(place: Place) -> pa.Table:
-        b, m, s = place
-        case = Case(cases.systems[b], cases.motions[m], float(cases.scales[m, s]), request)
-        return _history_table(place, case)
-
-    systems, records, scales_each = cases.shape
-    places = itertools.product(range(systems), range(records), range(scales_each))
-    workers = cases.threads
-    with new_table(path, SCHEMA) as writer, ThreadPoolExecutor(workers) as pool:
+    total, places = len(cases.systems) * cases.scales.size, iter(np.ndindex(*cases.shape))
+    with (
+        whole_file(path) as file,
+        pq.ParquetWriter(file, SCHEMA, compression="zstd") as writer,
+        ThreadPoolExecutor(cases.threads) as pool,
+    ):
         written = 0
-        batches = iter(lambda: list(itertools.islice(places, AHEAD * workers)), [])
-        tables = itertools.chain.from_iterable(pool.map(history, batch) for batch in batches)
-        for group in _row_groups(tables):
-            writer.write_table(pa.concat_tables(group), row_group_size=ROWS)
-            written += len(group)
+        while batch := list(itertools.islice(places, AHEAD)):
+            tables = pool.map(partial(_history_table, cases), batch)
+            writer.write_table(pa.concat_tables(tables), row_group_size=ROWS)
+            written += len(batch)
             if progress is not None:
                 progress(written, total)
     return total
 
 
-def _row_groups(tables: Iterable[pa.Table]) -> Iterator[list[pa.Table]]:
-    """Gather tables of at most ROWS rows together; a longer one stays alone."""
-    group: list[pa.Table] = []
-    rows = 0
-    for table in tables:
-        if group and rows + len(table) > ROWS:
-            yield group
-            group, rows = [], 0
-        group.append(table)
-        rows += len(table)
-    if group:
-        yield group
-
-
-def _history_table(place: Place, case: Case) -> pa.Table:
-    """Make the rows of one history."""
-    engine = engine_for(case.system, case.motion, case.request)
-    if engine is SINGLE:
-        # without its tables of contact events and energy, which take most of its time
-        run = SingleRun(case, room=0)
-        time, theta, omega, state = run.time, *map(run.of, ("theta", "omega", "c"))
-    else:
-        response = engine.history(case)
-        time, theta, omega, state = response.time, response.theta, response.omega, response.state
+def _history_table(cases: Cases, place: tuple[int, ...]) -> pa.Table:
+    """Make the rows of one history, of a system, a motion and a scale."""
+    b, m, s = place
+    case = Case(cases.systems[b], cases.motions[m], float(cases.scales[m, s]), cases.request)
+    response = engine_for(case.system, case.motion, case.request).history(case)
+    theta = response.theta
     samples, bodies = theta.shape
     values = {
-        "system": np.full(theta.size, place[0]),
-        "motion": np.full(theta.size, place[1]),
+        "system": np.full(theta.size, b),
+        "motion": np.full(theta.size, m),
         "scale": np.full(theta.size, case.scale),
-        "time_s": np.repeat(time, bodies),
+        "time_s": np.repeat(response.time, bodies),
         "body": np.tile(np.arange(1, bodies + 1), samples),
         "theta_rad": theta.ravel(),
-        "omega_rad_s": omega.ravel(),
-        "state": state.ravel(),
+        "omega_rad_s": response.omega.ravel(),
+        "state": response.state.ravel(),
     }
     return pa.Table.from_pydict(values, schema=SCHEMA)

@@ -62,10 +62,9 @@ def outcome_robustness(
 
     Examples
     --------
-    >>> import numpy as np
-    >>> from rockfrag import Block, Motion, outcome_robustness
-    >>> time = np.arange(0, 2, 0.01)
-    >>> motion = Motion(np.sin(2 * np.pi * time) * (time < 1), dt=0.01)
+    >>> from rockfrag import Block, outcome_robustness
+    >>> from rockfrag.motions import one_sine
+    >>> motion = one_sine(1.0, period=1.0)
     >>> outcome_robustness(Block(0.3, 1.2, 180.0), motion, None, [2.6, 5.0], perturbation=0.01)
     array([[[1., 1.]]])
     """
@@ -175,9 +174,9 @@ def find_step_size_sensitive(
     Examples
     --------
     >>> import numpy as np
-    >>> from rockfrag import Block, Motion, find_step_size_sensitive
-    >>> time = np.arange(0, 2, 0.01)
-    >>> motion = Motion(np.sin(2 * np.pi * time) * (time < 1), dt=0.01)
+    >>> from rockfrag import Block, find_step_size_sensitive
+    >>> from rockfrag.motions import one_sine
+    >>> motion = one_sine(1.0, period=1.0)
     >>> found = find_step_size_sensitive(Block(0.3, 1.2, 180.0), motion, None, np.arange(2.5, 8.0, 0.1))
     >>> found.sampled, found.changed
     (55, 0)

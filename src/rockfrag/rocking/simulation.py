@@ -75,11 +75,9 @@ def simulate(
     --------
     A statue under one second of a sine of 4 m/s²:
 
-    >>> import numpy as np
-    >>> from rockfrag import Block, Motion, simulate
-    >>> time = np.arange(0, 2, 0.01)
-    >>> motion = Motion(4.0 * np.sin(2 * np.pi * time) * (time < 1), dt=0.01)
-    >>> response = simulate(Block(width=0.3, height=1.2, mass=180.0), motion)
+    >>> from rockfrag import Block, simulate
+    >>> from rockfrag.motions import one_sine
+    >>> response = simulate(Block(width=0.3, height=1.2, mass=180.0), one_sine(4.0, period=1.0))
     >>> response.overturned, response.overturned_body
     (True, 'block')
     >>> response.theta.shape == (response.time.size, 1)

@@ -87,11 +87,9 @@ def rocking_spectrum(
     --------
     Of blocks of one slenderness the larger ones stand longer:
 
-    >>> import numpy as np
-    >>> from rockfrag import Motion, rocking_spectrum
-    >>> time = np.arange(0, 2, 0.01)
-    >>> motion = Motion(4.0 * np.sin(2 * np.pi * time) * (time < 1), dt=0.01)
-    >>> rocking_spectrum(motion, periods=[2.0, 4.0, 6.0], alpha=0.25).overturned
+    >>> from rockfrag import rocking_spectrum
+    >>> from rockfrag.motions import one_sine
+    >>> rocking_spectrum(one_sine(4.0, period=1.0), periods=[2.0, 4.0, 6.0], alpha=0.25).overturned
     array([[ True, False, False]])
     """
     period = np.atleast_1d(real_array("periods", periods, "s"))

@@ -20,10 +20,13 @@ from rockfrag.arrays import Floats
 from rockfrag.errors import InputError
 from rockfrag.input_checks import positive_number
 from rockfrag.keywords import named_keywords
+from rockfrag.motions.rotation import common_time, rotate
+from rockfrag.records.motion import Motion
 from rockfrag.rocking.ensemble import Options, overturned_cases, prepared, shaken
 from rockfrag.rocking.inputs import MotionLike
 from rockfrag.short_repr import short_repr
-from rockfrag.system.blocks import SystemLike
+from rockfrag.system.blocks import Body, SystemLike
+from rockfrag.units import GRAVITY
 
 MOST_GRID_CASES = 5_000_000
 
@@ -88,14 +91,13 @@ def find_thresholds(
     --------
     A motion with a peak of 1 m/s² makes scales accelerations:
 
-    >>> import numpy as np
-    >>> from rockfrag import Block, Motion, find_thresholds
-    >>> time = np.arange(0, 2, 0.01)
-    >>> motion = Motion(np.sin(2 * np.pi * time) * (time < 1), dt=0.01)
+    >>> from rockfrag import Block, find_thresholds
+    >>> from rockfrag.motions import one_sine
+    >>> motion = one_sine(1.0, period=1.0)
     >>> upper = Block(width=0.3, height=1.2, mass=180.0)
     >>> found = find_thresholds(upper, motion, None, highest=8.0, tolerance=0.01, narrowest_resurrection=0.1)
     >>> found.table["first_overturning"].round(2).tolist()
-    [2.96]
+    [2.95]
     """
     positive_number("highest", highest)
     positive_number("tolerance", tolerance)
@@ -157,3 +159,74 @@ def _read(
         ends = np.append(ends, highest)
     resurrections = list(zip(starts.tolist(), ends.tolist(), strict=True))
     return (float(high[0]), always), resurrections
+
+
+# --------------------------------------------------------------------------- directions
+
+DIRECTIONS_DEG = tuple(range(0, 360, 10))
+"""Directions that are tried [degrees]: all around, for opposite ones are not alike to a body that leans."""
+
+TOLERANCE, NARROWEST = 0.005, 0.05  # of thresholds, and narrowest resurrection found, in scale
+
+
+@dataclass(frozen=True)
+class WorstDirection:
+    """How a body's first overturning depends on the direction of the motion."""
+
+    # angle from the first component towards the second that overturns the body with the least scale; NaN if none
+    # does
+    angle_deg: float
+    # the motion in that direction, unscaled; in the first component's direction if none overturns
+    motion: Motion
+    # a row per direction: ``angle_deg``, ``first_overturning`` (least scale, NaN if the body stands) and
+    # ``peak_g`` of the unscaled motion
+    table: pd.DataFrame
+
+    __repr__ = short_repr
+
+
+@named_keywords
+def worst_direction(
+    body: Body,
+    first: Motion,
+    second: Motion,
+    highest: float,
+    *,
+    directions_deg: Sequence[float] = DIRECTIONS_DEG,
+) -> WorstDirection:
+    """Find the direction in which two components overturn a body that rocks in one plane.
+
+    The record is scaled as a whole: its components keep their ratio. The answer is of a body in one plane that
+    has the same width in every direction. It is no bound for a body in space, which meets both components at
+    once, rocks on corners, rolls on a round edge and loses other amounts of energy in impacts.
+
+    Parameters
+    ----------
+    body : the body; its plane is turned into each direction
+    first, second : perpendicular components of one record; they are brought to common times
+    highest : largest scale that is tried [-]
+    directions_deg : angles from the first component towards the second [degrees]
+
+    Returns
+    -------
+    The :class:`WorstDirection`: ``angle_deg``, the ``motion`` in it, and a ``table`` of a row per direction.
+    """
+    if not len(directions_deg):
+        raise InputError("worst_direction: directions_deg is empty; give at least one angle.")
+    common, other = common_time([first, second])
+    motions = [rotate(common, other, angle) for angle in directions_deg]
+    found = find_thresholds(
+        body, motions, None, highest, tolerance=TOLERANCE, narrowest_resurrection=NARROWEST
+    ).table
+    table = pd.DataFrame(
+        {
+            "angle_deg": [float(angle) for angle in directions_deg],
+            "first_overturning": found["first_overturning"],
+            "peak_g": [motion.pga / GRAVITY for motion in motions],
+        }
+    )
+    scales = table["first_overturning"]
+    if scales.isna().all():
+        return WorstDirection(math.nan, motions[0], table)
+    worst = int(np.nanargmin(scales.to_numpy()))
+    return WorstDirection(float(table["angle_deg"][worst]), motions[worst], table)

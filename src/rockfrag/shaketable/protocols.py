@@ -10,14 +10,13 @@ import numpy as np
 from rockfrag.arrays import Floats
 from rockfrag.errors import InputError
 from rockfrag.input_checks import positive_number
-from rockfrag.units import GRAVITY
 
 MOST_STEPS = 100_000  # more than this are a slip: nobody shakes a block that often
 
 
 @dataclass(frozen=True)
 class LinearSteps:
-    """Amplitudes that grow by the same amount."""
+    """Amplitudes that grow by the same amount: also those of a force [N], over the moved weight [N]."""
 
     start_g: float
     step_g: float
@@ -51,26 +50,7 @@ class GeometricSteps:
         return np.asarray(self.start_g * (1 + self.growth) ** (phase + np.arange(count)))
 
 
-@dataclass(frozen=True)
-class ForceSteps:
-    """Amplitudes by the shaker's force on armature, table and specimen, which grows by the same amount."""
-
-    start_n: float
-    step_n: float
-    moved_mass_kg: float
-
-    def __post_init__(self) -> None:
-        for name in ("start_n", "step_n", "moved_mass_kg"):
-            positive_number(f"force steps: {name}", getattr(self, name))
-
-    def amplitudes(self, limit_g: float, phase: float = 0.0) -> Floats:
-        """Amplitudes up to ``limit_g`` [g], started later by the fraction ``phase`` of a step."""
-        weight = self.moved_mass_kg * GRAVITY
-        intensity_levels = LinearSteps(self.start_n / weight, self.step_n / weight)
-        return intensity_levels.amplitudes(limit_g, phase)
-
-
-Steps = LinearSteps | GeometricSteps | ForceSteps
+Steps = LinearSteps | GeometricSteps
 
 
 def _count(levels: float) -> int:
@@ -81,6 +61,20 @@ def _count(levels: float) -> int:
             f"protocol: steps so small that {count} of them fit below the limit; enlarge them."
         )
     return max(count, 0)
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """Bounds of the overturning amplitude of one test."""
+
+    lower_g: float  # largest amplitude survived on the way [g]; 0 if the first one overturned
+    upper_g: float  # amplitude that overturned [g]; NaN if none did
+    remark: str = ""  # what a reader of the figure has to know
+
+    @property
+    def censored(self) -> bool:
+        """Whether it is only known that the amplitude is above ``lower_g``."""
+        return math.isnan(self.upper_g)
 
 
 @dataclass(frozen=True)
@@ -102,14 +96,15 @@ class ForceOverMass:
                     f"{self.unaccounted_mass} kg unaccounted for, which must be positive masses."
                 )
 
-    def measure(self, amplitude_g: float, configuration: str) -> float:
-        """Return the measured amplitude [g]."""
+    def show(self, outcome: Outcome, configuration: str) -> Outcome:
+        """Outcome as the laboratory computes it."""
         if configuration not in self.believed_mass:
             raise InputError(
                 f"force over mass: no mass is given for configuration {configuration!r}; known are "
                 f"{', '.join(self.believed_mass)}."
             )
-        return amplitude_g * (1 + self.unaccounted_mass / self.believed_mass[configuration])
+        factor = 1 + self.unaccounted_mass / self.believed_mass[configuration]
+        return replace(outcome, lower_g=outcome.lower_g * factor, upper_g=outcome.upper_g * factor)
 
 
 @dataclass(frozen=True)
@@ -121,26 +116,15 @@ class Accelerometer:
     def __post_init__(self) -> None:
         positive_number("accelerometer: clip_g", self.clip_g, "g")
 
-    def measure(self, amplitude_g: float, configuration: str) -> float:
-        """Return the measured amplitude [g]."""
-        return min(amplitude_g, self.clip_g)
+    def show(self, outcome: Outcome, configuration: str) -> Outcome:
+        """Outcome as it is shown: beyond the range a lower bound only."""
+        true = outcome.lower_g if outcome.censored else outcome.upper_g
+        if true <= self.clip_g:
+            return outcome
+        return Outcome(min(outcome.lower_g, self.clip_g), math.nan, "accelerometer clipped")
 
 
 Measurement = ForceOverMass | Accelerometer
-
-
-@dataclass(frozen=True)
-class Outcome:
-    """Bounds of the overturning amplitude of one test."""
-
-    lower_g: float  # largest amplitude survived on the way [g]; 0 if the first one overturned
-    upper_g: float  # amplitude that overturned [g]; NaN if none did
-    remark: str = ""  # what a reader of the figure has to know
-
-    @property
-    def censored(self) -> bool:
-        """Whether it is only known that the amplitude is above ``lower_g``."""
-        return math.isnan(self.upper_g)
 
 
 @dataclass(frozen=True)
@@ -189,19 +173,3 @@ class Protocol:
         if self.definition == "at":
             return outcome.upper_g
         return outcome.lower_g if outcome.lower_g > 0 else math.nan
-
-
-def measured(outcome: Outcome, measurement: Measurement | None, configuration: str) -> Outcome:
-    """Return an outcome as the instruments show it: a clipped accelerometer gives a lower bound only."""
-    if measurement is None:
-        return outcome
-    if isinstance(measurement, Accelerometer):
-        true = outcome.lower_g if outcome.censored else outcome.upper_g
-        if true > measurement.clip_g:
-            lower = measurement.measure(outcome.lower_g, configuration)
-            return Outcome(lower, math.nan, "accelerometer clipped")
-    return replace(
-        outcome,
-        lower_g=measurement.measure(outcome.lower_g, configuration),
-        upper_g=measurement.measure(outcome.upper_g, configuration),
-    )

@@ -10,7 +10,6 @@ import pandas as pd
 
 from rockfrag.errors import InputError
 from rockfrag.records.catalogue import own_records, read_catalogue
-from rockfrag.rocking.options import Sweep
 from rockfrag.study.heading import Heading, existing_file, heading_of
 
 SPACE_KEY = "space"  # key that only a study of bodies in space has
@@ -28,7 +27,7 @@ class SpaceStudy(Heading):
     bases: tuple[str, ...]
     slenderness: tuple[float, ...]
     heights_m: tuple[float, ...]
-    sweep: Sweep  # Levels and directions
+    sweep: Mapping[str, Any]  # Levels and directions, as the configuration gives them
 
     @property
     def bodies(self) -> list[tuple[str, float, float]]:
@@ -63,14 +62,7 @@ def space_study_from(content: Mapping[str, Any], source: Path) -> SpaceStudy:
         bases=tuple(space["bases"]),
         slenderness=tuple(map(float, space["slenderness"])),
         heights_m=tuple(map(float, space["heights_m"])),
-        sweep=Sweep(
-            lowest=float(space["lowest"]),
-            highest=float(space["highest"]),
-            levels=space["levels"],
-            directions=space["directions"],
-            resamples=space["resamples"],
-            spread=float(space.get("base_spread", 0.0)),
-        ),
+        sweep={"base_spread": 0.0} | space,
     )
 
 

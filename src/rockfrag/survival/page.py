@@ -15,7 +15,7 @@ from rockfrag import figure_style as style
 from rockfrag.files import file_name, write_table, write_text
 from rockfrag.report.page import Page, table_html
 from rockfrag.report.part import Answer, Finding, Says, Section
-from rockfrag.survival.reweight import DECISION_RATE, LIMITS, RULED_OUT, Constrained
+from rockfrag.survival.reweight import DECISION_RATE, RULED_OUT, Constrained
 
 BRANCHES = ("branch; weight_before .4; weight_after .4; survival = Probability that all stand .4",)
 OBJECTS = (
@@ -72,12 +72,12 @@ def json_of(found: Constrained) -> str:
         "information_bit": found.result.information,
         "ruled_out": found.ruled_out,
         **{name: json.loads(table.to_json(orient="records")) for name, table in tables.items()},
-        "limits": list(LIMITS),
+        "limits": _say("limits"),
     }
     return json.dumps(content, indent=2, ensure_ascii=False) + "\n"
 
 
-_say = Says("rockfrag.survival", "page.j2", RULED_OUT=RULED_OUT, LIMITS=LIMITS)
+_say = Says("rockfrag.survival", "page.j2", RULED_OUT=RULED_OUT)
 
 
 def _sentences(found: Constrained) -> list[str]:
@@ -100,7 +100,7 @@ def lines_of(found: Constrained) -> list[str]:
 def page_of(found: Constrained) -> str:
     """Return the page as HTML, which loads nothing from outside."""
     hazard, branches, *told = _sentences(found)
-    evidence, hangs_on = told
+    (evidence, hangs_on), limits = told, _say("limits")
     names = ", ".join(body.name for body in found.site.objects)
     title, lead = _say("head", found, names)
     curves = _say.figure("curves", lambda: curves_figure(found), hazard)
@@ -119,13 +119,13 @@ def page_of(found: Constrained) -> str:
             asked="How strong can shaking have been, since these objects stand?",
             sentences=list(map(Finding, ("Hazard", "Evidence", "It hangs on"), (hazard, *told))),
             figure=curves,
-            rests_on=LIMITS,
+            rests_on=limits,
         ),
         sections=[
             Section("hazard", "Mean hazard before and after", hazard, (), [_hazard(found)]),
             Section("branches", "Branches", branches, (), [weights, branch_table]),
             Section("objects", "Which object decides", evidence, (), [objects]),
-            Section("hangs-on", "What it hangs on", hangs_on, LIMITS, [assumed]),
+            Section("hangs-on", "What it hangs on", hangs_on, limits, [assumed]),
         ],
         provenance={"Program": f"rockfrag {version('rockfrag')}"},
     ).html()

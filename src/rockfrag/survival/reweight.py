@@ -176,15 +176,6 @@ IN_SPACE = 0.84
 """Median of toppling of boxes under two horizontal components over that of planar rocking under one [-]; see
 ``docs/space.md``.  Round bases: about a half."""
 
-LIMITS = (
-    "Survival tells how strong shaking at the site has been since the objects stand, not how strong it will be "
-    "in the next 50 years if rates change.",
-    "The fragility is that of today; an object that was broader or lower, buried or supported was less fragile "
-    "then, and counts for less: state since when with fragile_for_years.",
-    "The branches are reweighted, not validated: if none of them is right, none of the new weights is.",
-)
-"""What a reader of reweighted hazard must know."""
-
 
 @dataclass(frozen=True)
 class Constrained:

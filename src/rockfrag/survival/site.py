@@ -60,8 +60,6 @@ def read_branches(
     ``paths`` are tables of branches, one a measure; or, with OpenQuake's file of ``realizations``, its files of
     hazard curves.
     """
-    if not paths:
-        raise InputError("hazard: name at least one file with hazard curves of branches.")
     named = _realizations(realizations) if realizations else {}
     for path in paths:
         curves = (
@@ -83,7 +81,7 @@ def read_branches(
 
 def _check(branches: Sequence[Branch], where: str) -> None:
     for branch in branches:
-        if not (math.isfinite(branch.weight) and branch.weight > 0):
+        if branch.weight <= 0:
             raise InputError(
                 f"{where}: branch {branch.name[:60]} has the weight {branch.weight:g}; a weight is above 0."
             )
@@ -321,13 +319,13 @@ def lognormal_coefficients(theta: float, beta: float) -> tuple[float, float]:
     return -math.log(theta) / beta, 1.0 / beta
 
 
-def draw_errors(objects: int, shared: float, samples: int, seed: int = 0) -> tuple[Floats, Floats]:
+def draw_errors(objects: int, shared: float, samples: int) -> tuple[Floats, Floats]:
     """Draw errors of fragilities and positions in ages, evenly spread (Sobol; a power of two).
 
     Returns standard normal errors, correlated between objects as ``shared`` says [-], and independent uniform
     numbers, each of shape (samples, objects).
     """
-    sobol = stats.qmc.Sobol(2 * objects + 1, scramble=True, rng=np.random.default_rng(seed))
+    sobol = stats.qmc.Sobol(2 * objects + 1, scramble=True, rng=np.random.default_rng(0))
     drawn = sobol.random(samples)
     normal = special.ndtri(np.clip(drawn[:, : objects + 1], 1e-12, 1 - 1e-12))
     common, own = normal[:, :1], normal[:, 1:]

@@ -140,17 +140,14 @@ class RigidBody:
                 )
             return self
         angle = math.radians(direction_deg)
-        # an axis of the body is met exactly
-        along = (math.cos(angle), math.sin(angle)) if direction_deg else (1.0, 0.0)
+        # the body's x axis is met exactly
+        along = math.cos(angle), math.sin(angle)
         x, y, z = self.centre
         (xx, xy, _), (_, yy, _), _ = self.inertia  # type: ignore[misc]
-        inertia = yy
-        if direction_deg:
-            inertia = along[1] ** 2 * xx - 2 * along[0] * along[1] * xy + along[0] ** 2 * yy
         return replace(
             self,
-            inertia=inertia,
-            centre=(x * along[0] + y * along[1] if direction_deg else x, 0.0, z),
+            inertia=along[1] ** 2 * xx - 2 * along[0] * along[1] * xy + along[0] ** 2 * yy,
+            centre=(x * along[0] + y * along[1], 0.0, z),
             base=interval_of(self.base, along),
             face=None if self.face is None else interval_of(self.face, along),
         )

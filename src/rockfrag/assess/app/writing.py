@@ -12,8 +12,9 @@ from markupsafe import Markup
 from rockfrag.assess.app.contents import computing, data_of, script
 from rockfrag.assess.motions import MotionSet
 from rockfrag.assess.request import Request
-from rockfrag.assess.risk import SCALE_WORDS, STEPS
+from rockfrag.assess.risk import STEPS
 from rockfrag.assess.sources import MEASUREMENTS, SOURCES
+from rockfrag.assess.words import says
 from rockfrag.errors import InputError
 from rockfrag.files import write_text
 from rockfrag.records.motion import Motion
@@ -93,7 +94,7 @@ def texts(language: str) -> dict[str, Any]:
         "measurements": {name: source.measurement for name, source in MEASUREMENTS.items()},
         "steps": [step.name for step in STEPS],
         "advice": [step.advice for step in STEPS],
-        "scale": SCALE_WORDS,
+        "scale": says.line("scale"),
     }
 
 

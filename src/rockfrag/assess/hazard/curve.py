@@ -436,10 +436,6 @@ _EXPECTED = (
 )
 _POE = re.compile(r"poe_(\d+(?:\.\d+)?)_?y(?:ears)?")
 _RETURN_PERIOD = re.compile(r"(?:tr|return_period)(?:_(?:years?|yrs?|a|anni))?")
-_UNITS = {
-    "pgv": {"cm_s": 1.0, "m_s": 100.0},
-    "others": {"g": 1.0, "m_s2": 1 / GRAVITY, "cm_s2": 0.01 / GRAVITY},
-}
 _LEVEL = re.compile(r"(pga|pgv|sa_(\d+(?:_\d+)?)s)_(g|cm_s|m_s|m_s2|cm_s2)")
 
 
@@ -488,10 +484,11 @@ def _measure_of(title: str, path: str) -> tuple[IntensityMeasure, float]:
     found = _LEVEL.fullmatch(title)
     assert found is not None
     name, period, unit = found.groups()
-    units = _UNITS["pgv" if name == "pgv" else "others"]
-    if unit not in units:
-        raise InputError(f"{path}: {title} is no unit of {name.upper()}; use g or cm_s.")
-    return read_measure(f"SA({period.replace('_', '.')})" if period else name, path), units[unit]
+    measure = read_measure(f"SA({period.replace('_', '.')})" if period else name, path)
+    try:
+        return measure, read_level(f"1 {unit}", measure)
+    except InputError:
+        raise InputError(f"{path}: {title} is no unit of {name.upper()}; use g or cm_s.") from None
 
 
 def _annual_rates(title: str, values: list[float], path: str) -> list[float]:

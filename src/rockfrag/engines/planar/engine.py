@@ -5,7 +5,6 @@ response no contact reached its friction, none opened as a whole and no mode was
 pure rocking, and the answer is that of the engine of pure rocking.
 """
 
-import math
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from typing import Any
@@ -97,7 +96,9 @@ def history(case: Case) -> Response:
     found = ContactRun(case)
     pure = replace(case, system=case.system.held())
     engine = _pure(pure.system, case.motion, pure.request)
-    if found.loose or engine is None:
+    told = found.work["told"]
+    loose = told["slid"].any() or told["flights"].any() or told["paradoxes"] > 0
+    if loose or engine is None:
         return found.response()
     return without_slip(replace(engine.history(pure), system=case.system))
 
@@ -176,12 +177,6 @@ class ContactRun:
             most = found
         self.history, self.contact_events = history[:done], kept.contact_events[:found]
 
-    @property
-    def loose(self) -> bool:
-        """Whether a contact reached its friction, opened as a whole or had no consistent mode."""
-        told = self.work["told"]
-        return bool(told["slid"].any() or told["flights"].any() or told["paradoxes"] > 0)
-
     def response(self) -> Response:
         """Return the response that the contact kernels wrote."""
         case, told, history = self.case, self.work["told"], self.history
@@ -216,8 +211,6 @@ class ContactRun:
             friction_force=shear,
             friction_demand=responses.sampled_demand(normal, shear),
             least_normal_force=np.asarray(normal.min(axis=0)),
-            lost_contact=math.nan,
-            unstable_distance=math.nan,
             grazings=int((table["kind"].eq("impact") & (meets < GRAZING_SPEED)).sum()),
             forced=int(self.work["forced"]),
             **{name: int(told[name]) for name in ("impacts", "paradoxes", "given_way")},
@@ -225,20 +218,13 @@ class ContactRun:
 
     def _energies(self, time: Array) -> pd.DataFrame:
         """Balance of energy by cause over time [J]."""
-        p, history, struck, count = (
-            self.body,
-            self.history,
-            self.contact_events,
-            int(self.body["count"]),
-        )
+        p, history, struck = self.body, self.history, self.contact_events
+        count = self.case.system.count
         inertia, at = 1.0 / p["inverse"][: 3 * count], slice(1, 3 * count, 3)
         kinetic = (inertia * history["v"][:, : 3 * count] ** 2).sum(axis=1) / 2
         potential = float(p["g"]) * (p["mass"][:count] * history["q"][:, at]).sum(axis=1)
-        lost = np.where(
-            np.isin(struck["kind"], (contact.IMPACT, contact.PARADOX)),
-            struck["energy_before"] - struck["energy_after"],
-            0.0,
-        )
+        lost = struck["energy_before"] - struck["energy_after"]
+        lost[~np.isin(struck["kind"], (contact.IMPACT, contact.PARADOX))] = 0.0
         # the lowest contact whose mode changes as it comes down, or the uppermost
         opened, closed = (_modes(struck[name], count)[0] for name in ("before", "after"))
         closes = (opened != 0) & (opened != closed)
@@ -274,7 +260,6 @@ def _contact_events(found: NDArray[Any], blocks: int) -> pd.DataFrame:
 
 def _kind_of_change(before: Ints, after: Ints, slid: Ints, slides: Ints) -> str:
     """Name of a contact event without an impact: what opens first, then what slides."""
-    assert contact.CHANGE not in _KINDS
     if np.any((after == FLIGHT) & (before != FLIGHT)):
         return "flight"
     if np.any((after != 0) & (before == 0)):

@@ -7,7 +7,7 @@ from rockfrag.elementary import sin_cos
 from rockfrag.engines.kernels.jit import kernel
 from rockfrag.engines.kernels.laws import moves_impulse, scales_momentum
 from rockfrag.engines.kernels.laws import rate as lawful_rate
-from rockfrag.engines.planar.search import mode_number, search, take_number, try_mode
+from rockfrag.engines.planar.search import Trial, mode_number, search, take_number, try_mode
 from rockfrag.engines.planar.solve import bias, copy, end_of, look_at, rate, solve, standing_bodies
 from rockfrag.laws.momentum import NUMBER as MOMENTUM
 
@@ -25,9 +25,9 @@ def project(p, w):
     q, v = w.q, w.v
     look_at(p, w, q)
     for k in range(p.count):
-        if w.closed[k, 0] == 0 and w.closed[k, 1] == 0:
+        if not w.closed[k].any():
             continue
-        if w.closed[k, 0] == 1 and w.closed[k, 1] == 1:
+        if w.closed[k].all():
             q[3 * k + 2] = q[3 * k - 1] if k > 0 else 0.0
             v[3 * k + 2] = v[3 * k - 1] if k > 0 else 0.0
             w.sin[k], w.cos[k] = sin_cos(q[3 * k + 2])
@@ -42,24 +42,21 @@ def project(p, w):
         for body in range(k, p.count):
             v[3 * body] -= along * tx - normal * ty
             v[3 * body + 1] -= along * ty + normal * tx
-    w.resting = 0
-    if standing_bodies(p, w) == p.count:
-        moving = 0.0
-        for d in range(3 * p.count):
-            moving = max(moving, abs(v[d]))
-        if moving < 1e-9 * p.speed:
-            w.resting = 1
-            for d in range(3 * p.count):
-                v[d] = 0.0
+    moving = 0.0
+    for d in range(3 * p.count):
+        moving = max(moving, abs(v[d]))
+    w.resting = standing_bodies(p, w) == p.count and moving < 1e-9 * p.speed
+    if w.resting:
+        v[:] = 0.0
 
 
 @kernel
 def slip_speed(p, w, v, k, trial):
     """Speed along interface k at its first closed (or, on ``trial``, touching) end; 0 if it is rounding."""
-    ends = w.touching if trial else w.closed
-    if ends[k, 0] == 0 and ends[k, 1] == 0:
+    ends = w.touching[k] if trial else w.closed[k]
+    if not ends.any():
         return 0.0
-    end = 0 if ends[k, 0] == 1 else 1
+    end = 0 if ends[0] == 1 else 1
     x, y, tx, ty, _, _, _ = end_of(p, w, w.q, k, end, w.kind[k, end])
     speed = rate(p, w.q, v, k, x, y, tx, ty)
     return speed if abs(speed) > STILL * p.speed else 0.0
@@ -86,12 +83,13 @@ def settle(p, w, ah, av, exclude):
         speed = slip_speed(p, w, w.v, k, True)
         w.moves[k] = 1 if speed > 0.0 else (-1 if speed < 0.0 else 0)
     old = mode_number(p, w.old_closed, w.old_slides)
-    wrong = search(p, w, ah, av, False, p.weight, p.g, old if exclude else -1)
+    trial = Trial(ah, av, False, p.weight, p.g)
+    wrong = search(p, w, trial, old if exclude else -1)
     if exclude and wrong > 1e-7 and all_touch:
         # nothing else is better: the old mode failed by rounding only
         found = mode_number(p, w.closed, w.slides)
         take_number(p, w, old)
-        again = max(0.0, -try_mode(p, w, False, p.weight, p.g))
+        again = max(0.0, -try_mode(p, w, trial))
         if again < wrong:
             wrong = again
         else:
@@ -106,8 +104,7 @@ def settle(p, w, ah, av, exclude):
 def remember_slides(p, w):
     """Keep which interfaces have reached their limit."""
     for k in range(p.count):
-        if w.slides[k] != 0:
-            w.told.slid[k] = 1
+        w.told.slid[k] |= w.slides[k] != 0
 
 
 @kernel
@@ -121,7 +118,7 @@ def kinetic_energy(p, v):
 
 @kernel
 def strike(p, w, ah, av, closing, push):
-    """Impulses at the touching ends; sets mode and velocities.
+    """Impulses at the touching ends; sets mode and velocities, and lets what closes be what touches.
 
     ``closing``: speed [m/s] below which a contact that parts and would fall shut again stays closed.  ``push``:
     nothing approaches, but no mode was consistent; see ``docs/contact.md``, 7.
@@ -138,10 +135,11 @@ def strike(p, w, ah, av, closing, push):
     for k in range(p.count):
         mass += p.mass[k]
         scale = max(scale, abs(w.v[3 * k]), abs(w.v[3 * k + 1]), p.size * abs(w.v[3 * k + 2]))
-    search(p, w, ah, av, True, mass * scale, scale, -1)
+    trial = Trial(ah, av, True, mass * scale, scale)
+    search(p, w, trial, -1)
     solve(p, w, w.q, w.v, ah, av, True)
     if lawful:
-        _obey(p, w, ah, av, mass * scale, scale)
+        _obey(p, w, trial)
     lift_laws(p, w)
     remember_slides(p, w)
     copy(p, w.out, w.v)
@@ -149,16 +147,24 @@ def strike(p, w, ah, av, closing, push):
         solve(p, w, w.q, w.v, ah, av, True, False)
         copy(p, w.out, w.v)
     project(p, w)
+    touch_closed(p, w)
     w.struck += before - kinetic_energy(p, w.v)
     w.told.impacts += 1
 
 
 @kernel
+def touch_closed(p, w):
+    """Let the ends that are closed be those that touch."""
+    for k in range(p.count):
+        for end in range(2):
+            w.touching[k, end] = w.closed[k, end]
+
+
+@kernel
 def lift_laws(p, w):
     """Let impulses be plastic."""
-    for k in range(p.count):
-        w.fraction[k, 0] = w.fraction[k, 1] = 0.0
-        w.drive[k] = -1
+    w.fraction[:] = 0.0
+    w.drive[:] = -1
 
 
 @kernel
@@ -168,9 +174,8 @@ def _read_laws(p, w, push):
     for k in range(p.count):
         w.falls[k] = -1
         for end in range(2):
-            if push or w.touching[k, end] == 0 or w.touching[k, 1 - end] == 0:
-                continue
-            if w.old_closed[k, 1 - end] == 0 or w.old_closed[k, end] == 1:
+            other_holds = w.touching[k].all() and w.old_closed[k, 1 - end] == 1
+            if push or not other_holds or w.old_closed[k, end] == 1:
                 continue
             speed = approach(p, w, k, end)
             if speed < 0.0 and p.law[k, end] != MOMENTUM:
@@ -181,7 +186,7 @@ def _read_laws(p, w, push):
 
 
 @kernel
-def _obey(p, w, ah, av, force, motion):
+def _obey(p, w, trial):
     """Let the laws of the contacts act on the plastic outcome that is in ``w``, as far as no energy is gained."""
     energy = kinetic_energy(p, w.v)
     for k in range(p.count):
@@ -195,21 +200,21 @@ def _obey(p, w, ah, av, force, motion):
         if scales_momentum(law) and (w.closed[k, end] == 0 or w.closed[k, 1 - end] == 1):
             # it stays shut, or leaves altogether: nothing to multiply
             w.falls[k] = -1
-    if _outcome(p, w, ah, av, force, motion, 1.0, energy):
+    if _outcome(p, w, trial, 1.0, energy):
         return
     w.told.given_way += 1
     low, high = 0.0, 1.0
     for _ in range(HALVINGS):
         middle = 0.5 * (low + high)
-        if _outcome(p, w, ah, av, force, motion, middle, energy):
+        if _outcome(p, w, trial, middle, energy):
             low = middle
         else:
             high = middle
-    _outcome(p, w, ah, av, force, motion, low, energy)
+    _outcome(p, w, trial, low, energy)
 
 
 @kernel
-def _outcome(p, w, ah, av, force, motion, part, before):
+def _outcome(p, w, trial, part, before):
     """Outcome of an impact that obeys a ``part`` of the laws; whether there is one that gains no energy."""
     lift_laws(p, w)
     for k in range(p.count):
@@ -223,8 +228,8 @@ def _outcome(p, w, ah, av, force, motion, part, before):
             w.drive[k] = 1 - end
             w.depart[k] = w.goal[k, 0] + part * (w.goal[k, 1] - w.goal[k, 0])
             w.closed[k, end], w.closed[k, 1 - end] = 1, 0
-    wrong = search(p, w, ah, av, True, force, motion, -1)
-    solve(p, w, w.q, w.v, ah, av, True)
+    wrong = search(p, w, trial, -1)
+    solve(p, w, w.q, w.v, trial.ah, trial.av, True)
     return wrong <= UNREACHED and kinetic_energy(p, w.out) <= before * (1.0 + NO_GAIN)
 
 
@@ -232,26 +237,15 @@ def _outcome(p, w, ah, av, force, motion, part, before):
 def _shut_weak(p, w, ah, av, closing):
     """Close the ends that part too slowly after an impact, in a crowd whatever pulls; whether there are any."""
     crowd = w.met > CROWD
-    weak = False
-    for k in range(p.count):
-        for end in range(2):
-            if w.touching[k, end] == 1 and w.closed[k, end] == 0:
-                weak = weak or approach(p, w, k, end) < closing
-        if crowd and w.slides[k] != 0:
-            weak = weak or abs(slip_speed(p, w, w.v, k, False)) < closing
-    if not weak:
-        return False
-    solve(p, w, w.q, w.v, ah, av, False)
     found = False
+    solve(p, w, w.q, w.v, ah, av, False)
     for k in range(p.count):
         for end in range(2):
             if w.touching[k, end] == 1 and w.closed[k, end] == 0:
                 x, y, tx, ty, _, _, kind = end_of(p, w, w.q, k, end, w.kind[k, end])
-                pull = rate(p, w.q, w.out, k, x, y, -ty, tx) + bias(
-                    w.q, w.v, k, x, y, -ty, tx, kind
-                )
-                slow = rate(p, w.q, w.v, k, x, y, -ty, tx) < closing
-                if (pull < 0.0 or crowd) and slow:
+                pull = rate(p, w.q, w.out, k, x, y, -ty, tx)
+                pull += bias(w.q, w.v, k, x, y, -ty, tx, kind)
+                if (pull < 0.0 or crowd) and approach(p, w, k, end) < closing:
                     w.closed[k, end] = 1
                     found = True
         if crowd and w.slides[k] != 0 and abs(slip_speed(p, w, w.v, k, False)) < closing:

@@ -120,7 +120,7 @@ def integrate(p, shaking, start, closing, kept, w):
     n = shaking.samples.size
     energy_balance = kept.history.shape[0] > 0
     now = _now(shaking, 0)
-    _handle(p, w, now, closing, True, False, kept)
+    _handle(p, w, now, closing, False, kept)
     fresh = True  # the acceleration in w.a is not that of this state and mode
     if energy_balance:
         _keep(p, w, kept.history[0], now)
@@ -145,7 +145,9 @@ def integrate(p, shaking, start, closing, kept, w):
                 fresh = True
                 ah, av = stepping.ground_at(sample, tau)
                 instant = Instant((i + tau) * dt, ah, av)
-                _handle(p, w, instant, closing, True, True, kept)
+                # what fails is that all rests
+                w.fails[:] = 0
+                _handle(p, w, instant, closing, True, kept)
                 w.met += 1
                 if w.resting == 1:
                     # it failed by rounding only
@@ -157,8 +159,7 @@ def integrate(p, shaking, start, closing, kept, w):
             if fresh:
                 look_at(p, w, w.q)
                 solve(p, w, w.q, w.v, ah, av, False)
-                for d in range(3 * p.count):
-                    w.a[d] = w.out[d]
+                copy(p, w.out, w.a)
             stepping.start_step(p, w)
             while True:
                 stretch = stepping.Stretch(
@@ -226,7 +227,7 @@ def integrate(p, shaking, start, closing, kept, w):
                     w.forced += 1
                 ah, av = stepping.ground_at(sample, tau)
                 instant = Instant((i + tau) * dt, ah, av)
-                _handle(p, w, instant, coarser, False, False, kept)
+                _handle(p, w, instant, coarser, False, kept)
                 fresh = True
                 if w.met > 10 * MOST_CONTACT_EVENTS:
                     tau = 1.0
@@ -260,21 +261,20 @@ def _now(shaking, i):
 
 @kernel
 def _begin(p, w, start):
+    """Set the start, and what is told of the case to nothing."""
     copy(p, start[0], w.q)
     copy(p, start[1], w.v)
     look_at(p, w, w.q)
     impact.lift_laws(p, w)
+    w.slides[:] = w.touching[:] = w.fails[:] = 0
     for k in range(p.count):
-        w.slides[k] = 0
         for end in range(2):
-            w.touching[k, end] = 0
             _, _, _, _, gap, _, w.kind[k, end] = end_of(p, w, w.q, k, end, -1)
             w.closed[k, end] = 1 if gap < 1e-11 * p.size else 0
     w.work = w.rubbed = w.struck = 0.0
-    for k in range(p.count):
-        w.told.peak_rotation[k] = w.told.peak_velocity[k] = w.told.peak_slip[k] = 0.0
-        w.told.slid[k] = w.told.flights[k] = 0
     told = w.told
+    told.peak_rotation[:] = told.peak_velocity[:] = told.peak_slip[:] = 0.0
+    told.slid[:] = told.flights[:] = 0
     told.impacts = told.paradoxes = told.overturned_body = told.parted_contact = 0
     told.several_modes = told.given_way = w.forced = w.met = w.resting = w.noted = 0
     told.overturning_time = math.nan
@@ -316,53 +316,48 @@ def _contact_event_in_step(p, w, at_end, stretch):
 
 
 @kernel
-def _handle(p, w, now, closing, all_ends, exclude, kept):
+def _handle(p, w, now, closing, exclude, kept):
     """Change the mode at a contact event, whose failing channels are in ``w.fails``.
 
-    ``all_ends``: the state is new (start, end of rest), and only ends that touch count.  ``exclude``: the old
-    mode is known to fail.
+    ``exclude``: the old mode is known to fail.
     """
     _remember(p, w)
-    passes = False
-    if not all_ends:
-        for k in range(p.count):
-            if w.fails[k, stepping.FALL] == 1:
-                w.told.overturned_body = k + 1
-                w.told.parted_contact = _parted(w, k)
-                _note(p, w, now.time, FALLEN, kept)
-                return
+    for k in range(p.count):
+        if w.fails[k, stepping.FALL] == 1:
+            w.told.overturned_body = k + 1
+            w.told.parted_contact = _parted(w, k)
+            _note(p, w, now.time, FALLEN, kept)
+            return
     look_at(p, w, w.q)
+    passes = False
     for k in range(p.count):
         leaves = -1
-        if not all_ends:
-            for end in range(2):
-                if w.closed[k, end] == 1 and w.fails[k, stepping.GAP + end] == 1:
-                    exclude = True
-                if w.closed[k, end] == 1 and w.fails[k, stepping.EDGE + end] == 1:
-                    passes = True
-                    if w.closed[k, 1 - end] == 1:
-                        w.kind[k, end] = 1 - w.kind[k, end]
-                    else:
-                        leaves = end
-            if w.fails[k, stepping.FRICTION] == 1:
-                if w.slides[k] == 0:
-                    exclude = True
-                else:
-                    w.slides[k] = 0
-                    # what slip speed the step has left goes by an impulse: a shift of the speed could add energy
-                    solve(p, w, w.q, w.v, now.ah, now.av, True, False)
-                    copy(p, w.out, w.v)
-                    impact.project(p, w)
-                    w.resting = 0
         for end in range(2):
-            touches = w.closed[k, end] == 1
-            if not touches:
+            if w.closed[k, end] == 1 and w.fails[k, stepping.GAP + end] == 1:
+                exclude = True
+            if w.closed[k, end] == 1 and w.fails[k, stepping.EDGE + end] == 1:
+                passes = True
+                if w.closed[k, 1 - end] == 1:
+                    w.kind[k, end] = 1 - w.kind[k, end]
+                else:
+                    leaves = end
+        if w.fails[k, stepping.FRICTION] == 1 and w.slides[k] == 0:
+            exclude = True
+        elif w.fails[k, stepping.FRICTION] == 1:
+            w.slides[k] = 0
+            # what slip speed the step has left goes by an impulse: a shift of the speed could add energy
+            solve(p, w, w.q, w.v, now.ah, now.av, True, False)
+            copy(p, w.out, w.v)
+            impact.project(p, w)
+            w.resting = 0
+        for end in range(2):
+            w.touching[k, end] = w.closed[k, end]
+            if w.closed[k, end] == 0:
                 _, _, _, _, gap, _, kind = end_of(p, w, w.q, k, end, -1)
-                lands = not all_ends and w.fails[k, stepping.GAP + end] == 1
-                touches = lands or gap < 1e-11 * p.size
-                if touches:
-                    w.kind[k, end] = kind
-            w.touching[k, end] = 1 if touches and end != leaves else 0
+                if w.fails[k, stepping.GAP + end] == 1 or gap < 1e-11 * p.size:
+                    w.touching[k, end], w.kind[k, end] = 1, kind
+        if leaves >= 0:
+            w.touching[k, leaves] = 0
     _shut(p, w)
     kind = PASSING if passes else CHANGE
     hit = False
@@ -372,18 +367,15 @@ def _handle(p, w, now, closing, all_ends, exclude, kept):
                 hit = True
     if hit:
         impact.strike(p, w, now.ah, now.av, closing * p.speed, False)
-        _touch_closed(p, w)
         kind = IMPACT
         exclude = False
     if not impact.settle(p, w, now.ah, now.av, exclude):
         w.told.paradoxes += 1
         impact.strike(p, w, now.ah, now.av, closing * p.speed, True)
-        _touch_closed(p, w)
         impact.settle(p, w, now.ah, now.av, False)
         kind = PARADOX
     for k in range(p.count):
-        if w.closed[k, 0] + w.closed[k, 1] == 0 and w.old_closed[k, 0] + w.old_closed[k, 1] > 0:
-            w.told.flights[k] += 1
+        w.told.flights[k] += w.old_closed[k].any() and not w.closed[k].any()
     _note(p, w, now.time, kind, kept)
 
 
@@ -393,10 +385,9 @@ def _jolt(p, w, now, closing, kept):
     copy(p, w.q0, w.q)
     copy(p, w.v0, w.v)
     _remember(p, w)
-    _touch_closed(p, w)
+    impact.touch_closed(p, w)
     look_at(p, w, w.q)
     impact.strike(p, w, now.ah, now.av, closing * p.speed, True)
-    _touch_closed(p, w)
     impact.settle(p, w, now.ah, now.av, False)
     w.met += 1
     _note(p, w, now.time, PARADOX, kept)
@@ -413,20 +404,12 @@ def _remember(p, w):
 
 
 @kernel
-def _touch_closed(p, w):
-    """Let the ends that an impact has closed be those that touch."""
-    for k in range(p.count):
-        for end in range(2):
-            w.touching[k, end] = w.closed[k, end]
-
-
-@kernel
 def _shut(p, w):
     """Set the gaps of touching ends to zero."""
     for k in range(p.count):
-        if w.touching[k, 0] == 0 and w.touching[k, 1] == 0:
+        if not w.touching[k].any():
             continue
-        if w.touching[k, 0] == 1 and w.touching[k, 1] == 1:
+        if w.touching[k].all():
             w.q[3 * k + 2] = w.q[3 * k - 1] if k > 0 else 0.0
         end = 0 if w.touching[k, 0] == 1 else 1
         look_at(p, w, w.q)

@@ -78,7 +78,9 @@ WORK = np.dtype(
         *fields("light", 6),
         *fields("matrix", 3 * MOST, 3 * MOST),
         *fields("right", 3 * MOST),
-        *whole("owner", 3 * MOST),  # 3 k + end, or 3 k + 2 for shear
+        *whole(
+            "owner", 3 * MOST
+        ),  # of each unknown: 4 k + end, or 4 k + 2 for shear, 4 k + 3 for a couple
         *whole("upto", MOST + 2),  # number of unknowns of the interfaces up to this one
         # a step: start, end, stages
         *fields("q0 v0 a0 q1 v1 a1", 3 * MOST),
@@ -89,13 +91,6 @@ WORK = np.dtype(
         *whole("touching", MOST, 2),
         *whole("moves", MOST),
         *fields("limit", MOST),
-        # normal and tangent of each touching end: motions along them per coordinate, bodies below and above
-        *fields("arm", 4 * MOST, 6),
-        *fields("free", 4 * MOST),  # acceleration or velocity along these without any contact
-        # ... and what a unit force along one of the interfaces below, here and above gives along it
-        *fields("give", 4 * MOST, 12),
-        *whole("along", 3 * MOST),  # of each unknown of a mode: its row in the three above ...
-        *fields("rub", 3 * MOST),  # ... and the fraction of the tangent after it that friction adds
         *fields("old_v", 3 * MOST),
         *whole("old_closed", MOST, 2),
         *whole("old_slides", MOST),

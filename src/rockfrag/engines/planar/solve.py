@@ -5,6 +5,10 @@ import math
 from rockfrag.elementary import sin_cos
 from rockfrag.engines.kernels.jit import inlined_kernel, kernel
 
+SHEAR, COUPLE = (
+    2,
+    3,
+)  # what an unknown of an interface is, besides the normal force at its ends 0 and 1
 AT_EDGE = 1e-9
 """A corner counts as over the face until it is this fraction of the half width beyond the edge: bases as wide as
 their face stand on it and not on its edges."""
@@ -133,7 +137,7 @@ def solve(p, w, q, v, ah, av, impact, rough=True):
 def standing_bodies(p, w):
     """Number of bodies, from the ground up, that stand on what stands."""
     for k in range(p.count):
-        if w.closed[k, 0] == 0 or w.closed[k, 1] == 0 or w.slides[k] != 0:
+        if not w.closed[k].all() or w.slides[k] != 0:
             return k
     return p.count
 
@@ -150,7 +154,7 @@ def _fill_equations(p, w, q, v, impact, rough, standing):
                 continue
             x, y, tx, ty, _, _, kind = end_of(p, w, q, k, end, w.kind[k, end])
             fill_row(q, k, x, y, -ty, tx, w.row[m])
-            w.owner[m] = 3 * k + end
+            w.owner[m] = 4 * k + end
             w.right[m] = 0.0 if impact else -bias(q, v, k, x, y, -ty, tx, kind)
             fill_row(q, k, x, y, -ty - friction * tx, tx - friction * ty, w.column[m])
             if impact and w.fraction[k, end] > 0.0:
@@ -159,7 +163,7 @@ def _fill_equations(p, w, q, v, impact, rough, standing):
             if first and w.slides[k] == 0:
                 fill_row(q, k, x, y, tx, ty, w.row[m])
                 fill_row(q, k, x, y, tx, ty, w.column[m])
-                w.owner[m] = 3 * k + 2
+                w.owner[m] = 4 * k + SHEAR
                 w.right[m] = 0.0 if impact else -bias(q, v, k, x, y, tx, ty, kind)
                 m += 1
             first = False
@@ -167,8 +171,10 @@ def _fill_equations(p, w, q, v, impact, rough, standing):
             end = w.drive[k]
             x, y, tx, ty, _, _, _ = end_of(p, w, q, k, end, w.kind[k, end])
             fill_row(q, k, x, y, -ty, tx, w.row[m])
-            _fill_couple(k, w.column[m])
-            w.owner[m] = -1 - k
+            # a couple turns body k, and what is below it the other way
+            w.column[m, :] = 0.0
+            w.column[m, 5], w.column[m, 2] = 1.0, -1.0 if k > 0 else 0.0
+            w.owner[m] = 4 * k + COUPLE
             w.right[m] = w.depart[k]
             m += 1
         w.upto[k] = m
@@ -186,22 +192,6 @@ def _add_fraction(p, w, q, k, end, friction, column):
 
 
 @kernel
-def _fill_couple(k, column):
-    """Fill what a couple between body k and what is below it turns."""
-    for d in range(6):
-        column[d] = 0.0
-    column[5] = 1.0
-    if k > 0:
-        column[2] = -1.0
-
-
-@kernel
-def _interface_of(w, i):
-    """Interface of an equation."""
-    return w.owner[i] // 3 if w.owner[i] >= 0 else -1 - w.owner[i]
-
-
-@kernel
 def solve_generally(p, w, q, v, ah, av, impact, rough, standing):
     """Solve any mode by elimination above the first ``standing`` bodies, as :func:`solve` does in formulas."""
     m = _fill_equations(p, w, q, v, impact, rough, standing)
@@ -212,7 +202,7 @@ def solve_generally(p, w, q, v, ah, av, impact, rough, standing):
             w.out[3 * k], w.out[3 * k + 1] = -ah, -(p.g + av)
         w.normal[k, 0] = w.normal[k, 1] = w.shear[k] = 0.0
     for i in range(m):
-        k = _interface_of(w, i)
+        k = w.owner[i] // 4
         total = w.right[i]
         begin = 3 if k == standing else 0
         for d in range(begin, 6):
@@ -222,32 +212,22 @@ def solve_generally(p, w, q, v, ah, av, impact, rough, standing):
         low = w.upto[k - 2] if k - 2 >= standing else 0
         high = w.upto[k + 2] if k + 2 < p.count else m
         for j in range(low, high):
-            other = _interface_of(w, j)
-            total = 0.0
-            if other == k:
-                for d in range(begin, 6):
-                    total += w.light[d] * w.column[j, d]
-            elif other == k - 1:
-                for d in range(3):
-                    total += w.light[d] * w.column[j, d + 3]
-            elif other == k + 1:
-                for d in range(3):
-                    total += w.light[d + 3] * w.column[j, d]
+            # both move the bodies between them alone
+            total, shift = 0.0, 3 * (w.owner[j] // 4 - k)
+            for d in range(max(begin, shift), min(6, 6 + shift)):
+                total += w.light[d] * w.column[j, d - shift]
             w.matrix[i, j] = total
     if not eliminate(p, w, m, standing):
         return False
     for i in range(m):
-        force = w.right[i]
-        k = _interface_of(w, i)
-        if w.owner[i] >= 0:
-            end = w.owner[i] - 3 * k
-            if end == 2:
-                w.shear[k] += force
-            else:
-                fraction = w.fraction[k, end] if impact else 0.0
-                w.normal[k, end] += force
-                w.normal[k, 1 - end] += fraction * force
-                w.shear[k] -= w.slides[k] * p.kinetic[k] * (force + fraction * force)
+        force, k, end = w.right[i], w.owner[i] // 4, w.owner[i] % 4
+        if end == SHEAR:
+            w.shear[k] += force
+        elif end < SHEAR:
+            fraction = w.fraction[k, end] if impact else 0.0
+            w.normal[k, end] += force
+            w.normal[k, 1 - end] += fraction * force
+            w.shear[k] -= w.slides[k] * p.kinetic[k] * (force + fraction * force)
         for d in range(3 if k == standing else 0, 6):
             w.out[3 * k - 3 + d] += p.inverse[3 * k - 3 + d] * w.column[i, d] * force
     return True

@@ -190,8 +190,7 @@ def start_sliding(s, n, mask, turned):
     """Begin with each contact of a set stopped alone, sliding the way it came, turned by an angle."""
     for i in range(n):
         a = 3 * i
-        for k in range(3):
-            s.impulse[a + k] = 0.0
+        s.impulse[a] = s.impulse[a + 1] = s.impulse[a + 2] = 0.0
         if not in_set(mask, i):
             continue
         normal = max(-s.free[a + 2], 0.0) / s.delassus[a + 2, a + 2]
@@ -210,15 +209,10 @@ def start_sliding(s, n, mask, turned):
 @kernel
 def others_open(s, n, mask, small):
     """Whether contacts outside of a set do not approach."""
+    found = True
     for i in range(n):
-        if in_set(mask, i):
-            continue
-        leaving = s.free[3 * i + 2]
-        for j in range(3 * n):
-            leaving += s.delassus[3 * i + 2, j] * s.impulse[j]
-        if leaving < -small:
-            return False
-    return True
+        found = found and (in_set(mask, i) or not s.after[3 * i + 2] < -small)
+    return found
 
 
 @kernel
@@ -376,10 +370,9 @@ def solve_cones(s, n, least):
     At ``least`` so many of the n contacts push. Returned are the set that pushes as bits (-1 if none was found),
     and how many sets of that size would do.
     """
-    chosen, ways = -1, 0
-    for slide in range(2):
-        if chosen < 0:
-            chosen, ways = fewest(s, n, least, slide)
+    chosen, ways = fewest(s, n, least, False)
+    if chosen < 0:
+        chosen, ways = fewest(s, n, least, True)
     if chosen >= 0:
         for i in range(3 * n):
             s.impulse[i] = s.best[i]
@@ -401,11 +394,14 @@ def fewest(s, n, least, slide):
         size = members(s, n, mask)
         if mask >= (1 << n) or size < least or size > size_found:
             continue
-        solved = slide == 0 and stick_set(s, n, mask, size, largest)
-        solved = solved or (slide == 1 and slide_set(s, n, mask, size, largest, scale))
+        solved = (
+            slide_set(s, n, mask, size, largest, scale)
+            if slide
+            else stick_set(s, n, mask, size, largest)
+        )
+        fill_after(s, n)
         if solved and cones_hold(s, n, mask, small / largest) and others_open(s, n, mask, small):
             ways += 1
-            fill_after(s, n)
             # change of kinetic energy by the impulses: P·b + P·W P / 2
             change = 0.0
             for i in range(3 * n):

@@ -254,20 +254,15 @@ def spread(s, n, mask):
     """Write the unknowns of a set to the impulses."""
     row = 0
     for i in range(n):
-        for k in range(3):
-            s.impulse[3 * i + k] = 0.0
-        if not in_set(mask, i):
-            continue
-        if s.given[i]:
-            normal = s.unknown[row]
-            s.impulse[3 * i] = -s.friction[i] * normal * s.way[i, 0]
-            s.impulse[3 * i + 1] = -s.friction[i] * normal * s.way[i, 1]
-            s.impulse[3 * i + 2] = normal
+        x = y = z = 0.0
+        if in_set(mask, i) and s.given[i]:
+            z = s.unknown[row]
+            x, y = -s.friction[i] * z * s.way[i, 0], -s.friction[i] * z * s.way[i, 1]
             row += 1
-        else:
-            for k in range(3):
-                s.impulse[3 * i + k] = s.unknown[row]
-                row += 1
+        elif in_set(mask, i):
+            x, y, z = s.unknown[row], s.unknown[row + 1], s.unknown[row + 2]
+            row += 3
+        s.impulse[3 * i], s.impulse[3 * i + 1], s.impulse[3 * i + 2] = x, y, z
 
 
 @kernel

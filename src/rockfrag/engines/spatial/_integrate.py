@@ -168,23 +168,22 @@ def tilt_about(body, y, u, tilt):
 def pass_flat(body, y, s):
     """Let a rim pass through flat: its contact turns by a fixed angle and the body tilts up again."""
     up = algebra.rotation(y)[2]
-    u, sine = solid.rim_direction(up)
+    from_here, sine = solid.rim_direction(up)
+    # rate of the vertical as the body sees it, towards the upright while the body sinks
     sinking = algebra.cross(up, solid.omega_of(y))
     if sinking[0] * up[0] + sinking[1] * up[1] >= 0.0:
         return
     before = solid.energy(body, y, s.field[6])
-    rate = algebra.norm(sinking[0], sinking[1])
     angle = body.slide_turn if s.slides[0] == forces.SLIDES else body.pass_turn
-    if sinking[0] * u[1] - sinking[1] * u[0] > 0:
+    # the way in which the contact goes round already
+    if sinking[0] * from_here[1] - sinking[1] * from_here[0] > 0:
         angle = -angle
     d, c = sin_cos(angle)
-    new = (c * u[0] - d * u[1], d * u[0] + c * u[1])
-    tilt_about(body, y, new, max(2 * FLAT_PASS, sine))
-    s.counters[modes.PASSES] += 1
-    rise(body, y, new, rate, s)
-    gained = solid.energy(body, y, s.field[6]) - before
+    to_there = (c * from_here[0] - d * from_here[1], d * from_here[0] + c * from_here[1])
+    tilt_about(body, y, to_there, max(2 * FLAT_PASS, sine))
+    rise(body, y, to_there, algebra.norm(sinking[0], sinking[1]), s)
     # a base that is not symmetrical would gain in the new direction
-    pay(body, y, gained, s)
+    pay(body, y, solid.energy(body, y, s.field[6]) - before, s)
 
 
 @kernel

@@ -18,8 +18,8 @@ SLOW_SLIP = 30 * AT_REST  # the same where no mode was found otherwise: one may 
 LEAVES = 1e-8  # velocity above which points that touch leave when the mode is chosen [m/s]
 LANDS, OPENS, LEAVES_CONE, SLIP_ENDS, NOTHING = 1, 2, 3, 4, 0
 
-COUNTERS = 8
-IMPACTS, AMBIGUOUS, UNSOLVED, SLIDINGS, FLIGHTS, JAMS, PASSES, CHANGES = range(COUNTERS)
+COUNTERS = 6
+IMPACTS, AMBIGUOUS, UNSOLVED, SLIDINGS, FLIGHTS, JAMS = range(COUNTERS)
 
 
 @kernel
@@ -191,12 +191,9 @@ def slide_flat(body, y, rows, pull, s):
     n = touching(body, y, rows, s)
     for i in range(n):
         u = solid.velocity_of(body, y, rows, s.which[i])
-        speed = algebra.norm(u[0], u[1])
         s.closed[i], s.slides[i] = s.which[i], forces.SLIDES
-        if speed > AT_REST:
-            s.direction[i, 0], s.direction[i, 1] = u[0] / speed, u[1] / speed
-        else:
-            s.direction[i, 0], s.direction[i, 1] = pull[0] / level, pull[1] / level
+        s.direction[i, 0], s.direction[i, 1] = pull[0] / level, pull[1] / level
+        s.direction[i, 0], s.direction[i, 1] = forces.slip_direction(s, i, u[0], u[1])
     s.count, s.rests, s.jammed = n, 0, 0
     s.counters[SLIDINGS] += 1
 
@@ -262,7 +259,6 @@ def choose_mode(body, tau, y, s):
         n, fewer = pick_closed(body, y, rows, SLOW_SLIP, s)
         if fewer < slipping:
             found, ways = solve_forces(body, y, rows, pull, n, s)
-    s.counters[CHANGES] += 1
     s.counters[AMBIGUOUS] += ways > 1
     if found < 0:
         return False

@@ -203,18 +203,14 @@ def history_table(history: Floats, dt: float, height: float) -> pd.DataFrame:
     return pd.DataFrame(
         {
             "time_s": np.arange(len(history)) * dt,
-            "x_m": history[:, 0],
-            "y_m": history[:, 1],
-            "z_m": history[:, 2],
+            **dict(zip(("x_m", "y_m", "z_m"), history[:, :3].T, strict=True)),
             "tilt_rad": np.arctan2(np.hypot(axis[0], axis[1]), axis[2]),
             "axis_x": axis[0],
             "axis_y": axis[1],
             "turn_rad": history[:, 13],
             "base_x_m": history[:, 0] - height * axis[0],
             "base_y_m": history[:, 1] - height * axis[1],
-            "omega_x_rad_s": history[:, 10],
-            "omega_y_rad_s": history[:, 11],
-            "omega_z_rad_s": history[:, 12],
+            **{f"omega_{axis}_rad_s": history[:, 10 + k] for k, axis in enumerate("xyz")},
             "contacts": closed,
         }
     )

@@ -7,9 +7,9 @@ U-D``) stands above the samples. Files are in UTF-8 or in the Turkish ISO 8859-9
 
 import re
 
-from rockfrag.records.formats.esm import time_of
 from rockfrag.records.parsing import format as form
 from rockfrag.records.parsing.text_file import TextFile
+from rockfrag.records.parsing.timestamps import time_of
 
 _FIRST = re.compile(r"^\s*STRONG\s+GROUND\s+MOTION\s+RECORDS?\s+OF\s+TURK", re.I)
 _TITLES = re.compile(r"^\s*(?:[NSEWUD]\s*-?\s*[NSEWUD]\b\s*){1,3}$")
@@ -23,9 +23,8 @@ _MAX_HEADER = 40
 
 def _parse(text: TextFile) -> list[form.Channel]:
     header = text.lines(0, _MAX_HEADER)
-    titles = next((i for i, line in enumerate(header) if _TITLES.match(line)), -1)
-    if titles < 0:
-        text.fail("no line of orientations (N-S E-W U-D) above the samples")
+    # orientations (N-S E-W U-D) above the samples
+    titles = [_TITLES.match(line) is not None for line in header].index(True)
     facts = form.header_keys(header[:titles])
     count = int(_number_of(text, facts, "number of data"))
     dt = text.interval(_number_of(text, facts, "sampling interval"), 0)
@@ -45,8 +44,8 @@ def _parse(text: TextFile) -> list[form.Channel]:
     }
     # only times in GMT are known to be UTC
     in_utc = re.search(r"\((?:GMT|UTC)\)", time, re.I)
-    start = time_of(time.split("(")[0].strip()) if in_utc else None
-    shared = form.Channel(count, dt, table.copy, start_time=start).saying(known)
+    start = time_of(time.split("(")[0]) if in_utc else None
+    shared = form.Channel(count, dt, table, start_time=start).saying(known)
     return form.in_columns(shared, table, [name.replace(" ", "") for name in components])
 
 

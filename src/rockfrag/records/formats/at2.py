@@ -110,8 +110,8 @@ def _parse(text: TextFile) -> Iterator[Channel]:
     start, stop = size + 1, last_row(text, size + 1)
     # PEER's columns, where neighbours may touch
     widths = (None, _WIDTH) if len(text.raw(start).rstrip()) == 5 * _WIDTH else ()
-    values = Channel(npts, dt, lambda: text.numbers(start, stop, *widths, count=npts), unit)
-    yield values.saying(_facts(header[:-1]))
+    values = text.numbers(start, stop, *widths, count=npts)
+    yield Channel(npts, dt, values, unit).saying(_facts(header[:-1]))
 
 
 def _facts(header: list[str]) -> dict[str, str]:

@@ -44,7 +44,7 @@ def _parse(text: TextFile) -> Iterator[form.Channel]:
     if held.upper() != "ACCELERATION" or quantity_of(canonical_unit(unit)) != "acceleration":
         text.refuse(f"this file holds {held.lower()} in {unit}, not acceleration")
     count, dt = int(size["count"]), text.interval(float(size["dt"]), at_size)
-    found = form.Channel(count, dt, lambda: text.numbers(_HEADER, count=count), unit)
+    found = form.Channel(count, dt, text.numbers(_HEADER, count=count), unit)
     yield found.saying({"earthquake": " ".join(header[2].split()), **facts})
 
 

@@ -9,13 +9,10 @@ import re
 
 from rockfrag.records.parsing import format as form
 from rockfrag.records.parsing.text_file import TextFile
-from rockfrag.records.parsing.timestamps import clock_time, step_of_times
+from rockfrag.records.parsing.timestamps import step_of_times, time_of
 
 _FIRST = re.compile(r"^\s*#\s*(?:Earthquake Information|StationCode)", re.I)
 _NEEDED = [re.compile(rf"^\s*#\s*{key}\s*[:(]", re.I) for key in ("stationcode", "samplerate")]
-_TIME = re.compile(
-    r"(?P<y>\d{4})/(?P<m>\d\d?)/(?P<d>\d\d?)[- T]+(?P<h>\d\d?):(?P<min>\d\d):(?P<s>\d\d(?:\.\d*)?)"
-)
 _MAX_HEADER = 60
 _ORDER = ("U", "N", "E")
 
@@ -38,8 +35,7 @@ def _parse(text: TextFile) -> list[form.Channel]:
         if abs(measured - dt) > 1e-6:
             text.fail(f"times step by {measured:g} s, but #SampleRate gives {dt:g} s", start)
     _check_length(text, facts["recordlength"], table.shape[0] * dt, start)
-    match = _TIME.search(facts["starttime"])
-    began = clock_time(*match.groups()) if match else None
+    began = time_of(facts["starttime"])
     zone = form.stated(r"^\s*#\s*starttime\s*\(.*(?:GMT|UTC)\s*([+-]\d+)[^)]*\)\s*:", header)
     known = {
         "unit": facts["amplitudeunit"].split(".")[0],
@@ -50,7 +46,7 @@ def _parse(text: TextFile) -> list[form.Channel]:
         "earthquake": f"{facts['origin time']} M {facts['magnitude']}".strip(" M"),
         "instrument": facts["instrumentkind"],
     }
-    shared = form.Channel(table.shape[0], dt, table.copy).saying(known)
+    shared = form.Channel(table.shape[0], dt, table).saying(known)
     return form.in_columns(shared, table[:, 1:], order)
 
 

@@ -7,12 +7,10 @@ line without a key above it.
 import re
 from collections.abc import Iterator
 
-from obspy import UTCDateTime
-
 from rockfrag.records.parsing.format import Channel, Format
 from rockfrag.records.parsing.quantities import canonical_unit, quantity_of
 from rockfrag.records.parsing.text_file import TextFile
-from rockfrag.records.parsing.timestamps import clock_time
+from rockfrag.records.parsing.timestamps import time_of
 
 _KEY = re.compile(r"^(?P<key>[A-Z][A-Z0-9_/^ ]*?)\s*:(?P<value>.*)$")
 _NEEDED = ("SAMPLING_INTERVAL_S", "NDATA", "UNITS")
@@ -31,12 +29,6 @@ _FACTS = {
 }
 _EARTHQUAKE = ("EVENT_NAME", "EVENT_DATE_YYYYMMDD", "EVENT_TIME_HHMMSS")
 _SAMPLE_TIME = "DATE_TIME_FIRST_SAMPLE_YYYYMMDD_HHMMSS"
-_CLOCK = r"[ T_]+(?P<h>\d{1,2}):(?P<min>\d\d):(?P<s>\d\d(?:\.\d*)?)$"
-_DATES = (
-    r"^(?P<d>\d{1,2})[/.-](?P<m>\d{1,2})[/.-](?P<y>\d{4})",
-    r"^(?P<y>\d{4})[/.-](?P<m>\d{1,2})[/.-](?P<d>\d{1,2})",
-)
-_DIGITS = r"^(?P<y>\d{4})(?P<m>\d\d)(?P<d>\d\d)[_ T](?P<h>\d\d)(?P<min>\d\d)(?P<s>\d\d(?:\.\d*)?)$"
 
 
 def _header(lines: list[str]) -> tuple[dict[str, str], int]:
@@ -66,9 +58,7 @@ def _parse(text: TextFile) -> Iterator[Channel]:
         count, dt = int(facts["NDATA"]), float(facts["SAMPLING_INTERVAL_S"])
     except ValueError:
         text.fail("NDATA or SAMPLING_INTERVAL_S is not a number")
-    if count < 1:
-        text.fail(f"the header promises {count} samples")
-    samples = text.interval(dt, 0), lambda: text.numbers(start, count=count)
+    samples = text.interval(dt, 0), text.numbers(start, count=count)
     known = {name: facts.get(key, "") for name, key in _FACTS.items()}
     # the Turkish variant has the name of a place here
     known["location"] = known["location"] if len(known["location"]) <= 2 else ""
@@ -77,13 +67,6 @@ def _parse(text: TextFile) -> Iterator[Channel]:
     known["earthquake"] = " ".join(facts[key] for key in _EARTHQUAKE if facts.get(key))
     start_time = time_of(facts.get(_SAMPLE_TIME, ""))
     yield Channel(count, *samples, unit, start_time=start_time).saying(known)
-
-
-def time_of(words: str) -> UTCDateTime | None:
-    """Return the time in words such as ``20190728_160905.700`` or ``14/11/2010 23:09:19.3``."""
-    patterns = (_DIGITS, *(date + _CLOCK for date in _DATES))
-    match = next(filter(None, (re.match(pattern, words) for pattern in patterns)), None)
-    return clock_time(*match.group("y", "m", "d", "h", "min", "s")) if match else None
 
 
 FORMAT = Format("ESM", _recognise, _parse)

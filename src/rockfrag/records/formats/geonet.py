@@ -8,21 +8,12 @@ prepended, appended, acceleration, velocity and displacement samples.
 import re
 from collections.abc import Generator, Iterator
 
-from rockfrag.records.parsing.format import Channel, Format, stated
+from rockfrag.records.parsing.format import Channel, Format, headed, stated
 from rockfrag.records.parsing.text_file import TextFile
 from rockfrag.records.parsing.timestamps import time_at
 
 _FIRST = re.compile(r"^\s*(?:un)?corrected accelerogram\s+\S+", re.I)
 _TEXT_LINES, _INTEGER_LINES, _REAL_LINES, _A_LINE, _WIDTH = 16, 4, 6, 10, 8
-
-
-def _recognise(lines: list[str], name: str) -> bool:
-    return (
-        len(lines) > _TEXT_LINES
-        and bool(_FIRST.match(lines[0]))
-        and bool(re.match(r"^\s*site\s+\S+", lines[1], re.I))
-        and any(re.match(r"^\s*component\s+\S+", line, re.I) for line in lines[:_TEXT_LINES])
-    )
 
 
 def _parse(text: TextFile) -> Iterator[Channel]:
@@ -73,8 +64,9 @@ def _component(text: TextFile, first: int) -> Generator[Channel, None, int]:
         "longitude": numbers[11],
     }
     dt = text.interval(dt, at_reals + 2)
-    yield Channel(counts[0], dt, values.copy, "mm/s2").saying(facts)
+    yield Channel(counts[0], dt, values, "mm/s2").saying(facts)
     return line
 
 
-FORMAT = Format("GEONET", _recognise, _parse)
+_PARTS = (re.compile(rf"^\s*{part}\s+\S+", re.I) for part in ("site", "component"))
+FORMAT = Format("GEONET", headed(_FIRST, *_PARTS, within=_TEXT_LINES), _parse)

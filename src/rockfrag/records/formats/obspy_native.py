@@ -6,9 +6,9 @@ import math
 import os
 import tempfile
 import zlib
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager, suppress
-from functools import cache, lru_cache
+from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
@@ -36,7 +36,6 @@ _SAC_QUANTITIES = {6: "displacement", 7: "velocity"}
 _WATER_LEVEL = 60.0
 
 MOST_SAMPLES = 20_000_000  # of all channels of a file: a day at 200 Hz has 17 million
-_SMALL = 2**20  # bytes of a file that cannot have so many
 _SHOWN = 60
 
 
@@ -85,22 +84,12 @@ def _unpacked(path: Path) -> Iterator[Path]:
 def _format_of(path: Path) -> str:
     """Return the name of ObsPy's format that claims a file, or an empty string."""
     for name in _READ_BY_OBSPY:
-        try:
-            if _detector(name)(str(path)):
+        entry = ENTRY_POINTS["waveform"][name]
+        group = f"obspy.plugin.waveform.{entry.name}"
+        with suppress(Exception):  # a detector that fails has not detected its format
+            if buffered_load_entry_point(entry.dist.name, group, "isFormat")(str(path)):
                 return name
-        except Exception:  # a detector that fails has not detected its format
-            continue
     return ""
-
-
-@cache
-def _detector(name: str) -> Callable[[str], bool]:
-    """What tells whether a file is of one of ObsPy's formats; to find it takes a millisecond each time."""
-    entry = ENTRY_POINTS["waveform"][name]
-    found: Callable[[str], bool] = buffered_load_entry_point(
-        entry.dist.name, f"obspy.plugin.waveform.{entry.name}", "isFormat"
-    )
-    return found
 
 
 def _unknown(path: Path) -> str:
@@ -134,13 +123,10 @@ def _stream(plain: Path, name: str, path: Path) -> Stream:
 
 def _check_size(plain: Path, name: str, path: Path) -> None:
     """Refuse more samples than memory should hold: packed, a few megabytes may be hundreds of millions."""
-    if os.path.getsize(plain) < _SMALL:
-        return
-    try:
+    count = 0
+    with suppress(Exception):  # what is wrong is told where the samples are read
         heads = obspy.read(glob.escape(str(plain)), format=name, headonly=True)
-    except Exception:  # what is wrong is told where the samples are read
-        return
-    count = sum(int(trace.stats.npts) for trace in heads)
+        count = sum(int(trace.stats.npts) for trace in heads)
     if count > MOST_SAMPLES:
         raise InputError(
             f"{path}: {count:,} samples are more than the {MOST_SAMPLES:,} of a record; cut it to the earthquake."
@@ -163,7 +149,7 @@ def _check_whole_records(plain: Path, path: Path, cut_short: bool) -> None:
 
 def _channel(trace: Trace, format_name: str, path: Path, cut_short: bool) -> Channel:
     stats = trace.stats
-    if np.ma.is_masked(trace.data) or stats.npts == 0:
+    if np.ma.is_masked(trace.data):
         raise InputError(f"{path}: channel {trace.id} has gaps or no samples.")
     steps: list[dict[str, Any]] = _shortness(trace, format_name, path, cut_short)
     samples = np.asarray(trace.data, dtype=np.float64)
@@ -190,12 +176,10 @@ def _channel(trace: Trace, format_name: str, path: Path, cut_short: bool) -> Cha
     channel = Channel(
         npts=samples.size,
         dt=float(stats.delta),
-        samples=samples.copy,
+        samples=samples,
         unit=unit,
         start_time=stats.starttime,
-        network=stats.network,
-        station=stats.station,
-        location=stats.location,
+        **{key: stats[key] for key in ("network", "station", "location")},
         code=stats.channel,
         # MiniSEED of floating point has been computed: its mean is meant
         raw=not (format_name == "MSEED" and trace.data.dtype.kind == "f"),
@@ -224,25 +208,19 @@ def _shortness(trace: Trace, format_name: str, path: Path, cut_short: bool) -> l
 
 
 @lru_cache(maxsize=256)
-def _inventory(path: str, changed: int, size: int) -> Inventory | None:
-    """Return a StationXML file, None if it is none; ``changed`` and ``size`` tell its versions apart."""
-    try:
-        return read_inventory(path, format="STATIONXML")
-    except Exception:  # an .xml file of another kind, or broken: not this record's
-        return None
+def _inventory(path: str, changed: int, size: int) -> Inventory:
+    """Return a StationXML file; ``changed`` and ``size`` tell its versions apart."""
+    return read_inventory(path, format="STATIONXML")
 
 
 def _inventory_for(trace: Trace, path: Path) -> tuple[Response, str] | None:
     """Return the response in the StationXML beside a record that has its channel, and its name."""
     for candidate in sorted(path.parent.glob("*.xml")):
         state = candidate.stat()
-        inventory = _inventory(str(candidate), state.st_mtime_ns, state.st_size)
-        if inventory is None:
-            continue
-        try:
+        # another kind of file, a broken one, or ObsPy's bare Exception for "no matching response"
+        with suppress(Exception):
+            inventory = _inventory(str(candidate), state.st_mtime_ns, state.st_size)
             return inventory.get_response(trace.id, trace.stats.starttime), candidate.name
-        except Exception:  # ObsPy raises a bare Exception for "no matching response"
-            continue
     return None
 
 

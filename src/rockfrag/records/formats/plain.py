@@ -83,7 +83,7 @@ class _Layout:
         return Channel(
             npts=self.npts or samples.size,
             dt=self.text.interval(step, self.line),
-            samples=samples.copy,
+            samples=samples.copy(),
             unit=column.unit or stated,
             component=component,
             station=self.facts.details.get("station", ""),

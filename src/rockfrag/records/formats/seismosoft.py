@@ -19,21 +19,18 @@ _KEYS = re.compile(r"\s*(?:recording station|source|frequency range)\s*:", re.I)
 _MAX_HEADER = 40
 
 
-def _titles(lines: list[str]) -> Iterator[tuple[int, re.Match[str]]]:
+def _titles(lines: list[str]) -> list[tuple[int, re.Match[str]]]:
     matches = enumerate(map(_COLUMNS.match, lines[:_MAX_HEADER]))
-    return ((number, match) for number, match in matches if match)
+    return [(number, match) for number, match in matches if match]
 
 
 def _recognise(lines: list[str], name: str) -> bool:
     # the titles of the columns alone are a plain two-column file
-    above = next((lines[:number] for number, _ in _titles(lines)), [])
-    return any(map(_KEYS.match, above))
+    return any(_KEYS.match(line) for number, _ in _titles(lines)[:1] for line in lines[:number])
 
 
 def _parse(text: TextFile) -> Iterator[Channel]:
-    columns, titles = next(_titles(text.lines(0, _MAX_HEADER)), (-1, None))
-    if titles is None:
-        text.fail("no line 'Time[s] Accel[g]' above the data")
+    columns, titles = _titles(text.lines(0, _MAX_HEADER))[0]
     unit = canonical_unit(titles["unit"])
     if quantity_of(unit) != "acceleration":
         text.refuse(
@@ -57,7 +54,7 @@ def _parse(text: TextFile) -> Iterator[Channel]:
         "recording_station": place,
     }
     dt = step_of_times(table[:, 0], text, columns + 1)
-    yield Channel(table.shape[0], dt, lambda: table[:, 1].copy()).saying(facts)
+    yield Channel(table.shape[0], dt, table[:, 1].copy()).saying(facts)
 
 
 FORMAT = Format("SEISMOSOFT", _recognise, _parse)

@@ -26,7 +26,7 @@ _KINDS = re.compile(
     r"DISPLACEMENT|RESPONSE SPECTRA|FOURIER)\b|^\s*\*",
     re.I,
 )
-_FIRST_FIELD = re.compile(rb"^\s*[+-]?\d*\.\d*(?:[EeDd][+-]?\d+)?")
+_FIRST_FIELD = re.compile(r"^\s*[+-]?\d*\.\d*(?:[EeDd][+-]?\d+)?")
 _HIGH_PRECISION = 8
 _PER_LINE, _SURPLUS_LINES = 8, 2
 
@@ -66,7 +66,7 @@ def _parse(text: TextFile) -> Iterator[Channel]:
         values = pairs_of(samples, "cm/s2", text, start, count // 2)
     else:
         dt = float(f"{1 / rate:.9g}") if rate > 0 else 0.0
-        values = Channel(count, text.interval(dt, at_reals), samples.copy, "cm/s2")
+        values = Channel(count, text.interval(dt, at_reals), samples, "cm/s2")
     if left_out:
         step = {"step": "leave out values beyond the count of the header", "values": left_out}
         values = replace(values, steps=(step, *values.steps))

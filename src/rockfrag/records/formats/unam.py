@@ -1,9 +1,8 @@
 """UNAM "archivo estándar de aceleración" (Mexico), version 2: ``KEY : value`` lines, a column a channel.
 
-Lists of channels are written ``/first/second/…``. Below ``DATOS DE ACELERACION`` stand the names and
-the orientations of the channels between two rulers, then one row a sample in the Fortran format
-that the header gives (``3F10.3``). The total of samples is that of the nominal duration: up to a second
-of samples more may follow.
+Lists of channels are written ``/first/second/…``. Below ``DATOS DE ACELERACION`` stand the names and the
+orientations of the channels between two rulers, then one row a sample in the Fortran format that the header gives
+(``3F10.3``). The total of samples is that of the nominal duration: up to a second of samples more may follow.
 """
 
 import re
@@ -12,9 +11,10 @@ from obspy import UTCDateTime
 
 from rockfrag.records.parsing import format as form
 from rockfrag.records.parsing.text_file import TextFile
+from rockfrag.records.parsing.timestamps import time_of
 
 _TITLE = re.compile(r"^\s*ARCHIVO\s+EST.NDAR\s+DE\s+ACELERACI.N", re.I)
-_DATA = re.compile(rb"^[ \t]*DATOS DE ACELERACI", re.I | re.M)
+_DATA = re.compile(r"^\s*DATOS DE ACELERACI", re.I)
 _RULER = re.compile(r"^-+\+-+\+[-+]*$")
 _MAX_HEADER = 200
 _HALF_A_DAY = 12 * 3600
@@ -28,32 +28,33 @@ def _parse(text: TextFile) -> list[form.Channel]:
     rulers = [i for i in range(at_data, at_data + 10) if _RULER.match(text.line(i))]
     if len(rulers) < 2:
         text.fail("the two rulers above the samples are missing", at_data)
-    steps, counts = _list(facts, "intervalo de muestreo"), _list(facts, "num. total de muestras")
+    intervals, counts = (
+        _list(facts, "intervalo de muestreo"),
+        _list(facts, "num. total de muestras"),
+    )
     orientations = _list(facts, "orientacion")
-    if not steps or len(set(steps)) != 1 or len({len(steps), len(counts), len(orientations)}) != 1:
+    sizes = {len(intervals), len(counts), len(orientations)}
+    if len(set(intervals)) != 1 or len(sizes) != 1:
         text.fail("the channels of the header have no common sampling interval")
     try:
-        dt, promised = float(steps[0]), int(counts[0])
+        dt, promised = float(intervals[0]), int(counts[0])
     except ValueError:
         text.fail("sampling interval or number of samples is not a number")
     dt = text.interval(dt, at_data)
     width = next((value for key, value in facts.items() if key.startswith("formato datos")), "")
     values = text.numbers(rulers[1] + 1, None, form.field_width(f"({width})"))
     if text.cut_short:
-        values = values[: values.size // len(steps) * len(steps)]
-    table = text.in_rows(values, len(steps), rulers[1] + 1)
+        values = values[: values.size // len(intervals) * len(intervals)]
+    table = text.in_rows(values, len(intervals), rulers[1] + 1)
     extra = table.shape[0] - promised
     if not 0 <= extra < 1 / dt:
         text.check_count(promised, table.shape[0], rulers[1] + 1)
     step = {"step": "read samples beyond the nominal duration", "samples": extra}
     sides = [orientation.partition(";") for orientation in orientations]
-    shared = form.Channel(
-        npts=max(table.shape[0], promised),
-        dt=dt,
-        samples=table.copy,
-        start_time=_start(facts),
-        steps=(step,) if extra > 0 else (),
-    ).saying(_facts(facts))
+    steps = (step,) if extra > 0 else ()
+    shared = form.Channel(max(table.shape[0], promised), dt, table, steps=steps).saying(
+        _facts(facts)
+    )
     # "rumbo;orientacion": the sense of a vertical stands behind it
     found = form.in_columns(shared, table, [side[0].strip() for side in sides])
     return [
@@ -70,15 +71,12 @@ def _list(facts: dict[str, str], key: str) -> list[str]:
 
 def _start(facts: dict[str, str]) -> UTCDateTime | None:
     """Return the time of the first sample, on the day of the earthquake or the one beside it."""
-    day, origin = facts["fecha del sismo"], facts["hora epicentro"]
-    first = facts["hora de la primera muestra"]
-    try:
-        start = UTCDateTime(f"{day} {first}")
-        late = start - UTCDateTime(f"{day} {origin}")
-    except Exception:  # UTCDateTime raises several kinds
+    clocks = (facts["hora de la primera muestra"], facts["hora epicentro"])
+    start, origin = (time_of(f"{facts['fecha del sismo']} {clock}") for clock in clocks)
+    if start is None or origin is None:
         return None
-    shift = 86400 if late < -_HALF_A_DAY else -86400 if late > _HALF_A_DAY else 0
-    return start + shift
+    late = start - origin
+    return start + (86400 if late < -_HALF_A_DAY else -86400 if late > _HALF_A_DAY else 0)
 
 
 def _facts(facts: dict[str, str]) -> dict[str, object]:
@@ -91,6 +89,7 @@ def _facts(facts: dict[str, str]) -> dict[str, object]:
     magnitudes = re.findall(r"M\w*\s*=\s*(\d+(?:\.\d+)?)", facts.get("magnitud(es)", ""))
     magnitudes = magnitudes or re.findall(r"=\s*(\d\.\d)", facts["magnitud"])
     return {
+        "start_time": _start(facts),
         "unit": facts["unidades de los datos"].split("(")[0],
         "station": facts["clave de la estacion"],
         "station_name": facts["nombre de la estacion"],

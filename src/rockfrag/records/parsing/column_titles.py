@@ -17,14 +17,10 @@ _INDEX = re.compile(
     r"|^#$|^number$",
     re.I,
 )
-_SECONDS = {"": 1.0, "s": 1.0, "sek": 1.0, "ms": 1e-3, "us": 1e-6, "µs": 1e-6, "μs": 1e-6}
-_SECONDS |= {"min": 60.0, "h": 3600.0}
-_LONG_NAMES = (
-    (re.compile(r"^milli.*|^ms.*"), "ms"),
-    (re.compile(r"^micro.*"), "us"),
-    (re.compile(r"^min.*"), "min"),
-    (re.compile(r"^(?:h|hrs?|hours?)$"), "h"),
-)
+_SECONDS = {"(?:s|sek)?": 1.0, "(?:milli|ms).*": 1e-3, "micro.*|[uµμ]s": 1e-6}
+_SECONDS |= {"min.*": 60.0, "h|hrs?|hours?": 3600.0}
+"""Units of time, as patterns, in seconds."""
+
 _SPECTRA = re.compile(r"^(?:period|freq|omega)|\bspectr|\b(?:psa|psv|sa|sv|sd|rotd\d*)\b", re.I)
 _WORDS = {
     "acceleration": re.compile(r"(?<![a-z])a(?:cc(?:el\w*|n)?)?(?![a-z])|accel", re.I),
@@ -60,7 +56,7 @@ class Column:
     @property
     def seconds(self) -> float | None:
         """Seconds of a unit of a time column, None where its unit is not known."""
-        return _SECONDS.get(self.unit)
+        return next((s for unit, s in _SECONDS.items() if re.fullmatch(unit, self.unit)), None)
 
 
 def column_titles(table: NumberTable, row: str) -> list[Column]:
@@ -173,5 +169,4 @@ def _time_unit(words: str, unit: str) -> str:
         unit = canonical_unit(parts[-1]) if parts[-1] else ""
         if unit in {"t", "time", "times", "zeit", "temps", "temp", "tiempo", "tempo"}:
             unit = ""
-    unit = next((short for pattern, short in _LONG_NAMES if pattern.match(unit)), unit)
     return "" if unit in {"utc", "gmt", "relative", "rel"} else unit

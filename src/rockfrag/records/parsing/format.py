@@ -49,13 +49,10 @@ def _fact(key: str, value: Any) -> Any:
 class Channel:
     """One acceleration history as a file stores it."""
 
-    npts: int  # number of samples
+    npts: int  # number of samples, as the header promises it
     dt: float  # sampling interval [s]
-    # gives the samples in the unit of the file, shape (npts,)
-    samples: Callable[[], NDArray[np.float64]]
-    unit: str = (
-        ""  # unit (``g``, ``cm/s2``, …), made canonical; empty if the file does not state it
-    )
+    samples: NDArray[np.float64]  # in the unit of the file, shape (npts,)
+    unit: str = ""  # made canonical (``g``, ``cm/s2``, …); empty if the file does not state it
     quantity: str = "acceleration"  # other quantities of a file are left out
     # time of the first sample, or None if the file does not state it; a time before 1900 or after
     # 2100 is a mistake of the header and counts as not stated
@@ -124,7 +121,7 @@ class Channel:
             "rockfrag": AttribDict(facts),
             **({} if self.start_time is None else {"starttime": self.start_time}),
         }
-        return Trace(header=header) if headonly else Trace(self.samples(), header)
+        return Trace(header=header) if headonly else Trace(self.samples, header)
 
 
 _LONGEST = 1_000  # characters of a line that are looked at to recognise a format
@@ -137,10 +134,8 @@ class Format:
     name: str  # name of the ObsPy plugin
     # tells from the first lines of a file (and its name) whether it is of this format
     recognise: Callable[[list[str], str], bool]
-    # gives the channels of a file of this format, of any quantity
-    parse: Callable[[text_file.TextFile], Iterable[Channel]]
-    # encoding of text that is not UTF-8, where the format's network writes in one
-    encoding: str = ""
+    parse: Callable[[text_file.TextFile], Iterable[Channel]]  # gives channels of any quantity
+    encoding: str = ""  # of text that is not UTF-8, where the format's network writes in one
 
     def is_format(self, source: text_file.Source) -> bool:
         """Tell whether a file is of this format, from a bounded piece of its head; never raises."""
@@ -162,18 +157,13 @@ class Format:
         """
         text = replace(text_file.read_text(source, self.encoding), asked_dt=dt)
         try:
-            channels = self._parsed(text)
-            for channel in channels if cut_short else ():
-                # samples are read on demand, and may be too few
-                channel.samples()
-            return channels
+            return self._parsed(text)
         except InputError as error:
             if not cut_short or isinstance(error, text_file.NotAcceleration):
                 raise
         # without a last line that does not end
         whole = text.data[: text.data.rfind(b"\n") + 1]
-        text = replace(text, data=whole, cut_short=True)
-        return [_shortened(channel) for channel in self._parsed(text)]
+        return [*map(_shortened, self._parsed(replace(text, data=whole, cut_short=True)))]
 
     def _parsed(self, text: text_file.TextFile) -> list[Channel]:
         try:
@@ -196,17 +186,11 @@ class Format:
         self,
         source: text_file.Source,
         headonly: bool = False,
-        starttime: UTCDateTime | None = None,
-        endtime: UTCDateTime | None = None,
-        nearest_sample: bool = True,
         dt: float | None = None,
         **_: Any,
     ) -> Stream:
         """Return the acceleration channels of a file as an ObsPy stream, in the unit of the file."""
-        stream = Stream([channel.trace(headonly) for channel in self.channels(source, dt)])
-        if not headonly and (starttime is not None or endtime is not None):
-            stream.trim(starttime, endtime, nearest_sample=nearest_sample)
-        return stream
+        return Stream([channel.trace(headonly) for channel in self.channels(source, dt)])
 
 
 def headed(
@@ -223,12 +207,11 @@ def headed(
 
 def _shortened(channel: Channel) -> Channel:
     """Return a channel with as many samples as there are, and a note where more were promised."""
-    samples = channel.samples()
-    if samples.size == channel.npts:
+    found = channel.samples.size
+    if found == channel.npts:
         return channel
-    step = cut_short_step(channel.npts, int(samples.size))
-    steps = (*channel.steps, step)
-    return replace(channel, npts=int(samples.size), samples=samples.copy, steps=steps)
+    steps = (*channel.steps, cut_short_step(channel.npts, found))
+    return replace(channel, npts=found, steps=steps)
 
 
 def head_lines(source: text_file.Source) -> list[str]:
@@ -288,7 +271,7 @@ def _macros() -> Any:
     return found.get_template("written.j2").module
 
 
-CHANNEL_END = re.compile(rb"^[ \t]*/&", re.M)
+CHANNEL_END = re.compile(r"^\s*/&")
 QUANTITIES = {"ACC": "acceleration", "VEL": "velocity", "DIS": "displacement"}
 """First letters of a quantity's name in a header, and the quantity."""
 
@@ -350,7 +333,7 @@ def section(
     """Return the ``count`` values in the lines below ``line``, which states them, up to ``stop``."""
     dt = text.interval(dt, line)
     samples = text.numbers(line + 1, stop, width, count=count)
-    return Channel(count, dt, samples.copy, unit, quantity)
+    return Channel(count, dt, samples, unit, quantity)
 
 
 def in_columns(
@@ -358,7 +341,7 @@ def in_columns(
 ) -> list[Channel]:
     """Return a channel of each column of a table, with what they share from ``channel``."""
     return [
-        replace(channel, samples=column.copy, component=name)
+        replace(channel, samples=column.copy(), component=name)
         for name, column in zip(components, table.T, strict=True)
     ]
 

@@ -31,9 +31,8 @@ def step_of_times(
 ) -> float:
     """Return the sampling interval [s] of a column of equally spaced times, in units of ``seconds`` [s].
 
-    The times may be rounded to the digits they are printed with, be that decimals or significant
-    digits: each must be within half a unit of its last digit (and a ten-thousandth of a step) of
-    ``t0 + i dt``.
+    The times may be rounded to the digits they are printed with, be that decimals or significant digits: each must
+    be within half a unit of its last digit (and a ten-thousandth of a step) of ``t0 + i dt``.
     """
     if times.size < 2:
         text.fail("one time alone says nothing about the sampling interval", first_line)
@@ -133,6 +132,20 @@ def american_time(words: str) -> UTCDateTime | None:
     return None if match is None else clock_time(**match.groupdict(default=""))
 
 
+_CLOCK = r"[ T_-]+(?P<h>\d{1,2}):(?P<min>\d\d):(?P<s>\d\d(?:\.\d*)?)$"
+_NOTATIONS = (
+    r"^(?P<y>\d{4})(?P<m>\d\d)(?P<d>\d\d)[_ T](?P<h>\d\d)(?P<min>\d\d)(?P<s>\d\d(?:\.\d*)?)$",
+    r"^(?P<d>\d{1,2})[/.-](?P<m>\d{1,2})[/.-](?P<y>\d{4})" + _CLOCK,
+    r"^(?P<y>\d{4})[/.-](?P<m>\d{1,2})[/.-](?P<d>\d{1,2})" + _CLOCK,
+)
+
+
+def time_of(words: str) -> UTCDateTime | None:
+    """Return the time in words such as ``20190728_160905.700`` or ``14/11/2010 23:09:19.3``."""
+    match = next(filter(None, (re.match(pattern, words.strip()) for pattern in _NOTATIONS)), None)
+    return clock_time(*match.group("y", "m", "d", "h", "min", "s")) if match else None
+
+
 _POINTS = re.compile(r"\bno\.?\s+of\s+points\s*=?\s*(?P<count>\d+)", re.I)
 _UNITS = re.compile(r"\bunits\b.*?\bsec\w*\s+and\s+(?P<unit>[^\s.,]+)", re.I)
 _NUMBERS_ONLY = re.compile(r"^[\s\d.+\-]+$")
@@ -192,12 +205,12 @@ def pairs_of(
         accelerations = np.interp(times[0] + np.arange(count) * dt, times, accelerations)
         found = {"dt_s": dt, "digitised_points": int(times.size)}
         steps.append({"step": "interpolate linearly to even intervals", **found})
-    return Channel(accelerations.size, dt, accelerations.copy, unit, steps=tuple(steps))
+    return Channel(accelerations.size, dt, accelerations.copy(), unit, steps=tuple(steps))
 
 
 def _flat(text: TextFile, start: int, stop: int, count: int) -> NDArray[np.float64]:
     """Return ``count`` numbers of fields that may touch: 10F7.3, the first one wider by a blank."""
-    body = text.data[text.offset(start) : text.offset(stop)]
+    body = text.body(start, stop)
     try:
         values = parse_separated(body)
     except NumberError:

@@ -1,12 +1,9 @@
 """The files that may be records, of a folder or of an archive (zip and tar), unpacked within bounds."""
 
-import lzma
 import os
 import re
-import struct
 import tarfile
 import zipfile
-import zlib
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
@@ -21,11 +18,6 @@ from rockfrag.tabular import printable
 MAX_MEMBERS = 5_000  # files of an archive; a download of a data centre has some hundred
 MAX_TOTAL = 2 * MAX_BYTES  # bytes that an archive may unpack to
 _TAR_NAMES = (".tar", ".tgz", ".tar.gz", ".tar.bz2", ".tbz2", ".tar.xz", ".txz")
-_UNREADABLE = (
-    *(OSError, EOFError, ValueError, RuntimeError, NotImplementedError, KeyError, IndexError),
-    *(struct.error, zlib.error, lzma.LZMAError, zipfile.BadZipFile, tarfile.TarError),
-)
-"""What the modules of the standard library raise for a damaged, locked or unusual archive."""
 
 
 @dataclass(frozen=True)
@@ -68,7 +60,7 @@ class _Room:
             return [Member(prefix + printable(n), self._put(n, file, path)) for n, file in members]
         except InputError:
             raise
-        except _UNREADABLE as error:
+        except Exception as error:  # zipfile, tarfile and what unpacks for them raise many kinds
             words = " ".join(str(error).split()) or type(error).__name__
             raise InputError(f"{path}: the archive cannot be unpacked ({words}).") from None
 
@@ -97,7 +89,7 @@ def _kind(path: str | os.PathLike[str]) -> str:
         return "zip"
     is_tar = head[257:262] == b"ustar"
     if not is_tar and str(path).lower().endswith(_TAR_NAMES):
-        with suppress(*_UNREADABLE):
+        with suppress(Exception):
             is_tar = os.path.getsize(path) <= MAX_BYTES and tarfile.is_tarfile(path)
     return "tar" if is_tar else ""
 
@@ -107,7 +99,7 @@ def _from_zip(path: str | os.PathLike[str]) -> Iterator[tuple[str, IO[bytes]]]:
         if "[Content_Types].xml" in archive.namelist():
             raise InputError(f"{path}: this is an Excel workbook or a document; save it as CSV.")
         for info in archive.infolist():
-            if info.is_dir() or _hidden(info.filename):
+            if info.is_dir() or is_hidden(info.filename):
                 continue
             if info.flag_bits & 1:
                 raise InputError(f"{path}: the archive is locked by a password; unpack it first.")
@@ -119,12 +111,13 @@ def _from_tar(path: str | os.PathLike[str]) -> Iterator[tuple[str, IO[bytes]]]:
     with tarfile.open(path) as archive:
         for info in archive:
             # links and devices are nothing that a record can be
-            file = archive.extractfile(info) if info.isfile() and not _hidden(info.name) else None
+            file = archive.extractfile(info) if info.isfile() and not is_hidden(info.name) else None
             if file is not None:
                 yield info.name, file
 
 
-def _hidden(name: str) -> bool:
+def is_hidden(name: str) -> bool:
+    """Tell whether a file of a folder or an archive is hidden, or lies in what is."""
     parts = [part for part in PurePosixPath(name).parts if part not in (".", "..")]
     return any(part.startswith(".") or part == "__MACOSX" for part in parts)
 
@@ -150,11 +143,3 @@ def is_no_record(name: str) -> bool:
         path.name.startswith((".", "_SearchResults", "README", "LICENSE", "LICENCE"))
         or path.suffix.lower() in _NO_RECORDS
     )
-
-
-def files_of(folder: str | os.PathLike[str]) -> list[Path]:
-    """Return the files below a folder that may be records, in order of name."""
-    inside = Path(folder)
-    found = sorted(path for path in inside.rglob("*") if not path.is_dir())
-    shown = (path for path in found if not is_no_record(path.name))
-    return [path for path in shown if "/." not in f"/{path.relative_to(inside).as_posix()}"]

@@ -9,12 +9,12 @@ from rockfrag.arrays import Floats
 from rockfrag.motions.processing import factors_to_pga
 from rockfrag.records.motion import Motion
 from rockfrag.rocking import overturns, simulate
-from rockfrag.rocking.restitution import RestitutionFit, quarter_period, restitution_from_history
+from rockfrag.rocking.restitution import quarter_period
 from rockfrag.rocking.spectra import uniform_block
 from rockfrag.system.blocks import Block
 from rockfrag.units import GRAVITY
 from rockfrag_thesis.hypotheses.hypothesis import Finding, Result, Undecidable, hypothesis
-from rockfrag_thesis.hypotheses.outcomes import SEEN, decided, most
+from rockfrag_thesis.hypotheses.outcomes import SEEN, most
 from rockfrag_thesis.hypotheses.setting import (
     EXACT,
     Setting,
@@ -79,41 +79,10 @@ def c4(setting: Setting) -> Result:
     )
 
 
-QUOTED = 0.87 - 0.70
-"""Difference between a measured and a computed restitution that the thesis quotes [-] (Priestley et al.
-1978)."""
-
-
-@hypothesis(5, quoted=QUOTED)
+@hypothesis(5)
 def c5(setting: Setting) -> Result:
-    """Restitution fitted to measured free rocking, against conservation of momentum."""
-    if not setting.free_rocking:
-        raise Undecidable("there is no measured history of free rocking")
-    fits: dict[str, RestitutionFit] = {}
-    for name, (time, theta) in setting.free_rocking.items():
-        if name not in setting.blocks:
-            raise Undecidable(
-                f"free rocking of {name!r}, which is no lone block among the specimens"
-            )
-        fits[name] = restitution_from_history(setting.blocks[name], time, theta)
-    apart = [not fit.lower <= fit.computed <= fit.upper for fit in fits.values()]
-    close = [
-        max(abs(fit.lower - fit.computed), abs(fit.upper - fit.computed)) < QUOTED
-        for fit in fits.values()
-    ]
-    name, fit = max(fits.items(), key=lambda item: abs(item[1].restitution - item[1].computed))
-    return Result(
-        decided(all(apart), not any(apart) and all(close)),
-        "; ".join(
-            f"{k} {f.restitution:.4f} [{f.lower:.4f}, {f.upper:.4f}], computed {f.computed:.4f}"
-            for k, f in fits.items()
-        ),
-        fit.restitution - fit.computed,
-        fit.lower - fit.computed,
-        fit.upper - fit.computed,
-        basis="measured",
-        remark=f"the estimate is the difference of {name}, the largest",
-    )
+    """Restitution fitted to measured free rocking, of which a study has none."""
+    raise Undecidable("there is no measured history of free rocking")
 
 
 def _first_impact(block: Block, theta0: float, linear: bool = False) -> float:
@@ -180,8 +149,7 @@ def c7(setting: Setting) -> Result:
     )
 
 
-DRAWS = 20
-"""Copies of each block within its tolerances (C8)."""
+DRAWS = 20  # copies of each block within its tolerances (C8)
 AMPLITUDES_G = np.geomspace(0.1, 2.0, 301)
 """1 % steps in which the least overturning amplitude is sought (C8)."""
 

@@ -14,8 +14,7 @@ from rockfrag.system.blocks import Block
 from rockfrag_thesis.hypotheses.contrasts import contrast
 from rockfrag_thesis.hypotheses.hypothesis import Undecidable
 
-PEDESTAL = "P"
-"""Name of the pedestal among the specimens."""
+PEDESTAL = "P"  # name of the pedestal among the specimens
 
 THESIS_BODIES: Mapping[str, Block] = {
     "T1": Block(0.124, 0.372, 2.172),
@@ -38,9 +37,6 @@ class Evidence:
     measures: pd.DataFrame | None = None
     # Specimens by name, the pedestal as "P"; without them those of the thesis
     bodies: Mapping[str, Block] | None = None
-    # Pairs of simulations: earthquake, rocking_g, sliding_g (overturning amplitude with and without
-    # the possibility to slide) [g]
-    sliding: pd.DataFrame | None = None
 
     @property
     def specimens(self) -> Mapping[str, Block]:

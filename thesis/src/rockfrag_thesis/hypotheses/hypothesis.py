@@ -86,8 +86,7 @@ class Result:
     p_of: str = ""
     # What else a reader must know, such as the power needed where the finding is open
     remark: str = ""
-    # One of ``BASES`` where it is not that of the evidence as a whole, such as a measured history
-    # among simulations
+    # Where it is not that of the evidence as a whole, such as the geometry of C30 among simulations
     basis: str | None = None
 
 

@@ -28,10 +28,9 @@ from rockfrag_thesis.hypotheses.hypothesis import (
     Undecidable,
     outcome,
 )
-from rockfrag_thesis.hypotheses.setting import FreeRocking, Setting, make_setting
+from rockfrag_thesis.hypotheses.setting import Setting, make_setting
 
-THEORY = range(1, 25)
-"""Numbers of the hypotheses about theory; the others are about tests."""
+THEORY = range(1, 25)  # numbers of the hypotheses about theory; the others are about tests
 
 COLUMNS = (
     *("number", "hypothesis", "source", "kind", "evidence", "rule", "error_rate", "finding"),
@@ -46,17 +45,15 @@ def theory_table(
     motions: Sequence[Motion],
     *,
     seed: int,
-    free_rocking: FreeRocking | None = None,
     threads: int | None = None,
     assemblies: Mapping[str, Stack] | None = None,
 ) -> pd.DataFrame:
     """Compute C1 to C24 for specimens and ground motions; returns ``COLUMNS``.
 
     A hypothesis about which they cannot speak (no stack, no motion) is open, with the reason. A specimen named "P"
-    is the pedestal: without ``assemblies``, stacks by name, each other block is put on it. Motions are as
-    recorded, ``free_rocking`` has times [s] and rotations [rad] of a measured history by specimen (C5).
+    is the pedestal: without ``assemblies``, stacks by name, others stand on it. Motions are as recorded.
     """
-    setting = make_setting(specimens, motions, seed, free_rocking, threads, assemblies)
+    setting = make_setting(specimens, motions, seed, threads, assemblies)
     return _table(_row(hypothesis, setting, "simulated") for hypothesis in _hypotheses(theory=True))
 
 

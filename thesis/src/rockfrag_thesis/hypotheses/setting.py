@@ -7,7 +7,6 @@ from functools import cached_property
 
 import numpy as np
 import pandas as pd
-from numpy.typing import ArrayLike
 
 from rockfrag.arrays import Floats
 from rockfrag.engines.response import Response
@@ -22,22 +21,18 @@ from rockfrag_thesis.hypotheses.evidence import PEDESTAL, THESIS_BODIES
 from rockfrag_thesis.hypotheses.hypothesis import Undecidable
 from rockfrag_thesis.printed_tables import uplift_accelerations
 
-FreeRocking = Mapping[str, tuple[ArrayLike, ArrayLike]]
-
 PEAKS_G = (0.3, 0.5, 0.8, 1.2)
 """Amplitudes to which the motions are scaled for the histories of the stacks [g]."""
 
 SAMPLE = 12
 """Motions of a larger set that serve where each needs many histories, evenly spaced in its order."""
 
-EXACT = 1e-9
-"""Relative difference below which two computed figures are the same [-]."""
+EXACT = 1e-9  # relative difference below which two computed figures are the same [-]
 
 
 SIZES = np.geomspace(1.0, 8.0, 80)
 """2π/p of the blocks of a rocking spectrum [s]: heights from 0.4 to 24 m."""
-PERIODS = np.geomspace(0.1, 10.0, 60)
-"""Periods of the oscillators [s]."""
+PERIODS = np.geomspace(0.1, 10.0, 60)  # periods of the oscillators [s]
 
 
 @dataclass(frozen=True)
@@ -85,7 +80,6 @@ class Setting:
     all_motions: Sequence[Motion]  # Ground motions, perhaps none
     # As in `rockfrag_thesis.hypotheses.hypothesis_table.theory_table`
     seed: int
-    free_rocking: FreeRocking | None
     threads: int | None
 
     @property
@@ -178,7 +172,6 @@ def make_setting(
     specimens: Mapping[str, Block],
     motions: Sequence[Motion],
     seed: int,
-    free_rocking: FreeRocking | None = None,
     threads: int | None = None,
     stacks: Mapping[str, Stack] | None = None,
 ) -> Setting:
@@ -187,7 +180,7 @@ def make_setting(
     pedestal = blocks.pop(PEDESTAL, None)
     if pedestal is not None and not stacks:
         stacks = {f"P&{name}": Stack(pedestal, block) for name, block in blocks.items()}
-    return Setting(blocks, pedestal, stacks or {}, list(motions), seed, free_rocking, threads)
+    return Setting(blocks, pedestal, stacks or {}, list(motions), seed, threads)
 
 
 def bisect(happens: Callable[[float], bool], low: float, high: float, tolerance: float) -> float:

@@ -190,8 +190,7 @@ def c11(setting: Setting) -> Result:
     )
 
 
-GEOMETRIES = 120
-"""Random stacks on which C11 and C12 look."""
+GEOMETRIES = 120  # random stacks on which C11 and C12 look
 
 
 def _random_stack(rng: np.random.Generator) -> Stack:

@@ -30,8 +30,7 @@ from rockfrag_thesis.settings import settings_of
 DISCOVERY_RATE = 0.05
 """Level of the false discovery rate at which a perturbation counts as changing the ratio [-]."""
 
-MOST_NAMED = 3
-"""So many perturbations are named with their ratios; the table has all."""
+MOST_NAMED = 3  # so many perturbations are named with their ratios; the table has all
 
 REPORTED_SIDE = {GROUND: 1, THIRD: -1, FIFTH: -1}
 """Whether the thesis reports a ratio above (1) or below one (-1) on a floor (sections 4.3 and 4.4)."""

@@ -1,6 +1,6 @@
 """What a study costs against its size: synthetic motions, lone blocks and stacks, through the workflow.
 
-``python benchmarks/scale.py 300 1000 3000`` runs studies of so many motions of 20 s, a third as many earthquakes,
+``python -m tests.scale 300 1000 3000`` runs studies of so many motions of 20 s, a third as many earthquakes,
 the thesis's six configurations (three lone blocks, three stacks) and 200 amplitudes; ``--amplitudes 2000``
 takes more.  Each stage's processor time, what the run takes before and between its jobs, the largest memory
 and the wall time of the whole are printed as the table of ``docs/reliability.md``, and go to
@@ -26,13 +26,11 @@ from rockfrag.motions.synthetic import evolutionary
 from rockfrag.records.motion import Motion
 from rockfrag.study.study import Amplitudes
 
-ROOT = Path(__file__).resolve().parents[1]
-sys.path.insert(0, str(ROOT))
+from ..conftest import write_records
+from ..validation.made import markdown
+from ..workflow.conftest import study_content, write_study
 
-from tests.conftest import write_records  # noqa: E402
-from tests.validation.made import markdown  # noqa: E402
-from tests.workflow.conftest import study_content, write_study  # noqa: E402
-
+ROOT = Path(__file__).resolve().parents[2]
 SAMPLES, DT = 2000, 0.01
 LOWEST_G, HIGHEST_G = 0.05, 2.0
 OF_AN_EARTHQUAKE = 3
