@@ -149,10 +149,7 @@ class Objects:
         return replace(self, round=False, depth=None, scanned=None)
 
     def solid(self, body: Body) -> System | None:
-        """The object in space where it is free to move in an arrangement; None where it is not known in space.
-
-        Under it a pedestal stays where it is.
-        """
+        """The object in space on a pedestal that stays, in an arrangement; None where it is not known in space."""
         top = body.blocks[-1]
         whole = top.height > self.block.height * HIGHER
         if not self.in_space or (whole and self.depth is None):

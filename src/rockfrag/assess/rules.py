@@ -118,10 +118,7 @@ def check_rules(objects: Objects, motions: MotionSet, outcomes: ObjectOutcomes) 
 
 
 def rules_study(path: str | os.PathLike[str], records: str | Path) -> pd.DataFrame:
-    """Hold the rules against objects of a file such as ``config/rules-of-thumb.yaml`` under the default motions.
-
-    Returns a row for each object and rule, see :class:`RuleCheck`.
-    """
+    """A row, a :class:`RuleCheck`, for each rule and object of a file, under the default motions."""
     given = checked(read_yaml(path), "rules_of_thumb", str(path))
     requests = [
         make_request(object_, f"{path}, object {i}", Path(path).parent)
