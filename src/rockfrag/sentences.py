@@ -10,17 +10,13 @@ from typing import Any
 
 import pandas as pd
 
-MOST_LISTED = 8
-"""More names than this are not listed in a sentence, but counted."""
+MOST_LISTED = 8  # more names than this are not listed in a sentence, but counted
 
-_FAR = 1000.0
-"""A limit so many times off its estimate is none."""
+_FAR = 1000.0  # a limit so many times off its estimate is none
 
-PART = "\f"
-"""Between headline, text and numbers of a finding."""
+PART = "\f"  # between headline, text and numbers of a finding
 
-LONGEST_NAME = 24
-"""Longer names are cut in figures, where they would push everything else aside."""
+LONGEST_NAME = 24  # longer names are cut in figures, where they would push everything else aside
 
 
 def number(value: float, decimals: int) -> str:
@@ -200,6 +196,10 @@ class Macros:
     def line(self, macro: str, *about: Any) -> str:
         """What a macro says, in one line."""
         return " ".join(self(macro, *about))
+
+    def pairs(self, macro: str, *about: Any) -> dict[str, str]:
+        """What the lines of a macro say behind ``PART``, by what they say before it."""
+        return dict(line.split(PART) for line in self(macro, *about))
 
     def parts(self, macro: str, *about: Any, **named: Any) -> list[list[str]]:
         """Lines of each part of what a macro says."""

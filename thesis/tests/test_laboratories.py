@@ -46,8 +46,7 @@ LABORATORIES = {
     ),
 }
 
-OF_TESTS = set(range(25, 55)) - {30, 52}
-"""Hypotheses that a table of tests alone can decide."""
+OF_TESTS = set(range(25, 55)) - {30, 52}  # hypotheses that a table of tests alone can decide
 
 FALSE = {
     "thesis": {42, 47},

@@ -330,11 +330,7 @@ def _at_site(shaken: Shaken, plan: Plan, conversion: Conversion | None) -> Shake
 
 
 def _governing(request: Request, motions: MotionSet) -> tuple[HazardCurve, ...]:
-    """The hazard curve that counts, and that of PGV where there is one beside it.
-
-    Without PGV that one counts in whose measure the motions' capacities scatter least, or that of the level asked
-    about.
-    """
+    """The hazard curve of the level's measure or of least scatter of capacities, and that of PGV beside it."""
     asked = request.level.measure if request.level else None
     curves = [curve for curve in request.hazard if curve.measure == asked] or request.hazard
     others = [curve for curve in curves if curve.measure != PGV]

@@ -121,10 +121,7 @@ class MotionSet:
         return [rotate(first, other, angle) for other in others for angle in angles] or [first]
 
     def thinned(self) -> "MotionSet":
-        """Every second motion, one component of each record of the default set: enough to compare.
-
-        Where both components act, every second record of those with two, and those with one.
-        """
+        """Every second motion, or of both components every second record of two and those of one: to compare."""
         kept, pairs = list(range(0, len(self.ground), 2)), self.pairs[:0]
         if self.both:
             count = len(self.pairs)

@@ -20,7 +20,6 @@ from rockfrag.system.contact import Contact
 from rockfrag.system.mesh import read_shape
 from rockfrag.system.system import (
     System,
-    diagonal,
     round_inertia,
     turned_about_vertical,
     uplift_ratios,
@@ -150,10 +149,7 @@ class Objects:
         return replace(self, round=False, depth=None, scanned=None)
 
     def solid(self, body: Body) -> System | None:
-        """The object in space where it is free to move in an arrangement; None where it is not known in space.
-
-        Under it a pedestal stays where it is.
-        """
+        """The object in space on a pedestal that stays, in an arrangement; None where it is not known in space."""
         top = body.blocks[-1]
         whole = top.height > self.block.height * HIGHER
         if not self.in_space or (whole and self.depth is None):
@@ -163,7 +159,8 @@ class Objects:
         if self.round:
             across = top.centroidal_inertia
             along = top.mass * top.width * top.width / 8
-            return replace(top, round=True, inertia=diagonal(across, across, along)).system()
+            tensor = checked_tensor(np.diag((across, across, along)))
+            return replace(top, round=True, inertia=tensor).system()
         return turned_about_vertical(self._box(top, whole=whole).system(), self.facing_deg)
 
     def _changed(self, scanned: RigidBody, top: Block) -> RigidBody:
@@ -184,7 +181,8 @@ class Objects:
         if whole:
             along += (top.mass - mass) * top.width * top.width / 6
             depth = max(depth, top.width)
-        return replace(top, depth=depth, inertia=diagonal(across + aside, across, along))
+        tensor = checked_tensor(np.diag((across + aside, across, along)))
+        return replace(top, depth=depth, inertia=tensor)
 
     def variants(self) -> list[Moved["Objects"]]:
         """The object with each property smaller and larger by its standard deviation."""

@@ -125,10 +125,7 @@ class ObjectOutcomes:
         return np.where(p > 0, low, 0.0), np.where(self.fractions(state=ROCKS) > 0, high, 0.0)
 
     def first(self) -> NDArray[np.intp]:
-        """Place of the least level at which each motion topples the body, -1 where none does, shape (motions,).
-
-        Levels to which a motion cannot be scaled do not count.
-        """
+        """Place of the least level allowed at which each motion topples the body, or -1, shape (motions,)."""
         fell = self.overturned & self.intensity_levels.allowed
         return np.where(fell.any(axis=1), fell.argmax(axis=1), -1)
 
@@ -217,10 +214,7 @@ class Shaking(IntensityLevels):
         return self._each_system(*simulated(systems, base, self._factors(base)))
 
     def _from_all_sides(self, systems: Sequence[System]) -> list[ObjectOutcomes]:
-        """Outcomes by records, each in its worst direction; both components get that of the record.
-
-        Half a turn is enough: a round body falls either way alike.
-        """
+        """Outcomes by records, each in its worst direction of half a turn; both components get those."""
         if not systems:
             return []
         motions = self.motions
@@ -298,11 +292,7 @@ class Shaking(IntensityLevels):
         return float((first != other).mean())
 
     def fraction_with_sliding(self, objects: Objects) -> float:
-        """Fraction of the motions at the first level that topple the object as it stands if it may slide.
-
-        Simulations with friction take some hundred times as long as those without, so that they are made for one
-        level.
-        """
+        """Fraction of the motions at the first level that topple the object if it may slide, which takes long."""
         motions, allowed = self.motions, self.allowed[:, 0]
         solid = objects.solid(objects.body) if motions.both else None
         if solid is not None and objects.friction is not None and not objects.pedestals:

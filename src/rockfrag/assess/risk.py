@@ -110,10 +110,7 @@ class Target:
         return self.back(self.on_scale(outcomes, weights))
 
     def without_each(self, outcomes: ObjectOutcomes) -> Floats:
-        """Values on the scale without one earthquake each, shape (earthquakes,).
-
-        Where one of them decides alone, half an earthquake on either side is added to those that are left.
-        """
+        """Values on the scale without one earthquake each; ``HALF`` is added to all where one decides alone."""
         weights = earthquake_weights(outcomes.earthquakes)
         found = np.array([self.on_scale(outcomes, w, added=self.added) for w in weights])
         if np.isfinite(found).all():

@@ -66,13 +66,12 @@ def asce_43(block: Block, motion: Motion) -> float:
     vertical shaking. The block topples where no rotation bears the demand.
     """
     a = math.tan(block.alpha)
-    height = block.h
     inertia = 4 / 3 * (1 + a**2)
     decrement = -2 * math.log(max(1 - 2 * a**2 / inertia, 1e-6))
     damping = decrement / math.sqrt(4 * math.pi**2 + decrement**2)
     theta = ANGLES * block.alpha
     lifted = np.cos(theta) + a * np.sin(theta) - 1
-    frequency = np.sqrt(2 * lifted * GRAVITY / (inertia * height)) / (2 * math.pi * theta)
+    frequency = np.sqrt(2 * lifted * GRAVITY / (inertia * block.h)) / (2 * math.pi * theta)
     capacity = 2 * GRAVITY * lifted / theta
     demand = response_spectrum(motion, 1 / frequency, damping).pseudo_acceleration
     return float((capacity / demand).max())
@@ -119,10 +118,7 @@ def check_rules(objects: Objects, motions: MotionSet, outcomes: ObjectOutcomes) 
 
 
 def rules_study(path: str | os.PathLike[str], records: str | Path) -> pd.DataFrame:
-    """Hold the rules against objects of a file such as ``config/rules-of-thumb.yaml`` under the default motions.
-
-    Returns a row for each object and rule, see :class:`RuleCheck`.
-    """
+    """A row, a :class:`RuleCheck`, for each rule and object of a file, under the default motions."""
     given = checked(read_yaml(path), "rules_of_thumb", str(path))
     requests = [
         make_request(object_, f"{path}, object {i}", Path(path).parent)

@@ -1,8 +1,7 @@
 """Simulation against measurement as a referee wants it: trials chosen by some motions and judged by others.
 
-A trial that was chosen by a test cannot be judged by it: trials that agree with the tests of four folds about as
-well as the best one vote on the fifth.  The best trial alone would follow the noise of the choice
-(``docs/campaigns.md``).
+Trials that agree with the tests of four folds about as well as the best one vote on the fifth.  The best trial
+alone would follow the noise of the choice (``docs/campaigns.md``).
 """
 
 from collections.abc import Iterator, Mapping
@@ -67,8 +66,7 @@ class MeasuredTests:
         the outcomes that they are chosen by. Returned is the fraction of plausible trials that say so of each
         test, shape (repeats, tests).
         """
-        right = simulated == self.overturned
-        answers = simulated if asked is None else asked
+        right, answers = simulated == self.overturned, simulated if asked is None else asked
         votes = np.empty((self.repeats, len(self.overturned)))
         for repeat, chosen_by in self.divisions():
             voters = plausible_trials(right[:, chosen_by], self.groups[chosen_by])
@@ -207,15 +205,12 @@ def curves_of(measure: Floats, outcomes: Flags | Floats, weights: Floats) -> Flo
 def by_region(judged: pd.DataFrame, first: str, second: str) -> pd.DataFrame:
     """Thirds of two measures, a row each: limits, ``tests``, ``overturned``, ``simulated``, ``right``."""
     ends = {name: np.quantile(judged[name], [0, 1 / 3, 2 / 3, 1]) for name in (first, second)}
-    third = {
-        name: np.clip(np.searchsorted(limits, judged[name], side="right") - 1, 0, 2)
-        for name, limits in ends.items()
-    }
     rows = []
-    for i, j in product(range(3), repeat=2):
-        inside = judged[(third[first] == i) & (third[second] == j)]
-        row: dict[str, object] = {}
-        for name, k in ((first, i), (second, j)):
+    for thirds in product(range(3), repeat=2):
+        inside, row = judged, dict[str, object]()
+        for name, k in zip((first, second), thirds, strict=True):
+            third = np.searchsorted(ends[name], inside[name], side="right") - 1
+            inside = inside[np.clip(third, 0, 2) == k]
             row[f"{name}_from"], row[f"{name}_to"] = ends[name][k : k + 2]
         counts = {name: int(inside[name].sum()) for name in ("overturned", "simulated")}
         rows.append({**row, "tests": len(inside), **counts, "right": inside["right"].mean()})

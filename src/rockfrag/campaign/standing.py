@@ -1,9 +1,8 @@
 """How an object stands, which nobody measured: guesses of all of it, from distributions with their sources.
 
-A scan says where the surface is, not which of its points carry; nor is it known where the object faces and what
-its impacts take.  A cut block stands on the edges that were measured, so that little is open.  A campaign study
-gives a range for each unknown, and its tests judge the trials that fill the ranges; where there are no tests, each
-has a distribution.  Whoever measures one of the unknowns puts its value in the place of the distribution.
+A scan says where the surface is, not which of its points carry, where the object faces or what its impacts take.
+A campaign study gives a range for each unknown, and its tests judge the trials that fill the ranges; where there
+are no tests, each has a distribution.
 """
 
 import math
@@ -113,7 +112,7 @@ def simulate_tests(
     systems: Sequence[System], motions: Sequence[Motion], threads: int | None = None
 ) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
     """Whether a body overturns, and whether any rocks, shape (trials, tests)."""
-    overturned, rocked = np.zeros((2, len(systems), len(motions)), dtype=bool)
+    overturned, rocked = [], []
     for first in range(0, len(motions), BATCH):
         batch = motions[first : first + BATCH]
         with warnings.catch_warnings():
@@ -121,9 +120,9 @@ def simulate_tests(
             warnings.simplefilter("ignore", LightBodies)
             shaking = batch if systems[0].planar else list(map(GroundMotion, batch))
             result = overturns(systems, shaking, threads=threads)
-        overturned[:, first : first + len(batch)] = result.overturned[:, :, 0]
-        rocked[:, first : first + len(batch)] = (result.peak_rotation[:, :, 0] > 0).any(axis=-1)
-    return overturned, rocked
+        overturned.append(result.overturned[:, :, 0])
+        rocked.append((result.peak_rotation[:, :, 0] > 0).any(axis=-1))
+    return np.hstack(overturned), np.hstack(rocked)
 
 
 def _in_plane(planar: Block | Column, guess: Mapping[str, float]) -> System:
@@ -157,15 +156,14 @@ def preferred_edges(
 ) -> dict[str, str]:
     """Say at which ends of their ranges plausible trials crowd: ``low end`` or ``high end`` by unknown."""
     found = {}
-    for name, limits in ranges.items():
-        if name == "direction_deg" and limits[1] - limits[0] >= 360:
+    for name, (low, high) in ranges.items():
+        if name == "direction_deg" and high - low >= 360:
             continue
         # by rank, so that where few trials can stand few are expected
         rank = trials[name].rank(pct=True)[plausible]
-        ends = ((limits[0], "low end", rank <= OUTER), (limits[1], "high end", rank > 1 - OUTER))
-        for limit, edge, at in ends:
+        for limit, edge, at in ((low, "low", rank <= OUTER), (high, "high", rank > 1 - OUTER)):
             if at.mean() > CROWDED and (name, limit) not in _NOTHING_BEYOND:
-                found[name] = edge
+                found[name] = f"{edge} end"
     return found
 
 

@@ -65,9 +65,8 @@ def brackets_from_table(
         raise InputError(f"table: there is no column {upper!r}; correct the name of the column.")
     high = pd.to_numeric(table[upper], errors="coerce").to_numpy(dtype=np.float64)
     high = np.where(np.isnan(high), np.inf, high)
-    bad = np.flatnonzero((low < 0) | (high <= 0) | (high < low) | ((low == 0) & np.isinf(high)))
-    if bad.size:
-        row = bad[0]
+    bad = (low < 0) | (high <= 0) | (high < low) | ((low == 0) & np.isinf(high))
+    for row in np.flatnonzero(bad):
         raise InputError(
             f"table, row {row + 1}, columns {lower!r} and {upper!r}: {low[row]:g} to {high[row]:g} is no "
             "bracket of an amplitude; give 0 ≤ lower ≤ upper and leave upper empty if it never overturned."
@@ -158,11 +157,10 @@ def _without_a_block(low: Floats, high: Floats, weights: Floats) -> Floats:
 
     What the step neglects is of second order in a block's fraction of all, a hundredth.
     """
-    whole = np.ones((1, low.size))
     left, right = _shared(low, high, weights)
     if (left <= right).any():
         return _fit_weighted(low, high, weights)[0]
-    coefficients, _, value = _newton(low, high, whole)
+    coefficients, _, value = _newton(low, high, np.ones((1, low.size)))
     if not (np.isfinite(value).all() and coefficients[0, 1] >= lognormal.LEAST_SLOPE):
         return _fit_weighted(low, high, weights)[0]
     pulls = np.concatenate(_pulls(low, high, coefficients))
@@ -179,19 +177,17 @@ def _shared(low: Floats, high: Floats, weights: Floats) -> tuple[Floats, Floats]
 
 def _fit_weighted(low: Floats, high: Floats, weights: Floats) -> tuple[Floats, Floats, Floats]:
     """Fit (intercept, slope) for each row of weights, shape (batch, n)."""
-    batch = len(weights)
-    coefficients = np.full((batch, 2), np.nan)
-    information = np.full((batch, 2, 2), np.nan)
-    log_likelihood = np.full(batch, np.nan)
+    coefficients, information, log_likelihood = (
+        np.full((len(weights), *shape), np.nan) for shape in ((2,), (2, 2), ())
+    )
     left, right = _shared(low, high, weights)
     overlap = left <= right
     if overlap.any():
         closed = np.asarray(((weights[overlap] > 0) & np.isfinite(high - low)).any(axis=1))
         coefficients[overlap] = _common_bracket(left[overlap], right[overlap], closed)
-    rest = np.flatnonzero(~overlap)
-    if rest.size:
-        found = _newton(low, high, weights[rest])
-        coefficients[rest], information[rest], log_likelihood[rest] = found
+    if not overlap.all():
+        found = _newton(low, high, weights[~overlap])
+        coefficients[~overlap], information[~overlap], log_likelihood[~overlap] = found
     return coefficients, information, log_likelihood
 
 

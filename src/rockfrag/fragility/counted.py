@@ -1,8 +1,7 @@
 """Outcomes of large analyses as counts, to which curves are fitted in memory that amplitudes do not fill.
 
-A motion raised through n amplitudes gives n outcomes. Estimates and their limits need only how many of them lie
-in each narrow cell of the measure and how many of those overturned, by what is resampled together; the
-goodness of fit needs the motions' own scales as well. Cells are a two-thousandth of the range wide.
+Estimates and their limits need only how many outcomes lie in each narrow cell of the measure and how many of those
+overturned, by what is resampled together; the goodness of fit needs the motions' own scales as well.
 """
 
 from collections.abc import Iterable, Mapping, Sequence
@@ -124,9 +123,8 @@ def count_ida(
             for floor, some in columns.items()
         }
         rows = motions.get_indexer(pd.Index(part.about["motion"]))
-        for of_floor in counts.values():
-            for count in of_floor.values():
-                count.add(rows, part.overturned)
+        for count in (count for of_floor in counts.values() for count in of_floor.values()):
+            count.add(rows, part.overturned)
     return {
         floor: CountedIda(windows[windows["floor"] == floor] if floor else windows, counts=of_floor)
         for floor, of_floor in counts.items()
@@ -173,14 +171,13 @@ class _Counts:
 
     def add(self, rows: NDArray[np.intp], overturned: NDArray[np.bool_]) -> None:
         used = self.of_motion[rows] >= 0
-        own, trials = self.of_motion[rows][used], self.trials
+        own = self.of_motion[rows][used]
         log_im = self.scale[own, np.newaxis] + self.rise
         width = (self.edges[-1] - self.edges[0]) / CELLS
         cell = np.clip(((log_im - self.edges[0]) / width).astype(np.intp), 0, CELLS - 1)
         flat = self.row[own, np.newaxis] * CELLS + cell
-        trials += np.bincount(flat.ravel(), minlength=trials.size).reshape(trials.shape)
-        fell = np.bincount(flat[overturned[used]], minlength=trials.size)
-        self.fell += fell.reshape(trials.shape)
+        for counts, some in ((self.trials, flat.ravel()), (self.fell, flat[overturned[used]])):
+            counts += np.bincount(some, minlength=counts.size).reshape(counts.shape)
         # one after the other, so that parts give the sum of the whole
         terms = np.append(self.total, log_im)
         self.total[:] = np.bincount(np.append(np.arange(CELLS), cell), terms)

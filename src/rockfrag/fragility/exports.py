@@ -129,10 +129,7 @@ def write_nrml(
     by: str = "configuration",
     fractions: pd.DataFrame | None = None,
 ) -> None:
-    """Write rows of a fragility table as an NRML 0.5 fragility model.
-
-    NRML has no place for confidence limits and numbers of motions, so a comment before each function gives them.
-    The description has what is to be warned of, each sentence once.
+    """Write rows of a fragility table as an NRML 0.5 fragility model, with its facts and warnings in words.
 
     Parameters
     ----------
@@ -142,37 +139,34 @@ def write_nrml(
         state (``rockfrag.outcomes.limit_states``), without it all are ``overturns``. A column ``floor`` must be
         empty: only motions of the ground are known to OpenQuake. No function may lack a state that another has.
     path, identifier : file to write, and name of the model
-    by
-        Column whose value names the function (OpenQuake's taxonomy); what OpenQuake
-        does not take in a name becomes ``_``.
+    by : column that names the function (OpenQuake's taxonomy), but for letters that OpenQuake does not take
     fractions
         Points of the non-parametric fragility function (:func:`rockfrag.fragility.ida_curves.fraction_points`),
-        with columns ``by`` and ``state``. A function of which a state has such points is written as discrete
-        levels; so is one whose lognormal curves would make a state more probable than the one that comes before
-        it.
+        with columns ``by`` and ``state``. A function that has such points is written as discrete levels; so is
+        one whose lognormal curves would make a state more probable than the one that comes before it.
     """
     # OpenQuake takes letters, digits, "_", "-" and ":" in a name
     curves = curves_by_name("NRML", table, by, "_:-", fractions)
     used = {state for states in curves.values() for state in states}
     known = [state.name for state in limit_states() if state.name in used]
     functions: list[dict[str, object]] = []
-    warned: list[str] = []
+    sentences: list[str] = []
     for name in sorted(curves):
-        lacking = [state for state in known if state not in curves[name]]
-        if lacking:
-            raise InputError(
-                f"NRML: {name!r} has no curve for the limit state {lacking[0]}, which others have; leave "
-                "it or that state out."
-            )
-        rows = {state: curve.row for state, curve in curves[name].items()}
-        said = (f"{state}: {curve_facts({**row, 'warnings': ''})}" for state, row in rows.items())
+        for state in known:
+            if state not in curves[name]:
+                raise InputError(
+                    f"NRML: {name!r} has no curve for the limit state {state}, which others have; leave "
+                    "it or that state out."
+                )
+        said = []
+        for state, curve in curves[name].items():
+            said.append(f"{state}: {curve_facts({**curve.row, 'warnings': ''})}")
+            # without what is said of a single rejected curve
+            note = REJECTION.sub("", str(curve.row.get("warnings") or "")).strip()
+            sentences += re.split(r"(?<=\.)\s+(?=[A-Z])", note)
         # two hyphens would end the comment
         comment = f"{name}: {' '.join(said)}".replace("--", "- -")
-        warned += [str(row.get("warnings") or "") for row in rows.values()]
         functions.append({"id": name, "comment": comment, **_function(name, curves[name], by)})
-    # each once, without what is said of a single rejected curve
-    plain = [REJECTION.sub("", note).strip() for note in warned]
-    sentences = [part for note in plain for part in re.split(r"(?<=\.)\s+(?=[A-Z])", note)]
     description = [
         "Free-standing bodies in earthquakes. The comment before each function gives its limits, its "
         "goodness of fit and the number of its motions.",

@@ -85,10 +85,9 @@ def population(tests: Grouped, over: Over | None) -> tuple[Over, tuple[str, ...]
 def outcome_fitter(outcomes: Observations, over: Over) -> tuple[WeightedFit, int]:
     """Make the function that refits a curve to reweighted groups of tests.
 
-    Tests at the same or nearly the same value are pooled, so that neither stripes nor many tests cost
-    much. Separated replicates are fitted
-    with the penalised likelihood, as the estimator itself would; replicates in which all tests
-    agree give an intercept of -∞ (all survive) or +∞ (all overturn) and a slope of NaN.
+    Tests at the same or nearly the same value are pooled. Separated replicates are fitted with the penalised
+    likelihood, as the estimator itself would; those in which all tests agree give an intercept of -∞ (all survive)
+    or +∞ (all overturn) and a slope of NaN.
     """
     codes = pd.factorize(pd.Series(outcomes.groups(over)))[0]
     column, values = cells(outcomes.log_im)
@@ -150,9 +149,9 @@ def interval_over_motions(
 def step_limits(nothing: Interval, lower: float, upper: float) -> Interval:
     """Limits where the capacities of all groups lie in one step or two that touch: no scatter is seen.
 
-    The median of k capacities lies between the ends of the steps unless all are on one side of it, whose
-    probability is 2^(1-k). β is at most that at which k capacities still fall between these ends with
-    the probability that the level leaves over.  Without two finite ends above zero there are no limits.
+    The median of k capacities lies between two finite ends of steps unless all are on one side of it, whose
+    probability is 2^(1-k). β is at most that at which k capacities still fall between them as rarely as the level
+    allows.
     """
     if not 0 < lower < upper < np.inf or nothing.estimate[1] < LEAST_SLOPE:
         return nothing
@@ -207,12 +206,11 @@ def resampled_interval(
         return without_limits(
             f"All {over}s agree within the steps of the amplitude, which gives no limits."
         )
-    slope = deleted[:, 1]
     with np.errstate(divide="ignore", invalid="ignore"):
+        betas = 1.0 / deleted[:, 1]
         # a curve that does not rise has no median, and then nothing limits that of all
-        left_out = np.where(slope > 0, -deleted[:, 0] / slope, np.nan)
-        betas = 1.0 / slope
-    log_theta, half = -centre[0] / centre[1], half_width(left_out, level)
+        log_thetas = np.where(betas > 0, -deleted[:, 0] / deleted[:, 1], np.nan)
+    log_theta, half = -centre[0] / centre[1], half_width(log_thetas, level)
     theta = float(np.exp(log_theta - half)), float(np.exp(log_theta + half))
     own = 1.0 / centre[1]
     low, high = beta_limits(own, betas, level, unbiased=True)

@@ -32,9 +32,7 @@ class MeasureSelection:
 
     Attributes
     ----------
-    recommended, name
-        Column of the recommended measure, and what the field calls it, for example ``PGV``; empty where no measure
-        has a rising curve.
+    recommended, name : its column and what the field calls it, such as ``PGV``; empty where no curve rises
     table
         One row per measure, best first: ``measure``, ``im``, ``unit``, ``theta``, ``beta``
         (efficiency: the smaller the better), ``beta_lower``, ``beta_upper``, ``aic``, ``auc``,
@@ -74,12 +72,10 @@ def area_under_curve(outcomes: Observations) -> float:
 
 
 def sufficiency(outcomes: Observations, fit: FragilityFit, column: Floats) -> float:
-    """Test a linear dependence of the outcome's residual on ``column``, shape (n,); p value.
+    """Return the p value of a linear dependence of outcome less fitted probability on a column, (n,).
 
-    The residual is outcome minus fitted probability; the regression's standard error is robust to
-    dependence within a motion (earthquake where known). A measure is sufficient for a property, such as
-    magnitude or distance, on which nothing of its residual depends (Luco and Cornell, 2007,
-    Earthquake Spectra 23: 357-392). NaN with fewer than three groups or a constant column.
+    A measure is sufficient for a property, such as magnitude or distance, on which nothing of its residual depends
+    (Luco and Cornell, 2007, Earthquake Spectra 23: 357-392).
     """
     if not np.isfinite(fit.theta):
         return float("nan")
@@ -88,7 +84,10 @@ def sufficiency(outcomes: Observations, fit: FragilityFit, column: Floats) -> fl
 
 
 def dependence_p_value(residual: Floats, column: Floats, groups: NDArray[np.object_]) -> float:
-    """Test a linear dependence of residuals on a column, robust to dependence within groups."""
+    """Return the p value of a linear dependence of residuals on a column, robust to dependence within groups.
+
+    NaN with fewer than three groups or a constant column.
+    """
     codes, names = pd.factorize(pd.Series(groups))
     if len(names) < 3 or np.ptp(column) == 0:
         return float("nan")
@@ -96,9 +95,7 @@ def dependence_p_value(residual: Floats, column: Floats, groups: NDArray[np.obje
     result = OLS(residual, add_constant(scaled)).fit(
         cov_type="cluster", cov_kwds={"groups": codes, "use_correction": True}
     )
-    error = float(np.sqrt(result.cov_params()[1, 1]))
-    if error == 0:
-        return float("nan")
+    error = float(np.sqrt(result.cov_params()[1, 1])) or float("nan")
     return float(2.0 * stats.t.sf(abs(float(result.params[1])) / error, len(names) - 1))
 
 
@@ -285,10 +282,8 @@ def recommend_ida_measure(
             "it; name it among the given columns instead."
         )
     amplitude = ida.brackets(ida.resurrections("amplitude_g"), "first", "amplitude_g")
-    known = measures.set_index("name")
-    place = known.index.get_indexer(pd.Index(amplitude.motion))
-    extra = {column: numbers(measures, column, "measures")[place] for column in given}
-    recorded = known.loc[list(amplitude.motion)]
+    recorded = measures.set_index("name").loc[list(amplitude.motion)]
+    extra = {column: numbers(recorded, column, "measures") for column in given}
     pga = observations.positive(recorded, "pga_g", "measures")
     group = pd.factorize(pd.Series(amplitude.earthquake))[0]
     rows, scores = [], []

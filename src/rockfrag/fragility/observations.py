@@ -47,9 +47,7 @@ class Observations(Grouped):
     ----------
     im : intensity measure of each row, > 0, shape (n,)
     overturned, trials : number of tests of the row that overturned, and of all, shape (n,); 1 for single tests
-    motion, earthquake
-        Labels, shape (n,): rows of one motion are not independent, and motions of one earthquake may share an
-        effect. The motion's label where no earthquake is known.
+    motion, earthquake : labels, shape (n,); rows of one are not independent; the motion's for no earthquake
     name, unit : the intensity measure as the field writes it, for example ``PGA`` and ``g``
     """
 
@@ -121,14 +119,9 @@ class Observations(Grouped):
 
         The capacities, shape (replicates, motions), are in the order in which the motions first appear.
         """
-        codes = pd.factorize(pd.Series(self.motion))[0]
-        log_im = self.log_im
-        return np.array(
-            [
-                np.bincount(cell, (log_im > thresholds[codes]) * self.trials)
-                for thresholds in capacity
-            ]
-        )
+        codes, log_im = pd.factorize(pd.Series(self.motion))[0], self.log_im
+        fallen = ((log_im > thresholds[codes]) * self.trials for thresholds in capacity)
+        return np.array([np.bincount(cell, each) for each in fallen])
 
 
 def name_and_unit(column: str) -> tuple[str, str]:
@@ -152,11 +145,10 @@ def numbers(table: pd.DataFrame, column: str, source: str = "table", first: int 
             f"{source}: there is no column {column!r}; name one of the columns {known}."
         )
     values = pd.to_numeric(table[column], errors="coerce").to_numpy(dtype=np.float64)
-    bad = np.flatnonzero(~np.isfinite(values))
-    if bad.size:
-        found = table[column].iloc[bad[0]]
+    for row in np.flatnonzero(~np.isfinite(values)):
+        found = table[column].iloc[row]
         raise InputError(
-            f"{source}, row {bad[0] + first}, column {column!r}: {'nothing' if pd.isna(found) else repr(found)} "
+            f"{source}, row {row + first}, column {column!r}: {'nothing' if pd.isna(found) else repr(found)} "
             "is not a finite number; correct it or leave the row out."
         )
     return values
@@ -165,11 +157,10 @@ def numbers(table: pd.DataFrame, column: str, source: str = "table", first: int 
 def positive(table: pd.DataFrame, column: str, source: str = "table", first: int = 1) -> Floats:
     """Return a column as numbers above zero, shape (n,), because they enter by their logarithm."""
     values = numbers(table, column, source, first)
-    bad = np.flatnonzero(values <= 0)
-    if bad.size:
+    for row in np.flatnonzero(values <= 0):
         raise InputError(
-            f"{source}, row {bad[0] + first}, column {column!r}: an intensity measure must be above "
-            f"zero to have a logarithm, got {values[bad[0]]:g}; correct it or leave the row out."
+            f"{source}, row {row + first}, column {column!r}: an intensity measure must be above "
+            f"zero to have a logarithm, got {values[row]:g}; correct it or leave the row out."
         )
     return values
 
@@ -177,11 +168,10 @@ def positive(table: pd.DataFrame, column: str, source: str = "table", first: int
 def read_observations(table: pd.DataFrame, column: str, source: str = "table") -> Floats:
     """Return a column of yes/no outcomes as 0 and 1, shape (n,)."""
     values = numbers(table, column, source)
-    bad = np.flatnonzero((values != 0) & (values != 1))
-    if bad.size:
+    for row in np.flatnonzero((values != 0) & (values != 1)):
         raise InputError(
-            f"{source}, row {bad[0] + 1}, column {column!r}: overturned must be 0 or 1, got "
-            f"{values[bad[0]]:g}; give counts of several tests with a column of trials."
+            f"{source}, row {row + 1}, column {column!r}: overturned must be 0 or 1, got "
+            f"{values[row]:g}; give counts of several tests with a column of trials."
         )
     return values
 
@@ -197,13 +187,11 @@ def labels(
         raise InputError(
             f"{source}: there is no column {column!r}; correct the name of the column."
         )
-    values = table[column]
-    missing = np.flatnonzero(values.isna())
-    if missing.size:
+    for row in np.flatnonzero(table[column].isna()):
         raise InputError(
-            f"{source}, row {missing[0] + first}, column {column!r}: the label is missing; fill it in."
+            f"{source}, row {row + first}, column {column!r}: the label is missing; fill it in."
         )
-    return values.to_numpy(dtype=object)
+    return table[column].to_numpy(dtype=object)
 
 
 def observations_from_table(
@@ -241,17 +229,14 @@ def observations_from_table(
     else:
         counts = numbers(table, trials, source)
         failed = numbers(table, overturned, source)
-        bad = np.flatnonzero((failed < 0) | (failed > counts) | (counts <= 0))
-        if bad.size:
-            row = bad[0]
+        for row in np.flatnonzero((failed < 0) | (failed > counts) | (counts <= 0)):
             raise InputError(
                 f"{source}, row {row + 1}, column {overturned!r}: {failed[row]:g} overturned of "
                 f"{counts[row]:g} tests is not a fraction between 0 and 1; correct the counts."
             )
     motions = labels(table, motion, source)
     earthquakes = motions if earthquake is None else labels(table, earthquake, source)
-    name, unit = name_and_unit(im)
-    return Observations(values, failed, counts, motions, earthquakes, name, unit)
+    return Observations(values, failed, counts, motions, earthquakes, *name_and_unit(im))
 
 
 MOST_VALUES = 1000

@@ -1,8 +1,7 @@
 """Somebody's own table of tests as a text file.
 
 Commas, semicolons and tabs, decimal commas, comments above the header (lines that start with ``#``), UTF-8,
-UTF-16 and Western European text are understood; what
-is not is refused in one sentence that names file, row (the header is row 1) and column.
+UTF-16 and Western European text are understood; messages name file, row (the header is row 1) and column.
 """
 
 import csv
@@ -30,7 +29,6 @@ _YES = {
     *("ja", "wahr", "oui", "vrai", "si", "sì", "vero", "sí", "verdadero"),
 }
 _NO = {*("0", "false", "no", "n", "survived", "stood"), *("nein", "falsch", "non", "faux", "falso")}
-_DIMENSIONLESS = ("uplift_ratio", "velocity_ratio")
 
 
 def read_tests(
@@ -47,38 +45,29 @@ def read_tests(
     The result has ``motion``, ``earthquake`` (text), ``overturned`` (0 or 1), the measures (above zero) and the
     numbers ``given``. Without columns of motion and earthquake every row is a motion of its own.
     """
-    source = Path(path).name
     recipes: dict[str, Sequence[str | float]] = (
         dict(measures) if isinstance(measures, Mapping) else {name: [name] for name in measures}
     )
     if not recipes:
         raise InputError("measures: name at least one column with an intensity measure.")
     for name in recipes:
-        if not name_and_unit(name)[1] and not name.startswith(_DIMENSIONLESS):
+        if not name_and_unit(name)[1] and not name.startswith(("uplift_ratio", "velocity_ratio")):
             raise InputError(
                 f"measures, {name!r}: the name does not tell a unit; end it with one, such as pga_g, "
                 f"pgv_cm_s or sa_0_3s_g (write {name}_g: [{name}] for a column of the file in g)."
             )
     factors = [part for recipe in recipes.values() for part in recipe if isinstance(part, str)]
     labels = [name for name in (motion, earthquake) if name is not None]
-    kinds = {
-        **dict.fromkeys(labels, "label"),
-        overturned: "outcome",
-        **dict.fromkeys(factors, "positive"),
-    }
+    kinds = dict.fromkeys(labels, "label") | {overturned: "outcome"}
+    kinds |= dict.fromkeys(factors, "positive")
     raw = read_columns(path, kinds | {name: "number" for name in given if name not in kinds})
     motions = raw[motion] if motion is not None else [f"row {row + 2}" for row in raw.index]
-    table = pd.DataFrame(
-        {
-            "motion": motions,
-            "earthquake": motions if earthquake is None else raw[earthquake],
-            "overturned": raw[overturned],
-            **{name: product_of(raw, recipe) for name, recipe in recipes.items()},
-            **{name: raw[name] for name in given},
-        }
-    )
+    earthquakes = motions if earthquake is None else raw[earthquake]
+    about = {"motion": motions, "earthquake": earthquakes, "overturned": raw[overturned]}
+    products = {name: product_of(raw, recipe) for name, recipe in recipes.items()}
+    table = pd.DataFrame({**about, **products, **{name: raw[name] for name in given}})
     for name in recipes:
-        _warn_of_peaks(table, name, source)
+        _warn_of_peaks(table, name, Path(path).name)
     return table
 
 
@@ -88,13 +77,12 @@ def _warn_of_peaks(table: pd.DataFrame, name: str, source: str) -> None:
     for dimension, measures, si, (least, most) in _PEAKS:
         if measure not in measures or unit not in DIMENSIONS[dimension]:
             continue
-        peak = float(table[name].max())
-        if not least <= convert(peak, unit, si) <= most:
-            odd = (
-                "more than any table or earthquake has shaken"
-                if convert(peak, unit, si) > most
-                else "too little to overturn any free-standing object"
-            )
+        peak, odd = float(table[name].max()), ""
+        if convert(peak, unit, si) > most:
+            odd = "more than any table or earthquake has shaken"
+        elif convert(peak, unit, si) < least:
+            odd = "too little to overturn any free-standing object"
+        if odd:
             warnings.warn(
                 f"{source}, column {name!r}: the largest is {peak:.4g}, {odd}; mend the unit in the title.",
                 stacklevel=3,
@@ -168,9 +156,7 @@ def product_of(raw: pd.DataFrame, recipe: Sequence[str | float]) -> Floats:
 def _outcomes(piece: pd.DataFrame, column: str, source: str, first: int) -> Floats:
     text = piece[column].fillna("").str.strip().str.lower()
     text = text.str.replace(r"^([01])[.,]0*$", r"\1", regex=True)
-    known = text.isin(_YES | _NO).to_numpy()
-    if not known.all():
-        row = int(np.flatnonzero(~known)[0])
+    for row in np.flatnonzero(~text.isin(_YES | _NO)):
         raise InputError(
             f"{source}, row {first + row}, column {column!r}: {piece[column].iloc[row]!r} is no outcome; "
             "write 1 or yes for overturned, 0 or no for survived."

@@ -41,13 +41,9 @@ class Interaction:
 
     Attributes
     ----------
-    p
-        p value of no interaction, score test with contributions summed by earthquake [-]; NaN with fewer than
-        three earthquakes.
-    likelihood_ratio
-        2 ln (L with / L without) [-]; tests counted as independent, for comparison with other programs.
-    kept
-        Whether the fit has the interaction: p below ``INTERACTION_LEVEL``, and held-out earthquakes score better.
+    p : p value of no interaction, score test summed by earthquake [-]; NaN with fewer than three earthquakes
+    likelihood_ratio : 2 ln (L with / L without) [-], tests counted as independent as in other programs
+    kept : whether the fit has it: p below ``INTERACTION_LEVEL``, and held-out earthquakes score better
     """
 
     p: float
@@ -65,8 +61,7 @@ class VectorFragility:
     coefficients, covariance
         Of 1, ln IM1, ln IM2 and, where it earned its place, ln IM1 ln IM2; the covariance is from the expected
         information, which takes tests for independent.
-    log_likelihood, method, interaction
-        Of the fit; maximum likelihood, or penalised under separation; and the test of an interaction.
+    log_likelihood, method, interaction : of the fit, and the test of an interaction
     replicates : coefficients without one earthquake each, shape (earthquakes, coefficients)
     n, n_overturned, n_earthquakes : tests, those that overturned, and earthquakes
     level, warnings : two-sided confidence level of limits, and what a reader must know before using it
@@ -93,10 +88,8 @@ class VectorFragility:
     def probability(self, first: ArrayLike, second: ArrayLike) -> Floats:
         """Probability of overturning at values of the two measures, which broadcast [-]."""
         x, y = np.log(np.asarray(first, np.float64)), np.log(np.asarray(second, np.float64))
-        eta = np.asarray(self.coefficients[0], dtype=np.float64)
-        for slope, values in zip(self.coefficients[1:], (x, y, x * y), strict=False):
-            eta = eta + slope * values
-        return np.asarray(special.ndtr(eta))
+        slopes = zip(self.coefficients[1:], (x, y, x * y), strict=False)
+        return np.asarray(special.ndtr(sum((c * v for c, v in slopes), self.coefficients[0])))
 
     def contour(
         self, probability: float, second: ArrayLike, of: int = 0
@@ -119,16 +112,13 @@ class VectorFragility:
             half = half_width(left_out, self.level)
         return np.exp(centre), np.exp(centre - half), np.exp(centre + half)
 
-    def mean_over(self, first: ArrayLike, second: ArrayLike, weights: ArrayLike = 1.0) -> Floats:
+    def mean_over(self, first: ArrayLike, second: ArrayLike) -> Floats:
         """Probability in the first measure alone, (n,): the mean over the second one's values of some records.
 
-        ``second`` has the shape (records,), or (n, records) where it changes with the first; ``weights`` are of
-        the records.
+        ``second`` has the shape (records,), or (n, records) where it changes with the first.
         """
         x = np.atleast_1d(np.asarray(first, dtype=np.float64))[:, np.newaxis]
-        y = np.asarray(second, dtype=np.float64)
-        w = np.broadcast_to(np.asarray(weights, dtype=np.float64), y.shape[-1:])
-        return np.asarray(self.probability(x, y) @ w / w.sum())
+        return np.asarray(self.probability(x, np.asarray(second)).mean(axis=-1))
 
 
 def fit_vector(
@@ -321,9 +311,7 @@ def check_vector(
     Parameters
     ----------
     fit, table : the fit and its table, one row a test
-    overturned, motion : columns of the outcome and of the motion; None where each test has a motion of its own
-        In simulated data each motion has one capacity, so that its tests depend on each other as in an incremental
-        dynamic analysis.
+    overturned, motion : columns of the outcome and of the motion, which has one capacity; None for one a test
     replicates, seed : of the parametric bootstrap
 
     Returns
@@ -339,17 +327,16 @@ def check_vector(
     bins = bins if values.size > 1 else np.zeros(eta.size, dtype=np.intp)
     motions = pd.factorize(pd.Series(observations.labels(table, motion, "table")))[0]
     capacity = np.random.default_rng(seed).normal(size=(replicates, int(motions.max()) + 1))
+    ones = np.ones(eta.size)
     fell, expected, trials = (
         np.asarray(np.bincount(bins, values), dtype=np.float64)
-        for values in (outcome, special.ndtr(eta), np.ones(eta.size))
+        for values in (outcome, special.ndtr(eta), ones)
     )
     own = binned_deviance(fell, expected, trials)
     at_once = max(MOST_DRAWN // eta.size, 1)
+    parts = np.split(capacity, range(at_once, replicates, at_once))
     simulated = np.concatenate(
-        [
-            refitted_deviance(design, 1.0 * (eta > part[:, motions]), np.ones(eta.size), bins)
-            for part in np.split(capacity, range(at_once, replicates, at_once))
-        ]
+        [refitted_deviance(design, 1.0 * (eta > part[:, motions]), ones, bins) for part in parts]
     )
     p_fit = float((1 + np.sum(simulated >= own - 1e-9)) / (1 + simulated.size))
     return VectorChecks(p_fit, _surface_table(fit, logs, outcome))

@@ -39,12 +39,9 @@ class Pairs:
         the objects'; both NaN where it is not known), a_np_g, a_p_g [g], d, resolution (half-width to
         which d is known [-]; 0 where amplitudes came without brackets), bound ("at least" or "at most"
         where one of the tests never overturned and d is the bound that follows, else empty).
-    censored
-        One row per pair of which at least one test never overturned: object, earthquake, floor, motion,
-        d_lower, d_upper (infinite where unbounded). Those with both infinite are not in ``table``.
-    unpaired
-        One row per object and motion that was tested on one side only: object, earthquake, floor, motion,
-        missing ("P" or "NP").
+    censored, unpaired
+        Object, earthquake, floor, motion of pairs of which a test never overturned; d_lower, d_upper (infinite
+        if unbounded; not in ``table`` if both are), and of tests without a partner; missing ("P" or "NP").
     """
 
     table: pd.DataFrame

@@ -32,8 +32,6 @@ EFFECT_COLUMNS = [
 ]
 WHOLE_COLUMNS = ["method", "estimate", "lower", "upper", "p", "smallest_p", "units", "remark"]
 EQUIVALENCE_LEVEL = 0.05  # equivalence is shown below this p value [-]
-STEPS_DECIDE = "; the limits are the width of the steps, not of the scatter"
-"""Said of a method whose own interval is narrower than what the steps of the amplitudes leave open."""
 RANK_COLUMNS = ["factor", "level", "ratio", "p_largest", "p_smallest"]
 DRAWS = 9_999  # samples drawn of motions or earthquakes
 DRAWN_AT_ONCE = 2_000_000
@@ -68,9 +66,8 @@ def effects_table(table: pd.DataFrame, floors: Sequence[str] = ()) -> pd.DataFra
     """Ratio P/NP for every scope of pairs (`Pairs.table`), with floors in the given order.
 
     Limits are of 95 %; p_holm adjusts within the scope, p_bh over all rows; p_equivalence is of ±10 %;
-    detectable_ratio has 80 % power with the scatter and number of units at hand; up to resolution_ratio the steps
-    of the amplitudes leave the mean open (no interval is narrower); tied pairs have equal amplitudes on both
-    sides; of those at_bound one test never overturned.
+    detectable_ratio has 80 % power; up to resolution_ratio the steps of the amplitudes leave the mean open; tied
+    pairs have equal amplitudes on both sides; of those at_bound one test never overturned.
     """
     rows: list[list[object]] = []
     known = [name for name in floors if name in set(table["floor"])]
@@ -108,14 +105,12 @@ def _whole_tests(table: pd.DataFrame, seed: int) -> pd.DataFrame:
     flips = cluster_means.sign_flip_test(cluster_means.earthquake_means(table), seed)
     remark = "keeps its level in the crossed design; the conclusions rest on it"
     if effect.upper <= effect.mean + effect.resolution:
-        remark += STEPS_DECIDE
+        remark += "; the limits are the width of the steps, not of the scatter"
     estimate, nan = (effect.ratio, effect.ratio_lower, effect.ratio_upper, effect.p), math.nan
     drawn = "exact" if flips.exact else f"drawn with seed {seed}"
+    of_t = (f"t on the means of {unit}s", *estimate, nan, effect.units, remark)
     flipped = (effect.ratio, nan, nan, flips.p, flips.smallest_p, flips.units, drawn)
-    rows = [
-        [f"t on the means of {unit}s", *estimate, nan, effect.units, remark],
-        ["sign flips over earthquakes", *flipped],
-    ]
+    rows = [of_t, ("sign flips over earthquakes", *flipped)]
     return pd.DataFrame(rows, columns=WHOLE_COLUMNS)
 
 

@@ -1,11 +1,8 @@
 """Incremental dynamic analyses as matrices, motion by amplitude, and three definitions of one as tables of tests.
 
 A file of an IDA curve has a row per motion and amplitude, motion after motion, each raised through the same
-amplitudes. What statistics need of it is a byte a history.
-
-The step protocol of the laboratory, the first overturning and the amplitude above which the
-specimen always overturns are three different figures; between the last two lie structural resurrections.  Means of
-them are compared over the same motions, all of them overturning.
+amplitudes. The step protocol of the laboratory, the first overturning and the amplitude above which the specimen
+always overturns are three different figures; between the last two lie structural resurrections.
 """
 
 import math
@@ -68,9 +65,8 @@ def read_swept(paths: Iterable[Path], *, state: str = OVERTURNS) -> Iterator[Swe
     """Yield the outcomes of IDA curves in a limit state, some motions at a time, so that memory holds one part."""
     reached = limit_state_named(state).column
     columns = [*ABOUT, "amplitude_g", reached, "overturned_body"]
-    texts = [*ABOUT, "overturned_body"]
     for path in paths:
-        with pq.ParquetFile(path, read_dictionary=texts) as file:
+        with pq.ParquetFile(path, read_dictionary=[*ABOUT, "overturned_body"]) as file:
             for group in range(file.num_row_groups):
                 yield _swept(file.read_row_group(group, columns=columns), reached, path)
 
@@ -111,7 +107,6 @@ def swept_of(ida: pd.DataFrame) -> Iterator[Swept]:
 DEFINITIONS = ("step_protocol", "first_overturning", "always_overturning")
 DEFINITION = "step_protocol"  # as in a laboratory: statistics rest on it, the others stand beside
 _LABELS = ("configuration", "object", "pedestal", "floor")
-_NEEDED = (*ABOUT, "amplitude_g", "overturned", "overturned_body")
 
 
 def first_overturning(amplitudes: Floats, overturned: Flags) -> Outcome:
@@ -178,10 +173,11 @@ def tests_from_ida(
     Table of tests, see :mod:`rockfrag.shaketable.tests_table`; in the order in which
     the IDA curves first appear, then by definition and repetition.
     """
-    for column in _NEEDED:
+    needed = (*ABOUT, "amplitude_g", "overturned", "overturned_body")
+    for column in needed:
         if column not in ida.columns:
             raise InputError(
-                f"IDA curve: column {column!r} is missing; it needs {', '.join(_NEEDED)}."
+                f"IDA curve: column {column!r} is missing; it needs {', '.join(needed)}."
             )
     for definition in definitions:
         if definition not in DEFINITIONS:
@@ -259,9 +255,6 @@ def mean_amplitudes(tests: pd.DataFrame) -> pd.DataFrame:
     ``pedestal`` and ``floor`` are empty where all are taken together; ``mean_g`` [g] is missing where no motion
     overturned all; of ``of`` motions ``motions`` did. Repetitions are averaged in the logarithm, and count only if
     each of them overturned.
-
-    A test that never overturned has no amplitude. Left out of one mean and not of another, it would make objects,
-    floors or sides look different that were merely tested by other motions.
     """
     # the same record on another floor has another name: that of the record and the floor's
     names = tests[["motion", "floor"]].to_numpy().tolist()

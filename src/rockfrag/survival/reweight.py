@@ -113,10 +113,7 @@ class Reweighted:
 
 
 def reweight(site: Site, samples: int = SAMPLES) -> Reweighted:
-    """Weigh branches of the hazard by how probably they let all objects stand.
-
-    ``samples`` of errors and ages are a power of two.
-    """
+    """Weigh branches of the hazard by how probably they let all objects stand; ``samples`` are a power of two."""
     objects = site.objects
     wanted = set().union(*(body.measures for body in objects))
     reach = (min(b.reach[0] for b in objects), max(b.reach[1] for b in objects))

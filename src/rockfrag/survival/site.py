@@ -1,10 +1,7 @@
 """A site as ``site.yaml`` describes it: branches of its hazard, and what stands there, how fragile and how old.
 
-Branches are a logic tree's end branches, each with its weight and a hazard curve a measure. Two ways to give them:
-OpenQuake's exports (``realizations_….csv`` and a file of hazard curves for each realization,
-``hazard_curve-rlz-000-PGA_….csv``), or plain tables with the columns ``branch``, ``weight``, a level (``pga_g``,
-``pgv_cm_s``, ``sa_0_3s_g``) and how often it is exceeded (``annual_rate``, ``return_period_years`` or such as
-``poe_50_years``), a row a level; a second table may give another measure of the same branches.
+Branches are a logic tree's end branches, each with its weight and a hazard curve a measure: OpenQuake's exports or
+tables of levels with the columns ``branch`` and ``weight``.
 """
 
 import math
@@ -173,14 +170,10 @@ NODES = 15  # Nodes of Gauss and Hermite over the velocity that comes with a lev
 
 @dataclass(frozen=True)
 class VelocityRatio:
-    """How fast the ground moves at a site when its peak acceleration is known: ln(PGV/PGA) is normal.
+    """How fast the ground moves at a site when its peak acceleration is known: ln(PGV/PGA) is normal."""
 
-    ``median_s`` is the median of PGV/PGA [s], ``sd_ln`` the standard deviation of its logarithm from one
-    earthquake to the next [-].
-    """
-
-    median_s: float
-    sd_ln: float
+    median_s: float  # Median of PGV/PGA [s]
+    sd_ln: float  # Standard deviation of its logarithm from one earthquake to the next [-]
 
 
 @dataclass(frozen=True)

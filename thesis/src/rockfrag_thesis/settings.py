@@ -8,8 +8,7 @@ from rockfrag.errors import InputError
 from rockfrag.study.study import Study
 from rockfrag.system.blocks import Block, Stack
 
-NAME = "thesis"
-"""Name of the plugin."""
+NAME = "thesis"  # name of the plugin
 
 
 @dataclass(frozen=True)

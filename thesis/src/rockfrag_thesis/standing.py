@@ -19,8 +19,7 @@ from rockfrag.system.system import System
 SIZES = (1e-9, 1e-6, 1e-4)
 """Relative differences of the motion and of every width and height, at most."""
 
-COPIES = 4
-"""Perturbed copies of a test for each of them."""
+COPIES = 4  # perturbed copies of a test for each of them
 
 
 def standing_definitions(

@@ -149,8 +149,7 @@ def c7(setting: Setting) -> Result:
     )
 
 
-DRAWS = 20
-"""Copies of each block within its tolerances (C8)."""
+DRAWS = 20  # copies of each block within its tolerances (C8)
 AMPLITUDES_G = np.geomspace(0.1, 2.0, 301)
 """1 % steps in which the least overturning amplitude is sought (C8)."""
 

@@ -64,8 +64,7 @@ MEASURES: Mapping[str, str] = {
     "mean_period_s": "mean period",
     "d5_95_s": "significant duration",
 }
-MOTIONS = 12
-"""Motions of the thesis."""
+MOTIONS = 12  # motions of the thesis
 
 
 _Z = float(stats.norm.ppf(1 - POWER_LEVEL / 2) + stats.norm.ppf(POWER))

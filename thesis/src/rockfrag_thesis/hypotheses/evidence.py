@@ -14,8 +14,7 @@ from rockfrag.system.blocks import Block
 from rockfrag_thesis.hypotheses.contrasts import contrast
 from rockfrag_thesis.hypotheses.hypothesis import Undecidable
 
-PEDESTAL = "P"
-"""Name of the pedestal among the specimens."""
+PEDESTAL = "P"  # name of the pedestal among the specimens
 
 THESIS_BODIES: Mapping[str, Block] = {
     "T1": Block(0.124, 0.372, 2.172),

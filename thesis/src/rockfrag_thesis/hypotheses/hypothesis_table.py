@@ -30,8 +30,7 @@ from rockfrag_thesis.hypotheses.hypothesis import (
 )
 from rockfrag_thesis.hypotheses.setting import Setting, make_setting
 
-THEORY = range(1, 25)
-"""Numbers of the hypotheses about theory; the others are about tests."""
+THEORY = range(1, 25)  # numbers of the hypotheses about theory; the others are about tests
 
 COLUMNS = (
     *("number", "hypothesis", "source", "kind", "evidence", "rule", "error_rate", "finding"),

@@ -13,8 +13,7 @@ from rockfrag.pedestal.cluster_means import Estimate, t_estimate
 from rockfrag_thesis.hypotheses.contrasts import power_note
 from rockfrag_thesis.hypotheses.hypothesis import Finding, Result
 
-LEVEL = 0.025
-"""Error of a rule, each way [-]: that of one end of a 95 % interval."""
+LEVEL = 0.025  # error of a rule, each way [-]: that of one end of a 95 % interval
 
 
 SEEN = 0.10

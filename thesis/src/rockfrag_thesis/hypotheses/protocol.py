@@ -9,8 +9,7 @@ from rockfrag_thesis.hypotheses.hypothesis import Finding, Result, Undecidable, 
 from rockfrag_thesis.hypotheses.outcomes import decided, same
 
 MOTIONS = 12
-UNCOUNTED = 10.0
-"""Mass of a table for which the effect of miscounting is shown [kg]."""
+UNCOUNTED = 10.0  # mass of a table for which the effect of miscounting is shown [kg]
 SMOOTH, ROUGH = 0.25, 1.0
 """Least friction of dry wood on wood, and that of rubber on dry concrete [-]: what any dry joint of the
 specimens offers, and what none does (ranges of engineering handbooks)."""

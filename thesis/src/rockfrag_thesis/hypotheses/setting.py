@@ -27,14 +27,12 @@ PEAKS_G = (0.3, 0.5, 0.8, 1.2)
 SAMPLE = 12
 """Motions of a larger set that serve where each needs many histories, evenly spaced in its order."""
 
-EXACT = 1e-9
-"""Relative difference below which two computed figures are the same [-]."""
+EXACT = 1e-9  # relative difference below which two computed figures are the same [-]
 
 
 SIZES = np.geomspace(1.0, 8.0, 80)
 """2π/p of the blocks of a rocking spectrum [s]: heights from 0.4 to 24 m."""
-PERIODS = np.geomspace(0.1, 10.0, 60)
-"""Periods of the oscillators [s]."""
+PERIODS = np.geomspace(0.1, 10.0, 60)  # periods of the oscillators [s]
 
 
 @dataclass(frozen=True)

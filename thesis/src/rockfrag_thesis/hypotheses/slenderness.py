@@ -28,8 +28,7 @@ from rockfrag_thesis.hypotheses.outcomes import (
     same,
 )
 
-TOWERS = ("T1", "T2", "T3")
-"""The towers from the squattest to the most slender."""
+TOWERS = ("T1", "T2", "T3")  # the towers from the squattest to the most slender
 
 
 def _fall(rows: pd.DataFrame) -> Estimate:

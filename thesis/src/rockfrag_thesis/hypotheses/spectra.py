@@ -27,12 +27,10 @@ from rockfrag_thesis.hypotheses.setting import PERIODS, SIZES, Setting
 
 DAMPINGS = (0.02, 0.10)
 PERCENTS = tuple(100 * damping for damping in DAMPINGS)
-LONG = 200.0
-"""A period that counts as infinite [s]."""
+LONG = 200.0  # a period that counts as infinite [s]
 ROCKS = 0.01
 """Rotation below which a block hardly rocks and its spectrum has no shape, of the critical angle [-]."""
-CHANGE = 0.05
-"""Small change of slenderness or damping whose effects are compared with it [-]."""
+CHANGE = 0.05  # small change of slenderness or damping whose effects are compared with it [-]
 
 
 @hypothesis(14, blocks=SIZES.size, ends=SIZES[[0, -1]])

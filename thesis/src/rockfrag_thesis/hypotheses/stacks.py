@@ -155,10 +155,7 @@ def _kind(before: str, after: str) -> str:
 
 
 def _kinds(transitions: Counter[tuple[str, str]]) -> Counter[str]:
-    found: Counter[str] = Counter()
-    for (before, after), n in transitions.items():
-        found[_kind(before, after)] += n
-    return found
+    return Counter(_kind(before, after) for before, after in transitions.elements())
 
 
 @hypothesis(11)
@@ -190,8 +187,7 @@ def c11(setting: Setting) -> Result:
     )
 
 
-GEOMETRIES = 120
-"""Random stacks on which C11 and C12 look."""
+GEOMETRIES = 120  # random stacks on which C11 and C12 look
 
 
 def _random_stack(rng: np.random.Generator) -> Stack:

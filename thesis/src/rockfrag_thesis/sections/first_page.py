@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from rockfrag.figure_style import BLUE, COLUMN_WIDTH, ORANGE, panels
-from rockfrag.report.answer import could_change, questions, rests_on, study_answer
+from rockfrag.report.answer import study_answer
 from rockfrag.report.figures import BAND, GREY
 from rockfrag.report.findings import FRICTION, ratio_text
 from rockfrag.report.part import Answer, Finding, Results
@@ -30,8 +30,7 @@ from rockfrag_thesis.settings import settings_of
 DISCOVERY_RATE = 0.05
 """Level of the false discovery rate at which a perturbation counts as changing the ratio [-]."""
 
-MOST_NAMED = 3
-"""So many perturbations are named with their ratios; the table has all."""
+MOST_NAMED = 3  # so many perturbations are named with their ratios; the table has all
 
 REPORTED_SIDE = {GROUND: 1, THIRD: -1, FIFTH: -1}
 """Whether the thesis reports a ratio above (1) or below one (-1) on a floor (sections 4.3 and 4.4)."""
@@ -59,16 +58,14 @@ def thesis_answer(results: Results) -> Answer:
         settings_of(study).wanted_percent,
     )
     here = effects[effects["definition"] == DEFINITION]
-    return Answer(
+    return replace(
+        study_answer(results),
         asked="Does a pedestal delay overturning on the ground and hasten it on upper floors?",
         sentences=found,
         figure=says.figure(
             "answer", lambda: ratios_figure(here), found[0].headline, has_thesis_floors(here)
         ),
         advice=_advice(results),
-        rests_on=rests_on(results),
-        could_change=could_change(results),
-        questions=questions(results),
     )
 
 

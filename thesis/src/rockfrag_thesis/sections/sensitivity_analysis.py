@@ -84,8 +84,7 @@ FACTORS = {
 ARITHMETIC = ("pedestal_not_counted", "table_not_counted")
 """Factors that multiply every amplitude by a known number: computed without a simulation, and without chance."""
 
-MOST_DRAWN = 16
-"""So many perturbations are drawn, those with the largest effect; the table has all."""
+MOST_DRAWN = 16  # so many perturbations are drawn, those with the largest effect; the table has all
 
 
 def _p(row: Row) -> str:

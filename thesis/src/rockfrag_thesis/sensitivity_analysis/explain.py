@@ -16,8 +16,7 @@ from rockfrag.pedestal.cluster_means import benjamini_hochberg, equivalence, hol
 from rockfrag.tabular import join_rows
 
 COLUMNS = ("factor", "level", "reference", "object", "earthquake", "floor", "ratio")
-ALL = "all"
-"""What stands in the column of the floor for all floors together."""
+ALL = "all"  # what stands in the column of the floor for all floors together
 
 CHANGES, SAME, OPEN = "changes P/NP", "within ±10 %", "open"
 """What the intervals say of a level: p below 5 % over everything, equivalence, or neither."""

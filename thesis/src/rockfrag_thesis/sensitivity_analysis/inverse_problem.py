@@ -24,11 +24,9 @@ PLAUSIBLE = 0.05
 LEAST_SCATTER = 0.005
 """Standard deviation of ln P/NP between earthquakes that a model is never taken to be more robust than [-]."""
 
-REACH = 0.02
-"""Largest difference of ln P/NP at which the wanted effect counts as reached [-]."""
+REACH = 0.02  # largest difference of ln P/NP at which the wanted effect counts as reached [-]
 
-POINTS = 25
-"""Levels tried along each factor."""
+POINTS = 25  # levels tried along each factor
 
 FRICTION = ("ground_friction", "interface_friction")
 """Coefficient of friction of the ground alone, and of the interface alone, as factors."""

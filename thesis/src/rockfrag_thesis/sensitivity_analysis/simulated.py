@@ -22,14 +22,12 @@ from rockfrag.rocking.options import MeasuredRestitution, system_of
 from rockfrag.system.blocks import Block, Stack
 from rockfrag.system.system import System
 
-BATCH = 64
-"""Bodies that are shaken at a time, between two lines of progress."""
+BATCH = 64  # bodies that are shaken at a time, between two lines of progress
 
 LEVELS = 8
 """Levels of a series of levels that are climbed at a time: whatever has fallen climbs no further."""
 
-LAWS = BUILT_IN[1:]
-"""Laws that are tried, the usual one first."""
+LAWS = BUILT_IN[1:]  # laws that are tried, the usual one first
 
 REFERENCE = "ideal"
 LARGEST_RESTITUTION = 0.995
@@ -150,8 +148,7 @@ LAW_OF: Mapping[str, tuple[str, str]] = {
 """What a factor of restitution varies, and the law by which stacks follow it."""
 
 # shapes before restitutions, which are factors on what the shapes give
-PERTURBATIONS = (*_SHAPES, *LAW_OF)
-"""Names of the mechanical factors."""
+PERTURBATIONS = (*_SHAPES, *LAW_OF)  # names of the mechanical factors
 
 
 def perturbed_cases(
