@@ -52,9 +52,8 @@ _MOST_SHOWN = 400  # characters of the list of wrong cells in a message
 def read_catalogue(path: str | os.PathLike[str]) -> pd.DataFrame:
     """Read and check a catalogue (CSV), a row per motion, columns :data:`COLUMNS`.
 
-    Columns are separated by commas, semicolons or tabs; numbers may have a decimal comma. Columns
-    that are missing count as empty, ``source`` as ``folder``. Text columns are empty strings where
-    nothing is known, numbers NaN.
+    Columns are separated by commas, semicolons or tabs; numbers may have a decimal comma. Columns that are missing
+    count as empty, ``source`` as ``folder``. Text columns are empty strings where nothing is known, numbers NaN.
     """
     return _checked(path)[0]
 

@@ -122,8 +122,7 @@ class Motion:
 def write_motion_set(motions: Sequence[Motion], path: str | os.PathLike[str]) -> None:
     """Write motions to one Parquet file, a row per motion.
 
-    Columns: ``name``, ``dt_s``, ``npts``, ``acceleration_m_s2`` (list), ``metadata`` and
-    ``provenance`` (JSON).
+    Columns: ``name``, ``dt_s``, ``npts``, ``acceleration_m_s2`` (list), ``metadata`` and ``provenance`` (JSON).
     """
     table = pd.DataFrame(
         {

@@ -17,7 +17,7 @@ from rockfrag.records.parsing.timestamps import time_at
 _RATE = re.compile(
     r"^\s*SAMPLES/SEC\s*=\s*(?P<rate>[\d.]+).*\bDATA\s+TYPE\s*=\s*(?P<type>\w\w)", re.I
 )
-_RATE_LINE = re.compile(rb"^[ \t]*SAMPLES/SEC[ \t]*=", re.I | re.M)
+_RATE_LINE = re.compile(r"^\s*SAMPLES/SEC\s*=", re.I)
 _SIZE = re.compile(
     r"^\s*NO\.?\s+OF\s+POINTS\s*=\s*(?P<count>\d+),?\s*UNITS\s*=\s*(?P<units>.*)$", re.I
 )

@@ -1,10 +1,9 @@
 """Iran Strong Motion Network (BHRC), volume 1: three components L, V and T in g/10.
 
-Each component has a text header that begins with ``* VOL1DS FILE`` and has its size and unit in
-``NO. OF POINTS = … DURATION = …`` and ``UNITS ARE SECONDS AND G/10``, seven lines of integers, seven
-of reals, then the samples in rows (E13.6), and ends with ``/&``. Header lines are cut after 70
-columns, so that only what is left of those is read. The interval is one over the rate, the ninth
-real number, and must agree with the duration.
+Each component has a text header that begins with ``* VOL1DS FILE`` and has its size and unit in ``NO. OF POINTS =
+… DURATION = …`` and ``UNITS ARE SECONDS AND G/10``, seven lines of integers, seven of reals, then the samples in
+rows (E13.6), and ends with ``/&``. Header lines are cut after 70 columns, so that only what is left of those is
+read. The interval is one over the rate, the ninth real number, and must agree with the duration.
 """
 
 import re
@@ -14,8 +13,7 @@ from rockfrag.records.parsing import format as form
 from rockfrag.records.parsing.text_file import TextFile
 
 _FIRST = re.compile(r"^\s*\*\s*VOL1DS\s+FILE", re.I)
-_HEAD = re.compile(rb"^[ \t]*\*[ \t]*VOL1DS[ \t]+FILE", re.I | re.M)
-_UNITS_LINE = re.compile(rb"^[ \t]*UNITS\b.*\bAND\b", re.I | re.M)
+_UNITS_LINE = re.compile(r"^\s*UNITS\b.*\bAND\b", re.I)
 _UNIT = r"\bUNITS\s+ARE\s+SEC\w*\s+AND\s+(\S+)"
 _POINTS = r"NO\.?\s+OF\s+POINTS\s*="
 _FACTS = {
@@ -35,7 +33,7 @@ _MAX_HEADER = 30
 
 
 def _parse(text: TextFile) -> Iterator[form.Channel]:
-    for first, stop in text.parts(_HEAD, form.CHANNEL_END):
+    for first, stop in text.parts(_FIRST, form.CHANNEL_END):
         at_units = text.find(_UNITS_LINE, first, min(stop, first + _MAX_HEADER))
         facts = form.facts_in(text.lines(first, at_units + 1), _FACTS)
         if not (facts["unit"] and facts["count"]):

@@ -17,21 +17,18 @@ from rockfrag.records.parsing.timestamps import time_at
 _FIRST = re.compile(
     r"^\s*(?:un)?(?:raw|processed|corrected)?\s*\w+.*\(\s*Format\s+v\s*0?1\.\d+", re.I
 )
-_BLOCK = rb"^[ \t]*(\d+)[ \t]+%b-header values follow on[ \t]+(\d+)[ \t]+lines"
+_BLOCK = r"^\s*(\d+)\s+{}-header values follow on\s+(\d+)\s+lines"
 _INTEGERS = re.compile("integer-header values", re.I)
-_COMMENTS = re.compile(rb"^[ \t]*(\d+)[ \t]+Comment line", re.I | re.M)
-_VALUES = re.compile(rb"^[ \t]*\d+[ \t]+\w[\w. ]*?[ \t]+p(?:oin)?ts\b", re.I | re.M)
+_COMMENTS = re.compile(r"^\s*(\d+)\s+Comment line", re.I)
+_VALUES = re.compile(r"^\s*\d+\s+\w[\w. ]*?\s+p(?:oin)?ts\b", re.I)
 _VALUES_LINE = re.compile(
     r"^\s*(?P<count>\d+)\s+(?:raw\s+)?(?P<quantity>\w+).*?units?\s*=\s*(?P<unit>[^,(]+)"
     r"(?:\(\s*(?P<code>\d+)\s*\))?",
     re.I,
 )
-_END = re.compile(
-    rb"^[ \t]*(?:/&|End-of-data)|\(Format[ \t]+v|^[ \t]*\d+[ \t]+\w[\w. ]*?[ \t]+p(?:oin)?ts\b",
-    re.I | re.M,
-)
+_END = re.compile(rf"^\s*(?:/&|End-of-data)|\(Format\s+v|{_VALUES.pattern}", re.I)
 Number = TypeVar("Number", int, float)
-_HEAD = re.compile(rb"\(\s*Format[ \t]+v", re.I)
+_HEAD = re.compile(r"\(\s*Format\s+v", re.I)
 
 _UNITS_BY_CODE = {2: "g", 4: "cm/s2", 5: "cm/s", 6: "cm", 7: "in/s2", 8: "in/s", 9: "in"}
 _UNITS_BY_CODE |= {10: "cm/s2", 11: "mg", 12: "ug", 50: "counts", 51: "volts"}
@@ -107,7 +104,7 @@ def _block(
     text: TextFile, first: int, kind: str, read: Callable[..., list[Number]], width: int
 ) -> tuple[int, list[Number]]:
     """Return the line above a header block below line ``first``, and its values."""
-    pattern = re.compile(_BLOCK % kind.encode(), re.I | re.M)
+    pattern = re.compile(_BLOCK.format(kind), re.I)
     line = text.find(pattern, first)
     match = pattern.match(text.raw(max(line, 0)))
     if line < 0 or match is None:

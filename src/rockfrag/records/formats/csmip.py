@@ -16,7 +16,6 @@ from rockfrag.records.parsing.timestamps import american_time, is_pairs_header, 
 
 _FIRST = re.compile(r"^\s*(?:un)?corrected\s+acc?elero(?:gram|graph)\b", re.I)
 _SPECTRA = re.compile(r"^\s*(?:response|fourier)\b.*\bspectr", re.I)
-_HEAD = re.compile(rb"^[ \t]*(?:UN)?CORRECTED[ \t]+ACC?ELERO(?:GRAM|GRAPH)\b", re.I | re.M)
 _VOLUME_2 = re.compile(
     r"^\s*(?P<count>\d+)\s+points?\s+of\s+(?P<quantity>accel|veloc|displ)\w*\s+data\s+equally\s+"
     r"spaced\s+at\s+(?P<dt>[\d.]+(?:E[+-]?\d+)?)\s*sec(?P<rest>.*)$",
@@ -28,11 +27,11 @@ _VOLUME_1 = re.compile(
     re.I,
 )
 _VALUES = re.compile(
-    rb"^[ \t]*\d+[ \t]+(?:points?[ \t]+of[ \t]+(?:accel|veloc|displ)\w*[ \t]+data[ \t]+equally"
-    rb"|(?:accel|veloc|displ)\w*[ \t]+points?[ \t]+at\s)",
-    re.I | re.M,
+    r"^\s*\d+\s+(?:points?\s+of\s+(?:accel|veloc|displ)\w*\s+data\s+equally"
+    r"|(?:accel|veloc|displ)\w*\s+points?\s+at\s)",
+    re.I,
 )
-_END = re.compile(_VALUES.pattern + rb"|^[ \t]*/&|" + _HEAD.pattern, re.I | re.M)
+_END = re.compile(rf"{_VALUES.pattern}|^\s*/&|{_FIRST.pattern}", re.I)
 _UNIT = re.compile(
     r"(?:units?\s*(?::|of|are|=)|\bin)\s*(?P<unit>[CM]*M\s*/\s*S\w*(?:\s*/\s*S\w*)?\d?|CM|G\s*/\s*10|"
     r"1/10\s*G|G)(?![A-Z])",
@@ -61,7 +60,7 @@ def _parse(text: TextFile) -> Iterator[form.Channel]:
         text.refuse(
             "this file holds response spectra (volume 3), not acceleration; give the V2 file"
         )
-    for first, stop in text.parts(_HEAD, form.CHANNEL_END):
+    for first, stop in text.parts(_FIRST, form.CHANNEL_END):
         words = text.lines(first, min(stop, first + _MAX_HEADER))
         sections = list(text.parts(_VALUES, _END, first, stop))
         for line, end in sections:

@@ -19,8 +19,7 @@ from rockfrag.records.parsing.number_fields import NumberError, parse_separated
 from rockfrag.records.parsing.quantities import TO_SI, canonical_unit
 from rockfrag.records.parsing.text_file import TextFile, read_text
 
-_SERIES = re.compile(r"^[^#\n]*?(?:\btimeSeries\s+[\"']?Path\b|[{\"]\s*Series\s+-)", re.I | re.M)
-_SERIES_BYTES = re.compile(_SERIES.pattern.encode(), re.I | re.M)
+_SERIES = re.compile(r"^[^#]*?(?:\btimeSeries\s+[\"']?Path\b|[{\"]\s*Series\s+-)", re.I)
 _UNIT = re.compile(
     rb"^[ \t]*#.*\bacceleration\b.*?\bin[ \t]+(?P<unit>[^\s,]+)(?:,[ \t]*(?P<count>\d+)[ \t]+samples)?",
     re.I | re.M,
@@ -32,7 +31,7 @@ def _parse(text: TextFile) -> Iterator[Channel]:
     unit = _UNIT.search(text.data)
     stated = canonical_unit(unit["unit"].decode("ascii", errors="replace")) if unit else ""
     promised = int(unit["count"]) if unit and unit["count"] else None
-    for first, stop in text.parts(_SERIES_BYTES):
+    for first, stop in text.parts(_SERIES):
         yield _series(text, first, stop, stated, promised)
 
 
@@ -57,7 +56,8 @@ def _series(text: TextFile, line: int, stop: int, unit: str, promised: int | Non
 
 def _command(text: TextFile, line: int, stop: int) -> str:
     """Return the whole command of a series: until braces close, with lines that a backslash joins."""
-    script = text.data[text.offset(line) : text.offset(stop)].decode("latin-1")
+    ended = stop < len(text) or text.data.endswith(b"\n")
+    script = text.body(line, stop).decode("latin-1") + ("\n" if ended else "")
     for end in re.finditer("\n", script):
         whole = script[: end.start()]
         if whole.count("{") <= whole.count("}") and not whole.endswith("\\"):
@@ -75,7 +75,8 @@ def _values(text: TextFile, line: int, script: str) -> NDArray[np.float64]:
     listed, file = _option(script, "values"), _option(script, "filePath")
     if listed is not None:
         body, where = listed.encode("latin-1"), text.name
-        first = text.data.count(b"\n", 0, max(0, text.data.find(body, text.offset(line))))
+        below = text.body(line)
+        first = line + below.count(b"\n", 0, max(0, below.find(body)))
     elif file is not None:
         path = Path(text.name).parent / file
         body, where, first = read_text(path).data, str(path), 0

@@ -1,7 +1,6 @@
 """RENADIC (University of Chile) volume 1: pairs of time and acceleration, three channels.
 
-The header has no station; the files are named by the station and the record's number, which is the
-second line.
+The header has no station; the files are named by the station and the record's number, which is the second line.
 """
 
 import re
@@ -13,12 +12,11 @@ from rockfrag.records.parsing.text_file import TextFile
 from rockfrag.records.parsing.timestamps import american_time, read_pairs
 
 _FIRST = re.compile(r"^\s*UNCORRECTED\s+ACCELEROGRAM\s+DATA\b", re.I)
-_HEAD = re.compile(rb"^[ \t]*UNCORRECTED[ \t]+ACCELEROGRAM[ \t]+DATA\b", re.I | re.M)
 _HEADER = 13
 
 
 def _parse(text: TextFile) -> Iterator[Channel]:
-    for first, stop in text.parts(_HEAD, CHANNEL_END):
+    for first, stop in text.parts(_FIRST, CHANNEL_END):
         values = read_pairs(text, first, stop)
         header = text.lines(first, first + _HEADER)
         number = header[1].strip()

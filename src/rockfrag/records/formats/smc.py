@@ -26,7 +26,7 @@ _KINDS = re.compile(
     r"DISPLACEMENT|RESPONSE SPECTRA|FOURIER)\b|^\s*\*",
     re.I,
 )
-_FIRST_FIELD = re.compile(rb"^\s*[+-]?\d*\.\d*(?:[EeDd][+-]?\d+)?")
+_FIRST_FIELD = re.compile(r"^\s*[+-]?\d*\.\d*(?:[EeDd][+-]?\d+)?")
 _HIGH_PRECISION = 8
 _PER_LINE, _SURPLUS_LINES = 8, 2
 

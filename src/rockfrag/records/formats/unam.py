@@ -1,9 +1,8 @@
 """UNAM "archivo estándar de aceleración" (Mexico), version 2: ``KEY : value`` lines, a column a channel.
 
-Lists of channels are written ``/first/second/…``. Below ``DATOS DE ACELERACION`` stand the names and
-the orientations of the channels between two rulers, then one row a sample in the Fortran format
-that the header gives (``3F10.3``). The total of samples is that of the nominal duration: up to a second
-of samples more may follow.
+Lists of channels are written ``/first/second/…``. Below ``DATOS DE ACELERACION`` stand the names and the
+orientations of the channels between two rulers, then one row a sample in the Fortran format that the header gives
+(``3F10.3``). The total of samples is that of the nominal duration: up to a second of samples more may follow.
 """
 
 import re
@@ -15,7 +14,7 @@ from rockfrag.records.parsing.text_file import TextFile
 from rockfrag.records.parsing.timestamps import time_of
 
 _TITLE = re.compile(r"^\s*ARCHIVO\s+EST.NDAR\s+DE\s+ACELERACI.N", re.I)
-_DATA = re.compile(rb"^[ \t]*DATOS DE ACELERACI", re.I | re.M)
+_DATA = re.compile(r"^\s*DATOS DE ACELERACI", re.I)
 _RULER = re.compile(r"^-+\+-+\+[-+]*$")
 _MAX_HEADER = 200
 _HALF_A_DAY = 12 * 3600

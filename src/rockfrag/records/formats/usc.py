@@ -11,9 +11,6 @@ from rockfrag.records.parsing.text_file import TextFile
 from rockfrag.records.parsing.timestamps import read_pairs
 
 _FIRST = re.compile(r"OF\s+UNCORRECTED\s+ACCELEROGRAM\s+DATA\s+OF\s+VOLUME\s+I\b", re.I)
-_HEAD = re.compile(
-    rb"^.*OF[ \t]+UNCORRECTED[ \t]+ACCELEROGRAM[ \t]+DATA[ \t]+OF[ \t]+VOLUME", re.I | re.M
-)
 _HEADER = 13
 _STATION = re.compile(r"^STATION\s+(?:NO\.?|\w+\s*#)?\s*(\d+)", re.I)
 _LENGTH = slice(72, 76)
@@ -28,7 +25,7 @@ def _recognise(lines: list[str], name: str) -> bool:
 
 
 def _parse(text: TextFile) -> Iterator[Channel]:
-    for first, stop in text.parts(_HEAD):
+    for first, stop in text.parts(_FIRST):
         pairs = read_pairs(text, first, min(stop, text.until(CHANNEL_END, first)))
         yield place_of(text.lines(first, first + _HEADER), pairs)
 

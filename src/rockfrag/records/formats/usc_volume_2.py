@@ -19,11 +19,8 @@ from rockfrag.records.parsing.text_file import TextFile
 
 _FIRST = re.compile(r"^\s*CORRECTED\s+ACCELEROGRAM\b(?P<code>\s+II[A-Z]+\d+)?", re.I)
 _SECOND = re.compile(r"OF\s+UNCORRECTED\s+ACCELEROGRAM\s+DATA\s+OF\s+VOLUME", re.I)
-_HEAD = re.compile(rb"^[ \t]*CORRECTED[ \t]+ACCELEROGRAM\b", re.I | re.M)
-_VALUES = re.compile(
-    rb"^[ \t]*\d+[ \t]+POINTS[ \t]+OF[ \t]+\w+[ \t]+DATA[ \t]+EQUALLY", re.I | re.M
-)
-_END = re.compile(_VALUES.pattern + rb"|^[ \t]*/&|" + _HEAD.pattern, re.I | re.M)
+_VALUES = re.compile(r"^\s*\d+\s+POINTS\s+OF\s+\w+\s+DATA\s+EQUALLY", re.I)
+_END = re.compile(rf"{_VALUES.pattern}|^\s*/&|{_FIRST.pattern}", re.I)
 _VALUES_LINE = re.compile(
     r"^\s*(?P<count>\d+)\s+POINTS\s+OF\s+(?P<quantity>ACC|VEL|DIS)\w*\s+DATA\s+EQUALLY[\s-]+SPACED\s+"
     r"AT\s+(?P<dt>[\d.]+)\s*SEC\.?(?:\s*(?:\(|IN\s+)?\s*(?:UNITS?\b\s*(?:OF|:)?\s*)?(?P<unit>[A-Z]+/[A-Z/*\d]+))?",
@@ -34,7 +31,7 @@ _PEAK = re.compile(
 )
 _COUNT_IN_WORDS = re.compile(r"(?P<count>\d+)\s+INSTRUMENT\s+AND\s+BASELINE\s+CORRECTED", re.I)
 _STEP_IN_WORDS = re.compile(r"SPACED\s+INTERVALS?\s+OF\s+(?P<dt>[\d.]+)\s*SEC", re.I)
-_WHOLE_NUMBERS = re.compile(rb"^[ \t]*(?:-?\d+[ \t]+){9,}-?\d+[ \t]*$", re.M)
+_WHOLE_NUMBERS = re.compile(r"^\s*(?:-?\d+\s+){9,}-?\d+\s*$")
 _AS_STATED = 0.01  # fraction by which the largest value may be off the stated peak
 _NUMBER_LINES = 7 + 13  # lines of 100 integers (16I5) and of 100 reals (8F10) above the samples
 _MAX_HEADER = 60
@@ -50,7 +47,7 @@ def _recognise(lines: list[str], name: str) -> bool:
 
 
 def _parse(text: TextFile) -> Iterator[form.Channel]:
-    for first, stop in text.parts(_HEAD):
+    for first, stop in text.parts(_FIRST):
         sections = list(text.parts(_VALUES, _END, first, stop))
         if not sections:
             yield _in_words(text, first, stop)

@@ -271,7 +271,7 @@ def _macros() -> Any:
     return found.get_template("written.j2").module
 
 
-CHANNEL_END = re.compile(rb"^[ \t]*/&", re.M)
+CHANNEL_END = re.compile(r"^\s*/&")
 QUANTITIES = {"ACC": "acceleration", "VEL": "velocity", "DIS": "displacement"}
 """First letters of a quantity's name in a header, and the quantity."""
 

@@ -84,32 +84,26 @@ class TextFile:
     asked_dt: float | None = None
 
     @cached_property
-    def _ends(self) -> NDArray[np.int64]:
-        """Offset of the end of each line."""
-        ends = np.flatnonzero(np.frombuffer(self.data, dtype=np.uint8) == ord("\n"))
-        if not self.data.endswith(b"\n"):
-            ends = np.append(ends, len(self.data))
-        return ends
+    def _lines(self) -> list[str]:
+        """The lines, a character a byte."""
+        lines = self.data.decode("latin-1").split("\n")
+        return lines[:-1] if self.data.endswith(b"\n") else lines
 
     def __len__(self) -> int:
         """Return the number of lines."""
-        return int(self._ends.size)
+        return len(self._lines)
 
-    def offset(self, line: int) -> int:
-        """Return where a line (from zero) starts."""
-        if line <= 0:
-            return 0
-        return min(int(self._ends[min(line, len(self)) - 1]) + 1, len(self.data))
+    def raw(self, line: int) -> str:
+        """Return one line (from zero), a character a byte; empty past the end."""
+        return self._lines[line] if line < len(self) else ""
 
-    def raw(self, line: int) -> bytes:
-        """Return the bytes of one line (from zero); empty past the end."""
-        if line >= len(self):
-            return b""
-        return self.data[self.offset(line) : int(self._ends[line])]
+    def body(self, start: int, stop: int | None = None) -> bytes:
+        """Return the bytes of lines ``start`` up to ``stop`` (from zero)."""
+        return "\n".join(self._lines[start:stop]).encode("latin-1")
 
     def line(self, line: int) -> str:
         """Return one line (from zero) without blanks at its end; empty past the end."""
-        raw = self.raw(line)
+        raw = self.raw(line).encode("latin-1")
         try:
             return raw.decode("utf-8").rstrip()
         except UnicodeDecodeError as error:
@@ -124,23 +118,20 @@ class TextFile:
         """Return lines ``start`` up to ``stop`` (from zero), as many as there are."""
         return [self.line(i) for i in range(start, min(stop, len(self)))]
 
-    def find(self, pattern: re.Pattern[bytes], start: int = 0, stop: int | None = None) -> int:
+    def find(self, pattern: re.Pattern[str], start: int = 0, stop: int | None = None) -> int:
         """Return the first line from ``start`` (before ``stop``) that has the pattern, or -1."""
-        end = len(self.data) if stop is None else self.offset(stop)
-        match = pattern.search(self.data, self.offset(start), end)
-        if match is None:
-            return -1
-        return int(np.searchsorted(self._ends, match.start(), side="left"))
+        last = len(self) if stop is None else min(stop, len(self))
+        return next((i for i in range(start, last) if pattern.search(self._lines[i])), -1)
 
-    def until(self, pattern: re.Pattern[bytes], start: int) -> int:
+    def until(self, pattern: re.Pattern[str], start: int) -> int:
         """Return the first line from ``start`` that has the pattern, or the number of lines."""
         found = self.find(pattern, start)
         return len(self) if found < 0 else found
 
     def parts(
         self,
-        head: re.Pattern[bytes],
-        end: re.Pattern[bytes] | None = None,
+        head: re.Pattern[str],
+        end: re.Pattern[str] | None = None,
         start: int = 0,
         stop: int | None = None,
     ) -> Iterator[tuple[int, int]]:
@@ -182,7 +173,7 @@ class TextFile:
         ``widths`` are of Fortran fields, None of separated numbers; the first that the lines (blanks may be edited
         away) and the count fit is taken. Separated numbers are tried at last.
         """
-        body = self._body(start, stop)
+        body = self.body(start, stop)
         found: list[NDArray[np.float64]] = []
         wrong: list[NumberError] = []
         for width in dict.fromkeys((*widths, None)):
@@ -235,9 +226,6 @@ class TextFile:
             )
         return dt
 
-    def _body(self, start: int, stop: int | None) -> bytes:
-        return self.data[self.offset(start) : self.offset(len(self) if stop is None else stop)]
-
     def check_widths(self, widths: NDArray[np.int64], columns: int, start: int) -> None:
         """Check that rows from line ``start`` on which are not blank have as many numbers as the first."""
         wrong = np.flatnonzero((widths != columns) & (widths > 0))
@@ -257,7 +245,7 @@ class TextFile:
         apart; a comma beside semicolons, or with ``decimal_comma``, is a decimal comma. Lines at the end
         that have only separators, as spreadsheets leave, do not count.
         """
-        body = self._body(start, stop).rstrip(b" \t\r\n,;")
+        body = self.body(start, stop).rstrip(b" \t\r\n,;")
         if not body:
             self.fail("no data below the header; the file is cut short", start)
         separator = b";" if b";" in body or decimal_comma else b","
@@ -286,7 +274,7 @@ class TextFile:
 def last_row(text: TextFile, start: int) -> int:
     """Return the line after the last that is no remark, such as ``*** End Data ***``."""
     for stop in range(len(text), start, -1):
-        line = text.raw(stop - 1).decode("latin-1")
+        line = text.raw(stop - 1)
         if line.strip() and not is_remark(line):
             return stop
     return start

@@ -31,9 +31,8 @@ def step_of_times(
 ) -> float:
     """Return the sampling interval [s] of a column of equally spaced times, in units of ``seconds`` [s].
 
-    The times may be rounded to the digits they are printed with, be that decimals or significant
-    digits: each must be within half a unit of its last digit (and a ten-thousandth of a step) of
-    ``t0 + i dt``.
+    The times may be rounded to the digits they are printed with, be that decimals or significant digits: each must
+    be within half a unit of its last digit (and a ten-thousandth of a step) of ``t0 + i dt``.
     """
     if times.size < 2:
         text.fail("one time alone says nothing about the sampling interval", first_line)
@@ -211,7 +210,7 @@ def pairs_of(
 
 def _flat(text: TextFile, start: int, stop: int, count: int) -> NDArray[np.float64]:
     """Return ``count`` numbers of fields that may touch: 10F7.3, the first one wider by a blank."""
-    body = text.data[text.offset(start) : text.offset(stop)]
+    body = text.body(start, stop)
     try:
         values = parse_separated(body)
     except NumberError:
