@@ -1,7 +1,4 @@
-"""What a laboratory hands over: the table of tests, and the motion of the table in each, checked against it.
-
-A row of the table is a test, what the table was told to do and what the object did.
-"""
+"""What a laboratory hands over: the table of tests, and the motion of the table in each, checked against it."""
 
 import os
 import zipfile

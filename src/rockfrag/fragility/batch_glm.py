@@ -1,8 +1,6 @@
 """Many small binary regressions at once, maximum likelihood or penalised, by Fisher scoring.
 
-Statsmodels fits one regression in milliseconds; a bootstrap over motions or a coverage study needs
-10⁵ to 10⁶. This module fits a whole batch with array operations and is held against statsmodels by
-a test.
+A test holds them against statsmodels, which fits one in milliseconds.
 """
 
 from dataclasses import dataclass
@@ -106,10 +104,9 @@ def fit_batch(
 
 
 def separated(log_im: Floats, failures: Floats, trials: Floats) -> NDArray[np.bool_]:
-    """Tell for each replicate, a row of counts, whether one value of the measure parts survival from overturning.
+    """Tell for each replicate, a row of counts, whether one value parts survived from overturned.
 
-    Then (complete or quasi-complete separation, in either direction) the likelihood has no finite
-    maximum. Replicates in which all tests agree count as separated.
+    Then the likelihood has no finite maximum. Replicates in which all tests agree count as separated.
     """
     fell, stood = failures > 0, trials - failures > 0
 

@@ -1,7 +1,4 @@
-"""What is said beside every fitted curve: whether it describes the data, and which motion moves it most.
-
-The test is of the deviance, by a parametric bootstrap.
-"""
+"""What is said beside every fitted curve: whether it describes the data, and which motion moves it most."""
 
 import re
 from dataclasses import dataclass

@@ -1,8 +1,4 @@
-"""What the outcomes say without a curve: fractions in bins and near a value, structural resurrections.
-
-Rocking bodies overturn at one amplitude and survive a larger one; a fitted curve cannot show it, so
-these stand beside it.
-"""
+"""What the outcomes say without a curve: fractions in bins and near a value, structural resurrections."""
 
 from __future__ import annotations
 

@@ -22,8 +22,7 @@ class Fragility:
 
     Attributes
     ----------
-    fit, interval : the fitted curve, and its confidence limits
-    checks : goodness of fit and influence of single motions
+    fit, interval, checks : the curve, its limits, and goodness of fit and influence of single motions
     """
 
     fit: FragilityFit

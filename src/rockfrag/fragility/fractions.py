@@ -1,11 +1,11 @@
 """The curve that assumes no form: the never-falling fraction closest to the data, with limits over groups.
 
-It is what to use where a lognormal curve is rejected.  Its value is a fraction of dependent tests, so that its
-limits at a value of the measure are those of Korn and Graubard (1998, Survey Methodology 24: 193-201): of a
-binomial fraction whose number of trials gives the variance that leaving out whole motions or earthquakes shows,
-with Jeffreys's limits in the place of Clopper's.  The limits of the median are where those of the curve pass one
-half (Woodruff, 1952, J. Am. Stat. Assoc. 47: 635-646).  The dispersion is half the distance from the 16 % to the
-84 % point, smoothed as Harrell and Davis (1982, Biometrika 69: 635-640) do, and jackknifed over the same groups.
+Its limits at a value of the measure are those of Korn and Graubard (1998, Survey Methodology 24: 193-201) for
+fractions of dependent tests: of a binomial fraction whose number of trials gives the variance that leaving out
+whole motions or earthquakes shows, with Jeffreys's limits in the place of Clopper's.  Those of the median are
+where they pass one half (Woodruff, 1952, J. Am. Stat. Assoc. 47: 635-646).  The dispersion is half the distance
+from the 16 % to the 84 % point, smoothed as Harrell and Davis (1982, Biometrika 69: 635-640) do, and jackknifed
+over the same groups.
 """
 
 from dataclasses import dataclass

@@ -137,9 +137,8 @@ def fragility_table(
     Parameters
     ----------
     ida
-        One row per configuration, motion and amplitude, with ``motion``, ``amplitude_g``,
-        ``overturned``, the columns ``by`` and ``earthquake``, and the measures
-        (:func:`with_measures`).
+        One row per configuration, motion and amplitude, with ``motion``, ``amplitude_g``, ``overturned``, the
+        columns ``by`` and ``earthquake``, and the measures (:func:`with_measures`).
     columns, by, earthquake
         Columns of the measures, of what tells the curves apart, and of the earthquake, whose resampling gives the
         limits; None resamples motions.
@@ -148,15 +147,12 @@ def fragility_table(
     Returns
     -------
     pandas.DataFrame
-        One row per curve: the columns ``by``, ``im``, ``unit``, ``estimator``
-        (``mean_probability`` for each measure; ``first_overturning`` and ``always_overturning``
-        for the amplitude), ``theta``, ``beta`` with limits, ``level``, ``interval_method``,
-        ``resampled``, ``groups``, standard errors, ``log_likelihood``, ``aic``, ``link``,
-        ``method``, ``n``, ``n_overturned``, ``n_motions``, ``n_earthquakes``; ``p_fit``, ``fit_test``,
-        ``largest_residual``, ``influential``, ``influence`` (see
-        :class:`rockfrag.fragility.checks.Checks`); ``theta_isotonic``, ``beta_isotonic`` with limits (see
-        :class:`rockfrag.fragility.fractions.Fractions`); ``beta_statistical`` and ``beta_total`` (with the
-        model's uncertainty, :mod:`rockfrag.fragility.curve_facts`); ``record_set_sha256``, ``warnings``.
+        One row per curve: the columns ``by``, ``im``, ``unit``, ``estimator`` (``mean_probability`` for each
+        measure; ``first_overturning`` and ``always_overturning`` for the amplitude), ``theta``, ``beta`` with
+        limits, ``level``, ``interval_method``, ``resampled``, ``groups``; fields of
+        :class:`rockfrag.fragility.lognormal.FragilityFit`, of :class:`rockfrag.fragility.checks.Checks` and of
+        :class:`rockfrag.fragility.fractions.Fractions` (``theta_isotonic``, ``beta_isotonic``);
+        ``beta_statistical``, ``beta_total`` (with the model's), ``record_set_sha256``, ``warnings``.
     """
     for column in by:
         if column not in ida:

@@ -229,8 +229,7 @@ def _detectable_size(units: int) -> float:
 def holm(p: npt.ArrayLike) -> Array:
     """Adjust p values so that the chance of any false rejection is held (Holm 1979).
 
-    NaN (a test that could not be made) stays NaN and does not count. Written out, because Holm's
-    adjustment in statsmodels collects all garbage at each call: 0.1 to 1 s in a large process.
+    NaN stays NaN and does not count. Holm's adjustment in statsmodels collects all garbage, 0.1 to 1 s a call.
     """
     result, known = _p_values(p)
     order = np.flatnonzero(known)[np.argsort(result[known])]

@@ -1,9 +1,8 @@
 """Pairing of tests: the same object and motion, with (P) and without (NP) the pedestal.
 
-The unit of everything that follows is d = ln a_P - ln a_NP of one pair.  An amplitude from a series of
-steps lies anywhere in its step, so d is known to its ``resolution``: half the two steps' widths together,
-ln(1 + step) where both sides climbed the same series of levels.  A test that never overturned bounds d on one
-side.
+The unit of everything that follows is d = ln a_P - ln a_NP of one pair, known to its ``resolution``: half the two
+steps' widths together, ln(1 + step) where both sides climbed the same series of levels.  A test that never
+overturned bounds d on one side.
 """
 
 import math

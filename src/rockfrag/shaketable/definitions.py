@@ -164,14 +164,11 @@ def tests_from_ida(
     protocol : of the laboratory
         Its repetitions concern the step protocol, its definition and its measurement all definitions.
     definitions : which of ``step_protocol``, ``first_overturning`` and ``always_overturning`` to take
-    limits_g : limit of the shaker [g] for each motion that has one
-        The step protocol stops there; the other two definitions are of the specimen and not of the laboratory, and
-        use the whole IDA curve.
+    limits_g : limit of the shaker [g], at which the step protocol stops, for each motion that has one
 
     Returns
     -------
-    Table of tests, see :mod:`rockfrag.shaketable.tests_table`; in the order in which
-    the IDA curves first appear, then by definition and repetition.
+    Table of tests (:mod:`rockfrag.shaketable.tests_table`) by IDA curve, definition and repetition.
     """
     needed = (*ABOUT, "amplitude_g", "overturned", "overturned_body")
     for column in needed:

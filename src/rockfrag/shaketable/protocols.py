@@ -81,8 +81,8 @@ class Outcome:
 class ForceOverMass:
     """Amplitude computed as the shaker's force over the mass it is believed to move [kg], by configuration.
 
-    The force moves the unaccounted mass too, so the figure is too large by the ratio of the masses, and by more
-    for a light specimen: a bias that differs with and without the pedestal. Too much counted is negative.
+    The force moves the unaccounted mass too (negative if too much is counted), so the figure is too large by the
+    ratio of the masses, and by more for a light specimen.
     """
 
     believed_mass: Mapping[str, float]

@@ -29,11 +29,7 @@ _UNIT = re.compile(r"_(?:m_s|m|n|kg)$")  # what keys of a shaker's file have mor
 
 @dataclass(frozen=True)
 class Shaker:
-    """Limits of a uniaxial electrodynamic shaker.
-
-    The defaults are those of a small one, a Wölfel BD.5; its moving masses are assumptions, harmless as long as
-    the force does not govern.
-    """
+    """Limits of a uniaxial electrodynamic shaker; by default a Wölfel BD.5, whose moving masses are assumed."""
 
     stroke: float = 0.290  # distance between the end stops [m]
     force: float = 500.0  # largest force [N]
