@@ -18,13 +18,11 @@ _STEP = re.compile(
     rf"\bDT\s*[=:]\s*(?P<dt>{_NUMBER})\s*(?P<milliseconds>MS|MSEC\w*|MILLI\w*)?\b", re.I
 )
 _TRAILING = re.compile(
-    rf"^\s*(?P<first>{_NUMBER})[\s,]+(?P<second>{_NUMBER})[\s,]+(?P<names>NPTS\W+DT|DT\W+NPTS)\b",
-    re.I,
+    rf"(?i)^\s*(?P<first>{_NUMBER})[\s,]+(?P<second>{_NUMBER})[\s,]+(?P<names>NPTS\W+DT|DT\W+NPTS)\b"
 )
 _LEADING = re.compile(
-    rf"\b(?P<names>NPTS\s*[,;\s]\s*DT|DT\s*[,;\s]\s*NPTS)\W*?\s*[=:]?\s*"
-    rf"(?P<first>{_NUMBER})[\s,;]+(?P<second>{_NUMBER})",
-    re.I,
+    rf"(?i)\b(?P<names>NPTS\s*[,;\s]\s*DT|DT\s*[,;\s]\s*NPTS)\W*?\s*[=:]?\s*"
+    rf"(?P<first>{_NUMBER})[\s,;]+(?P<second>{_NUMBER})"
 )
 _WORDS_OF_UNIT = (
     r"(?P<unit>G(?:'?S)?(?![A-Z0-9/])|G\s*/\s*10\b|M?GALS?\b|"
@@ -38,9 +36,8 @@ _ENDINGS = {".VT2": "velocity", ".DT2": "displacement"}
 _MAX_HEADER = 30
 _WIDTH = 15
 _COMPONENT = re.compile(
-    r",\s*(?P<component>\d{1,3}|UP|DWN|DN|V|VERT\w*|[NSEWLTXYZ]{1,2}|[NS]\d{1,2}[EW]|[BHELS][HNLG][ENZ123]\d?\d?|FN|FP)"
-    r"\s*(?:\((?P<agency>[^)]*)\)\s*)?$",
-    re.I,
+    r"(?i),\s*(?P<component>\d{1,3}|UP|DWN|DN|V|VERT\w*|[NSEWLTXYZ]{1,2}|[NS]\d{1,2}[EW]|[BHELS][HNLG][ENZ123]\d?\d?"
+    r"|FN|FP)\s*(?:\((?P<agency>[^)]*)\)\s*)?$"
 )
 
 

@@ -22,9 +22,8 @@ _INTEGERS = re.compile("integer-header values", re.I)
 _COMMENTS = re.compile(r"^\s*(\d+)\s+Comment line", re.I)
 _VALUES = re.compile(r"^\s*\d+\s+\w[\w. ]*?\s+p(?:oin)?ts\b", re.I)
 _VALUES_LINE = re.compile(
-    r"^\s*(?P<count>\d+)\s+(?:raw\s+)?(?P<quantity>\w+).*?units?\s*=\s*(?P<unit>[^,(]+)"
-    r"(?:\(\s*(?P<code>\d+)\s*\))?",
-    re.I,
+    r"(?i)^\s*(?P<count>\d+)\s+(?:raw\s+)?(?P<quantity>\w+).*?units?\s*=\s*(?P<unit>[^,(]+)"
+    r"(?:\(\s*(?P<code>\d+)\s*\))?"
 )
 _END = re.compile(rf"^\s*(?:/&|End-of-data)|\(Format\s+v|{_VALUES.pattern}", re.I)
 Number = TypeVar("Number", int, float)
