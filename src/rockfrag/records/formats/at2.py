@@ -9,6 +9,7 @@ import re
 from collections.abc import Iterator
 
 from rockfrag.records.parsing.format import QUANTITIES, Channel, Format, stated, text_writer
+from rockfrag.records.parsing.number_fields import number_in
 from rockfrag.records.parsing.quantities import canonical_unit, quantity_of
 from rockfrag.records.parsing.text_file import TextFile, last_row
 
@@ -91,13 +92,10 @@ def _parse(text: TextFile) -> Iterator[Channel]:
         text.fail("no line with NPTS and DT above the data")
     size, words, step, factor = found
     header = header[: size + 1]
-    try:
-        points, dt = (float(word.upper().replace("D", "E")) for word in (words, step))
-        npts = int(points)
-    except (ValueError, OverflowError) as error:
-        text.fail(str(error), size)
-    if points != npts or points < 1:
+    points, dt = number_in(words), number_in(step)
+    if points % 1 or not 1 <= points < 1e12:
         text.fail(f"NPTS must be a whole number of samples, not {words}", size)
+    npts = int(points)
     dt = text.interval(dt * factor if factor != 1 else dt, size)
     quantity, unit = _quantity_and_unit(header)
     quantity = quantity or _ENDINGS.get(text.name.upper().removesuffix(".GZ")[-4:], "")
