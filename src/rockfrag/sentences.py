@@ -197,6 +197,10 @@ class Macros:
         """What a macro says, in one line."""
         return " ".join(self(macro, *about))
 
+    def pairs(self, macro: str, *about: Any) -> dict[str, str]:
+        """What the lines of a macro say behind ``PART``, by what they say before it."""
+        return dict(line.split(PART) for line in self(macro, *about))
+
     def parts(self, macro: str, *about: Any, **named: Any) -> list[list[str]]:
         """Lines of each part of what a macro says."""
         return list(map(said, getattr(self._module, macro)(*about, **named).split(PART)))

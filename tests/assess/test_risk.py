@@ -259,22 +259,17 @@ def test_every_source_says_where_its_size_comes_from(motions):
         assert SOURCES[name].words in five_lines(found)[4]
 
 
-@pytest.fixture(scope="module")
-def on_feet(tmp_path_factory):
-    """A block of 0.3 × 0.3 × 1 m on a plate of 0.2 m at 1 mm below it: which carries depends on the tolerance."""
+def test_how_a_scan_stands_is_a_source_until_it_is_measured(tmp_path, few):
+    # a block of 0.3 × 0.3 × 1 m on a plate of 0.2 m at 1 mm below it: which carries depends on the tolerance
     trimesh = pytest.importorskip("trimesh")
-    block = trimesh.creation.box((0.3, 0.3, 1.0))
+    block, plate = (trimesh.creation.box(sides) for sides in ((0.3, 0.3, 1), (0.2, 0.2, 0.001)))
     block.apply_translation((0, 0, 0.501))
-    plate = trimesh.creation.box((0.2, 0.2, 0.001))
     plate.apply_translation((0, 0, 0.0005))
-    path = tmp_path_factory.mktemp("scan") / "feet.stl"
-    trimesh.util.concatenate([block, plate]).export(path)
-    return path
+    trimesh.util.concatenate([block, plate]).export(tmp_path / "feet.stl")
 
-
-def test_how_a_scan_stands_is_a_source_until_it_is_measured(on_feet, few):
     def of(**mesh):
-        return asked(mesh={"file": str(on_feet), **mesh}, mass="200 kg", pga="0.6 g")
+        mesh["file"] = str(tmp_path / "feet.stl")
+        return asked(mesh=mesh, mass="200 kg", pga="0.6 g")
 
     request = of()
     scan = request.objects.scan

@@ -65,7 +65,7 @@ class Chromium(Driven):
         super().__init__()
         # the browser reads from descriptor 3 and writes to 4
         self._start(
-            *("sh", "-c", 'exec "$@" 3<&0 4>&1 >/dev/null', "sh", _chromium() or ""),
+            *("sh", "-c", 'exec "$@" 3<&0 4>&1 >/dev/null', "sh", CHROMIUM or ""),
             *("--headless=new", "--no-sandbox", "--disable-gpu", "--no-first-run"),
             *("--remote-debugging-pipe", "--hide-scrollbars", "--proxy-server=127.0.0.1:9"),
             f"--user-data-dir={self._folder.name}",
@@ -148,20 +148,10 @@ class Firefox(Driven):
         with socket.socket() as free:
             free.bind(("127.0.0.1", 0))
             port = free.getsockname()[1]
-        preferences = {
-            "marionette.port": port,
-            "network.proxy.type": 1,
-            "network.proxy.http": "127.0.0.1",
-            "network.proxy.http_port": 9,
-            "network.proxy.ssl": "127.0.0.1",
-            "network.proxy.ssl_port": 9,
-            "datareporting.policy.dataSubmissionEnabled": False,
-        }
-        settings = preferences.items()
-        lines = [f"user_pref({json.dumps(key)}, {json.dumps(value)});" for key, value in settings]
-        (Path(self._folder.name) / "user.js").write_text("\n".join(lines))
+        preferences = Path(__file__).with_name("firefox.js").read_text()
+        (Path(self._folder.name) / "user.js").write_text(preferences.replace("PORT", str(port)))
         self._start(
-            *(_firefox() or "", "--headless", "--marionette", "--remote-allow-system-access"),
+            *(FIREFOX or "", "--headless", "--marionette", "--remote-allow-system-access"),
             *("--profile", self._folder.name, "--no-remote"),
         )
         self._socket = _connected(port)
@@ -242,16 +232,13 @@ def _connected(port: int) -> socket.socket:
     raise AssertionError("Firefox does not answer")
 
 
-def _chromium() -> str | None:
-    names = ("chromium", "chromium-browser", "google-chrome")
+def _program(*names: str) -> str | None:
     return next((path for name in names if (path := shutil.which(name))), None)
 
 
-def _firefox() -> str | None:
-    return next((path for name in ("firefox-esr", "firefox") if (path := shutil.which(name))), None)
-
-
-BROWSERS = {"chromium": (Chromium, _chromium()), "firefox": (Firefox, _firefox())}
+CHROMIUM = _program("chromium", "chromium-browser", "google-chrome")
+FIREFOX = _program("firefox-esr", "firefox")
+BROWSERS = {"chromium": (Chromium, CHROMIUM), "firefox": (Firefox, FIREFOX)}
 """Each with the path of its program, or None where there is none."""
 
 QUICK_IN_ONE = pytest.mark.parametrize(

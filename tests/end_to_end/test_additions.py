@@ -11,7 +11,7 @@ from rockfrag import laws
 from rockfrag.engines import contract
 from rockfrag.engines.contract import Engine, Support, engines, register_engine
 from rockfrag.laws import ratio
-from rockfrag.motions.intensity import forget_intensity_measure, intensity_measure
+from rockfrag.motions.intensity import _MEASURES, intensity_measure
 from rockfrag.outcomes.limit_states import _STATES, limit_state
 from rockfrag.outcomes.outcomes import empty_outcomes
 
@@ -55,7 +55,7 @@ def additions(monkeypatch):
 
     register_engine(Needles(), before=engines()[0].name)
     yield rms
-    forget_intensity_measure("rms")
+    del _MEASURES["rms"]
     del _STATES["turns_far"]
 
 

@@ -16,7 +16,6 @@ T1 = Block(0.124, 0.372, 2.172)
 T2 = Block(0.124, 0.496, 2.790)
 T3 = Block(0.124, 0.620, 3.456)
 P = Block(0.184, 0.208, 2.300)
-TOWERS = (T1, T2, T3)
 
 
 def uniform(p: float, alpha: float, g: float = 9.81) -> Block:

@@ -1,4 +1,4 @@
-"""Simulated blocks against closed forms and figures computed independently."""
+"""Simulated blocks against closed forms; restitution is recovered from free rocking: peaks, times or history."""
 
 import math
 
@@ -6,8 +6,14 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from rockfrag import Block, simulate
+from rockfrag import Block, Response, simulate
 from rockfrag.rocking import closed_forms as cf
+from rockfrag.rocking.restitution import (
+    peak_after,
+    restitution_from_history,
+    restitution_from_impacts,
+    restitution_from_peaks,
+)
 
 from .reference_bodies import T2, uniform
 
@@ -60,3 +66,72 @@ def test_housners_velocity_is_of_the_order_of_fema_s_vertical_files() -> None:
         file = Block(depth * inch, 52 * inch, 100.0)
         found = cf.housner_velocity(file.alpha, file.frequency())
         assert median / 2 < found < 2 * median
+
+
+STATUE = Block(0.40, 1.20, 300.0, inertia=45.0, cg_height=0.50, cg_offset=0.04)
+
+
+def free_rocking(block, e, start=0.6, seconds=4.0, dt=0.002):
+    """Release from ``start`` critical angles."""
+    theta0 = start * block.critical_angle(1)
+    return simulate(block, np.zeros(int(seconds / dt)), dt, theta0=theta0, restitution=e)
+
+
+def times_and_peaks(block: Block, response: Response, count: int) -> tuple[np.ndarray, np.ndarray]:
+    """Times of impacts, and the release, then what energy gives after each impact's speed."""
+    impacts = response.contact_events.query("kind == 'impact'").head(count)
+    after, peaks = [row[0] for row in impacts["omega_after"]], [response.theta[0, 0]]
+    peaks += [math.copysign(peak_after(block, abs(w), 1 if w > 0 else -1), w) for w in after]
+    return impacts["time"].to_numpy(), np.array(peaks[:count])
+
+
+@pytest.mark.parametrize("block", [T2, STATUE], ids=["uniform", "off-centre"])
+@pytest.mark.parametrize("e", [0.7, 0.87, 0.95])
+def test_exact_times_and_peaks_give_the_restitution_back(block: Block, e: float) -> None:
+    times, peaks = times_and_peaks(block, free_rocking(block, e), 7)
+    by_times = restitution_from_impacts(block, times, first_pivot=-1)
+    by_peaks = restitution_from_peaks(block, peaks)
+    assert by_times.restitution == pytest.approx(e, abs=1e-6)
+    assert by_peaks.restitution == pytest.approx(e, abs=1e-8)
+    assert by_times.impacts == 5 and by_peaks.impacts == 6
+
+
+def test_peaks_of_simulated_history_are_those_of_energy() -> None:
+    response = free_rocking(T2, 0.9, dt=0.0005)
+    times, peaks = times_and_peaks(T2, response, 2)
+    between = (response.time > times[0]) & (response.time < times[1])
+    assert np.abs(response.theta[between, 0]).max() == pytest.approx(abs(peaks[1]), rel=1e-5)
+
+
+def test_noisy_peaks_and_times_cover_the_truth_as_often_as_promised() -> None:
+    e, rng = 0.9, np.random.default_rng(3)
+    times, peaks = times_and_peaks(T2, free_rocking(T2, e), 9)
+    covered = np.zeros(2)
+    for _ in range(50):
+        fits = (
+            restitution_from_peaks(T2, peaks + rng.normal(0, 0.001, peaks.size), confidence=0.9),
+            restitution_from_impacts(T2, times + rng.normal(0, 0.001, times.size), confidence=0.9),
+        )
+        covered += [fit.lower <= e <= fit.upper for fit in fits]
+    # 90 % of 50 within three standard deviations of a binomial
+    assert (covered >= 45 - 6.4).all()
+
+
+@pytest.mark.parametrize("e", [0.8, 0.92])
+@pytest.mark.parametrize("noise", [0.0, 0.002])
+def test_sampled_history_gives_the_restitution_back(e: float, noise: float) -> None:
+    response = free_rocking(T2, e, seconds=2.0, dt=0.005)
+    n = 400
+    theta = response.theta[:n, 0] + np.random.default_rng(11).normal(0, noise, n)
+    fit = restitution_from_history(T2, response.time[:n], theta)
+    assert fit.restitution == pytest.approx(e, abs=1e-6 + noise)
+    if noise:
+        assert fit.lower < e < fit.upper
+        assert fit.scatter == pytest.approx(noise, rel=0.15)
+
+
+def test_without_spare_data_there_is_no_interval() -> None:
+    fit = restitution_from_peaks(T2, [0.10, 0.07])
+    assert 0 < fit.restitution < 1
+    assert fit.computed == pytest.approx(0.911765, abs=1e-6)
+    assert math.isnan(fit.lower) and math.isnan(fit.upper)

@@ -15,24 +15,10 @@ from rockfrag.stages.space import PLANAR, median
 from rockfrag.study.loading import any_study
 from rockfrag.study.space import SpaceStudy
 
+from ..case_tables import case_tables
 from ..stages_in_process import run_stages
 
-SMALL = {
-    "study": "space",
-    "title": "Bodies in space",
-    "seed": 1,
-    "space": {
-        "every": 1,
-        "bases": ["square", "round"],
-        "slenderness": [4],
-        "heights_m": [1.0],
-        "levels": 8,
-        "lowest": 0.7,
-        "highest": 6.0,
-        "directions": 4,
-        "resamples": 20,
-    },
-}
+SMALL = case_tables(__file__)
 
 
 def test_a_median_lies_between_the_levels_where_half_is_passed():

@@ -27,7 +27,7 @@ MEASURES = ("pga_g", "pgv_cm_s", "sa_0_3s_g", "sa_1_0s_g", "avgsa_g")
 
 
 @pytest.fixture
-def curves():
+def fragility():
     """Eight motions on two floors; the loft shakes twice as long, so bodies fall at lower peaks."""
     rng = np.random.default_rng(3)
     amplitude, rows, measures = np.geomspace(0.1, 2.0, 60), [], []
@@ -50,10 +50,11 @@ def curves():
         fragility=SimpleNamespace(confidence=0.90),
         **{"slides": False, "vertical": False},
     )
-    return floor_curves({"overturns": ida_curves}, measures, study, "abc")[0]
+    return floor_curves({"overturns": ida_curves}, measures, study, "abc")
 
 
-def test_floors_never_share_a_curve_and_measures_are_named_after_them(curves, tmp_path):
+def test_floors_never_share_a_curve_and_measures_are_named_after_them(fragility, tmp_path):
+    curves, fractions = fragility
     names = curves.groupby("floor")["im"].unique()
     assert set(names["hall"]) == {"PGA", "PGV", "SA(0.3s)", "SA(1s)", "AvgSA"}
     assert set(names["loft"]) == {"PFA", "PFV"}
@@ -67,7 +68,7 @@ def test_floors_never_share_a_curve_and_measures_are_named_after_them(curves, tm
     assert rocks.loc["pgv_cm_s", "theta"] == pytest.approx(60 * 0.25, rel=0.2)
     assert 0.05 < rocks.loc["pgv_cm_s", "beta"] < 0.5
     # files are one per floor and measure
-    written = export_curves(curves, tmp_path)
+    written = export_curves(curves, tmp_path, fractions)
     assert {"fragility_pga.xml", "fragility_avgsa.xml", "fragility_pfa_loft.csv"} <= set(written)
     assert not [name for name in written if name.endswith(".xml") and "loft" in name]
     assert all((tmp_path / name).exists() for name in written)

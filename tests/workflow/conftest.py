@@ -1,5 +1,6 @@
 """A small study on synthetic motions that needs no network."""
 
+import shutil
 from pathlib import Path
 
 import numpy as np
@@ -13,24 +14,12 @@ CATALOGUE = (
     "name,earthquake,date,station,component,magnitude,distance_km,source,file,sha256,unit,licence\n"
 )
 
-SPECIMENS = (
-    "name,width_cm,height_cm,mass_g\nT1,12.4,37.2,2172\nT2,12.4,49.6,2790\nP,18.4,20.8,2300\n"
-)
-
-CONFIGURATIONS = "name,object,pedestal\nT1,T1,\nT2,T2,\nP&T1,T1,P\nP&T2,T2,P\n"
+STUDY = Path(__file__).with_name("study")
+"""Files of the small study, but for its motions."""
 
 
 def study_content() -> dict:
-    return {
-        "study": "tiny",
-        "title": "Two objects under made-up motions",
-        "seed": 3,
-        "motions": {"catalogue": "motions.csv"},
-        "bodies": {"specimens": "specimens.csv", "configurations": "configurations.csv"},
-        "amplitudes": {"lowest_g": 0.2, "highest_g": 1.6, "step_percent": 8},
-        "protocol": {"step_percent": 16},
-        "fragility": {"measures": ["pga_g"], "confidence": 0.9},
-    }
+    return yaml.safe_load((STUDY / "study.yaml").read_text())
 
 
 def write_study(folder: Path, content: dict) -> Path:
@@ -61,15 +50,12 @@ def study_folder(tmp_path: Path) -> Path:
 
 def make_study(folder: Path) -> Path:
     """Write a whole small study into a new folder."""
-    folder.mkdir()
+    shutil.copytree(STUDY, folder)
     rows = [CATALOGUE]
     for number, earthquake in enumerate(("First", "First", "Second", "Second", "Third", "Fourth")):
         write_record(folder / f"record{number}.txt", seed=number)
         rows.append(f"motion {number},{earthquake},,,,,,folder,record{number}.txt,,g,made up\n")
     (folder / "motions.csv").write_text("".join(rows))
-    (folder / "specimens.csv").write_text(SPECIMENS)
-    (folder / "configurations.csv").write_text(CONFIGURATIONS)
-    write_study(folder, study_content())
     return folder
 
 

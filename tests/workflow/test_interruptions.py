@@ -6,7 +6,7 @@ import signal
 import subprocess
 import sys
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import AbstractContextManager, contextmanager
 from pathlib import Path
@@ -37,13 +37,6 @@ def program(text: str, **more: str) -> Iterator[subprocess.Popen[str]]:
         process.kill()
         process.wait()
         process.stdout.close()
-
-
-def until(holds: Callable[[], object], seconds: float = 30.0) -> None:
-    deadline = time.monotonic() + seconds
-    while not holds():
-        assert time.monotonic() < deadline
-        time.sleep(0.02)
 
 
 def holder(results: Path) -> AbstractContextManager[subprocess.Popen[str]]:
@@ -128,8 +121,10 @@ POOL = (
 def test_the_workers_of_a_pool_end_with_their_parent():
     with program(POOL) as parent:
         family = psutil.Process(parent.pid)
-        until(lambda: len(family.children()) == 3)
-        workers = family.children()
+        deadline = time.monotonic() + 30
+        while len(workers := family.children()) < 3:
+            assert time.monotonic() < deadline
+            time.sleep(0.02)
     assert not psutil.wait_procs(workers, timeout=30)[1]
 
 

@@ -105,15 +105,13 @@ class Assessment:
 class Plan:
     """Under which levels of which motions objects are compared; the same for all in one place."""
 
-    # The hazard that counts, and that of PGV beside it if there is one
-    curves: tuple[HazardCurve, ...]
+    curves: tuple[HazardCurve, ...]  # The hazard that counts, and that of PGV beside it, if any
     level: Level | None  # Level of shaking at the site
     # The motions at their levels, and those under which changes are compared
     shaking: Shaking
     fewer: Shaking
     brief: bool  # Whether directions, and ways to stand other than its own, are left out
-    # Whether mitigations are compared by few motions: in one line of an inventory, of a column, and in space
-    compares_few: bool
+    compares_few: bool  # Whether changes are compared by few motions: briefly, of columns, in space
 
     @property
     def hazard(self) -> HazardCurve | None:
@@ -125,16 +123,12 @@ class Plan:
 class Shaken:
     """What motions as recorded do to an object."""
 
-    # Outcomes of each way in which it can stand, as it stands first
-    arrangements: Mapping[str, ObjectOutcomes]
+    arrangements: Mapping[str, ObjectOutcomes]  # Outcomes of each way to stand, its own first
     moved: Sequence[Moved[ObjectOutcomes]]  # Outcomes with each property moved to both sides
-    # Outcomes as it stands, and with each mitigation, under the same motions
-    before: ObjectOutcomes
-    # Outcomes as it stands in one plane, along one component at a time; None where that is the answer
-    planar: ObjectOutcomes | None
-    changed: Mapping[str, ObjectOutcomes]
-    # Mitigations that leave it in one of the arrangements, and the name of that
-    alike: Mapping[str, str]
+    before: ObjectOutcomes  # Outcomes as it stands under the motions by which changes are compared
+    planar: ObjectOutcomes | None  # Outcomes in one plane; None where those are the answer
+    changed: Mapping[str, ObjectOutcomes]  # Outcomes with each mitigation under the same motions
+    alike: Mapping[str, str]  # Mitigations that give one of the arrangements, and its name
 
 
 def assess(request: Request, records: str | Path = RECORDS, *, brief: bool = False) -> Assessment:
@@ -330,11 +324,7 @@ def _at_site(shaken: Shaken, plan: Plan, conversion: Conversion | None) -> Shake
 
 
 def _governing(request: Request, motions: MotionSet) -> tuple[HazardCurve, ...]:
-    """The hazard curve that counts, and that of PGV where there is one beside it.
-
-    Without PGV that one counts in whose measure the motions' capacities scatter least, or that of the level asked
-    about.
-    """
+    """The hazard curve of the level's measure or of least scatter of capacities, and that of PGV beside it."""
     asked = request.level.measure if request.level else None
     curves = [curve for curve in request.hazard if curve.measure == asked] or request.hazard
     others = [curve for curve in curves if curve.measure != PGV]

@@ -31,7 +31,7 @@ def as_json(found: Assessment) -> str:
         "rockfrag": __version__,
         "name": request.name,
         "place": request.place.words,
-        "floor": request.place.floor_name,
+        "floor": says.line("floor_name", request.place),
         "lines": five_lines(found),
         "measure": found.measure.imt,
         "unit": found.measure.unit,
@@ -117,11 +117,7 @@ def _plain(value: Any) -> Any:
 
 
 def as_nrml(found: Assessment) -> str:
-    """Return the fragility of the object as it stands, a function of the ground's motion.
-
-    OpenQuake joins levels by straight lines in the level, the assessment in its logarithm; at 80 levels the rates
-    differ by less than 1 %.
-    """
+    """Return the fragility of the object as it stands; OpenQuake joins its levels by lines in the level itself."""
     name, outcomes = found.request.name, found.outcomes
     reached = {*outcomes.others, OVERTURNS}
     states = [state.name for state in limit_states() if state.name in reached]

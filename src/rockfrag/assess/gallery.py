@@ -22,7 +22,7 @@ from rockfrag.assess.inventory import (
 )
 from rockfrag.assess.page import write_answer
 from rockfrag.assess.risk import probability_in
-from rockfrag.assess.words import estimate_words, gallery_says, mitigation_words
+from rockfrag.assess.words import estimate_words, gallery_says, says
 from rockfrag.figure_style import BLUE, COLUMN_WIDTH, PAGE_WIDTH, panels, plain_log
 from rockfrag.files import write_table, write_text
 from rockfrag.report.page import Page, table_html
@@ -44,10 +44,7 @@ NUMBERS = (
 def write_inventory(
     inventory: Inventory, folder: str | os.PathLike[str], *, pages: bool = False
 ) -> Path:
-    """Write ranking and joint risk as tables and a page; return the path of the ranking.
-
-    With ``pages`` each object is assessed in full and has a page of its own.
-    """
+    """Write tables, a page, and with ``pages`` a full one of each object; return the path of the ranking."""
     place, joint = Path(folder) / "inventory.csv", inventory.joint
     write_table(inventory_table(inventory), place)
     if joint is not None:
@@ -65,10 +62,10 @@ def gallery_page(inventory: Inventory, joint: JointRisk) -> str:
     """Return the page as HTML, which loads nothing from outside."""
     first = inventory.found[0].request
     years, valued = first.years, math.isfinite(first.value)
-    says = gallery_says
-    numbers = says.figure("numbers", lambda: numbers_figure(joint, years), years)
-    losses = says.figure("losses", lambda: losses_figure(joint, years), years)
-    drawn = says.figure("correlation", lambda: correlation_figure(joint))
+    fewest, most = joint.numbers.iloc[0], joint.numbers.iloc[-1]
+    numbers = gallery_says.figure("numbers", lambda: numbers_figure(joint, years), years)
+    losses = gallery_says.figure("losses", lambda: losses_figure(joint, years), years)
+    drawn = gallery_says.figure("correlation", lambda: correlation_figure(joint))
     apart = joint.correlation.to_numpy()[np.triu_indices(len(joint.correlation), 1)]
     known, count = apart[np.isfinite(apart)], len(inventory.found)
     return Page(
@@ -77,7 +74,7 @@ def gallery_page(inventory: Inventory, joint: JointRisk) -> str:
         answer=Answer(
             "How many topple in one earthquake, what is lost, and what helps?",
             [
-                says.finding("how_many", joint.numbers.iloc[0], joint.numbers.iloc[-1], years),
+                gallery_says.finding("how_many", fewest, most, years),
                 *(Finding(words.rstrip(".")) for words in joint_lines(inventory)[1:]),
             ],
             numbers,
@@ -85,7 +82,7 @@ def gallery_page(inventory: Inventory, joint: JointRisk) -> str:
         sections=[
             _ranking(inventory, joint, "loss" if valued else "number"),
             _numbers(joint, [losses] if valued and len(joint.losses) > 1 else []),
-            says.section("correlation", [drawn], np.median(known) if known.size else None),
+            gallery_says.section("correlation", [drawn], np.median(known) if known.size else None),
         ],
         provenance={"Program": f"rockfrag {version('rockfrag')}"},
     ).html()
@@ -96,7 +93,7 @@ def _ranking(inventory: Inventory, joint: JointRisk, mean: str) -> Section:
     rows = []
     for found in inventory.found:
         best, request = best_change(found), found.request
-        change = mitigation_words(found, best) if best else "–"
+        change = says.line("mitigation", found, best) if best else "–"
         part = 100 * float(parts[request.name])
         rows.append((request.name, request.place.words, estimate_words(found.main), part, change))
     names = ["name", "place", "probability", "contribution", "change"]

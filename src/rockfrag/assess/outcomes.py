@@ -91,8 +91,7 @@ class ObjectOutcomes:
     overturned: NDArray[np.bool_]
     rocked: NDArray[np.bool_]
     earthquakes: NDArray[np.object_]  # Earthquake of each motion, shape (motions,)
-    # Whether a body that was simulated with it may have left the ground, which the model holds shut
-    light: bool = False
+    light: bool = False  # Whether it may have left the ground, which the model holds shut
     # Which cases reached each other declared limit state, by its name, shape (motions, levels) each
     others: Mapping[str, NDArray[np.bool_]] = field(default_factory=dict)
 
@@ -125,10 +124,7 @@ class ObjectOutcomes:
         return np.where(p > 0, low, 0.0), np.where(self.fractions(state=ROCKS) > 0, high, 0.0)
 
     def first(self) -> NDArray[np.intp]:
-        """Place of the least level at which each motion topples the body, -1 where none does, shape (motions,).
-
-        Levels to which a motion cannot be scaled do not count.
-        """
+        """Place of the least level allowed at which each motion topples the body, or -1, shape (motions,)."""
         fell = self.overturned & self.intensity_levels.allowed
         return np.where(fell.any(axis=1), fell.argmax(axis=1), -1)
 
@@ -217,10 +213,7 @@ class Shaking(IntensityLevels):
         return self._each_system(*simulated(systems, base, self._factors(base)))
 
     def _from_all_sides(self, systems: Sequence[System]) -> list[ObjectOutcomes]:
-        """Outcomes by records, each in its worst direction; both components get that of the record.
-
-        Half a turn is enough: a round body falls either way alike.
-        """
+        """Outcomes by records, each in its worst direction of half a turn; both components get those."""
         if not systems:
             return []
         motions = self.motions
@@ -298,11 +291,7 @@ class Shaking(IntensityLevels):
         return float((first != other).mean())
 
     def fraction_with_sliding(self, objects: Objects) -> float:
-        """Fraction of the motions at the first level that topple the object as it stands if it may slide.
-
-        Simulations with friction take some hundred times as long as those without, so that they are made for one
-        level.
-        """
+        """Fraction of the motions at the first level that topple the object if it may slide, which takes long."""
         motions, allowed = self.motions, self.allowed[:, 0]
         solid = objects.solid(objects.body) if motions.both else None
         if solid is not None and objects.friction is not None and not objects.pedestals:
@@ -327,10 +316,7 @@ def fraction_at(level: float, levels: Floats, fractions: Floats, shift: float = 
 def simulated(
     systems: Sequence[System], shaking: Sequence[Motion], scales: Floats
 ) -> tuple[Outcomes, list[bool]]:
-    """What happened, and for which systems an assessment warns that a body may have left the ground.
-
-    Factors on the motions have the shape (motions, levels).
-    """
+    """What happened under factors of shape (motions, levels), and which systems may have left the ground."""
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always", LightBodies)
         result = overturns(systems, shaking, scales=scales)
@@ -362,10 +348,7 @@ class Directions:
 def find_directions(
     objects: Objects, motions: MotionSet, measure: IntensityMeasure, level: float | None
 ) -> Directions | None:
-    """Turn every record of two components through all directions; None where no record has two.
-
-    The level of a record is the geometric mean of its components, so that it does not turn with it.
-    """
+    """Turn records of two components, of which levels are the geometric mean; None where no record has two."""
     if not motions.pairs:
         return None
     asked = [] if level is None else [level]

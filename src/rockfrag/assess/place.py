@@ -27,12 +27,6 @@ PERIOD_FACTORS = {"steel": 0.085, "concrete": 0.075, "masonry": 0.05}
 """C_t of T = C_t H^(3/4) with H in metres: frames of steel and of concrete, all other buildings
 (EN 1998-1:2004, 4.3.3.2.2(3))."""
 
-ORDINALS = (
-    *("ground", "first", "second", "third", "fourth", "fifth"),
-    *("sixth", "seventh", "eighth", "ninth", "tenth"),
-)
-"""Names of floors."""
-
 _FLOOR = re.compile(r"\s*(\d+)\s*(?:/|of)\s*(\d+)\s*")
 
 
@@ -44,8 +38,7 @@ class Place:
     floor: str = ""  # Label of the floor in the building; empty on the ground
     # Relative standard deviations of the building's first period and damping
     tolerances: Mapping[str, float] | None = None
-    # What the user calls the floor; empty where that is only a level over the number of storeys
-    label: str = ""
+    label: str = ""  # What the user calls the floor; empty if that is only a level
     assumed: tuple[Assumption, ...] = ()  # What was not given
 
     @property
@@ -55,16 +48,6 @@ class Place:
             return f"on the floor {self.label}" if self.label else "on the ground"
         level = f"level {self.building.level(self.floor)} of {self.building.storeys}"
         return f"on the floor {self.label}, {level}" if self.label else f"on {level}"
-
-    @property
-    def floor_name(self) -> str:
-        """What Europe and America call the level, such as ``second floor in Europe, third in America``."""
-        if self.building is None:
-            return ""
-        level = self.building.level(self.floor)
-        if level == self.building.storeys:
-            return "the roof"
-        return f"{_ordinal(level)} floor in Europe, {_ordinal(level + 1)} in America"
 
     @property
     def shakes_as_ground(self) -> bool:
@@ -208,11 +191,3 @@ def _level(floor: str) -> tuple[int, int]:
             f"which is at most {HIGHEST_BUILDING}."
         )
     return level, storeys
-
-
-def _ordinal(number: int) -> str:
-    if number < len(ORDINALS):
-        return ORDINALS[number]
-    # 21 and 31 end as 1 does; 11 to 13 are exceptions
-    ending = "th" if number % 100 in (11, 12, 13) else {1: "st", 2: "nd", 3: "rd"}.get(number % 10)
-    return f"{number}{ending or 'th'}"

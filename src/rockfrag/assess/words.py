@@ -6,7 +6,6 @@ from typing import Any
 
 from rockfrag.assess.answer import Assessment
 from rockfrag.assess.assumed import Assumption
-from rockfrag.assess.mitigations import Mitigation
 from rockfrag.assess.outcomes import LARGEST_FACTOR
 from rockfrag.assess.risk import LEVEL, Estimate, step_of
 from rockfrag.assess.sources import MEASUREMENTS, SOURCES, is_wide, narrowed, parts_of
@@ -65,15 +64,6 @@ def _limit(fraction: float) -> str:
     return f"{percent:.2g}" if percent >= 1 else f"{percent:.1g}"
 
 
-def value_words(found: Assessment, value: float) -> str:
-    """What is estimated, as a fraction in per cent or as an amplitude with its unit."""
-    if found.probability or found.fraction:
-        return fraction_words(value)
-    if not math.isfinite(value):
-        return "not reached"
-    return f"{value:.2g} {found.measure.unit}"
-
-
 def does_not_move(found: Assessment) -> bool:
     """Whether even what is not known leaves the object at rest at the level."""
     return found.rocking is not None and found.rocking.upper == 0
@@ -82,14 +72,6 @@ def does_not_move(found: Assessment) -> bool:
 def not_decidable(found: Assessment) -> bool:
     """Whether the interval reaches from unlikely to likely toppling."""
     return found.fraction is not None and is_wide(found.fraction)
-
-
-def _limits(mitigation: Mitigation, sign: int) -> str:
-    """Limits of a reduction (1) or a gain (-1) in per cent."""
-    if not math.isfinite(mitigation.lower):
-        return ""
-    low, high = sorted(sign * 100 * (1 - limit) for limit in (mitigation.lower, mitigation.upper))
-    return f" ({low:z.0f} to {high:z.0f} %)".replace("-", "−")
 
 
 def _influential(found: Assessment) -> list[tuple[str, float]]:
@@ -122,11 +104,6 @@ def _largest_sources(found: Assessment) -> list[str]:
     return named[:MOST_SOURCES]
 
 
-def mitigation_words(found: Assessment, mitigation: Mitigation) -> str:
-    """A change and what it does to the risk, or to the shaking that the object bears."""
-    return says.line("mitigation", found, mitigation)
-
-
 _WORDS: dict[str, Any] = {
     "LEVEL": LEVEL,
     "MANY": MANY,
@@ -137,12 +114,11 @@ _WORDS: dict[str, Any] = {
     "SOURCES": SOURCES,
     "exp": math.exp,
     "influential": _influential,
-    "limits": _limits,
     "largest_sources": _largest_sources,
 }
 _FUNCTIONS = (
-    *(all_assumed, does_not_move, estimate_words, fraction_words, mitigation_words, narrowed),
-    *(not_decidable, parts_of, range_words, step_of, value_words),
+    *(all_assumed, does_not_move, estimate_words, fraction_words, narrowed),
+    *(not_decidable, parts_of, range_words, step_of),
 )
 _WORDS |= {function.__name__: function for function in _FUNCTIONS}
 

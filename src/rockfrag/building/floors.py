@@ -9,6 +9,7 @@ from rockfrag.building.inelastic import respond_hysteretically, shear_strengths
 from rockfrag.building.model import ShearBuilding
 from rockfrag.building.response import BuildingResponse, respond_elastically
 from rockfrag.records.motion import Motion
+from rockfrag.sentences import Macros
 
 
 def floor_motions(
@@ -90,25 +91,14 @@ def _named(moved: Motion, label: str, level: int, **more: str) -> Motion:
     return replace(moved, name=f"{moved.name}_{label}", metadata=metadata)
 
 
-_ELASTIC = (
-    ("uncracked", "below cracking, so the elastic model holds"),
-    ("cracked", "beyond cracking, so a cracked stiffness is the one to use"),
-    (
-        "beyond strength",
-        "far beyond cracking, so these are floor motions of a house that cannot break",
-    ),
-)
+_ELASTIC = ("uncracked", "cracked", "beyond strength")
 _HYSTERETIC = (
-    ("uncracked", "below cracking"),
-    ("cracked", "cracked but below yield ({0:.2f} %)"),
-    ("beyond yield", "between yield and the shear limit ({1:.2f} %)"),
-    ("beyond the shear limit", "between the shear and the rocking limit ({2:.2f} %)"),
-    (
-        "beyond the rocking limit",
-        "beyond the rocking limit ({2:.2f} %), where walls fall and floor motions mean nothing",
-    ),
+    *("uncracked", "cracked", "beyond yield", "beyond the shear limit"),
+    "beyond the rocking limit",
 )
-"""States of a storey, the milder first, and what is said of it there."""
+"""States of a storey, the milder first."""
+
+_says = Macros("rockfrag.building", "drift.j2")
 
 
 @dataclass(frozen=True)
@@ -117,8 +107,7 @@ class DriftOutcome:
 
     storey: int  # Its number, from 1
     drift: float  # Its largest drift over height [-]
-    # Largest shear over the shear strength [-]; only an elastic model can exceed 1
-    strength_fraction: float
+    strength_fraction: float  # Largest shear over strength [-]; above 1 of elastic models only
     state: str  # One of the states of ``_ELASTIC`` and ``_HYSTERETIC``
     # Whether the model may be used there: an elastic one up to the shear strength, a hysteretic one up to the
     # rocking limit, beyond which walls fall
@@ -145,19 +134,16 @@ def judge_drift(building: ShearBuilding, response: BuildingResponse) -> DriftOut
     fraction, drift = float(fractions[worst]), float(response.peak_drift[worst])
     limits = law.yield_drift, law.shear_drift, law.rocking_drift
     cracks = fraction > law.cracking
-    begin = f"storey {worst + 1} drifts {100 * drift:.2f} % of its height"
     if elastic:
-        begin += f" and carries {fraction:.2f} of its shear strength:"
-        state, end = _ELASTIC[cracks + (fraction > 1)]
+        state = _ELASTIC[cracks + (fraction > 1)]
     else:
-        begin += ","
-        state, end = _HYSTERETIC[cracks * (1 + sum(drift > limit for limit in limits))]
-        end = end.format(*(100 * limit for limit in limits))
+        state = _HYSTERETIC[cracks * (1 + sum(drift > limit for limit in limits))]
+    statement = _says.line("statement", building, worst + 1, drift, fraction, state)
     return DriftOutcome(
         storey=worst + 1,
         drift=drift,
         strength_fraction=fraction if elastic else min(1.0, fraction),
         state=state,
         credible=fraction <= 1 if elastic else drift <= law.rocking_drift,
-        statement=f"{building.name}, {building.model}: {begin} {end}.",
+        statement=statement,
     )

@@ -132,11 +132,6 @@ def intensity_measure(
     return declare
 
 
-def forget_intensity_measure(name: str) -> None:
-    """Take back a declaration, as a plugin that is unloaded does."""
-    _MEASURES.pop(name, None)
-
-
 def declared() -> tuple[IntensityMeasure, ...]:
     """Return all measures in the order in which they were declared, a spectral one once for all periods."""
     return tuple(_MEASURES.values())

@@ -14,11 +14,8 @@ from rockfrag.report.figures import GREY, SIDE_COLOUR, SIDE_NAME, drawn_tests
 from rockfrag.report.part import Answer, Finding, Results, Says
 from rockfrag.sentences import sentence, shortened
 
-FEW = 10
-"""Intervals over fewer earthquakes than this rest on little."""
-
-MOST_NAMED = 4
-"""So many objects are named in the question."""
+FEW = 10  # intervals over fewer earthquakes than this rest on little
+MOST_NAMED = 4  # so many objects are named in the question
 
 
 says = Says("rockfrag.report", "answer.j2", FEW=FEW, FRICTION=findings.FRICTION)
@@ -36,23 +33,10 @@ def study_answer(results: Results) -> Answer:
         sentences=found,
         figure=says.figure("answer", draw, found[0], level if len(curves) else ""),
         advice=advice(results),
-        rests_on=rests_on(results),
+        rests_on=says("rests_on", results.study, _earthquakes(results)),
         could_change=could_change(results),
-        questions=questions(results),
+        questions=list(says.pairs("questions", results.study).items()),
     )
-
-
-def questions(results: Results) -> list[tuple[str, str]]:
-    """What a keeper asks, and the chapter with the answer; a study without pairs is not asked the second."""
-    study = results.study
-    pair = "Compared?" if study.counterparts else "With pedestal?"
-    return [
-        ("As recorded?", "as_recorded"),
-        *([(pair, "pedestal")] if study.has_pairs else []),
-        ("How strong?", "fragility"),
-        ("How sure?", "grounds"),
-        *([("Try it", "live")] if study.simulated_in_page else []),
-    ]
 
 
 def has_one_record(results: Results) -> bool:
@@ -103,8 +87,7 @@ def _earthquakes(results: Results) -> int:
     return int(results.study.catalogue["earthquake"].nunique())
 
 
-MOST_ROWS = 24
-"""More configurations than this are not legible; the first are drawn."""
+MOST_ROWS = 24  # more configurations than this are not legible; the first are drawn
 
 
 def strength_figure(tests: pd.DataFrame, curves: pd.DataFrame, names: Sequence[str]) -> Figure:
@@ -145,11 +128,6 @@ def strength_figure(tests: pd.DataFrame, curves: pd.DataFrame, names: Sequence[s
         if handles:
             figure.legend(handles=handles, loc="outside upper center", ncols=2, handlelength=1.4)
         return figure
-
-
-def rests_on(results: Results) -> list[str]:
-    """What the numbers rest on: model, motions, building, steps."""
-    return says("rests_on", results.study, _earthquakes(results))
 
 
 def could_change(results: Results) -> list[str]:

@@ -14,7 +14,7 @@ from rockfrag.campaign.comparison import FEWEST_VOTERS, REPEATS
 from rockfrag.campaign.standing import preferred_edges
 from rockfrag.fragility.observations import name_and_unit
 from rockfrag.fragility.vector import VectorTables
-from rockfrag.report.page import Column, Columns, Row, Words, by_row, table_html, text_table
+from rockfrag.report.page import Row
 from rockfrag.report.part import Answer, FigureSpec, Finding, Says, Section
 from rockfrag.report.sections.curves import two_measures_section
 from rockfrag.report.study_report import write_page
@@ -35,9 +35,8 @@ def run(job: Job[CampaignStudy]) -> Results:
     sections = [_agreement(tables, found[0], level), _fragility(tables, level)]
     sections += [both] if both else []
     sections += [_tests(study, tables), _object(study, tables)]
-    steps = [" ".join(str(value) for value in step.values()) for step in study.conditioning]
-    caption = "Outcomes predicted right, by conditioning."
-    table = table_html(tables["conditioning"], _CONDITIONING, caption)
+    steps = [" ".join(map(str, step.values())) for step in study.conditioning]
+    table = says.table("conditioning", _with_percents(tables["conditioning"]))
     sections.append(says.section("conditioning", [table], steps))
     tests = tables["tests"]
     near = says("near_critical", int(tests["near_critical"].sum()), len(tests))
@@ -127,51 +126,30 @@ def _ordering(fragility: pd.DataFrame) -> str:
     return str(measured.set_index("measure")["beta"].fillna(math.inf).idxmin())
 
 
-_RIGHT = Column("right", "Right", by_row(_percent))
-_ERRORS = "false_alarms .1; missed .1"
-_AGREEMENT: Columns = (
-    "who = Predicted by; tests .0",
-    _RIGHT,
-    _ERRORS,
-    Column("better", "Simulation better by [percentage points]", by_row(_better)),
-    "p = p p; judged",
-)
-_ROCKING = (
-    _RIGHT,
-    "false_alarms = Rocked in the simulation only .1; missed = Rocked in the laboratory only .1",
-)
-_CONDITIONING = ("conditioning; trials .0", _RIGHT, _ERRORS)
+def _with_percents(table: pd.DataFrame) -> pd.DataFrame:
+    """Add the fraction of outcomes that are right in words."""
+    return table.assign(percent=[_percent(row) for row in table.to_dict("records")])
 
 
 def _agreement(tables: dict[str, pd.DataFrame], found: Finding, level: str) -> Section:
-    agreement, rocking = tables["agreement"], tables["rocking"]
-    named = agreement.assign(who=[_who(name) for name in agreement["who"]])
+    named = _with_percents(tables["agreement"])
+    lead = [_better(row) for row in named.to_dict("records")]
+    named = named.assign(who=[_who(name) for name in named["who"]], lead=lead)
     best = max(named.to_dict("records"), key=lambda row: float(row["right"]))
     parts: list[Markup | FigureSpec] = [
         says.figure("agreement", lambda: agreement_figure(named), best, best["who"], level),
-        table_html(named, _AGREEMENT, "Outcomes predicted, and the difference on the same tests."),
+        says.table("agreement", named),
         # empty where the laboratory noted nothing of it
-        table_html(rocking, _ROCKING, "Whether the object rocked at all, simulated and noted."),
+        says.table("rocking", _with_percents(tables["rocking"])),
     ]
     return says.section("agreement", parts, found)
-
-
-_OUTCOMES = {
-    "measured": "measured",
-    OURS: "simulated, majority of votes",
-    VOTES: "simulated, votes",
-}
-_FRAGILITY = (
-    "measure; who = Outcomes; theta = Median θ ±3; beta = Dispersion β ±2",
-    "theta_ratio = θ over measured ±2; beta_ratio = β over measured ±2",
-)
 
 
 def _fragility(tables: dict[str, pd.DataFrame], level: str) -> Section:
     fragility, tests = tables["fragility"], tables["tests"]
     shown = fragility.assign(
         measure=["{} [{}]".format(*name_and_unit(name)) for name in fragility["measure"]],
-        who=fragility["who"].map(_OUTCOMES),
+        who=fragility["who"].map({"measured": "measured"} | says.pairs("outcomes", OURS, VOTES)),
     )
     measure = _ordering(fragility)
     name, unit = name_and_unit(measure)
@@ -179,8 +157,7 @@ def _fragility(tables: dict[str, pd.DataFrame], level: str) -> Section:
     own = fragility[fragility["measure"] == measure]
     draw = partial(beside_figure, tests, own, measure, f"{name} [{unit}]")
     figure = says.figure("fragility_beside", draw, found, name)
-    table = table_html(shown, _FRAGILITY, "Curves of measured and of simulated outcomes.")
-    return says.section("fragility", [figure, table], found, level)
+    return says.section("fragility", [figure, says.table("fragility", shown)], found, level)
 
 
 def _tests(study: CampaignStudy, tables: dict[str, pd.DataFrame]) -> Section:
@@ -190,49 +167,19 @@ def _tests(study: CampaignStudy, tables: dict[str, pd.DataFrame]) -> Section:
     ]
     listed = study.measures or names
     labels = {name: "{} [{}]".format(*name_and_unit(name)) for name in (*names, *listed)}
-
-    def spans(name: str) -> Words:
-        return by_row(lambda row: f"{row[f'{name}_from']:.3g} to {row[f'{name}_to']:.3g}")
-
     shown = regions[regions["tests"] > 0].assign(right=100 * regions["right"])
-    columns: Columns = (
-        *(Column(name, labels[name], spans(name)) for name in names),
-        "tests .0; overturned .0; simulated .0; right = Right [%] .0",
-    )
+    for name in names:
+        ends = zip(shown[f"{name}_from"], shown[f"{name}_to"], strict=True)
+        shown[name] = [f"{low:.3g} to {high:.3g}" for low, high in ends]
     wrong = tests[~tests["right"]].assign(votes=lambda t: 100 * t["votes_to_overturn"])
-    wrong_columns: Columns = (
-        "test; group = Input motion",
-        *(Column(name, labels[name], 3) for name in listed),
-        "overturned; votes = Votes to overturn [%] .0; near_critical = Near-critical",
-    )
     parts: list[Markup | FigureSpec] = []
     if len(names) == 2:
         x, y = names
         draw = partial(tests_figure, tests, x, y, (labels[x], labels[y]))
         parts.append(says.figure("tests", draw, tests))
-    parts += [
-        table_html(shown, columns, "Tests by thirds of two measures."),
-        table_html(wrong, wrong_columns, "Tests predicted wrong."),
-    ]
+    parts.append(says.table("regions", shown, {name: labels[name] for name in names}))
+    parts.append(says.table("wrong", wrong, {name: labels[name] for name in listed}))
     return says.section("tests", parts, tests)
-
-
-_PROPERTIES = {
-    "direction_deg": "Direction of shaking [°]",
-    "contact_tolerance_mm": "Contact tolerance [mm]",
-    "edge_retreat_mm": "Retreat of the edges [mm]",
-    "restitution": "Restitution [-]",
-    "friction": "Coefficient of friction [-]",
-    "left_m": "Left edge to the centre of gravity [m]",
-    "right_m": "Right edge to the centre of gravity [m]",
-    "alpha_deg": "Smaller critical angle [°]",
-}
-_CONTACT = (
-    "contact_tolerance_mm .2; worst_direction_deg .0; alpha_deg = Critical angle [°] .1",
-    "alpha_lower_deg = 5 % of scans .1; alpha_upper_deg = 95 % of scans .1",
-    "trials = Trials near it .0; width_m = Their base [cm] .1",
-    "overturned = Overturn in [% of tests] .0; right = Right, in sample [%] .0",
-)
 
 
 def _object(study: CampaignStudy, tables: dict[str, pd.DataFrame]) -> Section:
@@ -242,20 +189,19 @@ def _object(study: CampaignStudy, tables: dict[str, pd.DataFrame]) -> Section:
     if not footprint.empty:
         draw = partial(footprint_figure, footprint, trials)
         parts.append(says.figure("footprint", draw, 100 * (likely["left_m"] + likely["right_m"])))
-    titles = ("Property", "Range tried", "Plausible range", "Median of the plausible")
+    titles = says.pairs("properties")
     rows = [
         (words, _range(trials[name]), _range(likely[name]), f"{likely[name].median():.3g}")
-        for name, words in _PROPERTIES.items()
+        for name, words in titles.items()
         if name in trials
     ]
-    caption = "Unmeasured properties: ranges tried, and ranges that agree with the tests."
-    parts.append(text_table(titles, rows, caption, titles[1:]))
+    properties = pd.DataFrame(rows, columns=["property", "tried", "plausible", "median"])
+    parts.append(says.table("properties", properties))
     in_percent = {name: 100 * contact[name] for name in ("width_m", "overturned", "right")}
-    caption = "Smallest critical angle by contact tolerance; the object cannot stand where it is negative."
-    parts.append(table_html(contact.assign(**in_percent), _CONTACT, caption))
+    parts.append(says.table("contact", contact.assign(**in_percent)))
     # ranges that end where the tests would have them go on
     edges = [
-        f"{_PROPERTIES[name].split(' [')[0].lower()} ({edge})"
+        f"{titles[name].split(' [')[0].lower()} ({edge})"
         for name, edge in preferred_edges(trials, likely.index, study.unknowns).items()
     ]
     blocks = len(study.object.get("pedestal", ()))

@@ -30,11 +30,8 @@ SIDE_NAME = {"NP": "without pedestal", "P": "with pedestal"}
 SIDE_SHIFT = {"NP": -0.13, "P": 0.13}
 MARKERS = ("o", "s", "^", "D", "v", "P")
 AMPLITUDE = "Overturning amplitude [g]"
-MOST_MARKS = 150
-"""Of more tests than this a figure shows the distribution, not every one."""
-
-BOX = "median, 25–75 %, 5–95 %"
-"""What a box of that distribution shows."""
+MOST_MARKS = 150  # of more tests than this a figure shows the distribution, not every one
+BOX = "median, 25–75 %, 5–95 %"  # what a box of that distribution shows
 
 _ARROW = np.array([(0, 0), (0, 1.6), (-0.4, 1.0), (0, 1.6), (0.4, 1.0)])
 _STROKES = [Path.MOVETO, Path.LINETO, Path.MOVETO, Path.LINETO, Path.LINETO]

@@ -1,8 +1,7 @@
 """What a study found, said of its tables; the sentences stand in ``findings.j2``."""
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import pandas as pd
@@ -13,14 +12,12 @@ from rockfrag.report.part import Finding, Says
 from rockfrag.shaketable.definitions import DEFINITION
 from rockfrag.study.study import Study
 
-FRICTION = 0.6
-"""Coefficient of friction of dry stone on stone, with which demands are compared [-]."""
+FRICTION = 0.6  # coefficient of friction of dry stone on stone, with which demands are compared [-]
 
 _RATIO_DECIMALS = 3
 
 
-@dataclass(frozen=True)
-class Sides:
+class Sides(NamedTuple):
     """Two sides of a comparison."""
 
     change: str = "the pedestal"  # Subject of a sentence about what the difference does
@@ -29,41 +26,23 @@ class Sides:
     first: str = "with pedestal"
     second: str = "without pedestal"
 
-    @property
-    def divided(self) -> str:
-        """The ratio in a sentence."""
-        return f"Amplitude {self.first} divided by that {self.second.removesuffix(' pedestal')}"
 
-    @property
-    def both(self) -> str:
-        """The two sides."""
-        return f"{self.first.removesuffix(' pedestal')} and {self.second}"
-
-    @property
-    def axis(self) -> str:
-        """Label of an axis of ratios."""
-        if self == Sides():
-            return "Amplitude with / without pedestal"
-        return "Amplitude over the other's"
+WITH_PEDESTAL = Sides()  # what is compared unless arrangements name their counterparts
 
 
-WITH_PEDESTAL = Sides()
-"""What is compared unless arrangements name their counterparts."""
+OF_ARRANGEMENTS = Sides(
+    "an arrangement instead of the one it is compared with",
+    *("arrangement/the other", "of an arrangement", "of the other"),
+)
 
 
 def sides_of(study: Study) -> Sides:
     """Return what is compared in a study."""
-    named = study.counterparts
-    if not named:
+    if not study.counterparts:
         return WITH_PEDESTAL
-    ((name, other), *more) = named.items()
+    ((name, other), *more) = study.counterparts.items()
     if more or study.with_and_alone:
-        return Sides(
-            "an arrangement instead of the one it is compared with",
-            "arrangement/the other",
-            "of an arrangement",
-            "of the other",
-        )
+        return OF_ARRANGEMENTS
     return Sides(f"{name} instead of {other}", f"{name}/{other}", f"of {name}", f"of {other}")
 
 

@@ -7,7 +7,6 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
-from markupsafe import Markup
 from matplotlib.figure import Figure
 from matplotlib.ticker import PercentFormatter
 
@@ -19,7 +18,7 @@ from rockfrag.fragility.ida_curves import levels_drawn
 from rockfrag.fragility.observations import Observations
 from rockfrag.fragility.user_table import UserFragility, fit_user_table
 from rockfrag.report.figures import GREY
-from rockfrag.report.page import Columns, p_values, table_html
+from rockfrag.report.page import p_values
 from rockfrag.report.part import Answer, FigureSpec, Says, Section
 from rockfrag.report.sections.curves import (
     axis_label,
@@ -38,9 +37,9 @@ says = Says("rockfrag.report", "measured_page.j2")
 def run(job: Job[MeasuredTable]) -> Results:
     """Yield the fitted tables; draw the figures and write the page, ``report.html``."""
     study = job.study
-    names = ("overturned", "motion", "earthquake", "given", "replicates", "seed")
-    settings: dict[str, Any] = {name: getattr(study, name) for name in names}
-    found = fit_user_table(study.table, study.measures, level=study.confidence, **settings)
+    settings: dict[str, Any] = {"level": study.confidence, "replicates": study.replicates}
+    settings |= {**study.columns, "seed": study.seed}
+    found = fit_user_table(study.table, study.measures, **settings)
     goodness = pd.DataFrame(
         [(name, g.deviance, g.p_value, g.brier, g.words) for name, g in found.goodness.items()],
         columns=["measure", "deviance", "p_value", "brier", "finding"],
@@ -54,13 +53,9 @@ def run(job: Job[MeasuredTable]) -> Results:
     answer = _answer(study, found, measures)
     choice = found.choice.table
     given = [name for name in map(str, choice.columns) if name.startswith("p_")]
-    columns: Columns = [
-        *_CHOICE,
-        *(p_values(name, f"p, {name.removeprefix('p_')}") for name in given),
-    ]
-    table = table_html(choice, columns, "Measures compared on the same tests, best first.")
+    columns = [p_values(name, f"p, {name.removeprefix('p_')}") for name in given]
     sections = [
-        says.section("measure", [table], answer.sentences[0]),
+        says.section("measure", [says.table("choice", choice, more=columns)], answer.sentences[0]),
         _curves(study, found.table, goodness, calibration),
     ]
     both = found.two_measures and two_measures_section(found.two_measures, study.confidence)
@@ -83,8 +78,7 @@ def _figures(found: UserFragility) -> tuple[FigureSpec, FigureSpec]:
     if found.goodness:
         calibration = partial(calibration_figure, found.goodness)
     best = found.choice.words
-    figures = says.figure("measures", over, best), says.figure("calibration", calibration, best)
-    return figures
+    return says.figure("measures", over, best), says.figure("calibration", calibration, best)
 
 
 def _answer(study: MeasuredTable, found: UserFragility, measures: FigureSpec) -> Answer:
@@ -96,11 +90,8 @@ def _answer(study: MeasuredTable, found: UserFragility, measures: FigureSpec) ->
     if len(best):
         (theta,), (beta,) = (estimates(best.head(1), key) for key in ("theta", "beta"))
         sentences.append(says.finding("median", best.iloc[0], theta, beta, _level(study)))
-    doubtful = [
-        found.fits[measure].fit.im
-        for measure, goodness in found.goodness.items()
-        if goodness.p_value < 0.05
-    ]
+    judged = found.goodness.items()
+    doubtful = [found.fits[name].fit.im for name, fit in judged if fit.p_value < 0.05]
     if found.goodness:
         sentences.append(says.finding("shape", doubtful, len(found.goodness)))
     return Answer(
@@ -116,25 +107,13 @@ def _level(study: MeasuredTable) -> str:
     return f"{100 * study.confidence:g} %"
 
 
-_CHOICE = (
-    "im = Measure; unit; theta = Median θ .3; beta = β .3; aic = AIC .1; auc = AUC .3",
-    "chosen_fraction = Fraction of bootstrap samples in which it is best .2",
-)
-_CURVES = ("im = Measure; unit; theta = Median θ ±; beta = β ±; aic = AIC .1",)
-_FITS = ("measure; deviance .1; p_value = p p; brier = Brier score .3; finding",)
-
-
 def _curves(
     study: MeasuredTable, fitted: pd.DataFrame, goodness: pd.DataFrame, calibration: FigureSpec
 ) -> Section:
     warnings = dict.fromkeys(note for note in fitted["warnings"] if note)
     level, notes = _level(study), [*goodness["finding"], *warnings]
-    parts: list[Markup | FigureSpec] = [
-        table_html(fitted, _CURVES, f"Medians and dispersions, {level} intervals."),
-        table_html(goodness, _FITS, "Goodness of fit."),
-        calibration,
-    ]
-    return says.section("fragility", parts, len(goodness), level, notes)
+    tables = says.table("curves", fitted, level), says.table("fits", goodness)
+    return says.section("fragility", [*tables, calibration], len(goodness), level, notes)
 
 
 def measures_figure(
@@ -144,13 +123,10 @@ def measures_figure(
     columns = min(len(curves), 2)
     rows = -(-len(curves) // columns)
     width, shape = style.COLUMN_WIDTH if columns == 1 else style.WIDEST, (rows, columns)
-    with style.panels(width, 2.4 * rows, *shape, squeeze=False, sharey=True) as (
-        figure,
-        grid_of_axes,
-    ):
-        for axes in grid_of_axes.flat[len(curves) :]:
+    with style.panels(width, 2.4 * rows, *shape, squeeze=False, sharey=True) as (figure, panels):
+        for axes in panels.flat[len(curves) :]:
             axes.set_visible(False)
-        for axes, (label, curve) in zip(grid_of_axes.flat, curves.items(), strict=False):
+        for axes, (label, curve) in zip(panels.flat, curves.items(), strict=False):
             data = outcomes[label]
             grid = levels_drawn(curve, data, 400)
             draw_fractions(axes, fraction_in_bins(data).rename(columns={"im": "x"}), style.BLACK)
@@ -163,13 +139,12 @@ def measures_figure(
                 axes.fill_between(grid, lower, upper, color=style.BLUE, alpha=0.18, linewidth=0)
             axes.plot(grid, curve.fit.probability(grid), color=style.BLUE)
             probability_axis(axes, grid)
-            axes.set_title(
-                f"{curve.fit.im}: AIC {curve.fit.aic:.1f}, β = {curve.fit.beta:.2f}", loc="left"
-            )
-            axes.set_xlabel(axis_label(curve.fit.im, curve.fit.unit))
-        for axes in grid_of_axes[:, 0]:
+            fit = curve.fit
+            axes.set_title(f"{fit.im}: AIC {fit.aic:.1f}, β = {fit.beta:.2f}", loc="left")
+            axes.set_xlabel(axis_label(fit.im, fit.unit))
+        for axes in panels[:, 0]:
             axes.set_ylabel("Probability of overturning")
-        style.letter_panels(grid_of_axes.flat[: len(curves)])
+        style.letter_panels(panels.flat[: len(curves)])
         return figure
 
 

@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import Any
+from typing import Any, NamedTuple
 
 import pandas as pd
 from jinja2 import Environment, PackageLoader, StrictUndefined, select_autoescape
@@ -19,7 +19,7 @@ from rockfrag.figure_style import BLUE, GREEN, PURPLE, RED, save_figure
 from rockfrag.processes import in_processes
 from rockfrag.report.figures import BAND, GREY
 from rockfrag.report.part import Answer, FigureSpec, Section
-from rockfrag.sentences import PART, Macros, estimates, number, probability, sentence
+from rockfrag.sentences import Macros, estimates, number, probability, sentence
 
 TEMPLATES = Environment(
     loader=PackageLoader("rockfrag.report"),
@@ -29,7 +29,6 @@ TEMPLATES = Environment(
 """Scripts, styles and elements of pages."""
 
 _PIXELS_PER_POINT = 96 / 72 * 1.22
-_COLUMN = 252 * _PIXELS_PER_POINT
 _LONGEST_LINE = 28
 _LONG_COLUMN = 2  # so many columns more is a column of sentences
 _NOTHING = Markup("")
@@ -173,23 +172,13 @@ def _kind(table: pd.DataFrame, column: Column) -> str:
     return "long" if longest > _LONGEST_LINE else "short"
 
 
-@dataclass(frozen=True)
-class Picture:
+class Picture(NamedTuple):
     """A drawn figure on the page."""
 
-    spec: FigureSpec  # The figure
-    svg: str  # What was drawn of it
-
-    @property
-    def width(self) -> int:
-        """Width on a wide screen [px], a little above the printed one so that text reads well."""
-        found = re.search(r'<svg[^>]* width="([0-9.]+)pt"', self.svg)
-        return round(float(found[1]) * _PIXELS_PER_POINT) if found else round(_COLUMN)
-
-    @property
-    def inline(self) -> Markup:
-        """The drawing as part of the page: its text can be searched, its identifiers are its own."""
-        return inline_svg(self.svg, self.spec.name, self.spec.alt)
+    spec: FigureSpec
+    # Width on a wide screen [px], a little above the printed one so that text reads well
+    width: int
+    inline: Markup  # The drawing as part of the page: its text can be searched
 
 
 def inline_svg(svg: str, name: str, alt: str) -> Markup:
@@ -222,8 +211,7 @@ def inline_svg(svg: str, name: str, alt: str) -> Markup:
     ).format(box[1] if box else "", alt, Markup(inner.strip()))
 
 
-_says = Macros("rockfrag.report", "terms.j2")
-TERMS: Mapping[str, str] = dict(line.split(PART) for line in _says("terms"))
+TERMS = Macros("rockfrag.report", "terms.j2").pairs("terms")
 """Meaning by term; a term such as ``PGA, PGV`` is used where one of its parts is."""
 
 
@@ -243,17 +231,17 @@ def draw_all(specs: Sequence[FigureSpec], folder: Path, processes: int = 1) -> d
     """Draw figures into a folder and return them by name; whoever draws, the bytes are the same."""
     folder.mkdir(parents=True, exist_ok=True)
 
-    def drawn(spec: FigureSpec) -> Path:
-        svg = folder / f"{spec.name}.svg"
-        save_figure(spec.draw(), svg, folder / f"{spec.name}.png")
-        return svg
+    def drawn(spec: FigureSpec) -> None:
+        save_figure(spec.draw(), *(folder / f"{spec.name}.{end}" for end in ("svg", "png")))
 
-    # what processes hand over should be small: the name of a file, and not what is in it
-    files = in_processes(drawn, specs, processes)
-    return {
-        spec.name: Picture(spec, file.read_text(encoding="utf-8"))
-        for spec, file in zip(specs, files, strict=True)
-    }
+    in_processes(drawn, specs, processes)
+    found = {}
+    for spec in specs:
+        svg = (folder / f"{spec.name}.svg").read_text(encoding="utf-8")
+        (points,) = re.findall(r'<svg[^>]* width="([0-9.]+)pt"', svg)
+        width = round(float(points) * _PIXELS_PER_POINT)
+        found[spec.name] = Picture(spec, width, inline_svg(svg, spec.name, spec.alt))
+    return found
 
 
 @dataclass(frozen=True)

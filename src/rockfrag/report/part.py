@@ -95,6 +95,15 @@ class Says(Macros):
         alt, caption = map(" ".join, self.parts(f"{of or name}_figure", *about))
         return FigureSpec(name, alt, caption, draw)
 
+    def table(
+        self, name: str, table: pd.DataFrame, *about: Any, more: Sequence[Any] = (), file: str = ""
+    ) -> Markup:
+        """A table of which ``<name>_table`` says caption and columns, with ``more`` behind them."""
+        from rockfrag.report.page import table_html
+
+        caption, columns = self.parts(f"{name}_table", *about)
+        return table_html(table, [*columns, *more], " ".join(caption), file)
+
     def section(
         self, anchor: str, parts: Sequence[Markup | FigureSpec], *about: Any, of: str = ""
     ) -> Section:

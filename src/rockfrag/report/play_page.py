@@ -5,7 +5,6 @@ from collections.abc import Sequence
 from importlib.metadata import version
 
 import numpy as np
-from markupsafe import Markup
 
 from rockfrag.errors import InputError
 from rockfrag.files import write_text
@@ -17,7 +16,6 @@ from rockfrag.rocking import overturns
 from rockfrag.rocking.browser import in_page
 from rockfrag.system.blocks import SystemLike, as_system
 from rockfrag.system.body import Circle, RigidBody
-from rockfrag.system.system import System
 from rockfrag.units import GRAVITY
 
 MOST_SAMPLES = 20_000
@@ -43,7 +41,11 @@ def write_play_page(
         rests_on = ["A peak is the geometric mean of those of both components; nothing slides."]
     else:
         amplitudes, peak, rests_on = np.array(AMPLITUDES_G), motion.pga, []
-        live = _in_plane(name, system, motion)
+        if not in_page(system):
+            raise InputError(
+                "--pedestal: a page simulates two bodies on each other at most; rockfrag simulate takes more."
+            )
+        live = live_kernel({name: system}, [motion])
     # at every amplitude, and last as recorded
     found = overturns([system], [motion], scales=np.append(amplitudes * GRAVITY / peak, 1.0))
     *fell, recorded = found.overturned.ravel().tolist()
@@ -92,14 +94,6 @@ def _sizes(body: RigidBody) -> str:
         sides.insert(1, body.seen_along(90.0).width)
     before = "round, " if isinstance(body.base, Circle) else ""
     return f"{before}{' × '.join(f'{100 * side:.3g}' for side in sides)} cm"
-
-
-def _in_plane(name: str, system: System, motion: Motion) -> Markup:
-    if not in_page(system):
-        raise InputError(
-            "--pedestal: a page simulates two bodies on each other at most; rockfrag simulate takes more."
-        )
-    return live_kernel({name: system}, [motion])
 
 
 def _strength(amplitudes: Sequence[float], fell: Sequence[bool]) -> Finding:

@@ -10,7 +10,6 @@ from matplotlib.figure import Figure
 from rockfrag import figure_style as style
 from rockfrag.records.motion import GroundMotion, Motion
 from rockfrag.report.live.space import Standing, live_in_space
-from rockfrag.report.page import table_html
 from rockfrag.report.part import Answer, Says, Section
 from rockfrag.report.study_report import write_page
 from rockfrag.stages.job import Job, Results
@@ -39,7 +38,7 @@ def run(job: Job[SpaceStudy]) -> Results:
         could_change=says("could_change", medians["flip_rate"].max()),
     )
     shown = medians.assign(body=_bases(medians))
-    table = table_html(shown, _MEDIANS, "Medians in space over planar ones, with 90 % intervals.")
+    table = says.table("medians", shown, WORDS)
     sections = [
         Section("medians", "Medians", f"{findings[0].headline}.", [], [table, ratios]),
         Section("fractions", "Fractions by level", "What the medians come from.", [], [levels]),
@@ -67,11 +66,6 @@ WORDS = {
     "mean_direction": "mean of directions",
     "worst_direction": "worst direction",
 }
-_MEDIANS = (
-    "body = Base; slenderness = Height over width .1; height_m .1; space_g = Median in space [g] .2",
-    *(f"{name} = Over {WORDS[name]} ±2" for name in PLANAR),
-    "flip_rate .2",
-)
 COLOURS = dict(zip(PLANAR, (style.BLUE, style.ORANGE, style.GREEN), strict=True))
 
 
@@ -85,18 +79,13 @@ def ratios_figure(medians: pd.DataFrame) -> Figure:
     with style.panels(style.PAGE_WIDTH, 0.6 + 0.2 * len(medians)) as (figure, panel):
         places = -np.arange(len(medians), dtype=float)
         for k, name in enumerate(PLANAR):
-            low, high, off = (
-                medians[f"{name}_lower"],
-                medians[f"{name}_upper"],
-                places + 0.2 * (1 - k),
-            )
+            low, high = (medians[f"{name}_{end}"] for end in ("lower", "upper"))
+            off = places + 0.2 * (1 - k)
             panel.hlines(off, low, high, color=COLOURS[name], lw=1.0)
             panel.plot(medians[name], off, "os^"[k], color=COLOURS[name], ms=3.5, label=WORDS[name])
         panel.axvline(1.0, color=style.BLACK, lw=0.8, ls="--")
-        sizes = medians["slenderness"].map(", {:g}".format) + medians["height_m"].map(
-            ", {:g} m".format
-        )
-        panel.set_yticks(places, _bases(medians) + sizes)
+        slenderness = _bases(medians) + medians["slenderness"].map(", {:g}".format)
+        panel.set_yticks(places, slenderness + medians["height_m"].map(", {:g} m".format))
         panel.set_ylim(places[-1] - 0.6, 0.6)
         panel.set_xlabel("Median level in space over that of planar rocking [-]; unsafe below 1")
         panel.set_ylabel("Base, height over width, height")

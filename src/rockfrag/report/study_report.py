@@ -12,10 +12,9 @@ from rockfrag.plugins import plugins_of
 from rockfrag.report.answer import study_answer
 from rockfrag.report.live import live_kernel
 from rockfrag.report.page import MOST_TABLE_ROWS, Page
-from rockfrag.report.part import Answer, Part, Section
+from rockfrag.report.part import Answer, Part, Section, says
 from rockfrag.report.part import Results as StudyResults
 from rockfrag.report.sections import PARTS
-from rockfrag.sentences import counted
 from rockfrag.stages.job import Job, Results, package_digest
 from rockfrag.study.study import Study
 
@@ -34,11 +33,7 @@ def run(job: Job[Study]) -> Results:
         parts, answer = plugin.report(study, parts, answer)
     sections = [section for part in parts if (section := part(results)) is not None]
     earthquakes = len({record.get("earthquake") for record in results.records})
-    lead = (
-        f"Rocking and overturning of {counted(len(study.configurations), 'configuration')} under "
-        f"{counted(len(results.records), 'record')} of {counted(earthquakes, 'earthquake')}"
-        + (", on the floors of a building." if study.building else ".")
-    )
+    lead = says.line("lead", study, len(results.records), earthquakes)
     live, systems = Markup(), {each.name: each for each in study.configurations}
     # nothing where it could not give the outcomes of the study
     if study.simulated_in_page:
@@ -50,20 +45,14 @@ def run(job: Job[Study]) -> Results:
 
 def _settings(results: StudyResults) -> dict[str, str]:
     """What the numbers of a simulated study depend on."""
-    study, amplitudes = results.study, results.study.amplitudes
+    study = results.study
     shown = study.catalogue.head(MOST_TABLE_ROWS)
     digests = shown["sha256"].map(lambda sha: f", SHA-256 {sha[:12]} checked" if sha else "")
     records = ", ".join(shown["name"] + " (" + shown["source"] + digests + ")")
     if rest := len(study.catalogue) - len(shown):
         records += f" and {rest} more of {study.catalogue_file.name}"
-    return {
-        "Amplitudes": f"{amplitudes.lowest_g:g} to {amplitudes.highest_g:g} g in steps of "
-        f"{amplitudes.step_percent:g} %",
-        "Step protocol": f"from {amplitudes.lowest_g:g} g in steps of "
-        f"{study.protocol_step_percent:g} %, read before overturning",
-        "Records": records,
-        "Motions, SHA-256": ", ".join(sorted(set(results.table("fragility")["record_set_sha256"]))),
-    }
+    digest = ", ".join(sorted(set(results.table("fragility")["record_set_sha256"])))
+    return says.pairs("settings", study) | {"Records": records, "Motions, SHA-256": digest}
 
 
 def write_page(

@@ -14,7 +14,7 @@ from rockfrag.campaign.comparison import HALF, NEAR_CRITICAL, MeasuredTests
 from rockfrag.campaign.laboratory import MEASURED, Campaign, read_campaign
 from rockfrag.campaign.standing import sample_trials, simulate_tests
 from rockfrag.errors import InputError
-from rockfrag.fragility.vector import VectorTables, vector_tables
+from rockfrag.fragility.vector import vector_tables
 from rockfrag.motions.processing import process, scale_to_pga
 from rockfrag.motions.pulses import commanded_cosine
 from rockfrag.records.motion import Motion
@@ -34,8 +34,7 @@ TABLES = (
     *("two_measures", "contours", "cells"),
 )
 
-VARIED_FRACTION = 4
-"""Other conditionings are tried with this fraction of the trials: they only show what the choice does."""
+VARIED_FRACTION = 4  # other conditionings are tried with this fraction of the trials
 FEWEST_GROUPS = 2
 SCANS = 50  # repetitions of a scan, with its noise, behind the limits of a critical angle
 
@@ -58,17 +57,12 @@ def run(job: Job[CampaignStudy]) -> Results:
     yield "tests", judged
     right = (found.outcomes == measured.overturned).mean(axis=1)
     table = found.trials.table.assign(right_in_sample=right, plausible=found.plausible)
-    yield (
-        "trials",
-        table.sort_values("right_in_sample", ascending=False, kind="stable", ignore_index=True),
-    )
+    best_first = table.sort_values("right_in_sample", ascending=False, kind="stable")
+    yield "trials", best_first.reset_index(drop=True)
     yield "agreement", found.agreement()
     yield "rocking", found.rocking()
     yield "fragility", found.fragility()
-    both = found.two_measures()
-    yield "two_measures", both.fits
-    yield "contours", both.contours
-    yield "cells", both.cells
+    yield from found.two_measures()
     first, second = (*campaign.measures, campaign.measures[0])[:2]
     yield "regions", comparison.by_region(judged, first, second)
     yield "conditioning", found.conditioning()
@@ -114,8 +108,7 @@ def _motions(study: CampaignStudy, campaign: Campaign, conditioning: Any) -> lis
         settings = tests[list(PULSE_MEASURES)].to_numpy()
         told = [commanded_cosine(a * GRAVITY, ratio, study.pulse_cycles) for a, ratio in settings]
         return [process(motion, conditioning) for motion in told]
-    unstated = study.unit, study.dt_s, study.channel
-    motions = laboratory.table_motions(study.motions, list(tests["motion"]), *unstated)
+    motions = laboratory.table_motions(study.motions, list(tests["motion"]), *study.unstated)
     shaken = (process(motion, conditioning) for motion in motions)
     return [
         motion if np.isnan(peak) else scale_to_pga(motion, peak)
@@ -127,9 +120,7 @@ def standing_object(study: CampaignStudy) -> Shape | Block | Column:
     """Return the object, and what is under it if it has a pedestal."""
     if "pedestal" not in study.object:
         return object_of(study)
-    return Column(
-        tuple(_block(given) for given in (*reversed(study.object["pedestal"]), study.object))
-    )
+    return Column(tuple(map(_block, (*reversed(study.object["pedestal"]), study.object))))
 
 
 def object_of(study: CampaignStudy) -> Shape | Block:
@@ -243,13 +234,13 @@ class _Simulated:
             parts.append(curves.assign(measure=name))
         return pd.concat(parts, ignore_index=True)
 
-    def two_measures(self) -> VectorTables:
+    def two_measures(self) -> Results:
         """Fragility in the first two measures, of the outcomes measured and simulated."""
         tests = self.campaign.tests
         ours = self.votes.mean(axis=0) >= HALF
         outcomes = {"measured": self.measured.overturned, OURS: ours}
         pair = self.campaign.measures[:2]
-        return vector_tables(
+        found = vector_tables(
             {name: tests.assign(**{MEASURED: fell * 1.0}) for name, fell in outcomes.items()},
             ((pair[0], pair[1]),) if len(pair) == len(set(pair)) == 2 else (),
             earthquake="group",
@@ -258,6 +249,8 @@ class _Simulated:
             level=self.measured.level,
             seed=self.measured.seed,
         )
+        tables = (found.fits, found.contours, found.cells)
+        yield from zip(("two_measures", "contours", "cells"), tables, strict=True)
 
     def conditioning(self) -> pd.DataFrame:
         """What other ways of conditioning the motions would have given, with a part of the trials."""

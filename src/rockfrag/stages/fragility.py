@@ -5,12 +5,24 @@ from collections import defaultdict
 from collections.abc import Iterable, Mapping, Sequence
 from itertools import product
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 import pandas as pd
 
 from rockfrag.files import file_name
+from rockfrag.fragility import write_nrml, write_simcenter
+from rockfrag.fragility.counted import count_ida
+from rockfrag.fragility.empirical import TableIda, resurrections_of
+from rockfrag.fragility.estimators import fit_uplift, fragility_of
+from rockfrag.fragility.ida_curves import (
+    fraction_points,
+    fragility_row,
+    record_set_hash,
+    tables_of_ida_curves,
+    with_measures,
+)
+from rockfrag.fragility.measure_selection import recommend_ida_measure
+from rockfrag.fragility.vector import vector_tables
 from rockfrag.motions.intensity import declared, intensity_measures
 from rockfrag.outcomes.limit_states import OVERTURNS, limit_states
 from rockfrag.shaketable.definitions import Swept
@@ -19,17 +31,11 @@ from rockfrag.stages.job import Job, Results
 from rockfrag.study.study import Study
 from rockfrag.system.system import uplift_ratios
 
-if TYPE_CHECKING:
-    # every job reads this module for the list of stages; only curves need scipy
-    from rockfrag.fragility.empirical import TableIda
-
-    StateIdaCurves = dict[str, dict[tuple[str, str], TableIda]]
+StateIdaCurves = dict[str, dict[tuple[str, str], TableIda]]
 
 
 def run(job: Job[Study]) -> Results:
     """Yield curves, structural resurrections and the comparison of measures; write curves for export."""
-    from rockfrag.fragility.ida_curves import record_set_hash, tables_of_ida_curves
-
     settings, measures = job.study.fragility, job.table("measures")
     record_set = record_set_hash(job.motions("motions/records"))
     columns = list(settings.measures)
@@ -62,9 +68,6 @@ def run(job: Job[Study]) -> Results:
 
 def _two_measures(job: Job[Study], measures: pd.DataFrame) -> Results:
     """Fits in the pairs of measures that the study names; tables without rows where it names none."""
-    from rockfrag.fragility.ida_curves import with_measures
-    from rockfrag.fragility.vector import vector_tables
-
     pairs = job.study.fragility.pairs
     columns = list(dict.fromkeys(measure for pair in pairs for measure in pair))
     tests = {}
@@ -94,7 +97,7 @@ def best_of(choice: pd.DataFrame, asked: Sequence[str]) -> list[str]:
 
 
 def measure_selection(
-    ida_curves: Mapping[str, "TableIda"], measures: pd.DataFrame, level: float, seed: int
+    ida_curves: Mapping[str, TableIda], measures: pd.DataFrame, level: float, seed: int
 ) -> pd.DataFrame:
     """Compare measures for every configuration.
 
@@ -102,8 +105,6 @@ def measure_selection(
     :class:`rockfrag.fragility.measure_selection.MeasureSelection`, ``recommended`` (True for one row each) and
     ``words``, the recommendation with its reasons.
     """
-    from rockfrag.fragility.measure_selection import recommend_ida_measure
-
     parts = []
     for name, ida in ida_curves.items():
         choice = recommend_ida_measure(
@@ -134,11 +135,8 @@ def rows_of(parts: Iterable[Swept], most_levels: int | None = None) -> pd.DataFr
 
 def _ida_curves(
     job: Job[Study], measures: pd.DataFrame
-) -> tuple[dict[str, "TableIda"], "StateIdaCurves", pd.DataFrame]:
+) -> tuple[dict[str, TableIda], StateIdaCurves, pd.DataFrame]:
     """IDA curves by configuration, and by limit state, configuration and floor; resurrections of all."""
-    from rockfrag.fragility.counted import count_ida
-    from rockfrag.fragility.empirical import resurrections_of
-
     study = job.study
     floors = {name: floor_measures(level) for name, level in study.floors.items()}
     wanted = {"": tuple(dict.fromkeys([*study.fragility.measures, *candidates()])), **floors}
@@ -167,11 +165,8 @@ def _ida_curves(
 
 def _rows(
     parts: Iterable[Swept], measures: pd.DataFrame, columns: Mapping[str, Sequence[str]]
-) -> dict[str, "TableIda"]:
+) -> dict[str, TableIda]:
     """IDA curves with a row an outcome, by floor, those under the empty name of all floors."""
-    from rockfrag.fragility.empirical import TableIda
-    from rockfrag.fragility.ida_curves import with_measures
-
     ida = rows_of(parts)
     return {
         floor: TableIda(with_measures(ida[ida["floor"] == floor] if floor else ida, measures, some))
@@ -200,7 +195,7 @@ def floor_measures(level: int) -> tuple[str, ...]:
 
 
 def floor_curves(
-    ida_curves: "StateIdaCurves", measures: pd.DataFrame, study: Study, record_set: str
+    ida_curves: StateIdaCurves, measures: pd.DataFrame, study: Study, record_set: str
 ) -> tuple[pd.DataFrame, pd.DataFrame]:
     """Fragility of every configuration on every floor; motions of different floors are never mixed.
 
@@ -214,9 +209,6 @@ def floor_curves(
     of :func:`rockfrag.fragility.ida_curves.fragility_table`; fractions are points of those that are rejected, see
     :func:`rockfrag.fragility.ida_curves.fraction_points`.
     """
-    from rockfrag.fragility.estimators import fit_uplift, fragility_of
-    from rockfrag.fragility.ida_curves import fraction_points, fragility_row, with_measures
-
     floor_labels = {measure.label: measure.floor_label for measure in intensity_measures()}
     systems = {system.name: system for system in study.configurations}
     rocks_at_once, level = not (study.slides or study.vertical), study.fragility.confidence
@@ -249,17 +241,13 @@ def floor_curves(
     return pd.DataFrame(rows), pd.concat(fractions, ignore_index=True)
 
 
-def export_curves(
-    curves: pd.DataFrame, folder: Path, fractions: pd.DataFrame | None = None
-) -> list[str]:
+def export_curves(curves: pd.DataFrame, folder: Path, fractions: pd.DataFrame) -> list[str]:
     """Write the curves for OpenQuake and SimCenter; return the names of the files.
 
     One file per measure and floor, as both formats take one curve per object. OpenQuake knows motions of
     the ground only. Configurations without a curve are left out, and a measure without any has no file. Of
     rejected curves the points of the non-parametric function are written, as far as ``fractions`` has them.
     """
-    from rockfrag.fragility import write_nrml, write_simcenter
-
     written = []
     for (floor, height, column), rows in curves.groupby(
         ["floor", "floor_level", "measure"], sort=False
@@ -270,23 +258,16 @@ def export_curves(
         usable = rows[~rows["configuration"].isin(rows.loc[~whole, "configuration"])]
         if usable.empty:
             continue
-        points = None
-        if fractions is not None:
-            points = fractions[(fractions["floor"] == floor) & (fractions["measure"] == column)]
+        points = fractions[(fractions["floor"] == floor) & (fractions["measure"] == column)]
         # SA(0.3s) becomes sa_0_3s
         name = re.sub(r"[\W_]", "_", str(usable["im"].iloc[0]).lower()).strip("_")
-        stem = f"fragility_{name}"
-        if height != 0:
-            stem += f"_{file_name(str(floor))}"
+        stem = f"fragility_{name}" + (f"_{file_name(str(floor))}" if height != 0 else "")
+        xml, *both = (folder / f"{stem}.{end}" for end in ("xml", "csv", "json"))
         if height == 0:
             # the formats know the ground by an empty floor, whatever its user calls it
-            write_nrml(
-                usable.assign(floor=""), folder / f"{stem}.xml", identifier=stem, fractions=points
-            )
-            written.append(f"{stem}.xml")
+            write_nrml(usable.assign(floor=""), xml, identifier=stem, fractions=points)
+            written.append(xml.name)
         if column in floor_measures(1):
-            write_simcenter(
-                usable, folder / f"{stem}.csv", folder / f"{stem}.json", fractions=points
-            )
-            written += [f"{stem}.csv", f"{stem}.json"]
+            write_simcenter(usable, *both, fractions=points)
+            written += [path.name for path in both]
     return written

@@ -13,9 +13,11 @@ import pyarrow.parquet as pq
 from numpy.typing import NDArray
 
 from rockfrag.files import whole_file
+from rockfrag.motions.processing import factors_to_pga
 from rockfrag.outcomes.limit_states import OVERTURNS, ROCKS, limit_state_named, limit_states
 from rockfrag.outcomes.outcomes import Outcomes
 from rockfrag.records.motion import Motion
+from rockfrag.rocking.ensemble import LIGHT, LightBodies, overturns
 from rockfrag.shaketable.definitions import Swept, fallen_names, labels_of, read_swept
 from rockfrag.stages.job import Job, Results
 from rockfrag.study.study import Study
@@ -29,9 +31,7 @@ RECORDED = ("overturning_time", "certain_time", "impacts", "unstable_distance", 
 """Columns of outcomes in every IDA curve."""
 
 SLID = ("flights", "slip", "peak_slip")  # Columns of outcomes in IDA curves with friction
-
 ROWS_AT_ONCE = 131_072  # Histories in memory at a time, and of a row group of a file
-
 FEWEST_AT_ONCE = 12  # Motions shaken at a time are no fewer, to keep every core busy
 
 
@@ -85,8 +85,6 @@ def ida_curves_of(
 
 def _say_how_light(job: Job[Study], configuration: System, number: int) -> None:
     """Log in how many histories the ground takes more than half of all weight."""
-    from rockfrag.rocking.ensemble import LIGHT
-
     path = job.folder / job.study.ida_file(configuration, number)
     ratio = pq.read_table(path, columns=["minimum_gravity_ratio"])["minimum_gravity_ratio"]
     light = int((ratio.to_numpy() < LIGHT).sum())
@@ -124,8 +122,6 @@ def ida_table(
     contact), ``slip_contact_1_m`` and on (at the end), ``peak_slip_contact_1_m`` and on, ``flights`` and
     ``overturned_without_sliding``, the outcome if nothing could slide or fly.
     """
-    from rockfrag.motions.processing import factors_to_pga
-
     scales = np.array([factors_to_pga(motion, amplitudes_g) for motion in motions])
     result = _shaken(configuration, motions, scales, threads, vertical)
     each = len(amplitudes_g)
@@ -176,8 +172,6 @@ def _shaken(
     vertical: Sequence[Motion] | None,
 ) -> Outcomes:
     """Outcomes of one configuration under every motion at every scale."""
-    from rockfrag.rocking.ensemble import LightBodies, overturns
-
     with warnings.catch_warnings():
         # told of in the column minimum_gravity_ratio and in the report
         warnings.simplefilter("ignore", LightBodies)

@@ -57,11 +57,10 @@ class BlindAnswer:
         """Standard deviation of ln median between the ways to stand [-]: 90 % of them as those of a normal."""
         return math.log(self.upper / self.lower) / (2 * _Z)
 
-    def interval(self, model: float = 0.0) -> tuple[float, float]:
-        """Limits of the median (90 %); ``model`` is the standard deviation of ln median of the model [-]."""
-        other = _Z * math.hypot(self.sampling, model)
-        low = math.hypot(math.log(self.median / self.lower), other)
-        high = math.hypot(math.log(self.upper / self.median), other)
+    def interval(self) -> tuple[float, float]:
+        """Limits of the median (90 %), of a model without error."""
+        low = math.hypot(math.log(self.median / self.lower), _Z * self.sampling)
+        high = math.hypot(math.log(self.upper / self.median), _Z * self.sampling)
         return self.median * math.exp(-low), self.median * math.exp(high)
 
 

@@ -7,8 +7,14 @@ from typing import Any, cast
 
 import pandas as pd
 
+from rockfrag.building.floors import floor_motions, vertical_motions
 from rockfrag.errors import InputError
+from rockfrag.motions.directions import measure_records, motions_of_row
+from rockfrag.motions.measures import measure_motions
+from rockfrag.motions.processing import process
 from rockfrag.records.motion import Motion
+from rockfrag.records.sources.wheel import NotFetched
+from rockfrag.records.write import write_motions
 from rockfrag.stages.job import Job, Results
 from rockfrag.study.study import GROUND, RECORDS_FOLDER, Study
 
@@ -20,9 +26,6 @@ WRITTEN = "motions/written"
 
 def run(job: Job[Study]) -> Results:
     """Yield the motions as read, on the ground and on every floor, and their intensity measures."""
-    from rockfrag.motions.directions import measure_records
-    from rockfrag.motions.measures import measure_motions
-
     study = job.study
     rows, felt, left_out = _felt(job)
     floors = felt["floors"]
@@ -30,8 +33,6 @@ def run(job: Job[Study]) -> Results:
     if study.keep_going:
         yield LEFT_OUT, pd.DataFrame(left_out, columns=["motion", "reason"], dtype=str)
     if study.write_motions is not None:
-        from rockfrag.records.write import write_motions
-
         write_motions(floors, job.folder / WRITTEN, study.write_motions)
     table = measure_motions(floors, processes=job.threads)
     pairs = measure_records(rows, *_place(study), study.processing)
@@ -57,10 +58,6 @@ def _felt(
     Kinds are ``records`` as read, ``ground`` as they shake it, ``floors`` as every floor feels them, and with
     vertical motion ``vertical``, as they shake it up and down.
     """
-    from rockfrag.motions.directions import motions_of_row
-    from rockfrag.motions.processing import process
-    from rockfrag.records.sources.wheel import NotFetched
-
     study = job.study
     felt: dict[str, list[Motion]] = defaultdict(list)
     rows, left_out = [], []
@@ -100,8 +97,6 @@ def _place(study: Study) -> tuple[Path, Path]:
 def _floors(study: Study, ground: Motion, vertical: bool = False) -> list[Motion]:
     if study.building is None:
         return [on_the_ground(ground)]
-    from rockfrag.building.floors import floor_motions, vertical_motions
-
     return (vertical_motions if vertical else floor_motions)(study.building, ground)
 
 

@@ -5,6 +5,12 @@ from collections.abc import Mapping
 import pandas as pd
 
 from rockfrag.errors import InputError
+from rockfrag.fragility import fit_step_tests
+from rockfrag.fragility.ida_curves import fragility_row, table_hash
+from rockfrag.pedestal import study_pedestal
+from rockfrag.pedestal.paired_tests import with_counterparts
+from rockfrag.shaketable.definitions import DEFINITION
+from rockfrag.shaketable.tests_table import read_measured
 from rockfrag.stages.job import Job, Results
 from rockfrag.study.study import Study
 from rockfrag.tabular import join_rows
@@ -15,8 +21,6 @@ PEDESTAL_TABLES = ("pairs", "effects", "whole", "without_earthquake", "ranks", "
 
 def run(job: Job[Study]) -> Results:
     """Yield the pedestal's effect in every form."""
-    from rockfrag.pedestal.paired_tests import with_counterparts
-
     slenderness = job.study.slenderness
     tests, origin = with_counterparts(job.table("tests"), job.study.counterparts)
     slenderness |= {name: slenderness[tested] for name, tested in origin.items()}
@@ -25,10 +29,8 @@ def run(job: Job[Study]) -> Results:
         yield f"pedestal/{name}", table
     pairs = found["pairs"]
     # every definition of the amplitudes has the same pairs
-    several = pairs.groupby("definition").size()
-    job.log.info(
-        "pairs of an arrangement and its counterpart: %d", several.max() if len(several) else 0
-    )
+    several = pairs["definition"].value_counts().max() if len(pairs) else 0
+    job.log.info("pairs of an arrangement and its counterpart: %d", several)
 
 
 def pedestal_tables(
@@ -39,8 +41,6 @@ def pedestal_tables(
     Returns the tables named in ``PEDESTAL_TABLES``, see :class:`rockfrag.pedestal.PedestalStudy`, each with the
     column ``definition`` first.
     """
-    from rockfrag.pedestal import study_pedestal
-
     if tests.empty:
         raise InputError("tests: there is no row; the pedestal's effect needs tests.")
     parts: dict[str, list[pd.DataFrame]] = {name: [] for name in PEDESTAL_TABLES}
@@ -67,9 +67,6 @@ _CURVES = ("configuration", "im", "unit", "theta", "theta_lower", "theta_upper",
 
 def run_measured(job: Job[Study]) -> Results:
     """Yield the laboratory's tests, and what their statistics say."""
-    from rockfrag.shaketable.definitions import DEFINITION
-    from rockfrag.shaketable.tests_table import read_measured
-
     study = job.study
     if study.measured_tests is None:
         raise ValueError("the study has no measured tests")
@@ -123,9 +120,6 @@ def beside(measured: pd.DataFrame, simulated: pd.DataFrame) -> pd.DataFrame:
 
 
 def _curves(measured: pd.DataFrame, level: float, notes: list[str]) -> pd.DataFrame:
-    from rockfrag.fragility import fit_step_tests
-    from rockfrag.fragility.ida_curves import fragility_row, table_hash
-
     rows = []
     digest = table_hash(measured)
     for (object_name, side), tests in measured.groupby(["object", "pedestal"], sort=True):

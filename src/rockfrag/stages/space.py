@@ -22,12 +22,11 @@ from rockfrag.records.sources.wheel import fetch_wheel
 from rockfrag.rocking.ensemble import overturns
 from rockfrag.stages.job import Job, Results
 from rockfrag.study.space import SpaceStudy
+from rockfrag.study.study import RECORDS_FOLDER
 from rockfrag.system.blocks import Block
 from rockfrag.units import GRAVITY, STONE
 
-RECORDS = Path("resources/records")
-
-TABLES = ("medians", "fractions")
+RECORDS = Path(RECORDS_FOLDER)
 
 OBLONG, ROUND = "one to two", "round"
 
@@ -52,8 +51,8 @@ def run(job: Job[SpaceStudy]) -> Results:
     for about in study.bodies:
         found.append(medians(study, *about, pairs, earthquakes, job.threads))
         job.log.info("%s, H/B %g, %g m", *about)
-    for k, name in enumerate(TABLES):
-        yield name, pd.concat([tables[k] for tables in found], ignore_index=True)
+    for name, tables in zip(("medians", "fractions"), zip(*found, strict=True), strict=True):
+        yield name, pd.concat(tables, ignore_index=True)
 
 
 def own_pairs(study: SpaceStudy) -> tuple[list[Pair], list[str]]:

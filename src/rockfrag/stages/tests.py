@@ -8,15 +8,12 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from rockfrag.outcomes.outcomes import Outcomes, empty_outcomes
+from rockfrag.motions.processing import scale_to_pga
 from rockfrag.records.motion import Motion
-from rockfrag.shaketable.definitions import (
-    DEFINITION,
-    Swept,
-    mean_amplitudes,
-    tests_from_swept,
-)
+from rockfrag.rocking import overturns, simulate
+from rockfrag.shaketable.definitions import DEFINITION, Swept, mean_amplitudes, tests_from_swept
 from rockfrag.shaketable.protocols import GeometricSteps, Protocol
+from rockfrag.shaketable.shaker import shaker_table
 from rockfrag.stages.ida import ida_curves_of
 from rockfrag.stages.job import Job, Results
 from rockfrag.study.study import Study
@@ -29,8 +26,6 @@ LIMITED = "step_protocol_shaker"  # the step protocol that stops at the shaker's
 
 def run(job: Job[Study]) -> Results:
     """Yield the tests in every definition, their means, the shaker's limits, bodies and forces."""
-    from rockfrag.shaketable.shaker import shaker_table
-
     study = job.study
     protocol = protocol_of(study)
     motions = job.motions("motions/floors")
@@ -61,8 +56,8 @@ def run(job: Job[Study]) -> Results:
 def protocol_of(study: Study, step_percent: float | None = None) -> Protocol:
     """Return the step protocol of a study, or the same with another step [%]."""
     step = study.protocol_step_percent if step_percent is None else step_percent
-    amplitudes = study.amplitudes
-    return Protocol(GeometricSteps(amplitudes.lowest_g, step / 100), amplitudes.highest_g)
+    peaks = study.amplitudes
+    return Protocol(GeometricSteps(peaks.lowest_g, step / 100), peaks.highest_g)
 
 
 def limited_tests(
@@ -72,16 +67,13 @@ def limited_tests(
 
     Return tests of the definition ``LIMITED``; the remark of a test that the shaker ended says so.
     """
-    known = limits.set_index("motion").to_dict("index")
-    largest = {str(motion): float(limit["limit_g"]) for motion, limit in known.items()}
+    known = limits.set_index("motion")
+    largest = {str(motion): float(limit) for motion, limit in known["limit_g"].items()}
     tests = tests_from_swept(ida_curves, protocol, definitions=[DEFINITION], limits_g=largest)
-    remarks = []
-    for test in tests.to_dict("records"):
-        limit = known[test["motion"]]
-        ended = test["censored"] == "right" and limit["limit_g"] < protocol.limit_g
-        reached = f"shaker's {limit['limited_by']} reached at {limit['limit_g']:.3f} g"
-        remarks.append(reached if ended else test["remark"])
-    return tests.assign(remark=remarks, definition=LIMITED)
+    at, by = (tests["motion"].map(known[name]) for name in ("limit_g", "limited_by"))
+    ended = (tests["censored"] == "right") & (at < protocol.limit_g)
+    reached = "shaker's " + by + " reached at " + at.map("{:.3f} g".format)
+    return tests.assign(remark=reached.where(ended, tests["remark"]), definition=LIMITED)
 
 
 def bodies_table(configurations: Sequence[System]) -> pd.DataFrame:
@@ -162,8 +154,6 @@ def _shaken(
     tests: pd.DataFrame, motions: Mapping[str, Motion], vertical: Mapping[str, Motion] | None
 ) -> tuple[list[Motion], list[NDArray[np.float64]] | None]:
     """Motion of each test as scaled, and the vertical acceleration beside it [m/s²]."""
-    from rockfrag.motions.processing import scale_to_pga
-
     names = list(tests["motion"])
     scaled = [
         scale_to_pga(motions[name], amplitude)
@@ -181,12 +171,9 @@ def _forces(
     system: System, motions: list[Motion], vertical: list[NDArray[np.float64]] | None, threads: int
 ) -> pd.DataFrame:
     """Forces of a configuration under motions as they are, a row each."""
-    from rockfrag.rocking import overturns
-
     if system.loose or system.count > 2:
-        found = _in_contact(system, motions, vertical)
-    else:
-        found = overturns(system, motions, vertical=vertical, forces=True, threads=threads)
+        return _in_contact(system, motions, vertical)
+    found = overturns(system, motions, vertical=vertical, forces=True, threads=threads)
     return pd.DataFrame(
         {
             "friction_demand": found.of_any("friction_demand")[0, :, 0],
@@ -199,20 +186,21 @@ def _forces(
 
 def _in_contact(
     system: System, motions: list[Motion], vertical: list[NDArray[np.float64]] | None
-) -> Outcomes:
-    """Outcomes with forces of what may slide, which histories alone tell."""
-    from rockfrag.rocking import simulate
-
-    found = empty_outcomes([system.names], np.ones((len(motions), 1)))
-    for place, (motion, up) in enumerate(zip(motions, vertical or repeat(None), strict=False)):
+) -> pd.DataFrame:
+    """Forces of what may slide, which histories alone tell."""
+    rows = []
+    for motion, up in zip(motions, vertical or repeat(None), strict=False):
         response = simulate(system, motion, vertical=up)
-        at = (0, place, 0)
-        found.friction_demand[at] = response.friction_demand
-        found.least_normal_force[at] = response.least_normal_force
-        found.peak_slip[at] = np.abs(response.slip).max(axis=0)
-        found.unstable_distance[at] = response.unstable_distance
-        found.flights[at] = (response.contact_events["kind"] == "flight").sum()
-    return found
+        rows.append(
+            {
+                "friction_demand": np.fmax.reduce(response.friction_demand),
+                "least_normal_force_n": np.fmin.reduce(response.least_normal_force),
+                "peak_slip_m": np.abs(response.slip).max(),
+                "unstable_distance": response.unstable_distance,
+                "flights": (response.contact_events["kind"] == "flight").sum(),
+            }
+        )
+    return pd.DataFrame(rows)
 
 
 def sliding_table(files: Iterable[Path]) -> pd.DataFrame:

@@ -4,7 +4,7 @@ import os
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 from rockfrag.errors import InputError
 from rockfrag.files import is_file
@@ -17,31 +17,22 @@ PULSE_MEASURES = ("pga_g", "pgv_over_pga_s")
 CAMPAIGN_KEY = "campaign"  # key that only a study of a campaign has
 
 
-class PublicFile(NamedTuple):
-    """A file that anybody can fetch: address, SHA-256, and where it is kept."""
-
-    url: str
-    sha256: str
-    path: Path
-
-
 @dataclass(frozen=True)
 class CampaignStudy(Heading):
     """Everything that the configuration of a campaign says, checked."""
 
-    fetch: tuple[PublicFile, ...]  # Public files that are fetched if they are not there
+    # Public files that are fetched if they are not there: address, SHA-256, and where each is kept
+    fetch: tuple[tuple[str, str, Path], ...]
     # Table of tests, its columns, and a table of other programs' outcomes or None
     tests: Path
     columns: Mapping[str, str]
     other_codes: Path | None
-    # Where the table's motions are, and what their files do not state
-    motions: str
+    motions: str  # Where the table's motions are
     # Cycles of the cosine that the table was told to make, where ``motions`` is empty because PGA
     # and PGV/PGA of each test tell its motion; 0 for measured motions
     pulse_cycles: int
-    unit: str | None
-    dt_s: float | None
-    channel: str | None
+    # What the files of motions do not state: unit, step [s] and channel
+    unstated: tuple[str | None, float | None, str | None]
     leave_out: bool  # Whether tests without a motion are left out; otherwise they are refused
     # For each intensity measure the columns and numbers whose product it is; empty to measure the motions
     measures: Mapping[str, tuple[str | float, ...]]
@@ -68,7 +59,7 @@ class CampaignStudy(Heading):
     def files(self) -> list[str]:
         """Files that must be there before anything runs; those to be fetched are not among them."""
         motions = Path(self.motions) if self.motions.endswith(".npz") else None
-        fetched = {None, *(public.path for public in self.fetch)}
+        fetched = {None, *(path for _, _, path in self.fetch)}
         named = (self.tests, self.other_codes, self.mesh, motions)
         return [str(path) for path in named if path not in fetched]
 
@@ -77,10 +68,10 @@ def campaign_from(content: Mapping[str, Any], source: Path) -> CampaignStudy:
     """Make the study of a campaign from a checked configuration that was read from ``source``."""
     campaign, thing = content[CAMPAIGN_KEY], content["object"]
     fetch = tuple(
-        PublicFile(wanted["url"], wanted["sha256"], _kept(source, i, wanted["file"]))
+        (wanted["url"], wanted["sha256"], _kept(source, i, wanted["file"]))
         for i, wanted in enumerate(content.get("fetch", ()))
     )
-    fetched = {public.path for public in fetch}
+    fetched = {path for _, _, path in fetch}
 
     def existing(key: str, name: str) -> Path:
         path = beside(source, name)
@@ -118,7 +109,7 @@ def campaign_from(content: Mapping[str, Any], source: Path) -> CampaignStudy:
         other_codes=None if other is None else existing("campaign.other_codes", other),
         motions=motions,
         pulse_cycles=pulse_cycles,
-        **{key: campaign.get(key) for key in ("unit", "dt_s", "channel")},
+        unstated=(campaign.get("unit"), campaign.get("dt_s"), campaign.get("channel")),
         leave_out=campaign.get("without_motion", "refuse") == "leave_out",
         measures={name: tuple(value) for name, value in campaign.get("measures", {}).items()},
         object=thing,
@@ -156,11 +147,9 @@ class MeasuredTable(Heading):
     table: Path  # CSV with one row per test
     # For each intensity measure the columns and numbers whose product it is
     measures: Mapping[str, tuple[str | float, ...]]
-    # Columns: outcome, input motion, earthquake, and those against which sufficiency is tested
-    overturned: str
-    motion: str | None
-    earthquake: str | None
-    given: tuple[str, ...]
+    # Columns: ``overturned`` and, if any, ``motion``, ``earthquake`` and ``given``, a list of those
+    # against which sufficiency is tested
+    columns: Mapping[str, Any]
     confidence: float  # Level of the intervals
     replicates: int  # Number of bootstrap samples
 
@@ -178,16 +167,12 @@ def measured_table_from(content: Mapping[str, Any], source: Path) -> MeasuredTab
             f"{source}: key {TABLE_KEY}: there is no {table}; put a CSV file with one row per test "
             "there, or name yours."
         )
-    columns = content["columns"]
     _check_columns(source, table, content)
     return MeasuredTable(
         **heading_of(content, source),
         table=table,
         measures={name: tuple(factors) for name, factors in content["measures"].items()},
-        overturned=columns["overturned"],
-        motion=columns.get("motion"),
-        earthquake=columns.get("earthquake"),
-        given=tuple(columns.get("given", ())),
+        columns=content["columns"],
         confidence=content["confidence"],
         replicates=content.get("replicates", 200),
     )

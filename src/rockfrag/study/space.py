@@ -60,8 +60,8 @@ def space_study_from(content: Mapping[str, Any], source: Path) -> SpaceStudy:
         catalogue_file=catalogue_file,
         catalogue=None if catalogue_file is None else _pairs(catalogue_file),
         bases=tuple(space["bases"]),
-        slenderness=tuple(float(value) for value in space["slenderness"]),
-        heights_m=tuple(float(value) for value in space["heights_m"]),
+        slenderness=tuple(map(float, space["slenderness"])),
+        heights_m=tuple(map(float, space["heights_m"])),
         sweep={"base_spread": 0.0} | space,
     )
 

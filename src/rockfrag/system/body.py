@@ -94,10 +94,8 @@ class RigidBody:
             positive_number("RigidBody: inertia", self.inertia, "kg m²")
         else:
             object.__setattr__(self, "inertia", checked_tensor(self.inertia))
-        spatial = {
-            isinstance(outline, Interval) for outline in (self.base, self.face) if outline
-        } | {self.planar}
-        if len(spatial) > 1:
+        outlines = self.base, self.face or self.base
+        if any(isinstance(outline, Interval) is not self.planar for outline in outlines):
             raise InputError(
                 "RigidBody: a planar body has a number as inertia and intervals as base and face, a body in "
                 "space a tensor and polygons or circles."
@@ -124,12 +122,8 @@ class RigidBody:
 
     @property
     def tensor(self) -> NDArray[np.float64]:
-        """Tensor of inertia about the centre of gravity [kg m²], shape (3, 3); NaN but yy of a planar body."""
-        if isinstance(self.inertia, tuple):
-            return np.array(self.inertia)
-        unknown = np.full((3, 3), math.nan)
-        unknown[1, 1] = self.inertia
-        return unknown
+        """Tensor of inertia of a body in space about its centre of gravity [kg m²], shape (3, 3)."""
+        return np.array(self.inertia)
 
     def seen_along(self, direction_deg: float = 0.0) -> "RigidBody":
         """Return the planar body that moves in the vertical plane of a direction, from x towards y [degrees]."""

@@ -138,8 +138,6 @@ class System:
     @cached_property
     def carried(self) -> tuple[geometry.Shape, ...]:
         """Each body of a planar system as it rocks on its contact, whose ends are those of base and face."""
-        if self.count == 1:
-            return self.shapes
         if self.count == 2:
             return self.shapes[0], self.pile.upper
         bodies = self.in_plane().bodies
@@ -182,12 +180,10 @@ def each_contact(name: str, given: Any, count: int, wanted: str = "") -> tuple[A
         if isinstance(given, (list, tuple, np.ndarray)) and len(given) == count:
             return tuple(given)
         raise InputError(f"{name}: {wanted}, got {shown(given)}.")
-    unknown = [key for key in given if key not in ("ground", "interface")]
-    if unknown or (count == 1 and "interface" in given):
-        wrong = shown(unknown[0] if unknown else "interface")
+    known = ("ground", "interface")[:count]
+    for wrong in (key for key in given if key not in known):
         raise InputError(
-            f"{name}: {wrong} is no contact of a system of {count}; name them ground"
-            + (" and interface." if count > 1 else ".")
+            f"{name}: {shown(wrong)} is no contact of a system of {count}; name them {' and '.join(known)}."
         )
     above = given.get("interface")
     each = list(above) if isinstance(above, list) else [above] * (count - 1)
@@ -204,11 +200,8 @@ def box(sides: Vector3, mass: float, inertia: Any, centre: Vector3, name: str = 
     x, y = width / 2, depth / 2
     outline = Polygon(((-x, -y), (x, -y), (x, y), (-x, y)))
     if inertia is None:
-        inertia = diagonal(
-            mass * (depth * depth + height * height) / 12,
-            mass * (width * width + height * height) / 12,
-            mass * (width * width + depth * depth) / 12,
-        )
+        w, d, h = width * width, depth * depth, height * height
+        inertia = np.diag((mass * (d + h) / 12, mass * (w + h) / 12, mass * (w + d) / 12))
     return RigidBody(mass, inertia, centre, outline, height, outline, name)
 
 
@@ -219,20 +212,13 @@ def cylinder(
     outline = Circle(diameter / 2)
     if inertia is None:
         across = round_inertia(diameter, height, mass)
-        inertia = diagonal(across, across, mass * diameter * diameter / 8)
+        inertia = np.diag((across, across, mass * diameter * diameter / 8))
     return RigidBody(mass, inertia, centre, outline, height, outline, name)
 
 
 def round_inertia(diameter: float, height: float, mass: float) -> float:
     """Moment of inertia of a uniform cylinder about an axis across it through its centre [kg m²]."""
     return mass * (0.75 * diameter * diameter + height * height) / 12
-
-
-def diagonal(*moments: float) -> Any:
-    """Return the tensor with these moments about x, y and z [kg m²]."""
-    return tuple(
-        tuple(moment if i == k else 0.0 for i in range(3)) for k, moment in enumerate(moments)
-    )
 
 
 def turned_about_vertical(system: System, angle_deg: float) -> System:

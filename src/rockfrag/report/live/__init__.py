@@ -24,8 +24,7 @@ from rockfrag.system.contact import Contact
 from rockfrag.system.system import System
 from rockfrag.units import GRAVITY
 
-MOST_SAMPLES = 70_000
-"""Samples of all motions that a page carries: three quarters of a megabyte."""
+MOST_SAMPLES = 70_000  # samples of all motions that a page carries: three quarters of a megabyte
 
 AMPLITUDES_G = tuple(np.geomspace(0.05, 2.0, 150).tolist())
 """Amplitudes [g] of a body that no study has swept."""
@@ -153,10 +152,9 @@ def _block(body: RigidBody, contact: Contact) -> dict[str, float]:
     return {**given, "cgOffset": x, "lean": contact.tilt}
 
 
-_WIDTH, _HEIGHT, _GROUND = 200, 190, 150
+_WIDTH, _GROUND = 200, 150
 
-_FALLING = 0.7
-"""Rotation at which a falling body is drawn [rad]."""
+_FALLING = 0.7  # rotation at which a falling body is drawn [rad]
 
 
 def outlines(system: System, position: Floats, theta: Floats) -> list[list[tuple[float, float]]]:
@@ -178,26 +176,21 @@ def frames_svg(system: System, motion: Motion, amplitudes_g: Sequence[float]) ->
     """Draw a system at its largest rotation under a motion of each peak [g]; return the drawing and its words."""
     tall = system.height
     scale = min(120 / tall, 170 / (1.6 * tall))
-    parts, words = [], []
+    frames, words = [], []
     for place, peak in enumerate(amplitudes_g):
         response = simulate(system, scale_to_pga(motion, peak))
         k, outcome = _moment(response)
         shift = (place + 0.5) * _WIDTH
-        shown = outlines(system, response.position[k], response.theta[k])
-        for block, colour in zip(shown, ("--red", "--blue")[-system.count :], strict=True):
-            places = (f"{shift + scale * x:.1f},{_GROUND - scale * y:.1f}" for x, y in block)
-            polygon = Markup('<polygon points="{}" fill="var({})"/>')
-            parts.append(polygon.format(" ".join(places), colour))
-        text = Markup('<text x="{0:.0f}" y="170">{1} g</text><text x="{0:.0f}" y="185">{2}</text>')
-        parts.append(text.format(shift, number(peak, 3), outcome))
+        blocks = [
+            " ".join(f"{shift + scale * x:.1f},{_GROUND - scale * y:.1f}" for x, y in block)
+            for block in outlines(system, response.position[k], response.theta[k])
+        ]
+        frames.append((f"{shift:.0f}", number(peak, 3), outcome, blocks))
         words.append(f"at {number(peak, 3)} g it {outcome}")
     said = listed(words) + "."
-    drawing = Markup(
-        '<svg viewBox="0 0 {0} {1}" role="img" aria-label="Still frames: {2}" font-size="12" text-anchor="middle" '
-        'fill="var(--ink)"><line x1="0" x2="{0}" y1="{3}" y2="{3}" stroke="var(--rule)"/>{4}</svg>'
-    )
-    about = (_WIDTH * len(amplitudes_g), _HEIGHT, said, _GROUND, Markup("").join(parts))
-    return drawing.format(*about), said
+    drawing = TEMPLATES.get_template("frames.svg.j2")
+    about = {"width": _WIDTH * len(amplitudes_g), "ground": _GROUND, "said": said, "frames": frames}
+    return Markup(drawing.render(about).strip()), said
 
 
 def _moment(response: Response) -> tuple[int, str]:

@@ -20,8 +20,7 @@ from rockfrag.units import GRAVITY
 AMPLITUDES_G = tuple(np.geomspace(0.05, 2.0, 60).tolist())
 """Amplitudes [g] that are tried in the page."""
 
-MOST_SAMPLES = 30_000
-"""Times of all motions that a page carries: half a megabyte of two components."""
+MOST_SAMPLES = 30_000  # times of all motions that a page carries: half a megabyte of two components
 
 
 @dataclass(frozen=True)

@@ -16,12 +16,9 @@ from rockfrag import figure_style as style
 from rockfrag.files import file_name
 from rockfrag.pedestal.paired_tests import with_counterparts
 from rockfrag.report import figures, findings
-from rockfrag.report.page import Column, Columns, table_html
+from rockfrag.report.page import Column
 from rockfrag.report.part import Results, Section, says
 from rockfrag.sentences import amplitude, label, shortened
-
-_MOTION = "earthquake; floor; motion"
-_MEANS = ("what = Of; mean_g = Geometric mean [g] .3; motions = Tests each .0; of = of .0",)
 
 
 def _wide(table: pd.DataFrame, texts: list[str], about: tuple[str, ...]) -> pd.DataFrame:
@@ -37,15 +34,14 @@ def as_recorded(results: Results) -> Section:
     """What the motions do as strong as they were recorded."""
     recorded = results.table("as_recorded")
     names = recorded["configuration"].unique()
-    columns: Columns = [_MOTION, "pga_g = Peak [g] .3", *(Column(name, name) for name in names)]
     found = findings.recorded_found(recorded)
     motions = recorded["motion"].nunique()
     draw = partial(recorded_map, recorded)
     figure = says.figure("as_recorded", draw, found, motions, MOST_MOTIONS)
     texts = [_outcome(row) for row in recorded.to_dict("records")]
     shown = _wide(recorded, texts, ("earthquake", "floor", "motion", "pga_g"))
-    caption = "Outcome under each motion as recorded."
-    table = table_html(shown, columns, caption, "as_recorded.csv")
+    columns = [Column(name, name) for name in names]
+    table = says.table("as_recorded", shown, more=columns, file="as_recorded.csv")
     return says.section("as_recorded", [figure, table], found)
 
 
@@ -61,12 +57,10 @@ def amplitudes(results: Results) -> Section:
     resurrections = findings.resurrections_found(survived, results.table("tests"))
     tests = tests[tests["repetition"] == tests["repetition"].min()]
     names = tests["configuration"].unique()
-    columns: Columns = [_MOTION, *(Column(name, f"{name} [g]", numeric=True) for name in names)]
+    columns = [Column(name, f"{name} [g]", numeric=True) for name in names]
     texts = [amplitude(test) for test in tests.to_dict("records")]
     shown = _wide(tests, texts, ("earthquake", "floor", "motion"))
-    caption = "Overturning amplitude of every test (step protocol)."
-    table = table_html(shown, columns, caption, "tests.csv")
-    parts: list[Any] = [table]
+    parts: list[Any] = [says.table("amplitudes", shown, more=columns, file="tests.csv")]
     for name in results.objects:
         own = results.outcomes[results.outcomes["object"] == name]
         configurations = list(dict.fromkeys(own["configuration"]))
@@ -104,14 +98,13 @@ def comparisons(results: Results) -> Section | None:
         scatter = partial(figures.pedestal_scatter, paired, ratio, sides)
         parts.append(says.figure("with_and_without_pedestal", scatter, sides, ratio))
     if len(whole) > 1:
-        parts.append(table_html(whole, _MEANS, "Means over the same motions."))
+        parts.append(says.table("means", whole, "motions"))
     if len(set(floors["floor"])) > 1:
-        parts.append(table_html(floors, _MEANS, "Means over the same records and objects."))
+        parts.append(says.table("means", floors, "records and objects"))
     return says.section("comparisons", parts, found, words)
 
 
-MOST_MOTIONS = 30
-"""More motions than this are not legible; the strongest are drawn."""
+MOST_MOTIONS = 30  # more motions than this are not legible; the strongest are drawn
 
 _SHADES = ListedColormap(["#ffffff", "#d6e6f2", "#a9cbe3", "#74abd2", "#3d86bb"])
 """Rotation from none to the critical angle; darker is nearer to overturning."""
@@ -155,8 +148,7 @@ def recorded_map(recorded: pd.DataFrame) -> Figure:
         return figure
 
 
-MOST_ROWS = 24
-"""More motions than this are not legible; the first are drawn."""
+MOST_ROWS = 24  # more motions than this are not legible; the first are drawn
 
 _TICKS = (0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10)
 

@@ -21,23 +21,10 @@ from rockfrag.outcomes.limit_states import OVERTURNS, limit_states
 from rockfrag.report.answer import has_one_record
 from rockfrag.report.figures import GREY
 from rockfrag.report.findings import ONE_MOTION, strength_found
-from rockfrag.report.page import Row, table_html
+from rockfrag.report.page import Row
 from rockfrag.report.part import FigureSpec, Results, Section, says
-from rockfrag.sentences import decimals_of, estimates, number, sentence, shortened
+from rockfrag.sentences import decimals_of, estimates, number, shortened
 from rockfrag.stages.fragility import best_of
-
-_TWO_MEASURES = (
-    "configuration = Object; pair = Measures; c0 = b₀ .2; c1 = b₁ .2; c2 = b₂ .2; c12 = b₁₂ .2",
-    "aic = AIC .1; p_interaction = p of no interaction .3; p_fit = p of the fit .3",
-)
-_FLOORS = (
-    "configuration; floor; state_text = Limit state; im = Measure; theta_text = Median θ [g] #",
-    "beta = Dispersion β ±",
-)
-_MEASURES = (
-    "configuration; im = Recommended; beta_amplitude = β .3; auc = AUC .3",
-    "chosen_fraction = Fraction of bootstrap samples in which it is best .2; words = Reasons",
-)
 
 
 def fragility(results: Results) -> Section:
@@ -93,16 +80,9 @@ def _tables(curves: pd.DataFrame, level: str) -> list[Markup]:
         ["im", "unit", "estimator"], sort=False
     ):
         shown = rows.assign(lean=[_lean(row) for row in rows.to_dict("records")])
-        columns = [
-            f"configuration; theta = Median θ [{unit}] ±; beta = Dispersion β ±",
-            "p_fit = p of the fit p; lean = Most influential",
-        ]
-        if (rows["p_fit"] < REJECTED).any():
-            columns.append(
-                "theta_isotonic = Nonparametric median ±; beta_isotonic = Nonparametric β ±"
-            )
-        caption = f"{sentence(str(measure))}, {str(definition).replace('_', ' ')}, with {level} intervals."
-        tables.append(table_html(shown, columns, caption))
+        rejected = (rows["p_fit"] < REJECTED).any()
+        about = (str(measure), unit, str(definition), level, rejected)
+        tables.append(says.table("curves", shown, *about))
     return tables
 
 
@@ -140,8 +120,7 @@ def two_measures_section(tables: VectorTables, confidence: float) -> Section | N
         name = file_name(f"two_measures_{'_'.join(map(str, row.values()))}")
         draw, of = partial(two_measures_figure, own, tests), row["configuration"]
         parts.append(says.figure(name, draw, of, pair, of="two_measures"))
-    shown, caption = found.assign(pair=pairs), "Fits in two measures."
-    table = table_html(shown, _TWO_MEASURES, caption, "fragility_two_measures")
+    table = says.table("two_measures", found.assign(pair=pairs), file="fragility_two_measures")
     rejected, level = int((found["p_fit"] < REJECTED).sum()), f"{100 * confidence:g} %"
     limits, notes = (INTERACTION_LEVEL, level), list(dict.fromkeys(fits["warnings"]))
     named = ", ".join(dict.fromkeys(pairs))
@@ -164,8 +143,7 @@ def floor_curves(results: Results) -> Section | None:
     )
     fallen = shown[shown["state"] == OVERTURNS].to_dict("records")
     weakest = min(fallen, key=lambda row: float(row["theta"]), default=None)
-    caption = f"Curves by floor, with {results.level} intervals where there are any."
-    table = table_html(shown, _FLOORS, caption)
+    table = says.table("floors", shown, results.level)
     return says.section("floor_curves", [table], weakest, files)
 
 
@@ -178,9 +156,8 @@ def measures(results: Results) -> Section:
     none = [name for name in dict.fromkeys(choice["configuration"]) if name not in named]
     better = list(dict.fromkeys(best.loc[~best["measure"].isin(list(asked)), "im"]))
     compared = choice["measure"].nunique()
-    caption = "Recommended measure of each configuration, with reasons."
     about = (best_of(choice, asked), better, compared, none)
-    return says.section("measures", [table_html(best, _MEASURES, caption)], *about)
+    return says.section("measures", [says.table("measures", best)], *about)
 
 
 def fragility_figure(
@@ -249,8 +226,7 @@ def axis_label(name: str, unit: str) -> str:
     return f"{name} [{unit}]" if unit else name
 
 
-LINES = {0.1: "dotted", 0.5: "solid", 0.9: "dashed"}
-"""How contours of probabilities are drawn."""
+LINES = {0.1: "dotted", 0.5: "solid", 0.9: "dashed"}  # how contours of probabilities are drawn
 
 MEDIAN = 0.5
 

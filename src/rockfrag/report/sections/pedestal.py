@@ -16,7 +16,7 @@ from rockfrag import figure_style as style
 from rockfrag.report import figures, page
 from rockfrag.report.figures import BAND, GREY
 from rockfrag.report.findings import WITH_PEDESTAL, Sides, pedestal_effect, ratio_of, sides_of
-from rockfrag.report.page import Column, Columns, by_row, estimated, table_html
+from rockfrag.report.page import Columns, estimated, table_html
 from rockfrag.report.part import FigureSpec, Results, Section, says
 from rockfrag.sentences import amplitude, counted, has_interval, sentence, shortened
 from rockfrag.shaketable.definitions import DEFINITION
@@ -95,13 +95,11 @@ def _forest(effects: pd.DataFrame, about: Sides) -> FigureSpec:
     return says.figure("pedestal_effect", draw, about, left_out, ratio)
 
 
-NONE = (1 / 1.1, 1.1)
-"""Ratios between which an effect counts as none."""
+NONE = (1 / 1.1, 1.1)  # ratios between which an effect counts as none
 
 _TICKS = (0.1, 0.2, 0.3, 0.5, 0.7, 0.8, 0.9, 1, 1.1, 1.2, 1.5, 2, 3, 5, 10)
 _MOST_TICKS = 7
-_LEAST_APART = 0.11
-"""Ticks nearer than this part of the axis would print over each other."""
+_LEAST_APART = 0.11  # ticks nearer than this part of the axis would print over each other
 
 
 def forest_figure(effects: pd.DataFrame, sides: Sides = WITH_PEDESTAL) -> Figure:
@@ -158,15 +156,8 @@ def ratio_axis(
             ticks = [tick for tick in ticks if tick not in crowded]
     axes.set_xticks(ticks, [f"{tick:g}" for tick in ticks])
     axes.minorticks_off()
-    axes.set_xlabel(sides.axis)
-
-
-_MEASURED = (
-    "object; pedestal = Side; earthquake; floor",
-    Column("amplitude_g", "Measured [g]", by_row(amplitude)),
-    "simulated_g .3; ratio = Measured / simulated .2",
-)
-_MEASURED_CURVES = ("configuration; theta = Median θ [g] ±; beta = β .3",)
+    words = "with / without pedestal" if sides == WITH_PEDESTAL else "over the other's"
+    axes.set_xlabel(f"Amplitude {words}")
 
 
 def measured(results: Results) -> Section | None:
@@ -180,10 +171,8 @@ def measured(results: Results) -> Section | None:
     if beside["simulated_g"].notna().any():
         parts.append(says.figure("measured_beside", lambda: measured_beside(beside), words))
     curves, effects = results.table("measured/fragility"), results.table("measured/effects")
-    parts += [
-        table_html(beside, _MEASURED, "Measured tests beside simulated ones."),
-        table_html(curves, _MEASURED_CURVES, "Fragility from the measured tests."),
-    ]
+    shown = beside.assign(measured=[amplitude(row) for row in beside.to_dict("records")])
+    parts += [says.table("measured", shown), says.table("measured_curves", curves)]
     if len(effects):
         caption = "Measured effect of the pedestal."
         parts.append(table_html(shown_effects(effects), effect_columns(), caption))

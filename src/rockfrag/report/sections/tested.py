@@ -15,38 +15,19 @@ from rockfrag.motions.intensity import intensity_measures
 from rockfrag.records.motion import Motion
 from rockfrag.report.figures import GREY, MARKERS, drawn_tests
 from rockfrag.report.findings import model_allowed, sliding_found
-from rockfrag.report.page import Column, table_html
+from rockfrag.report.page import Column
 from rockfrag.report.part import Results, Section, says
 from rockfrag.report.sections.amplitudes import MOST_ROWS
 from rockfrag.sentences import label, number, shortened
 from rockfrag.stages.tests import LIMITED, MOST_TESTED
 from rockfrag.units import CENTIMETRES_PER_METRE, GRAVITY
 
-_LEFT_OUT = ("motion = Record; reason = Why it could not be used",)
-_SHAKER = (
-    "motion; travel_cm_per_g = Peak to peak [cm/g] .2",
-    "excursion_cm_per_g = From the start [cm/g] .2; limit_g = Fits up to [g] .3; limited_by",
-)
-_BODIES = (
-    "configuration; stands_on; width_cm .1; height_cm .1; mass_kg .3",
-    "slenderness = Height / width .2; critical_angle_rad .3",
-    "frequency_1_s = Frequency parameter p [1/s] .2; uplift_g = Starts to rock at [g] .3",
-)
-_VALIDITY = (
-    "object; side = Pedestal; tests .0; median = Friction needed, median .2; largest = largest .2",
-    "beyond = No friction is enough .0; lifted = Lifts off .0",
-)
-_SLIDING = (
-    "configuration; cases = Analyses .0; slid = Slides .0; flew = Flies .0; largest_slip_cm .1",
-    "saved = Saved by sliding .0; felled = Overturned by it .0",
-)
-
 
 def left_out(results: Results) -> Section | None:
     """Records that a study went on without."""
     if not results.study.keep_going or (table := results.table("left_out")).empty:
         return None
-    shown = table_html(table, _LEFT_OUT, "Records that could not be used.", "left_out.csv")
+    shown = says.table("left_out", table, file="left_out.csv")
     return says.section("left-out", [shown], list(table["motion"]), len(results.study.catalogue))
 
 
@@ -62,21 +43,19 @@ def shaker(results: Results) -> Section | None:
     names = [f"{row['test']} ({row['remark']})" for row in new.to_dict("records")]
     draw = partial(shaker_limits, limits, results.tests)
     figure = says.figure("shaker_limits", draw, names, len(limited))
-    caption = "What each motion requires of the shaking table, per g of its peak."
-    table = table_html(limits, _SHAKER, caption, "shaker.csv")
+    table = says.table("shaker", limits, file="shaker.csv")
     return says.section("shaker", [figure, table], names, len(limited))
 
 
 def motions(results: Results) -> Section:
     """The motions, how strong each is and how it goes."""
     measures, ground = results.table("measures"), results.ground
-    columns = [Column("name", "Motion")] + [
+    columns = [
         Column(each.column, f"{each.title or each.label} [{each.unit or '-'}]", each.decimals)
         for each in intensity_measures()
         if each.decimals is not None
     ]
-    caption = "Intensity of every motion as recorded."
-    table = table_html(measures, columns, caption, "measures.csv")
+    table = says.table("motions", measures, more=columns, file="measures.csv")
     shown = min(len(ground), MOST_PANELS)
     peak = max(ground[:shown], key=lambda motion: motion.pga)
     about = (shown, len(results.records), peak, peak.pga / GRAVITY)
@@ -96,8 +75,7 @@ def bodies(results: Results) -> Section:
     )
     ends = (number(value, 2) for value in (shown["uplift_g"].min(), shown["uplift_g"].max()))
     may_differ = results.study.slides or results.study.vertical
-    drawn = table_html(shown, _BODIES, "The objects, alone and on their pedestals.")
-    return says.section("bodies", [drawn], len(shown), *ends, may_differ)
+    return says.section("bodies", [says.table("bodies", shown)], len(shown), *ends, may_differ)
 
 
 def validity(results: Results) -> Section | None:
@@ -105,7 +83,7 @@ def validity(results: Results) -> Section | None:
     if results.study.slides:
         sliding = results.table("sliding")
         shown = sliding.assign(largest_slip_cm=100 * sliding["largest_slip_m"])
-        table = table_html(shown, _SLIDING, "Sliding and flight in all analyses.")
+        table = says.table("sliding", shown)
         return says.section("validity", [table], sliding_found(sliding), of="sliding")
     tests = results.table("validity")
     if tests.empty:
@@ -125,8 +103,7 @@ def validity(results: Results) -> Section | None:
         side=shown["pedestal"].map({"P": "with", "NP": "without"}),
         beyond=shown["tests"] - shown["known"],
     )
-    caption = "Friction coefficient needed, and tests with lift-off."
-    table, all_tests = table_html(shown, _VALIDITY, caption), shown["tests"].max() < MOST_TESTED
+    table, all_tests = says.table("validity", shown), shown["tests"].max() < MOST_TESTED
     return says.section("validity", [table], model_allowed(tests), all_tests)
 
 
@@ -164,8 +141,7 @@ def shaker_limits(limits: pd.DataFrame, tests: pd.DataFrame) -> Figure:
         return figure
 
 
-MOST_PANELS = 8
-"""More motions than this do not fit one figure; the first are drawn."""
+MOST_PANELS = 8  # more motions than this do not fit one figure; the first are drawn
 
 
 def acceleration_histories(motions: Sequence[Motion]) -> Figure:

@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from rockfrag.figure_style import BLUE, COLUMN_WIDTH, ORANGE, panels
-from rockfrag.report.answer import could_change, questions, rests_on, study_answer
+from rockfrag.report.answer import study_answer
 from rockfrag.report.figures import BAND, GREY
 from rockfrag.report.findings import FRICTION, ratio_text
 from rockfrag.report.part import Answer, Finding, Results
@@ -58,16 +58,14 @@ def thesis_answer(results: Results) -> Answer:
         settings_of(study).wanted_percent,
     )
     here = effects[effects["definition"] == DEFINITION]
-    return Answer(
+    return replace(
+        study_answer(results),
         asked="Does a pedestal delay overturning on the ground and hasten it on upper floors?",
         sentences=found,
         figure=says.figure(
             "answer", lambda: ratios_figure(here), found[0].headline, has_thesis_floors(here)
         ),
         advice=_advice(results),
-        rests_on=rests_on(results),
-        could_change=could_change(results),
-        questions=questions(results),
     )
 
 
