@@ -193,7 +193,6 @@ def _bars(table: pd.DataFrame, bottom: float, height: float) -> list[NDArray[np.
     fallen = np.concatenate([[False], ordered["overturned"].to_numpy(), [False]])
     starts = edges[np.flatnonzero(~fallen[:-1] & fallen[1:])]
     ends = edges[np.flatnonzero(fallen[:-1] & ~fallen[1:])]
-    return [
-        np.array([(a, bottom), (b, bottom), (b, bottom + height), (a, bottom + height)])
-        for a, b in zip(starts, ends, strict=True)
-    ]
+    low, high = np.full(starts.size, bottom), np.full(starts.size, bottom + height)
+    corners = np.array([(starts, low), (ends, low), (ends, high), (starts, high)])
+    return list(np.moveaxis(corners, 2, 0))
