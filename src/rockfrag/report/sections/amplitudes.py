@@ -93,7 +93,7 @@ def comparisons(results: Results) -> Section | None:
         parts.append(says.figure("amplitudes_by_floor", by_floor, of_floors))
     if study.has_pairs:
         sides = findings.sides_of(study)
-        ratio = findings.ratio_of(results.table("pedestal/effects"), sides)("whole", "all")
+        ratio = findings.ratio_of(results.table("pedestal/effects"), sides)
         paired, _ = with_counterparts(tests, study.counterparts)
         scatter = partial(figures.pedestal_scatter, paired, ratio, sides)
         parts.append(says.figure("with_and_without_pedestal", scatter, sides, ratio))

@@ -88,7 +88,7 @@ def _forest(effects: pd.DataFrame, about: Sides) -> FigureSpec:
         if len(shown) > MOST_ROWS:
             shown = shown[shown["scope"] != scope]
             left_out.append(words)
-    ratio = ratio_of(effects, about)("whole", "all")
+    ratio = ratio_of(effects, about)
     draw = partial(forest_figure, shown, about)
     return says.figure("pedestal_effect", draw, about, left_out, ratio)
 
