@@ -32,8 +32,7 @@ class InterfaceMode(NamedTuple):
 OPEN = InterfaceMode((), 0)
 FULL = (-1, 1)
 Mode = tuple[InterfaceMode, ...]
-End = tuple[int, int]
-"""An end of an interface: (number of the interface, side)."""
+End = tuple[int, int]  # an end of an interface: (number of the interface, side)
 
 # a corner counts as over the face until it is this fraction of the half width beyond the edge
 AT_EDGE = 1e-9
