@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hypothesis import assume, given, settings
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from rockfrag.engines.kernels.chatter import HISTORY
@@ -101,22 +101,6 @@ def test_on_a_pedestal_that_cannot_move_the_statue_rocks_alone(seed):
     n = min(until_fallen(alone).stop, until_fallen(carried).stop)
     assert np.abs(carried.theta[:, 0]).max() < 1e-9
     assert carried.theta[:n, 1] == pytest.approx(alone.theta[:n, 0], abs=1e-9)
-
-
-@few
-@given(seeds)
-def test_two_blocks_that_never_part_rock_as_one(seed):
-    # a flat plate on a column has no cause to rock on its own
-    _, motion, rng = drawn(seed)
-    height, top = rng.uniform(1.0, 3.0), rng.uniform(0.05, 0.2)
-    stack = Stack(Block(0.5, height, 300.0), Block(0.5, top * 0.5, 30.0))
-    together, item = simulate(stack, motion, DT), simulate(stack.rigidly_joined(), motion, DT)
-    parted = np.flatnonzero(together.state[:, 1] != 0)
-    n = min(until_fallen(together).stop, until_fallen(item).stop)
-    n = min(n, int(parted[0]) if parted.size else n)
-    assume(n > 20)
-    assert together.theta[:n] == pytest.approx(np.tile(item.theta[:n], 2), abs=1e-9)
-    assert set(together.rocking_mode[:n]) <= {"rest", "3a", "3b"}
 
 
 @few

@@ -20,7 +20,6 @@ MOTIONS = [
 ]
 BLOCK = Block(width=0.3, height=1.2, mass=200.0)
 BODIES = [BLOCK, Stack(Block(width=0.4, height=0.3, mass=100.0), BLOCK)]
-SCALES = np.linspace(0.2, 1.4, 7)
 TWO = [motion[100:500] for motion in MOTIONS[:2]]
 THREE = np.array([0.2, 0.5, 0.9])
 
@@ -54,35 +53,24 @@ def test_neither_row_groups_nor_threads_change_a_number_and_a_failure_leaves_wha
 
 
 @pytest.mark.parametrize("which", ["cases", "bodies", "contacts"])
-def test_the_file_is_the_table_of_the_outcomes(tmp_path, which):
+def test_the_file_is_the_table_of_the_outcomes(tmp_path, monkeypatch, which):
+    monkeypatch.setattr(parquet, "ROWS", 2)
     path, seen = tmp_path / "ensemble.parquet", []
+    # scales and intervals go with their motion, restitutions with their body
+    case = BODIES, MOTIONS, [DT, DT, 2 * DT], np.array([[0.5, 1.0], [0.8, 1.6], [0.3, 0.6]])
+    restitution = [0.8, (0.4, 0.9)]
     columns = ("overturned", "certain_time", "impacts") if which == "cases" else None
-    count = stream_overturns(
-        BODIES, MOTIONS, DT, SCALES, path,
-        table=which, columns=columns, progress=lambda *n: seen.append(n),
-    )  # fmt: skip
-    result = overturns(BODIES, MOTIONS, DT, SCALES)
+    more = {"columns": columns, "progress": lambda *n: seen.append(n)}
+    count = stream_overturns(*case, path, table=which, restitution=restitution, **more)
+    result = overturns(*case, restitution=restitution)
     assert seen[-1] == (count, count) == (result.overturned.size, result.overturned.size)
     expected = result.table(which, columns).drop(columns="engine", errors="ignore")
     pd.testing.assert_frame_equal(
         pd.read_parquet(path), expected, check_dtype=False, check_exact=True
     )
     assert 0 < result.overturned.mean() < 1
-
-
-def test_scales_and_restitutions_go_with_their_motion_and_body(tmp_path, monkeypatch):
-    monkeypatch.setattr(parquet, "ROWS", 2)
-    scales = np.array([[0.5, 1.0], [0.8, 1.6], [1.1, 2.2]])
-    restitution = [0.8, (0.4, 0.9)]
-    path = tmp_path / "s.parquet"
-    stream_overturns(
-        BODIES, MOTIONS, [DT, DT, 2 * DT], scales, path, table="bodies", restitution=restitution
-    )
-    result = overturns(BODIES, MOTIONS, [DT, DT, 2 * DT], scales, restitution=restitution)
-    table = pd.read_parquet(path)
-    pd.testing.assert_frame_equal(table, result.table("bodies"), check_dtype=False)
     # outcomes alone take no other columns
-    stream_overturns(BODIES, MOTIONS, DT, SCALES, path)
+    stream_overturns(*case, path)
     columns = pq.read_schema(path).names
     assert columns == ["system", "motion", "scale", "overturned", "overturned_body"]
 

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from rockfrag.rocking.ensemble import overturned_cases, overturns, prepared
+from rockfrag.rocking.ensemble import overturns
 from rockfrag.rocking.robustness import find_step_size_sensitive, outcome_robustness
 from rockfrag.rocking.thresholds import find_thresholds
 from rockfrag.system.blocks import Block, Stack
@@ -84,15 +84,6 @@ def test_both_ends_of_every_window_survive_and_it_overturns_just_outside(ensembl
         assert fallen[:3].tolist() == [True, False, False]
         assert fallen[3] or row.upper == 1.5
     assert len(found.resurrections) == found.table["resurrections"].sum()
-
-
-def test_scattered_cases_have_the_outcomes_of_the_grid(ensemble):
-    cases = prepared(*ensemble, DT, np.linspace(0.2, 1.0, 7))
-    grid = overturns(*ensemble, DT, cases.scales).overturned
-    rng = np.random.default_rng(1)
-    i, j, k = (rng.integers(0, n, 50) for n in grid.shape)
-    some = overturned_cases(cases, i, j, cases.scales[j, k])
-    np.testing.assert_array_equal(some, grid[i, j, k])
 
 
 @pytest.mark.parametrize(("kind", "gate"), [("lone", 0.001), ("stack", 0.005)])

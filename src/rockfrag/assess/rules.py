@@ -66,13 +66,12 @@ def asce_43(block: Block, motion: Motion) -> float:
     vertical shaking. The block topples where no rotation bears the demand.
     """
     a = math.tan(block.alpha)
-    height = block.h
     inertia = 4 / 3 * (1 + a**2)
     decrement = -2 * math.log(max(1 - 2 * a**2 / inertia, 1e-6))
     damping = decrement / math.sqrt(4 * math.pi**2 + decrement**2)
     theta = ANGLES * block.alpha
     lifted = np.cos(theta) + a * np.sin(theta) - 1
-    frequency = np.sqrt(2 * lifted * GRAVITY / (inertia * height)) / (2 * math.pi * theta)
+    frequency = np.sqrt(2 * lifted * GRAVITY / (inertia * block.h)) / (2 * math.pi * theta)
     capacity = 2 * GRAVITY * lifted / theta
     demand = response_spectrum(motion, 1 / frequency, damping).pseudo_acceleration
     return float((capacity / demand).max())
@@ -92,8 +91,7 @@ class RuleCheck:
     """A rule held against simulations of one object."""
 
     rule: str  # Its name
-    # Median of the amplitude at which it expects a motion to topple the object over the simulated one [-]
-    bias: float
+    bias: float  # Median of its amplitude to topple the object over the simulated one [-]
     scatter: float  # Standard deviation of the logarithm of that [-]
     unsafe: float  # Fraction of the motions that topple the object at less than the rule says [-]
     motions: int  # Number of motions that topple it at all
