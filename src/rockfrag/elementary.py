@@ -1,12 +1,9 @@
 """Sine, cosine, arc tangent and their like, of plain arithmetic: the same bits on every processor.
 
-The mathematical library of a computer, and the Math object of a browser, choose their own ways to compute
-these, some of them by the processor, and differ in the last digit.  Here are only additions, multiplications,
-divisions and square roots, each rounded once as IEEE 754 says, no multiply-adds, and operations that are exact
-by definition.  Errors are below one unit in the last place.
-
-The functions are ordinary Python, so that bodies can be described with them without a compiler; ``jit``
-makes them known to kernels, under the same names.
+Libraries choose their ways by the processor, and differ in the last digit.  Here are only additions,
+multiplications, divisions and square roots, each rounded once as IEEE 754 says, no multiply-adds, and operations
+that are exact by definition.  Errors are below one unit in the last place.
+Kernels call these functions too (``jit``).
 """
 
 import math
@@ -165,12 +162,8 @@ def _octant(small: float, small_low: float, big: float, big_low: float) -> tuple
     if small < big * _NOTHING:
         return small / big, 0.0
     if big > _HUGE:
-        small, small_low, big, big_low = (
-            small * _DOWN,
-            small_low * _DOWN,
-            big * _DOWN,
-            big_low * _DOWN,
-        )
+        small, small_low = small * _DOWN, small_low * _DOWN
+        big, big_low = big * _DOWN, big_low * _DOWN
     # less the arc tangent of the nearest eighth c: (small - c big) / (big + c small)
     k = math.floor(8.0 * (small / big) + 0.5)
     c = 0.125 * k

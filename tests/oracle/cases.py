@@ -53,23 +53,15 @@ def motions(count: int, seed: int) -> list[NDArray[np.float64]]:
     records of strong earthquakes on firm ground.
     """
     rng = np.random.default_rng(seed)
-    duration = filled(rng, 6.0, 20.0, count)
-    middle = duration * filled(rng, 0.4, 0.9, count)
-    frequency = filled(rng, 1.5, 8.0, count)
-    slope = filled(rng, -0.25, 0.0, count)
-    damping = filled(rng, 0.1, 0.5, count)
+    drawn = {"d5_95_s": filled(rng, 6.0, 20.0, count)}
+    drawn["mid_s"] = drawn["d5_95_s"] * filled(rng, 0.4, 0.9, count)
+    ranges = {"mid_hz": (1.5, 8.0), "slope_hz_s": (-0.25, 0.0), "filter_damping": (0.1, 0.5)}
+    drawn |= {name: filled(rng, low, high, count) for name, (low, high) in ranges.items()}
     made = []
     for i in range(count):
-        motion = evolutionary(
-            seed * 1_000_003 + i,
-            arias_m_s=1.0,
-            d5_95_s=float(duration[i]),
-            mid_s=float(middle[i]),
-            mid_hz=float(frequency[i]),
-            slope_hz_s=float(slope[i]),
-            filter_damping=float(damping[i]),
-            dt=DT,
-        ).acceleration[:SAMPLES]
+        own = {name: float(values[i]) for name, values in drawn.items()}
+        motion = evolutionary(seed * 1_000_003 + i, arias_m_s=1.0, dt=DT, **own)
+        motion = motion.acceleration[:SAMPLES]
         values = np.zeros(SAMPLES)
         values[: motion.size] = motion
         made.append(values * (G / np.abs(values).max()))

@@ -75,13 +75,9 @@ def test_a_straight_motion_is_worst_along_its_line(angle):
 
 
 def test_a_body_that_stands_in_all_directions_has_no_worst_one():
-    first, second = straight(30)
-    found = worst_direction(Block(0.6, 1.2, 100.0), first, second, 0.1)
+    found = worst_direction(Block(0.6, 1.2, 100.0), *straight(30), 0.1)
     assert np.isnan(found.angle_deg)
     assert found.table["first_overturning"].isna().all()
-
-
-def test_no_direction_is_no_question():
     with pytest.raises(InputError, match="directions_deg is empty"):
         worst_direction(Block(0.3, 1.2, 100.0), *straight(0), 2.0, directions_deg=())
 

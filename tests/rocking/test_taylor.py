@@ -15,7 +15,6 @@ from rockfrag.engines.kernels.lanes.stack_constants import (
     ONE,
     TWO,
     fill_constants,
-    number_of,
 )
 from rockfrag.engines.kernels.taylor import ORDER, SERIES, Step, fill_series, rates_of_two
 from rockfrag.engines.lanes import body_record
@@ -24,8 +23,7 @@ from .kernel_impact import state_record
 
 BODY = body_record(Stack(Block(0.4, 0.3, 100.0), Block(0.3, 1.2, 200.0, cg_offset=0.01)).system())
 H, GROUND, RISE = 0.01, 2.0, -1.5
-GRAVITY, LIFT = 9.0, 3.0
-"""Of a ground that moves vertically too."""
+GRAVITY, LIFT = 9.0, 3.0  # of a ground that moves vertically too
 
 
 def product(u, v, k):
@@ -92,28 +90,22 @@ CASES = [((0.10, -0.05), (0.4, -0.9)), ((0.02, 0.0), (-1.0, 2.0)), ((0.3, 0.05),
 
 
 @pytest.mark.parametrize(("theta", "omega"), CASES)
-def test_the_series_of_one_history_are_those_of_the_recurrence(theta, omega):
+def test_the_series_of_histories_and_of_lanes_are_those_of_the_recurrence(theta, omega):
+    mass, moments, gravity, _, rates, ground = step_of(theta, omega)
+    plain = series_by_recurrence(*step_of(theta, omega))
     state = state_record((1, -1), theta, omega, (0.0, GRAVITY))
     series = np.zeros(1, SERIES)[0]
     fill(BODY, state, Step(H, GROUND, RISE, GRAVITY, LIFT), series)
-    plain = series_by_recurrence(*step_of(theta, omega))
-    np.testing.assert_allclose(series["one"]["angle"], plain[0], rtol=1e-9, atol=1e-18)
-    np.testing.assert_allclose(series["two"]["angle"], plain[1], rtol=1e-9, atol=1e-18)
-
-
-@pytest.mark.parametrize(("theta", "omega"), CASES)
-def test_the_series_written_out_for_lanes_are_those_of_the_recurrence(theta, omega):
-    mass, moments, gravity, _, rates, ground = step_of(theta, omega)
+    for name, angle in zip(("one", "two"), plain, strict=True):
+        np.testing.assert_allclose(series[name]["angle"], angle, rtol=1e-9, atol=1e-18)
     m11, m22, e, f = mass
-    delta = theta[1] - theta[0]
-    c, s = math.cos(delta), math.sin(delta)
+    c, s = math.cos(theta[1] - theta[0]), math.sin(theta[1] - theta[0])
     weights = [
         (vy * math.cos(t) - vx * math.sin(t), vx * math.cos(t) + vy * math.sin(t))
         for t, (vx, vy) in zip(theta, moments, strict=True)
     ]
     coupled = m11, m22, e * c + f * s, f * c - e * s
     found = written_out(coupled, *weights, tuple(rates), ground, (*gravity, True))
-    plain = series_by_recurrence(*step_of(theta, omega))
     for item, angle in zip(found, plain, strict=True):
         np.testing.assert_allclose(item, angle[1:] * np.arange(1, ORDER + 1), rtol=1e-9, atol=1e-17)
 
@@ -123,7 +115,7 @@ def closed_both_ways(body, hop, state, constants, scratch):
     """Velocities of a contact that stays closed, as it is closed at once and as an impact would close it."""
     ones, twos, impacts = constants
     fill_constants(body, 1.0, ones, twos, impacts, scratch)
-    at_once = closed(hop, twos[number_of(state.c1, state.c2)])
+    at_once = closed(hop, twos[eq.number_of(state.c1, state.c2)])
     c1, c2 = (0, state.c2) if hop.ground else (state.c1, 0)
     return at_once, stuck(body, state, c1, c2)
 

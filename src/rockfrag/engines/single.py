@@ -14,7 +14,7 @@ from rockfrag.engines.contract import Case, Cases
 from rockfrag.engines.kernels import record as kept
 from rockfrag.engines.kernels.equations import STATE
 from rockfrag.engines.kernels.jit import compiling_alone
-from rockfrag.engines.kernels.single import Shaking, integrate, scratch
+from rockfrag.engines.kernels.single import SCRATCH, Shaking, integrate
 from rockfrag.engines.lanes import BLOCKS, blocks_of, body_record, write_rocking
 from rockfrag.engines.response import Response, contact_event_table, energy_table
 from rockfrag.engines.steps import MOST_SAMPLES, free_samples, step_count
@@ -254,7 +254,7 @@ def run_integration(
     record: np.void, shaking: Any, initial: np.void, history: Records, contact_events: Records
 ) -> tuple[int, np.void]:
     """Integrate one system; return the number of samples done and the summary."""
-    summary: np.void = np.zeros(1, kept.SUMMARY)[0]
+    summary, work = np.zeros(1, kept.SUMMARY)[0], np.zeros(1, SCRATCH)[0]
     with compiling_alone(integrate):
-        done = integrate(record, shaking, initial, history, contact_events, summary, scratch())
+        done = integrate(record, shaking, initial, history, contact_events, summary, work)
     return int(done), summary

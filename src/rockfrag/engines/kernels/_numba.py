@@ -5,6 +5,7 @@ Read by :mod:`rockfrag.engines.kernels.jit` alone, with versions of numba that i
 
 from collections.abc import Iterator
 from contextlib import contextmanager
+from graphlib import TopologicalSorter
 from typing import Any, ClassVar
 
 import llvmlite.binding as llvm
@@ -69,22 +70,15 @@ class Whole(JITCodeLibrary):
 
 def _callers_first(libraries: list[Any]) -> list[Any]:
     """Order libraries and all that their parts call, directly or not, so that each comes after its callers."""
-    order: list[Any] = []
-    seen = set()
-
-    def visit(library: Any) -> None:
-        if library in seen:
-            return
-        seen.add(library)
-        library._ensure_finalized()
-        if isinstance(library, Part):
-            for called in library._linking_libraries:
-                visit(called)
-        order.append(library)
-
-    for other in libraries:
-        visit(other)
-    return order[::-1]
+    calls: dict[Any, list[Any]] = {}
+    left = list(libraries)
+    while left:
+        library = left.pop()
+        if library not in calls:
+            library._ensure_finalized()
+            calls[library] = library._linking_libraries if isinstance(library, Part) else []
+            left += calls[library]
+    return [*TopologicalSorter(calls).static_order()][::-1]
 
 
 class LowerPart(typed_passes.NativeLowering):

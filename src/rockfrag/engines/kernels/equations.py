@@ -11,7 +11,7 @@ import numpy as np
 
 from rockfrag.arrays import fields, whole
 from rockfrag.elementary import atan2, hypot, sin, sin_cos
-from rockfrag.engines.kernels.jit import kernel
+from rockfrag.engines.kernels.jit import inlined_kernel, kernel
 
 IMPACT_LAW = np.dtype([*whole("law"), *fields("value")])
 """How a contact comes off an impact: by momentum (0) or by a law with its number, which is a factor on the rate
@@ -54,6 +54,12 @@ STATE = np.dtype(
 def pivot(c):
     """Position σ of the pivot of contact state c; full contact (0) counts as rocking on +1, at rest."""
     return -1.0 if c < 0 else 1.0
+
+
+@inlined_kernel
+def number_of(c1, c2):
+    """Place of a contact state among the nine."""
+    return 3 * c1 + c2 + 4
 
 
 @kernel

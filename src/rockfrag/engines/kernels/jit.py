@@ -32,44 +32,6 @@ if KNOWN:
     from rockfrag.engines.kernels._numba import PartCompiler, WholeCompiler
 
 
-def entry_kernel(function: Callable[..., Any]) -> Any:
-    """Compile ``function``, which Python calls, without the interpreter's lock, and cache the machine code."""
-    own = {"pipeline_class": WholeCompiler} if KNOWN else {}
-    return cached_njit(_digest, **_EVERY, **own)(function)
-
-
-def kernel(function: Callable[..., Any]) -> Any:
-    """Mark ``function``, which only kernels call; it may be inlined or not."""
-    return _part(function)
-
-
-def inlined_kernel(function: Callable[..., Any]) -> Any:
-    """Mark ``function``, which only kernels call, as always inlined: what is called at every contact event."""
-    return _part(function, forceinline=True)
-
-
-def _part(function: Callable[..., Any], **more: Any) -> Any:
-    njit: Any = numba.njit
-    return njit(**_EVERY, **_PART, **more)(function)
-
-
-_EVERY: dict[str, Any] = {"nogil": True, "error_model": "numpy", "_nrt": False}
-_PART: dict[str, Any] = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
-if KNOWN:
-    _PART["pipeline_class"] = PartCompiler
-
-
-def share_with_kernels(module: ModuleType) -> None:
-    """Let kernels call the functions of a module, plain Python, as if they were some of them."""
-    for function in list(vars(module).values()):
-        if isinstance(function, FunctionType) and function.__module__ == module.__name__:
-            register_jitable(**_EVERY, **_PART)(function)
-
-
-for _module in (elementary, geometry, couple, position):
-    share_with_kernels(_module)
-
-
 @cache
 def _digest() -> str:
     """Digest of all kernels' sources: those of engines, of the arithmetic and of bodies."""
@@ -88,15 +50,39 @@ def _digest() -> str:
     return digest.hexdigest()
 
 
+_EVERY: dict[str, Any] = {"nogil": True, "error_model": "numpy", "_nrt": False}
+_WHOLE: dict[str, Any] = {}
+_PART: dict[str, Any] = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
+if KNOWN:
+    _WHOLE["pipeline_class"], _PART["pipeline_class"] = WholeCompiler, PartCompiler
+
+entry_kernel: Callable[..., Any] = cached_njit(_digest, **_EVERY, **_WHOLE)
+"""Compile a function that Python calls, without the interpreter's lock, and cache the machine code."""
+
+kernel: Callable[..., Any] = numba.njit(**_EVERY, **_PART)
+"""Mark a function that only kernels call; it may be inlined or not."""
+
+inlined_kernel: Callable[..., Any] = numba.njit(**_EVERY, **_PART, forceinline=True)
+"""Mark a function that only kernels call as always inlined: what is called at every contact event."""
+
+
+def share_with_kernels(module: ModuleType) -> None:
+    """Let kernels call the functions of a module, plain Python, as if they were some of them."""
+    for function in list(vars(module).values()):
+        if isinstance(function, FunctionType) and function.__module__ == module.__name__:
+            register_jitable(**_EVERY, **_PART)(function)
+
+
+for _module in (elementary, geometry, couple, position):
+    share_with_kernels(_module)
+
+
 @contextmanager
 def compiling_alone(entry: Any) -> Iterator[None]:
     """Let the first of several processes compile an entry kernel; the others wait, at most ``PATIENCE_S``."""
-    folder = getattr(getattr(entry, "_cache", None), "cache_path", None)
-    if entry.signatures:
-        yield
-        return
-    lock = locked(Path(folder) / f"{entry.__name__}.lock", PATIENCE_S) if folder else nullcontext()
-    with lock:
+    folder: Any = getattr(getattr(entry, "_cache", None), "cache_path", None)
+    alone = folder and not entry.signatures
+    with locked(Path(folder) / f"{entry.__name__}.lock", PATIENCE_S) if alone else nullcontext():
         yield
 
 

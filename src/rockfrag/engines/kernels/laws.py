@@ -1,5 +1,6 @@
 """The laws of impacts (``rockfrag.laws``) as the kernels call them: chosen by number, and inlined."""
 
+from collections.abc import Iterable
 from functools import reduce
 from typing import Any
 
@@ -25,19 +26,14 @@ def _chosen(others: Any, declared: Law) -> Any:
     return chosen
 
 
-@inlined_kernel
-def _none(law):  # type: ignore[no-untyped-def]
-    return False
-
-
-def _or_is(others: Any, declared: Law) -> Any:
-    """Return the function that says whether a number is that of a law, or of others."""
-    number = declared.number
+def _asks(declared: Iterable[Law]) -> Any:
+    """Return the function that says whether a number is that of one of some laws."""
+    numbers = sum(1 << law.number for law in declared)
 
     # a membership test would call what numba brings along, which the module of a page cannot hold
     @inlined_kernel
     def known(law):  # type: ignore[no-untyped-def]
-        return law == number or others(law)
+        return (numbers >> law) & 1 == 1
 
     return known
 
@@ -48,5 +44,5 @@ rate = reduce(_chosen, reversed(_DECLARED), _by_momentum)
 """Rate at which a law lets a contact come off: of the law's number and its value, the rate by momentum,
 the rate before, and the one that moved impulses leave."""
 
-moves_impulse = reduce(_or_is, [law for law in _DECLARED if law.moves_impulse], _none)
-scales_momentum = reduce(_or_is, [law for law in _DECLARED if law.scales_momentum], _none)
+moves_impulse = _asks(law for law in _DECLARED if law.moves_impulse)
+scales_momentum = _asks(law for law in _DECLARED if law.scales_momentum)

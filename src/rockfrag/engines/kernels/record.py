@@ -92,22 +92,14 @@ def begin(state, summary):
 
 @kernel
 def fill_balances(body, balances):
-    """Fill the ways to balance, shape (8,)."""
+    """Fill the ways to balance, shape (9,), by the contacts about which a body does; at rest it has none."""
     for c1 in (1, -1, 0):
         for c2 in (-1, 0, 1):
             if c1 != 0 or c2 != 0:
                 critical, vx, vy, inertia = equations.balance(body, c1, c2)
-                way = balances[_way_of(c1, c2)]
+                way = balances[equations.number_of(c1, c2)]
                 way.critical = critical
                 way.frequency2 = body.gravity * hypot(vx, vy) / inertia
-
-
-@kernel
-def _way_of(c1, c2):
-    """Place of a way to balance: of the pedestal 0 to 5, of the statue, where c1 is zero, 6 and 7."""
-    if c1 == 0:
-        return 6 if c2 > 0 else 7
-    return 1 + c2 + (0 if c1 > 0 else 3)
 
 
 @kernel
@@ -130,10 +122,10 @@ def track(balances, state, summary):
     summary.speed2 = max(summary.speed2, abs(omega2))
     c1, c2 = state.c1, state.c2
     if c2 != 0:
-        ratio2 = _approach(balances[_way_of(0, c2)], c2, theta2, omega2, summary)
+        ratio2 = _approach(balances[equations.number_of(0, c2)], c2, theta2, omega2, summary)
         summary.ratio2 = max(summary.ratio2, ratio2)
     if c1 != 0:
-        ratio1 = _approach(balances[_way_of(c1, c2)], c1, theta1, omega1, summary)
+        ratio1 = _approach(balances[equations.number_of(c1, c2)], c1, theta1, omega1, summary)
         summary.ratio1 = max(summary.ratio1, ratio1)
     return ratio1 >= 1.0 or ratio2 >= 1.0
 
@@ -149,7 +141,7 @@ def note_demand(body, step, series, end, work, summary):
     """
     state, trial = work.state, work.trial
     # what has come back from beyond balance was not yet a fall
-    inside = not work.beyond[0]
+    inside = not work.beyond
     demand = summary.demand if inside else summary.beyond
     if inside:
         add_demand(summary.demand, summary.beyond)

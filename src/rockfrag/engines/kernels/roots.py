@@ -211,13 +211,8 @@ def _lowest_point(q, start, end):
 @kernel
 def graze(gap, rates):
     """Time at which a lone block that rises and falls again touches, NEVER if not; ``gap`` is ψ less its angle."""
-    most = (
-        gap
-        + max(0.0, rates[0])
-        + max(0.0, 0.5 * rates[1])
-        + max(0.0, rates[2])
-        + max(0.0, rates[3])
-    )
+    most = gap + max(0.0, rates[0]) + max(0.0, 0.5 * rates[1]) + max(0.0, rates[2])
+    most += max(0.0, rates[3])
     if most + max(0.0, rates[4]) + max(0.0, rates[5]) + max(0.0, rates[6]) < 0.0:
         # as nearly always: it turns back far from there
         return NEVER

@@ -4,11 +4,12 @@ Every step size, root and decision depends on this one case alone, and nothing n
 """
 
 import math
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from rockfrag.arrays import fields
 from rockfrag.engines.kernels import contact_states, equations, record, roots
 from rockfrag.engines.kernels.chatter import HISTORY, RESTORING, Ahead, dies_out, fill_restoring
 from rockfrag.engines.kernels.demand import add_demand, ask_impulses, no_demand
@@ -34,27 +35,17 @@ class Shaking(NamedTuple):
     free_samples: int  # samples that the integration goes on after the last one, at most
 
 
-class Scratch(NamedTuple):
-    """Memory that an integration works in: ``scratch()``."""
-
-    state: Any
-    before: Any
-    trial: Any
-    series: Any
-    restoring: Any
-    balances: Any
-    beyond: Any  # (1,) whether a block is beyond its balance
-
-
-def scratch() -> Scratch:
-    """Memory for one integration."""
-    return Scratch(
-        *np.zeros(3, equations.STATE),
-        np.zeros(1, SERIES)[0],
-        np.zeros(1, RESTORING)[0],
-        np.zeros(8, record.BALANCE),
-        np.zeros(1, np.bool_),
-    )
+SCRATCH = np.dtype(
+    [
+        *fields("state before trial", of=equations.STATE),
+        *fields("series", of=SERIES),
+        *fields("restoring", of=RESTORING),
+        *fields("balances", 9, of=record.BALANCE),
+        *fields("beyond", of=np.bool_),  # whether a block is beyond its balance
+    ],
+    align=True,
+)
+"""Memory that an integration works in."""
 
 
 @entry_kernel
@@ -62,7 +53,7 @@ def integrate(body, shaking, initial, history, contact_events, summary, work):
     """Integrate one body through its shaking and, after it, free rocking; the number of samples done.
 
     Angles and rates of ``initial``, a STATE, count; ``history`` and ``contact_events`` take as many SAMPLEs and
-    CONTACT_EVENTs as fit; ``summary`` is a SUMMARY, ``work`` a :class:`Scratch`.
+    CONTACT_EVENTs as fit; ``summary`` is a SUMMARY, ``work`` a SCRATCH.
     """
     state = work.state
     record.copy_state(initial, state)
@@ -75,7 +66,7 @@ def integrate(body, shaking, initial, history, contact_events, summary, work):
     state.c1, state.c2 = contact_states.settle(body, state)
     record.fill_balances(body, work.balances)
     fill_restoring(body, work.restoring, work.trial)
-    work.beyond[0] = False
+    work.beyond = False
     if len(history) > 0:
         record.keep_sample(body, state, history[0], 0.0)
     done = 1
@@ -87,14 +78,13 @@ def integrate(body, shaking, initial, history, contact_events, summary, work):
         if len(history) > k + 1:
             record.keep_sample(body, state, history[k + 1], summary.work)
         lying1 = abs(state.theta1) >= contact_states.HALF_TURN
-        lying2 = (
-            max(abs(state.theta2), abs(state.theta2 - state.theta1)) >= contact_states.HALF_TURN
-        )
+        turned2 = max(abs(state.theta2), abs(state.theta2 - state.theta1))
+        lying2 = turned2 >= contact_states.HALF_TURN
         if lying1 or lying2:
             summary.fallen = 1 if lying1 and not body.fixed else 2
             summary.fall_time = (done - 1) * shaking.dt
             break
-        if not work.beyond[0]:
+        if not work.beyond:
             add_demand(summary.demand, summary.beyond)
             no_demand(summary.beyond)
         if k >= n - 1 and state.c1 == 0 and state.c2 == 0:
@@ -145,7 +135,7 @@ def _through_sample(body, shaking, k, contact_events, summary, work):
                 summary.lost_contact, kind = clock, record.LIFTING
                 record.keep_contact_event(body, clock, kind, state, state, contact_events, summary)
             if moves:
-                work.beyond[0] = record.track(work.balances, state, summary)
+                work.beyond = record.track(work.balances, state, summary)
                 summary.work += record.work_of(body, state.c1, state.c2, series, at, step)
             tau += at * remaining
             if when > 1.0:
@@ -162,7 +152,9 @@ def _through_sample(body, shaking, k, contact_events, summary, work):
                 kind = record.OPENING
                 state.c1, state.c2 = contact_states.release(body, state, fails, at == 0.0)
             else:
-                _count_impact(state, closes1, summary)
+                summary.impacts += 1
+                speed = abs(state.omega1 if closes1 else state.omega2 - state.omega1)
+                summary.grazings += 1 if speed < GRAZING_SPEED else 0
                 part = (sub + tau) / substeps
                 ahead = Ahead(samples, shaking.vertical, scale, n - 1, k, part, shaking.dt)
                 forced = count > MAX_CONTACT_EVENTS_PER_STEP
@@ -171,7 +163,7 @@ def _through_sample(body, shaking, k, contact_events, summary, work):
                     body, state, closes, work.restoring, ahead, HISTORY, forced
                 )
                 summary.given_way += gave_way
-                demand = summary.beyond if work.beyond[0] else summary.demand
+                demand = summary.beyond if work.beyond else summary.demand
                 # of a series of impacts that is ended at once, its first one asks as all do
                 after = (
                     state if kind == record.CLOSING else _struck(body, before, closes, work.trial)
@@ -199,14 +191,6 @@ def _move(state, series, tau, h):
     state.omega1 = roots.slope(first, tau) / h if open1 else 0.0
     state.theta2 = roots.value(two, tau) if open2 else state.theta1
     state.omega2 = roots.slope(two, tau) / h if open2 else state.omega1
-
-
-@kernel
-def _count_impact(state, closes1, summary):
-    """Count an impact, and whether it grazes."""
-    summary.impacts += 1
-    if (abs(state.omega1) if closes1 else abs(state.omega2 - state.omega1)) < GRAZING_SPEED:
-        summary.grazings += 1
 
 
 @kernel

@@ -112,7 +112,11 @@ def _module(
     llvm.initialize_all_targets()
     llvm.initialize_all_asmprinters()
     objects = [_object(name, *entry, fused) for name, entry in entries.items()]
-    return _with_section(_linked(objects, list(entries)), "layout", _layout(records, constants))
+    layout = {name: _described(dtype) for name, dtype in records.items()}
+    told = json.dumps(layout | {"constants": constants}, separators=(",", ":")).encode()
+    # a custom section, which has the number 0, its length, and the length of its name
+    section = _length(len(b"layout")) + b"layout" + told
+    return _linked(objects, list(entries)) + b"\0" + _length(len(section)) + section
 
 
 def _object(name: str, function: Any, arguments: tuple[Any, ...], fused: bool | None) -> bytes:
@@ -179,15 +183,6 @@ def _linked(objects: list[bytes], exports: list[str]) -> bytes:
         return linked.read_bytes()
 
 
-# --------------------------------------------------------------------------- the layout of records, and constants
-
-
-def _layout(records: dict[str, np.dtype[Any]], constants: dict[str, float]) -> bytes:
-    layout: dict[str, Any] = {name: _described(dtype) for name, dtype in records.items()}
-    layout["constants"] = constants
-    return json.dumps(layout, separators=(",", ":")).encode()
-
-
 def _described(dtype: np.dtype[Any]) -> dict[str, Any]:
     """Size of a record and the place of each of its numbers: [offset, kind], or a record by itself."""
     fields: dict[str, Any] = {}
@@ -200,13 +195,6 @@ def _described(dtype: np.dtype[Any]) -> dict[str, Any]:
         else:
             fields[name] = [offset]  # of an array the place, which is all that is asked for
     return {"size": dtype.itemsize, "fields": fields}
-
-
-def _with_section(module: bytes, name: str, content: bytes) -> bytes:
-    """Append a custom section to a module."""
-    label = name.encode()
-    body = _length(len(label)) + label + content
-    return module + b"\0" + _length(len(body)) + body
 
 
 def _length(number: int) -> bytes:

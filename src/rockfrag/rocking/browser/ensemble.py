@@ -6,20 +6,16 @@ They are compiled to WebAssembly alone (``build``), around the lanes that everyt
 import numpy as np
 
 from rockfrag.engines.kernels.by_reference import referred
-from rockfrag.engines.kernels.chatter import RESTORING
-from rockfrag.engines.kernels.equations import BODY, STATE
+from rockfrag.engines.kernels.equations import BODY
 from rockfrag.engines.kernels.jit import fma, kernel
-from rockfrag.engines.kernels.lanes import block, stack_case, stack_one, stack_two
-from rockfrag.engines.kernels.lanes.case import LANES, OUTCOME, Ensemble, Motions
+from rockfrag.engines.kernels.lanes import block, stack_case
+from rockfrag.engines.kernels.lanes.case import Ensemble, Motions
 from rockfrag.engines.kernels.lanes.scheduler import integrate_stacks
-from rockfrag.engines.kernels.lanes.stack_constants import IMPACT, ONE, TWO
-from rockfrag.engines.kernels.taylor import SERIES
 from rockfrag.laws import momentum, position
 from rockfrag.rocking.browser import entry
 from rockfrag.system import geometry
 
 _F, _I = np.float64, np.int64
-_SLOTS = stack_case.SLOTS
 
 SHAKEN = np.dtype(
     [
@@ -34,11 +30,7 @@ SHAKEN = np.dtype(
         # what count reads
         ("counter", _I, 1), ("cases", _I),
         # what it works in
-        ("lane", block.LANE), ("tallies", OUTCOME, block.LANES),
-        ("one", stack_one.LANE), ("two", stack_two.LANE), ("slots", stack_case.CASE, _SLOTS),
-        ("waiting", _I, (2, _SLOTS)), ("waits", _I, 2), ("busy", _I, 2),
-        ("ones", ONE, (_SLOTS, 9)), ("twos", TWO, (_SLOTS, 9)), ("impacts", IMPACT, (_SLOTS, 9)),
-        ("restoring", RESTORING, _SLOTS), ("series", SERIES, LANES), ("state", STATE),
+        ("blocks", block.MEMORY), ("stacks", stack_case.MEMORY),
     ],
     align=True,
 )  # fmt: skip
@@ -71,16 +63,22 @@ def describe_shaken(call):
         for pivot in (1, -1):
             after = geometry.momentum_restitution(upper, -pivot)
             if told:
-                after = _ratio(call, upper, -pivot, call.above)
-            constants = geometry.pivot_constants(upper, pivot, after, g)
-            _fill_pivot(call.pivots[(1 - pivot) // 2], constants)
+                after = geometry.scaled_restitution(upper, -pivot, call.above, call.livelier)
+            here = call.pivots[(1 - pivot) // 2]
+            (
+                here.alpha, here.tan, here.sine, here.cosine, here.swing, here.restitution,
+                here.per_alpha, here.per_swing,
+            ) = geometry.pivot_constants(upper, pivot, after, g)  # fmt: skip
             _note_uplift(call, geometry.arm(upper, pivot))
             call.largest = min(call.largest, geometry.largest_restitution(upper, pivot))
         return
     pile = entry.stacked(call, body, lower, upper, 0.0)
     whole = geometry.joined(pile)
     call.centre[0], call.centre[1], call.centre[2] = whole.x, whole.y, whole.inertia
-    _fill_laws(call, lower, pile.upper)
+    _fill_law(call, body.after1r, lower, 1, call.below)
+    _fill_law(call, body.after1l, lower, -1, call.below)
+    _fill_law(call, body.after2r, pile.upper, 1, call.above)
+    _fill_law(call, body.after2l, pile.upper, -1, call.above)
     for pivot in (1, -1):
         _note_uplift(call, geometry.common_arm(pile, pivot))
         _note_uplift(call, geometry.upper_arm(pile, pivot))
@@ -89,34 +87,11 @@ def describe_shaken(call):
 
 
 @kernel
-def _ratio(call, shape, pivot, measured):
-    return geometry.scaled_restitution(shape, pivot, measured, call.livelier)
-
-
-@kernel
-def _fill_laws(call, lower, upper):
-    body = call.body[0]
-    if call.told == 0:
-        for after in (body.after1r, body.after1l, body.after2r, body.after2l):
-            after.law, after.value = momentum.NUMBER, 1.0
-        return
-    _fill_law(call, body.after1r, lower, 1, call.below)
-    _fill_law(call, body.after1l, lower, -1, call.below)
-    _fill_law(call, body.after2r, upper, 1, call.above)
-    _fill_law(call, body.after2l, upper, -1, call.above)
-
-
-@kernel
 def _fill_law(call, after, shape, pivot, measured):
-    after.law, after.value = position.tell(shape, _ratio(call, shape, pivot, measured), pivot)
-
-
-@kernel
-def _fill_pivot(pivot, constants):
-    (
-        pivot.alpha, pivot.tan, pivot.sine, pivot.cosine, pivot.swing, pivot.restitution,
-        pivot.per_alpha, pivot.per_swing,
-    ) = constants  # fmt: skip
+    after.law, after.value = momentum.NUMBER, 1.0
+    if call.told != 0:
+        ratio = geometry.scaled_restitution(shape, pivot, measured, call.livelier)
+        after.law, after.value = position.tell(shape, ratio, pivot)
 
 
 @kernel
@@ -137,8 +112,8 @@ def count_blocks(
     ensemble = referred(
         Ensemble(call.counter, call.cases, pivots, factors, rows, intervals, intervals, free)
     )
-    worker = referred(block.Worker(call.lane, call.tallies))
-    _integrate_blocks(ensemble, referred(_motions(samples, extremes, places)), worker, outcomes)
+    motions = referred(_motions(samples, extremes, places))
+    _integrate_blocks(ensemble, motions, call.blocks, outcomes)
 
 
 @kernel
@@ -146,24 +121,16 @@ def count_stacks(
     call, parts, factors, rows, intervals, free, samples, extremes, places, outcomes
 ):  # fmt: skip
     """Integrate a block on a pedestal likewise; see ``lanes.scheduler.integrate_stacks``."""
-    for i in range(LANES):
-        call.one.slot[i] = call.two.slot[i] = -1
-        call.one.was_weight[i] = call.one.before_weight[i] = call.two.was_weight[i] = 1.0
-    for slot in range(_SLOTS):
-        case = call.slots[slot]
-        case.number, case.body, case.slot = -1, -1, slot
-    for kind in range(2):
-        call.waits[kind] = call.busy[kind] = 0
     ensemble = referred(
         Ensemble(call.counter, call.cases, call.body, factors, rows, intervals, parts, free)
     )
-    worker = referred(
-        stack_case.Worker(
-            call.one, call.two, call.slots, call.waiting, call.waits, call.busy,
-            call.ones, call.twos, call.impacts, call.restoring, call.series, call.state,
-        )
+    own = call.stacks
+    worker = stack_case.Worker(
+        own.one, own.two, own.cases, own.waiting, own.waits, own.busy,
+        own.ones, own.twos, own.impacts, own.restoring, own.series, own.state,
     )  # fmt: skip
-    _integrate_stacks(ensemble, referred(_motions(samples, extremes, places)), worker, outcomes)
+    motions = referred(_motions(samples, extremes, places))
+    _integrate_stacks(ensemble, motions, referred(worker), outcomes)
 
 
 @kernel

@@ -8,12 +8,10 @@ import math
 import numpy as np
 
 from rockfrag.arrays import fields, whole
-from rockfrag.engines.kernels.chatter import RESTORING
 from rockfrag.engines.kernels.equations import BODY, STATE
 from rockfrag.engines.kernels.jit import kernel
-from rockfrag.engines.kernels.record import BALANCE, SUMMARY
-from rockfrag.engines.kernels.single import Scratch, Shaking, integrate
-from rockfrag.engines.kernels.taylor import SERIES
+from rockfrag.engines.kernels.record import SUMMARY
+from rockfrag.engines.kernels.single import SCRATCH, Shaking, integrate
 from rockfrag.laws import position, ratio
 from rockfrag.system import geometry
 
@@ -38,12 +36,7 @@ CALL = np.dtype(
         *whole("substeps free_samples"),
         *fields("summary", of=SUMMARY),
         *whole("done"),
-        # what it works in
-        *fields("state before trial", of=STATE),
-        *fields("series", of=SERIES),
-        *fields("restoring", of=RESTORING),
-        *fields("balances", 8, of=BALANCE),
-        *whole("beyond", 1),
+        *fields("work", of=SCRATCH),
     ],
     align=True,
 )
@@ -133,9 +126,6 @@ def _check_restitution(call, block, restitution):
 def integrate_call(call, samples, vertical, history, contact_events):
     """Integrate the body of a call; see ``single.integrate``."""
     shaking = Shaking(samples, vertical, call.scale, call.dt, call.substeps, call.free_samples)
-    scratch = Scratch(
-        call.state, call.before, call.trial, call.series, call.restoring, call.balances, call.beyond
-    )
     call.done = _integrate(
-        call.body, shaking, call.initial, history, contact_events, call.summary, scratch
+        call.body, shaking, call.initial, history, contact_events, call.summary, call.work
     )

@@ -5,14 +5,12 @@ over g, ψ'' = p² (W sin ψ + A cos ψ) on either pivot (Housner, 1963).  Time 
 """
 
 import math
-from typing import Any, NamedTuple
 
 import numpy as np
 
 from rockfrag.arrays import fields, whole
 from rockfrag.elementary import acos, cos
 from rockfrag.engines.kernels import taylor
-from rockfrag.engines.kernels.by_reference import by_reference
 from rockfrag.engines.kernels.chatter import Ahead, block_dies_out
 from rockfrag.engines.kernels.contact_states import HALF_TURN
 from rockfrag.engines.kernels.impact import block_impact
@@ -63,17 +61,16 @@ LANE = np.dtype(
 """The lanes: a row of LANES numbers for each quantity."""
 
 
-@by_reference
-class Worker(NamedTuple):
-    """Memory that a thread works in: ``worker()``."""
+# the lanes, and what their cases have come to so far; the pedestal's part stays zero
+MEMORY = np.dtype(
+    [*fields("lane", of=LANE), *fields("tallies", LANES, of=cases.OUTCOME)], align=True
+)
+"""Memory that a thread works in."""
 
-    lane: Any  # LANE
-    tallies: Any  # (LANES,) of OUTCOME, of the lanes' cases so far; the pedestal's part stays zero
 
-
-def worker() -> Worker:
+def worker() -> np.void:
     """Memory for one thread."""
-    return Worker(np.zeros(1, LANE)[0], np.zeros(LANES, cases.OUTCOME))
+    return np.zeros(1, MEMORY)[0]
 
 
 @kernel
@@ -91,11 +88,7 @@ def _advance(lane, upward):
 
     Everything is stored in every lane: conditional stores cost many times as much.
 
-    A fall is certain, whatever the ground does, in this case.  Let B = ``bound`` be the most that A can be in the
-    rest of the motion, and V and W the least and the most of gravity.  ψ'' ≤ κ (V sin ψ + (W - V) max(0, sin ψ)
-    + B cos ψ), whose right side grows with ψ: a block that these cannot bring back is brought back by no others.
-    With ψ' < 0 that pendulum passes its upper equilibrium if ψ'²/2 is at least the integral of the right side from
-    there, which is at most κ (√(V² + B²) + (W - V) - W cos ψ + B sin ψ).
+    When a fall is certain, whatever the ground does: ``docs/kernels.md``, "A certain fall".
     """
     for i in range(LANES):
         psi = lane.psi[i]
@@ -431,11 +424,8 @@ def _take_up(lane, i, number, ensemble, motions):
 def _place(lane, i, ensemble, motions):
     """Place what a lane rocks on with; a lane without a case stands still at a harmless place."""
     if lane.case[i] < 0:
-        lane.k[i], lane.last[i], lane.psi[i], lane.omega[i] = 0, 0, 0.0, 0.0
-        lane.ground[i], lane.ground_end[i], lane.factor[i], lane.signed[i] = 0.0, 0.0, 0.0, 0.0
-        lane.kappa[i], lane.bound[i], lane.crest[i] = 0.0, 0.0, 10.0
-        lane.weight[i], lane.weight_end[i], lane.heavy[i] = 1.0, 1.0, 1.0
-        lane.part_left[i], lane.angle[i] = 1.0, 1.0
+        lane.k[i], lane.last[i], lane.part_left[i], lane.angle[i] = 0, 0, 1.0, 1.0
+        lane.psi[i], lane.omega[i], lane.kappa[i] = 0.0, 0.0, 0.0
         return
     k, side, tau = lane.k[i], lane.side[i], lane.tau[i]
     factor = lane.factor[i]

@@ -14,6 +14,7 @@ def integrate_stacks(ensemble, motions, worker, outcomes):
     """Integrate the cases of an ensemble of stacks, a worker a thread; steps of one rotation and of two."""
     g = ensemble.bodies[0].gravity
     upward = motions.vertical.size > 0
+    stack_case.begin(worker)
     for slot in range(stack_case.SLOTS):
         case = worker.cases[slot]
         stack_case.next_case(case, ensemble, motions, worker, outcomes)

@@ -4,7 +4,8 @@
 """
 
 import math
-from typing import Any, NamedTuple
+from collections import namedtuple
+from typing import Any
 
 import numpy as np
 
@@ -47,50 +48,48 @@ CASE = np.dtype(
 """A case in flight; time is counted in samples."""
 
 
-@by_reference
-class Worker(NamedTuple):
-    """Memory that a thread works in: ``worker()``."""
+MEMORY = np.dtype(
+    [
+        *fields("one", of=stack_one.LANE),
+        *fields("two", of=stack_two.LANE),
+        *fields("cases", SLOTS, of=CASE),
+        *whole("waiting", 2, SLOTS),  # slots that wait for a lane of either kind
+        *whole("waits busy", 2),  # how many wait, and how many lanes are taken
+        # constants of the slots' bodies in every contact state
+        *fields("ones", SLOTS, 9, of=stack_constants.ONE),
+        *fields("twos", SLOTS, 9, of=stack_constants.TWO),
+        *fields("impacts", SLOTS, 9, of=stack_constants.IMPACT),
+        *fields("restoring", SLOTS, of=chatter.RESTORING),
+        # of the steps that contact events are looked for in
+        *fields("series", lanes.LANES, of=SERIES),
+        *fields("state", of=equations.STATE),  # of a case, with rates per second
+    ],
+    align=True,
+)
+"""Memory that a thread works in."""
 
-    # one, two: lanes of either kind
-    one: Any
-    two: Any
-    cases: Any  # (SLOTS,) of CASE
-    waiting: Any  # (2, SLOTS) slots that wait for a lane of either kind
-    # waits, busy: (2,) how many wait, and how many lanes are taken
-    waits: Any
-    busy: Any
-    # ones, twos, impacts: (SLOTS, 9) constants of the slots' bodies in every contact state
-    ones: Any
-    twos: Any
-    impacts: Any
-    restoring: Any  # (SLOTS,)
-    series: Any  # (LANES,) of the steps that contact events are looked for in
-    state: Any  # of a case, with rates per second, for what the constants do not cover
+Worker = by_reference(namedtuple("Worker", MEMORY.names))  # type: ignore[arg-type]
+"""The parts of that memory."""
 
 
-def worker() -> Worker:
+def worker() -> Any:
     """Memory for one thread."""
-    first, two = np.zeros(1, stack_one.LANE)[0], np.zeros(1, stack_two.LANE)[0]
-    first["slot"] = two["slot"] = -1
-    # these are written only where the ground moves vertically
-    first["was_weight"] = first["before_weight"] = two["was_weight"] = 1.0
-    cases = np.zeros(SLOTS, CASE)
-    cases["number"] = cases["body"] = -1
-    cases["slot"] = np.arange(SLOTS)
-    return Worker(
-        one=first,
-        two=two,
-        cases=cases,
-        waiting=np.zeros((2, SLOTS), np.int64),
-        waits=np.zeros(2, np.int64),
-        busy=np.zeros(2, np.int64),
-        ones=np.zeros((SLOTS, 9), stack_constants.ONE),
-        twos=np.zeros((SLOTS, 9), stack_constants.TWO),
-        impacts=np.zeros((SLOTS, 9), stack_constants.IMPACT),
-        restoring=np.zeros(SLOTS, chatter.RESTORING),
-        series=np.zeros(lanes.LANES, SERIES),
-        state=np.zeros(1, equations.STATE)[0],
-    )
+    memory = np.zeros(1, MEMORY)[0]
+    return Worker(*(memory[name] for name in MEMORY.names))
+
+
+@kernel
+def begin(worker):
+    """Set the memory to that of a thread that has not taken a case yet."""
+    for i in range(lanes.LANES):
+        worker.one.slot[i] = worker.two.slot[i] = -1
+        # these are written only where the ground moves vertically
+        worker.one.was_weight[i] = worker.one.before_weight[i] = worker.two.was_weight[i] = 1.0
+    for slot in range(SLOTS):
+        case = worker.cases[slot]
+        case.number, case.body, case.slot = -1, -1, slot
+    for kind in range(2):
+        worker.waits[kind] = worker.busy[kind] = 0
 
 
 # --------------------------------------------------------------------------- phases of a case
@@ -234,7 +233,7 @@ def contact_event_of_one(i, case, worker, ensemble, motions, g):
     stack_one.take_series(lane, i, series)
     c1, c2 = case.c1, case.c2
     left = lane.was_left[i]
-    constants = worker.ones[case.slot, stack_constants.number_of(c1, c2)]
+    constants = worker.ones[case.slot, equations.number_of(c1, c2)]
     when, fails = stack_one.next_contact_event(constants, lane, i, series, g)
     at = min(1.0, when)
     theta, omega = value(series.one.angle, at), slope(series.one.angle, at) / left
@@ -335,7 +334,7 @@ def general_impact(case, worker, body, closes, motions):
 def _impact_alone(case, worker, body, g, motions):
     """Take what rocks alone through its landing by the constants; whether that was possible."""
     slot = case.slot
-    impact_constants = worker.impacts[slot, stack_constants.number_of(case.c1, case.c2)]
+    impact_constants = worker.impacts[slot, equations.number_of(case.c1, case.c2)]
     n1, n2 = impact_constants.next1, impact_constants.next2
     omega = abs(case.omega2)
     v1, v2 = omega * impact_constants.after1, omega * impact_constants.after2
@@ -359,7 +358,7 @@ def _impact_alone(case, worker, body, g, motions):
     if n1 == 0 and n2 == 0:
         settled = case.low * case.weight < case.ground < case.high * case.weight
     elif n1 == 0 or n2 == 0:
-        constants = worker.ones[slot, stack_constants.number_of(n1, n2)]
+        constants = worker.ones[slot, equations.number_of(n1, n2)]
         pull = case.ground, case.weight
         settled = stack_one.least_hold(constants, 0.0, v2, pull, g) > 0.0
     else:
@@ -376,18 +375,18 @@ def _impact_alone(case, worker, body, g, motions):
 def close_one(case, worker, ground, g, motions):
     """Take two rocking blocks through the closing of one contact by the constants; whether that was possible."""
     c1, c2, omega1, omega2 = case.c1, case.c2, case.omega1, case.omega2
-    constants, number = worker.twos[case.slot], stack_constants.number_of(c1, c2)
+    constants, number = worker.twos[case.slot], equations.number_of(c1, c2)
     before, products = constants[number], worker.impacts[case.slot, number]
     sine, cosine = quick_sine_cosine(case.theta2)
     if ground:
         n1, n2 = -c1, c2
-        after = constants[stack_constants.number_of(n1, n2)]
+        after = constants[equations.number_of(n1, n2)]
         v1, v2 = ground_impact(before, after, products.ground, (cosine, sine), omega1, omega2)
         side, off, old = n1, v1, omega1
         gap, toward = abs(case.theta2), c2 * (v1 - v2)
     else:
         n1, n2 = c1, -c2
-        after = constants[stack_constants.number_of(n1, n2)]
+        after = constants[equations.number_of(n1, n2)]
         v1, v2 = interface_impact(after, products, omega1, omega2)
         side, off, old = n2, v2 - v1, omega2 - omega1
         gap, toward = abs(case.theta1), -c1 * v1
@@ -442,7 +441,7 @@ def place_one(i, case, worker, motions):
     """Place a case into lane i of those of one rotation."""
     lane, constants = (
         worker.one,
-        worker.ones[case.slot, stack_constants.number_of(case.c1, case.c2)],
+        worker.ones[case.slot, equations.number_of(case.c1, case.c2)],
     )
     lane.gx[i], lane.gy[i] = constants.gx, constants.gy
     lane.per_angle[i], lane.per_speed[i] = constants.per_angle, constants.per_speed
@@ -461,7 +460,7 @@ def place_one(i, case, worker, motions):
 @inlined_kernel
 def place_two(i, case, worker, motions):
     """Place a case into lane i of those of two rotations."""
-    lane, two = worker.two, worker.twos[case.slot, stack_constants.number_of(case.c1, case.c2)]
+    lane, two = worker.two, worker.twos[case.slot, equations.number_of(case.c1, case.c2)]
     lane.v1x[i], lane.v1y[i], lane.v2x[i], lane.v2y[i] = two.v1x, two.v1y, two.v2x, two.v2y
     lane.m11[i], lane.m22[i], lane.e[i], lane.f[i] = two.m11, two.m22, two.e, two.f
     lane.per_angle1[i], lane.per_angle2[i] = two.per_angle1, two.per_angle2

@@ -11,7 +11,7 @@ from rockfrag.arrays import fields, whole
 from rockfrag.elementary import hypot
 from rockfrag.engines.kernels import equations
 from rockfrag.engines.kernels.impact import impact
-from rockfrag.engines.kernels.jit import inlined_kernel, kernel
+from rockfrag.engines.kernels.jit import kernel
 
 HOLD = 12
 """Coefficients of what holds a closed contact at a corner: of (1, sin θ, cos θ) θ'', (1, sin θ, cos θ) θ'²,
@@ -45,19 +45,13 @@ IMPACT = np.dtype(
 """Impacts out of a contact state."""
 
 
-@inlined_kernel
-def number_of(c1, c2):
-    """Place of a contact state among the nine."""
-    return 3 * c1 + c2 + 4
-
-
 @kernel
 def fill_constants(body, h, lanes_of_one, two, impacts, scratch):
     """Fill the constants of the nine contact states of a body for a sampling interval h [s]."""
     hh = h * h
     for c1 in (-1, 0, 1):
         for c2 in (-1, 0, 1):
-            at = number_of(c1, c2)
+            at = equations.number_of(c1, c2)
             if c1 != 0 and c2 != 0:
                 _both_rotate(body, c1, c2, hh, two[at])
                 _closing(body, c1, c2, impacts[at])
