@@ -1,10 +1,9 @@
 """CSMIP/CDMG volumes 1 and 2 (California Strong Motion Instrumentation Program).
 
-Each channel has a text header, 100 integers (16I5), 50 or 100 reals (8F10) and its values, and ends
-with a line ``/&``. Volume 2 has acceleration, velocity and displacement below lines such as ``1138
-POINTS OF ACCEL DATA EQUALLY SPACED AT  .020 SEC.  (UNITS: CM/SEC/SEC)``; volume 1 has one line such
-as ``13200 Accelerogram points at 200 pts/sec in units of g .  Format: (8f9.6)``, and before 1985
-pairs of time and acceleration in g/10.
+Each channel has a text header, 100 integers (16I5), 50 or 100 reals (8F10) and its values, and ends with a line
+``/&``. Volume 2 has acceleration, velocity and displacement below lines such as ``1138 POINTS OF ACCEL DATA
+EQUALLY SPACED AT  .020 SEC.  (UNITS: CM/SEC/SEC)``; volume 1 has one line such as ``13200 Accelerogram points at
+200 pts/sec in units of g .  Format: (8f9.6)``, and before 1985 pairs of time and acceleration in g/10.
 """
 
 import re
