@@ -17,7 +17,7 @@ from lxml import html
 from rockfrag.cli import main
 from rockfrag.schema import read_schema
 
-from .conftest import SUBPACKAGES
+from .conftest import SUBPACKAGES, shaking
 
 ROOT = Path(__file__).resolve().parents[1]
 DOCS = ROOT / "docs"
@@ -61,21 +61,12 @@ def test_the_gallery_shows_a_picture_beside_each_script(site):
 
 @pytest.mark.slow
 def test_the_first_screen_has_one_heading_one_picture_and_three_commands(site):
-    page = (site / "index.html").read_text(encoding="utf-8")
-    assert page.count("<h1") == 1
-    assert "<iframe" not in page
-    article = page.partition("<article")[2].partition("</article>")[0]
-    assert article.count("<img") == 1
-    commands = [
-        re.sub("<[^>]+>", "", item)
-        for item in re.findall(r"<pre[^>]*>(.*?)</pre>", article, re.DOTALL)
-    ]
-    first = [command.split()[:2] for command in commands]
-    assert first == [
-        ["python3", "-m"],
-        ["rockfrag", "assess"],
-        ["rockfrag", "simulate"],
-        ["make", "run"],
+    page = html.parse(str(site / "index.html"))
+    assert len(page.xpath("//h1")) == len(page.xpath("//article//img")) == 1
+    assert not page.xpath("//iframe")
+    commands = [each.text_content().split()[:2] for each in page.xpath("//article//pre")]
+    assert list(map(" ".join, commands)) == [
+        *("python3 -m", "rockfrag assess", "rockfrag simulate", "make run")
     ]
 
 
@@ -84,8 +75,6 @@ def test_every_subpackage_has_a_page_with_the_names_to_import(site):
     for package in filter(None, SUBPACKAGES):
         page = (site / "reference" / "api" / f"{package[1:]}.html").read_text(encoding="utf-8")
         assert f'id="rockfrag{package}.' in page
-        # ten times shorter than one page of all names was
-        assert len(page) < 1_500_000
 
 
 IN_PYTHON = [
@@ -222,14 +211,11 @@ def typed(checkout):
 
 
 @pytest.mark.skipif(os.name == "nt", reason="make and symbolic links are those of POSIX")
-def test_the_route_to_ones_own_statue_ends_in_a_report(checkout, typed, noise):
+def test_the_route_to_ones_own_statue_ends_in_a_report(checkout, typed):
     mine = checkout / "mine"
     (mine / "records").mkdir(parents=True)
-    from rockfrag.motions import scale_to_pga
-    from rockfrag.motions.processing import bandpass
-
     for seed in range(3):
-        motion = scale_to_pga(bandpass(noise(seed, 1200, tapered=True), 0.3, 5.0), 0.3)
+        motion = shaking(seed, 0.3, 5.0, 0.3, 1200)
         rows = np.column_stack([motion.time, motion.acceleration / 9.81])
         np.savetxt(mine / "records" / f"station{seed}.txt", rows, "%.6f")
     named = re.findall(
@@ -238,12 +224,6 @@ def test_the_route_to_ones_own_statue_ends_in_a_report(checkout, typed, noise):
     texts = {"csv": iter(fences("csv")), "yaml": iter(fences("yaml"))}
     for path, language in named:
         (checkout / path).write_text(next(texts[language]))
-    assert [path for path, _ in named] == [
-        "mine/blocks.csv",
-        "mine/arrangements.csv",
-        "mine/study.yaml",
-    ]
-
     make_catalogue, check, run = (line for line in commands() if "mine/" in line)
     typed(make_catalogue)
     assert len(pd.read_csv(mine / "motions.csv")) == 3

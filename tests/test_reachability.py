@@ -48,18 +48,13 @@ def modules() -> dict[str, ast.Module]:
     return found
 
 
-def absolute(package: str, node: ast.ImportFrom) -> str:
-    """Name of the module that is imported from, in a module of a package."""
-    above = package.split(".")[: len(package.split(".")) - node.level + 1] if node.level else []
-    return ".".join([*above, *filter(None, [node.module])])
-
-
 def imported(tree: ast.AST, package: str) -> dict[str, str]:
     """Full names of what a module imports, by the names that it gives them."""
     names = {}
     for node in ast.walk(tree):
         if isinstance(node, ast.ImportFrom):
-            home = absolute(package, node)
+            assert node.level < 2, f"{package}: import from the package itself, or from the whole"
+            home = ".".join(filter(None, [package if node.level else "", node.module]))
             names |= {name.asname or name.name: f"{home}.{name.name}" for name in node.names}
         elif isinstance(node, ast.Import):
             names |= {name.asname: name.name for name in node.names if name.asname}

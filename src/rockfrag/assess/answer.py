@@ -105,15 +105,13 @@ class Assessment:
 class Plan:
     """Under which levels of which motions objects are compared; the same for all in one place."""
 
-    # The hazard that counts, and that of PGV beside it if there is one
-    curves: tuple[HazardCurve, ...]
+    curves: tuple[HazardCurve, ...]  # The hazard that counts, and that of PGV beside it, if any
     level: Level | None  # Level of shaking at the site
     # The motions at their levels, and those under which changes are compared
     shaking: Shaking
     fewer: Shaking
     brief: bool  # Whether directions, and ways to stand other than its own, are left out
-    # Whether mitigations are compared by few motions: in one line of an inventory, of a column, and in space
-    compares_few: bool
+    compares_few: bool  # Whether changes are compared by few motions: briefly, of columns, in space
 
     @property
     def hazard(self) -> HazardCurve | None:
@@ -125,16 +123,12 @@ class Plan:
 class Shaken:
     """What motions as recorded do to an object."""
 
-    # Outcomes of each way in which it can stand, as it stands first
-    arrangements: Mapping[str, ObjectOutcomes]
+    arrangements: Mapping[str, ObjectOutcomes]  # Outcomes of each way to stand, its own first
     moved: Sequence[Moved[ObjectOutcomes]]  # Outcomes with each property moved to both sides
-    # Outcomes as it stands, and with each mitigation, under the same motions
-    before: ObjectOutcomes
-    # Outcomes as it stands in one plane, along one component at a time; None where that is the answer
-    planar: ObjectOutcomes | None
-    changed: Mapping[str, ObjectOutcomes]
-    # Mitigations that leave it in one of the arrangements, and the name of that
-    alike: Mapping[str, str]
+    before: ObjectOutcomes  # Outcomes as it stands under the motions by which changes are compared
+    planar: ObjectOutcomes | None  # Outcomes in one plane; None where those are the answer
+    changed: Mapping[str, ObjectOutcomes]  # Outcomes with each mitigation under the same motions
+    alike: Mapping[str, str]  # Mitigations that give one of the arrangements, and its name
 
 
 def assess(request: Request, records: str | Path = RECORDS, *, brief: bool = False) -> Assessment:

@@ -11,11 +11,9 @@ from rockfrag.sentences import Macros
 class Assumption:
     """Something that was not given."""
 
-    # What was assumed, in a few words that go into a list, such as ``its mass is 368 kg``
-    short: str
+    short: str  # In a few words that go into a list, such as ``its mass is 368 kg``
     words: str  # The same in a sentence, with its reason
-    # Names of the sources of uncertainty that stand for it; empty where the answer does not depend on it
-    sources: tuple[str, ...] = ()
+    sources: tuple[str, ...] = ()  # Names of its sources of uncertainty; empty where it has none
 
 
 _says = Macros("rockfrag.assess", "assumed.j2")

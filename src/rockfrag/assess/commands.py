@@ -281,10 +281,7 @@ _KEY = re.compile(
 
 
 def on_command_line(words: str, given: Collection[str] | None = None) -> str:
-    """A message that names keys of ``statue.yaml`` as ``key pga``, with options in place of those that were given.
-
-    All of them are taken as given if None.
-    """
+    """A message with options for keys of ``statue.yaml``, written ``key pga``, of those given or of all."""
     names = {_UNITS.sub("", key): name for name, key, *_ in _all_options()}
     names |= {"records": "record", "building.storey_heights": "storey-height"}
 
@@ -303,8 +300,7 @@ def on_command_line(words: str, given: Collection[str] | None = None) -> str:
 _METRES_PER_UNIT = "key mesh.metres_per_unit (0.001 for millimetres, 0.3048 for feet)"
 
 _OBJECT = {"width": "35 cm", "height": "1.2 m"}
-_SHAKING = {"pga": "0.4 g", "return_period": "475"}
-"""What stands in the form where no object, and no shaking, is given."""
+_SHAKING = {"pga": "0.4 g", "return_period": "475"}  # In the form where none is given
 
 _FORM = (
     *("name", "width", "height", "mass", "cg_height", "cg_offset"),

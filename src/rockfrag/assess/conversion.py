@@ -31,8 +31,7 @@ magnitude, a factor of two in distance, and a class of ground (EN 1998-1: 180, 3
 OF_THE_SITE = 0.5
 """Part of the variance about the relation that all motions of a site share [-]: an estimate of ours."""
 
-FEWEST_RECORDS = 30
-"""Records from which three coefficients are fitted; with fewer, all of their spread counts."""
+FEWEST_RECORDS = 30  # From which three coefficients are fitted; of fewer all of their spread counts
 
 TOGETHER = 0.25
 """Relative standard deviation of the spread of ln PGV at a given level, which two hazard curves do not say: of
@@ -52,8 +51,7 @@ class SiteVelocity:
     """PGV that comes with levels of another measure at a site: ln of their ratio [s] is normal."""
 
     spread: float  # Its standard deviation from one earthquake to the next [-]
-    # Its mean, the same at all levels, where no curves are known
-    constant: float = math.nan
+    constant: float = math.nan  # Its mean, the same at all levels, where no curves are known
     # Hazard curves of the measure and of PGV, with which it agrees; the spread at a given level is then not known
     curves: tuple[HazardCurve, ...] = ()
 
@@ -81,8 +79,7 @@ class Conversion:
     """What is known of the velocity at a site whose shaking is given in another measure."""
 
     measure: IntensityMeasure  # The measure that is known
-    # P(topples | measure, PGV over the measure), columns ``im`` and ``ratio_s``
-    fragility: VectorFragility
+    fragility: VectorFragility  # P(topples | ``im``, ``ratio_s``): the measure, and PGV over it
     # Effect of ln ratio over that of ln measure: 0 where PGV says nothing beside the measure, 1
     # where it says all, up to 2 where displacement does [-]
     weight: float
@@ -174,10 +171,9 @@ def find_conversion(
     by_statics: bool,
     brief: bool,
 ) -> Conversion | None:
-    """Fit the fragility in two measures, and gather what is known of the velocity at the site.
+    """Fit the fragility in two measures, and gather what is known of the site's velocity; None in PGV or unfitted.
 
-    Returns None in PGV, or where the outcomes allow no fit. ``curves`` are the hazard in the measure and, if
-    known, in PGV; with ``by_statics`` the level alone decides what rocks; ``brief`` fits without an interaction.
+    ``curves`` are the hazard in the measure and, if known, in PGV; ``brief`` fits without an interaction.
     """
     measure = outcomes.intensity_levels.measure
     if measure == PGV:

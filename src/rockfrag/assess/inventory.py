@@ -49,18 +49,14 @@ class JointRisk:
     # ``probability`` of one in the years asked for with limits (``probability_lower``,
     # ``probability_upper``), and ``at_the_site``, the fraction of motions at the site's level
     numbers: pd.DataFrame
-    # A row a loss: ``loss`` and ``annual_rate`` with which an earthquake exceeds it
-    losses: pd.DataFrame
+    losses: pd.DataFrame  # A row a loss: ``loss``, and ``annual_rate`` with which one exceeds it
     # Correlation of the toppling of each two objects in time: the rate of earthquakes that topple
     # both over the geometric mean of the rates of each [-].  NaN where one never topples
     correlation: pd.DataFrame
 
 
 def joint_risk(found: Sequence[Assessment]) -> JointRisk | None:
-    """Count what topples together; an object of no given value counts as 1.
-
-    None without a hazard, or where objects are counted in different measures.
-    """
+    """Count what topples together, no value as 1; None without a hazard, or with objects in several measures."""
     hazard = found[0].hazard
     if hazard is None or any(assessment.measure != found[0].measure for assessment in found):
         return None
@@ -144,8 +140,7 @@ def _correlation(fell: Flags, allowed: Flags, per_level: Floats) -> Floats:
 
 SIZES = ("width_m", "height_m", "depth_m", "mass_kg", "cg_height_m")
 PEDESTAL = ("pedestal_width_m", "pedestal_height_m", "pedestal_depth_m", "pedestal_mass_kg")
-YES, NO = ("yes", "true", "1", "x"), ("no", "false", "0")
-"""What a cell may say to whether a base is round."""
+YES, NO = ("yes", "true", "1", "x"), ("no", "false", "0")  # What says whether a base is round
 
 MOST_OBJECTS = 10_000  # Rows of an inventory
 

@@ -16,8 +16,7 @@ WIDER = 1.25  # Width of a foot plate over that of the base
 PLATE, STEEL = 0.02, 7850.0  # Thickness of a foot plate [m], square and of steel [kg/m³]
 LOWER = 0.8  # Factor of a lower centre of gravity
 
-BALLAST, BALLAST_AT = 0.25, 0.05
-"""Mass of ballast over that of the object, and its height over that of the object."""
+BALLAST, BALLAST_AT = 0.25, 0.05  # Its mass and its height over those of the object
 
 PEDESTAL_HEIGHT = 0.5  # Height of another pedestal over that of the one that is there
 
@@ -32,8 +31,7 @@ class Mitigation:
     # Limits of the factor, of the same motions with and without it; NaN where there are none
     lower: float
     upper: float
-    # Whether the object is better off with it: what is estimated shrinks, or an amplitude grows
-    helps: bool
+    helps: bool  # Whether the object is better off: the risk shrinks, or an amplitude grows
 
 
 def mitigations_of(objects: Objects) -> dict[str, Body]:

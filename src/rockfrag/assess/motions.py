@@ -35,11 +35,9 @@ FEWEST_EARTHQUAKES = 4  # Earthquakes below which an interval over motions was n
 class MotionSet:
     """Ground motions, and what they become on the floor of the object."""
 
-    # Motions of the ground; those of the floor where they were recorded there
-    ground: tuple[Motion, ...]
+    ground: tuple[Motion, ...]  # Motions of the ground, or of the floor if recorded there
     base: tuple[Motion, ...]  # What shakes the object, one a ground motion
-    # Positions of the two horizontal components of each record that has both
-    pairs: tuple[tuple[int, int], ...]
+    pairs: tuple[tuple[int, int], ...]  # Positions of the two components of records that have both
     words: str  # What the set is, in a sentence
     warnings: tuple[str, ...] = ()  # Sentences that a reader must know
     # Motions of floors that were needed before, by :attr:`Place.key` and the name of the ground motion
@@ -47,8 +45,7 @@ class MotionSet:
     # Whether both components of each record act at once: both stand for the record, and their level
     # is the geometric mean of theirs
     both: bool = False
-    # Motions of the set among which these were chosen; empty where all were taken
-    library: tuple[Motion, ...] = ()
+    library: tuple[Motion, ...] = ()  # Those among which they were chosen; empty if all were taken
     # Measures of motions that were needed before, by the motion's name
     known: dict[IntensityMeasure, dict[str, float]] = field(default_factory=dict)
 

@@ -26,8 +26,7 @@ from rockfrag.system.system import (
 )
 from rockfrag.units import DENSITIES, STONE, check_density, size_warning
 
-COMMON = (150.0, 9000.0)
-"""Densities of the box around an object that are usual, from hollow wood to solid bronze [kg/m³]."""
+COMMON = (150.0, 9000.0)  # Usual densities of the box around an object, from wood to bronze [kg/m³]
 
 TOLERANCES = {"width": 0.02, "cg_height": 0.05, "restitution": 0.05, "mass": 0.2}
 """Relative standard deviations of what was measured or assumed, unless stated."""
@@ -39,8 +38,7 @@ uniform from 0.7 to 1 (:mod:`rockfrag.campaign.standing`)."""
 ROLLING = 1.0  # Restitution of a round base: its rim rolls from edge to edge and loses nothing
 HIGHER = 1.0 + 1e-9  # Height of a body that is another one than the object, over that of the object
 
-ASIDE = 45.0
-"""Angle to both sides of how it faces the shaking, where nobody said it [degrees]: two at a right angle."""
+ASIDE = 45.0  # To both sides of how it faces the shaking, where nobody said it [degrees]
 
 ALONE = "on the floor"  # How an object stands without a pedestal
 
@@ -51,33 +49,24 @@ class Objects:
 
     block: Block  # The object itself
     pedestals: tuple[Block, ...]  # What it stands on, from below; empty if it stands on the floor
-    # Measured ratio of angular velocities at an impact [-]; None conserves momentum
-    restitution: float | None
+    restitution: float | None  # Ratio of velocities at impacts [-]; None conserves momentum
     friction: float | None  # Coefficient of friction of all contacts [-]; None if nothing slides
     # Relative standard deviations of width, height of the centre of gravity, restitution and mass
     tolerances: Mapping[str, float]
     plane: str  # In words, in which direction it rocks
-    # Whether the base of the object is round: it then rolls on its rim in space and loses nothing
-    round: bool = False
-    # Side of a rectangular base across that plane [m]; None where it is not known, or not to be used
-    depth: float | None = None
-    # Direction of that plane, from the first component of each record towards the second [degrees]
-    facing_deg: float = 0.0
-    # Whether nobody said how it faces the shaking, which counts in space
-    faces_anywhere: bool = False
+    round: bool = False  # Whether its base is round: it rolls on its rim in space and loses nothing
+    depth: float | None = None  # Side of a rectangular base across that plane [m]; None if not used
+    facing_deg: float = 0.0  # Of that plane, from first to second component of records [degrees]
+    faces_anywhere: bool = False  # Whether nobody said how it faces the shaking, which counts
     # By how much corners of the base lie elsewhere in space, over its extent, and it is turned [rad], other for
     # each record [-]
     base_spread: float = 0.0
-    # The scan and the ways in which it may stand; None where dimensions were given
-    scan: Scan | None = None
-    # The scan in space as it stands; None where dimensions were given, or it is not to be used
-    scanned: RigidBody | None = None
-    # Factor on every restitution, measured or not [-]; impacts never gain energy
-    livelier: float = 1.0
+    scan: Scan | None = None  # The scan as it may stand; None where dimensions were given
+    scanned: RigidBody | None = None  # The scan in space as it stands; None if there is none
+    livelier: float = 1.0  # Factor on every restitution [-]; impacts never gain energy
     assumed: tuple[Assumption, ...] = ()  # What was not given
     quality_flags: tuple[str, ...] = ()  # Sentences, one for each thing that looks wrong
-    # Coefficient of friction of a pad that is tried under the object [-]; None to try none
-    pad_friction: float | None = None
+    pad_friction: float | None = None  # Coefficient of a pad to be tried [-]; None to try none
 
     @property
     def body(self) -> Body:

@@ -91,8 +91,7 @@ class ObjectOutcomes:
     overturned: NDArray[np.bool_]
     rocked: NDArray[np.bool_]
     earthquakes: NDArray[np.object_]  # Earthquake of each motion, shape (motions,)
-    # Whether a body that was simulated with it may have left the ground, which the model holds shut
-    light: bool = False
+    light: bool = False  # Whether it may have left the ground, which the model holds shut
     # Which cases reached each other declared limit state, by its name, shape (motions, levels) each
     others: Mapping[str, NDArray[np.bool_]] = field(default_factory=dict)
 
@@ -317,10 +316,7 @@ def fraction_at(level: float, levels: Floats, fractions: Floats, shift: float = 
 def simulated(
     systems: Sequence[System], shaking: Sequence[Motion], scales: Floats
 ) -> tuple[Outcomes, list[bool]]:
-    """What happened, and for which systems an assessment warns that a body may have left the ground.
-
-    Factors on the motions have the shape (motions, levels).
-    """
+    """What happened under factors of shape (motions, levels), and which systems may have left the ground."""
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always", LightBodies)
         result = overturns(systems, shaking, scales=scales)
@@ -352,10 +348,7 @@ class Directions:
 def find_directions(
     objects: Objects, motions: MotionSet, measure: IntensityMeasure, level: float | None
 ) -> Directions | None:
-    """Turn every record of two components through all directions; None where no record has two.
-
-    The level of a record is the geometric mean of its components, so that it does not turn with it.
-    """
+    """Turn records of two components, of which levels are the geometric mean; None where no record has two."""
     if not motions.pairs:
         return None
     asked = [] if level is None else [level]

@@ -27,8 +27,7 @@ from rockfrag.sentences import PART, number
 
 MOTIONS_SHOWN = 15  # Rows of the table of motions that topple the object first
 
-FURTHEST = 3.0
-"""Return periods are given up to so many times what the hazard curve reaches; beyond, its slope is a guess."""
+FURTHEST = 3.0  # Return periods are given up to so many times the reach of the hazard curve
 
 
 def write_answer(found: Assessment, folder: str | os.PathLike[str]) -> Path:

@@ -38,8 +38,7 @@ class Place:
     floor: str = ""  # Label of the floor in the building; empty on the ground
     # Relative standard deviations of the building's first period and damping
     tolerances: Mapping[str, float] | None = None
-    # What the user calls the floor; empty where that is only a level over the number of storeys
-    label: str = ""
+    label: str = ""  # What the user calls the floor; empty if that is only a level
     assumed: tuple[Assumption, ...] = ()  # What was not given
 
     @property

@@ -36,8 +36,7 @@ class Level:
 
     measure: IntensityMeasure  # The intensity measure
     value: float  # Its value, in its unit
-    # Peak velocity that comes with it [cm/s]; NaN where it is not known, or the measure itself
-    pgv: float = math.nan
+    pgv: float = math.nan  # Peak velocity with it [cm/s]; NaN if unknown, or the measure itself
 
     @property
     def words(self) -> str:

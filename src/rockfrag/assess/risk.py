@@ -24,8 +24,7 @@ from rockfrag.outcomes.limit_states import OVERTURNS, ROCKS
 
 LEVEL = 0.90  # Confidence of the intervals
 
-HALF = 0.5
-"""Part of an earthquake that is added on either side of counted fractions (Haldane 1956, Anscombe 1956)."""
+HALF = 0.5  # Part of an earthquake added on either side of fractions (Haldane, Anscombe 1956)
 
 _Z = float(stats.norm.ppf(0.5 + LEVEL / 2))
 
@@ -79,10 +78,8 @@ class Target:
     forward: Callable[[float], float]
     back: Callable[[float], float]
     state: str = OVERTURNS  # Name of the limit state whose fractions they are
-    # What is added of earthquakes for the widths of sources, see :meth:`on_scale`
-    added: float = 0.0
-    # The number where all motions agree that it happens; infinite for a level that none reaches
-    certain: float = 1.0
+    added: float = 0.0  # Earthquakes added for the widths of sources, see :meth:`on_scale`
+    certain: float = 1.0  # The number where it always happens; infinite for a level never reached
 
     def on_scale(
         self,
@@ -181,10 +178,7 @@ class Evidence:
     shifts: Mapping[str, float] = field(default_factory=dict)
 
     def estimate(self, target: Target, fixed: Mapping[str, float] | None = None) -> Estimate:
-        """Estimate a probability with its interval.
-
-        ``fixed`` are further standard deviations on the target's scale, such as of the hazard.
-        """
+        """Estimate with an interval; ``fixed`` are further standard deviations on its scale, as of the hazard."""
         middle = target.on_scale(self.outcomes)
         if not math.isfinite(middle):
             return self._bounded(target, middle)
@@ -258,10 +252,9 @@ class Evidence:
         return Estimate(0.0, 0.0, target.back(limit), {})
 
     def rocking(self, level: float, *, exact: bool) -> Estimate:
-        """Estimate the fraction of motions at a level that make the object rock.
+        """Estimate the fraction of motions at a level that make the object rock, which is statics and no model.
 
-        The error of the rocking model does not enter: a contact opens by statics. Where the level alone decides
-        (``exact``), as a peak acceleration of what it stands on does, other earthquakes say the same.
+        Where the level alone decides (``exact``), as peak acceleration does, other earthquakes say the same.
         """
         target = fraction_target(level, state=ROCKS)
         found = replace(self, shifts={}).estimate(target)

@@ -91,8 +91,7 @@ class RuleCheck:
     """A rule held against simulations of one object."""
 
     rule: str  # Its name
-    # Median of the amplitude at which it expects a motion to topple the object over the simulated one [-]
-    bias: float
+    bias: float  # Median of its amplitude to topple the object over the simulated one [-]
     scatter: float  # Standard deviation of the logarithm of that [-]
     unsafe: float  # Fraction of the motions that topple the object at less than the rule says [-]
     motions: int  # Number of motions that topple it at all

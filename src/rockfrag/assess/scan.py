@@ -37,8 +37,7 @@ SOURCE_OF = {
 
 WAYS = 256  # Ways to stand that are drawn
 
-KNOWN_CONTACT_SPREAD = 0.2
-"""Relative standard deviation of a contact tolerance that was given: of ours."""
+KNOWN_CONTACT_SPREAD = 0.2  # Relative standard deviation of a given contact tolerance: of ours
 
 _BINS = 8
 
@@ -48,13 +47,10 @@ class Scan:
     """A scan, and the ways in which it may stand."""
 
     shape: Shape  # The scan
-    # A row each, by rising angle at which it balances: that in its direction, or in space the least
-    ways: pd.DataFrame
+    ways: pd.DataFrame  # A row each, by rising angle of balance, in its direction or the least
     parts: Mapping[str, float]  # Part of the variance of the order by source; the sum is 1
-    # Column of ``ways`` with that angle: ``alpha_deg``, or in space ``least_deg``
-    order: str = "alpha_deg"
-    # The ways in the order that counts in space; None where it could stand in none of them
-    space: "Scan | None" = None
+    order: str = "alpha_deg"  # Column with that angle: ``alpha_deg``, or in space ``least_deg``
+    space: "Scan | None" = None  # The ways in the order of space; None if it could not stand
 
     def row_at(self, fraction: float) -> Mapping[str, float]:
         """The way below which a fraction of all balances."""

@@ -29,8 +29,7 @@ class Source:
     measurement: str = (
         ""  # What a user could measure or find out that makes it smaller; empty for nothing
     )
-    # What that leaves of the standard deviation [-]: an estimate of ours, of a measurement made with care
-    left: float = 1.0
+    left: float = 1.0  # What that leaves of the standard deviation [-]; an estimate of ours
 
 
 _LEFT = {

@@ -107,8 +107,7 @@ class DriftOutcome:
 
     storey: int  # Its number, from 1
     drift: float  # Its largest drift over height [-]
-    # Largest shear over the shear strength [-]; only an elastic model can exceed 1
-    strength_fraction: float
+    strength_fraction: float  # Largest shear over strength [-]; above 1 of elastic models only
     state: str  # One of the states of ``_ELASTIC`` and ``_HYSTERETIC``
     # Whether the model may be used there: an elastic one up to the shear strength, a hysteretic one up to the
     # rocking limit, beyond which walls fall

@@ -19,8 +19,7 @@ class MasonryLaw:
     residue is left; the storey carries its shear strength from the yield drift to the shear limit.
     """
 
-    # Shear strength of the ground storey over the weight of the building [-]
-    base_shear: float = 0.12
+    base_shear: float = 0.12  # Shear strength of the ground storey over the whole weight [-]
     cracking: float = 0.5  # Shear at which the elastic stiffness ends, over the shear strength [-]
     # Drift over storey height at yield and at the two limits [-]
     yield_drift: float = 0.001

@@ -16,8 +16,7 @@ class Modes:
 
     period: Floats  # natural periods [s], shape (storeys,)
     shape: Floats  # shapes [-], shape (floors, modes)
-    # participation factors Γ [-], shape (modes,); Γ times the shape sums to one at every floor
-    participation: Floats
+    participation: Floats  # Γ [-], shape (modes,); times the shape they sum to one at every floor
     mass_fraction: Floats  # effective modal mass over the total mass [-], shape (modes,)
     damping: Floats  # fraction of critical damping [-], shape (modes,)
 
@@ -92,8 +91,7 @@ class BuildingResponse:
     """Histories at the samples of the ground motion."""
 
     time: Floats  # [s], shape (n,)
-    # Absolute, of the ground and of every floor [m/s²], shape (storeys + 1, n)
-    acceleration: Floats
+    acceleration: Floats  # Absolute, of ground and floors [m/s²], shape (storeys + 1, n)
     drift: Floats  # Of every storey over its height [-], shape (storeys, n)
     energy: EnergyBalance | None = None  # Up to each sample, if the model keeps the balance
 

@@ -29,8 +29,7 @@ from rockfrag.survival.site import (
 SAMPLES = 1024  # Draws of ages and errors of fragilities
 DECISION_RATE = 1e-4  # Annual rate at which sensitivities are compared [1/year]
 
-RATES = (1e-2, 1e-3, 1e-4, 1e-5)
-"""Annual rates at which curves before and after are compared [1/year]."""
+RATES = (1e-2, 1e-3, 1e-4, 1e-5)  # Annual rates at which curves are compared [1/year]
 
 QUANTILES = (0.05, 0.16, 0.5, 0.84, 0.95)  # Fractiles of the hazard over the branches
 
@@ -67,10 +66,7 @@ class Reweighted:
         )
 
     def curves(self) -> pd.DataFrame:
-        """Mean and fractile curves before and after in the site's measure: annual rates by ``level``.
-
-        Columns such as ``mean_before`` and ``fractile_0.84_after``.
-        """
+        """Annual rates by ``level`` in the site's measure: ``mean_before``, ``fractile_0.84_after`` and so on."""
         stated = [branch.curves[self.site.measure] for branch in self.site.branches]
         levels = np.unique(np.concatenate([curve.levels for curve in stated]))
         rates = np.array([curve.rate(levels) for curve in stated])
@@ -166,8 +162,7 @@ def scaled(
 LEAST_SURVIVAL = 1e-9
 """Probability that all objects stand below which, in every branch, hazard, fragility or age must be wrong."""
 
-RULED_OUT = 0.01
-"""A branch whose weight falls below this fraction of what it was counts as ruled out."""
+RULED_OUT = 0.01  # Fraction of its weight below which a branch counts as ruled out
 
 IN_SPACE = 0.84
 """Median of toppling of boxes under two horizontal components over that of planar rocking under one [-]; see
@@ -195,11 +190,7 @@ class Constrained:
 
 
 def constrain(site: Site) -> Constrained:
-    """Reweight the branches of a site by the survival of its objects.
-
-    Returns weights, curves, contributions of objects and sensitivities; that no branch lets all of them stand is
-    an InputError.
-    """
+    """Reweight branches of a site by the survival of its objects; InputError if none lets all of them stand."""
     result = reweight(site)
     if float(result.log_survival.max()) < np.log(LEAST_SURVIVAL):
         alone = {}

@@ -36,8 +36,7 @@ from rockfrag.yaml_file import read_yaml
 
 MOST_BRANCHES = 10_000  # Branches of one site
 
-WEIGHT_ERROR = 1e-3
-"""By how much the sum of weights may differ from 1, which rounding to four digits explains."""
+WEIGHT_ERROR = 1e-3  # Of the sum of weights from 1, which rounding to four digits explains
 
 
 @dataclass(frozen=True)
@@ -231,10 +230,7 @@ def _on_grid(curves: Sequence[HazardCurve], reach: tuple[float, float]) -> tuple
 
 
 def quantile_weights(values: Floats, weights: Floats, quantiles: Floats) -> Floats:
-    """Weighted quantiles along the first axis, the cumulative weight interpolated, shape (quantiles, n).
-
-    Values have the shape (branches, n), their weights (branches,) and the sum 1.
-    """
+    """Quantiles of values (branches, n) with weights of sum 1, interpolated in these, shape (quantiles, n)."""
     order = np.argsort(values, axis=0)
     cumulative = np.cumsum(weights[order], axis=0)
     ordered = np.take_along_axis(values, order, axis=0)
@@ -251,10 +247,8 @@ class Age:
 
     low: float  # ends of a range in which every value is equally probable; equal for a certain age
     high: float
-    # standard deviation of the logarithm of a lognormal age with the median ``low``; 0 for the others
-    sd_ln: float = 0.0
-    # longest time for which it has been so fragile, which limits the age; infinite if none is given
-    fragile_for: float = math.inf
+    sd_ln: float = 0.0  # standard deviation of ln of a lognormal age of median ``low``, else 0
+    fragile_for: float = math.inf  # longest time of being so fragile, which limits the age
 
     def exposure(self, uniform: Floats) -> Floats:
         """Years of exposure at given probabilities, shape (n,)."""
@@ -313,10 +307,9 @@ def lognormal_coefficients(theta: float, beta: float) -> tuple[float, float]:
 
 
 def draw_errors(objects: int, shared: float, samples: int) -> tuple[Floats, Floats]:
-    """Draw errors of fragilities and positions in ages, evenly spread (Sobol; a power of two).
+    """Draw standard normal errors, correlated as ``shared`` says [-], and uniform positions in ages.
 
-    Returns standard normal errors, correlated between objects as ``shared`` says [-], and independent uniform
-    numbers, each of shape (samples, objects).
+    Both are spread evenly (Sobol; a power of two) and have the shape (samples, objects).
     """
     sobol = stats.qmc.Sobol(2 * objects + 1, scramble=True, rng=np.random.default_rng(0))
     drawn = sobol.random(samples)
@@ -327,8 +320,7 @@ def draw_errors(objects: int, shared: float, samples: int) -> tuple[Floats, Floa
 
 RECORDS = "resources/records"  # Folder of fetched records
 
-ANY_LEVEL = {"PGA": 0.1, "SA": 0.1, "PGV": 10.0}
-"""A level in each measure: only fractions over all levels are used."""
+ANY_LEVEL = {"PGA": 0.1, "SA": 0.1, "PGV": 10.0}  # One a measure: fractions at all levels count
 
 SHAKING = ("pga", "pgv", "sa", "hazard", "return_period", "return_period_years", "years")
 """Keys of ``statue.yaml`` that say what shakes the site, which the branches of the hazard do here."""
@@ -404,9 +396,7 @@ def _simulated(
 ) -> tuple[tuple[float, ...], float]:
     """Coefficients of the fragility, and the spread of what is not known of its median in ln level [-].
 
-    The object is the path of a ``statue.yaml``, or what would stand in it, simulated as ``rockfrag assess`` does.
-    With the velocity of the site known the fragility is one in PGA and PGV/PGA. An object that no motion, or every
-    one, topples at all levels that were tried is refused.
+    The object is simulated as ``rockfrag assess`` does; with the site's velocity known in PGA and PGV/PGA.
     """
     # imported when an object is simulated: others should not wait for numba
     from rockfrag.assess.answer import assess

@@ -28,8 +28,8 @@ def ground_motion(seed, peak_g):
     return GroundMotion(Motion(x, DT), Motion(y, DT), Motion(z, DT))
 
 
-def lone(body, friction=None):
-    return System((body,), (Contact(friction=friction),))
+def lone(body):
+    return System((body,), (Contact(),))
 
 
 BOX = lone(box((0.35, 0.35, 1.2), 300.0, None, (0, 0, 0.6)))
@@ -73,16 +73,11 @@ def test_a_round_body_falls_before_a_box_of_its_slenderness():
     assert fallen[0].sum() > fallen[1].sum()
 
 
-def test_history_ends_as_the_outcome_says():
-    response = simulate(BOX, ground_motion(2, 0.5))
-    table = response.history
-    assert table.tilt_rad.max() <= response.outcome.peak_tilt + 1e-9
-    assert abs(response.outcome.residual) < 1e-6
-
-
 @pytest.mark.parametrize(("peak_g", "said"), [(0.2, "Does not fall"), (0.6, "Falls over")])
 def test_a_response_draws_the_path_of_its_axis_and_its_plan(peak_g, said):
     response = simulate(BOX, ground_motion(2, peak_g))
+    assert response.history.tilt_rad.max() <= response.outcome.peak_tilt + 1e-9
+    assert abs(response.outcome.residual) < 1e-6
     axis, plan = response.plot("A box").axes
     assert axis.get_title(loc="left").startswith(said)
     path = axis.get_lines()[0].get_xydata()
@@ -160,13 +155,6 @@ def test_the_command_line_shakes_a_body_by_both_components(two_files, tmp_path, 
     assert (tmp_path / "box.svg").stat().st_size > 1000
     assert main([*case, "--round"]) == 0
     assert "overturned over rim" in capsys.readouterr().out
-    for wrong in (
-        [*case],
-        [*case, "--round", "--pedestal", "1", "1"],
-        [*case[:4], *case[6:], "--round"],
-    ):
-        assert main(wrong) == 2
-        assert capsys.readouterr().err.count("\n") == 1
 
 
 def test_the_played_page_shows_a_body_in_space_and_says_when_it_falls(two_files, tmp_path, capsys):

@@ -40,8 +40,7 @@ from rockfrag.rocking.browser import driver_text
 SCRIPTS = ("statistics", "risk", "conversion", "building", "space", "objects", "answer")
 """Scripts that compute, in the order in which they need each other."""
 
-TABLED_STOREYS = 8
-"""Storeys up to which floors of the usual building have the bits of the package: their modes stand in the page."""
+TABLED_STOREYS = 8  # Storeys up to which modes of the usual building stand in the page, to the bit
 
 
 def script(name: str) -> str:

@@ -24,8 +24,7 @@ from rockfrag.units import GRAVITY
 
 MOST_BYTES = 6_000_000  # Largest page [bytes], which a memory stick and a mail take
 
-LANGUAGES = ("en", "it")
-"""Languages of the page, each a file of texts; what one lacks is said in the first."""
+LANGUAGES = ("en", "it")  # Of the page, each a file of texts; what one lacks is said in the first
 
 _FACTORS = (GRAVITY, 0.01, 1.0)  # Factors of units in which records state decimals [m/s²]
 
@@ -101,8 +100,7 @@ def texts(language: str) -> dict[str, Any]:
 def packed_samples(motions: Sequence[Motion]) -> tuple[bytes, dict[str, Any]]:
     """Return the samples of motions, packed, and what a page needs to get every bit of them again.
 
-    Records are decimals of few digits: each sample is a whole number over a power of ten, times the factor of the
-    unit. Where one is not, all are written as they are.
+    Of records, decimals of few digits, they are whole numbers over powers of ten times the factor of the unit.
     """
     samples = np.concatenate([motion.acceleration for motion in motions])
     about: dict[str, Any] = {

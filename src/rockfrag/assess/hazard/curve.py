@@ -24,21 +24,18 @@ from rockfrag.short_repr import short_repr
 from rockfrag.tabular import Row, read_table, read_text
 from rockfrag.units import CENTIMETRES_PER_METRE, GRAVITY, quantity
 
-HIGHEST = {"PGA": 10.0, "SA": 30.0, "PGV": 2000.0}
-"""Levels beyond which a curve is in another unit: g, g and cm/s."""
+HIGHEST = {"PGA": 10.0, "SA": 30.0, "PGV": 2000.0}  # Beyond, a curve is in another unit: g, g, cm/s
 
 HIGHEST_RATE = 100.0  # Shaking that is exceeded more often a year is no earthquake hazard [1/year]
 
 DAMAGING = {"PGA": 0.02, "SA": 0.02, "PGV": 1.0}
 """A curve that ends below this level says nothing about what topples: g, g and cm/s."""
 
-EC8_SLOPE = 3.0
-"""Exponent of a hazard curve H ~ a^-k of which one point is known (EN 1998-1:2004, note to 2.1(4))."""
+EC8_SLOPE = 3.0  # Exponent k of H ~ a^-k where one point is known (EN 1998-1:2004, note to 2.1(4))
 
 EC8_SLOPE_SD = 0.6  # Standard deviation of that exponent: 2 to 4 are seen in Europe and America
 
-FLANKS = (0.16, 0.84)
-"""Quantiles that a level continued with the exponents one standard deviation away stands for."""
+FLANKS = (0.16, 0.84)  # Quantiles of a level continued with exponents a standard deviation away
 
 
 @dataclass(frozen=True, eq=False)
@@ -208,8 +205,7 @@ def read_level(text: str, measure: IntensityMeasure) -> float:
 
 LARGEST_FILE = 50_000_000  # Bytes of a hazard file; that of one site has some thousand
 
-Found = tuple[HazardCurve, str]
-"""A curve of a file and which statistic of the hazard model it is, as the file says it; empty for its only one."""
+Found = tuple[HazardCurve, str]  # A curve and which statistic it is; empty for the only one
 
 
 def read_hazard(paths: Sequence[str | os.PathLike[str]]) -> list[HazardCurve]:

@@ -109,9 +109,8 @@ WORK = np.dtype(
         # ledgers [J]: of the ground, lost to friction, lost in impacts
         *fields("work rubbed struck"),
         *fields("told", of=OUTCOME),
-        *whole(
-            "forced met resting noted"
-        ),  # counts; contact events met within the sample, and in all
+        # forced, resting; contact events: met within the sample, noted in all
+        *whole("forced resting met noted"),
     ]
 )
 
@@ -126,10 +125,8 @@ def fill_geometry(p: np.void, system: System) -> None:
         foot, base = middle, middle
         if k > 0:
             below, (stand, face) = bodies[k - 1], bodies[k - 1].ends
-            lean, wide = (
-                contacts[k - 1].tilt,
-                shapes[k - 1]._replace(b=(face.right - face.left) / 2),
-            )
+            lean = contacts[k - 1].tilt
+            wide = shapes[k - 1]._replace(b=(face.right - face.left) / 2)
             right = face.middle - stand.middle
             offset = contacts[k].offset[0] + bodies[k].ends[0].middle - (right + stand.middle)
             pile = geometry.pile_of(wide, shape, below.height, lean, offset)
@@ -139,9 +136,8 @@ def fill_geometry(p: np.void, system: System) -> None:
             foot = middle + _turned(np.array(pile.right) + aside, tilt)
             p["face"][k] = _turned(top - (wide.x, wide.y), tilt)
             p["half"][k] = wide.b
-            base = middle + _turned(
-                np.array(geometry.turned(offset, below.height, lean)) + aside, tilt
-            )
+            own = np.array(geometry.turned(offset, below.height, lean))
+            base = middle + _turned(own + aside, tilt)
             tilt += lean
             p["tilt_sin"][k], p["tilt_cos"][k] = sin_cos(tilt)
         p["mass"][k], p["inertia"][k] = shape.mass, shape.inertia

@@ -106,12 +106,10 @@ def change(w, k, what, way, impact):
     if what == SLIP:
         w.slides[k] = way
         return
-    was_open = w.closed[k, 0] == 0 and w.closed[k, 1] == 0
+    was_open = not w.closed[k].any()
     w.closed[k, what] = 1 - w.closed[k, what]
-    if was_open:
-        w.slides[k] = 0 if impact else w.moves[k]
-    elif w.closed[k, 0] == 0 and w.closed[k, 1] == 0:
-        w.slides[k] = 0
+    if was_open or not w.closed[k].any():
+        w.slides[k] = w.moves[k] if was_open and not impact else 0
 
 
 @kernel
@@ -194,11 +192,10 @@ def _try_neighbours(p, w, trial, exclude):
                         continue
                     change(w, k, what, 0, trial.impact)
                 else:
-                    if w.closed[k, 0] == 0 and w.closed[k, 1] == 0:
+                    way, given = what - 3, 0 if trial.impact else w.moves[k]
+                    if not w.closed[k].any() or (given != 0 and way != given):
                         continue
-                    if not trial.impact and w.moves[k] != 0 and what - 3 != w.moves[k]:
-                        continue
-                    w.slides[k] = what - 3
+                    w.slides[k] = way
                 found = _try_anew(p, w, trial, exclude)
                 if found >= 0:
                     return found

@@ -195,9 +195,9 @@ def off_the_edge(p, w, q, k):
 
 
 @kernel
-def interpolate(p, w, tau, h):
-    """Set ``q`` and ``v`` to the quintic polynomial through the step at its fraction ``tau``."""
-    t2 = tau * tau
+def margin_at(p, w, tau, stretch):
+    """Least margin at the fraction ``tau`` of the step, where ``q`` and ``v`` are on the quintic through it."""
+    h, t2 = stretch.length, tau * tau
     t3 = t2 * tau
     for d in range(3 * p.count):
         q0, v0, a0 = w.q0[d], h * w.v0[d], 0.5 * h * h * w.a0[d]
@@ -210,12 +210,6 @@ def interpolate(p, w, tau, h):
         c5 = 6.0 * rise - 3.0 * turn + bend
         w.q[d] = q0 + v0 * tau + a0 * t2 + t3 * (c3 + tau * (c4 + tau * c5))
         w.v[d] = (v0 + 2.0 * a0 * tau + t2 * (3.0 * c3 + tau * (4.0 * c4 + 5.0 * tau * c5))) / h
-
-
-@kernel
-def margin_at(p, w, tau, stretch):
-    """Least margin at the fraction ``tau`` of the step."""
-    interpolate(p, w, tau, stretch.length)
     look_at(p, w, w.q)
     ah, av = ground_at(stretch, tau)
     solve(p, w, w.q, w.v, ah, av, False)

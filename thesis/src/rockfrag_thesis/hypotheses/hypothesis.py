@@ -38,24 +38,16 @@ class Finding(StrEnum):
 UNDECIDED = "undecided"
 EXCLUDED = "a change of 10 % or more is excluded"
 
-_ABOUT_THE_MODEL = {
-    Finding.FOR: "confirmed",
-    Finding.AGAINST: "refuted",
-    Finding.OPEN: UNDECIDED,
-    Finding.BOUNDED: EXCLUDED,
-    Finding.SPECIMENS_ONLY: "confirmed for the specimens, with exceptions elsewhere",
-}
 _FROM_THE_MODEL = {
     Finding.FOR: "reproduced",
     Finding.AGAINST: "not reproduced",
     Finding.OPEN: UNDECIDED,
     Finding.BOUNDED: EXCLUDED,
 }
-_FROM_A_LABORATORY = {
-    Finding.FOR: "confirmed",
-    Finding.AGAINST: "rejected",
-    Finding.OPEN: UNDECIDED,
-    Finding.BOUNDED: EXCLUDED,
+_FROM_A_LABORATORY = _FROM_THE_MODEL | {Finding.FOR: "confirmed", Finding.AGAINST: "rejected"}
+_ABOUT_THE_MODEL = _FROM_A_LABORATORY | {
+    Finding.AGAINST: "refuted",
+    Finding.SPECIMENS_ONLY: "confirmed for the specimens, with exceptions elsewhere",
 }
 
 

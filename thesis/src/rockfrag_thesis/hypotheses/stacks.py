@@ -155,10 +155,7 @@ def _kind(before: str, after: str) -> str:
 
 
 def _kinds(transitions: Counter[tuple[str, str]]) -> Counter[str]:
-    found: Counter[str] = Counter()
-    for (before, after), n in transitions.items():
-        found[_kind(before, after)] += n
-    return found
+    return Counter(_kind(before, after) for before, after in transitions.elements())
 
 
 @hypothesis(11)

@@ -103,9 +103,9 @@ def _rule(row: Row) -> list[str]:
 
 def outcomes_by_kind(hypotheses: pd.DataFrame) -> pd.DataFrame:
     """How many hypotheses of each kind have each outcome: kind, hypotheses, outcomes (in words)."""
-    rows = []
-    for kind, part in hypotheses.groupby("kind", sort=False):
-        counts = Counter(part["outcome"]).most_common()
-        words = ", ".join(f"{count} {outcome}" for outcome, count in counts)
-        rows.append((kind, len(part), words))
+    by_kind = hypotheses.groupby("kind", sort=False)["outcome"]
+    rows = [
+        (kind, len(part), ", ".join(f"{n} {word}" for word, n in Counter(part).most_common()))
+        for kind, part in by_kind
+    ]
     return pd.DataFrame(rows, columns=["kind", "hypotheses", "outcomes"])
