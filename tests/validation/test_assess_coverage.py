@@ -33,8 +33,7 @@ from rockfrag.system.mesh import Shape
 
 EARTHQUAKES, OF_A_SET, COMPONENTS, COUNT = 240, 14, 2, 600
 QUICK = 60
-OF_A_SITE = 60
-"""Motions of a world that come with about the PGV/PGA of a site."""
+OF_A_SITE = 60  # motions of a world that come with about the PGV/PGA of a site
 
 SETTINGS = {"width": "0.3 m", "height": "1.2 m", "cg_height": "0.6 m", "mass": "200 kg"}
 IN_A_BUILDING = {"floor": "2/3"}

@@ -1,8 +1,8 @@
 """Lognormal capacity from amplitudes known to an interval or only from below.
 
-A step protocol brackets the overturning amplitude between the last step survived and the first that overturned; at
-the shaker's limit it is only known to be larger. The likelihood is concave in (-ln θ/β, 1/β) (Burridge, 1981,
-J. R. Stat. Soc. B 43: 41-45), which Newton's method uses here.
+A step protocol brackets the overturning amplitude of a test between the last step survived and the first that
+overturned; at the shaker's limit it is only known to be larger. The likelihood is concave in (-ln θ/β, 1/β)
+(Burridge, 1981, J. R. Stat. Soc. B 43: 41-45), which Newton's method uses here.
 """
 
 from dataclasses import dataclass
@@ -79,8 +79,8 @@ def fit_brackets(brackets: Brackets) -> lognormal.FragilityFit:
     """Fit θ and β to bracketed amplitudes by maximum likelihood.
 
     Where one amplitude lies inside every bracket the likelihood grows without end as β tends to zero; then θ is
-    the middle of the common bracket and β its logarithmic width / √12, and the fit says so. There is no curve
-    where no test overturned, nor where all brackets are open and end at one amplitude.
+    the middle of the common bracket and β its logarithmic width / √12, and the fit says so. There is no curve,
+    only a bound, where no test overturned; nor is there one where all brackets are open and end at one amplitude.
     """
     low, high = _logs(brackets)
     curve, log_likelihood, case = lognormal.NO_CURVE, 0.0, ""

@@ -4,6 +4,7 @@ import re
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
+from rockfrag.records.parsing.format import stated
 from rockfrag.records.parsing.number_fields import number_in
 from rockfrag.records.parsing.quantities import TO_SI, canonical_unit, quantity_of
 from rockfrag.units import LONGEST_STEP, SHORTEST_STEP
@@ -11,26 +12,23 @@ from rockfrag.units import LONGEST_STEP, SHORTEST_STEP
 _VALUE = r"(?:\d+[.,]\d+|\d+\.?|[.,]\d+)(?:[EeDd][+-]?\d+)?"
 _IS = r"[\s\"']*(?:\((?P<note>[^)]*)\)|\[(?P<note2>[^\]]*)\])?[\s\"',]*(?P<sign>[=:]|\bis\b)?[\s\"',]*"
 _STEP = re.compile(
-    r"(?:\b(?:dt|d\.t\.|delta[\s_-]*t|time[\s_-]*(?:step|increment|interval|spacing)|timestep"
+    r"(?i)(?:\b(?:dt|d\.t\.|delta[\s_-]*t|time[\s_-]*(?:step|increment|interval|spacing)|timestep"
     r"|sampl\w*[\s_-]*(?:step|increment|interval|period|spacing|time)|spaced\s+at|intervals?\s+of)"
     r"|(?<![\w.])Δt|\b(?P<unsure>delta|interval))"
-    rf"{_IS}(?P<value>{_VALUE})\s*(?P<unit>ms|msec\w*|millis\w*|[uµ]s|microsec\w*|min\w*|deg\w*|km|°)?",
-    re.I,
+    rf"{_IS}(?P<value>{_VALUE})\s*(?P<unit>ms|msec\w*|millis\w*|[uµ]s|microsec\w*|min\w*|deg\w*|km|°)?"
 )
 _STEP_BEFORE = re.compile(
     rf"(?P<value>{_VALUE})\s*(?:s|sec\w*)\.?\s+(?:time\s+)?(?:intervals?|steps?|spacing)\b", re.I
 )
 _RATE = re.compile(
-    rf"\bsampl\w*[\s_-]*(?P<named>rate|freq\w*)?(?:\s+at\b)?{_IS}(?P<value>{_VALUE})\s*(?P<unit>k?hz|sps|samples|pts|points)?"
-    r"|(?<![\w.])fs\s*(?:\([^)]*\))?\s*[=:]\s*(?P<value2>[\d.]+)"
-    r"|(?P<value3>[\d.]+)\s*(?:sps\b|(?:samples?|pts|points)\s*(?:/|per)\s*s)",
-    re.I,
+    rf"(?i)\bsampl\w*[\s_-]*(?P<named>rate|freq\w*)?(?:\s+at\b)?{_IS}(?P<value>{_VALUE})\s*"
+    r"(?P<unit>k?hz|sps|samples|pts|points)?|(?<![\w.])fs\s*(?:\([^)]*\))?\s*[=:]\s*(?P<value2>[\d.]+)"
+    r"|(?P<value3>[\d.]+)\s*(?:sps\b|(?:samples?|pts|points)\s*(?:/|per)\s*s)"
 )
 _COUNT = re.compile(
-    r"(?:\b(?:npts|npoints|ndata|nsamples?|npt|(?:no\.?|number|num\.?|nr\.?|total)\s*(?:of\s+)?(?:acc\w*\s+)?"
+    r"(?i)(?:\b(?:npts|npoints|ndata|nsamples?|npt|(?:no\.?|number|num\.?|nr\.?|total)\s*(?:of\s+)?(?:acc\w*\s+)?"
     r"(?:data\s+|time\s+)?(?:points?|pts|samples?|data|values?|steps?))|(?P<unsure>\bsamples|\bpoints))"
-    rf"{_IS}(?P<count>\d+)(?![\d.,]*\d)(?!\s*(?:hz|s\b|sec|/|per))",
-    re.I,
+    rf"{_IS}(?P<count>\d+)(?![\d.,]*\d)(?!\s*(?:hz|s\b|sec|/|per))"
 )
 _COUNTED = re.compile(
     r"^\s*(?P<count>\d+)\s+(?:data\s+)?(?:points?|samples?|values?)\b(?!\s*(?:/|per))", re.I
@@ -40,8 +38,7 @@ _UNIT_WORDS = re.compile(
 )
 _QUANTITY = r"\b(?P<quantity>acc|vel|dis(?=p))(?:[a-z]*\.?)"
 _QUANTITY_IN = re.compile(
-    rf"{_QUANTITY}[^,;:(\[=\d]{{0,40}}?(?:\bin\s+(?:units?\s+(?:of\s+)?)?|[:(\[,=_]\s*)(?P<rest>.+)$",
-    re.I,
+    rf"(?i){_QUANTITY}[^,;:(\[=\d]{{0,40}}?(?:\bin\s+(?:units?\s+(?:of\s+)?)?|[:(\[,=_]\s*)(?P<rest>.+)$"
 )
 _NAMED_QUANTITY = re.compile(rf"{_QUANTITY}", re.I)
 _IN_UNIT = re.compile(r"(?:\bin\s+|[(\[{]\s*)(?P<rest>[^)\]}]+)", re.I)
@@ -51,15 +48,13 @@ _UNIT_TOKEN = re.compile(
     r"[\s\"'=:(\[{]*(?P<unit>(?:[a-z%°µ]+[\w%°^*²-]*(?:\.[a-z-]+\d?)?(?:\s*/\s*\(?\s*[a-z\d]+\)?(?:\^|\*\*)?[\d²]*)*))",
     re.I,
 )
-_LIST = re.compile(
-    r"^\W*(?:components?|channels?|directions?|orientations?)\s*[=:]\s*(?P<names>.+)$", re.I
-)
+_LIST = r"^\W*(?:components?|channels?|directions?|orientations?)\s*[=:]\s*(.+)$"
 _FACTOR = re.compile(
     rf"\b(?:scal(?:e|ing)|conversion|calibration)[\s_-]*factor{_IS}(?P<value>[+-]?{_VALUE})", re.I
 )
 _KEYS = {
-    "earthquake": re.compile(r"^\W*(?:event|earthquake)\b[^:=]*[:=]\s*(?P<value>\S.*)$", re.I),
-    "station": re.compile(r"^\W*(?:recording\s+)?station\b[^:=]*[:=]\s*(?P<value>\S.*)$", re.I),
+    "earthquake": r"^\W*(?:event|earthquake)\b[^:=]*[:=]\s*(\S.*)$",
+    "station": r"^\W*(?:recording\s+)?station\b[^:=]*[:=]\s*(\S.*)$",
 }
 _SECONDS = {"ms": 1e-3, "mi": 1e-3, "us": 1e-6, "µs": 1e-6}
 
@@ -68,9 +63,8 @@ _SECONDS = {"ms": 1e-3, "mi": 1e-3, "us": 1e-6, "µs": 1e-6}
 class StatedFacts:
     """What is stated, None or empty where it is not."""
 
-    # npts, dt: number of samples and interval [s]
-    npts: int | None = None
-    dt: float | None = None
+    npts: int | None = None  # number of samples
+    dt: float | None = None  # interval [s]
     unit: str = ""  # canonical unit of acceleration
     # what the samples are, where words say so: ``acceleration``, ``velocity``, ``force``, …
     quantity: str = ""
@@ -96,22 +90,17 @@ def stated_facts(lines: Sequence[str]) -> StatedFacts:
         ),
         "",
     )
-    listed = next(filter(None, map(_LIST.match, lines)), None)
     quantity, unit = _quantity_and_unit(lines)
     return StatedFacts(
         npts=counts[0] if counts else None,
         dt=steps[0] if steps else None,
         unit=units[0] if units else unit,
         quantity="acceleration" if units else quantity,
-        components=tuple(re.findall(r"[^\s,;]+", listed["names"])) if listed else (),
+        components=tuple(re.findall(r"[^\s,;]+", stated(_LIST, lines))),
         factor=next(
             (x for x in lines if (m := _FACTOR.search(x)) and number_in(m["value"]) != 1), ""
         ),
-        details={
-            key: found["value"].strip()
-            for key, pattern in _KEYS.items()
-            if (found := next((m for line in lines if (m := pattern.match(line))), None))
-        },
+        details={key: stated(pattern, lines) for key, pattern in _KEYS.items()},
         contradiction=contradiction,
     )
 
