@@ -18,12 +18,7 @@ from rockfrag.system.blocks import Block, Body, stacked
 from rockfrag.system.body import Polygon, RigidBody, checked_tensor
 from rockfrag.system.contact import Contact
 from rockfrag.system.mesh import read_shape
-from rockfrag.system.system import (
-    System,
-    round_inertia,
-    turned_about_vertical,
-    uplift_ratios,
-)
+from rockfrag.system.system import System, round_inertia, turned_about_vertical, uplift_ratios
 from rockfrag.units import DENSITIES, STONE, check_density, size_warning
 
 COMMON = (150.0, 9000.0)  # Usual densities of the box around an object, from wood to bronze [kg/m³]
