@@ -42,16 +42,14 @@ LOSSES = 24  # Losses of which it is said how often they are exceeded
 class JointRisk:
     """What an inventory risks together, in earthquakes that shake all of it."""
 
-    # A row an object: ``name``, ``annual_rate`` of toppling, ``value``, ``annual_loss`` (mean) and
-    # ``contribution`` to that of all
+    # A row an object: ``name``, ``annual_rate`` of toppling, ``value``, mean ``annual_loss``, its ``contribution``
     objects: pd.DataFrame
     # A row a number of objects: ``at_least``, ``annual_rate`` of earthquakes that topple so many,
     # ``probability`` of one in the years asked for with limits (``probability_lower``,
     # ``probability_upper``), and ``at_the_site``, the fraction of motions at the site's level
     numbers: pd.DataFrame
     losses: pd.DataFrame  # A row a loss: ``loss``, and ``annual_rate`` with which one exceeds it
-    # Correlation of the toppling of each two objects in time: the rate of earthquakes that topple
-    # both over the geometric mean of the rates of each [-].  NaN where one never topples
+    # Rate of earthquakes that topple both of two objects over the geometric mean of their rates [-]; or NaN
     correlation: pd.DataFrame
 
 

@@ -42,8 +42,7 @@ class MotionSet:
     warnings: tuple[str, ...] = ()  # Sentences that a reader must know
     # Motions of floors that were needed before, by :attr:`Place.key` and the name of the ground motion
     floors: dict[object, Motion] = field(default_factory=dict)
-    # Whether both components of each record act at once: both stand for the record, and their level
-    # is the geometric mean of theirs
+    # Whether both components of each record act at once: both have the geometric mean of their levels
     both: bool = False
     library: tuple[Motion, ...] = ()  # Those among which they were chosen; empty if all were taken
     # Measures of motions that were needed before, by the motion's name
