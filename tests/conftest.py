@@ -134,8 +134,7 @@ def wave(name: str = "wave", samples: int = 600) -> Motion:
     return Motion(4.0 * values, 0.01, name, {})
 
 
-MADE_EARTHQUAKES = 6
-"""Earthquakes of which made motions are."""
+MADE_EARTHQUAKES = 6  # earthquakes of which made motions are
 
 
 def motions_of_noise(count: int) -> tuple[Motion, ...]:

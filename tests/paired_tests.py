@@ -9,8 +9,7 @@ import pandas as pd
 EARTHQUAKES = ("Friuli", "Kobe", "Loma Prieta", "Northridge")
 FLOORS = ("GF", "F3", "F5")
 TOWERS = {"T1": 0.50, "T2": 0.40, "T3": 0.30}
-STEP = 0.05
-"""Growth of the series of levels from one level to the next [-]."""
+STEP = 0.05  # growth of the series of levels from one level to the next [-]
 
 Effect = Callable[[str, str, str], float]
 

@@ -134,11 +134,9 @@ def test_no_field_or_column_is_named_after_the_role_of_a_body():
     assert looked_at > 1000
 
 
-REPLACED = case_tables(__file__)["replaced"]
-"""Words that no identifier holds, and what says it."""
+REPLACED = case_tables(__file__)["replaced"]  # words that no identifier holds, and what says it
 
-NO_NAMES = {"one", "item"}
-"""What no variable is called: it says nothing of what it is."""
+NO_NAMES = {"one", "item"}  # what no variable is called: it says nothing of what it is
 
 
 def bound(path: Path) -> Iterator[tuple[int, str, bool]]:

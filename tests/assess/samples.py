@@ -5,8 +5,7 @@ from pathlib import Path
 
 from ..case_tables import case_tables
 
-LEVELS = [0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0]
-"""Levels of PGA [g]."""
+LEVELS = [0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0]  # levels of PGA [g]
 
 
 def rate(level: float, at_a_tenth: float = 0.01) -> float:

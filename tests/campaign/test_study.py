@@ -18,6 +18,7 @@ from rockfrag.study.campaign import CampaignStudy
 from rockfrag.study.loading import load_any
 from rockfrag.system.blocks import Block, Column
 
+from ..case_tables import case_tables
 from ..stages_in_process import run_stages
 from .conftest import BLOCK, DT, PEDESTAL, configured, granite
 
@@ -70,8 +71,6 @@ def test_the_synthetic_laboratory_is_reproduced_from_configuration_to_page(tmp_p
 
 SLIDING = {"unknowns": {"edge_retreat_mm": [0, 2], "friction": [0.1, 0.2]}}
 """What is not known of a column."""
-
-ON_A_MESH = {"mesh": "rock.ply", "mass_kg": 9.0, "pedestal": PEDESTAL}
 
 
 def of_a_column(folder, laboratory, every=3, **changes):
@@ -129,25 +128,7 @@ def test_amplitudes_of_overturning_are_simulated_on_both_sides_and_measured(tmp_
     assert (tests["pgv_cm_s"] > 0).all()
 
 
-@pytest.mark.parametrize(
-    ("changes", "sentence"),
-    [
-        ({"campaign__tests": "absent.csv"}, "key campaign.tests: there is no"),
-        ({"campaign__motions": "absent.npz"}, "key campaign.motions: there is no"),
-        ({"campaign__colums": {}}, "key campaign.colums is not known; did you mean columns"),
-        ({"object": {"mesh": "absent.ply", "mass_kg": 3}}, "direction_deg is needed for a mesh"),
-        ({"object": {"left_m": 0.1}}, "right_m is missing"),
-        ({"unknowns__restitution": [1.0, 0.8]}, "expected the lowest value first"),
-        ({"unknowns__direction_deg": [0, 90]}, "has a meaning for a mesh only"),
-        ({"conditioning": [{"step": "lowpas"}]}, "there is no step 'lowpas'"),
-        ({"campaign__columns": {"test": "a", "motion": "b"}}, "give either overturned"),
-        ({"trials": 3}, "a number of guesses"),
-        ({"object__pedestal": PEDESTAL}, "key unknowns"),
-        (SLIDING | {"object": ON_A_MESH}, "beside a mesh"),
-        (SLIDING | {"object": {"pedestal": PEDESTAL}}, "left_m is missing"),
-        (SLIDING | {"object__pedestal": [{}]}, "pedestal"),
-    ],
-)
+@pytest.mark.parametrize(("changes", "sentence"), case_tables(__file__)["refused"])
 def test_a_bad_campaign_ends_in_one_sentence_before_anything_runs(
     tmp_path, laboratory, changes, sentence
 ):

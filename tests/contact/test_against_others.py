@@ -56,8 +56,7 @@ def random_case(rng: np.random.Generator, bodies: int) -> Case:
     return Case(body, mus, random_motion(rng), 0.5 * random_motion(rng))
 
 
-LENGTH = 3.2
-"""How long the reference integrates, a little more than the motions last [s]."""
+LENGTH = 3.2  # how long the reference integrates, a little more than the motions last [s]
 
 
 @pytest.mark.parametrize(

@@ -289,8 +289,7 @@ READY = "document.getElementById('live').dataset.ready"
 ANSWERED = "document.body.dataset.stage === 'complete' && !document.querySelector('.stale')"
 """When a page with a simulation, and the page of ``rockfrag app``, have done what they were asked."""
 
-FITS = "document.documentElement.scrollWidth <= innerWidth"
-"""Nothing is wider than the window."""
+FITS = "document.documentElement.scrollWidth <= innerWidth"  # nothing is wider than the window
 
 
 def opened(

@@ -28,8 +28,7 @@ PLURALS = re.compile(rf"\b1 (?:simulated |overturning )?(?:{NOUNS})s\b")
 SINGULARS = re.compile(rf"\b(?:[2-9]|[1-9]\d+) (?:{NOUNS})\b(?! on a pedestal)")
 VOID = {"meta", "link", "br", "img", "input", "hr"}
 
-MOST_WORDS = 900
-"""Words of a page before anything on it is opened."""
+MOST_WORDS = 900  # words of a page before anything on it is opened
 
 
 class Page:

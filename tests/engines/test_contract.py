@@ -91,8 +91,7 @@ DOORS = {
     outcome_robustness: {"scales": [0.5], "perturbation": 1e-6, "copies": 1},
     find_step_size_sensitive: {"scales": [0.5, 1.0], "sample": 2},
 }
-FORCES = (overturns, stream_overturns)
-"""Doors that tell forces."""
+FORCES = (overturns, stream_overturns)  # doors that tell forces
 
 CONFLICTS = ("cannot be had together with", "is beyond every engine")
 CASES = [(), *((option,) for option in OPTIONS), *itertools.combinations(OPTIONS, 2)]

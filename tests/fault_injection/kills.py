@@ -18,8 +18,7 @@ from .studies import PATIENCE_S, Study, Tally
 FORGOTTEN = (("report.html",), ("report.html", "measures.*"), ("report.html", "tests.*"))
 """Results that a trial makes anew, of which the first and the second are made by pools."""
 
-LONGEST_WORDS = 8
-"""A run that was disturbed says why in so many lines, beside those of its stages."""
+LONGEST_WORDS = 8  # a run that was disturbed says why in so many lines, beside those of its stages
 
 
 def shell(run: psutil.Process) -> list[psutil.Process]:

@@ -10,8 +10,10 @@ from rockfrag.errors import InputError
 from rockfrag.fragility.tests_file import read_tests
 from rockfrag.fragility.user_table import fit_user_table
 
+from ..case_tables import case_tables
 from ..workflow.conftest import write_synthetic
 
+CASES = case_tables(__file__)
 PGV = ["pga_g", "pgv_over_pga_s", 980.665]
 ROWS = [("r1", 0.35, "no"), ("r2", 0.5, "yes"), ("r3", 0.25, "no")]
 
@@ -26,15 +28,7 @@ def write(path, separator=",", decimal=".", encoding="utf-8", title="pga_g"):
     return path
 
 
-@pytest.mark.parametrize(
-    "form",
-    [
-        {},
-        {"separator": "\t", "decimal": ","},
-        {"encoding": "utf-8-sig"},
-        {"separator": ";", "decimal": ",", "encoding": "utf-16"},
-    ],
-)
+@pytest.mark.parametrize("form", CASES["read"])
 def test_same_table_in_every_form(tmp_path, form):
     table = read_tests(write(tmp_path / "t.csv", **form), ["pga_g"], motion="record")
     assert table["motion"].tolist() == ["r1", "r2", "r3"]
@@ -54,22 +48,7 @@ def test_western_european_labels_and_outcomes_are_read_beside_titles_that_stand_
     assert table["overturned"].tolist() == [1, 0]
 
 
-@pytest.mark.parametrize(
-    ("content", "said"),
-    [
-        (None, "no such file"),
-        ("PK\x03\x04" + "\x00" * 100, "this is a spreadsheet.*save the sheet as CSV"),
-        ("", "not a readable CSV"),
-        ("record,pga_g,overturned\n", "no row below the header"),
-        ("record,pga_g,overturned\na,0,35,no\n", "separate the columns by semicolons"),
-        ("record,PGA,overturned\na,1,yes\n", "no column 'pga_g'; the file has record"),
-        ("pga_g,note,note,pga_g,record,overturned\n", "'pga_g' stands over 2 columns; rename"),
-        ("record,pga_g,overturned\na,1,yes\na,,yes\n", "row 3, .*pga_g'.*nothing is not a finite"),
-        ("record,pga_g,overturned\na,1,yes\na,0,yes\n", "row 3, column 'pga_g'.*above zero"),
-        ("record,pga_g,overturned\na,1,yes\na,1,0.7\n", "row 3, column 'overturned'.*no outcome"),
-        ("record,pga_g,overturned\na,1,yes\n,1,yes\n", "row 3, column 'record'.*label is missing"),
-    ],
-)
+@pytest.mark.parametrize(("content", "said"), CASES["refused"])
 def test_tables_that_cannot_be_used_are_refused_by_file_row_and_column(tmp_path, content, said):
     path = tmp_path / "t.csv"
     if content is not None:

@@ -15,8 +15,7 @@ from rockfrag.fragility.vector import (
 from rockfrag.report.sections.curves import two_measures_figure
 
 MEASURES = ("pga_g", "pgv_over_pga_s")
-VELOCITY = 0.6
-"""Weight of ln PGV/PGA beside that of ln PGA in the made laboratories."""
+VELOCITY = 0.6  # weight of ln PGV/PGA beside that of ln PGA in the made laboratories
 
 
 def laboratory(rng, earthquakes, motions=5, levels=6, interaction=0.0):

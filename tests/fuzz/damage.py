@@ -54,8 +54,7 @@ def damage(content: bytes, other: bytes, rng: random.Random) -> bytes:
     return bytes(data)
 
 
-Attempt = tuple[Path, Callable[[], object]]
-"""The file under test, and what reads it."""
+Attempt = tuple[Path, Callable[[], object]]  # the file under test, and what reads it
 
 Seed = tuple[str, bytes, Callable[[Path], object]]
 """Name and content of a file in order, and how it is read."""

@@ -37,8 +37,7 @@ OPEN = InterfaceMode((), 0)
 FULL = (-1, 1)
 
 Mode = tuple[InterfaceMode, ...]
-End = tuple[int, int]
-"""An end of an interface: (number of the interface, side)."""
+End = tuple[int, int]  # an end of an interface: (number of the interface, side)
 
 
 @dataclass(frozen=True)

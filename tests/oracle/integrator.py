@@ -15,8 +15,7 @@ from scipy.integrate import DOP853
 from scipy.optimize import brentq
 
 Array = NDArray[np.float64]
-Key = tuple
-"""What is watched, and where: ("gap", 0)."""
+Key = tuple  # what is watched, and where: ("gap", 0)
 
 RTOL, ATOL = 1e-10, 1e-14
 

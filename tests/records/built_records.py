@@ -16,8 +16,7 @@ from numpy.typing import NDArray
 from obspy.core.inventory import Channel, Inventory, Network, Response, Station
 from obspy.core.inventory.response import InstrumentSensitivity, ResponseStage
 
-N = 43
-"""Samples of a built record: no multiple of any row length, so that last rows are short."""
+N = 43  # samples of a built record: no multiple of any row length, so that last rows are short
 
 Samples = NDArray[np.float64]
 RECORDS: dict[str, dict[str, Any]] = yaml.safe_load(

@@ -23,8 +23,7 @@ from .kernel_impact import state_record
 
 BODY = body_record(Stack(Block(0.4, 0.3, 100.0), Block(0.3, 1.2, 200.0, cg_offset=0.01)).system())
 H, GROUND, RISE = 0.01, 2.0, -1.5
-GRAVITY, LIFT = 9.0, 3.0
-"""Of a ground that moves vertically too."""
+GRAVITY, LIFT = 9.0, 3.0  # of a ground that moves vertically too
 
 
 def product(u, v, k):

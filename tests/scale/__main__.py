@@ -33,8 +33,7 @@ from ..workflow.conftest import study_content, write_study
 ROOT = Path(__file__).resolve().parents[2]
 SAMPLES, DT = 2000, 0.01
 LOWEST_G, HIGHEST_G = 0.05, 2.0
-OF_AN_EARTHQUAKE = 3
-"""Motions of one earthquake."""
+OF_AN_EARTHQUAKE = 3  # motions of one earthquake
 
 CONFIGURATIONS = 6
 _TOOK = re.compile(r"took ([0-9.]+) s, ([0-9.]+) s of processors, ([0-9]+) MiB")

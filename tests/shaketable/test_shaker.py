@@ -1,10 +1,14 @@
 from pathlib import Path
 
 import numpy as np
+import pandas as pd
 import pytest
 
 from rockfrag.errors import InputError
 from rockfrag.records.motion import Motion, integrate
+from rockfrag.rocking import overturns
+from rockfrag.shaketable.definitions import tests_from_ida as read_ida
+from rockfrag.shaketable.protocols import GeometricSteps, Protocol
 from rockfrag.shaketable.shaker import (
     Shaker,
     produced_motion,
@@ -12,6 +16,9 @@ from rockfrag.shaketable.shaker import (
     required_corner,
     shaker_table,
 )
+from rockfrag.system.blocks import Block
+
+from .conftest import ida_table
 
 SHAKER = Path(__file__).resolve().parents[2] / "config" / "experiment" / "shaker.yaml"
 
@@ -47,6 +54,33 @@ def test_loma_prieta_fits_up_to_the_published_amplitudes(records):
     assert f"{Shaker(start='centred').limit(motion)[0]:.3f}" == "0.272"
     assert Shaker().demand(motion, 0.400).fits
     assert not Shaker().demand(motion, 0.402).fits
+
+
+def test_the_full_stroke_censors_loma_prieta_with_t1_and_nothing_else(records):
+    towers = {"T1": (0.372, 2.172), "T2": (0.496, 2.790), "T3": (0.620, 3.456)}
+    motions, steps = list(records.values()), GeometricSteps(0.2, 0.01)
+    table = shaker_table(Shaker(), motions).set_index("motion")
+    amplitudes = steps.amplitudes(0.7)
+    result = overturns(
+        [Block(0.124, *tower) for tower in towers.values()],
+        [motion.acceleration for motion in motions],
+        [motion.dt for motion in motions],
+        [amplitudes * 9.81 / motion.pga for motion in motions],
+    )
+    curves = [
+        ida_table(result.overturned[i, j], amplitudes, name, earthquake=motion.name)
+        for i, name in enumerate(towers)
+        for j, motion in enumerate(motions)
+    ]
+    tests = read_ida(
+        pd.concat(curves),
+        Protocol(steps),
+        definitions=["step_protocol"],
+        limits_g={f"{name}_ground": limit for name, limit in table["limit_g"].items()},
+    )
+    censored = tests[tests["censored"] == "right"]
+    assert censored[["object", "motion"]].to_numpy().tolist() == [["T1", "Loma_Prieta_ground"]]
+    assert censored["lower_g"].iloc[0] == pytest.approx(0.40, abs=0.005)
 
 
 def test_the_force_is_the_moved_mass_times_the_acceleration():

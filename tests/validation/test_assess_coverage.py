@@ -9,6 +9,7 @@ What is sought is the PGV at which half of all earthquakes topple the object, an
 import sys
 from dataclasses import replace
 from functools import cache
+from itertools import product
 
 import numpy as np
 import pytest
@@ -23,7 +24,7 @@ from rockfrag.assess.request import Request, make_request
 from rockfrag.assess.risk import amplitude_target, fraction_target
 from rockfrag.assess.scan import make_scan
 from rockfrag.assess.sources import SPACE
-from rockfrag.campaign.standing import Quantile, body_of, unknowns_of, ways_to_stand
+from rockfrag.campaign.standing import body_of, unknowns_of, ways_to_stand
 from rockfrag.fragility.model_error import CUT, MODEL_ERRORS, SCAN
 from rockfrag.motions import scale_to_pga
 from rockfrag.motions.processing import bandpass
@@ -32,16 +33,16 @@ from rockfrag.system.mesh import Shape
 
 EARTHQUAKES, OF_A_SET, COMPONENTS, COUNT = 240, 14, 2, 600
 QUICK = 60
-OF_A_SITE = 60
-"""Motions of a world that come with about the PGV/PGA of a site."""
+OF_A_SITE = 60  # motions of a world that come with about the PGV/PGA of a site
 
 SETTINGS = {"width": "0.3 m", "height": "1.2 m", "cg_height": "0.6 m", "mass": "200 kg"}
 IN_A_BUILDING = {"floor": "2/3"}
 
 
-def _motions(random: np.random.Generator) -> list[Motion]:
+@cache
+def _pool() -> list[Motion]:
     """Synthetic earthquakes: noise in a band about a frequency of its own, two components each."""
-    found = []
+    random, found = np.random.default_rng(1), []
     for number in range(EARTHQUAKES):
         middle = np.exp(random.normal(np.log(1.2), 0.5))
         about = {"earthquake": f"synthetic {number}", "station": "s"}
@@ -51,11 +52,6 @@ def _motions(random: np.random.Generator) -> list[Motion]:
             motion = Motion(raw, 0.01, name, metadata=about)
             found.append(scale_to_pga(bandpass(motion, 0.4 * middle, 2 * middle), 0.35))
     return found
-
-
-@cache
-def _pool(seed: int = 1) -> list[Motion]:
-    return _motions(np.random.default_rng(seed))
 
 
 def _set(numbers: np.ndarray) -> MotionSet:
@@ -81,27 +77,17 @@ def _told_of(shape: Shape, objects: Objects) -> Objects:
     """The object as assess takes it from a scan of which nothing else is known."""
     scan, _ = make_scan(shape, {}, None)
     tolerances = {**objects.tolerances, "restitution": ON_POINTS["restitution"]}
-    return replace(
-        objects,
-        block=scan.block(),
-        scan=scan,
-        livelier=ON_POINTS["livelier"],
-        tolerances=tolerances,
-    )
-
-
-def _stretched(quantile: Quantile, factor: float) -> Quantile:
-    """The same distribution with quantiles that lie further from the middle, in logarithm."""
-    middle = quantile(0.5)
-    return lambda u: middle * (quantile(u) / middle) ** factor
+    on_points = {"livelier": ON_POINTS["livelier"], "tolerances": tolerances}
+    return replace(objects, block=scan.block(), scan=scan, **on_points)
 
 
 def _true_scan(shape: Shape, told: Objects, seed: int, outside: float) -> Objects:
+    """The object as it stands, with a contact tolerance whose quantiles may lie further from the middle."""
     unknowns = unknowns_of(SCAN)
-    name = "contact_tolerance_mm"
-    unknowns[name] = _stretched(unknowns[name], outside)
-    table = ways_to_stand(shape, unknowns, 64, seed).table
-    way = dict(table.iloc[0])
+    tolerance = unknowns["contact_tolerance_mm"]
+    middle = tolerance(0.5)
+    unknowns["contact_tolerance_mm"] = lambda u: middle * (tolerance(u) / middle) ** outside
+    way = dict(ways_to_stand(shape, unknowns, 64, seed).table.iloc[0])
     return replace(told, block=body_of(shape, way), livelier=way["restitution_ratio"])
 
 
@@ -113,12 +99,11 @@ def _true_place(place: Place, random: np.random.Generator) -> Place:
         max(0.2, 1 + place.tolerances[name] * random.standard_normal())
         for name in ("period", "damping")
     )
-    building = replace(
-        place.building,
-        stiffnesses=tuple(k / slower**2 for k in place.building.stiffnesses),
-        damping=replace(place.building.damping, ratio=place.building.damping.ratio * damped),
+    stiffnesses = tuple(k / slower**2 for k in place.building.stiffnesses)
+    damping = replace(place.building.damping, ratio=place.building.damping.ratio * damped)
+    return replace(
+        place, building=replace(place.building, stiffnesses=stiffnesses, damping=damping)
     )
-    return replace(place, building=building)
 
 
 def world(seed: int, kind: str, outside: float = 1.0) -> tuple[bool, ...]:
@@ -133,7 +118,8 @@ def world(seed: int, kind: str, outside: float = 1.0) -> tuple[bool, ...]:
     )
     everything = _set(np.arange(EARTHQUAKES)).at(place)
     (outcomes,) = make_intensity_levels(everything, PGV).outcomes_of([truth])
-    found = assess_with(request, _seen(request, random), brief=True)
+    seen = _set(random.choice(EARTHQUAKES, OF_A_SET, replace=False)).at(request.place)
+    found = assess_with(request, seen, brief=True)
     truths = (
         (found.amplitudes[0.5], amplitude_target(0.5).value(outcomes) * np.exp(error)),
         (found.fraction, fraction_target(request.level.value / np.exp(error)).value(outcomes)),
@@ -166,11 +152,6 @@ def _drawn(
     return replace(request, objects=told), truth, place, error
 
 
-def _seen(request: Request, random: np.random.Generator) -> MotionSet:
-    """The few earthquakes that assess has."""
-    return _set(random.choice(EARTHQUAKES, OF_A_SET, replace=False)).at(request.place)
-
-
 def world_of_both(seed: int) -> bool:
     """Whether the interval of the fraction holds the truth of a box where PGA and PGV at the site are known.
 
@@ -187,7 +168,8 @@ def world_of_both(seed: int) -> bool:
     motions = MotionSet(chosen, chosen, (), "synthetic motions").at(place)
     (outcomes,) = make_intensity_levels(motions, PGA).outcomes_of([truth])
     fraction = fraction_target(request.level.value / np.exp(error)).value(outcomes)
-    found = assess_with(request, _seen(request, random), brief=True).fraction
+    seen = _set(random.choice(EARTHQUAKES, OF_A_SET, replace=False)).at(request.place)
+    found = assess_with(request, seen, brief=True).fraction
     return bool(found.lower <= fraction <= found.upper)
 
 
@@ -211,10 +193,7 @@ def test_the_interval_holds_the_truth_where_the_velocity_is_known():
 if __name__ == "__main__":
     of_both = np.mean([world_of_both(seed) for seed in range(int(sys.argv[1]))])
     print(f"{CUT}, PGA and PGV known: fraction {of_both:.3f}", flush=True)
-    for of_kind in (CUT, SCAN):
-        for by in (1.0, 1.5):
-            median, fraction = held(of_kind, int(sys.argv[1]), by)
-            print(
-                f"{of_kind}, one spread times {by:g}: median {median:.3f}, fraction {fraction:.3f}",
-                flush=True,
-            )
+    for of_kind, by in product((CUT, SCAN), (1.0, 1.5)):
+        median, fraction = held(of_kind, int(sys.argv[1]), by)
+        said = f"{of_kind}, one spread times {by:g}: median {median:.3f}, fraction {fraction:.3f}"
+        print(said, flush=True)

@@ -14,8 +14,7 @@ CATALOGUE = (
     "name,earthquake,date,station,component,magnitude,distance_km,source,file,sha256,unit,licence\n"
 )
 
-STUDY = Path(__file__).with_name("study")
-"""Files of the small study, but for its motions."""
+STUDY = Path(__file__).with_name("study")  # files of the small study, but for its motions
 
 
 def study_content() -> dict:

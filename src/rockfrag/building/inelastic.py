@@ -1,10 +1,9 @@
 """Hysteretic response of a masonry building, with an energy balance that closes.
 
-Average acceleration (Newmark 1959, γ = 1/2, β = 1/4) in small steps, iterated to equilibrium. With
-Δu = h (v₀ + v₁)/2 and m Δv = h (f₀ + f₁)/2 the mean of the equations of motion at both ends of a
-step, times Δu, is an exact balance of energies: the work of every force is its mean over the step
-times Δu. So the balance closes to the precision of the iteration, whatever the storeys do, and a gap
-in it shows an equilibrium that was missed.
+Average acceleration (Newmark 1959, γ = 1/2, β = 1/4) in small steps, iterated to equilibrium. With Δu = h (v₀ +
+v₁)/2 and m Δv = h (f₀ + f₁)/2 the mean of the equations of motion at both ends of a step, times Δu, is an exact
+balance of energies: the work of every force is its mean over the step times Δu. So the balance closes to the
+precision of the iteration, whatever the storeys do, and a gap in it shows an equilibrium that was missed.
 
 A storey degrades and pinches by Filippou's law as OpenSees' ``Hysteretic`` and ``HystereticSM`` have it, for an
 envelope that is the same on both sides:

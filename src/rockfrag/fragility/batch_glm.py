@@ -1,8 +1,7 @@
 """Many small binary regressions at once, maximum likelihood or penalised, by Fisher scoring.
 
-Statsmodels fits one regression in milliseconds; a bootstrap over motions or a coverage study needs
-10⁵ to 10⁶. This module fits a whole batch with array operations and is held against statsmodels by
-a test.
+Statsmodels fits one regression in milliseconds; a bootstrap over motions or a coverage study needs 10⁵ to 10⁶.
+This module fits a whole batch with array operations and is held against statsmodels by a test.
 """
 
 from dataclasses import dataclass

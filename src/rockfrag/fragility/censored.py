@@ -1,9 +1,8 @@
 """Lognormal capacity from amplitudes known to an interval or only from below.
 
-A step protocol brackets the overturning amplitude of a test between the last step survived and the
-first that overturned; at the shaker's limit it is only known to be larger. The likelihood is
-concave in (-ln θ/β, 1/β) (Burridge, 1981, J. R. Stat. Soc. B 43: 41-45), which Newton's method
-uses here.
+A step protocol brackets the overturning amplitude of a test between the last step survived and the first that
+overturned; at the shaker's limit it is only known to be larger. The likelihood is concave in (-ln θ/β, 1/β)
+(Burridge, 1981, J. R. Stat. Soc. B 43: 41-45), which Newton's method uses here.
 """
 
 from dataclasses import dataclass
@@ -80,9 +79,8 @@ def fit_brackets(brackets: Brackets) -> lognormal.FragilityFit:
     """Fit θ and β to bracketed amplitudes by maximum likelihood.
 
     Where one amplitude lies inside every bracket the likelihood grows without end as β tends to zero; then θ is
-    the middle of the common bracket and β its logarithmic width / √12, and the fit says so. There is no
-    curve, only a bound, where no test overturned; nor is there one where all brackets are open and end at one
-    amplitude.
+    the middle of the common bracket and β its logarithmic width / √12, and the fit says so. There is no curve,
+    only a bound, where no test overturned; nor is there one where all brackets are open and end at one amplitude.
     """
     low, high = _logs(brackets)
     curve, log_likelihood, case = lognormal.NO_CURVE, 0.0, ""
@@ -260,7 +258,11 @@ def _pulls(low: Floats, high: Floats, coefficients: Floats) -> tuple[Floats, ...
     x_low, x_high = np.where(np.isfinite(low), low, 0.0), np.where(np.isfinite(high), high, 0.0)
     exact = low == high
     # the density of ln IM, so that equal bounds and narrow brackets rank models alike
-    of_density = _density_pulls(c0, c1, x_low)
+    at = c0 + c1 * x_low
+    ones = np.ones(at.shape)
+    value = np.log(c1) - 0.5 * at**2 - _LOG_ROOT_TWO_PI
+    bends = (-ones, -x_low * ones, -(x_low**2) - 1.0 / c1**2)
+    of_density = (value, -at, -at * x_low + 1.0 / c1, *bends)
     if exact.all():
         return of_density
     z_low = np.where(np.isneginf(low), -np.inf, c0 + c1 * x_low)
@@ -272,29 +274,13 @@ def _pulls(low: Floats, high: Floats, coefficients: Floats) -> tuple[Floats, ...
     bend_high = np.where(np.isinf(z_high), 0.0, z_high) * ratio_high
     g0 = ratio_high - ratio_low
     g1 = ratio_high * x_high - ratio_low * x_low
-    of_fraction = (
-        log_fraction,
-        g0,
-        g1,
+    bends = (
         bend_low - bend_high - g0**2,
         bend_low * x_low - bend_high * x_high - g0 * g1,
         bend_low * x_low**2 - bend_high * x_high**2 - g1**2,
     )
+    of_fraction = (log_fraction, g0, g1, *bends)
     return tuple(np.where(exact, *pair) for pair in zip(of_density, of_fraction, strict=True))
-
-
-def _density_pulls(c0: Floats, c1: Floats, x: Floats) -> tuple[Floats, ...]:
-    """What :func:`_pulls` gives of capacities that are known exactly."""
-    at = c0 + c1 * x
-    ones = np.ones(at.shape)
-    return (
-        np.log(c1) - 0.5 * at**2 - _LOG_ROOT_TWO_PI,
-        -at,
-        -at * x + 1.0 / c1,
-        -ones,
-        -x * ones,
-        -(x**2) - 1.0 / c1**2,
-    )
 
 
 def _log_difference(z_low: Floats, z_high: Floats) -> Floats:

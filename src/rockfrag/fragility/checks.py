@@ -91,24 +91,23 @@ def goodness_of_fit(
             tests.astype(np.int64), np.minimum(fraction, 1.0), size=(replicates, fraction.size)
         ).astype(np.float64)
     else:
-        size = (replicates, outcomes.n_motions)
-        draw = rng.normal(size=size) if fit.link == "probit" else rng.logistic(size=size)
+        law = rng.normal if fit.link == "probit" else rng.logistic
+        draw = law(size=(replicates, outcomes.n_motions))
         drawn = outcomes.drawn(np.log(fit.theta) + fit.beta * draw, cell)
     design = np.column_stack([np.ones(values.size), values - 1e3 * home])
     start = np.array(fit.coefficients)
     simulated = refitted_deviance(design, drawn, tests, home, link=fit.link, start=start)
     p_value = float((1 + np.sum(simulated >= deviance - 1e-9)) / (1 + simulated.size))
-    lower, upper = wilson_interval(observed, trials)
-    calibration = pd.DataFrame(
-        {
-            "im": np.exp(by_bin(outcomes.trials * outcomes.log_im) / trials),
-            "tests": trials.astype(np.int64),
-            "predicted": expected / trials,
-            "observed": observed / trials,
-            "observed_lower": lower,
-            "observed_upper": upper,
-        }
-    ).sort_values("im", ignore_index=True)
+    columns = {
+        "im": np.exp(by_bin(outcomes.trials * outcomes.log_im) / trials),
+        "tests": trials.astype(np.int64),
+        "predicted": expected / trials,
+        "observed": observed / trials,
+    }
+    limits = zip(
+        ("observed_lower", "observed_upper"), wilson_interval(observed, trials), strict=True
+    )
+    calibration = pd.DataFrame(columns | dict(limits)).sort_values("im", ignore_index=True)
     miss = outcomes.overturned * (1 - probability) ** 2
     miss += (outcomes.trials - outcomes.overturned) * probability**2
     brier = float(miss.sum() / outcomes.n)
@@ -201,10 +200,7 @@ def checks_of_outcomes(
     dependence: Literal["tests", "motions"] | None = None,
     seed: int = 0,
 ) -> Checks:
-    """Judge a curve fitted to outcomes.
-
-    ``dependence`` and ``seed`` are those of :func:`rockfrag.fragility.checks.goodness_of_fit`.
-    """
+    """Judge a curve fitted to outcomes; ``dependence`` and ``seed`` are of :func:`goodness_of_fit`."""
     p_fit, test, residual, found = float("nan"), "none", float("nan"), None
     if np.isfinite(fit.theta):
         found = goodness_of_fit(outcomes, fit, dependence=dependence, seed=seed)
@@ -229,9 +225,9 @@ def checks_of_brackets(brackets: Brackets, fit: FragilityFit, interval: Interval
         fraction = (np.arange(middle.size) + 0.5) / middle.size
         apart = fraction - fit.probability(np.exp(np.sort(middle)))
         residual = float(apart[np.abs(apart).argmax()])
-    # a motion that never overturned counts above all others
-    middles = np.where(np.isfinite(upper), 0.5 * np.log(np.maximum(lower, 1e-300) * upper), np.inf)
-    capacity = np.where(lower > 0, middles, -np.inf)
+    # a motion that never overturned counts above all others, one that did at once below
+    capacity = np.where(np.isfinite(upper), -np.inf, np.inf)
+    capacity[closed] = middle
     groups = brackets.groups(interval.over)
     fractions = fractions_of_capacities(capacity, groups, interval.level)
     notes = tuple(_say("notes", fit, interval, p_fit, fractions))

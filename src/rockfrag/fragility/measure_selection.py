@@ -71,25 +71,15 @@ def area_under_curve(outcomes: Observations) -> float:
     return float((falls * (below + 0.5 * stands)).sum() / (falls.sum() * stands.sum()))
 
 
-def sufficiency(outcomes: Observations, fit: FragilityFit, column: Floats) -> float:
-    """Return the p value of a linear dependence of outcome less fitted probability on a column, (n,).
-
-    A measure is sufficient for a property, such as magnitude or distance, on which nothing of its residual depends
-    (Luco and Cornell, 2007, Earthquake Spectra 23: 357-392).
-    """
-    if not np.isfinite(fit.theta):
-        return float("nan")
-    residual = outcomes.overturned / outcomes.trials - fit.probability(outcomes.im)
-    return dependence_p_value(residual, column, outcomes.earthquake)
-
-
 def dependence_p_value(residual: Floats, column: Floats, groups: NDArray[np.object_]) -> float:
     """Return the p value of a linear dependence of residuals on a column, robust to dependence within groups.
 
-    NaN with fewer than three groups or a constant column.
+    A measure is sufficient for a property, such as magnitude or distance, on which nothing of its residual depends
+    (Luco and Cornell, 2007, Earthquake Spectra 23: 357-392). NaN without a curve, with fewer than three groups or
+    a constant column.
     """
     codes, names = pd.factorize(pd.Series(groups))
-    if len(names) < 3 or np.ptp(column) == 0:
+    if len(names) < 3 or np.ptp(column) == 0 or not np.isfinite(residual).all():
         return float("nan")
     scaled = (column - column.mean()) / column.std()
     result = OLS(residual, add_constant(scaled)).fit(
@@ -145,7 +135,11 @@ def recommend_measure(
             source=source,
         )
         fit, interval = fit_lognormal(outcomes), interval_over_motions(outcomes, level=level)
-        p = {name: sufficiency(outcomes, fit, values) for name, values in extra.items()}
+        residual = outcomes.overturned / outcomes.trials - fit.probability(outcomes.im)
+        p = {
+            name: dependence_p_value(residual, values, outcomes.earthquake)
+            for name, values in extra.items()
+        }
         rows.append(_row(column, fit, interval, outcomes, p))
         group = pd.factorize(pd.Series(outcomes.earthquake))[0]
         logs, fell, trials = outcomes.log_im[:, None], outcomes.overturned, outcomes.trials

@@ -3,12 +3,11 @@
 A measure is declared once beside its function, ``@intensity_measure(unit, power=…, label=…)``: tables, schema,
 curves, figures and exports read it.
 
-Velocity, displacement and response spectra are those of an acceleration that is linear between
-samples, exactly, with the peaks between samples.  The integrals of a² and |a| follow custom
-instead, the trapezoidal rule on the samples, so that they can be held against published values; the
-trapezoidal sum of a² is also the exact energy of the band-limited signal that was sampled
-(Parseval).  Spectra and SciPy are loaded where they are computed with: numba takes most of a second,
-and steps that scale to a measure are named long before they are taken.
+Velocity, displacement and response spectra are those of an acceleration that is linear between samples, exactly,
+with the peaks between samples.  The integrals of a² and |a| follow custom instead, the trapezoidal rule on the
+samples, so that they can be held against published values; the trapezoidal sum of a² is also the exact energy of
+the band-limited signal that was sampled (Parseval).  Spectra and SciPy are loaded where they are computed with:
+numba takes most of a second, and steps that scale to a measure are named long before they are taken.
 """
 
 from __future__ import annotations

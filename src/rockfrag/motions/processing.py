@@ -75,9 +75,8 @@ def baseline(motion: Motion, order: int = 1) -> Motion:
 def displacement_baseline(motion: Motion, order: int = 6) -> Motion:
     """Subtract the second derivative of a polynomial fitted to the displacement.
 
-    The polynomial has no constant and no linear term, so that displacement and velocity still start
-    from zero; order 6 is the rule of the PEER ground motion database (Ancheta et al. 2013, PEER
-    Report 2013/03).
+    The polynomial has no constant and no linear term, so that displacement and velocity still start from zero;
+    order 6 is the rule of the PEER ground motion database (Ancheta et al. 2013, PEER Report 2013/03).
     """
     order = whole_within("step displacement_baseline", "order", order, 2, 10)
     _enough_samples("displacement_baseline", motion, order + 2)

@@ -58,13 +58,12 @@ NO_PULSE = StrongestPulse(*[math.nan] * 6)  # of a motion of zeros, or one too s
 def strongest_pulse(motion: Motion) -> StrongestPulse:
     """Find the velocity pulse that explains the largest fraction of a record's velocity.
 
-    Pulses of the form of Mavroeidis & Papageorgiou (2003, Bull. Seism. Soc. Am. 93(3), 1099-1131)
-    are slid along the velocity, as in the extended wavelet transform of Vassiliou & Makris (2011,
-    Bull. Seism. Soc. Am. 101(2), 596-618), over periods, cycles and phases.  For given period and
-    cycles the amplitude and the phase follow from least squares, because the symmetric and the
-    antisymmetric pulse are orthogonal and any phase is a sum of the two.  The best fit is the one
-    that takes most of ∫ v² dt, which is what Baker (2007, Bull. Seism. Soc. Am. 97(5), 1486-1501)
-    asks of his pulse too.
+    Pulses of the form of Mavroeidis & Papageorgiou (2003, Bull. Seism. Soc. Am. 93(3), 1099-1131) are slid along
+    the velocity, as in the extended wavelet transform of Vassiliou & Makris (2011, Bull. Seism. Soc. Am. 101(2),
+    596-618), over periods, cycles and phases.  For given period and cycles the amplitude and the phase follow from
+    least squares, because the symmetric and the antisymmetric pulse are orthogonal and any phase is a sum of the
+    two.  The best fit is the one that takes most of ∫ v² dt, which is what Baker (2007, Bull. Seism. Soc. Am.
+    97(5), 1486-1501) asks of his pulse too.
 
     Parameters
     ----------

@@ -73,10 +73,9 @@ class ResponseSpectrum:
 def oscillator_matrix(omega: float, damping: float, step: float) -> Floats:
     """Exact propagator of an oscillator over one step of linearly varying ground acceleration.
 
-    The state is (u, u', a, s): relative displacement and velocity, ground acceleration and its
-    slope; u'' + 2 ζ ω u' + ω² u = -a, a' = s.  Nigam & Jennings (1969, Bull. Seism. Soc. Am. 59(2),
-    909-922), for any damping, at and above critical too.  The matrix, of shape (2, 4), maps (u, u', a, s) to
-    (u, u') one step [s] later.
+    The state is (u, u', a, s): relative displacement and velocity, ground acceleration and its slope; u'' + 2 ζ ω
+    u' + ω² u = -a, a' = s.  Nigam & Jennings (1969, Bull. Seism. Soc. Am. 59(2), 909-922), for any damping, at and
+    above critical too.  The matrix, of shape (2, 4), maps (u, u', a, s) to (u, u') one step [s] later.
     """
     rate = damping * omega
     turn = omega * math.sqrt(abs(1 - damping**2))

@@ -110,12 +110,11 @@ def spectrum_compatible(
 ) -> Motion:
     """Noise whose Fourier amplitudes are corrected until its response spectrum meets a target.
 
-    The phases of modulated white noise are kept and the amplitude at each frequency is multiplied
-    by target over actual pseudo-acceleration at that period, again and again (SIMQKE's rule:
-    Gasparini & Vanmarcke 1976, MIT report R76-4; Preumont 1984, Nucl. Eng. Des. 78, 431-444).  The
-    best of 50 corrections is returned; what misfit remains is in the metadata.  Between the given
-    periods the target is a straight line in logarithms; nothing is asked of the motion outside of
-    them, and content below half the lowest frequency is taken out.
+    The phases of modulated white noise are kept and the amplitude at each frequency is multiplied by target over
+    actual pseudo-acceleration at that period, again and again (SIMQKE's rule: Gasparini & Vanmarcke 1976, MIT
+    report R76-4; Preumont 1984, Nucl. Eng. Des. 78, 431-444).  The best of 50 corrections is returned; what misfit
+    remains is in the metadata.  Between the given periods the target is a straight line in logarithms; nothing is
+    asked of the motion outside of them, and content below half the lowest frequency is taken out.
 
     Parameters
     ----------

@@ -1,9 +1,8 @@
 """Pairing of tests: the same object and motion, with (P) and without (NP) the pedestal.
 
-The unit of everything that follows is d = ln a_P - ln a_NP of one pair.  An amplitude from a series of
-steps lies anywhere in its step, so d is known to its ``resolution``: half the two steps' widths together,
-ln(1 + step) where both sides climbed the same series of levels.  A test that never overturned bounds d on one
-side.
+The unit of everything that follows is d = ln a_P - ln a_NP of one pair.  An amplitude from a series of steps lies
+anywhere in its step, so d is known to its ``resolution``: half the two steps' widths together, ln(1 + step) where
+both sides climbed the same series of levels.  A test that never overturned bounds d on one side.
 """
 
 import math
@@ -206,9 +205,8 @@ def slenderness_of(clean: pd.DataFrame, slenderness: Mapping[str, float]) -> pd.
 def _sides(clean: pd.DataFrame) -> pd.DataFrame:
     """One row per object and motion, columns by figure and side; repetitions averaged in ln a.
 
-    The mean of repetitions of which one never overturned is only known to lie above the mean of
-    what was survived, so such a side counts as censored; likewise below, where one overturned at its
-    first step.
+    The mean of repetitions of which one never overturned is only known to lie above the mean of what was survived,
+    so such a side counts as censored; likewise below, where one overturned at its first step.
     """
     exact, left = clean["censored"] == "none", clean["censored"] == "left"
     figure = clean["amplitude_g"].where(exact, clean["lower_g"].where(~left, clean["upper_g"]))

@@ -117,8 +117,7 @@ def _whole_tests(table: pd.DataFrame, seed: int) -> pd.DataFrame:
 def _ranks(table: pd.DataFrame, seed: int) -> pd.DataFrame:
     """Rank probabilities of d: objects over motions, floors over earthquakes, earthquakes over their motions.
 
-    Of many levels none is ranked.
-    Floors share the earthquake and objects the motion, so they are drawn together.
+    Of many levels none is ranked. Floors share the earthquake and objects the motion, so they are drawn together.
     """
     parts = []
     clusters = {"object": "motion", "floor": "earthquake", "earthquake": "motion"}

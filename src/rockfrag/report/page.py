@@ -48,8 +48,7 @@ _SCHEME = {
 """Colours of drawings that follow the reader's scheme, light or dark, and their names in the style."""
 
 
-Row = Mapping[Any, Any]
-"""A row of a table."""
+Row = Mapping[Any, Any]  # a row of a table
 
 Words = Callable[[pd.DataFrame], Iterable[str]]
 

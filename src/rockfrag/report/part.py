@@ -112,8 +112,7 @@ class Says(Macros):
         return Section(anchor, " ".join(title), " ".join(message), paragraphs, parts)
 
 
-says = Says("rockfrag.report.sections", "sections.j2")
-"""What the parts of a report say."""
+says = Says("rockfrag.report.sections", "sections.j2")  # what the parts of a report say
 
 
 class Results:

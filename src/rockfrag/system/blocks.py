@@ -1,9 +1,8 @@
 """Rigid blocks and stacks of two: what every integrator, fast or plain, starts from.
 
-Conventions (``docs/derivation.md``): a rotation θ > 0 is clockwise and its pivot is the
-right corner, s = +1; an acceleration a > 0 of the ground pushes blocks towards θ < 0.  Lengths are read
-in the standing block's frame, x to the right and y up, and
-R(θ)(x, y) = (x cos θ + y sin θ, -x sin θ + y cos θ) turns a vector clockwise.
+Conventions (``docs/derivation.md``): a rotation θ > 0 is clockwise and its pivot is the right corner, s = +1; an
+acceleration a > 0 of the ground pushes blocks towards θ < 0.  Lengths are read in the standing block's frame, x to
+the right and y up, and R(θ)(x, y) = (x cos θ + y sin θ, -x sin θ + y cos θ) turns a vector clockwise.
 """
 
 import math

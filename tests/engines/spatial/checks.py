@@ -14,8 +14,7 @@ from ...oracle.space_stepping import falls
 from .samples import DT, box, cylinder, solid, synthetic_motion
 
 ANGLES = np.arange(0.9, 44.2, 0.9)
-RADII = (1.0, 3.0, 10.0, 30.0)
-"""Slendernesses [degrees] and half diagonals [m] of solid cylinders."""
+RADII = (1.0, 3.0, 10.0, 30.0)  # slendernesses [degrees] and half diagonals [m] of solid cylinders
 SIDES = (12, 24, 48)
 PASSES = [
     (True, 0.3, 7.501), (True, 0.1, 7.251), (True, 0.03, 7.115),

@@ -22,9 +22,8 @@ _SIZE = re.compile(
     r"^\s*NO\.?\s+OF\s+POINTS\s*=\s*(?P<count>\d+),?\s*UNITS\s*=\s*(?P<units>.*)$", re.I
 )
 _TIME = re.compile(
-    r"YEAR\s*=\s*(\d+)\s+JULIAN\s+DAY\s*=\s*(\d+)\s+HOUR\s*=\s*(\d+)\s+MINUTE\s*=\s*(\d+)\s+"
-    r"SECOND\s*=\s*([\d.]+)\s*(?:COMPONENT\s*=\s*(\S+))?",
-    re.I,
+    r"(?i)YEAR\s*=\s*(\d+)\s+JULIAN\s+DAY\s*=\s*(\d+)\s+HOUR\s*=\s*(\d+)\s+MINUTE\s*=\s*(\d+)\s+"
+    r"SECOND\s*=\s*([\d.]+)\s*(?:COMPONENT\s*=\s*(\S+))?"
 )
 _TYPES = {"AC": "acceleration", "VL": "velocity", "DP": "displacement"}
 _ABOVE = 5

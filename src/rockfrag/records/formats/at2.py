@@ -9,6 +9,7 @@ import re
 from collections.abc import Iterator
 
 from rockfrag.records.parsing.format import QUANTITIES, Channel, Format, stated, text_writer
+from rockfrag.records.parsing.number_fields import number_in
 from rockfrag.records.parsing.quantities import canonical_unit, quantity_of
 from rockfrag.records.parsing.text_file import TextFile, last_row
 
@@ -18,13 +19,11 @@ _STEP = re.compile(
     rf"\bDT\s*[=:]\s*(?P<dt>{_NUMBER})\s*(?P<milliseconds>MS|MSEC\w*|MILLI\w*)?\b", re.I
 )
 _TRAILING = re.compile(
-    rf"^\s*(?P<first>{_NUMBER})[\s,]+(?P<second>{_NUMBER})[\s,]+(?P<names>NPTS\W+DT|DT\W+NPTS)\b",
-    re.I,
+    rf"(?i)^\s*(?P<first>{_NUMBER})[\s,]+(?P<second>{_NUMBER})[\s,]+(?P<names>NPTS\W+DT|DT\W+NPTS)\b"
 )
 _LEADING = re.compile(
-    rf"\b(?P<names>NPTS\s*[,;\s]\s*DT|DT\s*[,;\s]\s*NPTS)\W*?\s*[=:]?\s*"
-    rf"(?P<first>{_NUMBER})[\s,;]+(?P<second>{_NUMBER})",
-    re.I,
+    rf"(?i)\b(?P<names>NPTS\s*[,;\s]\s*DT|DT\s*[,;\s]\s*NPTS)\W*?\s*[=:]?\s*"
+    rf"(?P<first>{_NUMBER})[\s,;]+(?P<second>{_NUMBER})"
 )
 _WORDS_OF_UNIT = (
     r"(?P<unit>G(?:'?S)?(?![A-Z0-9/])|G\s*/\s*10\b|M?GALS?\b|"
@@ -38,9 +37,8 @@ _ENDINGS = {".VT2": "velocity", ".DT2": "displacement"}
 _MAX_HEADER = 30
 _WIDTH = 15
 _COMPONENT = re.compile(
-    r",\s*(?P<component>\d{1,3}|UP|DWN|DN|V|VERT\w*|[NSEWLTXYZ]{1,2}|[NS]\d{1,2}[EW]|[BHELS][HNLG][ENZ123]\d?\d?|FN|FP)"
-    r"\s*(?:\((?P<agency>[^)]*)\)\s*)?$",
-    re.I,
+    r"(?i),\s*(?P<component>\d{1,3}|UP|DWN|DN|V|VERT\w*|[NSEWLTXYZ]{1,2}|[NS]\d{1,2}[EW]|[BHELS][HNLG][ENZ123]\d?\d?"
+    r"|FN|FP)\s*(?:\((?P<agency>[^)]*)\)\s*)?$"
 )
 
 
@@ -94,13 +92,10 @@ def _parse(text: TextFile) -> Iterator[Channel]:
         text.fail("no line with NPTS and DT above the data")
     size, words, step, factor = found
     header = header[: size + 1]
-    try:
-        points, dt = (float(word.upper().replace("D", "E")) for word in (words, step))
-        npts = int(points)
-    except (ValueError, OverflowError) as error:
-        text.fail(str(error), size)
-    if points != npts or points < 1:
+    points, dt = number_in(words), number_in(step)
+    if points % 1 or not 1 <= points < 1e12:
         text.fail(f"NPTS must be a whole number of samples, not {words}", size)
+    npts = int(points)
     dt = text.interval(dt * factor if factor != 1 else dt, size)
     quantity, unit = _quantity_and_unit(header)
     quantity = quantity or _ENDINGS.get(text.name.upper().removesuffix(".GZ")[-4:], "")

@@ -54,12 +54,8 @@ def _parse(text: TextFile) -> Iterator[form.Channel]:
 def _step(text: TextFile, at_reals: int, count: int, duration: float) -> float:
     """Return the interval [s] of the rate, checked against the duration."""
     fields = text.line(at_reals + 1)[:_WIDTH]
-    try:
-        rate = float(fields)
-    except ValueError:
-        text.fail(
-            f"{fields.strip()[:20]!r} stands where the sampling rate is expected", at_reals + 1
-        )
+    problem = f"{fields.strip()[:20]!r} stands where the sampling rate is expected"
+    rate = text.number(fields, problem, at_reals + 1)
     dt = text.interval(1 / rate if rate > 0 else 0.0, at_reals + 1)
     if abs(count * dt - duration) > 2 * dt + 0.001:
         text.fail(

@@ -22,9 +22,8 @@ _INTEGERS = re.compile("integer-header values", re.I)
 _COMMENTS = re.compile(r"^\s*(\d+)\s+Comment line", re.I)
 _VALUES = re.compile(r"^\s*\d+\s+\w[\w. ]*?\s+p(?:oin)?ts\b", re.I)
 _VALUES_LINE = re.compile(
-    r"^\s*(?P<count>\d+)\s+(?:raw\s+)?(?P<quantity>\w+).*?units?\s*=\s*(?P<unit>[^,(]+)"
-    r"(?:\(\s*(?P<code>\d+)\s*\))?",
-    re.I,
+    r"(?i)^\s*(?P<count>\d+)\s+(?:raw\s+)?(?P<quantity>\w+).*?units?\s*=\s*(?P<unit>[^,(]+)"
+    r"(?:\(\s*(?P<code>\d+)\s*\))?"
 )
 _END = re.compile(rf"^\s*(?:/&|End-of-data)|\(Format\s+v|{_VALUES.pattern}", re.I)
 Number = TypeVar("Number", int, float)
@@ -92,9 +91,8 @@ def _above_samples(text: TextFile, at_reals: int) -> int:
     """Return the line above the samples; comments between may look like anything."""
     at_comments, line = text.find(_COMMENTS, at_reals), text.find(_VALUES, at_reals + 1)
     if 0 <= at_comments < line:
-        match = _COMMENTS.match(text.raw(at_comments))
-        assert match is not None
-        line = text.find(_VALUES, at_comments + 1 + int(match[1]))
+        count = int(text.raw(at_comments).split()[0])
+        line = text.find(_VALUES, at_comments + 1 + count)
     if line < 0:
         text.fail("no line with the number of samples below the header; the file is cut short")
     return line

@@ -1,10 +1,9 @@
 """CSMIP/CDMG volumes 1 and 2 (California Strong Motion Instrumentation Program).
 
-Each channel has a text header, 100 integers (16I5), 50 or 100 reals (8F10) and its values, and ends
-with a line ``/&``. Volume 2 has acceleration, velocity and displacement below lines such as ``1138
-POINTS OF ACCEL DATA EQUALLY SPACED AT  .020 SEC.  (UNITS: CM/SEC/SEC)``; volume 1 has one line such
-as ``13200 Accelerogram points at 200 pts/sec in units of g .  Format: (8f9.6)``, and before 1985
-pairs of time and acceleration in g/10.
+Each channel has a text header, 100 integers (16I5), 50 or 100 reals (8F10) and its values, and ends with a line
+``/&``. Volume 2 has acceleration, velocity and displacement below lines such as ``1138 POINTS OF ACCEL DATA
+EQUALLY SPACED AT  .020 SEC.  (UNITS: CM/SEC/SEC)``; volume 1 has one line such as ``13200 Accelerogram points at
+200 pts/sec in units of g .  Format: (8f9.6)``, and before 1985 pairs of time and acceleration in g/10.
 """
 
 import re
@@ -17,25 +16,21 @@ from rockfrag.records.parsing.timestamps import american_time, is_pairs_header, 
 _FIRST = re.compile(r"^\s*(?:un)?corrected\s+acc?elero(?:gram|graph)\b", re.I)
 _SPECTRA = re.compile(r"^\s*(?:response|fourier)\b.*\bspectr", re.I)
 _VOLUME_2 = re.compile(
-    r"^\s*(?P<count>\d+)\s+points?\s+of\s+(?P<quantity>accel|veloc|displ)\w*\s+data\s+equally\s+"
-    r"spaced\s+at\s+(?P<dt>[\d.]+(?:E[+-]?\d+)?)\s*sec(?P<rest>.*)$",
-    re.I,
+    r"(?i)^\s*(?P<count>\d+)\s+points?\s+of\s+(?P<quantity>accel|veloc|displ)\w*\s+data\s+equally\s+"
+    r"spaced\s+at\s+(?P<dt>[\d.]+(?:E[+-]?\d+)?)\s*sec(?P<rest>.*)$"
 )
 _VOLUME_1 = re.compile(
-    r"^\s*(?P<count>\d+)\s+(?P<quantity>accel|veloc|displ)\w*\s+points?\s+at\s+"
-    r"(?P<rate>[\d.]+)\s*(?:pts|points|samples)\s*/\s*sec(?P<rest>.*)$",
-    re.I,
+    r"(?i)^\s*(?P<count>\d+)\s+(?P<quantity>accel|veloc|displ)\w*\s+points?\s+at\s+"
+    r"(?P<rate>[\d.]+)\s*(?:pts|points|samples)\s*/\s*sec(?P<rest>.*)$"
 )
 _VALUES = re.compile(
-    r"^\s*\d+\s+(?:points?\s+of\s+(?:accel|veloc|displ)\w*\s+data\s+equally"
-    r"|(?:accel|veloc|displ)\w*\s+points?\s+at\s)",
-    re.I,
+    r"(?i)^\s*\d+\s+(?:points?\s+of\s+(?:accel|veloc|displ)\w*\s+data\s+equally"
+    r"|(?:accel|veloc|displ)\w*\s+points?\s+at\s)"
 )
 _END = re.compile(rf"{_VALUES.pattern}|^\s*/&|{_FIRST.pattern}", re.I)
 _UNIT = re.compile(
-    r"(?:units?\s*(?::|of|are|=)|\bin)\s*(?P<unit>[CM]*M\s*/\s*S\w*(?:\s*/\s*S\w*)?\d?|CM|G\s*/\s*10|"
-    r"1/10\s*G|G)(?![A-Z])",
-    re.I,
+    r"(?i)(?:units?\s*(?::|of|are|=)|\bin)\s*(?P<unit>[CM]*M\s*/\s*S\w*(?:\s*/\s*S\w*)?\d?|CM|G\s*/\s*10|"
+    r"1/10\s*G|G)(?![A-Z])"
 )
 _STATION = re.compile(r"^\s*station\s+(?:no|id)\.?\s*(\w+)?(?=\s|$)", re.I)
 _START = re.compile(r"(?:start|trigger)\s+time\s*:(.*)$", re.I)

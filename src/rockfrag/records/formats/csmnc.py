@@ -13,9 +13,8 @@ from rockfrag.records.parsing.quantities import canonical_unit, quantity_of
 from rockfrag.records.parsing.text_file import TextFile
 
 _SIZE = re.compile(
-    r"NO\.?\s*OF\s+POINTS\s*:?\s*(?P<count>\d+)\s+EQUALLY\s+SPACED\s+INTERVALS?\s+OF\s*:?\s*"
-    r"(?P<dt>[\d.]+(?:E[+-]?\d+)?)\s*SEC",
-    re.I,
+    r"(?i)NO\.?\s*OF\s+POINTS\s*:?\s*(?P<count>\d+)\s+EQUALLY\s+SPACED\s+INTERVALS?\s+OF\s*:?\s*"
+    r"(?P<dt>[\d.]+(?:E[+-]?\d+)?)\s*SEC"
 )
 _QUANTITY = re.compile(
     r"\b(?P<quantity>ACCELERATION|VELOCITY|DISPLACEMENT)\b.*?\bUNIT\s*:\s*(?P<unit>\S+)", re.I

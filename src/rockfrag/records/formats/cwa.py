@@ -25,10 +25,7 @@ def _parse(text: TextFile) -> list[form.Channel]:
     order = re.findall(r"\b([UNEZ])\s*\(", facts["datasequence"]) or list(_ORDER)
     values = text.numbers(start, None, form.field_width(f"({facts['data']})") or 10)
     table = text.in_rows(values, len(order) + 1, start)
-    try:
-        rate = float(facts["samplerate"])
-    except ValueError:
-        text.fail("#SampleRate is not a number")
+    rate = text.number(facts["samplerate"], "#SampleRate is not a number")
     dt = text.interval(1 / rate if rate > 0 else 0.0, 0)
     if table.shape[0] > 1:
         measured = step_of_times(table[:, 0], text, start)

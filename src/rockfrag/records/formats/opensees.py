@@ -21,8 +21,7 @@ from rockfrag.records.parsing.text_file import TextFile, read_text
 
 _SERIES = re.compile(r"^[^#]*?(?:\btimeSeries\s+[\"']?Path\b|[{\"]\s*Series\s+-)", re.I)
 _UNIT = re.compile(
-    rb"^[ \t]*#.*\bacceleration\b.*?\bin[ \t]+(?P<unit>[^\s,]+)(?:,[ \t]*(?P<count>\d+)[ \t]+samples)?",
-    re.I | re.M,
+    rb"(?im)^[ \t]*#.*\bacceleration\b.*?\bin[ \t]+(?P<unit>[^\s,]+)(?:,[ \t]*(?P<count>\d+)[ \t]+samples)?"
 )
 _OPTION = r"-{name}\s+(?:\{{(?P<list>[^{{}}]*)\}}|\"(?P<quoted>[^\"]*)\"|(?P<word>[^\s{{}}\"]+))"
 

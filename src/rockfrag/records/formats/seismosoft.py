@@ -9,9 +9,8 @@ from rockfrag.records.parsing.text_file import TextFile
 from rockfrag.records.parsing.timestamps import step_of_times
 
 _COLUMNS = re.compile(
-    r"^\s*time\s*[\[(]\s*(?:s|sec|seconds)\s*[\])][\s,;]+"
-    r"(?P<quantity>accel\w*|veloc\w*|displ\w*)\.?\s*[\[(](?P<unit>[^\])]+)[\])]\s*$",
-    re.I,
+    r"(?i)^\s*time\s*[\[(]\s*(?:s|sec|seconds)\s*[\])][\s,;]+"
+    r"(?P<quantity>accel\w*|veloc\w*|displ\w*)\.?\s*[\[(](?P<unit>[^\])]+)[\])]\s*$"
 )
 _BEFORE_COMPONENT = re.compile(r"^(?P<station>[^()]+)\((?P<component>[^()]+)\)\s*$")
 _BEHIND_COMPONENT = re.compile(r"^(?P<component>\d{3})\s+(?P<station>\D.*)$")

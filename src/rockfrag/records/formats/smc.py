@@ -22,9 +22,8 @@ from rockfrag.records.parsing.timestamps import pairs_of, time_at
 _TEXT_LINES, _INTEGER_LINES, _REAL_LINES = 11, 6, 10
 _FIRST_DATA = _TEXT_LINES + _INTEGER_LINES + _REAL_LINES
 _KINDS = re.compile(
-    r"^\s*(?:[0-5]\s+)?(?P<kind>UNKNOWN|UNCORRECTED ACCELEROGRAM|CORRECTED ACCELEROGRAM|VELOCITY|"
-    r"DISPLACEMENT|RESPONSE SPECTRA|FOURIER)\b|^\s*\*",
-    re.I,
+    r"(?i)^\s*(?:[0-5]\s+)?(?P<kind>UNKNOWN|UNCORRECTED ACCELEROGRAM|CORRECTED ACCELEROGRAM|VELOCITY|"
+    r"DISPLACEMENT|RESPONSE SPECTRA|FOURIER)\b|^\s*\*"
 )
 _FIRST_FIELD = re.compile(r"^\s*[+-]?\d*\.\d*(?:[EeDd][+-]?\d+)?")
 _HIGH_PRECISION = 8

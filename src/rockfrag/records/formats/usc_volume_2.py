@@ -22,9 +22,8 @@ _SECOND = re.compile(r"OF\s+UNCORRECTED\s+ACCELEROGRAM\s+DATA\s+OF\s+VOLUME", re
 _VALUES = re.compile(r"^\s*\d+\s+POINTS\s+OF\s+\w+\s+DATA\s+EQUALLY", re.I)
 _END = re.compile(rf"{_VALUES.pattern}|^\s*/&|{_FIRST.pattern}", re.I)
 _VALUES_LINE = re.compile(
-    r"^\s*(?P<count>\d+)\s+POINTS\s+OF\s+(?P<quantity>ACC|VEL|DIS)\w*\s+DATA\s+EQUALLY[\s-]+SPACED\s+"
-    r"AT\s+(?P<dt>[\d.]+)\s*SEC\.?(?:\s*(?:\(|IN\s+)?\s*(?:UNITS?\b\s*(?:OF|:)?\s*)?(?P<unit>[A-Z]+/[A-Z/*\d]+))?",
-    re.I,
+    r"(?i)^\s*(?P<count>\d+)\s+POINTS\s+OF\s+(?P<quantity>ACC|VEL|DIS)\w*\s+DATA\s+EQUALLY[\s-]+SPACED\s+"
+    r"AT\s+(?P<dt>[\d.]+)\s*SEC\.?(?:\s*(?:\(|IN\s+)?\s*(?:UNITS?\b\s*(?:OF|:)?\s*)?(?P<unit>[A-Z]+/[A-Z/*\d]+))?"
 )
 _PEAK = re.compile(
     r"PEAK\s+ACCELERATION\s*=\s*(?P<value>[-+]?[\d.]+)\s+(?P<unit>[A-Z]+/[A-Z/*\d]+)", re.I

@@ -8,14 +8,12 @@ from rockfrag.records.parsing.number_fields import NumberTable
 from rockfrag.records.parsing.quantities import TO_SI, canonical_unit, quantity_of
 
 _TIME = re.compile(
-    r"^(?:elapsed\s*|relative\s*)?(?:t|times?|sec|seconds?|ms|msec|millis\w*|min|minutes?|zeit|temps|tiempo|tempo)"
-    r"(?![a-z])",
-    re.I,
+    r"(?i)^(?:elapsed\s*|relative\s*)?(?:t|times?|sec|seconds?|ms|msec|millis\w*|min|minutes?|zeit|temps|tiempo"
+    r"|tempo)(?![a-z])"
 )
 _INDEX = re.compile(
-    r"^(?:no|nr|index|idx|i|samples?|points?|steps?|rows?|counter|line)\W*(?:no|nr|number|index|id)?\W*$"
-    r"|^#$|^number$",
-    re.I,
+    r"(?i)^(?:no|nr|index|idx|i|samples?|points?|steps?|rows?|counter|line)\W*(?:no|nr|number|index|id)?\W*$"
+    r"|^#$|^number$"
 )
 _SECONDS = {"(?:s|sek)?": 1.0, "(?:milli|ms).*": 1e-3, "micro.*|[uµμ]s": 1e-6}
 _SECONDS |= {"min.*": 60.0, "h|hrs?|hours?": 3600.0}
@@ -28,15 +26,13 @@ _WORDS = {
     "displacement": re.compile(r"(?<![a-z])(?:d|u|dis(?:pl?\w*)?)(?![a-z])", re.I),
 }
 _OTHERS = re.compile(
-    r"\b(?P<what>force|load|temp(?:erature)?|resistance|pressure|stress|strain|moment|rotation|angle|volt(?:age)?"
-    r"|current|depth|elevation|height|energy|power|humidity|weight|mass|torque|speed|drift|stiffness|gyro\w*"
-    r"|friction)s?(?![a-z])",
-    re.I,
+    r"(?i)\b(?P<what>force|load|temp(?:erature)?|resistance|pressure|stress|strain|moment|rotation|angle"
+    r"|volt(?:age)?|current|depth|elevation|height|energy|power|humidity|weight|mass|torque|speed|drift|stiffness"
+    r"|gyro\w*|friction)s?(?![a-z])"
 )
 _ORIENTATION = re.compile(
-    r"^(?:[NSEWUD]-?[NSEWUD]|[NEZUVLTXYH]|UP|VERT\w*|H[12]|[BHE][NLGH][ENZ123]|[NS]\d{1,2}[EW]|\d{1,3}"
-    r"|north\w*|east\w*|radial|transverse|longitudinal|ch(?:annel)?\W?\d+)$",
-    re.I,
+    r"(?i)^(?:[NSEWUD]-?[NSEWUD]|[NEZUVLTXYH]|UP|VERT\w*|H[12]|[BHE][NLGH][ENZ123]|[NS]\d{1,2}[EW]|\d{1,3}"
+    r"|north\w*|east\w*|radial|transverse|longitudinal|ch(?:annel)?\W?\d+)$"
 )
 _NO_QUANTITY = frozenset({"s", "ms", "-", "min"})
 _AMBIGUOUS = frozenset("vud")

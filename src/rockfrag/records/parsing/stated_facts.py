@@ -11,26 +11,23 @@ from rockfrag.units import LONGEST_STEP, SHORTEST_STEP
 _VALUE = r"(?:\d+[.,]\d+|\d+\.?|[.,]\d+)(?:[EeDd][+-]?\d+)?"
 _IS = r"[\s\"']*(?:\((?P<note>[^)]*)\)|\[(?P<note2>[^\]]*)\])?[\s\"',]*(?P<sign>[=:]|\bis\b)?[\s\"',]*"
 _STEP = re.compile(
-    r"(?:\b(?:dt|d\.t\.|delta[\s_-]*t|time[\s_-]*(?:step|increment|interval|spacing)|timestep"
+    r"(?i)(?:\b(?:dt|d\.t\.|delta[\s_-]*t|time[\s_-]*(?:step|increment|interval|spacing)|timestep"
     r"|sampl\w*[\s_-]*(?:step|increment|interval|period|spacing|time)|spaced\s+at|intervals?\s+of)"
     r"|(?<![\w.])Δt|\b(?P<unsure>delta|interval))"
-    rf"{_IS}(?P<value>{_VALUE})\s*(?P<unit>ms|msec\w*|millis\w*|[uµ]s|microsec\w*|min\w*|deg\w*|km|°)?",
-    re.I,
+    rf"{_IS}(?P<value>{_VALUE})\s*(?P<unit>ms|msec\w*|millis\w*|[uµ]s|microsec\w*|min\w*|deg\w*|km|°)?"
 )
 _STEP_BEFORE = re.compile(
     rf"(?P<value>{_VALUE})\s*(?:s|sec\w*)\.?\s+(?:time\s+)?(?:intervals?|steps?|spacing)\b", re.I
 )
 _RATE = re.compile(
-    rf"\bsampl\w*[\s_-]*(?P<named>rate|freq\w*)?(?:\s+at\b)?{_IS}(?P<value>{_VALUE})\s*(?P<unit>k?hz|sps|samples|pts|points)?"
-    r"|(?<![\w.])fs\s*(?:\([^)]*\))?\s*[=:]\s*(?P<value2>[\d.]+)"
-    r"|(?P<value3>[\d.]+)\s*(?:sps\b|(?:samples?|pts|points)\s*(?:/|per)\s*s)",
-    re.I,
+    rf"(?i)\bsampl\w*[\s_-]*(?P<named>rate|freq\w*)?(?:\s+at\b)?{_IS}(?P<value>{_VALUE})\s*"
+    r"(?P<unit>k?hz|sps|samples|pts|points)?|(?<![\w.])fs\s*(?:\([^)]*\))?\s*[=:]\s*(?P<value2>[\d.]+)"
+    r"|(?P<value3>[\d.]+)\s*(?:sps\b|(?:samples?|pts|points)\s*(?:/|per)\s*s)"
 )
 _COUNT = re.compile(
-    r"(?:\b(?:npts|npoints|ndata|nsamples?|npt|(?:no\.?|number|num\.?|nr\.?|total)\s*(?:of\s+)?(?:acc\w*\s+)?"
+    r"(?i)(?:\b(?:npts|npoints|ndata|nsamples?|npt|(?:no\.?|number|num\.?|nr\.?|total)\s*(?:of\s+)?(?:acc\w*\s+)?"
     r"(?:data\s+|time\s+)?(?:points?|pts|samples?|data|values?|steps?))|(?P<unsure>\bsamples|\bpoints))"
-    rf"{_IS}(?P<count>\d+)(?![\d.,]*\d)(?!\s*(?:hz|s\b|sec|/|per))",
-    re.I,
+    rf"{_IS}(?P<count>\d+)(?![\d.,]*\d)(?!\s*(?:hz|s\b|sec|/|per))"
 )
 _COUNTED = re.compile(
     r"^\s*(?P<count>\d+)\s+(?:data\s+)?(?:points?|samples?|values?)\b(?!\s*(?:/|per))", re.I
@@ -40,8 +37,7 @@ _UNIT_WORDS = re.compile(
 )
 _QUANTITY = r"\b(?P<quantity>acc|vel|dis(?=p))(?:[a-z]*\.?)"
 _QUANTITY_IN = re.compile(
-    rf"{_QUANTITY}[^,;:(\[=\d]{{0,40}}?(?:\bin\s+(?:units?\s+(?:of\s+)?)?|[:(\[,=_]\s*)(?P<rest>.+)$",
-    re.I,
+    rf"(?i){_QUANTITY}[^,;:(\[=\d]{{0,40}}?(?:\bin\s+(?:units?\s+(?:of\s+)?)?|[:(\[,=_]\s*)(?P<rest>.+)$"
 )
 _NAMED_QUANTITY = re.compile(rf"{_QUANTITY}", re.I)
 _IN_UNIT = re.compile(r"(?:\bin\s+|[(\[{]\s*)(?P<rest>[^)\]}]+)", re.I)

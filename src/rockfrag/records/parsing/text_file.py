@@ -216,6 +216,13 @@ class TextFile:
             )
         return values.reshape(-1, columns)
 
+    def number(self, words: str, problem: str, line: int | None = None) -> float:
+        """Return the number that words of the header are; there is a problem if they are none."""
+        try:
+            return float(words)
+        except ValueError:
+            self.fail(problem, line)
+
     def interval(self, dt: float, line: int) -> float:
         """Return the sampling interval [s] that the header gives, if it can be one."""
         if not (np.isfinite(dt) and SHORTEST_STEP <= dt <= LONGEST_STEP):

@@ -1,3 +1,5 @@
+"""The building's part: variants of it, each with the tests that its floors give."""
+
 from dataclasses import replace
 from pathlib import Path
 
@@ -8,49 +10,14 @@ import yaml
 
 from rockfrag.errors import InputError
 from rockfrag.records.motion import Motion
-from rockfrag.rocking import overturns
-from rockfrag.shaketable.definitions import tests_from_ida as read_ida
 from rockfrag.shaketable.protocols import GeometricSteps, Protocol
-from rockfrag.shaketable.shaker import Shaker, shaker_table
 from rockfrag.study.configurations import configuration_of, each_alone
 from rockfrag.system.blocks import Block
 from rockfrag_thesis.building_sensitivity import building_sensitivity, building_variants
 
-from .conftest import ida_table
-
 BUILDING = Path(__file__).resolve().parents[2] / "config" / "building.yaml"
-TOWERS = {
-    "T1": Block(0.124, 0.372, 2.172),
-    "T2": Block(0.124, 0.496, 2.790),
-    "T3": Block(0.124, 0.620, 3.456),
-}
+TOWERS = {"T1": Block(0.124, 0.372, 2.172), "T2": Block(0.124, 0.496, 2.790)}
 BLOCKS = {**TOWERS, "P": Block(0.184, 0.208, 2.300)}
-
-
-def test_the_full_stroke_censors_loma_prieta_with_t1_and_nothing_else(records):
-    motions, steps = list(records.values()), GeometricSteps(0.2, 0.01)
-    table = shaker_table(Shaker(), motions).set_index("motion")
-    amplitudes = steps.amplitudes(0.7)
-    result = overturns(
-        list(TOWERS.values()),
-        [motion.acceleration for motion in motions],
-        [motion.dt for motion in motions],
-        [amplitudes * 9.81 / motion.pga for motion in motions],
-    )
-    curves = [
-        ida_table(result.overturned[i, j], amplitudes, name, earthquake=motion.name)
-        for i, name in enumerate(TOWERS)
-        for j, motion in enumerate(motions)
-    ]
-    tests = read_ida(
-        pd.concat(curves),
-        Protocol(steps),
-        definitions=["step_protocol"],
-        limits_g={f"{name}_ground": limit for name, limit in table["limit_g"].items()},
-    )
-    censored = tests[tests["censored"] == "right"]
-    assert censored[["object", "motion"]].to_numpy().tolist() == [["T1", "Loma_Prieta_ground"]]
-    assert censored["lower_g"].iloc[0] == pytest.approx(0.40, abs=0.005)
 
 
 @pytest.fixture
