@@ -272,10 +272,10 @@ def _pedestals(row: Row) -> list[dict[str, float]]:
     for key, cells in each.items():
         if len(cells) != len(found):
             raise row.error(key, "expected as many pedestals as in the other columns")
-        for pedestal, cell in zip(found, cells, strict=True):
+        for block, cell in zip(found, cells, strict=True):
             if cell.strip():
                 part = replace(row, cells={key: cell.strip()})
-                pedestal[key.removeprefix("pedestal_")] = part.quantity(key, above=0)
+                block[key.removeprefix("pedestal_")] = part.quantity(key, above=0)
     return found
 
 

@@ -213,13 +213,12 @@ def _own(records: Records, folder: Path) -> MotionSet:
     still = [motion.name for motion in motions if motion.pga == 0]
     if still:
         raise InputError(f"record {still[0]}: is zero throughout and shakes nothing; leave it out.")
-    pairs = _pairs(motions)
-    found = MotionSet(tuple(motions), tuple(motions), pairs, "", tuple(warnings))
-    earthquakes = len(set(found.earthquakes))
     if len({motion.name for motion in motions}) < len(motions):
         raise InputError(
             "records: two motions have the same name; leave one out or give a catalogue."
         )
+    found = MotionSet(tuple(motions), tuple(motions), _pairs(motions), "")
+    earthquakes = len(set(found.earthquakes))
     of = counted(earthquakes, "earthquake")
     if earthquakes < FEWEST_EARTHQUAKES:
         warnings.append(f"{of} cannot say how different others are.")
