@@ -179,8 +179,9 @@ def assess_inventory(
 
     def risk(each: Assessment) -> tuple[float, ...]:
         """Loss, probability, fraction, and how little topples half of the motions."""
-        likely, here = (item.value if item else 0.0 for item in (each.probability, each.fraction))
-        return losses.get(each.request.name, 0.0), likely, here, -each.amplitudes[0.5].value
+        estimates = (each.probability, each.fraction)
+        known = [estimate.value if estimate else 0.0 for estimate in estimates]
+        return losses.get(each.request.name, 0.0), *known, -each.amplitudes[0.5].value
 
     found.sort(key=risk, reverse=True)
     return Inventory(found, motions, joint, faults)
