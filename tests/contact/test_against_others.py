@@ -139,17 +139,6 @@ def test_outcomes_are_those_of_time_stepping(bodies, seed, step, differing, fall
         assert (found["turn"] > 1e-3).sum() <= max(1, 0.02 * len(bodies))
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("bodies", [1, 2], ids=["blocks", "stacks"])
-def test_histories_of_time_stepping_converge_to_those_of_contact_events(bodies):
-    rng = np.random.default_rng(29)
-    cases = [random_case(rng, bodies) for _ in range(15)]
-    coarse, fine = (beside_stepping(cases, step)["turn"] for step in (8e-5, 1e-5))
-    moving = coarse > 1e-6
-    assert moving.sum() > 5
-    assert np.median(fine[moving] / coarse[moving]) < 0.25
-
-
 RECORDS = ("Kobe", "Northridge", "Friuli", "Loma_Prieta")
 
 

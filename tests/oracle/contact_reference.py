@@ -1,31 +1,47 @@
-"""The reference integrator with friction and flight, on the mechanics of :mod:`contact_model`.
+"""The reference integrator with friction and flight, written to be read.
 
-At every contact event all modes that the closed contacts allow are tried; nothing but the bodies is shared with
-the fast kernels.
+Nothing but the bodies is shared with the fast kernels.  Every body has three coordinates, its centre of gravity
+(x, y) relative to the moving ground and its rotation θ, clockwise.  Interface k lies between body k and what is
+below it, the ground for k = 0.  An interface has two *ends*, left (-1) and right (+1), at which it may be closed.
+A *mode* says for each interface which ends are closed and whether it sticks (0) or slides (±1).  With the mode
+known, accelerations and contact forces, or velocities after an impact and impulses, follow from one linear system
+each (``docs/contact.md``).  At every contact event all modes that the closed contacts allow are tried.
 """
 
+import itertools
 import math
-from collections.abc import Iterable
+from collections.abc import Iterator
+from typing import NamedTuple
 
 import numpy as np
 
-from rockfrag.system import as_system
+from rockfrag.system import System, as_system
 from rockfrag.units import GRAVITY
 
-from .contact_model import AT_EDGE, FULL, OPEN, Contact, End, InterfaceMode, Mode, Model, Solution
 from .integrator import SLACK, Array, Integrator, Key
+from .standing import standing, turn
 
+
+class InterfaceMode(NamedTuple):
+    """Which ends of an interface are closed, and which way it slides (0: it sticks)."""
+
+    closed: tuple[int, ...]
+    slides: int
+
+
+OPEN = InterfaceMode((), 0)
+FULL = (-1, 1)
+Mode = tuple[InterfaceMode, ...]
+End = tuple[int, int]  # an end of an interface: (number of the interface, side)
+
+# a corner counts as over the face until it is this fraction of the half width beyond the edge
+AT_EDGE = 1e-9
 # lengths over b and speeds over √(g b) by which what has just begun is not taken for its end [-]
 TOUCH = 1e-13
-
 # a mode that violates its inequalities by less than this is consistent [-]; less than SLACK
 CONSISTENT = 2e-13
-
 # a contact that parts at less than this fraction of √(g b) after an impact, and would fall shut again, is closed
 CLOSING = 1e-6
-
-Load = list[float]
-
 LONGEST_TAIL = 200.0  # free motion after the last sample, over √(b/g)
 
 
@@ -38,8 +54,146 @@ def simulate_reference(body, acceleration, dt, *, friction, vertical=None, durat
     """
     motion = np.append(acceleration, 0.0)
     up = np.zeros(motion.size) if vertical is None else np.append(vertical, 0.0)
-    model = Model(as_system(body), tuple(friction), GRAVITY)
+    model = Model(as_system(body), tuple(friction))
     return _Run(model, np.array([motion, up]), dt).response(duration)
+
+
+class Contact(NamedTuple):
+    """One end of an interface: where it would touch, and how the body above moves relative to what is below."""
+
+    on_face: bool  # a corner on the face below, or else the edge below against the base
+    gap: float  # [m]
+    along: float  # place of the corner along the face below [m]
+    beyond: float  # how far it is beyond the edge [m]
+    # velocity across and along the face per coordinate [-], and now [m/s]
+    normal: Array
+    tangent: Array
+    parts: float
+    slips: float
+    bias: tuple[float, float]  # accelerations across and along it when all of bodies vanish [m/s²]
+
+
+class Solution(NamedTuple):
+    """Outcome of a mode: rates (accelerations, or velocities after an impact) and contact forces."""
+
+    rates: Array
+    normal: dict[End, float]
+    tangential: dict[int, float]
+
+
+def _perp(v: Array) -> Array:
+    """Velocity of the tip of v when it turns clockwise at one radian per second."""
+    return np.array([v[1], -v[0]])
+
+
+class Model:
+    """Planar bodies, their faces, and the friction of each interface, the ground first."""
+
+    def __init__(self, system: System, friction: tuple[float, ...]) -> None:
+        self.friction = friction
+        bodies = standing(system)
+        self.count = len(bodies)
+        self.tilt = [body.base for body in bodies]
+        edges = [(np.zeros(2), math.inf)]
+        for left, right in (body.edges for body in bodies[:-1]):
+            edges.append(((left + right) / 2, float(np.hypot(*(right - left))) / 2))
+        self.face = edges
+        # corners of each base, from the centre of the standing body
+        self.corner = [dict(zip(FULL, body.corners, strict=True)) for body in bodies]
+        self.mass = np.array([m for b in bodies for m in (b.mass, b.mass, b.inertia)])
+        self.weight = GRAVITY * float(self.mass[::3].sum())
+        left, right = bodies[-1].corners
+        self.size = float(np.hypot(*(right - left))) / 2
+        self.speed = math.sqrt(GRAVITY * self.size)
+        self.standing = np.array([x for b in bodies for x in (*b.centre, 0.0)])
+
+    def contact(self, q: Array, v: Array, k: int, side: int, on_face: bool | None) -> Contact:
+        """End ``side`` of interface k; ``on_face`` keeps the kind of a contact that exists."""
+        at, (middle, half) = 3 * k, self.face[k]
+        corner = q[at : at + 2] + turn(q[at + 2]) @ self.corner[k][side]
+        below = q[at - 3 : at] if k else np.zeros(3)
+        origin = below[:2] + turn(below[2]) @ middle
+        tangent, normal = turn(below[2] + self.tilt[k] if k else 0.0).T
+        along = float(tangent @ (corner - origin))
+        beyond = side * along - half
+        if on_face is None:
+            on_face = beyond <= AT_EDGE * self.size
+        point = corner if on_face else origin + side * half * tangent
+        if not on_face:
+            tangent, normal = turn(q[at + 2] + self.tilt[k]).T
+        gap = float(normal @ (corner - (origin if on_face else point)))
+        rows, velocity, acceleration = np.zeros((2, q.size)), np.zeros(2), np.zeros(2)
+        for i, sign in ((at, 1.0), (at - 3, -1.0)):
+            if i >= 0:
+                arm = point - q[i : i + 2]
+                for row, direction in zip(rows, (normal, tangent), strict=True):
+                    row[i : i + 3] = sign * np.append(direction, direction @ _perp(arm))
+                velocity += sign * (v[i : i + 2] + v[i + 2] * _perp(arm))
+                acceleration -= sign * v[i + 2] ** 2 * arm
+        owner = at - 3 if on_face else at  # whose face it is
+        if owner >= 0:
+            acceleration -= 2 * v[owner + 2] * _perp(velocity)
+        bias = float(normal @ acceleration), float(tangent @ acceleration)
+        parts, slips = float(normal @ velocity), float(tangent @ velocity)
+        return Contact(on_face, gap, along, beyond, *rows, parts, slips, bias)
+
+    def slip(self, q: Array, k: int) -> float:
+        """Displacement along the face of the corner that carries, from where it stood at first [m]."""
+        side = 1 if q[3 * k + 2] >= (q[3 * k - 1] if k else 0.0) else -1
+        here, there = (self.contact(x, 0 * q, k, side, True).along for x in (q, self.standing))
+        return here - there
+
+    def solve(self, v, mode, contacts, load, rough=True):
+        """Accelerations and forces of a mode under the ground's acceleration; impulses if there is none.
+
+        An impact has M v⁺ = M v + (impulses) and closed ends that no longer move apart; between impacts
+        M q̈ = f + (forces) and closed ends that do not accelerate apart.  Without ``rough`` sliding contacts have
+        no friction: the velocities nearest to v in kinetic energy that keep the mode.
+        """
+        found = []  # name, row, force, right-hand side
+        for k, (closed, slides) in enumerate(mode):
+            friction = slides * self.friction[k] if rough else 0.0
+            for side in closed:
+                c = contacts[k, side]
+                found.append(((k, side), c.normal, c.normal - friction * c.tangent, -c.bias[0]))
+            if closed and not slides:
+                c = contacts[k, closed[0]]
+                found.append((k, c.tangent, c.tangent, -c.bias[1]))
+        n, m = 3 * self.count, len(found)
+        right = np.zeros(n + m)
+        if load is None:
+            right[:n] = self.mass * v
+        else:
+            right[:n] = -self.mass * np.tile([load[0], GRAVITY + load[1], 0.0], self.count)
+            right[n:] = [item[3] for item in found]
+        matrix = np.zeros((n + m, n + m))
+        matrix[:n, :n] = np.diag(self.mass)
+        for i, (_, row, force, _) in enumerate(found):
+            matrix[n + i, :n], matrix[:n, n + i] = row, -force
+        solved = np.linalg.solve(matrix, right)
+        normal, tangential = {}, {}
+        for (name, *_), value in zip(found, solved[n:].tolist(), strict=True):
+            (normal if isinstance(name, tuple) else tangential)[name] = value
+        for k, (closed, slides) in enumerate(mode):
+            if slides:
+                pressed = sum(normal[k, side] for side in closed)
+                tangential[k] = -slides * self.friction[k] * pressed
+        return Solution(solved[:n], normal, tangential)
+
+    def modes(self, closed: list[tuple[int, ...]], moves: list[int]) -> Iterator[Mode]:
+        """List the modes that closed ends allow, fewer closed ends first; ``moves`` is the sign of slip."""
+        choices = []
+        for ends, move in zip(closed, moves, strict=True):
+            some = [s for size in (1, 2) for s in itertools.combinations(ends, size)]
+            ways = [move] if move else [0, 1, -1]
+            choices.append([OPEN, *itertools.starmap(InterfaceMode, itertools.product(some, ways))])
+        yield from sorted(itertools.product(*choices), key=lambda m: sum(len(i[0]) for i in m))
+
+    def stick_margin(self, k: int, solution: Solution, closed: tuple[int, ...]) -> float:
+        """µ N - |T| of an interface that sticks [N], or over µ where that is more than 1."""
+        limit = self.friction[k]
+        pressed = sum(solution.normal[k, side] for side in closed)
+        return (limit * pressed - abs(solution.tangential[k])) / max(limit, 1.0)
 
 
 class _Run(Integrator):
@@ -48,7 +202,7 @@ class _Run(Integrator):
         super().__init__(motions, dt, 0.05 * unit, LONGEST_TAIL * unit)
         self.model = model
         self.q, self.v = model.standing.copy(), np.zeros(3 * model.count)
-        self.mode: Mode = tuple(OPEN for _ in range(model.count))
+        self.mode: Mode = (OPEN,) * model.count
         self.kind: dict[End, bool] = {}
         self.ends = [(k, s) for k in range(model.count) for s in FULL]
 
@@ -68,50 +222,49 @@ class _Run(Integrator):
         return self._stands() and not self.v.any()
 
     def rates(self, t: float, y: Array) -> Array:
-        q, v = np.split(y, 2)
-        found = self.model.solve(q, v, self.mode, self._contacts(q), self.ground(t))
+        v = y[self.q.size :]
+        found = self.model.solve(v, self.mode, self._contacts(y), self.ground(t))
         return np.concatenate([v, found.rates])
 
     def approaches(self, y: Array) -> list[float]:
-        q, v = np.split(y, 2)
-        return [self._approach(q, v, end) for end in self.ends if not self._closed(end)]
+        return [c.parts for end, c in self._contacts(y).items() if not self._closed(end)]
 
     def _stands(self) -> bool:
         return all(mode == InterfaceMode(FULL, 0) for mode in self.mode)
 
-    def _project(self) -> None:
-        """Take away what rounding and integration have left at closed contacts."""
-        model, n = self.model, self.model.count
-        for k, (closed, slides) in enumerate(self.mode):
-            if not closed:
-                continue
-            if closed == FULL:
-                self.q[3 * k + 2] = self.q[3 * k - 1] if k else 0.0
-                self.v[3 * k + 2] = self.v[3 * k - 1] if k else 0.0
-            side = closed[0]
-            c = model.contact(self.q, k, side, self.kind[k, side])
-            for body in range(k, n):
-                self.q[3 * body : 3 * body + 2] -= c.gap * c.normal
-            c = model.contact(self.q, k, side, self.kind[k, side])
-            wrong = float(model.row(self.q, k, c, c.normal) @ self.v) * c.normal
-            if not slides:
-                wrong = wrong + float(model.row(self.q, k, c, c.tangent) @ self.v) * c.tangent
-            for body in range(k, n):
-                self.v[3 * body : 3 * body + 2] -= wrong
-        if self._stands():
-            self.v[:] = 0.0
-
-    def _contacts(self, q: Array) -> dict[End, Contact]:
-        return {(k, s): self.model.contact(q, k, s, self.kind.get((k, s))) for k, s in self.ends}
+    def _contacts(self, y: Array | None = None) -> dict[End, Contact]:
+        q, v = np.split(self.y if y is None else y, 2)
+        return {end: self.model.contact(q, v, *end, self.kind.get(end)) for end in self.ends}
 
     def _closed(self, end: End) -> bool:
         return end[1] in self.mode[end[0]].closed
 
+    def _set_down(self, k: int, sides: tuple[int, ...]) -> None:
+        """Set the gaps of an interface at one side or both to zero, with all that stands on it."""
+        if len(sides) == 2:
+            self.q[3 * k + 2] = self.q[3 * k - 1] if k else 0.0
+        if sides:
+            c = self.model.contact(self.q, self.v, k, sides[0], self.kind.get((k, sides[0])))
+            self.q.reshape(-1, 3)[k:, :2] -= c.gap * c.normal[3 * k : 3 * k + 2]
+
+    def _project(self) -> None:
+        """Take away what rounding and integration have left at closed contacts."""
+        for k, (closed, slides) in enumerate(self.mode):
+            if not closed:
+                continue
+            self._set_down(k, closed)
+            if closed == FULL:
+                self.v[3 * k + 2] = self.v[3 * k - 1] if k else 0.0
+            c = self._contacts()[k, closed[0]]
+            wrong = c.parts * c.normal + (0.0 if slides else c.slips) * c.tangent
+            self.v.reshape(-1, 3)[k:, :2] -= wrong[3 * k : 3 * k + 2]
+        if self._stands():
+            self.v[:] = 0.0
+
     def watched(self, t: float, y: Array) -> dict[Key, float]:
-        model = self.model
-        q, v = np.split(y, 2)
-        contacts = self._contacts(q)
-        found = model.solve(q, v, self.mode, contacts, self.ground(t))
+        model, q, v = self.model, *np.split(y, 2)
+        contacts = self._contacts(y)
+        found = model.solve(v, self.mode, contacts, self.ground(t))
         values: dict[Key, float] = {}
         for (k, s), c in contacts.items():
             if self._closed((k, s)):
@@ -123,126 +276,93 @@ class _Run(Integrator):
                 values["gap", k, s] = c.gap / model.size + TOUCH
         for k, (closed, slides) in enumerate(self.mode):
             if closed and slides:
-                c = contacts[k, closed[0]]
-                speed = slides * float(model.row(q, k, c, c.tangent) @ v)
-                values["slide", k, 0] = speed / model.speed + TOUCH
+                values["slide", k, 0] = slides * contacts[k, closed[0]].slips / model.speed + TOUCH
             elif closed:
                 margin = model.stick_margin(k, found, closed)
                 values["stick", k, 0] = margin / model.weight + SLACK
-        for k in range(model.count):
-            turned = [q[3 * k + 2]] + ([q[3 * k + 2] - q[3 * k - 1]] if k else [])
-            values["upright", k, 0] = math.pi / 2 - max(abs(x) for x in turned)
+            turned = q[3 * k + 2], q[3 * k + 2] - q[3 * k - 1] if k else 0.0
+            values["upright", k, 0] = math.pi / 2 - max(map(abs, turned))
             if k:
-                half = model.face[k][1]
-                values["over", k, 0] = 2 * half + min(contacts[k, s].beyond for s in FULL)
+                nearest = min(contacts[k, s].beyond for s in FULL)
+                values["over", k, 0] = 2 * model.face[k][1] + nearest
         return values
 
-    def _approach(self, q: Array, v: Array, end: End) -> float:
-        c = self.model.contact(q, *end, self.kind.get(end))
-        return float(self.model.row(q, end[0], c, c.normal) @ v)
-
     def apply(self, t: float, keys: set[Key]) -> None:
-        model, old, before = self.model, self.mode, tuple(self.v[2::3].tolist())
+        old, before = self.mode, tuple(self.v[2::3].tolist())
         if any(name in ("upright", "over") for name, _, _ in keys):
             self.fallen = True
             self.note(t, "overturning", before)
             return
         leaving = set()
         for name, k, s in keys:
-            if name == "edge":
-                if self.mode[k].closed == FULL:
-                    self.kind[k, s] = not self.kind[k, s]
-                else:
-                    leaving.add((k, s))  # a corner of the contact is passed: it goes on in flight
-            if name == "slide":
-                self.mode = tuple(
-                    InterfaceMode(m.closed, 0) if i == k else m for i, m in enumerate(self.mode)
-                )
+            if name == "edge" and self.mode[k].closed == FULL:
+                self.kind[k, s] = not self.kind[k, s]
+            elif name == "edge":
+                # a corner of the contact is passed: it goes on in flight
+                leaving.add((k, s))
+                self.kind.pop((k, s), None)
+            elif name == "slide":
+                sticks = InterfaceMode(self.mode[k].closed, 0)
+                self.mode = (*self.mode[:k], sticks, *self.mode[k + 1 :])
                 self._project()
-        for end in leaving:
-            self.kind.pop(end, None)
         touching = [
             end
-            for end in self.ends
+            for end, c in self._contacts().items()
             if end not in leaving
-            and (
-                self._closed(end)
-                or ("gap", *end) in keys
-                or self._contacts(self.q)[end].gap < 1e-11 * model.size
-            )
+            and (self._closed(end) or ("gap", *end) in keys or c.gap < 1e-11 * self.model.size)
         ]
-        self._shut(touching)
+        for k, sides in enumerate(self._sides(touching)):
+            self._set_down(k, sides)
+        contacts = self._contacts()
+        self.kind.update({end: contacts[end].on_face for end in touching})
         kind = "change"
-        if any(self._approach(self.q, self.v, end) < -1e-13 * model.speed for end in touching):
+        if any(contacts[end].parts < -1e-13 * self.model.speed for end in touching):
             self._impact(t, touching)
             kind = "impact"
-        exclude = (
-            old if kind == "change" and any(key[0] in ("press", "stick") for key in keys) else None
-        )
-        if not self._settle(t, touching, exclude):
+        fails = kind == "change" and any(key[0] in ("press", "stick") for key in keys)
+        if not self._settle(t, touching, old if fails else None):
             self._impact(t, touching, push=True)
             kind = "paradox"
             self._settle(t, touching, None)
         if self.mode != old or kind != "change":
             self.note(t, kind, before)
 
-    def _shut(self, touching: list[End]) -> None:
-        """Set the gaps of touching ends to zero."""
-        model = self.model
-        for k in range(model.count):
-            sides = [s for i, s in touching if i == k]
-            if len(sides) == 2:
-                self.q[3 * k + 2] = self.q[3 * k - 1] if k else 0.0
-            for s in sides[:1]:
-                c = model.contact(self.q, k, s, self.kind.get((k, s)))
-                for body in range(k, model.count):
-                    self.q[3 * body : 3 * body + 2] -= c.gap * c.normal
-        for end in touching:
-            self.kind.setdefault(end, model.contact(self.q, *end).on_face)
+    def _sides(self, ends: list[End]) -> list[tuple[int, ...]]:
+        return [tuple(s for i, s in ends if i == k) for k in range(self.model.count)]
 
-    def _scored(self, modes, touching, contacts, units, load):
-        """How far each mode is from being consistent; ``units`` of force (or impulse) and of rates."""
-        scored = []
+    def _choose(self, modes, touching, units, load):
+        """Choose the first consistent mode, or the one that violates least; by how much, mode and solution.
+
+        ``units`` are of force (or impulse) and of rates.
+        """
+        contacts, scored = self._contacts(), []
         for mode in modes:
             try:
-                solution = self.model.solve(self.q, self.v, mode, contacts, load)
+                solution = self.model.solve(self.v, mode, contacts, load)
             except np.linalg.LinAlgError:
                 continue
             violations = self._violations(mode, solution, contacts, touching, units, load)
             scored.append((max(0.0, *violations), mode, solution))
-        return scored
+        return min(scored, key=lambda x: max(x[0], CONSISTENT))
 
     def _violations(self, mode, solution, contacts, touching, units, load):
-        model = self.model
-
-        def rate(k: int, c: Contact, direction: Array) -> float:
-            found = float(model.row(self.q, k, c, direction) @ solution.rates)
-            return found + (model.bias(self.q, self.v, k, c, direction) if load else 0.0)
-
         for k, s in touching:
+            c = contacts[k, s]
             if s in mode[k].closed:
                 yield -solution.normal[k, s] / units[0]
             else:
-                yield -rate(k, contacts[k, s], contacts[k, s].normal) / units[1]
+                yield -(float(c.normal @ solution.rates) + (c.bias[0] if load else 0.0)) / units[1]
         for k, (closed, slides) in enumerate(mode):
             if closed and not slides:
-                yield -model.stick_margin(k, solution, closed) / units[0]
-            elif closed and not (load and self._sliding(k, contacts, closed)):
+                yield -self.model.stick_margin(k, solution, closed) / units[0]
+            elif closed and not (load and self._sliding(contacts[k, closed[0]])):
                 c = contacts[k, closed[0]]
-                yield -slides * rate(k, c, c.tangent) / units[1]
+                rate = float(c.tangent @ solution.rates) + (c.bias[1] if load else 0.0)
+                yield -slides * rate / units[1]
 
-    def _sliding(self, k: int, contacts: dict[End, Contact], closed: tuple[int, ...]) -> float:
-        """Slip velocity of an interface; zero if it is nothing but rounding [m/s]."""
-        c = contacts[k, closed[0]]
-        speed = float(self.model.row(self.q, k, c, c.tangent) @ self.v)
-        return speed if abs(speed) > 1e-12 * self.model.speed else 0.0
-
-    def _ends_of(self, touching: list[End]) -> list[tuple[int, ...]]:
-        return [tuple(s for i, s in touching if i == k) for k in range(self.model.count)]
-
-    def _choose(self, scored: list[tuple[float, Mode, Solution]]) -> tuple[float, Mode, Solution]:
-        """Choose the first consistent mode, or the one that violates least."""
-        return min(scored, key=lambda x: max(x[0], CONSISTENT))
+    def _sliding(self, contact: Contact) -> float:
+        """Slip velocity at a contact; zero if it is nothing but rounding [m/s]."""
+        return contact.slips if abs(contact.slips) > 1e-12 * self.model.speed else 0.0
 
     def _impact(self, t: float, touching: list[End], push: bool = False) -> None:
         """Plastic impulses with Coulomb's law on them.
@@ -251,41 +371,33 @@ class _Run(Integrator):
         an impulse all the same, that which a vanishing speed of approach would call forth.
         """
         model = self.model
-        contacts = self._contacts(self.q)
         if push:
             self.v = self.v - 1e-7 * model.speed * np.tile([0.0, 1.0, 0.0], model.count)
         scale = max(float(np.abs(self.v * np.tile([1, 1, model.size], model.count)).max()), 1e-300)
         units = (float(model.mass[::3].sum()) * scale, scale)
-        modes = model.modes(self._ends_of(touching), [0] * model.count)
-        scored = self._scored(modes, touching, contacts, units, None)
-        _, mode, solution = self._choose(scored)
-        while weak := self._weak(t, touching, mode, solution, contacts):
-            mode = tuple(
-                InterfaceMode(tuple(sorted({*m.closed, *(s for i, s in weak if i == k)})), m.slides)
-                for k, m in enumerate(mode)
-            )
-            solution = model.solve(self.q, solution.rates, mode, contacts, None, rough=False)
+        modes = model.modes(self._sides(touching), [0] * model.count)
+        _, mode, solution = self._choose(modes, touching, units, None)
         self.v = solution.rates
+        while weak := self._weak(t, touching, mode):
+            also = self._sides(weak)
+            mode = tuple(
+                InterfaceMode(tuple(sorted({*m.closed, *sides})), m.slides)
+                for m, sides in zip(mode, also, strict=True)
+            )
+            self.v = model.solve(self.v, mode, self._contacts(), None, rough=False).rates
         self._turn_to(mode)
 
-    def _weak(self, t, touching, mode, solution, contacts):
+    def _weak(self, t: float, touching: list[End], mode: Mode) -> list[End]:
         """Ends that part so slowly that they would only chatter."""
-        model, found = self.model, []
-        parting = []
-        for k, s in touching:
-            if s not in mode[k].closed:
-                c = contacts[k, s]
-                speed = float(model.row(self.q, k, c, c.normal) @ solution.rates)
-                if speed < CLOSING * model.speed:
-                    parting.append((k, s))
-        if parting:
-            after = model.solve(self.q, solution.rates, mode, contacts, self.ground(t))
-            for k, s in parting:
-                c = contacts[k, s]
-                pull = float(model.row(self.q, k, c, c.normal) @ after.rates)
-                if pull + model.bias(self.q, solution.rates, k, c, c.normal) < 0:
-                    found.append((k, s))
-        return found
+        contacts = self._contacts()
+        after = self.model.solve(self.v, mode, contacts, self.ground(t)).rates
+        return [
+            (k, s)
+            for k, s in touching
+            if s not in mode[k].closed
+            and contacts[k, s].parts < CLOSING * self.model.speed
+            and float(contacts[k, s].normal @ after) + contacts[k, s].bias[0] < 0
+        ]
 
     def _turn_to(self, mode: Mode) -> None:
         """Go on in a mode, with the kind of closed contacts only."""
@@ -295,23 +407,20 @@ class _Run(Integrator):
 
     def _settle(self, t: float, touching: list[End], exclude: Mode | None) -> bool:
         """Find the mode in which the touching ends go on; False if none is consistent."""
-        model = self.model
+        model, contacts = self.model, self._contacts()
         for end in touching:
-            self.kind.setdefault(end, model.contact(self.q, *end).on_face)
-        slow = [e for e in touching if self._approach(self.q, self.v, e) < 1e-12 * model.speed]
-        contacts = self._contacts(self.q)
-        closed = self._ends_of(slow)
+            self.kind.setdefault(end, contacts[end].on_face)
+        slow = [end for end in touching if contacts[end].parts < 1e-12 * model.speed]
+        closed = self._sides(slow)
         moves = [
-            int(np.sign(self._sliding(k, contacts, ends))) if ends else 0
-            for k, ends in enumerate(closed)
+            int(np.sign(self._sliding(contacts[k, sides[0]]))) if sides else 0
+            for k, sides in enumerate(closed)
         ]
-
-        def scored(modes: Iterable[Mode]) -> list[tuple[float, Mode, Solution]]:
-            return self._scored(modes, slow, contacts, (model.weight, model.g), self.ground(t))
-
-        found = scored(mode for mode in model.modes(closed, moves) if mode != exclude)
-        if exclude is not None and min(x[0] for x in found) > 1e-7:
-            found += scored([exclude])
-        violation, mode, _ = self._choose(found)
+        units, load = (model.weight, GRAVITY), self.ground(t)
+        others = (mode for mode in model.modes(closed, moves) if mode != exclude)
+        violation, mode, _ = self._choose(others, slow, units, load)
+        if exclude is not None and violation > 1e-7:
+            again, _, _ = self._choose([exclude], slow, units, load)
+            violation, mode = min((violation, mode), (again, exclude), key=lambda x: x[0])
         self._turn_to(mode)
         return violation < 1e-6

@@ -53,8 +53,7 @@ class Objects:
     depth: float | None = None  # Side of a rectangular base across that plane [m]; None if not used
     facing_deg: float = 0.0  # Of that plane, from first to second component of records [degrees]
     faces_anywhere: bool = False  # Whether nobody said how it faces the shaking, which counts
-    # By how much corners of the base lie elsewhere in space, over its extent, and it is turned [rad], other for
-    # each record [-]
+    # By how much of its extent corners of the base lie elsewhere in space, and it is turned [rad], by record
     base_spread: float = 0.0
     scan: Scan | None = None  # The scan as it may stand; None where dimensions were given
     scanned: RigidBody | None = None  # The scan in space as it stands; None if there is none
