@@ -14,6 +14,8 @@ from typing import Any, Self
 
 import pytest
 
+from ..workflow.running import free_port
+
 KEYS = {"Tab": (9, "", "\ue004"), "Enter": (13, "\r", "\ue007"), "Space": (32, " ", " ")}
 """Keys by name: their number and text in Chromium, and their letter in WebDriver."""
 
@@ -145,9 +147,7 @@ class Firefox(Driven):
 
     def __init__(self) -> None:
         super().__init__()
-        with socket.socket() as free:
-            free.bind(("127.0.0.1", 0))
-            port = free.getsockname()[1]
+        port = free_port()
         preferences = Path(__file__).with_name("firefox.js").read_text()
         (Path(self._folder.name) / "user.js").write_text(preferences.replace("PORT", str(port)))
         self._start(

@@ -28,6 +28,7 @@ class Foreign:
     records: Mapping[str, str]  # their earthquakes
     floors: Mapping[str, int] | None = None  # levels in a building of three storeys
     content: Mapping[str, Any] = field(default_factory=dict)  # keys that differ from the usual ones
+    slow: bool = False  # whether it takes five seconds and more, and others have every part of it
 
     @property
     def names(self) -> list[str]:

@@ -45,15 +45,7 @@ def test_it_answers_in_the_words_of_assess(browser, app_page, motions, width, da
     assert browser.console == []
 
 
-ANSWER = """
-new Promise(done => {{
-  document.addEventListener('answer', ({{detail}}) => {{ if (detail.last) done(detail.found); }});
-  const form = {form}, names = [...document.querySelectorAll('#form [id^=field-]')];
-  for (const field of names.filter(one => !one.id.endsWith('-error')))
-    field.value = form[field.id.slice(6)] ?? (field.options ? field.options[0].value : '');
-  names[0].dispatchEvent(new Event('input'));
-}}).then(found => JSON.stringify(found, (key, v) => Number.isNaN(v) || v === Infinity ? null : v))
-"""
+ANSWER = Path(__file__).with_name("answer.js").read_text()
 
 
 @pytest.mark.parametrize("count", [3, pytest.param(200, marks=pytest.mark.slow)])
@@ -70,7 +62,7 @@ def test_its_figures_are_those_of_the_command(browser, own_records, tmp_path, ca
         if main(["assess", *records, *options_of(form), "--json", "--output", str(tmp_path)]) != 0:
             continue
         said = json.loads(capsys.readouterr().out)
-        found = json.loads(browser.run(ANSWER.format(form=json.dumps(form))))
+        found = json.loads(browser.run(ANSWER.replace("FORM", json.dumps(form))))
         assert found["shares"] == said["fragility"]["fraction"], form
         for mine, his in (("fraction", "fraction_toppling"), ("probability", "probability")):
             assert (found.get(mine) is None) == (said[his] is None), form
@@ -81,15 +73,7 @@ def test_its_figures_are_those_of_the_command(browser, own_records, tmp_path, ca
     assert browser.console == []
 
 
-REFUSED = """
-<script>
-window.asked = [];
-for (const name of ["fetch", "XMLHttpRequest", "WebSocket", "EventSource", "RTCPeerConnection", "Image"])
-  window[name] = function () { asked.push(name); throw new Error("refused"); };
-navigator.sendBeacon = () => { asked.push("sendBeacon"); throw new Error("refused"); };
-addEventListener("securitypolicyviolation", (event) => asked.push(event.blockedURI));
-</script>
-"""
+REFUSED = Path(__file__).with_name("refused.html").read_text()
 
 
 def test_it_loads_nothing(browser, app_page, tmp_path):

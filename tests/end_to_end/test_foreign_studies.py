@@ -14,18 +14,11 @@ from .asking_studies import draw, fate
 from .checked_report import run_and_check
 from .studies import STUDIES, Foreign, run
 
-LONG = (
-    "with and without a plinth on one upper floor",
-    "the thesis's bodies, but nobody asks for the thesis",
-    "pairs of which some never overturn",
-    "arrangements compared with each other",
-    "two pedestals under one figure",
-)
-"""Studies of five seconds and more, of which others have every part."""
+SLOW = [pytest.mark.slow]
 
 
 @pytest.mark.parametrize(
-    "name", [pytest.param(name, marks=[pytest.mark.slow] * (name in LONG)) for name in STUDIES]
+    "name", [pytest.param(name, marks=SLOW * study.slow) for name, study in STUDIES.items()]
 )
 def test_the_study_runs_and_its_report_fits_it(name: str, tmp_path: Path):
     study = STUDIES[name]

@@ -11,14 +11,7 @@ pytestmark = pytest.mark.slow
 
 OPEN = "document.querySelectorAll('details').forEach(one => { one.open = true; })"
 
-TOO_WIDE = """
-[...document.querySelectorAll('body, body *')].filter(one => {
-  if (one.closest('svg') || getComputedStyle(one).display === 'inline') return false;
-  if (one.clientWidth === 0 || one.closest('[hidden], thead, .tools, option')) return false;
-  return one.scrollWidth > one.clientWidth + 1 || one.getBoundingClientRect().right > innerWidth + 1;
-}).map(one => one.tagName + '.' + one.className + ' ' + one.scrollWidth + ' > ' + one.clientWidth
-  + ': ' + one.textContent.trim().slice(0, 60))
-"""
+TOO_WIDE = Path(__file__).with_name("too_wide.js").read_text()
 """Elements that reach beyond their room, or beyond the window."""
 
 

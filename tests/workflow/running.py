@@ -1,5 +1,6 @@
 """The workflow as its users call it: Snakemake by itself, and the launcher of ``make run``."""
 
+import socket
 import subprocess
 import sys
 from pathlib import Path
@@ -36,3 +37,10 @@ def finished(done: subprocess.CompletedProcess[str]) -> subprocess.CompletedProc
     """Return a run that has ended well."""
     assert done.returncode == 0, f"{done.stdout[-1000:]}{done.stderr[-3000:]}"
     return done
+
+
+def free_port() -> int:
+    """A port of this machine on which nobody listens."""
+    with socket.socket() as item:
+        item.bind(("127.0.0.1", 0))
+        return int(item.getsockname()[1])

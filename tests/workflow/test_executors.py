@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from .running import LAUNCHER, ROOT, called, finished, tables_of
+from .running import LAUNCHER, ROOT, called, finished, free_port, tables_of
 
 CONF = Path("/etc/slurm/slurm.conf")
 """Where jobs look for the configuration: the executor takes SLURM's variables from their environment."""
@@ -35,12 +35,6 @@ def _program(name: str) -> str | None:
     return shutil.which(name, path=f"{os.environ['PATH']}:/usr/sbin:/sbin")
 
 
-def _free_port() -> int:
-    with socket.socket() as item:
-        item.bind(("127.0.0.1", 0))
-        return int(item.getsockname()[1])
-
-
 @pytest.fixture
 def slurm(monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
     """A SLURM of one node, this machine, for as long as a test lasts."""
@@ -54,12 +48,8 @@ def slurm(monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
     (folder / "key").write_bytes(os.urandom(1024))
     (folder / "key").chmod(0o400)
     host = socket.gethostname().split(".")[0]
-    settings = (
-        Path(__file__)
-        .with_name("slurm.conf")
-        .read_text()
-        .format(host=host, folder=folder, port=_free_port(), other_port=_free_port())
-    )
+    about = {"host": host, "folder": folder, "port": free_port(), "other_port": free_port()}
+    settings = Path(__file__).with_name("slurm.conf").read_text().format(**about)
     CONF.parent.mkdir(exist_ok=True)
     CONF.write_text(settings)
     monkeypatch.setenv("PATH", f"{os.environ['PATH']}:/usr/sbin:/sbin")

@@ -177,20 +177,7 @@ def test_a_synthetic_table_runs_from_csv_to_report(tmp_path: Path):
     assert (results / "figures" / "two_measures_measured_pga_g_pgv_cm_s.png").stat().st_size > 1000
 
 
-MODULE = """
-configfile: "study.yaml"
-
-module rockfrag:
-    snakefile: {snakefile!r}
-    config: {config}
-
-use rule * from rockfrag as rf_*
-
-rule everything:
-    default_target: True
-    input:
-        rules.rf_all.input
-"""
+MODULE = Path(__file__).with_name("module.smk").read_text()
 
 
 def by_snakefile(folder: Path, *arguments: str) -> subprocess.CompletedProcess[str]:

@@ -12,7 +12,6 @@ from rockfrag import figure_style as style
 from rockfrag.engines.response import Response
 from rockfrag.engines.steps import rocking_shapes
 from rockfrag.system import geometry
-from rockfrag.system.system import System
 from rockfrag.units import GRAVITY
 
 if TYPE_CHECKING:
@@ -25,7 +24,8 @@ _ROCKING_MODES = ("1a", "1b", "2a", "2b", "3a", "3b", "4a", "4b", "flight")
 
 def response_figure(response: Response, title: str) -> Figure:
     """Draw acceleration [g], rotations over the critical angle with impacts, slip and the pattern over time."""
-    critical, names = critical_angles(response.system), response.system.names
+    shapes, names = rocking_shapes(response.system), response.system.names
+    critical = [min(geometry.critical_angle(shape, side) for side in (+1, -1)) for shape in shapes]
     single = len(names) == 1
     # the object has its colour wherever it stands
     colours = [style.BLUE, style.ORANGE, *style.OKABE_ITO[2:]][: len(names)][::-1]
@@ -62,12 +62,6 @@ def response_figure(response: Response, title: str) -> Figure:
         rocking_mode.set_xlabel("Time [s]")
         rocking_mode.set_xlim(0, response.time[-1])
         return figure
-
-
-def critical_angles(system: System) -> list[float]:
-    """Smaller critical angle of each body [rad] on its contact: of the lower of two with what it carries."""
-    shapes = rocking_shapes(system)
-    return [min(geometry.critical_angle(shape, side) for side in (+1, -1)) for shape in shapes]
 
 
 def _slips(panel: Axes, response: Response, colours: list[str]) -> None:

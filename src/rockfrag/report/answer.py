@@ -12,6 +12,7 @@ from rockfrag.figure_style import BLACK, COLUMN_WIDTH, panels, plain_log
 from rockfrag.report import findings
 from rockfrag.report.figures import GREY, SIDE_COLOUR, SIDE_NAME, drawn_tests
 from rockfrag.report.part import Answer, Finding, Results, Says
+from rockfrag.rocking.ensemble import LIGHT
 from rockfrag.sentences import sentence, shortened
 
 FEW = 10  # intervals over fewer earthquakes than this rest on little
@@ -132,8 +133,6 @@ def strength_figure(tests: pd.DataFrame, curves: pd.DataFrame, names: Sequence[s
 
 def could_change(results: Results) -> list[str]:
     """What could change the answer, each with the numbers that say how likely that is."""
-    from rockfrag.rocking.ensemble import LIGHT
-
     study, curves = results.study, results.table("fragility")
     friction = results.table("sliding" if study.slides else "validity")
     needed = ""

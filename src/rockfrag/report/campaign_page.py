@@ -162,9 +162,7 @@ def _fragility(tables: dict[str, pd.DataFrame], level: str) -> Section:
 
 def _tests(study: CampaignStudy, tables: dict[str, pd.DataFrame]) -> Section:
     tests, regions = tables["tests"], tables["regions"]
-    names = [
-        region.removesuffix("_from") for region in map(str, regions) if region.endswith("_from")
-    ]
+    names = [name.removesuffix("_from") for name in map(str, regions) if name.endswith("_from")]
     listed = study.measures or names
     labels = {name: "{} [{}]".format(*name_and_unit(name)) for name in (*names, *listed)}
     shown = regions[regions["tests"] > 0].assign(right=100 * regions["right"])

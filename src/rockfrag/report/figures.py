@@ -195,10 +195,9 @@ def box_at(
 ) -> None:
     """Draw the distribution of amplitudes at each level of a column."""
     values = [part.loc[part[by] == level, "a"].to_numpy(dtype=float) for level in levels]
-    lines: dict[str, Any] = {
+    drawn: dict[str, Any] = {
         f"{name}props": {"color": colour} for name in ("box", "whisker", "cap")
     }
-    lines |= {"medianprops": {"color": colour, "linewidth": 1.6}, "whis": (5, 95)}
-    axes.boxplot(
-        values, positions=levels, widths=width, showfliers=False, manage_ticks=False, **lines
-    )
+    drawn |= {"medianprops": {"color": colour, "linewidth": 1.6}, "whis": (5, 95)}
+    drawn |= {"showfliers": False, "manage_ticks": False}
+    axes.boxplot(values, positions=levels, widths=width, **drawn)

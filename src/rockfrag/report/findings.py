@@ -1,6 +1,6 @@
 """What a study found, said of its tables; the sentences stand in ``findings.j2``."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -151,18 +151,15 @@ says = Says(
 )
 
 
-def ratio_of(effects: pd.DataFrame, about: Sides = WITH_PEDESTAL) -> Callable[[str, str], str]:
-    """Return a function of scope and level that words the ratio of amplitudes there."""
-    rows = effects[effects["definition"] == DEFINITION] if len(effects) else effects
-
-    def text(scope: str, level: str) -> str:
-        found = rows[(rows["scope"] == scope) & (rows["level"] == level)] if len(rows) else rows
-        if found.empty:
-            return "no pair with both amplitudes known"
-        row = found.to_dict("records")[0]
-        return f"{about.ratio} {wording.estimate(row['ratio'], row['lower'], row['upper'], 2)}"
-
-    return text
+def ratio_of(
+    effects: pd.DataFrame, about: Sides = WITH_PEDESTAL, scope: str = "whole", level: str = "all"
+) -> str:
+    """Word the ratio of amplitudes over all pairs, or over those of a level of a scope."""
+    for row in effects.to_dict("records"):
+        if (row["definition"], row["scope"], row["level"]) == (DEFINITION, scope, level):
+            limits = row["ratio"], row["lower"], row["upper"]
+            return f"{about.ratio} {wording.estimate(*limits, 2)}"
+    return "no pair with both amplitudes known"
 
 
 def pedestal_effect(effects: pd.DataFrame, about: Sides = WITH_PEDESTAL) -> list[Finding]:

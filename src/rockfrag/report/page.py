@@ -274,10 +274,8 @@ class Page:
         words += [*answer.advice, *answer.rests_on, *answer.could_change]
         for section in self.sections:
             words += [section.title, section.message, *section.paragraphs]
-            words += [
-                part.caption if isinstance(part, FigureSpec) else part.striptags()
-                for part in section.parts
-            ]
+            for part in section.parts:
+                words.append(part.caption if isinstance(part, FigureSpec) else part.striptags())
         return " ".join(words)
 
     def html(self, folder: Path | None = None, processes: int = 1) -> str:

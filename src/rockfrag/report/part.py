@@ -1,8 +1,4 @@
-"""What a report is made of: parts, each with its words, tables and figures in one file.
-
-To add a part, write a function, a :data:`Part`, in a module of ``report/sections/``, its words into
-``sections.j2`` there, and name it in ``report/sections/__init__.py`` where it should stand.
-"""
+"""What a report is made of: parts, each with its words, tables and figures in one file of ``report/sections``."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass

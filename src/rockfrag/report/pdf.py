@@ -12,6 +12,8 @@ from pathlib import Path
 
 from rockfrag.errors import InputError
 from rockfrag.files import whole_file
+from rockfrag.stages.running import results_folder
+from rockfrag.study.loading import load_any
 
 BROWSERS = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable", "msedge")
 """Programs that print without a window, the first one found is taken."""
@@ -46,9 +48,6 @@ def print_page(page: Path) -> Path:
 
 def main() -> int:
     """Print the report of the study that is named."""
-    from rockfrag.stages.running import results_folder
-    from rockfrag.study.loading import load_any
-
     try:
         if len(sys.argv) != 2:
             raise InputError("Name one study, such as config/config.yaml.")

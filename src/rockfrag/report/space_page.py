@@ -52,12 +52,8 @@ def _live(study: SpaceStudy, ground: Sequence[Motion]) -> Markup:
     """Bodies of the study under its first records, live; nothing where a body has another base for each record."""
     if study.sweep["base_spread"] > 0:
         return Markup()
-    bodies = {
-        f"{base}, height over width {slenderness:g}, {height:g} m": Standing(
-            body_of(base, slenderness, height).system()
-        )
-        for base, slenderness, height in study.bodies
-    }
+    words = "{}, height over width {:g}, {:g} m"
+    bodies = {words.format(*about): Standing(body_of(*about).system()) for about in study.bodies}
     return live_in_space(bodies, list(map(GroundMotion, ground[::2], ground[1::2])))
 
 

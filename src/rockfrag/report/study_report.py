@@ -82,10 +82,8 @@ def write_page(
     shown = Page(study.title, lead, answer, sections, provenance, **page)
     text = shown.html(folder, job.threads)
     # chapter and caption of each figure, for Snakemake's report
-    captions = {
-        name: {"chapter": chapter, "caption": spec.caption}
-        for name, (spec, chapter) in shown.figures.items()
-    }
+    each = shown.figures.items()
+    captions = {name: {"chapter": at, "caption": spec.caption} for name, (spec, at) in each}
     write_text(json.dumps(captions, ensure_ascii=False, indent=1) + "\n", folder / "captions.json")
     write_text(text, job.folder / "report.html")
     job.log.info("%s", job.folder / "report.html")

@@ -9,6 +9,7 @@ from dataclasses import replace
 from typing import TypedDict, Unpack
 
 import numpy as np
+import pandas as pd
 from numpy.typing import ArrayLike, NDArray
 
 from rockfrag.arrays import Floats
@@ -204,10 +205,14 @@ def overturned_cases(
 
     def run(number: int) -> None:
         mine = np.flatnonzero(system == number)
-        systems, motions = (cases.systems[number],), tuple(cases.motions[m] for m in motion[mine])
-        scales = scale[mine, np.newaxis]
+        used, row = np.unique(motion[mine], return_inverse=True)
+        # the cases of a motion side by side; what is left over is a scale of zero, which costs nothing
+        column = pd.Series(row).groupby(row).cumcount().to_numpy()
+        scales = np.zeros((used.size, column.max() + 1))
+        scales[row, column] = scale[mine]
+        systems, motions = (cases.systems[number],), tuple(cases.motions[m] for m in used)
         some = replace(cases, systems=systems, motions=motions, scales=scales, threads=1)
-        overturned[mine] = run_cases(some).overturned[0, :, 0]
+        overturned[mine] = run_cases(some).overturned[0, row, column]
 
     with ThreadPoolExecutor(cases.threads) as pool:
         list(pool.map(run, np.unique(system).tolist()))

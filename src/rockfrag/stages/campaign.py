@@ -43,11 +43,9 @@ def run(job: Job[CampaignStudy]) -> Results:
     """Yield the tables of the campaign (``TABLES``), each as soon as it is there."""
     found = _Simulated(job)
     campaign, measured, mean = found.campaign, found.measured, found.votes.mean(axis=0)
-    job.log.info(
-        "%d tests under %d motions: %.1f %% of the outcomes right",
-        len(campaign.tests), measured.groups.max() + 1,
-        100 * ((found.votes >= HALF) == measured.overturned).mean(),
-    )  # fmt: skip
+    words = "%d tests under %d motions: %.1f %% of the outcomes right"
+    as_measured = ((found.votes >= HALF) == measured.overturned).mean()
+    job.log.info(words, len(campaign.tests), measured.groups.max() + 1, 100 * as_measured)
     judged = campaign.tests.assign(
         votes_to_overturn=mean,
         simulated=mean >= HALF,
@@ -80,9 +78,8 @@ def campaign_with_motions(
     if study.leave_out:
         absent = laboratory.missing_motions(study.motions, list(campaign.tests["motion"]))
         keep = ~campaign.tests["motion"].isin(absent).to_numpy()
-        tests, codes = (
-            part[keep].reset_index(drop=True) for part in (campaign.tests, campaign.codes)
-        )
+        tests = campaign.tests[keep].reset_index(drop=True)
+        codes = campaign.codes[keep].reset_index(drop=True)
         campaign = replace(campaign, tests=tests, codes=codes)
         log.info("%d tests without a motion are left out", len(absent))
         if campaign.tests.empty:
@@ -110,10 +107,8 @@ def _motions(study: CampaignStudy, campaign: Campaign, conditioning: Any) -> lis
         return [process(motion, conditioning) for motion in told]
     motions = laboratory.table_motions(study.motions, list(tests["motion"]), *study.unstated)
     shaken = (process(motion, conditioning) for motion in motions)
-    return [
-        motion if np.isnan(peak) else scale_to_pga(motion, peak)
-        for motion, peak in zip(shaken, tests["amplitude_g"], strict=True)
-    ]
+    each = zip(shaken, tests["amplitude_g"], strict=True)
+    return [motion if np.isnan(peak) else scale_to_pga(motion, peak) for motion, peak in each]
 
 
 def standing_object(study: CampaignStudy) -> Shape | Block | Column:
@@ -189,9 +184,8 @@ class _Simulated:
         if len(measures) > 1:
             both = tests[list(measures[:2])].to_numpy()
             rivals[f"probit on {' and '.join(measures[:2])}"] = self.measured.by_threshold(both)
-        majority = comparison.majority_of_repeats(
-            tests["motion"].to_numpy(), self.measured.overturned
-        )
+        shaken = tests["motion"].to_numpy()
+        majority = comparison.majority_of_repeats(shaken, self.measured.overturned)
         if majority is not None:
             rivals[comparison.REPEATS] = majority
         codes = {f"code {name}": given.to_numpy() for name, given in self.campaign.codes.items()}

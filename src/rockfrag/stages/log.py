@@ -86,9 +86,8 @@ def in_words(error: Exception) -> str:
     number = getattr(error, "errno", None)
     text = " ".join(str(error).split())
     if number in _FULL or any(os.strerror(code) in text for code in _FULL):
-        return (
-            f"the disk is full or a limit of it is reached; free space, and run it again ({text})."
-        )
+        full = "the disk is full or a limit of it is reached"
+        return f"{full}; free space, and run it again ({text})."
     if number in _FORBIDDEN:
         name = getattr(error, "filename", None) or "a file"
         return f"{name} may not be written or read; allow it, and run it again."

@@ -73,9 +73,8 @@ def blind_answer(tests: MeasuredTests, measure: Floats, simulated: Flags) -> Bli
     # a way in which nothing overturns has its median beyond all tests, one in which all does below them
     bound = np.where(simulated.mean(axis=1) < measured.mean(), np.inf, 0.0)
     medians = np.where(np.isfinite(each[:, 0]), each[:, 0], bound)
-    low, middle, high = np.quantile(
-        medians, [(1 - LEVEL) / 2, 0.5, (1 + LEVEL) / 2], method="nearest"
-    )
+    places = [(1 - LEVEL) / 2, 0.5, (1 + LEVEL) / 2]
+    low, middle, high = np.quantile(medians, places, method="nearest")
     theta = float(table["theta"].to_dict()["measured"])
     ratio = table.loc["blind", ["theta_ratio_lower", "theta_ratio_upper"]].astype(float)
     if not (np.isfinite([theta, *ratio]).all() and 0 < middle < math.inf):

@@ -121,9 +121,8 @@ def medians(
     rows, fractions = [], []
     about = {"base": base, "slenderness": slenderness, "height_m": height}
     for loss in (LOSS, NO_LOSS) if base == ROUND else (LOSS,):
-        found = {"space": space.astype(float)} | _in_plane(
-            body, pairs, scales, sweep["directions"], loss
-        )
+        planar = _in_plane(body, pairs, scales, sweep["directions"], loss)
+        found = {"space": space.astype(float)} | planar
         row = about | {"planar_impacts": loss} | _ratios(found, earthquakes, levels, study)
         rows.append(row | {"flip_rate": float((other[:, 0] != space[:, near]).mean())})
         means = {name: fell.mean(axis=0) for name, fell in found.items()}

@@ -155,10 +155,8 @@ def _shaken(
 ) -> tuple[list[Motion], list[NDArray[np.float64]] | None]:
     """Motion of each test as scaled, and the vertical acceleration beside it [m/s²]."""
     names = list(tests["motion"])
-    scaled = [
-        scale_to_pga(motions[name], amplitude)
-        for name, amplitude in zip(names, tests["amplitude_g"], strict=True)
-    ]
+    peaks = zip(names, tests["amplitude_g"], strict=True)
+    scaled = [scale_to_pga(motions[name], peak) for name, peak in peaks]
     if vertical is None:
         return scaled, None
     return scaled, [

@@ -43,9 +43,7 @@ def _block(row: Row) -> Block:
     columns = {"width": "width_m", "height": "height_m", "mass": "mass_kg"}
     stated = {"inertia": "inertia_kg_m2", "cg_height": "cg_height_m"}
     columns |= {name: column for name, column in stated.items() if row.has(column)}
-    values: dict[str, Any] = {
-        name: row.quantity(column, above=0) for name, column in columns.items()
-    }
+    values: dict[str, Any] = {key: row.quantity(name, above=0) for key, name in columns.items()}
     if row.has("cg_offset_m"):
         values["cg_offset"] = row.quantity("cg_offset_m")
     with errors_of(f"{row.path}, line {row.line}"):

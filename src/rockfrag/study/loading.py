@@ -102,9 +102,8 @@ def _study(content: Mapping[str, Any], source: Path) -> Study:
         },
     )
     asked = plugins_asked(content)
-    study = replace(
-        study, added={name: plugin.settings(content, study) for name, plugin in asked.items()}
-    )
+    added = {name: plugin.settings(content, study) for name, plugin in asked.items()}
+    study = replace(study, added=added)
     _check_names(study)
     for path in study.own_records:
         if is_file(path) or not study.keep_going:

@@ -122,11 +122,9 @@ class Study(Heading):
 
     def quality_flags(self) -> list[str]:
         """Warnings about sizes that look as if they were in another unit."""
-        return [
-            f"{self.specimens_file}, {name}: {quality_flag}."
-            for name, block in self.specimens.items()
-            if (quality_flag := size_warning(block.width, block.height))
-        ]
+        sizes = ((name, block.width, block.height) for name, block in self.specimens.items())
+        flags = ((name, size_warning(*size)) for name, *size in sizes)
+        return [f"{self.specimens_file}, {name}: {flag}." for name, flag in flags if flag]
 
     @property
     def slenderness(self) -> dict[str, float]:

@@ -7,10 +7,10 @@ consistent one is taken, so that every transition that the mechanics allows occu
 import math
 
 from rockfrag.engines.kernels import equations as model
+from rockfrag.engines.kernels.equations import GROUND, INTERFACE
 from rockfrag.engines.kernels.jit import kernel
 
 HALF_TURN = 0.5 * math.pi  # a block that has turned so far lies down [rad]
-GROUND, INTERFACE = 1, 2  # the two contacts
 
 
 @kernel
@@ -79,12 +79,13 @@ def settle(body, state):
                 t1 = c1 if c1 != 0 else n1
                 t2 = c2 if c2 != 0 else n2
                 alpha1, alpha2 = model.accelerations(body, t1, t2, state)
+                there, alpha = (t1, t2), (alpha1, alpha2)
                 good = True
                 if c1 == 0:
                     if n1 != 0:
                         good = n1 * alpha1 > 0.0
                     else:
-                        hold, corner = model.ground_hold(body, t2, state, alpha2)
+                        hold, corner = model.hold(body, GROUND, there, state, alpha)
                         good = hold >= 0.0
                         if opened == 0 and not good:
                             fallback1 = corner
@@ -92,7 +93,7 @@ def settle(body, state):
                     if n2 != 0:
                         good = good and n2 * (alpha2 - alpha1) > 0.0
                     else:
-                        hold, corner = model.interface_hold(body, t1, state, alpha1)
+                        hold, corner = model.hold(body, INTERFACE, there, state, alpha)
                         good = good and hold >= 0.0
                         if opened == 0 and hold < 0.0:
                             fallback2 = corner
@@ -108,11 +109,9 @@ def release(body, state, fails, stuck):
     c1, c2 = settle(body, state)
     if stuck and c1 == state.c1 and c2 == state.c2:
         # rounding at a threshold: open the contact that fails
-        alpha1, alpha2 = model.accelerations(body, c1, c2, state)
-        if fails == GROUND:
-            _, c1 = model.ground_hold(body, c2, state, alpha2)
-        else:
-            _, c2 = model.interface_hold(body, c1, state, alpha1)
+        alpha = model.accelerations(body, c1, c2, state)
+        _, corner = model.hold(body, fails, (c1, c2), state, alpha)
+        return (corner, c2) if fails == GROUND else (c1, corner)
     return c1, c2
 
 
@@ -122,8 +121,8 @@ def uplift(body, state):
     c1, c2 = settle(body, state)
     if c1 == 0 and c2 == 0:
         # rounding at the threshold: open the contact with the least hold
-        hold1, corner1 = model.ground_hold(body, 0, state, 0.0)
-        hold2, corner2 = model.interface_hold(body, 0, state, 0.0)
+        hold1, corner1 = model.hold(body, GROUND, (0, 0), state, (0.0, 0.0))
+        hold2, corner2 = model.hold(body, INTERFACE, (0, 0), state, (0.0, 0.0))
         if hold1 <= hold2:
             return corner1, 0
         return 0, corner2

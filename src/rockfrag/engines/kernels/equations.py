@@ -176,35 +176,32 @@ def accelerations(body, c1, c2, state):
     return (m12 * f2 - m22 * f1) / determinant, (m12 * f1 - m11 * f2) / determinant
 
 
+GROUND, INTERFACE = 1, 2  # the two contacts
+
+
 @kernel
-def ground_hold(body, c2, state, alpha2):
-    """Least s1 τ1(s1) over both corners of a resting pedestal [N m], not to be negative, and its corner."""
-    if body.fixed:
+def hold(body, contact, contacts, state, alpha):
+    """Least s τ(s) over both corners of a closed contact [N m], not to be negative, and its corner.
+
+    The pedestal rests where the ground is closed, and the statue is stuck to it where the interface is.
+    """
+    if contact == GROUND and body.fixed:
         return 1.0, 1
+    c1, c2 = contacts
     least = math.inf
     corner = 1
-    for c1 in (1, -1):
-        _, m12, m22, f1, f2 = equations(body, pivot(c1), pivot(c2), state)
-        tau = m12 * alpha2 + f1
-        if c2 == 0:
-            tau += m22 * alpha2 + f2
-        if c1 * tau < least:
-            least = c1 * tau
-            corner = c1
-    return least, corner
-
-
-@kernel
-def interface_hold(body, c1, state, alpha1):
-    """Least s2 τ2(s2) over both corners of a statue stuck to its pedestal [N m], and the corner."""
-    least = math.inf
-    corner = 1
-    for c2 in (1, -1):
-        _, m12, m22, _, f2 = equations(body, pivot(c1), pivot(c2), state)
-        tau = (m12 + m22) * alpha1 + f2
-        if c2 * tau < least:
-            least = c2 * tau
-            corner = c2
+    for c in (1, -1):
+        s1, s2 = (c, c2) if contact == GROUND else (c1, c)
+        _, m12, m22, f1, f2 = equations(body, pivot(s1), pivot(s2), state)
+        if contact == INTERFACE:
+            tau = (m12 + m22) * alpha[0] + f2
+        else:
+            tau = m12 * alpha[1] + f1
+            if c2 == 0:
+                tau += m22 * alpha[1] + f2
+        if c * tau < least:
+            least = c * tau
+            corner = c
     return least, corner
 
 

@@ -87,14 +87,12 @@ def _pushed(body, state, contacts, after, test):
     return True
 
 
-@kernel
-def _choice(number, c, closes):
-    """The ``number``-th state that a contact may have after an impact, open before stuck; 2 if there is none."""
-    if number == 0:
-        return -c if closes else (1 if c == 0 else c)
-    if number == 1:
-        return 2 if closes or c != 0 else -1
-    return 0 if closes or c == 0 else 2
+@inlined_kernel
+def _choices(c, closes):
+    """States that a contact may have after an impact, open before stuck, filled up with 2."""
+    if closes:
+        return -c, 0, 2
+    return (1, -1, 0) if c == 0 else (c, 2, 2)
 
 
 @kernel
@@ -115,12 +113,10 @@ def _admissible(body, state, closes1, closes2, moved):
     tiny = 1e-13 * (abs(state.omega1) + abs(state.omega2))
     free1 = closes1 or c1 == 0
     free2 = closes2 or c2 == 0
-    for number1 in range(3):
-        n1 = _choice(number1, c1, closes1)
+    for n1 in _choices(c1, closes1):
         if n1 == 2 or (body.fixed and n1 != 0):
             continue
-        for number2 in range(3):
-            n2 = _choice(number2, c2, closes2)
+        for n2 in _choices(c2, closes2):
             if n2 == 2:
                 continue
             test = pivot(n1) * (at1 if n1 != 0 else 1.0), pivot(n2) * (at2 if n2 != 0 else 1.0)
@@ -181,8 +177,9 @@ def _measured(body, state, closes, momentum):
         return n1, n2, w1, w2, 0 if exists else 1
     # as far from what momentum says as energy allows
     low, high = 0.0, 1.0
-    for _ in range(60):
-        fraction = 0.5 * (low + high)
+    for i in range(61):
+        # the last time where energy is known not to grow
+        fraction = 0.5 * (low + high) if i < 60 else low
         first = has1, rate1 + fraction * (want1 - rate1)
         two = has2, rate2 + fraction * (want2 - rate2)
         n1, n2, w1, w2 = _with_rates(body, state, closes, others, first, two)
@@ -190,9 +187,6 @@ def _measured(body, state, closes, momentum):
             low = fraction
         else:
             high = fraction
-    first = has1, rate1 + low * (want1 - rate1)
-    two = has2, rate2 + low * (want2 - rate2)
-    n1, n2, w1, w2 = _with_rates(body, state, closes, others, first, two)
     return n1, n2, w1, w2, 1
 
 

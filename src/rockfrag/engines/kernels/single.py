@@ -236,12 +236,8 @@ def resolve_impact(body, state, closes, restoring, ahead, chatter_tolerance, for
 def _hold_at(body, contact, step, series, tau, trial):
     """Least contact moment of a closed contact at τ; ``trial`` holds the contacts of the step."""
     record.move_within(step, series, tau, trial)
-    alpha1, alpha2 = equations.accelerations(body, trial.c1, trial.c2, trial)
-    if contact == contact_states.GROUND:
-        least, _ = equations.ground_hold(body, trial.c2, trial, alpha2)
-    else:
-        least, _ = equations.interface_hold(body, trial.c1, trial, alpha1)
-    return least
+    alpha = equations.accelerations(body, trial.c1, trial.c2, trial)
+    return equations.hold(body, contact, (trial.c1, trial.c2), trial, alpha)[0]
 
 
 @kernel

@@ -7,7 +7,6 @@ Older scripts say ``Series -dt .02 -filePath elcentro.txt -factor 1``.
 
 import re
 from collections.abc import Iterator
-from contextlib import suppress
 from pathlib import Path
 
 import numpy as np
@@ -96,13 +95,12 @@ def _option(script: str, name: str) -> str | None:
 
 
 def _number(text: TextFile, line: int, script: str, name: str) -> float | None:
-    words, value = _option(script, name), float("nan")
-    with suppress(ValueError):
-        value = float(words or "")
-    if words is None or np.isfinite(value):
-        return None if words is None else value
-    shown = f"-{name} is {words[:40]!r}"
-    text.fail(f"{shown}, which is no number; write its value into the script", line)
+    words = _option(script, name)
+    if words is None:
+        return None
+    problem = f"-{name} is {words[:40]!r}, which is no number; write its value into the script"
+    value = text.number(words, problem, line)
+    return value if np.isfinite(value) else text.fail(problem, line)
 
 
 FORMAT = Format("OPENSEES", headed(None, _SERIES, within=200), _parse)

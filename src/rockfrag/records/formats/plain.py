@@ -86,8 +86,8 @@ class _Layout:
             samples=samples.copy(),
             unit=column.unit or stated,
             component=component,
-            station=self.facts.details.get("station", ""),
-            details={"title": title, "earthquake": self.facts.details.get("earthquake", "")},
+            station=self.facts.details["station"],
+            details={"title": title, "earthquake": self.facts.details["earthquake"]},
             steps=tuple(self.steps),
         )
 

@@ -25,11 +25,8 @@ _FIRST, _LAST = UTCDateTime(1900, 1, 1), UTCDateTime(2100, 1, 1)
 
 def cut_short_step(promised: int, found: int) -> dict[str, Any]:
     """Return the step of the provenance of a file with fewer samples than its header promises."""
-    return {
-        "step": "read a file that is cut short",
-        "samples_promised": promised,
-        "samples_read": found,
-    }
+    counts = {"samples_promised": promised, "samples_read": found}
+    return {"step": "read a file that is cut short", **counts}
 
 
 _STATED = ("unit", "start_time", "network", "station", "location", "code", "component")
@@ -65,12 +62,10 @@ class Channel:
     code: str = ""
     component: str = ""  # orientation as the file words it (``090``, ``N10E``, ``UP``)
     member: str = ""  # name of the file within an archive of several records, else empty
-    # whether this is a raw recording, whose mean is the zero of the sensor and not motion
-    raw: bool = False
+    raw: bool = False  # whether a recorder's, whose mean is the zero of the sensor and not motion
     # more facts for the metadata: ``station_name``, ``earthquake``, ``title``, …; numbers may be words
     details: Mapping[str, Any] = field(default_factory=dict)
-    # what was done to the samples, for the provenance
-    steps: tuple[Mapping[str, Any], ...] = ()
+    steps: tuple[Mapping[str, Any], ...] = ()  # what was done to the samples, for the provenance
 
     def __post_init__(self) -> None:
         # what a file says goes to terminals and tables, and may hold anything
@@ -183,11 +178,7 @@ class Format:
         return channels
 
     def read(
-        self,
-        source: text_file.Source,
-        headonly: bool = False,
-        dt: float | None = None,
-        **_: Any,
+        self, source: text_file.Source, headonly: bool = False, dt: float | None = None, **_: Any
     ) -> Stream:
         """Return the acceleration channels of a file as an ObsPy stream, in the unit of the file."""
         return Stream([channel.trace(headonly) for channel in self.channels(source, dt)])

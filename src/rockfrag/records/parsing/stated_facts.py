@@ -4,6 +4,7 @@ import re
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
+from rockfrag.records.parsing.format import stated
 from rockfrag.records.parsing.number_fields import number_in
 from rockfrag.records.parsing.quantities import TO_SI, canonical_unit, quantity_of
 from rockfrag.units import LONGEST_STEP, SHORTEST_STEP
@@ -47,15 +48,13 @@ _UNIT_TOKEN = re.compile(
     r"[\s\"'=:(\[{]*(?P<unit>(?:[a-z%°µ]+[\w%°^*²-]*(?:\.[a-z-]+\d?)?(?:\s*/\s*\(?\s*[a-z\d]+\)?(?:\^|\*\*)?[\d²]*)*))",
     re.I,
 )
-_LIST = re.compile(
-    r"^\W*(?:components?|channels?|directions?|orientations?)\s*[=:]\s*(?P<names>.+)$", re.I
-)
+_LIST = r"^\W*(?:components?|channels?|directions?|orientations?)\s*[=:]\s*(.+)$"
 _FACTOR = re.compile(
     rf"\b(?:scal(?:e|ing)|conversion|calibration)[\s_-]*factor{_IS}(?P<value>[+-]?{_VALUE})", re.I
 )
 _KEYS = {
-    "earthquake": re.compile(r"^\W*(?:event|earthquake)\b[^:=]*[:=]\s*(?P<value>\S.*)$", re.I),
-    "station": re.compile(r"^\W*(?:recording\s+)?station\b[^:=]*[:=]\s*(?P<value>\S.*)$", re.I),
+    "earthquake": r"^\W*(?:event|earthquake)\b[^:=]*[:=]\s*(\S.*)$",
+    "station": r"^\W*(?:recording\s+)?station\b[^:=]*[:=]\s*(\S.*)$",
 }
 _SECONDS = {"ms": 1e-3, "mi": 1e-3, "us": 1e-6, "µs": 1e-6}
 
@@ -64,9 +63,8 @@ _SECONDS = {"ms": 1e-3, "mi": 1e-3, "us": 1e-6, "µs": 1e-6}
 class StatedFacts:
     """What is stated, None or empty where it is not."""
 
-    # npts, dt: number of samples and interval [s]
-    npts: int | None = None
-    dt: float | None = None
+    npts: int | None = None  # number of samples
+    dt: float | None = None  # interval [s]
     unit: str = ""  # canonical unit of acceleration
     # what the samples are, where words say so: ``acceleration``, ``velocity``, ``force``, …
     quantity: str = ""
@@ -92,22 +90,17 @@ def stated_facts(lines: Sequence[str]) -> StatedFacts:
         ),
         "",
     )
-    listed = next(filter(None, map(_LIST.match, lines)), None)
     quantity, unit = _quantity_and_unit(lines)
     return StatedFacts(
         npts=counts[0] if counts else None,
         dt=steps[0] if steps else None,
         unit=units[0] if units else unit,
         quantity="acceleration" if units else quantity,
-        components=tuple(re.findall(r"[^\s,;]+", listed["names"])) if listed else (),
+        components=tuple(re.findall(r"[^\s,;]+", stated(_LIST, lines))),
         factor=next(
             (x for x in lines if (m := _FACTOR.search(x)) and number_in(m["value"]) != 1), ""
         ),
-        details={
-            key: found["value"].strip()
-            for key, pattern in _KEYS.items()
-            if (found := next((m for line in lines if (m := pattern.match(line))), None))
-        },
+        details={key: stated(pattern, lines) for key, pattern in _KEYS.items()},
         contradiction=contradiction,
     )
 

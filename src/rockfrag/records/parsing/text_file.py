@@ -76,12 +76,9 @@ class TextFile:
 
     name: str  # name for messages
     data: bytes  # all bytes, ``\n`` line ends
-    # encoding of lines that are not UTF-8, where the format has another; empty if it has none
-    encoding: str = ""
-    # whether fewer samples than the header promises are to be read and not refused
-    cut_short: bool = False
-    # the user's interval [s], for plain text that does not state its own
-    asked_dt: float | None = None
+    encoding: str = ""  # of lines that are not UTF-8; empty if the format has no other
+    cut_short: bool = False  # whether fewer samples than the header promises are read, not refused
+    asked_dt: float | None = None  # the user's interval [s], for text that does not state its own
 
     @cached_property
     def _lines(self) -> list[str]:

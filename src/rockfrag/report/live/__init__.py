@@ -78,9 +78,8 @@ def _element(
         "start": {"body": body, "motion": motion, "amplitude": float(amplitudes[shown])},
     }
     three = (shown // 2, shown - 1, shown) if first > 0 else (0, shown // 2, shown)
-    frames, words = frames_svg(
-        list(bodies.values())[body], motions[motion], amplitudes[np.unique(three)].tolist()
-    )
+    drawn, peaks = list(bodies.values())[body], amplitudes[np.unique(three)].tolist()
+    frames, words = frames_svg(drawn, motions[motion], peaks)
     return Markup(
         TEMPLATES.get_template("live.html.j2").render(
             left_out=[name for name in asked if name not in bodies],
@@ -102,11 +101,8 @@ def carried(motions: Sequence[Motion]) -> list[Motion]:
 def swept(bodies: Mapping[str, System], motions: Sequence[Motion]) -> pd.DataFrame:
     """Outcomes of all bodies under all motions at ``AMPLITUDES_G``."""
     values = np.array(AMPLITUDES_G)
-    fell = overturns(
-        list(bodies.values()),
-        motions,
-        scales=np.array([factors_to_pga(motion, values) for motion in motions]),
-    ).overturned
+    scales = np.array([factors_to_pga(motion, values) for motion in motions])
+    fell = overturns(list(bodies.values()), motions, scales=scales).overturned
     index = pd.MultiIndex.from_product(
         [list(bodies), [motion.name for motion in motions], values],
         names=["configuration", "motion", "amplitude_g"],

@@ -93,7 +93,7 @@ def comparisons(results: Results) -> Section | None:
         parts.append(says.figure("amplitudes_by_floor", by_floor, of_floors))
     if study.has_pairs:
         sides = findings.sides_of(study)
-        ratio = findings.ratio_of(results.table("pedestal/effects"), sides)("whole", "all")
+        ratio = findings.ratio_of(results.table("pedestal/effects"), sides)
         paired, _ = with_counterparts(tests, study.counterparts)
         scatter = partial(figures.pedestal_scatter, paired, ratio, sides)
         parts.append(says.figure("with_and_without_pedestal", scatter, sides, ratio))
@@ -193,7 +193,6 @@ def _bars(table: pd.DataFrame, bottom: float, height: float) -> list[NDArray[np.
     fallen = np.concatenate([[False], ordered["overturned"].to_numpy(), [False]])
     starts = edges[np.flatnonzero(~fallen[:-1] & fallen[1:])]
     ends = edges[np.flatnonzero(fallen[:-1] & ~fallen[1:])]
-    return [
-        np.array([(a, bottom), (b, bottom), (b, bottom + height), (a, bottom + height)])
-        for a, b in zip(starts, ends, strict=True)
-    ]
+    low, high = np.full(starts.size, bottom), np.full(starts.size, bottom + height)
+    corners = np.array([(starts, low), (ends, low), (ends, high), (starts, high)])
+    return list(np.moveaxis(corners, 2, 0))

@@ -75,10 +75,8 @@ def _figures(results: Results, curves: pd.DataFrame) -> list[FigureSpec]:
 
 def _tables(curves: pd.DataFrame, level: str) -> list[Markup]:
     """One narrow table per intensity measure and reading."""
-    tables = []
-    for (measure, unit, definition), rows in curves.groupby(
-        ["im", "unit", "estimator"], sort=False
-    ):
+    tables, keys = [], ["im", "unit", "estimator"]
+    for (measure, unit, definition), rows in curves.groupby(keys, sort=False):
         shown = rows.assign(lean=[_lean(row) for row in rows.to_dict("records")])
         rejected = (rows["p_fit"] < REJECTED).any()
         about = (str(measure), unit, str(definition), level, rejected)
@@ -108,10 +106,8 @@ def two_measures_section(tables: VectorTables, confidence: float) -> Section | N
     found = fits[fits["method"] != "none"]
     if found.empty:
         return None
-    pairs = [
-        " and ".join(name_and_unit(measure)[0] for measure in pair)
-        for pair in found[["first", "second"]].to_numpy()
-    ]
+    both = found[["first", "second"]].to_numpy()
+    pairs = [" and ".join(name_and_unit(measure)[0] for measure in pair) for pair in both]
     keys, parts = ["configuration", "first", "second"], []
     for pair, row in zip(pairs, found[keys].to_dict("records"), strict=True):
         own, tests = (
@@ -138,9 +134,8 @@ def floor_curves(results: Results) -> Section | None:
     names = (path.name for path in (results.folder / "exports").iterdir() if path.is_file())
     files = sorted(name for name in names if not name.startswith("."))
     labels = {state.name: state.label for state in limit_states()}
-    shown = shown.assign(
-        state_text=shown["state"].map(labels), theta_text=estimates(shown, "theta")
-    )
+    theta = estimates(shown, "theta")
+    shown = shown.assign(state_text=shown["state"].map(labels), theta_text=theta)
     fallen = shown[shown["state"] == OVERTURNS].to_dict("records")
     weakest = min(fallen, key=lambda row: float(row["theta"]), default=None)
     table = says.table("floors", shown, results.level)

@@ -72,11 +72,9 @@ def pedestal(results: Results) -> Section | None:
         parts = [_forest(here, about), table_html(methods, columns, caption)]
         caption = "Effect by scope, step protocol."
         if len(here) > page.MOST_TABLE_ROWS:
-            of_earthquakes = here["scope"] == "earthquake"
-            caption += (
-                f" Each of the {of_earthquakes.sum()} earthquakes is in pedestal/effects.csv."
-            )
-            here = here[~of_earthquakes]
+            each = here["scope"] == "earthquake"
+            caption += f" Each of the {each.sum()} earthquakes is in pedestal/effects.csv."
+            here = here[~each]
         file, columns = "pedestal/effects.csv", effect_columns(ratio)
         parts.insert(1, table_html(shown_effects(here), columns, caption, file))
     notes = results.table("pedestal/notes")
@@ -90,7 +88,7 @@ def _forest(effects: pd.DataFrame, about: Sides) -> FigureSpec:
         if len(shown) > MOST_ROWS:
             shown = shown[shown["scope"] != scope]
             left_out.append(words)
-    ratio = ratio_of(effects, about)("whole", "all")
+    ratio = ratio_of(effects, about)
     draw = partial(forest_figure, shown, about)
     return says.figure("pedestal_effect", draw, about, left_out, ratio)
 

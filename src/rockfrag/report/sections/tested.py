@@ -89,9 +89,8 @@ def validity(results: Results) -> Section | None:
     if tests.empty:
         return None
     demand = tests["friction_demand"].astype(float)
-    known = tests.assign(
-        needed=demand.where(np.isfinite(demand)), lifted=tests["least_normal_force_n"] <= 0
-    )
+    needed, lifted = demand.where(np.isfinite(demand)), tests["least_normal_force_n"] <= 0
+    known = tests.assign(needed=needed, lifted=lifted)
     shown = known.groupby(["object", "pedestal"], sort=False, as_index=False).agg(
         tests=("needed", "size"),
         known=("needed", "count"),
@@ -99,10 +98,8 @@ def validity(results: Results) -> Section | None:
         largest=("needed", "max"),
         lifted=("lifted", "sum"),
     )
-    shown = shown.assign(
-        side=shown["pedestal"].map({"P": "with", "NP": "without"}),
-        beyond=shown["tests"] - shown["known"],
-    )
+    side = shown["pedestal"].map({"P": "with", "NP": "without"})
+    shown = shown.assign(side=side, beyond=shown["tests"] - shown["known"])
     table, all_tests = says.table("validity", shown), shown["tests"].max() < MOST_TESTED
     return says.section("validity", [table], model_allowed(tests), all_tests)
 
@@ -118,9 +115,8 @@ def shaker_limits(limits: pd.DataFrame, tests: pd.DataFrame) -> Figure:
     with style.panels(style.WIDEST, 1.2 + 0.22 * len(motions)) as (figure, axes):
         largest = limits.set_index("motion")["limit_g"]
         axes.barh(range(len(motions)), largest[motions], color="#dddddd", height=0.8)
-        handles: list[Artist] = [
-            Patch(color="#dddddd", label="up to the table's limit of the stated quantity")
-        ]
+        words = "up to the table's limit of the stated quantity"
+        handles: list[Artist] = [Patch(color="#dddddd", label=words)]
         for name, marker, colour in zip(names, cycle(MARKERS), cycle(style.OKABE_ITO)):
             own = rows[rows["configuration"] == name]
             y = own["motion"].map(place).to_numpy(dtype=float)
@@ -131,8 +127,8 @@ def shaker_limits(limits: pd.DataFrame, tests: pd.DataFrame) -> Figure:
             axes.plot(own["a"].to_numpy()[bounds], y[bounds], ls="", marker=">", color=colour, ms=3)
         reasons = limits.set_index("motion")["limited_by"]
         for y, motion in enumerate(motions):
-            words = axes.text(largest[motion], y, f" {reasons[motion]}", color=GREY)
-            words.set(va="center", fontsize=6.5)
+            reason = axes.text(largest[motion], y, f" {reasons[motion]}", color=GREY)
+            reason.set(va="center", fontsize=6.5)
         axes.set_xlim(0, 1.2 * float(largest[motions].max()))
         axes.set_yticks(range(len(motions)), [label(name) for name in motions])
         axes.tick_params(axis="y", length=0)

@@ -10,7 +10,7 @@ from matplotlib.lines import Line2D
 
 from rockfrag import figure_style as style
 from rockfrag.report import figures as amplitudes
-from rockfrag.report.findings import mean_sentence, objects_compared, ratio_of
+from rockfrag.report.findings import WITH_PEDESTAL, mean_sentence, objects_compared, ratio_of
 from rockfrag.report.part import Results, Section
 from rockfrag.report.sections.amplitudes import comparisons
 from rockfrag_thesis.sections import says
@@ -21,7 +21,7 @@ def counterparts(results: Results) -> Section | None:
     if not results.study.has_pairs:
         return comparisons(results)
     tests, means = results.tests, results.table("mean_amplitudes")
-    ratio = ratio_of(results.table("pedestal/effects"))
+    ratio = partial(ratio_of, results.table("pedestal/effects"), WITH_PEDESTAL)
     found, words = objects_compared(means, results.study.slenderness), mean_sentence(means)
     levels = [
         f"{level}: {ratio(scope, level)}"

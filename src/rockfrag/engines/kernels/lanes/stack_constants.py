@@ -95,7 +95,7 @@ def _both_rotate(body, c1, c2, hh, two):
 
 @kernel
 def _ground_hold(body, s1, s2, hh, hold):
-    """Moment of the ground on a standing pedestal in pattern 4 (``equations.ground_hold``)."""
+    """Moment of the ground on a standing pedestal in pattern 4 (``equations.hold``)."""
     e, f = equations.coupling(body, s1, s2)
     vx, vy = equations.first_moment1(body, s1, s2)
     # (e cos θ + f sin θ) θ'' + (f cos θ - e sin θ) θ'² + a vy - g vx
@@ -107,7 +107,7 @@ def _ground_hold(body, s1, s2, hh, hold):
 
 @kernel
 def _interface_hold(body, s1, s2, hh, hold):
-    """Moment of the interface on the statue that turns with its pedestal (``equations.interface_hold``)."""
+    """Moment of the interface on the statue that turns with its pedestal (``equations.hold``)."""
     e, f = equations.coupling(body, s1, s2)
     vx, vy = equations.first_moment2(body, s2)
     # (e + m22) θ'' - f θ'² + a (vy cos θ - vx sin θ) - g (vx cos θ + vy sin θ)
