@@ -10,8 +10,6 @@ from rockfrag.keywords import for_command_line
 from rockfrag.tabular import printable
 
 if TYPE_CHECKING:
-    import pandas as pd
-
     from rockfrag.records.motion import Motion
 
 
@@ -91,11 +89,18 @@ def read_told(file: str, options: argparse.Namespace, channel: str | None) -> "M
 
 # each command imports what it needs when it runs: `rockfrag --help` should not wait for ObsPy
 def _info(options: argparse.Namespace) -> int:
+    from rockfrag.files import csv_text
     from rockfrag.report import record_info
 
     told = options.files, options.unit, options.dt, options.force
     table = record_info.describe_files(*told)
-    _print_info(table, options.format)
+    if options.format == "csv":
+        print(csv_text(table), end="")
+    elif options.format == "json":
+        print(table.to_json(orient="records", indent=2, force_ascii=False))
+    elif (fine := table["status"] == record_info.READ).any():
+        shown = table[fine].drop(columns=["error", "status"])
+        print(shown.to_string(index=False, na_rep="-", float_format="{:.4g}".format))
     for error in table.loc[table["status"] != record_info.READ, "error"]:
         print(for_command_line(error), file=sys.stderr)
     if options.picture:
@@ -111,19 +116,6 @@ def _info(options: argparse.Namespace) -> int:
     status = table["status"]
     bad = (status == record_info.UNREADABLE) | ((status != record_info.READ) & named)
     return int(bad.any())
-
-
-def _print_info(table: "pd.DataFrame", form: str) -> None:
-    if form == "csv":
-        from rockfrag.files import csv_text
-
-        print(csv_text(table), end="")
-    elif form == "json":
-        print(table.to_json(orient="records", indent=2, force_ascii=False))
-    else:
-        fine = table[table["status"] == "read"].drop(columns=["error", "status"])
-        if len(fine):
-            print(fine.to_string(index=False, na_rep="-", float_format="{:.4g}".format))
 
 
 def _catalogue(options: argparse.Namespace) -> int:

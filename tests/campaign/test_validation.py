@@ -68,10 +68,7 @@ def test_the_best_threshold_separates_what_can_be_separated():
 def test_thresholds_are_judged_by_other_motions_too_and_two_measures_find_a_border():
     pga, ratio = np.exp(RNG.standard_normal((2, 600)))
     groups = RNG.integers(0, 50, 600)
-    for fell, of_one, of_two in (
-        (RNG.random(600) < 0.5, 0.5, 0.5),
-        (pga * ratio > 1, 0.75, 0.97),
-    ):
+    for fell, of_one, of_two in ((RNG.random(600) < 0.5, 0.5, 0.5), (pga * ratio > 1, 0.75, 0.97)):
         tests = MeasuredTests(fell, groups, 2, 5, 4)
         for measures, right in ((pga, of_one), (np.column_stack([pga, ratio]), of_two)):
             found = (tests.by_threshold(measures) == fell).mean()

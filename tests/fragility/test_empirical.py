@@ -14,11 +14,7 @@ from rockfrag.fragility.empirical import (
     resurrections_of,
 )
 from rockfrag.fragility.estimators import fragility_of
-from rockfrag.fragility.fractions import (
-    fractions_of_capacities,
-    fractions_of_outcomes,
-    knots_of,
-)
+from rockfrag.fragility.fractions import fractions_of_capacities, fractions_of_outcomes, knots_of
 from rockfrag.fragility.ida_curves import outcome_bins, with_measures
 from rockfrag.fragility.measure_selection import area_under_curve
 from rockfrag.fragility.observations import observations_from_table

@@ -10,12 +10,7 @@ from rockfrag.engines.kernels import equations as eq
 from rockfrag.engines.kernels.chatter import Hop, closed
 from rockfrag.engines.kernels.impact import stuck
 from rockfrag.engines.kernels.jit import entry_kernel
-from rockfrag.engines.kernels.lanes.stack_constants import (
-    IMPACT,
-    ONE,
-    TWO,
-    fill_constants,
-)
+from rockfrag.engines.kernels.lanes.stack_constants import IMPACT, ONE, TWO, fill_constants
 from rockfrag.engines.kernels.taylor import ORDER, SERIES, Step, fill_series, rates_of_two
 from rockfrag.engines.lanes import body_record
 

@@ -80,8 +80,7 @@ class Conversion:
 
     measure: IntensityMeasure  # The measure that is known
     fragility: VectorFragility  # P(topples | ``im``, ``ratio_s``): the measure, and PGV over it
-    # Effect of ln ratio over that of ln measure: 0 where PGV says nothing beside the measure, 1
-    # where it says all, up to 2 where displacement does [-]
+    # Effect of ln ratio over that of ln measure [-]: 0 if PGV says nothing, 1 if all, up to 2 for displacement
     weight: float
     logs: Floats  # ln (PGV over the measure [s]) of each motion, shape (motions,)
     known: SiteVelocity | None  # What is known of the site; None if nothing is
@@ -241,8 +240,7 @@ def _weight(fit: VectorFragility, log_ratio: float) -> tuple[float, float]:
 class VelocityRelation:
     """How ln (PGV over a measure) follows magnitude, ln distance and ln Vs30 among the records of a set."""
 
-    # Of 1 and the three; only the mean where fewer than ``FEWEST_RECORDS`` records are known so
-    # well
+    # Of 1 and the three; only the mean where fewer than ``FEWEST_RECORDS`` records are known so well
     coefficients: tuple[float, ...]
     middle: tuple[float, ...]  # Mean of the three in the set
     scatter: float  # Standard deviation about the relation [-]

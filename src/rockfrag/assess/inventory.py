@@ -42,16 +42,14 @@ LOSSES = 24  # Losses of which it is said how often they are exceeded
 class JointRisk:
     """What an inventory risks together, in earthquakes that shake all of it."""
 
-    # A row an object: ``name``, ``annual_rate`` of toppling, ``value``, ``annual_loss`` (mean) and
-    # ``contribution`` to that of all
+    # A row an object: ``name``, ``annual_rate`` of toppling, ``value``, mean ``annual_loss``, its ``contribution``
     objects: pd.DataFrame
     # A row a number of objects: ``at_least``, ``annual_rate`` of earthquakes that topple so many,
     # ``probability`` of one in the years asked for with limits (``probability_lower``,
     # ``probability_upper``), and ``at_the_site``, the fraction of motions at the site's level
     numbers: pd.DataFrame
     losses: pd.DataFrame  # A row a loss: ``loss``, and ``annual_rate`` with which one exceeds it
-    # Correlation of the toppling of each two objects in time: the rate of earthquakes that topple
-    # both over the geometric mean of the rates of each [-].  NaN where one never topples
+    # Rate of earthquakes that topple both of two objects over the geometric mean of their rates [-]; or NaN
     correlation: pd.DataFrame
 
 
@@ -111,17 +109,10 @@ def _numbers(first: Assessment, together: ObjectOutcomes, count: NDArray[np.int6
         fractions = many.fractions()
         found = Evidence(many, shifts=shifts).estimate(target)
         rate = toppling_rate(many.intensity_levels.levels, fractions, first.hazard)
-        rows.append(
-            {
-                "at_least": least,
-                "annual_rate": rate,
-                "probability": probability_in(rate, years),
-                "probability_lower": found.lower,
-                "probability_upper": found.upper,
-                "at_the_site": fractions[at],
-            }
-        )
-    return pd.DataFrame(rows)
+        chance = probability_in(rate, years)
+        rows.append((least, rate, chance, found.lower, found.upper, fractions[at]))
+    chances = ("probability", "probability_lower", "probability_upper")
+    return pd.DataFrame(rows, columns=["at_least", "annual_rate", *chances, "at_the_site"])
 
 
 def _correlation(fell: Flags, allowed: Flags, per_level: Floats) -> Floats:
@@ -171,13 +162,10 @@ def assess_inventory(
     *,
     keep_going: bool = False,
 ) -> Inventory:
-    """Assess every object of a table.
+    """Assess every object of a table, whose columns ``docs/assess.md`` lists.
 
-    The CSV has ``name``, ``width``, ``height`` and, where known, ``depth``, ``mass``, ``cg_height``,
-    ``pedestal_width``, ``pedestal_height``, ``pedestal_depth``, ``pedestal_mass``, ``floor``, ``restitution``,
-    ``round`` and ``value`` (of all or of none); units stand in the titles or in the cells. Several pedestals
-    stand in a cell from above, ``60|80``. ``shared`` holds for all, with the keys of ``statue.yaml``; with
-    ``keep_going`` :class:`FaultyRows` is raised only if no row can be used.
+    ``shared`` holds for all, with the keys of ``statue.yaml``; with ``keep_going`` :class:`FaultyRows` is raised
+    only if no row can be used.
     """
     requests, faults = read_inventory(path, shared or {})
     if faults and not (keep_going and requests):
@@ -191,9 +179,8 @@ def assess_inventory(
 
     def risk(each: Assessment) -> tuple[float, ...]:
         """Loss, probability, fraction, and how little topples half of the motions."""
-        known = [
-            estimate.value if estimate else 0.0 for estimate in (each.probability, each.fraction)
-        ]
+        estimates = (each.probability, each.fraction)
+        known = [estimate.value if estimate else 0.0 for estimate in estimates]
         return losses.get(each.request.name, 0.0), *known, -each.amplitudes[0.5].value
 
     found.sort(key=risk, reverse=True)
@@ -282,16 +269,14 @@ def _request(row: Row, name: str, shared: Mapping[str, Any]) -> Request:
 def _pedestals(row: Row) -> list[dict[str, float]]:
     """What the object stands on, from above: a cell may hold as many quantities, with bars between them."""
     each = {key: row.cells[key].split("|") for key in PEDESTAL if row.has(key)}
-    found: list[dict[str, float]] = []
+    found: list[dict[str, float]] = [{} for _ in next(iter(each.values()), [])]
     for key, cells in each.items():
-        if len(cells) != len(next(iter(each.values()))):
+        if len(cells) != len(found):
             raise row.error(key, "expected as many pedestals as in the other columns")
-        for i, cell in enumerate(cells):
-            if i == len(found):
-                found.append({})
+        for block, cell in zip(found, cells, strict=True):
             if cell.strip():
                 part = replace(row, cells={key: cell.strip()})
-                found[i][key.removeprefix("pedestal_")] = part.quantity(key, above=0)
+                block[key.removeprefix("pedestal_")] = part.quantity(key, above=0)
     return found
 
 

@@ -42,8 +42,7 @@ class MotionSet:
     warnings: tuple[str, ...] = ()  # Sentences that a reader must know
     # Motions of floors that were needed before, by :attr:`Place.key` and the name of the ground motion
     floors: dict[object, Motion] = field(default_factory=dict)
-    # Whether both components of each record act at once: both stand for the record, and their level
-    # is the geometric mean of theirs
+    # Whether both components of each record act at once: both have the geometric mean of their levels
     both: bool = False
     library: tuple[Motion, ...] = ()  # Those among which they were chosen; empty if all were taken
     # Measures of motions that were needed before, by the motion's name
@@ -214,13 +213,12 @@ def _own(records: Records, folder: Path) -> MotionSet:
     still = [motion.name for motion in motions if motion.pga == 0]
     if still:
         raise InputError(f"record {still[0]}: is zero throughout and shakes nothing; leave it out.")
-    pairs = _pairs(motions)
-    found = MotionSet(tuple(motions), tuple(motions), pairs, "", tuple(warnings))
-    earthquakes = len(set(found.earthquakes))
     if len({motion.name for motion in motions}) < len(motions):
         raise InputError(
             "records: two motions have the same name; leave one out or give a catalogue."
         )
+    found = MotionSet(tuple(motions), tuple(motions), _pairs(motions), "")
+    earthquakes = len(set(found.earthquakes))
     of = counted(earthquakes, "earthquake")
     if earthquakes < FEWEST_EARTHQUAKES:
         warnings.append(f"{of} cannot say how different others are.")

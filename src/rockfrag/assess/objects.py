@@ -18,12 +18,7 @@ from rockfrag.system.blocks import Block, Body, stacked
 from rockfrag.system.body import Polygon, RigidBody, checked_tensor
 from rockfrag.system.contact import Contact
 from rockfrag.system.mesh import read_shape
-from rockfrag.system.system import (
-    System,
-    round_inertia,
-    turned_about_vertical,
-    uplift_ratios,
-)
+from rockfrag.system.system import System, round_inertia, turned_about_vertical, uplift_ratios
 from rockfrag.units import DENSITIES, STONE, check_density, size_warning
 
 COMMON = (150.0, 9000.0)  # Usual densities of the box around an object, from wood to bronze [kg/m³]
@@ -58,8 +53,7 @@ class Objects:
     depth: float | None = None  # Side of a rectangular base across that plane [m]; None if not used
     facing_deg: float = 0.0  # Of that plane, from first to second component of records [degrees]
     faces_anywhere: bool = False  # Whether nobody said how it faces the shaking, which counts
-    # By how much corners of the base lie elsewhere in space, over its extent, and it is turned [rad], other for
-    # each record [-]
+    # By how much of its extent corners of the base lie elsewhere in space, and it is turned [rad], by record
     base_spread: float = 0.0
     scan: Scan | None = None  # The scan as it may stand; None where dimensions were given
     scanned: RigidBody | None = None  # The scan in space as it stands; None if there is none

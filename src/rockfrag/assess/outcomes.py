@@ -47,8 +47,7 @@ class IntensityLevels:
     measure: IntensityMeasure  # The intensity measure of the ground
     levels: Floats  # Levels in its unit, rising, shape (levels,)
     scales: Floats  # Factors on the motions, shape (motions, levels)
-    # Whether a factor is within ``LARGEST_FACTOR`` and the motion at the base one that a floor may
-    # feel, shape (motions, levels)
+    # Whether a factor is within ``LARGEST_FACTOR`` and a floor may feel the motion, shape (motions, levels)
     allowed: NDArray[np.bool_]
 
     def place_of(self, level: float) -> int:
@@ -335,11 +334,9 @@ def simulated(
 class Directions:
     """Fraction of the records that topple the object, by how it stands to them."""
 
-    # Level that topples half of the records in their worst direction over the one in any direction
-    # [-]; NaN where neither reaches half
+    # Level that topples half of the records in their worst direction over that in any one [-]; NaN without
     factor: float
-    # Fraction of records and directions, and of records in their worst direction, that topple the
-    # object at the level asked about; NaN where none was
+    # Of records in all directions, and in their worst one, that topple the object at the level; NaN without
     fraction: float
     worst_fraction: float
     records: int  # Number of records with two components

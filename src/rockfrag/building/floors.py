@@ -109,9 +109,7 @@ class DriftOutcome:
     drift: float  # Its largest drift over height [-]
     strength_fraction: float  # Largest shear over strength [-]; above 1 of elastic models only
     state: str  # One of the states of ``_ELASTIC`` and ``_HYSTERETIC``
-    # Whether the model may be used there: an elastic one up to the shear strength, a hysteretic one up to the
-    # rocking limit, beyond which walls fall
-    credible: bool
+    credible: bool  # Whether the model may be used there: up to the strength, or the rocking limit
     statement: str  # One sentence for a report
 
 

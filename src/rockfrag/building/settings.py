@@ -57,11 +57,15 @@ def _building(settings: Mapping[str, Any]) -> model.ShearBuilding:
         stiffnesses = model.stiffnesses_for_period(masses, heights, settings["first_period_s"])
     else:
         stiffnesses = settings["storey_stiffnesses_N_m"]
+    asked = settings.get("damping", {})
+    damping = model.ModalDamping(float(asked.get("ratio", 0.05)))
+    if asked.get("kind", "modal") == "rayleigh":
+        damping = model.RayleighDamping(damping.ratio, tuple(asked.get("modes", (1, 2))))
     building = model.ShearBuilding(
         masses=masses,
         heights=heights,
         stiffnesses=stiffnesses,
-        damping=_damping(settings.get("damping", {})),
+        damping=damping,
         floors=settings.get("floors", {"ground": 0}),
         model=settings.get("model", "elastic"),
         masonry=MasonryLaw(**settings.get("masonry", {})),
@@ -76,11 +80,3 @@ def _building(settings: Mapping[str, Any]) -> model.ShearBuilding:
             f"{longest:g} s; check the units."
         )
     return building
-
-
-def _damping(settings: Mapping[str, Any]) -> model.ModalDamping:
-    ratio = float(settings.get("ratio", 0.05))
-    if settings.get("kind", "modal") == "rayleigh":
-        first, second = settings.get("modes", (1, 2))
-        return model.RayleighDamping(ratio, (first, second))
-    return model.ModalDamping(ratio)

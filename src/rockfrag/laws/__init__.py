@@ -7,7 +7,6 @@ in ``BUILT_IN``; a law without a rate of its own only makes the number of anothe
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cache
 from importlib import import_module
 from operator import attrgetter
 
@@ -60,15 +59,10 @@ def declare(
     return law
 
 
-@cache
-def _load_built_in() -> None:
-    for name in BUILT_IN:
-        import_module(f"{__name__}.{name}")
-
-
 def laws() -> tuple[Law, ...]:
     """Return all laws, conservation of momentum first."""
-    _load_built_in()
+    for name in BUILT_IN:
+        import_module(f"{__name__}.{name}")
     return tuple(sorted(_LAWS.values(), key=attrgetter("number")))
 
 

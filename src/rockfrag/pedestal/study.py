@@ -5,7 +5,6 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 import pandas as pd
 
 from rockfrag.pedestal import cluster_means
@@ -183,9 +182,8 @@ def rank_probabilities(
         cells = table.pivot_table(index=cluster, columns=factor, values="d", aggfunc="mean")
         drawn = _resampled(cells[levels].dropna().to_numpy(), rng)
     mean = table.groupby(factor)["d"].mean()[levels].to_numpy()
-    largest, smallest = (
-        _fraction_of(drawn == extreme(drawn, axis=1, keepdims=True)) for extreme in (np.max, np.min)
-    )
+    ends = (drawn == extreme(drawn, axis=1, keepdims=True) for extreme in (np.max, np.min))
+    largest, smallest = ((at / at.sum(axis=1, keepdims=True)).mean(axis=0) for at in ends)
     found = {"level": levels, "mean": mean, "p_largest": largest, "p_smallest": smallest}
     return pd.DataFrame(found)
 
@@ -198,7 +196,3 @@ def _resampled(means: Array, rng: np.random.Generator) -> Array:
     return np.concatenate(
         [means[rng.integers(0, n, size=(size, n))].mean(axis=1) for size in sizes]
     )
-
-
-def _fraction_of(extreme: npt.NDArray[np.bool_]) -> Array:
-    return np.asarray((extreme / extreme.sum(axis=1, keepdims=True)).mean(axis=0), dtype=float)

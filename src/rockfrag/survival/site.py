@@ -181,8 +181,7 @@ class ShakingRates:
 
     # Value of each measure at each point, in the measure's unit, shape (points,)
     values: Mapping[IntensityMeasure, Floats]
-    # Annual rate of each point [1/year], shape (branches, points).  Their sum over points above a
-    # level is how often that level is exceeded
+    # Annual rate of each point [1/year], shape (branches, points); above a level they sum to its rate
     rates: Floats
 
 

@@ -166,10 +166,8 @@ def integrate(p, shaking, start, closing, kept, w):
                     step * dt, ah, av, step * sample.rise_h, step * sample.rise_v
                 )
                 work, rubbed = stepping.take_step(p, w, stretch, energy_balance)
-                if (
-                    step < stepping.SHORTEST
-                    or stepping.step_error(p, w, stretch.length) <= stepping.ERROR
-                ):
+                error = stepping.step_error(p, w, stretch.length)
+                if step < stepping.SHORTEST or error <= stepping.ERROR:
                     break
                 step *= 0.5
             at_end = stepping.least_margin(p, w, w.q1, w.v1)
@@ -207,16 +205,10 @@ def integrate(p, shaking, start, closing, kept, w):
                     tau = 1.0
             else:
                 stepping.margin_at(p, w, when, stretch)  # sets what fails
-                if when > 0.0:
-                    work, rubbed = stepping.take_step(
-                        p, w, stepping.beginning(stretch, when), energy_balance
-                    )
-                    copy(p, w.q1, w.q)
-                    copy(p, w.v1, w.v)
-                else:
-                    work = rubbed = 0.0
-                    copy(p, w.q0, w.q)
-                    copy(p, w.v0, w.v)
+                shorter = stepping.beginning(stretch, when)
+                work, rubbed = stepping.take_step(p, w, shorter, energy_balance)
+                copy(p, w.q1, w.q)
+                copy(p, w.v1, w.v)
                 impact.project(p, w)
                 tau += when * step
                 idle = idle + 1 if when < 1e-9 else 0
@@ -298,11 +290,8 @@ def _contact_event_in_step(p, w, at_end, stretch):
     """Fraction of the step at which something fails first; 2.0 if nothing does."""
     high, at_high = 1.0 if at_end < 0.0 else 2.0, at_end
     near = stepping.comes_near(p, w)
-    if near or at_end < 0.02:
-        for quarter in range(1, 4):
-            if not near and quarter != 2:
-                continue
-            tau = 0.25 * quarter
+    for tau in (0.25, 0.5, 0.75):
+        if near or (tau == 0.5 and at_end < 0.02):
             value = stepping.margin_at(p, w, tau, stretch)
             if value < 0.0:
                 high, at_high = tau, value

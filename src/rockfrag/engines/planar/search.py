@@ -25,13 +25,11 @@ SLIP = 2  # what changes between modes: whether the end 0 or 1 is closed, or how
 class Trial(NamedTuple):
     """What modes are tried for: an impact, or how a motion goes on."""
 
-    # accelerations of the ground [m/s²]
-    ah: float
-    av: float
+    ah: float  # horizontal acceleration of the ground [m/s²]
+    av: float  # likewise upwards
     impact: bool
-    # units of forces or impulses, and of accelerations or velocities
-    force: float
-    motion: float
+    force: float  # unit of forces or impulses
+    motion: float  # unit of accelerations or velocities
 
 
 @kernel

@@ -158,7 +158,11 @@ def _fill_equations(p, w, q, v, impact, rough, standing):
             w.right[m] = 0.0 if impact else -bias(q, v, k, x, y, -ty, tx, kind)
             fill_row(q, k, x, y, -ty - friction * tx, tx - friction * ty, w.column[m])
             if impact and w.fraction[k, end] > 0.0:
-                _add_fraction(p, w, q, k, end, friction, w.column[m])
+                # what the impulse brings about at the other end
+                xo, yo, to, no, _, _, _ = end_of(p, w, q, k, 1 - end, w.kind[k, 1 - end])
+                fill_row(q, k, xo, yo, -no - friction * to, to - friction * no, w.light)
+                for d in range(6):
+                    w.column[m, d] += w.fraction[k, end] * w.light[d]
             m += 1
             if first and w.slides[k] == 0:
                 fill_row(q, k, x, y, tx, ty, w.row[m])
@@ -179,16 +183,6 @@ def _fill_equations(p, w, q, v, impact, rough, standing):
             m += 1
         w.upto[k] = m
     return m
-
-
-@kernel
-def _add_fraction(p, w, q, k, end, friction, column):
-    """Add what an end's impulse brings about at the other end."""
-    fraction = w.fraction[k, end]
-    x, y, tx, ty, _, _, _ = end_of(p, w, q, k, 1 - end, w.kind[k, 1 - end])
-    fill_row(q, k, x, y, -ty - friction * tx, tx - friction * ty, w.light)
-    for d in range(6):
-        column[d] += fraction * w.light[d]
 
 
 @kernel

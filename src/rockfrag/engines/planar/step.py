@@ -24,11 +24,9 @@ class Stretch(NamedTuple):
     """A stretch of time over which the accelerations of the ground are linear."""
 
     length: float  # [s]
-    # ah, av: horizontal and vertical acceleration at its beginning [m/s²]
-    ah: float
-    av: float
-    # rise_h, rise_v: by which they rise over it
-    rise_h: float
+    ah: float  # horizontal acceleration at its beginning [m/s²]
+    av: float  # likewise upwards
+    rise_h: float  # by which they rise over it
     rise_v: float
 
 

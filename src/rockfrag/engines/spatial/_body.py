@@ -13,8 +13,6 @@ from rockfrag.engines.spatial._algebra import cross, dot, norm, plus, times, to_
 
 SIZE = 15
 WORK, FRICTION = 13, 14
-
-
 MOST_VERTICES = 64
 
 BODY = np.dtype(

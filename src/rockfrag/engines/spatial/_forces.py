@@ -26,9 +26,7 @@ from rockfrag.engines.spatial._algebra import (
 MOST = 4  # contacts that carry at once
 STICKS, SLIDES = 0, 1
 FLIGHT, PIVOT, HINGE, GENERAL, REST, SLIDER = 0, 1, 2, 3, 4, 5
-SLIP_FLOOR = (
-    1e-4  # slip velocity below which a point slips, if at all, in the direction noted [m/s]
-)
+SLIP_FLOOR = 1e-4  # slip velocity below which a point slips in the direction noted, if at all [m/s]
 # part of the largest compliance that is added to all, so that redundant forces are the least ones [-]
 SOFTNESS = 1e-9
 STAGES = 7

@@ -52,10 +52,8 @@ def rest_ends(body, y, field, tau, dt):
     """When the ground no longer carries the body at rest, -1 if it does: concave margins need only ends."""
     pull = forces.pull_at(field, dt)
     level = algebra.norm(pull[0], pull[1])
-    if (
-        level * body.height < -pull[2] * body.nearest * (1 - 1e-9)
-        and level < -body.static * pull[2]
-    ):
+    upright = level * body.height < -pull[2] * body.nearest * (1 - 1e-9)
+    if upright and level < -body.static * pull[2]:
         # a flat body rests whichever way it is pulled
         return -1.0
     rows = algebra.rotation(y)
@@ -93,9 +91,8 @@ def leave_rest(body, y, tau, s):
     if body.rim > 0:
         b = algebra.to_body(rows, (pull[0], pull[1], 0.0))
         centre = -pull[2] / body.height
-        start_rolling(
-            body, y, b[0] - centre * body.centre[0], b[1] - centre * body.centre[1], pull, s
-        )
+        x, z = b[0] - centre * body.centre[0], b[1] - centre * body.centre[1]
+        start_rolling(body, y, x, z, pull, s)
         return
     s.count = 0
     last, first = -1, -1

@@ -10,9 +10,7 @@ from rockfrag.engines.spatial import _forces as forces
 from rockfrag.engines.spatial._cone import solve_cones
 
 TOUCH = 1e-10  # gap below which a point touches [m]
-CLOSE = (
-    1e-6  # velocity after an impact below which a point that touches stays closed at first [m/s]
-)
+CLOSE = 1e-6  # velocity after an impact below which a point stays closed at first [m/s]
 AT_REST = forces.SLIP_FLOOR  # the velocity that points slip above when the mode is chosen [m/s]
 SLOW_SLIP = 30 * AT_REST  # the same where no mode was found otherwise: one may hardly slip [m/s]
 LEAVES = 1e-8  # velocity above which points that touch leave when the mode is chosen [m/s]

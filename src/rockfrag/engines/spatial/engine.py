@@ -42,12 +42,10 @@ class SpatialOutcome:
     certain_time: float  # instant from which the fall was certain [s]; NaN without one
     fall_direction: float  # from x towards y [rad]; NaN without a fall
     fell_over: str  # "edge 1-2", "vertex 2", "rim", "flight"; empty without a fall
-    # largest tilt over that with the centre of mass above the outline [-]; infinite if it fell
-    peak_rotation: float
+    peak_rotation: float  # largest tilt over that of unstable balance [-]; infinite if it fell
     peak_tilt: float  # largest tilt until the outcome was known [rad]
     peak_velocity: float  # largest angular velocity until then [rad/s]
-    # displacement of the base's point below the centre of mass, (x, y) at the end [m]
-    walk: tuple[float, float]
+    walk: tuple[float, float]  # (x, y) at the end of the base's point below the centre of mass [m]
     turn: float  # rotation about the vertical at the end [rad], several turns counted
     impacts: int  # number of impacts
     slidings: int  # number of contacts that began to slide

@@ -178,11 +178,7 @@ class Format:
         return channels
 
     def read(
-        self,
-        source: text_file.Source,
-        headonly: bool = False,
-        dt: float | None = None,
-        **_: Any,
+        self, source: text_file.Source, headonly: bool = False, dt: float | None = None, **_: Any
     ) -> Stream:
         """Return the acceleration channels of a file as an ObsPy stream, in the unit of the file."""
         return Stream([channel.trace(headonly) for channel in self.channels(source, dt)])

@@ -13,13 +13,7 @@ from rockfrag.pedestal.cluster_means import Estimate
 from rockfrag_thesis.hypotheses.contrasts import power_note
 from rockfrag_thesis.hypotheses.evidence import Evidence
 from rockfrag_thesis.hypotheses.hypothesis import Finding, Result, hypothesis
-from rockfrag_thesis.hypotheses.outcomes import (
-    LEVEL,
-    SEEN,
-    finding_of,
-    known,
-    ratios,
-)
+from rockfrag_thesis.hypotheses.outcomes import LEVEL, SEEN, finding_of, known, ratios
 
 
 class Size(Enum):

@@ -19,14 +19,7 @@ from rockfrag_thesis.hypotheses.orders import (
     order,
     order_hypothesis,
 )
-from rockfrag_thesis.hypotheses.outcomes import (
-    LEVEL,
-    all_of,
-    decided,
-    p_nonzero,
-    ratios,
-    same,
-)
+from rockfrag_thesis.hypotheses.outcomes import LEVEL, all_of, decided, p_nonzero, ratios, same
 
 TOWERS = ("T1", "T2", "T3")  # the towers from the squattest to the most slender
 
