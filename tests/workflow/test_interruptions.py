@@ -17,7 +17,7 @@ import pytest
 from rockfrag import lock
 from rockfrag.errors import InputError
 from rockfrag.processes import in_processes
-from rockfrag.stages.log import check_folders, in_words, logged
+from rockfrag.stages.log import check_folders, in_words, last_finding, logged
 from rockfrag.stages.running import RUN, run_lock, same_numbers
 
 from .running import LAUNCHER, ROOT, called
@@ -195,3 +195,8 @@ def test_libraries_take_what_every_processor_has(monkeypatch: pytest.MonkeyPatch
     asked = (sys.executable, "-W", "error", "-c", program)
     found = called(ROOT, *asked, env={**os.environ, **chosen})
     assert found.stdout.strip() == "None", found.stderr
+
+
+def test_a_log_that_is_taken_away_while_it_is_looked_for_says_nothing(tmp_path, monkeypatch):
+    monkeypatch.setattr(Path, "is_file", lambda path: True)
+    assert last_finding(tmp_path / "thesis.log") == "done"

@@ -127,7 +127,11 @@ def last_seconds(path: Path) -> float | None:
 
 
 def _lines(path: Path) -> list[str]:
-    return path.read_text(encoding="utf-8").splitlines() if path.is_file() else []
+    try:
+        return path.read_text(encoding="utf-8").splitlines()
+    except FileNotFoundError:
+        # Snakemake takes away the log of a job whose shell was killed, at any instant
+        return []
 
 
 LEAST_MEMORY = 4 * 2**30
