@@ -10,18 +10,17 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import yaml
 from jinja2 import DictLoader, Environment
 from numpy.typing import NDArray
 from obspy.core.inventory import Channel, Inventory, Network, Response, Station
 from obspy.core.inventory.response import InstrumentSensitivity, ResponseStage
 
+from ..case_tables import case_tables
+
 N = 43  # samples of a built record: no multiple of any row length, so that last rows are short
 
 Samples = NDArray[np.float64]
-RECORDS: dict[str, dict[str, Any]] = yaml.safe_load(
-    Path(__file__).with_suffix(".yaml").read_text(encoding="utf-8")
-)
+RECORDS: dict[str, Any] = case_tables(__file__)
 PARTS: dict[str, Any] = RECORDS.pop("parts")
 KINDS = sorted(RECORDS)
 
