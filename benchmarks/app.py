@@ -52,7 +52,9 @@ def app_seconds() -> dict[str, float]:
     found: dict[str, float] = {}
     with tempfile.TemporaryDirectory() as folder, Chromium() as browser:
         page = Path(folder) / "assess.html"
-        main(["app", "--records", str(ROOT / "resources/records"), "--output", str(page)])
+        main(
+            ["app", "--records", str(ROOT / "resources/records"), "--output", str(page)]
+        )
         browser.open(page)
         for name, fields in WAITS.items():
             browser.run(TYPE.format(fields=json.dumps(fields)))
@@ -62,7 +64,9 @@ def app_seconds() -> dict[str, float]:
             found |= {f"{name}: {stage}": float(told[stage]) / 1000 for stage in STAGES}
         family = psutil.Process(browser._process.pid).children(recursive=True)
         pages = [each for each in family if "--type=renderer" in each.cmdline()]
-        found["memory of the page [MB]"] = max(each.memory_info().rss for each in pages) / 1e6
+        found["memory of the page [MB]"] = (
+            max(each.memory_info().rss for each in pages) / 1e6
+        )
         program = Path(sys.executable).with_name("rockfrag")
         command: list[str | Path] = [program, "assess", *OBJECT, "--output", folder]
         more: list[str]

@@ -46,7 +46,9 @@ def numpy_loadtxt(path: Path) -> object:
     return np.loadtxt(path, skiprows=HEADER_LINES)
 
 
-def best_time(read: Callable[[Path], object], path: Path, repetitions: int = 7) -> float:
+def best_time(
+    read: Callable[[Path], object], path: Path, repetitions: int = 7
+) -> float:
     """Return the shortest of some repetitions [s of processor time]."""
     times = []
     for _ in range(repetitions):

@@ -44,10 +44,16 @@ def end_of_rest(
     before, after = max(t, (k - 1) * dt), k * dt
     a0, a1 = ground(before), values[k]
     low, high = limits
-    return before + (after - before) * ((high if a1 > high else low) - a0) / (a1 - a0) + 1e-9
+    return (
+        before
+        + (after - before) * ((high if a1 > high else low) - a0) / (a1 - a0)
+        + 1e-9
+    )
 
 
-def scipy_lone(body: Body, acceleration: Array, dt: float, *, by_sample: bool = False) -> bool:
+def scipy_lone(
+    body: Body, acceleration: Array, dt: float, *, by_sample: bool = False
+) -> bool:
     """Housner's block by ``solve_ivp``, DOP853, rtol 1e-10, impacts and falls as contact events.
 
     Each call ends at a contact event; with ``by_sample`` at the next sample too, where the ground's acceleration
@@ -99,7 +105,11 @@ def scipy_lone(body: Body, acceleration: Array, dt: float, *, by_sample: bool = 
         if run.t_events[1].size:
             return True
         if not run.t_events[0].size:
-            t, height, omega = float(run.t[-1]), float(run.y[0, -1]), float(run.y[1, -1])
+            t, height, omega = (
+                float(run.t[-1]),
+                float(run.y[0, -1]),
+                float(run.y[1, -1]),
+            )
             continue
         height = 0.0
         t, omega = float(run.t_events[0][0]), e * abs(float(run.y_events[0][0][1]))
@@ -142,7 +152,9 @@ def numpy_lone(
         lands = rocks & (phi < 0)
         w = np.where(lands, e * np.abs(w), w)
         phi = np.where(lands, 0.0, phi)
-        side = np.where(lands, np.where((w < 1e-3) & (np.abs(a1) < tangent), 0.0, -side), side)
+        side = np.where(
+            lands, np.where((w < 1e-3) & (np.abs(a1) < tangent), 0.0, -side), side
+        )
         w = np.where(side == 0, 0.0, w)
         if n % 50 == 49:
             down = phi > math.pi / 2
@@ -173,14 +185,18 @@ class _WholeRun(Run):
         """Accelerations of the ground, linear between samples and zero after the last [m/s²]."""
         x = t / self.dt
         k = int(x)
-        early, late = self.samples[k : k + 2] if k + 1 < len(self.samples) else (0.0, 0.0)
+        early, late = (
+            self.samples[k : k + 2] if k + 1 < len(self.samples) else (0.0, 0.0)
+        )
         return [early + (x - k) * (late - early), 0.0]
 
 
 def rest_interval(model: Model) -> tuple[float, float]:
     """Accelerations of the ground [m/s²] between which what is at rest stays so."""
     rest = np.zeros(model.count)
-    still, pushed = (model.margins((0,) * rest.size, rest, rest, (a, G)) for a in (0.0, 1.0))
+    still, pushed = (
+        model.margins((0,) * rest.size, rest, rest, (a, G)) for a in (0.0, 1.0)
+    )
     limits = [still[key] / (still[key] - pushed[key]) for key in still]
     return max(a for a in limits if a < 0), min(a for a in limits if a > 0)
 
@@ -189,7 +205,9 @@ def watches(run: Run, start: float) -> list[Watch]:
     """What must stay positive from ``start`` on: every contact, open or closed, and nothing lies."""
 
     def gap(t: float, y: Array, i: int) -> float:
-        return run.state[i] * (y[i] - (y[i - 1] if i else 0.0)) if t > start else JUST_OPEN
+        return (
+            run.state[i] * (y[i] - (y[i - 1] if i else 0.0)) if t > start else JUST_OPEN
+        )
 
     def hold(t: float, y: Array) -> float:
         theta, omega = y.reshape(2, -1)
@@ -208,7 +226,9 @@ def watches(run: Run, start: float) -> list[Watch]:
     return [*contact_events, falls]
 
 
-def scipy_stack(body: Body, acceleration: Array, dt: float, *, by_sample: bool = False) -> bool:
+def scipy_stack(
+    body: Body, acceleration: Array, dt: float, *, by_sample: bool = False
+) -> bool:
     """Whether bodies fall, by ``solve_ivp``, DOP853, rtol 1e-10, impacts, openings and falls as contact events.
 
     ``by_sample`` as in ``scipy_lone``.
@@ -223,7 +243,9 @@ def scipy_stack(body: Body, acceleration: Array, dt: float, *, by_sample: bool =
     t = 0.0
     while t < end:
         if run.resting() and low <= run.ground(t)[0] <= high:
-            t = end_of_rest(t, dt, values, moves, lambda s: run.ground(s)[0], (low, high))
+            t = end_of_rest(
+                t, dt, values, moves, lambda s: run.ground(s)[0], (low, high)
+            )
             if t == math.inf:
                 return False
         run.apply(t, set())
@@ -240,5 +262,12 @@ def scipy_stack(body: Body, acceleration: Array, dt: float, *, by_sample: bool =
             return True
         t = float(found.t[-1])
         run.take(found.y[:, -1])
-        run.apply(t, {("gap", i) for i, e in enumerate(contact_events) if e.size and run.state[i]})
+        run.apply(
+            t,
+            {
+                ("gap", i)
+                for i, e in enumerate(contact_events)
+                if e.size and run.state[i]
+            },
+        )
     return False

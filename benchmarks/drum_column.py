@@ -21,7 +21,9 @@ FRICTION = 0.6
 DT = 0.005
 
 
-def domain(column: Column, accelerations: np.ndarray, durations: np.ndarray) -> np.ndarray:
+def domain(
+    column: Column, accelerations: np.ndarray, durations: np.ndarray
+) -> np.ndarray:
     """Whether the column overturns, shape (durations, accelerations)."""
     motions = [drum_pulse(float(duration), DT) for duration in durations]
     scales = np.tile(accelerations * G, (len(motions), 1))
@@ -34,13 +36,17 @@ def main(path: Path) -> None:
     accelerations = np.linspace(0.1, 1.2, 23)
     durations = np.linspace(0.1, 1.2, 23)
     with figure_style():
-        figure, panels = plt.subplots(1, 2, sharey=True, figsize=(2 * COLUMN_WIDTH, COLUMN_WIDTH))
+        figure, panels = plt.subplots(
+            1, 2, sharey=True, figsize=(2 * COLUMN_WIDTH, COLUMN_WIDTH)
+        )
         for panel, (name, column) in zip(
             panels, {"7 drums and a capital": drum_column(), "one drum and the capital": drum_column(1)}.items(),
             strict=True,
         ):  # fmt: skip
             fell = domain(column, accelerations, durations)
-            panel.pcolormesh(durations, accelerations, fell.T, cmap="Greys", vmin=0, vmax=1.6)
+            panel.pcolormesh(
+                durations, accelerations, fell.T, cmap="Greys", vmin=0, vmax=1.6
+            )
             panel.set_title(name, loc="left")
             panel.set_xlabel("Duration of the pulse [s]")
             print(f"{name}: {fell.sum()} of {fell.size} overturn")
@@ -54,4 +60,6 @@ def main(path: Path) -> None:
 
 
 if __name__ == "__main__":
-    main(Path(sys.argv[1]) if len(sys.argv) > 1 else Path("docs/images/drum_column.png"))
+    main(
+        Path(sys.argv[1]) if len(sys.argv) > 1 else Path("docs/images/drum_column.png")
+    )

@@ -54,13 +54,21 @@ def draw_benchmark(programs: pd.DataFrame, scaling: pd.DataFrame) -> Figure:
         for y, (rate, wrong, count) in enumerate(
             zip(*(table[column].tolist() for column in columns), strict=True)
         ):
-            speed = f"{rate:.3g}" if rate < 1000 else f"{rate:,.0f}".replace(",", "\N{THIN SPACE}")
+            speed = (
+                f"{rate:.3g}"
+                if rate < 1000
+                else f"{rate:,.0f}".replace(",", "\N{THIN SPACE}")
+            )
             words = f"{speed}/s, {wrong} of {count} wrong"
             left.text(rate * 1.2, y, words, va="center", fontsize=7)
         left.set_xlabel("histories per second and core")
         for bodies, part in scaling.groupby("bodies", sort=True):
             right.loglog(
-                part["histories"], part["seconds"], "o-", color=COLOURS[str(bodies)], label=bodies
+                part["histories"],
+                part["seconds"],
+                "o-",
+                color=COLOURS[str(bodies)],
+                label=bodies,
             )
         plain_log(right, "x")
         plain_log(right, "y")

@@ -34,10 +34,14 @@ def write_gallery(path: Path, objects: int = OBJECTS) -> None:
             height = 0.25 * 10 ** rng.uniform()
             width = height / rng.uniform(2.2, 6)
             pedestal = (
-                [f"{1.3 * width:.3f}", f"{rng.uniform(0.3, 1):.3f}"] if i % 3 == 0 else ["", ""]
+                [f"{1.3 * width:.3f}", f"{rng.uniform(0.3, 1):.3f}"]
+                if i % 3 == 0
+                else ["", ""]
             )
             sizes = [f"{width:.3f}", f"{height:.3f}", *pedestal]
-            table.writerow([f"object {i}", *sizes, FLOORS[i % 2], f"{rng.lognormal(9, 1):.0f}"])
+            table.writerow(
+                [f"object {i}", *sizes, FLOORS[i % 2], f"{rng.lognormal(9, 1):.0f}"]
+            )
 
 
 def gallery_seconds(objects: int = OBJECTS) -> tuple[float, Inventory]:
@@ -54,4 +58,6 @@ def gallery_seconds(objects: int = OBJECTS) -> tuple[float, Inventory]:
 
 if __name__ == "__main__":
     seconds, found = gallery_seconds()
-    print(f"{len(found.found)} objects, {len(found.motions.ground)} motions: {seconds:.3g} s")
+    print(
+        f"{len(found.found)} objects, {len(found.motions.ground)} motions: {seconds:.3g} s"
+    )

@@ -52,8 +52,16 @@ def ensemble(threads: int, *arguments: Any, **settings: Any) -> str:
 def uneven() -> tuple[list[Body], list[Any]]:
     """Leaning bodies with their weight to one side, and a measured restitution for each."""
     block = Block(0.3, 1.2, 100.0, cg_offset=0.02, lean=0.01)
-    on_top = Stack(Block(0.4, 0.3, 150.0, cg_offset=-0.01, lean=0.005), block, offset=0.01)
-    return [block, block, on_top, on_top, on_top], [None, 0.9, None, (0.93, 0.9), (None, 0.95)]
+    on_top = Stack(
+        Block(0.4, 0.3, 150.0, cg_offset=-0.01, lean=0.005), block, offset=0.01
+    )
+    return [block, block, on_top, on_top, on_top], [
+        None,
+        0.9,
+        None,
+        (0.93, 0.9),
+        (None, 0.95),
+    ]
 
 
 def histories(bodies: list[Body], count: int, **settings: Any) -> str:
@@ -69,10 +77,14 @@ def histories(bodies: list[Body], count: int, **settings: Any) -> str:
         if response.system.count == 1:
             # the kernels' lower body, which a lone one has not
             energy = energy.assign(lost_contact_0=0.0)
-            energy = energy[[*energy.columns[:4], "lost_contact_0", *energy.columns[4:-1]]]
+            energy = energy[
+                [*energy.columns[:4], "lost_contact_0", *energy.columns[4:-1]]
+            ]
         arrays += [energy.to_numpy(), response.normal_force]
         arrays += [response.contact_events[["time", "energy_after"]].to_numpy()]
-        arrays += [np.array([response.unstable_distance, response.impacts, response.grazings])]
+        arrays += [
+            np.array([response.unstable_distance, response.impacts, response.grazings])
+        ]
     return digest(arrays)
 
 
@@ -91,7 +103,14 @@ if __name__ == "__main__":
     for threads in (1, 2):
         print(
             f"uneven threads {threads}:",
-            ensemble(threads, bodies, motions(8, seed=3), DT, amplitudes, restitution=restitution),
+            ensemble(
+                threads,
+                bodies,
+                motions(8, seed=3),
+                DT,
+                amplitudes,
+                restitution=restitution,
+            ),
         )
     print("histories of blocks:", histories(blocks(40, 5), 40))
     print("histories of stacks:", histories(stacks(40, 5), 40))
@@ -99,4 +118,6 @@ if __name__ == "__main__":
     print("histories of blocks, linear:", histories(blocks(40, 5), 20, linear=True))
     print("uneven histories:", histories([bodies[0], bodies[2]], 20))
     print("uneven block, measured:", histories(bodies[:1], 10, restitution=0.9))
-    print("uneven stack, measured:", histories(bodies[2:3], 10, restitution=(0.93, 0.9)))
+    print(
+        "uneven stack, measured:", histories(bodies[2:3], 10, restitution=(0.93, 0.9))
+    )

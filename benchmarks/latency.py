@@ -68,7 +68,9 @@ def main() -> None:
         description=__doc__, formatter_class=argparse.RawTextHelpFormatter
     )
     names = [*dict.fromkeys(name for name, _ in REACH)]
-    parser.add_argument("--only", action="append", choices=names, help="leave the others out")
+    parser.add_argument(
+        "--only", action="append", choices=names, help="leave the others out"
+    )
     wanted = parser.parse_args().only or names
     rows, fractions = [], []
     with tempfile.TemporaryDirectory() as scratch:
@@ -86,7 +88,9 @@ def main() -> None:
                 seconds = app_seconds().get(f"{state}: first", float("nan"))
             else:
                 seconds = study_seconds(project, name, state)
-            rows.append({"wait": f"{name} {state}".strip(), "seconds": float(f"{seconds:.3g}")})
+            rows.append(
+                {"wait": f"{name} {state}".strip(), "seconds": float(f"{seconds:.3g}")}
+            )
             rows[-1]["reach"] = REACH[name, state]
             print(
                 f"{rows[-1]['wait']:<30} {seconds:7.3g} s   (to reach: {REACH[name, state]} s)",
@@ -137,10 +141,13 @@ def study_seconds(project: Path, study: str, state: str) -> float:
 def measuring_seconds() -> float:
     """Wall seconds that all intensity measures of a motion of 40 s take, its compiling aside."""
     # noise without the highest frequencies, of which records have little
-    noise = np.convolve(np.random.default_rng(1).normal(size=4000), np.hanning(15), mode="same")
+    noise = np.convolve(
+        np.random.default_rng(1).normal(size=4000), np.hanning(15), mode="same"
+    )
     samples = noise * np.hanning(4000)
     motions = [
-        Motion(name=f"noise {k}", acceleration=samples * (1 + k), dt=0.01) for k in range(MEASURED)
+        Motion(name=f"noise {k}", acceleration=samples * (1 + k), dt=0.01)
+        for k in range(MEASURED)
     ]
     measure_motions(motions[:1])
     start = time.perf_counter()
@@ -152,10 +159,17 @@ def timed(command: list[str], folder: Path, more: dict[str, str]) -> float:
     """Wall seconds of a command that must succeed."""
     start = time.perf_counter()
     done = subprocess.run(
-        command, cwd=folder, env={**os.environ, **more}, capture_output=True, text=True, check=False
+        command,
+        cwd=folder,
+        env={**os.environ, **more},
+        capture_output=True,
+        text=True,
+        check=False,
     )
     if done.returncode != 0:
-        raise SystemExit(f"{' '.join(command)} failed:\n{done.stdout[-2000:]}{done.stderr[-2000:]}")
+        raise SystemExit(
+            f"{' '.join(command)} failed:\n{done.stdout[-2000:]}{done.stderr[-2000:]}"
+        )
     return time.perf_counter() - start
 
 
@@ -166,7 +180,8 @@ def fractions_of(project: Path, study: str) -> dict[str, float]:
         kinds = [kind for kind, stages in FRACTIONS.items() if rule in stages]
         kind = kinds[0] if kinds else "statistics"
         own = min(
-            last_seconds(project / "results" / study / "logs" / f"{rule}.log") or whole, whole
+            last_seconds(project / "results" / study / "logs" / f"{rule}.log") or whole,
+            whole,
         )
         seconds[kind] = seconds.get(kind, 0.0) + own
         seconds["start-up"] = seconds.get("start-up", 0.0) + whole - own

@@ -44,7 +44,9 @@ def wall_seconds(work: Callable[[], object], repeats: int = 3) -> float:
     return _least_seconds(time.perf_counter, work, repeats)
 
 
-def _least_seconds(clock: Callable[[], float], work: Callable[[], object], repeats: int) -> float:
+def _least_seconds(
+    clock: Callable[[], float], work: Callable[[], object], repeats: int
+) -> float:
     best = math.inf
     for _ in range(repeats):
         start = clock()
@@ -55,7 +57,12 @@ def _least_seconds(clock: Callable[[], float], work: Callable[[], object], repea
 
 def all_cases(cases: Cases, threads: int = 1, **settings: Any) -> Outcomes:
     return overturns(
-        cases.bodies, cases.accelerations, cases.dt, cases.scales, threads=threads, **settings
+        cases.bodies,
+        cases.accelerations,
+        cases.dt,
+        cases.scales,
+        threads=threads,
+        **settings,
     )
 
 
@@ -66,7 +73,9 @@ def converged(cases: Cases) -> NDArray[np.bool_]:
         closed = np.append(values, 0.0)
         at = np.arange(8 * closed.size - 7) / 8
         dense.append(np.interp(at, np.arange(closed.size), closed))
-    return overturns(cases.bodies, dense, cases.dt / 8, cases.scales, step=0.1 / 8).overturned
+    return overturns(
+        cases.bodies, dense, cases.dt / 8, cases.scales, step=0.1 / 8
+    ).overturned
 
 
 def followed_fraction(cases: Cases, count: int) -> float:
@@ -94,7 +103,10 @@ def ratio_in_turn(
     """
     return float(
         np.median(
-            [_least_seconds(clock, work, 1) / _least_seconds(clock, other, 1) for _ in range(15)]
+            [
+                _least_seconds(clock, work, 1) / _least_seconds(clock, other, 1)
+                for _ in range(15)
+            ]
         )
     )
 
@@ -111,7 +123,14 @@ def vertical_ratio(cases: Cases) -> float:
     upward = [0.6 * values[::-1] for values in cases.accelerations]
 
     def run(**vertical: Any) -> None:
-        overturns(cases.bodies, cases.accelerations, cases.dt, cases.scales, threads=1, **vertical)
+        overturns(
+            cases.bodies,
+            cases.accelerations,
+            cases.dt,
+            cases.scales,
+            threads=1,
+            **vertical,
+        )
 
     run(vertical=upward)
     return ratio_in_turn(lambda: run(vertical=upward), run, time.process_time)
@@ -157,7 +176,9 @@ def over_limit(kind: str, cases: Cases) -> tuple[float, float]:
         setattr(*_ENTRY[kind], entry)
 
     def smooth() -> None:
-        for (module, lanes, only, still), count in zip(_SMOOTH[kind], steps, strict=True):
+        for (module, lanes, only, still), count in zip(
+            _SMOOTH[kind], steps, strict=True
+        ):
             lane = np.zeros(1, module.LANE)[0]
             for row, value in still.items():
                 lane[row] = value
@@ -204,7 +225,9 @@ def separately(*arguments: object, cache: Path | None = None) -> float:
     if cache is not None:
         environment["NUMBA_CACHE_DIR"] = str(cache)
     command = [sys.executable, str(SEPARATE), *map(str, arguments)]
-    done = subprocess.run(command, env=environment, capture_output=True, text=True, check=True)
+    done = subprocess.run(
+        command, env=environment, capture_output=True, text=True, check=True
+    )
     return float(done.stdout)
 
 
@@ -214,7 +237,9 @@ def start_up(kind: str) -> tuple[float, float]:
     for _ in range(3):
         with tempfile.TemporaryDirectory() as folder:
             cold = min(cold, separately("first", kind, cache=Path(folder)))
-            warm = min(warm, *(separately("first", kind, cache=Path(folder)) for _ in range(2)))
+            warm = min(
+                warm, *(separately("first", kind, cache=Path(folder)) for _ in range(2))
+            )
     return cold, warm
 
 

@@ -66,7 +66,11 @@ def machine() -> dict[str, object]:
     model = platform.processor() or platform.machine()
     info = Path("/proc/cpuinfo")
     if info.exists():
-        lines = [line for line in info.read_text().splitlines() if line.startswith("model name")]
+        lines = [
+            line
+            for line in info.read_text().splitlines()
+            if line.startswith("model name")
+        ]
         model = lines[0].split(":", 1)[1].strip() if lines else model
     return {
         "processor": model,
@@ -90,14 +94,25 @@ def speeds(kind: str, set_: Cases, quick: bool) -> list[dict[str, Any]]:
     seconds = cpu_seconds(lambda: all_cases(set_))
     wrong = int((fast.overturned != reference).sum())
     name_of_kind = NAMES[kind]
-    rows = [row(name_of_kind, "rockfrag", set_.count, seconds, wrong, set_.count / seconds)]
+    rows = [
+        row(name_of_kind, "rockfrag", set_.count, seconds, wrong, set_.count / seconds)
+    ]
     if kind == "lone":
         few = cases("lone", 300 if quick else 2000)
-        seconds, found = timed(numpy_lone, few.bodies, few.accelerations, few.scales, few.dt)
+        seconds, found = timed(
+            numpy_lone, few.bodies, few.accelerations, few.scales, few.dt
+        )
         wrong = int((found != converged(few)).sum())
         own = set_.count / cpu_seconds(lambda: all_cases(set_))
         rows.append(
-            row(name_of_kind, "numpy, no contact event location", few.count, seconds, wrong, own)
+            row(
+                name_of_kind,
+                "numpy, no contact event location",
+                few.count,
+                seconds,
+                wrong,
+                own,
+            )
         )
     scipy_outcome = scipy_lone if kind == "lone" else scipy_stack
     count = 3 if quick else 20
@@ -113,7 +128,11 @@ def speeds(kind: str, set_: Cases, quick: bool) -> list[dict[str, Any]]:
         count = 5 if quick else 60
         competitors += [
             ("MuJoCo 1 ms, stiffest contacts", mujoco_outcome, count),
-            ("MuJoCo 1 ms, default contacts", partial(mujoco_outcome, stiff=False), count),
+            (
+                "MuJoCo 1 ms, default contacts",
+                partial(mujoco_outcome, stiff=False),
+                count,
+            ),
         ]
     for name, outcome, count in competitors:
         wrong, seconds, runs, own_seconds = 0, 0.0, 0, 0.0
@@ -124,7 +143,16 @@ def speeds(kind: str, set_: Cases, quick: bool) -> list[dict[str, Any]]:
             once, found = timed(outcome, body, values, set_.dt)
             seconds += once
             wrong += found != reference[at]
-        rows.append(row(name_of_kind, name, count, seconds, wrong, runs * set_.count / own_seconds))
+        rows.append(
+            row(
+                name_of_kind,
+                name,
+                count,
+                seconds,
+                wrong,
+                runs * set_.count / own_seconds,
+            )
+        )
     return rows
 
 
@@ -134,13 +162,21 @@ def friction_rows(kind: str, whole: Cases, quick: bool) -> list[dict[str, Any]]:
     Each body has its own coefficient, from 0.2 to 0.8.  Outcomes are held against those at a tenth of the step.
     """
     bodies = whole.bodies[:: 1 + len(whole.bodies) // 10]
-    set_ = Cases(bodies, whole.accelerations, whole.scales[:, :: 1 + whole.scales.shape[1] // 4])
+    set_ = Cases(
+        bodies, whole.accelerations, whole.scales[:, :: 1 + whole.scales.shape[1] // 4]
+    )
     name = NAMES.get(kind, f"{kind} blocks")
     mus = np.random.default_rng(5).uniform(0.2, 0.8, len(bodies)).tolist()
 
     def outcomes(step: float = STEP) -> np.ndarray:
         return overturns(
-            bodies, set_.accelerations, set_.dt, set_.scales, friction=mus, step=step, threads=1
+            bodies,
+            set_.accelerations,
+            set_.dt,
+            set_.scales,
+            friction=mus,
+            step=step,
+            threads=1,
         ).overturned
 
     finest = outcomes(0.1 * STEP)
@@ -175,14 +211,20 @@ def row(
         "histories_per_s_core": count / seconds, "wrong_outcomes": wrong,
         "wrong_fraction": wrong / count, "rockfrag_times_as_fast": own * seconds / count,
     }  # fmt: skip
-    print(f"{bodies:13s} {name:32s} {count / seconds:12.4g} /s {100 * wrong / count:6.2f} % wrong")
+    print(
+        f"{bodies:13s} {name:32s} {count / seconds:12.4g} /s {100 * wrong / count:6.2f} % wrong"
+    )
     return made
 
 
 def more(base: Cases, times: int) -> Cases:
     """Return as many times the cases: more amplitudes of the same bodies and motions."""
     scales = np.repeat(base.scales, times, axis=1)
-    return Cases(base.bodies, base.accelerations, scales * np.linspace(0.95, 1.05, scales.shape[1]))
+    return Cases(
+        base.bodies,
+        base.accelerations,
+        scales * np.linspace(0.95, 1.05, scales.shape[1]),
+    )
 
 
 def scaling(kind: str, largest: int, speed: float) -> list[dict[str, Any]]:
@@ -194,7 +236,9 @@ def scaling(kind: str, largest: int, speed: float) -> list[dict[str, Any]]:
         base = cases(kind, min(count, 10_000))
         set_ = more(base, max(1, count // base.count))
         seconds = cpu_seconds(partial(all_cases, set_), 3 if count < 10**5 else 1)
-        rows.append({"bodies": NAMES[kind], "histories": set_.count, "seconds": seconds})
+        rows.append(
+            {"bodies": NAMES[kind], "histories": set_.count, "seconds": seconds}
+        )
     return rows
 
 
@@ -206,9 +250,13 @@ def thesis_study() -> tuple[float, bool]:
     Wall time [s], and whether one and two threads give the same bits.
     """
     made, scales = motions(12, 8), np.arange(1, 201) * 0.01
-    results = [overturns(thesis_bodies(), made, 0.01, scales, threads=n) for n in (1, 2)]
+    results = [
+        overturns(thesis_bodies(), made, 0.01, scales, threads=n) for n in (1, 2)
+    ]
     same = all(
-        np.array_equal(values, getattr(results[1], name), equal_nan=values.dtype.kind == "f")
+        np.array_equal(
+            values, getattr(results[1], name), equal_nan=values.dtype.kind == "f"
+        )
         for name, values in vars(results[0]).items()
         if isinstance(values, np.ndarray)
     )
@@ -241,9 +289,13 @@ def wide_study(folder: Path) -> float:
     )  # fmt: skip
 
 
-def reach(kind: str, table: pd.DataFrame, other: dict[str, float]) -> list[dict[str, Any]]:
+def reach(
+    kind: str, table: pd.DataFrame, other: dict[str, float]
+) -> list[dict[str, Any]]:
     """Rows of the targets: what is asked, what was measured, whether it is met."""
-    times = table[table.bodies == NAMES[kind]].set_index("program")["rockfrag_times_as_fast"]
+    times = table[table.bodies == NAMES[kind]].set_index("program")[
+        "rockfrag_times_as_fast"
+    ]
     rows: list[tuple[str, str, float, bool]] = []
 
     def add(what: str, target: str, value: float, met: bool) -> None:
@@ -257,12 +309,22 @@ def reach(kind: str, table: pd.DataFrame, other: dict[str, float]) -> list[dict[
     )
     peers = times[times.index.str.startswith("MuJoCo")]
     if len(peers):
-        add("times as fast as MuJoCo at 1 ms", "≥ 2000", peers.min(), peers.min() >= 2000)
+        add(
+            "times as fast as MuJoCo at 1 ms",
+            "≥ 2000",
+            peers.min(),
+            peers.min() >= 2000,
+        )
     beside = f"{SLIDING}, MuJoCo 1 ms"
     if beside in times:
         least = 100 if kind == "lone" else 50
         met = times[beside] >= least
-        add("times as fast as MuJoCo at 1 ms, with friction", f"≥ {least}", times[beside], met)
+        add(
+            "times as fast as MuJoCo at 1 ms, with friction",
+            f"≥ {least}",
+            times[beside],
+            met,
+        )
     most = 1.6 if kind == "lone" else 2.5
     add(
         "time over smooth arithmetic",
@@ -270,7 +332,12 @@ def reach(kind: str, table: pd.DataFrame, other: dict[str, float]) -> list[dict[
         other[f"{kind}_limit"],
         other[f"{kind}_limit"] <= most,
     )
-    add("two threads over one", "≥ 1.9", other[f"{kind}_threads"], other[f"{kind}_threads"] >= 1.9)
+    add(
+        "two threads over one",
+        "≥ 1.9",
+        other[f"{kind}_threads"],
+        other[f"{kind}_threads"] >= 1.9,
+    )
     upward = other[f"{kind}_vertical"]
     add("time with vertical motion over that without", "< 1.10", upward, upward < 1.10)
     memory = other[f"{kind}_memory_MiB"]
@@ -283,7 +350,10 @@ def reach(kind: str, table: pd.DataFrame, other: dict[str, float]) -> list[dict[
     add("memory over that of a tenth of them", "≤ 1.1", memory / other[f"{kind}_memory_tenth_MiB"],
         memory <= 1.1 * other[f"{kind}_memory_tenth_MiB"])  # fmt: skip
     add(
-        "first outcome, warm cache [s]", "< 1", other[f"{kind}_warm_s"], other[f"{kind}_warm_s"] < 1
+        "first outcome, warm cache [s]",
+        "< 1",
+        other[f"{kind}_warm_s"],
+        other[f"{kind}_warm_s"] < 1,
     )
     cold = 4 if kind == "lone" else 8
     add(
@@ -292,15 +362,28 @@ def reach(kind: str, table: pd.DataFrame, other: dict[str, float]) -> list[dict[
         other[f"{kind}_cold_s"],
         other[f"{kind}_cold_s"] <= cold,
     )
-    gate, fraction = 0.001 if kind == "lone" else 0.005, other[f"{kind}_sensitive_fraction"]
-    add("fraction of outcomes changed by halving the step", f"< {gate}", fraction, fraction < gate)
+    gate, fraction = (
+        0.001 if kind == "lone" else 0.005,
+        other[f"{kind}_sensitive_fraction"],
+    )
+    add(
+        "fraction of outcomes changed by halving the step",
+        f"< {gate}",
+        fraction,
+        fraction < gate,
+    )
     columns = ("what", "target", "measured", "met")
-    return [{"bodies": NAMES[kind], **dict(zip(columns, values, strict=True))} for values in rows]
+    return [
+        {"bodies": NAMES[kind], **dict(zip(columns, values, strict=True))}
+        for values in rows
+    ]
 
 
 def reach_of_columns(table: pd.DataFrame) -> list[dict[str, Any]]:
     """Rows of the targets of columns: three bodies beside MuJoCo; eight are stated in the table."""
-    beside = table[(table.bodies == "three blocks") & (table.program == f"{SLIDING}, MuJoCo 1 ms")]
+    beside = table[
+        (table.bodies == "three blocks") & (table.program == f"{SLIDING}, MuJoCo 1 ms")
+    ]
     return [
         {
             "bodies": "three blocks",
@@ -352,7 +435,9 @@ def main() -> None:
     parser.add_argument(
         "--quick", action="store_true", help="three minutes, too few cases to quote"
     )
-    parser.add_argument("--wide", action="store_true", help="also run 2.4 million histories")
+    parser.add_argument(
+        "--wide", action="store_true", help="also run 2.4 million histories"
+    )
     parser.add_argument("--docs", type=Path, help="document to put the results into")
     parser.add_argument("--out", type=Path, default=Path("results/bench"))
     given = parser.parse_args()
@@ -365,16 +450,24 @@ def main() -> None:
         set_ = cases(kind, 500 if given.quick else 10_000)
         rows += speeds(kind, set_, given.quick)
         rows += friction_rows(kind, set_, given.quick)
-        other[f"{kind}_limit"], other[f"{kind}_steps_per_history"] = over_limit(kind, set_)
+        other[f"{kind}_limit"], other[f"{kind}_steps_per_history"] = over_limit(
+            kind, set_
+        )
         sensitive = find_step_size_sensitive(
             set_.bodies, set_.accelerations, set_.dt, set_.scales, sample=set_.count
         )
         other[f"{kind}_sensitive_fraction"] = sensitive.fraction
         other[f"{kind}_nudged_fraction"] = nudged_fraction(set_)
-        other[f"{kind}_followed_fraction"] = followed_fraction(set_, 100 if given.quick else 1000)
+        other[f"{kind}_followed_fraction"] = followed_fraction(
+            set_, 100 if given.quick else 1000
+        )
         # enough cases that the lanes that run dry at the end do not matter
-        speed = next(r for r in rows if r["bodies"] == NAMES[kind])["histories_per_s_core"]
-        other[f"{kind}_threads"] = two_thread_ratio(more(set_, round(3 * speed / set_.count) or 1))
+        speed = next(r for r in rows if r["bodies"] == NAMES[kind])[
+            "histories_per_s_core"
+        ]
+        other[f"{kind}_threads"] = two_thread_ratio(
+            more(set_, round(3 * speed / set_.count) or 1)
+        )
         other[f"{kind}_vertical"] = vertical_ratio(set_)
         costs += scaling(kind, 10**3 if given.quick else 10**6, speed)
         other[f"{kind}_cold_s"], other[f"{kind}_warm_s"] = start_up(kind)
@@ -383,7 +476,9 @@ def main() -> None:
         other[f"{kind}_memory_tenth_MiB"] = separately("memory", kind, tenth)
         other[f"{kind}_memory_MiB"] = separately("memory", kind, memory_histories)
     for kind, bodies in COLUMNS.items():
-        rows += friction_rows(kind, columns(bodies, 20 if given.quick else 80), given.quick)
+        rows += friction_rows(
+            kind, columns(bodies, 20 if given.quick else 80), given.quick
+        )
     other["thesis_study_s"], same = thesis_study()
     if given.wide:
         other["wide_study_s"] = wide_study(folder)
@@ -391,29 +486,51 @@ def main() -> None:
     for kind in NAMES:
         goals += reach(kind, table, other)
     goals += reach_of_columns(table)
-    studies = [("thesis study, 72 tests × 200 amplitudes [s]", "< 5", "thesis_study_s", 5.0)]
+    studies = [
+        ("thesis study, 72 tests × 200 amplitudes [s]", "< 5", "thesis_study_s", 5.0)
+    ]
     if given.wide:
-        studies.append(("wide study, 2.4 million histories [s]", "< 300", "wide_study_s", 300.0))
+        studies.append(
+            ("wide study, 2.4 million histories [s]", "< 300", "wide_study_s", 300.0)
+        )
     goals += [
-        {"bodies": "both", "what": w, "target": t, "measured": other[k], "met": other[k] < limit}
+        {
+            "bodies": "both",
+            "what": w,
+            "target": t,
+            "measured": other[k],
+            "met": other[k] < limit,
+        }
         for w, t, k, limit in studies
     ]
     what = "differing results of one and two threads"
     goals.append(
-        {"bodies": "both", "what": what, "target": "0", "measured": float(not same), "met": same}
+        {
+            "bodies": "both",
+            "what": what,
+            "target": "0",
+            "measured": float(not same),
+            "met": same,
+        }
     )
     goal_table, cost_table = pd.DataFrame(goals), pd.DataFrame(costs)
     write_table(table, folder / "programs.csv")
     write_table(cost_table, folder / "scaling.csv")
     write_table(goal_table, folder / "reach.csv")
     about = {"machine": machine(), "quick": given.quick, "measured": other}
-    write_text(json.dumps(about, indent=1, ensure_ascii=False) + "\n", folder / "machine.json")
-    save_figure(draw_benchmark(table, cost_table), folder / "speed.png", folder / "speed.svg")
+    write_text(
+        json.dumps(about, indent=1, ensure_ascii=False) + "\n", folder / "machine.json"
+    )
+    save_figure(
+        draw_benchmark(table, cost_table), folder / "speed.png", folder / "speed.svg"
+    )
     words = summary(about, table, goal_table)
     write_text(words, folder / "summary.md")
     if given.docs is not None:
         before, _, rest = given.docs.read_text(encoding="utf-8").partition(BEGIN)
-        write_text(before + BEGIN + "\n" + words + END + rest.partition(END)[2], given.docs)
+        write_text(
+            before + BEGIN + "\n" + words + END + rest.partition(END)[2], given.docs
+        )
     print(f"\n{'':13s} {'':45s} {'target':>9s} {'measured':>10s}")
     for goal in goals:
         met = "met" if goal["met"] else "NOT MET"

@@ -31,21 +31,29 @@ def streamed_memory(kind: str, count: int) -> float:
 
     blocks = [Block(0.3 + 0.001 * i, 1.2, 200.0) for i in range(100)]
     bodies: list[Body] = (
-        [*blocks] if kind == "lone" else [Stack(Block(0.5, 0.3, 100.0), block) for block in blocks]
+        [*blocks]
+        if kind == "lone"
+        else [Stack(Block(0.5, 0.3, 100.0), block) for block in blocks]
     )
     time_ = np.arange(100) * 0.01
     motions = [9.81 * np.sin(2 * np.pi * f * time_) for f in np.linspace(1.0, 3.0, 20)]
     scales = np.linspace(0.1, 1.0, count // 2000)
     with tempfile.TemporaryDirectory() as folder:
-        stream_overturns(bodies, motions, 0.01, scales, Path(folder) / "e.parquet", table="bodies")
+        stream_overturns(
+            bodies, motions, 0.01, scales, Path(folder) / "e.parquet", table="bodies"
+        )
     status = Path("/proc/self/status")
     if not status.exists():
         return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
     # the other figure starts from the memory of the process that started this one
-    line = next(line for line in status.read_text().splitlines() if line.startswith("VmHWM"))
+    line = next(
+        line for line in status.read_text().splitlines() if line.startswith("VmHWM")
+    )
     return int(line.split()[1]) / 1024
 
 
 if __name__ == "__main__":
     what, kind, *count = sys.argv[1:]
-    print(first_outcome(kind) if what == "first" else streamed_memory(kind, int(count[0])))
+    print(
+        first_outcome(kind) if what == "first" else streamed_memory(kind, int(count[0]))
+    )

@@ -32,15 +32,21 @@ def first_mode(block: Block, acceleration: float, friction: float) -> int:
 
 def demand(block: Block, acceleration: np.ndarray) -> np.ndarray:
     """Friction that the start of pure rocking needs, docs/contact.md (14)."""
-    turning = block.mass * (acceleration * block.h - G * block.b) / block.pivot_inertia()
+    turning = (
+        block.mass * (acceleration * block.h - G * block.b) / block.pivot_inertia()
+    )
     return (acceleration - block.h * turning) / (G + block.b * turning)
 
 
 def draw(path: Path, block: Block) -> None:
     frictions, levels = np.linspace(0.0125, 0.9875, 40), np.linspace(0.02, 1.58, 40)
-    found = np.array([[first_mode(block, a * G, mu) for mu in frictions] for a in levels])
+    found = np.array(
+        [[first_mode(block, a * G, mu) for mu in frictions] for a in levels]
+    )
     figure, axes = plt.subplots(figsize=(5.2, 4.2), layout="constrained")
-    axes.pcolormesh(frictions, levels, found, cmap=ListedColormap(COLOURS), vmin=-0.5, vmax=3.5)
+    axes.pcolormesh(
+        frictions, levels, found, cmap=ListedColormap(COLOURS), vmin=-0.5, vmax=3.5
+    )
     ratio = block.b / block.h
     line: dict[str, Any] = {"color": "black", "linewidth": 1.2}
     axes.plot([0, ratio], [0, ratio], **line)
@@ -48,7 +54,9 @@ def draw(path: Path, block: Block) -> None:
     axes.plot([ratio, ratio], [ratio, 1.6], **line)
     rising = np.linspace(ratio, 1.6, 100)
     axes.plot(demand(block, rising * G), rising, **line)
-    for name, x, y in zip(NAMES, (0.7, 0.14, 0.78, 0.415), (0.15, 0.9, 0.75, 1.35), strict=True):
+    for name, x, y in zip(
+        NAMES, (0.7, 0.14, 0.78, 0.415), (0.15, 0.9, 0.75, 1.35), strict=True
+    ):
         axes.text(x, y, name, ha="center", va="center")
     axes.set(
         xlim=(0, 1),

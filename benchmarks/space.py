@@ -83,16 +83,23 @@ def grown(work: Callable[[list[float]], object]) -> float:
 def memory(body: Block, motion: GroundMotion) -> None:
     """Print how much memory many cases take in space and in the plane."""
     flat = Block(body.width, body.height, body.mass)
-    works = (partial(run_in_space, [body], [motion]), partial(overturns, [flat], [motion.x], None))
+    works = (
+        partial(run_in_space, [body], [motion]),
+        partial(overturns, [flat], [motion.x], None),
+    )
     with multiprocessing.get_context("spawn").Pool(1, maxtasksperchild=1) as pool:
         space, plane = pool.map(grown, works, chunksize=1)
-    print(f"memory of {MANY} cases: {space:.1f} MiB in space, {plane:.1f} MiB in the plane")
+    print(
+        f"memory of {MANY} cases: {space:.1f} MiB in space, {plane:.1f} MiB in the plane"
+    )
 
 
 def main(count: int) -> None:
     """Run both and print."""
     made = motions(count)
-    shaken = [GroundMotion(*(Motion(component, DT) for component in item.T)) for item in made]
+    shaken = [
+        GroundMotion(*(Motion(component, DT) for component in item.T)) for item in made
+    ]
     body = Block(SIZE[0], SIZE[2], 300.0, depth=SIZE[1])
     run_in_space([body], shaken[:1], [0.1])
     times = []
@@ -105,14 +112,20 @@ def main(count: int) -> None:
     equal = np.array_equal(first.turn, second.turn) and np.array_equal(
         first.certain_time, second.certain_time, equal_nan=True
     )
-    print(f"engine in space: {ours:.1f} cases/s, overturned {first.overturned[0].mean(axis=0)}")
+    print(
+        f"engine in space: {ours:.1f} cases/s, overturned {first.overturned[0].mean(axis=0)}"
+    )
     print(f"one and two threads give the same bits: {equal}")
     memory(body, shaken[0])
     start = time.process_time()
-    fallen = np.array([[mujoco_falls(item * scale) for scale in SCALES] for item in made])
+    fallen = np.array(
+        [[mujoco_falls(item * scale) for scale in SCALES] for item in made]
+    )
     theirs = fallen.size / (time.process_time() - start)
     print(f"MuJoCo, 1 ms: {theirs:.2f} cases/s, overturned {fallen.mean(axis=0)}")
-    print(f"ratio {ours / theirs:.0f}, outcomes equal {(fallen == first.overturned[0]).mean():.2f}")
+    print(
+        f"ratio {ours / theirs:.0f}, outcomes equal {(fallen == first.overturned[0]).mean():.2f}"
+    )
 
 
 if __name__ == "__main__":

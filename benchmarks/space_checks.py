@@ -38,7 +38,9 @@ def plane(axes: Axes) -> None:
     n = min(len(tilt), len(theta))
     axes.plot(DT * np.arange(n), theta[:n], color=ORANGE, lw=2.2, label="planar engine")
     axes.plot(DT * np.arange(n), tilt[:n], color=BLUE, lw=0.8, label="in space")
-    axes.set(xlabel="Time [s]", ylabel="Tilt [rad]", title="1  Along an axis of symmetry")
+    axes.set(
+        xlabel="Time [s]", ylabel="Tilt [rad]", title="1  Along an axis of symmetry"
+    )
     axes.legend()
 
 
@@ -46,9 +48,16 @@ def vertex(axes: Axes) -> None:
     """Check 2: drift of energy and vertical angular momentum about a fixed vertex."""
     energies, momenta, _ = checks.about_a_vertex()
     time = DT * np.arange(len(energies))
-    for values, colour, name in ((energies, BLUE, "energy"), (momenta, ORANGE, "momentum")):
+    for values, colour, name in (
+        (energies, BLUE, "energy"),
+        (momenta, ORANGE, "momentum"),
+    ):
         axes.plot(time, 1e12 * (values - values[0]), color=colour, label=name)
-    axes.set(xlabel="Time [s]", ylabel="Change [10⁻¹² J/kg, m²/s]", title="2  About a fixed vertex")
+    axes.set(
+        xlabel="Time [s]",
+        ylabel="Change [10⁻¹² J/kg, m²/s]",
+        title="2  About a fixed vertex",
+    )
     axes.legend()
 
 
@@ -59,7 +68,9 @@ def lifting(axes: Axes) -> None:
     axes.plot(angles, limit, color=BLACK, lw=0.8, label="formula")
     axes.plot(angles, (before + after) / 2, color=BLUE, label="engine", **DOT)
     axes.set(
-        xlabel="Direction [°]", ylabel="Uplift [m/s²]", title="3  End of rest, 0.4 × 0.6 × 1.5 m"
+        xlabel="Direction [°]",
+        ylabel="Uplift [m/s²]",
+        title="3  End of rest, 0.4 × 0.6 × 1.5 m",
     )
     axes.legend()
 
@@ -67,17 +78,32 @@ def lifting(axes: Axes) -> None:
 def wobbles(axes: Axes) -> None:
     """Check 4: rate of a wobble with the centre at rest."""
     tilts = np.linspace(0.04, 0.32, 60)
-    axes.plot(tilts, [checks.wobbling(t)[2] for t in tilts], color=BLACK, lw=0.8, label="formula")
+    axes.plot(
+        tilts,
+        [checks.wobbling(t)[2] for t in tilts],
+        color=BLACK,
+        lw=0.8,
+        label="formula",
+    )
     few = [0.05, 0.1, 0.2, 0.3]
-    axes.plot(few, [checks.wobble(t)[2] for t in few], color=BLUE, label="engine", **DOT)
-    axes.set(xlabel="Tilt [rad]", ylabel="Rate [rad/s]", title="4  Wobble of a cylinder")
+    axes.plot(
+        few, [checks.wobble(t)[2] for t in few], color=BLUE, label="engine", **DOT
+    )
+    axes.set(
+        xlabel="Tilt [rad]", ylabel="Rate [rad/s]", title="4  Wobble of a cylinder"
+    )
     axes.legend()
 
 
 def passes(axes: Axes) -> None:
     """Check 5: turn of the contact in a pass near flat."""
-    for disk, name, limit in ((True, "disk", math.pi * 5**0.5), (False, "cylinder", 5.1758)):
-        speeds, theirs = zip(*(case[1:] for case in checks.PASSES if case[0] == disk), strict=True)
+    for disk, name, limit in (
+        (True, "disk", math.pi * 5**0.5),
+        (False, "cylinder", 5.1758),
+    ):
+        speeds, theirs = zip(
+            *(case[1:] for case in checks.PASSES if case[0] == disk), strict=True
+        )
         ours = [checks.near_flat_pass(disk, speed)[0] for speed in speeds]
         colour = BLUE if disk else ORANGE
         axes.plot(speeds, theirs, "x", color=BLACK, ms=4)
@@ -97,9 +123,15 @@ def losses(axes: Axes) -> None:
     """Check 6: loss of a polygon per vertex."""
     _, lost = checks.polygons()
     sides = np.array(checks.SIDES)
-    axes.loglog(sides, lost[-1] * (sides[-1] / sides) ** 2, color=BLACK, lw=0.8, label="1/n²")
+    axes.loglog(
+        sides, lost[-1] * (sides[-1] / sides) ** 2, color=BLACK, lw=0.8, label="1/n²"
+    )
     axes.loglog(sides, lost, color=BLUE, label="engine", **DOT)
-    axes.set(xlabel="Vertices", ylabel="Loss per vertex [J/kg]", title="6  Polygons that roll")
+    axes.set(
+        xlabel="Vertices",
+        ylabel="Loss per vertex [J/kg]",
+        title="6  Polygons that roll",
+    )
     axes.set_xticks(sides, [str(n) for n in sides])
     axes.minorticks_off()
     plain_log(axes, "y")
@@ -110,11 +142,19 @@ def fractions(axes: Axes) -> None:
     """Check 7: fractions overturned beside the plain time stepping."""
     found, expected = checks.by_stepping(8, 4, 1)
     axes.plot(
-        checks.LEVELS, expected.mean(axis=(0, 1)), color=ORANGE, lw=2.2, label="plain stepping"
+        checks.LEVELS,
+        expected.mean(axis=(0, 1)),
+        color=ORANGE,
+        lw=2.2,
+        label="plain stepping",
     )
-    axes.plot(checks.LEVELS, found.mean(axis=(0, 1)), color=BLUE, lw=0.8, label="engine")
+    axes.plot(
+        checks.LEVELS, found.mean(axis=(0, 1)), color=BLUE, lw=0.8, label="engine"
+    )
     axes.set(
-        xlabel="Peak over uplift [-]", ylabel="Fraction overturned", title="7  8 boxes × 4 pairs"
+        xlabel="Peak over uplift [-]",
+        ylabel="Fraction overturned",
+        title="7  8 boxes × 4 pairs",
     )
     axes.legend()
 
@@ -126,7 +166,14 @@ def cylinders(axes: Axes) -> None:
         zip(checks.RADII, (BLACK, BLUE, ORANGE, "#999999"), strict=True)
     ):
         state = np.where(rests[i], 0, np.where(falls[i], 2, 1))
-        axes.plot(checks.ANGLES, state + 0.08 * i, ".", ms=3, color=colour, label=f"{half:g} m")
+        axes.plot(
+            checks.ANGLES,
+            state + 0.08 * i,
+            ".",
+            ms=3,
+            color=colour,
+            label=f"{half:g} m",
+        )
     axes.axvline(math.degrees(math.atan(peak)), color=BLACK, lw=0.8)
     axes.set_yticks([0.12, 1.12, 2.12], ["rests", "rocks", "falls"])
     axes.set(xlabel="Slenderness angle [°]", title="8  Solid cylinders, half diagonal")

@@ -26,7 +26,13 @@ extensions = [
     *("sphinx_copybutton", "sphinx_gallery.gen_gallery"),
 ]
 source_suffix = {".md": "markdown", ".rst": "restructuredtext"}
-exclude_patterns = ["_build", "reference/static", "gallery", "images", "auto_gallery/*.md5"]
+exclude_patterns = [
+    "_build",
+    "reference/static",
+    "gallery",
+    "images",
+    "auto_gallery/*.md5",
+]
 html_theme = "furo"
 html_title = f"rockfrag {release}"
 html_extra_path = ["tutorial.ipynb"]
@@ -70,7 +76,10 @@ SUBPACKAGES = {
         "Simulation",
         "histories, ensembles, thresholds, rocking spectra, closed forms",
     ),
-    "rockfrag.outcomes": ("Outcomes", "what comes out of simulations, and states of damage"),
+    "rockfrag.outcomes": (
+        "Outcomes",
+        "what comes out of simulations, and states of damage",
+    ),
     "rockfrag.records": ("Records", "read, list and write strong-motion records"),
     "rockfrag.motions": (
         "Motions",
@@ -83,7 +92,10 @@ SUBPACKAGES = {
     ),
     "rockfrag.pedestal": ("Paired comparisons", "the effect of a pedestal, tested"),
     "rockfrag.shaketable": ("Shaking tables", "limits, protocols and tables of tests"),
-    "rockfrag.assess": ("One object at one place", "what the command `rockfrag assess` does"),
+    "rockfrag.assess": (
+        "One object at one place",
+        "what the command `rockfrag assess` does",
+    ),
 }
 """Subpackages whose public names are documented, in the order in which people need them."""
 
@@ -126,7 +138,9 @@ def _included(text: str, home: Path) -> str:
         path = (home / target.partition("#")[0]).resolve()
         if path.parent == ROOT / "docs" and path.is_file():
             return f"[{text}](/{path.name})"
-        shown = next((page for page, origin in GENERATED.items() if origin == path), None)
+        shown = next(
+            (page for page, origin in GENERATED.items() if origin == path), None
+        )
         return f"[{text}]({shown})" if shown else text
 
     return re.sub(r"(?<!!)\[([^\]]*)\]\(([^)\s]+)\)", link, text)
@@ -143,7 +157,10 @@ def _generate(app: Sphinx) -> None:
     _write_live(folder / "reference" / "static" / "play.html")
     _write_app(folder / "reference" / "static" / "assess.html")
     _write(folder / "reference" / "command-line.md", _command_line())
-    pages = {folder / "reference" / "api" / f"{name}.md": text for name, text in _library().items()}
+    pages = {
+        folder / "reference" / "api" / f"{name}.md": text
+        for name, text in _library().items()
+    }
     for stale in set((folder / "reference" / "api").glob("*.md")) - set(pages):
         stale.unlink()  # of a subpackage that is gone
     for path, text in pages.items():
@@ -162,7 +179,9 @@ def _command_line() -> str:
 
     parser = make_parser()
     commands = next(
-        action for action in parser._actions if isinstance(action, argparse._SubParsersAction)
+        action
+        for action in parser._actions
+        if isinstance(action, argparse._SubParsersAction)
     )
     parts = ["# The command line", "", f"```text\n{parser.format_help()}```"]
     for name, command in commands.choices.items():
@@ -182,7 +201,9 @@ def _library() -> dict[str, str]:
         "",
     ]
     top = sorted(
-        name for name in importlib.import_module("rockfrag").__all__ if not _is_module(name)
+        name
+        for name in importlib.import_module("rockfrag").__all__
+        if not _is_module(name)
     )
     front += [", ".join(f"`{name}`" for name in top) + ".", ""]
     front += ["| topic | import from | for |", "|---|---|---|"]
@@ -201,7 +222,9 @@ def _is_module(name: str) -> bool:
 def _subpackage(module: str, title: str, words: str, shown: set[object]) -> str:
     """Page of a subpackage, without what another page has shown, which it adds to."""
     package = importlib.import_module(module)
-    public = {name: getattr(package, name) for name in sorted(package.__all__, key=str.lower)}
+    public = {
+        name: getattr(package, name) for name in sorted(package.__all__, key=str.lower)
+    }
     documented = {
         name: value
         for name, value in public.items()
@@ -212,7 +235,10 @@ def _subpackage(module: str, title: str, words: str, shown: set[object]) -> str:
     parts += ["| name | what it does |", "|---|---|"]
     for name, value in documented.items():
         first = (
-            (inspect.getdoc(value) or "").split("\n\n")[0].replace("\n", " ").replace("|", "\\|")
+            (inspect.getdoc(value) or "")
+            .split("\n\n")[0]
+            .replace("\n", " ")
+            .replace("|", "\\|")
         )
         parts.append(f"| [`{name}`](#{module}.{name}) | {_plain(first)} |")
     parts += ["", "```{eval-rst}"]
@@ -235,11 +261,18 @@ def _schema_tables() -> str:
     """Every key of every file with what it may hold, from the schema itself."""
     from rockfrag.schema import read_schema
 
-    kinds = json.loads((ROOT / "src/rockfrag/schema.json").read_text(encoding="utf-8"))["$defs"]
+    kinds = json.loads((ROOT / "src/rockfrag/schema.json").read_text(encoding="utf-8"))[
+        "$defs"
+    ]
     schemas = {kind: read_schema(kind) for kind in kinds}
     parts = ["", "## All keys, from the schema", ""]
     for name, schema in schemas.items():
-        parts += [f"### {schema.get('title', name)}", "", "| key | expected |", "|---|---|"]
+        parts += [
+            f"### {schema.get('title', name)}",
+            "",
+            "| key | expected |",
+            "|---|---|",
+        ]
         parts += [f"| `{key}` | {words} |" for key, words in _keys(schema, "")]
         parts.append("")
     return "\n".join(parts)
@@ -281,17 +314,27 @@ def _write_app(path: Path) -> None:
         time = np.arange(1500) * 0.01
         phases = np.random.default_rng(i).uniform(0, 2 * np.pi, 12)
         waves = np.sin(
-            2 * np.pi * np.geomspace(0.7, 9, 12)[:, np.newaxis] * time + phases[:, np.newaxis]
+            2 * np.pi * np.geomspace(0.7, 9, 12)[:, np.newaxis] * time
+            + phases[:, np.newaxis]
         )
         shaken = 0.5 * waves.sum(axis=0) * np.exp(-(((time - 5) / 3) ** 2))
         shaken[300 : 300 + pulse.size] += pulse[:1200]
         about = {"earthquake": f"made earthquake {i // 3 + 1}"}
         motions.append(Motion(np.round(shaken, 4), 0.01, f"made motion {i + 1}", about))
     made = tuple(motions)
-    form = {"width": "35 cm", "height": "1.2 m", "measure": "PGA", "level": "0.4 g", "years": "475"}
+    form = {
+        "width": "35 cm",
+        "height": "1.2 m",
+        "measure": "PGA",
+        "level": "0.4 g",
+        "years": "475",
+    }
     path.parent.mkdir(parents=True, exist_ok=True)
     write_app(
-        MotionSet(made, made, (), "24 made motions of 8 made earthquakes"), form, path, made=True
+        MotionSet(made, made, (), "24 made motions of 8 made earthquakes"),
+        form,
+        path,
+        made=True,
     )
 
 
@@ -300,13 +343,19 @@ ACCESSIBLE = (
     (r"<pre>", '<pre tabindex="0">'),
     (r'<div class="(math|table-wrapper)', r'<div tabindex="0" class="\1'),
     # landmarks of one kind are told apart
-    (r'<aside class="sidebar-drawer">', '<aside class="sidebar-drawer" aria-label="Pages">'),
+    (
+        r'<aside class="sidebar-drawer">',
+        '<aside class="sidebar-drawer" aria-label="Pages">',
+    ),
     (
         r'<aside class="toc-drawer([^"]*)">',
         r'<aside class="toc-drawer\1" aria-label="Contents of this page">',
     ),
     (r'role="heading">', 'role="heading" aria-level="2">'),
-    (r'(?<!</h1>)<div id="search-results">', '<h1>Search</h1><div id="search-results">'),
+    (
+        r'(?<!</h1>)<div id="search-results">',
+        '<h1>Search</h1><div id="search-results">',
+    ),
     # a cell without words is no heading
     (r'<th class="head([^"]*)"><p></p></th>', r'<td class="head\1"></td>'),
     # the words of a thumbnail's link are hidden behind its picture

@@ -28,8 +28,12 @@ def main() -> int:
     hashes = ROOT / "hashes" / f"{platform_name()}.txt"
     hashes.parent.mkdir(exist_ok=True)
     hashes.write_text("".join(_pins(packages)), encoding="utf-8")
-    (ROOT / "docs" / "licences.md").write_text("".join(_licences(packages)), encoding="utf-8")
-    print(f"{len(packages)} packages in {hashes.relative_to(ROOT)} and docs/licences.md")
+    (ROOT / "docs" / "licences.md").write_text(
+        "".join(_licences(packages)), encoding="utf-8"
+    )
+    print(
+        f"{len(packages)} packages in {hashes.relative_to(ROOT)} and docs/licences.md"
+    )
     return 0
 
 
@@ -43,7 +47,15 @@ def _packages() -> list[dict[str, Any]]:
     with tempfile.TemporaryDirectory() as scratch:
         report = Path(scratch) / "report.json"
         command = [
-            *(sys.executable, "-m", "pip", "install", "--dry-run", "--ignore-installed", "--quiet"),
+            *(
+                sys.executable,
+                "-m",
+                "pip",
+                "install",
+                "--dry-run",
+                "--ignore-installed",
+                "--quiet",
+            ),
             *("--report", str(report), "--constraint", str(ROOT / "constraints.txt")),
             *(*BUILDING, f"{ROOT}[{EXTRAS}]"),
         ]
@@ -85,7 +97,11 @@ def licence_of(package: str) -> str:
         if item.startswith("License :: ")
     ]
     text = str(about.get("License") or "").strip().splitlines()
-    said = about.get("License-Expression") or ", ".join(classes) or (text[0] if text else "")
+    said = (
+        about.get("License-Expression")
+        or ", ".join(classes)
+        or (text[0] if text else "")
+    )
     return str(said)[:80].replace("|", "/") or "not stated"
 
 

@@ -26,7 +26,10 @@ def some_form(rng: random.Random) -> dict[str, str]:
         storeys = rng.randint(1, 6)
         form["floor"] = f"{rng.randint(0, storeys)}/{storeys}"
     measure, level = rng.choice(
-        [("PGA", f"{rng.uniform(0.05, 0.8):.3g} g"), ("PGV", f"{rng.uniform(5, 90):.3g} cm/s")]
+        [
+            ("PGA", f"{rng.uniform(0.05, 0.8):.3g} g"),
+            ("PGV", f"{rng.uniform(5, 90):.3g} cm/s"),
+        ]
     )
     form |= {"measure": measure, "level": level}
     if rng.random() < 0.7:
@@ -36,7 +39,16 @@ def some_form(rng: random.Random) -> dict[str, str]:
 
 def settings_of(form: Mapping[str, str]) -> dict[str, Any]:
     """What ``rockfrag assess`` is told of a form."""
-    plain = ("width", "height", "mass", "cg_height", "cg_offset", "floor", "depth", "round")
+    plain = (
+        "width",
+        "height",
+        "mass",
+        "cg_height",
+        "cg_offset",
+        "floor",
+        "depth",
+        "round",
+    )
     settings: dict[str, Any] = {key: form[key] for key in plain if key in form}
     for key, name in (("restitution", "restitution"), ("facing", "facing_deg")):
         if key in form:
@@ -53,7 +65,9 @@ def settings_of(form: Mapping[str, str]) -> dict[str, Any]:
 
 def options_of(form: Mapping[str, str]) -> list[str]:
     """Options of the command line for a form."""
-    settings = {key: value for key, value in settings_of(form).items() if key != "pedestal"}
+    settings = {
+        key: value for key, value in settings_of(form).items() if key != "pedestal"
+    }
     options = [f"--{key.replace('_', '-')}={value}" for key, value in settings.items()]
     pedestal = settings_of(form).get("pedestal", {})
     return options + (["--pedestal", *pedestal.values()] if pedestal else [])

@@ -29,7 +29,11 @@ SHARED = ROOT.parent / "shared"
 
 SUBPACKAGES = (
     "",
-    *(f".{name}" for name in rockfrag.__all__ if isinstance(getattr(rockfrag, name), ModuleType)),
+    *(
+        f".{name}"
+        for name in rockfrag.__all__
+        if isinstance(getattr(rockfrag, name), ModuleType)
+    ),
 )
 """The package and its public subpackages, as they are written behind its name."""
 
@@ -40,7 +44,11 @@ WHOLE_STUDIES = ("workflow", "end_to_end", "test_documentation.py")
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """Whole studies come first: one that starts last would leave the other processors waiting for it."""
     first = tuple(ROOT / "tests" / name for name in WHOLE_STUDIES)
-    items.sort(key=lambda item: not any(item.path.is_relative_to(each_item) for each_item in first))
+    items.sort(
+        key=lambda item: (
+            not any(item.path.is_relative_to(each_item) for each_item in first)
+        )
+    )
 
 
 @pytest.fixture(scope="session")
@@ -77,11 +85,18 @@ def default_records() -> Path:
 def four_records(record_folder: Path) -> dict[str, Motion]:
     """The four records of the thesis's Table 3.3, by the names of their files."""
     names = ("Friuli", "Kobe", "Loma_Prieta", "Northridge")
-    return {name: read_motion(record_folder / f"{name}.dat", unit="g") for name in names}
+    return {
+        name: read_motion(record_folder / f"{name}.dat", unit="g") for name in names
+    }
 
 
 def white_noise(
-    seed: int = 0, count: int = 500, dt: float = 0.01, *, tapered: bool = False, **about: Any
+    seed: int = 0,
+    count: int = 500,
+    dt: float = 0.01,
+    *,
+    tapered: bool = False,
+    **about: Any,
 ) -> Motion:
     """A motion of white noise [m/s²], the same for the same seed."""
     samples = np.random.default_rng(seed).standard_normal(count)
@@ -91,7 +106,12 @@ def white_noise(
 
 
 def shaking(
-    seed: int, lowest_hz: float, highest_hz: float, peak_g: float, count: int = 800, **about: Any
+    seed: int,
+    lowest_hz: float,
+    highest_hz: float,
+    peak_g: float,
+    count: int = 800,
+    **about: Any,
 ) -> Motion:
     """Noise of a band of frequencies that grows and dies down, scaled to a peak."""
     raw = white_noise(seed, count, tapered=True, **about)
@@ -114,7 +134,9 @@ def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
         *(sys.executable, "-m", "sphinx", "-q", "-W", "--keep-going", "-b", "html"),
         *(str(ROOT / "docs"), str(folder)),
     ]
-    done = subprocess.run(command, capture_output=True, text=True, check=False, cwd=ROOT)
+    done = subprocess.run(
+        command, capture_output=True, text=True, check=False, cwd=ROOT
+    )
     assert done.returncode == 0, done.stderr[-3000:]
     return folder
 
@@ -122,7 +144,9 @@ def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def printed_alone(*program: str, **environment: str) -> str:
     """What a program prints in a process of its own, with more in its environment."""
     command, whole = [sys.executable, *program], os.environ | environment
-    done = subprocess.run(command, env=whole, capture_output=True, text=True, check=False)
+    done = subprocess.run(
+        command, env=whole, capture_output=True, text=True, check=False
+    )
     assert done.returncode == 0, done.stderr
     return done.stdout.strip()
 
@@ -142,10 +166,15 @@ def motions_of_noise(count: int) -> tuple[Motion, ...]:
     found = []
     for i in range(count):
         earthquake = i % MADE_EARTHQUAKES
-        about = {"earthquake": f"earthquake {earthquake}", "station": f"station {i // 2}"}
+        about = {
+            "earthquake": f"earthquake {earthquake}",
+            "station": f"station {i // 2}",
+        }
         highest_hz, peak_g = 1.0 + 0.5 * earthquake, 0.2 + 0.01 * i
         name = f"motion {i}"
-        found.append(shaking(i, 0.2, highest_hz, peak_g, 1500, name=name, metadata=about))
+        found.append(
+            shaking(i, 0.2, highest_hz, peak_g, 1500, name=name, metadata=about)
+        )
     return tuple(found)
 
 
@@ -171,4 +200,6 @@ def write_records(folder: Path, motions: Iterable[Motion]) -> Path:
 @pytest.fixture(scope="session")
 def own_records(tmp_path_factory) -> Path:
     """A folder of records that are texts of seconds and g, with a catalogue."""
-    return write_records(tmp_path_factory.mktemp("records"), motions_of_noise(12)).parent
+    return write_records(
+        tmp_path_factory.mktemp("records"), motions_of_noise(12)
+    ).parent

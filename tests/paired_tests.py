@@ -51,11 +51,15 @@ def build(
             gain = {"NP": 0.0, "P": effect(object_name, earthquake, floor)}
             for pedestal in gain:
                 ln_a = base + rng.normal(0, noise) + gain[pedestal]
-                rows.append((object_name, pedestal, earthquake, floor, motion, np.exp(ln_a)))
+                rows.append(
+                    (object_name, pedestal, earthquake, floor, motion, np.exp(ln_a))
+                )
     names = ["object", "pedestal", "earthquake", "floor", "motion", "amplitude_g"]
     table = pd.DataFrame(rows, columns=names)
     upper = table["amplitude_g"]
     if step is not None:
         step_number = np.ceil(np.log(upper / 0.01) / np.log1p(step))
         table["amplitude_g"] = upper = 0.01 * (1 + step) ** step_number
-    return table.assign(censored="none", lower_g=upper / (1 + (step or 0.02)), upper_g=upper)
+    return table.assign(
+        censored="none", lower_g=upper / (1 + (step or 0.02)), upper_g=upper
+    )

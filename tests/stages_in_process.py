@@ -52,7 +52,9 @@ def _swept(job: Job[Study]) -> Results:
     yield from ida.run_as_recorded(job)
 
 
-def run_stages(study: AnyStudy, folder: Path, stages: list[Stage] | None = None) -> Path:
+def run_stages(
+    study: AnyStudy, folder: Path, stages: list[Stage] | None = None
+) -> Path:
     """Run stages of a study, all if none are named, and return the folder of the results."""
     for stage in stages_of(study) if stages is None else stages:
         job = Job(study, folder, 1, logging.getLogger("stages in process"))

@@ -38,7 +38,21 @@ def simulated(record, capsys):
 def test_play_writes_a_page_that_loads_nothing(record, tmp_path, capsys):
     page = tmp_path / "page.html"
     case = [str(record), "--unit", "g", "--body", "30cm", "120cm", "110kg"]
-    assert main(["play", *case, "--pedestal", "50cm", "60cm", "350kg", "--output", str(page)]) == 0
+    assert (
+        main(
+            [
+                "play",
+                *case,
+                "--pedestal",
+                "50cm",
+                "60cm",
+                "350kg",
+                "--output",
+                str(page),
+            ]
+        )
+        == 0
+    )
     assert str(page) in capsys.readouterr().out
     text = page.read_text(encoding="utf-8")
     assert "30 × 120 cm on 50 × 60 cm" in text
@@ -49,7 +63,9 @@ def test_play_writes_a_page_that_loads_nothing(record, tmp_path, capsys):
 
 def test_a_body_without_a_mass_is_of_stone_and_one_of_four_numbers_is_none(simulated):
     # 2500 kg/m³ over 0.3 m by 0.3 m by 1.2 m
-    stone, given = (simulated("--body", "30cm", "120cm", *mass) for mass in ([], ["270kg"]))
+    stone, given = (
+        simulated("--body", "30cm", "120cm", *mass) for mass in ([], ["270kg"])
+    )
     assert stone == given
     wrong = simulated("--body", "30cm", "120cm", "270kg", "4", status=2)
     assert wrong.err.startswith("--body: expected width, height and")
@@ -74,7 +90,9 @@ STATUE = ("--body", "0.124", "0.372", "2.172")
 
 def test_a_statue_on_its_pedestal_is_drawn(simulated, tmp_path):
     picture = tmp_path / "response.svg"
-    shown = simulated(*STATUE, "--pedestal", "0.184", "0.208", "2.3", "--plot", str(picture))
+    shown = simulated(
+        *STATUE, "--pedestal", "0.184", "0.208", "2.3", "--plot", str(picture)
+    )
     assert "rest → 4" in shown.out
     assert picture.read_text().startswith("<?xml")
 
@@ -90,7 +108,10 @@ def test_a_column_is_given_from_above(simulated, record, capsys):
     slides = ("--pga", "0.6", "--friction", "0.6", "0.5", "0.4", "--restitution", "0.9")
     shown = simulated(*body, *slides).out
     assert len(shown.split("largest slip [mm]: ")[1].splitlines()[0].split(",")) == 3
-    assert "from below, got 2" in simulated(*body, "--friction", "0.6", "0.5", status=2).err
+    assert (
+        "from below, got 2"
+        in simulated(*body, "--friction", "0.6", "0.5", status=2).err
+    )
     assert main(["play", str(record), "--unit", "g", *body, "--output", "x.html"]) == 2
     assert "two bodies on each other at most" in capsys.readouterr().err
 
@@ -100,7 +121,10 @@ def test_a_column_is_given_from_above(simulated, record, capsys):
     [
         (["simulate", "absent.dat", "--body", "1", "1", "900"], "absent.dat"),
         (["simulate", "absent.dat", "--body", "1", "-1", "1"], "height"),
-        (["simulate", "absent.dat", "--body", "1", "1", "900", "--plot", "x.pdf"], ".png or .svg"),
+        (
+            ["simulate", "absent.dat", "--body", "1", "1", "900", "--plot", "x.pdf"],
+            ".png or .svg",
+        ),
         (["check-config", "absent.yaml"], "absent.yaml"),
     ],
 )
@@ -141,7 +165,15 @@ def test_the_version_is_told(capsys: pytest.CaptureFixture[str]):
 
 
 def test_a_reader_that_has_had_enough_is_no_error(record: Path):
-    command = [sys.executable, "-m", "rockfrag.cli", "simulate", str(record), "--unit", "g"]
+    command = [
+        sys.executable,
+        "-m",
+        "rockfrag.cli",
+        "simulate",
+        str(record),
+        "--unit",
+        "g",
+    ]
     body = ["--body", "0.05", "0.5", "3", "--pga", "0.8", "--all-contact-events"]
     with subprocess.Popen(
         [*command, *body], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
@@ -170,9 +202,13 @@ def test_a_motion_in_cm_s2_is_refused_as_m_s2(simulated, record, tmp_path):
     assert "force" not in told
 
 
-def test_a_record_below_zero_throughout_takes_its_vertical_component_along(simulated, tmp_path):
+def test_a_record_below_zero_throughout_takes_its_vertical_component_along(
+    simulated, tmp_path
+):
     path = tmp_path / "below.txt"
     values = -0.3 * np.sin(np.pi * np.arange(101) / 100) ** 2
-    path.write_text("\n".join(f"{0.01 * i:.2f} {a:.8f}" for i, a in enumerate(values)) + "\n")
+    path.write_text(
+        "\n".join(f"{0.01 * i:.2f} {a:.8f}" for i, a in enumerate(values)) + "\n"
+    )
     body = ("--body", "30cm", "90cm", "--pga", "0.5", "--vertical", str(path))
     assert "peak 0.5000 g" in simulated(*body, path=path).out

@@ -54,8 +54,12 @@ def test_the_gallery_shows_a_picture_beside_each_script(site):
     scripts = sorted((DOCS / "gallery").glob("plot_*.py"))
     assert len(scripts) >= 12
     for script in scripts:
-        page = (site / "auto_gallery" / f"{script.stem}.html").read_text(encoding="utf-8")
-        assert re.search(rf"_images/sphx_glr_{script.stem}_001\S*\.png", page), script.name
+        page = (site / "auto_gallery" / f"{script.stem}.html").read_text(
+            encoding="utf-8"
+        )
+        assert re.search(rf"_images/sphx_glr_{script.stem}_001\S*\.png", page), (
+            script.name
+        )
         assert "rockfrag" in page
 
 
@@ -64,7 +68,9 @@ def test_the_first_screen_has_one_heading_one_picture_and_three_commands(site):
     page = html.parse(str(site / "index.html"))
     assert len(page.xpath("//h1")) == len(page.xpath("//article//img")) == 1
     assert not page.xpath("//iframe")
-    commands = [each.text_content().split()[:2] for each in page.xpath("//article//pre")]
+    commands = [
+        each.text_content().split()[:2] for each in page.xpath("//article//pre")
+    ]
     assert list(map(" ".join, commands)) == [
         *("python3 -m", "rockfrag assess", "rockfrag simulate", "make run")
     ]
@@ -73,7 +79,9 @@ def test_the_first_screen_has_one_heading_one_picture_and_three_commands(site):
 @pytest.mark.slow
 def test_every_subpackage_has_a_page_with_the_names_to_import(site):
     for package in filter(None, SUBPACKAGES):
-        page = (site / "reference" / "api" / f"{package[1:]}.html").read_text(encoding="utf-8")
+        page = (site / "reference" / "api" / f"{package[1:]}.html").read_text(
+            encoding="utf-8"
+        )
         assert f'id="rockfrag{package}.' in page
 
 
@@ -84,7 +92,9 @@ IN_PYTHON = [
 
 
 @pytest.mark.parametrize("name", sorted(IN_PYTHON))
-def test_what_a_page_shows_in_python_runs_as_it_stands_there(name, tmp_path, monkeypatch):
+def test_what_a_page_shows_in_python_runs_as_it_stands_there(
+    name, tmp_path, monkeypatch
+):
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("MPLBACKEND", "agg")
     fences = FENCE.findall((DOCS / name).read_text(encoding="utf-8"))
@@ -100,12 +110,25 @@ def test_what_a_page_shows_in_python_runs_as_it_stands_there(name, tmp_path, mon
 
 def test_every_document_links_to_what_exists():
     checked = 0
-    for page in [ROOT / "README.md", *DOCS.glob("*.md"), *(DOCS / "how-to").glob("*.md")]:
+    for page in [
+        ROOT / "README.md",
+        *DOCS.glob("*.md"),
+        *(DOCS / "how-to").glob("*.md"),
+    ]:
         text = page.read_text(encoding="utf-8")
-        named = re.findall(r"`((?:config|docs)/[^`<]+)`", text) if page.parent == ROOT else []
+        named = (
+            re.findall(r"`((?:config|docs)/[^`<]+)`", text)
+            if page.parent == ROOT
+            else []
+        )
         for target in [*named, *re.findall(r"\]\(([^)\s]+)\)", text)]:
             path = target.partition("#")[0]
-            if not path or re.match(r"https?:", path) or "reference/" in path or "auto_" in path:
+            if (
+                not path
+                or re.match(r"https?:", path)
+                or "reference/" in path
+                or "auto_" in path
+            ):
                 continue
             assert (page.parent / path).exists(), f"{page.name} links to {target}"
             checked += 1
@@ -165,8 +188,12 @@ PROJECT = ("Makefile", "pyproject.toml", "constraints.txt", "workflow", "profile
 
 def fences(language: str) -> list[str]:
     """Contents of all fenced blocks of a language, without the indentation of lists."""
-    found = re.findall(rf"^( *)```{language}\n(.*?)^ *```$", README, re.MULTILINE | re.DOTALL)
-    return [re.sub(rf"^{indent}", "", text, flags=re.MULTILINE) for indent, text in found]
+    found = re.findall(
+        rf"^( *)```{language}\n(.*?)^ *```$", README, re.MULTILINE | re.DOTALL
+    )
+    return [
+        re.sub(rf"^{indent}", "", text, flags=re.MULTILINE) for indent, text in found
+    ]
 
 
 def commands() -> list[str]:
@@ -204,13 +231,17 @@ def typed(checkout):
             timeout=550,
             check=False,
         )
-        assert done.returncode == 0, f"{line}\n{done.stdout[-2000:]}{done.stderr[-2000:]}"
+        assert done.returncode == 0, (
+            f"{line}\n{done.stdout[-2000:]}{done.stderr[-2000:]}"
+        )
         return done.stdout
 
     return run
 
 
-@pytest.mark.skipif(os.name == "nt", reason="make and symbolic links are those of POSIX")
+@pytest.mark.skipif(
+    os.name == "nt", reason="make and symbolic links are those of POSIX"
+)
 def test_the_route_to_ones_own_statue_ends_in_a_report(checkout, typed):
     mine = checkout / "mine"
     (mine / "records").mkdir(parents=True)
@@ -219,7 +250,8 @@ def test_the_route_to_ones_own_statue_ends_in_a_report(checkout, typed):
         rows = np.column_stack([motion.time, motion.acceleration / 9.81])
         np.savetxt(mine / "records" / f"station{seed}.txt", rows, "%.6f")
     named = re.findall(
-        r"`(mine/[a-z]+\.(?:csv|yaml))`[^`]*(?:`[^`\n]+`[^`]*)*?\n\n *```(csv|yaml)", README
+        r"`(mine/[a-z]+\.(?:csv|yaml))`[^`]*(?:`[^`\n]+`[^`]*)*?\n\n *```(csv|yaml)",
+        README,
     )
     texts = {"csv": iter(fences("csv")), "yaml": iter(fences("yaml"))}
     for path, language in named:
@@ -229,7 +261,9 @@ def test_the_route_to_ones_own_statue_ends_in_a_report(checkout, typed):
     assert len(pd.read_csv(mine / "motions.csv")) == 3
     assert "is right" in typed(check)
     typed(run)
-    report = (checkout / "results" / "venus" / "report.html").read_text(encoding="utf-8")
+    report = (checkout / "results" / "venus" / "report.html").read_text(
+        encoding="utf-8"
+    )
     assert "A marble Venus with and without her plinth" in report
     tests = pd.read_csv(checkout / "results" / "venus" / "tests.csv")
     assert set(tests["configuration"]) == {"venus", "venus on its plinth"}
@@ -241,7 +275,9 @@ def record(checkout, noise) -> Path:
     from rockfrag.motions import scale_to_pga
     from rockfrag.records import write_motion
 
-    return write_motion(scale_to_pga(noise(7, 800, tapered=True), 0.4), checkout / "record.AT2")
+    return write_motion(
+        scale_to_pga(noise(7, 800, tapered=True), 0.4), checkout / "record.AT2"
+    )
 
 
 @pytest.mark.skipif(os.name == "nt", reason="symbolic links are those of POSIX")
@@ -262,7 +298,9 @@ def test_snippets_run(record, monkeypatch, capsys):
 
 def test_commands_of_make_exist():
     targets = set(re.findall(r"(?:`|^ *)make ([a-z-]+)", README, re.MULTILINE))
-    known = set(re.findall(r"^([a-z-]+):", (ROOT / "Makefile").read_text(), re.MULTILINE))
+    known = set(
+        re.findall(r"^([a-z-]+):", (ROOT / "Makefile").read_text(), re.MULTILINE)
+    )
     assert targets <= known
     assert {"run", "test", "smoke"} <= targets
 
@@ -276,7 +314,9 @@ def keys_of(schema: dict) -> set[str]:
 
 
 def test_every_key_of_a_configuration_is_explained():
-    kinds = json.loads((ROOT / "src/rockfrag/schema.json").read_text(encoding="utf-8"))["$defs"]
+    kinds = json.loads((ROOT / "src/rockfrag/schema.json").read_text(encoding="utf-8"))[
+        "$defs"
+    ]
     schemas = {kind: read_schema(kind) for kind in kinds}
     text = (ROOT / "config/README.md").read_text(encoding="utf-8")
     explained = set(re.findall(r"`([A-Za-z_0-9]+)`", text))

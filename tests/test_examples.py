@@ -11,7 +11,15 @@ import numpy as np
 import pytest
 
 import rockfrag
-from rockfrag import Block, Motion, Stack, find_thresholds, overturns, read_motion, simulate
+from rockfrag import (
+    Block,
+    Motion,
+    Stack,
+    find_thresholds,
+    overturns,
+    read_motion,
+    simulate,
+)
 from rockfrag.errors import InputError
 from rockfrag.rocking.inputs import UnitWarning
 from rockfrag.system.blocks import UnlikelyBlock
@@ -45,26 +53,37 @@ PUBLIC = public()
 FORM = {"GL05", "GL06", "GL07", "GL08", "PR02", "PR03", "YD01"}
 PARAMETERS = "PR01"
 WITH_EXAMPLES = {
-    name: value for name, value in PUBLIC.items() if ">>>" in (inspect.getdoc(value) or "")
+    name: value
+    for name, value in PUBLIC.items()
+    if ">>>" in (inspect.getdoc(value) or "")
 } | {"rockfrag": rockfrag}
 
 
 @pytest.mark.parametrize(
-    "name", [name for name in sorted(PUBLIC) if not hasattr(PUBLIC[name], "with_traceback")]
+    "name",
+    [name for name in sorted(PUBLIC) if not hasattr(PUBLIC[name], "with_traceback")],
 )
 def test_public_name_is_documented(name):
     """In the form of numpydoc."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
-        validation = pytest.importorskip("numpydoc.validate", reason="numpydoc is not installed")
-    found = validation.validate(f"{PUBLIC[name].__module__}.{PUBLIC[name].__qualname__}")
+        validation = pytest.importorskip(
+            "numpydoc.validate", reason="numpydoc is not installed"
+        )
+    found = validation.validate(
+        f"{PUBLIC[name].__module__}.{PUBLIC[name].__qualname__}"
+    )
     wrong = [f"{code}: {words}" for code, words in found["errors"] if code in FORM]
     # the fields of a class are described as its attributes
     value = PUBLIC[name]
     if inspect.isfunction(value):
-        wrong += [f"{code}: {words}" for code, words in found["errors"] if code == PARAMETERS]
+        wrong += [
+            f"{code}: {words}" for code, words in found["errors"] if code == PARAMETERS
+        ]
         returned = inspect.signature(value).return_annotation
-        if returned not in (None, "None") and "Returns\n-------" not in inspect.getdoc(value):
+        if returned not in (None, "None") and "Returns\n-------" not in inspect.getdoc(
+            value
+        ):
             wrong += ["it does not say what it returns"]
     elif inspect.signature(value).parameters and not re.search(
         r"(Attributes|Parameters)\n", found["docstring"]
@@ -75,7 +94,9 @@ def test_public_name_is_documented(name):
 
 @pytest.mark.parametrize("name", sorted(WITH_EXAMPLES))
 def test_an_example_shows_what_it_says(name):
-    examples = doctest.DocTestFinder(recurse=False).find(WITH_EXAMPLES[name], name, globs={})
+    examples = doctest.DocTestFinder(recurse=False).find(
+        WITH_EXAMPLES[name], name, globs={}
+    )
     assert any(example.examples for example in examples)
     for example in examples:
         report: list[str] = []
@@ -105,7 +126,9 @@ RESULTS = {
     "Thresholds": lambda: find_thresholds(
         [STATUE] * 9, PULSE, 0.01, 8.0, tolerance=0.1, narrowest_resurrection=0.5
     ),
-    "RockingSpectrum": lambda: rockfrag.rocking_spectrum(Motion(4 * PULSE, 0.01), [1, 2, 3], 0.2),
+    "RockingSpectrum": lambda: rockfrag.rocking_spectrum(
+        Motion(4 * PULSE, 0.01), [1, 2, 3], 0.2
+    ),
     "ResponseSpectrum": lambda: rockfrag.response_spectrum(
         Motion(PULSE, 0.01), np.linspace(0.1, 2, 50)
     ),
@@ -124,7 +147,10 @@ def test_a_result_at_the_prompt_fits_a_screen(name):
     ("call", "sentence"),
     [
         (lambda: overturns(STATUE, PULSE, 0.01, scale=2), "did you mean scales?"),
-        (lambda: simulate(STATUE, PULSE, 0.01, frictions=0.3), "did you mean friction?"),
+        (
+            lambda: simulate(STATUE, PULSE, 0.01, frictions=0.3),
+            "did you mean friction?",
+        ),
         (lambda: simulate(STATUE, PULSE, 0.01, mu=0.3), "it has body, motion, dt, "),
         (lambda: Block(0.3, 1.2, 180.0, cgheight=0.5), "did you mean cg_height?"),
         (lambda: Stack(plinth=STATUE, statue=STATUE), "it has lower, upper, offset."),
@@ -156,7 +182,9 @@ def test_a_file_name_in_place_of_a_motion_is_answered_with_how_to_read_it():
 @pytest.mark.parametrize("body", [STATUE, STACK])
 @pytest.mark.parametrize("peak", [0.26, 2.0])
 def test_accelerations_in_g_are_warned_of_by_what_they_would_lift(body, peak):
-    with pytest.warns(UnitWarning, match=r"less than the 2\.45 m/s² that start rocking"):
+    with pytest.warns(
+        UnitWarning, match=r"less than the 2\.45 m/s² that start rocking"
+    ):
         assert not simulate(body, peak * PULSE, 0.01).overturned
     with pytest.warns(UnitWarning, match=r"multiply it by 9\.81"):
         overturns([body], [peak * PULSE], 0.01, [0.5, 1.0])
@@ -183,7 +211,9 @@ def test_what_is_in_the_right_unit_is_not_doubted(call):
 
 
 def test_a_block_in_centimetres_or_millimetres_is_doubted():
-    with pytest.warns(UnlikelyBlock, match="42 m wide, 165 m high and of 410 kg .* give metres"):
+    with pytest.warns(
+        UnlikelyBlock, match="42 m wide, 165 m high and of 410 kg .* give metres"
+    ):
         Block(42, 165, 410)
     with pytest.warns(UnlikelyBlock, match="lighter than air"):
         Block(200.0, 800.0, 50.0)
@@ -194,12 +224,16 @@ def test_a_block_in_centimetres_or_millimetres_is_doubted():
 def test_an_inertia_or_a_centre_of_gravity_of_another_body_is_doubted_or_refused():
     with pytest.warns(UnlikelyBlock, match="radius of gyration"):
         Block(0.2, 0.8, 50.0, inertia=1e-9)
-    with pytest.raises(InputError, match=r"cg_height 2 m is above the top, .* height 1\.65 m"):
+    with pytest.raises(
+        InputError, match=r"cg_height 2 m is above the top, .* height 1\.65 m"
+    ):
         Block(0.42, 1.65, 410, cg_height=2)
 
 
 SECONDS = np.arange(0, 5, 0.01)
-MOTION = Motion(3.5 * np.sin(np.pi * SECONDS / 5) * np.sin(2 * np.pi * SECONDS), 0.01, "burst")
+MOTION = Motion(
+    3.5 * np.sin(np.pi * SECONDS / 5) * np.sin(2 * np.pi * SECONDS), 0.01, "burst"
+)
 
 
 def test_a_motion_shows_acceleration_velocity_and_displacement() -> None:
@@ -227,6 +261,8 @@ def test_a_response_shows_rotations_over_the_critical_angle_and_every_impact() -
     statue = np.asarray(lines["upper body"].get_ydata())
     assert statue == pytest.approx(response.theta[:, 1] / STATUE.alpha)
     assert (
-        len(lines["impact"].get_xdata()) == (response.contact_events["kind"] == "impact").sum() > 0
+        len(lines["impact"].get_xdata())
+        == (response.contact_events["kind"] == "impact").sum()
+        > 0
     )
     assert ground.get_ylabel() == "Ground [g]"

@@ -59,11 +59,15 @@ def test_subpackage_imports_from_the_left_only(subpackage):
     assert len(sources(subpackage)) > 2
     for path in sources(subpackage):
         beyond = imported_subpackages(path) & later
-        assert not beyond, f"{path.relative_to(SOURCE)} imports from {', '.join(sorted(beyond))}"
+        assert not beyond, (
+            f"{path.relative_to(SOURCE)} imports from {', '.join(sorted(beyond))}"
+        )
 
 
 @pytest.mark.parametrize("subpackage", LIBRARY)
-def test_subpackage_of_the_library_names_no_specimen_floor_or_statement_of_a_study(subpackage):
+def test_subpackage_of_the_library_names_no_specimen_floor_or_statement_of_a_study(
+    subpackage,
+):
     looked_at = 0
     for path in sources(subpackage):
         for node in nodes(path):
@@ -71,7 +75,9 @@ def test_subpackage_of_the_library_names_no_specimen_floor_or_statement_of_a_stu
                 words = {node.value, *re.findall(r"``([^`]+)``", node.value)}
                 known = words & (SPECIMENS | FLOORS)
                 known |= {word for word in words if STATEMENT.fullmatch(word)}
-                assert not known, f"{path.relative_to(SOURCE)}:{node.lineno} names {sorted(known)}"
+                assert not known, (
+                    f"{path.relative_to(SOURCE)}:{node.lineno} names {sorted(known)}"
+                )
                 looked_at += 1
     assert looked_at > 20
 
@@ -86,7 +92,9 @@ def test_the_library_has_no_word_of_the_thesis():
 
 def test_tests_import_neither_tests_nor_benchmarks():
     tests = Path(__file__).parent
-    benchmarks = {path.stem for path in (tests.parent / "benchmarks").glob("*.py")} | {"benchmarks"}
+    benchmarks = {path.stem for path in (tests.parent / "benchmarks").glob("*.py")} | {
+        "benchmarks"
+    }
     for path in [*tests.rglob("*.py"), *(THESIS.parent / "tests").rglob("*.py")]:
         homes = [name.split(".") for name in imported(path)]
         assert not [home for home in homes if home[-1].startswith("test_")], path
@@ -99,9 +107,12 @@ def test_nothing_imports_snakemake():
 
 
 ASKS = re.compile(r"isinstance\([^)]*\b(Block|Stack|Column)\b")
-ROLE = re.compile(r"[a-z0-9_]+_(pedestal|statue|ground|interface)(_(m|s|n|rad|rad_s|g))?")
+ROLE = re.compile(
+    r"[a-z0-9_]+_(pedestal|statue|ground|interface)(_(m|s|n|rad|rad_s|g))?"
+)
 NO_BODY = {
-    *("was_ground", "before_ground", "per_ground"),  # acceleration of the ground, in kernels
+    # acceleration of the ground, in kernels
+    *("was_ground", "before_ground", "per_ground"),
     *("with_pedestal", "with_and_without_pedestal"),  # sides of a comparison
     *("simulated_ground", "shakes_as_ground", "on_ground"),  # places
 }
@@ -128,13 +139,16 @@ def test_no_field_or_column_is_named_after_the_role_of_a_body():
                 names = [node.target.id]
             elif isinstance(node, ast.Constant) and isinstance(node.value, str):
                 names = [node.value]
-            named = [name for name in names if ROLE.fullmatch(name) and name not in NO_BODY]
+            named = [
+                name for name in names if ROLE.fullmatch(name) and name not in NO_BODY
+            ]
             assert not named, f"{path}:{node.lineno} names {named[0]}"
             looked_at += len(names)
     assert looked_at > 1000
 
 
-REPLACED = case_tables(__file__)["replaced"]  # words that no identifier holds, and what says it
+# words that no identifier holds, and what says it
+REPLACED = case_tables(__file__)["replaced"]
 
 NO_NAMES = {"one", "item"}  # what no variable is called: it says nothing of what it is
 
@@ -146,7 +160,9 @@ def bound(path: Path) -> Iterator[tuple[int, str, bool]]:
             yield node.lineno, node.id, True
         elif isinstance(node, (ast.FunctionDef, ast.ClassDef)):
             yield node.lineno, node.name, False
-            for given in getattr(node, "args", ast.arguments()).__dict__.get("args", []):
+            for given in getattr(node, "args", ast.arguments()).__dict__.get(
+                "args", []
+            ):
                 yield given.lineno, given.arg, True
 
 

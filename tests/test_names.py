@@ -65,8 +65,12 @@ def test_names_that_are_taken_show_in_tables_and_are_no_formula(name: str):
 @given(st.lists(HOSTILE, min_size=1, max_size=6), st.lists(HOSTILE, max_size=6))
 def test_no_cell_of_a_csv_file_is_a_formula(names: list[str], titles: list[str]):
     # no table of ours holds what the reader of this test would stumble over
-    names, titles = ([re.sub("[\0\r]", "", text) for text in texts] for texts in (names, titles))
-    table = pd.DataFrame({"name": names, **{title: "-x" for title in titles if title != "name"}})
+    names, titles = (
+        [re.sub("[\0\r]", "", text) for text in texts] for texts in (names, titles)
+    )
+    table = pd.DataFrame(
+        {"name": names, **{title: "-x" for title in titles if title != "name"}}
+    )
     for row in csv.reader(io.StringIO(csv_text(table))):
         for cell in row:
             # what begins as a formula may be a number, and nothing else
@@ -75,7 +79,9 @@ def test_no_cell_of_a_csv_file_is_a_formula(names: list[str], titles: list[str])
 
 
 def test_numbers_and_plain_names_are_written_as_they_are(tmp_path: Path):
-    table = pd.DataFrame({"name": ["P&T1", "-3", "-", None], "change": [-1.5, -0.0, 1e-300, 2.0]})
+    table = pd.DataFrame(
+        {"name": ["P&T1", "-3", "-", None], "change": [-1.5, -0.0, 1e-300, 2.0]}
+    )
     assert csv_text(table) == "name,change\nP&T1,-1.5\n-3,-0.0\n-,1e-300\n,2.0\n"
     write_table(pd.DataFrame({"station": ["=1+1"]}), tmp_path / "t.csv")
     assert (tmp_path / "t.csv").read_text() == "station\n'=1+1\n"
@@ -106,17 +112,24 @@ def test_every_name_is_text_in_a_figure(tmp_path: Path, name: str):
         axes.set_title(name)
         axes.legend()
     save_figure(figure, tmp_path / "f.svg")
-    svg = inline_svg((tmp_path / "f.svg").read_text(encoding="utf-8"), file_name(name), name)
+    svg = inline_svg(
+        (tmp_path / "f.svg").read_text(encoding="utf-8"), file_name(name), name
+    )
     root = ElementTree.fromstring(str(svg))
     assert root.get("aria-label") == name
-    texts = ["".join(item.itertext()) for item in root.iter("{http://www.w3.org/2000/svg}text")]
+    texts = [
+        "".join(item.itertext())
+        for item in root.iter("{http://www.w3.org/2000/svg}text")
+    ]
     assert texts.count(name) == 2
     assert not list(root.iter("{http://www.w3.org/2000/svg}script"))
 
 
 @given(st.lists(HOSTILE, unique=True, max_size=8))
 def test_other_programs_tell_configurations_apart(names: list[str]):
-    made = identifiers((name.encode("utf-8", "replace").decode() for name in names), "_-:")
+    made = identifiers(
+        (name.encode("utf-8", "replace").decode() for name in names), "_-:"
+    )
     assert len(set(made.values())) == len(made)
     for item in made.values():
         assert len(item) <= 75
@@ -140,15 +153,23 @@ TESTS = pd.DataFrame({"pga_g": [0.1, 0.2], "overturned": [0, 1], "event": ["a", 
 @pytest.mark.parametrize(
     "read",
     [
-        lambda folder: read_catalogue(table(folder, "name,event,file\nA,Friuli,a.txt\n")),
-        lambda folder: read_rows(table(folder, "event,value\nA,1\n"), ["earthquake", "value"]),
+        lambda folder: read_catalogue(
+            table(folder, "name,event,file\nA,Friuli,a.txt\n")
+        ),
+        lambda folder: read_rows(
+            table(folder, "event,value\nA,1\n"), ["earthquake", "value"]
+        ),
         lambda _: checked(
             {"table": "t.csv", "columns": {"event": "x"}}, "measured_table", "a.yaml"
         ),
-        lambda _: observations_from_table(TESTS, "pga_g", motion=None, earthquake="earthquake"),
+        lambda _: observations_from_table(
+            TESTS, "pga_g", motion=None, earthquake="earthquake"
+        ),
         lambda _: check_tests(pd.DataFrame({"event": ["a"], "object": ["b"]})),
     ],
 )
 def test_what_has_an_old_name_is_told_the_new_one(tmp_path, read):
-    with pytest.raises(InputError, match=r"event is now called earthquake; rename it\.$"):
+    with pytest.raises(
+        InputError, match=r"event is now called earthquake; rename it\.$"
+    ):
         read(tmp_path)

@@ -32,9 +32,13 @@ def plain(requirement: str) -> str:
 
 def test_version_is_one():
     citation = yaml.safe_load((ROOT / "CITATION.cff").read_text(encoding="utf-8"))
-    assert PROJECT["tool"]["setuptools"]["dynamic"]["version"] == {"attr": "rockfrag.__version__"}
+    assert PROJECT["tool"]["setuptools"]["dynamic"]["version"] == {
+        "attr": "rockfrag.__version__"
+    }
     assert rockfrag.__version__ == citation["version"]
-    thesis = tomllib.loads((ROOT / "thesis" / "pyproject.toml").read_text(encoding="utf-8"))
+    thesis = tomllib.loads(
+        (ROOT / "thesis" / "pyproject.toml").read_text(encoding="utf-8")
+    )
     assert thesis["project"]["version"] == rockfrag.__version__
 
 
@@ -43,13 +47,25 @@ def test_the_wheel_of_the_library_has_no_word_of_the_thesis(tmp_path):
     # what is built leaves files beside the source, which later wheels would hold
     for name in ("pyproject.toml", "README.md", "LICENSE"):
         shutil.copy(ROOT / name, tmp_path)
-    shutil.copytree(ROOT / "src", tmp_path / "src", ignore=shutil.ignore_patterns("__pycache__"))
-    command = [sys.executable, "-m", "pip", "wheel", "--quiet", "--no-deps", "--no-build-isolation"]
+    shutil.copytree(
+        ROOT / "src", tmp_path / "src", ignore=shutil.ignore_patterns("__pycache__")
+    )
+    command = [
+        sys.executable,
+        "-m",
+        "pip",
+        "wheel",
+        "--quiet",
+        "--no-deps",
+        "--no-build-isolation",
+    ]
     subprocess.run([*command, "."], check=True, cwd=tmp_path)
     with zipfile.ZipFile(next(tmp_path.glob("rockfrag-*.whl"))) as wheel:
         assert len(wheel.namelist()) > 300
         for name in wheel.namelist():
-            words = set(re.findall(rb"[a-z]*thesis", name.encode() + wheel.read(name).lower()))
+            words = set(
+                re.findall(rb"[a-z]*thesis", name.encode() + wheel.read(name).lower())
+            )
             assert words <= {b"hypothesis", b"parenthesis"}, name
 
 
@@ -62,7 +78,9 @@ def test_every_dependency_is_pinned():
 
 
 def test_pre_commit_has_the_pinned_versions():
-    hooks = yaml.safe_load((ROOT / ".pre-commit-config.yaml").read_text(encoding="utf-8"))
+    hooks = yaml.safe_load(
+        (ROOT / ".pre-commit-config.yaml").read_text(encoding="utf-8")
+    )
     seen = 0
     for repo in hooks["repos"]:
         name = repo["repo"].rsplit("/", 1)[-1].removesuffix("-pre-commit")
@@ -82,7 +100,9 @@ def test_a_name_that_is_looked_for_at_the_top_is_said_to_be_elsewhere():
 def test_what_is_slow_to_load_is_loaded_only_when_it_is_used():
     names = ", ".join(f"rockfrag{package}" for package in (*SUBPACKAGES, ".cli"))
     heavy = ("numba", "pandas", "obspy", "scipy", "statsmodels", "matplotlib")
-    program = f"import sys, {names}; print([one for one in {heavy} if one in sys.modules])"
+    program = (
+        f"import sys, {names}; print([one for one in {heavy} if one in sys.modules])"
+    )
     assert printed_alone("-c", program) == "[]"
 
 
@@ -94,8 +114,12 @@ def hosted(name: str) -> dict:
 
 
 def test_hosted_checks_and_the_makefile_agree():
-    checks = "".join(path.read_text(encoding="utf-8") for path in WORKFLOWS.glob("*.yml"))
-    targets = set(re.findall(r"^([a-z]+):", (ROOT / "Makefile").read_text(), re.MULTILINE))
+    checks = "".join(
+        path.read_text(encoding="utf-8") for path in WORKFLOWS.glob("*.yml")
+    )
+    targets = set(
+        re.findall(r"^([a-z]+):", (ROOT / "Makefile").read_text(), re.MULTILINE)
+    )
     used = set(re.findall(r"run: make ([a-z]+)", checks))
     assert used <= targets
     assert {"lint", "coverage", "smoke", "docs", "validate", "fuzz", "torture"} <= used
@@ -127,7 +151,9 @@ def test_the_changelog_dates_every_version():
     found = re.findall(r"^## (\S+) - (\d{4}-\d{2}-\d{2})$", text, re.MULTILINE)
     assert len(found) == text.count("\n## ")
     assert found[0][0] == rockfrag.__version__
-    assert [date for _, date in found] == sorted((date for _, date in found), reverse=True)
+    assert [date for _, date in found] == sorted(
+        (date for _, date in found), reverse=True
+    )
 
 
 def test_forms_for_issues_ask_for_something():
@@ -137,7 +163,9 @@ def test_forms_for_issues_ask_for_something():
         content = yaml.safe_load(form.read_text(encoding="utf-8"))
         if form.name != "config.yml":
             assert {"name", "description", "body"} <= set(content)
-            assert any(item.get("validations", {}).get("required") for item in content["body"])
+            assert any(
+                item.get("validations", {}).get("required") for item in content["body"]
+            )
 
 
 def test_what_only_the_owner_can_fill_in_is_listed_and_still_missing():
@@ -167,6 +195,8 @@ def test_what_an_addition_costs_stands_where_the_table_says():
     declared = importlib.import_module("rockfrag.motions.intensity").declared()
     declarations = re.findall(r"^@?intensity_measure\(", source, re.MULTILINE)
     assert len(declarations) == len(declared) > 15
-    states = (ROOT / "src/rockfrag/outcomes/limit_states.py").read_text(encoding="utf-8")
+    states = (ROOT / "src/rockfrag/outcomes/limit_states.py").read_text(
+        encoding="utf-8"
+    )
     known = importlib.import_module("rockfrag.outcomes.limit_states").limit_states()
     assert states.count("\n@limit_state(") == len(known) == 3

@@ -53,9 +53,13 @@ def imported(tree: ast.AST, package: str) -> dict[str, str]:
     names = {}
     for node in ast.walk(tree):
         if isinstance(node, ast.ImportFrom):
-            assert node.level < 2, f"{package}: import from the package itself, or from the whole"
+            assert node.level < 2, (
+                f"{package}: import from the package itself, or from the whole"
+            )
             home = ".".join(filter(None, [package if node.level else "", node.module]))
-            names |= {name.asname or name.name: f"{home}.{name.name}" for name in node.names}
+            names |= {
+                name.asname or name.name: f"{home}.{name.name}" for name in node.names
+            }
         elif isinstance(node, ast.Import):
             names |= {name.asname: name.name for name in node.names if name.asname}
     return names
@@ -67,7 +71,12 @@ def defined(node: ast.stmt) -> list[str]:
         return [node.name]
     if isinstance(node, ast.AnnAssign | ast.Assign):
         targets = node.targets if isinstance(node, ast.Assign) else [node.target]
-        return [n.id for target in targets for n in ast.walk(target) if isinstance(n, ast.Name)]
+        return [
+            n.id
+            for target in targets
+            for n in ast.walk(target)
+            if isinstance(n, ast.Name)
+        ]
     return []
 
 
@@ -75,7 +84,9 @@ def is_registered(node: ast.stmt) -> bool:
     """Whether a decorator, or what makes its value, enters the definition into a table."""
     made_by = [*getattr(node, "decorator_list", ()), getattr(node, "value", None)]
     functions = [one.func if isinstance(one, ast.Call) else one for one in made_by]
-    return any(getattr(one, "attr", getattr(one, "id", "")) in REGISTERING for one in functions)
+    return any(
+        getattr(one, "attr", getattr(one, "id", "")) in REGISTERING for one in functions
+    )
 
 
 class Graph:
@@ -106,13 +117,19 @@ class Graph:
             self.names[full].add(module)
             self._read(full, node)
             if isinstance(node, CLASS):
-                external = any(not self._full(base).startswith("rockfrag") for base in node.bases)
+                external = any(
+                    not self._full(base).startswith("rockfrag") for base in node.bases
+                )
                 for method in node.body:
                     if not isinstance(method, FUNCTION):
                         continue
                     self.known[f"{full}.{method.name}"] = method
                     self._read(f"{full}.{method.name}", method)
-                    if external or method.name.startswith("__") or is_registered(method):
+                    if (
+                        external
+                        or method.name.startswith("__")
+                        or is_registered(method)
+                    ):
                         self.names[full].add(f"{full}.{method.name}")
 
     def _full(self, node: ast.expr) -> str:
@@ -164,7 +181,9 @@ class Graph:
             self.names[reader].add(text.replace(":", "."))
         elif re.fullmatch(r"[\w.\[\], |]{1,200}", text):
             self.names[reader] |= {
-                self.aliases[word] for word in re.findall(r"\w+", text) if word in self.aliases
+                self.aliases[word]
+                for word in re.findall(r"\w+", text)
+                if word in self.aliases
             }
             self.attributes[reader] |= {text} if text.isidentifier() else set()
 
@@ -184,14 +203,21 @@ class Graph:
                 continue
             seen.add(name)
             left |= self.names[name] - seen
-            used |= {name.removeprefix("attribute.")} if name.startswith("attribute.") else set()
+            used |= (
+                {name.removeprefix("attribute.")}
+                if name.startswith("attribute.")
+                else set()
+            )
             used |= self.attributes[name]
             objects |= self.handed_on[name]
             # the module or the class of a name that is reached by a longer one
             left |= {name.rpartition(".")[0]} - seen - {""}
             if not left:
                 left |= {
-                    full for item in used for home, full in methods[item] if home in seen & objects
+                    full
+                    for item in used
+                    for home, full in methods[item]
+                    if home in seen & objects
                 } - seen
         return seen
 
@@ -208,7 +234,9 @@ def exported(known: Iterable[str]) -> Iterator[str]:
             tree = ast.parse(path.read_text(encoding="utf-8"))
             names = imported(tree, package)
             for node in tree.body:
-                if isinstance(node, ast.Assign) and isinstance(node.value, ast.Attribute):
+                if isinstance(node, ast.Assign) and isinstance(
+                    node.value, ast.Attribute
+                ):
                     home = names[ast.unparse(node.value.value)]
                     names[node.value.attr] = f"{home}.{node.value.attr}"
             for full in names.values():
@@ -221,8 +249,14 @@ def started() -> Iterator[str]:
     for file in ("pyproject.toml", "thesis/pyproject.toml"):
         project = tomllib.loads((ROOT / file).read_text(encoding="utf-8"))["project"]
         groups = [project.get("scripts", {}), *project.get("entry-points", {}).values()]
-        yield from (item.replace(":", ".") for group in groups for item in group.values())
-    rules = [path for folder in (ROOT / "workflow", *SOURCES) for path in folder.rglob("*.smk")]
+        yield from (
+            item.replace(":", ".") for group in groups for item in group.values()
+        )
+    rules = [
+        path
+        for folder in (ROOT / "workflow", *SOURCES)
+        for path in folder.rglob("*.smk")
+    ]
     for path in (
         *rules,
         ROOT / "workflow" / "Snakefile",
@@ -231,7 +265,9 @@ def started() -> Iterator[str]:
     ):
         text = path.read_text(encoding="utf-8")
         yield from (item.replace(":", ".") for item in ENTRY.findall(text))
-        for home, names in re.findall(r"^ *from (rockfrag[\w.]*) import (.*)$", text, re.MULTILINE):
+        for home, names in re.findall(
+            r"^ *from (rockfrag[\w.]*) import (.*)$", text, re.MULTILINE
+        ):
             yield from (f"{home}.{name.strip()}" for name in names.split(","))
         # what the rules ask of the study
         yield from (f"attribute.{name}" for name in re.findall(r"\bSTUDY\.(\w+)", text))
@@ -240,7 +276,8 @@ def started() -> Iterator[str]:
         yield from (name for test in asked if "__name__" in ast.unparse(test))
     for path in (ROOT / "src").rglob("*.j2"):
         yield from (
-            f"attribute.{name}" for name in re.findall(r"\.(\w+)", path.read_text(encoding="utf-8"))
+            f"attribute.{name}"
+            for name in re.findall(r"\.(\w+)", path.read_text(encoding="utf-8"))
         )
     # found by their names by Snakemake
     yield "snakemake_logger_plugin_rockfrag.LogHandler"
@@ -251,5 +288,7 @@ def test_every_definition_is_reached():
     graph = Graph()
     doors = filter(DOOR.fullmatch, graph.known)
     seen = graph.reached({*exported(graph.known), *started(), *doors})
-    left = [full for full in graph.known if full not in seen and not hasattr(builtins, full)]
+    left = [
+        full for full in graph.known if full not in seen and not hasattr(builtins, full)
+    ]
     assert not left, "\n".join(sorted(left))

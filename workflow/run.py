@@ -53,7 +53,9 @@ def main(study_file: str, arguments: Sequence[str]) -> int:
         print("stopped; the same command takes it up again", file=sys.stderr)
         return 1
     except Exception as error:
-        print(error if isinstance(error, InputError) else in_words(error), file=sys.stderr)
+        print(
+            error if isinstance(error, InputError) else in_words(error), file=sys.stderr
+        )
         return 2
 
 
@@ -84,9 +86,25 @@ def _snakemake(study_file: str, arguments: Sequence[str]) -> int:
 
     # our own lock knows whether its owner lives, Snakemake's does not; for some ten jobs the best
     # schedule takes longer to find than it saves
-    ours = ("--nolock", "--rerun-incomplete", "--workflow-profile", "none", "--scheduler", "greedy")
+    ours = (
+        "--nolock",
+        "--rerun-incomplete",
+        "--workflow-profile",
+        "none",
+        "--scheduler",
+        "greedy",
+    )
     try:
-        snakemake(["--snakefile", str(SNAKEFILE), "--configfile", study_file, *ours, *arguments])
+        snakemake(
+            [
+                "--snakefile",
+                str(SNAKEFILE),
+                "--configfile",
+                study_file,
+                *ours,
+                *arguments,
+            ]
+        )
     except SystemExit as end:
         return end.code if isinstance(end.code, int) else 1
     return 0

@@ -26,7 +26,14 @@ found = find_thresholds(
 figure, axes = plt.subplots(figsize=(5, 3.4))
 for number, period in enumerate(periods):
     rows = found[found["motion"] == number]
-    axes.plot(heights, rows["first_overturning_pga_g"], "o-", label=f"one sine of {period:g} s")
+    axes.plot(
+        heights,
+        rows["first_overturning_pga_g"],
+        "o-",
+        label=f"one sine of {period:g} s",
+    )
 axes.axhline(0.25, color="0.4", linestyle="--", label="starts to rock, b/h = 0.25 g")
-axes.set(xlabel="height of the block [m]", ylabel="least acceleration that overturns [g]")
+axes.set(
+    xlabel="height of the block [m]", ylabel="least acceleration that overturns [g]"
+)
 axes.legend(fontsize=8)

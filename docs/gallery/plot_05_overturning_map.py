@@ -22,12 +22,20 @@ block = Block(width=0.10, height=1.20, mass=30.0)
 p, alpha = block.frequency(), block.alpha
 ratios = np.linspace(1.0, 8.0, 36)  # ω / p
 levels = np.linspace(1.0, 14.0, 53)  # amplitude over α g
-motions = [one_sine(alpha * 9.81, 2 * np.pi / (ratio * p), dt=0.005) for ratio in ratios]
+motions = [
+    one_sine(alpha * 9.81, 2 * np.pi / (ratio * p), dt=0.005) for ratio in ratios
+]
 fallen = overturns(block, motions, scales=levels, linear=True).overturned[0]
 
 figure, axes = plt.subplots(figsize=(5, 3.6))
-axes.pcolormesh(ratios, levels, fallen.T, cmap="Blues", vmin=0, vmax=1.5, shading="nearest")
+axes.pcolormesh(
+    ratios, levels, fallen.T, cmap="Blues", vmin=0, vmax=1.5, shading="nearest"
+)
 line = np.array([one_sine_pulse(ratio * p, p) for ratio in ratios])
 axes.plot(ratios, line, color="#D55E00", label="no impact, closed form")
-axes.set(xlabel="frequency of the pulse, ω/p [-]", ylabel="amplitude, a/(α g) [-]", ylim=(1, 14))
+axes.set(
+    xlabel="frequency of the pulse, ω/p [-]",
+    ylabel="amplitude, a/(α g) [-]",
+    ylim=(1, 14),
+)
 axes.legend(loc="upper left", fontsize=8)

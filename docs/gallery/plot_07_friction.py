@@ -16,7 +16,9 @@ frictions = np.linspace(0.1, 0.9, 25)
 slenderness = np.linspace(1.2, 6.0, 25)
 motion = one_sine(amplitude=9.81, period=0.6)
 bodies = [Block(1.0 / h, 1.0, 200.0) for h in slenderness for _ in frictions]
-found = overturns(bodies, motion, friction=[float(mu) for _ in slenderness for mu in frictions])
+found = overturns(
+    bodies, motion, friction=[float(mu) for _ in slenderness for mu in frictions]
+)
 shape = (slenderness.size, frictions.size)
 rocked = (found.peak_rotation[:, 0, 0, 0] > 1e-4).reshape(shape)
 slid = (found.peak_slip[:, 0, 0, 0] > 1e-4).reshape(shape)
@@ -27,11 +29,17 @@ fell = found.overturned[:, 0, 0].reshape(shape)
 
 kind = np.where(fell, 3, np.where(rocked & slid, 2, np.where(rocked, 1, 0)))
 figure, axes = plt.subplots(figsize=(5.4, 3.6))
-colours = plt.matplotlib.colors.ListedColormap(["#E69F00", "#56B4E9", "#009E73", "#444444"])
+colours = plt.matplotlib.colors.ListedColormap(
+    ["#E69F00", "#56B4E9", "#009E73", "#444444"]
+)
 mesh = axes.pcolormesh(
     frictions, slenderness, kind, cmap=colours, vmin=-0.5, vmax=3.5, shading="nearest"
 )
 axes.plot(frictions, 1 / frictions, "k--", linewidth=1)
-axes.set(xlabel="coefficient of friction [-]", ylabel="height over width [-]", ylim=(1.2, 6.0))
+axes.set(
+    xlabel="coefficient of friction [-]",
+    ylabel="height over width [-]",
+    ylim=(1.2, 6.0),
+)
 bar = figure.colorbar(mesh, ticks=range(4))
 bar.ax.set_yticklabels(["slides", "rocks", "rocks and slides", "overturns"], fontsize=8)

@@ -10,7 +10,12 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 from rockfrag import response_spectrum
-from rockfrag.building import ModalDamping, ShearBuilding, floor_motions, stiffnesses_for_period
+from rockfrag.building import (
+    ModalDamping,
+    ShearBuilding,
+    floor_motions,
+    stiffnesses_for_period,
+)
 from rockfrag.motions import evolutionary, scale_to_pga
 
 masses, heights = (300e3,) * 4, (3.5,) * 4
@@ -23,7 +28,13 @@ building = ShearBuilding(
 )
 ground = scale_to_pga(
     evolutionary(
-        3, arias_m_s=1.0, d5_95_s=8.0, mid_s=4.0, mid_hz=2.5, slope_hz_s=-0.1, filter_damping=0.3
+        3,
+        arias_m_s=1.0,
+        d5_95_s=8.0,
+        mid_s=4.0,
+        mid_hz=2.5,
+        slope_hz_s=-0.1,
+        filter_damping=0.3,
     ),
     0.25,
 )
@@ -41,7 +52,10 @@ for motion, colour in zip(motions, ("#0072B2", "#E69F00", "#D55E00"), strict=Tru
     )
     spectrum = response_spectrum(motion, periods)
     right.semilogx(
-        periods, spectrum.acceleration / 9.81, color=colour, label=motion.metadata["floor"]
+        periods,
+        spectrum.acceleration / 9.81,
+        color=colour,
+        label=motion.metadata["floor"],
     )
 left.set(xlabel="time [s]", ylabel="acceleration [g]", xlim=(0, 15))
 right.set(xlabel="period [s]", ylabel="spectral acceleration [g]")

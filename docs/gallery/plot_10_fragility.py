@@ -14,7 +14,13 @@ from rockfrag.fragility import Observations, interval_over_motions
 from rockfrag.motions import evolutionary, scale_to_pgv
 
 statue = Block(width=0.35, height=1.20, mass=180.0)
-noise = {"arias_m_s": 1.0, "d5_95_s": 8.0, "mid_s": 4.0, "slope_hz_s": -0.05, "filter_damping": 0.3}
+noise = {
+    "arias_m_s": 1.0,
+    "d5_95_s": 8.0,
+    "mid_s": 4.0,
+    "slope_hz_s": -0.05,
+    "filter_damping": 0.3,
+}
 draw = np.random.default_rng(1)
 motions = [
     scale_to_pgv(evolutionary(seed, mid_hz=draw.uniform(1.0, 4.0), **noise), 100.0)
@@ -45,10 +51,14 @@ print(
 figure, axes = plt.subplots(figsize=(5, 3.4))
 at = np.geomspace(10, 250, 200)
 axes.plot(at, fit.probability(at), color="#0072B2", label="lognormal fit")
-axes.axvspan(*limits.theta, color="#56B4E9", alpha=0.35, label="90 % interval of the median")
+axes.axvspan(
+    *limits.theta, color="#56B4E9", alpha=0.35, label="90 % interval of the median"
+)
 axes.plot(pgv, fallen.mean(axis=0), "ko", markersize=4, label="fraction of 60 motions")
 axes.set(
-    xlabel="peak ground velocity [cm/s]", ylabel="probability of overturning [-]", xscale="log"
+    xlabel="peak ground velocity [cm/s]",
+    ylabel="probability of overturning [-]",
+    xscale="log",
 )
 axes.set_xticks([10, 20, 50, 100, 200], ["10", "20", "50", "100", "200"])
 axes.minorticks_off()

@@ -16,7 +16,9 @@ from rockfrag.motions import evolutionary
 noise = {"d5_95_s": 8.0, "mid_s": 4.0, "slope_hz_s": -0.05, "filter_damping": 0.3}
 first = evolutionary(11, arias_m_s=1.0, mid_hz=1.2, **noise)
 second = evolutionary(12, arias_m_s=0.5, mid_hz=2.0, **noise)
-found = worst_direction(Block(width=0.35, height=1.20, mass=180.0), first, second, highest=6.0)
+found = worst_direction(
+    Block(width=0.35, height=1.20, mass=180.0), first, second, highest=6.0
+)
 
 table = found.table
 figure, axes = plt.subplots(figsize=(4, 4), subplot_kw={"projection": "polar"})

@@ -25,7 +25,10 @@ with tempfile.TemporaryDirectory() as folder:
 print(f"mass {shape.mass:.0f} kg, centre of gravity at height {shape.cg_height:.2f} m")
 
 directions = np.arange(0, 361, 15)
-angles = [np.degrees(shape.block(float(d), tolerance=0.002).critical_angle(+1)) for d in directions]
+angles = [
+    np.degrees(shape.block(float(d), tolerance=0.002).critical_angle(+1))
+    for d in directions
+]
 
 figure, axes = plt.subplots(figsize=(4, 4), subplot_kw={"projection": "polar"})
 axes.plot(np.radians(directions), angles, "o-", markersize=3)

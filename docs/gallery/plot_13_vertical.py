@@ -13,9 +13,20 @@ from rockfrag import Block, overturns
 from rockfrag.motions import evolutionary, scale_to_pga
 
 statue = Block(width=0.35, height=1.20, mass=180.0)
-noise = {"arias_m_s": 1.0, "d5_95_s": 8.0, "mid_s": 4.0, "slope_hz_s": -0.05, "filter_damping": 0.3}
-flat = [scale_to_pga(evolutionary(seed, mid_hz=1.5, **noise), 1.0) for seed in range(30)]
-up = [scale_to_pga(evolutionary(100 + seed, mid_hz=5.0, **noise), 0.6) for seed in range(30)]
+noise = {
+    "arias_m_s": 1.0,
+    "d5_95_s": 8.0,
+    "mid_s": 4.0,
+    "slope_hz_s": -0.05,
+    "filter_damping": 0.3,
+}
+flat = [
+    scale_to_pga(evolutionary(seed, mid_hz=1.5, **noise), 1.0) for seed in range(30)
+]
+up = [
+    scale_to_pga(evolutionary(100 + seed, mid_hz=5.0, **noise), 0.6)
+    for seed in range(30)
+]
 count = min(motion.acceleration.size for motion in (*flat, *up))
 horizontal = [motion.acceleration[:count] for motion in flat]
 vertical = [motion.acceleration[:count] for motion in up]

@@ -21,9 +21,12 @@ motions = [
     )
     for seed in range(100)
 ]  # fmt: skip
-fallen = overturns(Block(width=0.35, height=1.20, mass=180.0), motions).overturned[0, :, 0]
+fallen = overturns(Block(width=0.35, height=1.20, mass=180.0), motions).overturned[
+    0, :, 0
+]
 measures = {
-    "peak ground acceleration [g]": np.array([pga(motion) for motion in motions]) / 9.81,
+    "peak ground acceleration [g]": np.array([pga(motion) for motion in motions])
+    / 9.81,
     "peak ground velocity [cm/s]": 100 * np.array([pgv(motion) for motion in motions]),
 }
 
@@ -41,4 +44,6 @@ for panel, (name, values) in zip(panels, measures.items(), strict=True):
         )
     panel.set(xlabel=name, yticks=[0, 1], yticklabels=["stands", "overturns"])
     outcomes = Observations(values, fallen.astype(float), np.ones(100), names, names)
-    panel.set_title(f"area under the ROC curve {area_under_curve(outcomes):.2f}", fontsize=9)
+    panel.set_title(
+        f"area under the ROC curve {area_under_curve(outcomes):.2f}", fontsize=9
+    )

@@ -23,11 +23,15 @@ draw = np.random.default_rng(2)
 pga = draw.uniform(0.1, 1.2, 300)
 fell = draw.random(300) < norm.cdf(np.log(pga / 0.5) / 0.4)
 names = np.array([f"test {number}" for number in range(300)], dtype=object)
-fit = fit_lognormal(Observations(pga, fell.astype(float), np.ones(300), names, names, "PGA", "g"))
+fit = fit_lognormal(
+    Observations(pga, fell.astype(float), np.ones(300), names, names, "PGA", "g")
+)
 levels = np.array([0.05, 0.1, 0.2, 0.4, 0.8, 1.6])
 rates = np.array([2e-2, 7e-3, 1.8e-3, 3.2e-4, 3.5e-5, 2e-6])
 shaking = np.geomspace(0.05, 1.6, 100)
-rate = toppling_rate(shaking, fit.probability(shaking), HazardCurve(PGA, levels, rates, "made up"))
+rate = toppling_rate(
+    shaking, fit.probability(shaking), HazardCurve(PGA, levels, rates, "made up")
+)
 print(f"{rate:.2e} a year, {100 * probability_in(rate, 50.0):.1f} % in 50 years")
 
 edges = np.geomspace(0.05, 1.6, 26)
@@ -38,5 +42,11 @@ part = -np.diff(exceeded) * fit.probability(middle)
 figure, (left, right) = plt.subplots(1, 2, figsize=(7, 3))
 left.loglog(levels, rates, "o-", color="#0072B2")
 left.set(xlabel="peak ground acceleration [g]", ylabel="exceeded, times a year")
-right.bar(middle, 100 * part / part.sum(), width=np.diff(edges), color="#E69F00", edgecolor="white")
+right.bar(
+    middle,
+    100 * part / part.sum(),
+    width=np.diff(edges),
+    color="#E69F00",
+    edgecolor="white",
+)
 right.set(xlabel="peak ground acceleration [g]", ylabel="part of the yearly rate [%]")

@@ -21,14 +21,19 @@ PGV = np.geomspace(25, 200, 9)
 
 def outline(block: Block, centre: tuple[float, float], angle: float) -> np.ndarray:
     """Corners of a block turned clockwise by an angle about its centre [m]."""
-    corners = np.array([(-1, -1), (1, -1), (1, 1), (-1, 1)]) * (block.width / 2, block.height / 2)
+    corners = np.array([(-1, -1), (1, -1), (1, 1), (-1, 1)]) * (
+        block.width / 2,
+        block.height / 2,
+    )
     turn = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
     return corners @ turn + centre
 
 
 def draw_rocking(axes: plt.Axes) -> None:
     """Instants of the response to a near-fault pulse, side by side."""
-    response = simulate(Stack(PEDESTAL, STATUE), mavroeidis_papageorgiou(0.75, 1.2, 1.5, dt=0.01))
+    response = simulate(
+        Stack(PEDESTAL, STATUE), mavroeidis_papageorgiou(0.75, 1.2, 1.5, dt=0.01)
+    )
     first = response.time[np.abs(response.theta[:, 1]) > 0.02][0]
     for place, time in enumerate(first + np.array([-0.2, 0.1, 0.35, 0.6, 0.85])):
         i = int(np.searchsorted(response.time, time))
@@ -41,7 +46,9 @@ def draw_rocking(axes: plt.Axes) -> None:
                     edgecolor="white",
                 )
             )
-        axes.text(1.15 * place, -0.16, f"{time - first:+.2f} s", ha="center", fontsize=8)
+        axes.text(
+            1.15 * place, -0.16, f"{time - first:+.2f} s", ha="center", fontsize=8
+        )
     axes.axhline(0, color="black", linewidth=1)
     axes.set(xlim=(-0.6, 5.6), ylim=(-0.35, 2.5), aspect="equal")
     axes.axis("off")
@@ -61,8 +68,12 @@ def draw_fragility(axes: plt.Axes) -> None:
         scale_to_pgv(evolutionary(seed, mid_hz=draw.uniform(1.0, 4.0), **noise), 100.0)
         for seed in range(40)
     ]
-    fallen = overturns([STATUE, Stack(PEDESTAL, STATUE)], motions, scales=PGV / 100).overturned
-    names = np.repeat([f"motion {number}" for number in range(40)], PGV.size).astype(object)
+    fallen = overturns(
+        [STATUE, Stack(PEDESTAL, STATUE)], motions, scales=PGV / 100
+    ).overturned
+    names = np.repeat([f"motion {number}" for number in range(40)], PGV.size).astype(
+        object
+    )
     at = np.geomspace(25, 200, 200)
     for outcomes, label, colour, mark in (
         (fallen[0], "alone", ORANGE, "o"),
@@ -87,7 +98,9 @@ def main() -> None:
     )
     draw_rocking(left)
     draw_fragility(right)
-    figure.savefig(Path(__file__).with_name("front.png"), dpi=160, metadata={"Software": None})
+    figure.savefig(
+        Path(__file__).with_name("front.png"), dpi=160, metadata={"Software": None}
+    )
 
 
 if __name__ == "__main__":

@@ -18,7 +18,10 @@ from rockfrag.assess.hazard.curve import PGA
 from rockfrag.assess.motions import motion_set
 from rockfrag.assess.request import make_request
 
-BEGIN, END = "<!-- written by docs/tables/pga_alone.py -->", "<!-- end of pga_alone.py -->"
+BEGIN, END = (
+    "<!-- written by docs/tables/pga_alone.py -->",
+    "<!-- end of pga_alone.py -->",
+)
 
 
 def figures() -> dict[str, list[list[float]]]:
@@ -26,7 +29,9 @@ def figures() -> dict[str, list[list[float]]]:
     found = {}
     for name, about in objects().items():
         request = make_request(about, "table")
-        motions = motion_set(request.records, request.place, ROOT / "resources" / "records")
+        motions = motion_set(
+            request.records, request.place, ROOT / "resources" / "records"
+        )
         found[name] = []
         for pga, _ in HAZARDS.values():
             asked = replace(request, hazard=(curve(PGA, pga),))
@@ -35,7 +40,9 @@ def figures() -> dict[str, list[list[float]]]:
     return found
 
 
-def table(before: dict[str, list[list[float]]], after: dict[str, list[list[float]]]) -> str:
+def table(
+    before: dict[str, list[list[float]]], after: dict[str, list[list[float]]]
+) -> str:
     """The table in Markdown, and the sentence below it."""
     titles = [f"{name}, {when}" for name in HAZARDS for when in ("0.1.0", "now")]
     lines = [f"| {' | '.join(['object', *titles])} |", f"|{'---|' * (1 + len(titles))}"]
@@ -44,7 +51,9 @@ def table(before: dict[str, list[list[float]]], after: dict[str, list[list[float
         cells = []
         for pair in zip(before[name], now, strict=True):
             for value, low, high in pair:
-                cells.append(f"{100 * value:.2g} % (× {high / value:.2g}, ÷ {value / low:.2g})")
+                cells.append(
+                    f"{100 * value:.2g} % (× {high / value:.2g}, ÷ {value / low:.2g})"
+                )
             old, new = (math.log(high / low) for _, low, high in pair)
             widths.append(new / old)
         lines.append(f"| {' | '.join([name, *cells])} |")

@@ -35,7 +35,9 @@ def curve(measure: IntensityMeasure, level: float) -> HazardCurve:
 
 def objects() -> dict[str, dict[str, object]]:
     """Ten objects, alone and on pedestals, as config/rules-of-thumb.yaml has them."""
-    given = yaml.safe_load((ROOT / "config" / "rules-of-thumb.yaml").read_text())["objects"]
+    given = yaml.safe_load((ROOT / "config" / "rules-of-thumb.yaml").read_text())[
+        "objects"
+    ]
     return {about.pop("name"): about for about in given}
 
 
@@ -47,7 +49,9 @@ def row_of(about: dict[str, object], records: Path) -> list[tuple[Estimate, Esti
     for pga, pgv in HAZARDS.values():
         curves = curve(PGA, pga), curve(PGV, pgv)
         alone, both = (
-            assess_with(replace(request, hazard=curves[:count]), motions, brief=True).probability
+            assess_with(
+                replace(request, hazard=curves[:count]), motions, brief=True
+            ).probability
             for count in (1, 2)
         )
         found.append((alone, both))
@@ -72,14 +76,18 @@ def line_of(name: str, pairs: list[tuple[Estimate, Estimate]]) -> str:
 
 def table(records: Path) -> str:
     """The table in Markdown, and the sentence below it."""
-    titles = [f"{name}, {what}" for name in HAZARDS for what in ("PGA alone", "PGA and PGV")]
+    titles = [
+        f"{name}, {what}" for name in HAZARDS for what in ("PGA alone", "PGA and PGV")
+    ]
     lines = [f"| {' | '.join(['object', *titles])} |", f"|{'---|' * (1 + len(titles))}"]
     pairs = []
     for name, about in objects().items():
         row = row_of(about, records)
         lines.append(line_of(name, row))
         pairs += row
-    sites = "; ".join(f"{name}: {pga} g and {pgv:g} cm/s" for name, (pga, pgv) in HAZARDS.items())
+    sites = "; ".join(
+        f"{name}: {pga} g and {pgv:g} cm/s" for name, (pga, pgv) in HAZARDS.items()
+    )
     lines += [
         "",
         "Probability of toppling in 50 years with its 90 % interval, for the ten objects of "
@@ -95,7 +103,9 @@ def main() -> None:
     text = PAGE.read_text()
     before, rest = text.split(BEGIN)
     after = rest.split(END)[1]
-    PAGE.write_text(f"{before}{BEGIN}\n\n{table(ROOT / 'resources' / 'records')}\n\n{END}{after}")
+    PAGE.write_text(
+        f"{before}{BEGIN}\n\n{table(ROOT / 'resources' / 'records')}\n\n{END}{after}"
+    )
 
 
 if __name__ == "__main__":

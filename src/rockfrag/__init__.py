@@ -34,7 +34,16 @@ __version__ = "0.2.0"
 
 _find, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)
 _SUBPACKAGES = (
-    *("records", "motions", "building", "system", "outcomes", "rocking", "shaketable", "fragility"),
+    *(
+        "records",
+        "motions",
+        "building",
+        "system",
+        "outcomes",
+        "rocking",
+        "shaketable",
+        "fragility",
+    ),
     *("pedestal", "assess"),
 )
 

@@ -10,24 +10,38 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from rockfrag import __version__
-from rockfrag.assess.commands import add_app_command, add_assess_commands, add_records_option
+from rockfrag.assess.commands import (
+    add_app_command,
+    add_assess_commands,
+    add_records_option,
+)
 from rockfrag.errors import InputError, errors_of
 from rockfrag.record_commands import add_record_commands, read_told
-from rockfrag.units import GRAVITY, STONE, check_density, peak_warning, quantity, size_warning
+from rockfrag.units import (
+    GRAVITY,
+    STONE,
+    check_density,
+    peak_warning,
+    quantity,
+    size_warning,
+)
 
 if TYPE_CHECKING:
     from rockfrag.records.motion import Motion
     from rockfrag.rocking.options import FrictionInput
     from rockfrag.system.blocks import Block, Body
 
-MOST_CONTACT_EVENTS = 30  # lines of the pattern history that are printed unless all are asked for
+# lines of the pattern history that are printed unless all are asked for
+MOST_CONTACT_EVENTS = 30
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command line; return 0, 1 if a file could not be read, 2 if an input is not usable."""
     with warnings.catch_warnings():
         # a warning is a sentence, without the line of code that gave it
-        warnings.showwarning = lambda said, *_: print(f"warning: {said}", file=sys.stderr)
+        warnings.showwarning = lambda said, *_: print(
+            f"warning: {said}", file=sys.stderr
+        )
         try:
             options = make_parser().parse_args(arguments)
             status = int(options.run(options))
@@ -47,7 +61,9 @@ def make_parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
         prog="rockfrag", description="Rocking and overturning of free-standing objects."
     )
-    parser.add_argument("--version", action="version", version=f"rockfrag {__version__}")
+    parser.add_argument(
+        "--version", action="version", version=f"rockfrag {__version__}"
+    )
     commands = parser.add_subparsers(required=True, metavar="COMMAND")
 
     add_assess_commands(commands)
@@ -57,29 +73,43 @@ def make_parser() -> argparse.ArgumentParser:
 
     command = commands.add_parser("simulate", help="shake one body by one record")
     _add_case(command)
-    command.add_argument("--pga", type=float, metavar="G", help="scale the record to this peak [g]")
-    command.add_argument("--restitution", type=float, help="measured ratio of angular velocities")
+    command.add_argument(
+        "--pga", type=float, metavar="G", help="scale the record to this peak [g]"
+    )
+    command.add_argument(
+        "--restitution", type=float, help="measured ratio of angular velocities"
+    )
     command.add_argument(
         "--friction", nargs="+", type=float, metavar="MU",
         help="coefficient of friction of all contacts, or of each from the ground up",
     )  # fmt: skip
     words = "file with the vertical component of the record"
     command.add_argument("--vertical", metavar="RECORD", help=words)
-    command.add_argument("--plot", metavar="IMAGE", help="draw the response, as .png or .svg")
+    command.add_argument(
+        "--plot", metavar="IMAGE", help="draw the response, as .png or .svg"
+    )
     words = "print the whole history of rocking modes"
     command.add_argument("--all-contact-events", action="store_true", help=words)
     command.set_defaults(run=_simulate)
 
-    words = "write a page in which one body rocks under one record, live, in any browser"
+    words = (
+        "write a page in which one body rocks under one record, live, in any browser"
+    )
     play = commands.add_parser("play", help=words)
     _add_case(play)
     words = "where to write it, as .html"
     play.add_argument("--output", metavar="PAGE", default="rocking.html", help=words)
     play.set_defaults(run=_play)
 
-    check = commands.add_parser("check-config", help="check the configuration of a study")
-    check.add_argument("file", metavar="FILE", help="configuration, such as config/config.yaml")
-    check.add_argument("--quiet", action="store_true", help="say only what is wrong or doubtful")
+    check = commands.add_parser(
+        "check-config", help="check the configuration of a study"
+    )
+    check.add_argument(
+        "file", metavar="FILE", help="configuration, such as config/config.yaml"
+    )
+    check.add_argument(
+        "--quiet", action="store_true", help="say only what is wrong or doubtful"
+    )
     check.set_defaults(run=_check_config)
     return parser
 
@@ -100,10 +130,14 @@ def _add_case(parser: argparse.ArgumentParser) -> None:
         "--second", metavar="RECORD",
         help="file with the second horizontal component: the body then moves in space, with --depth or --round",
     )  # fmt: skip
-    parser.add_argument("--depth", metavar="SIZE", help="side of the base across its width")
+    parser.add_argument(
+        "--depth", metavar="SIZE", help="side of the base across its width"
+    )
     parser.add_argument("--round", action="store_true", help="the base is round")
     parser.add_argument("--unit", help="unit of a record that does not state its own")
-    parser.add_argument("--dt", type=float, help="sampling interval [s] of a record without one")
+    parser.add_argument(
+        "--dt", type=float, help="sampling interval [s] of a record without one"
+    )
     parser.add_argument("--channel", help="channel, where the record has several")
 
 
@@ -117,7 +151,9 @@ def _add_constrain(commands: Any) -> None:
     parser.add_argument("file", help="the site, such as site.yaml")
     words = "where page, JSON and tables are written"
     parser.add_argument("--output", metavar="FOLDER", default="constrained", help=words)
-    add_records_option(parser, "folder of fetched records, for objects that are simulated")
+    add_records_option(
+        parser, "folder of fetched records, for objects that are simulated"
+    )
     parser.add_argument("--json", action="store_true", help="print the answer as JSON")
     parser.set_defaults(run=_constrain)
 
@@ -130,7 +166,9 @@ def _simulate(options: argparse.Namespace) -> int:
     from rockfrag.sentences import environment
 
     if options.plot is not None and not options.plot.endswith((".png", ".svg")):
-        raise InputError(f"--plot: expected a name that ends in .png or .svg, got {options.plot}.")
+        raise InputError(
+            f"--plot: expected a name that ends in .png or .svg, got {options.plot}."
+        )
     body, motion = _case(options)
     factor = _factor(options, motion)
     scaled = scale(motion, factor)
@@ -139,14 +177,21 @@ def _simulate(options: argparse.Namespace) -> int:
     if restitution is not None and options.pedestal:
         restitution = (restitution,) * len(body.blocks)
     told = {"restitution": restitution, "friction": _friction(options)}
-    says: Any = environment("rockfrag").get_template("simulate.j2", globals={"math": math}).module
+    says: Any = (
+        environment("rockfrag")
+        .get_template("simulate.j2", globals={"math": math})
+        .module
+    )
     response: Any
     if options.second is not None:
         block, components = _case_in_space(options, body, motion, options.vertical)
         components = [scale(component, factor) for component in components]
         response = simulate(block, GroundMotion(*components), **told)
         peaks = [component.pga / GRAVITY for component in components]
-        title, words = motion.name, says.in_space(options.record, peaks, response.outcome)
+        title, words = (
+            motion.name,
+            says.in_space(options.record, peaks, response.outcome),
+        )
     else:
         up = None
         if options.vertical is not None:
@@ -154,7 +199,9 @@ def _simulate(options: argparse.Namespace) -> int:
         with warnings.catch_warnings():
             # what `simulate` doubts of the acceleration has been said
             warnings.simplefilter("ignore", UserWarning)
-            response = simulate(body, scaled.acceleration, motion.dt, vertical=up, **told)
+            response = simulate(
+                body, scaled.acceleration, motion.dt, vertical=up, **told
+            )
         peak = scaled.pga / GRAVITY
         most = sys.maxsize if options.all_contact_events else MOST_CONTACT_EVENTS
         title, loose = f"{motion.name}, peak {peak:.3f} g", options.friction is not None
@@ -198,18 +245,27 @@ def _case(options: argparse.Namespace) -> "tuple[Body, Motion]":
 
     based = options.depth is not None or options.round
     if based and options.second is None:
-        raise InputError("--depth and --round are of a body in space; give --second as well.")
+        raise InputError(
+            "--depth and --round are of a body in space; give --second as well."
+        )
     if not based and options.second is not None:
-        raise InputError("--second: a body in space has --depth or is --round; give either.")
+        raise InputError(
+            "--second: a body in space has --depth or is --round; give either."
+        )
     if based and options.pedestal:
-        raise InputError("--second: a body in space stands on the ground; leave out --pedestal.")
+        raise InputError(
+            "--second: a body in space stands on the ground; leave out --pedestal."
+        )
     below = [_block("--pedestal", size) for size in reversed(options.pedestal or [])]
     body = stacked([*below, _block("--body", options.body)])
     return body, read_told(options.record, options, options.channel)
 
 
 def _case_in_space(
-    options: argparse.Namespace, body: "Body", first: "Motion", vertical: str | None = None
+    options: argparse.Namespace,
+    body: "Body",
+    first: "Motion",
+    vertical: str | None = None,
 ) -> "tuple[Block, list[Motion]]":
     """Return the body in space and the components of its motion, at the same times, that the options tell."""
     from rockfrag.motions.rotation import common_time
@@ -227,7 +283,9 @@ def _play(options: argparse.Namespace) -> int:
     from rockfrag.report.play_page import write_play_page
 
     if not options.output.endswith(".html"):
-        raise InputError(f"--output: expected a name that ends in .html, got {options.output}.")
+        raise InputError(
+            f"--output: expected a name that ends in .html, got {options.output}."
+        )
     body, motion = _case(options)
     _warn_of_unit(options.record, motion.pga, body)
     if options.second is None:
@@ -250,7 +308,11 @@ def _block(option: str, given: Sequence[str]) -> "Block":
                 f"expected width, height and, if known, mass, such as 35cm 120cm 180kg; got {' '.join(given)}."
             )
         width, height = (quantity(text, "m", "m") for text in given[:2])
-        mass = quantity(given[2], "kg", "kg") if len(given) == 3 else STONE * width**2 * height
+        mass = (
+            quantity(given[2], "kg", "kg")
+            if len(given) == 3
+            else STONE * width**2 * height
+        )
         for name, value in (("width", width), ("height", height), ("mass", mass)):
             positive_number(name, value)
         check_density(width, height, mass)

@@ -151,14 +151,21 @@ def _direction(up: float, up_low: float, x: float, side: float) -> float:
     return math.copysign(angle + low, side)
 
 
-def _octant(small: float, small_low: float, big: float, big_low: float) -> tuple[float, float]:
+def _octant(
+    small: float, small_low: float, big: float, big_low: float
+) -> tuple[float, float]:
     """Arc tangent of small / big, from 0 to π/4, as a sum of two."""
     if big == 0.0:
         return 0.0, 0.0
     if big == math.inf:
         return (_ARC[8], _ARC_LOW[8]) if small == math.inf else (0.0, 0.0)
     if big < _TINY:
-        small, small_low, big, big_low = small * _UP, small_low * _UP, big * _UP, big_low * _UP
+        small, small_low, big, big_low = (
+            small * _UP,
+            small_low * _UP,
+            big * _UP,
+            big_low * _UP,
+        )
     if small < big * _NOTHING:
         return small / big, 0.0
     if big > _HUGE:
@@ -205,5 +212,9 @@ def hypot(x: float, y: float) -> float:
         excess = big * (2.0 * over - big) + (over - 2.0 * (big - small)) * over
     else:
         over = length - big
-        excess = 2.0 * over * (big - 2.0 * small) + (4.0 * over - small) * small + over * over
+        excess = (
+            2.0 * over * (big - 2.0 * small)
+            + (4.0 * over - small) * small
+            + over * over
+        )
     return (length - excess / (2.0 * length)) * scale

@@ -3,7 +3,8 @@
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-LONGEST_MESSAGE = 500  # characters: what a file holds may be quoted and be of any length
+# characters: what a file holds may be quoted and be of any length
+LONGEST_MESSAGE = 500
 
 
 class InputError(ValueError):

@@ -31,7 +31,9 @@ CONFIGURATION_COLOURS = (ORANGE, BLUE, *OKABE_ITO[2:])
 """Colours of the configurations of one object; alone and on its pedestal as in all other figures."""
 
 STYLE = {
-    **mpl.rc_params_from_file(Path(__file__).with_suffix(".mplstyle"), use_default_template=False),
+    **mpl.rc_params_from_file(
+        Path(__file__).with_suffix(".mplstyle"), use_default_template=False
+    ),
     "axes.prop_cycle": cycler(color=OKABE_ITO),
     # laid out for the same dots as written: lengths of text depend on them
     "figure.dpi": DOTS_PER_INCH,
@@ -54,7 +56,9 @@ def new_figure(width: float = PAGE_WIDTH, height: float = 3.0) -> Figure:
 
 
 @contextmanager
-def panels(width: float, height: float, *shape: int, **shared: Any) -> Iterator[tuple[Figure, Any]]:
+def panels(
+    width: float, height: float, *shape: int, **shared: Any
+) -> Iterator[tuple[Figure, Any]]:
     """Draw an empty figure [in] and its panels inside this block: one, or as ``Figure.subplots`` makes them."""
     with figure_style():
         figure = new_figure(width, height)
@@ -75,11 +79,18 @@ def plain_log(axes: Axes, which: str) -> None:
     near = (1.0, 2.0, 3.0, 5.0, 7.0)
     for name in which:
         axes.set(**{f"{name}scale": "log"})
-        axis, ends = (axes.xaxis, axes.get_xlim) if name == "x" else (axes.yaxis, axes.get_ylim)
+        axis, ends = (
+            (axes.xaxis, axes.get_xlim) if name == "x" else (axes.yaxis, axes.get_ylim)
+        )
         low, high = ends()
         decades = np.log10(high / low)
         # fewer ticks over more decades
-        known = ((1.0, near), (2.5, (1.0, 2.0, 5.0)), (4.0, (1.0, 3.0)), (np.inf, (1.0,)))
+        known = (
+            (1.0, near),
+            (2.5, (1.0, 2.0, 5.0)),
+            (4.0, (1.0, 3.0)),
+            (np.inf, (1.0,)),
+        )
         steps = next(steps for most, steps in known if decades < most)
         axis.set_major_locator(LogLocator(base=10.0, subs=steps, numticks=30))
         axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
@@ -89,7 +100,9 @@ def plain_log(axes: Axes, which: str) -> None:
 def letter_panels(axes: Iterable[Axes], size: float = 8.5) -> None:
     """Name panels (a), (b), … above their upper left corners, where there is more than one."""
     panels = list(axes)
-    for letter, panel in zip("abcdefghijklmnop", panels if len(panels) > 1 else [], strict=False):
+    for letter, panel in zip(
+        "abcdefghijklmnop", panels if len(panels) > 1 else [], strict=False
+    ):
         title = panel.get_title(loc="left")
         panel.set_title(f"({letter}) {title}".strip(), loc="left", pad=3, fontsize=size)
 

@@ -13,7 +13,8 @@ import pandas as pd
 from rockfrag.errors import InputError
 
 LONGEST_NAME = 80  # characters of a name, and of the file name made of it
-FORMULA = ("=", "+", "-", "@")  # characters with which a spreadsheet takes a cell for a formula
+# characters with which a spreadsheet takes a cell for a formula
+FORMULA = ("=", "+", "-", "@")
 _DEVICES = (f"{port}{n}" for port in ("com", "lpt") for n in range(10))
 _RESERVED = {"con", "prn", "aux", "nul", *_DEVICES}  # devices, not files, on Windows
 
@@ -34,7 +35,11 @@ def sha256_of(path: Path) -> str:
 
 def check_name(name: str) -> None:
     """Check that a name which a user gave can stand in tables, figures and file names."""
-    if len(name) > LONGEST_NAME or not name.isprintable() or not any(c.isalnum() for c in name):
+    if (
+        len(name) > LONGEST_NAME
+        or not name.isprintable()
+        or not any(c.isalnum() for c in name)
+    ):
         raise InputError(
             f"expected a name with a letter or digit and of at most {LONGEST_NAME} characters, "
             f"found {name[:LONGEST_NAME]!r}."
@@ -51,7 +56,9 @@ def file_name(name: str) -> str:
     ASCII letters, digits, ``-``, ``_`` and ``.`` stay, other characters become ``-``; a digest follows
     where letters of other scripts or what is too long were lost, so that such names stay different.
     """
-    plain = "".join(c if c.isascii() and (c.isalnum() or c in "-_.") else "-" for c in name)
+    plain = "".join(
+        c if c.isascii() and (c.isalnum() or c in "-_.") else "-" for c in name
+    )
     plain = plain[:LONGEST_NAME] or "unnamed"
     # neither hidden nor an option, and never a folder or a device
     if plain[0] in ".-":
@@ -66,7 +73,9 @@ def file_name(name: str) -> str:
     return f"{plain}-{digest}"
 
 
-def distinct_file_names(names: Iterable[str], found: dict[str, str] | None = None) -> None:
+def distinct_file_names(
+    names: Iterable[str], found: dict[str, str] | None = None
+) -> None:
     """Check that names, and those ``found`` before, can be used and make files that stay apart in any case."""
     found = {} if found is None else found
     for name in names:
@@ -81,7 +90,9 @@ def whole_file(path: str | os.PathLike[str]) -> Iterator[Path]:
     """Give a temporary path beside ``path`` that replaces it when the block ends without error."""
     target = Path(path)
     target.parent.mkdir(parents=True, exist_ok=True)
-    handle, name = tempfile.mkstemp(dir=target.parent, prefix=f".{target.name}.", suffix=".part")
+    handle, name = tempfile.mkstemp(
+        dir=target.parent, prefix=f".{target.name}.", suffix=".part"
+    )
     os.close(handle)
     part = Path(name)
     try:
@@ -112,7 +123,11 @@ def csv_text(table: pd.DataFrame) -> str:
 
 
 def _as_text(value: Any) -> Any:
-    if not isinstance(value, str) or len(value) < 2 or not value.startswith((*FORMULA, "\t", "\r")):
+    if (
+        not isinstance(value, str)
+        or len(value) < 2
+        or not value.startswith((*FORMULA, "\t", "\r"))
+    ):
         return value
     with suppress(ValueError):
         float(value)
@@ -130,4 +145,6 @@ def write_table(table: pd.DataFrame, *paths: str | os.PathLike[str]) -> None:
             elif ending == ".parquet":
                 table.to_parquet(part, index=False, engine="pyarrow")
             else:
-                raise ValueError(f"{path}: a table is written as .csv or .parquet, not {ending!r}")
+                raise ValueError(
+                    f"{path}: a table is written as .csv or .parquet, not {ending!r}"
+                )

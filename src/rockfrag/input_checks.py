@@ -36,9 +36,13 @@ def number_from_zero(name: str, value: object, unit: str = "") -> float:
     return _checked(name, value, wanted, lambda x: x >= 0)
 
 
-def _checked(name: str, value: object, wanted: str, allowed: Callable[[float], bool]) -> float:
+def _checked(
+    name: str, value: object, wanted: str, allowed: Callable[[float], bool]
+) -> float:
     number = math.nan
-    is_number = isinstance(value, numbers.Real) and not isinstance(value, (bool, np.bool_))
+    is_number = isinstance(value, numbers.Real) and not isinstance(
+        value, (bool, np.bool_)
+    )
     # a whole number may have more digits than a float takes
     with suppress(OverflowError):
         number = float(value) if is_number else number  # type: ignore[arg-type]
@@ -56,7 +60,10 @@ def whole_number(name: str, value: object) -> int:
 
 def whole_within(owner: str, name: str, value: Any, least: int, most: int) -> int:
     """Return ``value`` as an int if it is a whole number from ``least`` to ``most``."""
-    if real_number(f"{owner}: {name}", value) != int(value) or not least <= value <= most:
+    if (
+        real_number(f"{owner}: {name}", value) != int(value)
+        or not least <= value <= most
+    ):
         raise InputError(
             f"{owner}: {name} must be a whole number from {least} to {most}, got {value!r}."
         )
@@ -79,9 +86,14 @@ def real_array(name: str, data: object, unit: str = "") -> NDArray[np.float64]:
     except (TypeError, ValueError) as error:
         raise InputError(f"{wanted}, got {shown(data)}.") from error
     if values.dtype.kind == "c":
-        raise InputError(f"{wanted}, got complex ones; take their real part if that is meant.")
+        raise InputError(
+            f"{wanted}, got complex ones; take their real part if that is meant."
+        )
     if values.dtype.kind not in "iuf" and values.size:
         known = {"b": "booleans", "U": "text", "S": "text"}
-        kind = known.get(values.dtype.kind) or f"{type(values.ravel()[0]).__name__} objects"
+        kind = (
+            known.get(values.dtype.kind)
+            or f"{type(values.ravel()[0]).__name__} objects"
+        )
         raise InputError(f"{wanted}, got {kind}.")
     return np.ascontiguousarray(values, dtype=np.float64)

@@ -27,7 +27,11 @@ def named_keywords(function: Called) -> Called:
         for name in keywords:
             if name not in names:
                 near = difflib.get_close_matches(name, known, n=1)
-                meant = f"did you mean {near[0]}?" if near else f"it has {', '.join(known)}."
+                meant = (
+                    f"did you mean {near[0]}?"
+                    if near
+                    else f"it has {', '.join(known)}."
+                )
                 called = function.__qualname__.removesuffix(".__init__")
                 raise UnknownKeyword(f"{called}: no argument is called {name}; {meant}")
         return function(*arguments, **keywords)

@@ -6,7 +6,9 @@ from typing import Any
 import numba
 
 
-def cached_njit(stamp: Callable[[], str] | None = None, **options: Any) -> Callable[[Any], Any]:
+def cached_njit(
+    stamp: Callable[[], str] | None = None, **options: Any
+) -> Callable[[Any], Any]:
     """Compile a function with options of ``numba.njit`` and keep its machine code where that can be written.
 
     ``stamp`` gives a digest of all sources that the machine code is made of; numba looks at the function's own

@@ -25,7 +25,8 @@ GROUP = "rockfrag.study"  # group of entry points that name plugins
 class Plugin:
     """What a distribution adds to a study."""
 
-    schema: Mapping[str, Any]  # Its keys of a study's configuration, each with its JSON schema
+    # Its keys of a study's configuration, each with its JSON schema
+    schema: Mapping[str, Any]
     # Reads them out of the configuration, which has passed the schema, and checks them against the study
     settings: Callable[[Mapping[str, Any], "Study"], Any]
     # Its rules of the workflow, a file of Snakemake in the package's folder; what the report shows

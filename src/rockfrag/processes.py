@@ -12,13 +12,16 @@ from typing import Any, TypeVar
 T = TypeVar("T")
 R = TypeVar("R")
 
-LOOK_S = 0.2  # how often a process looks whether those it belongs to are still there [s]
+# how often a process looks whether those it belongs to are still there [s]
+LOOK_S = 0.2
 
 _waiting: tuple[Callable[[Any], Any], Sequence[Any]] = (str, ())
 """What the processes of :func:`in_processes` have to do."""
 
 
-def in_processes(function: Callable[[T], R], things: Iterable[T], processes: int) -> list[R]:
+def in_processes(
+    function: Callable[[T], R], things: Iterable[T], processes: int
+) -> list[R]:
     """Call a function for each of several things and return the results in their order, whatever the processes.
 
     The function may be a local one. Results should be small: a process that was killed while it handed over more

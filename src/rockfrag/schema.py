@@ -22,7 +22,8 @@ from rockfrag.units import other_names, quantity, split_name
 if TYPE_CHECKING:
     from jsonschema import Draft202012Validator, ValidationError
 
-LARGEST_WHOLE = 2**53  # up to here each whole number is exact as a float, and fits into every file
+# up to here each whole number is exact as a float, and fits into every file
+LARGEST_WHOLE = 2**53
 _Schema = Mapping[str, Any]
 
 
@@ -50,7 +51,9 @@ def checked(content: object, name: str, where: str) -> dict[str, Any]:
         for key, value in _places(content):
             for word in value if isinstance(value, Mapping) else ():
                 if not isinstance(word, str):
-                    raise InputError(f"key {_joined(key, str(word))}: expected a word in quotes.")
+                    raise InputError(
+                        f"key {_joined(key, str(word))}: expected a word in quotes."
+                    )
         plain = _in_usual_units(content, schema, "")
         for key, value in _places(plain):
             if isinstance(value, str) and (unfit := unfit_character(value)):
@@ -78,12 +81,13 @@ def _validator(name: str) -> "Draft202012Validator":
 
     # JSON knows no difference between 1 and 1.0; a seed or a count is a whole number
     types = Draft202012Validator.TYPE_CHECKER.redefine(
-        "integer", lambda checker, value: isinstance(value, int) and not isinstance(value, bool)
+        "integer",
+        lambda checker, value: isinstance(value, int) and not isinstance(value, bool),
     )
     keywords = {"registered": _registered}
-    validator: Draft202012Validator = extend(Draft202012Validator, keywords, type_checker=types)(
-        read_schema(name)
-    )
+    validator: Draft202012Validator = extend(
+        Draft202012Validator, keywords, type_checker=types
+    )(read_schema(name))
     return validator
 
 
@@ -113,14 +117,19 @@ def _registered(
 def _described(schema: _Schema, otherwise: str) -> str:
     """What is expected, in words; ``{registry}`` of two words or more is its names."""
     words = str(schema.get("description", otherwise))
-    return re.sub(r"\{(\w+ [\w ]+)\}", lambda found: ", ".join(registered(found[1])), words)
+    return re.sub(
+        r"\{(\w+ [\w ]+)\}", lambda found: ", ".join(registered(found[1])), words
+    )
 
 
 def _in_usual_units(value: Any, schema: _Schema, key: str) -> Any:
     """Express every quantity in the unit of its usual key, whatever key it was given under."""
     if isinstance(value, list | tuple):
         items = schema.get("items", {})
-        return [_in_usual_units(entry, items, f"{key}[{i}]") for i, entry in enumerate(value)]
+        return [
+            _in_usual_units(entry, items, f"{key}[{i}]")
+            for i, entry in enumerate(value)
+        ]
     if not isinstance(value, Mapping):
         return value
     properties = schema.get("properties", {})
@@ -134,7 +143,9 @@ def _in_usual_units(value: Any, schema: _Schema, key: str) -> Any:
     for name, inner in value.items():
         own, unit = usual.get(name, (name, None))
         if own in plain:
-            raise InputError(f"key {_joined(key, name)}: {own} is given in another unit already.")
+            raise InputError(
+                f"key {_joined(key, name)}: {own} is given in another unit already."
+            )
         where = _joined(key, name)
         if name in usual:
             plain[own] = _converted(inner, own, unit, where)
@@ -145,7 +156,10 @@ def _in_usual_units(value: Any, schema: _Schema, key: str) -> Any:
 
 def _converted(value: Any, name: str, unit: str | None, key: str) -> Any:
     if isinstance(value, list | tuple):
-        return [_converted(number, name, unit, f"{key}[{i}]") for i, number in enumerate(value)]
+        return [
+            _converted(number, name, unit, f"{key}[{i}]")
+            for i, number in enumerate(value)
+        ]
     usual = split_name(name)[1]
     if not isinstance(value, str) and unit == usual:
         return value  # the schema says what is wrong with it, if anything
@@ -184,7 +198,11 @@ def _broken_rule(error: "ValidationError") -> str:
         return ""
     instance: Any = error.instance
     missing = [name for name in schema.get("required", ()) if name not in instance]
-    named = {"key": _key(error), "name": _key(error).rpartition(".")[2], "found": instance}
+    named = {
+        "key": _key(error),
+        "name": _key(error).rpartition(".")[2],
+        "found": instance,
+    }
     return str(schema["says"]).format(missing=next(iter(missing), ""), **named)
 
 
@@ -193,7 +211,11 @@ _WHOLES = ("type", "const", "enum", "registered")  # keywords on a value as a wh
 
 def _deepest(error: "ValidationError") -> "ValidationError":
     """Of the alternatives of a oneOf, take the errors of the one whose type was meant."""
-    if error.validator not in ("oneOf", "anyOf") or not error.context or _broken_rule(error):
+    if (
+        error.validator not in ("oneOf", "anyOf")
+        or not error.context
+        or _broken_rule(error)
+    ):
         return error
     meant = [inner for inner in error.context if inner.validator not in _WHOLES]
     return _deepest(meant[0]) if meant else error
@@ -219,7 +241,11 @@ def _sentence(error: "ValidationError") -> str:
             return f"key {_key(error)}: {said}"
         wrong = sorted(name for name in instance if name not in known)[0]
         close = difflib.get_close_matches(wrong, known, n=1)
-        hint = f"did you mean {close[0]}?" if close else f"expected one of {', '.join(known)}."
+        hint = (
+            f"did you mean {close[0]}?"
+            if close
+            else f"expected one of {', '.join(known)}."
+        )
         return f"key {_key(error, _short(wrong))} is not known; {hint}"
     if error.validator == "required":
         missing = next(name for name in schema["required"] if name not in instance)
@@ -231,7 +257,11 @@ def _sentence(error: "ValidationError") -> str:
 
 
 def _short(value: Any) -> str:
-    return value[:60] if isinstance(value, str) and value.isidentifier() else _REPR.repr(value)
+    return (
+        value[:60]
+        if isinstance(value, str) and value.isidentifier()
+        else _REPR.repr(value)
+    )
 
 
 _REPR = reprlib.Repr()

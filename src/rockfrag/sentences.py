@@ -16,7 +16,8 @@ _FAR = 1000.0  # a limit so many times off its estimate is none
 
 PART = "\f"  # between headline, text and numbers of a finding
 
-LONGEST_NAME = 24  # longer names are cut in figures, where they would push everything else aside
+# longer names are cut in figures, where they would push everything else aside
+LONGEST_NAME = 24
 
 
 def number(value: float, decimals: int) -> str:
@@ -65,9 +66,13 @@ def estimates(
 
     The decimals are the same for all; by default they show three digits of the smallest value.
     """
-    values = table[[name, *(limits or (f"{name}_lower", f"{name}_upper"))]].to_numpy(dtype=float)
+    values = table[[name, *(limits or (f"{name}_lower", f"{name}_upper"))]].to_numpy(
+        dtype=float
+    )
     if decimals is None:
-        decimals = min(max((decimals_of(value) for value in values[:, 0]), default=3), 3)
+        decimals = min(
+            max((decimals_of(value) for value in values[:, 0]), default=3), 3
+        )
     return [estimate(value, lower, upper, decimals) for value, lower, upper in values]
 
 
@@ -164,7 +169,9 @@ def environment(package: str) -> Any:
     from jinja2 import ChoiceLoader, Environment, PackageLoader, StrictUndefined
 
     found = Environment(
-        loader=ChoiceLoader([PackageLoader(package, ""), PackageLoader("rockfrag.report")]),
+        loader=ChoiceLoader(
+            [PackageLoader(package, ""), PackageLoader("rockfrag.report")]
+        ),
         undefined=StrictUndefined,
         trim_blocks=True,
         lstrip_blocks=True,
@@ -203,4 +210,6 @@ class Macros:
 
     def parts(self, macro: str, *about: Any, **named: Any) -> list[list[str]]:
         """Lines of each part of what a macro says."""
-        return list(map(said, getattr(self._module, macro)(*about, **named).split(PART)))
+        return list(
+            map(said, getattr(self._module, macro)(*about, **named).split(PART))
+        )

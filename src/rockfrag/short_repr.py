@@ -14,7 +14,10 @@ def short_repr(result: object) -> str:
     """Return a text that fits a screen, a line for each field of a dataclass."""
     fields = [field.name for field in dataclasses.fields(result) if field.repr]  # type: ignore[arg-type]
     lines = [f"    {name}={_shown(getattr(result, name))}" for name in fields]
-    lines = [line if len(line) < LONGEST_LINE else f"{line[: LONGEST_LINE - 2]}…" for line in lines]
+    lines = [
+        line if len(line) < LONGEST_LINE else f"{line[: LONGEST_LINE - 2]}…"
+        for line in lines
+    ]
     return f"{type(result).__name__}(\n" + ",\n".join(lines) + "\n)"
 
 

@@ -31,7 +31,11 @@ def unfit_character(text: str) -> str:
 
 def printable(text: str) -> str:
     """Text with a replacement character for each that no line of a terminal or a table can show."""
-    return text if text.isprintable() else "".join(c if c.isprintable() else "\ufffd" for c in text)
+    return (
+        text
+        if text.isprintable()
+        else "".join(c if c.isprintable() else "\ufffd" for c in text)
+    )
 
 
 def read_text(path: str | os.PathLike[str], most_bytes: int) -> str:
@@ -39,11 +43,15 @@ def read_text(path: str | os.PathLike[str], most_bytes: int) -> str:
     file = Path(path)
     try:
         if file.exists() and not file.is_file():
-            raise InputError(f"{path}: cannot be read (a folder or a device); name a file.")
+            raise InputError(
+                f"{path}: cannot be read (a folder or a device); name a file."
+            )
         with file.open("rb") as stream:
             data = stream.read(most_bytes + 1)
     except OSError as error:
-        raise InputError(f"{path}: cannot be read ({error.strerror}); check the path.") from error
+        raise InputError(
+            f"{path}: cannot be read ({error.strerror}); check the path."
+        ) from error
     except ValueError as error:
         raise InputError(f"{path}: is no path ({error}).") from error
     if len(data) > most_bytes:
@@ -87,7 +95,9 @@ def table_encoding(path: str | os.PathLike[str]) -> str:
     if start.startswith(_UTF16):
         return "utf-16"
     if b"\x00" in start:
-        raise InputError(f"{source}: this is not a text file; save the table as CSV (UTF-8).")
+        raise InputError(
+            f"{source}: this is not a text file; save the table as CSV (UTF-8)."
+        )
     try:
         # a character may be cut at the end of what was read
         codecs.getincrementaldecoder("utf-8")().decode(start, final=len(start) < _START)
@@ -118,7 +128,9 @@ class Row:
     def error(self, column: str, what: str) -> InputError:
         """Return an error about one cell, to be raised."""
         title = self.titles.get(column, column)
-        return InputError(f"{self.path}, line {self.line}, column {title}: {what.rstrip('.')}.")
+        return InputError(
+            f"{self.path}, line {self.line}, column {title}: {what.rstrip('.')}."
+        )
 
     def has(self, column: str) -> bool:
         """Whether a cell holds anything."""
@@ -181,7 +193,9 @@ class TextTable:
         rows = []
         for line, cells in self.body:
             if len(cells) == len(names):
-                rows.append(Row(self.path, line, dict(zip(names, cells, strict=True)), titles))
+                rows.append(
+                    Row(self.path, line, dict(zip(names, cells, strict=True)), titles)
+                )
                 continue
             fault = (
                 f"{self.path}, line {line}: expected {len(names)} cells as in the header, found "
@@ -226,7 +240,9 @@ def read_rows(
     rows = table.rows(names, faults)
     for name in needed:
         if name not in names:
-            raise InputError(f"{path}: column {name} is missing; expected {', '.join(needed)}.")
+            raise InputError(
+                f"{path}: column {name} is missing; expected {', '.join(needed)}."
+            )
     return rows
 
 
@@ -252,12 +268,17 @@ def read_table(path: str | os.PathLike[str], text: str | None = None) -> TextTab
     point = _with_point if delimiter == ";" else str.strip
     try:
         lines = [
-            (number, [point(cell) for cell in next(csv.reader([line], delimiter=delimiter))])
+            (
+                number,
+                [point(cell) for cell in next(csv.reader([line], delimiter=delimiter))],
+            )
             for number, line in numbered
         ]
     except csv.Error as error:
         raise InputError(f"{path}: is not a readable CSV file ({error}).") from error
-    (_, titles), *body = [(line, cells) for line, cells in lines if any(cells)] or [(0, [])]
+    (_, titles), *body = [(line, cells) for line, cells in lines if any(cells)] or [
+        (0, [])
+    ]
     return TextTable(str(path), titles, body)
 
 
@@ -269,4 +290,6 @@ def join_rows(tables: "Sequence[pd.DataFrame]") -> "pd.DataFrame":
     """
     import pandas as pd
 
-    return pd.concat([table for table in tables if len(table)] or tables, ignore_index=True)
+    return pd.concat(
+        [table for table in tables if len(table)] or tables, ignore_index=True
+    )

@@ -23,7 +23,12 @@ DIMENSIONS: Mapping[str, Mapping[str, tuple[float, float]]] = {
         **{"m": (1.0, 1.0), "cm": (1.0, 100.0), "mm": (1.0, 1000.0)},
         **{"in": (0.0254, 1.0), "ft": (0.3048, 1.0)},
     },
-    "mass": {"kg": (1.0, 1.0), "g": (1.0, 1000.0), "t": (1000.0, 1.0), "lb": (0.45359237, 1.0)},
+    "mass": {
+        "kg": (1.0, 1.0),
+        "g": (1.0, 1000.0),
+        "t": (1000.0, 1.0),
+        "lb": (0.45359237, 1.0),
+    },
     "moment of inertia": {
         **{"kg_m2": (1.0, 1.0), "kg_cm2": (1.0, 1e4), "g_cm2": (1.0, 1e7)},
         **{"t_m2": (1000.0, 1.0), "lb_ft2": (0.45359237 * 0.3048**2, 1.0)},
@@ -51,7 +56,9 @@ EXAMPLES: Mapping[str, str] = {
 """What a message names as an example of each dimension: a size that people meet."""
 
 _DECIMAL_COMMA = re.compile(r"\s*[-+]?\d+,\d+(?!\d*,)")
-_NUMBER = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(.*?)\s*", re.DOTALL)
+_NUMBER = re.compile(
+    r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(.*?)\s*", re.DOTALL
+)
 
 
 def dimension_of(unit: str) -> str:
@@ -85,7 +92,10 @@ def quantity(given: object, to: str, unit: str | None) -> float:
     number = _NUMBER.fullmatch(given) if isinstance(given, str) else None
     if isinstance(given, int | float) and not isinstance(given, bool):
         # a whole number may be larger than any float
-        value, written = math.inf if abs(given) > sys.float_info.max else float(given), ""
+        value, written = (
+            math.inf if abs(given) > sys.float_info.max else float(given),
+            "",
+        )
     elif number:
         value, written = float(number[1]), number[2]
     else:
@@ -101,7 +111,9 @@ def quantity(given: object, to: str, unit: str | None) -> float:
         # m_s2 is written m/s²
         known = ", ".join(re.sub(r"_s(2?)$", r"/s\1", unit) for unit in units)
         known = known.replace("_", " ").replace("2", "²")
-        raise InputError(f"{expected} in one of the units {known}, found {given!r:.60}.")
+        raise InputError(
+            f"{expected} in one of the units {known}, found {given!r:.60}."
+        )
     return convert(value, found, to)
 
 
@@ -134,16 +146,24 @@ DEPTHS = (0.1, 3.0)
 """Least depth of an object over its width, largest over the longer of width and height: a panel rocking in its
 strong direction, and a long shelf seen from its end."""
 
-GYRATIONS = (1e-3, 30.0)  # radius of gyration of a body over the diagonal of width and height [-]
+# radius of gyration of a body over the diagonal of width and height [-]
+GYRATIONS = (1e-3, 30.0)
 LARGEST_SIZE = 20.0  # free-standing objects are hardly taller [m]
-LARGEST_PEAK = 50.0  # no accelerometer has recorded more [m/s²]; floors hardly feel more
-LARGEST_IN_G = 2.0  # peaks of more than this many g are rare: a number above it is hardly one of g
-FLOOR_MASSES = (1e3, 1e9)  # of a floor of a building [kg]: a wooden attic, more than any palace's
-STOREY_HEIGHTS = (1.0, 30.0)  # of a storey [m]: a crawl space, and the nave of a cathedral
+# no accelerometer has recorded more [m/s²]; floors hardly feel more
+LARGEST_PEAK = 50.0
+# peaks of more than this many g are rare: a number above it is hardly one of g
+LARGEST_IN_G = 2.0
+# of a floor of a building [kg]: a wooden attic, more than any palace's
+FLOOR_MASSES = (1e3, 1e9)
+# of a storey [m]: a crawl space, and the nave of a cathedral
+STOREY_HEIGHTS = (1.0, 30.0)
 FIRST_PERIODS = (0.01, 20.0)  # shortest and longest first period of a building [s]
-SHORTEST_STEP = 1e-5  # sampling interval [s]; recorders take at most some thousand samples a second
-LONGEST_STEP = 1.0  # sampling interval [s] of a record; slower channels are not of strong motion
-LARGEST_GRAVITY = 100.0  # largest acceleration of gravity that is no mistake of unit [m/s²]
+# sampling interval [s]; recorders take at most some thousand samples a second
+SHORTEST_STEP = 1e-5
+# sampling interval [s] of a record; slower channels are not of strong motion
+LONGEST_STEP = 1.0
+# largest acceleration of gravity that is no mistake of unit [m/s²]
+LARGEST_GRAVITY = 100.0
 LEAST_PEAK = 0.05  # a motion whose peak is below this [m/s²] moves nothing that stands
 
 
@@ -154,7 +174,9 @@ def check_density(width: float, height: float, mass: float) -> None:
     volumes = (width * height * depth for depth in (thin, thick))
     most, least = (mass / volume if volume else math.inf for volume in volumes)
     if most < DENSITIES[0]:
-        wrong = f"at most {most:.3g} kg/m³ at a depth of {thin:.3g} m, less than any solid"
+        wrong = (
+            f"at most {most:.3g} kg/m³ at a depth of {thin:.3g} m, less than any solid"
+        )
     elif least > DENSITIES[1]:
         wrong = f"at least {least:.3g} kg/m³ at a depth of {thick:.3g} m, more than any solid"
     else:
@@ -200,10 +222,16 @@ def peak_warning(peak: float, least_uplift: float | None = None) -> str:
             "is in cm/s², divide it by 100"
         )
     doubtful = (
-        least_uplift is not None and peak <= LARGEST_IN_G and peak < least_uplift <= peak * GRAVITY
+        least_uplift is not None
+        and peak <= LARGEST_IN_G
+        and peak < least_uplift <= peak * GRAVITY
     )
     if 0 < peak < LEAST_PEAK or doubtful:
-        short = f", less than the {least_uplift:.3g} m/s² that start rocking" if doubtful else ""
+        short = (
+            f", less than the {least_uplift:.3g} m/s² that start rocking"
+            if doubtful
+            else ""
+        )
         found = f"the peak acceleration is {peak:.3g} m/s²{short}"
         return f"{found}; if the motion is in g, multiply it by {GRAVITY:g}"
     return ""

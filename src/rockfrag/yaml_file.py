@@ -12,7 +12,8 @@ import yaml
 from rockfrag.errors import InputError
 from rockfrag.tabular import read_text, unfit_character
 
-MOST_BYTES = 256 * 1024  # largest configuration; three thousand names of motions are a third of it
+# largest configuration; three thousand names of motions are a third of it
+MOST_BYTES = 256 * 1024
 MOST_VALUES, DEEPEST = 20_000, 20  # values, and mappings and lists within each other
 
 
@@ -26,11 +27,16 @@ class _StrictLoader(yaml.SafeLoader):
         self.values += 1
         coming = self.peek_event()
         if self.values > MOST_VALUES or self.depth > DEEPEST:
-            much = "nested too deeply" if self.depth > DEEPEST else f"more than {MOST_VALUES}"
+            much = (
+                "nested too deeply"
+                if self.depth > DEEPEST
+                else f"more than {MOST_VALUES}"
+            )
             raise _wrong(coming, f"values are {much}; simplify it")
         if self.check_event(yaml.AliasEvent):
             raise _wrong(
-                coming, f"the alias *{coming.anchor} is not understood; write its value out"
+                coming,
+                f"the alias *{coming.anchor} is not understood; write its value out",
             )
         self.depth += 1
         node = super().compose_node(parent, index)
@@ -52,18 +58,25 @@ def _mapping(loader: _StrictLoader, node: yaml.MappingNode) -> dict[str, Any]:
             raise _wrong(key, f"key {key.value!r} is given twice")
         seen.add(key.value)
     # a floor may be called 1 or 3.5, and is called by that text
-    return {key.value: loader.construct_object(value, deep=True) for key, value in node.value}
+    return {
+        key.value: loader.construct_object(value, deep=True)
+        for key, value in node.value
+    }
 
 
 def _text(loader: _StrictLoader, node: yaml.ScalarNode) -> str:
     # an escape such as "\x07" can write what the file itself must not hold
     if unfit := unfit_character(node.value):
-        raise _wrong(node, f"holds the character {unfit!r}, which no text shows; remove it")
+        raise _wrong(
+            node, f"holds the character {unfit!r}, which no text shows; remove it"
+        )
     return str(node.value)
 
 
 def _number(loader: _StrictLoader, node: yaml.ScalarNode) -> float:
-    return float(node.value.replace(".inf", "inf").replace(".nan", "nan").replace(".NaN", "nan"))
+    return float(
+        node.value.replace(".inf", "inf").replace(".nan", "nan").replace(".NaN", "nan")
+    )
 
 
 _TAG = "tag:yaml.org,2002:"
@@ -85,7 +98,9 @@ for _name, _pattern, _first in (
     ("int", r"[-+]?[0-9]+", list("-+0123456789")),
     ("float", _FLOAT, list("-+.0123456789")),
 ):
-    _StrictLoader.add_implicit_resolver(f"{_TAG}{_name}", re.compile(rf"(?:{_pattern})\Z"), _first)
+    _StrictLoader.add_implicit_resolver(
+        f"{_TAG}{_name}", re.compile(rf"(?:{_pattern})\Z"), _first
+    )
 
 
 def read_yaml(path: str | os.PathLike[str]) -> dict[str, Any]:
@@ -96,12 +111,16 @@ def read_yaml(path: str | os.PathLike[str]) -> dict[str, Any]:
     except yaml.MarkedYAMLError as error:
         mark = error.problem_mark or error.context_mark
         where = f", line {mark.line + 1}, column {mark.column + 1}" if mark else ""
-        raise InputError(f"{path}{where}: {error.problem or 'is not valid YAML'}.") from error
+        raise InputError(
+            f"{path}{where}: {error.problem or 'is not valid YAML'}."
+        ) from error
     except RecursionError as error:
         raise InputError(f"{path}: brackets or lists are nested too deeply.") from error
     except (yaml.YAMLError, ValueError, TypeError, LookupError) as error:
         # a tag such as !!bool stands before what is none
         raise InputError(f"{path}: is not valid YAML ({error}).") from error
     if not isinstance(content, dict):
-        raise InputError(f"{path}: expected a mapping of keys to values, as in config/config.yaml.")
+        raise InputError(
+            f"{path}: expected a mapping of keys to values, as in config/config.yaml."
+        )
     return content

@@ -42,14 +42,20 @@ class LogHandler(LogHandlerBase):
         """Print a line about what happened, if it concerns people."""
         event, about = getattr(record, "event", None), record.__dict__
         if event == LogEvent.RUN_INFO:
-            rules = {rule: n for rule, n in about["stats"].items() if rule not in ("all", "total")}
+            rules = {
+                rule: n
+                for rule, n in about["stats"].items()
+                if rule not in ("all", "total")
+            }
             self.waiting = Counter(rules)
         elif event == LogEvent.JOB_INFO:
             log = Path(about["log"][0] if about["log"] else "")
             self.running[about["jobid"]] = about["rule_name"], log, time.time()
             # Snakemake 9.0 does not hand on what is said of the report while the rules are read
             made = [Path(str(file)) for file in about.get("output") or ()]
-            self.report = next((file for file in made if file.name == "report.html"), self.report)
+            self.report = next(
+                (file for file in made if file.name == "report.html"), self.report
+            )
         elif event == LogEvent.JOB_FINISHED:
             self._finish(int(about["job_id"]))
         elif event == LogEvent.JOB_ERROR:
@@ -79,7 +85,9 @@ class LogHandler(LogHandlerBase):
             took = _duration(last_seconds(log) or 0.0)
             _say(f"{number} {rule}: {last_finding(log)} ({took}{left})")
         elif not self.failed:
-            _say(f"The report is {self.report} ({_duration(time.monotonic() - self.start)})")
+            _say(
+                f"The report is {self.report} ({_duration(time.monotonic() - self.start)})"
+            )
 
     def _left(self, rule: str) -> str:
         """Count a rule's job as done, and say what the rest takes if it goes as in an earlier run."""

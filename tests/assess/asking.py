@@ -34,16 +34,23 @@ def request(rng: random.Random, records: Path, hazard: Path) -> list[str]:
             few = values[1:4] if needed else values[:2]
             chosen += [option, rng.choice(few if usual else values)]
     for option, given in CASES["others"].items():
-        if rng.random() < (0.06 if usual and option not in ("--pedestal", "--floor") else 0.16):
+        if rng.random() < (
+            0.06 if usual and option not in ("--pedestal", "--floor") else 0.16
+        ):
             chosen += [option, *rng.choice(given[:2] if usual else given)]
     if rng.random() < 0.85:
         chosen += rng.choice(CASES["levels"][:7] if usual else CASES["levels"])
     if rng.random() < 0.4:
-        chosen += ["--return-period", rng.choice(("475", "2475", "50" if usual else "0"))]
+        chosen += [
+            "--return-period",
+            rng.choice(("475", "2475", "50" if usual else "0")),
+        ]
     elif rng.random() < 0.3:
         chosen += ["--hazard", str(hazard)]
     if not usual and rng.random() < 0.2:
-        chosen += rng.choice((["--on-floor"], ["--pga", "0.4g"], ["--pedestal", "60cm", "20cm"]))
+        chosen += rng.choice(
+            (["--on-floor"], ["--pga", "0.4g"], ["--pedestal", "60cm", "20cm"])
+        )
     return [*chosen, "--record", str(records)]
 
 
@@ -61,8 +68,16 @@ def answered(options: Sequence[str], folder: Path) -> tuple[int, str, str]:
 def contradictions(status: int, out: str, err: str) -> list[str]:
     """What is wrong with an answer; nothing where it agrees with itself or was refused in one sentence."""
     if status == 2:
-        said = [line for line in err.splitlines() if not line.startswith(("usage:", "warning:"))]
-        return [] if len(said) == 1 and not out else [f"refused in {len(said)} lines: {err[-300:]}"]
+        said = [
+            line
+            for line in err.splitlines()
+            if not line.startswith(("usage:", "warning:"))
+        ]
+        return (
+            []
+            if len(said) == 1 and not out
+            else [f"refused in {len(said)} lines: {err[-300:]}"]
+        )
     if status != 0:
         return [f"exit status {status}: {err[-300:]}"]
     return _within(json.loads(out))
@@ -71,12 +86,23 @@ def contradictions(status: int, out: str, err: str) -> list[str]:
 def _within(answer: dict[str, Any]) -> list[str]:
     rocking, toppling = answer["fraction_rocking"], answer["fraction_toppling"]
     amplitudes, likely = answer["amplitude_toppling"], answer["probability"]
-    limited = {"rocking": rocking, "toppling": toppling, "probability": likely, **amplitudes}
+    limited = {
+        "rocking": rocking,
+        "toppling": toppling,
+        "probability": likely,
+        **amplitudes,
+    }
     checks = {
-        **{f"{name}: {item}": item is None or _ordered(item) for name, item in limited.items()},
+        **{
+            f"{name}: {item}": item is None or _ordered(item)
+            for name, item in limited.items()
+        },
         "toppling is likelier than rocking": rocking is None
-        or all(toppling[key] <= rocking[key] + 1e-12 for key in ("value", "lower", "upper")),
-        "a tenth topples at more than half": _of(amplitudes["0.1"]) <= _of(amplitudes["0.5"]),
+        or all(
+            toppling[key] <= rocking[key] + 1e-12 for key in ("value", "lower", "upper")
+        ),
+        "a tenth topples at more than half": _of(amplitudes["0.1"])
+        <= _of(amplitudes["0.5"]),
         "counts": _counts_agree(answer),
         "below uplift": _at_rest(answer),
         "lines": _lines_agree(answer),
@@ -101,10 +127,15 @@ def _counts_agree(answer: dict[str, Any]) -> bool:
     counts = answer["counts"]
     if counts is None:
         return True
-    fractions = answer["fraction_toppling"]["value"], answer["fraction_rocking"]["value"]
+    fractions = (
+        answer["fraction_toppling"]["value"],
+        answer["fraction_rocking"]["value"],
+    )
     expected = (counts[key] / counts["motions"] for key in ("topple", "rock"))
     ordered = counts["topple"] <= counts["rock"] <= counts["motions"]
-    return ordered and all(abs(a - b) < 1e-9 for a, b in zip(fractions, expected, strict=True))
+    return ordered and all(
+        abs(a - b) < 1e-9 for a, b in zip(fractions, expected, strict=True)
+    )
 
 
 def _at_rest(answer: dict[str, Any]) -> bool:
@@ -114,7 +145,9 @@ def _at_rest(answer: dict[str, Any]) -> bool:
         return True
     if starts is not None and level >= starts:
         return not answer["does_not_move"]
-    still = answer["fraction_rocking"]["value"] == 0 == answer["fraction_toppling"]["value"]
+    still = (
+        answer["fraction_rocking"]["value"] == 0 == answer["fraction_toppling"]["value"]
+    )
     words = answer["lines"][0]
     return still and ("does not move" in words or "is not expected to move" in words)
 
@@ -128,7 +161,12 @@ def _lines_agree(answer: dict[str, Any]) -> bool:
     toppling = answer["fraction_toppling"]
     if toppling and toppling["value"] == 0 and answer["fraction_rocking"]["value"] > 0:
         return "none of" in lines[0] and "upper limit" in lines[0]
-    if toppling and toppling["lower"] < 0.01 and toppling["upper"] > 0.5 and toppling["value"] > 0:
+    if (
+        toppling
+        and toppling["lower"] < 0.01
+        and toppling["upper"] > 0.5
+        and toppling["value"] > 0
+    ):
         return "not decidable" in lines[0]
     return True
 

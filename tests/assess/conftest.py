@@ -15,7 +15,9 @@ from rockfrag.assess.request import Request, make_request
 def motions(made_motions) -> MotionSet:
     """Twenty-four made motions of six earthquakes, two components a record."""
     made = made_motions(24)
-    return MotionSet(made, made, tuple((i, i + 1) for i in range(0, len(made), 2)), "made motions")
+    return MotionSet(
+        made, made, tuple((i, i + 1) for i in range(0, len(made), 2)), "made motions"
+    )
 
 
 @pytest.fixture(scope="session")
@@ -27,10 +29,15 @@ def few(motions) -> MotionSet:
 
 def outcomes_of(fell, levels, earthquakes, *, all_rock=False) -> ObjectOutcomes:
     """Outcomes of motions at levels of PGA, a row a motion; what falls rocks, and the others if all do."""
-    scales, allowed = np.broadcast_to(levels, fell.shape), np.ones(fell.shape, dtype=bool)
+    scales, allowed = (
+        np.broadcast_to(levels, fell.shape),
+        np.ones(fell.shape, dtype=bool),
+    )
     rocked = allowed if all_rock else fell
     names = np.array(earthquakes, dtype=object)
-    return ObjectOutcomes(IntensityLevels(PGA, levels, scales, allowed), fell, rocked, names)
+    return ObjectOutcomes(
+        IntensityLevels(PGA, levels, scales, allowed), fell, rocked, names
+    )
 
 
 def asked(**settings) -> Request:

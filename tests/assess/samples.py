@@ -13,7 +13,9 @@ def rate(level: float, at_a_tenth: float = 0.01) -> float:
     return at_a_tenth * (level / 0.1) ** -2.5
 
 
-def openquake_csv(imt: str = "PGA", kind: str = "mean", at_a_tenth: float = 0.01) -> str:
+def openquake_csv(
+    imt: str = "PGA", kind: str = "mean", at_a_tenth: float = 0.01
+) -> str:
     """OpenQuake's export of one site."""
     comment = (
         f"generated_by='OpenQuake engine 3.20.1', start_date='2024-07-01T10:00:00', checksum=1, kind='{kind}', "
@@ -41,6 +43,8 @@ _FILES = dict(case_tables(__file__)["files"])
 SAMPLES = _FILES | {
     "openquake.csv": openquake_csv(),
     "openquake-median.csv": openquake_csv(kind="quantile-0.5"),
-    "efehr-median.xml": _FILES["efehr.xml"].replace('="mean"', '="quantile" quantileValue="0.5"'),
+    "efehr-median.xml": _FILES["efehr.xml"].replace(
+        '="mean"', '="quantile" quantileValue="0.5"'
+    ),
 }
 """Texts of files by their names."""

@@ -89,7 +89,9 @@ def test_what_makes_no_sense_is_refused_in_a_sentence(settings, words):
 def test_sizes_beyond_all_measure_are_refused_in_a_sentence():
     with pytest.raises(InputError, match="than any solid"):
         asked(width_m=1e-300, height_m=1e-300, mass_kg=1.0)
-    with pytest.raises(InputError, match=r"expected a length such as 1.2 m, found 10000"):
+    with pytest.raises(
+        InputError, match=r"expected a length such as 1.2 m, found 10000"
+    ):
         asked(width=10**400, height="1 m")
 
 
@@ -100,7 +102,9 @@ def test_densities_and_hazards_that_are_unusual_are_doubted(motions, tmp_path):
     (tmp_path / "h.csv").write_text("pga_g,annual_rate\n1.5,0.01\n3,0.0021\n6,0.0001\n")
     request = make_request(FIGURE | {"hazard": ["h.csv"]}, "test", tmp_path)
     found = assess_with(request, motions, brief=True)
-    assert any("unusual" in quality_flag for quality_flag in says("quality_flags", found))
+    assert any(
+        "unusual" in quality_flag for quality_flag in says("quality_flags", found)
+    )
 
 
 def test_a_file_says_what_the_command_line_says(tmp_path):
@@ -112,9 +116,19 @@ def test_a_file_says_what_the_command_line_says(tmp_path):
     assert request.level.words == "PGA 0.25 g"
 
 
-def test_without_records_and_network_there_is_one_sentence(tmp_path, capsys, monkeypatch):
+def test_without_records_and_network_there_is_one_sentence(
+    tmp_path, capsys, monkeypatch
+):
     monkeypatch.setenv("PIP_NO_INDEX", "1")
-    arguments = ["assess", "--width", "35cm", "--height", "120cm", "--records", str(tmp_path)]
+    arguments = [
+        "assess",
+        "--width",
+        "35cm",
+        "--height",
+        "120cm",
+        "--records",
+        str(tmp_path),
+    ]
     assert main(arguments) == 2
     shown = capsys.readouterr()
     assert shown.out == ""
@@ -124,7 +138,9 @@ def test_without_records_and_network_there_is_one_sentence(tmp_path, capsys, mon
 
 def test_default_motions_are_those_of_the_wide_study(default_records):
     found = motion_set(Records(), Place(), default_records)
-    wide = pd.read_csv(default_records.parents[1] / "config/motions/wide.csv").set_index("name")
+    wide = pd.read_csv(
+        default_records.parents[1] / "config/motions/wide.csv"
+    ).set_index("name")
     assert {motion.name for motion in found.ground} == set(wide.index)
     for motion in found.ground:
         for known in ("earthquake", "magnitude", "distance_km"):
@@ -143,7 +159,10 @@ def test_estimates_have_as_many_digits_as_they_deserve(value, lower, upper, word
 def test_random_requests_are_answered_without_contradiction_or_refused_in_a_sentence(
     part, tmp_path
 ):
-    records, hazard = write_records(tmp_path, motions_of_noise(6)), tmp_path / "hazard.csv"
+    records, hazard = (
+        write_records(tmp_path, motions_of_noise(6)),
+        tmp_path / "hazard.csv",
+    )
     hazard.write_text(SAMPLES["table.csv"])
     rng = random.Random(part)
     for _ in range(8):
@@ -175,16 +194,17 @@ def test_where_one_earthquake_alone_topples_it_nothing_is_divided_by_zero():
 
 
 def test_pedestals_on_each_other_are_given_from_above(own_records, tmp_path, capsys):
-    options = (
-        "--width 42cm --height 165cm --pedestal 60cm 90cm --pedestal 80cm 30cm --pga 0.4g --json"
-    )
+    options = "--width 42cm --height 165cm --pedestal 60cm 90cm --pedestal 80cm 30cm --pga 0.4g --json"
     places = ["--record", str(own_records / "catalogue.csv"), "--output", str(tmp_path)]
     assert main(["assess", *options.split(), *places]) == 0
     answer = json.loads(capsys.readouterr().out)
     ways = ["on its pedestals", "fixed to its pedestals", "on the floor"]
     assert list(answer["arrangements"]) == ways
     names = {mitigation["name"] for mitigation in answer["mitigations"]}
-    assert {"fixing the object to pedestal 1", "fixing pedestal 1 to pedestal 2"} <= names
+    assert {
+        "fixing the object to pedestal 1",
+        "fixing pedestal 1 to pedestal 2",
+    } <= names
     page = next(tmp_path.glob("*.html")).read_text(encoding="utf-8")
     assert "The page simulates one or two bodies" in page
     assert "and so not: on its pedestals." in page
@@ -193,7 +213,10 @@ def test_pedestals_on_each_other_are_given_from_above(own_records, tmp_path, cap
 
 def test_what_helps_says_what_the_positions_say(motions):
     """Changes of a column are compared by few motions; where none of these topples it, all of them still count."""
-    plinths = [{"width": "50 cm", "height": "40 cm"}, {"width": "70 cm", "height": "30 cm"}]
+    plinths = [
+        {"width": "50 cm", "height": "40 cm"},
+        {"width": "70 cm", "height": "30 cm"},
+    ]
     request = asked(width="30 cm", height="90 cm", pedestal=plinths, pga="0.38 g")
     assert [block.width for block in request.objects.body.blocks] == [0.7, 0.5, 0.3]
     found = assess_with(request, motions)
@@ -205,10 +228,16 @@ def test_what_helps_says_what_the_positions_say(motions):
     )
 
 
-def test_a_list_with_objects_in_the_plane_and_in_space_shakes_each_by_its_own_motions(motions):
+def test_a_list_with_objects_in_the_plane_and_in_space_shakes_each_by_its_own_motions(
+    motions,
+):
     """Sets that were thinned for one and for the other are not the same motions."""
     place = asked(width="30 cm", height="1 m", floor="1/2").place
-    for fewer in (motions.thinned(), motions.with_both_components().thinned(), motions.thinned()):
+    for fewer in (
+        motions.thinned(),
+        motions.with_both_components().thinned(),
+        motions.thinned(),
+    ):
         floors = fewer.at(place).base
         names = [motion.name.removesuffix("_floor") for motion in floors]
         assert names == [motion.name for motion in fewer.ground]
@@ -222,7 +251,9 @@ def test_friction_and_a_measured_restitution_go_together(few):
     assert abs(found.sliding_fraction - found.fraction.value) <= 0.34
 
 
-def test_an_interval_that_says_nothing_is_called_so_with_what_would_narrow_it(on_pedestal):
+def test_an_interval_that_says_nothing_is_called_so_with_what_would_narrow_it(
+    on_pedestal,
+):
     assert narrowed(Estimate(0.5, 0.0, 1.0, {"cg_height": 1.9, "model": 2.6})) is None
     wide = Estimate(0.05, 0.001, 0.74, {"conversion": 1.6, "period": 1.2, "model": 0.5})
     known, better = narrowed(wide)
@@ -234,17 +265,34 @@ def test_an_interval_that_says_nothing_is_called_so_with_what_would_narrow_it(on
     assert narrow - middle == pytest.approx(ratio * (upper - middle))
     line = five_lines(replace(on_pedestal, fraction=wide))[0]
     assert "not decidable with what was given" in line
-    assert "the ground velocity (PGV) of the site and the building's first period to 5 %" in line
+    assert (
+        "the ground velocity (PGV) of the site and the building's first period to 5 %"
+        in line
+    )
 
 
-def test_all_faults_of_an_inventory_are_listed_and_good_rows_ranked(own_records, tmp_path, capsys):
+def test_all_faults_of_an_inventory_are_listed_and_good_rows_ranked(
+    own_records, tmp_path, capsys
+):
     path = tmp_path / "gallery.csv"
     path.write_text(CASES["files"]["faulty.csv"])
     options = ["--pga", "0.4g", "--return-period", "475", "--output", str(tmp_path)]
-    command = ["assess", str(path), *options, "--record", str(own_records / "catalogue.csv")]
+    command = [
+        "assess",
+        str(path),
+        *options,
+        "--record",
+        str(own_records / "catalogue.csv"),
+    ]
     assert main(command) == 2
     said = capsys.readouterr().err
-    for line, what in ((3, "abc"), (4, "without a unit"), (5, "7/3"), (6, "cells"), (8, "twice")):
+    for line, what in (
+        (3, "abc"),
+        (4, "without a unit"),
+        (5, "7/3"),
+        (6, "cells"),
+        (8, "twice"),
+    ):
         assert re.search(rf"line {line}\b.*{what}", said)
     assert "--keep-going" in said
     assert main([*command, "--keep-going"]) == 0
@@ -254,12 +302,17 @@ def test_all_faults_of_an_inventory_are_listed_and_good_rows_ranked(own_records,
     lines = shown.out.splitlines()
     assert len(lines) == 7
     assert "slender" in lines[1] and "stout" in lines[4]
-    assert pd.read_csv(tmp_path / "inventory.csv")["probability"].is_monotonic_decreasing
+    assert pd.read_csv(tmp_path / "inventory.csv")[
+        "probability"
+    ].is_monotonic_decreasing
 
 
 def test_none_of_n_motions_is_said_as_that_and_bounds_are_called_bounds(on_pedestal):
     none = replace(
-        on_pedestal, fraction=Estimate(0.0, 0.0, 0.11, {}), counts=(24, 12, 0), directions=None
+        on_pedestal,
+        fraction=Estimate(0.0, 0.0, 0.11, {}),
+        counts=(24, 12, 0),
+        directions=None,
     )
     line = five_lines(none)[0]
     assert "none of 24 motions topples it (upper limit 11 %)" in line
@@ -275,7 +328,9 @@ def test_the_lines_say_the_scale_the_worst_direction_and_what_was_assumed(on_ped
     # a step is one of rates: the same object in half the time
     assert step_of(0.012, 50).name == step_of(0.006, 25).name == "high"
     assert "not counted" in lines[2]
-    said = [line for line in says("assumptions", on_pedestal) if "worst direction" in line]
+    said = [
+        line for line in says("assumptions", on_pedestal) if "worst direction" in line
+    ]
     assert said and all("counted" in line for line in said)
     assumed = lines[4].partition("Assumed: ")[2]
     assert "first period of 0.29 s" in assumed
@@ -295,7 +350,11 @@ def test_a_building_is_described_as_conservators_know_it():
     known = place_in({"first_period_s": 0.8, "damping_ratio": 0.01})
     assert find_modes(known.building).period[0] == pytest.approx(0.8)
     assert known.variants()[0].spread == 0.1
-    whole = {"storey_heights_m": [4, 4], "masses": ["200 t", "150 t"], "first_period_s": 0.3}
+    whole = {
+        "storey_heights_m": [4, 4],
+        "masses": ["200 t", "150 t"],
+        "first_period_s": 0.3,
+    }
     inline = place_in(whole | {"floors": {"attic": 2}}, "attic")
     assert inline.words == "on the floor attic, level 2 of 2"
 
@@ -305,7 +364,9 @@ def test_levels_are_named_as_europe_and_america_do(floor, name):
     assert says.line("floor_name", asked(**STATUE, floor=floor).place) == name
 
 
-@pytest.mark.parametrize(("options", "words"), [(row[0], row[1:]) for row in CASES["messages"]])
+@pytest.mark.parametrize(
+    ("options", "words"), [(row[0], row[1:]) for row in CASES["messages"]]
+)
 def test_messages_name_the_option_with_a_size_that_people_meet(options, words, capsys):
     said = refused(capsys, *options.split())
     assert all(word in said for word in words), said
@@ -316,7 +377,9 @@ def test_a_file_is_told_about_its_keys(tmp_path, capsys):
     path = tmp_path / "statue.yaml"
     path.write_text("width: 42 cm\nheight: 1,65 m\n")
     assert "key height: " in refused(capsys, str(path))
-    assert "--years: " in refused(capsys, str(path), "--height", "1.65m", "--years", "10")
+    assert "--years: " in refused(
+        capsys, str(path), "--height", "1.65m", "--years", "10"
+    )
 
 
 @pytest.fixture(scope="module")
@@ -325,7 +388,12 @@ def column(tmp_path_factory):
     trimesh = pytest.importorskip("trimesh")
     folder = tmp_path_factory.mktemp("meshes")
     box, cone = trimesh.creation.box((0.3, 0.3, 1.0)), trimesh.creation.cone(0.2, 1.0)
-    made = {"z.stl": box, "y.obj": cone.copy(), "box.glb": box.copy(), "mm.stl": box.copy()}
+    made = {
+        "z.stl": box,
+        "y.obj": cone.copy(),
+        "box.glb": box.copy(),
+        "mm.stl": box.copy(),
+    }
     # glTF has y up by its specification
     for name in ("y.obj", "box.glb"):
         made[name].vertices = made[name].vertices[:, [1, 2, 0]]
@@ -338,12 +406,16 @@ def column(tmp_path_factory):
 
 
 @pytest.mark.parametrize(("file", "way_out", "option"), CASES["meshes"])
-def test_a_mesh_that_cannot_be_used_is_told_the_way_out(file, way_out, option, column, capsys):
+def test_a_mesh_that_cannot_be_used_is_told_the_way_out(
+    file, way_out, option, column, capsys
+):
     mesh = ("--mesh", str(column / file))
     said = refused(capsys, *mesh)
     assert way_out in said, said
     # with it the next thing that is missing is a record
-    assert "absent.txt" in refused(capsys, *mesh, *option.split(), "--record", "absent.txt")
+    assert "absent.txt" in refused(
+        capsys, *mesh, *option.split(), "--record", "absent.txt"
+    )
 
 
 def test_glb_is_read_with_y_up(column):
@@ -365,7 +437,9 @@ def test_a_centre_of_gravity_off_the_middle_is_answered(motions):
 
 
 @patch.dict(_STATES)
-@pytest.mark.parametrize("level", [{"pga": "0.3 g"}, {"pga": "0.3 g", "pgv": "25 cm/s"}])
+@pytest.mark.parametrize(
+    "level", [{"pga": "0.3 g"}, {"pga": "0.3 g", "pgv": "25 cm/s"}]
+)
 @pytest.mark.parametrize("base", [{}, {"round": True}])
 def test_a_limit_state_that_is_declared_is_counted_and_exported(motions, level, base):
     @limit_state("turns_far", order=50, label="turning far")
@@ -375,21 +449,29 @@ def test_a_limit_state_that_is_declared_is_counted_and_exported(motions, level, 
     request = asked(**STATUE, **base, **level)
     found = assess_with(request, motions, brief=True)
     rocks, far, topples = (
-        found.outcomes.fractions(state=name) for name in ("rocks", "turns_far", "overturns")
+        found.outcomes.fractions(state=name)
+        for name in ("rocks", "turns_far", "overturns")
     )
     assert (rocks >= far).all() and (far >= topples).all() and far.sum() > topples.sum()
     assert "turning far" in page_of(found)
-    assert json.loads(as_json(found))["fragility"]["other_states"]["turns_far"] == far.tolist()
+    assert (
+        json.loads(as_json(found))["fragility"]["other_states"]["turns_far"]
+        == far.tolist()
+    )
     assert re.search("<limitStates>turns_far overturns</limitStates>", as_nrml(found))
 
 
 def test_a_round_base_topples_earlier_and_says_why(motions):
     square, rounded = (
-        assess_with(asked(**STATUE, **more), motions, brief=True) for more in ({}, {"round": True})
+        assess_with(asked(**STATUE, **more), motions, brief=True)
+        for more in ({}, {"round": True})
     )
     assert rounded.amplitudes[0.5].value < 0.8 * square.amplitudes[0.5].value
     assert any("rectangular" in line for line in says("assumptions", square))
-    assert any("in space under both components" in line for line in says("assumptions", rounded))
+    assert any(
+        "in space under both components" in line
+        for line in says("assumptions", rounded)
+    )
     assert "in space under both components" in five_lines(rounded)[2]
     assert "space" in square.main.sources and "space" not in rounded.main.sources
 
@@ -402,14 +484,19 @@ def test_a_round_base_of_an_inventory(tmp_path):
     assert [request.objects.round for request in requests] == [True, False]
 
 
-def test_the_page_says_it_all_without_false_digits_and_loads_nothing(on_pedestal, tmp_path):
+def test_the_page_says_it_all_without_false_digits_and_loads_nothing(
+    on_pedestal, tmp_path
+):
     page = write_answer(on_pedestal, tmp_path)
     text = page.read_text(encoding="utf-8")
     assert "Venus &lt;i&gt;" in text and "Venus <i>" not in text
     for words in ("What helps", "How sure that is", "What was assumed", "ASCE 43-05"):
         assert words in text
     assert "http://" not in text.replace("http://www.w3.org", "")
-    assert json.loads(page.with_suffix(".json").read_text(encoding="utf-8"))["name"] == "Venus <i>"
+    assert (
+        json.loads(page.with_suffix(".json").read_text(encoding="utf-8"))["name"]
+        == "Venus <i>"
+    )
     data = json.loads(re.search(r'id="live-data">(.*?)</script>', text, re.DOTALL)[1])
     assert len(data["motions"]) >= 4
     assert all(motion["name"].startswith("earthquake") for motion in data["motions"])

@@ -39,10 +39,23 @@ def in_node(folder, motions, forms, request=None):
     page = page_of(motions, forms[0], request, made=True)
     data = json.loads(page.partition('id="data">')[2].partition("</script>")[0])
     (folder / "in.json").write_text(json.dumps({"data": data, "forms": forms}))
-    parts = ["let onmessage;", computing(), script("worker.js"), script("words.js"), READING]
+    parts = [
+        "let onmessage;",
+        computing(),
+        script("worker.js"),
+        script("words.js"),
+        READING,
+    ]
     (folder / "run.cjs").write_text("\n".join(parts))
-    known = subprocess.run([NODE, RELAXED, "-e", "0"], capture_output=True).returncode == 0
-    command = [NODE, *([RELAXED] if known else []), folder / "run.cjs", folder / "in.json"]
+    known = (
+        subprocess.run([NODE, RELAXED, "-e", "0"], capture_output=True).returncode == 0
+    )
+    command = [
+        NODE,
+        *([RELAXED] if known else []),
+        folder / "run.cjs",
+        folder / "in.json",
+    ]
     done = subprocess.run(command, capture_output=True, text=True, check=True)
     return json.loads(done.stdout)
 
@@ -56,7 +69,10 @@ def check_all(motions: MotionSet, settings, said) -> Assessment:
     assert (said["early"] is not None) == found.motions.both
     if early := said["early"]:  # the first figures are final, and no more than is known
         assert early["counts"] == said["answer"]["counts"]
-        assert (early["value"], early["probabilityValue"]) == (said["answer"]["value"], None)
+        assert (early["value"], early["probabilityValue"]) == (
+            said["answer"]["value"],
+            None,
+        )
     # the lines that both have in full are the same; options of the command line are no words of a page
     titles = {"Result": "result", "What helps": "helps"}
     titles |= {"Risk": "risk"} if found.probability else {}
@@ -79,8 +95,12 @@ def check_figures(found: Assessment, answer) -> None:
             expected = pytest.approx(getattr(estimate, key), rel=1e-9, abs=1e-12)
             assert own[key] == expected, (name, key)
     his = [(item.value, item.factor) for item in found.mitigations]
-    mine = np.array([(item["value"], item["factor"]) for item in answer["mitigations"]], float)
-    np.testing.assert_allclose(mine.reshape(-1, 2), np.reshape(his, (-1, 2)), rtol=1e-9, atol=1e-12)
+    mine = np.array(
+        [(item["value"], item["factor"]) for item in answer["mitigations"]], float
+    )
+    np.testing.assert_allclose(
+        mine.reshape(-1, 2), np.reshape(his, (-1, 2)), rtol=1e-9, atol=1e-12
+    )
 
 
 def some_form_in_space(rng: random.Random) -> dict[str, str]:
@@ -99,7 +119,11 @@ def some_round_form_on_a_pedestal(rng: random.Random) -> dict[str, str]:
     """A random round object without a measured restitution, on a pedestal at least as wide."""
     form = {key: value for key, value in some_form(rng).items() if key != "restitution"}
     width = float(form["width"].split()[0]) * rng.uniform(1, 2)
-    return form | {"round": True, "pedestal_width": f"{width} cm", "pedestal_height": "60 cm"}
+    return form | {
+        "round": True,
+        "pedestal_width": f"{width} cm",
+        "pedestal_height": "60 cm",
+    }
 
 
 @needs_node
@@ -111,10 +135,14 @@ def some_round_form_on_a_pedestal(rng: random.Random) -> dict[str, str]:
         (some_round_form_on_a_pedestal, True, 11, 1, 1),
         pytest.param(some_form, False, 6, 200, 180, marks=pytest.mark.slow),
         pytest.param(some_form_in_space, False, 9, 100, 80, marks=pytest.mark.slow),
-        pytest.param(some_round_form_on_a_pedestal, True, 12, 20, 16, marks=pytest.mark.slow),
+        pytest.param(
+            some_round_form_on_a_pedestal, True, 12, 20, 16, marks=pytest.mark.slow
+        ),
     ],
 )
-def test_the_page_says_what_assess_does(tmp_path, motions, some, few, seed, objects, least):
+def test_the_page_says_what_assess_does(
+    tmp_path, motions, some, few, seed, objects, least
+):
     rng = random.Random(seed)
     if few:  # six records with both components, and one with one
         ground = motions.ground[:13]
@@ -131,19 +159,31 @@ def test_the_page_says_what_assess_does(tmp_path, motions, some, few, seed, obje
     assert answered >= least
 
 
-USUAL = {"width": "35 cm", "height": "1,2 m", "measure": "PGA", "level": "0,3 g", "years": "475"}
+USUAL = {
+    "width": "35 cm",
+    "height": "1,2 m",
+    "measure": "PGA",
+    "level": "0,3 g",
+    "years": "475",
+}
 
 
 @needs_node
 def test_hostile_input_gets_a_sentence(tmp_path, motions):
     given = case_tables(__file__)
-    forms = [USUAL | {field: text} for field in given["fields"] for text in given["hostile"]]
+    forms = [
+        USUAL | {field: text} for field in given["fields"] for text in given["hostile"]
+    ]
     hazards = given["hazards"] + given["hostile"]
     forms += [USUAL | {"years": "", "hazard": text} for text in hazards]
-    forms += [USUAL | more for more in ({"round": True}, {"width": ""}, {"floor": "5/4"})]
+    forms += [
+        USUAL | more for more in ({"round": True}, {"width": ""}, {"floor": "5/4"})
+    ]
     refused = in_node(tmp_path, motions, forms)
     assert not [said for said in refused if "failed" in said]
-    assert all(said["refused"][2] for said in refused if "refused" in said), "each has its sentence"
+    assert all(said["refused"][2] for said in refused if "refused" in said), (
+        "each has its sentence"
+    )
     assert sum("refused" in said for said in refused) > 0.9 * len(forms)
 
 
@@ -155,12 +195,20 @@ SLENDER = {"width": "20 cm", "height": "80 cm", "measure": "PGA", "level": "0.3 
 @needs_node
 @pytest.mark.parametrize(
     ("floor", "building", "typed"),
-    [("gallery", BUILDING, {}), ("2/3", BUILDING, {}), ("2/4", KNOWN, {"floor": "3/4"})],
+    [
+        ("gallery", BUILDING, {}),
+        ("2/3", BUILDING, {}),
+        ("2/4", KNOWN, {"floor": "3/4"}),
+    ],
 )
 def test_a_building_that_is_given_has_the_bits_of_the_package(
     tmp_path, motions, floor, building, typed
 ):
-    form = SLENDER | {"years": "475", "floor": floor} | (KNOWN if building is KNOWN else {})
+    form = (
+        SLENDER
+        | {"years": "475", "floor": floor}
+        | (KNOWN if building is KNOWN else {})
+    )
     settings = settings_of(form) | {"building": building}
     given = make_request(settings, "test")
     first, said = in_node(tmp_path, motions, [form, form | typed], given)
@@ -170,8 +218,13 @@ def test_a_building_that_is_given_has_the_bits_of_the_package(
 
 @needs_node
 @pytest.mark.parametrize("measure", ["PGA", "SA(0.3)"])
-def test_a_hazard_that_is_given_or_pasted_counts_with_its_quantiles(tmp_path, motions, measure):
-    size, files = {"width": "15 cm", "height": "80 cm"}, quantile_files(tmp_path, measure)
+def test_a_hazard_that_is_given_or_pasted_counts_with_its_quantiles(
+    tmp_path, motions, measure
+):
+    size, files = (
+        {"width": "15 cm", "height": "80 cm"},
+        quantile_files(tmp_path, measure),
+    )
     request = make_request(size | {"hazard": files}, "test")
     assert set(request.hazard[0].quantiles) == {0.16, 0.84}
     form = form_of(size | {"hazard": files}, request) | size
@@ -201,12 +254,17 @@ def test_floors_of_other_buildings_are_the_same_but_for_rounding(tmp_path, motio
             rounding = 1e-11 * np.abs(his.acceleration).max()
             np.testing.assert_allclose(mine, his.acceleration, rtol=0, atol=rounding)
         # of 24 motions at 60 levels none is so near to falling
-        assert said["answer"]["shares"] == assess_with(request, moved).outcomes.fractions().tolist()
+        assert (
+            said["answer"]["shares"]
+            == assess_with(request, moved).outcomes.fractions().tolist()
+        )
 
 
 def test_all_languages_have_the_same_texts():
     faults = re.findall(r"^  \"(.+)\",$", driver_text(), re.MULTILINE)
-    english = texts("en") | {f"fault_{i}": fault for i, fault in enumerate(faults, start=1)}
+    english = texts("en") | {
+        f"fault_{i}": fault for i, fault in enumerate(faults, start=1)
+    }
     italian = texts("it")
     assert len(faults) == 6
     assert set(italian) == set(english)
@@ -217,11 +275,18 @@ def test_all_languages_have_the_same_texts():
             assert set(places.findall(text)) == set(places.findall(english[key])), key
 
 
-def test_the_command_writes_a_page_and_refuses_what_it_cannot_say(own_records, tmp_path, capsys):
+def test_the_command_writes_a_page_and_refuses_what_it_cannot_say(
+    own_records, tmp_path, capsys
+):
     path = tmp_path / "assess.html"
     records = ["--record", str(own_records / "catalogue.csv"), "--output", str(path)]
     command = ["app", "--width", "20cm", "--height", "1m", "--pga", "0.3g", *records]
-    for more in (["--friction", "0.5"], ["--pga", "0.4g"], ["--pgv", "20cm/s"], ["--up", "y"]):
+    for more in (
+        ["--friction", "0.5"],
+        ["--pga", "0.4g"],
+        ["--pgv", "20cm/s"],
+        ["--up", "y"],
+    ):
         assert main([*command, *more]) == 2
         assert len(capsys.readouterr().err.splitlines()) == 1
     assert not path.exists()

@@ -39,7 +39,9 @@ def test_measures_are_known_by_all_their_names():
     assert {PGA, PGV, read_measure("SA(0.2)", "here")} <= set(known)
 
 
-def test_files_of_one_measure_are_a_curve_with_its_quantiles_which_none_is_twice(tmp_path):
+def test_files_of_one_measure_are_a_curve_with_its_quantiles_which_none_is_twice(
+    tmp_path,
+):
     paths = quantile_files(tmp_path, "PGA")
     other = write(tmp_path, "other.csv", openquake_csv(imt="SA(0.3)"))
     curve, spectral = read_hazard([*paths, other])
@@ -76,7 +78,9 @@ def test_what_is_wrong_with_a_file_of_a_maker_is_said_in_a_sentence(
 
 def test_a_file_that_is_absent_or_no_table_is_refused(tmp_path):
     with pytest.raises(InputError, match="damaged as a table"):
-        read_hazard([write(tmp_path, "long.csv", SAMPLES["openquake.csv"] + "9" * 140_000)])
+        read_hazard(
+            [write(tmp_path, "long.csv", SAMPLES["openquake.csv"] + "9" * 140_000)]
+        )
     binary = tmp_path / "x.csv"
     binary.write_bytes(b"\xff\xfe\x00\x01")
     for path in (tmp_path / "absent.csv", tmp_path, binary):

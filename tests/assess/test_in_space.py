@@ -26,7 +26,9 @@ def found(few):
     return assess_with(asked(**BOX, pga="0.4 g"), few)
 
 
-def test_the_fraction_is_that_of_both_components_which_counts_beside_that_in_one_plane(found, few):
+def test_the_fraction_is_that_of_both_components_which_counts_beside_that_in_one_plane(
+    found, few
+):
     shaking = [GroundMotion(few.base[i], few.base[j]) for i, j in few.pairs]
     scales = [[0.4 / np.sqrt(pair.x.pga * pair.y.pga) * 9.80665] for pair in shaking]
     body = Block(0.35, 1.2, 180.0, depth=0.5)
@@ -58,8 +60,16 @@ def test_the_sides_may_be_given_either_way_round_and_the_object_may_face_anywher
     other = BOX | {"width": "50 cm", "depth": "35 cm"}
     planar = asked(**other).objects
     assert planar.block == Block(0.35, 1.2, 180.0) and "narrower" in planar.plane
-    plain, across, turned = solid_of(**BOX), solid_of(**other), solid_of(**BOX, facing_deg=90)
-    for solid, sides in ((plain, [0.35, 0.5]), (across, [0.5, 0.35]), (turned, [0.5, 0.35])):
+    plain, across, turned = (
+        solid_of(**BOX),
+        solid_of(**other),
+        solid_of(**BOX, facing_deg=90),
+    )
+    for solid, sides in (
+        (plain, [0.35, 0.5]),
+        (across, [0.5, 0.35]),
+        (turned, [0.5, 0.35]),
+    ):
         assert np.ptp(np.array(solid.base.vertices), axis=0) == pytest.approx(sides)
     block = Block(0.5, 1.2, 180.0, depth=0.35).body
     np.testing.assert_allclose(turned.tensor, across.tensor, atol=1e-9)
@@ -86,7 +96,11 @@ def folder(tmp_path_factory):
 
 
 def scanned(folder, name="box.stl", *, mesh=MEASURED, **settings):
-    given = {"mesh": {"file": str(folder / name), **mesh}, "mass": "180 kg", "pga": "0.4 g"}
+    given = {
+        "mesh": {"file": str(folder / name), **mesh},
+        "mass": "180 kg",
+        "pga": "0.4 g",
+    }
     return make_request(given | settings, "test")
 
 
@@ -104,7 +118,9 @@ def test_how_it_faces_is_given_or_a_source(folder, few):
     corners = np.array(given.request.objects.scanned.base.vertices)
     # the mesh's x axis points 30° from the first component
     x, y = corners[np.argmax(corners[:, 0])]
-    assert np.arctan2(y, x) == pytest.approx(np.radians(30) - np.arctan2(0.25, 0.175), abs=1e-8)
+    assert np.arctan2(y, x) == pytest.approx(
+        np.radians(30) - np.arctan2(0.25, 0.175), abs=1e-8
+    )
     with pytest.raises(InputError, match="leave out one of them"):
         scanned(folder, facing_deg=30, mesh={"direction_deg": 20})
 
@@ -116,10 +132,14 @@ def test_changes_of_the_object_change_it_in_space(folder):
         if change.name == "width":
             lower, upper = (side.solid(side.body).bodies[0] for side in change.sides)
             assert lower.width < as_it_is.width < upper.width
-    heavier = replace(objects.block, mass=360.0, inertia=objects.block.centroidal_inertia + 5.0)
+    heavier = replace(
+        objects.block, mass=360.0, inertia=objects.block.centroidal_inertia + 5.0
+    )
     changed = objects.solid(heavier).bodies[0]
     assert changed.mass == pytest.approx(360.0)
-    np.testing.assert_allclose(np.diag(changed.tensor - as_it_is.tensor), [5, 5, 0], atol=1e-9)
+    np.testing.assert_allclose(
+        np.diag(changed.tensor - as_it_is.tensor), [5, 5, 0], atol=1e-9
+    )
 
 
 def test_a_fine_round_base_keeps_as_many_corners_as_count(folder):

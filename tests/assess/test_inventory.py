@@ -48,7 +48,9 @@ def test_twins_on_one_floor_topple_together_and_others_less(gallery):
     assert (table.to_numpy() <= 1 + 1e-12).all()
 
 
-def test_numbers_and_losses_follow_from_the_objects_and_what_adds_most_comes_first(gallery):
+def test_numbers_and_losses_follow_from_the_objects_and_what_adds_most_comes_first(
+    gallery,
+):
     joint = gallery.joint
     table = joint.numbers.set_index("at_least")
     assert {1, 2, 3, 5} <= set(table.index)
@@ -80,7 +82,9 @@ def test_mitigations_are_bodies():
     # moments about the base stay those of the parts
     assert heavier.mass * heavier.h == pytest.approx(100 * 0.6 + 25 * 0.06)
     assert heavier.mass * heavier.cg_offset == pytest.approx(100 * 0.02)
-    about_base = heavier.centroidal_inertia + heavier.mass * (heavier.h**2 + heavier.cg_offset**2)
+    about_base = heavier.centroidal_inertia + heavier.mass * (
+        heavier.h**2 + heavier.cg_offset**2
+    )
     own = block.centroidal_inertia + 100 * (0.6**2 + 0.02**2)
     assert about_base == pytest.approx(own + 25 * 0.06**2)
     plate = on_plate(block)
@@ -119,7 +123,10 @@ def test_pad_and_gallery_from_the_command_line(own_records, tmp_path, capsys):
     assert "12 own motions of 6 earthquakes" in lines
     path = tmp_path / "gallery.csv"
     path.write_text(CASES["files"]["gallery.csv"])
-    assert main(["assess", str(path), "--return-period", "475", "--pga", "0.5g", *records]) == 0
+    assert (
+        main(["assess", str(path), "--return-period", "475", "--pga", "0.5g", *records])
+        == 0
+    )
     said = capsys.readouterr().out
     assert "At least so many topple in one earthquake" in said
     assert float(said.split("mean loss a year is ")[1].split()[0]) > 0

@@ -59,7 +59,9 @@ BENT = HazardCurve(
 
 def outcomes_from(capacities, earthquakes, **more) -> ObjectOutcomes:
     """Outcomes of motions that topple from a level on."""
-    return outcomes_of(np.asarray(capacities)[:, None] <= LEVELS, LEVELS, earthquakes, **more)
+    return outcomes_of(
+        np.asarray(capacities)[:, None] <= LEVELS, LEVELS, earthquakes, **more
+    )
 
 
 @pytest.fixture(scope="module")
@@ -69,8 +71,15 @@ def page(motions, tmp_path_factory):
     (folder / "hazard.csv").write_text(
         "pga_g,annual_rate\n0.01,0.3\n0.05,0.04\n0.12,0.009\n0.4,0.0006\n1.1,0.00002\n6,1e-7\n"
     )
-    settings = {"name": "figure", "width": "35 cm", "height": "120 cm", "hazard": ["hazard.csv"]}
-    return write_answer(assess_with(make_request(settings, "test", folder), motions), folder)
+    settings = {
+        "name": "figure",
+        "width": "35 cm",
+        "height": "120 cm",
+        "hazard": ["hazard.csv"],
+    }
+    return write_answer(
+        assess_with(make_request(settings, "test", folder), motions), folder
+    )
 
 
 @pytest.fixture(scope="module")
@@ -107,7 +116,9 @@ def test_an_object_that_bears_more_topples_less_often():
     )
     # a power law shifted is a power law times a factor
     power = curve_of_one_level(PGA, 0.25, 475)
-    ratio = toppling_rate(LEVELS, fractions, power, 0.2) / toppling_rate(LEVELS, fractions, power)
+    ratio = toppling_rate(LEVELS, fractions, power, 0.2) / toppling_rate(
+        LEVELS, fractions, power
+    )
     assert ratio == pytest.approx(math.exp(-3 * 0.2), rel=1e-9)
 
 
@@ -116,7 +127,9 @@ def test_where_nothing_topples_there_is_a_bound_and_no_zero():
     found = Evidence(rocks, shifts={"model": 0.2}).estimate(risk_target(BENT, 50))
     assert found.value == 0
     # 19 of 20 chances that fewer than 1 - 0.1^(1/20) of all earthquakes topple it
-    assert 0 < found.upper <= probability_in(0.11 * float(BENT.rate(LEVELS[0])), 50) * 1.9
+    assert (
+        0 < found.upper <= probability_in(0.11 * float(BENT.rate(LEVELS[0])), 50) * 1.9
+    )
 
 
 def test_one_earthquake_that_topples_leaves_more_open_than_none():
@@ -136,7 +149,9 @@ def test_one_earthquake_that_topples_leaves_more_open_than_none():
 def test_share_at_a_level_and_level_of_a_share_are_inverse():
     outcomes = outcomes_from(np.geomspace(0.1, 1.5, 40), range(40))
     level = Evidence(outcomes).estimate(amplitude_target(0.5)).value
-    assert Evidence(outcomes).estimate(fraction_target(level)).value == pytest.approx(0.5, abs=1e-9)
+    assert Evidence(outcomes).estimate(fraction_target(level)).value == pytest.approx(
+        0.5, abs=1e-9
+    )
 
 
 def test_one_earthquake_alone_gives_no_finite_interval():
@@ -156,7 +171,9 @@ def test_intervals_hold_the_truth_as_often_as_they_say():
     random = np.random.default_rng(11)
     held, runs, earthquakes, each = 0, 600, 19, 5
     for _ in range(runs):
-        error = of_width * random.standard_normal() + of_model * random.standard_normal()
+        error = (
+            of_width * random.standard_normal() + of_model * random.standard_normal()
+        )
         capacities = theta * np.exp(
             error
             + between * np.repeat(random.standard_normal(earthquakes), each)
@@ -166,10 +183,13 @@ def test_intervals_hold_the_truth_as_often_as_they_say():
         outcomes = outcomes_from(capacities, names)
         moved = {
             "width": tuple(
-                outcomes_from(capacities * math.exp(sign * of_width), names) for sign in (-1, 1)
+                outcomes_from(capacities * math.exp(sign * of_width), names)
+                for sign in (-1, 1)
             )
         }
-        found = Evidence(outcomes, moved, {"model": of_model}).estimate(risk_target(hazard, 50))
+        found = Evidence(outcomes, moved, {"model": of_model}).estimate(
+            risk_target(hazard, 50)
+        )
         held += found.lower <= probability_in(truth, 50) <= found.upper
     fraction = held / runs
     assert 0.85 < fraction < 0.95
@@ -182,7 +202,9 @@ def test_all_of_the_motions_are_not_a_bit_less():
     for _ in range(2000):
         levels = np.unique(np.round(np.exp(rng.uniform(-3, 1, 60)), 3))
         first = int(rng.integers(1, levels.size))
-        fractions = np.where(levels < levels[first], np.linspace(0, 0.9, levels.size), 1.0)
+        fractions = np.where(
+            levels < levels[first], np.linspace(0, 0.9, levels.size), 1.0
+        )
         assert fraction_target(float(levels[first])).of(levels, fractions, 0.0) == 1
 
 
@@ -203,7 +225,9 @@ def test_the_probability_is_that_of_openquakes_risk_calculator(page, answer):
     assert float(toppled) == pytest.approx(answer["probability"]["value"], rel=0.01)
 
 
-def set_of(records: int, rng: np.random.Generator, noise) -> tuple[MotionSet, np.ndarray]:
+def set_of(
+    records: int, rng: np.random.Generator, noise
+) -> tuple[MotionSet, np.ndarray]:
     """Motions of records with known magnitude, ln distance and ln Vs30; the numbers too."""
     about = rng.uniform([6, 0, 5], [8, 4, 7], (records, 3))
     motions = []
@@ -225,7 +249,9 @@ def test_what_is_known_of_the_earthquakes_is_no_ignorance(noise):
     assert relation.unknown(known) == pytest.approx(abs(parts[2]))
     # the mean is that of such earthquakes on the ground of the set
     there = [7.0, math.log(10.0), about[:, 2].mean()]
-    assert relation.mean(known) == pytest.approx(1.0 + there @ np.array([0.5, -0.2, -0.3]))
+    assert relation.mean(known) == pytest.approx(
+        1.0 + there @ np.array([0.5, -0.2, -0.3])
+    )
 
 
 def test_what_differs_between_motions_of_one_site_is_not_all_ignorance(noise):
@@ -243,10 +269,15 @@ def figure(**settings):
 
 
 def test_every_source_says_where_its_size_comes_from(motions):
-    pedestal, shaking = {"width": "50 cm", "height": "90 cm"}, {"pga": "0.5 g", "floor": "2/4"}
+    pedestal, shaking = (
+        {"width": "50 cm", "height": "90 cm"},
+        {"pga": "0.5 g", "floor": "2/4"},
+    )
     request = figure(pedestal=pedestal, return_period="475 years", **shaking)
     found = assess_with(request, motions.at(request.place))
-    assert {"space", "model", "period", "conversion", "hazard"} <= set(found.main.sources)
+    assert {"space", "model", "period", "conversion", "hazard"} <= set(
+        found.main.sources
+    )
     assert set(found.main.sources) <= set(SOURCES)
     parts = parts_of(found.main.sources)
     assert sum(parts.values()) == pytest.approx(1)
@@ -262,7 +293,9 @@ def test_every_source_says_where_its_size_comes_from(motions):
 def test_how_a_scan_stands_is_a_source_until_it_is_measured(tmp_path, few):
     # a block of 0.3 × 0.3 × 1 m on a plate of 0.2 m at 1 mm below it: which carries depends on the tolerance
     trimesh = pytest.importorskip("trimesh")
-    block, plate = (trimesh.creation.box(sides) for sides in ((0.3, 0.3, 1), (0.2, 0.2, 0.001)))
+    block, plate = (
+        trimesh.creation.box(sides) for sides in ((0.3, 0.3, 1), (0.2, 0.2, 0.001))
+    )
     block.apply_translation((0, 0, 0.501))
     plate.apply_translation((0, 0, 0.0005))
     trimesh.util.concatenate([block, plate]).export(tmp_path / "feet.stl")
@@ -284,7 +317,9 @@ def test_how_a_scan_stands_is_a_source_until_it_is_measured(tmp_path, few):
     def sources(item):
         return assess_with(item, few, brief=True).amplitudes[0.5].sources
 
-    blind, known, faced = (sources(item) for item in (request, measured, of(direction_deg=0)))
+    blind, known, faced = (
+        sources(item) for item in (request, measured, of(direction_deg=0))
+    )
     assert blind["contact"] > 0.1 and "facing" not in faced
     ways = ("contact", "retreat", "facing")
     assert math.hypot(*(known.get(name, 0.0) for name in ways)) < 0.02
@@ -295,7 +330,9 @@ def test_how_a_scan_stands_is_a_source_until_it_is_measured(tmp_path, few):
     # on few points it loses more in impacts than a cut block
     tolerances = request.objects.tolerances
     assert request.objects.livelier == pytest.approx((0.7 + 1) / 2)
-    assert tolerances["restitution"] == pytest.approx(0.3 / math.sqrt(12) / 0.85, rel=0.03)
+    assert tolerances["restitution"] == pytest.approx(
+        0.3 / math.sqrt(12) / 0.85, rel=0.03
+    )
     assert cut.objects.livelier == 1
 
 
@@ -304,8 +341,12 @@ K, K0 = 2.5, 1e-4
 
 
 def power_law(measure, at_a_tenth=K0, slope=K, middle=0.1):
-    levels = middle * np.array([0.01, 0.1, 1.0, 10.0, 80.0 if measure == PGA else 100.0])
-    return make_curve(measure, list(levels), list(at_a_tenth * (levels / middle) ** -slope), "test")
+    levels = middle * np.array(
+        [0.01, 0.1, 1.0, 10.0, 80.0 if measure == PGA else 100.0]
+    )
+    return make_curve(
+        measure, list(levels), list(at_a_tenth * (levels / middle) ** -slope), "test"
+    )
 
 
 def topples_from(pgv: float, logs: np.ndarray) -> ObjectOutcomes:
@@ -324,13 +365,19 @@ def test_an_object_that_velocity_topples_has_the_rate_of_that_velocity():
     logs = math.log(0.1) + 0.5 * random.standard_normal(60)
     acceleration = power_law(PGA)
     # the PGV of the site as it follows from ln PGV = ln(0.07 s) + ln PGA + 0.4 z
-    velocity = power_law(PGV, K0 * math.exp((K * 0.4) ** 2 / 2), middle=0.1 * 0.07 * VELOCITY_PER_G)
+    velocity = power_law(
+        PGV, K0 * math.exp((K * 0.4) ** 2 / 2), middle=0.1 * 0.07 * VELOCITY_PER_G
+    )
     outcomes = topples_from(30.0, logs)
     known = SiteVelocity(0.4, curves=(acceleration, velocity))
-    assert known.log_ratio(np.array([0.05, 1.0])) == pytest.approx(math.log(0.07), abs=1e-9)
+    assert known.log_ratio(np.array([0.05, 1.0])) == pytest.approx(
+        math.log(0.07), abs=1e-9
+    )
 
     def rate_of(each: ObjectOutcomes) -> float:
-        return toppling_rate(each.intensity_levels.levels, each.fractions(), acceleration)
+        return toppling_rate(
+            each.intensity_levels.levels, each.fractions(), acceleration
+        )
 
     rate = rate_of(conversion_of(logs, known).at_site(outcomes))
     assert rate == pytest.approx(float(velocity.rate(30.0)), rel=0.03)
@@ -364,7 +411,9 @@ def test_what_differs_between_earthquakes_is_in_the_fraction():
 def test_what_is_known_of_velocity_counts_and_is_no_longer_a_source(motions):
     middle = 0.6 * float(np.median(motions.values(PGV) / motions.values(PGA)))
     nothing, slow, fast = (
-        assess_with(figure(pga="0.6 g", return_period="475", **more), motions, brief=True)
+        assess_with(
+            figure(pga="0.6 g", return_period="475", **more), motions, brief=True
+        )
         for more in ({}, {"pgv": "40 cm/s"}, {"pgv": f"{1.3 * middle} cm/s"})
     )
     # nothing known leaves counted fractions
@@ -381,7 +430,9 @@ def test_what_is_known_of_velocity_counts_and_is_no_longer_a_source(motions):
     found = assess_with(figure(pga="0.6 g", pgv="40 cm/s"), motions, brief=True)
     assert "PGA 0.6 g and PGV 40 cm/s" in five_lines(found)[0]
     assert found.conversion.known.spread == 0
-    assert any("PGV of 66.7 cm/s per g" in flag for flag in says("quality_flags", found))
+    assert any(
+        "PGV of 66.7 cm/s per g" in flag for flag in says("quality_flags", found)
+    )
     # the export says which errors are not in it
     text = as_nrml(slow)
     assert f"{MODEL_ERRORS[CUT].beyond:g} of ln level ({CUT}: " in text
@@ -409,9 +460,14 @@ def test_the_documented_bias_of_rules_is_the_computed_one(default_records):
     documented = {}
     for row in rows:
         name, *cells = (cell.strip() for cell in row.split("|"))
-        documented |= {(name, rule): cell for rule, cell in zip(rules, cells, strict=True)}
+        documented |= {
+            (name, rule): cell for rule, cell in zip(rules, cells, strict=True)
+        }
     computed = {
-        (row.object, row.rule): f"{row.bias:.2f} ± {row.scatter:.2f}, {100 * row.unsafe:.0f} %"
+        (
+            row.object,
+            row.rule,
+        ): f"{row.bias:.2f} ± {row.scatter:.2f}, {100 * row.unsafe:.0f} %"
         for row in table.itertuples()
     }
     assert documented == computed

@@ -41,7 +41,10 @@ def test_reference_building_has_the_published_periods_and_stiffnesses(settings):
     building = make_building(settings)
     period = find_modes(building).period
     assert [f"{value:.5f}" for value in period[:3]] == ["0.35000", "0.11880", "0.07409"]
-    assert [f"{value:.3e}" for value in building.stiffnesses[:2]] == ["1.580e+09", "1.871e+09"]
+    assert [f"{value:.3e}" for value in building.stiffnesses[:2]] == [
+        "1.580e+09",
+        "1.871e+09",
+    ]
     assert building.stiffnesses[1:] == (building.stiffnesses[1],) * 5
     assert building.model == "elastic"
     with pytest.raises(InputError, match="floor 'F7' is not defined"):
@@ -65,7 +68,10 @@ def test_reference_building_amplifies_the_four_records_as_published(
 
 @pytest.mark.parametrize(
     "damping",
-    [{"kind": "modal", "ratio": 0.05}, {"kind": "rayleigh", "ratio": 0.08, "modes": [1, 3]}],
+    [
+        {"kind": "modal", "ratio": 0.05},
+        {"kind": "rayleigh", "ratio": 0.08, "modes": [1, 3]},
+    ],
 )
 def test_modal_superposition_equals_the_matrix_exponential(settings, damping, noise):
     building = make_building(settings | {"first_period_s": 0.6, "damping": damping})
@@ -107,7 +113,9 @@ def test_modes_take_up_the_whole_mass_and_every_floor_moves_with_the_ground(sett
 
 
 @pytest.mark.parametrize(("key", "value", "times", "message"), CASES["refused"])
-def test_unphysical_buildings_are_refused_in_one_sentence(settings, key, value, times, message):
+def test_unphysical_buildings_are_refused_in_one_sentence(
+    settings, key, value, times, message
+):
     if key.startswith("only "):
         del settings["first_period_s"]
     settings[key.removeprefix("only ")] = [value] * times if times else value
@@ -118,7 +126,9 @@ def test_unphysical_buildings_are_refused_in_one_sentence(settings, key, value, 
     assert text.endswith((".", "?"))
 
 
-def test_heights_and_masses_may_be_in_any_unit_and_stiffnesses_stand_for_a_period(settings):
+def test_heights_and_masses_may_be_in_any_unit_and_stiffnesses_stand_for_a_period(
+    settings,
+):
     usual = make_building(settings)
     del settings["first_period_s"]
     settings["storey_stiffnesses_N_m"] = list(usual.stiffnesses)
@@ -178,7 +188,9 @@ def cycles(amplitudes, points=150):
     return np.concatenate(legs)
 
 
-GROWING = cycles(4.5 * np.array([2e-4, 5e-4, 1e-3, 1e-3, 2e-3, 3.9e-3, 3.9e-3, 6e-3, 6e-3, 9e-3]))
+GROWING = cycles(
+    4.5 * np.array([2e-4, 5e-4, 1e-3, 1e-3, 2e-3, 3.9e-3, 3.9e-3, 6e-3, 6e-3, 9e-3])
+)
 
 
 def test_a_single_push_follows_the_envelope_of_weight_and_drift_limits(masonry):
@@ -194,7 +206,9 @@ def test_a_single_push_follows_the_envelope_of_weight_and_drift_limits(masonry):
     expected = np.interp(path, [0, *displacement[1]], [0, *force[1]])
     assert push_storey(building, 2, path) == pytest.approx(expected, rel=1e-12)
     assert push_storey(building, 2, -path) == pytest.approx(-expected, rel=1e-12)
-    with pytest.raises(InputError, match=r"storey 1 reaches its shear .* lower base_shear"):
+    with pytest.raises(
+        InputError, match=r"storey 1 reaches its shear .* lower base_shear"
+    ):
         storey_envelopes(masonry(base_shear=0.9))
 
 
@@ -207,7 +221,9 @@ def test_repeated_cycles_lose_force_and_never_give_energy(masonry):
     assert np.all(np.diff(work[297::298]) > 0)
 
 
-def test_below_cracking_the_storeys_dissipate_nothing_and_the_building_is_elastic(masonry):
+def test_below_cracking_the_storeys_dissipate_nothing_and_the_building_is_elastic(
+    masonry,
+):
     building, motion = masonry(base_shear=0.3), strong_motion(0.03)
     found = respond(building, motion)
     exact = respond_elastically(building, motion)
@@ -216,7 +232,9 @@ def test_below_cracking_the_storeys_dissipate_nothing_and_the_building_is_elasti
     assert np.abs(found.drift - exact.drift).max() < 2e-4 * exact.peak_drift.max()
 
 
-def test_beyond_yield_the_energy_balance_closes_and_half_the_step_changes_nothing(masonry):
+def test_beyond_yield_the_energy_balance_closes_and_half_the_step_changes_nothing(
+    masonry,
+):
     building, motion = masonry(), strong_motion()
     found = respond(building, motion)
     assert found.peak_drift.max() > 0.002
@@ -226,7 +244,9 @@ def test_beyond_yield_the_energy_balance_closes_and_half_the_step_changes_nothin
     assert np.diff(dissipated).min() > -1e-6 * dissipated.max()
     assert dissipated[-1] > 0.2 * found.energy.input[-1]
     fine = respond_hysteretically(building, motion, 1e-4)
-    coarse_peaks, peaks = (np.abs(each.acceleration).max(axis=1) for each in (found, fine))
+    coarse_peaks, peaks = (
+        np.abs(each.acceleration).max(axis=1) for each in (found, fine)
+    )
     assert coarse_peaks == pytest.approx(peaks, rel=1e-3)
     assert found.peak_drift == pytest.approx(fine.peak_drift, rel=1e-3)
 
@@ -247,7 +267,11 @@ def test_input_energy_equals_its_integral_over_the_floor_velocities(masonry):
 def material(ops, building, storey, tag=1):
     """Define the storey's law as OpenSees' HystereticSM."""
     displacement, force = storey_envelopes(building)
-    pairs = [float(x) for xy in zip(force[storey], displacement[storey], strict=True) for x in xy]
+    pairs = [
+        float(x)
+        for xy in zip(force[storey], displacement[storey], strict=True)
+        for x in xy
+    ]
     law = building.masonry
     ops.uniaxialMaterial(
         "HystereticSM", tag, "-posEnv", *pairs, "-negEnv", *[-x for x in pairs],
@@ -279,7 +303,10 @@ def test_a_cyclic_push_is_that_of_opensees(opensees, masonry, law, tolerance):
     building = masonry(**law)
     material(opensees, building, 0)
     found = push_storey(building, 1, GROWING)
-    assert np.abs(found - pushed(opensees, GROWING)).max() < tolerance * np.abs(found).max()
+    assert (
+        np.abs(found - pushed(opensees, GROWING)).max()
+        < tolerance * np.abs(found).max()
+    )
 
 
 @pytest.mark.peers
@@ -288,8 +315,12 @@ def test_damage_by_energy_equals_opensees(opensees, masonry):
     # the energy to the area under three corners
     building = masonry(residual=1.0, damage_energy=0.1)
     displacement, force = (values[0] for values in storey_envelopes(building))
-    areas = np.diff(displacement, prepend=0) * (force + np.concatenate([[0], force[:-1]]))
-    pairs = [float(x) for xy in zip(force[:3], displacement[:3], strict=True) for x in xy]
+    areas = np.diff(displacement, prepend=0) * (
+        force + np.concatenate([[0], force[:-1]])
+    )
+    pairs = [
+        float(x) for xy in zip(force[:3], displacement[:3], strict=True) for x in xy
+    ]
     law = building.masonry
     damage = law.damage_energy * areas[:3].sum() / areas.sum()
     opensees.uniaxialMaterial(
@@ -309,7 +340,9 @@ def shaken(ops, building, motion, parts):
         ops.node(i + 1, 0.0)
         ops.mass(i + 1, building.masses[i])
         material(ops, building, i, i + 1)
-        ops.element("zeroLength", i + 1, i, i + 1, "-mat", i + 1, "-dir", 1, "-doRayleigh", 1)
+        ops.element(
+            "zeroLength", i + 1, i, i + 1, "-mat", i + 1, "-dir", 1, "-doRayleigh", 1
+        )
     first, second = np.sqrt(ops.eigen("-fullGenLapack", 2))
     factor = 2 * building.damping.ratio / (first + second)
     ops.rayleigh(factor * first * second, 0.0, factor, 0.0)
@@ -328,7 +361,9 @@ def shaken(ops, building, motion, parts):
     for k in range(1, len(values)):
         assert ops.analyze(parts, motion.dt / parts) == 0
         total[:, k] = [ops.nodeAccel(i + 1, 1) + values[k] for i in range(n)]
-        drift[:, k] = np.diff([ops.nodeDisp(i, 1) for i in range(n + 1)]) / building.heights
+        drift[:, k] = (
+            np.diff([ops.nodeDisp(i, 1) for i in range(n + 1)]) / building.heights
+        )
     return total, drift
 
 
@@ -342,7 +377,9 @@ def test_hysteretic_floor_motions_under_a_record_are_those_of_opensees(
     building, motion = masonry(damage_energy=damage), four_records["Friuli"]
     total, drift = shaken(opensees, building, motion, 20)
     found = respond_hysteretically(building, motion, motion.dt / 20)
-    assert np.abs(found.acceleration[1:] - total).max() < tolerance * np.abs(total).max()
+    assert (
+        np.abs(found.acceleration[1:] - total).max() < tolerance * np.abs(total).max()
+    )
     assert np.abs(found.drift - drift).max() < tolerance * np.abs(drift).max()
 
 
@@ -350,18 +387,26 @@ def judged(building, storey, drift):
     """Outcome on a building of which one storey, from 1, drifts so much, over its height."""
     drifts = np.zeros((6, 2))
     drifts[storey - 1, 1] = -drift
-    return judge_drift(building, BuildingResponse(np.zeros(2), np.zeros((7, 2)), drifts))
+    return judge_drift(
+        building, BuildingResponse(np.zeros(2), np.zeros((7, 2)), drifts)
+    )
 
 
 def test_an_elastic_building_is_believed_up_to_its_strength(settings):
     # a storey that carries the weight times the base shear coefficient is at its strength
     building = make_building(settings)
-    strength = 0.12 * 9.81 * building.mass / building.stiffnesses[0] / building.heights[0]
+    strength = (
+        0.12 * 9.81 * building.mass / building.stiffnesses[0] / building.heights[0]
+    )
     fractions = (0.1, 0.999, 1.001, 9.0)
     outcomes = [judged(building, 1, fraction * strength) for fraction in fractions]
     assert [v.strength_fraction for v in outcomes] == pytest.approx(fractions)
     assert [v.credible for v in outcomes] == [True, True, False, False]
-    assert [v.state for v in outcomes] == ["uncracked", "cracked", *["beyond strength"] * 2]
+    assert [v.state for v in outcomes] == [
+        "uncracked",
+        "cracked",
+        *["beyond strength"] * 2,
+    ]
     assert "cannot break" in outcomes[-1].statement
 
 

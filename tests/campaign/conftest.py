@@ -26,7 +26,10 @@ def laboratory(tmp_path_factory):
     for number in range(TESTS):
         group = number % GROUPS
         base = np.random.default_rng(group)
-        wave = np.sin(2 * np.pi * base.uniform(0.5, 3) * time + base.uniform(0, 6)) * window
+        wave = (
+            np.sin(2 * np.pi * base.uniform(0.5, 3) * time + base.uniform(0, 6))
+            * window
+        )
         peak = rng.uniform(1.0, 5.0)
         name = f"run{number}"
         motions[name] = peak * (wave + 0.1 * rng.standard_normal(len(time)) * window)

@@ -28,7 +28,9 @@ def test_a_model_that_errs_by_a_factor_is_seen_to_err_by_it():
     measure = np.exp(random.uniform(-1.5, 1.5, 1200))
     groups = np.arange(1200) % 60
     measured = fallen(measure, 1.0, 0.4, random)
-    ways = np.array([fallen(measure, 1.4 * f, 0.4, random) for f in np.geomspace(0.8, 1.25, 21)])
+    ways = np.array(
+        [fallen(measure, 1.4 * f, 0.4, random) for f in np.geomspace(0.8, 1.25, 21)]
+    )
     found = blind_answer(MeasuredTests(measured, groups, 1), measure, ways)
     assert found.error == pytest.approx(math.log(1.4), abs=0.1)
     assert found.ways == pytest.approx(math.log(1.25 / 0.8) / 3.29, rel=0.2)
@@ -44,7 +46,12 @@ def test_what_ways_to_stand_explain_is_not_counted_twice_nor_is_luck_a_proof():
     def seen(error: float, ways: float) -> BlindAnswer:
         half = 1.645 * ways
         return BlindAnswer(
-            1.0, math.exp(error), math.exp(error - half), math.exp(error + half), 0.05, 0.4
+            1.0,
+            math.exp(error),
+            math.exp(error - half),
+            math.exp(error + half),
+            0.05,
+            0.4,
         )
 
     whole, beyond = model_error([seen(0.3, 0.1), seen(-0.3, 0.1)])
@@ -62,21 +69,33 @@ def test_a_cut_block_leaves_less_open_than_a_scan():
     guessed = scan["contact_tolerance_mm"]
     assert stated(0.5) == guessed(0.5) and stated(0.95) < guessed(0.95)
     ways = ways_to_stand(Block(0.1, 0.8, 30.0), cut, 64, 1)
-    assert ways.table["width_m"].between(0.096, 0.1).all() and ways.table["width_m"].std() > 5e-4
+    assert (
+        ways.table["width_m"].between(0.096, 0.1).all()
+        and ways.table["width_m"].std() > 5e-4
+    )
     with pytest.raises(InputError, match=f"stand at {LEAST_ANGLE_DEG:g}"):
         ways_to_stand(Block(0.02, 0.8, 30.0), cut, 64, 1)
 
 
-def test_the_command_prints_the_error_of_a_synthetic_laboratory(tmp_path, laboratory, capsys):
+def test_the_command_prints_the_error_of_a_synthetic_laboratory(
+    tmp_path, laboratory, capsys
+):
     assert main([str(configured(tmp_path, laboratory))]) == 0
     said = capsys.readouterr().out
     error = float(re.search(r"ln ratio (-?[\d.]+)", said)[1])
     # the outcomes are those of the model itself, with edges up to 2 mm of 40 mm further out than the guesses
     assert -2 * 2 / 40 < error < 0.03
-    assert re.search(rf"{CUT}: blind 0\.\d+, beyond the ways to stand 0\.\d+ of ln median", said)
+    assert re.search(
+        rf"{CUT}: blind 0\.\d+, beyond the ways to stand 0\.\d+ of ln median", said
+    )
     unknowns = {"edge_retreat_mm": [0, 2], "friction": [0.1, 0.2]}
-    path = configured(tmp_path, laboratory, object__pedestal=PEDESTAL, unknowns=unknowns)
-    for wrong, words in ((path, "object.pedestal"), (tmp_path / "absent.yaml", "absent.yaml")):
+    path = configured(
+        tmp_path, laboratory, object__pedestal=PEDESTAL, unknowns=unknowns
+    )
+    for wrong, words in (
+        (path, "object.pedestal"),
+        (tmp_path / "absent.yaml", "absent.yaml"),
+    ):
         assert main([str(wrong)]) == 2
         assert words in capsys.readouterr().err
 
@@ -90,7 +109,9 @@ def said_of_granite(tmp_path_factory, shared) -> str:
 
 @pytest.mark.slow
 def test_the_stated_model_error_is_what_the_command_prints(said_of_granite):
-    said = re.search(r"scan: blind ([\d.]+), beyond the ways to stand ([\d.]+)", said_of_granite)
+    said = re.search(
+        r"scan: blind ([\d.]+), beyond the ways to stand ([\d.]+)", said_of_granite
+    )
     stated = MODEL_ERRORS[SCAN]
     assert (float(said[1]), float(said[2])) == (stated.blind, stated.beyond)
     assert MODEL_ERRORS[CUT].blind == stated.blind
@@ -98,9 +119,13 @@ def test_the_stated_model_error_is_what_the_command_prints(said_of_granite):
 
 
 @pytest.mark.slow
-def test_the_blind_interval_of_the_granite_rock_holds_what_was_measured(said_of_granite):
+def test_the_blind_interval_of_the_granite_rock_holds_what_was_measured(
+    said_of_granite,
+):
     """Seen: 17.9 cm/s (8.46 to 31.5) against 13.9 measured."""
     numbers = r"([\d.]+) blind \(([\d.]+) to ([\d.]+), without model error\), ([\d.]+) measured"
-    median, low, high, measured = map(float, re.search(numbers, said_of_granite).groups())
+    median, low, high, measured = map(
+        float, re.search(numbers, said_of_granite).groups()
+    )
     assert low < measured < high
     assert max(median / low, high / median) < 2.2

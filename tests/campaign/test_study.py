@@ -22,7 +22,9 @@ from ..case_tables import case_tables
 from ..stages_in_process import run_stages
 from .conftest import BLOCK, DT, PEDESTAL, configured, granite
 
-NOTED = {name: name for name in ("test", "motion", "overturned", "rocked")} | {"group": "input"}
+NOTED = {name: name for name in ("test", "motion", "overturned", "rocked")} | {
+    "group": "input"
+}
 """Columns of a laboratory that noted what rocked."""
 
 
@@ -38,17 +40,25 @@ def with_table(folder, laboratory, table, **changes):
     """Write a study of other tests under the same motions."""
     table.to_csv(folder / "synthetic_table.csv", index=False)
     return configured(
-        folder, laboratory, campaign__tests=str(folder / "synthetic_table.csv"), **changes
+        folder,
+        laboratory,
+        campaign__tests=str(folder / "synthetic_table.csv"),
+        **changes,
     )
 
 
-def test_the_synthetic_laboratory_is_reproduced_from_configuration_to_page(tmp_path, laboratory):
+def test_the_synthetic_laboratory_is_reproduced_from_configuration_to_page(
+    tmp_path, laboratory
+):
     tables = run(configured(tmp_path, laboratory, campaign__columns=NOTED), tmp_path)
     agreement, tests = tables["agreement"].set_index("who"), tables["tests"]
     # a retreat of up to 1 cm of 5 cm is not known: what is left wrong is mostly near-critical
     assert agreement.loc["rockfrag", "right"] > 0.85
     assert tests.loc[~tests["right"], "near_critical"].mean() > 0.8
-    assert agreement.loc["rockfrag", "right"] > agreement.loc["threshold on pga_g", "right"]
+    assert (
+        agreement.loc["rockfrag", "right"]
+        > agreement.loc["threshold on pga_g", "right"]
+    )
     assert tables["trials"].iloc[0]["edge_retreat_mm"] < 3
     assert tables["rocking"]["right"].iloc[0] > 0.9
     # votes that are split leave a wider curve than their majority
@@ -87,7 +97,9 @@ def of_a_column(folder, laboratory, every=3, **changes):
     return with_table(folder, laboratory, table, **(about | SLIDING | changes)), table
 
 
-def test_a_column_of_three_bodies_is_reproduced_from_configuration_to_page(tmp_path, laboratory):
+def test_a_column_of_three_bodies_is_reproduced_from_configuration_to_page(
+    tmp_path, laboratory
+):
     path, table = of_a_column(tmp_path, laboratory, 8)
     assert 0.2 < table["overturned"].mean() < 0.8
     tables = run(path, tmp_path)
@@ -109,12 +121,18 @@ def test_a_column_of_which_all_is_known_is_simulated_as_it_was(tmp_path, laborat
     overturned, rocked = simulate_tests(trials.systems, motions)
     assert (overturned[0] == table["overturned"]).all()
     assert (rocked[0] == table["rocked"]).all()
-    assert (table["overturned"] != laboratory.table["overturned"].loc[table.index]).mean() > 0.1
+    assert (
+        table["overturned"] != laboratory.table["overturned"].loc[table.index]
+    ).mean() > 0.1
 
 
-def test_amplitudes_of_overturning_are_simulated_on_both_sides_and_measured(tmp_path, laboratory):
+def test_amplitudes_of_overturning_are_simulated_on_both_sides_and_measured(
+    tmp_path, laboratory
+):
     rows = laboratory.table.drop_duplicates("input")
-    found = pd.DataFrame({"test": rows["test"], "motion": rows["motion"], "low": 0.05, "high": 2.5})
+    found = pd.DataFrame(
+        {"test": rows["test"], "motion": rows["motion"], "low": 0.05, "high": 2.5}
+    )
     columns = {"test": "test", "motion": "motion", "lower_g": "low", "upper_g": "high"}
     path = with_table(tmp_path, laboratory, found, campaign__columns=columns, trials=16)
     content = yaml.safe_load(path.read_text())
@@ -145,22 +163,35 @@ IN_SPACE = {
 }
 
 
-def test_a_mesh_is_simulated_in_space_and_in_one_plane_side_by_side(tmp_path, laboratory):
+def test_a_mesh_is_simulated_in_space_and_in_one_plane_side_by_side(
+    tmp_path, laboratory
+):
     x, y, z = np.meshgrid([-0.05, 0.05], [-0.2, 0.2], [0, 0.6], indexing="ij")
-    corners = [f"v {a} {b} {c}" for a, b, c in zip(x.ravel(), y.ravel(), z.ravel(), strict=True)]
+    corners = [
+        f"v {a} {b} {c}"
+        for a, b, c in zip(x.ravel(), y.ravel(), z.ravel(), strict=True)
+    ]
     sides = ["1 2 4 3", "5 7 8 6", "1 5 6 2", "3 4 8 7", "1 3 7 5", "2 6 8 4"]
     mesh = tmp_path / "block.obj"
     mesh.write_text("\n".join([*corners, *(f"f {side}" for side in sides)]))
-    narrow = {"direction_deg": [-5, 5], "edge_retreat_mm": [0, 5], "restitution": [0.8, 1.0]}
+    narrow = {
+        "direction_deg": [-5, 5],
+        "edge_retreat_mm": [0, 5],
+        "restitution": [0.8, 1.0],
+    }
     about = {"mesh": str(mesh), "mass_kg": 60.0}
     options = {"object": about, "unknowns": IN_SPACE | narrow, "trials": 16}
     path = with_table(tmp_path, laboratory, laboratory.table.iloc[::6], **options)
     agreement = run(path, tmp_path)["agreement"].set_index("who")
     plane = agreement.loc["rockfrag in one plane"]
     assert min(plane["right"], agreement.loc["rockfrag", "right"]) > 0.7
-    assert plane["better"] == pytest.approx(agreement.loc["rockfrag", "right"] - plane["right"])
+    assert plane["better"] == pytest.approx(
+        agreement.loc["rockfrag", "right"] - plane["right"]
+    )
     page = (tmp_path / "report.html").read_text()
-    assert re.search("Simulation in space is (better|worse|no gain)[^<]* one plane", page)
+    assert re.search(
+        "Simulation in space is (better|worse|no gain)[^<]* one plane", page
+    )
 
 
 @pytest.mark.parametrize(
@@ -172,7 +203,14 @@ def test_a_mesh_is_simulated_in_space_and_in_one_plane_side_by_side(tmp_path, la
     ],
 )
 def test_space_is_called_better_or_worse_only_where_the_numbers_say_so(better, p, said):
-    row = {"right": 0.9, "lower": 0.8, "upper": 0.95, "missed": 3.0, "false_alarms": 1.0, "p": p}
+    row = {
+        "right": 0.9,
+        "lower": 0.8,
+        "upper": 0.95,
+        "missed": 3.0,
+        "false_alarms": 1.0,
+        "p": p,
+    }
     row |= dict(zip(("better", "better_lower", "better_upper"), better, strict=True))
     assert said in says.line("beside_plane", row, row)
 
@@ -183,7 +221,9 @@ def test_the_granite_rock_in_space_under_few_guesses(tmp_path, shared):
     study = load_any(granite(tmp_path, shared, unknowns=IN_SPACE, trials=32))
     assert isinstance(study, CampaignStudy)
     campaign, motions = campaign_with_motions(study, logging.getLogger())
-    trials = sample_trials(standing_object(study), study.unknowns, study.trials, study.seed)
+    trials = sample_trials(
+        standing_object(study), study.unknowns, study.trials, study.seed
+    )
     tests = campaign.tests.iloc[::3]
     measured, groups = tests["overturned"].to_numpy(), pd.factorize(tests["group"])[0]
     for systems in (trials.systems, trials.planar):
@@ -218,9 +258,16 @@ def test_a_wrong_unit_stops_a_campaign_with_its_factor(tmp_path, laboratory):
     assert not list(tmp_path.glob("*.parquet"))
 
 
-def test_one_kind_of_outcome_or_one_input_motion_ends_in_a_page_or_a_sentence(tmp_path, laboratory):
-    run(with_table(tmp_path, laboratory, laboratory.table.assign(overturned=0)), tmp_path)
+def test_one_kind_of_outcome_or_one_input_motion_ends_in_a_page_or_a_sentence(
+    tmp_path, laboratory
+):
+    run(
+        with_table(tmp_path, laboratory, laboratory.table.assign(overturned=0)),
+        tmp_path,
+    )
     assert (tmp_path / "report.html").exists()
     path = with_table(tmp_path, laboratory, laboratory.table.assign(input="one"))
-    with pytest.raises(InputError, match="single input motion; give those of two or more"):
+    with pytest.raises(
+        InputError, match="single input motion; give those of two or more"
+    ):
         run(path, tmp_path)

@@ -27,14 +27,18 @@ def table(folder, text, name="tests.csv") -> Path:
 
 
 def test_a_table_of_outcomes_is_read(tmp_path):
-    campaign = read_campaign(table(tmp_path, GOOD), COLUMNS, {"pga_m_s2": ["pga_g", 9.81]})
+    campaign = read_campaign(
+        table(tmp_path, GOOD), COLUMNS, {"pga_m_s2": ["pga_g", 9.81]}
+    )
     assert list(campaign.tests["overturned"]) == [True, False, True]
     assert list(campaign.tests["group"]) == ["x", "x", "y"]
     assert campaign.tests["pga_m_s2"].iloc[0] == pytest.approx(1.962)
     assert campaign.tests["amplitude_g"].isna().all()
 
 
-def test_an_amplitude_of_overturning_makes_one_test_survived_and_one_overturned(tmp_path):
+def test_an_amplitude_of_overturning_makes_one_test_survived_and_one_overturned(
+    tmp_path,
+):
     text = "test,motion,low,high\nA,1,0.3,0.33\nB,2,0.5,0.6\n"
     tests = read_campaign(table(tmp_path, text), BRACKETED, {}).tests
     assert list(tests["overturned"]) == [False, False, True, True]
@@ -47,7 +51,11 @@ def test_an_amplitude_of_overturning_makes_one_test_survived_and_one_overturned(
     ("text", "columns", "sentence"),
     [
         (GOOD.replace("B,2,x,0,0.1", "A,2,x,0,0.1"), COLUMNS, "test A stands twice"),
-        ("test,motion,low,high\nA,1,0.3,0.2\n", BRACKETED, "row 2: lower_g is not below upper_g"),
+        (
+            "test,motion,low,high\nA,1,0.3,0.2\n",
+            BRACKETED,
+            "row 2: lower_g is not below upper_g",
+        ),
     ],
 )
 def test_a_bad_table_ends_in_one_sentence(tmp_path, text, columns, sentence):
@@ -66,11 +74,15 @@ def test_outcomes_of_other_programs_follow_the_tests_as_far_as_they_are_given(tm
 
 
 def test_the_template_has_the_columns_of_a_campaign(tmp_path):
-    template = Path(__file__).parents[2] / "config" / "experiment" / "campaign-template.csv"
+    template = (
+        Path(__file__).parents[2] / "config" / "experiment" / "campaign-template.csv"
+    )
     text = template.read_text() + "A,run1,wave,yes\n"
     columns = {name: name for name in ("test", "motion", "group", "overturned")}
     tests = read_campaign(table(tmp_path, text), columns, {}).tests
-    assert tests[["test", "motion", "group"]].to_numpy().tolist() == [["A", "run1", "wave"]]
+    assert tests[["test", "motion", "group"]].to_numpy().tolist() == [
+        ["A", "run1", "wave"]
+    ]
     assert tests["overturned"].all()
 
 
@@ -88,9 +100,13 @@ def archive(folder, motion: np.ndarray) -> Path:
     return path
 
 
-def test_files_are_named_by_their_motion_and_tell_what_an_archive_of_them_does(tmp_path):
+def test_files_are_named_by_their_motion_and_tell_what_an_archive_of_them_does(
+    tmp_path,
+):
     for name, factor in (("a", 1.0), ("b", 2.0)):
-        np.savetxt(tmp_path / f"Run_{name}.txt", np.column_stack([TIME, factor * SHAKING]))
+        np.savetxt(
+            tmp_path / f"Run_{name}.txt", np.column_stack([TIME, factor * SHAKING])
+        )
     a, b = motions_of(tmp_path / "Run_{motion}.txt", ["a", "b"], dt=None)
     (of_archive,) = motions_of(archive(tmp_path, SHAKING))
     for motion, factor in ((of_archive, GRAVITY), (a, GRAVITY), (b, 2 * GRAVITY)):
@@ -101,7 +117,10 @@ def test_files_are_named_by_their_motion_and_tell_what_an_archive_of_them_does(t
 
 def test_the_laboratory_s_own_files_are_read_as_the_archive_holds_them(shared):
     folder = shared / "measured" / "granite"
-    pattern, arrays = f"{folder}/Test{{motion}}.txt", f"{folder}/table_accelerations.npz"
+    pattern, arrays = (
+        f"{folder}/Test{{motion}}.txt",
+        f"{folder}/table_accelerations.npz",
+    )
     (text,) = table_motions(pattern, ["100"], "g", None, "Amplitude - Plot 0")
     (array,) = table_motions(arrays, ["100"], "g", 0.00125, None)
     assert text.dt == pytest.approx(array.dt)
@@ -129,7 +148,9 @@ def test_conditioning_takes_away_offset_and_spikes(tmp_path):
         (1, {"unit": "volt"}, "not a unit of acceleration"),
     ],
 )
-def test_what_is_missing_or_of_another_unit_is_said(tmp_path, factor, options, sentence):
+def test_what_is_missing_or_of_another_unit_is_said(
+    tmp_path, factor, options, sentence
+):
     with pytest.raises(InputError, match=sentence):
         motions_of(archive(tmp_path, factor * SHAKING), **options)
 
@@ -172,11 +193,17 @@ def test_the_commanded_motion_has_its_pga_and_pgv_and_comes_to_rest():
     assert motion.pga == pytest.approx(3.0, rel=1e-4)
     assert np.abs(velocity).max() == pytest.approx(0.3, rel=1e-3)
     assert abs(velocity[-1]) < 1e-9
-    assert motion.acceleration.size * motion.dt == pytest.approx(2 * np.pi * 0.1, rel=0.01)
-    assert commanded_cosine(3.0, 0.1, 3).acceleration.size == pytest.approx(3 * a.size, rel=0.01)
+    assert motion.acceleration.size * motion.dt == pytest.approx(
+        2 * np.pi * 0.1, rel=0.01
+    )
+    assert commanded_cosine(3.0, 0.1, 3).acceleration.size == pytest.approx(
+        3 * a.size, rel=0.01
+    )
 
 
-def test_a_table_of_pulses_is_a_campaign_whose_tests_of_one_setting_share_a_motion(tmp_path):
+def test_a_table_of_pulses_is_a_campaign_whose_tests_of_one_setting_share_a_motion(
+    tmp_path,
+):
     table(tmp_path, PULSES)
     study = load_any(table(tmp_path, STUDY, "study.yaml"))
     assert study.pulse_cycles == 1 and study.motions == ""
@@ -190,7 +217,11 @@ def test_a_table_of_pulses_is_a_campaign_whose_tests_of_one_setting_share_a_moti
     [
         ("    pgv_over_pga_s: [pgv_over_pga_s]\n", "", "pgv_over_pga_s is missing"),
         ("  motions: {pulse: cosine}", "  motions: {pulse: square}", "cosine"),
-        ("  motions: {pulse: cosine}", "  motions: {pulse: cosine}\n  unit: g", "measured motions"),
+        (
+            "  motions: {pulse: cosine}",
+            "  motions: {pulse: cosine}\n  unit: g",
+            "measured motions",
+        ),
         ("  motions: {pulse: cosine}", "  motions: m.npz", "motion is missing"),
     ],
 )
@@ -213,12 +244,32 @@ def test_the_majority_of_repeats_is_the_ceiling_of_any_model_of_the_setting():
 
 
 def test_the_ceiling_is_no_rival():
-    row = {"right": 0.9, "better": 0.1, "better_lower": 0.02, "better_upper": 0.2, "p": 0.001}
-    row |= {"lower": 0.8, "upper": 0.95, "tests": 60, "false_alarms": 3.0, "missed": 3.0}
-    ceiling, rival = row | {"who": REPEATS, "right": 1.0}, row | {"who": "threshold on PGV"}
+    row = {
+        "right": 0.9,
+        "better": 0.1,
+        "better_lower": 0.02,
+        "better_upper": 0.2,
+        "p": 0.001,
+    }
+    row |= {
+        "lower": 0.8,
+        "upper": 0.95,
+        "tests": 60,
+        "false_alarms": 3.0,
+        "missed": 3.0,
+    }
+    ceiling, rival = (
+        row | {"who": REPEATS, "right": 1.0},
+        row | {"who": "threshold on PGV"},
+    )
     tables = {
         "fragility": pd.DataFrame(
-            {"who": ["measured"], "measure": "pga_g", "beta": 0.4, "theta_ratio": np.nan}
+            {
+                "who": ["measured"],
+                "measure": "pga_g",
+                "beta": 0.4,
+                "theta_ratio": np.nan,
+            }
         ),
         "tests": pd.DataFrame({"near_critical": [False], "right": [True]}),
     }
@@ -229,4 +280,7 @@ def test_the_ceiling_is_no_rival():
         agreement = pd.DataFrame([row | {"who": "rockfrag"}, *others])
         found = _findings(tables | {"agreement": agreement})[1:]
         assert len(found) == len(said)
-        assert all(words in finding.headline for words, finding in zip(said, found, strict=True))
+        assert all(
+            words in finding.headline
+            for words, finding in zip(said, found, strict=True)
+        )

@@ -25,13 +25,17 @@ def test_the_clustered_error_is_that_of_one_value_a_motion():
     # copies of a test tell nothing new
     for copies in (1, 5):
         groups = np.repeat(np.arange(50), copies)
-        assert clustered_error(np.repeat(values, copies), groups) == pytest.approx(plain)
+        assert clustered_error(np.repeat(values, copies), groups) == pytest.approx(
+            plain
+        )
     assert np.isnan(clustered_error(values, np.zeros(50, dtype=int)))
 
 
 def test_folds_never_split_a_motion():
     groups = RNG.integers(0, 17, 200)
-    outside = np.array([part for _, part in MeasuredTests(groups > 8, groups, 1, 5, 1).divisions()])
+    outside = np.array(
+        [part for _, part in MeasuredTests(groups > 8, groups, 1, 5, 1).divisions()]
+    )
     assert (outside.sum(axis=0) == 4).all() and not outside.all(axis=1).any()
     for group in range(17):
         assert len(np.unique(outside[:, groups == group], axis=1).T) == 1
@@ -55,7 +59,11 @@ def test_plausible_trials_are_within_two_standard_errors_of_the_best():
     trials = np.zeros((3, 400), dtype=bool)
     trials[0, :40], trials[1, :50], trials[2, :120] = True, True, True
     # the best has 10 % wrong, a standard error of 1.5 %
-    assert list(plausible_trials(~trials ^ truth, np.arange(400))) == [True, True, False]
+    assert list(plausible_trials(~trials ^ truth, np.arange(400))) == [
+        True,
+        True,
+        False,
+    ]
 
 
 def test_the_best_threshold_separates_what_can_be_separated():
@@ -68,7 +76,10 @@ def test_the_best_threshold_separates_what_can_be_separated():
 def test_thresholds_are_judged_by_other_motions_too_and_two_measures_find_a_border():
     pga, ratio = np.exp(RNG.standard_normal((2, 600)))
     groups = RNG.integers(0, 50, 600)
-    for fell, of_one, of_two in ((RNG.random(600) < 0.5, 0.5, 0.5), (pga * ratio > 1, 0.75, 0.97)):
+    for fell, of_one, of_two in (
+        (RNG.random(600) < 0.5, 0.5, 0.5),
+        (pga * ratio > 1, 0.75, 0.97),
+    ):
         tests = MeasuredTests(fell, groups, 2, 5, 4)
         for measures, right in ((pga, of_one), (np.column_stack([pga, ratio]), of_two)):
             found = (tests.by_threshold(measures) == fell).mean()
@@ -77,7 +88,10 @@ def test_thresholds_are_judged_by_other_motions_too_and_two_measures_find_a_bord
 
 def test_both_kinds_of_error_are_counted():
     measured = np.array([True, True, False, False])
-    outcomes, tests = np.array([1, 0, 1, 1]) == 1, MeasuredTests(measured, np.arange(4), 1)
+    outcomes, tests = (
+        np.array([1, 0, 1, 1]) == 1,
+        MeasuredTests(measured, np.arange(4), 1),
+    )
     row = tests.agreement("x", outcomes)
     assert (row["false_alarms"], row["missed"], row["right"]) == (2, 1, 0.25)
     assert row["lower"] < 0.25 < row["upper"]
@@ -105,26 +119,36 @@ def test_the_same_outcomes_have_the_same_fragility():
     table = tests.fragility(measure, {"copy": fell}).set_index("who")
     assert table.loc["measured", "theta"] == pytest.approx(1, rel=0.1)
     assert table.loc["measured", "beta"] == pytest.approx(0.3, rel=0.3)
-    assert table.loc["copy", ["theta_ratio", "beta_ratio"]].tolist() == pytest.approx([1, 1])
+    assert table.loc["copy", ["theta_ratio", "beta_ratio"]].tolist() == pytest.approx(
+        [1, 1]
+    )
 
 
 def test_regions_hold_every_test_once():
     tests = pd.DataFrame(np.exp(RNG.standard_normal((90, 2))), columns=["a", "b"])
     fell = tests["a"] > 1
-    regions = by_region(tests.assign(overturned=fell, simulated=fell, right=True), "a", "b")
+    regions = by_region(
+        tests.assign(overturned=fell, simulated=fell, right=True), "a", "b"
+    )
     assert regions["tests"].sum() == 90
     assert (regions["right"] == 1).all()
 
 
 def test_listed_peaks_show_a_time_step_that_is_four_times_too_long():
     time = np.arange(0, 6, 0.01)
-    waves = [a * np.sin(2 * np.pi * time) * np.hanning(len(time)) for a in (1.0, 2.0, 3.0)]
-    motions, slow = ([Motion(wave, dt, "synthetic") for wave in waves] for dt in (0.01, 0.04))
+    waves = [
+        a * np.sin(2 * np.pi * time) * np.hanning(len(time)) for a in (1.0, 2.0, 3.0)
+    ]
+    motions, slow = (
+        [Motion(wave, dt, "synthetic") for wave in waves] for dt in (0.01, 0.04)
+    )
     listed = measured_peaks(motions)
     ratio = listed["pgv_cm_s"] / listed["pga_g"] / 981
     for tests in (listed, listed[["pga_g"]].assign(pgv_over_pga_s=ratio)):
         check_peaks(tests, motions, "synthetic.npz")
-        with pytest.raises(InputError, match=r"are 4(\.0\d)? times the pgv_cm_s .* time step"):
+        with pytest.raises(
+            InputError, match=r"are 4(\.0\d)? times the pgv_cm_s .* time step"
+        ):
             check_peaks(tests, slow, "synthetic.npz")
 
 
@@ -135,8 +159,12 @@ def test_an_end_of_a_range_that_tests_prefer_is_said_and_one_with_nothing_beyond
         "restitution": (0.6, 1.0),
     }
     random = np.random.default_rng(1)
-    trials = pd.DataFrame({name: random.uniform(*ends, 1000) for name, ends in ranges.items()})
-    low = trials.index[(trials.contact_tolerance_mm < 2) & (trials.edge_retreat_mm < 20)]
+    trials = pd.DataFrame(
+        {name: random.uniform(*ends, 1000) for name, ends in ranges.items()}
+    )
+    low = trials.index[
+        (trials.contact_tolerance_mm < 2) & (trials.edge_retreat_mm < 20)
+    ]
     assert preferred_edges(trials, low, ranges) == {"contact_tolerance_mm": "low end"}
     near_zero = trials.index[trials.edge_retreat_mm < 4]
     assert preferred_edges(trials, near_zero, ranges) == {}

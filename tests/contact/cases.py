@@ -20,7 +20,11 @@ G = 9.81
 
 
 def random_block(
-    rng: np.random.Generator, width=None, slenderness=(1.2, 5.0), mass=(5, 500), middle=(0.4, 0.6)
+    rng: np.random.Generator,
+    width=None,
+    slenderness=(1.2, 5.0),
+    mass=(5, 500),
+    middle=(0.4, 0.6),
 ) -> Block:
     """Block drawn from ranges of slenderness, mass [kg] and height of its centre, which is off the middle."""
     width = width or rng.uniform(0.1, 1.0)
@@ -45,7 +49,15 @@ def random_contacts(rng: np.random.Generator, body: Body) -> System:
 
 
 def run(
-    thing, motion, dt=DT, *, friction=None, vertical=None, omega0=None, closing=1e-6, g=GRAVITY
+    thing,
+    motion,
+    dt=DT,
+    *,
+    friction=None,
+    vertical=None,
+    omega0=None,
+    closing=1e-6,
+    g=GRAVITY,
 ):
     """Simulate a system by the contact kernels, never by pure rocking, until it rests or has fallen."""
     system = system_of(thing, friction, omega0=omega0)
@@ -76,7 +88,9 @@ def random_column(rng: np.random.Generator, bodies: int) -> Column:
         height = width * rng.uniform(0.3, 3.0)
         mass = rng.uniform(300, 3000) * width**2 * height
         centre = height * rng.uniform(0.4, 0.6), rng.uniform(-0.03, 0.03) * width
-        blocks.append(Block(width, height, mass, None, *centre, rng.uniform(-0.003, 0.003)))
+        blocks.append(
+            Block(width, height, mass, None, *centre, rng.uniform(-0.003, 0.003))
+        )
         if k:
             offsets.append(rng.uniform(-0.02, 0.02) * width)
         width *= rng.uniform(0.7, 1.05)
@@ -89,6 +103,8 @@ def with_contacts(thing, frictions, laws=None):
     laws = laws or [contact.law for contact in system.contacts]
     contacts = (
         replace(contact, friction=checked_friction("friction", friction), law=law)
-        for contact, friction, law in zip(system.contacts, frictions, laws, strict=False)
+        for contact, friction, law in zip(
+            system.contacts, frictions, laws, strict=False
+        )
     )
     return replace(system, contacts=tuple(contacts))

@@ -31,32 +31,48 @@ class Case(NamedTuple):
 
     def history(self, factor: float = 1.0, closing: float = 1e-6) -> Response:
         """By the planar kernels, of motions times a factor."""
-        system, up = drawn.with_contacts(self.body, self.friction), factor * self.vertical
-        return drawn.run(system, factor * self.horizontal, self.dt, vertical=up, closing=closing)
+        system, up = (
+            drawn.with_contacts(self.body, self.friction),
+            factor * self.vertical,
+        )
+        return drawn.run(
+            system, factor * self.horizontal, self.dt, vertical=up, closing=closing
+        )
 
     def stepped(self, step: float) -> tuple:
         """By time stepping."""
         return time_stepping(
-            self.body, self.horizontal, self.dt, self.friction, step=step, vertical=self.vertical
+            self.body,
+            self.horizontal,
+            self.dt,
+            self.friction,
+            step=step,
+            vertical=self.vertical,
         )
 
     def is_critical(self) -> bool:
         """Whether a hundredth more or less of the motions changes the outcome."""
-        factors = 1 + 0.01 * np.outer([1, -1], [0.0, 1, 0.5, 0.2, 0.1, 0.05, 0.02]).ravel()
+        factors = (
+            1 + 0.01 * np.outer([1, -1], [0.0, 1, 0.5, 0.2, 0.1, 0.05, 0.02]).ravel()
+        )
         return len({self.history(f, closing=1e-4).overturned for f in factors}) == 2
 
 
 def random_case(rng: np.random.Generator, bodies: int) -> Case:
     """Draw so many bodies, columns narrow upwards a little, and a motion with a vertical part."""
     if bodies > 2:
-        column, mus = drawn.random_column(rng, bodies), tuple(rng.uniform(0.2, 0.9, bodies))
+        column, mus = (
+            drawn.random_column(rng, bodies),
+            tuple(rng.uniform(0.2, 0.9, bodies)),
+        )
         return Case(column, mus, 2.5 * random_motion(rng), 0.3 * random_motion(rng))
     body = drawn.random_stack(rng) if bodies == 2 else drawn.random_block(rng)
     mus = tuple(rng.uniform(0.15, 0.9, 2)[:bodies])
     return Case(body, mus, random_motion(rng), 0.5 * random_motion(rng))
 
 
-LENGTH = 3.2  # how long the reference integrates, a little more than the motions last [s]
+# how long the reference integrates, a little more than the motions last [s]
+LENGTH = 3.2
 
 
 @pytest.mark.parametrize(
@@ -79,12 +95,18 @@ def test_histories_are_those_of_the_reference(bodies, cases, seed, least):
         fast, length = case.history(), LENGTH
         if len(fast.contact_events) > last + 2:
             length = min(LENGTH, fast.contact_events["time"].iloc[last + 2] + 2 * DT)
-        more = {"friction": case.friction, "vertical": case.vertical, "duration": length}
+        more = {
+            "friction": case.friction,
+            "vertical": case.vertical,
+            "duration": length,
+        }
         plain = simulate_reference(case.body, case.horizontal, DT, **more)
         times = [contact_event.time for contact_event in plain.contact_events]
         assert len(times) > last or length == LENGTH
         until = times[last] if len(times) > last else math.inf
-        n = min(np.searchsorted(plain.time, until), len(plain.time) - 1, len(fast.time) - 1)
+        n = min(
+            np.searchsorted(plain.time, until), len(plain.time) - 1, len(fast.time) - 1
+        )
         np.testing.assert_allclose(fast.theta[:n], plain.theta[:n], atol=2e-6)
         np.testing.assert_allclose(fast.slip[:n], plain.slip[:n], atol=2e-6)
         eventful += len(times) > 4
@@ -102,13 +124,18 @@ def beside_stepping(cases: list[Case], step: float) -> pd.DataFrame:
         fast = case.history()
         fell, _, _, stepped = case.stepped(step)
         n = min(drawn.samples_until(fast, 3), len(stepped), len(fast.time))
-        turn = np.abs(stepped[:n, 2 : fast.theta.shape[1] * 3 : 3] - fast.theta[:n]).max(
-            initial=0.0
-        )
+        turn = np.abs(
+            stepped[:n, 2 : fast.theta.shape[1] * 3 : 3] - fast.theta[:n]
+        ).max(initial=0.0)
         start, stands = 3 * (fast.theta.shape[1] - 1), not (fell or fast.overturned)
         moved = stepped[-1, start] - stepped[0, start] - fast.slip[-1].sum()
         rows.append(
-            (fast.overturned, fell != fast.overturned, turn, abs(moved) if stands else None)
+            (
+                fast.overturned,
+                fell != fast.overturned,
+                turn,
+                abs(moved) if stands else None,
+            )
         )
     return pd.DataFrame(rows, columns=["falls", "differs", "turn", "slip"])
 
@@ -160,7 +187,9 @@ def drawn_column(rng: np.random.Generator) -> Column:
         mass = rng.uniform(500, 3000) * width**2 * height
         aside, lean = rng.uniform(-0.05, 0.05) * width, rng.uniform(-0.01, 0.01)
         middle = height * rng.uniform(0.4, 0.6)
-        blocks.append(Block(width, height, mass, cg_height=middle, cg_offset=aside, lean=lean))
+        blocks.append(
+            Block(width, height, mass, cg_height=middle, cg_offset=aside, lean=lean)
+        )
         if k:
             offsets.append(rng.uniform(-0.04, 0.04) * min(width, blocks[-2].width))
         width *= rng.uniform(*narrows)
@@ -191,9 +220,13 @@ def drawn_case(rng: np.random.Generator, records: list[Motion]) -> Case:
     values, dt = eight_seconds(records[int(rng.integers(4))]) if known else pulse(rng)
     slim = min(b.width / b.height for b in column.blocks)
     whole = column.blocks[0].width / sum(b.height for b in column.blocks)
-    values = values * G * min(slim, whole) * rng.uniform(1.0, 4.5) / np.abs(values).max()
+    values = (
+        values * G * min(slim, whole) * rng.uniform(1.0, 4.5) / np.abs(values).max()
+    )
     up = 0.4 * np.roll(values, 7) if rng.uniform() < 0.3 else np.zeros(values.size)
-    return Case(column, tuple(rng.uniform(0.3, 0.8, len(column.blocks))), values, up, dt)
+    return Case(
+        column, tuple(rng.uniform(0.3, 0.8, len(column.blocks))), values, up, dt
+    )
 
 
 @pytest.mark.slow
@@ -203,6 +236,8 @@ def test_columns_of_strangers_fall_as_in_time_stepping(shared: Path) -> None:
     cases = [drawn_case(rng, records) for _ in range(120)]
     found = beside_stepping(cases, 1e-4)
     assert 30 <= found["falls"].sum() <= 90
-    differ = [case for case, differs in zip(cases, found["differs"], strict=True) if differs]
+    differ = [
+        case for case, differs in zip(cases, found["differs"], strict=True) if differs
+    ]
     assert beside_stepping(differ, 1e-5)["differs"].sum() <= 0.03 * len(cases)
     assert all(case.is_critical() for case in differ)

@@ -32,25 +32,35 @@ def pulse(acceleration: float, duration: float, quiet: float = 3.0) -> np.ndarra
         (0.35, 6.0, -0.15),
     ],
 )
-def test_a_pulse_moves_a_block_as_far_as_newmark_says(mu, a: float, slope: float) -> None:
+def test_a_pulse_moves_a_block_as_far_as_newmark_says(
+    mu, a: float, slope: float
+) -> None:
     """Gravity along a slope is an acceleration of the support: the block slides on until its speed is spent."""
     along, across = G * math.sin(slope), G * (math.cos(slope) - 1)
     motion = pulse(a, 0.4, 6.0) + along
-    response = run(SQUAT, motion, DT, friction=mu, vertical=np.full(motion.size, across))
+    response = run(
+        SQUAT, motion, DT, friction=mu, vertical=np.full(motion.size, across)
+    )
     hold = np.atleast_1d(mu)[-1] * G * math.cos(slope)
     # relative to the support: a + along - hold drives, hold - along brakes; half of the last ramp counts
     spent = 0.4 - DT / 2
     speed = (a + along - hold) * spent
     expected = speed * spent / 2 + speed**2 / (2 * (hold - along))
     at = round(5.0 / DT)
-    assert -response.slip[at, 0] == pytest.approx(expected, rel=2e-5 if slope == 0 else 1e-4)
+    assert -response.slip[at, 0] == pytest.approx(
+        expected, rel=2e-5 if slope == 0 else 1e-4
+    )
     assert response.mode[at, 0] == "stands"
 
 
 @pytest.mark.parametrize(("mu", "first"), [(0.2, "slides"), (0.5, "rocks")])
-def test_a_block_on_a_plane_tilted_slowly_slides_or_topples_at_the_lesser_angle(mu, first):
+def test_a_block_on_a_plane_tilted_slowly_slides_or_topples_at_the_lesser_angle(
+    mu, first
+):
     slope = np.linspace(0.0, 0.5, 2001)
-    response = run(T1, G * np.sin(slope), 0.01, friction=mu, vertical=G * (np.cos(slope) - 1))
+    response = run(
+        T1, G * np.sin(slope), 0.01, friction=mu, vertical=G * (np.cos(slope) - 1)
+    )
     start = response.contact_events.iloc[0]
     assert start["modes"][0].startswith(first)
     at = np.interp(start["time"], np.arange(slope.size) * 0.01, slope)
@@ -103,7 +113,9 @@ def test_a_ground_that_falls_away_leaves_the_block_on_a_parabola() -> None:
 
 def test_a_block_that_turns_in_flight_lands_on_a_corner() -> None:
     drop = np.concatenate([np.full(60, -3 * G), np.zeros(3000)])
-    response = run(SQUAT, np.zeros(drop.size), DT, friction=0.5, vertical=drop, omega0=0.3)
+    response = run(
+        SQUAT, np.zeros(drop.size), DT, friction=0.5, vertical=drop, omega0=0.3
+    )
     first = response.contact_events[response.contact_events.kind == "impact"].iloc[0]
     assert first["from"] == "flight"
     k = np.flatnonzero(response.mode[:, 0] == "flies")[5]
@@ -113,7 +125,9 @@ def test_a_block_that_turns_in_flight_lands_on_a_corner() -> None:
 
 @pytest.mark.parametrize("body", [T1, Stack(P, T1)], ids=["block", "stack"])
 @pytest.mark.parametrize("up", [2.0, -4.0])
-def test_a_constant_vertical_acceleration_is_another_gravity(body: object, up: float) -> None:
+def test_a_constant_vertical_acceleration_is_another_gravity(
+    body: object, up: float
+) -> None:
     rng = np.random.default_rng(5)
     motion = 4.0 * rng.standard_normal(200)
     lifted = run(body, motion, 0.01, friction=0.5, vertical=np.full(200, up), g=G)
@@ -131,10 +145,14 @@ def test_a_statue_slides_off_its_pedestal() -> None:
     assert response.overturned_body == "upper body"
     assert response.slip[-2, 1] < -0.1
     events = response.contact_events
-    assert events[events["modes"].map(lambda to: "slides" in to[1])].iloc[0]["time"] < 0.1
+    assert (
+        events[events["modes"].map(lambda to: "slides" in to[1])].iloc[0]["time"] < 0.1
+    )
 
 
-def test_a_statue_as_wide_as_its_pedestal_rocks_on_the_edge_without_leaving_it() -> None:
+def test_a_statue_as_wide_as_its_pedestal_rocks_on_the_edge_without_leaving_it() -> (
+    None
+):
     body = Stack(Block(0.3, 0.2, 30.0), Block(0.3, 0.7, 20.0))
     motion = 5.0 * np.sin(np.linspace(0.0, 2 * math.pi, 101))
     response = run(body, motion, 0.01, friction=5.0)

@@ -15,7 +15,11 @@ from rockfrag.system import Block, Column, Stack
 
 from .cases import DT
 
-PLINTH, BASE, STATUE = Block(0.8, 0.4, 500.0), Block(0.5, 0.3, 150.0), Block(0.3, 1.0, 100.0)
+PLINTH, BASE, STATUE = (
+    Block(0.8, 0.4, 500.0),
+    Block(0.5, 0.3, 150.0),
+    Block(0.3, 1.0, 100.0),
+)
 COLUMN = Column((PLINTH, BASE, STATUE))
 TIME = np.arange(0, 3, DT)
 MOTION = 5 * np.sin(2 * np.pi * 0.9 * TIME) * np.sin(np.pi * TIME / 3)
@@ -24,7 +28,9 @@ MOTION = 5 * np.sin(2 * np.pi * 0.9 * TIME) * np.sin(np.pi * TIME / 3)
 def test_history_and_outcome_of_a_column_agree() -> None:
     for friction in (None, 0.5, {"ground": 0.6, "interface": [0.5, 0.4]}):
         response = simulate(COLUMN, MOTION, DT, friction=friction)
-        outcomes = overturns(COLUMN, [MOTION], DT, [1.0], friction=friction and [friction])
+        outcomes = overturns(
+            COLUMN, [MOTION], DT, [1.0], friction=friction and [friction]
+        )
         assert response.theta.shape[1] == 3
         assert bool(outcomes.overturned[0, 0, 0]) == response.overturned
         assert len(outcomes.table("bodies")) == len(outcomes.table("contacts")) == 3
@@ -62,10 +68,16 @@ def arrangements(folder: Path, *rows: str) -> tuple:
     return read_configurations(table, read_specimens(folder / "blocks.csv"))
 
 
-@pytest.mark.parametrize("row", ["all,venus,base|plinth,", "all,venus | base | plinth,,"])
+@pytest.mark.parametrize(
+    "row", ["all,venus,base|plinth,", "all,venus | base | plinth,,"]
+)
 def test_an_arrangement_names_its_blocks_from_above(tmp_path: Path, row: str) -> None:
     ((found,), _) = arrangements(tmp_path, row)
-    assert labels_of(found) == {"configuration": "all", "object": "venus", "pedestal": "P"}
+    assert labels_of(found) == {
+        "configuration": "all",
+        "object": "venus",
+        "pedestal": "P",
+    }
     assert [body.width for body in found.bodies] == [0.8, 0.5, 0.3]
     assert fallen_names(found) == ("", "plinth", "base", "venus")
 

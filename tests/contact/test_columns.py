@@ -21,10 +21,15 @@ from .cases import DT, imbalance, random_column, run, samples_until, with_contac
 def on_a_foot(rng: np.random.Generator, bodies: int) -> tuple[System, Block]:
     """Wide bodies on one that has a narrow foot, so that no joint opens; and all of them as one block."""
     foot, wide = rng.uniform(0.04, 0.15), Interval(-2.0, 2.0)
-    heights, masses = rng.uniform(0.6, 1.2, bodies) / bodies, rng.uniform(20, 100, bodies)
+    heights, masses = (
+        rng.uniform(0.6, 1.2, bodies) / bodies,
+        rng.uniform(20, 100, bodies),
+    )
     inertias = masses * rng.uniform(0.02, 0.1, bodies)
     made = [
-        RigidBody(m, i, (0.0, 0.0, h / 2), Interval(-foot, foot) if k == 0 else wide, h, wide)
+        RigidBody(
+            m, i, (0.0, 0.0, h / 2), Interval(-foot, foot) if k == 0 else wide, h, wide
+        )
         for k, (m, i, h) in enumerate(zip(masses, inertias, heights, strict=True))
     ]
     middles = np.cumsum(heights) - heights / 2
@@ -44,11 +49,15 @@ def test_joints_that_do_not_open_leave_one_block(bodies: int) -> None:
         many, single = run(column, motion), run(whole.system(), motion)
         assert many.overturned or not single.overturned
         # a column that falls throws its bodies off
-        opens = many.contact_events["modes"].map(lambda modes: set(modes[1:]) != {"stands"})
+        opens = many.contact_events["modes"].map(
+            lambda modes: set(modes[1:]) != {"stands"}
+        )
         opening = many.contact_events["time"][opens].min()
         n = min(samples_until(single, 6), int(np.searchsorted(many.time, opening)))
         for k in range(bodies):
-            np.testing.assert_allclose(many.theta[:n, k], single.theta[:n, 0], atol=1e-7)
+            np.testing.assert_allclose(
+                many.theta[:n, k], single.theta[:n, 0], atol=1e-7
+            )
         assert many.overturned == single.overturned
         fell += single.overturned
     assert 0 < fell < 6
@@ -68,7 +77,9 @@ def test_a_light_body_on_top_changes_the_others_in_proportion_to_its_mass():
             capped = Column((*column.blocks, top), (*(column.offsets or ()), 0.0))
             found = run(with_contacts(capped, [*mus, 0.5]), motion)
             n = min(samples_until(bare, 4), len(found.time))
-            differences.append(float(np.abs(found.theta[:n, :2] - bare.theta[:n]).max()))
+            differences.append(
+                float(np.abs(found.theta[:n, :2] - bare.theta[:n]).max())
+            )
         compared += 1
         assert differences[1] < 1e-4
         assert differences[1] <= 0.05 * differences[0] + 1e-9
@@ -77,12 +88,15 @@ def test_a_light_body_on_top_changes_the_others_in_proportion_to_its_mass():
 
 def shaken_column(rng, bodies):
     """Draw a column with friction, a motion and a vertical one."""
-    column = with_contacts(random_column(rng, bodies), list(rng.uniform(0.2, 0.9, bodies)))
+    column = with_contacts(
+        random_column(rng, bodies), list(rng.uniform(0.2, 0.9, bodies))
+    )
     return column, random_motion(rng), 0.3 * random_motion(rng)
 
 
 @pytest.mark.parametrize(
-    ("bodies", "columns"), [(3, 6), (4, 4), (8, 2), pytest.param(12, 20, marks=pytest.mark.slow)]
+    ("bodies", "columns"),
+    [(3, 6), (4, 4), (8, 2), pytest.param(12, 20, marks=pytest.mark.slow)],
 )
 def test_the_energy_balance_of_a_column_closes(bodies, columns):
     rng = np.random.default_rng(bodies)
@@ -127,10 +141,14 @@ def test_a_mirrored_or_larger_column_moves_alike(alike, ratio, side, off, bodies
         mus, motion = list(rng.uniform(0.3, 0.8, bodies)), random_motion(rng)
         up = 0.5 * random_motion(rng)
         found = run(with_contacts(column, mus), motion, vertical=up)
-        other = run(with_contacts(twin, mus), side * motion, DT * math.sqrt(ratio), vertical=up)
+        other = run(
+            with_contacts(twin, mus), side * motion, DT * math.sqrt(ratio), vertical=up
+        )
         n = samples_until(found, 5)
         np.testing.assert_allclose(found.theta[:n], side * other.theta[:n], atol=off)
-        np.testing.assert_allclose(found.slip[:n], side * other.slip[:n] / ratio, atol=off)
+        np.testing.assert_allclose(
+            found.slip[:n], side * other.slip[:n] / ratio, atol=off
+        )
 
 
 def test_without_a_motion_a_column_rests_for_ever() -> None:
@@ -154,7 +172,9 @@ def test_contact_events_on_the_spot_do_not_stop_a_body_that_falls() -> None:
 
 
 @pytest.mark.parametrize("seed", [4, 5])
-def test_a_contact_too_rough_to_slide_takes_no_shear_without_pressure(seed: int) -> None:
+def test_a_contact_too_rough_to_slide_takes_no_shear_without_pressure(
+    seed: int,
+) -> None:
     # a statue on a plate hardly narrower than the base below: rounding of the pressure once counted 10⁶ times
     statue = Block(0.4375, 1.22, 210.0, cg_height=0.5327, inertia=33.5)
     column = Column((Block(0.6, 0.8, 720.0), Block(0.45, 0.25, 126.5625), statue))
@@ -182,8 +202,12 @@ def test_long_pulses_overturn_a_column_of_drums_at_less_than_short_ones() -> Non
     for drums in (7, 1):
         motions = [9.81 * drum_pulse(duration, 0.005) for duration in (0.2, 0.45, 0.9)]
         scales = np.tile(amplitudes, (3, 1))
-        fell = overturns(drum_column(drums), motions, 0.005, scales, friction=[0.6]).overturned[0]
-        least.append([float(amplitudes[row][0]) if row.any() else math.inf for row in fell])
+        fell = overturns(
+            drum_column(drums), motions, 0.005, scales, friction=[0.6]
+        ).overturned[0]
+        least.append(
+            [float(amplitudes[row][0]) if row.any() else math.inf for row in fell]
+        )
     many, single = least
     # HybriDFEM's domain: nothing at 0.2 s, and a falling limit that nears the static one of b/h = 0.17
     assert many[0] == math.inf and many[1] >= many[2] >= 0.15

@@ -47,10 +47,15 @@ class Impact(NamedTuple):
     omega: np.ndarray  # angular velocities [rad/s]
     contact: int
 
-    def outcome(self, mus: np.ndarray, laws: list[ImpactLaw]) -> tuple[np.ndarray, float]:
+    def outcome(
+        self, mus: np.ndarray, laws: list[ImpactLaw]
+    ) -> tuple[np.ndarray, float]:
         """Velocities after it, and the fraction of the energy that is gained."""
         n = self.system.count
-        p, w = system_record(with_contacts(self.system, list(mus), laws), G), working_memory()
+        p, w = (
+            system_record(with_contacts(self.system, list(mus), laws), G),
+            working_memory(),
+        )
         w["drive"][:], w["kind"][:] = -1, 1
         w["q"], w["v"] = posed(p, self.theta.tolist(), self.omega.tolist())
         for k in range(n):
@@ -86,7 +91,9 @@ def drawn_laws(system: System, law: str, factor: float) -> list[ImpactLaw]:
     """Give every contact a multiple of its own momentum value, as far as the lone body may have it."""
     found = []
     for shape in system.carried:
-        own = [factor * geometry.momentum_restitution(shape, pivot) for pivot in (1, -1)]
+        own = [
+            factor * geometry.momentum_restitution(shape, pivot) for pivot in (1, -1)
+        ]
         most = [geometry.largest_restitution(shape, pivot) for pivot in (1, -1)]
         values = list(map(min, own, most))
         found.append(ImpactLaw(law, *values) if min(values) > 0.05 else ImpactLaw())
@@ -129,7 +136,9 @@ def survey(number, seed):
             return i.outcome(x * mus, laws)[0]
 
         scale = float(np.abs(plastic).max() + np.abs(v).max())
-        counts["jumps in e"] += jumps([0.7, 0.85, 0.99, 1.0, 1.01, 1.1, 1.2], by_factor, scale)
+        counts["jumps in e"] += jumps(
+            [0.7, 0.85, 0.99, 1.0, 1.01, 1.1, 1.2], by_factor, scale
+        )
         counts["jumps in mu"] += jumps([0.5, 0.8, 1.0, 1.3, 2.0], by_friction, scale)
     return counts
 
@@ -155,13 +164,20 @@ def test_with_much_friction_impacts_are_those_of_pure_rocking(
     for _ in range(8):
         body = random_stack(rng) if stacks else random_block(rng)
         momentum = [ImpactLaw()] * body.system().count
-        laws = drawn_laws(body.system(), law, rng.uniform(0.8, 1.2)) if law else momentum
+        laws = (
+            drawn_laws(body.system(), law, rng.uniform(0.8, 1.2)) if law else momentum
+        )
         system = with_contacts(body, [1e6] * body.system().count, laws)
-        values = [None if np.isnan(each.right) else (each.right, each.left) for each in laws]
+        values = [
+            None if np.isnan(each.right) else (each.right, each.left) for each in laws
+        ]
         value = values if stacks else values[0]
         measured = MeasuredRestitution(value, law) if any(values) else None
         motion = random_motion(rng)
-        slow, fast = run(system, motion), simulate(body, motion, DT, restitution=measured)
+        slow, fast = (
+            run(system, motion),
+            simulate(body, motion, DT, restitution=measured),
+        )
         times = fast.contact_events["time"].to_numpy()
         if len(times) < 5 or fast.lost_contact < times[4] or slow.given_way:
             continue

@@ -54,7 +54,10 @@ def test_energy_is_balanced_forces_push_and_friction_keeps_its_limit(seed: int) 
     assert ((hits["energy_before"] - hits["energy_after"]) > -1e-9 * unit).all()
     limits = [contact.friction.static for contact in system.contacts]
     up_to_the_fall = ~(response.time > response.overturning_time)
-    pressed, along = response.normal_force[up_to_the_fall], response.friction_force[up_to_the_fall]
+    pressed, along = (
+        response.normal_force[up_to_the_fall],
+        response.friction_force[up_to_the_fall],
+    )
     assert pressed.min() >= -1e-8 * weight
     assert (np.abs(along) <= limits * pressed + 1e-8 * weight).all()
 
@@ -79,7 +82,8 @@ def test_on_a_ground_below_b_over_h_nothing_rocks(seed: int, stacked: bool) -> N
     slope = body.b / body.h
     if stacked:
         body = Stack(
-            Block(0.5, rng.uniform(0.2, 0.8), 80.0), Block(0.3, rng.uniform(0.2, 1.0), 20.0)
+            Block(0.5, rng.uniform(0.2, 0.8), 80.0),
+            Block(0.3, rng.uniform(0.2, 1.0), 20.0),
         )
         slope = math.tan(min(body.upper.alpha, body.rigidly_joined().critical_angle(1)))
     ground = rng.uniform(0.1, 0.999) * slope
@@ -90,7 +94,9 @@ def test_on_a_ground_below_b_over_h_nothing_rocks(seed: int, stacked: bool) -> N
     assert not response.overturned
 
 
-def test_without_friction_nothing_rocks_and_what_is_carried_stays_on_what_carries_it() -> None:
+def test_without_friction_nothing_rocks_and_what_is_carried_stays_on_what_carries_it() -> (
+    None
+):
     stack = Stack(Block(0.5, 0.4, 80.0), Block(0.2, 0.8, 9.0))
     response = run(stack, random_motion(np.random.default_rng(3)), friction=(0.0, 0.0))
     assert np.abs(response.theta).max() < 1e-12
@@ -101,7 +107,9 @@ def test_without_friction_nothing_rocks_and_what_is_carried_stays_on_what_carrie
 
 def test_outcomes_are_those_of_the_histories_on_any_number_of_threads() -> None:
     rng = np.random.default_rng(8)
-    bodies = [random_block(rng) for _ in range(4)] + [random_stack(rng) for _ in range(4)]
+    bodies = [random_block(rng) for _ in range(4)] + [
+        random_stack(rng) for _ in range(4)
+    ]
     systems = [random_contacts(rng, body) for body in (*bodies, Stack(P, T1))]
     motions = [random_motion(rng) for _ in range(3)]
     kwargs = {"vertical": motions[::-1]}

@@ -17,9 +17,12 @@ pytestmark = pytest.mark.filterwarnings("ignore::rockfrag.rocking.ensemble.Light
 
 @pytest.mark.parametrize("stacks", [False, True], ids=["blocks", "stacks"])
 @pytest.mark.parametrize(
-    ("bodies", "seed", "most"), [(2, 1, 0), pytest.param(50, 2, 10, marks=pytest.mark.slow)]
+    ("bodies", "seed", "most"),
+    [(2, 1, 0), pytest.param(50, 2, 10, marks=pytest.mark.slow)],
 )
-def test_outcomes_are_those_of_pure_rocking_but_where_that_lifts_off(bodies, seed, most, stacks):
+def test_outcomes_are_those_of_pure_rocking_but_where_that_lifts_off(
+    bodies, seed, most, stacks
+):
     """Random bodies under twenty random motions at ten scales.
 
     In pure rocking a pivot may pull; bodies in contact lift off there, and go their own way.
@@ -29,7 +32,9 @@ def test_outcomes_are_those_of_pure_rocking_but_where_that_lifts_off(bodies, see
     motions = [random_motion(rng) for _ in range(20)]
     fell = overturns(drawn, motions, DT, SCALES).overturned
     rough = overturns(drawn, motions, DT, SCALES, friction=np.inf).overturned
-    flagged = np.isfinite(overturns(drawn, motions, DT, SCALES, forces=True).lost_contact)
+    flagged = np.isfinite(
+        overturns(drawn, motions, DT, SCALES, forces=True).lost_contact
+    )
     differ = fell != rough
     assert 0.09 < fell.mean() < 0.95
     assert not (differ & ~flagged).any()
@@ -37,7 +42,9 @@ def test_outcomes_are_those_of_pure_rocking_but_where_that_lifts_off(bodies, see
     assert bodies < 50 or differ.sum() <= flagged.sum() < 0.15 * differ.size
 
 
-def test_where_the_ground_takes_weight_away_pure_rocking_says_that_it_may_be_wrong() -> None:
+def test_where_the_ground_takes_weight_away_pure_rocking_says_that_it_may_be_wrong() -> (
+    None
+):
     """Outcomes that flight changes are among the cases that are marked; where little weight goes, none changes."""
     rng = np.random.default_rng(5)
     drawn = [draw(rng) for draw in (random_block, random_stack) for _ in range(10)]
@@ -62,7 +69,10 @@ def test_where_nothing_slides_the_answer_is_that_of_pure_rocking_to_the_bit() ->
     same = 0
     for _ in range(8):
         body, motion = random_block(rng), random_motion(rng)
-        pure, rough = simulate(body, motion, DT), simulate(body, motion, DT, friction=np.inf)
+        pure, rough = (
+            simulate(body, motion, DT),
+            simulate(body, motion, DT, friction=np.inf),
+        )
         assert rough.overturned == pure.overturned
         if pure.overturned:
             # past its balance pure rocking knows no friction, so falls are integrated with contact
@@ -74,6 +84,8 @@ def test_where_nothing_slides_the_answer_is_that_of_pure_rocking_to_the_bit() ->
         assert (rough.slip == 0).all()
         assert len(rough.contact_events) == len(pure.contact_events)
         same += len(pure.contact_events) > 1
-        smooth = simulate(body, motion, DT, friction=0.9 * float(pure.friction_demand.max()))
+        smooth = simulate(
+            body, motion, DT, friction=0.9 * float(pure.friction_demand.max())
+        )
         assert (smooth.slides != 0).any()
     assert same > 3

@@ -22,7 +22,9 @@ from rockfrag.rocking.options import system_of
 from .cases import G, random_block, random_column, random_stack, with_contacts
 
 
-def situation(rng: np.random.Generator, bodies: int, impact: bool) -> tuple[np.void, np.void]:
+def situation(
+    rng: np.random.Generator, bodies: int, impact: bool
+) -> tuple[np.void, np.void]:
     """Draw a column some of whose ends touch, how it moves, and the mode that the search starts from."""
     mus = list(rng.uniform(0.1, 1.5, bodies)) if rng.uniform() < 0.8 else [1e6] * bodies
     p = system_record(with_contacts(random_column(rng, bodies), mus), G)
@@ -30,7 +32,9 @@ def situation(rng: np.random.Generator, bodies: int, impact: bool) -> tuple[np.v
     for k in range(bodies):
         below = theta[k - 1] if k else 0.0
         ends = rng.choice(4, p=[0.1, 0.25, 0.25, 0.4])
-        theta[k] = below + (0.0 if ends == 3 else rng.choice([-1, 1]) * rng.uniform(0.001, 0.2))
+        theta[k] = below + (
+            0.0 if ends == 3 else rng.choice([-1, 1]) * rng.uniform(0.001, 0.2)
+        )
         if ends == 3:
             touching[k] = 1
         elif ends:
@@ -41,7 +45,9 @@ def situation(rng: np.random.Generator, bodies: int, impact: bool) -> tuple[np.v
     w["touching"][:bodies], w["limit"][:bodies] = touching, mus
     v = np.zeros(3 * MOST)
     if impact:
-        v[: 3 * bodies] = rng.normal(0, 1, 3 * bodies) * np.tile([0.3, 0.3, 1.0], bodies)
+        v[: 3 * bodies] = rng.normal(0, 1, 3 * bodies) * np.tile(
+            [0.3, 0.3, 1.0], bodies
+        )
     else:
         w["moves"][:bodies] = rng.choice([0, 1, -1], bodies, p=[0.5, 0.25, 0.25])
         w["moves"][:bodies] *= touching.any(axis=1)
@@ -67,7 +73,11 @@ def compare_searches(number: int, seed: int) -> Counter:
         if not w["touching"].any():
             continue
         loads, speed = rng.normal(0, [4.0, 2.0]), float(np.abs(w["v"]).max())
-        units = (float(p["mass"].sum()) * speed, speed) if impact else (float(p["weight"]), G)
+        units = (
+            (float(p["mass"].sum()) * speed, speed)
+            if impact
+            else (float(p["weight"]), G)
+        )
         trial = Trial(*loads.tolist(), impact, *units)
         start = w["closed"].copy(), w["slides"].copy()
         modes = modes_of(w["touching"][:bodies], w["moves"], impact)
@@ -92,7 +102,9 @@ def compare_searches(number: int, seed: int) -> Counter:
 @pytest.mark.parametrize(
     ("number", "seed"), [(3000, 1), pytest.param(100_000, 2, marks=pytest.mark.slow)]
 )
-def test_the_search_finds_a_consistent_mode_wherever_there_is_one(number: int, seed: int) -> None:
+def test_the_search_finds_a_consistent_mode_wherever_there_is_one(
+    number: int, seed: int
+) -> None:
     """And the first one nearly always."""
     counts = compare_searches(number, seed)
     assert counts["not consistent"] == 0
@@ -167,6 +179,10 @@ def test_formulas_give_what_elimination_gives(stacks: bool, flat: bool) -> None:
         found = []
         for kernel in (by_formulas, by_elimination):
             kernel(p, w, *loads)
-            forces = np.concatenate([w["normal"][: top + 1].ravel(), w["shear"][: top + 1]])
-            found.append(np.concatenate([w["out"][: 3 * top + 3], forces / p["weight"]]))
+            forces = np.concatenate(
+                [w["normal"][: top + 1].ravel(), w["shear"][: top + 1]]
+            )
+            found.append(
+                np.concatenate([w["out"][: 3 * top + 3], forces / p["weight"]])
+            )
         np.testing.assert_allclose(found[0], found[1], rtol=1e-9, atol=1e-10)

@@ -30,11 +30,16 @@ def draw(rng: random.Random) -> Foreign:
     if rng.random() < 0.04:
         names[0] = "=1+1"
     blocks = {
-        name: (rng.uniform(15, 60), rng.uniform(60, 200), rng.uniform(20, 400)) for name in names
+        name: (rng.uniform(15, 60), rng.uniform(60, 200), rng.uniform(20, 400))
+        for name in names
     }
     configurations = alone(*names)
     if rng.random() < 0.6:
-        blocks["plinth"] = (rng.uniform(20, 90), rng.uniform(10, 100), rng.uniform(50, 900))
+        blocks["plinth"] = (
+            rng.uniform(20, 90),
+            rng.uniform(10, 100),
+            rng.uniform(50, 900),
+        )
         on = rng.sample(names, rng.randint(1, len(names)))
         configurations |= {f"{name} on plinth": (name, "plinth") for name in on}
         if rng.random() < 0.2:
@@ -48,7 +53,9 @@ def draw(rng: random.Random) -> Foreign:
     keys = _keys(rng, names)
     if len(configurations) == len(names) or floors is None:
         keep = rng.random() < 0.1
-        keys = {key: value for key, value in keys.items() if keep or key not in PARTICULAR}
+        keys = {
+            key: value for key, value in keys.items() if keep or key not in PARTICULAR
+        }
     return Foreign(blocks, configurations, records, floors, keys)
 
 
@@ -68,7 +75,10 @@ def _keys(rng: random.Random, names: list[str]) -> dict[str, Any]:
     }
     if rng.random() < 0.1:
         restitution = {"blocks": dict.fromkeys(names, rng.choice((0.9, 0.97, 1.1)))}
-        chosen["bodies"] = {"specimens": "blocks.csv", "configurations": "configurations.csv"}
+        chosen["bodies"] = {
+            "specimens": "blocks.csv",
+            "configurations": "configurations.csv",
+        }
         chosen["bodies"]["restitution"] = restitution
     return chosen | _some(rng, "keys")
 
@@ -76,7 +86,9 @@ def _keys(rng: random.Random, names: list[str]) -> dict[str, Any]:
 def _some(rng: random.Random, table: str) -> dict[str, Any]:
     """Keys of a table, each as often as it says, with one of its values."""
     each = TABLES[table].items()
-    return {key: rng.choice(values) for key, (often, values) in each if rng.random() < often}
+    return {
+        key: rng.choice(values) for key, (often, values) in each if rng.random() < often
+    }
 
 
 def fate(study: Foreign, folder: Path) -> tuple[int, list[str]]:

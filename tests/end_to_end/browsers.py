@@ -16,7 +16,11 @@ import pytest
 
 from ..workflow.running import free_port
 
-KEYS = {"Tab": (9, "", "\ue004"), "Enter": (13, "\r", "\ue007"), "Space": (32, " ", " ")}
+KEYS = {
+    "Tab": (9, "", "\ue004"),
+    "Enter": (13, "\r", "\ue007"),
+    "Space": (32, " ", " "),
+}
 """Keys by name: their number and text in Chromium, and their letter in WebDriver."""
 
 
@@ -28,7 +32,9 @@ class Driven:
     def __init__(self) -> None:
         self.console: list[str] = []
         self._number, self._buffer = 0, b""
-        self._folder = tempfile.TemporaryDirectory(prefix=self.name, ignore_cleanup_errors=True)
+        self._folder = tempfile.TemporaryDirectory(
+            prefix=self.name, ignore_cleanup_errors=True
+        )
 
     def __enter__(self) -> Self:
         return self
@@ -69,7 +75,11 @@ class Chromium(Driven):
         self._start(
             *("sh", "-c", 'exec "$@" 3<&0 4>&1 >/dev/null', "sh", CHROMIUM or ""),
             *("--headless=new", "--no-sandbox", "--disable-gpu", "--no-first-run"),
-            *("--remote-debugging-pipe", "--hide-scrollbars", "--proxy-server=127.0.0.1:9"),
+            *(
+                "--remote-debugging-pipe",
+                "--hide-scrollbars",
+                "--proxy-server=127.0.0.1:9",
+            ),
             f"--user-data-dir={self._folder.name}",
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
@@ -85,7 +95,12 @@ class Chromium(Driven):
         self, page: Path, width: int = 1400, height: int = 1000, *, dark: bool = False
     ) -> None:
         self.console.clear()
-        size = {"width": width, "height": height, "deviceScaleFactor": 1, "mobile": False}
+        size = {
+            "width": width,
+            "height": height,
+            "deviceScaleFactor": 1,
+            "mobile": False,
+        }
         self._ask("Emulation.setDeviceMetricsOverride", **size)
         scheme = {"name": "prefers-color-scheme", "value": "dark" if dark else "light"}
         self._ask("Emulation.setEmulatedMedia", media="", features=[scheme])
@@ -112,11 +127,17 @@ class Chromium(Driven):
 
     def printed(self) -> bytes:
         """Return the page as it is printed, as PDF."""
-        return base64.b64decode(self._ask("Page.printToPDF", preferCSSPageSize=True)["data"])
+        return base64.b64decode(
+            self._ask("Page.printToPDF", preferCSSPageSize=True)["data"]
+        )
 
     def _ask(self, method: str, **params: Any) -> Any:
         self._number += 1
-        message = {"id": self._number, "method": method, "params": params} | self._session
+        message = {
+            "id": self._number,
+            "method": method,
+            "params": params,
+        } | self._session
         pipe = self._process.stdin
         assert pipe is not None
         pipe.write(json.dumps(message).encode() + b"\0")
@@ -133,9 +154,13 @@ class Chromium(Driven):
     def _note(self, method: str | None, params: Any) -> None:
         if method == "Runtime.exceptionThrown":
             thrown = params["exceptionDetails"]
-            self.console.append(str(thrown.get("exception", {}).get("description", thrown["text"])))
+            self.console.append(
+                str(thrown.get("exception", {}).get("description", thrown["text"]))
+            )
         elif method == "Runtime.consoleAPICalled":
-            self.console.append(str([argument.get("value") for argument in params["args"]]))
+            self.console.append(
+                str([argument.get("value") for argument in params["args"]])
+            )
         elif method == "Log.entryAdded":
             self.console.append(params["entry"]["text"])
 
@@ -149,9 +174,16 @@ class Firefox(Driven):
         super().__init__()
         port = free_port()
         preferences = Path(__file__).with_name("firefox.js").read_text()
-        (Path(self._folder.name) / "user.js").write_text(preferences.replace("PORT", str(port)))
+        (Path(self._folder.name) / "user.js").write_text(
+            preferences.replace("PORT", str(port))
+        )
         self._start(
-            *(FIREFOX or "", "--headless", "--marionette", "--remote-allow-system-access"),
+            *(
+                FIREFOX or "",
+                "--headless",
+                "--marionette",
+                "--remote-allow-system-access",
+            ),
             *("--profile", self._folder.name, "--no-remote"),
         )
         self._socket = _connected(port)
@@ -183,8 +215,12 @@ class Firefox(Driven):
         return found
 
     def press(self, *keys: str) -> None:
-        letters = [letter for key in keys for letter in (KEYS[key][2] if key in KEYS else key)]
-        both = [{"type": kind, "value": a} for a in letters for kind in ("keyDown", "keyUp")]
+        letters = [
+            letter for key in keys for letter in (KEYS[key][2] if key in KEYS else key)
+        ]
+        both = [
+            {"type": kind, "value": a} for a in letters for kind in ("keyDown", "keyUp")
+        ]
         keyboard = {"type": "key", "id": "keyboard", "actions": both}
         self._ask("WebDriver:PerformActions", actions=[keyboard])
 
@@ -242,7 +278,9 @@ BROWSERS = {"chromium": (Chromium, CHROMIUM), "firefox": (Firefox, FIREFOX)}
 """Each with the path of its program, or None where there is none."""
 
 QUICK_IN_ONE = pytest.mark.parametrize(
-    "browser", ["chromium", pytest.param("firefox", marks=pytest.mark.slow)], indirect=True
+    "browser",
+    ["chromium", pytest.param("firefox", marks=pytest.mark.slow)],
+    indirect=True,
 )
 """Marks long tests whose figures and words are seen in both browsers by quick ones."""
 
@@ -269,7 +307,9 @@ def waited(browser: Browser, script: str) -> None:
     until = time.monotonic() + 60
     while not browser.run(script):
         if time.monotonic() > until:
-            raise AssertionError(f"{script}: {browser.run('document.body.innerText')[:2000]}")
+            raise AssertionError(
+                f"{script}: {browser.run('document.body.innerText')[:2000]}"
+            )
         time.sleep(0.02)
 
 
@@ -286,10 +326,13 @@ def barriers(browser: Browser) -> list[list[str]]:
 
 
 READY = "document.getElementById('live').dataset.ready"
-ANSWERED = "document.body.dataset.stage === 'complete' && !document.querySelector('.stale')"
+ANSWERED = (
+    "document.body.dataset.stage === 'complete' && !document.querySelector('.stale')"
+)
 """When a page with a simulation, and the page of ``rockfrag app``, have done what they were asked."""
 
-FITS = "document.documentElement.scrollWidth <= innerWidth"  # nothing is wider than the window
+# nothing is wider than the window
+FITS = "document.documentElement.scrollWidth <= innerWidth"
 
 
 def opened(

@@ -21,7 +21,9 @@ PLUGIN = re.compile(
     r"|counterpart|statements? (?:are|is) tested|contradict",
     re.IGNORECASE,
 )
-NO_NUMBER = re.compile(r"\b(?:nan|NaN|NaT|inf|infinity|null|True|False)\b|<NA>|mathdefault|\(s\)")
+NO_NUMBER = re.compile(
+    r"\b(?:nan|NaN|NaT|inf|infinity|null|True|False)\b|<NA>|mathdefault|\(s\)"
+)
 INTERVAL = re.compile(r"(?:([−\d.]+) )?\[([−\d.]+|open), ([−\d.]+|open)\]")
 NOUNS = "record|test|motion|earthquake|pair|floor|object|configuration|outcome|perturbation|building|row"
 PLURALS = re.compile(rf"\b1 (?:simulated |overturning )?(?:{NOUNS})s\b")
@@ -35,15 +37,22 @@ class Page:
     """Texts of a page and of its drawings, its tables cell by cell, and whether its tags close."""
 
     def __init__(self, text: str) -> None:
-        markup = re.sub(r"<(script|style)\b.*?</\1>|<!--.*?-->", "", text, flags=re.DOTALL)
+        markup = re.sub(
+            r"<(script|style)\b.*?</\1>|<!--.*?-->", "", text, flags=re.DOTALL
+        )
         opened = Counter(re.findall(r"<(\w+)\b[^>]*(?<!/)>", markup))
-        assert set(opened - Counter(re.findall(r"</(\w+)>", markup))) <= VOID, "a tag is left open"
+        assert set(opened - Counter(re.findall(r"</(\w+)>", markup))) <= VOID, (
+            "a tag is left open"
+        )
         root = html.document_fromstring(markup)
         self.words = _lines(root.xpath("//text()[not(ancestor::svg)]"))
         self.drawings = _lines(root.xpath("//svg//text()"))
         self.labels = [drawing.get("aria-label", "") for drawing in root.iter("svg")]
         self.tables = [
-            [["".join(_lines(cell.itertext())) for cell in row] for row in table.iter("tr")]
+            [
+                ["".join(_lines(cell.itertext())) for cell in row]
+                for row in table.iter("tr")
+            ]
             for table in root.iter("table")
         ]
 
@@ -53,11 +62,15 @@ def _lines(texts: Iterable[str]) -> list[str]:
     return [line for text in texts if (line := " ".join(text.split()))]
 
 
-def check_report(results: Path, names: Iterable[str] = (), plugin: bool = False) -> Page:
+def check_report(
+    results: Path, names: Iterable[str] = (), plugin: bool = False
+) -> Page:
     """Assert that a report is fit to be shown, whatever the user's names are, and return what is on it."""
     text = (results / "report.html").read_text(encoding="utf-8")
     page = Page(text)
-    said = [_without(word, names) for word in (*page.words, *page.drawings, *page.labels)]
+    said = [
+        _without(word, names) for word in (*page.words, *page.drawings, *page.labels)
+    ]
     whole = " · ".join(said)
     for pattern in (NO_NUMBER, PLURALS, SINGULARS, *(() if plugin else (PLUGIN,))):
         found = pattern.search(whole)
@@ -74,7 +87,9 @@ def check_report(results: Path, names: Iterable[str] = (), plugin: bool = False)
     assert {source[1:] for source in sources if source.startswith("#")} <= anchors
     if not plugin:
         strange = [
-            path.name for path in results.rglob("*") if PLUGIN.search(_without(path.stem, names))
+            path.name
+            for path in results.rglob("*")
+            if PLUGIN.search(_without(path.stem, names))
         ]
         assert not strange, f"files of the guest: {strange}"
     return page
@@ -94,7 +109,9 @@ def _number(text: str) -> float:
 
 def _check_intervals(text: str) -> None:
     for found in INTERVAL.finditer(text):
-        value, lower, upper = (_number(group) if group else math.nan for group in found.groups())
+        value, lower, upper = (
+            _number(group) if group else math.nan for group in found.groups()
+        )
         assert not lower >= upper, f"an interval without width: {found[0]}"
         assert not value < lower and not value > upper, (
             f"an estimate outside its limits: {found[0]}"
@@ -119,7 +136,9 @@ def _check_figures(results: Path, page: Page) -> None:
     assert drawn == sorted(path.stem for path in (results / "figures").glob("*.png"))
     figures = [label for label in page.labels if not label.startswith("Still frames")]
     assert len(figures) == len(drawn), f"{len(figures)} figures on the page of {drawn}"
-    assert all(len(label) > 20 for label in page.labels), "a figure without words for it"
+    assert all(len(label) > 20 for label in page.labels), (
+        "a figure without words for it"
+    )
     assert all(path.stat().st_size > 500 for path in (results / "figures").glob("*.*g"))
 
 
@@ -135,17 +154,28 @@ def check_first_page(results: Results) -> None:
     """Assert that each number of what stands first is in the study's tables, and that it is short."""
     answer = study_answer(results)
     text = " ".join(sentence.said for sentence in answer.sentences)
-    names = sorted((each.name for each in results.study.configurations), key=len, reverse=True)
-    for name in [*names, *results.objects, *results.tests["test"], *results.tests["motion"]]:
+    names = sorted(
+        (each.name for each in results.study.configurations), key=len, reverse=True
+    )
+    for name in [
+        *names,
+        *results.objects,
+        *results.tests["test"],
+        *results.tests["motion"],
+    ]:
         text = text.replace(name, "¤")
     sources = ["fragility", "tests", "as_recorded", "mean_amplitudes"]
     sources += ["pedestal/effects"] if results.study.has_pairs else []
     tables = [results.table(name) for name in sources]
-    numbers = [table.select_dtypes("number").to_numpy(float).ravel() for table in tables]
+    numbers = [
+        table.select_dtypes("number").to_numpy(float).ravel() for table in tables
+    ]
     values = np.concatenate(numbers)
     values = values[np.isfinite(values)]
     known = {f"{value:.{digits}f}" for value in values for digits in (0, 1, 2, 3)}
-    known |= {f"{100 * abs(value - 1):.{digits}f}" for value in values for digits in (0, 1)}
+    known |= {
+        f"{100 * abs(value - 1):.{digits}f}" for value in values for digits in (0, 1)
+    }
     counts = {str(n) for n in range(1 + max(len(table) for table in tables))}
     levels = {f"{100 * results.study.fragility.confidence:g}", "95", "80", "50", "10"}
     strange = set(re.findall(r"\d+(?:\.\d+)?", text)) - known - counts - levels
@@ -158,7 +188,9 @@ def open_words(page: str) -> list[str]:
     """Words of a page outside its drawings before anything is opened, with the summaries of what can be."""
     shown = re.sub(r"<(script|style|svg|head)\b.*?</\1>", " ", page, flags=re.DOTALL)
     inside = r"(?:(?!<details\b).)*?"
-    innermost = rf"<details\b[^>]*>\s*<summary\b[^>]*>({inside})</summary>{inside}</details>"
+    innermost = (
+        rf"<details\b[^>]*>\s*<summary\b[^>]*>({inside})</summary>{inside}</details>"
+    )
     while (fewer := re.sub(innermost, r"\1", shown, flags=re.DOTALL)) != shown:
         shown = fewer
     return re.sub(r"<[^>]*>", " ", shown).split()

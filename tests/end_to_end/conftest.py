@@ -34,7 +34,9 @@ def report(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def motions(made_motions) -> MotionSet:
     """Twelve made motions of six records with both components."""
     made = made_motions(12)
-    return MotionSet(made, made, tuple((i, i + 1) for i in range(0, 12, 2)), "12 made motions")
+    return MotionSet(
+        made, made, tuple((i, i + 1) for i in range(0, 12, 2)), "12 made motions"
+    )
 
 
 @pytest.fixture(scope="session")

@@ -22,18 +22,26 @@ CATALOGUE = COLUMNS.replace(",file,", ",file,vertical,")
 class Foreign:
     """A study by somebody else; all but ``content`` is by name."""
 
-    blocks: Mapping[str, tuple[float, float, float]]  # width [cm], height [cm], mass [kg]
+    # width [cm], height [cm], mass [kg]
+    blocks: Mapping[str, tuple[float, float, float]]
     # object, pedestal or None, and with what it is compared, if that is said
     configurations: Mapping[str, tuple[str | None, ...]]
     records: Mapping[str, str]  # their earthquakes
     floors: Mapping[str, int] | None = None  # levels in a building of three storeys
-    content: Mapping[str, Any] = field(default_factory=dict)  # keys that differ from the usual ones
-    slow: bool = False  # whether it takes five seconds and more, and others have every part of it
+    # keys that differ from the usual ones
+    content: Mapping[str, Any] = field(default_factory=dict)
+    # whether it takes five seconds and more, and others have every part of it
+    slow: bool = False
 
     @property
     def names(self) -> list[str]:
         """All names that the user has given, longest first."""
-        names = [*self.blocks, *self.configurations, *self.records, *self.records.values()]
+        names = [
+            *self.blocks,
+            *self.configurations,
+            *self.records,
+            *self.records.values(),
+        ]
         return sorted({*names, *(self.floors or {})}, key=len, reverse=True)
 
 
@@ -42,7 +50,9 @@ def write(study: Foreign, folder: Path) -> Path:
     folder.mkdir(parents=True, exist_ok=True)
     blocks = [(name, *values) for name, values in study.blocks.items()]
     _table(folder / "blocks.csv", "name,width_cm,height_cm,mass_kg", blocks)
-    standing = [(name, *(*cells, None)[:3]) for name, cells in study.configurations.items()]
+    standing = [
+        (name, *(*cells, None)[:3]) for name, cells in study.configurations.items()
+    ]
     _table(folder / "configurations.csv", "name,object,pedestal,counterpart", standing)
     rows = []
     for number, (name, earthquake) in enumerate(study.records.items()):

@@ -42,13 +42,22 @@ def additions(monkeypatch):
     laws.declare("energy", lambda shape, kept, pivot: (ratio.NUMBER, math.sqrt(kept)))
 
     @limit_state(
-        "turns_far", order=50, label="turning far", damage="Turned far", repair="Look at it"
+        "turns_far",
+        order=50,
+        label="turning far",
+        damage="Turned far",
+        repair="Look at it",
     )
     def _(outcomes):
         return (np.nan_to_num(outcomes.peak_rotation) > 0.3).any(axis=-1)
 
     @intensity_measure(
-        "g", power=1, label="RMS acceleration", compared=True, decimals=3, openquake="RMSA"
+        "g",
+        power=1,
+        label="RMS acceleration",
+        compared=True,
+        decimals=3,
+        openquake="RMSA",
     )
     def rms(motion):
         return float(np.sqrt(np.mean(motion.acceleration**2)))
@@ -65,12 +74,17 @@ def test_one_declaration_each_reaches_the_report(additions, tmp_path):
     content = {
         "bodies": bodies,
         "amplitudes": {"lowest_g": 0.05, "highest_g": 2.0, "step_percent": 8},
-        "fragility": {"measures": ["rms_g", ["rms_g", "pgv_over_pga_s"]], "confidence": 0.9},
+        "fragility": {
+            "measures": ["rms_g", ["rms_g", "pgv_over_pga_s"]],
+            "confidence": 0.9,
+        },
     }
     blocks = {"column": (30.0, 120.0, 110.0), "plinth": (60.0, 40.0, 350.0)}
     blocks["needle"] = (0.05, 60.0, 0.2)
     standing = {**alone("column"), "both": ("column", "plinth"), **alone("needle")}
-    study = Foreign(blocks, standing, {name: name for name in "abcdef"}, content=content)
+    study = Foreign(
+        blocks, standing, {name: name for name in "abcdef"}, content=content
+    )
     results, page = run_and_check(study, tmp_path)
     # the engine answered for the needle, and only for it
     fell = pd.read_parquet(results / "ida/needle.parquet")["overturned"]
@@ -82,12 +96,19 @@ def test_one_declaration_each_reaches_the_report(additions, tmp_path):
     order = floors.loc[floors["configuration"] == "column", "state"].unique().tolist()
     assert order == ["rocks", "turns_far", "overturns"]
     damage = json.loads((results / "exports/fragility_pga.json").read_text())
-    assert damage["ROCKFRAG.column"]["LimitStates"]["LS2"]["DS2"]["Description"] == "Turned far"
+    assert (
+        damage["ROCKFRAG.column"]["LimitStates"]["LS2"]["DS2"]["Description"]
+        == "Turned far"
+    )
     # the measure is in the table of motions, in curves, in their comparison and in files for other programs
     assert "rms_g" in pd.read_parquet(results / "measures.parquet")
     curves = pd.read_parquet(results / "fragility.parquet")
     assert set(curves["im"]) == {"RMS acceleration"} and set(curves["unit"]) == {"g"}
-    assert "rms_g" in set(pd.read_parquet(results / "measure_selection.parquet")["measure"])
-    assert 'imt="RMSA"' in (results / "exports/fragility_rms_acceleration.xml").read_text()
+    assert "rms_g" in set(
+        pd.read_parquet(results / "measure_selection.parquet")["measure"]
+    )
+    assert (
+        'imt="RMSA"' in (results / "exports/fragility_rms_acceleration.xml").read_text()
+    )
     words = " ".join(page.words)
     assert "RMS acceleration [g]" in words and "turning far" in words

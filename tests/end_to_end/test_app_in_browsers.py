@@ -15,10 +15,26 @@ from rockfrag.cli import main
 
 from ..app_forms import options_of, settings_of, some_form
 from ..case_tables import case_tables
-from .browsers import ANSWERED, FITS, QUICK_IN_ONE, Browser, barriers, opened, put, put_file, waited
+from .browsers import (
+    ANSWERED,
+    FITS,
+    QUICK_IN_ONE,
+    Browser,
+    barriers,
+    opened,
+    put,
+    put_file,
+    waited,
+)
 
 REFUSED_FIELDS = case_tables(__file__)["fields"]
-FORM = {"width": "25 cm", "height": "1 m", "measure": "PGA", "level": "0.4 g", "years": "475"}
+FORM = {
+    "width": "25 cm",
+    "height": "1 m",
+    "measure": "PGA",
+    "level": "0.4 g",
+    "years": "475",
+}
 SETTINGS = {"width": "25 cm", "height": "1 m", "pga": "0.4 g", "return_period": "475"}
 
 
@@ -30,7 +46,9 @@ def app_page(motions, tmp_path_factory) -> Path:
 
 
 def lines_of(browser: Browser) -> list[str]:
-    return browser.run("[...document.querySelectorAll('#lines dd')].map(line => line.textContent)")
+    return browser.run(
+        "[...document.querySelectorAll('#lines dd')].map(line => line.textContent)"
+    )
 
 
 @pytest.mark.parametrize(("width", "dark"), [(1400, False), (390, True)])
@@ -49,7 +67,9 @@ ANSWER = Path(__file__).with_name("answer.js").read_text()
 
 
 @pytest.mark.parametrize("count", [3, pytest.param(200, marks=pytest.mark.slow)])
-def test_its_figures_are_those_of_the_command(browser, own_records, tmp_path, capsys, count):
+def test_its_figures_are_those_of_the_command(
+    browser, own_records, tmp_path, capsys, count
+):
     """The page that a command writes gives the shares of ``assess --json`` to the bit, and its intervals."""
     records, rng = ["--record", str(own_records / "catalogue.csv")], random.Random(11)
     page = tmp_path / "assess.html"
@@ -59,12 +79,27 @@ def test_its_figures_are_those_of_the_command(browser, own_records, tmp_path, ca
     while compared < count:
         form = some_form(rng)
         capsys.readouterr()
-        if main(["assess", *records, *options_of(form), "--json", "--output", str(tmp_path)]) != 0:
+        if (
+            main(
+                [
+                    "assess",
+                    *records,
+                    *options_of(form),
+                    "--json",
+                    "--output",
+                    str(tmp_path),
+                ]
+            )
+            != 0
+        ):
             continue
         said = json.loads(capsys.readouterr().out)
         found = json.loads(browser.run(ANSWER.replace("FORM", json.dumps(form))))
         assert found["shares"] == said["fragility"]["fraction"], form
-        for mine, his in (("fraction", "fraction_toppling"), ("probability", "probability")):
+        for mine, his in (
+            ("fraction", "fraction_toppling"),
+            ("probability", "probability"),
+        ):
             assert (found.get(mine) is None) == (said[his] is None), form
             for key in ("value", "lower", "upper") if said[his] else ():
                 same = pytest.approx(said[his][key], rel=1e-9, abs=1e-12)
@@ -84,7 +119,9 @@ def test_it_loads_nothing(browser, app_page, tmp_path):
     assert browser.run("location.protocol") == "file:"
     assert browser.run("window.asked") == []
     opened(browser, app_page, ready=ANSWERED)
-    loaded = browser.run("performance.getEntriesByType('resource').map(entry => entry.name)")
+    loaded = browser.run(
+        "performance.getEntriesByType('resource').map(entry => entry.name)"
+    )
     assert [name for name in loaded if not name.startswith("blob:")] == []
     refused = browser.run("fetch('data:,x').then(() => false, () => true)")
     assert refused, "its policy refuses every request"
@@ -108,7 +145,10 @@ def test_what_cannot_be_used_gets_a_sentence_beside_it(browser, app_page):
         before = browser.run(f"document.getElementById('field-{field}').value")
         put(browser, f"#field-{field}", text)
         error = "width" if field == "cg_offset" else field
-        waited(browser, f"document.getElementById('field-{error}-error').textContent.endsWith('.')")
+        waited(
+            browser,
+            f"document.getElementById('field-{error}-error').textContent.endsWith('.')",
+        )
         put(browser, f"#field-{field}", before)
         waited(browser, f"!document.getElementById('field-{error}-error').textContent")
     assert browser.run("document.querySelectorAll('main img, main b').length") == 0
@@ -142,13 +182,19 @@ def test_objects_are_kept_and_opened_again(browser, app_page, tmp_path):
     )
     press = "[...document.querySelectorAll('#tools button')][{}].click()"
     put(browser, "#field-name", "=HYPERLINK(1)")
-    waited(browser, "document.getElementById('lines').textContent.includes('=HYPERLINK')")
+    waited(
+        browser, "document.getElementById('lines').textContent.includes('=HYPERLINK')"
+    )
     waited(browser, ANSWERED)
     browser.run(press.format(0))
     waited(browser, "document.querySelectorAll('#objects tr').length === 1")
     browser.run(press.format(1))
     waited(browser, "window.saved && window.saved.startsWith('name,')")
-    assert browser.run("window.saved").splitlines()[1].startswith(" =HYPERLINK(1),25 cm,1 m")
+    assert (
+        browser.run("window.saved")
+        .splitlines()[1]
+        .startswith(" =HYPERLINK(1),25 cm,1 m")
+    )
     browser.run("window.saved = ''")
     browser.run(press.format(2))
     waited(browser, "window.saved")
@@ -161,7 +207,9 @@ def test_objects_are_kept_and_opened_again(browser, app_page, tmp_path):
     for name, text in (("a.yaml", "!!js/function x"), ("a.csv", "<script>,b\n1,2\n")):
         put_file(browser, name, text)
         waited(browser, "!document.getElementById('file-error').hidden")
-        assert browser.run("document.getElementById('file-error').textContent").endswith(".")
+        assert browser.run(
+            "document.getElementById('file-error').textContent"
+        ).endswith(".")
 
 
 def test_readers_of_every_kind_can_use_it(browser, app_page):
@@ -169,7 +217,9 @@ def test_readers_of_every_kind_can_use_it(browser, app_page):
         opened(browser, app_page, width, 900, ready=ANSWERED, dark=dark)
         browser.run("document.getElementById('keep').click()")
         waited(browser, "document.querySelectorAll('#objects tr').length === 1")
-        browser.run("document.querySelectorAll('details').forEach(one => { one.open = true; })")
+        browser.run(
+            "document.querySelectorAll('details').forEach(one => { one.open = true; })"
+        )
         assert barriers(browser) == [], (width, dark)
         assert browser.run(FITS)
 
@@ -183,9 +233,13 @@ PICTURE = "document.getElementById('scene').toDataURL()"
 @pytest.mark.slow
 @pytest.mark.parametrize("form", [BOX, VASE], ids=["box", "vase"])
 @pytest.mark.parametrize("width", [390, 1280])
-def test_the_page_says_and_shows_what_moves_in_space(browser, motions, tmp_path, form, width):
+def test_the_page_says_and_shows_what_moves_in_space(
+    browser, motions, tmp_path, form, width
+):
     path = tmp_path / "assess.html"
-    write_app(motions, {key: str(value) for key, value in form.items()}, path, made=True)
+    write_app(
+        motions, {key: str(value) for key, value in form.items()}, path, made=True
+    )
     opened(browser, path, width, 1200, ready=ANSWERED)
     found = assess_with(make_request(settings_of(form), "form"), motions)
     said = browser.run("document.getElementById('lines').innerText")

@@ -8,7 +8,16 @@ import pytest
 
 from rockfrag.cli import main
 
-from .browsers import ANSWERED, FITS, QUICK_IN_ONE, Browser, opened, put, put_file, waited
+from .browsers import (
+    ANSWERED,
+    FITS,
+    QUICK_IN_ONE,
+    Browser,
+    opened,
+    put,
+    put_file,
+    waited,
+)
 
 LINES = "[...document.querySelectorAll('#lines dd')].map(line => line.textContent)"
 
@@ -69,7 +78,11 @@ def test_a_bust_on_a_plinth_on_the_first_floor_of_a_masonry_house(browser, page)
     assert "Marble bust" in result
     assert "in 50 years" in risk and "its pedestal" in position
     sheet = printed(browser)
-    assert "Width of the pedestal: 34 cm" in sheet and "PGA: 0,15 g" in sheet and result in sheet
+    assert (
+        "Width of the pedestal: 34 cm" in sheet
+        and "PGA: 0,15 g" in sheet
+        and result in sheet
+    )
     assert browser.run("document.querySelectorAll('.sheet').length") == 1
     assert browser.console == []
 
@@ -83,19 +96,26 @@ def test_a_vase_in_a_gallery_on_a_phone_in_italian(browser, page):
     reach(browser, "#form summary")
     browser.press("Enter")
     type_into(browser, cg_height="55 cm")
-    waited(browser, "document.getElementById('field-cg_height-error').textContent.endsWith('.')")
+    waited(
+        browser,
+        "document.getElementById('field-cg_height-error').textContent.endsWith('.')",
+    )
     browser.run("document.activeElement.select()")
     browser.press("26 cm")
     lines = answered(browser, of="Vaso")
     assert "Vaso" in lines[0]
     said = " ".join(lines).lower()
-    assert not any(word in said for word in ("topple", "height", "motions that", "interval "))
+    assert not any(
+        word in said for word in ("topple", "height", "motions that", "interval ")
+    )
     text = browser.run("document.body.innerText")
     assert all(word in text for word in ("Si ribalta?", "Larghezza", "Rischio"))
     put(browser, "#slide-width", 30)
     cells = "[...document.querySelectorAll('#compared tr')[1].cells].map(cell => cell.textContent)"
     waited(browser, f"{cells}[2] !== '–'")
-    before, after = (float(text.replace(",", ".").split()[0]) for text in browser.run(cells)[1:])
+    before, after = (
+        float(text.replace(",", ".").split()[0]) for text in browser.run(cells)[1:]
+    )
     assert after < before
     assert "Vaso" in printed(browser)
     assert browser.run(FITS)
@@ -128,7 +148,9 @@ def test_cabinets_of_a_hospital_with_a_hazard_curve(browser, page):
     waited(browser, "document.querySelectorAll('#objects tr').length === 1")
     put_file(browser, "list.csv", LIST)
     waited(browser, "document.querySelectorAll('#objects tr').length === 4")
-    waited(browser, "document.getElementById('file-error').textContent.includes('rows 4')")
+    waited(
+        browser, "document.getElementById('file-error').textContent.includes('rows 4')"
+    )
     rows = "[...document.querySelectorAll('#objects tr')]"
     risks = browser.run(f"{rows}.map(row => parseFloat(row.cells[3].textContent))")
     assert risks == sorted(risks, reverse=True)

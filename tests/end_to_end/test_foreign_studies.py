@@ -18,14 +18,17 @@ SLOW = [pytest.mark.slow]
 
 
 @pytest.mark.parametrize(
-    "name", [pytest.param(name, marks=SLOW * study.slow) for name, study in STUDIES.items()]
+    "name",
+    [pytest.param(name, marks=SLOW * study.slow) for name, study in STUDIES.items()],
 )
 def test_the_study_runs_and_its_report_fits_it(name: str, tmp_path: Path):
     study = STUDIES[name]
     results, page = run_and_check(study, tmp_path)
     tests = pd.read_parquet(results / "tests.parquet")
     tests = tests[tests["definition"] == "step_protocol"]
-    assert len(tests) == len(study.configurations) * len(study.records) * len(study.floors or [1])
+    assert len(tests) == len(study.configurations) * len(study.records) * len(
+        study.floors or [1]
+    )
     # what is not known is shown as a bound wherever tests are shown
     bounds = tests[tests["amplitude_g"].isna()]
     shown = [cell for table in page.tables for row in table for cell in row]
@@ -36,7 +39,9 @@ def test_the_study_runs_and_its_report_fits_it(name: str, tmp_path: Path):
 
 
 @pytest.mark.parametrize("number", (2, 12, 22))
-def test_random_studies_end_with_a_report_or_are_refused_in_a_sentence(number, tmp_path):
+def test_random_studies_end_with_a_report_or_are_refused_in_a_sentence(
+    number, tmp_path
+):
     assert fate(draw(random.Random(f"0 {number}")), tmp_path)[1] == []
 
 

@@ -66,18 +66,28 @@ COLUMN = Block(0.3, 1.2, 110.0)
 def test_each_outcome_is_that_of_both_components_scaled_together(tmp_path):
     amplitudes = {"lowest_g": 0.2, "highest_g": 2.4, "step_percent": 20}
     content = {"vertical": True, "amplitudes": amplitudes}
-    study = Foreign(SLENDER, STANDING, RECORDS, floors={"hall": 0, "loft": 3}, content=content)
+    study = Foreign(
+        SLENDER, STANDING, RECORDS, floors={"hall": 0, "loft": 3}, content=content
+    )
     results, page = run_and_check(study, tmp_path)
     words = " ".join(page.words)
-    felt = {motion.name: motion for motion in read_motion_set(results / "motions/floors.parquet")}
-    ups = {motion.name: motion for motion in read_motion_set(results / "motions/vertical.parquet")}
+    felt = {
+        motion.name: motion
+        for motion in read_motion_set(results / "motions/floors.parquet")
+    }
+    ups = {
+        motion.name: motion
+        for motion in read_motion_set(results / "motions/vertical.parquet")
+    }
     motion, up = felt["a_hall"], ups["a_hall"].acceleration
     # floors take vertical components as they are
     np.testing.assert_array_equal(up, ups["a_loft"].acceleration)
 
     def simulated(peak_g: float) -> Response:
         factor = peak_g * GRAVITY / motion.pga
-        return simulate(COLUMN, factor * motion.acceleration, motion.dt, vertical=factor * up)
+        return simulate(
+            COLUMN, factor * motion.acceleration, motion.dt, vertical=factor * up
+        )
 
     ida = table(results, "ida/column")
     assert "peak_slip_contact_1_m" not in ida.columns
@@ -90,13 +100,18 @@ def test_each_outcome_is_that_of_both_components_scaled_together(tmp_path):
             least = 1 + row["amplitude_g"] / motion.pga * min(up.min(), 0)
             assert row["minimum_gravity_ratio"] == pytest.approx(least, abs=1e-9)
             if not row["overturned"]:
-                rotation, peak = row["peak_rotation_body_1"], np.abs(response.theta).max()
+                rotation, peak = (
+                    row["peak_rotation_body_1"],
+                    np.abs(response.theta).max(),
+                )
         factors = rows["amplitude_g"].to_numpy() * GRAVITY / motion.pga
         fell = overturns(COLUMN, motion.acceleration, motion.dt, factors, vertical=[up])
     assert rotation == pytest.approx(peak / COLUMN.alpha, rel=0.02)
     np.testing.assert_array_equal(fell.overturned.ravel(), rows["overturned"])
     # the report says in how many cases bodies may fly
-    cases = pd.concat(pd.read_parquet(path) for path in (results / "ida").glob("*.parquet"))
+    cases = pd.concat(
+        pd.read_parquet(path) for path in (results / "ida").glob("*.parquet")
+    )
     light = int((cases["minimum_gravity_ratio"] < LIGHT).sum())
     assert 0 < light < len(cases)
     assert "The vertical components of the records act too" in words
@@ -104,10 +119,16 @@ def test_each_outcome_is_that_of_both_components_scaled_together(tmp_path):
     assert f"in {light} of {len(cases)} {said}" in words
     # and counts the tests in which a block lifts off
     validity = table(results, "validity")
-    row = validity.query("motion == 'a_hall' and object == 'column' and pedestal == 'NP'").iloc[0]
+    row = validity.query(
+        "motion == 'a_hall' and object == 'column' and pedestal == 'NP'"
+    ).iloc[0]
     response = simulated(row["amplitude_g"])
-    assert row["least_normal_force_n"] == pytest.approx(float(response.least_normal_force.min()))
-    assert row["friction_demand"] == pytest.approx(float(response.friction_demand.max()))
+    assert row["least_normal_force_n"] == pytest.approx(
+        float(response.least_normal_force.min())
+    )
+    assert row["friction_demand"] == pytest.approx(
+        float(response.friction_demand.max())
+    )
     assert row["unstable_distance"] == pytest.approx(response.unstable_distance)
     lifted = int((validity["least_normal_force_n"] <= 0).sum())
     assert ("No block would have lifted off" in words) == (lifted == 0)

@@ -52,7 +52,9 @@ def test_another_width_is_another_body_at_once(browser: Browser, report: Path):
     assert float(width) == pytest.approx(35)
 
 
-def test_keys_move_time_and_dimensions_that_cannot_stand_are_said_to(browser, play_page):
+def test_keys_move_time_and_dimensions_that_cannot_stand_are_said_to(
+    browser, play_page
+):
     opened(browser, play_page)
     clock = "parseFloat(document.querySelector('#live .clock').textContent)"
     before = browser.run(clock)
@@ -91,8 +93,12 @@ def page(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return path
 
 
-@pytest.mark.parametrize(("body", "system", "width"), [("0", BOX, 390), ("1", VASE, 1280)])
-def test_outcomes_over_the_amplitudes_are_those_of_the_package(browser, page, body, system, width):
+@pytest.mark.parametrize(
+    ("body", "system", "width"), [("0", BOX, 390), ("1", VASE, 1280)]
+)
+def test_outcomes_over_the_amplitudes_are_those_of_the_package(
+    browser, page, body, system, width
+):
     from rockfrag.engines.spatial import run_in_space
 
     opened(browser, page, width, 900, ready=COMPUTED)

@@ -40,7 +40,9 @@ def test_readers_of_every_kind_can_use_it(browser: Browser, page: Path):
         assert barriers(browser) == []
     # as while a browser takes a picture of a whole page: canvases have no pixels to copy then
     browser.run("document.querySelector('#live .app').style.display = 'none'")
-    browser.run("dispatchEvent(new Event('resize')), new Promise(done => setTimeout(done, 500))")
+    browser.run(
+        "dispatchEvent(new Event('resize')), new Promise(done => setTimeout(done, 500))"
+    )
     assert browser.console == []
 
 
@@ -50,7 +52,9 @@ def test_a_link_opens_the_chapter_that_it_names(browser: Browser, report: Path):
     asked = browser.run(f"{links}.map(one => one.hash.slice(1))")
     assert {"as_recorded", "pedestal", "fragility", "grounds", "live"} == set(asked)
     for anchor in asked:
-        browser.run(f"document.querySelector('.questions a[href=\"#{anchor}\"]').click()")
+        browser.run(
+            f"document.querySelector('.questions a[href=\"#{anchor}\"]').click()"
+        )
         place = f"document.getElementById('{anchor}')"
         assert browser.run(f"{place}.open !== false")
         assert browser.run(f"{place}.getBoundingClientRect().top < innerHeight")

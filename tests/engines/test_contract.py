@@ -35,7 +35,9 @@ STACK = Stack(Block(0.5, 0.3, 50.0), BLOCK)
 
 
 def motion(**components):
-    return GroundMotion(**{name: Motion(values, 0.01) for name, values in components.items()})
+    return GroundMotion(
+        **{name: Motion(values, 0.01) for name, values in components.items()}
+    )
 
 
 def rough(body, mu):
@@ -50,14 +52,20 @@ def test_the_first_engine_that_supports_a_system_answers_and_is_named():
 
 def test_a_refusal_names_the_wishes_that_do_not_go_together():
     shaken, column = motion(x=np.ones(3), y=np.ones(3)), Column((BLOCK,) * 3).system()
-    with pytest.raises(InputError, match="three and more bodies cannot be had together with a"):
+    with pytest.raises(
+        InputError, match="three and more bodies cannot be had together with a"
+    ):
         contract.engine_for(column, shaken, Request())
     leaning = Block(0.3, 1.0, 50.0, lean=0.01, depth=0.3).system()
-    with pytest.raises(InputError, match="an uneven base in space is beyond every engine"):
+    with pytest.raises(
+        InputError, match="an uneven base in space is beyond every engine"
+    ):
         contract.engine_for(leaning, shaken, Request())
     with pytest.raises(InputError, match="is registered already; give it another name"):
         contract.register_engine(contract.engines()[0])
-    with pytest.raises(InputError, match="engine 'unknown' is not known; choose one of lanes"):
+    with pytest.raises(
+        InputError, match="engine 'unknown' is not known; choose one of lanes"
+    ):
         contract.register_engine(SimpleNamespace(name="new"), before="unknown")
 
 
@@ -77,7 +85,9 @@ OPTIONS = {
     ),
     "friction": lambda body: 0.4,
     "vertical": lambda body: UP,
-    "theta0": lambda body: 0.01 if body is UPPER else (0.0,) * (len(body.blocks) - 1) + (0.01,),
+    "theta0": lambda body: (
+        0.01 if body is UPPER else (0.0,) * (len(body.blocks) - 1) + (0.01,)
+    ),
     "linear": lambda body: True,
     "forces": lambda body: True,
 }
@@ -106,7 +116,9 @@ def test_every_pair_of_options_works_or_is_refused_in_one_sentence(
     monkeypatch.chdir(tmp_path)
     body, worked = BODIES[kind], 0
     for names in CASES:
-        options = {k: OPTIONS[k](body) for k in names if k != "forces" or door in FORCES}
+        options = {
+            k: OPTIONS[k](body) for k in names if k != "forces" or door in FORCES
+        }
         if door is not simulate:
             options |= {k: [options[k]] for k in EACH_BODY if k in options}
         try:
@@ -140,20 +152,34 @@ def test_a_history_of_what_slides_takes_the_steps_that_are_asked_for():
 
 @pytest.fixture
 def shaken():
-    made = empty_outcomes([("block",), ("lower", "upper")], np.array([[1.0, 2.0]]), ("lanes",))
+    made = empty_outcomes(
+        [("block",), ("lower", "upper")], np.array([[1.0, 2.0]]), ("lanes",)
+    )
     made.overturned[1, 0, 1] = True
     made.overturned_body[1, 0, 1] = 2
-    made.peak_rotation[:] = [[[[0.0, np.nan], [0.5, np.nan]]], [[[0.0, 0.0], [0.2, np.inf]]]]
+    made.peak_rotation[:] = [
+        [[[0.0, np.nan], [0.5, np.nan]]],
+        [[[0.0, 0.0], [0.2, np.inf]]],
+    ]
     return made
 
 
 def test_tables_are_tidy_and_what_no_engine_told_is_nan(shaken):
-    cases, bodies, contacts = (shaken.table(which) for which in ("cases", "bodies", "contacts"))
+    cases, bodies, contacts = (
+        shaken.table(which) for which in ("cases", "bodies", "contacts")
+    )
     assert len(cases) == 4
     assert len(bodies) == len(contacts) == 2 * 1 + 2 * 2
     assert list(cases["scale"]) == [1.0, 2.0, 1.0, 2.0]
     assert list(bodies["body"]) == [1, 1, 1, 2, 1, 2]
-    assert list(bodies["name"]) == ["block", "block", "lower", "upper", "lower", "upper"]
+    assert list(bodies["name"]) == [
+        "block",
+        "block",
+        "lower",
+        "upper",
+        "lower",
+        "upper",
+    ]
     assert bodies["peak_rotation"].tolist() == [0.0, 0.5, 0.0, 0.0, 0.2, np.inf]
     assert set(cases["engine"]) == {"lanes"}
     assert "peak_slip_m" in contacts
@@ -171,11 +197,16 @@ def test_a_limit_state_is_declared_once_and_known_by_its_name():
 
 
 def test_built_in_states(shaken):
-    assert limit_state_named("rocks").reached(shaken).tolist() == [[[False, True]], [[False, True]]]
+    assert limit_state_named("rocks").reached(shaken).tolist() == [
+        [[False, True]],
+        [[False, True]],
+    ]
     slides = limit_state_named("slides")
     assert slides.reached(shaken).sum() == 1, "what fell is displaced"
     shaken.peak_slip[0, 0, 0, 0] = 0.0004
-    assert slides.reached(shaken).sum() == 1, "a hair's breadth at an impact is not seen"
+    assert slides.reached(shaken).sum() == 1, (
+        "a hair's breadth at an impact is not seen"
+    )
     shaken.peak_slip[0, 0, 0, 0] = 0.002
     assert slides.reached(shaken).sum() == 2
     held, loose = BLOCK.system(), rough(BLOCK, 0.5)

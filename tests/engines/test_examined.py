@@ -18,7 +18,9 @@ WIDER = Stack(Block(0.5, 0.3, 50.0), Block(0.15, 0.6, 20.0))
 def test_a_fall_keeps_to_the_friction_that_was_given():
     r = simulate(B, SLOW, 0.01, friction=0.4)
     k = (r.time < r.overturning_time) & (r.normal_force[:, 0] > 0)
-    assert (np.abs(r.friction_force[k, 0]) / r.normal_force[k, 0]).max() <= 0.4 * (1 + 1e-6)
+    assert (np.abs(r.friction_force[k, 0]) / r.normal_force[k, 0]).max() <= 0.4 * (
+        1 + 1e-6
+    )
     # the history and the outcome are of one response
     found = overturns(B, [SLOW], 0.01, friction=[0.4])
     assert found.overturned.item() == r.overturned
@@ -33,11 +35,18 @@ def ambiguous_stack():
         b = rng.uniform(0.05, 0.4)
         h = b * rng.uniform(1.5, 8)
         if i % 2 == 0:
-            size = 2 * b * rng.uniform(1.2, 3), rng.uniform(0.1, 1.0), rng.uniform(5, 200)
+            size = (
+                2 * b * rng.uniform(1.2, 3),
+                rng.uniform(0.1, 1.0),
+                rng.uniform(5, 200),
+            )
             first = first or Stack(Block(*size), Block(2 * b, 2 * h, 1000 * b * h))
     t = np.arange(0, 6, 0.01)
     waves = zip(rng.uniform(0.3, 4, 3), rng.uniform(0, 6, 3), strict=True)
-    a = sum(np.sin(2 * np.pi * f * t + y) for f, y in waves) * np.sin(np.pi * t / 6) ** 2
+    a = (
+        sum(np.sin(2 * np.pi * f * t + y) for f, y in waves)
+        * np.sin(np.pi * t / 6) ** 2
+    )
     return first, a * (9.81 / np.abs(a).max() * 0.9)
 
 
@@ -45,7 +54,9 @@ def test_histories_and_outcomes_choose_alike_where_two_outcomes_satisfy_the_laws
     stack, a = ambiguous_stack()
     for friction in (2.0, 5.0, np.inf):
         item = simulate(stack, a, 0.01, friction=friction).overturned
-        assert item == overturns(stack, [a], 0.01, friction=[friction]).overturned.item()
+        assert (
+            item == overturns(stack, [a], 0.01, friction=[friction]).overturned.item()
+        )
     # the choice is counted; with the usual friction of stone the laws leave one outcome alone
     rough = overturns([stack, stack], [a], 0.01, friction=[2.0, 0.6])
     assert rough.several_modes.ravel().tolist() == [14, 0]
@@ -53,9 +64,15 @@ def test_histories_and_outcomes_choose_alike_where_two_outcomes_satisfy_the_laws
 
 def test_a_pair_of_friction_has_one_meaning():
     a = 5 * np.sin(2 * np.pi * 1.2 * T6) * np.sin(np.pi * T6 / 6)
-    named = overturns([PAIR, WIDER], a, 0.01, friction={"ground": 0.6, "interface": 0.2})
+    named = overturns(
+        [PAIR, WIDER], a, 0.01, friction={"ground": 0.6, "interface": 0.2}
+    )
     listed = overturns([PAIR, WIDER], a, 0.01, friction=[(0.6, 0.2), (0.6, 0.2)])
-    assert named.overturned.tolist() == listed.overturned.tolist() == [[[False]], [[False]]]
+    assert (
+        named.overturned.tolist()
+        == listed.overturned.tolist()
+        == [[[False]], [[False]]]
+    )
 
 
 def test_squat_bodies_that_lift_themselves_are_warned_of():
@@ -81,12 +98,17 @@ def near_jamming(seed):
     rng = np.random.default_rng([901, seed])
     b = rng.uniform(0.05, 0.4)
     h = b * rng.uniform(1.5, 6)
-    block = Block(2 * b, 2 * h, 1000 * b * h, cg_offset=float(rng.uniform(-0.3, 0.3) * b))
+    block = Block(
+        2 * b, 2 * h, 1000 * b * h, cg_offset=float(rng.uniform(-0.3, 0.3) * b)
+    )
     t = np.arange(0, 6, 0.01)
 
     def wave(peak):
         waves = [(rng.uniform(0.3, 4), rng.uniform(0, 6)) for _ in range(3)]
-        made = sum(np.sin(2 * np.pi * f * t + y) for f, y in waves) * np.sin(np.pi * t / 6) ** 2
+        made = (
+            sum(np.sin(2 * np.pi * f * t + y) for f, y in waves)
+            * np.sin(np.pi * t / 6) ** 2
+        )
         return made * peak / abs(made).max()
 
     along = wave(9.81 * rng.uniform(0.5, 1.5))

@@ -49,7 +49,9 @@ def main() -> int:
     """Run the trials; return 0 if all passed."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--seed", type=int, default=1, help="seed of the moments")
-    parser.add_argument("--only", default="", help="kinds of trials, by a word of their names")
+    parser.add_argument(
+        "--only", default="", help="kinds of trials, by a word of their names"
+    )
     options = parser.parse_args()
     begin = time.monotonic()
     with tempfile.TemporaryDirectory(prefix="torture ") as scratch:
@@ -69,11 +71,16 @@ def main() -> int:
             return tally
 
         with ThreadPoolExecutor(2) as lanes:
-            tallies = list(lanes.map(tried, (name for name in KINDS if options.only in name)))
+            tallies = list(
+                lanes.map(tried, (name for name in KINDS if options.only in name))
+            )
     failed = any(
-        tally.steps or tally.differing or tally.outside or tally.noise for tally in tallies
+        tally.steps or tally.differing or tally.outside or tally.noise
+        for tally in tallies
     )
-    table = pd.DataFrame([vars(tally) for tally in tallies])[list(COLUMNS)].rename(columns=COLUMNS)
+    table = pd.DataFrame([vars(tally) for tally in tallies])[list(COLUMNS)].rename(
+        columns=COLUMNS
+    )
     print(f"{markdown(table, 0)}\n\n{time.monotonic() - begin:.0f} s")
     if not failed and len(tallies) == len(KINDS):
         document("reliability.md", "results of make torture", table, 0)

@@ -15,15 +15,24 @@ import psutil
 
 from .studies import PATIENCE_S, Study, Tally
 
-FORGOTTEN = (("report.html",), ("report.html", "measures.*"), ("report.html", "tests.*"))
+FORGOTTEN = (
+    ("report.html",),
+    ("report.html", "measures.*"),
+    ("report.html", "tests.*"),
+)
 """Results that a trial makes anew, of which the first and the second are made by pools."""
 
-LONGEST_WORDS = 8  # a run that was disturbed says why in so many lines, beside those of its stages
+# a run that was disturbed says why in so many lines, beside those of its stages
+LONGEST_WORDS = 8
 
 
 def shell(run: psutil.Process) -> list[psutil.Process]:
     """Shells in which Snakemake starts the jobs of a run."""
-    return [item for item in _family(run) if Path((_words(item) or [""])[0]).name in ("bash", "sh")]
+    return [
+        item
+        for item in _family(run)
+        if Path((_words(item) or [""])[0]).name in ("bash", "sh")
+    ]
 
 
 def job(run: psutil.Process) -> list[psutil.Process]:
@@ -77,7 +86,9 @@ Kind = Callable[[psutil.Process], list[psutil.Process]]
 def killed(study: Study, tally: Tally, rng: random.Random, kind: Kind) -> None:
     """Kill processes of a kind in a user's study and in those that come with the project."""
     for user in [study] * USERS + study.beside * SHIPPED:
-        user.forget(*(FORGOTTEN[rng.randrange(2)] if kind is worker else rng.choice(FORGOTTEN)))
+        user.forget(
+            *(FORGOTTEN[rng.randrange(2)] if kind is worker else rng.choice(FORGOTTEN))
+        )
         _disturbed(user, tally, rng, kind, 0.5)
 
 
@@ -92,7 +103,9 @@ def compiling(study: Study, tally: Tally, rng: random.Random) -> None:
     shutil.rmtree(cache, ignore_errors=True)
 
 
-def _disturbed(study: Study, tally: Tally, rng: random.Random, kind: Kind, moment_s: float) -> None:
+def _disturbed(
+    study: Study, tally: Tally, rng: random.Random, kind: Kind, moment_s: float
+) -> None:
     """Kill the processes of a kind once, up to a moment after they have appeared, and run the study again."""
     process = study.start()
     run = psutil.Process(process.pid)

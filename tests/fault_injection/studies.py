@@ -15,7 +15,13 @@ from pathlib import Path
 from ..end_to_end.studies import Foreign, write
 
 ROOT = Path(__file__).resolve().parents[2]
-COMMAND = (sys.executable, str(ROOT / "workflow" / "run.py"), "study.yaml", "--cores", "2")
+COMMAND = (
+    sys.executable,
+    str(ROOT / "workflow" / "run.py"),
+    "study.yaml",
+    "--cores",
+    "2",
+)
 SCREEN = ("--logger", "rockfrag")
 
 PATIENCE_S = 1200.0
@@ -28,7 +34,9 @@ def write_small(folder: Path, names: tuple[str, ...] = ("T1", "T2", "P")) -> str
         "bodies": {"specimens": "blocks.csv"},
         "fragility": {"measures": ["pga_g", "pgv_cm_s"], "confidence": 0.9},
     }
-    blocks = dict.fromkeys(names[:-1], (12.4, 37.2, 2.172)) | {names[-1]: (18.4, 20.8, 2.3)}
+    blocks = dict.fromkeys(names[:-1], (12.4, 37.2, 2.172)) | {
+        names[-1]: (18.4, 20.8, 2.3)
+    }
     records = {"motion 0": "First", "motion 1": "Second", "motion 2": "Third"}
     write(Foreign(blocks, {}, records, {"ground": 0, "top": 2}, content), folder)
     return "own"
@@ -77,7 +85,8 @@ class Study:
         other.folder = scratch / self.folder.name
         shutil.copytree(self.kept, other.folder, symlinks=True)
         other.beside = [
-            item.twin(scratch.parent / f"{scratch.name} {item.name}") for item in self.beside
+            item.twin(scratch.parent / f"{scratch.name} {item.name}")
+            for item in self.beside
         ]
         return other
 
@@ -120,7 +129,9 @@ class Study:
         """Digest of each result; logs have times in them."""
         results = self.folder / "results"
         return {
-            path.relative_to(results).as_posix(): hashlib.sha256(path.read_bytes()).hexdigest()
+            path.relative_to(results).as_posix(): hashlib.sha256(
+                path.read_bytes()
+            ).hexdigest()
             for path in sorted(results.rglob("*"))
             if path.is_file() and "logs" not in path.parts and path.name != ".run"
         }
@@ -131,7 +142,8 @@ class Study:
         return {
             path.relative_to(above).as_posix()
             for path in above.rglob("*")
-            if not {"results", ".snakemake", "kept"} & set(path.relative_to(above).parts)
+            if not {"results", ".snakemake", "kept"}
+            & set(path.relative_to(above).parts)
         }
 
     def judge(self, tally: Tally, said: subprocess.CompletedProcess[str]) -> None:
@@ -143,7 +155,9 @@ class Study:
             return
         found = self.bytes()
         names = set(found) | set(self.wanted)
-        differing = sorted(name for name in names if found.get(name) != self.wanted.get(name))
+        differing = sorted(
+            name for name in names if found.get(name) != self.wanted.get(name)
+        )
         tally.differing += len(differing)
         tally.noise += [f"differs: {', '.join(differing[:5])}"] if differing else []
         tally.outside += len(self.others() - self.inputs)

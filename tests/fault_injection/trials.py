@@ -87,7 +87,9 @@ def _lock(folder: Path, closed: bool) -> bool:
         return True
     flag = "+i" if closed else "-i"
     return (
-        subprocess.run(["chattr", flag, str(folder)], capture_output=True, check=False).returncode
+        subprocess.run(
+            ["chattr", flag, str(folder)], capture_output=True, check=False
+        ).returncode
         == 0
     )
 
@@ -97,7 +99,11 @@ def damaged(study: Study, tally: Tally, rng: random.Random) -> None:
     for name in (".snakemake/metadata", "results/own/.run", ".snakemake/incomplete"):
         study.forget("report.html")
         place = study.folder / name
-        files = [path for path in place.rglob("*") if path.is_file()] if place.is_dir() else [place]
+        files = (
+            [path for path in place.rglob("*") if path.is_file()]
+            if place.is_dir()
+            else [place]
+        )
         for path in files:
             if path.is_file():
                 path.write_bytes(b"\x00 damaged {")
@@ -112,14 +118,21 @@ def damaged(study: Study, tally: Tally, rng: random.Random) -> None:
     study.anew()
     study.judge(tally, study.run(more))
     shutil.rmtree(cache)
-    for content in (b"PK\x03\x04 cut", _wheel({"gmspy/accelerograms/Friuli.dat": "0.0 0.1"})):
+    for content in (
+        b"PK\x03\x04 cut",
+        _wheel({"gmspy/accelerograms/Friuli.dat": "0.0 0.1"}),
+    ):
         study.anew()
         shelf = Path(tempfile.mkdtemp(prefix="shelf "))
         (shelf / "gmspy-0.1.3-py3-none-any.whl").write_bytes(content)
         table = study.folder / "motions.csv"
         usual = table.read_text(encoding="utf-8")
-        table.write_text(usual + "fetched,Friuli,,,,,,gmspy,Friuli.dat,,,,\n", encoding="utf-8")
-        study.refused(tally, study.run({"PIP_NO_INDEX": "1", "PIP_FIND_LINKS": shelf.as_uri()}))
+        table.write_text(
+            usual + "fetched,Friuli,,,,,,gmspy,Friuli.dat,,,,\n", encoding="utf-8"
+        )
+        study.refused(
+            tally, study.run({"PIP_NO_INDEX": "1", "PIP_FIND_LINKS": shelf.as_uri()})
+        )
         shutil.rmtree(shelf)
         table.write_text(usual, encoding="utf-8")
         # nothing of such a download is taken for a record
@@ -151,10 +164,14 @@ def at_once(study: Study, tally: Tally, rng: random.Random) -> None:
         time.sleep(0.05)
     second = study.run()
     if "is running already, in process" not in second.stderr:
-        tally.noise.append(f"the second run was not told of the first: {second.stderr[-200:]!r}")
+        tally.noise.append(
+            f"the second run was not told of the first: {second.stderr[-200:]!r}"
+        )
     study.refused(tally, second)
     _, words = first.communicate(timeout=PATIENCE_S)
-    study.judge(tally, subprocess.CompletedProcess(COMMAND, first.returncode, "", words))
+    study.judge(
+        tally, subprocess.CompletedProcess(COMMAND, first.returncode, "", words)
+    )
 
 
 def foreign_names(study: Study, tally: Tally, rng: random.Random) -> None:

@@ -14,7 +14,11 @@ from rockfrag.fragility.empirical import (
     resurrections_of,
 )
 from rockfrag.fragility.estimators import fragility_of
-from rockfrag.fragility.fractions import fractions_of_capacities, fractions_of_outcomes, knots_of
+from rockfrag.fragility.fractions import (
+    fractions_of_capacities,
+    fractions_of_outcomes,
+    knots_of,
+)
 from rockfrag.fragility.ida_curves import outcome_bins, with_measures
 from rockfrag.fragility.measure_selection import area_under_curve
 from rockfrag.fragility.observations import observations_from_table
@@ -122,7 +126,9 @@ def test_limits_are_over_earthquakes_and_not_over_amplitudes_or_motions_of_one()
     levels = np.geomspace(0.1, 10, 200)
     lone = outcomes_of(of_earthquake, 1, levels)
     tenfold = outcomes_of(np.repeat(of_earthquake, 10), 10, levels)
-    item, ten = (fractions_of_outcomes(data, data.earthquake, 0.9) for data in (lone, tenfold))
+    item, ten = (
+        fractions_of_outcomes(data, data.earthquake, 0.9) for data in (lone, tenfold)
+    )
     assert ten.theta_limits == item.theta_limits
     assert ten.upper[0] == item.upper[0] < 1
     # where the limits of the curve pass one half (Woodruff 1952)
@@ -137,9 +143,13 @@ def test_curve_may_stop_below_one_and_then_has_no_more_than_it_knows():
     """A sixth of the motions overturns nothing: the median is known, the 84 % point is not."""
     log_a = np.append(np.linspace(-0.5, 0.4, 10), [np.inf, np.inf])
     found = fractions_of_capacities(log_a, np.arange(12).astype(object), 0.9)
-    assert found.theta == pytest.approx(1.05, rel=0.02) and found.theta_limits[1] < np.inf
+    assert (
+        found.theta == pytest.approx(1.05, rel=0.02) and found.theta_limits[1] < np.inf
+    )
     assert np.isnan([found.beta, *found.beta_limits]).all()
-    few = fractions_of_capacities(np.array([0.1, np.inf, np.inf]), np.arange(3).astype(object), 0.9)
+    few = fractions_of_capacities(
+        np.array([0.1, np.inf, np.inf]), np.arange(3).astype(object), 0.9
+    )
     assert np.isnan([few.theta, *few.theta_limits]).all()
     of_one_group = fractions_of_capacities(log_a, np.zeros(12, dtype=object), 0.9)
     value, lower, upper = of_one_group.at([1.2])
@@ -159,10 +169,14 @@ def test_many_groups_are_left_out_in_blocks_with_the_same_curve():
     rng = np.random.default_rng(RNG)
     capacity = np.round(0.3 * rng.normal(size=600), 2)
     each = np.arange(600).astype(object)
-    many, known = (fractions_of_capacities(capacity, groups, 0.9) for groups in (each, each % 60))
+    many, known = (
+        fractions_of_capacities(capacity, groups, 0.9) for groups in (each, each % 60)
+    )
     assert np.array_equal(many.fraction, known.fraction)
     assert many.theta == known.theta
-    width = np.diff(np.log(many.theta_limits))[0] / np.diff(np.log(known.theta_limits))[0]
+    width = (
+        np.diff(np.log(many.theta_limits))[0] / np.diff(np.log(known.theta_limits))[0]
+    )
     assert 0.6 < width < 1.7
 
 
@@ -174,7 +188,10 @@ COLUMNS = ("pga_g", "pgv_cm_s", "arias_m_s")
 def counted():
     """Curves of eight earthquakes, most with a resurrection, as a table and as counts of whole and of parts."""
     rng = np.random.default_rng(4)
-    levels, capacity = np.geomspace(0.05, 2.0, 120), 0.4 * np.exp(0.35 * rng.normal(size=MOTIONS))
+    levels, capacity = (
+        np.geomspace(0.05, 2.0, 120),
+        0.4 * np.exp(0.35 * rng.normal(size=MOTIONS)),
+    )
     near = np.abs(np.log(levels / capacity[:, None])) < 0.15
     about = {"object": "T", "pedestal": "NP", "floor": "ground", "overturned_body": ""}
     table = ida_of(capacity, levels, each=3).assign(**about)
@@ -189,7 +206,9 @@ def counted():
     rows = pd.concat([part.about for part in parts], ignore_index=True)
     whole = [Swept(rows, levels, fell, np.zeros(fell.shape, dtype=np.intp), [""])]
     counts = [
-        count_ida(resurrections_of(some), some, measures, {"": COLUMNS, "ground": COLUMNS})
+        count_ida(
+            resurrections_of(some), some, measures, {"": COLUMNS, "ground": COLUMNS}
+        )
         for some in (whole, parts)
     ]
     return TableIda(with_measures(table, measures, COLUMNS)), *counts
@@ -210,8 +229,12 @@ def test_counts_give_the_curve_of_the_rows(counted, column: str):
     assert found.checks.p_fit == pytest.approx(known.checks.p_fit, abs=0.02)
     assert area_under_curve(few) == pytest.approx(area_under_curve(many), abs=1e-3)
     bins = [outcome_bins({}, found, few), outcome_bins({}, known, many)]
-    assert bins[0]["fraction"].to_numpy() == pytest.approx(bins[1]["fraction"].to_numpy(), abs=0.03)
-    assert bins[0]["motions"].to_numpy() == pytest.approx(bins[1]["motions"].to_numpy(), abs=1)
+    assert bins[0]["fraction"].to_numpy() == pytest.approx(
+        bins[1]["fraction"].to_numpy(), abs=0.03
+    )
+    assert bins[0]["motions"].to_numpy() == pytest.approx(
+        bins[1]["motions"].to_numpy(), abs=1
+    )
 
 
 def test_parts_change_nothing_and_windows_are_those_of_the_table(counted):

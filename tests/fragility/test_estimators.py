@@ -7,7 +7,12 @@ from scipy import optimize, stats
 
 from rockfrag.errors import InputError
 from rockfrag.fragility.censored import brackets_from_table, fit_brackets
-from rockfrag.fragility.estimators import fit_cloud, fit_incremental, fit_step_tests, fit_stripes
+from rockfrag.fragility.estimators import (
+    fit_cloud,
+    fit_incremental,
+    fit_step_tests,
+    fit_stripes,
+)
 
 from .made import ida_of
 
@@ -58,10 +63,14 @@ def test_stripes_recover_the_parameters_as_counts_and_as_single_tests():
     within(pooled.fit)
     level = np.repeat(levels, 500)
     fell = np.concatenate([np.arange(500) < count for count in counts])
-    single = pd.DataFrame({"pga_g": level, "overturned": fell, "motion": np.arange(level.size)})
+    single = pd.DataFrame(
+        {"pga_g": level, "overturned": fell, "motion": np.arange(level.size)}
+    )
     tests = fit_stripes(single, "pga_g")
     assert tests.fit.theta == pytest.approx(pooled.fit.theta, rel=1e-8)
-    assert tests.fit.log_likelihood == pytest.approx(pooled.fit.log_likelihood, abs=1e-6)
+    assert tests.fit.log_likelihood == pytest.approx(
+        pooled.fit.log_likelihood, abs=1e-6
+    )
     assert tests.interval.groups == 3000
 
 
@@ -103,7 +112,12 @@ def test_brackets_of_all_kinds_agree_with_direct_maximisation():
         ([0.2, 0.25], [0.3, 0.35], 0.275, "not resolved"),
         ([0.2, 0.25], [np.nan, np.nan], np.nan, "survived 0.2 g"),
         # some capacities are below it and some above, with any dispersion
-        ([0.0, 0.4, 0.4], [0.4, np.nan, np.inf], np.nan, "one level, 0.4 g, where 1 overturned"),
+        (
+            [0.0, 0.4, 0.4],
+            [0.4, np.nan, np.inf],
+            np.nan,
+            "one level, 0.4 g, where 1 overturned",
+        ),
     ],
 )
 def test_brackets_that_give_no_curve_or_no_dispersion_say_so(lower, upper, theta, said):
@@ -114,10 +128,14 @@ def test_brackets_that_give_no_curve_or_no_dispersion_say_so(lower, upper, theta
     assert np.isnan(theta) == np.isnan([found.fit.beta, *found.interval.theta]).all()
 
 
-@pytest.mark.parametrize(("low", "high"), [(0.3, 0.2), (-0.1, 0.2), (np.nan, 0.2), (0.0, np.nan)])
+@pytest.mark.parametrize(
+    ("low", "high"), [(0.3, 0.2), (-0.1, 0.2), (np.nan, 0.2), (0.0, np.nan)]
+)
 def test_bounds_that_are_no_bracket_are_refused(low, high):
     with pytest.raises(InputError, match="row 1"):
-        brackets_from_table(pd.DataFrame({"lower_g": [low], "upper_g": [high]}), motion=None)
+        brackets_from_table(
+            pd.DataFrame({"lower_g": [low], "upper_g": [high]}), motion=None
+        )
 
 
 def test_ida_curves_with_survival_windows_separate_first_from_always():
@@ -125,10 +143,16 @@ def test_ida_curves_with_survival_windows_separate_first_from_always():
     first = capacities(300, 9)
     ida, ratio = ida_of(first, levels), np.divide.outer(levels, first).T.ravel()
     # one half survives again between 1.3 and 1.6 times its first overturning
-    again = (ratio > 1.3) & (ratio < 1.6) & (np.repeat(np.arange(300), levels.size) % 2 == 0)
+    again = (
+        (ratio > 1.3)
+        & (ratio < 1.6)
+        & (np.repeat(np.arange(300), levels.size) % 2 == 0)
+    )
     result = fit_incremental(ida.assign(overturned=ida["overturned"] & ~again))
     within(result.first.fit)
-    assert result.first.fit.theta < result.probability.fit.theta < result.always.fit.theta
+    assert (
+        result.first.fit.theta < result.probability.fit.theta < result.always.fit.theta
+    )
     assert result.fraction_with_resurrections == pytest.approx(0.5, abs=0.02)
     widths = result.resurrections.query("resurrections == 1").window_width
     assert widths.median() == pytest.approx(np.log(1.6 / 1.3), abs=0.03)

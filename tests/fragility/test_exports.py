@@ -66,7 +66,9 @@ def synthetic_ida():
 
 def written(folder, curves, fractions=None):
     """What both files say of curves, which are left in the folder."""
-    model, csv, story = (folder / name for name in ("model.xml", "damage.csv", "damage.json"))
+    model, csv, story = (
+        folder / name for name in ("model.xml", "damage.csv", "damage.json")
+    )
     write_nrml(curves, model, fractions=fractions)
     write_simcenter(curves, csv, story, fractions=fractions)
     root = ElementTree.parse(model).getroot()
@@ -74,7 +76,10 @@ def written(folder, curves, fractions=None):
         text=model.read_text(),
         states=root.find(".//n:limitStates", SPACE).text,
         description=root.find(".//n:description", SPACE).text,
-        functions={item.get("id"): item for item in root.findall(".//n:fragilityFunction", SPACE)},
+        functions={
+            item.get("id"): item
+            for item in root.findall(".//n:fragilityFunction", SPACE)
+        },
         rows=pd.read_csv(csv).set_index("ID"),
         told=json.loads(story.read_text()),
     )
@@ -98,7 +103,10 @@ def test_median_and_dispersion_are_given_back_in_the_units_of_each_program(tmp_p
         *("Peak Ground Acceleration", "g"),
         *(0.5, 0.4),
     ]
-    assert found.rows.loc["ROCKFRAG.P_T1", demand[:2]].tolist() == ["Peak Ground Velocity", "mps"]
+    assert found.rows.loc["ROCKFRAG.P_T1", demand[:2]].tolist() == [
+        "Peak Ground Velocity",
+        "mps",
+    ]
     assert set(found.told) == {"_GeneralInformation", *found.rows.index}
     state = found.told["ROCKFRAG.T1"]["LimitStates"]["LS1"]["DS1"]
     assert state["Description"] == "Overturned"
@@ -143,7 +151,10 @@ def test_rejected_curve_is_exported_as_its_points(tmp_path):
 @pytest.mark.parametrize(
     ("curves", "said"),
     [
-        (CURVES.assign(im="Arias intensity"), "Arias intensity is no intensity measure"),
+        (
+            CURVES.assign(im="Arias intensity"),
+            "Arias intensity is no intensity measure",
+        ),
         (CURVES.assign(floor="F3"), "floor F3"),
         (CURVES.assign(theta=np.nan), "'T1' has no lognormal curve"),
         (pd.concat([CURVES, CURVES]), "'T1' has two curves"),
@@ -156,19 +167,29 @@ def test_nrml_refuses_what_openquake_cannot_compute(tmp_path, curves, said):
         write_nrml(curves, tmp_path / "model.xml")
     assert not (tmp_path / "model.xml").exists()
     with pytest.raises(InputError, match="no demand of this export"):
-        write_simcenter(CURVES.assign(unit="furlong"), tmp_path / "d.csv", tmp_path / "d.json")
+        write_simcenter(
+            CURVES.assign(unit="furlong"), tmp_path / "d.csv", tmp_path / "d.json"
+        )
 
 
 def test_the_tidy_table_has_every_reading_with_limits_over_earthquakes():
     table = fragility_table(synthetic_ida(), record_set="abc")
     assert list(table.configuration) == ["T1"] * 3 + ["T2"] * 3
-    assert set(table.estimator) == {"mean_probability", "first_overturning", "always_overturning"}
+    assert set(table.estimator) == {
+        "mean_probability",
+        "first_overturning",
+        "always_overturning",
+    }
     assert (table.resampled == "earthquake").all() and (table.groups == 3).all()
     assert table.warnings.str.contains("3 earthquakes the coverage").all()
-    assert (table.theta_lower < table.theta).all() and (table.theta < table.theta_upper).all()
+    assert (table.theta_lower < table.theta).all() and (
+        table.theta < table.theta_upper
+    ).all()
     assert (table.record_set_sha256 == "abc").all()
     # without structural resurrections first and always are the same amplitude
-    theta = table.pivot_table(index="configuration", columns="estimator", values="theta")
+    theta = table.pivot_table(
+        index="configuration", columns="estimator", values="theta"
+    )
     first, always = theta["first_overturning"], theta["always_overturning"]
     assert first.to_numpy() == pytest.approx(always.to_numpy(), rel=1e-12)
     assert first["T1"] == pytest.approx(0.5, rel=0.35)
@@ -180,7 +201,9 @@ def test_the_tidy_table_has_every_reading_with_limits_over_earthquakes():
 
 
 def test_measures_of_a_scaled_motion_follow_their_power_of_the_amplitude():
-    ida = pd.DataFrame({"motion": ["m", "m"], "amplitude_g": [0.2, 0.4], "overturned": [0, 1]})
+    ida = pd.DataFrame(
+        {"motion": ["m", "m"], "amplitude_g": [0.2, 0.4], "overturned": [0, 1]}
+    )
     columns = ["pga_g", "pgv_cm_s", "arias_m_s", "d5_95_s"]
     measures = pd.DataFrame([["m", 0.1, 10.0, 1.0, 8.0]], columns=["name", *columns])
     rows = with_measures(ida, measures, columns)
@@ -194,7 +217,9 @@ def test_measures_of_a_scaled_motion_follow_their_power_of_the_amplitude():
 
 
 def test_the_hash_of_a_record_set_sees_every_sample_and_no_order():
-    a, b, c = (Motion(np.array([0.0, 1.0, k]), 0.01, name="m") for k in (2, 3, 3 + 1e-12))
+    a, b, c = (
+        Motion(np.array([0.0, 1.0, k]), 0.01, name="m") for k in (2, 3, 3 + 1e-12)
+    )
     b, c = replace(b, name="n"), replace(c, name="n")
     assert record_set_hash([a, b]) == record_set_hash([b, a]) != record_set_hash([a, c])
 
@@ -237,7 +262,9 @@ def test_files_say_how_few_motions_a_curve_rests_on_and_what_is_known_of_it(tmp_
 
 def expected(name: str, level: float) -> float:
     """Probability to overturn at a level, which is never above that to rock."""
-    rocks, falls = OF_TWO_STATES[OF_TWO_STATES["configuration"] == name].to_dict("records")
+    rocks, falls = OF_TWO_STATES[OF_TWO_STATES["configuration"] == name].to_dict(
+        "records"
+    )
     if level < rocks["theta"] * 0.95:
         return 0.0
     if name == "urn":
@@ -249,7 +276,9 @@ def expected(name: str, level: float) -> float:
 @pytest.mark.peers
 def test_openquake_reads_levels_and_lognormal_functions(tmp_path):
     # it teaches the reader what a fragility model is
-    pytest.importorskip("openquake.risklib.read_nrml", reason="openquake.engine is not installed")
+    pytest.importorskip(
+        "openquake.risklib.read_nrml", reason="openquake.engine is not installed"
+    )
     from openquake.hazardlib import nrml
 
     write_nrml(OF_TWO_STATES, tmp_path / "curves.xml", fractions=POINTS_OF_URN)
@@ -277,11 +306,21 @@ def test_pelicun_draws_as_many_overturned_as_the_curves_say(tmp_path):
     draws, level = 20_000, 0.45
     run = assessment.Assessment({"PrintLog": False, "Seed": 1, "Verbose": False})
     index = ["Units", *range(draws)]
-    run.demand.load_sample(pd.DataFrame({"1-PGA-1-1": ["g"] + [level] * draws}, index=index))
+    run.demand.load_sample(
+        pd.DataFrame({"1-PGA-1-1": ["g"] + [level] * draws}, index=index)
+    )
     run.stories = 1
     names = list(pd.read_csv(paths[0])["ID"])
-    places = {"Units": "ea", "Location": "1", "Direction": "1", "Theta_0": "1", "Blocks": "1"}
-    run.asset.load_cmp_model({"marginals": pd.DataFrame(places | {"Family": None}, index=names)})
+    places = {
+        "Units": "ea",
+        "Location": "1",
+        "Direction": "1",
+        "Theta_0": "1",
+        "Blocks": "1",
+    }
+    run.asset.load_cmp_model(
+        {"marginals": pd.DataFrame(places | {"Family": None}, index=names)}
+    )
     run.asset.generate_cmp_sample(draws)
     run.damage.load_model_parameters([str(paths[0])], set(names))
     run.damage.calculate()

@@ -37,7 +37,8 @@ def test_intervals_follow_motions_and_not_the_number_of_amplitudes():
     # every test of every motion ten times over tells nothing new about other motions
     table = swept_motions(8, seed=5)
     once, often = (
-        observations_from_table(pd.concat([table] * times), "amplitude_g") for times in (1, 10)
+        observations_from_table(pd.concat([table] * times), "amplitude_g")
+        for times in (1, 10)
     )
     limits = [interval_over_motions(data).theta for data in (once, often)]
     assert limits[1] == pytest.approx(limits[0], rel=1e-6)
@@ -55,7 +56,9 @@ def test_intervals_follow_motions_and_not_the_number_of_amplitudes():
         ([0.3, 0.32, 0.5, 9.0], True, True),
     ],
 )
-def test_the_poorest_ida_curves_give_a_stated_result(capacities, theta_known, limits_known):
+def test_the_poorest_ida_curves_give_a_stated_result(
+    capacities, theta_known, limits_known
+):
     table = fragility_table(ida_of(capacities, STEPS))
     assert (table["theta"].notna() == theta_known).all()
     assert (table["theta_lower"].notna() == limits_known).all()
@@ -65,7 +68,9 @@ def test_the_poorest_ida_curves_give_a_stated_result(capacities, theta_known, li
     assert (known["theta"] < known["theta_upper"]).all()
     if len(capacities) == 2 and limits_known:
         # two motions say nothing about the scatter of others
-        assert (table["beta_lower"] == 0).all() and np.isposinf(table["beta_upper"]).all()
+        assert (table["beta_lower"] == 0).all() and np.isposinf(
+            table["beta_upper"]
+        ).all()
 
 
 def test_limits_over_motions_of_shared_earthquakes_warn():
@@ -75,7 +80,10 @@ def test_limits_over_motions_of_shared_earthquakes_warn():
     for tests, over in ((data, "motion"), (shared, "earthquake")):
         limits = interval_over_motions(tests)
         assert (limits.over, limits.warnings) == (over, ())
-    assert "come from 4 earthquakes" in interval_over_motions(shared, over="motion").warnings[0]
+    assert (
+        "come from 4 earthquakes"
+        in interval_over_motions(shared, over="motion").warnings[0]
+    )
 
 
 def test_capacities_in_one_step_give_limits_of_the_step_and_a_beta_from_zero():
@@ -94,7 +102,11 @@ def test_beta_lies_within_its_limits_under_separation_too():
     for _ in range(20):
         peaks = np.exp(rng.normal(np.log(0.4), 0.4, 8))
         table = pd.DataFrame(
-            {"pga_g": peaks, "overturned": peaks > np.median(peaks), "motion": np.arange(8) // 2}
+            {
+                "pga_g": peaks,
+                "overturned": peaks > np.median(peaks),
+                "motion": np.arange(8) // 2,
+            }
         )
         found = fit_cloud(table, "pga_g")
         assert "penalised" in found.fit.method
@@ -108,7 +120,9 @@ def test_one_step_without_a_block_is_the_fit_without_it(monkeypatch):
     low = np.exp(0.4 * rng.normal(size=400))
     brackets = Brackets(low, np.where(low < 2.0, 1.05 * low, np.inf), names, names)
     stepped = bracket_interval(brackets)
-    monkeypatch.setattr(censored, "_without_a_block", lambda *all_of: _fit_weighted(*all_of)[0])
+    monkeypatch.setattr(
+        censored, "_without_a_block", lambda *all_of: _fit_weighted(*all_of)[0]
+    )
     fitted = bracket_interval(brackets)
     assert stepped.groups == fitted.groups == 400
     assert stepped.theta == pytest.approx(fitted.theta, rel=1e-4)
@@ -127,7 +141,9 @@ def test_the_points_pass_through_the_median_between_the_limits_of_the_band():
     found = tables_of([0.3, 0.4, 0.5, 0.7, 0.9])
     theta = reading(found.curves, "mean_probability")["theta"]
     points = found.bands
-    assert np.interp(theta, points["x"], points["probability"]) == pytest.approx(0.5, abs=0.01)
+    assert np.interp(theta, points["x"], points["probability"]) == pytest.approx(
+        0.5, abs=0.01
+    )
     assert (points["lower"] <= points["probability"]).all()
     assert (points["probability"] <= points["upper"]).all()
     assert found.bins["tests"].sum() == 5 * 30
@@ -138,5 +154,8 @@ def test_without_a_curve_or_a_band_there_are_outcomes():
     assert survived.bands["probability"].isna().all()
     assert (survived.bands["local"].dropna() == 0).all()
     assert (survived.bins["fraction"] == 0).all()
-    assert of_one_motion["lower"].isna().all() and of_one_motion["probability"].notna().all()
+    assert (
+        of_one_motion["lower"].isna().all()
+        and of_one_motion["probability"].notna().all()
+    )
     assert np.isfinite(of_one_motion["local"]).any()

@@ -83,7 +83,9 @@ def test_a_measure_that_leaves_out_duration_is_found_insufficient():
     duration = rng.uniform(5.0, 40.0, 600)
     effective = pga * (duration / 15.0) ** 0.4
     fell = effective > 0.35 * np.exp(0.3 * rng.normal(size=600))
-    table = pd.DataFrame({"pga_g": pga, "effective_g": effective, "duration_s": duration})
+    table = pd.DataFrame(
+        {"pga_g": pga, "effective_g": effective, "duration_s": duration}
+    )
     asked = {"given": ["duration_s"], "motion": None, "replicates": 20}
     both, alone = (
         recommend_measure(table.assign(overturned=fell), measures, **asked)
@@ -97,7 +99,9 @@ def test_a_measure_that_leaves_out_duration_is_found_insufficient():
 
 def test_proportional_measures_are_equals_and_make_no_surface():
     data = cloud(300, 5, lognormal)
-    table = pd.DataFrame({"a_g": data.im, "b_g": 2.0 * data.im, "overturned": data.overturned})
+    table = pd.DataFrame(
+        {"a_g": data.im, "b_g": 2.0 * data.im, "overturned": data.overturned}
+    )
     choice = recommend_measure(table, ["a_g", "b_g"], motion=None, replicates=20)
     assert "is not distinguishable from" in choice.words
     assert "Adding" not in choice.words
@@ -119,7 +123,12 @@ def test_ida_curves_recommend_the_measure_that_decides(decides):
     capacity = (np.exp(0.2 * power * rng.normal(size=motions)) / at_unit) ** (1 / power)
     ida = pd.DataFrame(
         [
-            {"motion": name, "earthquake": name, "amplitude_g": a, "overturned": a > limit}
+            {
+                "motion": name,
+                "earthquake": name,
+                "amplitude_g": a,
+                "overturned": a > limit,
+            }
             for name, limit in zip(measures["name"], capacity, strict=True)
             for a in limit * np.exp(np.arange(-1.0, 1.0, 0.05) + 0.05 * rng.random())
         ]
@@ -139,7 +148,10 @@ def test_ida_curves_recommend_the_measure_that_decides(decides):
 def test_capacities_of_two_kinds_are_found_not_lognormal_and_the_shares_are_offered():
     """Half of the motions overturn at 0.1 g, half at 1 g: no lognormal curve is like that."""
     rng = np.random.default_rng(1)
-    low, high = 0.1 * np.exp(0.05 * rng.normal(size=20)), np.exp(0.05 * rng.normal(size=22))
+    low, high = (
+        0.1 * np.exp(0.05 * rng.normal(size=20)),
+        np.exp(0.05 * rng.normal(size=22)),
+    )
     first = reading(fragility_table(ida_of([*low, *high], np.geomspace(0.05, 2.0, 60))))
     assert first["p_fit"] < 0.01
     said = r"The lognormal curve is rejected .* median is .* 90 % limits\) and β .* 90 % limits\)"
@@ -152,7 +164,9 @@ def test_capacities_of_two_kinds_are_found_not_lognormal_and_the_shares_are_offe
     ("never", "said"),
     [(20, "and which does not go from 16 to 84 %"), (60, "does not reach a half")],
 )
-def test_shares_of_motions_that_mostly_overturn_nothing_have_no_numbers_that_are_not(never, said):
+def test_shares_of_motions_that_mostly_overturn_nothing_have_no_numbers_that_are_not(
+    never, said
+):
     rng = np.random.default_rng(1)
     capacities = [*0.1 * np.exp(0.02 * rng.normal(size=30)), *[1.5] * 6, *[9.0] * never]
     table = fragility_table(ida_of(capacities, np.geomspace(0.05, 2.0, 40)))
@@ -162,9 +176,13 @@ def test_shares_of_motions_that_mostly_overturn_nothing_have_no_numbers_that_are
 
 
 def test_motion_that_moves_the_median_most_is_named():
-    capacities, levels = [0.3, 0.31, 0.29, 0.305, 0.295, 2.0], np.geomspace(0.1, 3.0, 200)
+    capacities, levels = (
+        [0.3, 0.31, 0.29, 0.305, 0.295, 2.0],
+        np.geomspace(0.1, 3.0, 200),
+    )
     row, without = (
-        reading(fragility_table(ida_of(some, levels))) for some in (capacities, capacities[:-1])
+        reading(fragility_table(ida_of(some, levels)))
+        for some in (capacities, capacities[:-1])
     )
     assert row["influential"] == "m5" and "only 6 motions" in row["warnings"]
     assert row["influence"] == pytest.approx(without["theta"] / row["theta"], rel=1e-6)
@@ -179,7 +197,9 @@ def dependent_tests(seed):
     other = np.exp(rng.normal(0.0, 0.5, 12))[motion]
     whim = 0.4 * rng.normal(size=12)[motion]
     fell = np.log(pgv) + whim + 0.2 * rng.normal(size=motion.size) > 3.0
-    return pd.DataFrame({"pgv_cm_s": pgv, "other_cm": other, "overturned": fell, "motion": motion})
+    return pd.DataFrame(
+        {"pgv_cm_s": pgv, "other_cm": other, "overturned": fell, "motion": motion}
+    )
 
 
 def test_second_measure_is_not_recommended_for_what_it_learns_of_the_motions_by_heart():
@@ -191,7 +211,9 @@ def test_second_measure_is_not_recommended_for_what_it_learns_of_the_motions_by_
         assert choice.recommended == "pgv_cm_s"
         helped += "use the surface" in choice.words
         lone = fit_lognormal(observations_from_table(table, "pgv_cm_s")).aic
-        both = fit_vector(table, ("pgv_cm_s", "other_cm"), earthquake=None, try_interaction=False)
+        both = fit_vector(
+            table, ("pgv_cm_s", "other_cm"), earthquake=None, try_interaction=False
+        )
         aic += both.aic < lone - 2
     assert aic >= 10
     assert helped <= 3
@@ -202,7 +224,9 @@ def test_measure_that_decides_together_with_another_is_recommended_with_it():
     motion = np.repeat(np.arange(40), 20)
     first, two = np.exp(rng.normal(0, 0.6, (2, motion.size)))
     fell = np.log(first) + np.log(two) + 0.2 * rng.normal(size=motion.size) > 0
-    table = pd.DataFrame({"pga_g": first, "pgv_cm_s": two, "overturned": fell, "motion": motion})
+    table = pd.DataFrame(
+        {"pga_g": first, "pgv_cm_s": two, "overturned": fell, "motion": motion}
+    )
     words = recommend_measure(table, ["pga_g", "pgv_cm_s"], replicates=20).words
     assert "use the surface in both" in words
     assert words.startswith("Use P")

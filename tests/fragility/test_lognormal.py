@@ -27,11 +27,15 @@ def outcomes_of(im, outcomes, motions=None):
 
 
 def test_published_stripes_give_their_maximum_likelihood_estimate():
-    fit = fit_lognormal(observations_from_table(STRIPES, "pga_g", trials="trials", motion=None))
+    fit = fit_lognormal(
+        observations_from_table(STRIPES, "pga_g", trials="trials", motion=None)
+    )
     assert fit.theta == pytest.approx(1.076116, abs=1e-5)
     assert fit.beta == pytest.approx(0.429237, abs=1e-5)
     assert fit.log_likelihood == pytest.approx(-10.797705, abs=1e-5)
-    assert (fit.se_log_theta, fit.se_beta) == pytest.approx((0.07097, 0.08210), abs=1e-5)
+    assert (fit.se_log_theta, fit.se_beta) == pytest.approx(
+        (0.07097, 0.08210), abs=1e-5
+    )
     assert (fit.n, fit.n_overturned, fit.im, fit.unit) == (320, 51, "PGA", "g")
     assert fit.probability(fit.theta) == pytest.approx(0.5)
     assert fit.probability(0.0) == 0.0
@@ -72,7 +76,9 @@ def test_penalised_logit_of_one_proportion_adds_half_a_failure_and_half_a_surviv
     counts = np.array([[0.5], [3.0]]), np.array([[7.0]] * 2)
     fit = fit_batch(np.ones((1, 1)), *counts, link="logit", penalised=True)
     expected = np.array([(0.5 + 0.5) / 8, 3.5 / 8])
-    assert 1 / (1 + np.exp(-fit.coefficients[:, 0])) == pytest.approx(expected, abs=1e-9)
+    assert 1 / (1 + np.exp(-fit.coefficients[:, 0])) == pytest.approx(
+        expected, abs=1e-9
+    )
 
 
 def test_separated_outcomes_give_a_penalised_estimate_inside_the_gap_and_say_so():
@@ -92,7 +98,9 @@ def test_separated_outcomes_give_a_penalised_estimate_inside_the_gap_and_say_so(
         ([1, 1, 1, 0, 0, 0], "does not rise"),
     ],
 )
-def test_outcomes_that_agree_or_fall_with_the_measure_give_a_reason_and_no_curve(outcomes, said):
+def test_outcomes_that_agree_or_fall_with_the_measure_give_a_reason_and_no_curve(
+    outcomes, said
+):
     fit = fit_lognormal(outcomes_of([0.1, 0.2, 0.3, 0.5, 0.6, 0.7], outcomes))
     assert np.isnan([fit.theta, fit.beta]).all()
     assert said in fit.warnings[0]
@@ -108,7 +116,9 @@ def test_tests_at_one_level_of_which_some_overturn_give_their_count_and_no_curve
 
 
 def test_one_motion_and_repeated_rows_are_stated():
-    fit = fit_lognormal(outcomes_of([0.1, 0.2, 0.3, 0.2, 0.1], [0, 1, 1, 0, 0], ["a"] * 5))
+    fit = fit_lognormal(
+        outcomes_of([0.1, 0.2, 0.3, 0.2, 0.1], [0, 1, 1, 0, 0], ["a"] * 5)
+    )
     assert any("one motion" in note for note in fit.warnings)
     assert any("1 of 5 rows repeat" in note for note in fit.warnings)
 
@@ -117,7 +127,12 @@ def test_one_motion_and_repeated_rows_are_stated():
     ("table", "column", "trials", "words"),
     [
         (STRIPES.assign(overturned=41), "pga_g", "trials", "fraction between 0 and 1"),
-        (STRIPES, "pga_g", None, "row 4, column 'overturned': overturned must be 0 or 1"),
+        (
+            STRIPES,
+            "pga_g",
+            None,
+            "row 4, column 'overturned': overturned must be 0 or 1",
+        ),
         (STRIPES, "pgv_cm_s", "trials", "no column 'pgv_cm_s'"),
         (STRIPES.iloc[:0], "pga_g", "trials", "no row"),
     ],

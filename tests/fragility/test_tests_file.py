@@ -49,7 +49,9 @@ def test_western_european_labels_and_outcomes_are_read_beside_titles_that_stand_
 
 
 @pytest.mark.parametrize(("content", "said"), CASES["refused"])
-def test_tables_that_cannot_be_used_are_refused_by_file_row_and_column(tmp_path, content, said):
+def test_tables_that_cannot_be_used_are_refused_by_file_row_and_column(
+    tmp_path, content, said
+):
     path = tmp_path / "t.csv"
     if content is not None:
         path.write_text(content)
@@ -59,7 +61,9 @@ def test_tables_that_cannot_be_used_are_refused_by_file_row_and_column(tmp_path,
 
 def test_measure_without_a_unit_is_refused_with_the_cure(tmp_path):
     path = write(tmp_path / "t.csv", title="PGA")
-    with pytest.raises(InputError, match=r"'PGA': the name does not tell a unit.*PGA_g: \[PGA\]"):
+    with pytest.raises(
+        InputError, match=r"'PGA': the name does not tell a unit.*PGA_g: \[PGA\]"
+    ):
         read_tests(path, ["PGA"])
     assert read_tests(path, {"pga_g": ["PGA"]})["pga_g"].tolist() == [0.35, 0.5, 0.25]
 
@@ -92,7 +96,10 @@ def test_a_million_rows_of_2000_motions_take_bounded_memory(tmp_path):
 
 @pytest.mark.parametrize(
     ("title", "value", "said"),
-    [("pga_g", "549", "the largest is 549, more than"), ("pgv_cm_s", "0.02", "too little")],
+    [
+        ("pga_g", "549", "the largest is 549, more than"),
+        ("pgv_cm_s", "0.02", "too little"),
+    ],
 )
 def test_peaks_in_a_wrong_unit_are_doubted_on_both_sides(tmp_path, title, value, said):
     path = tmp_path / "t.csv"
@@ -114,7 +121,11 @@ def test_the_measure_that_decides_is_recommended_with_its_reasons(tmp_path):
     assert compared.loc["PGV", "beta"] < compared.loc["PGA", "beta"]
     assert compared.loc["PGV", "auc"] > compared.loc["PGA", "auc"]
     assert compared.loc["PGV", "chosen_fraction"] > 0.95
-    assert compared.loc["PGV", "p_pgv_over_pga_s"] > 0.01 > compared.loc["PGA", "p_pgv_over_pga_s"]
+    assert (
+        compared.loc["PGV", "p_pgv_over_pga_s"]
+        > 0.01
+        > compared.loc["PGA", "p_pgv_over_pga_s"]
+    )
     assert "one measure is enough" in result.choice.words
     assert result.goodness["pgv_cm_s"].p_value > 0.05
     assert set(result.table["measure"]) == {"pga_g", "pgv_cm_s"}
@@ -138,4 +149,7 @@ def test_the_granite_rock_follows_its_velocity(shared):
     assert result.two_measures is not None
     assert result.two_measures.fits["aic"].iloc[0] == pytest.approx(309.4, abs=0.1)
     assert result.choice.name == "PGV"
-    assert (result.outcomes["pga_g"].n, result.outcomes["pga_g"].n_overturned) == (582, 243)
+    assert (result.outcomes["pga_g"].n, result.outcomes["pga_g"].n_overturned) == (
+        582,
+        243,
+    )

@@ -21,8 +21,12 @@ VELOCITY = 0.6  # weight of ln PGV/PGA beside that of ln PGA in the made laborat
 def laboratory(rng, earthquakes, motions=5, levels=6, interaction=0.0):
     """Tests of a made laboratory: earthquakes and motions shift the capacity, PGV/PGA belongs to the motion."""
     earthquake = np.repeat(np.arange(earthquakes), motions)
-    ratio = rng.normal(0, 0.35, earthquakes)[earthquake] + rng.normal(0, 0.3, earthquake.size)
-    apart = rng.normal(0, 0.25, earthquakes)[earthquake] + rng.normal(0, 0.3, earthquake.size)
+    ratio = rng.normal(0, 0.35, earthquakes)[earthquake] + rng.normal(
+        0, 0.3, earthquake.size
+    )
+    apart = rng.normal(0, 0.25, earthquakes)[earthquake] + rng.normal(
+        0, 0.3, earthquake.size
+    )
     x, y = np.broadcast_arrays(np.linspace(-1.2, 1.2, levels), ratio[:, np.newaxis])
     index = x + VELOCITY * y + interaction * x * y + apart[:, np.newaxis]
     index = index + rng.normal(0, 0.15, x.shape)
@@ -60,7 +64,9 @@ def test_contour_is_where_the_probability_has_its_level_and_limits_hold_it():
         across, *_ = fit.contour(p, value, of=1)
         assert across == pytest.approx(second)
     # in one measure the probability is the mean over the records
-    assert fit.mean_over(0.9, second) == pytest.approx([fit.probability(0.9, second).mean()])
+    assert fit.mean_over(0.9, second) == pytest.approx(
+        [fit.probability(0.9, second).mean()]
+    )
 
 
 def test_interaction_is_found_where_there_is_one_and_kept_in_the_fit():
@@ -89,7 +95,9 @@ def test_separation_by_a_plane_is_found_and_said():
     assert linearly_separable(design, table["overturned"].to_numpy())
     assert not linearly_separable(design, np.arange(len(table)) % 2)
     fit = fit_vector(table, MEASURES)
-    assert any("separates" in note for note in fit.warnings) and "penalised" in fit.method
+    assert (
+        any("separates" in note for note in fit.warnings) and "penalised" in fit.method
+    )
     assert np.isfinite(fit.coefficients).all() and np.abs(fit.coefficients[1]) < 50
 
 
@@ -137,7 +145,11 @@ def test_contours_are_of_the_measure_that_decides_and_are_drawn(pair: tuple[str,
     rng = np.random.default_rng(0)
     pga, pgv = np.exp(rng.normal(-1, 0.5, 300)), np.exp(rng.normal(3.7, 0.6, 300))
     fell = rng.random(300) < (pgv / 40) ** 4 / (1 + (pgv / 40) ** 4)
-    about = {"earthquake": np.arange(300) % 12, "motion": np.arange(300), "overturned": fell}
+    about = {
+        "earthquake": np.arange(300) % 12,
+        "motion": np.arange(300),
+        "overturned": fell,
+    }
     table = pd.DataFrame({"pga_g": pga, "pgv_cm_s": pgv, **about})
     found = vector_tables({"T1": table}, (pair,))
     assert set(found.contours["of"]) == {"pgv_cm_s"}
@@ -149,7 +161,9 @@ def test_tables_hold_the_fit_its_contours_and_its_cells_and_a_figure_is_drawn_of
     table = laboratory(np.random.default_rng(10), 12)
     table["twice_g"] = 2 * table["pga_g"]
     agreeing = table.assign(overturned=0)
-    found = vector_tables({"T1": table, "T2": agreeing}, (MEASURES, ("pga_g", "twice_g")))
+    found = vector_tables(
+        {"T1": table, "T2": agreeing}, (MEASURES, ("pga_g", "twice_g"))
+    )
     fitted, proportional, other, _ = found.fits.to_dict("records")
     fit = fit_vector(table, MEASURES, source="T1")
     assert (fitted["c0"], fitted["c1"], fitted["c2"]) == fit.coefficients[:3]
@@ -171,9 +185,14 @@ def test_limits_cover_and_the_interaction_test_keeps_its_level(earthquakes):
     for _ in range(laboratories):
         fit = fit_vector(laboratory(rng, earthquakes), MEASURES, level=0.90)
         found += fit.interaction.p < 0.05
-        for of, other, truth in ((0, 1.35, 1.35**-VELOCITY), (1, 0.8, 0.8 ** (-1 / VELOCITY))):
+        for of, other, truth in (
+            (0, 1.35, 1.35**-VELOCITY),
+            (1, 0.8, 0.8 ** (-1 / VELOCITY)),
+        ):
             _, lower, upper = fit.contour(0.5, [other], of=of)
             held[of] += lower[0] <= truth <= upper[0]
-    print(f"{earthquakes} earthquakes: covered {held / laboratories}, level {found / laboratories}")
+    print(
+        f"{earthquakes} earthquakes: covered {held / laboratories}, level {found / laboratories}"
+    )
     assert (abs(held / laboratories - 0.90) <= 0.03).all()
     assert abs(found / laboratories - 0.05) <= 0.02

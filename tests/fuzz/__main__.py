@@ -59,8 +59,12 @@ KINDS: Mapping[str, Kind] = {
     "hazard files": Kind(inputs.hazard_files, 0.15),
     "statues and inventories": Kind(inputs.objects, 0.1),
     "numbers": Kind(inputs.numbers, 0.1),
-    "requests": Kind(inputs.requests, most_seconds=60, most_bytes=2**33, chunk=50, least_used=0.25),
-    "studies": Kind(inputs.studies, most_seconds=60, most_bytes=2**33, chunk=10, least_used=0.4),
+    "requests": Kind(
+        inputs.requests, most_seconds=60, most_bytes=2**33, chunk=50, least_used=0.25
+    ),
+    "studies": Kind(
+        inputs.studies, most_seconds=60, most_bytes=2**33, chunk=10, least_used=0.4
+    ),
 }
 
 
@@ -84,11 +88,17 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--inputs", type=int, default=1_000_000, help="how many in all")
     parser.add_argument("--seed", type=int, default=1, help="seed of the damage")
-    parser.add_argument("--only", default="", help="kinds of inputs, by a word of their names")
+    parser.add_argument(
+        "--only", default="", help="kinds of inputs, by a word of their names"
+    )
     options = parser.parse_args()
     begin = time.monotonic()
-    asked = {name: kind.fraction for name, kind in KINDS.items() if options.only in name}
-    kinds = {name: part for name, part in asked.items() if part} or dict.fromkeys(asked, 1.0)
+    asked = {
+        name: kind.fraction for name, kind in KINDS.items() if options.only in name
+    }
+    kinds = {name: part for name, part in asked.items() if part} or dict.fromkeys(
+        asked, 1.0
+    )
     chunks = [
         (kind, number, min(KINDS[kind].chunk, count - number))
         for kind, fraction in kinds.items()
@@ -97,7 +107,9 @@ def main() -> int:
     ]
     # files in memory where there are such: a disk is slower than what is under test
     memory = Path("/dev/shm")
-    with tempfile.TemporaryDirectory(dir=memory if os.access(memory, os.W_OK) else None) as scratch:
+    with tempfile.TemporaryDirectory(
+        dir=memory if os.access(memory, os.W_OK) else None
+    ) as scratch:
 
         def one(chunk: tuple[str, int, int]) -> Tally:
             return _tried(Path(scratch), options.seed, *chunk)
@@ -121,7 +133,9 @@ def main() -> int:
             print(f"{count:8d}  {what}")
     total = sum(tally.fates.total() for tally in tallies.values())
     wrong = sum(tally.wrong.total() for tally in tallies.values())
-    print(f"{total} inputs (seed {options.seed}), {wrong} wrong, {time.monotonic() - begin:.0f} s")
+    print(
+        f"{total} inputs (seed {options.seed}), {wrong} wrong, {time.monotonic() - begin:.0f} s"
+    )
     return 1 if wrong else 0
 
 

@@ -44,7 +44,9 @@ def damage(content: bytes, other: bytes, rng: random.Random) -> bytes:
             _exchange_number(data, at, rng)
         elif kind == 6 and other:
             start = rng.randrange(len(other))
-            data[at : at + rng.randint(0, 300)] = other[start : start + rng.randint(1, 300)]
+            data[at : at + rng.randint(0, 300)] = other[
+                start : start + rng.randint(1, 300)
+            ]
         else:
             lines = bytes(data).split(b"\n")
             rng.shuffle(lines) if len(lines) < 3 else lines.insert(
@@ -74,14 +76,29 @@ def damaged(folder: Path, seeds: Sequence[Seed]) -> Callable[[random.Random], At
 
 def _exchange_number(data: bytearray, at: int, rng: random.Random) -> None:
     """Put another number where the next one stands."""
-    choices = [b"0", b"-5", b"1e308", b"99999999999", b"3.7", b"1e-30", b"007", b"4294967296"]
+    choices = [
+        b"0",
+        b"-5",
+        b"1e308",
+        b"99999999999",
+        b"3.7",
+        b"1e-30",
+        b"007",
+        b"4294967296",
+    ]
     if number := re.compile(rb"\d[\d.]*").search(data, at):
         data[slice(*number.span())] = rng.choice(choices)
 
 
 def _places(node: Any) -> Iterator[tuple[Any, Any]]:
     """Yield every dictionary or list in a configuration with each of its keys."""
-    keys = node if isinstance(node, dict) else range(len(node)) if isinstance(node, list) else ()
+    keys = (
+        node
+        if isinstance(node, dict)
+        else range(len(node))
+        if isinstance(node, list)
+        else ()
+    )
     for key in keys:
         yield node, key
         yield from _places(node[key])

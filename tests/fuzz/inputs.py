@@ -68,7 +68,9 @@ def _write_changed(path: Path, content: Any, rng: random.Random) -> None:
 def tables(folder: Path) -> Callable[[random.Random], Attempt]:
     """Return what makes a table with damaged bytes."""
     sources = _sources(folder, ".csv")
-    return damaged(folder, [(name, sources[name], read) for name, read in TABLES.items()])
+    return damaged(
+        folder, [(name, sources[name], read) for name, read in TABLES.items()]
+    )
 
 
 def numbers(folder: Path) -> Callable[[random.Random], Attempt]:
@@ -86,13 +88,23 @@ def numbers(folder: Path) -> Callable[[random.Random], Attempt]:
         def attempt() -> None:
             statue = Block(some(0.2), some(0.6), some(30.0))
             pedestal = rng.random() < 0.5
-            body = Stack(Block(some(0.4), some(0.3), some(50.0)), statue) if pedestal else statue
+            body = (
+                Stack(Block(some(0.4), some(0.3), some(50.0)), statue)
+                if pedestal
+                else statue
+            )
             acceleration = some(good * 10.0 ** rng.randint(-3, 3))
             if rng.random() < 0.5:
-                simulate(body, acceleration, some(0.01), theta0=some(None), omega0=some(None))
+                simulate(
+                    body, acceleration, some(0.01), theta0=some(None), omega0=some(None)
+                )
             else:
                 overturns(
-                    [some(body)], [acceleration], [some(0.01)], some([0.5, 1.0]), threads=some(1)
+                    [some(body)],
+                    [acceleration],
+                    [some(0.01)],
+                    some([0.5, 1.0]),
+                    threads=some(1),
                 )
 
         return folder / "numbers", attempt
@@ -115,7 +127,9 @@ TABLES: dict[str, Callable[[Path], object]] = {
 def _sources(folder: Path, ending: str) -> dict[str, bytes]:
     """The files of the shipped studies, copied to where damaged ones are used."""
     shutil.copytree(ROOT / "config", folder, dirs_exist_ok=True)
-    paths = (path for path in sorted((ROOT / "config").rglob("*")) if path.suffix == ending)
+    paths = (
+        path for path in sorted((ROOT / "config").rglob("*")) if path.suffix == ending
+    )
     return {path.name: path.read_bytes() for path in paths}
 
 
@@ -125,7 +139,13 @@ def _load(path: Path) -> None:
 
 def _used(smoke: dict[str, Any], name: str, damaged: Path) -> Path:
     """The study that a damaged file belongs to: itself, or one that names it."""
-    key = "shaker" if name == "shaker.yaml" else "building" if name.startswith("building") else None
+    key = (
+        "shaker"
+        if name == "shaker.yaml"
+        else "building"
+        if name.startswith("building")
+        else None
+    )
     if key is None:
         return damaged
     path = damaged.with_name("whole.yaml")
@@ -137,16 +157,23 @@ def hazard_files(folder: Path) -> Callable[[random.Random], Attempt]:
     """Return what makes a hazard file with damaged bytes."""
     return damaged(
         folder,
-        [(name, text.encode(), lambda path: read_hazard([path])) for name, text in SAMPLES.items()],
+        [
+            (name, text.encode(), lambda path: read_hazard([path]))
+            for name, text in SAMPLES.items()
+        ],
     )
 
 
 def objects(folder: Path) -> Callable[[random.Random], Attempt]:
     """Return what makes a statue, with other values or damaged bytes, or an inventory."""
     (folder / "table.csv").write_text(SAMPLES["table.csv"])
-    (folder / "building.yaml").write_bytes((ROOT / "config" / "building.yaml").read_bytes())
+    (folder / "building.yaml").write_bytes(
+        (ROOT / "config" / "building.yaml").read_bytes()
+    )
     statues = CASES["statues"]
-    texts = [yaml.dump(statue, Dumper=DUMPER, sort_keys=False).encode() for statue in statues]
+    texts = [
+        yaml.dump(statue, Dumper=DUMPER, sort_keys=False).encode() for statue in statues
+    ]
     path, table = folder / "statue.yaml", folder / "inventory.csv"
 
     def one(rng: random.Random) -> Attempt:

@@ -24,7 +24,8 @@ def records(folder: Path) -> Callable[[random.Random], Attempt]:
     """Return what makes a damaged record and how it is read."""
     seeds = _seeds(folder)
     return damaged(
-        folder, [(name, content, partial(_naming, read)) for name, content, read in seeds]
+        folder,
+        [(name, content, partial(_naming, read)) for name, content, read in seeds],
     )
 
 
@@ -69,7 +70,11 @@ def _seeds(folder: Path) -> Iterable[Seed]:
     build("plain_csv", folder)
     for name, text in CASES["catalogues"].items():
         yield name, text.encode(), _load_all
-    yield "_SearchResults.csv", written("search_results", count=4).encode(), _catalogue_of
+    yield (
+        "_SearchResults.csv",
+        written("search_results", count=4).encode(),
+        _catalogue_of,
+    )
 
 
 def _binary(folder: Path) -> Iterable[tuple[str, bytes]]:
@@ -80,7 +85,9 @@ def _binary(folder: Path) -> Iterable[tuple[str, bytes]]:
     kinds = {"a.mseed": "MSEED", "a.sac": "SAC", "a.gse": "GSE2", "a.slist": "SLIST"}
     for name, kind in kinds.items():
         data = samples.astype(np.float32) if kind == "SAC" else samples
-        Stream([Trace(data.copy(), dict(header))]).write(str(folder / name), format=kind)
+        Stream([Trace(data.copy(), dict(header))]).write(
+            str(folder / name), format=kind
+        )
         yield name, (folder / name).read_bytes()
     yield "AOM001.EW", knet_text().encode()
 
@@ -91,5 +98,7 @@ def _archives(folder: Path) -> Iterable[tuple[str, bytes]]:
     packed = pack(folder / "packed.zip", some, zipfile.ZIP_DEFLATED)
     nested = pack(folder / "nested.zip", {"inner.zip": packed.read_bytes()})
     tars = [pack_tar(folder / name, some) for name in ("some.tar", "some.tar.gz")]
-    yield from ((path.name, path.read_bytes()) for path in (stored, packed, nested, *tars))
+    yield from (
+        (path.name, path.read_bytes()) for path in (stored, packed, nested, *tars)
+    )
     yield "peer.AT2.gz", gzip.compress(some["peer.AT2"])

@@ -18,10 +18,32 @@ from rockfrag.records.motion import Motion, integrate, peak_displacement, peak_v
 from rockfrag.units import GRAVITY as G
 
 COLUMNS = [
-    *("name", "earthquake", "floor", "pga_g", "pgv_cm_s", "pgd_cm", "pgv_over_pga_s", "arias_m_s"),
+    *(
+        "name",
+        "earthquake",
+        "floor",
+        "pga_g",
+        "pgv_cm_s",
+        "pgd_cm",
+        "pgv_over_pga_s",
+        "arias_m_s",
+    ),
     *("cav_m_s", "d5_75_s", "d5_95_s", "mean_period_s", "predominant_period_s"),
-    *("sa_0_3s_g", "sv_0_3s_cm_s", "sd_0_3s_cm", "sa_1_0s_g", "sv_1_0s_cm_s", "sd_1_0s_cm"),
-    *("avgsa_g", "housner_cm", "pulse_period_s", "pulse_velocity_cm_s", "pulse_explained"),
+    *(
+        "sa_0_3s_g",
+        "sv_0_3s_cm_s",
+        "sd_0_3s_cm",
+        "sa_1_0s_g",
+        "sv_1_0s_cm_s",
+        "sd_1_0s_cm",
+    ),
+    *(
+        "avgsa_g",
+        "housner_cm",
+        "pulse_period_s",
+        "pulse_velocity_cm_s",
+        "pulse_explained",
+    ),
 ]
 
 
@@ -62,12 +84,22 @@ def test_units_are_those_of_the_names(named):
 
 def test_motion_of_zeros_has_nan_where_nothing_is_defined():
     row = m.measure_motion(Motion(np.zeros(50), 0.01, "still"))
-    undefined = {key for key, value in row.items() if isinstance(value, float) and value != value}
+    undefined = {
+        key for key, value in row.items() if isinstance(value, float) and value != value
+    }
     assert undefined == {
-        *("pgv_over_pga_s", "d5_75_s", "d5_95_s", "mean_period_s", "predominant_period_s"),
+        *(
+            "pgv_over_pga_s",
+            "d5_75_s",
+            "d5_95_s",
+            "mean_period_s",
+            "predominant_period_s",
+        ),
         *("pulse_period_s", "pulse_velocity_cm_s", "pulse_explained"),
     }
-    assert row["arias_m_s"] == row["cav_m_s"] == row["pgd_cm"] == row["housner_cm"] == 0.0
+    assert (
+        row["arias_m_s"] == row["cav_m_s"] == row["pgd_cm"] == row["housner_cm"] == 0.0
+    )
     assert m.measure_motion(Motion([1.0], 0.01, "one"))["pga_g"] == pytest.approx(1 / G)
 
 
@@ -98,11 +130,17 @@ def test_pair_has_the_measures_of_its_rotation(named):
     first, second = named("first", 6), named("second", 7)
     row = m.measure_pair(first, second, periods=(0.5,))
     assert list(row) == [
-        f"rotd{p}_{name}" for name in ("pga_g", "pgv_cm_s", "sa_0_5s_g") for p in (50, 100)
+        f"rotd{p}_{name}"
+        for name in ("pga_g", "pgv_cm_s", "sa_0_5s_g")
+        for p in (50, 100)
     ]
     assert row["rotd50_pga_g"] * G == pytest.approx(m.rotd(first, second, m.pga, 50))
-    assert row["rotd100_pgv_cm_s"] / 100 == pytest.approx(m.rotd(first, second, m.pgv, 100))
-    sa = m.rotd(first, second, lambda motion: intensity.spectral_acceleration(motion, 0.5), 100)
+    assert row["rotd100_pgv_cm_s"] / 100 == pytest.approx(
+        m.rotd(first, second, m.pgv, 100)
+    )
+    sa = m.rotd(
+        first, second, lambda motion: intensity.spectral_acceleration(motion, 0.5), 100
+    )
     assert row["rotd100_sa_0_5s_g"] * G == pytest.approx(sa)
 
 
@@ -114,7 +152,9 @@ accelerations = st.lists(st.integers(-5000, 5000), min_size=2, max_size=30).map(
 
 @settings(max_examples=150)
 @given(accelerations)
-def test_integrals_and_their_peaks_are_those_of_scipys_piecewise_polynomials(acceleration):
+def test_integrals_and_their_peaks_are_those_of_scipys_piecewise_polynomials(
+    acceleration,
+):
     dt = 0.5
     spline = make_interp_spline(np.arange(acceleration.size) * dt, acceleration, k=1)
     velocity = PPoly.from_spline(spline).antiderivative()
@@ -147,9 +187,15 @@ def test_sine_has_its_closed_forms(harmonic):
     assert m.pga(harmonic) == pytest.approx(amplitude, rel=1e-9)
     # from rest the velocity is a/ω (1 - cos ωt) and the displacement grows by a/ω in each second
     assert m.pgv(harmonic) == pytest.approx(2 * amplitude / omega, rel=1e-4)
-    assert intensity.pgd(harmonic) == pytest.approx(amplitude / omega * length, rel=1e-4)
-    assert intensity.arias(harmonic) == pytest.approx(math.pi / (2 * G) * amplitude**2 * length / 2)
-    assert intensity.cav(harmonic) == pytest.approx(2 / math.pi * amplitude * length, rel=1e-4)
+    assert intensity.pgd(harmonic) == pytest.approx(
+        amplitude / omega * length, rel=1e-4
+    )
+    assert intensity.arias(harmonic) == pytest.approx(
+        math.pi / (2 * G) * amplitude**2 * length / 2
+    )
+    assert intensity.cav(harmonic) == pytest.approx(
+        2 / math.pi * amplitude * length, rel=1e-4
+    )
     assert intensity.predominant_period(harmonic) == pytest.approx(period, rel=0.012)
     assert intensity.pgv_over_pga(harmonic) == pytest.approx(2 / omega, rel=1e-4)
 
@@ -173,7 +219,9 @@ def test_mean_period_weighs_periods_of_its_band_with_squared_amplitudes():
 def test_housner_intensity_of_a_short_pulse_is_its_impulse_times_the_range_of_periods():
     # an undamped oscillator keeps the pseudo-velocity that the impulse gave it
     pulse = m.rectangular(100.0, 0.002, dt=0.001)
-    assert housner_and_average(pulse, damping=0.0)[0] == pytest.approx(0.2 * 2.4, rel=1e-3)
+    assert housner_and_average(pulse, damping=0.0)[0] == pytest.approx(
+        0.2 * 2.4, rel=1e-3
+    )
 
 
 def test_block_starts_to_rock_at_an_uplift_ratio_of_one():
@@ -191,7 +239,9 @@ def test_rocking_measures_have_no_dimension(harmonic):
     assert table["block"].tolist() == ["block", "large"] * 2
     measures = table.iloc[0]
     assert table.iloc[3, 2:].tolist() == pytest.approx(measures[2:].tolist(), rel=2e-3)
-    assert measures["velocity_ratio"] == pytest.approx(p * m.pgv(harmonic) / (G * math.tan(alpha)))
+    assert measures["velocity_ratio"] == pytest.approx(
+        p * m.pgv(harmonic) / (G * math.tan(alpha))
+    )
     pulse = m.strongest_pulse(harmonic)
     assert measures["frequency_ratio"] == pytest.approx(2 * math.pi / pulse.period / p)
 
@@ -205,14 +255,18 @@ POWERS = {
 
 @settings(max_examples=20)
 @given(st.integers(0, 10_000), st.floats(0.01, 100.0), st.floats(0.2, 5.0))
-def test_measures_grow_with_amplitude_and_time_as_they_should(noise, seed, factor, time):
+def test_measures_grow_with_amplitude_and_time_as_they_should(
+    noise, seed, factor, time
+):
     motion = noise(seed, tapered=True)
     scaled = processing.compress_time(m.scale(motion, factor), 1 / time)
     for measure, (of_amplitude, of_time) in POWERS.items():
         expected = measure(motion) * factor**of_amplitude * time**of_time
         assert measure(scaled) == pytest.approx(expected, rel=1e-9)
     expected = factor * intensity.spectral_acceleration(motion, 0.5)
-    assert intensity.spectral_acceleration(scaled, 0.5 * time) == pytest.approx(expected, rel=1e-9)
+    assert intensity.spectral_acceleration(scaled, 0.5 * time) == pytest.approx(
+        expected, rel=1e-9
+    )
 
 
 def test_block_without_a_critical_angle_is_refused(harmonic):
@@ -232,7 +286,9 @@ def peer(name: str):
 
 @pytest.fixture(scope="module")
 def motion(noise) -> Motion:
-    return Motion(np.pad(noise(11, 2000, tapered=True).acceleration, (1, 1)), 0.01, "noise")
+    return Motion(
+        np.pad(noise(11, 2000, tapered=True).acceleration, (1, 1)), 0.01, "noise"
+    )
 
 
 @pytest.mark.peers
@@ -244,8 +300,15 @@ def test_rotated_spectra_are_pyrotds(motion):
         for x in (motion, other)
     ]
     theirs = pyrotd.calc_rotated_spec_accels(
-        0.002, *fine, np.array([2.0]), 0.05, percentiles=[50, 100], angles=np.arange(180)
+        0.002,
+        *fine,
+        np.array([2.0]),
+        0.05,
+        percentiles=[50, 100],
+        angles=np.arange(180),
     )
     for percentile, value in zip((50, 100), theirs["spec_accel"], strict=True):
-        ours = m.rotd(motion, other, lambda x: intensity.spectral_acceleration(x, 0.5), percentile)
+        ours = m.rotd(
+            motion, other, lambda x: intensity.spectral_acceleration(x, 0.5), percentile
+        )
         assert ours == pytest.approx(float(value), rel=2e-4)

@@ -47,7 +47,9 @@ def test_steps_are_taken_in_order_and_recorded(record, tmp_path):
     assert len(processed.provenance) == 4
     for given, recorded in zip(steps, processed.provenance[1:], strict=True):
         assert given.items() <= recorded.items()
-    by_hand = m.scale_to_pga(processing.highpass(processing.pad(record, 1, 2), 0.2, 2), 0.3)
+    by_hand = m.scale_to_pga(
+        processing.highpass(processing.pad(record, 1, 2), 0.2, 2), 0.3
+    )
     np.testing.assert_array_equal(processed.acceleration, by_hand.acceleration)
     # the record of the steps survives the file between two stages
     write_motion_set([processed], tmp_path / "motions.parquet")
@@ -57,7 +59,9 @@ def test_steps_are_taken_in_order_and_recorded(record, tmp_path):
 
 
 @pytest.mark.parametrize(("steps", "message"), TABLES["unknown"])
-def test_unknown_steps_and_parameters_are_refused_with_what_is_known(record, steps, message):
+def test_unknown_steps_and_parameters_are_refused_with_what_is_known(
+    record, steps, message
+):
     with pytest.raises(InputError, match=message):
         m.process(record, steps)
 
@@ -71,11 +75,14 @@ def test_impossible_parameters_are_refused_in_one_sentence(record, step, message
     assert text.endswith(".")
 
 
-@pytest.mark.parametrize("name", [*filter(re.compile("scale_to|strong").match, processing.STEPS)])
+@pytest.mark.parametrize(
+    "name", [*filter(re.compile("scale_to|strong").match, processing.STEPS)]
+)
 def test_motion_of_zeros_can_not_be_scaled_or_cut_to_its_strong_part(name):
     with pytest.raises(InputError, match="zero throughout"):
         m.process(
-            Motion(np.zeros(100), 0.01), [{"step": name, **TABLES["parameters"].get(name, {})}]
+            Motion(np.zeros(100), 0.01),
+            [{"step": name, **TABLES["parameters"].get(name, {})}],
         )
 
 
@@ -116,9 +123,9 @@ def test_displacement_baseline_takes_out_the_drift_of_a_displacement():
     # a displacement of 0.2 x² - 0.1 x³ on 10 s has a linear acceleration
     x = np.linspace(0, 1, 1001)
     drifting = Motion((0.4 - 0.6 * x) / 100, 0.01)
-    assert intensity.pgd(processing.displacement_baseline(drifting)) < 1e-9 * intensity.pgd(
-        drifting
-    )
+    assert intensity.pgd(
+        processing.displacement_baseline(drifting)
+    ) < 1e-9 * intensity.pgd(drifting)
 
 
 def test_displacement_baseline_takes_a_smooth_line_from_the_acceleration(noise):
@@ -151,7 +158,8 @@ def test_pads_change_nothing_but_the_time(record):
 
 @pytest.mark.parametrize("order", [2, 4])
 @pytest.mark.parametrize(
-    ("kind", "corners"), [("highpass", [1.0]), ("lowpass", [1.0]), ("bandpass", [1.0, 10.0])]
+    ("kind", "corners"),
+    [("highpass", [1.0]), ("lowpass", [1.0]), ("bandpass", [1.0, 10.0])],
 )
 def test_filters_are_butterworth_forwards_and_backwards(record, kind, corners, order):
     sos = butter(order, np.squeeze(corners), kind, fs=100.0, output="sos")
@@ -166,7 +174,9 @@ def test_resampling_keeps_a_band_limited_signal(dt):
     resampled = processing.resample(tone(3.0), dt)
     assert resampled.dt == dt
     expected = np.sin(2 * np.pi * 3.0 * resampled.time)
-    np.testing.assert_allclose(middle(resampled.acceleration), middle(expected), atol=2e-3)
+    np.testing.assert_allclose(
+        middle(resampled.acceleration), middle(expected), atol=2e-3
+    )
 
 
 @pytest.mark.parametrize("dt", [0.005, 0.004, 0.02])
@@ -199,7 +209,9 @@ def test_a_filter_without_pads_says_what_it_leaves_at_the_ends():
     offset = Motion(np.ones(2000), 0.01)
     ends = processing.highpass(offset, 0.5).provenance[-1]["ends_m_s2"]
     assert max(map(abs, ends)) > 0.1
-    padded = processing.highpass(processing.pad(offset, 30, 30), 0.5).provenance[-1]["ends_m_s2"]
+    padded = processing.highpass(processing.pad(offset, 30, 30), 0.5).provenance[-1][
+        "ends_m_s2"
+    ]
     assert max(map(abs, padded)) < 1e-6
 
 
@@ -207,7 +219,9 @@ def test_a_filter_without_pads_says_what_it_leaves_at_the_ends():
 def test_a_causal_filter_is_the_butterworth_filter_itself(order):
     impulse = np.zeros(4000)
     impulse[1000] = 1.0
-    filtered = processing.lowpass(Motion(impulse, 0.01), 5.0, order, causal=True).acceleration
+    filtered = processing.lowpass(
+        Motion(impulse, 0.01), 5.0, order, causal=True
+    ).acceleration
     sections = butter(order, 5.0, "lowpass", fs=100, output="sos")
     np.testing.assert_allclose(filtered, sosfilt(sections, impulse), atol=1e-12)
     with pytest.raises(InputError, match="causal must be true or false"):
@@ -216,14 +230,21 @@ def test_a_causal_filter_is_the_butterworth_filter_itself(order):
 
 def test_resampling_does_not_alias():
     # 40 Hz would appear as 10 Hz at 50 samples a second
-    assert np.abs(middle(processing.resample(tone(40.0), 0.02).acceleration)).max() < 0.01
+    assert (
+        np.abs(middle(processing.resample(tone(40.0), 0.02).acceleration)).max() < 0.01
+    )
 
 
 def test_interpolating_keeps_the_motion(record):
     fine = processing.interpolate(record, 0.002)
     assert fine.acceleration.size == 5 * (record.acceleration.size - 1) + 1
     np.testing.assert_array_equal(fine.acceleration[::5], record.acceleration)
-    for measure in (m.pga, m.pgv, intensity.pgd, lambda x: intensity.spectral_acceleration(x, 0.1)):
+    for measure in (
+        m.pga,
+        m.pgv,
+        intensity.pgd,
+        lambda x: intensity.spectral_acceleration(x, 0.1),
+    ):
         assert measure(fine) == pytest.approx(measure(record), rel=1e-7)
 
 
@@ -232,7 +253,9 @@ def test_interpolating_keeps_the_motion(record):
 
 def test_strong_part_holds_its_share_of_the_intensity(record):
     strong = processing.strong_part(record, 0.05, 0.95)
-    assert intensity.arias(strong) == pytest.approx(0.9 * intensity.arias(record), rel=0.02)
+    assert intensity.arias(strong) == pytest.approx(
+        0.9 * intensity.arias(record), rel=0.02
+    )
     assert len(strong.time) * 0.01 == pytest.approx(
         intensity.significant_duration(record), abs=0.03
     )
@@ -246,7 +269,9 @@ def test_bracketed_part_begins_and_ends_at_the_threshold():
 
 def test_trim_keeps_both_ends_of_its_window():
     motion = Motion(np.arange(101.0), 0.1)
-    assert processing.trim(motion, 2.0, 3.0).acceleration.tolist() == list(range(20, 31))
+    assert processing.trim(motion, 2.0, 3.0).acceleration.tolist() == list(
+        range(20, 31)
+    )
     assert processing.trim(motion, 0.0, 10.0).acceleration.size == 101
 
 
@@ -261,10 +286,16 @@ def test_scaling_reaches_its_target(record):
 
 
 def test_start_time_moves_with_the_first_sample():
-    motion = Motion(np.ones(1001), 0.01, metadata={"start_time": "2016-11-13T11:03:00.000000Z"})
-    assert processing.pad(motion, 1.5).metadata["start_time"] == "2016-11-13T11:02:58.500000Z"
+    motion = Motion(
+        np.ones(1001), 0.01, metadata={"start_time": "2016-11-13T11:03:00.000000Z"}
+    )
     assert (
-        processing.trim(motion, 2.25, 4.0).metadata["start_time"] == "2016-11-13T11:03:02.250000Z"
+        processing.pad(motion, 1.5).metadata["start_time"]
+        == "2016-11-13T11:02:58.500000Z"
+    )
+    assert (
+        processing.trim(motion, 2.25, 4.0).metadata["start_time"]
+        == "2016-11-13T11:03:02.250000Z"
     )
     unknown = Motion(np.ones(1001), 0.01, metadata={"start_time": None})
     assert processing.trim(unknown, 2.25, 4.0).metadata["start_time"] is None

@@ -31,14 +31,18 @@ PULSES = {
     "rectangular": lambda a, t: m.rectangular(a, t, DT),
     "ricker_symmetric": lambda a, t: m.ricker_symmetric(a, t, DT),
     "ricker_antisymmetric": lambda a, t: m.ricker_antisymmetric(a, t, DT),
-    "mavroeidis_papageorgiou": lambda a, t: m.mavroeidis_papageorgiou(a, t, 2.0, 30.0, DT),
+    "mavroeidis_papageorgiou": lambda a, t: m.mavroeidis_papageorgiou(
+        a, t, 2.0, 30.0, DT
+    ),
 }
 
 
 @pytest.mark.parametrize("name", list(PULSES))
 @settings(max_examples=15)
 @given(amplitude=st.floats(-5, 5), period=st.floats(0.1, 3.0))
-def test_every_pulse_starts_and_ends_at_zero_and_says_what_it_is(name, amplitude, period):
+def test_every_pulse_starts_and_ends_at_zero_and_says_what_it_is(
+    name, amplitude, period
+):
     pulse = PULSES[name](amplitude, period)
     assert pulse.acceleration[0] == pulse.acceleration[-1] == 0.0
     assert pulse.dt <= DT * (1 + 1e-9)
@@ -73,7 +77,9 @@ def test_pulses_leave_their_impulse_and_displacement(pulse, velocity, displaceme
 )
 def test_ricker_wavelets_come_to_rest_and_have_their_symmetry_and_period(wavelet, sign):
     pulse = wavelet(2.0, 0.7, DT)
-    np.testing.assert_allclose(pulse.acceleration, sign * pulse.acceleration[::-1], atol=1e-12)
+    np.testing.assert_allclose(
+        pulse.acceleration, sign * pulse.acceleration[::-1], atol=1e-12
+    )
     assert at_the_end(pulse) == pytest.approx((0.0, 0.0), abs=1e-8)
     frequency, amplitude = spectra.fourier_amplitude(pulse, 200_000)
     assert 1 / frequency[np.argmax(amplitude)] == pytest.approx(0.7, rel=0.01)
@@ -106,12 +112,24 @@ def test_ida_passes_its_octaves_at_the_stated_rate(start, end):
     [
         (lambda: m.sine(1.0, 0.5, 0), "cycles must be a whole number"),
         (lambda: m.sine(math.nan, 0.5, 1), "amplitude: expected a finite number"),
-        (lambda: m.one_sine(1.0, -0.5), "period: expected a positive number of seconds"),
+        (
+            lambda: m.one_sine(1.0, -0.5),
+            "period: expected a positive number of seconds",
+        ),
         (lambda: m.one_sine(1.0, 0.5, 0.6), "choose another dt"),
-        (lambda: m.rectangular(1.0, 0.0), "duration: expected a positive number of seconds"),
-        (lambda: m.mavroeidis_papageorgiou(1.0, 1.0, 0.5), "cycles must be one or more"),
+        (
+            lambda: m.rectangular(1.0, 0.0),
+            "duration: expected a positive number of seconds",
+        ),
+        (
+            lambda: m.mavroeidis_papageorgiou(1.0, 1.0, 0.5),
+            "cycles must be one or more",
+        ),
         (lambda: m.sine_sweep(1.0, 5.0, 5.0, 1.0), "nothing is swept"),
-        (lambda: m.sine_sweep(1.0, 0.0, 5.0, 1.0), "start_hz: expected a positive number"),
+        (
+            lambda: m.sine_sweep(1.0, 0.0, 5.0, 1.0),
+            "start_hz: expected a positive number",
+        ),
         (lambda: m.sine_sweep(1.0, 1.0, 500.0, 1.0), "give a smaller dt"),
     ],
 )
@@ -133,7 +151,12 @@ def fit(velocity, dt, period, cycles):
     norms = (even**2).sum(), (odd**2).sum()
     gain = along_even**2 / norms[0] + along_odd**2 / norms[1]
     best = int(np.argmax(gain))
-    return gain[best], best + half, along_even[best] / norms[0], along_odd[best] / norms[1]
+    return (
+        gain[best],
+        best + half,
+        along_even[best] / norms[0],
+        along_odd[best] / norms[1],
+    )
 
 
 def thinned_gain(velocity, dt, period, cycles):
@@ -162,13 +185,21 @@ def plain_search(motion):
     )
     period = math.exp(refined.x)
     gain, middle, even, odd = fit(velocity, motion.dt, period, cycles)
-    return period, math.hypot(even, odd), cycles, middle * motion.dt, gain / (velocity**2).sum()
+    return (
+        period,
+        math.hypot(even, odd),
+        cycles,
+        middle * motion.dt,
+        gain / (velocity**2).sum(),
+    )
 
 
 @pytest.mark.parametrize("seed", range(3))
 @pytest.mark.parametrize("kind", ["random walk", "high-passed", "short"])
 def test_search_finds_what_trying_everything_finds(noise, kind, seed):
-    motion = noise(seed, 40 if kind == "short" else 900, 0.01 if seed else 0.005, tapered=True)
+    motion = noise(
+        seed, 40 if kind == "short" else 900, 0.01 if seed else 0.005, tapered=True
+    )
     if kind == "high-passed":
         motion = processing.highpass(motion, 2.0, 4)
     period, velocity, cycles, time, explained = plain_search(motion)

@@ -25,7 +25,9 @@ def test_linear_motion_is_seen_by_its_projection():
     east, north = Motion(3 * shape, 0.01), Motion(4 * shape, 0.01)
     peak = 5 * np.abs(shape).max()
     assert rotd(east, north, pga, 100) == pytest.approx(peak, rel=2e-4)
-    assert rotd(east, north, pga, 50) == pytest.approx(peak * math.cos(math.pi / 4), rel=0.01)
+    assert rotd(east, north, pga, 50) == pytest.approx(
+        peak * math.cos(math.pi / 4), rel=0.01
+    )
     assert rotd(east, north, pga, 0) == pytest.approx(0.0, abs=0.01 * peak)
 
 
@@ -33,10 +35,14 @@ def test_linear_motion_is_seen_by_its_projection():
 def test_component_is_that_of_obspy(angle):
     first, second = pair(1)
     # ObsPy's radial points away from the back-azimuth; first is north, second is east
-    radial, _ = rotate_ne_rt(first.acceleration, second.acceleration, (angle + 180.0) % 360.0)
+    radial, _ = rotate_ne_rt(
+        first.acceleration, second.acceleration, (angle + 180.0) % 360.0
+    )
     found = rotate(first, second, angle)
     np.testing.assert_allclose(found.acceleration, radial, atol=1e-12)
-    assert found.provenance == ({"step": "rotate", "second": "second", "angle_deg": angle},)
+    assert found.provenance == (
+        {"step": "rotate", "second": "second", "angle_deg": angle},
+    )
 
 
 def test_measures_do_not_depend_on_how_the_sensor_stood():
@@ -45,7 +51,9 @@ def test_measures_do_not_depend_on_how_the_sensor_stood():
     for measure in (pga, pgv, lambda motion: spectral_acceleration(motion, 0.2)):
         for percentile in (50, 100):
             expected = rotd(first, second, measure, percentile)
-            assert rotd(item, other, measure, percentile) == pytest.approx(expected, rel=1e-9)
+            assert rotd(item, other, measure, percentile) == pytest.approx(
+                expected, rel=1e-9
+            )
 
 
 def components(azimuths=(30.0, 120.0), starts=(None, None)):
@@ -70,14 +78,21 @@ def test_an_azimuth_is_reached_from_components_of_any_order_and_sense(azimuths):
     assert across.pga == pytest.approx(0.0, abs=1e-12)
     assert along.metadata["component"] == "75"
     np.testing.assert_allclose(
-        rotate_to_azimuth(first, second, azimuths[1]).acceleration, second.acceleration, atol=1e-14
+        rotate_to_azimuth(first, second, azimuths[1]).acceleration,
+        second.acceleration,
+        atol=1e-14,
     )
 
 
 def test_fault_normal_and_radial_are_directions_by_their_definitions():
     pair = components()
     expected = rotate_to_azimuth(*pair, 75).acceleration
-    for direction in ("fault-normal -15", "fault-parallel 75", "radial 255", "transverse 165"):
+    for direction in (
+        "fault-normal -15",
+        "fault-parallel 75",
+        "radial 255",
+        "transverse 165",
+    ):
         found = turned(*pair, direction).acceleration
         np.testing.assert_allclose(found, expected, atol=1e-14)
 
@@ -99,11 +114,17 @@ UNKNOWN = Motion(SECOND.acceleration, 0.01, "x")
 @pytest.mark.parametrize(
     ("call", "words"),
     [
-        (lambda: rotd(pair(4)[0], Motion(np.ones(299), 0.01), pga, 50), "one sampling and length"),
+        (
+            lambda: rotd(pair(4)[0], Motion(np.ones(299), 0.01), pga, 50),
+            "one sampling and length",
+        ),
         (lambda: rotd(*pair(5), pga, 101), "between 0 and 100"),
         (lambda: rotd(FIRST, UPRIGHT, pga, 100), "vertical"),
         (lambda: rotd(FIRST, FIRST, pga, 100), "one and the same"),
-        (lambda: rotate_to_azimuth(FIRST, components((30, 60))[1], 0), "not at a right angle"),
+        (
+            lambda: rotate_to_azimuth(FIRST, components((30, 60))[1], 0),
+            "not at a right angle",
+        ),
         (lambda: rotate_to_azimuth(FIRST, UNKNOWN, 0), "azimuth is not known"),
     ],
 )
@@ -120,7 +141,9 @@ def own_time(start: float, count: int, dt: float) -> Motion:
 
 class TestCommonTime:
     @pytest.mark.parametrize(
-        "late", [own_time(1.3, 80, 0.01), own_time(1.304, 40, 0.02)], ids=["whole", "parts"]
+        "late",
+        [own_time(1.3, 80, 0.01), own_time(1.304, 40, 0.02)],
+        ids=["whole", "parts"],
     )
     def test_stated_starts_shift_and_parts_of_samples_are_interpolated(self, late):
         first, other = common_time([own_time(1.0, 100, 0.01), late])
@@ -143,7 +166,10 @@ class TestCommonTime:
         start = "2014-08-24T10:00:00"
         first, second = (
             Motion(
-                random.standard_normal(400), 0.005, name, {"start_time": start, "component": name}
+                random.standard_normal(400),
+                0.005,
+                name,
+                {"start_time": start, "component": name},
             )
             for name in ("NS", "EW")
         )
@@ -154,7 +180,8 @@ class TestCommonTime:
         np.testing.assert_array_equal(other.acceleration, second.acceleration[1:])
         assert (item.dt, upright.dt, upright.acceleration.size) == (0.005, 0.005, 399)
         named = [
-            replace(m, metadata={"start_time": m.metadata["start_time"]}) for m in (first, vertical)
+            replace(m, metadata={"start_time": m.metadata["start_time"]})
+            for m in (first, vertical)
         ]
         assert common_time(named, verticals=(1,))[0].dt == 0.005
         assert common_time(named)[0].dt == 0.003
@@ -167,7 +194,9 @@ class TestCommonTime:
         step = common_time([long, short])[0].provenance[-1]
         assert (step["peak_before_m_s2"], step["peak_after_m_s2"]) == (1.0, 0.17)
         assert step["left_out_at_end_s"] == pytest.approx(1.0)
-        late = Motion(np.ones(300), 0.01, "late", {"start_time": "2014-08-24T10:00:00.005"})
+        late = Motion(
+            np.ones(300), 0.01, "late", {"start_time": "2014-08-24T10:00:00.005"}
+        )
         spike = Motion(samples, 0.01, "spike", {"start_time": "2014-08-24T10:00:00"})
         step = common_time([late, spike])[1].provenance[-1]
         assert step["interpolated"]

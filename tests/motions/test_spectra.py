@@ -10,7 +10,14 @@ from scipy.signal import StateSpace, lsim
 
 from rockfrag import motions as m
 from rockfrag.errors import InputError
-from rockfrag.motions import half_sine, intensity, pga, processing, response_spectrum, sine
+from rockfrag.motions import (
+    half_sine,
+    intensity,
+    pga,
+    processing,
+    response_spectrum,
+    sine,
+)
 from rockfrag.motions.intensity import (
     HOUSNER_PERIODS,
     PREDOMINANT_PERIODS,
@@ -18,7 +25,11 @@ from rockfrag.motions.intensity import (
     pgd,
 )
 from rockfrag.motions.processing import interpolate
-from rockfrag.motions.spectra import fourier_amplitude, oscillator_response, peak_displacements
+from rockfrag.motions.spectra import (
+    fourier_amplitude,
+    oscillator_response,
+    peak_displacements,
+)
 from rockfrag.records.motion import Motion
 
 
@@ -39,7 +50,10 @@ def test_history_is_that_of_scipys_linear_system(ended, damping):
     motion, omega = ended(1), 2 * math.pi / 0.7
     u, v, total = oscillator_response(motion, 0.7, damping)
     system = StateSpace(
-        [[0, 1], [-(omega**2), -2 * damping * omega]], [[0], [-1]], np.eye(2), np.zeros((2, 1))
+        [[0, 1], [-(omega**2), -2 * damping * omega]],
+        [[0], [-1]],
+        np.eye(2),
+        np.zeros((2, 1)),
     )
     _, states, _ = lsim(system, motion.acceleration, motion.time)
     np.testing.assert_allclose(u, states[:, 0], atol=1e-10)
@@ -85,15 +99,23 @@ def test_stiff_oscillator_moves_with_the_ground_and_soft_one_stays_behind(ended)
 
 
 @settings(max_examples=25)
-@given(st.integers(0, 10_000), st.floats(0.02, 3.0), st.sampled_from([0.0, 0.05, 0.5, 1.0, 2.0]))
+@given(
+    st.integers(0, 10_000),
+    st.floats(0.02, 3.0),
+    st.sampled_from([0.0, 0.05, 0.5, 1.0, 2.0]),
+)
 @example(579, 1.0234, 0.5)  # the displacement turns twice within one step
-def test_peaks_do_not_depend_on_how_finely_the_lines_are_sampled(ended, seed, period, damping):
+def test_peaks_do_not_depend_on_how_finely_the_lines_are_sampled(
+    ended, seed, period, damping
+):
     # a last sample of zero, so that the line behind the record is the same one
     motion = ended(seed, 60)
     coarse = response_spectrum(motion, [period], damping)
     fine = response_spectrum(interpolate(motion, motion.dt / 8), [period], damping)
     for name in ("displacement", "velocity", "acceleration"):
-        assert getattr(coarse, name)[0] == pytest.approx(getattr(fine, name)[0], rel=1e-7)
+        assert getattr(coarse, name)[0] == pytest.approx(
+            getattr(fine, name)[0], rel=1e-7
+        )
 
 
 def test_fourier_amplitude_keeps_the_energy(ended):
@@ -116,7 +138,14 @@ def test_impossible_damping_is_refused(ended):
 
 
 @pytest.fixture(
-    params=["tapered noise", "noise to the end", "0.5 s sine", "jump", "quiet end", "0.005 s"]
+    params=[
+        "tapered noise",
+        "noise to the end",
+        "0.5 s sine",
+        "jump",
+        "quiet end",
+        "0.005 s",
+    ]
 )
 def motion(request, noise) -> Motion:
     """Motions whose peaks come early, late, after the end, between samples and at them."""
@@ -138,8 +167,12 @@ def test_peaks_are_those_of_each_oscillator_alone(motion, damping):
     np.testing.assert_array_equal(peak_displacements(motion, periods, damping), alone)
 
 
-def test_predominant_period_and_housner_intensity_are_those_of_the_whole_spectrum(motion):
+def test_predominant_period_and_housner_intensity_are_those_of_the_whole_spectrum(
+    motion,
+):
     spectrum = m.response_spectrum(motion, PREDOMINANT_PERIODS).pseudo_acceleration
-    assert intensity.predominant_period(motion) == PREDOMINANT_PERIODS[np.argmax(spectrum)]
+    assert (
+        intensity.predominant_period(motion) == PREDOMINANT_PERIODS[np.argmax(spectrum)]
+    )
     spectrum = m.response_spectrum(motion, HOUSNER_PERIODS, 0.05).pseudo_velocity
     assert housner_and_average(motion)[0] == np.trapezoid(spectrum, HOUSNER_PERIODS)

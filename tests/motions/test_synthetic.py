@@ -41,7 +41,9 @@ def test_seed_decides_everything(make, given):
     assert not np.array_equal(first.acceleration, other.acceleration)
     assert first.metadata["synthetic"] is True
     # what is recorded makes the same motion again
-    recorded = {key.replace("periods_s", "periods"): x for key, x in first.provenance[0].items()}
+    recorded = {
+        key.replace("periods_s", "periods"): x for key, x in first.provenance[0].items()
+    }
     del recorded["step"]
     np.testing.assert_array_equal(first.acceleration, make(**recorded).acceleration)
 
@@ -50,12 +52,12 @@ def test_ensemble_has_the_intensity_and_the_durations_of_the_model(ensemble):
     intensities = [intensity.arias(motion) for motion in ensemble]
     spread = np.std(intensities) / math.sqrt(len(ensemble))
     assert np.mean(intensities) == pytest.approx(MODEL["arias_m_s"], abs=4 * spread)
-    assert np.mean([intensity.significant_duration(x) for x in ensemble]) == pytest.approx(
-        12.0, rel=0.05
-    )
-    assert np.mean([intensity.arias_times(x, 0.45, 0.95)[0] for x in ensemble]) == pytest.approx(
-        6.0, rel=0.1
-    )
+    assert np.mean(
+        [intensity.significant_duration(x) for x in ensemble]
+    ) == pytest.approx(12.0, rel=0.05)
+    assert np.mean(
+        [intensity.arias_times(x, 0.45, 0.95)[0] for x in ensemble]
+    ) == pytest.approx(6.0, rel=0.1)
 
 
 def test_frequency_falls_as_the_model_says(ensemble):
@@ -63,7 +65,9 @@ def test_frequency_falls_as_the_model_says(ensemble):
 
     def rate(start: float, end: float) -> float:
         counts = [
-            np.count_nonzero(np.diff(np.sign(x.acceleration[int(start * 100) : int(end * 100)])))
+            np.count_nonzero(
+                np.diff(np.sign(x.acceleration[int(start * 100) : int(end * 100)]))
+            )
             for x in ensemble
         ]
         return float(np.mean(counts)) / 2 / (end - start)

@@ -41,9 +41,13 @@ class Cases:
             yield (i, j, k), self.bodies[i], self.scales[j, k] * self.accelerations[j]
 
 
-def filled(rng: np.random.Generator, low: float, high: float, count: int) -> NDArray[np.float64]:
+def filled(
+    rng: np.random.Generator, low: float, high: float, count: int
+) -> NDArray[np.float64]:
     """Draw one value from each of ``count`` equal fractions of a range, in random order."""
-    return low + (high - low) * rng.permutation((np.arange(count) + rng.random(count)) / count)
+    return low + (high - low) * rng.permutation(
+        (np.arange(count) + rng.random(count)) / count
+    )
 
 
 def motions(count: int, seed: int) -> list[NDArray[np.float64]]:
@@ -55,8 +59,14 @@ def motions(count: int, seed: int) -> list[NDArray[np.float64]]:
     rng = np.random.default_rng(seed)
     drawn = {"d5_95_s": filled(rng, 6.0, 20.0, count)}
     drawn["mid_s"] = drawn["d5_95_s"] * filled(rng, 0.4, 0.9, count)
-    ranges = {"mid_hz": (1.5, 8.0), "slope_hz_s": (-0.25, 0.0), "filter_damping": (0.1, 0.5)}
-    drawn |= {name: filled(rng, low, high, count) for name, (low, high) in ranges.items()}
+    ranges = {
+        "mid_hz": (1.5, 8.0),
+        "slope_hz_s": (-0.25, 0.0),
+        "filter_damping": (0.1, 0.5),
+    }
+    drawn |= {
+        name: filled(rng, low, high, count) for name, (low, high) in ranges.items()
+    }
     made = []
     for i in range(count):
         own = {name: float(values[i]) for name, values in drawn.items()}
@@ -83,10 +93,14 @@ def stacks(count: int, seed: int) -> list[Body]:
     rng = np.random.default_rng(seed + 2)
     wider, ratio = filled(rng, 1.05, 1.5, count), filled(rng, 0.5, 2.0, count)
     made: list[Body] = []
-    for upper, w, r in zip(blocks(count, seed), wider.tolist(), ratio.tolist(), strict=True):
+    for upper, w, r in zip(
+        blocks(count, seed), wider.tolist(), ratio.tolist(), strict=True
+    ):
         assert isinstance(upper, Block)
         base = upper.width * w
-        made.append(Stack(Block(base, base * r, DENSITY * base * base * base * r), upper))
+        made.append(
+            Stack(Block(base, base * r, DENSITY * base * base * base * r), upper)
+        )
     return made
 
 
@@ -99,7 +113,10 @@ def cases(kind: str, count: int = 10_000, seed: int = 5) -> Cases:
     n_bodies, n_motions = max(2, round(40 * side)), max(2, round(50 * side))
     n_scales = max(1, round(count / (n_bodies * n_motions)))
     rng = np.random.default_rng(seed + 3)
-    pga = np.sort(filled(rng, 0.1, 1.05, n_motions * n_scales).reshape(n_motions, n_scales), axis=1)
+    pga = np.sort(
+        filled(rng, 0.1, 1.05, n_motions * n_scales).reshape(n_motions, n_scales),
+        axis=1,
+    )
     made = blocks(n_bodies, seed) if kind == "lone" else stacks(n_bodies, seed)
     return Cases(made, motions(n_motions, seed), pga)
 
@@ -110,7 +127,9 @@ def columns(bodies: int, count: int, seed: int = 3) -> Cases:
     made = []
     for width in filled(rng, 0.3, 1.0, max(1, count // 4)):
         widths = np.linspace(1.3 * width, width, bodies)
-        heights = np.append(filled(rng, 0.3, 1.0, bodies - 1) * widths[:-1], 3.5 * width)
+        heights = np.append(
+            filled(rng, 0.3, 1.0, bodies - 1) * widths[:-1], 3.5 * width
+        )
         sizes = zip(widths.tolist(), heights.tolist(), strict=True)
         made.append(Column(tuple(Block(b, h, DENSITY * (b * b * h)) for b, h in sizes)))
     return Cases(made, motions(2, seed), np.array([[0.4, 0.8], [0.4, 0.8]]))

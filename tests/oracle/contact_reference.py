@@ -45,7 +45,9 @@ CLOSING = 1e-6
 LONGEST_TAIL = 200.0  # free motion after the last sample, over √(b/g)
 
 
-def simulate_reference(body, acceleration, dt, *, friction, vertical=None, duration=None):
+def simulate_reference(
+    body, acceleration, dt, *, friction, vertical=None, duration=None
+):
     """Rock, slide and fly bodies on each other on a shaken ground, slowly and accurately.
 
     Accelerations [m/s²] are linear between samples and zero one sample after the last.  ``friction`` is of
@@ -70,7 +72,8 @@ class Contact(NamedTuple):
     tangent: Array
     parts: float
     slips: float
-    bias: tuple[float, float]  # accelerations across and along it when all of bodies vanish [m/s²]
+    # accelerations across and along it when all of bodies vanish [m/s²]
+    bias: tuple[float, float]
 
 
 class Solution(NamedTuple):
@@ -107,7 +110,9 @@ class Model:
         self.speed = math.sqrt(GRAVITY * self.size)
         self.standing = np.array([x for b in bodies for x in (*b.centre, 0.0)])
 
-    def contact(self, q: Array, v: Array, k: int, side: int, on_face: bool | None) -> Contact:
+    def contact(
+        self, q: Array, v: Array, k: int, side: int, on_face: bool | None
+    ) -> Contact:
         """End ``side`` of interface k; ``on_face`` keeps the kind of a contact that exists."""
         at, (middle, half) = 3 * k, self.face[k]
         corner = q[at : at + 2] + turn(q[at + 2]) @ self.corner[k][side]
@@ -140,7 +145,9 @@ class Model:
     def slip(self, q: Array, k: int) -> float:
         """Displacement along the face of the corner that carries, from where it stood at first [m]."""
         side = 1 if q[3 * k + 2] >= (q[3 * k - 1] if k else 0.0) else -1
-        here, there = (self.contact(x, 0 * q, k, side, True).along for x in (q, self.standing))
+        here, there = (
+            self.contact(x, 0 * q, k, side, True).along for x in (q, self.standing)
+        )
         return here - there
 
     def solve(self, v, mode, contacts, load, rough=True):
@@ -155,7 +162,9 @@ class Model:
             friction = slides * self.friction[k] if rough else 0.0
             for side in closed:
                 c = contacts[k, side]
-                found.append(((k, side), c.normal, c.normal - friction * c.tangent, -c.bias[0]))
+                found.append(
+                    ((k, side), c.normal, c.normal - friction * c.tangent, -c.bias[0])
+                )
             if closed and not slides:
                 c = contacts[k, closed[0]]
                 found.append((k, c.tangent, c.tangent, -c.bias[1]))
@@ -164,7 +173,9 @@ class Model:
         if load is None:
             right[:n] = self.mass * v
         else:
-            right[:n] = -self.mass * np.tile([load[0], GRAVITY + load[1], 0.0], self.count)
+            right[:n] = -self.mass * np.tile(
+                [load[0], GRAVITY + load[1], 0.0], self.count
+            )
             right[n:] = [item[3] for item in found]
         matrix = np.zeros((n + m, n + m))
         matrix[:n, :n] = np.diag(self.mass)
@@ -186,10 +197,16 @@ class Model:
         for ends, move in zip(closed, moves, strict=True):
             some = [s for size in (1, 2) for s in itertools.combinations(ends, size)]
             ways = [move] if move else [0, 1, -1]
-            choices.append([OPEN, *itertools.starmap(InterfaceMode, itertools.product(some, ways))])
-        yield from sorted(itertools.product(*choices), key=lambda m: sum(len(i[0]) for i in m))
+            choices.append(
+                [OPEN, *itertools.starmap(InterfaceMode, itertools.product(some, ways))]
+            )
+        yield from sorted(
+            itertools.product(*choices), key=lambda m: sum(len(i[0]) for i in m)
+        )
 
-    def stick_margin(self, k: int, solution: Solution, closed: tuple[int, ...]) -> float:
+    def stick_margin(
+        self, k: int, solution: Solution, closed: tuple[int, ...]
+    ) -> float:
         """µ N - |T| of an interface that sticks [N], or over µ where that is more than 1."""
         limit = self.friction[k]
         pressed = sum(solution.normal[k, side] for side in closed)
@@ -227,14 +244,18 @@ class _Run(Integrator):
         return np.concatenate([v, found.rates])
 
     def approaches(self, y: Array) -> list[float]:
-        return [c.parts for end, c in self._contacts(y).items() if not self._closed(end)]
+        return [
+            c.parts for end, c in self._contacts(y).items() if not self._closed(end)
+        ]
 
     def _stands(self) -> bool:
         return all(mode == InterfaceMode(FULL, 0) for mode in self.mode)
 
     def _contacts(self, y: Array | None = None) -> dict[End, Contact]:
         q, v = np.split(self.y if y is None else y, 2)
-        return {end: self.model.contact(q, v, *end, self.kind.get(end)) for end in self.ends}
+        return {
+            end: self.model.contact(q, v, *end, self.kind.get(end)) for end in self.ends
+        }
 
     def _closed(self, end: End) -> bool:
         return end[1] in self.mode[end[0]].closed
@@ -244,7 +265,9 @@ class _Run(Integrator):
         if len(sides) == 2:
             self.q[3 * k + 2] = self.q[3 * k - 1] if k else 0.0
         if sides:
-            c = self.model.contact(self.q, self.v, k, sides[0], self.kind.get((k, sides[0])))
+            c = self.model.contact(
+                self.q, self.v, k, sides[0], self.kind.get((k, sides[0]))
+            )
             self.q.reshape(-1, 3)[k:, :2] -= c.gap * c.normal[3 * k : 3 * k + 2]
 
     def _project(self) -> None:
@@ -276,7 +299,9 @@ class _Run(Integrator):
                 values["gap", k, s] = c.gap / model.size + TOUCH
         for k, (closed, slides) in enumerate(self.mode):
             if closed and slides:
-                values["slide", k, 0] = slides * contacts[k, closed[0]].slips / model.speed + TOUCH
+                values["slide", k, 0] = (
+                    slides * contacts[k, closed[0]].slips / model.speed + TOUCH
+                )
             elif closed:
                 margin = model.stick_margin(k, found, closed)
                 values["stick", k, 0] = margin / model.weight + SLACK
@@ -309,7 +334,11 @@ class _Run(Integrator):
             end
             for end, c in self._contacts().items()
             if end not in leaving
-            and (self._closed(end) or ("gap", *end) in keys or c.gap < 1e-11 * self.model.size)
+            and (
+                self._closed(end)
+                or ("gap", *end) in keys
+                or c.gap < 1e-11 * self.model.size
+            )
         ]
         for k, sides in enumerate(self._sides(touching)):
             self._set_down(k, sides)
@@ -341,7 +370,9 @@ class _Run(Integrator):
                 solution = self.model.solve(self.v, mode, contacts, load)
             except np.linalg.LinAlgError:
                 continue
-            violations = self._violations(mode, solution, contacts, touching, units, load)
+            violations = self._violations(
+                mode, solution, contacts, touching, units, load
+            )
             scored.append((max(0.0, *violations), mode, solution))
         return min(scored, key=lambda x: max(x[0], CONSISTENT))
 
@@ -351,7 +382,10 @@ class _Run(Integrator):
             if s in mode[k].closed:
                 yield -solution.normal[k, s] / units[0]
             else:
-                yield -(float(c.normal @ solution.rates) + (c.bias[0] if load else 0.0)) / units[1]
+                yield (
+                    -(float(c.normal @ solution.rates) + (c.bias[0] if load else 0.0))
+                    / units[1]
+                )
         for k, (closed, slides) in enumerate(mode):
             if closed and not slides:
                 yield -self.model.stick_margin(k, solution, closed) / units[0]
@@ -373,7 +407,10 @@ class _Run(Integrator):
         model = self.model
         if push:
             self.v = self.v - 1e-7 * model.speed * np.tile([0.0, 1.0, 0.0], model.count)
-        scale = max(float(np.abs(self.v * np.tile([1, 1, model.size], model.count)).max()), 1e-300)
+        scale = max(
+            float(np.abs(self.v * np.tile([1, 1, model.size], model.count)).max()),
+            1e-300,
+        )
         units = (float(model.mass[::3].sum()) * scale, scale)
         modes = model.modes(self._sides(touching), [0] * model.count)
         _, mode, solution = self._choose(modes, touching, units, None)
@@ -384,7 +421,9 @@ class _Run(Integrator):
                 InterfaceMode(tuple(sorted({*m.closed, *sides})), m.slides)
                 for m, sides in zip(mode, also, strict=True)
             )
-            self.v = model.solve(self.v, mode, self._contacts(), None, rough=False).rates
+            self.v = model.solve(
+                self.v, mode, self._contacts(), None, rough=False
+            ).rates
         self._turn_to(mode)
 
     def _weak(self, t: float, touching: list[End], mode: Mode) -> list[End]:
@@ -421,6 +460,8 @@ class _Run(Integrator):
         violation, mode, _ = self._choose(others, slow, units, load)
         if exclude is not None and violation > 1e-7:
             again, _, _ = self._choose([exclude], slow, units, load)
-            violation, mode = min((violation, mode), (again, exclude), key=lambda x: x[0])
+            violation, mode = min(
+                (violation, mode), (again, exclude), key=lambda x: x[0]
+            )
         self._turn_to(mode)
         return violation < 1e-6

@@ -44,7 +44,8 @@ class Response(NamedTuple):
 
     time: Array  # [s], shape (n,)
     theta: Array  # rotations [rad], shape (n, bodies)
-    slip: Array  # displacements along each interface [m] where bodies slide, shape (n, bodies)
+    # displacements along each interface [m] where bodies slide, shape (n, bodies)
+    slip: Array
     contact_events: list[ContactEvent]
     overturned: bool
 
@@ -76,7 +77,9 @@ class Integrator:
         rows = []
         for k in range(steps + 1):
             self.start = k * self.dt
-            self.load = (self.motions[:, k : k + 2].T if k < last else np.zeros((2, 2))).tolist()
+            self.load = (
+                self.motions[:, k : k + 2].T if k < last else np.zeros((2, 2))
+            ).tolist()
             if k in (0, last):
                 self.apply(0.0, set())
             rows.append(self.row())
@@ -96,7 +99,9 @@ class Integrator:
     def ground(self, t: float) -> list[float]:
         """Horizontal and vertical acceleration of the ground [m/s²]."""
         x = t / self.dt
-        return [early + x * (late - early) for early, late in zip(*self.load, strict=True)]
+        return [
+            early + x * (late - early) for early, late in zip(*self.load, strict=True)
+        ]
 
     def note(self, t: float, kind: str, omega_before: tuple[float, ...]) -> None:
         """Keep a contact event."""
@@ -110,7 +115,9 @@ class Integrator:
             t = self._stand(t) if self.resting() else self._move(t)
             in_place = in_place + 1 if t == before else 0
             if in_place > 100 or len(self.contact_events) > MOST_CONTACT_EVENTS:
-                raise ArithmeticError(f"contact events without end at {self.start + t} s")
+                raise ArithmeticError(
+                    f"contact events without end at {self.start + t} s"
+                )
 
     def _stand(self, t: float) -> float:
         """Everything is at rest: what is watched is linear in time, so the opening is exact."""
@@ -127,7 +134,9 @@ class Integrator:
     def _happen(self, crossings: dict[Key, float]) -> float:
         """Let the earliest happen, and all that vanish with it; its time."""
         when = min(crossings.values())
-        self.apply(when, {key for key, time in crossings.items() if time <= when + 1e-13})
+        self.apply(
+            when, {key for key, time in crossings.items() if time <= when + 1e-13}
+        )
         return when
 
     def _move(self, t: float) -> float:
@@ -140,7 +149,9 @@ class Integrator:
             t0, y0 = solver.t, solver.y.copy()
             solver.step()
             if solver.status == "failed":
-                raise ArithmeticError(f"the integration failed at {self.start + solver.t} s")
+                raise ArithmeticError(
+                    f"the integration failed at {self.start + solver.t} s"
+                )
             dense = cache(solver.dense_output)
 
             def at(t: float, y0: Array = y0, ends: tuple = (t0, solver.t)) -> Array:
@@ -153,7 +164,9 @@ class Integrator:
         self.take(solver.y)
         return self.dt
 
-    def _crossings(self, at: Callable[[float], Array], t0: float, t1: float) -> dict[Key, float]:
+    def _crossings(
+        self, at: Callable[[float], Array], t0: float, t1: float
+    ) -> dict[Key, float]:
         """Zeros of what is watched, in the part of a step where there are the first ones."""
         time, values = t0, self.watched(t0, at(t0))
         for x in _places(values):
@@ -162,16 +175,23 @@ class Integrator:
                 now = self.watched(stop, at(stop))
                 failing = [key for key, value in now.items() if value < 0]
                 if failing:
-                    return {key: self._root(at, key, time, stop, values[key]) for key in failing}
+                    return {
+                        key: self._root(at, key, time, stop, values[key])
+                        for key in failing
+                    }
                 time, values = stop, now
         return {}
 
-    def _nearest(self, at: Callable[[float], Array], t0: float, t1: float) -> Iterator[float]:
+    def _nearest(
+        self, at: Callable[[float], Array], t0: float, t1: float
+    ) -> Iterator[float]:
         """Times at which a contact comes near and leaves again."""
         rates = zip(self.approaches(at(t0)), self.approaches(at(t1)), strict=True)
         for i, (early, late) in enumerate(rates):
             if early < 0 < late:
-                yield brentq(lambda t, i=i: self.approaches(at(t))[i], t0, t1, xtol=1e-15)
+                yield brentq(
+                    lambda t, i=i: self.approaches(at(t))[i], t0, t1, xtol=1e-15
+                )
 
     def _root(self, at, key, t0, t1, first):
         if first <= 0:

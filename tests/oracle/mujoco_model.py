@@ -22,7 +22,9 @@ def _box(name: str, block: Block, z: float) -> str:
     </body>"""
 
 
-def mujoco_model(body: Body | Column, timestep: float, stiff: bool, friction: float) -> object:
+def mujoco_model(
+    body: Body | Column, timestep: float, stiff: bool, friction: float
+) -> object:
     """Bodies in a vertical plane on a floor, with the same friction at every interface."""
     import mujoco
 
@@ -53,7 +55,9 @@ def mujoco_outcome(body, acceleration, dt, timestep=0.001, stiff=True, friction=
     full = mujoco.mjtState.mjSTATE_FULLPHYSICS
     blocks = body.blocks
     time = np.arange(round(len(acceleration) * dt / timestep)) * timestep
-    a = np.interp(time, np.arange(len(acceleration) + 1) * dt, np.append(acceleration, 0.0))
+    a = np.interp(
+        time, np.arange(len(acceleration) + 1) * dt, np.append(acceleration, 0.0)
+    )
     force = np.zeros((1, time.size, model.nv))
     for i, block in enumerate(blocks):
         force[0, :, 3 * i] = -block.mass * a

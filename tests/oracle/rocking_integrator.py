@@ -44,14 +44,18 @@ def simulate_reference(
     motion = np.asarray(acceleration, dtype=float)
     up = np.zeros(motion.size) if vertical is None else vertical
     model = (LinearModel if linear else Model)(body, GRAVITY, restitution)
-    return Run(model, np.array([motion, up]), dt, chatter * model.frequency).response(duration)
+    return Run(model, np.array([motion, up]), dt, chatter * model.frequency).response(
+        duration
+    )
 
 
 class Run(Integrator):
     """One response; the rotations of the bodies come before their velocities in y."""
 
     def __init__(self, model: Model, motions: Array, dt: float, chatter: float) -> None:
-        super().__init__(motions, dt, 0.05 / model.frequency, LONGEST_TAIL / model.frequency)
+        super().__init__(
+            motions, dt, 0.05 / model.frequency, LONGEST_TAIL / model.frequency
+        )
         self.model, self.chatter = model, chatter
         self.theta, self.omega = np.zeros((2, model.count))
         self.state: State = (0,) * model.count
@@ -61,7 +65,9 @@ class Run(Integrator):
         return np.concatenate([self.theta, self.omega])
 
     def take(self, y: Array) -> None:
-        self.theta, self.omega = (self._joined(self.state, part) for part in y.reshape(2, -1))
+        self.theta, self.omega = (
+            self._joined(self.state, part) for part in y.reshape(2, -1)
+        )
 
     def _joined(self, state: State, values: Array) -> Array:
         """What is stuck turns as what it stands on, to the last bit."""
@@ -85,12 +91,18 @@ class Run(Integrator):
         theta, omega = y.reshape(2, -1)
         gaps = self.state * rates(theta)
         values: dict[Key, float] = {
-            ("gap", i): float(gaps[i]) + TOUCH for i, c in enumerate(self.state) if c != 0
+            ("gap", i): float(gaps[i]) + TOUCH
+            for i, c in enumerate(self.state)
+            if c != 0
         }
-        values |= {("upright", i): math.pi / 2 - abs(x) for i, x in enumerate(theta.tolist())}
+        values |= {
+            ("upright", i): math.pi / 2 - abs(x) for i, x in enumerate(theta.tolist())
+        }
         if 0 in self.state:
             moments = self.model.margins(self.state, theta, omega, self._pull(t))
-            values |= {("press", *key): margin + SLACK for key, margin in moments.items()}
+            values |= {
+                ("press", *key): margin + SLACK for key, margin in moments.items()
+            }
         return values
 
     def approaches(self, y: Array) -> list[float]:
@@ -116,11 +128,15 @@ class Run(Integrator):
         """Let the contacts ``shut`` close, and any other that closes at the same instant."""
         old, before = self.state, self.omega
         gaps, parting = (old * rates(values) for values in (self.theta, before))
-        shut |= {i for i, c in enumerate(old) if c and gaps[i] < 1e-13 and parting[i] < 0}
+        shut |= {
+            i for i, c in enumerate(old) if c and gaps[i] < 1e-13 and parting[i] < 0
+        }
         closing = tuple(c if i in shut else 0 for i, c in enumerate(old))
         met = tuple(0 if i in shut else c for i, c in enumerate(old))
         self.theta = self._joined(met, self.theta)
-        quiet = {i for i in shut if parting[i] > -NEGLIGIBLE_SPEED * self.model.frequency}
+        quiet = {
+            i for i in shut if parting[i] > -NEGLIGIBLE_SPEED * self.model.frequency
+        }
         if quiet == shut:
             new, after = self._shut(old, quiet, old, before)
         else:
@@ -132,7 +148,9 @@ class Run(Integrator):
         self.state, self.omega = new, after
         self.note(time, "closing" if quiet else "impact", tuple(before))
 
-    def _shut(self, new: State, weak: set[int], old: State, before: Array) -> tuple[State, Array]:
+    def _shut(
+        self, new: State, weak: set[int], old: State, before: Array
+    ) -> tuple[State, Array]:
         """Close weak contacts for good; the velocities of the others follow from momentum."""
         new = tuple(0 if i in weak else c for i, c in enumerate(new))
         return new, self.model.projected(pivots(new), new, old, self.theta, before)

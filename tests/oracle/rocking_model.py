@@ -88,12 +88,17 @@ class Model:
         bodies = standing(as_system(body))
         self.g, self.count = g, len(bodies)
         self.mass, self.inertia = (np.array([b[i] for b in bodies]) for i in (0, 1))
-        self.weight = g * np.cumsum(self.mass[::-1])[::-1]  # of what stands on each contact
+        # of what stands on each contact
+        self.weight = g * np.cumsum(self.mass[::-1])[::-1]
         self.centre = np.array([complex(*b.centre) for b in bodies])
-        left, right = (self.centre + [complex(*b.corners[side]) for b in bodies] for side in (0, 1))
+        left, right = (
+            self.centre + [complex(*b.corners[side]) for b in bodies] for side in (0, 1)
+        )
         self.middle, self.half = (left + right) / 2, (right - left) / 2
         reach = max(abs(self.centre[-1] - end) for end in (left[-1], right[-1]))
-        self.frequency = np.sqrt(g * reach / (self.inertia[-1] / self.mass[-1] + reach**2))
+        self.frequency = np.sqrt(
+            g * reach / (self.inertia[-1] / self.mass[-1] + reach**2)
+        )
         # column k: the bodies that turn with contact k while all above it are full
         self._above = np.tril(np.ones((self.count, self.count)))
         # the motions that a contact state allows: one for each contact that rocks
@@ -126,7 +131,9 @@ class Model:
 
         ``pull`` is the acceleration of the ground, and gravity with its upward one [m/s²].
         """
-        return _terms(self.arms(places), self.mass, self.inertia, theta, omega, complex(*pull))
+        return _terms(
+            self.arms(places), self.mass, self.inertia, theta, omega, complex(*pull)
+        )
 
     def accelerations(
         self, state: State, theta: Array, omega: Array, pull: tuple[float, float]
@@ -139,7 +146,10 @@ class Model:
 
     def kinetic_energy(self, state: State, theta: Array, omega: Array) -> float:
         """Kinetic energy relative to the ground [J]."""
-        return np.vdot(omega, self.products(pivots(state), pivots(state), theta) @ omega) / 2
+        return (
+            np.vdot(omega, self.products(pivots(state), pivots(state), theta) @ omega)
+            / 2
+        )
 
     # ----------------------------------------------------------- persistence
 
@@ -161,7 +171,9 @@ class Model:
                 found[i, s] = float(s * moment / (self.weight[i] * abs(self.half[i])))
         return found
 
-    def options(self, state: State, closed: list[bool], closing: State) -> Iterator[State]:
+    def options(
+        self, state: State, closed: list[bool], closing: State
+    ) -> Iterator[State]:
         """List the states that the contacts allow, open before stuck, the ground first.
 
         ``closed`` says which contacts are full or just closing, ``closing`` holds the old pivot of
@@ -175,11 +187,15 @@ class Model:
             )
         )
 
-    def settled(self, state: State, theta: Array, omega: Array, pull: tuple[float, float]) -> State:
+    def settled(
+        self, state: State, theta: Array, omega: Array, pull: tuple[float, float]
+    ) -> State:
         """Open every full contact that cannot persist; several may open at once."""
 
         def weakest(candidate: State) -> float:
-            return min(self.margins(candidate, theta, omega, pull).values(), default=0.0)
+            return min(
+                self.margins(candidate, theta, omega, pull).values(), default=0.0
+            )
 
         if weakest(state) >= 0:
             return state
@@ -197,14 +213,20 @@ class Model:
 
     # ---------------------------------------------------------------- impact
 
-    def products(self, test: tuple[float, ...], places: tuple[float, ...], theta: Array) -> Array:
+    def products(
+        self, test: tuple[float, ...], places: tuple[float, ...], theta: Array
+    ) -> Array:
         """Kinetic-metric products of the fields about ``test`` with those about ``places``."""
         ours, others = self.fields(test, theta), self.fields(places, theta)
-        return (ours.conj().T @ (self.mass[:, None] * others)).real + np.diag(self.inertia)
+        return (ours.conj().T @ (self.mass[:, None] * others)).real + np.diag(
+            self.inertia
+        )
 
     def impulses(self, test, new, old, theta, after, before):
         """Generalised impulses about ``test``: momenta after less momenta before."""
-        late, early = (self.products(test, pivots(state), theta) for state in (new, old))
+        late, early = (
+            self.products(test, pivots(state), theta) for state in (new, old)
+        )
         return late @ after - early @ before
 
     def projected(self, test, new, old, theta, before, given=None):
@@ -237,7 +259,9 @@ class Model:
         moved = None
         moves = any(law.name == "position" for law in laws.values())
         if moves:
-            moved = next(self.admissible_impacts(old, closing, theta, before, moved=True), None)
+            moved = next(
+                self.admissible_impacts(old, closing, theta, before, moved=True), None
+            )
         by_law = {
             "ratio": rates(before), "couple": rates(plain[1]), "position": rates((moved or plain)[1])
         }  # fmt: skip
@@ -266,7 +290,9 @@ class Model:
         Momentum decides on the others whether they open: at one corner, at the other, or not at all.
         """
         parted = tuple(int(np.sign(given.get(i, c))) for i, c in enumerate(old))
-        closed = [i not in given and (c == 0 or closing[i] != 0) for i, c in enumerate(old)]
+        closed = [
+            i not in given and (c == 0 or closing[i] != 0) for i, c in enumerate(old)
+        ]
         speed = NEGLIGIBLE_SPEED * np.abs(before).sum()
         for new in self.options(parted, closed, closing):
             after = self.projected(pivots(new), new, old, theta, before, given)
@@ -298,7 +324,8 @@ class Model:
         slack = -NEGLIGIBLE_SPEED * np.linalg.norm(before)
         inertia = self.inertia + self.mass * np.abs(self.half) ** 2
         return all(
-            s * self.impulses(_at(places, i, s), new, old, theta, after, before)[i:].sum()
+            s
+            * self.impulses(_at(places, i, s), new, old, theta, after, before)[i:].sum()
             >= slack * inertia[i]
             for i, c in enumerate(new)
             if not c
@@ -323,7 +350,10 @@ class Model:
         for i, value in enumerate(restitution or (None,) * self.count):
             pair = value if isinstance(value, tuple | list) else (value, value)
             laws.append(
-                {s: self._law_of(i, s, float(e), name) for s, e in zip((1, -1), pair, strict=True)}
+                {
+                    s: self._law_of(i, s, float(e), name)
+                    for s, e in zip((1, -1), pair, strict=True)
+                }
                 if value is not None
                 else {}
             )
@@ -377,5 +407,7 @@ def _at(places: tuple[float, ...], contact: int, place: float) -> tuple[float, .
 def _parting(state: State, closed: list[bool], apart: Array, speed: float) -> bool:
     """Whether every contact that was closed and opens parts faster than ``speed``."""
     return all(
-        c * rate > speed for c, shut, rate in zip(state, closed, apart, strict=True) if shut and c
+        c * rate > speed
+        for c, shut, rate in zip(state, closed, apart, strict=True)
+        if shut and c
     )

@@ -45,7 +45,9 @@ def _push(r, impulse, velocity, omega, inverse):
 def _alone(w, solved, u, old, friction, new):
     """Impulse of one vertex, the others as they are: it stops, or slides on its cone."""
     for i in range(3):
-        new[i] = old[i] - (solved[i, 0] * u[0] + solved[i, 1] * u[1] + solved[i, 2] * u[2])
+        new[i] = old[i] - (
+            solved[i, 0] * u[0] + solved[i, 1] * u[1] + solved[i, 2] * u[2]
+        )
     if new[2] > 0.0 and math.hypot(new[0], new[1]) <= friction * new[2]:
         return
     for i in range(3):
@@ -56,7 +58,9 @@ def _alone(w, solved, u, old, friction, new):
             after = u[i]
             for j in range(3):
                 after += w[i, j] * (new[j] - old[j])
-            new[i] = max(0.0, new[2] - after / w[2, 2]) if i == 2 else new[i] - after / pace
+            new[i] = (
+                max(0.0, new[2] - after / w[2, 2]) if i == 2 else new[i] - after / pace
+            )
         size, limit = math.hypot(new[0], new[1]), friction * new[2]
         if size > limit:
             new[0] *= limit / size

@@ -15,7 +15,8 @@ class StandingBody(NamedTuple):
     mass: float
     inertia: float  # about the centre
     centre: np.ndarray  # of gravity in the ground's frame, shape (2,)
-    corners: np.ndarray  # left and right end of its contact from its centre, shape (2, 2)
+    # left and right end of its contact from its centre, shape (2, 2)
+    corners: np.ndarray
     edges: np.ndarray  # of its face, likewise
     base: float  # angle of the base, clockwise
     face: float  # of the face
@@ -52,17 +53,27 @@ def standing(system: System) -> list[StandingBody]:
     for body, contact in zip(system.in_plane().bodies, system.contacts, strict=True):
         own = origin + turn(angle) @ [contact.offset[0] if found else 0.0, 0.0]
         middle = np.array([(body.base.left + body.base.right) / 2, 0.0])
-        tilted = turn(contact.tilt) @ (np.array([body.centre[0], body.centre[2]]) - middle)
+        tilted = turn(contact.tilt) @ (
+            np.array([body.centre[0], body.centre[2]]) - middle
+        )
         centre = own + turn(angle) @ (middle + tilted)
         shift = contact.offset[0] if found else 0.0
         ends = max(body.base.left, low - shift), min(body.base.right, high - shift)
         corners = np.array([own + turn(angle) @ [x, 0.0] for x in ends]) - centre
         face = angle + contact.tilt
         outline = body.face or body.base
-        edges = [own + turn(face) @ [x, body.height] for x in (outline.left, outline.right)]
+        edges = [
+            own + turn(face) @ [x, body.height] for x in (outline.left, outline.right)
+        ]
         found.append(
             StandingBody(
-                body.mass, body.inertia, centre, corners, np.array(edges) - centre, angle, face
+                body.mass,
+                body.inertia,
+                centre,
+                corners,
+                np.array(edges) - centre,
+                angle,
+                face,
             )
         )
         origin, angle = own + turn(face) @ [0.0, body.height], face

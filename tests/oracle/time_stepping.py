@@ -22,7 +22,15 @@ def body_table(system: System) -> np.ndarray:
     """Mass, inertia, corners and top edges from the centre, tilt of the base and of the top, start (x, y)."""
     return np.array(
         [
-            [b.mass, b.inertia, *b.corners.ravel(), *b.edges.ravel(), b.base, b.face, *b.centre]
+            [
+                b.mass,
+                b.inertia,
+                *b.corners.ravel(),
+                *b.edges.ravel(),
+                b.base,
+                b.face,
+                *b.centre,
+            ]
             for b in standing(system)
         ]
     )
@@ -35,7 +43,10 @@ def _ends(table, q, k, first):
     found = np.empty((2, 2))
     for i in range(2):
         x, y = table[k, first + 2 * i], table[k, first + 1 + 2 * i]
-        found[i, 0], found[i, 1] = q[3 * k] + x * c + y * s, q[3 * k + 1] - x * s + y * c
+        found[i, 0], found[i, 1] = (
+            q[3 * k] + x * c + y * s,
+            q[3 * k + 1] - x * s + y * c,
+        )
     return found
 
 
@@ -57,7 +68,9 @@ def _candidates(table, q, points, axes, gaps, below):
             (corners, edges, q[3 * k + 2] + table[k, 10], -1.0),
         ):
             tx, ty = math.cos(angle), -math.sin(angle)
-            length = (segment[1, 0] - segment[0, 0]) * tx + (segment[1, 1] - segment[0, 1]) * ty
+            length = (segment[1, 0] - segment[0, 0]) * tx + (
+                segment[1, 1] - segment[0, 1]
+            ) * ty
             for i in range(2):
                 dx, dy = others[i, 0] - segment[0, 0], others[i, 1] - segment[0, 1]
                 along = dx * tx + dy * ty
@@ -77,7 +90,11 @@ def _jacobian(q, points, axes, below, count):
         for k, sign in ((below[c] - 1, -1.0), (below[c], 1.0)):
             if k >= 0:
                 rx, ry = points[c, 0] - q[3 * k], points[c, 1] - q[3 * k + 1]
-                rows[2 * c, 3 * k : 3 * k + 3] = -sign * ty, sign * tx, -sign * (ty * ry + tx * rx)
+                rows[2 * c, 3 * k : 3 * k + 3] = (
+                    -sign * ty,
+                    sign * tx,
+                    -sign * (ty * ry + tx * rx),
+                )
                 rows[2 * c + 1, 3 * k : 3 * k + 3] = (
                     sign * tx,
                     sign * ty,
@@ -107,7 +124,9 @@ def _newton(w, free, mu, press, slide, p):
             press[c] = p[2 * c] > 0.0 if was else u[2 * c] < 0.0
             if not press[c]:
                 slide[c] = 0
-            elif was and way == 0 and abs(p[2 * c + 1]) > mu[c] * p[2 * c] * (1.0 + 1e-9):
+            elif (
+                was and way == 0 and abs(p[2 * c + 1]) > mu[c] * p[2 * c] * (1.0 + 1e-9)
+            ):
                 slide[c] = 1 if p[2 * c + 1] > 0.0 else -1
             elif way * u[2 * c + 1] > 1e-12:
                 slide[c] = 0
@@ -139,7 +158,9 @@ def _relax(w, free, mu, p):
 
 
 @numba.njit(cache=True)
-def step_through(table, friction, g, horizontal, vertical, dt, substeps, tail, q, v, rows):
+def step_through(
+    table, friction, g, horizontal, vertical, dt, substeps, tail, q, v, rows
+):
     """March; fills rows (samples, 6 n) with q, v at samples.
 
     Returns the body that fell (0: none), when, and the number of rows.
@@ -170,7 +191,11 @@ def step_through(table, friction, g, horizontal, vertical, dt, substeps, tail, q
             v[::3] -= h * ah
             v[1::3] -= h * (g + av)
             jacobian = _jacobian(q, points, axes, below, count)
-            w, free, mu = (jacobian * inverse) @ jacobian.T, jacobian @ v, friction[below[:count]]
+            w, free, mu = (
+                (jacobian * inverse) @ jacobian.T,
+                jacobian @ v,
+                friction[below[:count]],
+            )
             w += 1e-9 * np.diag(np.diag(w))
             free[::2] += gaps[:count] / h
             tried = np.zeros(2 * count)
@@ -182,7 +207,11 @@ def step_through(table, friction, g, horizontal, vertical, dt, substeps, tail, q
             for k in range(n):
                 relative = q[3 * k + 2] - (q[3 * k - 1] if k else 0.0)
                 off = k > 0 and _apart(table, q, k)
-                if abs(q[3 * k + 2]) >= math.pi / 2 or abs(relative) >= math.pi / 2 or off:
+                if (
+                    abs(q[3 * k + 2]) >= math.pi / 2
+                    or abs(relative) >= math.pi / 2
+                    or off
+                ):
                     return k + 1, i * dt + (j + 1) * h, i + 1
         if i >= last and np.abs(v).max() < 1e-4:
             return 0, math.nan, i + 1
@@ -200,7 +229,9 @@ def _apart(table, q, above):
     return left > high or right < low
 
 
-def time_stepping(body, acceleration, dt, friction, *, step=2e-05, vertical=None, tail=8.0, g=9.81):
+def time_stepping(
+    body, acceleration, dt, friction, *, step=2e-05, vertical=None, tail=8.0, g=9.81
+):
     """Whether, which and when a body fell, and q, v at the samples."""
     table = body_table(as_system(body))
     n = len(table)
@@ -210,7 +241,11 @@ def time_stepping(body, acceleration, dt, friction, *, step=2e-05, vertical=None
     steps = round(tail / dt)
     rows = np.zeros((len(acceleration) + steps, 6 * n))
     values = np.ascontiguousarray(acceleration, dtype=float)
-    up = np.zeros_like(values) if vertical is None else np.ascontiguousarray(vertical, dtype=float)
+    up = (
+        np.zeros_like(values)
+        if vertical is None
+        else np.ascontiguousarray(vertical, dtype=float)
+    )
     fallen, when, count = step_through(
         table, np.array(friction, dtype=float), g, values, up, dt, max(1, math.ceil(dt / step - 1e-9)),
         steps, q, np.zeros(3 * n), rows,

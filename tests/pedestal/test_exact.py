@@ -32,7 +32,9 @@ def test_t_on_units_is_the_one_sample_t_test():
     ours = t_estimate(x)
     theirs = stats.ttest_1samp(x, 0)
     assert ours.p == pytest.approx(theirs.pvalue, rel=1e-12)
-    assert (ours.lower, ours.upper) == pytest.approx(tuple(theirs.confidence_interval(0.95)))
+    assert (ours.lower, ours.upper) == pytest.approx(
+        tuple(theirs.confidence_interval(0.95))
+    )
     # units that all jump alike are not certain beyond what the steps allow
     alike = t_estimate([0.1, 0.1, 0.1, 0.1], resolution=0.05)
     assert 0 < alike.p < 0.05 and alike.lower == pytest.approx(0.05)
@@ -68,13 +70,18 @@ def test_effect_is_mean_of_pairs_and_its_units_are_earthquakes():
 
 
 def test_leaving_an_earthquake_out_finds_the_one_that_matters(monkeypatch):
-    table = pair_tests(synthetic_tests(3, sd_earthquake=0, sd_motion=0, sd_pair=0.01)).table
+    table = pair_tests(
+        synthetic_tests(3, sd_earthquake=0, sd_motion=0, sd_pair=0.01)
+    ).table
     table = table.assign(d=table["d"] + 1.0 * (table["earthquake"] == "Friuli"))
     result = leave_one_earthquake_out(table)
     assert result.loc[result["largest_change"], "without"].tolist() == ["Friuli"]
     assert len(result) == 4
     for row in result.to_dict("records"):
-        assert row["ratio"] == mean_effect(table[table["earthquake"] != row["without"]]).ratio
+        assert (
+            row["ratio"]
+            == mean_effect(table[table["earthquake"] != row["without"]]).ratio
+        )
     monkeypatch.setattr(cluster_means, "MOST_LEFT_OUT", 3)
     assert leave_one_earthquake_out(table).empty
 
@@ -101,17 +108,25 @@ def test_what_levels_share_does_not_blur_their_order():
     assert moved["p_largest"].tolist() == same["p_largest"].tolist()
 
 
-@pytest.mark.parametrize(("ours", "name"), [(holm, "holm"), (benjamini_hochberg, "fdr_bh")])
-def test_adjusted_p_values_are_those_of_statsmodels_and_unknown_ones_do_not_count(ours, name):
+@pytest.mark.parametrize(
+    ("ours", "name"), [(holm, "holm"), (benjamini_hochberg, "fdr_bh")]
+)
+def test_adjusted_p_values_are_those_of_statsmodels_and_unknown_ones_do_not_count(
+    ours, name
+):
     p = np.array([0.01, 0.04, 0.039, 0.2, 0.6])
     theirs = multipletests(p, method=name)[1]
-    assert ours([*p, math.nan]) == pytest.approx([*theirs, math.nan], abs=1e-15, nan_ok=True)
+    assert ours([*p, math.nan]) == pytest.approx(
+        [*theirs, math.nan], abs=1e-15, nan_ok=True
+    )
     with pytest.raises(ValueError, match="outside 0 to 1"):
         ours([0.2, 1.2])
 
 
 @pytest.mark.parametrize(("pairs_an_earthquake", "percent"), [(9, 10.0), (3, 17.9)])
-def test_four_earthquakes_show_what_the_documentation_says(pairs_an_earthquake, percent):
+def test_four_earthquakes_show_what_the_documentation_says(
+    pairs_an_earthquake, percent
+):
     """0.134 per pair and no other scatter: the test is t over four means, not over 36 pairs."""
     sd = 0.134 / math.sqrt(pairs_an_earthquake)
     effect = Estimate(0.0, sd / 2, 4, -1.0, 1.0, 1.0)
@@ -120,7 +135,9 @@ def test_four_earthquakes_show_what_the_documentation_says(pairs_an_earthquake, 
 
 def test_degenerate_units_have_a_stated_result():
     same, alone = t_estimate([0.0, 0.0, 0.0]), t_estimate([0.2])
-    assert np.isnan([same.p, same.lower, same.upper, alone.p, detectable_ratio(same)]).all()
+    assert np.isnan(
+        [same.p, same.lower, same.upper, alone.p, detectable_ratio(same)]
+    ).all()
     assert detectable_ratio(alone) == math.inf
 
 

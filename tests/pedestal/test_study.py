@@ -33,8 +33,14 @@ def test_an_arrangement_is_paired_with_the_one_that_it_names():
     alone = synthetic_tests().query("pedestal == 'NP' and object == 'T1'")
     alone = alone.drop(columns=["lower_g", "upper_g"])
     tests = pd.concat(
-        alone.assign(configuration=name, pedestal=side, amplitude_g=f * alone["amplitude_g"])
-        for name, side, f in (("alone", "NP", 1.0), ("plinth", "P", 2.0), ("base", "P", 6.0))
+        alone.assign(
+            configuration=name, pedestal=side, amplitude_g=f * alone["amplitude_g"]
+        )
+        for name, side, f in (
+            ("alone", "NP", 1.0),
+            ("plinth", "P", 2.0),
+            ("base", "P", 6.0),
+        )
     )
     named, origin = with_counterparts(tests, {"base": "plinth"})
     assert origin == {"base against plinth": "T1"}
@@ -61,7 +67,9 @@ def test_repetitions_are_averaged_in_the_logarithm():
     tests = synthetic_tests()
     again = tests.iloc[[0]].assign(repetition=2)
     again[["amplitude_g", "lower_g", "upper_g"]] *= 1.21
-    both, alone = (pair_tests(some).table["a_np_g"] for some in (pd.concat([tests, again]), tests))
+    both, alone = (
+        pair_tests(some).table["a_np_g"] for some in (pd.concat([tests, again]), tests)
+    )
     assert (both / alone).max() == pytest.approx(1.1)
     assert np.count_nonzero(both != alone) == 1
 
@@ -81,10 +89,14 @@ def test_missing_partner_is_left_out_and_named():
         (0, ["right", 2.0, np.nan, np.nan], "at most", (-np.inf, "d")),
     ],
 )
-def test_pair_with_one_unfinished_side_is_counted_at_its_bound(side, outcome, bound, limits):
+def test_pair_with_one_unfinished_side_is_counted_at_its_bound(
+    side, outcome, bound, limits
+):
     """The test that never overturned, or did at its first step, may be the largest effect of all."""
     tests = synthetic_tests()
-    place = tests.index[(tests["object"] == "T2") & (tests["motion"] == "Northridge-F5")]
+    place = tests.index[
+        (tests["object"] == "T2") & (tests["motion"] == "Northridge-F5")
+    ]
     tests.loc[place[side], ["censored", "lower_g", "upper_g", "amplitude_g"]] = outcome
     study = study_pedestal(tests, seed=1)
     pairs = study.pairs.table
@@ -109,7 +121,9 @@ def test_pairs_of_two_unfinished_tests_are_left_out_and_named():
     tests.loc[both, "censored"] = "right"
     pairs = pair_tests(tests)
     assert len(pairs.table) == 35
-    assert any("both tests are unfinished (T2/Northridge-F5)" in note for note in pairs.notes())
+    assert any(
+        "both tests are unfinished (T2/Northridge-F5)" in note for note in pairs.notes()
+    )
     study = study_pedestal(tests.assign(censored="right"), seed=1)
     assert study.effects.empty and "ratio" in study.effects
     assert "no pair has a known ratio" in study.notes[-1]
@@ -117,13 +131,18 @@ def test_pairs_of_two_unfinished_tests_are_left_out_and_named():
 
 def cell(column, value):
     """Exchange one cell of a table."""
-    return lambda t: t.assign(**{column: t[column].astype(object).where(t.index != 5, value)})
+    return lambda t: t.assign(
+        **{column: t[column].astype(object).where(t.index != 5, value)}
+    )
 
 
 @pytest.mark.parametrize(
     ("change", "words"),
     [
-        *((cell("amplitude_g", a), f"amplitude_g is {a}") for a in (np.nan, 0.0, -0.2, np.inf)),
+        *(
+            (cell("amplitude_g", a), f"amplitude_g is {a}")
+            for a in (np.nan, 0.0, -0.2, np.inf)
+        ),
         (cell("amplitude_g", "a lot"), "amplitude_g is 'a lot', not a number of g"),
         (cell("pedestal", "yes"), "pedestal is 'yes'"),
         (cell("censored", "up"), "censored is 'up'"),
@@ -131,7 +150,10 @@ def cell(column, value):
         (cell("object", "T9"), "slenderness of object T9"),
         (cell("lower_g", 9.0), "exceeds upper_g"),
         (lambda t: pd.concat([t, t.iloc[[3]]]), "row 73: the same test as row 4"),
-        (lambda t: t.assign(definition=["first", *["step"] * 71]), "several definitions"),
+        (
+            lambda t: t.assign(definition=["first", *["step"] * 71]),
+            "several definitions",
+        ),
         (lambda t: t[t["pedestal"] == "P"], "with and without pedestal"),
         (lambda t: t.drop(columns="floor"), "floor missing"),
         (lambda t: t.iloc[:0], "no rows"),
@@ -191,10 +213,16 @@ def test_every_scope_is_there_with_its_power():
     study = study_pedestal(synthetic_tests(), slenderness=SLENDERNESS, seed=1)
     counts = study.effects["scope"].value_counts().to_dict()
     assert counts == {"whole": 1, "floor": 3, "earthquake": 4, "object": 3, "cell": 9}
-    assert study.effects["ratio"].between(study.effects["lower"], study.effects["upper"]).all()
+    assert (
+        study.effects["ratio"]
+        .between(study.effects["lower"], study.effects["upper"])
+        .all()
+    )
     assert (study.effects["p_holm"] >= study.effects["p"]).all()
     assert (study.effects["detectable_ratio"] > 1).all()
-    assert (study.effects.loc[study.effects["scope"] == "cell", "smallest_p"] == 0.125).all()
+    assert (
+        study.effects.loc[study.effects["scope"] == "cell", "smallest_p"] == 0.125
+    ).all()
     assert np.ptp(study.whole["estimate"]) == 0
     assert not study.whole["remark"].str.contains("width of the steps").any()
     assert "4 are a sample" in study.notes[0] and "0.125" in study.notes[0]

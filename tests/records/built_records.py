@@ -17,7 +17,8 @@ from obspy.core.inventory.response import InstrumentSensitivity, ResponseStage
 
 from ..case_tables import case_tables
 
-N = 43  # samples of a built record: no multiple of any row length, so that last rows are short
+# samples of a built record: no multiple of any row length, so that last rows are short
+N = 43
 
 Samples = NDArray[np.float64]
 RECORDS: dict[str, Any] = case_tables(__file__)
@@ -55,7 +56,10 @@ def build(kind: str, folder: Path) -> Built:
     else:
         times = np.arange(N) * dt
         waves = waves_of(**about["waves"])
-        samples = about.get("factor", 1.0) * waves[: len(about["read"].get("components", [""]))]
+        samples = (
+            about.get("factor", 1.0)
+            * waves[: len(about["read"].get("components", [""]))]
+        )
     text = written(kind, times=times, waves=waves, peak=f"{np.abs(waves).max():.5f}")
     path = folder / about["file"]
     encoding = about.get("encoding", "utf-8")
@@ -63,7 +67,9 @@ def build(kind: str, folder: Path) -> Built:
     return Built(path, samples, **about["read"])
 
 
-def wave(seed: int, scale: float = 0.3, form: str = ".5f", shift: float = 0.0) -> Samples:
+def wave(
+    seed: int, scale: float = 0.3, form: str = ".5f", shift: float = 0.0
+) -> Samples:
     """Return samples that fields of a form hold exactly."""
     noise = np.random.default_rng(seed).normal(size=N)
     values = scale * (np.sin(np.arange(N) * 0.2) + 0.3 * noise) + shift
@@ -111,12 +117,18 @@ def _field(value: float, form: str, kind: str, digits: str) -> str:
         return f"{sign}.{whole.replace('.', '')}E{power:+03d}"
     mantissa, exponent = f"{value:.{digits}E}".split("E")
     # an exponent of one digit, so that -2.2223E-1 fills ten columns
-    return f"{mantissa}E{int(exponent):+d}" if form.endswith("E1") else f"{mantissa}E{exponent}"
+    return (
+        f"{mantissa}E{int(exponent):+d}"
+        if form.endswith("E1")
+        else f"{mantissa}E{exponent}"
+    )
 
 
 def lines(form: str, *columns: Samples) -> str:
     """Columns side by side, an instant a line."""
-    return "\n".join(form.format(*row) for row in zip(*(c.tolist() for c in columns), strict=True))
+    return "\n".join(
+        form.format(*row) for row in zip(*(c.tolist() for c in columns), strict=True)
+    )
 
 
 def numbers(
@@ -130,15 +142,25 @@ def numbers(
 
 
 _TEMPLATES = Environment(
-    loader=DictLoader({**PARTS, **{kind: about["text"] for kind, about in RECORDS.items()}}),
+    loader=DictLoader(
+        {**PARTS, **{kind: about["text"] for kind, about in RECORDS.items()}}
+    ),
     trim_blocks=True,
     lstrip_blocks=True,
     keep_trailing_newline=True,
 )
-_TEMPLATES.globals |= {"N": N, "rows": rows, "lines": lines, "numbers": numbers, "zip": zip}
+_TEMPLATES.globals |= {
+    "N": N,
+    "rows": rows,
+    "lines": lines,
+    "numbers": numbers,
+    "zip": zip,
+}
 
 
-def pack(path: Path, members: Mapping[str, bytes], packing: int = zipfile.ZIP_STORED) -> Path:
+def pack(
+    path: Path, members: Mapping[str, bytes], packing: int = zipfile.ZIP_STORED
+) -> Path:
     """Pack files into a zip archive."""
     with zipfile.ZipFile(path, "w", packing) as archive:
         for name, content in members.items():
@@ -173,9 +195,15 @@ def peer_download(folder: Path, count: int) -> Path:
         # every fourth record has no vertical component
         for number, component in enumerate(("000", "090", "-UP")[: 3 if i % 4 else 2]):
             for ending, words in kinds.items():
-                about = {"station": i, "component": component.strip("-"), "words": words}
+                about = {
+                    "station": i,
+                    "component": component.strip("-"),
+                    "words": words,
+                }
                 text = written("peer_file", **about, wave=wave(100 * i + number))
-                (folder / f"RSN{700 + i}_LOMAP_S{i:02d}{component}.{ending}").write_text(text)
+                (
+                    folder / f"RSN{700 + i}_LOMAP_S{i:02d}{component}.{ending}"
+                ).write_text(text)
     return folder
 
 

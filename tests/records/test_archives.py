@@ -17,7 +17,9 @@ from rockfrag.records.sources import archive as archives
 from .built_records import build, pack, pack_tar
 
 
-@pytest.mark.parametrize("packer", [(pack, "a.zip"), (pack_tar, "a.tar"), (pack_tar, "a.tar.gz")])
+@pytest.mark.parametrize(
+    "packer", [(pack, "a.zip"), (pack_tar, "a.tar"), (pack_tar, "a.tar.gz")]
+)
 def test_a_member_keeps_the_unit_of_its_file(tmp_path, packer):
     """The unit of a CSMIP file is cm/s²: taken for g it would be 981 times as much."""
     built = build("csmip_v2", tmp_path)
@@ -32,7 +34,9 @@ def test_a_member_keeps_the_unit_of_its_file(tmp_path, packer):
 def test_members_are_named_and_chosen_by_name_channel_or_number(tmp_path):
     first, second = build("csmip_v2", tmp_path), build("at2_peer", tmp_path)
     contents = {f"data/{b.path.name}": b.path.read_bytes() for b in (first, second)}
-    path = pack(tmp_path / "two.zip", {**contents, "README.txt": b"words", "x.xml": b"<?xml?>"})
+    path = pack(
+        tmp_path / "two.zip", {**contents, "README.txt": b"words", "x.xml": b"<?xml?>"}
+    )
     with pytest.raises(
         InputError, match=r"1: data/csmip\.V2 90; 2: data/csmip\.V2 UP; 3: data/peer"
     ):
@@ -81,7 +85,11 @@ def test_a_broken_member_is_named_and_does_not_hide_the_others(tmp_path):
 
 def test_an_archive_of_velocities_is_no_record(tmp_path):
     built = build("at2_peer", tmp_path)
-    text = built.path.read_text().replace("ACCELERATION", "VELOCITY").replace("OF G", "OF CM/S")
+    text = (
+        built.path.read_text()
+        .replace("ACCELERATION", "VELOCITY")
+        .replace("OF G", "OF CM/S")
+    )
     path = pack(tmp_path / "v.zip", {"a.VT2": text})
     with pytest.raises(NotAcceleration, match="velocity"):
         read_record(path)
@@ -106,7 +114,9 @@ def test_what_unpacks_to_too_much_is_refused(tmp_path, monkeypatch):
 
 
 def test_workbooks_locks_and_damage_are_told(tmp_path):
-    book = pack(tmp_path / "book.xlsx", {"[Content_Types].xml": b"", "xl/workbook.xml": b""})
+    book = pack(
+        tmp_path / "book.xlsx", {"[Content_Types].xml": b"", "xl/workbook.xml": b""}
+    )
     with pytest.raises(InputError, match="an Excel workbook"):
         read_record(book)
     damaged = pack(tmp_path / "damaged.zip", {"a.AT2": b"x" * 100})
@@ -138,5 +148,7 @@ def test_miniseed_of_more_samples_than_memory_holds_is_refused(tmp_path, monkeyp
     Stream([trace]).write(str(path), format="MSEED", encoding="STEIM2")
     assert path.stat().st_size < 100_000
     monkeypatch.setattr(obspy_native, "MOST_SAMPLES", 99_999)
-    with pytest.raises(InputError, match="100,000 samples are more than the 99,999 of a record"):
+    with pytest.raises(
+        InputError, match="100,000 samples are more than the 99,999 of a record"
+    ):
         read_record(path)

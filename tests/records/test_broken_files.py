@@ -97,7 +97,9 @@ def test_a_blank_line_anywhere_is_skipped_or_an_error(built, tmp_path, data):
     path.write_bytes(b"".join(lines))
     samples = outcome(path, built.dt_to_give)
     if samples is not None:
-        for left, right in zip(samples, read_all(built.path, built.dt_to_give), strict=True):
+        for left, right in zip(
+            samples, read_all(built.path, built.dt_to_give), strict=True
+        ):
             np.testing.assert_array_equal(left, right)
 
 
@@ -124,7 +126,9 @@ def test_a_value_that_is_no_finite_number_is_named_with_its_line(built, tmp_path
     path = tmp_path / built.path.name
     path.write_bytes(b"".join(lines))
     with pytest.raises(InputError, match=rf"line {number + 1}\b") as caught:
-        read_motion(path, unit=None if built.unit else "g", channel="1", dt=built.dt_to_give)
+        read_motion(
+            path, unit=None if built.unit else "g", channel="1", dt=built.dt_to_give
+        )
     assert path.name in str(caught.value)
     with pytest.raises(InputError, match=rf"line {number + 1}\b"):
         obspy.read(path, format=built.format, dt=built.dt_to_give)
@@ -157,8 +161,12 @@ def test_what_there_is_is_read_on_request_and_the_provenance_says_so(tmp_path, k
     assert 10 < size < whole.size
     factor = motion.provenance[0]["factor_to_m_s2"]
     tolerance = 2 * built.tolerance * factor + 1e-12
-    np.testing.assert_allclose(motion.acceleration, whole[:size] * factor, atol=tolerance)
-    (step,) = [s for s in motion.provenance if s["step"] == "read a file that is cut short"]
+    np.testing.assert_allclose(
+        motion.acceleration, whole[:size] * factor, atol=tolerance
+    )
+    (step,) = [
+        s for s in motion.provenance if s["step"] == "read a file that is cut short"
+    ]
     assert step["samples_read"] == size
 
 
@@ -168,7 +176,9 @@ def test_a_k_net_file_is_held_to_its_duration(tmp_path):
     assert read_motion(path).acceleration.size == 400
     lines = path.read_text().splitlines(keepends=True)
     path.write_text("".join(lines[:-10]))
-    with pytest.raises(InputError, match=r"promises 400 samples \(4 s\) but 320 follow"):
+    with pytest.raises(
+        InputError, match=r"promises 400 samples \(4 s\) but 320 follow"
+    ):
         read_motion(path)
     motion = read_motion(path, cut_short=True)
     assert motion.acceleration.size == 320
@@ -190,19 +200,25 @@ def test_a_script_cut_after_its_values_does_not_lose_its_factor(tmp_path, end):
 
 def test_a_taiwanese_file_is_held_to_its_length(tmp_path):
     path = build("cwa", tmp_path).path
-    text = path.read_text().replace("#RecordLength(sec): 1\n", "#RecordLength(sec): 0.86\n")
+    text = path.read_text().replace(
+        "#RecordLength(sec): 1\n", "#RecordLength(sec): 0.86\n"
+    )
     lines = text.splitlines(keepends=True)
     path.write_text(text)
     assert read_record(path).channels[0].npts == 43
     path.write_text("".join(lines[:-9]))
-    with pytest.raises(InputError, match=r"promises 0\.86 s of record but 0\.68 s follow"):
+    with pytest.raises(
+        InputError, match=r"promises 0\.86 s of record but 0\.68 s follow"
+    ):
         read_record(path)
     assert read_record(path, cut_short=True).channels[0].npts == 34
 
 
 def test_miniseed_that_ends_within_a_record_is_refused(tmp_path):
     path = tmp_path / "a.mseed"
-    trace = Trace(np.arange(4000, dtype=np.int32) % 977, {"station": "A", "channel": "HNE"})
+    trace = Trace(
+        np.arange(4000, dtype=np.int32) % 977, {"station": "A", "channel": "HNE"}
+    )
     Stream([trace]).write(str(path), format="MSEED", reclen=512)
     path.write_bytes(path.read_bytes()[:-100])
     with pytest.raises(InputError, match="no whole number of MiniSEED records"):
@@ -214,7 +230,11 @@ def test_empty_folder_and_dangling_link_say_what_they_are(tmp_path):
     empty.touch()
     link = tmp_path / "link.AT2"
     link.symlink_to(tmp_path / "nothing")
-    for path, words in ((empty, "empty"), (tmp_path, "folder"), (link, "leads to nothing")):
+    for path, words in (
+        (empty, "empty"),
+        (tmp_path, "folder"),
+        (link, "leads to nothing"),
+    ):
         with pytest.raises(InputError, match=words):
             read_motion(path)
         assert not any(candidate.is_format(path) for candidate in FORMATS)
@@ -229,7 +249,9 @@ def test_an_endless_line_of_digits_is_not_slurped(tmp_path, header):
     path.write_text(header + "1" * (64 * 2**20))
     tracemalloc.start()
     with at_once():
-        with pytest.raises(InputError, match=r"digits\.txt, line \d+: the line is longer"):
+        with pytest.raises(
+            InputError, match=r"digits\.txt, line \d+: the line is longer"
+        ):
             read_motion(path, unit="g")
         for candidate in FORMATS:
             candidate.is_format(str(path))
@@ -270,7 +292,10 @@ def test_a_file_without_permission_gives_the_error(tmp_path):
 def test_an_interval_that_no_recorder_has_is_refused_at_once(tmp_path, dt):
     path = tmp_path / "dt.AT2"
     path.write_text(AT2_HEADER.format(dt=dt) + " 1.0 2.0 3.0\n")
-    with at_once(), pytest.raises(InputError, match=r"dt\.AT2, line 4: .*sampling interval"):
+    with (
+        at_once(),
+        pytest.raises(InputError, match=r"dt\.AT2, line 4: .*sampling interval"),
+    ):
         read_motion(path)
 
 

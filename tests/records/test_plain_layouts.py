@@ -15,7 +15,9 @@ from .built_records import lines
 
 CASES = case_tables(__file__)
 N = 400
-WAVE = 0.3 * np.convolve(np.random.default_rng(0).normal(size=N + 5), np.ones(6) / 6, "valid")
+WAVE = 0.3 * np.convolve(
+    np.random.default_rng(0).normal(size=N + 5), np.ones(6) / 6, "valid"
+)
 
 
 @pytest.fixture
@@ -40,7 +42,9 @@ def timed(dt=0.005, separator=","):
 
 def in_rows(width, separator=" ", form="{:.6e}"):
     words = [form.format(value) for value in WAVE]
-    return "".join(separator.join(words[i : i + width]) + "\n" for i in range(0, N, width))
+    return "".join(
+        separator.join(words[i : i + width]) + "\n" for i in range(0, N, width)
+    )
 
 
 def bodies():
@@ -56,7 +60,8 @@ def bodies():
         "mixed": in_rows(1, form="{:.4g}"),
         "numbered": numbered,
         "numbered_commas": numbered.replace(" ", ","),
-        "numbered_rows": lines("{},{:.2f},{:.6f}", counted, counted * 0.01, WAVE) + "\n",
+        "numbered_rows": lines("{},{:.2f},{:.6f}", counted, counted * 0.01, WAVE)
+        + "\n",
         # steps of 0.00244 s printed to milliseconds: three columns, and no series of rows
         "uneven": lines("{:.3f} {:.5f} {:.5f}", counted * 0.00244, WAVE, WAVE) + "\n",
         "noise_3": beside(*noise),
@@ -97,7 +102,9 @@ def test_another_quantity_is_refused_whatever_the_unit(write, text):
 
 
 @pytest.mark.parametrize(("text", "unit", "given", "dt"), CASES["read"])
-def test_what_stands_above_the_samples_is_never_one_of_them(write, text, unit, given, dt):
+def test_what_stands_above_the_samples_is_never_one_of_them(
+    write, text, unit, given, dt
+):
     motion = read_motion(write(text), unit=unit, dt=given)
     assert motion.dt == pytest.approx(dt, rel=1e-12)
     factor = TO_SI[unit or "g"]
@@ -140,7 +147,9 @@ def test_the_unit_of_a_peak_is_not_that_of_the_samples(write):
 
 def test_per_cent_of_g_is_no_g(write):
     path = write("Time (s),Acc (%g)\n{timed}")
-    assert read_motion(path).pga == pytest.approx(np.abs(WAVE).max() * GRAVITY / 100, rel=1e-4)
+    assert read_motion(path).pga == pytest.approx(
+        np.abs(WAVE).max() * GRAVITY / 100, rel=1e-4
+    )
 
 
 def test_a_vertical_beside_directions_is_no_velocity(write):
@@ -165,10 +174,14 @@ def test_greek_network(write, header):
     np.testing.assert_allclose(record.channels[2].samples, 0.5 * WAVE, atol=1e-6)
 
 
-@pytest.mark.parametrize("header", ["% dt = 0.005 s\n% unit: m/s2\n", "% m/s^2, dt 0.005\n"])
+@pytest.mark.parametrize(
+    "header", ["% dt = 0.005 s\n% unit: m/s2\n", "% m/s^2, dt 0.005\n"]
+)
 def test_two_components_below_comments(write, header):
     path = write(header + beside(WAVE, WAVE[::-1]))
-    assert read_motion(path, channel="2").acceleration == pytest.approx(WAVE[::-1], abs=1e-6)
+    assert read_motion(path, channel="2").acceleration == pytest.approx(
+        WAVE[::-1], abs=1e-6
+    )
     assert read_record(path, 0.005).channels[0].unit == "m/s2"
 
 
@@ -181,10 +194,16 @@ def test_components_without_titles_are_not_one_series(write):
 
 def test_seismic_handler_is_read_by_obspy(write):
     path = write("")
-    Stream([Trace(WAVE, {"delta": 0.05, "station": "TEST"})]).write(str(path), format="SH_ASC")
+    Stream([Trace(WAVE, {"delta": 0.05, "station": "TEST"})]).write(
+        str(path), format="SH_ASC"
+    )
     assert path.read_text().startswith("DELTA:")
     record = read_record(path)
-    assert (record.format, record.channels[0].dt, record.channels[0].npts) == ("SH_ASC", 0.05, N)
+    assert (record.format, record.channels[0].dt, record.channels[0].npts) == (
+        "SH_ASC",
+        0.05,
+        N,
+    )
 
 
 def test_a_peak_above_3_g_by_the_users_unit_is_refused_unless_forced(write):

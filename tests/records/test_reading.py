@@ -21,7 +21,9 @@ from .built_records import CMB, build, inventory_of_cmb
 
 
 def two_columns(path, times, values):
-    np.savetxt(path, np.column_stack([times, values]), fmt=["%.10g", "%.17g"], delimiter="\t")
+    np.savetxt(
+        path, np.column_stack([times, values]), fmt=["%.10g", "%.17g"], delimiter="\t"
+    )
     return path
 
 
@@ -56,15 +58,33 @@ def test_a_wish_that_contradicts_the_file_is_refused(tmp_path, kind, wish, words
 
 
 def test_spellings_of_one_unit():
-    known = ("CM/SEC/SEC", "cm/s^2", "cm/sec2", "cm/s/s", "gal", "Gals", "cm/s**2", "(cm/s2)")
+    known = (
+        "CM/SEC/SEC",
+        "cm/s^2",
+        "cm/sec2",
+        "cm/s/s",
+        "gal",
+        "Gals",
+        "cm/s**2",
+        "(cm/s2)",
+    )
     assert set(map(canonical_unit, known)) == {"cm/s2"}
 
 
 def test_several_channels_are_listed_and_chosen_by_name_orientation_or_number(tmp_path):
     built = build("geonet_v1a", tmp_path)
-    for wanted, number in (("N10E", 0), ("010", 0), ("10 deg", 0), ("280", 1), ("up", 2), ("2", 1)):
+    for wanted, number in (
+        ("N10E", 0),
+        ("010", 0),
+        ("10 deg", 0),
+        ("280", 1),
+        ("up", 2),
+        ("2", 1),
+    ):
         motion = read_motion(built.path, channel=wanted)
-        np.testing.assert_allclose(motion.acceleration, built.samples[number] / 1000, atol=1e-9)
+        np.testing.assert_allclose(
+            motion.acceleration, built.samples[number] / 1000, atol=1e-9
+        )
         assert motion.metadata["component"] == built.components[number]
 
 
@@ -72,8 +92,12 @@ def test_a_time_column_that_does_not_step_evenly_is_refused_with_its_line(tmp_pa
     times = np.arange(40) * 0.01
     moved = times + 0.004 * (np.arange(40) == 17)
     for wrong, line in ((moved, 18), (np.delete(times, 20), 21)):
-        with pytest.raises(InputError, match=f"line {line}: times are not equally spaced"):
-            read_motion(two_columns(tmp_path / "jump.txt", wrong, np.sin(wrong)), unit="g")
+        with pytest.raises(
+            InputError, match=f"line {line}: times are not equally spaced"
+        ):
+            read_motion(
+                two_columns(tmp_path / "jump.txt", wrong, np.sin(wrong)), unit="g"
+            )
 
 
 def test_a_step_that_looks_rounded_is_reported_and_can_be_replaced(tmp_path):
@@ -91,7 +115,9 @@ def test_a_step_that_looks_rounded_is_reported_and_can_be_replaced(tmp_path):
 INTERVALS = (0.02, 0.01, 0.005, 0.004, 0.0025, 0.00244, 1 / 256, 1 / 300, 0.001)
 
 
-@pytest.mark.parametrize(("dt", "form"), [*((dt, ".6f") for dt in INTERVALS), (0.00125, ".6g")])
+@pytest.mark.parametrize(
+    ("dt", "form"), [*((dt, ".6f") for dt in INTERVALS), (0.00125, ".6g")]
+)
 def test_rounded_print_of_times_gives_the_exact_interval(tmp_path, dt, form):
     times = np.arange(20_000 if form == ".6g" else 4000) * dt
     path = tmp_path / "t.txt"
@@ -100,7 +126,9 @@ def test_rounded_print_of_times_gives_the_exact_interval(tmp_path, dt, form):
 
 
 def sac(path, values, **header):
-    trace = Trace(np.asarray(values, dtype=np.float32), {"delta": 0.01, "station": "ABC"})
+    trace = Trace(
+        np.asarray(values, dtype=np.float32), {"delta": 0.01, "station": "ABC"}
+    )
     trace.stats.channel = "HNE"
     trace.stats.starttime = UTCDateTime(2019, 7, 6)
     trace.stats.sac = header
@@ -117,14 +145,22 @@ def test_the_zero_level_of_a_raw_recorder_is_removed_and_noted(tmp_path):
     assert motion.acceleration.mean() == pytest.approx(0, abs=1e-12)
     step = motion.provenance[-1]
     assert step["step"] == "remove zero level"
-    assert step["offset_m_s2"] == pytest.approx(np.float32(values).mean() * 9.81, rel=1e-6)
+    assert step["offset_m_s2"] == pytest.approx(
+        np.float32(values).mean() * 9.81, rel=1e-6
+    )
 
 
-def test_gravity_in_a_plain_file_is_removed_and_noted_but_a_small_mean_is_kept(tmp_path):
+def test_gravity_in_a_plain_file_is_removed_and_noted_but_a_small_mean_is_kept(
+    tmp_path,
+):
     wave = 0.1 * np.sin(np.arange(400) * 0.1)
     times = np.arange(400) * 0.01
-    vertical = read_motion(two_columns(tmp_path / "z.txt", times, 1.003 + wave), unit="g")
-    assert vertical.provenance[-1]["offset_m_s2"] == pytest.approx(9.81 * (1.003 + wave.mean()))
+    vertical = read_motion(
+        two_columns(tmp_path / "z.txt", times, 1.003 + wave), unit="g"
+    )
+    assert vertical.provenance[-1]["offset_m_s2"] == pytest.approx(
+        9.81 * (1.003 + wave.mean())
+    )
     kept = read_motion(two_columns(tmp_path / "x.txt", times, 0.2 + wave), unit="g")
     np.testing.assert_allclose(kept.acceleration, 9.81 * (0.2 + wave), rtol=1e-14)
     assert len(kept.provenance) == 1
@@ -138,7 +174,9 @@ def test_a_sac_file_of_another_quantity_is_refused(tmp_path, idep, held):
 
 def test_miniseed_without_a_response_asks_for_the_unit(tmp_path):
     path = tmp_path / "counts.mseed"
-    trace = Trace(np.arange(100, dtype=np.int32) % 7, {"station": "CMB", "channel": "HNE"})
+    trace = Trace(
+        np.arange(100, dtype=np.int32) % 7, {"station": "CMB", "channel": "HNE"}
+    )
     Stream([trace]).write(str(path), format="MSEED")
     with pytest.raises(InputError, match="does not state its unit"):
         read_motion(path)
@@ -150,7 +188,9 @@ def test_miniseed_with_stationxml_is_acceleration(tmp_path):
     """A flat response of S counts per m/s² is a division by S."""
     sensitivity = 4.0e5
     counts = np.round(2e5 * np.sin(np.arange(2000) * 0.05)).astype(np.int32) + 12345
-    Stream([Trace(counts, {**CMB, "channel": "HNE"})]).write(str(tmp_path / "a.mseed"), "MSEED")
+    Stream([Trace(counts, {**CMB, "channel": "HNE"})]).write(
+        str(tmp_path / "a.mseed"), "MSEED"
+    )
     stage = PolesZerosResponseStage(
         1, sensitivity, 1.0, "M/S**2", "COUNTS", "LAPLACE (RADIANS/SECOND)", 1.0, [], []
     )
@@ -158,7 +198,9 @@ def test_miniseed_with_stationxml_is_acceleration(tmp_path):
     inventory.write(str(tmp_path / "CMB.xml"), format="STATIONXML")
     motion = read_motion(tmp_path / "a.mseed")
     expected = counts / sensitivity
-    np.testing.assert_allclose(motion.acceleration, expected - expected.mean(), atol=1e-9)
+    np.testing.assert_allclose(
+        motion.acceleration, expected - expected.mean(), atol=1e-9
+    )
     assert motion.metadata["unit"] == "m/s2"
     assert motion.provenance[1]["step"] == "remove response"
 
@@ -174,7 +216,10 @@ def test_what_was_written_reads_back_the_same_to_the_last_bit(tmp_path, file, dt
     rng = np.random.default_rng(3)
     values = rng.normal(size=1001) * 10.0 ** rng.integers(-12, 3, size=1001)
     values[:4] = [0.0, -0.0, 5e-324, 1.7e308]
-    header = {"delta": dt, "rockfrag": {"unit": "g", "earthquake": "E", "component": "090"}}
+    header = {
+        "delta": dt,
+        "rockfrag": {"unit": "g", "earthquake": "E", "component": "090"},
+    }
     stream = Stream([Trace(values, {**header, "station": "GILROY"})])
     path = tmp_path / file
     stream.write(str(path), format="AT2" if file.endswith("AT2") else "PLAINTEXT")
@@ -200,7 +245,12 @@ def test_several_traces_or_samples_that_are_not_finite_are_refused(tmp_path, nam
 def motion():
     """A floor motion with a mean, which a raw recording would lose."""
     samples = 0.3 + np.random.default_rng(3).normal(size=1001)
-    facts = {"earthquake": "Friuli 1976", "station": "TMZ", "component": "000", "floor": "attic"}
+    facts = {
+        "earthquake": "Friuli 1976",
+        "station": "TMZ",
+        "component": "000",
+        "floor": "attic",
+    }
     return Motion(samples, 0.005, "Friuli attic", facts)
 
 
@@ -213,8 +263,14 @@ def test_a_motion_reads_back_without_a_question(tmp_path, motion, ending, unit):
     np.testing.assert_allclose(back.acceleration, motion.acceleration, rtol=1e-14)
     assert back.dt == pytest.approx(motion.dt, rel=1e-12)
     if ending in (".AT2", ".dat"):
-        facts = {key: back.metadata[key] for key in ("earthquake", "station", "component")}
-        assert facts == {"earthquake": "Friuli 1976", "station": "TMZ", "component": "000"}
+        facts = {
+            key: back.metadata[key] for key in ("earthquake", "station", "component")
+        }
+        assert facts == {
+            "earthquake": "Friuli 1976",
+            "station": "TMZ",
+            "component": "000",
+        }
 
 
 def test_what_cannot_be_written_is_told(tmp_path, motion):
@@ -242,13 +298,26 @@ def test_motions_of_a_study_are_written_by_their_names(tmp_path, motion):
         motions_of_study(tmp_path / "absent.parquet")
 
 
-def test_records_and_studies_are_written_from_the_command_line(tmp_path, motion, capsys):
+def test_records_and_studies_are_written_from_the_command_line(
+    tmp_path, motion, capsys
+):
     record = write_motion(motion, tmp_path / "m.csv")
     assert main(["write", str(record), str(tmp_path / "m.tcl")]) == 0
-    np.testing.assert_allclose(read_motion(tmp_path / "m.tcl").acceleration, motion.acceleration)
+    np.testing.assert_allclose(
+        read_motion(tmp_path / "m.tcl").acceleration, motion.acceleration
+    )
     write_motion_set([motion], tmp_path / "floors.parquet")
     assert (
-        main(["write", str(tmp_path / "floors.parquet"), str(tmp_path), "--format", "mseed"]) == 0
+        main(
+            [
+                "write",
+                str(tmp_path / "floors.parquet"),
+                str(tmp_path),
+                "--format",
+                "mseed",
+            ]
+        )
+        == 0
     )
     assert "Friuli-attic.mseed" in capsys.readouterr().out
 
@@ -304,7 +373,11 @@ def test_info_says_quality_flags_status_and_values_as_json_and_csv(tmp_path, cap
 
 def test_velocities_in_a_folder_are_no_bad_files_but_named_ones_are(tmp_path, capsys):
     built = build("at2_peer", tmp_path)
-    text = built.path.read_text().replace("ACCELERATION", "VELOCITY").replace("OF G", "OF CM/S")
+    text = (
+        built.path.read_text()
+        .replace("ACCELERATION", "VELOCITY")
+        .replace("OF G", "OF CM/S")
+    )
     (tmp_path / "peer.VT2").write_text(text)
     assert main(["info", str(tmp_path)]) == 0
     assert main(["info", str(tmp_path / "peer.VT2")]) == 1
@@ -313,6 +386,8 @@ def test_velocities_in_a_folder_are_no_bad_files_but_named_ones_are(tmp_path, ca
 
 def test_a_picture_of_every_channel(tmp_path, capsys):
     built = build("geonet_v1a", tmp_path)
-    assert main(["info", str(built.path), "--pictures", str(tmp_path / "pictures")]) == 0
+    assert (
+        main(["info", str(built.path), "--pictures", str(tmp_path / "pictures")]) == 0
+    )
     assert len(list((tmp_path / "pictures").glob("*.png"))) == 3
     capsys.readouterr()

@@ -7,7 +7,13 @@ from obspy import UTCDateTime
 
 from rockfrag.errors import InputError
 from rockfrag.records.parsing.text_file import NotAcceleration
-from rockfrag.records.read import FORMATS, choose_channel, motion_of, read_motion, read_record
+from rockfrag.records.read import (
+    FORMATS,
+    choose_channel,
+    motion_of,
+    read_motion,
+    read_record,
+)
 from rockfrag.units import GRAVITY
 
 from ..case_tables import case_tables
@@ -17,7 +23,9 @@ SMC_OF_ONE_LINE_MORE = "world/smc/891018_1.sma-1.0444a.smc"
 CASES = case_tables(__file__)
 
 
-@pytest.mark.parametrize("sample", CASES["samples"], ids=lambda sample: sample[0].split("/")[-1])
+@pytest.mark.parametrize(
+    "sample", CASES["samples"], ids=lambda sample: sample[0].split("/")[-1]
+)
 def test_a_sample_is_read_with_its_facts(shared, sample):
     file, unit, name, station, start, npts, dt, stored, peaks = sample
     path = shared / "records" / "formats" / file
@@ -51,7 +59,9 @@ def test_a_sample_is_read_with_its_facts(shared, sample):
         (SMC_OF_ONE_LINE_MORE, None, 0.80191, 1e-6),
     ],
 )
-def test_peaks_that_headers_state_are_those_of_the_motions(shared, file, channel, pga, within):
+def test_peaks_that_headers_state_are_those_of_the_motions(
+    shared, file, channel, pga, within
+):
     motion = read_motion(shared / "records" / file, channel=channel)
     assert motion.pga == pytest.approx(pga, rel=within)
     left_out = {"step": "leave out values beyond the count of the header", "values": 8}
@@ -67,7 +77,9 @@ def test_every_file_of_the_collection_is_claimed_by_exactly_one_plugin(shared):
     ]
     assert len(files) > 60
     for path in files:
-        ours = [candidate.name for candidate in FORMATS if candidate.is_format(str(path))]
+        ours = [
+            candidate.name for candidate in FORMATS if candidate.is_format(str(path))
+        ]
         assert len(ours) == (0 if path.suffix in by_obspy else 1), (path, ours)
 
 
@@ -101,7 +113,10 @@ def test_an_archive_of_a_data_centre_keeps_its_unit_and_leaves_out_spectra(share
 @pytest.mark.parametrize(
     ("file", "words"),
     [
-        ("formats/peer_at2/IELC180.DT2", r"IELC180\.DT2.*displacement.*not acceleration"),
+        (
+            "formats/peer_at2/IELC180.DT2",
+            r"IELC180\.DT2.*displacement.*not acceleration",
+        ),
         ("world/cosmos/NP8040-n.1000hyfh.HNE.01.V0c", "raw counts"),
         ("world/csmip/CE89146.V3", "response spectra"),
     ],
@@ -115,7 +130,9 @@ def test_what_is_not_acceleration_is_refused_as_that(shared, file, words):
 def test_earthquake_station_and_component_of_peers_records_of_eastern_north_america_are_kept(
     shared,
 ):
-    motion = read_motion(shared / "records/world/at2/RSN10590_ComalTX11-10-20_IU.CCM.BH1.00.AT2")
+    motion = read_motion(
+        shared / "records/world/at2/RSN10590_ComalTX11-10-20_IU.CCM.BH1.00.AT2"
+    )
     facts = motion.metadata
     assert facts["earthquake"] == "ComalTX11-10-20, 10/20/2011"
     assert (facts["station"], facts["component"]) == ("CCM", "BH100")

@@ -89,7 +89,11 @@ def test_the_forest_draws_an_interval_only_where_there_is_one():
     effects = pd.DataFrame(rows, columns=columns).assign(unit="earthquake", p_holm=0.4)
     axes = forest_figure(effects).axes[0]
     labels = [tick.get_text() for tick in axes.get_yticklabels()]
-    assert labels == ["all pairs (3 earthquakes)", "cellar (3 earthquakes)", "attic (1 earthquake)"]
+    assert labels == [
+        "all pairs (3 earthquakes)",
+        "cellar (3 earthquakes)",
+        "attic (1 earthquake)",
+    ]
     # that of one, and one interval
     assert sum(len(line.get_xdata()) == 2 for line in axes.lines) == 2
 
@@ -124,7 +128,11 @@ def test_the_map_has_a_bar_for_each_range_that_overturns(amplitudes, fallen, bar
 def test_the_shakers_limits_stand_beside_the_objects():
     limits = pd.DataFrame({"motion": ["a", "b"], "limit_g": [0.4, 1.5]})
     limits["limited_by"] = ["stroke", "force"]
-    tests = laboratory().iloc[:2].assign(motion=["a", "b"], pedestal="NP", amplitude_g=[0.5, 0.6])
+    tests = (
+        laboratory()
+        .iloc[:2]
+        .assign(motion=["a", "b"], pedestal="NP", amplitude_g=[0.5, 0.6])
+    )
     axes = shaker_limits(limits, tests).axes[0]
     assert [bar.get_width() for bar in axes.patches] == [1.5, 0.4]
     assert sorted(x for line in axes.lines for x in line.get_xdata()) == [0.5, 0.6]
@@ -137,9 +145,13 @@ def test_a_configuration_without_a_curve_keeps_its_outcomes():
     both = pd.DataFrame({"configuration": ["vase", "jug"]})
     known = {"theta": [0.4, np.nan], "beta": [0.3, np.nan], "p_fit": [0.5, np.nan]}
     curves = both.assign(im="PGA", unit="g", **known)
-    ends = {name: np.repeat([0.5, np.nan], 5) for name in ("probability", "lower", "upper")}
+    ends = {
+        name: np.repeat([0.5, np.nan], 5) for name in ("probability", "lower", "upper")
+    }
     bands = both.loc[[0] * 5 + [1] * 5].assign(x=np.tile(x, 2), **ends)
-    bins = both.assign(x=0.3, fraction=[0.4, 0.0], fraction_lower=0.0, fraction_upper=0.5)
+    bins = both.assign(
+        x=0.3, fraction=[0.4, 0.0], fraction_lower=0.0, fraction_upper=0.5
+    )
     figure = fragility_figure(curves, bands, bins)
     titles = [axes.get_title(loc="left") for axes in figure.axes]
     assert titles == ["(a) vase: θ = 0.4 g, β = 0.30", "(b) jug: no median"]

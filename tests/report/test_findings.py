@@ -73,8 +73,15 @@ def test_it_is_said_over_which_motions_means_are_taken():
 def effects(limits: list[float], **changes: object) -> pd.DataFrame:
     row = {"definition": "step_protocol", "scope": "whole", "level": "all", "pairs": 36}
     row |= dict(zip(("lower", "ratio", "upper"), limits, strict=True))
-    row |= {"unit": "earthquake", "units": 4, "equivalent": False, "detectable_ratio": 1.2}
-    return pd.DataFrame([row | {"at_bound": 0, "tied": 0, "resolution_ratio": 1.0} | changes])
+    row |= {
+        "unit": "earthquake",
+        "units": 4,
+        "equivalent": False,
+        "detectable_ratio": 1.2,
+    }
+    return pd.DataFrame(
+        [row | {"at_bound": 0, "tied": 0, "resolution_ratio": 1.0} | changes]
+    )
 
 
 @pytest.mark.parametrize(("limits", "changes", "headline", "more"), CASES["effects"])
@@ -91,13 +98,19 @@ def test_the_pedestal_has_an_effect_only_where_the_interval_excludes_none(
 def test_floors_are_compared_where_there_are_two():
     item = effects([0.9, 1.0, 1.1])
     assert "not known" in pedestal_effect(item.iloc[:0])[0].headline
-    floors = [effects([1.1, 1.2, 1.3], scope="floor", level=name) for name in ("cellar", "attic")]
+    floors = [
+        effects([1.1, 1.2, 1.3], scope="floor", level=name)
+        for name in ("cellar", "attic")
+    ]
     assert len(pedestal_effect(pd.concat([item, floors[0]]))) == 1
     assert "all 2 floors" in pedestal_effect(pd.concat([item, *floors]))[1].headline
 
 
 def test_friction_counts_the_tests_that_need_more_than_a_usual_surface_has():
-    needed = {"friction_demand": [0.3, 0.5, 1.3, math.inf], "least_normal_force_n": [5, 5, 5, -1]}
+    needed = {
+        "friction_demand": [0.3, 0.5, 1.3, math.inf],
+        "least_normal_force_n": [5, 5, 5, -1],
+    }
     found = model_allowed(pd.DataFrame(needed).assign(pedestal="NP"))
     assert found.headline == "2 of 4 tests require a friction coefficient above 0.6"
     assert "0.30 to 1.30" in found.numbers
@@ -105,7 +118,10 @@ def test_friction_counts_the_tests_that_need_more_than_a_usual_surface_has():
     assert "would have lifted off in 1 of 4 tests" in found.numbers
     assert "inf" not in found.said
     # what it says of the pedestal is said where both sides were tested
-    needed = {"friction_demand": [0.2, 0.3, 0.7, 1.4], "pedestal": ["NP", "NP", "P", "P"]}
+    needed = {
+        "friction_demand": [0.2, 0.3, 0.7, 1.4],
+        "pedestal": ["NP", "NP", "P", "P"],
+    }
     found = model_allowed(pd.DataFrame(needed).assign(least_normal_force_n=5))
     beyond = "All 2 tests with the pedestal require a friction coefficient above 0.6"
     assert found.headline == f"{beyond}, and none of 2 tests without"
@@ -115,7 +131,9 @@ def test_friction_counts_the_tests_that_need_more_than_a_usual_surface_has():
 
 def test_survival_windows_are_counted_over_the_ida_curves_that_overturn():
     definitions = ["first_overturning", "always_overturning"]
-    tests = pd.DataFrame({"test": "a", "definition": definitions, "amplitude_g": [0.5, 1.0]})
+    tests = pd.DataFrame(
+        {"test": "a", "definition": definitions, "amplitude_g": [0.5, 1.0]}
+    )
     windows = pd.DataFrame({"first_upper": 0.5, "resurrections": [2, 0]})
     found = resurrections_found(windows, tests)
     assert found.headline.startswith("Non-monotone response: in 1 of 2 analyses")
@@ -127,13 +145,23 @@ def test_survival_windows_are_counted_over_the_ida_curves_that_overturn():
 
 
 def curves(**medians: tuple[float, float, float]) -> pd.DataFrame:
-    table = pd.DataFrame(medians.values(), columns=["theta_lower", "theta", "theta_upper"])
-    isotonic = 1.1 * table.rename(columns=lambda name: name.replace("theta", "theta_isotonic"))
-    about = {"im": "peak base acceleration", "unit": "g", "estimator": "mean_probability"}
+    table = pd.DataFrame(
+        medians.values(), columns=["theta_lower", "theta", "theta_upper"]
+    )
+    isotonic = 1.1 * table.rename(
+        columns=lambda name: name.replace("theta", "theta_isotonic")
+    )
+    about = {
+        "im": "peak base acceleration",
+        "unit": "g",
+        "estimator": "mean_probability",
+    }
     return table.join(isotonic).assign(configuration=list(medians), p_fit=0.5, **about)
 
 
-@pytest.mark.parametrize(("medians", "changes", "begins", "holds", "lacks"), CASES["strength"])
+@pytest.mark.parametrize(
+    ("medians", "changes", "begins", "holds", "lacks"), CASES["strength"]
+)
 def test_the_weakest_is_named_first_and_medians_stand_behind_a_click(
     medians, changes, begins, holds, lacks
 ):
@@ -151,7 +179,9 @@ def test_without_a_curve_nothing_is_said_of_strength():
     assert strength_found(pd.DataFrame(), "90 %") is None
 
 
-@pytest.mark.parametrize(("names", "overturned", "near", "headline", "sure"), CASES["recorded"])
+@pytest.mark.parametrize(
+    ("names", "overturned", "near", "headline", "sure"), CASES["recorded"]
+)
 def test_motions_as_recorded_say_what_overturns_and_which_outcomes_are_sensitive(
     names, overturned, near, headline, sure
 ):

@@ -12,7 +12,14 @@ import pytest
 from rockfrag import Block, Column, Stack, overturns, simulate
 from rockfrag.errors import InputError
 from rockfrag.records.motion import GroundMotion, Motion
-from rockfrag.report.live import MOST_SAMPLES, carried, frames_svg, live_kernel, outlines, swept
+from rockfrag.report.live import (
+    MOST_SAMPLES,
+    carried,
+    frames_svg,
+    live_kernel,
+    outlines,
+    swept,
+)
 from rockfrag.report.live.space import Standing, live_in_space
 from rockfrag.report.play_page import MOST_SAMPLES as MOST_PLAYED
 from rockfrag.report.play_page import write_play_page
@@ -44,7 +51,10 @@ def test_the_page_carries_motions_to_the_last_bit_and_bodies_as_given():
 
 
 def test_bodies_in_space_stand_in_a_small_page_with_both_components():
-    vase, box = Block(0.3, 1.0, 90.0, round=True), Block(0.3, 1.2, 110.0, depth=0.4, cg_offset=0.02)
+    vase, box = (
+        Block(0.3, 1.0, 90.0, round=True),
+        Block(0.3, 1.2, 110.0, depth=0.4, cg_offset=0.02),
+    )
     bodies = {"a </script> vase": Standing(vase.system(), Block(0.5, 0.6, 350.0))}
     bodies["turned"] = Standing(turned_about_vertical(box.system(), 30.0))
     both = GroundMotion(motion(), motion("other"))
@@ -53,12 +63,17 @@ def test_bodies_in_space_stand_in_a_small_page_with_both_components():
     assert "not here: the drums." in html and "The pedestal stays" in html
     data = data_of(html)
     sizes = data["bodies"][1]["sizes"]
-    assert [sizes[key] for key in ("width", "depth", "cgOffset")] == pytest.approx([0.3, 0.4, 0.02])
+    assert [sizes[key] for key in ("width", "depth", "cgOffset")] == pytest.approx(
+        [0.3, 0.4, 0.02]
+    )
     assert sizes["turn"] == pytest.approx(math.radians(30))
     assert len(data["motions"]) == 50
     assert data["motions"][0]["peak_g"] == pytest.approx(motion().pga / 9.81)
     # what the simulation takes of the page
-    assert len(live_in_space(bodies, [both])) - len(data["motions"][0]["samples"]) * 6400 < 100_000
+    assert (
+        len(live_in_space(bodies, [both])) - len(data["motions"][0]["samples"]) * 6400
+        < 100_000
+    )
 
 
 def test_what_the_kernel_of_the_page_does_not_know_is_left_out_by_name():
@@ -76,7 +91,9 @@ def test_the_outcomes_are_those_of_a_table_or_are_tried():
     item = motion()
     table = swept({"figure": STATUE.system()}, [item])
     scales = table["amplitude_g"].to_numpy() * 9.81 / item.pga
-    fell = overturns([STATUE], [item.acceleration], [item.dt], scales).overturned.ravel()
+    fell = overturns(
+        [STATUE], [item.acceleration], [item.dt], scales
+    ).overturned.ravel()
     assert table["overturned"].to_numpy(dtype=bool).tolist() == fell.tolist()
     assert 0 < fell.sum() < fell.size
     table["overturned"] = table["amplitude_g"] > 0.7
@@ -101,7 +118,9 @@ def drawn(system, theta):
 
 def test_a_block_is_drawn_on_the_edge_on_which_it_rocks():
     (corners,) = drawn(STATUE.system(), -0.2)
-    assert min(corners, key=lambda item: item[1]) == pytest.approx((-0.15, 0), abs=1e-12)
+    assert min(corners, key=lambda item: item[1]) == pytest.approx(
+        (-0.15, 0), abs=1e-12
+    )
     for a, b, length in zip(corners, corners[1:], (0.3, 1.2, 0.3), strict=False):
         assert math.dist(a, b) == pytest.approx(length)
 
@@ -133,4 +152,6 @@ def test_the_played_page_is_small_and_the_same_every_time(tmp_path: Path):
     with pytest.raises(InputError, match="more than the"):
         write_play_page(STATUE, motion(samples=MOST_PLAYED + 1), tmp_path / "c.html")
     with pytest.raises(InputError, match="zero throughout"):
-        write_play_page(STATUE, Motion(np.zeros(100), 0.01, "still", {}), tmp_path / "c.html")
+        write_play_page(
+            STATUE, Motion(np.zeros(100), 0.01, "still", {}), tmp_path / "c.html"
+        )

@@ -12,7 +12,14 @@ from matplotlib.figure import Figure
 from rockfrag.errors import InputError
 from rockfrag.figure_style import figure_style, new_figure
 from rockfrag.report import pdf
-from rockfrag.report.page import MOST_TABLE_ROWS, TERMS, Column, Page, table_html, terms_used
+from rockfrag.report.page import (
+    MOST_TABLE_ROWS,
+    TERMS,
+    Column,
+    Page,
+    table_html,
+    terms_used,
+)
 from rockfrag.report.part import Answer, FigureSpec, Finding, Section
 
 
@@ -31,7 +38,9 @@ def spec(name: str) -> FigureSpec:
 
 def test_the_page_loads_nothing_from_outside_and_escapes_what_users_name(tmp_path):
     table = pd.DataFrame({"name": ["<b>", "P&T1"], "value": [1.23456, math.nan]})
-    shown = table_html(table, [Column("name", "Name"), Column("value", "Value [g]", 2)], "A")
+    shown = table_html(
+        table, [Column("name", "Name"), Column("value", "Value [g]", 2)], "A"
+    )
     first, second = spec("one"), spec("two")
     answer = Answer("Does it fall?", [Finding("Found", "this")], first)
     section = Section("one", "One", "Message <s>", ["Text & more"], [shown, second])
@@ -57,11 +66,17 @@ def test_a_long_table_names_the_file_that_has_all():
     table = pd.DataFrame({"a": range(MOST_TABLE_ROWS + 1)})
     shown = table_html(table, [Column("a", "A", 0)], "Many.", "many.csv")
     assert shown.count("<tr>") == MOST_TABLE_ROWS + 1  # and its head
-    assert f"The first {MOST_TABLE_ROWS} of {MOST_TABLE_ROWS + 1}; many.csv has all." in shown
+    assert (
+        f"The first {MOST_TABLE_ROWS} of {MOST_TABLE_ROWS + 1}; many.csv has all."
+        in shown
+    )
 
 
 def page(said: str = "AvgSA predicts best.", **answer) -> str:
-    given = {"asked": "How strong?", "sentences": [Finding("It holds", "So far", "P/NP 1.01")]}
+    given = {
+        "asked": "How strong?",
+        "sentences": [Finding("It holds", "So far", "P/NP 1.01")],
+    }
     section = Section("a", "A", "Short.", [said])
     return Page("T", "lead", Answer(**given | answer), [section]).html()
 
@@ -94,7 +109,9 @@ def test_a_page_is_printed_beside_itself(tmp_path: Path):
     assert (tmp_path / "report.pdf").read_bytes().startswith(b"%PDF")
 
 
-def test_without_a_page_or_a_browser_one_sentence_says_what_to_do(tmp_path, monkeypatch):
+def test_without_a_page_or_a_browser_one_sentence_says_what_to_do(
+    tmp_path, monkeypatch
+):
     file = tmp_path / "report.html"
     with pytest.raises(InputError, match="run the study first"):
         pdf.print_page(file)

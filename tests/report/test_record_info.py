@@ -5,14 +5,21 @@ import pytest
 
 from rockfrag.errors import InputError
 from rockfrag.records.motion import Motion
-from rockfrag.report.record_info import COLUMNS, describe_files, draw_record, record_figure
+from rockfrag.report.record_info import (
+    COLUMNS,
+    describe_files,
+    draw_record,
+    record_figure,
+)
 
 
 @pytest.fixture
 def wave():
     """One and a half cycles of 1 m/s² at 0.5 s, linear between samples."""
     t = np.arange(151) * 0.005
-    return Motion(np.sin(2 * np.pi * t / 0.5), 0.005, name="wave", metadata={"station": "S"})
+    return Motion(
+        np.sin(2 * np.pi * t / 0.5), 0.005, name="wave", metadata={"station": "S"}
+    )
 
 
 def test_a_folder_is_described_and_a_bad_file_does_not_stop_the_rest(tmp_path, wave):
@@ -43,9 +50,13 @@ def test_a_folder_is_described_and_a_bad_file_does_not_stop_the_rest(tmp_path, w
     assert "furlong" in table["error"][1]
 
 
-def test_the_picture_shows_the_exact_peaks_and_is_written_the_same_twice(wave, tmp_path):
+def test_the_picture_shows_the_exact_peaks_and_is_written_the_same_twice(
+    wave, tmp_path
+):
     figure = record_figure(wave)
-    titles = [axes.get_title(loc="right") for sub in figure.subfigs for axes in sub.axes]
+    titles = [
+        axes.get_title(loc="right") for sub in figure.subfigs for axes in sub.axes
+    ]
     assert f"peak {100 * 2 / (4 * np.pi):.1f}" in titles[1][:9]
     for ending in ("png", "svg"):
         first, second = tmp_path / f"a.{ending}", tmp_path / f"b.{ending}"

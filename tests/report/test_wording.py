@@ -20,16 +20,28 @@ CASES = case_tables(__file__)
 
 @pytest.mark.parametrize(("function", "given", "words"), CASES["words"])
 def test_words_are_those_that_a_reader_expects(function, given, words):
-    assert (cell if function == "cell" else getattr(sentences, function))(*given) == words
+    assert (cell if function == "cell" else getattr(sentences, function))(
+        *given
+    ) == words
 
 
 def test_a_column_of_estimates_has_one_number_of_decimals():
-    table = pd.DataFrame({"a": [12.34, 0.123], "a_lower": [10.0, 0.1], "a_upper": [15.0, 0.2]})
+    table = pd.DataFrame(
+        {"a": [12.34, 0.123], "a_lower": [10.0, 0.1], "a_upper": [15.0, 0.2]}
+    )
     found = sentences.estimates(table, "a")
     assert found == ["12.340 [10.000, 15.000]", "0.123 [0.100, 0.200]"]
 
 
-SPEAKING = ("report", "assess", "survival", "pedestal", "fragility", "campaign", "stages")
+SPEAKING = (
+    "report",
+    "assess",
+    "survival",
+    "pedestal",
+    "fragility",
+    "campaign",
+    "stages",
+)
 """Subpackages whose sentences stand in reports and on the screen of a run."""
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -46,8 +58,13 @@ def spoken() -> list[tuple[str, str]]:
             nodes = list(ast.walk(ast.parse(path.read_text(encoding="utf-8"))))
             silent = {id(node.value) for node in nodes if isinstance(node, ast.Expr)}
             texts = [node for node in nodes if isinstance(node, ast.Constant)]
-            found += [(path.name, str(node.value)) for node in texts if id(node) not in silent]
-        found += [(path.name, path.read_text(encoding="utf-8")) for path in folder.rglob("*.j2")]
+            found += [
+                (path.name, str(node.value)) for node in texts if id(node) not in silent
+            ]
+        found += [
+            (path.name, path.read_text(encoding="utf-8"))
+            for path in folder.rglob("*.j2")
+        ]
     return found
 
 
@@ -58,13 +75,20 @@ def test_no_report_speaks_in_riddles(riddle, instead):
 
 
 def test_an_open_chapter_says_what_its_headline_rests_on():
-    section = partial(Says("rockfrag.report", "opening.j2").section, "opening", [], "Title")
-    assert section(Finding("A", "b", "c")) == Section("opening", "Title", "A.", ["b", "c"], [])
+    section = partial(
+        Says("rockfrag.report", "opening.j2").section, "opening", [], "Title"
+    )
+    assert section(Finding("A", "b", "c")) == Section(
+        "opening", "Title", "A.", ["b", "c"], []
+    )
     assert section(Finding("A")).paragraphs == []
 
 
 def test_best_measures_are_among_those_asked_for():
-    measures = {"measure": ["avgsa_g", "pga_g", "pgv_cm_s"] * 2, "im": ["AvgSA", "PGA", "PGV"] * 2}
+    measures = {
+        "measure": ["avgsa_g", "pga_g", "pgv_cm_s"] * 2,
+        "im": ["AvgSA", "PGA", "PGV"] * 2,
+    }
     choice = pd.DataFrame({"configuration": list("aaabbb"), **measures})
     choice["score"] = [-1.0, -2.0, -3.0, -1.0, float("nan"), -3.0]
     assert best_of(choice, ["pga_g", "pgv_cm_s"]) == ["PGA", "PGV"]

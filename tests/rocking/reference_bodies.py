@@ -23,7 +23,9 @@ def uniform(p: float, alpha: float, g: float = 9.81) -> Block:
     return uniform_block(alpha, 2 * math.pi / p, g)
 
 
-def random_motion(rng: np.random.Generator, samples: int = 300, dt: float = 0.01) -> np.ndarray:
+def random_motion(
+    rng: np.random.Generator, samples: int = 300, dt: float = 0.01
+) -> np.ndarray:
     """Eight sines under a half-sine window, peak 0.2 to 1 g [m/s²]."""
     t = np.arange(samples) * dt
     waves = sum(
@@ -42,7 +44,9 @@ def polyline(seed: int, samples: int) -> np.ndarray:
 
 def measured(body: Block | Stack, factor: float, law: str) -> MeasuredRestitution:
     """Every contact at a factor on what conserves momentum, as far as a lone block allows it."""
-    blocks = (body,) if isinstance(body, Block) else (body.lower, upper_on_contact(body))
+    blocks = (
+        (body,) if isinstance(body, Block) else (body.lower, upper_on_contact(body))
+    )
 
     def of(block: Block, pivot: int) -> float:
         wanted = factor * max(0.05, block.momentum_restitution(-pivot))

@@ -79,7 +79,9 @@ def test_bodies_rock_as_the_plain_integrator_says(seed, lone, linear):
     body, motion, restitution = random_case(seed, lone)
     fast = simulate(body, motion, DT, restitution=restitution, linear=linear)
     plain = simulate_reference(body, motion, DT, restitution=restitution, linear=linear)
-    outcome = overturns(body, motion, DT, [1.0], restitution=[restitution], linear=linear)
+    outcome = overturns(
+        body, motion, DT, [1.0], restitution=[restitution], linear=linear
+    )
     if fast.unstable_distance > MARGIN:
         assert fast.overturned == plain.overturned == bool(outcome.overturned[0, 0, 0])
     grazing = first_grazing(fast)
@@ -93,7 +95,8 @@ def test_bodies_rock_as_the_plain_integrator_says(seed, lone, linear):
 def test_the_outcome_does_not_depend_on_where_the_plain_integrator_calls_hops_chatter():
     body, motion, _ = random_case(1, lone=False)
     coarse, fine = (
-        simulate_reference(body, motion, DT, duration=2.0, chatter=c) for c in (1e-4, 1e-7)
+        simulate_reference(body, motion, DT, duration=2.0, chatter=c)
+        for c in (1e-4, 1e-7)
     )
     n = min(len(coarse.time), len(fine.time))
     assert coarse.overturned == fine.overturned
@@ -106,7 +109,9 @@ QUIET = 3.0  # time after the motion for what is falling to fall [s]
 
 def mujoco_overturns(stack: Stack, motion: np.ndarray) -> bool:
     """Whether a block falls in MuJoCo."""
-    return mujoco_outcome(stack, np.append(motion, np.zeros(round(QUIET / DT))), DT, timestep=STEP)
+    return mujoco_outcome(
+        stack, np.append(motion, np.zeros(round(QUIET / DT))), DT, timestep=STEP
+    )
 
 
 def burst_case(rng: np.random.Generator) -> tuple[Stack, np.ndarray]:
@@ -117,7 +122,9 @@ def burst_case(rng: np.random.Generator) -> tuple[Stack, np.ndarray]:
     t = np.arange(301) * DT
     waves = sum(
         np.sin(2 * math.pi * f * t + phase)
-        for f, phase in zip(rng.uniform(0.5, 2.5, 3), rng.uniform(0, 2 * math.pi, 3), strict=True)
+        for f, phase in zip(
+            rng.uniform(0.5, 2.5, 3), rng.uniform(0, 2 * math.pi, 3), strict=True
+        )
     )
     motion = waves * np.sin(math.pi * t / t[-1])
     peak = rng.uniform(1.0, 3.0) * 9.81 * upper.b / upper.h
@@ -126,7 +133,9 @@ def burst_case(rng: np.random.Generator) -> tuple[Stack, np.ndarray]:
 
 def near_critical(stack: Stack, motion: np.ndarray) -> bool:
     """Whether two per cent more or less of the motion changes the outcome."""
-    factors = 1 + np.array([-0.02, -0.015, -0.01, -0.005, 0.0, 0.005, 0.01, 0.015, 0.02])
+    factors = 1 + np.array(
+        [-0.02, -0.015, -0.01, -0.005, 0.0, 0.005, 0.01, 0.015, 0.02]
+    )
     return len({simulate(stack, f * motion, DT).overturned for f in factors}) == 2
 
 
@@ -135,7 +144,10 @@ def near_critical(stack: Stack, motion: np.ndarray) -> bool:
 @pytest.mark.filterwarnings("ignore::rockfrag.rocking.ensemble.LightBodies")
 @pytest.mark.parametrize(
     ("cases", "seed", "most", "falls"),
-    [(12, 100, 1, (2, 10)), pytest.param(100, 101, 5, (20, 80), marks=pytest.mark.slow)],
+    [
+        (12, 100, 1, (2, 10)),
+        pytest.param(100, 101, 5, (20, 80), marks=pytest.mark.slow),
+    ],
 )
 def test_mujoco_gives_the_same_outcome(cases, seed, most, falls):
     pytest.importorskip("mujoco")

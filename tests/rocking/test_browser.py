@@ -30,12 +30,25 @@ from ..contact.cases import random_block, random_stack
 NODE = shutil.which("node")
 needs_node = pytest.mark.skipif(NODE is None, reason="Node is not installed")
 
-HISTORY = ["theta1", "omega1", "theta2", "omega2", "c1", "c2", "alpha1", "alpha2", "work"]
+HISTORY = [
+    "theta1",
+    "omega1",
+    "theta2",
+    "omega2",
+    "c1",
+    "c2",
+    "alpha1",
+    "alpha2",
+    "work",
+]
 
 
 def in_node(folder: Path, module: str, cases: object, motion: np.ndarray) -> tuple:
     """Run cases in Node; what it says of each, and the numbers that it writes."""
-    files = {name: folder / name for name in ("module.wasm", "cases.json", "motions", "found")}
+    files = {
+        name: folder / name
+        for name in ("module.wasm", "cases.json", "motions", "found")
+    }
     files["module.wasm"].write_bytes(module_bytes(module))
     files["cases.json"].write_text(json.dumps(cases))
     files["motions"].write_bytes(motion.tobytes())
@@ -71,12 +84,18 @@ def test_fifty_random_histories_have_the_bits_of_simulate(tmp_path):
     cases, responses, records = [], [], []
     for number in range(50):
         lone = number % 5 < 2
-        body = random_block(rng, rng.uniform(0.1, 0.6), (2.5, 6)) if lone else random_stack(rng)
+        body = (
+            random_block(rng, rng.uniform(0.1, 0.6), (2.5, 6))
+            if lone
+            else random_stack(rng)
+        )
         if lone and number % 2:
             body = replace(body, inertia=1.1 * body.centroidal_inertia, lean=0.01)
         ratios = rng.uniform(0.5, 0.8, 2).tolist()
         restitution = (
-            ratios[0] if lone else [ratios, [None, ratios[1]], [ratios[0], None]][number % 3]
+            ratios[0]
+            if lone
+            else [ratios, [None, ratios[1]], [ratios[0], None]][number % 3]
         )
         restitution = restitution if rng.random() < 0.5 else None
         start, count = int(rng.integers(0, 2000)), int(rng.integers(200, 1000))
@@ -99,9 +118,13 @@ def test_fifty_random_histories_have_the_bits_of_simulate(tmp_path):
         responses.append(simulate(body, samples, dt, vertical=vertical, **more))
         records.append(body_record(system_of(body, restitution=restitution), linear))
     said, written = in_node(tmp_path, "integrate", cases, motion)
-    lengths = [[item["done"]] * len(HISTORY) + [3 * len(item["kinds"])] for item in said]
+    lengths = [
+        [item["done"]] * len(HISTORY) + [3 * len(item["kinds"])] for item in said
+    ]
     found = iter(np.split(np.frombuffer(written), np.cumsum(np.concatenate(lengths))))
-    for case, item, response, record in zip(cases, said, responses, records, strict=True):
+    for case, item, response, record in zip(
+        cases, said, responses, records, strict=True
+    ):
         body, events = response.system, response.contact_events
         assert item["record"] == record.tobytes().hex()
         assert item["shaking"] == {
@@ -123,11 +146,16 @@ def test_fifty_random_histories_have_the_bits_of_simulate(tmp_path):
         times, energies, speeds = next(found).reshape(3, -1)
         np.testing.assert_array_equal(times, events["time"])
         np.testing.assert_array_equal(energies, events["energy_after"])
-        np.testing.assert_array_equal(speeds, [omega[-1] for omega in events["omega_before"]])
+        np.testing.assert_array_equal(
+            speeds, [omega[-1] for omega in events["omega_before"]]
+        )
         assert item["kinds"] == events["kind"].tolist()
         assert (item["fallen"] > 0) == response.overturned
         assert item["fallTime"] == response.overturning_time or not response.overturned
-        assert (item["impacts"], item["grazings"]) == (response.impacts, response.grazings)
+        assert (item["impacts"], item["grazings"]) == (
+            response.impacts,
+            response.grazings,
+        )
         assert item["unstable_distance"] in (response.unstable_distance, None)
         assert item["alike"], "an outcome alone is that of the history"
     assert len(list(found)) == 1, "what is left is empty"
@@ -145,12 +173,17 @@ def test_bodies_that_cannot_stand_are_refused(tmp_path):
         "does not lie on": both | {"offset": 0.4},
         "above the part": both | {"offset": 0.25},
         "once the pedestal's lean": both | {"pedestal": given(base) | {"lean": 0.3}},
-        "touch the ground": {"statue": given(wide), "pedestal": given(Block(0.4, 0.05, 100.0))},
+        "touch the ground": {
+            "statue": given(wide),
+            "pedestal": given(Block(0.4, 0.05, 100.0)),
+        },
         "gain energy": told(statue, restitution=1.2),
         "mass of 0": {"statue": given(statue) | {"mass": 0}},
         "width of null": {"statue": given(statue) | {"width": None}},
     }
-    cases = [{"given": body, "start": 0, "count": 2, "dt": 0.01} for body in bodies.values()]
+    cases = [
+        {"given": body, "start": 0, "count": 2, "dt": 0.01} for body in bodies.values()
+    ]
     said, written = in_node(tmp_path, "integrate", cases, np.zeros(2))
     assert not written
     for words, item in zip(bodies, said, strict=True):
@@ -212,7 +245,9 @@ def some_block(rng, is_round: bool) -> tuple[System, dict]:
 def some_polygon(rng) -> tuple[System, dict]:
     """A body on a convex polygon with a full tensor, likewise."""
     count = int(rng.integers(3, 9))
-    angles = np.sort((np.arange(count) + rng.uniform(0, 0.6, count)) * 2 * math.pi / count)
+    angles = np.sort(
+        (np.arange(count) + rng.uniform(0, 0.6, count)) * 2 * math.pi / count
+    )
     vertices = rng.uniform(0.2, 0.4) * np.column_stack([np.cos(angles), np.sin(angles)])
     tilt = np.linalg.qr(rng.normal(size=(3, 3)))[0]
     tensor = 40 * tilt @ np.diag([1.0, 1.2, 0.9]) @ tilt.T
@@ -230,15 +265,21 @@ def test_random_bodies_in_space_have_the_bits_of_the_package(tmp_path, bodies):
     rng = np.random.default_rng(4)
     time = np.arange(900) * 0.01
     strong = np.exp(-(((time - 3) / 1.5) ** 2)) * np.array([[1.0], [1.0], [0.4]])
-    motion = rng.normal(0, 3.0, (3, 900)) + 2.5 * np.sin(4 * time + np.array([[0.0], [1.0], [2.0]]))
+    motion = rng.normal(0, 3.0, (3, 900)) + 2.5 * np.sin(
+        4 * time + np.array([[0.0], [1.0], [2.0]])
+    )
     motion *= strong
     cases, systems = [], []
     for i in range(bodies):
         kind = ("block", "block", "solid")[i % 3]
-        system, told = some_polygon(rng) if kind == "solid" else some_block(rng, i % 3 == 1)
+        system, told = (
+            some_polygon(rng) if kind == "solid" else some_block(rng, i % 3 == 1)
+        )
         friction = 0.5 if rng.random() < 0.3 else None
         if friction is not None:
-            system = System(system.bodies, (Contact(friction=Friction(friction, friction)),))
+            system = System(
+                system.bodies, (Contact(friction=Friction(friction, friction)),)
+            )
         systems.append(system)
         cases.append({
             kind: told, "friction": friction, "components": int(rng.integers(1, 4)),
@@ -253,7 +294,9 @@ def test_random_bodies_in_space_have_the_bits_of_the_package(tmp_path, bodies):
         shaking = np.zeros((900, 3))
         shaking[:, : case["components"]] = motion[: case["components"]].T
         samples = 900 + math.ceil(AFTER / case["dt"]) + 2
-        outcome, history = run_case(body, shaking, case["dt"], case["scale"], samples=samples)
+        outcome, history = run_case(
+            body, shaking, case["dt"], case["scale"], samples=samples
+        )
         assert item["done"] == len(history)
         table, numbers = np.split(numbers, [history.size])
         np.testing.assert_array_equal(table.reshape(history.shape), history)
@@ -274,7 +317,12 @@ def test_random_bodies_in_space_have_the_bits_of_the_package(tmp_path, bodies):
 
 @pytest.mark.parametrize(
     ("name", "largest"),
-    [("integrate", 60_000), ("space", 100_000), ("ensemble", 270_000), ("ensemble-fused", 132_000)],
+    [
+        ("integrate", 60_000),
+        ("space", 100_000),
+        ("ensemble", 270_000),
+        ("ensemble-fused", 132_000),
+    ],
 )
 def test_a_module_is_small_and_needs_nothing(name, largest):
     module = module_bytes(name)
@@ -288,7 +336,8 @@ def test_a_module_is_small_and_needs_nothing(name, largest):
 
 @pytest.mark.slow
 @pytest.mark.skipif(
-    importlib.util.find_spec("ziglang") is None, reason="ziglang, the linker, is not installed"
+    importlib.util.find_spec("ziglang") is None,
+    reason="ziglang, the linker, is not installed",
 )
 @pytest.mark.parametrize(
     ("name", "seed"),

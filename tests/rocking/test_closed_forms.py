@@ -22,13 +22,16 @@ BLOCK = uniform(2.14, 0.25)
 
 
 @pytest.mark.parametrize("seed", range(4))
-def test_any_motion_overturns_without_impact_where_the_integral_exceeds_one(seed: int) -> None:
+def test_any_motion_overturns_without_impact_where_the_integral_exceeds_one(
+    seed: int,
+) -> None:
     # -s p ∫ exp(-p (t - t0)) a/(αg) dt > 1 from the start of rocking t0, linear equation
     rng = np.random.default_rng(seed)
     p, n = T2.frequency(), 600
     t = np.linspace(0, 1.5 / p, n)
     bumps = 1 + 0.4 * sum(
-        rng.normal() / k * np.sin(math.pi * k * t / t[-1] + rng.uniform(0, 6)) for k in (2, 3, 5)
+        rng.normal() / k * np.sin(math.pi * k * t / t[-1] + rng.uniform(0, 6))
+        for k in (2, 3, 5)
     )
     shape = np.sin(math.pi * t / t[-1]) * np.clip(bumps, 0.1, None)
     fine = np.linspace(0, t[-1], 200_001)
@@ -41,7 +44,10 @@ def test_any_motion_overturns_without_impact_where_the_integral_exceeds_one(seed
 
     limit = brentq(excess, 1.05 / curve.max(), 20.0)
     for x, falls in (((1 - 1e-4) * limit, False), ((1 + 1e-4) * limit, True)):
-        assert simulate(T2, x * T2.alpha * G * shape, t[1], linear=True).overturned is falls
+        assert (
+            simulate(T2, x * T2.alpha * G * shape, t[1], linear=True).overturned
+            is falls
+        )
 
 
 def test_one_sine_overturns_after_an_impact_then_not_then_without():
@@ -74,20 +80,28 @@ STATUE = Block(0.40, 1.20, 300.0, inertia=45.0, cg_height=0.50, cg_offset=0.04)
 def free_rocking(block, e, start=0.6, seconds=4.0, dt=0.002):
     """Release from ``start`` critical angles."""
     theta0 = start * block.critical_angle(1)
-    return simulate(block, np.zeros(int(seconds / dt)), dt, theta0=theta0, restitution=e)
+    return simulate(
+        block, np.zeros(int(seconds / dt)), dt, theta0=theta0, restitution=e
+    )
 
 
-def times_and_peaks(block: Block, response: Response, count: int) -> tuple[np.ndarray, np.ndarray]:
+def times_and_peaks(
+    block: Block, response: Response, count: int
+) -> tuple[np.ndarray, np.ndarray]:
     """Times of impacts, and the release, then what energy gives after each impact's speed."""
     impacts = response.contact_events.query("kind == 'impact'").head(count)
     after, peaks = [row[0] for row in impacts["omega_after"]], [response.theta[0, 0]]
-    peaks += [math.copysign(peak_after(block, abs(w), 1 if w > 0 else -1), w) for w in after]
+    peaks += [
+        math.copysign(peak_after(block, abs(w), 1 if w > 0 else -1), w) for w in after
+    ]
     return impacts["time"].to_numpy(), np.array(peaks[:count])
 
 
 @pytest.mark.parametrize("block", [T2, STATUE], ids=["uniform", "off-centre"])
 @pytest.mark.parametrize("e", [0.7, 0.87, 0.95])
-def test_exact_times_and_peaks_give_the_restitution_back(block: Block, e: float) -> None:
+def test_exact_times_and_peaks_give_the_restitution_back(
+    block: Block, e: float
+) -> None:
     times, peaks = times_and_peaks(block, free_rocking(block, e), 7)
     by_times = restitution_from_impacts(block, times, first_pivot=-1)
     by_peaks = restitution_from_peaks(block, peaks)
@@ -100,7 +114,9 @@ def test_peaks_of_simulated_history_are_those_of_energy() -> None:
     response = free_rocking(T2, 0.9, dt=0.0005)
     times, peaks = times_and_peaks(T2, response, 2)
     between = (response.time > times[0]) & (response.time < times[1])
-    assert np.abs(response.theta[between, 0]).max() == pytest.approx(abs(peaks[1]), rel=1e-5)
+    assert np.abs(response.theta[between, 0]).max() == pytest.approx(
+        abs(peaks[1]), rel=1e-5
+    )
 
 
 def test_noisy_peaks_and_times_cover_the_truth_as_often_as_promised() -> None:
@@ -109,8 +125,12 @@ def test_noisy_peaks_and_times_cover_the_truth_as_often_as_promised() -> None:
     covered = np.zeros(2)
     for _ in range(50):
         fits = (
-            restitution_from_peaks(T2, peaks + rng.normal(0, 0.001, peaks.size), confidence=0.9),
-            restitution_from_impacts(T2, times + rng.normal(0, 0.001, times.size), confidence=0.9),
+            restitution_from_peaks(
+                T2, peaks + rng.normal(0, 0.001, peaks.size), confidence=0.9
+            ),
+            restitution_from_impacts(
+                T2, times + rng.normal(0, 0.001, times.size), confidence=0.9
+            ),
         )
         covered += [fit.lower <= e <= fit.upper for fit in fits]
     # 90 % of 50 within three standard deviations of a binomial

@@ -24,9 +24,15 @@ STACK = Stack(Block(0.4, 0.3, 100.0), BLOCK)
 MOTION = 6.0 * np.sin(np.arange(300) * 0.06)
 
 
-@pytest.mark.parametrize(("body", "entry"), [(BLOCK, integrate_blocks), (STACK, integrate_stacks)])
+@pytest.mark.parametrize(
+    ("body", "entry"), [(BLOCK, integrate_blocks), (STACK, integrate_stacks)]
+)
 def test_one_compilation_serves_every_ensemble(body, entry):
-    for motions, scales in ((1, [1.0]), (2, np.ones((2, 3))), (1, np.linspace(0, 1, 5))):
+    for motions, scales in (
+        (1, [1.0]),
+        (2, np.ones((2, 3))),
+        (1, np.linspace(0, 1, 5)),
+    ):
         overturns([body] * motions, [MOTION] * motions, 0.01, scales)
     assert len(entry.signatures) == 1
 
@@ -38,7 +44,9 @@ def test_no_kernel_has_more_than_eight_parameters():
     for path in KERNELS.rglob("*.py"):
         for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
             if isinstance(node, ast.FunctionDef):
-                count = len([*node.args.posonlyargs, *node.args.args, *node.args.kwonlyargs])
+                count = len(
+                    [*node.args.posonlyargs, *node.args.args, *node.args.kwonlyargs]
+                )
                 assert count <= 8, f"{path.name}: {node.name} has {count} parameters"
 
 
@@ -104,7 +112,9 @@ def fresh(path: Path):
     return module.thrice
 
 
-@pytest.mark.parametrize(("damaged", "left"), [("*.nbi", 20), ("*.nbc", 200), ("*.nb?", 0)])
+@pytest.mark.parametrize(
+    ("damaged", "left"), [("*.nbi", 20), ("*.nbc", 200), ("*.nb?", 0)]
+)
 def test_damaged_machine_code_is_made_anew(tmp_path, monkeypatch, damaged, left):
     monkeypatch.setattr(numba.config, "CACHE_DIR", str(tmp_path / "cache"))
     path = tmp_path / "of_this_test.py"
@@ -140,7 +150,9 @@ def test_machine_code_is_read_without_what_compiling_needs(tmp_path):
         assert said == f"6 {compiles}"
 
 
-def test_without_a_folder_for_it_the_function_is_compiled_all_the_same(tmp_path, monkeypatch):
+def test_without_a_folder_for_it_the_function_is_compiled_all_the_same(
+    tmp_path, monkeypatch
+):
     def nowhere(*given, **options):
         if options.pop("cache", False):
             raise RuntimeError("cannot cache function: no locator available")
@@ -152,7 +164,9 @@ def test_without_a_folder_for_it_the_function_is_compiled_all_the_same(tmp_path,
     assert fresh(path)(2) == 6
 
 
-def test_what_a_run_leaves_beside_the_source_does_not_change_its_digest(tmp_path, monkeypatch):
+def test_what_a_run_leaves_beside_the_source_does_not_change_its_digest(
+    tmp_path, monkeypatch
+):
     monkeypatch.setattr(job, "PACKAGE", tmp_path)
     (tmp_path / "a.py").write_text("")
     before = job.package_digest.__wrapped__()

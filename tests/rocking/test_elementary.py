@@ -162,4 +162,7 @@ print(digest.hexdigest())
 )
 def test_another_processor_gives_the_same_bits(processor, tmp_path):
     here = printed_alone("-c", HISTORIES)
-    assert printed_alone("-c", HISTORIES, **processor, NUMBA_CACHE_DIR=str(tmp_path)) == here
+    assert (
+        printed_alone("-c", HISTORIES, **processor, NUMBA_CACHE_DIR=str(tmp_path))
+        == here
+    )

@@ -13,13 +13,17 @@ from rockfrag.system.blocks import Block, Stack
 from ..oracle import cases as benchmark_cases
 
 MOTIONS = [motion[:2500] for motion in benchmark_cases.motions(4, seed=11)]
-SCALES = np.array([[0.15, 0.4, 0.9], [0.2, 0.5, 1.0], [0.25, 0.6, 0.8], [0.0, 0.35, 0.7]])
+SCALES = np.array(
+    [[0.15, 0.4, 0.9], [0.2, 0.5, 1.0], [0.25, 0.6, 0.8], [0.0, 0.35, 0.7]]
+)
 LONE = benchmark_cases.blocks(5, seed=11)
 STACKS = benchmark_cases.stacks(3, seed=11)
 # a leaning block with its centre of gravity to one side has two different pivots
 SKEW = Block(width=0.3, height=1.2, mass=100.0, cg_offset=0.02, lean=0.01)
 # a slender pedestal falls with its squat statue
-SLENDER = Stack(Block(width=0.3, height=1.5, mass=360.0), Block(width=0.25, height=0.4, mass=70.0))
+SLENDER = Stack(
+    Block(width=0.3, height=1.5, mass=360.0), Block(width=0.25, height=0.4, mass=70.0)
+)
 BODIES = [SLENDER, LONE[0], STACKS[0], LONE[1], SKEW, STACKS[1], *LONE[2:], STACKS[2]]
 
 
@@ -48,10 +52,14 @@ def test_neither_threads_nor_order_nor_company_change_a_bit(whole):
     rng = np.random.default_rng(3)
     i, j, k = (rng.permutation(n) for n in whole.overturned.shape)
     bodies, motions = [BODIES[n] for n in i], [MOTIONS[n] for n in j]
-    shuffled = overturns(bodies, motions, benchmark_cases.DT, SCALES[j][:, k], threads=1)
+    shuffled = overturns(
+        bodies, motions, benchmark_cases.DT, SCALES[j][:, k], threads=1
+    )
     same(whole, np.ix_(i, j, k), shuffled)
     for i, j, k in ((0, 1, 2), (1, 0, 1), (4, 2, 0), (9, 3, 2)):
-        alone = overturns(BODIES[i], MOTIONS[j], benchmark_cases.DT, SCALES[j, k : k + 1])
+        alone = overturns(
+            BODIES[i], MOTIONS[j], benchmark_cases.DT, SCALES[j, k : k + 1]
+        )
         same(whole, np.s_[i : i + 1, j : j + 1, k : k + 1], alone)
     # this one needs shorter steps
     small = Block(width=0.01, height=0.04, mass=0.01)
@@ -71,7 +79,9 @@ def test_single_simulations_of_blocks_agree_in_outcomes_and_peaks(whole):
         if response.overturned:
             continue
         top = response.theta[:, -1]
-        peak = max(top.max() / body.critical_angle(1), -top.min() / body.critical_angle(-1))
+        peak = max(
+            top.max() / body.critical_angle(1), -top.min() / body.critical_angle(-1)
+        )
         # between samples a flight rises by at most (p dt)² α / 4 above them
         between = (body.frequency() * benchmark_cases.DT) ** 2 / 4 + 1e-6
         assert peak - 1e-6 <= whole.peak_rotation[(*at, 0)] <= peak + between
@@ -106,7 +116,10 @@ def test_single_simulations_of_stacks_agree_in_outcomes_and_peaks():
 @pytest.mark.parametrize("linear", [False, True])
 def test_cases_with_a_start_of_their_own_end_as_single_simulations_do(linear):
     bodies = [LONE[1], STACKS[0]]
-    start = {"theta0": [0.3 * LONE[1].alpha, (0.0, 0.02)], "omega0": [None, (0.0, -0.1)]}
+    start = {
+        "theta0": [0.3 * LONE[1].alpha, (0.0, 0.02)],
+        "omega0": [None, (0.0, -0.1)],
+    }
     dt, scales = benchmark_cases.DT, (0.2, 0.6)
     found = overturns(bodies, MOTIONS[:2], dt, scales, linear=linear, **start)
     for i, j, k in np.ndindex(found.overturned.shape):

@@ -72,8 +72,13 @@ def test_similar_bodies_share_one_response_whatever_they_weigh(seed):
     size, weight = rng.uniform(0.2, 20), rng.uniform(0.01, 100)
 
     def larger(block: Block) -> Block:
-        lengths = {name: getattr(block, name) * size for name in ("width", "height", "cg_offset")}
-        return replace(block, **lengths, mass=block.mass * weight, cg_height=block.h * size)
+        lengths = {
+            name: getattr(block, name) * size
+            for name in ("width", "height", "cg_offset")
+        }
+        return replace(
+            block, **lengths, mass=block.mass * weight, cg_height=block.h * size
+        )
 
     first = simulate(body, motion, DT)
     other = simulate(turned(body, larger), motion, DT * math.sqrt(size))
@@ -116,7 +121,11 @@ def test_energy_is_never_gained_at_impacts_and_the_energy_balance_closes(seed):
     residual = energy["residual"].abs().max()
     # a contact that closes because it chatters gives up no more than this
     whole = body.rigidly_joined()
-    closing = 0.5 * max(whole.pivot_inertia(pivot) for pivot in (+1, -1)) * HISTORY.closing_speed**2
+    closing = (
+        0.5
+        * max(whole.pivot_inertia(pivot) for pivot in (+1, -1))
+        * HISTORY.closing_speed**2
+    )
     assert residual <= 1e-6 * scale + closing, f"{residual} J of {scale} J"
     # positions agree with the contact states
     relative = np.diff(response.theta, axis=1, prepend=0.0)
@@ -129,6 +138,8 @@ def test_energy_is_never_gained_at_impacts_and_the_energy_balance_closes(seed):
 def test_free_rocking_ends_at_rest_or_on_the_side(seed, start, side):
     body, _, _ = drawn(seed)
     turn = side * start * body.blocks[-1].alpha
-    response = simulate(body, np.zeros(2), DT, theta0=(*[0.0] * (len(body.blocks) - 1), turn))
+    response = simulate(
+        body, np.zeros(2), DT, theta0=(*[0.0] * (len(body.blocks) - 1), turn)
+    )
     assert response.overturned or response.rocking_mode[-1] == "rest"
     assert np.isfinite(response.theta).all()

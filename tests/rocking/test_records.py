@@ -24,7 +24,9 @@ PERIODS = np.linspace(0.8, 4.0, 9)
 def motion() -> Motion:
     """A decaying chirp that rocks every block and overturns some of the small ones."""
     t = np.arange(800) * 0.01
-    return Motion(4.5 * np.exp(-t / 4) * np.sin(2 * np.pi * (0.5 * t + 0.1 * t**2)), 0.01, "chirp")
+    return Motion(
+        4.5 * np.exp(-t / 4) * np.sin(2 * np.pi * (0.5 * t + 0.1 * t**2)), 0.01, "chirp"
+    )
 
 
 def test_block_has_the_wanted_period_and_slenderness() -> None:
@@ -59,7 +61,9 @@ def straight(angle_deg):
     t = np.arange(0, 4, 0.01)
     pulse = 3.0 * np.sin(2 * np.pi * t) * np.exp(-(((t - 2) / 0.8) ** 2))
     angle = np.radians(angle_deg)
-    return Motion(pulse * np.cos(angle), 0.01, "a"), Motion(pulse * np.sin(angle), 0.01, "b")
+    return Motion(pulse * np.cos(angle), 0.01, "a"), Motion(
+        pulse * np.sin(angle), 0.01, "b"
+    )
 
 
 @pytest.mark.parametrize("angle", [20, 110])
@@ -70,7 +74,9 @@ def test_a_straight_motion_is_worst_along_its_line(angle):
     assert found.motion.pga == pytest.approx(
         np.hypot(first.acceleration, second.acceleration).max()
     )
-    across = found.table.set_index("angle_deg").loc[(angle + 90) % 360, "first_overturning"]
+    across = found.table.set_index("angle_deg").loc[
+        (angle + 90) % 360, "first_overturning"
+    ]
     assert np.isnan(across)
 
 
@@ -89,7 +95,9 @@ def test_the_worst_direction_in_a_plane_is_no_bound_for_a_body_in_space():
     ).table
     in_space = Block(0.3, 1.2, 100.0, round=True)
     both = overturns(
-        in_space, GroundMotion(first, second), scales=[0.9 * table["first_overturning"].min()]
+        in_space,
+        GroundMotion(first, second),
+        scales=[0.9 * table["first_overturning"].min()],
     )
     assert both.overturned.item()
 
@@ -106,7 +114,9 @@ def test_static_rule_is_b_over_h(noise):
 def test_every_rule_scales_inversely_with_the_motion(noise, name):
     motion = noise(2, 800, tapered=True)
     twice = Motion(2 * motion.acceleration, motion.dt)
-    assert RULES[name](COLUMN, twice) == pytest.approx(RULES[name](COLUMN, motion) / 2, rel=1e-6)
+    assert RULES[name](COLUMN, twice) == pytest.approx(
+        RULES[name](COLUMN, motion) / 2, rel=1e-6
+    )
 
 
 def test_for_a_slow_push_asce_43_bears_twice_b_over_h():

@@ -25,7 +25,9 @@ def shaken(body: Block | Stack, seed: int, peak_g: float) -> Response:
     return simulate(body, motion.acceleration, motion.dt)
 
 
-def test_linear_periods_are_housner_s_and_the_quarter_period_that_of_the_integral() -> None:
+def test_linear_periods_are_housner_s_and_the_quarter_period_that_of_the_integral() -> (
+    None
+):
     def first_impact(start: float, linear: bool) -> float:
         found = simulate(T2, np.zeros(400), DT, theta0=start * T2.alpha, linear=linear)
         return found.contact_events.query("kind == 'impact'")["time"].iloc[0]
@@ -49,13 +51,19 @@ def test_forces_of_a_resting_stack_are_its_weights() -> None:
 
 def test_forces_of_a_rocking_block_follow_from_newton() -> None:
     response = shaken(T2, 3, 0.3)
-    rows = np.flatnonzero((response.state[:, 0] != 0) & (np.abs(response.theta[:, 0]) < 0.2))
+    rows = np.flatnonzero(
+        (response.state[:, 0] != 0) & (np.abs(response.theta[:, 0]) < 0.2)
+    )
     pivot = response.state[rows, 0]
-    theta, omega, alpha = (x[rows, 0] for x in (response.theta, response.omega, response.alpha))
+    theta, omega, alpha = (
+        x[rows, 0] for x in (response.theta, response.omega, response.alpha)
+    )
     radius, angle = T2.radius(), T2.alpha - np.abs(theta)
     # rising of the centre of gravity, y = R cos(θc - |θ|) (thesis eq. 2.2 and below)
     rise = radius * (np.sin(angle) * pivot * alpha - np.cos(angle) * omega**2)
-    assert response.normal_force[rows, 0] == pytest.approx(T2.mass * (G + rise), rel=1e-9)
+    assert response.normal_force[rows, 0] == pytest.approx(
+        T2.mass * (G + rise), rel=1e-9
+    )
 
 
 def test_overturning_has_a_time_and_a_body() -> None:
@@ -64,7 +72,11 @@ def test_overturning_has_a_time_and_a_body() -> None:
     assert response.overturned and response.overturned_body == "upper body"
     assert 0 < response.overturning_time <= response.time[-1]
     calm = shaken(stack, 2, 0.15)
-    assert not calm.overturned and calm.overturned_body == "" and math.isnan(calm.overturning_time)
+    assert (
+        not calm.overturned
+        and calm.overturned_body == ""
+        and math.isnan(calm.overturning_time)
+    )
     assert calm.contact_events.empty
     # a pedestal that is tall and thin falls with its statue
     column = Stack(Block(0.3, 1.5, 50.0), Block(0.3, 0.3, 10.0))
@@ -82,7 +94,10 @@ def test_unstable_distance_tells_how_near_the_outcome_was() -> None:
         low, high = (low, middle) if fell else (middle, high)
     near = simulate(T2, low * T2.alpha * G * pulse, dt)
     far = simulate(T2, 0.7 * low * T2.alpha * G * pulse, dt)
-    assert not near.overturned and near.unstable_distance < 1e-3 < 0.1 < far.unstable_distance
+    assert (
+        not near.overturned
+        and near.unstable_distance < 1e-3 < 0.1 < far.unstable_distance
+    )
 
 
 SHAKING = polyline(0, 3000)
@@ -93,7 +108,9 @@ SHAKING = polyline(0, 3000)
 def test_what_is_asked_does_not_hang_on_the_samples(body, peak):
     coarse = simulate(body, peak * SHAKING, 0.01)
     # the same straight lines, looked at twenty times as often
-    fine_motion = np.interp(np.arange(60_000) * 0.0005, np.arange(3000) * 0.01, peak * SHAKING)
+    fine_motion = np.interp(
+        np.arange(60_000) * 0.0005, np.arange(3000) * 0.01, peak * SHAKING
+    )
     fine = simulate(body, fine_motion, 0.0005)
     assert coarse.impacts > 0 and coarse.overturned
     assert coarse.friction_demand == pytest.approx(fine.friction_demand, rel=2e-3)
@@ -136,7 +153,9 @@ def test_friction_of_the_interface_is_along_the_face_that_carries():
     assert asked == pytest.approx(0.480, abs=1e-3)
     sloping = Stack(Block(0.6, 0.6, 50.0, lean=np.radians(2)), Block(0.3, 0.3, 10.0))
     at_rest = simulate(sloping, np.zeros(10), 0.01)
-    assert at_rest.friction_demand[1] == pytest.approx(math.tan(np.radians(2)), rel=1e-9)
+    assert at_rest.friction_demand[1] == pytest.approx(
+        math.tan(np.radians(2)), rel=1e-9
+    )
     assert at_rest.friction_demand[0] == pytest.approx(0, abs=1e-12)
 
 
@@ -148,7 +167,9 @@ def test_losing_contact_is_an_contact_event():
     assert response.lost_contact == pytest.approx(0.1, abs=1e-9)
     lifted = response.contact_events.query("kind == 'lift-off'")
     assert lifted["time"].tolist() == [response.lost_contact]
-    assert math.isinf(response.friction_demand[0]) and response.least_normal_force[0] < 0
+    assert (
+        math.isinf(response.friction_demand[0]) and response.least_normal_force[0] < 0
+    )
     found = overturns(T2, np.zeros(100), 0.01, vertical=[up], forces=True)
     assert found.lost_contact.item() == pytest.approx(0.1, abs=1e-9)
     kept = simulate(T2, np.zeros(100), 0.01, vertical=0.45 * up)
@@ -176,4 +197,6 @@ def test_a_statue_that_reaches_beyond_its_pedestal_is_drawn_over_the_angle_of_th
     angle = geometry.critical_angle(wide.pile.upper, 1)
     response = simulate(wide, np.zeros(9), DT, theta0=(0.0, 0.05))
     assert response.rocking_mode[0] == "4a"
-    assert response.plot().axes[1].lines[1].get_ydata()[0] == pytest.approx(0.05 / angle)
+    assert response.plot().axes[1].lines[1].get_ydata()[0] == pytest.approx(
+        0.05 / angle
+    )

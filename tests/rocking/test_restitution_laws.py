@@ -64,7 +64,9 @@ def random_impact(rng, kind):
 def compiled(body, restitution, old, closes, theta, omega):
     """What the kernels say comes of an impact."""
     record = body_record(system_of(body, restitution=restitution))
-    n1, n2, w1, w2, gave_way = kernel_impact(record, state_record(old, theta, omega), *closes)
+    n1, n2, w1, w2, gave_way = kernel_impact(
+        record, state_record(old, theta, omega), *closes
+    )
     return (n1, n2), (w1, w2), gave_way
 
 
@@ -78,8 +80,12 @@ def test_kernels_and_reference_agree_on_every_impact(law):
     for number in range(300):
         stack = random_stack(rng)
         restitution = measured(stack, rng.uniform(0.5, 1.4), law)
-        old, closes, theta, omega = case = random_impact(rng, number % len(EVERY_IMPACT))
-        closing = tuple(pivot if shut else 0 for pivot, shut in zip(old, closes, strict=True))
+        old, closes, theta, omega = case = random_impact(
+            rng, number % len(EVERY_IMPACT)
+        )
+        closing = tuple(
+            pivot if shut else 0 for pivot, shut in zip(old, closes, strict=True)
+        )
         fast = compiled(stack, restitution, *case)
         slow = Model(stack, G, restitution).impact(old, closing, theta, omega)
         assert fast[0] == slow[0] and fast[2] == slow[2]
@@ -90,7 +96,9 @@ def test_kernels_and_reference_agree_on_every_impact(law):
 
 @pytest.mark.parametrize("law", law_names())
 @pytest.mark.parametrize("stacks", [200, pytest.param(10_000, marks=pytest.mark.slow)])
-def test_no_dead_stop_no_jump_between_neighbouring_values_and_no_gain_of_energy(law, stacks):
+def test_no_dead_stop_no_jump_between_neighbouring_values_and_no_gain_of_energy(
+    law, stacks
+):
     rng = np.random.default_rng(3)
     for number in range(stacks):
         stack, case = random_stack(rng), random_impact(rng, number % len(IMPACTS))
@@ -131,7 +139,9 @@ def test_on_a_support_that_does_not_move_every_law_is_the_lone_block(law, factor
     values = tuple(factor * upper.momentum_restitution(-pivot) for pivot in (1, -1))
     for side in (1, -1):
         restitution = MeasuredRestitution((None, values), law)
-        response = simulate(heavy, STILL, 0.002, theta0=(0.0, side * 0.05), restitution=restitution)
+        response = simulate(
+            heavy, STILL, 0.002, theta0=(0.0, side * 0.05), restitution=restitution
+        )
         first = response.contact_events.query("kind == 'impact'").iloc[0]
         ratio = first["omega_after"][1] / first["omega_before"][1]
         assert ratio == pytest.approx(values[(1 + side) // 2], abs=1e-6)
@@ -143,11 +153,14 @@ def test_a_lone_block_has_a_value_for_each_direction():
     assert abs(values[0] - values[1]) > 0.04
     assert max(values) > geometry.largest_restitution(crooked.shape, -1)
     free, named = (
-        simulate(crooked, STILL, 0.002, theta0=0.05, restitution=given) for given in (None, values)
+        simulate(crooked, STILL, 0.002, theta0=0.05, restitution=given)
+        for given in (None, values)
     )
     assert named.theta == pytest.approx(free.theta, abs=1e-12)
     free, named = (
-        overturns(crooked, polyline(0, 2000), 0.01, [0.4, 0.6, 1.0], restitution=[given])
+        overturns(
+            crooked, polyline(0, 2000), 0.01, [0.4, 0.6, 1.0], restitution=[given]
+        )
         for given in (None, values)
     )
     assert named.peak_rotation == pytest.approx(free.peak_rotation, abs=1e-9)
@@ -213,7 +226,9 @@ def struck(stack, old, omega, hollow, moves):
     weight = np.abs(places) ** hollow / (np.abs(places) ** hollow).sum()
     # velocities: of the pedestal's turn, and of the statue's centre and turn
     turning = moves / below.pivot_inertia()
-    inverse = np.diag([turning, 1 / above.mass, 1 / above.mass, 1 / above.centroidal_inertia])
+    inverse = np.diag(
+        [turning, 1 / above.mass, 1 / above.mass, 1 / above.centroidal_inertia]
+    )
     x = -old[0] * below.b + places * above.b
     # of the base less of the top
     normal = np.column_stack([x, np.zeros_like(x), np.ones_like(x), -(x - centre[0])])
@@ -230,7 +245,9 @@ def struck(stack, old, omega, hollow, moves):
         return inverse @ (normal.T @ (weight * np.maximum(0.0, -(normal @ v))))
 
     time = 1e4 * above.mass  # the approach decays as exp(-time / mass)
-    after = solve_ivp(rate, (0.0, time), before, method="LSODA", rtol=1e-9, atol=1e-12).y[:, -1]
+    after = solve_ivp(
+        rate, (0.0, time), before, method="LSODA", rtol=1e-9, atol=1e-12
+    ).y[:, -1]
     return after[0], after[3]
 
 
@@ -239,7 +256,10 @@ def errors_of_laws(count, hollow):
     rng = np.random.default_rng(4)
     found = []
     for _ in range(count):
-        stack, old = random_stack(rng, crooked=False), tuple(rng.choice([1, -1], 2).tolist())
+        stack, old = (
+            random_stack(rng, crooked=False),
+            tuple(rng.choice([1, -1], 2).tolist()),
+        )
         omega1 = rng.normal()
         omega = omega1, omega1 - 2 * old[1] * abs(rng.normal())
         # of the statue alone, on a pedestal that does not move
@@ -248,8 +268,12 @@ def errors_of_laws(count, hollow):
         here = []
         for law in ("position", "couple", "ratio", None):
             given = None if law is None else MeasuredRestitution((None, e), law)
-            _, after, _ = Model(stack, G, given).impact(old, (0, old[1]), (0.0, 0.0), omega)
-            here.append((after[1] - after[0] - (two - first)) / abs(omega[1] - omega[0]))
+            _, after, _ = Model(stack, G, given).impact(
+                old, (0, old[1]), (0.0, 0.0), omega
+            )
+            here.append(
+                (after[1] - after[0] - (two - first)) / abs(omega[1] - omega[0])
+            )
         found.append(here)
     return np.abs(found)
 

@@ -41,12 +41,16 @@ def test_a_box_has_the_mass_properties_of_the_closed_form(tmp_path: Path, ending
 
 def test_edges_of_a_box_and_its_worst_direction(box: Shape):
     diagonal = np.degrees(np.arctan2(DEPTH, WIDTH))
-    assert box.edges(diagonal, 0.001)[1] == pytest.approx(np.hypot(WIDTH, DEPTH) / 2, rel=1e-6)
+    assert box.edges(diagonal, 0.001)[1] == pytest.approx(
+        np.hypot(WIDTH, DEPTH) / 2, rel=1e-6
+    )
     direction, angle = box.worst_direction(0.001)
     assert direction % 180 == 0
     assert angle == pytest.approx(np.arctan(WIDTH / HEIGHT), rel=1e-6)
     narrow = box.block(0, 0.001, retreat=0.05)
-    assert (narrow.width, narrow.cg_offset) == pytest.approx((WIDTH - 0.1, 0.0), abs=1e-6)
+    assert (narrow.width, narrow.cg_offset) == pytest.approx(
+        (WIDTH - 0.1, 0.0), abs=1e-6
+    )
     with pytest.raises(InputError, match="cannot stand"):
         box.block(0, 0.001, retreat=0.3)
     # another scan moves points by its tolerance, up and down
@@ -104,7 +108,9 @@ def test_a_mesh_inside_out_is_turned_and_one_with_a_hole_refused(tmp_path: Path)
         read_shape(tmp_path / "hole.ply", mass=MASS)
 
 
-@pytest.mark.parametrize("content", [b"", b"solid nothing\nendsolid", b"ply\nformat ascii 1.0\n"])
+@pytest.mark.parametrize(
+    "content", [b"", b"solid nothing\nendsolid", b"ply\nformat ascii 1.0\n"]
+)
 @pytest.mark.parametrize("ending", [".ply", ".stl", ".obj", ".txt"])
 def test_what_is_no_mesh_is_refused(tmp_path: Path, content: bytes, ending: str):
     path = tmp_path / f"broken{ending}"

@@ -49,7 +49,11 @@ def test_neither_row_groups_nor_threads_change_a_number_and_a_failure_leaves_wha
     with pytest.raises(KeyboardInterrupt):
         stream(*case, cut, progress=stop)
     assert (tmp_path / "threads").read_bytes() == cut.read_bytes()
-    assert sorted(path.name for path in tmp_path.iterdir()) == ["cut", "threads", "whole"]
+    assert sorted(path.name for path in tmp_path.iterdir()) == [
+        "cut",
+        "threads",
+        "whole",
+    ]
 
 
 @pytest.mark.parametrize("which", ["cases", "bodies", "contacts"])
@@ -57,13 +61,20 @@ def test_the_file_is_the_table_of_the_outcomes(tmp_path, monkeypatch, which):
     monkeypatch.setattr(parquet, "ROWS", 2)
     path, seen = tmp_path / "ensemble.parquet", []
     # scales and intervals go with their motion, restitutions with their body
-    case = BODIES, MOTIONS, [DT, DT, 2 * DT], np.array([[0.5, 1.0], [0.8, 1.6], [0.3, 0.6]])
+    case = (
+        BODIES,
+        MOTIONS,
+        [DT, DT, 2 * DT],
+        np.array([[0.5, 1.0], [0.8, 1.6], [0.3, 0.6]]),
+    )
     restitution = [0.8, (0.4, 0.9)]
     columns = ("overturned", "certain_time", "impacts") if which == "cases" else None
     more = {"columns": columns, "progress": lambda *n: seen.append(n)}
     count = stream_overturns(*case, path, table=which, restitution=restitution, **more)
     result = overturns(*case, restitution=restitution)
-    assert seen[-1] == (count, count) == (result.overturned.size, result.overturned.size)
+    assert (
+        seen[-1] == (count, count) == (result.overturned.size, result.overturned.size)
+    )
     expected = result.table(which, columns).drop(columns="engine", errors="ignore")
     pd.testing.assert_frame_equal(
         pd.read_parquet(path), expected, check_dtype=False, check_exact=True
@@ -81,12 +92,20 @@ def test_the_file_holds_the_history_of_every_case_in_order(tmp_path):
     scales, dts = np.array([THREE, 1.1 * THREE]), [DT, 2 * DT]
     restitution = [0.9, (0.5, None)]
     count = stream_histories(
-        BODIES, TWO, dts, scales, path, restitution=restitution, progress=lambda *n: seen.append(n)
+        BODIES,
+        TWO,
+        dts,
+        scales,
+        path,
+        restitution=restitution,
+        progress=lambda *n: seen.append(n),
     )
     assert count == 12 and seen[-1] == (12, 12)
     expected = []
     for b, m, s in np.ndindex(2, *scales.shape):
-        response = simulate(BODIES[b], scales[m, s] * TWO[m], dts[m], restitution=restitution[b])
+        response = simulate(
+            BODIES[b], scales[m, s] * TWO[m], dts[m], restitution=restitution[b]
+        )
         fallen += response.overturned
         samples, bodies = response.theta.shape
         columns = {

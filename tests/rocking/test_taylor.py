@@ -10,13 +10,26 @@ from rockfrag.engines.kernels import equations as eq
 from rockfrag.engines.kernels.chatter import Hop, closed
 from rockfrag.engines.kernels.impact import stuck
 from rockfrag.engines.kernels.jit import entry_kernel
-from rockfrag.engines.kernels.lanes.stack_constants import IMPACT, ONE, TWO, fill_constants
-from rockfrag.engines.kernels.taylor import ORDER, SERIES, Step, fill_series, rates_of_two
+from rockfrag.engines.kernels.lanes.stack_constants import (
+    IMPACT,
+    ONE,
+    TWO,
+    fill_constants,
+)
+from rockfrag.engines.kernels.taylor import (
+    ORDER,
+    SERIES,
+    Step,
+    fill_series,
+    rates_of_two,
+)
 from rockfrag.engines.lanes import body_record
 
 from .kernel_impact import state_record
 
-BODY = body_record(Stack(Block(0.4, 0.3, 100.0), Block(0.3, 1.2, 200.0, cg_offset=0.01)).system())
+BODY = body_record(
+    Stack(Block(0.4, 0.3, 100.0), Block(0.3, 1.2, 200.0, cg_offset=0.01)).system()
+)
 H, GROUND, RISE = 0.01, 2.0, -1.5
 GRAVITY, LIFT = 9.0, 3.0  # of a ground that moves vertically too
 
@@ -41,12 +54,19 @@ def series_by_recurrence(mass, moments, gravity, angles, rates, ground):
         d = [f * c[2][j] - e * s[2][j] for j in range(k + 1)]
         right = []
         for i, (vx, vy) in enumerate(moments):
-            push = product(a, [vy * y - vx * x for x, y in zip(s[i], c[i], strict=True)], k)
-            weight = product(g, [vx * x + vy * y for x, y in zip(c[i], s[i], strict=True)], k)
+            push = product(
+                a, [vy * y - vx * x for x, y in zip(s[i], c[i], strict=True)], k
+            )
+            weight = product(
+                g, [vx * x + vy * y for x, y in zip(c[i], s[i], strict=True)], k
+            )
             square = [product(rate[1 - i], rate[1 - i], j) for j in range(k + 1)]
             bend = [(j + 1) * (j + 2) * theta[1 - i][j + 2] for j in range(k)] + [0.0]
             right.append(
-                weight - push - (1 - 2 * i) * product(d, square, k) - product(coupled, bend, k)
+                weight
+                - push
+                - (1 - 2 * i) * product(d, square, k)
+                - product(coupled, bend, k)
             )
         q = np.linalg.solve([[m11, coupled[0]], [coupled[0], m22]], right)
         for i in (0, 1):
@@ -81,7 +101,11 @@ def step_of(theta, omega):
     return mass, scaled, (GRAVITY, LIFT), theta, rates, (GROUND, RISE)
 
 
-CASES = [((0.10, -0.05), (0.4, -0.9)), ((0.02, 0.0), (-1.0, 2.0)), ((0.3, 0.05), (0.0, 0.0))]
+CASES = [
+    ((0.10, -0.05), (0.4, -0.9)),
+    ((0.02, 0.0), (-1.0, 2.0)),
+    ((0.3, 0.05), (0.0, 0.0)),
+]
 
 
 @pytest.mark.parametrize(("theta", "omega"), CASES)
@@ -102,7 +126,9 @@ def test_the_series_of_histories_and_of_lanes_are_those_of_the_recurrence(theta,
     coupled = m11, m22, e * c + f * s, f * c - e * s
     found = written_out(coupled, *weights, tuple(rates), ground, (*gravity, True))
     for item, angle in zip(found, plain, strict=True):
-        np.testing.assert_allclose(item, angle[1:] * np.arange(1, ORDER + 1), rtol=1e-9, atol=1e-17)
+        np.testing.assert_allclose(
+            item, angle[1:] * np.arange(1, ORDER + 1), rtol=1e-9, atol=1e-17
+        )
 
 
 @entry_kernel
@@ -121,7 +147,9 @@ def test_closing_at_once_is_an_impact_that_sticks(ground, theta, side):
     state, scratch = np.zeros(2, eq.STATE)
     state["theta1"], state["theta2"] = theta
     state["c1"], state["c2"] = (side, 1) if ground else (1, side)
-    state["omega1"], state["omega2"] = (side * 0.03, 0.4) if ground else (0.4, 0.4 + side * 0.03)
+    state["omega1"], state["omega2"] = (
+        (side * 0.03, 0.4) if ground else (0.4, 0.4 + side * 0.03)
+    )
     w1, w2 = float(state["omega1"]), float(state["omega2"])
     old = -0.1 * side
     hop = Hop(ground, side, old, math.cos(theta[1]), math.sin(theta[1]), w1, w2)

@@ -25,7 +25,9 @@ def test_the_survival_window_of_a_sine_pulse_between_its_two_modes_of_overturnin
 
     def searched(highest: float, narrowest: float):
         spacing = {"tolerance": 1e-3, "narrowest_resurrection": narrowest}
-        return find_thresholds(uniform(p, alpha), pulse, dt, highest, **spacing, restitution=[0.9])
+        return find_thresholds(
+            uniform(p, alpha), pulse, dt, highest, **spacing, restitution=[0.9]
+        )
 
     found = searched(9.0, 0.25)
     row = found.table.iloc[0]
@@ -42,14 +44,17 @@ def test_the_survival_window_of_a_sine_pulse_between_its_two_modes_of_overturnin
 
 @pytest.fixture(scope="module")
 def ensemble():
-    return benchmark_cases.blocks(4, seed=2), [m[:2500] for m in benchmark_cases.motions(3, seed=2)]
+    return benchmark_cases.blocks(4, seed=2), [
+        m[:2500] for m in benchmark_cases.motions(3, seed=2)
+    ]
 
 
 def test_thresholds_are_those_of_the_grid(ensemble):
     # nothing topples the last one
     bodies, motions = [*ensemble[0], Block(10.0, 5.0, 1.0)], ensemble[1]
     spacing, tolerance = 0.02, 0.002
-    width = spacing / 16  # the first power of two that makes it no wider than the tolerance
+    # the first power of two that makes it no wider than the tolerance
+    width = spacing / 16
     found = find_thresholds(
         bodies, motions, DT, 1.2, tolerance=tolerance, narrowest_resurrection=spacing
     )
@@ -63,7 +68,11 @@ def test_thresholds_are_those_of_the_grid(ensemble):
         if outcomes.any():
             assert 0 <= grid[outcomes.argmax()] - first + 1e-12 < spacing
         if outcomes[-1]:
-            late = grid[outcomes.size - outcomes[::-1].argmin()] if not outcomes.all() else grid[0]
+            late = (
+                grid[outcomes.size - outcomes[::-1].argmin()]
+                if not outcomes.all()
+                else grid[0]
+            )
             assert 0 <= late - row.always_overturning + 1e-12 < spacing
         for scale in (first, row.always_overturning):
             if not math.isnan(scale):
@@ -75,19 +84,25 @@ def test_thresholds_are_those_of_the_grid(ensemble):
 
 def test_both_ends_of_every_window_survive_and_it_overturns_just_outside(ensemble):
     bodies, motions = ensemble
-    found = find_thresholds(bodies, motions, DT, 1.5, tolerance=0.004, narrowest_resurrection=0.01)
+    found = find_thresholds(
+        bodies, motions, DT, 1.5, tolerance=0.004, narrowest_resurrection=0.01
+    )
     assert len(found.resurrections) > 3
     width = 0.01 / 4
     for row in found.resurrections.itertuples():
         scales = [row.lower - width, row.lower, row.upper, row.upper + width]
-        fallen = overturns(bodies[row.body], motions[row.motion], DT, scales).overturned[0, 0]
+        fallen = overturns(
+            bodies[row.body], motions[row.motion], DT, scales
+        ).overturned[0, 0]
         assert fallen[:3].tolist() == [True, False, False]
         assert fallen[3] or row.upper == 1.5
     assert len(found.resurrections) == found.table["resurrections"].sum()
 
 
 @pytest.mark.parametrize(("kind", "gate"), [("lone", 0.001), ("stack", 0.005)])
-@pytest.mark.parametrize("count", [1000, pytest.param(10_000, marks=pytest.mark.slow, id="10000")])
+@pytest.mark.parametrize(
+    "count", [1000, pytest.param(10_000, marks=pytest.mark.slow, id="10000")]
+)
 def test_few_outcomes_change_when_the_step_is_halved(kind, gate, count):
     cases = benchmark_cases.cases(kind, count)
     fragile = find_step_size_sensitive(
@@ -104,7 +119,14 @@ def test_outcomes_taken_with_long_steps_are_fragile_and_those_looked_at_follow_f
     rough = [motion[::10] for motion in cases.accelerations]
     fragile, again = (
         find_step_size_sensitive(
-            cases.bodies, rough, 0.1, cases.scales, sample=800, seed=4, step=3.0, threads=threads
+            cases.bodies,
+            rough,
+            0.1,
+            cases.scales,
+            sample=800,
+            seed=4,
+            step=3.0,
+            threads=threads,
         )
         for threads in (1, 2)
     )
@@ -132,7 +154,8 @@ def test_what_is_sure_does_not_flip_and_what_is_not_does():
 def test_a_smaller_perturbation_leaves_more_outcomes_as_they_are():
     case = STACK, polyline(0, 2000), DT, SCALES
     tiny, small, large = (
-        outcome_robustness(*case, perturbation=size, copies=12) for size in (1e-9, 1e-5, 1e-2)
+        outcome_robustness(*case, perturbation=size, copies=12)
+        for size in (1e-9, 1e-5, 1e-2)
     )
     assert 1 >= tiny.mean() >= small.mean() >= large.mean() < 1
     # most outcomes that do flip have kept away from every unstable equilibrium

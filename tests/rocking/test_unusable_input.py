@@ -106,7 +106,10 @@ def test_hostile_motions_end(body):
 
 def test_a_motion_may_be_given_in_every_usual_form():
     first = simulate(T2, MOTION)
-    for other in (simulate(T2, SHAKE, 0.01), simulate(T2, SHAKE.tolist(), np.float64(0.01))):
+    for other in (
+        simulate(T2, SHAKE, 0.01),
+        simulate(T2, SHAKE.tolist(), np.float64(0.01)),
+    ):
         np.testing.assert_array_equal(first.theta, other.theta)
     outcomes = overturns(T2, MOTION, scales=[0.5, 2.0])
     for motions, dt in (([MOTION], None), (SHAKE, 0.01), (SHAKE.tolist(), 0.01)):

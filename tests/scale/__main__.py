@@ -48,7 +48,9 @@ def main() -> int:
     parser.add_argument("motions", type=int, nargs="+", help="motions of each study")
     parser.add_argument("--amplitudes", type=int, default=200)
     parser.add_argument("--cores", type=int, default=2)
-    parser.add_argument("--folder", type=Path, help="where studies stay; a temporary one without")
+    parser.add_argument(
+        "--folder", type=Path, help="where studies stay; a temporary one without"
+    )
     asked = parser.parse_args()
     rows = []
     with tempfile.TemporaryDirectory() as scratch:
@@ -61,7 +63,9 @@ def main() -> int:
     return 0
 
 
-def measured(folder: Path, motions: int, amplitudes: int, cores: int) -> list[dict[str, object]]:
+def measured(
+    folder: Path, motions: int, amplitudes: int, cores: int
+) -> list[dict[str, object]]:
     """Run one study, and say what each of its stages took."""
     write_scale(folder, motions, amplitudes)
     project = folder / "project"
@@ -71,7 +75,9 @@ def measured(folder: Path, motions: int, amplitudes: int, cores: int) -> list[di
         (project / name).symlink_to(ROOT / name)
     begin, before = time.monotonic(), _of_children()
     command = [sys.executable, "workflow/run.py", str(folder / "study.yaml")]
-    subprocess.run([*command, "--cores", str(cores), "--quiet"], cwd=project, check=True)
+    subprocess.run(
+        [*command, "--cores", str(cores), "--quiet"], cwd=project, check=True
+    )
     wall, whole = time.monotonic() - begin, _of_children() - before
     histories = motions * CONFIGURATIONS * amplitudes
     stages: dict[str, list[tuple[float, float, float]]] = {}
@@ -109,7 +115,9 @@ def shown(table: pd.DataFrame) -> pd.DataFrame:
     by = ["motions", "histories"]
     seconds = table.pivot_table("processor_s", by, "stage")
     found = seconds[table["stage"].unique()].round().astype(int).add_suffix(" [s]")
-    found["all but IDA curve"] = (1 - seconds["ida"] / seconds.sum(axis=1)).map("{:.0%}".format)
+    found["all but IDA curve"] = (1 - seconds["ida"] / seconds.sum(axis=1)).map(
+        "{:.0%}".format
+    )
     found["memory [MiB]"] = table.groupby(by)["memory_mib"].max()
     found["wall [s]"] = table.groupby(by)["wall_s"].first()
     return found.reset_index()
@@ -122,14 +130,22 @@ def write_scale(folder: Path, motions: int, amplitudes: int) -> None:
     for name in ("specimens.csv", "configurations.csv"):
         shutil.copy(ROOT / "config" / name, folder / name)
     # a hair less than the step that fits exactly, lest rounding lose the last amplitude
-    step = 100 * math.expm1(math.log(HIGHEST_G / LOWEST_G) / (amplitudes - 1)) * (1 - 1e-9)
+    step = (
+        100 * math.expm1(math.log(HIGHEST_G / LOWEST_G) / (amplitudes - 1)) * (1 - 1e-9)
+    )
     if len(Amplitudes(LOWEST_G, HIGHEST_G, step).values_g) != amplitudes:
-        raise RuntimeError(f"{amplitudes} amplitudes do not come out of a step of {step} %")
+        raise RuntimeError(
+            f"{amplitudes} amplitudes do not come out of a step of {step} %"
+        )
     content = study_content() | {
         "study": "scale",
         "motions": {"catalogue": "catalogue.csv"},
         "title": f"{motions} synthetic motions",
-        "amplitudes": {"lowest_g": LOWEST_G, "highest_g": HIGHEST_G, "step_percent": step},
+        "amplitudes": {
+            "lowest_g": LOWEST_G,
+            "highest_g": HIGHEST_G,
+            "step_percent": step,
+        },
         "protocol": {"step_percent": 5},
         "fragility": {"measures": ["pga_g", "pgv_cm_s"], "confidence": 0.9},
     }

@@ -15,7 +15,9 @@ from .conftest import ida_table
 
 TOWERS, FLOORS = ("T1", "T2", "T3"), ("GF", "F3", "F5")
 AMPLITUDES = 0.05 * 1.02 ** np.arange(150)
-TEMPLATE = Path(__file__).resolve().parents[2] / "config" / "experiment" / "tests-template.csv"
+TEMPLATE = (
+    Path(__file__).resolve().parents[2] / "config" / "experiment" / "tests-template.csv"
+)
 
 HEADER = "test,object,pedestal,earthquake,floor,lower_g,upper_g,censored,overturned_body,repetition,remark"
 # synthetic: round numbers that nobody measured
@@ -33,7 +35,9 @@ def table(tmp_path):
 
     def write(*rows, header=HEADER):
         path = tmp_path / "measured.csv"
-        path.write_text("\n".join(["# synthetic", header, *rows]) + "\n", encoding="utf-8")
+        path.write_text(
+            "\n".join(["# synthetic", header, *rows]) + "\n", encoding="utf-8"
+        )
         return path
 
     return write
@@ -54,7 +58,9 @@ def test_a_measured_table_becomes_a_table_of_tests(table):
 
 def test_the_laboratory_may_report_another_unit_figure_and_motion(table):
     other = HEADER.replace("_g", "_m_s2")
-    tests = read_measured(table("a,T1,NP,Kobe,GF,3.924,4.905,none,statue,1,", header=other))
+    tests = read_measured(
+        table("a,T1,NP,Kobe,GF,3.924,4.905,none,statue,1,", header=other)
+    )
     columns = ["lower_g", "upper_g", "amplitude_g"]
     assert tests.loc[0, columns].tolist() == pytest.approx([0.4, 0.5, 0.4])
     row = "a,T1,NP,Kobe,GF,0.4,0.5,none,statue,1,,0.45,KAK090"
@@ -79,7 +85,10 @@ def test_the_template_is_an_empty_table():
         ({"censored": "left"}, "column censored: must be one of none, right"),
         ({"overturned_body": ""}, "column overturned_body: names what overturned"),
         ({"overturned_body": "pedestal"}, "column overturned_body: is pedestal in"),
-        ({"repetition": "1.5"}, "column repetition: must be a whole number from 1, got 1.5"),
+        (
+            {"repetition": "1.5"},
+            "column repetition: must be a whole number from 1, got 1.5",
+        ),
         ({"test": ""}, "column test: expected a name"),
         ({"remark": "a,b"}, "line 3: expected 11 cells"),
     ],
@@ -123,5 +132,6 @@ def test_measured_and_simulated_tests_are_the_same_table(tmp_path):
     # written down as a laboratory would, and read as a measured table
     simulated[HEADER.split(",")].to_csv(path, index=False)
     pd.testing.assert_frame_equal(
-        read_measured(path).drop(columns="definition"), simulated.drop(columns="definition")
+        read_measured(path).drop(columns="definition"),
+        simulated.drop(columns="definition"),
     )

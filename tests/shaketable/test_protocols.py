@@ -43,8 +43,12 @@ def vase(overturned=WINDOW):
 
 
 def test_level_series_climb_as_their_names_say():
-    assert LinearSteps(0.1, 0.1).amplitudes(0.5) == pytest.approx([0.1, 0.2, 0.3, 0.4, 0.5])
-    assert GeometricSteps(0.1, 1.0).amplitudes(0.8) == pytest.approx([0.1, 0.2, 0.4, 0.8])
+    assert LinearSteps(0.1, 0.1).amplitudes(0.5) == pytest.approx(
+        [0.1, 0.2, 0.3, 0.4, 0.5]
+    )
+    assert GeometricSteps(0.1, 1.0).amplitudes(0.8) == pytest.approx(
+        [0.1, 0.2, 0.4, 0.8]
+    )
     assert LinearSteps(0.1, 0.1).amplitudes(0.05).size == 0
 
 
@@ -61,7 +65,9 @@ def test_a_table_of_tests_has_the_schema_of_the_contract():
     assert table["definition"].tolist() == list(DEFINITIONS)
     assert (table["amplitude_g"] == table["lower_g"]).all()
     assert (table["overturned_body"] == "statue").all()
-    assert read_ida(vase().iloc[:0], Protocol(LinearSteps(1, 1))).dtypes.equals(table.dtypes)
+    assert read_ida(vase().iloc[:0], Protocol(LinearSteps(1, 1))).dtypes.equals(
+        table.dtypes
+    )
     table = read_ida(vase(), Protocol(LinearSteps(0.05, 0.05), definition="at"))
     assert (table["amplitude_g"] == table["upper_g"]).all()
 
@@ -85,21 +91,29 @@ def test_the_shakers_limit_censors_the_step_protocol_only():
 
 def test_overturning_at_the_first_step_leaves_nothing_to_report_before_it():
     table = read_ida(vase(np.ones(GRID.size, bool)), Protocol(LinearSteps(0.2, 0.1)))
-    expected = {"lower_g": 0, "censored": "none", "remark": "overturned at the first step"}
+    expected = {
+        "lower_g": 0,
+        "censored": "none",
+        "remark": "overturned at the first step",
+    }
     for row in table.to_dict("records"):
         assert expected.items() <= row.items() and math.isnan(row["amplitude_g"])
 
 
 def test_unaccounted_mass_raises_light_specimens_more():
     lab = ForceOverMass({"T1": 20.0, "P T1": 50.0}, unaccounted_mass=10.0)
-    assert lab.show(Outcome(0.2, 0.4), "T1") == Outcome(pytest.approx(0.3), pytest.approx(0.6))
+    assert lab.show(Outcome(0.2, 0.4), "T1") == Outcome(
+        pytest.approx(0.3), pytest.approx(0.6)
+    )
     assert lab.show(Outcome(0.2, 0.4), "P T1").upper_g == pytest.approx(0.48)
     with pytest.raises(InputError, match="no mass is given for configuration 'T9'"):
         lab.show(Outcome(0.2, 0.4), "T9")
 
 
 def test_a_clipped_accelerometer_gives_a_lower_bound_only():
-    protocol = Protocol(LinearSteps(0.05, 0.1), limit_g=1.0, measurement=Accelerometer(0.5))
+    protocol = Protocol(
+        LinearSteps(0.05, 0.1), limit_g=1.0, measurement=Accelerometer(0.5)
+    )
     shown = read_ida(vase(), protocol, definitions=["step_protocol"]).iloc[0]
     assert (shown["lower_g"], shown["censored"]) == (pytest.approx(0.45), "right")
     assert protocol.measurement.show(Outcome(0.55, 0.65), "T1").lower_g == 0.5
@@ -120,14 +134,17 @@ def test_the_bounds_hold_a_survival_and_an_overturning(outcomes, step, start):
 
 @settings(derandomize=True)
 @given(outcomes=ida_curves, step=st.floats(0.003, 0.3))
-def test_no_protocol_overturns_below_the_first_overturning_which_fine_steps_find(outcomes, step):
+def test_no_protocol_overturns_below_the_first_overturning_which_fine_steps_find(
+    outcomes, step
+):
     amplitudes = grid(outcomes)
     first = first_overturning(amplitudes, outcomes)
     fine, outcome = (
         step_protocol(amplitudes, outcomes, Protocol(LinearSteps(0.05, size)))
         for size in (0.002, step)
     )
-    assert repr(fine) == repr(first)  # as text: an upper bracket that is NaN is not equal to itself
+    # as text: an upper bracket that is NaN is not equal to itself
+    assert repr(fine) == repr(first)
     assert outcome.censored or outcome.upper_g >= first.upper_g
 
 
@@ -174,7 +191,9 @@ def table_of(amplitudes: dict[str, list[float]], floor: str = "up") -> pd.DataFr
         for i, value in enumerate(values)
     ]
     names = ["configuration", "pedestal", "earthquake", "motion", "amplitude_g"]
-    return pd.DataFrame(rows, columns=names).assign(object="vase", floor=floor, repetition=1)
+    return pd.DataFrame(rows, columns=names).assign(
+        object="vase", floor=floor, repetition=1
+    )
 
 
 def means(tests: pd.DataFrame, by: str) -> pd.DataFrame:
@@ -184,9 +203,13 @@ def means(tests: pd.DataFrame, by: str) -> pd.DataFrame:
 
 def test_the_ratio_of_the_means_is_the_mean_ratio_of_the_pairs_that_both_overturned():
     # with its pedestal the vase survives the strongest motion: the mean of what is left would fall
-    found = means(table_of({"NP": [0.4, 0.5, 1.5], "P": [0.5, 0.6, np.nan]}), "configuration")
+    found = means(
+        table_of({"NP": [0.4, 0.5, 1.5], "P": [0.5, 0.6, np.nan]}), "configuration"
+    )
     expected = np.sqrt(0.5 / 0.4 * 0.6 / 0.5)
-    assert found["mean_g"]["vase P"] / found["mean_g"]["vase NP"] == pytest.approx(expected)
+    assert found["mean_g"]["vase P"] / found["mean_g"]["vase NP"] == pytest.approx(
+        expected
+    )
     assert found["motions"].tolist() == [2, 2]
 
 

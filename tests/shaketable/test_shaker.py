@@ -79,7 +79,9 @@ def test_the_full_stroke_censors_loma_prieta_with_t1_and_nothing_else(records):
         limits_g={f"{name}_ground": limit for name, limit in table["limit_g"].items()},
     )
     censored = tests[tests["censored"] == "right"]
-    assert censored[["object", "motion"]].to_numpy().tolist() == [["T1", "Loma_Prieta_ground"]]
+    assert censored[["object", "motion"]].to_numpy().tolist() == [
+        ["T1", "Loma_Prieta_ground"]
+    ]
     assert censored["lower_g"].iloc[0] == pytest.approx(0.40, abs=0.005)
 
 
@@ -87,20 +89,28 @@ def test_the_force_is_the_moved_mass_times_the_acceleration():
     shaker = Shaker(armature_mass=3.0, table_mass=4.0, stroke=100.0)
     motion = versine(10.0)
     assert shaker.demand(motion, 2.0, payload=5.0).force == pytest.approx(12 * 2 * 9.81)
-    assert shaker.limit(motion, payload=5.0) == (pytest.approx(500 / 12 / 9.81), "force")
+    assert shaker.limit(motion, payload=5.0) == (
+        pytest.approx(500 / 12 / 9.81),
+        "force",
+    )
 
 
 def test_a_velocity_limit_counts_where_there_is_one():
     motion = versine(1.0)
     speed = Shaker().demand(motion, 1.0).velocity
     assert speed == pytest.approx(9.81 / (2 * np.pi), rel=1e-4)
-    assert Shaker(velocity=0.1).limit(motion) == (pytest.approx(0.1 / speed), "velocity")
+    assert Shaker(velocity=0.1).limit(motion) == (
+        pytest.approx(0.1 / speed),
+        "velocity",
+    )
 
 
 def test_no_filter_is_needed_below_the_limit_and_a_milder_one_just_above(records):
     motion, shaker = records["Loma_Prieta"], Shaker()
     assert required_corner(shaker, motion, 0.40) == 0.0
-    corners = [required_corner(shaker, motion, amplitude) for amplitude in (0.41, 0.5, 0.8)]
+    corners = [
+        required_corner(shaker, motion, amplitude) for amplitude in (0.41, 0.5, 0.8)
+    ]
     assert 0 < corners[0] <= corners[1] <= corners[2] < 1.0
 
 
@@ -121,7 +131,9 @@ def test_the_produced_motion_fits_and_returns_to_where_it_started(records, name)
 
 def test_what_the_band_cannot_hold_is_not_produced():
     slow, fast = versine(0.1), versine(5.0)
-    ratio = [produced_motion(Shaker(), m, 0.05).pga / (0.05 * 9.81) for m in (slow, fast)]
+    ratio = [
+        produced_motion(Shaker(), m, 0.05).pga / (0.05 * 9.81) for m in (slow, fast)
+    ]
     assert ratio[0] < 0.6  # what is left is the jump at its ends
     assert ratio[1] == pytest.approx(1, abs=0.02)
 
@@ -137,7 +149,10 @@ def test_a_force_that_no_filter_helps_is_refused():
         ({"stroke": 0.0}, "stroke: expected a positive"),
         ({"velocity": -1.0}, "velocity: expected a positive"),
         ({"start": "left"}, "off-centre or centred"),
-        ({"table_mass": -1.0}, "table_mass: expected a number of kg that is not negative"),
+        (
+            {"table_mass": -1.0},
+            "table_mass: expected a number of kg that is not negative",
+        ),
         ({"armature_mass": 0.0, "table_mass": 0.0}, "nothing moves"),
         ({"payload": -1.0}, "payload: expected a number of kg that is not negative"),
     ],
@@ -155,7 +170,10 @@ def test_shakers_that_make_no_sense_are_refused(change, message):
         ("force_n: 500 N", "key force_n: expected a number of newtons"),
         ("stroke: 0.29", "key stroke: .* without a unit"),
         ("stroke_m: -1", "shaker.yaml: key stroke_m: expected a length above 0 m"),
-        ("lowest_hz: 300", "shaker.yaml: shaker: the band from 300 to 200.0 Hz is empty"),
+        (
+            "lowest_hz: 300",
+            "shaker.yaml: shaker: the band from 300 to 200.0 Hz is empty",
+        ),
     ],
 )
 def test_files_that_describe_no_shaker_are_refused(tmp_path, text, message):

@@ -23,18 +23,24 @@ SMALL = case_tables(__file__)
 
 def test_a_median_lies_between_the_levels_where_half_is_passed():
     levels = np.array([1.0, 2.0, 4.0])
-    assert median(np.array([0.0, 0.25, 0.75]), levels) == pytest.approx(2 * math.sqrt(2))
+    assert median(np.array([0.0, 0.25, 0.75]), levels) == pytest.approx(
+        2 * math.sqrt(2)
+    )
     # where more shaking topples fewer, the first half counts
     assert median(np.array([0.4, 0.6, 0.2]), levels) == pytest.approx(math.sqrt(2))
     assert math.isnan(median(np.array([0.6, 0.7, 0.8]), levels))
     assert math.isnan(median(np.array([0.1, 0.2, 0.3]), levels))
 
 
-def test_a_study_of_bodies_in_space_gives_medians_and_a_report(tmp_path, monkeypatch, made_motions):
+def test_a_study_of_bodies_in_space_gives_medians_and_a_report(
+    tmp_path, monkeypatch, made_motions
+):
     motions = made_motions(12)
     pairs = list(zip(motions[::2], motions[1::2], strict=True))
     names = [str(first.metadata["earthquake"]) for first, _ in pairs]
-    monkeypatch.setattr(stage, "wide_set", lambda every: (pairs[::every], names[::every]))
+    monkeypatch.setattr(
+        stage, "wide_set", lambda every: (pairs[::every], names[::every])
+    )
     study = any_study(SMALL, "space.yaml")
     assert isinstance(study, SpaceStudy)
     folder = run_stages(study, tmp_path)
@@ -56,14 +62,20 @@ def test_a_study_of_bodies_in_space_gives_medians_and_a_report(tmp_path, monkeyp
     assert "Base round: in space" in page
     live = json.loads(page.split('id="live-data">')[1].split("</script>")[0])
     names = [body["name"] for body in live["bodies"]]
-    assert names == [f"{base}, height over width 4, 1 m" for base in ("square", "round")]
+    assert names == [
+        f"{base}, height over width 4, 1 m" for base in ("square", "round")
+    ]
     for text, component in zip(live["motions"][0]["samples"], pairs[0], strict=True):
         samples = np.frombuffer(base64.b64decode(text))
         np.testing.assert_array_equal(samples, component.acceleration)
 
 
-def test_bodies_whose_base_differs_from_record_to_record_are_not_shown_live(made_motions):
-    study = any_study(SMALL | {"space": SMALL["space"] | {"base_spread": 0.01}}, "space.yaml")
+def test_bodies_whose_base_differs_from_record_to_record_are_not_shown_live(
+    made_motions,
+):
+    study = any_study(
+        SMALL | {"space": SMALL["space"] | {"base_spread": 0.01}}, "space.yaml"
+    )
     assert _live(study, made_motions(2)) == ""
 
 
@@ -86,7 +98,9 @@ def of_a_catalogue(folder):
     return any_study(SMALL | {"space": space}, folder / "space.yaml")
 
 
-def test_the_pairs_of_a_catalogue_shake_bodies_in_space(pairs_of_a_catalogue, made_motions):
+def test_the_pairs_of_a_catalogue_shake_bodies_in_space(
+    pairs_of_a_catalogue, made_motions
+):
     study = of_a_catalogue(pairs_of_a_catalogue)
     named = {Path(file).name for file in study.files}
     assert named == {"mine.csv", *(f"{i}.txt" for i in range(4))}
@@ -94,9 +108,13 @@ def test_the_pairs_of_a_catalogue_shake_bodies_in_space(pairs_of_a_catalogue, ma
     assert earthquakes == ["first", "second"]
     for factor, pair, first in zip((2, 1), pairs, (0, 2), strict=True):
         for motion, made in zip(pair, made_motions(4)[first : first + 2], strict=True):
-            np.testing.assert_allclose(motion.acceleration, factor * made.acceleration, atol=1e-5)
+            np.testing.assert_allclose(
+                motion.acceleration, factor * made.acceleration, atol=1e-5
+            )
     folder = run_stages(study, pairs_of_a_catalogue / "results")
-    assert "the records of mine.csv" in (folder / "report.html").read_text(encoding="utf-8")
+    assert "the records of mine.csv" in (folder / "report.html").read_text(
+        encoding="utf-8"
+    )
     with (pairs_of_a_catalogue / "mine.csv").open("a") as catalogue:
         catalogue.write("c,third,0.txt,,g,,\n")
     with pytest.raises(InputError, match="motion c has no second component"):

@@ -36,7 +36,12 @@ def fragility():
         peak, velocity, capacity = np.exp(0.2 * rng.normal(size=3)) * [0.3, 60, 0.4]
         measures.append((name, peak, peak * velocity, 2 * peak, peak, peak))
         capacity *= 1.5 if floor == "hall" else 1
-        about = {"configuration": "statue", "motion": name, "earthquake": f"e{k}", "floor": floor}
+        about = {
+            "configuration": "statue",
+            "motion": name,
+            "earthquake": f"e{k}",
+            "floor": floor,
+        }
         swept = {"amplitude_g": amplitude, "overturned": amplitude > capacity}
         rows.append(pd.DataFrame(swept | about))
     measures = pd.DataFrame(measures, columns=["name", *MEASURES])
@@ -53,7 +58,9 @@ def fragility():
     return floor_curves({"overturns": ida_curves}, measures, study, "abc")
 
 
-def test_floors_never_share_a_curve_and_measures_are_named_after_them(fragility, tmp_path):
+def test_floors_never_share_a_curve_and_measures_are_named_after_them(
+    fragility, tmp_path
+):
     curves, fractions = fragility
     names = curves.groupby("floor")["im"].unique()
     assert set(names["hall"]) == {"PGA", "PGV", "SA(0.3s)", "SA(1s)", "AvgSA"}
@@ -69,18 +76,34 @@ def test_floors_never_share_a_curve_and_measures_are_named_after_them(fragility,
     assert 0.05 < rocks.loc["pgv_cm_s", "beta"] < 0.5
     # files are one per floor and measure
     written = export_curves(curves, tmp_path, fractions)
-    assert {"fragility_pga.xml", "fragility_avgsa.xml", "fragility_pfa_loft.csv"} <= set(written)
+    assert {
+        "fragility_pga.xml",
+        "fragility_avgsa.xml",
+        "fragility_pfa_loft.csv",
+    } <= set(written)
     assert not [name for name in written if name.endswith(".xml") and "loft" in name]
     assert all((tmp_path / name).exists() for name in written)
-    assert "Peak Floor Acceleration" in (tmp_path / "fragility_pfa_loft.csv").read_text()
+    assert (
+        "Peak Floor Acceleration" in (tmp_path / "fragility_pfa_loft.csv").read_text()
+    )
 
 
 def test_of_many_tests_some_evenly_among_them_are_looked_at(monkeypatch, noise):
     monkeypatch.setattr(tests_stage, "MOST_TESTED", 4)
     known = {f"m{k}": noise(k, 300, 0.02, tapered=True) for k in range(10)}
-    about = {"configuration": "T", "object": "T", "pedestal": "NP", "earthquake": "e", "floor": "g"}
-    tests = pd.DataFrame({"motion": [*known], "test": [*known], **about, "amplitude_g": 0.4})
-    table = tests_stage.validity_table(tests, [replace(STATUE.system(), name="T")], known)
+    about = {
+        "configuration": "T",
+        "object": "T",
+        "pedestal": "NP",
+        "earthquake": "e",
+        "floor": "g",
+    }
+    tests = pd.DataFrame(
+        {"motion": [*known], "test": [*known], **about, "amplitude_g": 0.4}
+    )
+    table = tests_stage.validity_table(
+        tests, [replace(STATUE.system(), name="T")], known
+    )
     assert list(table["motion"]) == ["m0", "m2", "m5", "m7"]
 
 
@@ -107,7 +130,12 @@ def pairs(earthquakes: str, step: float = 0.01) -> pd.DataFrame:
         for side, amplitude in (("NP", 0.5), ("P", 0.5 + step * number)):
             rows.append((side, earthquake, f"motion {number}", *[amplitude] * 3))
     names = ["pedestal", "earthquake", "motion", "amplitude_g", "lower_g", "upper_g"]
-    about = {"object": "T1", "floor": "GF", "definition": "step_protocol", "censored": "none"}
+    about = {
+        "object": "T1",
+        "floor": "GF",
+        "definition": "step_protocol",
+        "censored": "none",
+    }
     return pd.DataFrame(rows, columns=names).assign(**about)
 
 
@@ -121,7 +149,10 @@ def test_the_pedestal_effect_of_a_study_with_one_floor_is_estimated():
 
 def test_a_reading_without_any_pair_leaves_the_numbers_of_the_others_numbers():
     # one motion: neither limits nor p values; a table that follows no motion: no effect at all
-    known, other = pairs("A", 0.0), pairs("A", 0.0).assign(definition="step_protocol_shaker")
+    known, other = (
+        pairs("A", 0.0),
+        pairs("A", 0.0).assign(definition="step_protocol_shaker"),
+    )
     other = other.assign(censored="right", upper_g=np.inf)
     found = pedestal_tables(pd.concat([known, other]), seed=1, slenderness={"T1": 3.0})
     assert found["effects"]["lower"].dtype == float
@@ -148,7 +179,9 @@ def test_measured_tests_say_what_they_can_carry(tmp_path):
     # a full table has curves and an effect
     rng, rows = np.random.default_rng(2), []
     levels = {"T1": 0.5, "T2": 0.4, "T3": 0.3}
-    for name, *where in itertools.product(levels, "ABCD", ("GF", "F3", "F5"), ("P", "NP")):
+    for name, *where in itertools.product(
+        levels, "ABCD", ("GF", "F3", "F5"), ("P", "NP")
+    ):
         earthquake, floor, side = where
         a = levels[name] * np.exp(0.1 * rng.normal())
         about = f"synthetic {len(rows)},{name},{side},{earthquake},{floor}"

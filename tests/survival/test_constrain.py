@@ -48,7 +48,13 @@ def made_branches(*factors: float, weights: list[float] | None = None) -> list[B
     ]
 
 
-def rock(years: float, theta: float = 0.4, beta: float = 0.3, sd: float = 0.0, name: str = "rock"):
+def rock(
+    years: float,
+    theta: float = 0.4,
+    beta: float = 0.3,
+    sd: float = 0.0,
+    name: str = "rock",
+):
     age = Age(years, years)
     return StandingObject(name, PGA, lognormal_coefficients(theta, beta), sd, age)
 
@@ -63,7 +69,9 @@ def test_no_time_leaves_the_weights_as_do_equal_branches_and_long_time_leaves_th
     assert found.information == pytest.approx(0.0, abs=1e-12)
     branches = made_branches(0.5, 1.0, 2.0, weights=[0.2, 0.5, 0.3])
     assert weighed(branches, [rock(1e-9)]).weights == pytest.approx([0.2, 0.5, 0.3])
-    assert weighed(branches, [rock(1e6)]).weights == pytest.approx([1.0, 0.0, 0.0], abs=1e-12)
+    assert weighed(branches, [rock(1e6)]).weights == pytest.approx(
+        [1.0, 0.0, 0.0], abs=1e-12
+    )
 
 
 def test_independent_objects_multiply_and_identical_ones_with_shared_error_do_not():
@@ -72,7 +80,9 @@ def test_independent_objects_multiply_and_identical_ones_with_shared_error_do_no
     alone = weighed(branches, [first]).log_survival
     apart = weighed(branches, [first, other], shared_error=0.0, same_earthquakes=False)
     assert apart.log_survival == pytest.approx(2 * alone, rel=5e-3)
-    together = weighed(branches, [first, other], shared_error=1.0, same_earthquakes=False)
+    together = weighed(
+        branches, [first, other], shared_error=1.0, same_earthquakes=False
+    )
     assert (together.log_survival > 2 * alone + 0.02).all()
 
 
@@ -84,9 +94,13 @@ def test_an_object_that_came_later_is_exposed_to_fewer_earthquakes():
         x = np.geomspace(1e-3, 50, 20_001)
         fall = -np.diff(k0 * x**-SLOPE)
         middle = np.sqrt(x[1:] * x[:-1])
-        p_old, p_young = (special.ndtr(np.log(middle / theta) / 0.3) for theta in (0.4, 0.3))
+        p_old, p_young = (
+            special.ndtr(np.log(middle / theta) / 0.3) for theta in (0.4, 0.3)
+        )
         both = 1 - (1 - p_old) * (1 - p_young)
-        assert value == pytest.approx(-(1500 * (p_old @ fall) + 500 * (both @ fall)), rel=2e-3)
+        assert value == pytest.approx(
+            -(1500 * (p_old @ fall) + 500 * (both @ fall)), rel=2e-3
+        )
 
 
 def test_velocity_that_scatters_widens_a_fragility_in_two_measures_as_normal_theory_says():
@@ -98,14 +112,18 @@ def test_velocity_that_scatters_widens_a_fragility_in_two_measures_as_normal_the
     merged = StandingObject("merged", PGA, one, 0.0, Age(1000, 1000))
     branches = made_branches(0.1, 0.3)
     found = weighed(branches, [body], velocity=VelocityRatio(0.08, s))
-    assert found.log_survival == pytest.approx(weighed(branches, [merged]).log_survival, rel=2e-3)
+    assert found.log_survival == pytest.approx(
+        weighed(branches, [merged]).log_survival, rel=2e-3
+    )
 
 
 def test_drawn_histories_of_sites_recover_the_weights():
     """Draw a branch, then a history of T years, and keep the histories in which the object stands."""
     rng = np.random.default_rng(12)
     factors, weights, years = np.array([0.3, 1.0, 3.0]), [0.3, 0.4, 0.3], 2000.0
-    found = weighed(made_branches(*factors, weights=weights), [rock(years, sd=0.3)], samples=8192)
+    found = weighed(
+        made_branches(*factors, weights=weights), [rock(years, sd=0.3)], samples=8192
+    )
     n = 20_000
     branch = rng.choice(3, n, p=weights)
     theta = 0.4 * np.exp(rng.normal(0, 0.3, n))
@@ -114,7 +132,9 @@ def test_drawn_histories_of_sites_recover_the_weights():
     counts = rng.poisson(years * 1e-4 * factors[branch] * lowest**-SLOPE)
     history = np.repeat(np.arange(n), counts)
     level = lowest * rng.random(history.size) ** (-1 / SLOPE)
-    topples = rng.random(history.size) < special.ndtr(np.log(level / theta[history]) / 0.3)
+    topples = rng.random(history.size) < special.ndtr(
+        np.log(level / theta[history]) / 0.3
+    )
     stands = np.bincount(history[topples], minlength=n) == 0
     kept = np.bincount(branch[stands], minlength=3) / stands.sum()
     error = np.sqrt(kept * (1 - kept) / stands.sum())
@@ -125,7 +145,9 @@ def test_curves_before_are_the_weighted_mean_and_ratios_follow_from_the_curves()
     branches = made_branches(0.5, 1.0, 2.0, weights=[0.25, 0.5, 0.25])
     found = weighed(branches, [rock(3000)])
     curves = found.curves()
-    mean = sum(b.weight * b.curves[PGA].rate(curves["level"].to_numpy()) for b in branches)
+    mean = sum(
+        b.weight * b.curves[PGA].rate(curves["level"].to_numpy()) for b in branches
+    )
     assert curves["mean_before"].to_numpy() == pytest.approx(mean)
     fractiles = curves.filter(regex="fractile.*before").to_numpy()
     assert (np.diff(fractiles, axis=1) >= 0).all()
@@ -155,7 +177,12 @@ CASES = case_tables(__file__)
 def write_branches(path):
     """A table of three branches, power laws."""
     rows = [
-        {"branch": f"b{i}", "weight": w, "pga_g": x, "annual_rate": 1e-4 * factor * x**-2.5}
+        {
+            "branch": f"b{i}",
+            "weight": w,
+            "pga_g": x,
+            "annual_rate": 1e-4 * factor * x**-2.5,
+        }
         for i, (w, factor) in enumerate([(0.25, 0.5), (0.5, 1.0), (0.25, 2.0)])
         for x in np.geomspace(0.02, 3.0, 12)
     ]
@@ -246,22 +273,29 @@ def test_an_object_may_be_simulated(own_records, tmp_path, velocity):
 
 
 @pytest.mark.parametrize(
-    ("more", "words"), [(", pga: 0.3 g", "key pga has no effect"), (", width: 0 cm", "width")]
+    ("more", "words"),
+    [(", pga: 0.3 g", "key pga has no effect"), (", width: 0 cm", "width")],
 )
-def test_a_simulated_object_is_refused_in_one_sentence(own_records, tmp_path, capsys, more, words):
+def test_a_simulated_object_is_refused_in_one_sentence(
+    own_records, tmp_path, capsys, more, words
+):
     site = simulated_site(tmp_path, own_records / "catalogue.csv", more)
     status, said = run(site, capsys)
     assert status == 2 and words in said.err and said.err.count("\n") == 1
 
 
-def test_curves_that_end_before_the_level_decided_on_give_no_number_that_is_none(tmp_path, capsys):
+def test_curves_that_end_before_the_level_decided_on_give_no_number_that_is_none(
+    tmp_path, capsys
+):
     # velocities that are exceeded oftener than once in ten thousand years, whatever the branch
     (tmp_path / "b.csv").write_text(CASES["files"]["ending.csv"])
     site = tmp_path / "site.yaml"
     site.write_text(CASES["files"]["ending.yaml"])
     assert main(["constrain", str(site), "--output", str(tmp_path / "out")]) == 0
     shown = capsys.readouterr().out
-    assert not re.search(r"\bnan\b", shown + (tmp_path / "out" / "Chapel.html").read_text())
+    assert not re.search(
+        r"\bnan\b", shown + (tmp_path / "out" / "Chapel.html").read_text()
+    )
     assert "lies beyond the curves" in shown and "pinnacle tells most" in shown
 
 
@@ -294,7 +328,8 @@ def rows_of(path):
 def calculated(tmp_path_factory):
     """What OpenQuake exported of a calculation of its own."""
     pytest.importorskip(
-        "openquake.calculators.base", reason="openquake.engine is not installed, or cannot run here"
+        "openquake.calculators.base",
+        reason="openquake.engine is not installed, or cannot run here",
     )
     folder = tmp_path_factory.mktemp("openquake")
     # one source with two rates of earthquakes, two ground motion models: four branches of unequal weight
@@ -303,7 +338,11 @@ def calculated(tmp_path_factory):
     environment = os.environ | {"OQ_DISTRIBUTE": "no", "OQ_DATADIR": str(folder)}
     environment |= {"HOME": str(folder)}
     subprocess.run(
-        [sys.executable, "-c", RUN], cwd=folder, check=True, capture_output=True, env=environment
+        [sys.executable, "-c", RUN],
+        cwd=folder,
+        check=True,
+        capture_output=True,
+        env=environment,
     )
     return folder
 
@@ -353,7 +392,9 @@ def test_exports_are_read_reweighted_and_read_back(tmp_path, monkeypatch):
     stands = np.array([0.2, 0.5, 0.3]) * np.exp(-AGE * toppling)
     assert table["weight"].to_numpy() == pytest.approx(stands / stands.sum(), rel=2e-3)
     again = read_branches(names, "constrained/site-weights.csv")
-    assert [branch.weight for branch in again] == pytest.approx(table["weight"].tolist())
+    assert [branch.weight for branch in again] == pytest.approx(
+        table["weight"].tolist()
+    )
     for n, branch in enumerate(again):
         assert branch.curves[PGA].rate(0.1) == pytest.approx(rates[n], rel=1e-5)
 

@@ -23,7 +23,9 @@ SIZES = st.floats(0.05, 3.0)
 
 
 @given(SIZES, SIZES, st.floats(-0.2, 0.2), st.floats(-0.02, 0.02), st.floats(-0.2, 0.2))
-def test_a_system_has_the_same_bits_as_the_blocks_that_wrote_it(width, height, aside, lean, offset):
+def test_a_system_has_the_same_bits_as_the_blocks_that_wrote_it(
+    width, height, aside, lean, offset
+):
     # a high block that leans may have nothing under its centre of gravity
     assume(abs(aside) * width + abs(lean) * height < 0.45 * width)
     block = Block(width, height, 40.0, cg_offset=aside * width, lean=lean)
@@ -48,18 +50,27 @@ def test_boxes_and_cylinders_in_space_are_seen_as_planar_blocks():
     assert box.body.seen_along(90.0).inertia == pytest.approx(50 * (0.2**2 + 1.0) / 12)
     drum = Block(0.4, 1.0, 50.0, round=True)
     assert drum.body.base == Circle(0.2)
-    assert np.diag(drum.body.tensor) == pytest.approx([50 * 1.12 / 12] * 2 + [50 * 0.04 / 2])
-    assert drum.body.seen_along(217.0).inertia == pytest.approx(drum.centroidal_inertia, rel=1e-14)
+    assert np.diag(drum.body.tensor) == pytest.approx(
+        [50 * 1.12 / 12] * 2 + [50 * 0.04 / 2]
+    )
+    assert drum.body.seen_along(217.0).inertia == pytest.approx(
+        drum.centroidal_inertia, rel=1e-14
+    )
 
 
 def test_a_body_turned_by_some_angle_is_seen_as_its_tensor_says():
     tensor = ((2.0, 0.3, 0.1), (0.3, 1.5, -0.2), (0.1, -0.2, 1.0))
     base = Polygon(((-0.9, -0.4), (0.6, -0.7), (0.8, 0.3), (-0.2, 0.9)))
-    body, angle = RigidBody(10.0, tensor, (0.01, 0.02, 0.5), base, 1.0), math.radians(37.0)
+    body, angle = (
+        RigidBody(10.0, tensor, (0.01, 0.02, 0.5), base, 1.0),
+        math.radians(37.0),
+    )
     axis = np.array([-math.sin(angle), math.cos(angle), 0.0])
     seen, back = body.seen_along(37.0), body.seen_along(217.0).base
     assert seen.inertia == pytest.approx(axis @ np.array(tensor) @ axis)
-    assert seen.centre[0] == pytest.approx(0.01 * math.cos(angle) + 0.02 * math.sin(angle))
+    assert seen.centre[0] == pytest.approx(
+        0.01 * math.cos(angle) + 0.02 * math.sin(angle)
+    )
     assert (back.left, back.right) == pytest.approx((-seen.base.right, -seen.base.left))
 
 
@@ -91,7 +102,9 @@ def test_a_column_opens_as_the_blocks_that_it_is_made_of_do():
     assert uplift_ratios(column.system())[:2] == pytest.approx(of_two)
 
 
-STATUE = Block(0.50, 1.60, 400.0, inertia=70.0, cg_height=0.62, cg_offset=0.06, lean=0.01)
+STATUE = Block(
+    0.50, 1.60, 400.0, inertia=70.0, cg_height=0.62, cg_offset=0.06, lean=0.01
+)
 
 
 @given(SIZES, SIZES)
@@ -101,7 +114,9 @@ def test_uniform_block_has_the_textbook_properties(width: float, height: float) 
     assert block.alpha == pytest.approx(math.atan(width / height), rel=1e-12)
     assert block.radius() == pytest.approx(radius, rel=1e-12)
     assert block.pivot_inertia() == pytest.approx(4 / 3 * 10.0 * radius**2, rel=1e-12)
-    assert block.frequency() == pytest.approx(math.sqrt(3 * G / (4 * radius)), rel=1e-12)
+    assert block.frequency() == pytest.approx(
+        math.sqrt(3 * G / (4 * radius)), rel=1e-12
+    )
     # 1 - 1.5 sin²α (thesis eq. 2.14)
     expected = 1 - 1.5 * math.sin(block.alpha) ** 2
     assert block.momentum_restitution() == pytest.approx(expected, abs=1e-12)
@@ -132,7 +147,9 @@ def test_it_balances_at_its_critical_angle_and_tips_beyond(pivot: int) -> None:
 
 @pytest.mark.parametrize("pivot", [+1, -1])
 @pytest.mark.parametrize("block", [STATUE, T2])
-def test_each_side_starts_to_rock_exactly_at_its_own_acceleration(block, pivot: int) -> None:
+def test_each_side_starts_to_rock_exactly_at_its_own_acceleration(
+    block, pivot: int
+) -> None:
     x, y = geometry.arm(block.shape, pivot)
     # an acceleration to the left turns the block clockwise, about the right corner
     response = simulate(block, pivot * np.linspace(0.0, -6.0, 3), 1.0)
@@ -161,4 +178,6 @@ def test_a_statue_that_reaches_over_an_edge_rocks_as_one_whose_base_is_the_overl
     other = simulate(Stack(P, narrow, offset), motion, 0.01)
     assert first.impacts > 3
     np.testing.assert_allclose(first.theta, other.theta, atol=1e-9)
-    np.testing.assert_allclose(first.normal_force, other.normal_force, rtol=1e-6, atol=1e-6)
+    np.testing.assert_allclose(
+        first.normal_force, other.normal_force, rtol=1e-6, atol=1e-6
+    )

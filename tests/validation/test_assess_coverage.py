@@ -55,20 +55,31 @@ def _pool() -> list[Motion]:
 
 
 def _set(numbers: np.ndarray) -> MotionSet:
-    chosen = tuple(_pool()[COMPONENTS * i + k] for i in numbers for k in range(COMPONENTS))
+    chosen = tuple(
+        _pool()[COMPONENTS * i + k] for i in numbers for k in range(COMPONENTS)
+    )
     pairs = tuple((i, i + 1) for i in range(0, len(chosen), COMPONENTS))
     return MotionSet(chosen, chosen, pairs, "synthetic motions")
 
 
 def _scanned(random: np.random.Generator) -> Shape:
     """A synthetic scan of a column: a foot whose points lie at heights of their own, and a top."""
-    angle, radius = random.uniform(0, 2 * np.pi, 80), 0.18 * np.sqrt(random.uniform(0.2, 1, 80))
+    angle, radius = (
+        random.uniform(0, 2 * np.pi, 80),
+        0.18 * np.sqrt(random.uniform(0.2, 1, 80)),
+    )
     foot = np.column_stack(
-        [radius * np.cos(angle), radius * np.sin(angle), 0.003 * random.uniform(0, 1, 80) ** 2]
+        [
+            radius * np.cos(angle),
+            radius * np.sin(angle),
+            0.003 * random.uniform(0, 1, 80) ** 2,
+        ]
     )
     foot[:, 2] -= foot[:, 2].min()
     around = np.linspace(0, 2 * np.pi, 12, endpoint=False)
-    top = np.column_stack([0.15 * np.cos(around), 0.15 * np.sin(around), np.full(12, 1.2)])
+    top = np.column_stack(
+        [0.15 * np.cos(around), 0.15 * np.sin(around), np.full(12, 1.2)]
+    )
     points = np.vstack([foot, top]) - [0, 0, 0.6]
     return Shape(points, 200.0, np.diag([26.0, 26.0, 3.0]), 0.09, "synthetic scan")
 
@@ -86,7 +97,9 @@ def _true_scan(shape: Shape, told: Objects, seed: int, outside: float) -> Object
     unknowns = unknowns_of(SCAN)
     tolerance = unknowns["contact_tolerance_mm"]
     middle = tolerance(0.5)
-    unknowns["contact_tolerance_mm"] = lambda u: middle * (tolerance(u) / middle) ** outside
+    unknowns["contact_tolerance_mm"] = lambda u: (
+        middle * (tolerance(u) / middle) ** outside
+    )
     way = dict(ways_to_stand(shape, unknowns, 64, seed).table.iloc[0])
     return replace(told, block=body_of(shape, way), livelier=way["restitution_ratio"])
 
@@ -100,9 +113,12 @@ def _true_place(place: Place, random: np.random.Generator) -> Place:
         for name in ("period", "damping")
     )
     stiffnesses = tuple(k / slower**2 for k in place.building.stiffnesses)
-    damping = replace(place.building.damping, ratio=place.building.damping.ratio * damped)
+    damping = replace(
+        place.building.damping, ratio=place.building.damping.ratio * damped
+    )
     return replace(
-        place, building=replace(place.building, stiffnesses=stiffnesses, damping=damping)
+        place,
+        building=replace(place.building, stiffnesses=stiffnesses, damping=damping),
     )
 
 
@@ -122,13 +138,20 @@ def world(seed: int, kind: str, outside: float = 1.0) -> tuple[bool, ...]:
     found = assess_with(request, seen, brief=True)
     truths = (
         (found.amplitudes[0.5], amplitude_target(0.5).value(outcomes) * np.exp(error)),
-        (found.fraction, fraction_target(request.level.value / np.exp(error)).value(outcomes)),
+        (
+            found.fraction,
+            fraction_target(request.level.value / np.exp(error)).value(outcomes),
+        ),
     )
     return tuple(bool(one.lower <= truth <= one.upper) for one, truth in truths)
 
 
 def _drawn(
-    seed: int, kind: str, outside: float, random: np.random.Generator, level: dict[str, str]
+    seed: int,
+    kind: str,
+    outside: float,
+    random: np.random.Generator,
+    level: dict[str, str],
 ) -> tuple[Request, Objects, Place, float]:
     """What assess is told of a world, the object and the place in it, and the error of the model's ln level."""
     in_building = IN_A_BUILDING if seed % 2 else {}
@@ -161,7 +184,10 @@ def world_of_both(seed: int) -> bool:
     everything = _set(np.arange(EARTHQUAKES))
     logs = everything.log_ratios(PGA)
     pga, ratio = random.uniform(0.2, 0.6), random.choice(logs)
-    level = {"pga": f"{pga:.3f} g", "pgv": f"{pga * np.exp(ratio) * VELOCITY_PER_G:.2f} cm/s"}
+    level = {
+        "pga": f"{pga:.3f} g",
+        "pgv": f"{pga * np.exp(ratio) * VELOCITY_PER_G:.2f} cm/s",
+    }
     request, truth, place, error = _drawn(seed, CUT, 1.0, random, level)
     near = np.argsort(abs(logs - ratio), kind="stable")[:OF_A_SITE]
     chosen = tuple(everything.ground[i] for i in near)

@@ -24,7 +24,10 @@ DESIGNS = {4: (4, 1), 12: (4, 3), 44: (22, 2)}
 DATA_SETS, OF_A_KIND, SEED = 1000, 4000, 20261121
 
 
-HEAVY, COARSE = "heavy tails (t, 3 df)", "nearly all in one step (β = 0.03, series of 10 %)"
+HEAVY, COARSE = (
+    "heavy tails (t, 3 df)",
+    "nearly all in one step (β = 0.03, series of 10 %)",
+)
 # step of the series of levels, fraction of the variance that motions of an earthquake share, law, β, scatter of
 # objects
 KINDS = {
@@ -65,7 +68,9 @@ def simulated(n, rng, step=0.1, shared=SHARED, law="normal", beta=BETA, uneven=1
     return brackets, outcomes
 
 
-def coverage(n: int, over: str, data_sets: int, seed: list[int], **kind: float) -> pd.DataFrame:
+def coverage(
+    n: int, over: str, data_sets: int, seed: list[int], **kind: float
+) -> pd.DataFrame:
     """What holds the truth in how many data sets, by estimator.
 
     Limits of θ, of β and of the curve one β below the median; whether there are none (counted as a miss), whether
@@ -101,7 +106,14 @@ def test_limits_hold_the_truth_whatever_the_kind_of_data():
         part = coverage(12, "earthquake", OF_A_KIND, [SEED, 12, number], **kind)
         parts.append(part.assign(**{"data sets of": name}))
     found = pd.concat(parts, ignore_index=True)
-    names = ["data sets of", "data", "θ", "β", "without limits", "β within its own limits"]
+    names = [
+        "data sets of",
+        "data",
+        "θ",
+        "β",
+        "without limits",
+        "β within its own limits",
+    ]
     document("validation-fragility.md", "kinds of data", found[names])
     kinds = found.set_index("data sets of")
     assert (kinds["β within its own limits"] == 1.0).all()
@@ -124,7 +136,16 @@ def test_default_limits_hold_the_truth_in_87_to_93_percent_and_others_hold_it_or
             part = coverage(n, over, DATA_SETS, [SEED, n])
             parts.append(part.assign(**about, **{"data sets": DATA_SETS}))
     methods = pd.concat(parts, ignore_index=True)
-    order = ["resampled", "motions", "earthquakes", "data", "data sets", "θ", "β", "curve"]
+    order = [
+        "resampled",
+        "motions",
+        "earthquakes",
+        "data",
+        "data sets",
+        "θ",
+        "β",
+        "curve",
+    ]
     shown = methods.assign(warns=np.where(methods["warns"] > 0.5, "yes", "no"))
     document("validation-fragility.md", "methods", shown[[*order, "warns"]])
     default = methods[methods["resampled"] == "earthquakes"]

@@ -10,11 +10,10 @@ import yaml
 
 CONFIG = Path(__file__).resolve().parents[2] / "config"
 
-CATALOGUE = (
-    "name,earthquake,date,station,component,magnitude,distance_km,source,file,sha256,unit,licence\n"
-)
+CATALOGUE = "name,earthquake,date,station,component,magnitude,distance_km,source,file,sha256,unit,licence\n"
 
-STUDY = Path(__file__).with_name("study")  # files of the small study, but for its motions
+# files of the small study, but for its motions
+STUDY = Path(__file__).with_name("study")
 
 
 def study_content() -> dict:
@@ -51,9 +50,13 @@ def make_study(folder: Path) -> Path:
     """Write a whole small study into a new folder."""
     shutil.copytree(STUDY, folder)
     rows = [CATALOGUE]
-    for number, earthquake in enumerate(("First", "First", "Second", "Second", "Third", "Fourth")):
+    for number, earthquake in enumerate(
+        ("First", "First", "Second", "Second", "Third", "Fourth")
+    ):
         write_record(folder / f"record{number}.txt", seed=number)
-        rows.append(f"motion {number},{earthquake},,,,,,folder,record{number}.txt,,g,made up\n")
+        rows.append(
+            f"motion {number},{earthquake},,,,,,folder,record{number}.txt,,g,made up\n"
+        )
     (folder / "motions.csv").write_text("".join(rows))
     return folder
 

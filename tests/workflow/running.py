@@ -11,10 +11,18 @@ SNAKEFILE = str(ROOT / "workflow" / "Snakefile")
 LAUNCHER = [sys.executable, str(ROOT / "workflow" / "run.py")]
 
 
-def called(folder: Path, *command: str, **more: Any) -> subprocess.CompletedProcess[str]:
+def called(
+    folder: Path, *command: str, **more: Any
+) -> subprocess.CompletedProcess[str]:
     """Run a command in a folder and return what it said."""
     return subprocess.run(
-        command, cwd=folder, capture_output=True, text=True, timeout=900, check=False, **more
+        command,
+        cwd=folder,
+        capture_output=True,
+        text=True,
+        timeout=900,
+        check=False,
+        **more,
     )
 
 
@@ -33,7 +41,9 @@ def tables_of(folder: Path) -> dict[str, bytes]:
     }
 
 
-def finished(done: subprocess.CompletedProcess[str]) -> subprocess.CompletedProcess[str]:
+def finished(
+    done: subprocess.CompletedProcess[str],
+) -> subprocess.CompletedProcess[str]:
     """Return a run that has ended well."""
     assert done.returncode == 0, f"{done.stdout[-1000:]}{done.stderr[-3000:]}"
     return done

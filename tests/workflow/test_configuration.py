@@ -82,7 +82,9 @@ def full_study(folder: Path) -> None:
 
 
 @pytest.mark.parametrize(("name", "changes", "words"), CASES["keys"])
-def test_a_wrong_key_or_value_is_named_with_what_was_expected(study_folder, name, changes, words):
+def test_a_wrong_key_or_value_is_named_with_what_was_expected(
+    study_folder, name, changes, words
+):
     source = CONFIG / f"{name}.yaml"
     if not source.exists():
         source = study_folder / "study.yaml"
@@ -109,7 +111,9 @@ def test_a_wrong_cell_is_named_with_line_and_column(
 
 
 ALIAS_BOMB = ["a0: &a0 [x, x, x, x, x, x, x, x, x]"]
-ALIAS_BOMB += [f"a{i}: &a{i} [" + ", ".join([f"*a{i - 1}"] * 9) + "]" for i in range(1, 12)]
+ALIAS_BOMB += [
+    f"a{i}: &a{i} [" + ", ".join([f"*a{i - 1}"] * 9) + "]" for i in range(1, 12)
+]
 NO_TEXTS = [
     ("study: " + "[" * 2000 + "]" * 2000 + "\n", "nested too deeply"),
     ("? " + "x" * 5000 + "\n: 1\n", "is not known"),
@@ -129,7 +133,9 @@ def test_what_is_no_mapping_of_plain_data_is_refused(tmp_path, capsys, content, 
     assert words in said(capsys, path)
 
 
-def test_folders_devices_and_buildings_that_are_no_text_are_refused(study_folder, capsys):
+def test_folders_devices_and_buildings_that_are_no_text_are_refused(
+    study_folder, capsys
+):
     assert "folder or a device" in said(capsys, study_folder)
     assert "folder or a device" in said(capsys, Path("/dev/zero"))
     (study_folder / "other.yaml").write_bytes(b"name: \xff\xfe\n")
@@ -143,7 +149,9 @@ def test_names_that_cannot_be_files_are_refused(name: str):
         check_name(name)
 
 
-def test_motions_stay_apart_on_every_floor(study_folder: Path, capsys: pytest.CaptureFixture[str]):
+def test_motions_stay_apart_on_every_floor(
+    study_folder: Path, capsys: pytest.CaptureFixture[str]
+):
     table = study_folder / "motions.csv"
     text = table.read_text().replace("motion 0", "A").replace("motion 1", "A_1")
     table.write_text(text)
@@ -154,15 +162,21 @@ def test_motions_stay_apart_on_every_floor(study_folder: Path, capsys: pytest.Ca
     assert "A_1 and A become one" in said(capsys, path)
 
 
-def test_fetched_files_stay_in_the_folder(tmp_path: Path, capsys: pytest.CaptureFixture[str]):
+def test_fetched_files_stay_in_the_folder(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+):
     content = read_yaml(CONFIG / "granite.yaml")
     digest = hashlib.sha256(b"").hexdigest()
     for name in ("/tmp/x.csv", "../../../../x.csv"):
-        content["fetch"] = [{"url": "https://example.org/x", "sha256": digest, "file": name}]
+        content["fetch"] = [
+            {"url": "https://example.org/x", "sha256": digest, "file": name}
+        ]
         assert "outside of this folder" in said(capsys, write_study(tmp_path, content))
 
 
-def test_a_study_does_not_overwrite_the_results_of_another(study_folder, capsys, monkeypatch):
+def test_a_study_does_not_overwrite_the_results_of_another(
+    study_folder, capsys, monkeypatch
+):
     monkeypatch.chdir(study_folder)
     other = study_folder / "other.yaml"
     other.write_text((study_folder / "study.yaml").read_text())
@@ -173,7 +187,9 @@ def test_a_study_does_not_overwrite_the_results_of_another(study_folder, capsys,
     assert main(["check-config", "study.yaml"]) == 0
 
 
-def test_a_record_that_cannot_be_read_is_named_by_command_and_workflow(study_folder, capsys):
+def test_a_record_that_cannot_be_read_is_named_by_command_and_workflow(
+    study_folder, capsys
+):
     (study_folder / "record3.txt").rename(study_folder / "away.txt")
     assert "record3.txt" in said(capsys, study_folder / "study.yaml")
     (study_folder / "record3.txt").write_text("no record at all\n")
@@ -185,9 +201,13 @@ def test_a_record_that_cannot_be_read_is_named_by_command_and_workflow(study_fol
     assert not (study_folder / "results").exists()
 
 
-def test_a_failed_job_is_one_sentence_and_the_path_of_its_log(study_folder, monkeypatch):
+def test_a_failed_job_is_one_sentence_and_the_path_of_its_log(
+    study_folder, monkeypatch
+):
     # a machine whose numba cannot be imported, which no check of the study can see
-    (study_folder / "sitecustomize.py").write_text("import sys\nsys.modules['numba'] = None\n")
+    (study_folder / "sitecustomize.py").write_text(
+        "import sys\nsys.modules['numba'] = None\n"
+    )
     monkeypatch.setenv("PYTHONPATH", str(study_folder))
     how = ("--cores", "1", "--logger", "rockfrag", "--workflow-profile", "none")
     done = snakemake(study_folder, *how)
@@ -206,7 +226,12 @@ def test_rules_parse_where_the_package_is_not_installed(study_folder: Path):
         "import importlib.util as util, sys\nfind = util.find_spec\nutil.find_spec = lambda name, *rest: None "
         "if name == 'rockfrag' else find(name, *rest)\nfrom snakemake.cli import main\nmain()\n"
     )
-    study = ("--directory", str(study_folder), "--configfile", str(study_folder / "study.yaml"))
+    study = (
+        "--directory",
+        str(study_folder),
+        "--configfile",
+        str(study_folder / "study.yaml"),
+    )
     command = (sys.executable, "-c", program, "--snakefile", SNAKEFILE, "--dry-run")
     done = finished(called(ROOT, *command, *study))
     assert "results/tiny/report.html" in done.stdout + done.stderr
@@ -215,7 +240,9 @@ def test_rules_parse_where_the_package_is_not_installed(study_folder: Path):
 
 def test_values_are_those_of_yaml_1_2(tmp_path: Path):
     path = tmp_path / "study.yaml"
-    path.write_text("a: 1e-3\nb: no\nc: 12:30\nd: 0x10\ne: -2.\nf: ~\ng: true\nh: 010\ni: 1_000\n")
+    path.write_text(
+        "a: 1e-3\nb: no\nc: 12:30\nd: 0x10\ne: -2.\nf: ~\ng: true\nh: 010\ni: 1_000\n"
+    )
     assert read_yaml(path) == {
         **{"a": 0.001, "b": "no", "c": "12:30", "d": "0x10", "e": -2.0, "f": None},
         **{"g": True, "h": 10, "i": "1_000"},
@@ -242,7 +269,10 @@ def test_blocks_are_the_same_in_whatever_unit_and_separator(tmp_path: Path):
 
 def test_every_measure_that_a_study_may_ask_for_is_measured_and_grows_with_the_amplitude():
     wave = Motion([0.0, 1.0, -1.0, 0.5] * 200, 0.01, "wave")
-    pair, single = registered("intensity measure"), registered("growing intensity measure")
+    pair, single = (
+        registered("intensity measure"),
+        registered("growing intensity measure"),
+    )
     assert list(measure_motion(wave))[3:] == list(pair)
     assert set(single) < set(pair)
     assert all(scale_power(name) > 0 for name in single)
@@ -255,7 +285,10 @@ def test_what_a_study_leaves_out_is_the_plain_case(study_folder: Path):
     study = load_any(write_study(study_folder, content))
     assert study.building is None and study.floors == {"ground": 0}
     # without a table of configurations each block stands alone
-    assert [configuration.name for configuration in study.configurations] == ["T1", "T2"]
+    assert [configuration.name for configuration in study.configurations] == [
+        "T1",
+        "T2",
+    ]
     assert not study.has_pairs
     assert (study.slides, study.vertical) == (False, False)
     (on,) = study.configurations[0].contacts
@@ -284,7 +317,9 @@ def test_each_contact_has_the_friction_and_the_impacts_that_the_study_states():
 @pytest.fixture
 def with_vertical(study_folder: Path) -> Path:
     """The small study with a vertical component of every record, twice as long as it must be."""
-    header = CATALOGUE.replace(",sha256", ",vertical,sha256").replace("lic", "scale_factor,lic")
+    header = CATALOGUE.replace(",sha256", ",vertical,sha256").replace(
+        "lic", "scale_factor,lic"
+    )
     rows = [header]
     for number in range(2):
         write_record(study_folder / f"up{number}.txt", seed=50 + number)
@@ -294,7 +329,9 @@ def with_vertical(study_folder: Path) -> Path:
     return study_folder
 
 
-def test_the_vertical_component_is_the_catalogues_with_the_factor_of_its_row(with_vertical, capsys):
+def test_the_vertical_component_is_the_catalogues_with_the_factor_of_its_row(
+    with_vertical, capsys
+):
     row = read_catalogue(with_vertical / "motions.csv").to_dict("records")[0]
     motion, up = motions_of_row(
         {str(k): v for k, v in row.items()}, with_vertical, with_vertical, vertical=True
@@ -302,7 +339,9 @@ def test_the_vertical_component_is_the_catalogues_with_the_factor_of_its_row(wit
     raw = np.loadtxt(with_vertical / "up0.txt")[:, 1]
     assert motion.name == up.name == "motion 0"
     assert up.acceleration.size == motion.acceleration.size
-    np.testing.assert_allclose(up.acceleration / up.pga, raw / abs(raw).max(), atol=1e-12)
+    np.testing.assert_allclose(
+        up.acceleration / up.pga, raw / abs(raw).max(), atol=1e-12
+    )
     assert up.pga == pytest.approx(2 * motion.pga / 2, rel=1e-3)
     path = write_study(with_vertical, {**study_content(), "vertical": True})
     assert main(["check-config", str(path)]) == 0
@@ -317,7 +356,9 @@ def test_a_building_says_which_floors_move_up_and_down_more_than_the_ground():
     plain = vertical_motions(make_building(settings), up)
     assert [item.name for item in plain] == ["quake_hall", "quake_loft"]
     assert all((item.acceleration == up.acceleration).all() for item in plain)
-    soft = vertical_motions(make_building({**settings, "vertical_factors": {"loft": 1.5}}), up)
+    soft = vertical_motions(
+        make_building({**settings, "vertical_factors": {"loft": 1.5}}), up
+    )
     np.testing.assert_allclose(soft[1].acceleration, 1.5 * up.acceleration)
     with pytest.raises(InputError, match="floor 'attic' is not defined"):
         make_building({**settings, "vertical_factors": {"attic": 2}})
@@ -343,7 +384,11 @@ def test_every_optional_part_runs_from_records_to_report(study_folder: Path):
     assert (about_data["outcome"] == "undecided").all()
 
     margins = pd.read_csv(results / "building_sensitivity" / "margins.csv")
-    assert set(margins["label"]) == {"reference", "first period 0.5 s", "levels F3 3, F5 6"}
+    assert set(margins["label"]) == {
+        "reference",
+        "first period 0.5 s",
+        "levels F3 3, F5 6",
+    }
     effects = pd.read_csv(results / "sensitivity_analysis" / "effects.csv")
     single = {
         name
@@ -352,7 +397,11 @@ def test_every_optional_part_runs_from_records_to_report(study_folder: Path):
     }
     single.remove("table_mass_kg")
     # restitutions by every law that they may follow, and the table's mass in two ways
-    laws = {"statue_restitution_ratio", "interface_restitution_ratio", "ground_restitution_ratio"}
+    laws = {
+        "statue_restitution_ratio",
+        "interface_restitution_ratio",
+        "ground_restitution_ratio",
+    }
     laws.add("ground_restitution_couple")
     missed = {"pedestal_not_counted", "table_not_counted", "tolerances"}
     assert set(effects["factor"]) == single | laws | missed
@@ -363,6 +412,12 @@ def test_every_optional_part_runs_from_records_to_report(study_folder: Path):
     assert choice.groupby("configuration")["recommended"].sum().eq(1).all()
 
     page = (results / "report.html").read_text()
-    for anchor in ("measures", "sensitivity_analysis", "shaker", "sensitivity", "measured"):
+    for anchor in (
+        "measures",
+        "sensitivity_analysis",
+        "shaker",
+        "sensitivity",
+        "measured",
+    ):
         assert f'id="{anchor}"' in page
     assert 'src="http' not in page

@@ -48,13 +48,23 @@ def slurm(monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
     (folder / "key").write_bytes(os.urandom(1024))
     (folder / "key").chmod(0o400)
     host = socket.gethostname().split(".")[0]
-    about = {"host": host, "folder": folder, "port": free_port(), "other_port": free_port()}
+    about = {
+        "host": host,
+        "folder": folder,
+        "port": free_port(),
+        "other_port": free_port(),
+    }
     settings = Path(__file__).with_name("slurm.conf").read_text().format(**about)
     CONF.parent.mkdir(exist_ok=True)
     CONF.write_text(settings)
     monkeypatch.setenv("PATH", f"{os.environ['PATH']}:/usr/sbin:/sbin")
     munged = [
-        *("munged", "--foreground", f"--key-file={folder}/key", f"--socket={folder}/munge.socket"),
+        *(
+            "munged",
+            "--foreground",
+            f"--key-file={folder}/key",
+            f"--socket={folder}/munge.socket",
+        ),
         *(f"--pid-file={folder}/munge.pid", f"--log-file={folder}/munge.log"),
         *(f"--seed-file={folder}/munge.seed", "--force"),
     ]
@@ -81,7 +91,10 @@ def slurm(monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
 def _wait_for_node(folder: Path) -> None:
     for _ in range(60):
         done = subprocess.run(
-            ["sinfo", "--noheader", "--format=%T"], capture_output=True, text=True, check=False
+            ["sinfo", "--noheader", "--format=%T"],
+            capture_output=True,
+            text=True,
+            check=False,
         )
         if done.stdout.strip() == "idle":
             return
@@ -105,8 +118,20 @@ def test_a_study_on_slurm_ends_in_the_same_bytes(study_folder: Path, slurm: Path
     screen = run_locally_and_with(
         study_folder,
         *("--profile", str(ROOT / "profiles" / "slurm"), "--slurm-no-account"),
-        *("--slurm-status-command", "squeue", "--slurm-init-seconds-before-status-checks", "2"),
-        *("--seconds-between-status-checks", "2", "--latency-wait", "5", "--max-threads", "2"),
+        *(
+            "--slurm-status-command",
+            "squeue",
+            "--slurm-init-seconds-before-status-checks",
+            "2",
+        ),
+        *(
+            "--seconds-between-status-checks",
+            "2",
+            "--latency-wait",
+            "5",
+            "--max-threads",
+            "2",
+        ),
     )
     assert "SLURM jobid" in screen
 
@@ -125,7 +150,9 @@ def require(profile: str) -> None:
         pytest.skip(f"not installed: {plugin} (pip install '.[{profile}]')")
 
 
-@pytest.mark.parametrize("profile", sorted(PROFILES.iterdir()), ids=lambda path: path.name)
+@pytest.mark.parametrize(
+    "profile", sorted(PROFILES.iterdir()), ids=lambda path: path.name
+)
 def test_snakemake_knows_every_key_of_a_profile(profile: Path):
     from snakemake.cli import parse_args
 
@@ -154,6 +181,13 @@ def test_a_study_in_a_queue_ends_in_the_same_bytes(study_folder: Path, tmp_path:
         study_folder,
         *("--profile", str(ROOT / "profiles" / "queue")),
         *("--cluster-generic-submit-cmd", f"{submit} {{threads}} {{resources.mem_mb}}"),
-        *("--seconds-between-status-checks", "2", "--latency-wait", "5", "--max-threads", "2"),
+        *(
+            "--seconds-between-status-checks",
+            "2",
+            "--latency-wait",
+            "5",
+            "--max-threads",
+            "2",
+        ),
     )
     assert len(log.read_text().splitlines()) >= 3

@@ -27,7 +27,10 @@ from .running import LAUNCHER, ROOT, called
 def program(text: str, **more: str) -> Iterator[subprocess.Popen[str]]:
     """A program in Python that has said that it is there; it is killed at the end of the block."""
     process = subprocess.Popen(
-        [sys.executable, "-c", text], env={**os.environ, **more}, stdout=subprocess.PIPE, text=True
+        [sys.executable, "-c", text],
+        env={**os.environ, **more},
+        stdout=subprocess.PIPE,
+        text=True,
     )
     assert process.stdout is not None
     try:
@@ -63,7 +66,9 @@ def test_a_killed_run_leaves_neither_a_lock_nor_half_written_files(tmp_path: Pat
         assert not part.exists()
 
 
-def test_where_there_are_no_locks_or_nothing_may_be_written_nobody_waits(tmp_path, monkeypatch):
+def test_where_there_are_no_locks_or_nothing_may_be_written_nobody_waits(
+    tmp_path, monkeypatch
+):
     (tmp_path / "file").write_text("")
     with lock.locked(tmp_path / "file" / "lock", patience_s=60) as free:
         assert free
@@ -73,11 +78,16 @@ def test_where_there_are_no_locks_or_nothing_may_be_written_nobody_waits(tmp_pat
         raise OSError(errno.ENOLCK, os.strerror(errno.ENOLCK))
 
     monkeypatch.setattr(lock.fcntl, "flock", refused)
-    with lock.locked(tmp_path / "lock", patience_s=60) as free, run_lock(tmp_path / "tiny"):
+    with (
+        lock.locked(tmp_path / "lock", patience_s=60) as free,
+        run_lock(tmp_path / "tiny"),
+    ):
         assert free
 
 
-def test_a_lock_that_another_process_holds_is_waited_for_no_longer_than_was_said(tmp_path: Path):
+def test_a_lock_that_another_process_holds_is_waited_for_no_longer_than_was_said(
+    tmp_path: Path,
+):
     with holder(tmp_path / "tiny"):
         started = time.monotonic()
         with lock.locked(tmp_path / "tiny" / ".run", patience_s=0.2) as free:
@@ -137,13 +147,19 @@ def test_a_worker_that_is_killed_is_one_sentence():
 
     with pytest.raises(BrokenProcessPool) as told:
         in_processes(dies, range(4), 2)
-    assert in_words(told.value).startswith("one of its processes was killed or ran out of memory")
+    assert in_words(told.value).startswith(
+        "one of its processes was killed or ran out of memory"
+    )
 
 
 LACKED = {
     "disk is full": OSError(errno.EFBIG, "File too large"),
-    "a limit of it is reached": OSError("Error writing bytes. Detail: No space left on device"),
-    "t.csv may not be written": PermissionError(errno.EACCES, "Permission denied", "t.csv"),
+    "a limit of it is reached": OSError(
+        "Error writing bytes. Detail: No space left on device"
+    ),
+    "t.csv may not be written": PermissionError(
+        errno.EACCES, "Permission denied", "t.csv"
+    ),
     "not enough memory": MemoryError("Unable to allocate 1. TiB"),
     "ValueError: a b": ValueError("a\nb"),
 }
@@ -188,8 +204,12 @@ def test_a_folder_of_results_that_may_not_be_written_is_named_before_the_first_j
 
 
 def test_libraries_take_what_every_processor_has(monkeypatch: pytest.MonkeyPatch):
-    chosen = same_numbers({"GLIBC_TUNABLES": "glibc.malloc.check=1:glibc.cpu.hwcaps=-AVX2"})
-    assert chosen["GLIBC_TUNABLES"].startswith("glibc.malloc.check=1:glibc.cpu.hwcaps=-FMA,")
+    chosen = same_numbers(
+        {"GLIBC_TUNABLES": "glibc.malloc.check=1:glibc.cpu.hwcaps=-AVX2"}
+    )
+    assert chosen["GLIBC_TUNABLES"].startswith(
+        "glibc.malloc.check=1:glibc.cpu.hwcaps=-FMA,"
+    )
     assert chosen["OPENBLAS_NUM_THREADS"] == "1"
     program = "import numpy; print(numpy.show_config(mode='dicts')['SIMD Extensions'].get('found'))"
     asked = (sys.executable, "-W", "error", "-c", program)
@@ -197,6 +217,8 @@ def test_libraries_take_what_every_processor_has(monkeypatch: pytest.MonkeyPatch
     assert found.stdout.strip() == "None", found.stderr
 
 
-def test_a_log_that_is_taken_away_while_it_is_looked_for_says_nothing(tmp_path, monkeypatch):
+def test_a_log_that_is_taken_away_while_it_is_looked_for_says_nothing(
+    tmp_path, monkeypatch
+):
     monkeypatch.setattr(Path, "is_file", lambda path: True)
     assert last_finding(tmp_path / "thesis.log") == "done"

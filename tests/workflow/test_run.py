@@ -17,14 +17,22 @@ from rockfrag.stages.running import same_numbers
 from rockfrag.study.loading import load_any
 
 from ..stages_in_process import run_stages, stages_of
-from .conftest import make_study, study_content, write_example, write_study, write_synthetic
+from .conftest import (
+    make_study,
+    study_content,
+    write_example,
+    write_study,
+    write_synthetic,
+)
 from .running import LAUNCHER, ROOT, SNAKEFILE, called, finished, snakemake, tables_of
 
 
 def make_smaller(folder: Path) -> Path:
     """Write the small study with half of its configurations and of its earthquakes."""
     make_study(folder)
-    (folder / "configurations.csv").write_text("name,object,pedestal\nT1,T1,\nP&T1,T1,P\n")
+    (folder / "configurations.csv").write_text(
+        "name,object,pedestal\nT1,T1,\nP&T1,T1,P\n"
+    )
     motions = folder / "motions.csv"
     motions.write_text("".join(motions.read_text().splitlines(keepends=True)[:4]))
     return folder
@@ -41,9 +49,7 @@ def ran(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.fixture
 def large_study(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """The small study, where a hundred histories are a job and ten outcomes are counted."""
-    text = (
-        "import rockfrag.study.study as study\nstudy.HISTORIES_A_JOB, study.MOST_ROWS = 100, 10\n"
-    )
+    text = "import rockfrag.study.study as study\nstudy.HISTORIES_A_JOB, study.MOST_ROWS = 100, 10\n"
     (tmp_path / "sitecustomize.py").write_text(text)
     monkeypatch.setenv("PYTHONPATH", str(tmp_path))
     return make_smaller(tmp_path / "a large study")
@@ -58,15 +64,20 @@ def test_jobs_that_share_the_motions_write_what_one_does(ran: Path, large_study:
     wanted = [f"results/tiny/{name}.parquet" for name in tables]
     finished(snakemake(large_study, "--cores", "2", *wanted))
     (tests, alone), (recorded, at_once), (counted, of_rows) = (
-        [pd.read_parquet(folder / path) for folder in (large_study, ran)] for path in wanted
+        [pd.read_parquet(folder / path) for folder in (large_study, ran)]
+        for path in wanted
     )
     pd.testing.assert_frame_equal(tests, alone)
     pd.testing.assert_frame_equal(recorded, at_once)
-    assert counted["theta"].to_numpy() == pytest.approx(of_rows["theta"].to_numpy(), rel=1e-3)
+    assert counted["theta"].to_numpy() == pytest.approx(
+        of_rows["theta"].to_numpy(), rel=1e-3
+    )
 
 
 @pytest.mark.slow
-def test_the_workflow_writes_what_the_stages_write_to_the_byte(ran: Path, tmp_path: Path):
+def test_the_workflow_writes_what_the_stages_write_to_the_byte(
+    ran: Path, tmp_path: Path
+):
     """Stages run one after the other, in a process where libraries choose their functions as in jobs."""
     path = make_smaller(tmp_path / "by hand") / "study.yaml"
     alone = (
@@ -76,7 +87,9 @@ def test_the_workflow_writes_what_the_stages_write_to_the_byte(ran: Path, tmp_pa
     )
     names = ("P&T1", "T1", "First", "Second")
     program = (sys.executable, "-c", alone, str(path))
-    done = finished(called(ROOT, *program, *names, env=os.environ | same_numbers(os.environ)))
+    done = finished(
+        called(ROOT, *program, *names, env=os.environ | same_numbers(os.environ))
+    )
     by_hand = Path(done.stdout.splitlines()[-1])
     results = ran / "results" / "tiny"
     for name in ("report.html", "tests.csv"):
@@ -96,18 +109,25 @@ def test_a_study_runs_from_records_to_report(ran: Path):
     assert 'src="http' not in report
     assert "<strong>Simulated,</strong> unless labelled" in report
     assert "thesis" not in report
-    assert {path.name for path in ran.iterdir() if path.is_dir()} <= {".snakemake", "results"}
+    assert {path.name for path in ran.iterdir() if path.is_dir()} <= {
+        ".snakemake",
+        "results",
+    }
 
     finished(snakemake(ran, "--report", "listed.html"))
     text = (ran / "listed.html").read_text(encoding="utf-8")
-    captions = json.loads((results / "figures" / "captions.json").read_text(encoding="utf-8"))
+    captions = json.loads(
+        (results / "figures" / "captions.json").read_text(encoding="utf-8")
+    )
     assert set(captions) == {path.stem for path in (results / "figures").glob("*.svg")}
     for name, said in captions.items():
         assert json.dumps(said["caption"]) in text, name
         assert json.dumps(said["chapter"]) in text, name
 
 
-def test_a_finished_study_has_nothing_to_do_even_where_nothing_may_be_written(ran: Path):
+def test_a_finished_study_has_nothing_to_do_even_where_nothing_may_be_written(
+    ran: Path,
+):
     before = {path: path.stat().st_mtime_ns for path in (ran / "results").rglob("*")}
     # permissions do not bind everybody who runs the tests
     program = (
@@ -117,7 +137,9 @@ def test_a_finished_study_has_nothing_to_do_even_where_nothing_may_be_written(ra
     )
     done = finished(called(ran, sys.executable, "-c", program))
     assert done.stdout == "Nothing to do; the report is results/tiny/report.html\n"
-    assert {path: path.stat().st_mtime_ns for path in (ran / "results").rglob("*")} == before
+    assert {
+        path: path.stat().st_mtime_ns for path in (ran / "results").rglob("*")
+    } == before
 
 
 @pytest.mark.slow
@@ -130,12 +152,16 @@ def test_two_runs_write_the_same_bytes_whatever_the_number_of_cores(study_folder
     assert runs[0] == runs[1]
 
 
-def test_a_study_may_go_on_without_what_is_damaged_and_says_so(study_folder, monkeypatch, capsys):
+def test_a_study_may_go_on_without_what_is_damaged_and_says_so(
+    study_folder, monkeypatch, capsys
+):
     """One record is no record, one of zeros, one is not there, and two are out of reach."""
     monkeypatch.setenv("PIP_NO_INDEX", "1")
     with (study_folder / "motions.csv").open("a", encoding="utf-8") as table:
         for name, earthquake in (("fetched 1", "Friuli"), ("fetched 2", "Kobe")):
-            table.write(f"{name},{earthquake},,,,,,gmspy,{earthquake}.dat,,,made elsewhere\n")
+            table.write(
+                f"{name},{earthquake},,,,,,gmspy,{earthquake}.dat,,,made elsewhere\n"
+            )
     (study_folder / "record1.txt").write_text("Not a record.\n")
     rows = "".join(f"{0.01 * i:.2f} 0.0\n" for i in range(100))
     (study_folder / "record2.txt").write_text(rows)
@@ -154,9 +180,15 @@ def test_a_study_may_go_on_without_what_is_damaged_and_says_so(study_folder, mon
     left_out = pd.read_csv(results / "left_out.csv")
     assert list(left_out["motion"]) == [*damaged, "fetched 1", "fetched 2"]
     assert left_out["reason"].str.len().min() > 20
-    assert left_out["reason"].str.contains("pip could not download the wheel").sum() == 2
+    assert (
+        left_out["reason"].str.contains("pip could not download the wheel").sum() == 2
+    )
     tests = pd.read_csv(results / "tests.csv")
-    assert set(tests["motion"]) == {"motion 0_ground", "motion 4_ground", "motion 5_ground"}
+    assert set(tests["motion"]) == {
+        "motion 0_ground",
+        "motion 4_ground",
+        "motion 5_ground",
+    }
     report = (results / "report.html").read_text()
     assert "5 of 8 records could not be used" in report
     assert "under 3 records of 3 earthquakes" in report
@@ -174,7 +206,9 @@ def test_a_synthetic_table_runs_from_csv_to_report(tmp_path: Path):
     assert "PGV predicts overturning best" in page
     assert 'class="simulated"' not in page
     assert 'src="http' not in page
-    assert (results / "figures" / "two_measures_measured_pga_g_pgv_cm_s.png").stat().st_size > 1000
+    assert (
+        results / "figures" / "two_measures_measured_pga_g_pgv_cm_s.png"
+    ).stat().st_size > 1000
 
 
 MODULE = Path(__file__).with_name("module.smk").read_text()
@@ -190,10 +224,14 @@ def test_snakemake_finds_nothing_to_mend():
     assert "in a good condition" in done.stdout + done.stderr, done.stdout + done.stderr
 
 
-@pytest.mark.parametrize(("config", "inside"), [("config", False), ('config["overturning"]', True)])
+@pytest.mark.parametrize(
+    ("config", "inside"), [("config", False), ('config["overturning"]', True)]
+)
 def test_another_workflow_takes_the_rules_with_a_prefix(study_folder, config, inside):
     content = study_content()
-    write_study(study_folder, {"overturning": content, "mine": 1} if inside else content)
+    write_study(
+        study_folder, {"overturning": content, "mine": 1} if inside else content
+    )
     text = MODULE.format(snakefile=SNAKEFILE, config=config)
     (study_folder / "Snakefile").write_text(text)
     assert "rf_report" in by_snakefile(study_folder, "--dry-run").stdout
@@ -214,7 +252,9 @@ def test_environments_do_not_need_a_checkout():
         assert "../" not in path.read_text(encoding="utf-8")
 
 
-def test_files_named_like_libraries_in_the_folder_of_a_study_are_not_code(study_folder: Path):
+def test_files_named_like_libraries_in_the_folder_of_a_study_are_not_code(
+    study_folder: Path,
+):
     marked = study_folder / "executed"
     for name in ("statsmodels", "numba", "pandas", "rockfrag", "snakemake", "json"):
         program = f"open({str(marked)!r}, 'a').write({name!r})\n"
@@ -231,16 +271,22 @@ def test_make_ends_with_the_sentence_of_the_run_and_an_exit_status(tmp_path: Pat
     path = write_study(tmp_path, content)
     # what a shell starts in the background ignores it
     heard = {"preexec_fn": lambda: signal.signal(signal.SIGQUIT, signal.SIG_DFL)}
-    done = called(ROOT, "make", "-o", ".venv/installed", "run", f"STUDY={path}", **heard)
+    done = called(
+        ROOT, "make", "-o", ".venv/installed", "run", f"STUDY={path}", **heard
+    )
     assert done.returncode in (1, 2)
     assert done.stderr.count("\n") == 1
     assert "key title is missing" in done.stderr
 
 
-def test_a_profile_whose_executor_is_not_installed_says_what_to_install(study_folder: Path):
+def test_a_profile_whose_executor_is_not_installed_says_what_to_install(
+    study_folder: Path,
+):
     profile = study_folder / "profile"
     profile.mkdir()
-    (profile / "config.yaml").write_text(yaml.safe_dump({"executor": "nowhere", "jobs": 1}))
+    (profile / "config.yaml").write_text(
+        yaml.safe_dump({"executor": "nowhere", "jobs": 1})
+    )
     done = called(study_folder, *LAUNCHER, "study.yaml", "--profile", "profile")
     assert done.returncode == 2
     assert done.stderr.count("\n") == 1

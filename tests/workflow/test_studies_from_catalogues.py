@@ -29,7 +29,11 @@ def far_field_set(folder: Path) -> Path:
         if pair == 7:
             np.savetxt(path, values, "%.6f")
         if pair == 9:
-            np.savetxt(path, np.column_stack([0.003 * np.arange(values.size), values]), "%.3f %.6f")
+            np.savetxt(
+                path,
+                np.column_stack([0.003 * np.arange(values.size), values]),
+                "%.3f %.6f",
+            )
     return folder
 
 
@@ -37,7 +41,9 @@ def run_motions(study_folder: Path, monkeypatch: pytest.MonkeyPatch) -> pd.DataF
     """Run the stage of the motions as ``make run`` does, and return its table of measures."""
     monkeypatch.chdir(study_folder)
     study = load_any("study.yaml")
-    return pd.read_csv(run_stages(study, Path("results"), [motions.run]) / "measures.csv")
+    return pd.read_csv(
+        run_stages(study, Path("results"), [motions.run]) / "measures.csv"
+    )
 
 
 def test_44_text_files_become_a_study(study_folder, monkeypatch, capsys):

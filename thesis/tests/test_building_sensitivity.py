@@ -42,13 +42,20 @@ def test_a_variant_equal_to_the_reference_gives_the_same_tests(settings):
         Protocol(steps, limit_g=1.2),
     )
     by_label = {
-        label: rows.drop(columns=["axis", "value", "credible", "label"]).reset_index(drop=True)
+        label: rows.drop(columns=["axis", "value", "credible", "label"]).reset_index(
+            drop=True
+        )
         for label, rows in tests.groupby("label")
     }
-    pd.testing.assert_frame_equal(by_label["reference"], by_label["first period 0.35 s"])
+    pd.testing.assert_frame_equal(
+        by_label["reference"], by_label["first period 0.35 s"]
+    )
     assert not by_label["reference"].equals(by_label["first period 0.9 s"])
     # the ground floor does not know the building
-    ground = [table[table["floor"] == "GF"].reset_index(drop=True) for table in by_label.values()]
+    ground = [
+        table[table["floor"] == "GF"].reset_index(drop=True)
+        for table in by_label.values()
+    ]
     pd.testing.assert_frame_equal(ground[0], ground[1])
     assert tests["credible"].groupby(tests["label"]).nunique().eq(1).all()
 
@@ -56,12 +63,22 @@ def test_a_variant_equal_to_the_reference_gives_the_same_tests(settings):
 def test_each_axis_changes_what_it_names(settings):
     values = {"damping_ratio": 0.08, "base_shear": 0.15, "ground_scale": 0.25}
     values["floors"] = {"F3": 2, "F5": 4}
-    variants = building_variants(settings, {name: [value] for name, value in values.items()})
+    variants = building_variants(
+        settings, {name: [value] for name, value in values.items()}
+    )
     reference, damped, strong, weak_motion, other_levels = variants
-    assert damped.building == replace(reference.building, damping=damped.building.damping)
+    assert damped.building == replace(
+        reference.building, damping=damped.building.damping
+    )
     assert damped.building.damping.ratio == 0.08
-    assert (strong.building.model, strong.building.masonry.base_shear) == ("hysteretic", 0.15)
-    assert (weak_motion.building.model, weak_motion.ground_scale) == ("hysteretic", 0.25)
+    assert (strong.building.model, strong.building.masonry.base_shear) == (
+        "hysteretic",
+        0.15,
+    )
+    assert (weak_motion.building.model, weak_motion.ground_scale) == (
+        "hysteretic",
+        0.25,
+    )
     assert dict(other_levels.building.floors) == {"GF": 0, "F3": 2, "F5": 4}
     with pytest.raises(InputError, match="axis 'colour' of the sensitivity is unknown"):
         building_variants(settings, {"colour": ["red"]})

@@ -26,7 +26,9 @@ def test_slopes_and_contrasts_are_taken_inside_each_earthquake():
     assert slope.mean == pytest.approx(-0.07, abs=1e-12)
     moved = table.assign(d=table["d"] + of_kobe)
     first, other = (contrast(t, "floor", "GF", "F3") for t in (table, moved))
-    assert first.mean == pytest.approx(other.mean) and first.se == pytest.approx(other.se)
+    assert first.mean == pytest.approx(other.mean) and first.se == pytest.approx(
+        other.se
+    )
 
 
 def test_what_is_known_to_a_step_is_not_known_better():

@@ -11,9 +11,18 @@ from tests.paired_tests import build
 def drawn(tests: pd.DataFrame) -> tuple[Figure, int]:
     """The figure of tests by slenderness, and how many of its markers are tests."""
     tests = tests.assign(configuration=tests["object"] + " " + tests["pedestal"])
-    figure = slenderness_figure(tests, mean_amplitudes(tests), {"T1": 3.0, "T2": 4.0, "T3": 5.0})
-    lines = [line for axes in figure.axes for line in axes.lines if line.get_linestyle() == "None"]
-    return figure, sum(len(line.get_xdata()) for line in lines if line.get_marker() != "_")
+    figure = slenderness_figure(
+        tests, mean_amplitudes(tests), {"T1": 3.0, "T2": 4.0, "T3": 5.0}
+    )
+    lines = [
+        line
+        for axes in figure.axes
+        for line in axes.lines
+        if line.get_linestyle() == "None"
+    ]
+    return figure, sum(
+        len(line.get_xdata()) for line in lines if line.get_marker() != "_"
+    )
 
 
 def test_every_test_is_drawn_and_a_crowd_as_its_distribution():

@@ -32,7 +32,9 @@ def finding(number, tests, **extra):
 
 def where(place):
     """Maker of effects by the name of an object, an earthquake or a floor."""
-    return lambda **effects: lambda *names: effects.get(names[place].replace(" ", ""), 0.0)
+    return lambda **effects: (
+        lambda *names: effects.get(names[place].replace(" ", ""), 0.0)
+    )
 
 
 on_object, on_earthquake, on_floor = map(where, range(3))
@@ -80,32 +82,45 @@ def test_effect_decides_the_finding(number, true, false):
 
 def test_c29_and_c49_say_the_same():
     # the mean falls with Northridge, though 27 of 36 pairs rise
-    tests = build(on_earthquake(Friuli=0.03, Kobe=0.03, LomaPrieta=0.03, Northridge=-0.6))
+    tests = build(
+        on_earthquake(Friuli=0.03, Kobe=0.03, LomaPrieta=0.03, Northridge=-0.6)
+    )
     assert finding(29, tests) is finding(49, tests) is OPEN
 
 
 @pytest.mark.parametrize("basis", ["simulated", "measured"])
-def test_without_an_effect_large_changes_are_excluded_in_equal_words_and_small_ones_are_not(basis):
+def test_without_an_effect_large_changes_are_excluded_in_equal_words_and_small_ones_are_not(
+    basis,
+):
     """Whatever a hypothesis calls its change: the row's interval decides."""
     rows = hypothesis_table(Evidence(build(), basis)).set_index("number")
     assert (rows.loc[rows["p"].notna(), "p_of"] != "").all()
     assert rows.loc[26, "p_of"] == "no change"
     single = rows.loc[[29, 33, 35, 36, 37, 46, 49, 51]]
     assert len(set(single["outcome"])) == 1
-    assert ((single["lower"] < 1) & (single["upper"] > 1) & (single["upper"] < 1.1)).all()
+    assert (
+        (single["lower"] < 1) & (single["upper"] > 1) & (single["upper"] < 1.1)
+    ).all()
     rules = rows.loc[[29, 33, 35, 36, 37, 45, 46, 50, 51], "rule"]
     assert rules.str.contains("10 %").all() and rules.str.contains("excluded").all()
     assert rows.loc[35, "finding"] == Finding.BOUNDED
     assert rows.loc[35, "outcome"] == "a change of 10 % or more is excluded"
-    assert rows.loc[35, "p_of"] == "a change of 10 % or more" and rows.loc[35, "p"] < 0.05
+    assert (
+        rows.loc[35, "p_of"] == "a change of 10 % or more" and rows.loc[35, "p"] < 0.05
+    )
     assert "smaller change" in rows.loc[35, "remark"]
     of_the_pedestal = [29, 33, 34, 35, 36, 37, 39, 40, 45, 46, 48, 49, 51]
-    assert not {"not reproduced", "rejected"} & set(rows.loc[of_the_pedestal, "outcome"])
+    assert not {"not reproduced", "rejected"} & set(
+        rows.loc[of_the_pedestal, "outcome"]
+    )
 
 
 @pytest.mark.parametrize(
     ("basis", "outcomes"),
-    [("simulated", ["reproduced", "not reproduced"]), ("measured", ["confirmed", "rejected"])],
+    [
+        ("simulated", ["reproduced", "not reproduced"]),
+        ("measured", ["confirmed", "rejected"]),
+    ],
 )
 def test_a_simulation_reproduces_and_a_laboratory_decides(basis, outcomes):
     rows = hypothesis_table(Evidence(build(everywhere(0.2)), basis)).set_index("number")
@@ -125,7 +140,10 @@ def test_ties_are_known_to_a_step_lead_nowhere_and_exclude_no_slight_change():
     known = rows[rows["lower"].notna()].drop(index=55)
     assert (known["upper"] > known["lower"]).all()
     # nor have tied effects an order to correlate
-    assert rows.loc[52, "outcome"] == "undecided" and "same effect" in rows.loc[52, "remark"]
+    assert (
+        rows.loc[52, "outcome"] == "undecided"
+        and "same effect" in rows.loc[52, "remark"]
+    )
 
 
 def test_exceptions_on_the_upper_floors_are_counted_beyond_their_steps():
@@ -133,7 +151,9 @@ def test_exceptions_on_the_upper_floors_are_counted_beyond_their_steps():
     assert "24 decrease and 0 increase" in result(50, tests).remark
     # two thirds fall a little, one third rises much: no "few exceptions"
     mixed = build(lambda o, e, f: 0.06 if o == "T1" else -0.2, step=0.05)
-    assert result(50, mixed).remark.startswith("pairs: 24, of which 16 decrease and 8 increase")
+    assert result(50, mixed).remark.startswith(
+        "pairs: 24, of which 16 decrease and 8 increase"
+    )
 
 
 def thesis_cells(object_name, earthquake, floor):
@@ -145,7 +165,10 @@ def steeper_above(object_name, earthquake, floor):
 
 
 # NP: GF 1.2, F3 1.0, F5 1.1; P on the 5th raised above all
-RAISED = {"effect": on_floor(F5=0.3, GF=0.1), "level": on_floor(GF=np.log(1.2), F5=np.log(1.1))}
+RAISED = {
+    "effect": on_floor(F5=0.3, GF=0.1),
+    "level": on_floor(GF=np.log(1.2), F5=np.log(1.1)),
+}
 RISING = {"objects": {"T1": 0.3, "T2": 0.4, "T3": 0.5}}
 BENT = {"objects": {"T1": 0.5, "T2": 0.4, "T3": 0.45}}
 TRENDS = {
@@ -158,7 +181,11 @@ TRENDS = {
 @pytest.mark.parametrize(
     ("numbers", "true", "false"),
     [
-        ((38,), {"effect": thesis_cells}, {"effect": on_floor(GF=0.1, F3=-0.1, F5=-0.1)}),
+        (
+            (38,),
+            {"effect": thesis_cells},
+            {"effect": on_floor(GF=0.1, F3=-0.1, F5=-0.1)},
+        ),
         ((42, 43, 44), RAISED, {"level": on_floor(F3=0.3)}),
         ((25, 26, 53), {}, RISING),
         ((28,), {"level": steeper_above}, {}),
@@ -181,12 +208,18 @@ def test_a_fall_is_almost_linear_unless_it_bends():
 
 @pytest.mark.parametrize("trend", TRENDS)
 def test_scatter_about_an_exact_trend_does_not_speak_against_extrapolation(trend):
-    tables = (build(noise=0.134, seed=seed, objects=TRENDS[trend]) for seed in range(20))
+    tables = (
+        build(noise=0.134, seed=seed, objects=TRENDS[trend]) for seed in range(20)
+    )
     assert sum(finding(54, table) is FOR for table in tables) <= 1
 
 
 def measures_of(tests, **columns):
-    motions = tests[["motion", "earthquake", "floor"]].drop_duplicates().reset_index(drop=True)
+    motions = (
+        tests[["motion", "earthquake", "floor"]]
+        .drop_duplicates()
+        .reset_index(drop=True)
+    )
     return motions.rename(columns={"motion": "name"}).assign(**columns)
 
 
@@ -195,7 +228,9 @@ def test_correlation_with_the_motion_is_found_when_it_is_there():
     earthquakes = [f"E{k}" for k in range(12)]
     motions = build(earthquakes=earthquakes)["motion"].unique()
     period = dict(zip(motions, rng.uniform(0.2, 1.0, len(motions)), strict=True))
-    tests = build(lambda _, e, floor: 0.5 * period[f"{e}-{floor}"], earthquakes=earthquakes)
+    tests = build(
+        lambda _, e, floor: 0.5 * period[f"{e}-{floor}"], earthquakes=earthquakes
+    )
     idle = {name: rng.uniform(size=36) for name in ("pgv_over_pga_s", "d5_95_s")}
     measures = measures_of(tests, mean_period_s=list(period.values()), **idle)
     found = result(52, tests, measures=measures)
@@ -203,7 +238,9 @@ def test_correlation_with_the_motion_is_found_when_it_is_there():
     assert "mean period" in found.remark
     # twelve motions cannot show that there is no correlation
     tests = build(noise=0.1)
-    measures = measures_of(tests, mean_period_s=np.random.default_rng(4).uniform(size=12))
+    measures = measures_of(
+        tests, mean_period_s=np.random.default_rng(4).uniform(size=12)
+    )
     assert finding(52, tests, measures=measures) is OPEN
 
 
@@ -227,7 +264,9 @@ def test_pure_rocking_is_judged_by_friction_and_normal_force():
     assert finding(57, smooth) is FOR
     assert finding(57, smooth.assign(friction_demand=0.5)) is OPEN
     assert finding(57, smooth.assign(friction_demand=1.5)) is AGAINST
-    opened = hypothesis_table(Evidence(smooth.assign(least_normal_force_n=-0.1), "measured"))
+    opened = hypothesis_table(
+        Evidence(smooth.assign(least_normal_force_n=-0.1), "measured")
+    )
     row = opened.set_index("number").loc[57]
     # it is the model's premise that fails; about the experiment nothing is said
     assert (row["outcome"], row["basis"]) == ("refuted", "simulated")
@@ -236,7 +275,9 @@ def test_pure_rocking_is_judged_by_friction_and_normal_force():
 def test_force_over_mass_is_checked_where_recorded():
     tests = build()
     mass = 10.0 + 2.172
-    noisy = tests["amplitude_g"] * (1 + 0.002 * np.random.default_rng(1).normal(size=len(tests)))
+    noisy = tests["amplitude_g"] * (
+        1 + 0.002 * np.random.default_rng(1).normal(size=len(tests))
+    )
     right = tests.assign(moved_mass_kg=mass, force_n=noisy * 9.81 * mass)
     assert finding(56, right) is FOR
     assert finding(56, right.assign(moved_mass_kg=mass * 1.1)) is AGAINST
@@ -254,8 +295,14 @@ def test_hypothesis_table_has_all_34_statements_with_columns_and_reasons():
     table = hypothesis_table(Evidence(build(noise=0.1), "measured"))
     assert list(table.columns) == list(COLUMNS)
     assert table["number"].tolist() == list(range(25, 59))
-    assert table.loc[table["number"] == 58, "remark"].item().startswith("these data cannot decide")
-    undecided = table[(table["outcome"] == "undecided") & table["number"].between(27, 51)]
+    assert (
+        table.loc[table["number"] == 58, "remark"]
+        .item()
+        .startswith("these data cannot decide")
+    )
+    undecided = table[
+        (table["outcome"] == "undecided") & table["number"].between(27, 51)
+    ]
     power = "80 % power|has no power|power is not known"
     assert undecided["remark"].str.contains(power, regex=True).all()
     # what is inferred says how often it errs, and what is left when all hypotheses are counted
@@ -269,7 +316,9 @@ def test_neither_the_order_of_rows_nor_the_spelling_of_names_matters():
     tests = build(noise=0.1)
     first = hypothesis_table(Evidence(tests, "simulated"))
     shuffled = tests.sample(frac=1, random_state=5)
-    pd.testing.assert_frame_equal(first, hypothesis_table(Evidence(shuffled, "simulated")))
+    pd.testing.assert_frame_equal(
+        first, hypothesis_table(Evidence(shuffled, "simulated"))
+    )
     plain = tests["earthquake"].str.lower().str.replace(" ", "_")
     other = hypothesis_table(Evidence(tests.assign(earthquake=plain), "simulated"))
     assert other["outcome"].equals(first["outcome"])
@@ -305,12 +354,16 @@ def test_an_object_on_two_pedestals_is_no_double_test():
     on_one = tests["pedestal"] == "P"
     tests.loc[on_one, "configuration"] = "low " + tests["object"]
     second = tests[on_one].assign(configuration="high " + tests["object"])
-    rows = hypothesis_table(Evidence(pd.concat([tests, second]), "measured")).set_index("number")
+    rows = hypothesis_table(Evidence(pd.concat([tests, second]), "measured")).set_index(
+        "number"
+    )
     assert rows.loc[29, "outcome"] == "confirmed"
 
 
 def test_the_hypothesis_table_shows_kind_outcome_rule_and_error_rate():
-    html = str(hypotheses_html(hypothesis_table(Evidence(build(noise=0.1), "simulated"))))
+    html = str(
+        hypotheses_html(hypothesis_table(Evidence(build(noise=0.1), "simulated")))
+    )
     assert html.count('<div class="hypothesis') == 34
     assert "with/without pedestal" in html and "without/with pedestal" in html
     assert html.count("Rule: ") == html.count("Error: ") == 34
@@ -327,7 +380,9 @@ def test_no_order_of_the_four_means_satisfies_all_four_statements():
     ]
     # and it takes all four: dropping any one leaves orders that satisfy the rest
     assert max(map(sum, kept)) == 3
-    assert all(any(sum(rules) == 3 and not rules[i] for rules in kept) for i in range(4))
+    assert all(
+        any(sum(rules) == 3 and not rules[i] for rules in kept) for i in range(4)
+    )
 
 
 def test_stack_slenderness_by_hand():
@@ -339,13 +394,21 @@ def test_stack_slenderness_by_hand():
         assert abs(stacked - centre / 9.2) < 1e-12
     assert table["stacked"].round(2).tolist() == [2.66, 3.23, 3.83]
     row = hypothesis_table(Evidence(build(), "measured")).set_index("number").loc[30]
-    assert (row["finding"], row["outcome"], row["basis"]) == (AGAINST, "refuted", "computed")
+    assert (row["finding"], row["outcome"], row["basis"]) == (
+        AGAINST,
+        "refuted",
+        "computed",
+    )
     assert row["figure"].startswith("stack 2.66, 3.23, 3.83 against 3.00, 4.00, 5.00")
 
 
 def test_table_says_what_the_tests_show():
     seen = contradictions(Evidence(build(), "simulated"))
     first = seen.iloc[0]
-    assert len(seen) == 10 and "C42" in first["hypotheses"] and "P GF" in first["in_these_tests"]
+    assert (
+        len(seen) == 10
+        and "C42" in first["hypotheses"]
+        and "P GF" in first["in_these_tests"]
+    )
     ground = contradictions(Evidence(build().query("floor == 'GF'"), "simulated"))
     assert "cannot be said" in ground.iloc[0]["in_these_tests"]

@@ -25,7 +25,9 @@ WORDS_WITH_DIGITS += ("above 1", "below 1")
 
 def effects_of(tests: pd.DataFrame) -> pd.DataFrame:
     slenderness = {name: body.slenderness for name, body in THESIS_BODIES.items()}
-    return pedestal_tables(tests.assign(definition=DEFINITION), 1, slenderness)["effects"]
+    return pedestal_tables(tests.assign(definition=DEFINITION), 1, slenderness)[
+        "effects"
+    ]
 
 
 def hypotheses_of(tests: pd.DataFrame) -> pd.DataFrame:
@@ -58,7 +60,9 @@ def departing(floors: dict[str, float]) -> pd.DataFrame:
     """Effects of a sensitivity analysis whose one perturbed parameter changes P/NP on the floors by so much."""
     reference = build(noise=0.005, seed=1)
     wide = reference.pivot_table(
-        index=["object", "earthquake", "floor", "motion"], columns="pedestal", values="amplitude_g"
+        index=["object", "earthquake", "floor", "motion"],
+        columns="pedestal",
+        values="amplitude_g",
     ).reset_index()
     wide["ratio"] = wide["P"] / wide["NP"]
     changed = wide["ratio"] * wide["floor"].map(floors)
@@ -84,23 +88,30 @@ def unexplained(words: str, facts: list[str]) -> list[str]:
 
 def facts_of(effects: pd.DataFrame) -> list[str]:
     here = effects[
-        (effects["definition"] == DEFINITION) & effects["scope"].isin(["whole", "floor"])
+        (effects["definition"] == DEFINITION)
+        & effects["scope"].isin(["whole", "floor"])
     ]
     return [as_printed(row) for _, row in here.iterrows()]
 
 
 @pytest.mark.parametrize("ground", [-0.2, 0.0, 0.2])
 def test_every_number_of_the_words_stands_in_the_tables(ground):
-    tests = build(lambda o, e, floor: ground if floor == "GF" else -0.04, noise=0.03, step=0.05)
+    tests = build(
+        lambda o, e, floor: ground if floor == "GF" else -0.04, noise=0.03, step=0.05
+    )
     effects, hypotheses = effects_of(tests), hypotheses_of(tests)
     sensitivity_analysis = departing({"GF": 1.1, "F3": 1.1, "F5": 1.1})
     words = said(first_page(effects, hypotheses, sensitivity_analysis))
 
     perturbation = sensitivity_analysis[
-        (sensitivity_analysis["level"] == "0.9") & (sensitivity_analysis["floor"] == "all")
+        (sensitivity_analysis["level"] == "0.9")
+        & (sensitivity_analysis["floor"] == "all")
     ]
     facts = [*facts_of(effects), f"{len(tests) // 2} pairs", "× 0.9"]
-    facts += [as_printed(row, "ratio_lower", "ratio_upper") for _, row in perturbation.iterrows()]
+    facts += [
+        as_printed(row, "ratio_lower", "ratio_upper")
+        for _, row in perturbation.iterrows()
+    ]
     assert unexplained(words, facts) == []
 
 
@@ -108,9 +119,24 @@ def inverted(reaches: bool = False) -> pd.DataFrame:
     """One perturbed parameter, two together, and one that acts on the ground alone, with what they give."""
     nothing = {"factor_2": "", "level_2": float("nan"), "acts_on": "all floors"}
     rows = [
-        {"factor_1": "pedestal_width_cm", "level_1": 16.0, "ground": 1.021, "above": 1.002},
-        {"factor_1": "pedestal_lean_deg", "level_1": 2.0, "ground": 1.053, "above": 0.994},
-        {"factor_1": "interface_friction", "level_1": 0.35, "ground": 1.125, "above": 0.987},
+        {
+            "factor_1": "pedestal_width_cm",
+            "level_1": 16.0,
+            "ground": 1.021,
+            "above": 1.002,
+        },
+        {
+            "factor_1": "pedestal_lean_deg",
+            "level_1": 2.0,
+            "ground": 1.053,
+            "above": 0.994,
+        },
+        {
+            "factor_1": "interface_friction",
+            "level_1": 0.35,
+            "ground": 1.125,
+            "above": 0.987,
+        },
     ]
     rows = [nothing | row | {"reaches": False, "plausible": True} for row in rows]
     rows[1] |= {"factor_2": "pedestal_not_counted", "level_2": 20.0, "reaches": reaches}
@@ -125,7 +151,10 @@ def test_what_was_asked_the_other_way_round_is_one_sentence_of_its_table(
     effects, hypotheses, reaches, who
 ):
     wanted = {"ground": 10.0, "above": -5.0}
-    table, sensitivity_analysis = inverted(reaches), departing({"GF": 1.1, "F3": 1.1, "F5": 1.1})
+    table, sensitivity_analysis = (
+        inverted(reaches),
+        departing({"GF": 1.1, "F3": 1.1, "F5": 1.1}),
+    )
     plain = first_page(effects, hypotheses, sensitivity_analysis)
     whole = first_page(effects, hypotheses, sensitivity_analysis, table, wanted)
     assert [item.headline for item in whole] == [item.headline for item in plain]
@@ -133,7 +162,9 @@ def test_what_was_asked_the_other_way_round_is_one_sentence_of_its_table(
     assert words.count(". ") == 0 and words.startswith(who)
     facts = [who, "+10 % on the ground and −5 % above it", "16 cm", "2°", "20 kg"]
     facts += ["coefficient of 0.35"]
-    facts += [f"{row['ground']:.3f} and {row['above']:.3f}" for _, row in table.iterrows()]
+    facts += [
+        f"{row['ground']:.3f} and {row['above']:.3f}" for _, row in table.iterrows()
+    ]
     assert all(fact in words for fact in facts)
     assert unexplained(words, facts) == []
 
@@ -161,31 +192,39 @@ def test_the_pattern_is_named_only_with_intervals_on_its_side(effects, hypothese
     def headline(floors):
         return first_page(effects, hypotheses, departing(floors))[1].headline
 
-    assert headline({"GF": 1.2, "F3": 0.9, "F5": 0.9}).startswith("The only perturbation")
+    assert headline({"GF": 1.2, "F3": 0.9, "F5": 0.9}).startswith(
+        "The only perturbation"
+    )
     assert headline({"GF": 1.2, "F3": 0.9, "F5": 1.0}).startswith("No perturbation")
     assert headline({"GF": 1.2, "F3": 1.2, "F5": 1.2}).startswith("No perturbation")
 
 
-def test_simulated_perturbations_are_judged_together_by_a_named_rule(effects, hypotheses):
+def test_simulated_perturbations_are_judged_together_by_a_named_rule(
+    effects, hypotheses
+):
     sensitivity_analysis = departing({"GF": 1.2, "F3": 1.2, "F5": 1.2})
 
     def found(p: float):
-        return first_page(effects, hypotheses, sensitivity_analysis.assign(p=p))[1].numbers
+        return first_page(effects, hypotheses, sensitivity_analysis.assign(p=p))[
+            1
+        ].numbers
 
     rule = r"\(Benjamini–Hochberg at 5 % over 1 test\)"
-    largest = (
-        r"the largest is the object's restitution everywhere × 0\.9 \(1\.\d+ \[1\.\d+, 1\.\d+\]\)\."
-    )
+    largest = r"the largest is the object's restitution everywhere × 0\.9 \(1\.\d+ \[1\.\d+, 1\.\d+\]\)\."
     changes = r"imulated perturbation changes the ratio over all floors"
     assert re.search(rf"No s{changes} {rule}; {largest}", found(0.5))
     assert re.search(rf"The only s{changes} {rule}; {largest}", found(0.01))
 
 
-def test_arithmetic_is_told_apart_from_simulation_and_counts_in_no_adjustment(effects, hypotheses):
+def test_arithmetic_is_told_apart_from_simulation_and_counts_in_no_adjustment(
+    effects, hypotheses
+):
     simulated = departing({"GF": 1.0, "F3": 1.0, "F5": 1.0}).assign(p=0.04)
     computed = simulated.assign(factor="table_not_counted", p=1e-6)
     computed = computed[computed["level"] != REFERENCE]
-    numbers = first_page(effects, hypotheses, pd.concat([simulated, computed]))[1].numbers
+    numbers = first_page(effects, hypotheses, pd.concat([simulated, computed]))[
+        1
+    ].numbers
     assert "1 other is arithmetic, not simulation" in numbers
     # one simulated test alone: its p value stays 0.04, however small those of arithmetic are
     assert "The only simulated perturbation changes the ratio" in numbers

@@ -21,7 +21,9 @@ def table_of(order=(1.2, 1.0, 1.1), gains=(0.1, -0.05, -0.05)):
         logs = dict(zip(FLOORS, np.log(values), strict=True))
         return lambda name, earthquake, floor: logs[floor]
 
-    return build(of_floor(1 + np.array(gains)), of_floor(order), noise=0.0, earthquakes="AB")
+    return build(
+        of_floor(1 + np.array(gains)), of_floor(order), noise=0.0, earthquakes="AB"
+    )
 
 
 def test_margins_are_the_logarithms_they_are_said_to_be():
@@ -76,7 +78,11 @@ def test_tables_without_all_floors_or_pairs_are_refused():
 def test_a_tower_that_is_missing_leaves_its_statements_without_a_margin():
     table = table_of()
     margins = floor_margins(table[table["object"] != "T3"])
-    assert {name for name, margin in margins.items() if math.isnan(margin)} == {"C38", "C39", "C40"}
+    assert {name for name, margin in margins.items() if math.isnan(margin)} == {
+        "C38",
+        "C39",
+        "C40",
+    }
     assert margins["C35"] == pytest.approx(math.log(1.1))
 
 
@@ -86,14 +92,18 @@ PERIODS = (0.3, 0.5, 0.7)
 @pytest.fixture
 def tests():
     floors = {"GF": [0.4, 0.4, 0.4], "F3": [0.5, 0.3, 0.2], "F5": [0.6, 0.2, 0.3]}
-    means = pd.DataFrame(floors | {"value": PERIODS}).melt("value", None, "floor", "mean_g")
+    means = pd.DataFrame(floors | {"value": PERIODS}).melt(
+        "value", None, "floor", "mean_g"
+    )
     return means.assign(axis="first_period_s", pedestal="NP", by="floor")
 
 
 @pytest.fixture
 def margins():
     names = pd.DataFrame({"hypothesis": [*HYPOTHESES, "order"]})
-    table = names.merge(pd.DataFrame({"value": PERIODS, "margin": (-0.5, -0.1, 0.3)}), "cross")
+    table = names.merge(
+        pd.DataFrame({"value": PERIODS, "margin": (-0.5, -0.1, 0.3)}), "cross"
+    )
     label = table["value"].map("first period {:g} s".format)
     return table.assign(axis="first_period_s", definition="step_protocol", label=label)
 
@@ -118,7 +128,9 @@ def test_the_map_of_statements_shows_every_margin(margins):
     assert set(dots.get_xdata()) == {2}
 
 
-def test_the_building_figure_has_a_line_per_floor_and_marks_what_is_not_to_be_believed(tests):
+def test_the_building_figure_has_a_line_per_floor_and_marks_what_is_not_to_be_believed(
+    tests,
+):
     label = tests["value"].map("first period {:g} s".format)
     means = tests.assign(label=label, credible=[True, True, False] * 3)
     axes = floor_amplitudes(means, "first_period_s").axes[0]

@@ -46,7 +46,8 @@ LABORATORIES = {
     ),
 }
 
-OF_TESTS = set(range(25, 55)) - {30, 52}  # hypotheses that a table of tests alone can decide
+# hypotheses that a table of tests alone can decide
+OF_TESTS = set(range(25, 55)) - {30, 52}
 
 FALSE = {
     "thesis": {42, 47},
@@ -57,10 +58,17 @@ FALSE = {
 NEITHER = {"thesis": {54}, "no effect": set(), "opposite": {54}}
 
 
-def laboratory(name: str, seed: int, earthquakes: int = 4, motions: int = 1) -> pd.DataFrame:
+def laboratory(
+    name: str, seed: int, earthquakes: int = 4, motions: int = 1
+) -> pd.DataFrame:
     effect, level, objects = LABORATORIES[name]
     names = [*EARTHQUAKES, *(f"E{k}" for k in range(5, earthquakes + 1))]
-    design = {"earthquakes": names, "motions": motions, "objects": objects, "step": STEP}
+    design = {
+        "earthquakes": names,
+        "motions": motions,
+        "objects": objects,
+        "step": STEP,
+    }
     scatter = {"noise": PAIR_SCATTER / np.sqrt(2), "of_motion": 0.15, "seed": seed}
     return build(effect, level, **design, **scatter)
 
@@ -77,7 +85,10 @@ def of(found: dict[int, str], outcome: str) -> set[int]:
 @pytest.fixture(scope="module")
 def large() -> dict[str, dict[int, str]]:
     """Outcomes on laboratories with forty earthquakes and three motions of each on every floor."""
-    return {name: outcomes(laboratory(name, 1, earthquakes=40, motions=3)) for name in LABORATORIES}
+    return {
+        name: outcomes(laboratory(name, 1, earthquakes=40, motions=3))
+        for name in LABORATORIES
+    }
 
 
 @pytest.mark.parametrize("name", LABORATORIES)
@@ -89,13 +100,21 @@ def test_no_false_statement_is_confirmed_and_no_true_one_rejected(large, name):
 @pytest.mark.parametrize(
     ("name", "outcome", "numbers"),
     [
-        ("thesis", "confirmed", {29, 34, 35, 37, 39, 40, 41, 43, 44, 46, 48, 49, 50, 51, 53}),
+        (
+            "thesis",
+            "confirmed",
+            {29, 34, 35, 37, 39, 40, 41, 43, 44, 46, 48, 49, 50, 51, 53},
+        ),
         # the sentences that exclude others which are so
         ("thesis", "rejected", {42, 47}),
         # no table excludes an increase that may be as small as one likes
         ("no effect", EXCLUDED, {29, 33, 34, 35, 36, 37, 39, 40, 48, 49, 50, 51}),
         ("no effect", "confirmed", {27, 31}),
-        ("opposite", "rejected", {25, 26, 29, 34, 35, 37, 39, 40, 43, 44, 46, 48, 49, 50, 51, 53}),
+        (
+            "opposite",
+            "rejected",
+            {25, 26, 29, 34, 35, 37, 39, 40, 43, 44, 46, 48, 49, 50, 51, 53},
+        ),
     ],
 )
 def test_what_is_so_in_a_laboratory_is_found(large, name, outcome, numbers):

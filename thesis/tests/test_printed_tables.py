@@ -31,7 +31,10 @@ def computed(four_records):
     return {
         "table_3_1": (study.specimens, TABLE_3_1),
         "table_3_3": ({motion.name: motion for motion in motions}, TABLE_3_3),
-        "table_4_1": ({system.name: system for system in study.configurations}, TABLE_4_1),
+        "table_4_1": (
+            {system.name: system for system in study.configurations},
+            TABLE_4_1,
+        ),
     }
 
 
@@ -42,7 +45,9 @@ def test_the_package_and_the_study_have_the_same_specimens():
         assert astuple(study[name]) == pytest.approx(astuple(body))
 
 
-@pytest.mark.parametrize(("name", "rows"), [("table_3_1", 16), ("table_3_3", 12), ("table_4_1", 9)])
+@pytest.mark.parametrize(
+    ("name", "rows"), [("table_3_1", 16), ("table_3_3", 12), ("table_4_1", 9)]
+)
 def test_the_printed_tables_come_out(computed, name, rows):
     table = compare(*computed[name], FOLDER / f"{name}.csv")
     assert len(table) == rows
@@ -63,13 +68,17 @@ def test_without_printed_values_nothing_agrees_or_disagrees():
 
 def test_a_printed_value_that_is_no_number_is_named(tmp_path: Path):
     printed = tmp_path / "table.csv"
-    printed.write_text((FOLDER / "table_3_1.csv").read_text().replace("19.61", "about 20"))
+    printed.write_text(
+        (FOLDER / "table_3_1.csv").read_text().replace("19.61", "about 20")
+    )
     with pytest.raises(InputError, match="radius_cm"):
         compare({"X": Block(1, 2, 3)}, TABLE_3_1, printed)
 
 
 def test_an_eccentric_block_uplifts_about_its_nearer_edge():
-    assert uplift_accelerations(Block(1, 4, 10, cg_offset=0.1))[1] == pytest.approx(0.2 * 9.81)
+    assert uplift_accelerations(Block(1, 4, 10, cg_offset=0.1))[1] == pytest.approx(
+        0.2 * 9.81
+    )
 
 
 def test_a_heavy_pedestal_takes_the_threshold_of_pattern_3_to_its_own():

@@ -13,7 +13,13 @@ from rockfrag_thesis.hypotheses.evidence import THESIS_BODIES
 from rockfrag_thesis.hypotheses.hypothesis_table import THEORY
 from rockfrag_thesis.hypotheses.setting import bisect, make_setting, moves, starts_at
 from rockfrag_thesis.hypotheses.spectra import dispersion_ratio, exchanges
-from rockfrag_thesis.hypotheses.stacks import LIFTED, SETTLES, STILL, after_impacts, free_fall
+from rockfrag_thesis.hypotheses.stacks import (
+    LIFTED,
+    SETTLES,
+    STILL,
+    after_impacts,
+    free_fall,
+)
 from tests.conftest import shaking
 
 MOTIONS = [shaking(seed, 0.3, 8, 0.4) for seed in range(4)]
@@ -38,7 +44,9 @@ EXCEPTIONS = "confirmed for the specimens, with exceptions elsewhere"
 def test_what_mechanics_settles_is_settled_and_what_holds_for_the_specimens_alone_says_so(
     hypothesis_table,
 ):
-    expected = dict.fromkeys([1, 2, 3, 4, 6, 7, 8, 10, 13, 15, 16, 20, 22, 24], "confirmed")
+    expected = dict.fromkeys(
+        [1, 2, 3, 4, 6, 7, 8, 10, 13, 15, 16, 20, 22, 24], "confirmed"
+    )
     expected |= dict.fromkeys([9, 11, 12, 21, 23], EXCEPTIONS) | {5: "undecided"}
     assert hypothesis_table.loc[list(expected), "outcome"].to_dict() == expected
     identities = hypothesis_table[hypothesis_table["kind"] == "identity"]
@@ -59,7 +67,9 @@ def test_what_is_found_is_said(hypothesis_table, number, column, words):
     assert words in hypothesis_table.loc[number, column]
 
 
-def test_a_sudden_start_gives_rocking_mode_1_and_a_continuous_one_does_not(hypothesis_table):
+def test_a_sudden_start_gives_rocking_mode_1_and_a_continuous_one_does_not(
+    hypothesis_table,
+):
     records, sudden = hypothesis_table.loc[9, "figure"].split("under motions")
     fraction, total = records.split(" start")[0].split(" of ")
     assert fraction == total
@@ -84,13 +94,17 @@ def test_landings_are_told_apart() -> None:
         return pd.DataFrame(rows, columns=["from", "to"]).assign(kind="impact")
 
     assert after_impacts(contact_events(("4a", "4b"))) == [STILL]
-    assert after_impacts(contact_events(("4a", "1b"), ("1b", "2a"), ("2a", "4b"))) == [SETTLES]
+    assert after_impacts(contact_events(("4a", "1b"), ("1b", "2a"), ("2a", "4b"))) == [
+        SETTLES
+    ]
     assert after_impacts(contact_events(("4a", "1b"), ("1b", "2b"))) == [LIFTED]
     # the record ends before it is decided
     assert after_impacts(contact_events(("4a", "1b"))) == []
 
 
-def test_results_do_not_depend_on_threads_or_repetition(hypothesis_table: pd.DataFrame) -> None:
+def test_results_do_not_depend_on_threads_or_repetition(
+    hypothesis_table: pd.DataFrame,
+) -> None:
     again = theory_table(THESIS_BODIES, MOTIONS, seed=7, threads=1)
     pd.testing.assert_frame_equal(again, hypothesis_table.reset_index(drop=True))
 
@@ -100,7 +114,11 @@ def test_results_do_not_depend_on_threads_or_repetition(hypothesis_table: pd.Dat
     [
         ({}, [], set(THEORY)),
         ({"T1": THESIS_BODIES["T1"]}, [], set(THEORY) - {1, 4, 6, 7, 20}),
-        ({"T1": THESIS_BODIES["T1"]}, [Motion(np.zeros(10), 0.01)], set(THEORY) - {1, 4, 6, 7, 20}),
+        (
+            {"T1": THESIS_BODIES["T1"]},
+            [Motion(np.zeros(10), 0.01)],
+            set(THEORY) - {1, 4, 6, 7, 20},
+        ),
     ],
     ids=["nothing", "one block", "no shaking"],
 )
@@ -151,7 +169,9 @@ def test_threshold_is_where_bisection_ends_and_simulations_start() -> None:
 
 
 @pytest.mark.slow
-def test_thesis_motions_give_the_hypothesis_table(four_records: dict[str, Motion]) -> None:
+def test_thesis_motions_give_the_hypothesis_table(
+    four_records: dict[str, Motion],
+) -> None:
     motions = list(four_records.values())
     table = theory_table(THESIS_BODIES, motions, seed=1).set_index("number")
     for number in (8, 14, 15, 16, 17, 18):

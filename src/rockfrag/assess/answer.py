@@ -105,13 +105,16 @@ class Assessment:
 class Plan:
     """Under which levels of which motions objects are compared; the same for all in one place."""
 
-    curves: tuple[HazardCurve, ...]  # The hazard that counts, and that of PGV beside it, if any
+    # The hazard that counts, and that of PGV beside it, if any
+    curves: tuple[HazardCurve, ...]
     level: Level | None  # Level of shaking at the site
     # The motions at their levels, and those under which changes are compared
     shaking: Shaking
     fewer: Shaking
-    brief: bool  # Whether directions, and ways to stand other than its own, are left out
-    compares_few: bool  # Whether changes are compared by few motions: briefly, of columns, in space
+    # Whether directions, and ways to stand other than its own, are left out
+    brief: bool
+    # Whether changes are compared by few motions: briefly, of columns, in space
+    compares_few: bool
 
     @property
     def hazard(self) -> HazardCurve | None:
@@ -123,15 +126,23 @@ class Plan:
 class Shaken:
     """What motions as recorded do to an object."""
 
-    arrangements: Mapping[str, ObjectOutcomes]  # Outcomes of each way to stand, its own first
-    moved: Sequence[Moved[ObjectOutcomes]]  # Outcomes with each property moved to both sides
-    before: ObjectOutcomes  # Outcomes as it stands under the motions by which changes are compared
-    planar: ObjectOutcomes | None  # Outcomes in one plane; None where those are the answer
-    changed: Mapping[str, ObjectOutcomes]  # Outcomes with each mitigation under the same motions
-    alike: Mapping[str, str]  # Mitigations that give one of the arrangements, and its name
+    # Outcomes of each way to stand, its own first
+    arrangements: Mapping[str, ObjectOutcomes]
+    # Outcomes with each property moved to both sides
+    moved: Sequence[Moved[ObjectOutcomes]]
+    # Outcomes as it stands under the motions by which changes are compared
+    before: ObjectOutcomes
+    # Outcomes in one plane; None where those are the answer
+    planar: ObjectOutcomes | None
+    # Outcomes with each mitigation under the same motions
+    changed: Mapping[str, ObjectOutcomes]
+    # Mitigations that give one of the arrangements, and its name
+    alike: Mapping[str, str]
 
 
-def assess(request: Request, records: str | Path = RECORDS, *, brief: bool = False) -> Assessment:
+def assess(
+    request: Request, records: str | Path = RECORDS, *, brief: bool = False
+) -> Assessment:
     """Assess one object at one place.
 
     Parameters
@@ -148,7 +159,9 @@ def assess(request: Request, records: str | Path = RECORDS, *, brief: bool = Fal
     return assess_with(request, motions, brief=brief)
 
 
-def assess_with(request: Request, motions: MotionSet, *, brief: bool = False) -> Assessment:
+def assess_with(
+    request: Request, motions: MotionSet, *, brief: bool = False
+) -> Assessment:
     """Assess one object with motions that are at hand; ``brief`` leaves out as :func:`assess` does."""
     plan = plan_for(request, motions, brief=brief)
     return assessed(request, plan, shake_all([request], plan)[0])
@@ -179,17 +192,22 @@ def shake_all(requests: Sequence[Request], plan: Plan) -> list[Shaken]:
     """Shake objects in one place at once; of each the same results as alone, to the bit."""
     objects = [request.objects for request in requests]
     ways = [
-        dict(list(object_.arrangements.items())[: 1 if plan.brief else None]) for object_ in objects
+        dict(list(object_.arrangements.items())[: 1 if plan.brief else None])
+        for object_ in objects
     ]
     arrangements = plan.shaking.outcomes_of_each(objects, ways)
     under = plan.fewer if plan.compares_few else plan.shaking
     changes, alike = [], []
     for object_, bodies in zip(objects, ways, strict=True):
         tried = mitigations_of(object_)
-        known = {name: way for name in tried for way in bodies if bodies[way] == tried[name]}
+        known = {
+            name: way for name in tried for way in bodies if bodies[way] == tried[name]
+        }
         # of few motions the object as it stands comes first, then with each mitigation
         first = {"": object_.body} if plan.compares_few else {}
-        changes.append(first | {name: tried[name] for name in tried if name not in known})
+        changes.append(
+            first | {name: tried[name] for name in tried if name not in known}
+        )
         alike.append(known)
     compared = under.outcomes_of_each(objects, changes)
     moved = _moved(requests, plan)
@@ -218,7 +236,9 @@ def _pad_words(
     here = slip[shaking.allowed[:, at], at]
     if not here.size:
         return words
-    return f"{words}, on which it slides up to {100 * here.max():.3g} cm at {level.words},"
+    return (
+        f"{words}, on which it slides up to {100 * here.max():.3g} cm at {level.words},"
+    )
 
 
 def assessed(request: Request, plan: Plan, shaken: Shaken) -> Assessment:
@@ -236,7 +256,9 @@ def assessed(request: Request, plan: Plan, shaken: Shaken) -> Assessment:
     conversion = None
     if level:
         about = (request.records, level, plan.curves)
-        conversion = find_conversion(counted, motions, *about, by_statics=exact, brief=plan.brief)
+        conversion = find_conversion(
+            counted, motions, *about, by_statics=exact, brief=plan.brief
+        )
     shaken = _at_site(shaken, plan, conversion)
     arrangements, moved = shaken.arrangements, shaken.moved
     both_sides = {change.name: change.sides for change in moved}
@@ -267,11 +289,18 @@ def assessed(request: Request, plan: Plan, shaken: Shaken) -> Assessment:
             # what does not rock cannot topple
             fraction = replace(fraction, upper=min(fraction.upper, rocking.upper))
         # what topples rocks: limits of rocking are at least those of toppling
-        limits = (max(rocking.lower, fraction.lower), max(rocking.upper, fraction.upper))
+        limits = (
+            max(rocking.lower, fraction.lower),
+            max(rocking.upper, fraction.upper),
+        )
         rocking = replace(rocking, lower=limits[0], upper=limits[1])
     at = level.value if level else None
     brief = plan.brief
-    here = None if brief or at is None else outcomes.scaled_to(np.array([at]), motions, measure)
+    here = (
+        None
+        if brief or at is None
+        else outcomes.scaled_to(np.array([at]), motions, measure)
+    )
     return Assessment(
         request=request,
         motions=motions,
@@ -286,7 +315,8 @@ def assessed(request: Request, plan: Plan, shaken: Shaken) -> Assessment:
         counts=_counts(counted, level) if now is counted else None,
         amplitudes={p: evidence.estimate(risk.amplitude_target(p)) for p in (0.1, 0.5)},
         by_arrangement={
-            name: target.value(arrangement) for name, arrangement in arrangements.items()
+            name: target.value(arrangement)
+            for name, arrangement in arrangements.items()
         },
         curve=None if brief or now is not counted else fragility_of(now.outcomes()),
         conversion=conversion,
@@ -296,11 +326,15 @@ def assessed(request: Request, plan: Plan, shaken: Shaken) -> Assessment:
         planar=None if shaken.planar is None else target.value(shaken.planar),
         mitigations=_mitigations(request, target, shaken),
         effects=tuple(change.turned(target.value) for change in moved),
-        rules=() if brief or motions.both else tuple(check_rules(objects, motions, counted)),
+        rules=()
+        if brief or motions.both
+        else tuple(check_rules(objects, motions, counted)),
         sliding_fraction=math.nan
         if here is None or objects.friction is None
         else here.fraction_with_sliding(objects),
-        flip_rate=math.nan if here is None or not motions.both else here.flip_rate(objects),
+        flip_rate=math.nan
+        if here is None or not motions.both
+        else here.flip_rate(objects),
     )
 
 
@@ -319,14 +353,18 @@ def _at_site(shaken: Shaken, plan: Plan, conversion: Conversion | None) -> Shake
         moved=[change.turned(few.at_site) for change in shaken.moved],
         before=compared.at_site(shaken.before),
         planar=None if shaken.planar is None else conversion.at_site(shaken.planar),
-        changed={name: compared.at_site(changed) for name, changed in shaken.changed.items()},
+        changed={
+            name: compared.at_site(changed) for name, changed in shaken.changed.items()
+        },
     )
 
 
 def _governing(request: Request, motions: MotionSet) -> tuple[HazardCurve, ...]:
     """The hazard curve of the level's measure or of least scatter of capacities, and that of PGV beside it."""
     asked = request.level.measure if request.level else None
-    curves = [curve for curve in request.hazard if curve.measure == asked] or request.hazard
+    curves = [
+        curve for curve in request.hazard if curve.measure == asked
+    ] or request.hazard
     others = [curve for curve in curves if curve.measure != PGV]
     velocity = [curve for curve in request.hazard if curve.measure == PGV]
     if not others:
@@ -364,16 +402,23 @@ def _counts(now: ObjectOutcomes, level: Level | None) -> tuple[int, int, int] | 
     allowed = levels.allowed[:, at]
     if levels.levels[at] != level.value or not allowed.any():
         return None
-    rocked, fell = (int(what[allowed, at].sum()) for what in (now.rocked, now.overturned))
+    rocked, fell = (
+        int(what[allowed, at].sum()) for what in (now.rocked, now.overturned)
+    )
     return int(allowed.sum()), rocked, fell
 
 
-def _moved(requests: Sequence[Request], plan: Plan) -> list[list[Moved[ObjectOutcomes]]]:
+def _moved(
+    requests: Sequence[Request], plan: Plan
+) -> list[list[Moved[ObjectOutcomes]]]:
     """Outcomes with every property of body and floor moved by its standard deviation, of each object."""
     variants = [request.objects.variants() for request in requests]
     sides = [side for each in variants for variant in each for side in variant.sides]
     shaken = iter(plan.fewer.outcomes_of(sides))
-    found = [[variant.turned(lambda _: next(shaken)) for variant in each] for each in variants]
+    found = [
+        [variant.turned(lambda _: next(shaken)) for variant in each]
+        for each in variants
+    ]
     objects = [request.objects for request in requests]
     for moved in requests[0].place.variants():
         floors = moved.turned(lambda place: plan.fewer.at(place).outcomes_of(objects))
@@ -384,7 +429,10 @@ def _moved(requests: Sequence[Request], plan: Plan) -> list[list[Moved[ObjectOut
 
 def _of_quantiles(now: ObjectOutcomes, hazard: HazardCurve) -> dict[str, float]:
     """Standard deviation of ln rate that the quantiles of the hazard stand for."""
-    logs = {q: risk.risk_target(curve, 1.0).on_scale(now) for q, curve in hazard.quantiles.items()}
+    logs = {
+        q: risk.risk_target(curve, 1.0).on_scale(now)
+        for q, curve in hazard.quantiles.items()
+    }
     finite = {q: value for q, value in logs.items() if math.isfinite(value)}
     if len(finite) < 2:
         return {}
@@ -393,13 +441,24 @@ def _of_quantiles(now: ObjectOutcomes, hazard: HazardCurve) -> dict[str, float]:
     return {"hazard": abs(finite[high] - finite[low]) / width}
 
 
-def _mitigations(request: Request, target: risk.Target, shaken: Shaken) -> tuple[Mitigation, ...]:
+def _mitigations(
+    request: Request, target: risk.Target, shaken: Shaken
+) -> tuple[Mitigation, ...]:
     ways = shaken.arrangements
     now = next(iter(ways.values()))
     known = {name: ways[way] for name, way in shaken.alike.items()}
-    found = [*compare(target, shaken.before, shaken.changed), *compare(target, now, known)]
+    found = [
+        *compare(target, shaken.before, shaken.changed),
+        *compare(target, now, known),
+    ]
     # changes are ranked by what they do to the same motions, and by what is left where none topples the object
-    found.sort(key=lambda each: (math.isnan(each.factor), np.nan_to_num(each.factor), each.value))
+    found.sort(
+        key=lambda each: (
+            math.isnan(each.factor),
+            np.nan_to_num(each.factor),
+            each.value,
+        )
+    )
     # an amplitude helps by growing, a probability by shrinking
     grows = request.level is None and not request.hazard
     return tuple(reversed(found) if grows else found)

@@ -13,7 +13,8 @@ class Assumption:
 
     short: str  # In a few words that go into a list, such as ``its mass is 368 kg``
     words: str  # The same in a sentence, with its reason
-    sources: tuple[str, ...] = ()  # Names of its sources of uncertainty; empty where it has none
+    # Names of its sources of uncertainty; empty where it has none
+    sources: tuple[str, ...] = ()
 
 
 _says = Macros("rockfrag.assess", "assumed.j2")
@@ -49,7 +50,9 @@ class Moved(Generic[T]):
         return Moved(self.name, self.spread, change(self.lower), change(self.upper))
 
 
-def tolerances_in(settings: Mapping[str, Any], usual: Mapping[str, float]) -> dict[str, float]:
+def tolerances_in(
+    settings: Mapping[str, Any], usual: Mapping[str, float]
+) -> dict[str, float]:
     """Standard deviations by property: the usual ones, in place of which ``statue.yaml`` may state others."""
     given = settings.get("tolerances", {})
     return {key: float(given.get(key, spread)) for key, spread in usual.items()}

@@ -51,9 +51,13 @@ def add_assess_commands(commands: Any) -> None:
     out = parser.add_argument_group("the answer")
     words = "where page and JSON are written"
     out.add_argument("--output", metavar="FOLDER", default="assessment", help=words)
-    out.add_argument("--pdf", action="store_true", help="print the page too, by Chromium or Chrome")
+    out.add_argument(
+        "--pdf", action="store_true", help="print the page too, by Chromium or Chrome"
+    )
     out.add_argument("--json", action="store_true", help="print the answer as JSON")
-    out.add_argument("--pages", action="store_true", help="of an inventory: write a page for each")
+    out.add_argument(
+        "--pages", action="store_true", help="of an inventory: write a page for each"
+    )
     words = "of an inventory: rank the rows that are right, and list what is wrong with the others"
     out.add_argument("--keep-going", action="store_true", help=words)
     parser.set_defaults(run=_assess)
@@ -61,7 +65,9 @@ def add_assess_commands(commands: Any) -> None:
     rules = commands.add_parser("rules-of-thumb", help=words)
     rules.add_argument("file", help="objects, such as config/rules-of-thumb.yaml")
     add_records_option(rules)
-    rules.add_argument("--output", metavar="FILE", help="write the table as .csv or .parquet")
+    rules.add_argument(
+        "--output", metavar="FILE", help="write the table as .csv or .parquet"
+    )
     rules.set_defaults(run=_rules)
 
 
@@ -83,7 +89,9 @@ def _options(keys: Mapping[str, Any], above: str = "") -> Iterator[_Option]:
             if word := told.get("metavar"):
                 reads["metavar"] = tuple(word) if isinstance(word, list) else word
             whole = above + (plain if about.get("quantity") else key)
-            yield _Option(told.get("name", plain.replace("_", "-")), whole, told["group"], reads)
+            yield _Option(
+                told.get("name", plain.replace("_", "-")), whole, told["group"], reads
+            )
         known = read_schema("known_of_building") if key == "building" else about
         yield from _options(known.get("properties", {}), f"{key}.")
 
@@ -94,7 +102,11 @@ def _reading(about: Mapping[str, Any]) -> dict[str, Any]:
     if kind == "boolean":
         return {"action": "store_true"}
     if kind == "array":
-        return {"nargs": about["minItems"] if about["minItems"] == about.get("maxItems") else "+"}
+        return {
+            "nargs": about["minItems"]
+            if about["minItems"] == about.get("maxItems")
+            else "+"
+        }
     if "enum" in about:
         return {"choices": about["enum"]}
     return {"type": float} if kind == "number" and not about.get("quantity") else {}
@@ -109,13 +121,17 @@ def add_request_options(parser: argparse.ArgumentParser) -> None:
     for title, options in groupby(_all_options(), key=attrgetter("group")):
         group = parser.add_argument_group(title)
         for option in options:
-            group.add_argument(f"--{option.name}", **{"action": _Once, **option.arguments})
+            group.add_argument(
+                f"--{option.name}", **{"action": _Once, **option.arguments}
+            )
     add_records_option(group)
 
 
 def add_records_option(parser: Any, words: str = "folder of fetched records") -> None:
     """Add the option that names the folder of records."""
-    parser.add_argument("--records", metavar="FOLDER", default="resources/records", help=words)
+    parser.add_argument(
+        "--records", metavar="FOLDER", default="resources/records", help=words
+    )
 
 
 # imported when it runs: `rockfrag --help` should not wait for numba
@@ -131,7 +147,10 @@ def _assess(options: argparse.Namespace) -> int:
     except FaultyRows as error:
         for fault in error.faults:
             print(on_command_line(fault, given), file=sys.stderr)
-        print("nothing was assessed; --keep-going ranks the rows that are right.", file=sys.stderr)
+        print(
+            "nothing was assessed; --keep-going ranks the rows that are right.",
+            file=sys.stderr,
+        )
         return 2
     except InputError as error:
         # a message about a file names its keys, one about an option the option
@@ -148,8 +167,14 @@ def _refuse_unused(options: argparse.Namespace) -> None:
     listed = _is_inventory(options)
     for name in ("pages", "keep_going") if not listed else ("pdf", "json"):
         if getattr(options, name):
-            needed = "one object, not an inventory" if listed else "an inventory, a .csv file"
-            raise InputError(f"--{name.replace('_', '-')} needs {needed}; leave it out.")
+            needed = (
+                "one object, not an inventory"
+                if listed
+                else "an inventory, a .csv file"
+            )
+            raise InputError(
+                f"--{name.replace('_', '-')} needs {needed}; leave it out."
+            )
 
 
 def _one(options: argparse.Namespace, given: dict[str, Any]) -> int:
@@ -173,7 +198,9 @@ def _one(options: argparse.Namespace, given: dict[str, Any]) -> int:
         if sys.stdout.isatty():
             # broken where a terminal ends; what goes into a file or a pipe stays whole
             width = max(shutil.get_terminal_size().columns, 40)
-            lines = [textwrap.fill(line, width, subsequent_indent="    ") for line in lines]
+            lines = [
+                textwrap.fill(line, width, subsequent_indent="    ") for line in lines
+            ]
         print("\n".join(lines))
         print(f"{place}", file=sys.stderr)
     return 0
@@ -244,7 +271,10 @@ def _pedestals(given: Sequence[Sequence[str]]) -> Any:
                 "--pedestal: expected width, height and, if known, mass, such as 50cm 90cm 400kg; got "
                 f"{' '.join(numbers)}."
             )
-    found = [dict(zip(("width", "height", "mass"), numbers, strict=False)) for numbers in given]
+    found = [
+        dict(zip(("width", "height", "mass"), numbers, strict=False))
+        for numbers in given
+    ]
     return found if len(found) > 1 else found[0]
 
 
@@ -255,7 +285,9 @@ def _inventory(options: argparse.Namespace, shared: dict[str, Any]) -> int:
     unfit = [key for key in ("name", "width", "height", "mesh") if key in shared]
     if unfit:
         raise InputError(f"--{unfit[0]}: is of one object; put it into {options.file}.")
-    found = assess_inventory(options.file, shared, options.records, keep_going=options.keep_going)
+    found = assess_inventory(
+        options.file, shared, options.records, keep_going=options.keep_going
+    )
     for fault in found.faults:
         print(f"warning: left out: {fault}", file=sys.stderr)
     print("\n".join([*inventory_lines(found), *joint_lines(found)]))
@@ -288,13 +320,17 @@ def on_command_line(words: str, given: Collection[str] | None = None) -> str:
     def option(found: re.Match[str]) -> str:
         key = _UNITS.sub("", found[1])
         whole = key.split(".")[0]
-        if given is not None and whole not in {_UNITS.sub("", other) for other in given}:
+        if given is not None and whole not in {
+            _UNITS.sub("", other) for other in given
+        }:
             return found[0]
         name = names.get(key, whole.replace("_", "-"))
         # a flag takes no value, and an axis stands beside its option
         return f"--{name}" + (" " if found[3] == ": " else "")
 
-    return _KEY.sub(option, words.replace(_METRES_PER_UNIT, "key mesh.metres_per_unit mm"))
+    return _KEY.sub(
+        option, words.replace(_METRES_PER_UNIT, "key mesh.metres_per_unit mm")
+    )
 
 
 _METRES_PER_UNIT = "key mesh.metres_per_unit (0.001 for millimetres, 0.3048 for feet)"
@@ -324,7 +360,9 @@ def add_app_command(commands: Any) -> None:
     )
     parser.add_argument("file", nargs="?", help="statue.yaml that says all this")
     add_request_options(parser)
-    parser.add_argument("--output", metavar="FILE", default="assess.html", help="the page")
+    parser.add_argument(
+        "--output", metavar="FILE", default="assess.html", help="the page"
+    )
     parser.set_defaults(run=_app)
 
 
@@ -361,21 +399,29 @@ def form_of(settings: Mapping[str, Any], request: Any) -> dict[str, str]:
     form |= {"round": "true"} if settings.get("round") else {}
     pedestal, building = settings.get("pedestal") or {}, settings.get("building") or {}
     if isinstance(pedestal, list):
-        raise InputError("key pedestal: the page has one; rockfrag assess takes several.")
+        raise InputError(
+            "key pedestal: the page has one; rockfrag assess takes several."
+        )
     form |= {f"pedestal_{key}": str(value) for key, value in pedestal.items()}
     if isinstance(building, Mapping):
         told = ("storey_height", "material")
         form |= {key: str(building[key]) for key in told if key in building}
         if "first_period_s" in building:
             form["period"] = f"{building['first_period_s']} s"
-    return form | _shaking(settings, request) | {"years": str(settings.get("return_period", ""))}
+    return (
+        form
+        | _shaking(settings, request)
+        | {"years": str(settings.get("return_period", ""))}
+    )
 
 
 def _shaking(settings: Mapping[str, Any], request: Any) -> dict[str, str]:
     """The level and the hazard curve as they stand in the form."""
     given = [key for key in _LEVELS if key in settings]
     if len(given) > 1:
-        raise InputError(f"key {given[1]}: the page takes one level; rockfrag assess takes both.")
+        raise InputError(
+            f"key {given[1]}: the page takes one level; rockfrag assess takes both."
+        )
     level = settings[given[0]] if given else ""
     form = {
         "measure": request.level.measure.imt if request.level else "PGA",
@@ -385,7 +431,9 @@ def _shaking(settings: Mapping[str, Any], request: Any) -> dict[str, str]:
         return form
     (curve, *others) = request.hazard
     if others:
-        raise InputError("key hazard: the page takes one measure; leave the others out.")
+        raise InputError(
+            "key hazard: the page takes one measure; leave the others out."
+        )
     rows = zip(curve.levels.tolist(), curve.rates.tolist(), strict=True)
     lines = "\n".join(f"{x!r} {rate!r}" for x, rate in rows)
     return form | {"measure": curve.measure.imt, "hazard": lines}

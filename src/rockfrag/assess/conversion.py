@@ -31,7 +31,8 @@ magnitude, a factor of two in distance, and a class of ground (EN 1998-1: 180, 3
 OF_THE_SITE = 0.5
 """Part of the variance about the relation that all motions of a site share [-]: an estimate of ours."""
 
-FEWEST_RECORDS = 30  # From which three coefficients are fitted; of fewer all of their spread counts
+# From which three coefficients are fitted; of fewer all of their spread counts
+FEWEST_RECORDS = 30
 
 TOGETHER = 0.25
 """Relative standard deviation of the spread of ln PGV at a given level, which two hazard curves do not say: of
@@ -43,7 +44,8 @@ OF_DISPLACEMENT = 2.0
 """Largest weight of ln PGV/IM [-]: a motion stretched in time by r at a given PGA has a PGV larger by r and a
 displacement larger by r²."""
 
-MOST_LEVELS = 8  # Levels of a motion that are fitted; tests under one motion depend on each other
+# Levels of a motion that are fitted; tests under one motion depend on each other
+MOST_LEVELS = 8
 
 
 @dataclass(frozen=True)
@@ -51,7 +53,8 @@ class SiteVelocity:
     """PGV that comes with levels of another measure at a site: ln of their ratio [s] is normal."""
 
     spread: float  # Its standard deviation from one earthquake to the next [-]
-    constant: float = math.nan  # Its mean, the same at all levels, where no curves are known
+    # Its mean, the same at all levels, where no curves are known
+    constant: float = math.nan
     # Hazard curves of the measure and of PGV, with which it agrees; the spread at a given level is then not known
     curves: tuple[HazardCurve, ...] = ()
 
@@ -71,7 +74,9 @@ class SiteVelocity:
             for factor in (1.0, math.exp(-1), math.e)
         ]
         slope = 2.0 / (logs[1] - logs[2])
-        return np.asarray(logs[0] - slope * self.spread**2 / 2 - np.log(levels * VELOCITY_PER_G))
+        return np.asarray(
+            logs[0] - slope * self.spread**2 / 2 - np.log(levels * VELOCITY_PER_G)
+        )
 
 
 @dataclass(frozen=True)
@@ -79,14 +84,17 @@ class Conversion:
     """What is known of the velocity at a site whose shaking is given in another measure."""
 
     measure: IntensityMeasure  # The measure that is known
-    fragility: VectorFragility  # P(topples | ``im``, ``ratio_s``): the measure, and PGV over it
+    # P(topples | ``im``, ``ratio_s``): the measure, and PGV over it
+    fragility: VectorFragility
     # Effect of ln ratio over that of ln measure [-]: 0 if PGV says nothing, 1 if all, up to 2 for displacement
     weight: float
     logs: Floats  # ln (PGV over the measure [s]) of each motion, shape (motions,)
     known: SiteVelocity | None  # What is known of the site; None if nothing is
     spread: float  # Standard deviation of the mean of ln ratio at the site [-]
-    shift: float  # Standard deviation of ln level that follows, with the error of the weight [-]
-    by_statics: bool  # Whether the level alone decides what rocks, as PGA does on the ground
+    # Standard deviation of ln level that follows, with the error of the weight [-]
+    shift: float
+    # Whether the level alone decides what rocks, as PGA does on the ground
+    by_statics: bool
 
     def of(self, motions: MotionSet) -> "Conversion":
         """The same for other motions of the set."""
@@ -100,7 +108,9 @@ class Conversion:
     @property
     def ends(self) -> list[float]:
         """Least and largest PGV over the measure of the motions [cm/s per unit]."""
-        return [VELOCITY_PER_G * math.exp(log) for log in (self.logs.min(), self.logs.max())]
+        return [
+            VELOCITY_PER_G * math.exp(log) for log in (self.logs.min(), self.logs.max())
+        ]
 
     def site_log(self, level: Level) -> float:
         """Mean of ln (PGV over the measure [s]) at the site's level, where something is known of it."""
@@ -115,7 +125,9 @@ class Conversion:
         """Outcomes under motions with the velocity of the site; as they are where nothing is known of it."""
         return outcomes if self.known is None else self._moved(outcomes, self.known)
 
-    def sides(self, outcomes: ObjectOutcomes) -> tuple[ObjectOutcomes, ObjectOutcomes] | None:
+    def sides(
+        self, outcomes: ObjectOutcomes
+    ) -> tuple[ObjectOutcomes, ObjectOutcomes] | None:
         """The same with less and more spread of velocities at a given level; None where that is not open."""
         known = self.known
         if known is None or not known.curves:
@@ -186,7 +198,9 @@ def find_conversion(
     if not math.isfinite(weight):
         return None
     # what is known of the velocity at the site, and the standard deviation of the mean of ln ratio
-    relation = VelocityRelation.of(motions.about, motions.log_ratios(measure, of_all=True))
+    relation = VelocityRelation.of(
+        motions.about, motions.log_ratios(measure, of_all=True)
+    )
     own = math.sqrt(1 - OF_THE_SITE) * relation.scatter
     known, spread, away = None, 0.0, 0.0
     if len(curves) > 1:
@@ -200,12 +214,16 @@ def find_conversion(
         if not (math.isnan(given.magnitude) and math.isnan(given.distance_km)):
             known = SiteVelocity(own, relation.mean(given))
     if known is not None:
-        away = float(np.abs(known.log_ratio(outcomes.intensity_levels.levels) - middle).mean())
+        away = float(
+            np.abs(known.log_ratio(outcomes.intensity_levels.levels) - middle).mean()
+        )
     shift = math.hypot(weight * spread, error * away)
     return Conversion(measure, fit, weight, logs, known, spread, shift, by_statics)
 
 
-def _fitted(outcomes: ObjectOutcomes, logs: Floats, brief: bool) -> VectorFragility | None:
+def _fitted(
+    outcomes: ObjectOutcomes, logs: Floats, brief: bool
+) -> VectorFragility | None:
     intensity_levels = outcomes.intensity_levels
     step = -(-intensity_levels.levels.size // MOST_LEVELS)
     motion, level = np.nonzero(intensity_levels.allowed[:, ::step])
@@ -233,7 +251,9 @@ def _weight(fit: VectorFragility, log_ratio: float) -> tuple[float, float]:
     more = c[:, 3] if c.shape[1] > 3 else 0.0
     own, *left_out = (c[:, 2] + more * log_level) / (c[:, 1] + more * log_ratio)
     error = float(jackknife_error(np.array(left_out))) if len(left_out) > 1 else 0.0
-    return float(np.clip(own, 0.0, OF_DISPLACEMENT)), error if math.isfinite(error) else 0.0
+    return float(np.clip(own, 0.0, OF_DISPLACEMENT)), error if math.isfinite(
+        error
+    ) else 0.0
 
 
 @dataclass(frozen=True)
@@ -246,12 +266,15 @@ class VelocityRelation:
     scatter: float  # Standard deviation about the relation [-]
 
     @classmethod
-    def of(cls, about: Sequence[Mapping[str, object]], logs: Floats) -> "VelocityRelation":
+    def of(
+        cls, about: Sequence[Mapping[str, object]], logs: Floats
+    ) -> "VelocityRelation":
         """Fit it to what is known of the record of each motion, and to its ln ratio, shape (motions,)."""
         table = pd.DataFrame(
             {
                 "record": [
-                    f"{a.get('earthquake')} {a.get('station', i)}" for i, a in enumerate(about)
+                    f"{a.get('earthquake')} {a.get('station', i)}"
+                    for i, a in enumerate(about)
                 ],
                 "magnitude": [_number(a, "magnitude") for a in about],
                 "ln_distance": [math.log(_number(a, "distance_km")) for a in about],
@@ -269,19 +292,26 @@ class VelocityRelation:
         fit, *_ = np.linalg.lstsq(x, known["log"].to_numpy(), rcond=None)
         rest = known["log"].to_numpy() - x @ fit
         scatter = math.sqrt(float(rest @ rest) / (len(known) - x.shape[1]))
-        return cls(tuple(map(float, fit)), tuple(map(float, facts.mean(axis=0))), scatter)
+        return cls(
+            tuple(map(float, fit)), tuple(map(float, facts.mean(axis=0))), scatter
+        )
 
     def mean(self, given: Records) -> float:
         """Mean of ln ratio for what is known of the earthquakes; the rest as in the set."""
         slopes = zip(self.coefficients[1:], self.middle, _facts(given), strict=False)
         return self.coefficients[0] + sum(
-            slope * (middle if math.isnan(fact) else fact) for slope, middle, fact in slopes
+            slope * (middle if math.isnan(fact) else fact)
+            for slope, middle, fact in slopes
         )
 
     def unknown(self, given: Records) -> float:
         """Standard deviation of the mean at a site, for what is not known of its earthquakes and ground."""
-        slopes = zip(self.coefficients[1:], UNKNOWN.values(), _facts(given), strict=False)
-        parts = [(slope * spread) ** 2 for slope, spread, fact in slopes if math.isnan(fact)]
+        slopes = zip(
+            self.coefficients[1:], UNKNOWN.values(), _facts(given), strict=False
+        )
+        parts = [
+            (slope * spread) ** 2 for slope, spread, fact in slopes if math.isnan(fact)
+        ]
         return math.sqrt(OF_THE_SITE * self.scatter**2 + sum(parts))
 
 

@@ -58,7 +58,9 @@ def as_json(found: Assessment) -> str:
         "fragility": {
             "levels": outcomes.intensity_levels.levels,
             "fraction": outcomes.fractions(),
-            "other_states": {name: outcomes.fractions(state=name) for name in outcomes.others},
+            "other_states": {
+                name: outcomes.fractions(state=name) for name in outcomes.others
+            },
             **curve,
         },
         "two_measures": _two_measures(found),
@@ -75,7 +77,9 @@ def as_json(found: Assessment) -> str:
         "assumed": says("assumptions", found),
         "quality_flags": says("quality_flags", found),
     }
-    return json.dumps(_plain(answer), indent=2, ensure_ascii=False, allow_nan=False) + "\n"
+    return (
+        json.dumps(_plain(answer), indent=2, ensure_ascii=False, allow_nan=False) + "\n"
+    )
 
 
 def _two_measures(found: Assessment) -> dict[str, Any] | None:
@@ -125,7 +129,11 @@ def as_nrml(found: Assessment) -> str:
         "id": identifiers([name], "_:-")[name],
         "imt": found.measure.imt,
         "levels": outcomes.intensity_levels.levels.tolist(),
-        "chances": {state: outcomes.fractions(state=state).tolist() for state in states},
+        "chances": {
+            state: outcomes.fractions(state=state).tolist() for state in states
+        },
     }
     kind = found.request.objects.kind
-    return model_text(says.line("in_nrml", found, kind, MODEL_ERRORS[kind]), states, [function])
+    return model_text(
+        says.line("in_nrml", found, kind, MODEL_ERRORS[kind]), states, [function]
+    )

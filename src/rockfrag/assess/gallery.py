@@ -63,7 +63,9 @@ def gallery_page(inventory: Inventory, joint: JointRisk) -> str:
     first = inventory.found[0].request
     years, valued = first.years, math.isfinite(first.value)
     fewest, most = joint.numbers.iloc[0], joint.numbers.iloc[-1]
-    numbers = gallery_says.figure("numbers", lambda: numbers_figure(joint, years), years)
+    numbers = gallery_says.figure(
+        "numbers", lambda: numbers_figure(joint, years), years
+    )
     losses = gallery_says.figure("losses", lambda: losses_figure(joint, years), years)
     drawn = gallery_says.figure("correlation", lambda: correlation_figure(joint))
     apart = joint.correlation.to_numpy()[np.triu_indices(len(joint.correlation), 1)]
@@ -82,7 +84,9 @@ def gallery_page(inventory: Inventory, joint: JointRisk) -> str:
         sections=[
             _ranking(inventory, joint, "loss" if valued else "number"),
             _numbers(joint, [losses] if valued and len(joint.losses) > 1 else []),
-            gallery_says.section("correlation", [drawn], np.median(known) if known.size else None),
+            gallery_says.section(
+                "correlation", [drawn], np.median(known) if known.size else None
+            ),
         ],
         provenance={"Program": f"rockfrag {version('rockfrag')}"},
     ).html()
@@ -95,12 +99,18 @@ def _ranking(inventory: Inventory, joint: JointRisk, mean: str) -> Section:
         best, request = best_change(found), found.request
         change = says.line("mitigation", found, best) if best else "–"
         part = 100 * float(parts[request.name])
-        rows.append((request.name, request.place.words, estimate_words(found.main), part, change))
+        rows.append(
+            (
+                request.name,
+                request.place.words,
+                estimate_words(found.main),
+                part,
+                change,
+            )
+        )
     names = ["name", "place", "probability", "contribution", "change"]
     ranked = pd.DataFrame(rows, columns=names)
-    caption = (
-        "The objects, the one that adds most first; each change is simulated as a body of its own."
-    )
+    caption = "The objects, the one that adds most first; each change is simulated as a body of its own."
     table = table_html(ranked, RANKING, caption, "inventory.csv")
     return gallery_says.section("ranking", [table], joint.objects.iloc[0], mean)
 

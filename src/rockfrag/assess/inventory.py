@@ -48,7 +48,8 @@ class JointRisk:
     # ``probability`` of one in the years asked for with limits (``probability_lower``,
     # ``probability_upper``), and ``at_the_site``, the fraction of motions at the site's level
     numbers: pd.DataFrame
-    losses: pd.DataFrame  # A row a loss: ``loss``, and ``annual_rate`` with which one exceeds it
+    # A row a loss: ``loss``, and ``annual_rate`` with which one exceeds it
+    losses: pd.DataFrame
     # Rate of earthquakes that topple both of two objects over the geometric mean of their rates [-]; or NaN
     correlation: pd.DataFrame
 
@@ -56,27 +57,41 @@ class JointRisk:
 def joint_risk(found: Sequence[Assessment]) -> JointRisk | None:
     """Count what topples together, no value as 1; None without a hazard, or with objects in several measures."""
     hazard = found[0].hazard
-    if hazard is None or any(assessment.measure != found[0].measure for assessment in found):
+    if hazard is None or any(
+        assessment.measure != found[0].measure for assessment in found
+    ):
         return None
     outcomes = [assessment.outcomes for assessment in found]
     # with the velocity of the site a motion stands for several; all objects have the same of them
     intensity_levels = outcomes[0].intensity_levels
     fell = np.array([outcome.overturned for outcome in outcomes])
-    allowed = np.logical_and.reduce([outcome.intensity_levels.allowed for outcome in outcomes])
-    together = replace(outcomes[0], intensity_levels=replace(intensity_levels, allowed=allowed))
+    allowed = np.logical_and.reduce(
+        [outcome.intensity_levels.allowed for outcome in outcomes]
+    )
+    together = replace(
+        outcomes[0], intensity_levels=replace(intensity_levels, allowed=allowed)
+    )
     values = np.array([assessment.request.value for assessment in found])
     worth = np.where(np.isfinite(values), values, 1.0)
     levels = intensity_levels.levels
-    per_level = np.array([toppling_rate(levels, unit, hazard) for unit in np.eye(levels.size)])
-    rates = np.array([toppling_rate(levels, each.fractions(), hazard) for each in outcomes])
+    per_level = np.array(
+        [toppling_rate(levels, unit, hazard) for unit in np.eye(levels.size)]
+    )
+    rates = np.array(
+        [toppling_rate(levels, each.fractions(), hazard) for each in outcomes]
+    )
     names = [assessment.request.name for assessment in found]
     correlation = _correlation(fell, allowed, per_level)
     # how often losses are exceeded, from the least object to everything
     lost, steps = np.tensordot(worth, fell, axes=1), np.zeros(0)
     if lost.any():
-        steps = np.geomspace(max(lost[lost > 0].min(), 1e-6 * lost.max()), lost.max(), LOSSES)
+        steps = np.geomspace(
+            max(lost[lost > 0].min(), 1e-6 * lost.max()), lost.max(), LOSSES
+        )
     # rounding must not take away what reaches a step exactly
-    reached = [replace(together, overturned=lost >= step * (1 - 1e-12)) for step in steps]
+    reached = [
+        replace(together, overturned=lost >= step * (1 - 1e-12)) for step in steps
+    ]
     exceeded = [float(each.fractions() @ per_level) for each in reached]
     return JointRisk(
         _by_object(names, rates, worth),
@@ -92,10 +107,14 @@ def _by_object(names: list[str], rates: Floats, worth: Floats) -> pd.DataFrame:
         {"name": names, "annual_rate": rates, "value": worth, "annual_loss": losses}
     )
     table["contribution"] = losses / losses.sum() if losses.sum() > 0 else np.nan
-    return table.sort_values("annual_loss", ascending=False, kind="stable", ignore_index=True)
+    return table.sort_values(
+        "annual_loss", ascending=False, kind="stable", ignore_index=True
+    )
 
 
-def _numbers(first: Assessment, together: ObjectOutcomes, count: NDArray[np.int64]) -> pd.DataFrame:
+def _numbers(
+    first: Assessment, together: ObjectOutcomes, count: NDArray[np.int64]
+) -> pd.DataFrame:
     """How often at least so many topple, with what earthquakes and the model leave open."""
     assert first.hazard is not None and first.level is not None
     years = first.request.years
@@ -105,14 +124,18 @@ def _numbers(first: Assessment, together: ObjectOutcomes, count: NDArray[np.int6
     at = together.intensity_levels.place_of(first.level.value)
     rows = []
     for least in [n for n in NUMBERS if n <= count.max()] or [1]:
-        many = replace(together, overturned=count >= least, rocked=np.ones_like(together.rocked))
+        many = replace(
+            together, overturned=count >= least, rocked=np.ones_like(together.rocked)
+        )
         fractions = many.fractions()
         found = Evidence(many, shifts=shifts).estimate(target)
         rate = toppling_rate(many.intensity_levels.levels, fractions, first.hazard)
         chance = probability_in(rate, years)
         rows.append((least, rate, chance, found.lower, found.upper, fractions[at]))
     chances = ("probability", "probability_lower", "probability_upper")
-    return pd.DataFrame(rows, columns=["at_least", "annual_rate", *chances, "at_the_site"])
+    return pd.DataFrame(
+        rows, columns=["at_least", "annual_rate", *chances, "at_the_site"]
+    )
 
 
 def _correlation(fell: Flags, allowed: Flags, per_level: Floats) -> Floats:
@@ -130,8 +153,14 @@ def _correlation(fell: Flags, allowed: Flags, per_level: Floats) -> Floats:
 
 
 SIZES = ("width_m", "height_m", "depth_m", "mass_kg", "cg_height_m")
-PEDESTAL = ("pedestal_width_m", "pedestal_height_m", "pedestal_depth_m", "pedestal_mass_kg")
-YES, NO = ("yes", "true", "1", "x"), ("no", "false", "0")  # What says whether a base is round
+PEDESTAL = (
+    "pedestal_width_m",
+    "pedestal_height_m",
+    "pedestal_depth_m",
+    "pedestal_mass_kg",
+)
+# What says whether a base is round
+YES, NO = ("yes", "true", "1", "x"), ("no", "false", "0")
 
 MOST_OBJECTS = 10_000  # Rows of an inventory
 
@@ -143,7 +172,8 @@ class Inventory:
     found: Sequence[Assessment]  # Assessments, the one most at risk first
     motions: MotionSet  # The motions on the ground that they share
     joint: JointRisk | None = None  # What topples together; None without a hazard
-    faults: Sequence[str] = ()  # What is wrong with the rows that were left out, a sentence each
+    # What is wrong with the rows that were left out, a sentence each
+    faults: Sequence[str] = ()
 
 
 class FaultyRows(InputError):
@@ -215,7 +245,9 @@ def read_inventory(
     others, quantities = [*SIZES[2:], *PEDESTAL, *OTHERS], (*SIZES, *PEDESTAL)
     rows = read_rows(path, needed, others, quantities=quantities, faults=faults)
     if len(rows) > MOST_OBJECTS:
-        raise InputError(f"{path}: {len(rows)} objects are more than the {MOST_OBJECTS} allowed.")
+        raise InputError(
+            f"{path}: {len(rows)} objects are more than the {MOST_OBJECTS} allowed."
+        )
     requests: list[Request] = []
     taken = {"inventory": "the page of the gallery"}
     for row in rows:
@@ -226,7 +258,9 @@ def read_inventory(
             faults.append(str(error))
     without = [request.name for request in requests if math.isnan(request.value)]
     if without and len(without) < len(requests):
-        raise InputError(f"{path}: {without[0]} has no value; give that of all objects or of none.")
+        raise InputError(
+            f"{path}: {without[0]} has no value; give that of all objects or of none."
+        )
     return requests, faults
 
 
@@ -241,7 +275,9 @@ def _own_name(row: Row, taken: dict[str, str]) -> str:
     place = file_name(name).casefold()
     if place in taken:
         same = (
-            "is there twice" if taken[place] == name else f"and {taken[place]!r} give one file name"
+            "is there twice"
+            if taken[place] == name
+            else f"and {taken[place]!r} give one file name"
         )
         raise row.error("name", f"object {name!r} {same}; give each its own name")
     taken[place] = name
@@ -298,8 +334,14 @@ def inventory_table(inventory: Inventory) -> pd.DataFrame:
     """A row an object: what it is called, where it stands and how it fares."""
     rows = []
     for found in inventory.found:
-        row: dict[str, Any] = {"name": found.request.name, "place": found.request.place.words}
-        for name, estimate in (("probability", found.probability), ("fraction", found.fraction)):
+        row: dict[str, Any] = {
+            "name": found.request.name,
+            "place": found.request.place.words,
+        }
+        for name, estimate in (
+            ("probability", found.probability),
+            ("fraction", found.fraction),
+        ):
             if estimate is not None:
                 row |= {name: estimate.value, f"{name}_lower": estimate.lower}
                 row[f"{name}_upper"] = estimate.upper
@@ -313,7 +355,11 @@ def inventory_table(inventory: Inventory) -> pd.DataFrame:
             row |= {"factor_lower": best.lower, "factor_upper": best.upper}
         rows.append(row)
     table = pd.DataFrame(rows)
-    return table if inventory.joint is None else table.merge(inventory.joint.objects, on="name")
+    return (
+        table
+        if inventory.joint is None
+        else table.merge(inventory.joint.objects, on="name")
+    )
 
 
 def best_change(found: Assessment) -> Mitigation | None:

@@ -13,7 +13,8 @@ from rockfrag.fragility.intervals import half_width
 from rockfrag.system.blocks import Block, Body, Stack, stacked
 
 WIDER = 1.25  # Width of a foot plate over that of the base
-PLATE, STEEL = 0.02, 7850.0  # Thickness of a foot plate [m], square and of steel [kg/m³]
+# Thickness of a foot plate [m], square and of steel [kg/m³]
+PLATE, STEEL = 0.02, 7850.0
 LOWER = 0.8  # Factor of a lower centre of gravity
 
 BALLAST, BALLAST_AT = 0.25, 0.05  # Its mass and its height over those of the object
@@ -27,11 +28,13 @@ class Mitigation:
 
     name: str  # What is changed, in words
     value: float  # The probability, fraction or amplitude with it
-    factor: float  # That over the one without it [-]; 0 where no motion topples the object any more
+    # That over the one without it [-]; 0 where no motion topples the object any more
+    factor: float
     # Limits of the factor, of the same motions with and without it; NaN where there are none
     lower: float
     upper: float
-    helps: bool  # Whether the object is better off: the risk shrinks, or an amplitude grows
+    # Whether the object is better off: the risk shrinks, or an amplitude grows
+    helps: bool
 
 
 def mitigations_of(objects: Objects) -> dict[str, Body]:
@@ -41,19 +44,27 @@ def mitigations_of(objects: Objects) -> dict[str, Body]:
         f"a centre of gravity {100 * (1 - LOWER):.0f} % lower": stretched_block(
             block, height=LOWER
         ),
-        f"ballast of {100 * BALLAST:.0f} % of its mass in its foot": with_ballast(block),
+        f"ballast of {100 * BALLAST:.0f} % of its mass in its foot": with_ballast(
+            block
+        ),
     }
     if not pedestals:
         return {_plate_words(block, "it"): on_plate(block), **lower}
     lowest, highest = pedestals[0], pedestals[-1]
     where = "the lowest pedestal" if objects.many else "the pedestal"
-    found = {_plate_words(lowest, where): stacked((on_plate(lowest), *pedestals[1:], block))}
+    found = {
+        _plate_words(lowest, where): stacked((on_plate(lowest), *pedestals[1:], block))
+    }
     if WIDER * block.width <= highest.width:
         # beyond the pedestal's edges a plate carries no further out
-        found[_plate_words(block, "the object")] = stacked((*pedestals, on_plate(block)))
+        found[_plate_words(block, "the object")] = stacked(
+            (*pedestals, on_plate(block))
+        )
     found |= {name: stacked((*pedestals, body)) for name, body in lower.items()}
     half = replace(
-        lowest, height=PEDESTAL_HEIGHT * lowest.height, mass=PEDESTAL_HEIGHT * lowest.mass
+        lowest,
+        height=PEDESTAL_HEIGHT * lowest.height,
+        mass=PEDESTAL_HEIGHT * lowest.mass,
     )
     found[f"another pedestal, {100 * half.height:.3g} cm high and as wide"] = stacked(
         (half, *pedestals[1:], block)
@@ -104,7 +115,9 @@ def _fixed(objects: Objects) -> dict[str, Body]:
             (*blocks[:k], joined, *blocks[k + 2 :])
         )
     return found | {
-        "fixing the object and its pedestals to each other": stacked(blocks).rigidly_joined(),
+        "fixing the object and its pedestals to each other": stacked(
+            blocks
+        ).rigidly_joined(),
         "fixing the lowest pedestal to the floor": stacked(blocks[1:]),
         "fixing all pedestals to the floor": objects.block,
     }
@@ -121,7 +134,9 @@ def compare(
         if math.isfinite(before) and before > 0 and math.isfinite(after):
             factor = after / before
             # by a jackknife over earthquakes; none where one of them decides alone
-            pairs = np.array([[target.value(v, w) for v in (outcomes, now)] for w in weights])
+            pairs = np.array(
+                [[target.value(v, w) for v in (outcomes, now)] for w in weights]
+            )
             if len(weights) > 1 and np.isfinite(pairs).all() and (pairs > 0).all():
                 half = float(half_width(np.log(pairs[:, 0] / pairs[:, 1]), LEVEL))
                 limits = (factor * math.exp(-half), factor * math.exp(half))

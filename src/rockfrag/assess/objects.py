@@ -8,7 +8,13 @@ from typing import Any
 
 import numpy as np
 
-from rockfrag.assess.assumed import Assumption, Moved, assume, moved_to_both_sides, tolerances_in
+from rockfrag.assess.assumed import (
+    Assumption,
+    Moved,
+    assume,
+    moved_to_both_sides,
+    tolerances_in,
+)
 from rockfrag.assess.scan import Scan, make_scan
 from rockfrag.errors import InputError, errors_of
 from rockfrag.fragility.model_error import CUT, SCAN
@@ -18,10 +24,16 @@ from rockfrag.system.blocks import Block, Body, stacked
 from rockfrag.system.body import Polygon, RigidBody, checked_tensor
 from rockfrag.system.contact import Contact
 from rockfrag.system.mesh import read_shape
-from rockfrag.system.system import System, round_inertia, turned_about_vertical, uplift_ratios
+from rockfrag.system.system import (
+    System,
+    round_inertia,
+    turned_about_vertical,
+    uplift_ratios,
+)
 from rockfrag.units import DENSITIES, STONE, check_density, size_warning
 
-COMMON = (150.0, 9000.0)  # Usual densities of the box around an object, from wood to bronze [kg/m³]
+# Usual densities of the box around an object, from wood to bronze [kg/m³]
+COMMON = (150.0, 9000.0)
 
 TOLERANCES = {"width": 0.02, "cg_height": 0.05, "restitution": 0.05, "mass": 0.2}
 """Relative standard deviations of what was measured or assumed, unless stated."""
@@ -30,10 +42,13 @@ ON_POINTS = {"livelier": 0.85, "restitution": 0.1}
 """Middle and relative standard deviation of the restitution of a scanned body over that of momentum, which is
 uniform from 0.7 to 1 (:mod:`rockfrag.campaign.standing`)."""
 
-ROLLING = 1.0  # Restitution of a round base: its rim rolls from edge to edge and loses nothing
-HIGHER = 1.0 + 1e-9  # Height of a body that is another one than the object, over that of the object
+# Restitution of a round base: its rim rolls from edge to edge and loses nothing
+ROLLING = 1.0
+# Height of a body that is another one than the object, over that of the object
+HIGHER = 1.0 + 1e-9
 
-ASIDE = 45.0  # To both sides of how it faces the shaking, where nobody said it [degrees]
+# To both sides of how it faces the shaking, where nobody said it [degrees]
+ASIDE = 45.0
 
 ALONE = "on the floor"  # How an object stands without a pedestal
 
@@ -43,24 +58,35 @@ class Objects:
     """The object in the plane in which it rocks, and what it stands on."""
 
     block: Block  # The object itself
-    pedestals: tuple[Block, ...]  # What it stands on, from below; empty if it stands on the floor
-    restitution: float | None  # Ratio of velocities at impacts [-]; None conserves momentum
-    friction: float | None  # Coefficient of friction of all contacts [-]; None if nothing slides
+    # What it stands on, from below; empty if it stands on the floor
+    pedestals: tuple[Block, ...]
+    # Ratio of velocities at impacts [-]; None conserves momentum
+    restitution: float | None
+    # Coefficient of friction of all contacts [-]; None if nothing slides
+    friction: float | None
     # Relative standard deviations of width, height of the centre of gravity, restitution and mass
     tolerances: Mapping[str, float]
     plane: str  # In words, in which direction it rocks
-    round: bool = False  # Whether its base is round: it rolls on its rim in space and loses nothing
-    depth: float | None = None  # Side of a rectangular base across that plane [m]; None if not used
-    facing_deg: float = 0.0  # Of that plane, from first to second component of records [degrees]
-    faces_anywhere: bool = False  # Whether nobody said how it faces the shaking, which counts
+    # Whether its base is round: it rolls on its rim in space and loses nothing
+    round: bool = False
+    # Side of a rectangular base across that plane [m]; None if not used
+    depth: float | None = None
+    # Of that plane, from first to second component of records [degrees]
+    facing_deg: float = 0.0
+    # Whether nobody said how it faces the shaking, which counts
+    faces_anywhere: bool = False
     # By how much of its extent corners of the base lie elsewhere in space, and it is turned [rad], by record
     base_spread: float = 0.0
-    scan: Scan | None = None  # The scan as it may stand; None where dimensions were given
-    scanned: RigidBody | None = None  # The scan in space as it stands; None if there is none
+    # The scan as it may stand; None where dimensions were given
+    scan: Scan | None = None
+    # The scan in space as it stands; None if there is none
+    scanned: RigidBody | None = None
     livelier: float = 1.0  # Factor on every restitution [-]; impacts never gain energy
     assumed: tuple[Assumption, ...] = ()  # What was not given
-    quality_flags: tuple[str, ...] = ()  # Sentences, one for each thing that looks wrong
-    pad_friction: float | None = None  # Coefficient of a pad to be tried [-]; None to try none
+    # Sentences, one for each thing that looks wrong
+    quality_flags: tuple[str, ...] = ()
+    # Coefficient of a pad to be tried [-]; None to try none
+    pad_friction: float | None = None
 
     @property
     def body(self) -> Body:
@@ -104,14 +130,18 @@ class Objects:
         # on the floor it stands on its own base, fixed to its pedestal on that of the pedestal
         rolls = self.round and body.blocks[-1].height == self.block.height
         *below, top = system.carried
-        each = [*(self._ratios(shape, rolls=False) for shape in below), self._ratios(top, rolls)]
+        each = [
+            *(self._ratios(shape, rolls=False) for shape in below),
+            self._ratios(top, rolls),
+        ]
         return system_of(system, restitution=each if below else each[0])
 
     def _ratios(self, shape: geometry.Shape, rolls: bool) -> tuple[float, float]:
         measured = ROLLING if rolls else self.restitution
         e = math.nan if measured is None else measured
         right, left = (
-            geometry.scaled_restitution(shape, pivot, e, self.livelier) for pivot in (1, -1)
+            geometry.scaled_restitution(shape, pivot, e, self.livelier)
+            for pivot in (1, -1)
         )
         return right, left
 
@@ -144,12 +174,18 @@ class Objects:
             along = top.mass * top.width * top.width / 8
             tensor = checked_tensor(np.diag((across, across, along)))
             return replace(top, round=True, inertia=tensor).system()
-        return turned_about_vertical(self._box(top, whole=whole).system(), self.facing_deg)
+        return turned_about_vertical(
+            self._box(top, whole=whole).system(), self.facing_deg
+        )
 
     def _changed(self, scanned: RigidBody, top: Block) -> RigidBody:
         """The scan in space with what another block differs by from the object's."""
         added = top.centroidal_inertia - self.block.centroidal_inertia
-        factors = (top.width / self.block.width, top.h / self.block.h, top.mass / scanned.mass)
+        factors = (
+            top.width / self.block.width,
+            top.h / self.block.h,
+            top.mass / scanned.mass,
+        )
         about = checked_tensor(scanned.tensor + np.diag([added, added, 0.0]))
         return replace(stretched(scanned, *factors), inertia=about)
 
@@ -174,18 +210,24 @@ class Objects:
             "cg_height": lambda factor: self._stretched(height=factor),
         }
         if not self.round:  # of a body in space that of the planar answer
-            moves["restitution"] = lambda factor: replace(self, livelier=self.livelier * factor)
+            moves["restitution"] = lambda factor: replace(
+                self, livelier=self.livelier * factor
+            )
         if self.pedestals:
             moves["mass"] = lambda factor: self._stretched(mass=factor)
         found = moved_to_both_sides(moves, self.tolerances)
         if self.scan is not None:
             found += _standing(self, self.scan)
         elif self.depth is not None and self.faces_anywhere:
-            turned = (replace(self, facing_deg=self.facing_deg + by) for by in (-ASIDE, ASIDE))
+            turned = (
+                replace(self, facing_deg=self.facing_deg + by) for by in (-ASIDE, ASIDE)
+            )
             found.append(Moved("facing", 0.0, *turned))
         return found
 
-    def _stretched(self, width: float = 1.0, height: float = 1.0, mass: float = 1.0) -> "Objects":
+    def _stretched(
+        self, width: float = 1.0, height: float = 1.0, mass: float = 1.0
+    ) -> "Objects":
         """Move all edges: what carries is uncertain at the foot of a pedestal as at that of a statue."""
         return replace(
             self,
@@ -202,14 +244,20 @@ def _standing(objects: Objects, scan: Scan) -> list[Moved[Objects]]:
     bodies: dict[str, tuple[RigidBody | None, ...]] = {}
     if scan.space is not None and objects.scanned is not None:
         space = scan.space.sides()
-        bodies = {name: tuple(map(scan.space.body, side[:2])) for name, side in space.items()}
+        bodies = {
+            name: tuple(map(scan.space.body, side[:2])) for name, side in space.items()
+        }
         if objects.faces_anywhere:
             bodies["facing"] = tuple(scan.space.body(0.5, by) for by in (-ASIDE, ASIDE))
     found = []
     for name in dict.fromkeys((*planar, *bodies)):
-        low, high, spread = planar.get(name, (0.5, 0.5, space.get(name, (0, 0, 0.0))[2]))
+        low, high, spread = planar.get(
+            name, (0.5, 0.5, space.get(name, (0, 0, 0.0))[2])
+        )
         sides = zip((low, high), bodies.get(name, (objects.scanned,) * 2), strict=True)
-        lower, upper = (replace(objects, block=scan.block(at), scanned=body) for at, body in sides)
+        lower, upper = (
+            replace(objects, block=scan.block(at), scanned=body) for at, body in sides
+        )
         found.append(Moved(name, spread, lower, upper))
     return found
 
@@ -271,7 +319,9 @@ def make_objects(settings: Mapping[str, Any], folder: Path) -> Objects:
         restitution=settings.get("restitution"),
         friction=settings.get("friction"),
         tolerances=tolerances_in(
-            settings, TOLERANCES | ({"restitution": ON_POINTS["restitution"]} if on_points else {})
+            settings,
+            TOLERANCES
+            | ({"restitution": ON_POINTS["restitution"]} if on_points else {}),
         ),
         livelier=ON_POINTS["livelier"] if on_points else 1.0,
         plane=plane,
@@ -297,7 +347,11 @@ def _check_restitution(objects: Objects) -> None:
     if e is None:
         return
     shapes = objects.body.system().carried
-    most = min(geometry.largest_restitution(shape, pivot) for shape in shapes for pivot in (1, -1))
+    most = min(
+        geometry.largest_restitution(shape, pivot)
+        for shape in shapes
+        for pivot in (1, -1)
+    )
     if e > most:
         raise InputError(
             f"key restitution: with {e:g} an impact of this object would gain energy, as its centre of gravity "
@@ -338,7 +392,9 @@ def _from_dimensions(
         density = mass / volume
         words = f"{mass:g} kg in a box of {volume:.3g} m³ are {density:.3g} kg/m³"
         if not DENSITIES[0] <= density <= DENSITIES[1]:
-            raise InputError(f"key mass: {words}, a density that no solid has; check the units.")
+            raise InputError(
+                f"key mass: {words}, a density that no solid has; check the units."
+            )
         if not COMMON[0] <= density <= COMMON[1]:
             quality_flags.append(f"{words}, which is unusual; check the units.")
     if "cg_height_m" not in settings:
@@ -378,7 +434,9 @@ def _from_mesh(
             up=mesh.get("up"),
             hull=bool(mesh.get("hull", False)),
         )
-        scan, of_scan = make_scan(shape, mesh, settings.get("tolerances", {}).get("contact"))
+        scan, of_scan = make_scan(
+            shape, mesh, settings.get("tolerances", {}).get("contact")
+        )
     except InputError as error:
         raise InputError(_in_keys(str(error))) from None
     assumed += of_scan
@@ -402,7 +460,9 @@ def _in_keys(words: str) -> str:
     return words.replace("'.", ".") if "mesh.up" in words else words
 
 
-def _pedestals(settings: Mapping[str, Any], assumed: list[Assumption]) -> tuple[Block, ...]:
+def _pedestals(
+    settings: Mapping[str, Any], assumed: list[Assumption]
+) -> tuple[Block, ...]:
     """What the object stands on, from below, in the plane in which it rocks."""
     found, given = [], settings.get("pedestal", [])
     given = [given] if isinstance(given, Mapping) else given
@@ -416,7 +476,9 @@ def _pedestals(settings: Mapping[str, Any], assumed: list[Assumption]) -> tuple[
         if mass is None:
             mass = STONE * width * depth * height
             name = f"pedestal {i}" if len(given) > 1 else "the pedestal"
-            assumed.append(assume("pedestal", "mass", name=name, mass=mass, density=STONE))
+            assumed.append(
+                assume("pedestal", "mass", name=name, mass=mass, density=STONE)
+            )
         with errors_of("key pedestal"):
             check_density(width, height, float(mass))
         found.append(Block(width, height, float(mass)))

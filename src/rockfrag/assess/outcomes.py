@@ -31,8 +31,10 @@ from rockfrag.units import LARGEST_PEAK
 LEVELS = 80  # Levels of shaking that are tried, a constant factor apart
 FEW_LEVELS = 28  # Levels for what is only compared, and for many objects
 FEWEST_LEVELS = 14  # Levels for what is only compared of many objects
-MOST_TESTS = 400_000  # Tests that are simulated at once, which bounds the memory of their results
-RANGE = (0.05, 8.0)  # Lowest and highest level over the median of the motions as recorded
+# Tests that are simulated at once, which bounds the memory of their results
+MOST_TESTS = 400_000
+# Lowest and highest level over the median of the motions as recorded
+RANGE = (0.05, 8.0)
 
 LARGEST_FACTOR = 10.0
 """Largest and 1/smallest factor by which a motion is scaled; beyond, its shape belongs to another earthquake."""
@@ -64,17 +66,24 @@ def believable_scales(base: Sequence[Motion]) -> Floats:
 
 
 def make_intensity_levels(
-    motions: MotionSet, measure: IntensityMeasure, asked: Sequence[float] = (), count: int = LEVELS
+    motions: MotionSet,
+    measure: IntensityMeasure,
+    asked: Sequence[float] = (),
+    count: int = LEVELS,
 ) -> "Shaking":
     """Make ``count`` levels for a set of motions, and those that are asked for exactly, in the measure's unit."""
     middle = motions.median(measure)
     levels = np.geomspace(RANGE[0] * middle, RANGE[1] * middle, count)
     levels = np.unique(np.append(levels, list(asked)))
     found = scaled_to(levels, motions, measure)
-    return replace(found, allowed=found.allowed & (found.scales <= believable_scales(motions.base)))
+    return replace(
+        found, allowed=found.allowed & (found.scales <= believable_scales(motions.base))
+    )
 
 
-def scaled_to(levels: Floats, motions: MotionSet, measure: IntensityMeasure) -> "Shaking":
+def scaled_to(
+    levels: Floats, motions: MotionSet, measure: IntensityMeasure
+) -> "Shaking":
     """Levels in the measure's unit, shape (levels,), as far as motions may be scaled to them."""
     scales = levels / motions.values(measure)[:, np.newaxis]
     allowed = (scales <= LARGEST_FACTOR) & (scales >= 1 / LARGEST_FACTOR)
@@ -90,11 +99,14 @@ class ObjectOutcomes:
     overturned: NDArray[np.bool_]
     rocked: NDArray[np.bool_]
     earthquakes: NDArray[np.object_]  # Earthquake of each motion, shape (motions,)
-    light: bool = False  # Whether it may have left the ground, which the model holds shut
+    # Whether it may have left the ground, which the model holds shut
+    light: bool = False
     # Which cases reached each other declared limit state, by its name, shape (motions, levels) each
     others: Mapping[str, NDArray[np.bool_]] = field(default_factory=dict)
 
-    def fractions(self, weights: Floats | None = None, *, state: str = OVERTURNS) -> Floats:
+    def fractions(
+        self, weights: Floats | None = None, *, state: str = OVERTURNS
+    ) -> Floats:
         """Fraction of the motions that bring the body into a limit state at each level, shape (levels,).
 
         A motion that cannot be scaled so far is left out of a level; where none can, the fraction of the nearest
@@ -103,7 +115,9 @@ class ObjectOutcomes:
         """
         w = np.ones(len(self.overturned)) if weights is None else weights
         allowed = self.intensity_levels.allowed
-        happened = {OVERTURNS: self.overturned, ROCKS: self.rocked, **self.others}[state]
+        happened = {OVERTURNS: self.overturned, ROCKS: self.rocked, **self.others}[
+            state
+        ]
         total = w @ allowed
         fell = w @ (allowed & happened)
         known = total > 0
@@ -120,7 +134,9 @@ class ObjectOutcomes:
         p, n = self.fractions(), len(set(self.earthquakes))
         low, high = wilson_interval(p * n, np.full(p.size, n))
         # what does not rock cannot topple
-        return np.where(p > 0, low, 0.0), np.where(self.fractions(state=ROCKS) > 0, high, 0.0)
+        return np.where(p > 0, low, 0.0), np.where(
+            self.fractions(state=ROCKS) > 0, high, 0.0
+        )
 
     def first(self) -> NDArray[np.intp]:
         """Place of the least level allowed at which each motion topples the body, or -1, shape (motions,)."""
@@ -138,7 +154,9 @@ class ObjectOutcomes:
             self,
             overturned=self.overturned | other.overturned,
             rocked=self.rocked | other.rocked,
-            others={name: cases | other.others[name] for name, cases in self.others.items()},
+            others={
+                name: cases | other.others[name] for name, cases in self.others.items()
+            },
         )
 
     def outcomes(self) -> Observations:
@@ -194,7 +212,9 @@ class Shaking(IntensityLevels):
         if not self.motions.both:
             return self._in_plane(systems)
         solids = [object_.solid(body) for object_, body in every]
-        planar = [i for i, solid in enumerate(solids) if solid is None or systems[i].count > 1]
+        planar = [
+            i for i, solid in enumerate(solids) if solid is None or systems[i].count > 1
+        ]
         worst = any(object_.round for object_, _ in every)
         shake = self._from_all_sides if worst else self._in_plane
         found = dict(zip(planar, shake([systems[i] for i in planar]), strict=True))
@@ -216,11 +236,16 @@ class Shaking(IntensityLevels):
         if not systems:
             return []
         motions = self.motions
-        records = [motions.turned(record, range(0, 180, STEP_DEG)) for record in motions.records]
+        records = [
+            motions.turned(record, range(0, 180, STEP_DEG))
+            for record in motions.records
+        ]
         shaking = [motion for turned in records for motion in turned]
         of_row = np.repeat(np.arange(len(records)), [len(turned) for turned in records])
         first = [record[0] for record in motions.records]
-        result, light = simulated(systems, shaking, self._factors(shaking, np.take(first, of_row)))
+        result, light = simulated(
+            systems, shaking, self._factors(shaking, np.take(first, of_row))
+        )
         return self._each_system(result, light, of_row)
 
     def in_space(self, body: System, spread: float) -> ObjectOutcomes:
@@ -229,19 +254,27 @@ class Shaking(IntensityLevels):
         Corners of its base lie elsewhere by ``spread`` over its extent, and it is turned by up to as many radians.
         """
         motions = self.motions
-        shaking = [GroundMotion(*motions.components(record)) for record in motions.records]
+        shaking = [
+            GroundMotion(*motions.components(record)) for record in motions.records
+        ]
         first = [record[0] for record in motions.records]
         scales = self._factors([motions.base[i] for i in first], first)
-        result = run_in_space([body], shaking, scales, spread=spread, threads=checked_threads(None))
+        result = run_in_space(
+            [body], shaking, scales, spread=spread, threads=checked_threads(None)
+        )
         return self._each_system(result, of_row=np.arange(len(first)))[0]
 
-    def on_pad(self, objects: Objects, friction: float) -> tuple[ObjectOutcomes, Floats]:
+    def on_pad(
+        self, objects: Objects, friction: float
+    ) -> tuple[ObjectOutcomes, Floats]:
         """Outcomes of the object on a pad on which it may slide, and how far it does [m], (motions, levels)."""
         system = objects.system_of(objects.body)
         *below, pad = system.contacts
         pad = replace(pad, friction=Friction(friction, friction))
         system = replace(system, contacts=(*below, pad))
-        result = overturns(system, self.motions.base, scales=self._factors(self.motions.base))
+        result = overturns(
+            system, self.motions.base, scales=self._factors(self.motions.base)
+        )
         return self._each_system(result)[0], result.peak_slip[0, ..., -1]
 
     def _factors(self, shaking: Sequence[Motion], rows: Any = slice(None)) -> Floats:
@@ -261,7 +294,9 @@ class Shaking(IntensityLevels):
         from one side happens.
         """
         states = {
-            state.name: state.reached(result) for state in limit_states() if not state.slipping
+            state.name: state.reached(result)
+            for state in limit_states()
+            if not state.slipping
         }
         if of_row is not None:
             place = self.motions.place_of_record()
@@ -295,7 +330,9 @@ class Shaking(IntensityLevels):
         solid = objects.solid(objects.body) if motions.both else None
         if solid is not None and objects.friction is not None and not objects.pedestals:
             friction = Friction(objects.friction, objects.friction)
-            slides = replace(solid, contacts=(replace(solid.contacts[0], friction=friction),))
+            slides = replace(
+                solid, contacts=(replace(solid.contacts[0], friction=friction),)
+            )
             return float(self.in_space(slides, objects.base_spread).fractions()[0])
         fallen = overturns(
             objects.system_of(objects.body),
@@ -306,7 +343,9 @@ class Shaking(IntensityLevels):
         return float(fallen[allowed].mean())
 
 
-def fraction_at(level: float, levels: Floats, fractions: Floats, shift: float = 0.0) -> float:
+def fraction_at(
+    level: float, levels: Floats, fractions: Floats, shift: float = 0.0
+) -> float:
     """Fraction of the motions at a level, between levels by the logarithm; all lie higher by ``shift`` in it."""
     # relative to the asked level: where it is one of the series its logarithm is 0 to the bit
     return float(np.interp(-shift, np.log(levels / level), fractions))
@@ -355,10 +394,14 @@ def find_directions(
     upright = all(contact.tilt == contact.offset[0] == 0 for contact in system.contacts)
     symmetric = upright and all(shape.x == 0 for shape in system.shapes)
     angles = range(0, 180 if symmetric else 360, STEP_DEG)
-    shaking = [motion for pair in motions.pairs for motion in motions.turned(pair, angles)]
+    shaking = [
+        motion for pair in motions.pairs for motion in motions.turned(pair, angles)
+    ]
     first = np.repeat([pair[0] for pair in motions.pairs], len(angles))
     scales = scaled_to(levels, motions.with_both_components(), measure).scales[first]
-    found, _ = simulated([system], shaking, np.minimum(scales, believable_scales(shaking)))
+    found, _ = simulated(
+        [system], shaking, np.minimum(scales, believable_scales(shaking))
+    )
     fallen = found.overturned[0]
     by_record = fallen.reshape(len(motions.pairs), len(angles), -1)
     anyhow, worst = by_record.mean(axis=(0, 1)), by_record.any(axis=1).mean(axis=0)

@@ -27,7 +27,8 @@ from rockfrag.sentences import PART, number
 
 MOTIONS_SHOWN = 15  # Rows of the table of motions that topple the object first
 
-FURTHEST = 3.0  # Return periods are given up to so many times the reach of the hazard curve
+# Return periods are given up to so many times the reach of the hazard curve
+FURTHEST = 3.0
 
 
 def write_answer(found: Assessment, folder: str | os.PathLike[str]) -> Path:
@@ -50,12 +51,20 @@ def page_of(found: Assessment) -> str:
     sure = [_table("sources", found, first), _table("effects", found, others)]
     sections = [
         page_says.section("mitigations", [_table("mitigations", found, first)], found),
-        page_says.section("arrangements", [_table("arrangements", found, others)], found),
+        page_says.section(
+            "arrangements", [_table("arrangements", found, others)], found
+        ),
         page_says.section("sure", [*drawn, *sure], found),
         page_says.section("assumed", [], found),
-        *([page_says.section("rules", [_table("rules", found, others)])] if found.rules else []),
+        *(
+            [page_says.section("rules", [_table("rules", found, others)])]
+            if found.rules
+            else []
+        ),
         _levels(found),
-        page_says.section("motions", [_table("motions", found, slice(2, None), earliest)], found),
+        page_says.section(
+            "motions", [_table("motions", found, slice(2, None), earliest)], found
+        ),
         page_says.section("glossary", [_table("glossary", found, slice(0))]),
     ]
     provenance = {
@@ -64,7 +73,9 @@ def page_of(found: Assessment) -> str:
         "Hazard": found.hazard.source if found.hazard else "none",
     }
     lead, answer, live = page_says.line("lead", found), _answer(found), live_of(found)
-    return Page(says.line("headline", found), lead, answer, sections, provenance, live=live).html()
+    return Page(
+        says.line("headline", found), lead, answer, sections, provenance, live=live
+    ).html()
 
 
 def _answer(found: Assessment) -> Answer:
@@ -79,7 +90,11 @@ def _answer(found: Assessment) -> Answer:
             ("How does it stand best?", "arrangements"),
             ("How sure is that?", "sure"),
             ("What was assumed?", "assumed"),
-            *([("What if it were 5 cm wider?", "live")] if not found.request.objects.round else []),
+            *(
+                [("What if it were 5 cm wider?", "live")]
+                if not found.request.objects.round
+                else []
+            ),
         ],
     )
 
@@ -100,24 +115,33 @@ def _levels(found: Assessment) -> Section:
             reached[state.name] = f"Motions: {state.label}"
     rocks = outcomes.fractions(state=ROCKS)
     shown = np.flatnonzero((rocks > 0) & (np.append(0, fractions[:-1]) < 0.99))[::4]
-    table = {f"{found.measure.imt} [{found.measure.unit}]": [number(levels[i], 3) for i in shown]}
+    table = {
+        f"{found.measure.imt} [{found.measure.unit}]": [
+            number(levels[i], 3) for i in shown
+        ]
+    }
     for name, title in reached.items():
         parts = outcomes.fractions(state=name)
         table[title] = [f"{100 * parts[i]:.0f} %" for i in shown]
     table["Motions that topple it (90 % interval)"] = [
-        f"{100 * fractions[i]:.0f} % ({100 * low[i]:.0f} to {100 * high[i]:.0f} %)" for i in shown
+        f"{100 * fractions[i]:.0f} % ({100 * low[i]:.0f} to {100 * high[i]:.0f} %)"
+        for i in shown
     ]
     if found.hazard is not None:
         reach = FURTHEST * found.hazard.levels[-1]
         if found.request.level is not None and not found.request.hazard[0].is_read:
             reach = FURTHEST * found.request.level.value
         table["Return period [years]"] = [
-            _years(1 / float(found.hazard.rate(level))) if level <= reach else "beyond the hazard"
+            _years(1 / float(found.hazard.rate(level)))
+            if level <= reach
+            else "beyond the hazard"
             for level in levels[shown]
         ]
     caption = "Motions that make it rock, and that topple it, by the level of shaking."
     rows = zip(*table.values(), strict=True)
-    return page_says.section("levels", [text_table(list(table), rows, caption, list(table))], found)
+    return page_says.section(
+        "levels", [text_table(list(table), rows, caption, list(table))], found
+    )
 
 
 def _years(period: float) -> str:
@@ -140,8 +164,12 @@ def live_of(found: Assessment) -> Markup:
         return Markup("")
     if motions.both and objects.solid(objects.body) is not None:
         return _in_space(objects, motions, chosen)
-    bodies = {name: objects.system_of(body) for name, body in objects.arrangements.items()}
-    return live_kernel(bodies, carried([_named(motions, motions.base[i], i) for i in chosen]))
+    bodies = {
+        name: objects.system_of(body) for name, body in objects.arrangements.items()
+    }
+    return live_kernel(
+        bodies, carried([_named(motions, motions.base[i], i) for i in chosen])
+    )
 
 
 def _in_space(objects: Objects, motions: MotionSet, chosen: list[int]) -> Markup:
@@ -153,7 +181,9 @@ def _in_space(objects: Objects, motions: MotionSet, chosen: list[int]) -> Markup
             left_out.append(name)
             continue
         tall = sum(block.height for block in pedestals)
-        bodies[name] = Standing(solid, replace(pedestals[-1], height=tall) if pedestals else None)
+        bodies[name] = Standing(
+            solid, replace(pedestals[-1], height=tall) if pedestals else None
+        )
     records, place = motions.records, motions.place_of_record()
     shaking = []
     for record in dict.fromkeys(records[place[i]] for i in chosen):
@@ -165,8 +195,14 @@ def _in_space(objects: Objects, motions: MotionSet, chosen: list[int]) -> Markup
 def _named(motions: MotionSet, motion: Motion, i: int) -> Motion:
     """A motion with the name by which a reader knows it: earthquake, station and component."""
     about = motions.ground[i]
-    earthquake, station = (str(about.metadata.get(key, "")) for key in ("earthquake", "station"))
-    known = f"{earthquake}, {station} ({about.name})" if earthquake and station else about.name
+    earthquake, station = (
+        str(about.metadata.get(key, "")) for key in ("earthquake", "station")
+    )
+    known = (
+        f"{earthquake}, {station} ({about.name})"
+        if earthquake and station
+        else about.name
+    )
     return replace(motion, name=known)
 
 
@@ -177,7 +213,9 @@ def fractions_figure(found: Assessment) -> Figure:
     """Fraction of the motions that topple the object over the level of shaking, for each arrangement."""
     with panels(COLUMN_WIDTH, 2.7) as (figure, axes):
         ends = []
-        for colour, (name, outcomes) in zip(OKABE_ITO, found.arrangements.items(), strict=False):
+        for colour, (name, outcomes) in zip(
+            OKABE_ITO, found.arrangements.items(), strict=False
+        ):
             levels, fractions = outcomes.intensity_levels.levels, outcomes.fractions()
             if outcomes is found.outcomes:
                 low, high = outcomes.band()
@@ -186,11 +224,17 @@ def fractions_figure(found: Assessment) -> Figure:
                 )
             axes.plot(levels, 100 * fractions, color=colour, label=name)
             shown = levels[(fractions > 0) & (fractions < _REACHED)]
-            ends += [shown.min(), shown.max()] if shown.size else [levels[0], levels[-1]]
+            ends += (
+                [shown.min(), shown.max()] if shown.size else [levels[0], levels[-1]]
+            )
         if found.level is not None:
-            axes.axvline(found.level.value, color="#555555", linestyle="--", linewidth=0.9)
+            axes.axvline(
+                found.level.value, color="#555555", linestyle="--", linewidth=0.9
+            )
             at = (found.level.value, 98)
-            words = axes.annotate("the site", at, (3, 0), textcoords="offset points", va="top")
+            words = axes.annotate(
+                "the site", at, (3, 0), textcoords="offset points", va="top"
+            )
             words.set_color("#555555")
             ends.append(found.level.value)
         axes.set(

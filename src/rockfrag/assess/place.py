@@ -6,7 +6,13 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from rockfrag.assess.assumed import Assumption, Moved, assume, moved_to_both_sides, tolerances_in
+from rockfrag.assess.assumed import (
+    Assumption,
+    Moved,
+    assume,
+    moved_to_both_sides,
+    tolerances_in,
+)
 from rockfrag.building.floors import floor_motions
 from rockfrag.building.model import ModalDamping, ShearBuilding, stiffnesses_for_period
 from rockfrag.building.settings import make_building, read_building
@@ -15,7 +21,8 @@ from rockfrag.records.motion import Motion
 from rockfrag.schema import checked
 
 STOREY_HEIGHT = 3.5  # Height of a storey of a building of which nothing is known [m]
-STOREY_MASS = 300_000.0  # Mass of its floors [kg]; equal floors respond alike whatever they weigh
+# Mass of its floors [kg]; equal floors respond alike whatever they weigh
+STOREY_MASS = 300_000.0
 HIGHEST_BUILDING = 40  # Storeys up to which the rule for the period is used
 
 TOLERANCES = {"period": 0.3, "damping": 0.4}
@@ -60,7 +67,12 @@ class Place:
         building = self.building
         if building is None or self.shakes_as_ground:
             return None
-        return building.stiffnesses, building.masses, building.damping, building.level(self.floor)
+        return (
+            building.stiffnesses,
+            building.masses,
+            building.damping,
+            building.level(self.floor),
+        )
 
     def shake(self, motion: Motion) -> Motion:
         """Motion of the floor under a ground motion."""
@@ -82,7 +94,9 @@ class Place:
             damping = replace(building.damping, ratio=building.damping.ratio * factor)
             return replace(self, building=replace(building, damping=damping))
 
-        return moved_to_both_sides({"period": slower, "damping": damped}, self.tolerances or {})
+        return moved_to_both_sides(
+            {"period": slower, "damping": damped}, self.tolerances or {}
+        )
 
 
 def make_place(settings: Mapping[str, Any], folder: Path) -> Place:
@@ -108,8 +122,12 @@ def _given(settings: Mapping[str, Any], floor: Any, folder: Path) -> Place:
         building, where = make_building(given), "the building"
     else:
         if floor is None:
-            raise InputError("key floor is missing; give the level over the storeys, such as 2/4.")
-        return _sketched(str(floor), checked(given, "known_of_building", "building"), settings)
+            raise InputError(
+                "key floor is missing; give the level over the storeys, such as 2/4."
+            )
+        return _sketched(
+            str(floor), checked(given, "known_of_building", "building"), settings
+        )
     if building.model != "elastic":
         raise InputError(
             f"key building: {where} is not elastic, and one object is assessed with an elastic building; set "
@@ -122,7 +140,9 @@ def _given(settings: Mapping[str, Any], floor: Any, folder: Path) -> Place:
     label = str(floor)
     found = _FLOOR.fullmatch(label)
     if found and int(found[2]) != building.storeys:
-        raise InputError(f"key floor: {where} has {building.storeys} storeys, not {found[2]}.")
+        raise InputError(
+            f"key floor: {where} has {building.storeys} storeys, not {found[2]}."
+        )
     level = found[1] if found else label
     if label not in building.floors and level.isdecimal():
         building = replace(building, floors={**building.floors, label: int(level)})
@@ -132,7 +152,9 @@ def _given(settings: Mapping[str, Any], floor: Any, folder: Path) -> Place:
     return Place(building, label, tolerances_in(settings, TOLERANCES), name, (said,))
 
 
-def _sketched(floor: str, known: Mapping[str, Any], settings: Mapping[str, Any]) -> Place:
+def _sketched(
+    floor: str, known: Mapping[str, Any], settings: Mapping[str, Any]
+) -> Place:
     """A building of equal floors, of which the period follows from its height unless it is known."""
     level, storeys = _level(floor)
     heights = _heights(known, storeys)
@@ -183,7 +205,8 @@ def _level(floor: str) -> tuple[int, int]:
         )
     # no number of storeys has more digits
     level, storeys = (
-        int(group) if len(group) <= 3 else HIGHEST_BUILDING + 1 for group in found.groups()
+        int(group) if len(group) <= 3 else HIGHEST_BUILDING + 1
+        for group in found.groups()
     )
     if not (level <= storeys and 1 <= storeys <= HIGHEST_BUILDING):
         raise InputError(

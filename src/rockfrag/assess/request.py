@@ -27,7 +27,8 @@ from rockfrag.units import quantity
 from rockfrag.yaml_file import read_yaml
 
 LONGEST_PERIOD = 1e6  # Longest return period of a level [year]
-YEARS = 50.0  # Time for which the probability is given unless another is asked for [year]
+# Time for which the probability is given unless another is asked for [year]
+YEARS = 50.0
 
 
 @dataclass(frozen=True)
@@ -36,7 +37,8 @@ class Level:
 
     measure: IntensityMeasure  # The intensity measure
     value: float  # Its value, in its unit
-    pgv: float = math.nan  # Peak velocity with it [cm/s]; NaN if unknown, or the measure itself
+    # Peak velocity with it [cm/s]; NaN if unknown, or the measure itself
+    pgv: float = math.nan
 
     @property
     def words(self) -> str:
@@ -87,7 +89,9 @@ def read_request(path: str | os.PathLike[str]) -> Request:
     return make_request(read_yaml(path), str(path), Path(path).parent)
 
 
-def make_request(settings: Mapping[str, Any], source: str, folder: Path | None = None) -> Request:
+def make_request(
+    settings: Mapping[str, Any], source: str, folder: Path | None = None
+) -> Request:
     """Make a request of keys as in ``statue.yaml``, see ``docs/assess.md``.
 
     ``source`` says in messages where they come from; paths are read from ``folder``, or the present one.
@@ -131,7 +135,9 @@ def _level_of(key: str, given: Any) -> Level:
     return level
 
 
-_PERIOD = re.compile(r"\s*((?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(?:years?|yrs?|a|anni)?\s*")
+_PERIOD = re.compile(
+    r"\s*((?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(?:years?|yrs?|a|anni)?\s*"
+)
 
 
 def _return_period(settings: Mapping[str, Any]) -> float | None:
@@ -153,9 +159,13 @@ def _return_period(settings: Mapping[str, Any]) -> float | None:
 def _hazard(settings: Mapping[str, Any], folder: Path) -> tuple[HazardCurve, ...]:
     level, years = _level(settings), _return_period(settings)
     if years is None:
-        return tuple(read_hazard([folder / file for file in settings.get("hazard", [])]))
+        return tuple(
+            read_hazard([folder / file for file in settings.get("hazard", [])])
+        )
     if level is None:
-        raise InputError("key return_period: give the level it belongs to, such as pga 0.25 g.")
+        raise InputError(
+            "key return_period: give the level it belongs to, such as pga 0.25 g."
+        )
     curves = [curve_of_one_level(level.measure, level.value, years)]
     if math.isfinite(level.pgv):
         curves.append(curve_of_one_level(PGV, level.pgv, years))

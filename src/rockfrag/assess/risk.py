@@ -24,7 +24,8 @@ from rockfrag.outcomes.limit_states import OVERTURNS, ROCKS
 
 LEVEL = 0.90  # Confidence of the intervals
 
-HALF = 0.5  # Part of an earthquake added on either side of fractions (Haldane, Anscombe 1956)
+# Part of an earthquake added on either side of fractions (Haldane, Anscombe 1956)
+HALF = 0.5
 
 _Z = float(stats.norm.ppf(0.5 + LEVEL / 2))
 
@@ -65,7 +66,8 @@ class Estimate:
     # Limits of the interval [-]
     lower: float
     upper: float
-    sources: Mapping[str, float]  # Standard deviation on the scale of the interval by source [-]
+    # Standard deviation on the scale of the interval by source [-]
+    sources: Mapping[str, float]
 
 
 @dataclass(frozen=True)
@@ -78,8 +80,10 @@ class Target:
     forward: Callable[[float], float]
     back: Callable[[float], float]
     state: str = OVERTURNS  # Name of the limit state whose fractions they are
-    added: float = 0.0  # Earthquakes added for the widths of sources, see :meth:`on_scale`
-    certain: float = 1.0  # The number where it always happens; infinite for a level never reached
+    # Earthquakes added for the widths of sources, see :meth:`on_scale`
+    added: float = 0.0
+    # The number where it always happens; infinite for a level never reached
+    certain: float = 1.0
 
     def on_scale(
         self,
@@ -109,7 +113,9 @@ class Target:
     def without_each(self, outcomes: ObjectOutcomes) -> Floats:
         """Values on the scale without one earthquake each; ``HALF`` is added to all where one decides alone."""
         weights = earthquake_weights(outcomes.earthquakes)
-        found = np.array([self.on_scale(outcomes, w, added=self.added) for w in weights])
+        found = np.array(
+            [self.on_scale(outcomes, w, added=self.added) for w in weights]
+        )
         if np.isfinite(found).all():
             return found
         return np.array([self.on_scale(outcomes, w, added=HALF) for w in weights])
@@ -127,7 +133,9 @@ def _exp(value: float) -> float:
 def risk_target(hazard: HazardCurve, years: float) -> Target:
     """The probability of toppling in some years."""
     return Target(
-        of=lambda levels, fractions, shift: toppling_rate(levels, fractions, hazard, shift),
+        of=lambda levels, fractions, shift: toppling_rate(
+            levels, fractions, hazard, shift
+        ),
         forward=_log,
         back=lambda value: probability_in(_exp(value), years),
     )
@@ -173,11 +181,15 @@ class Evidence:
 
     outcomes: ObjectOutcomes  # Outcomes of the object
     # Outcomes with each property moved to both sides by its standard deviation
-    moved: Mapping[str, tuple[ObjectOutcomes, ObjectOutcomes]] = field(default_factory=dict)
+    moved: Mapping[str, tuple[ObjectOutcomes, ObjectOutcomes]] = field(
+        default_factory=dict
+    )
     # Standard deviations of ln level by source, such as of the model
     shifts: Mapping[str, float] = field(default_factory=dict)
 
-    def estimate(self, target: Target, fixed: Mapping[str, float] | None = None) -> Estimate:
+    def estimate(
+        self, target: Target, fixed: Mapping[str, float] | None = None
+    ) -> Estimate:
         """Estimate with an interval; ``fixed`` are further standard deviations on its scale, as of the hazard."""
         middle = target.on_scale(self.outcomes)
         if not math.isfinite(middle):
@@ -207,7 +219,9 @@ class Evidence:
         # with all levels shifted to the ends of the interval the fraction that topples may fall to nothing, which
         # no multiple of its slope says
         shift = quantile * math.hypot(*self.shifts.values())
-        ends = sorted(target.on_scale(self.outcomes, shift=sign * shift) for sign in (-1, 1))
+        ends = sorted(
+            target.on_scale(self.outcomes, shift=sign * shift) for sign in (-1, 1)
+        )
         down, up = max(0.0, middle - ends[0]), max(0.0, ends[1] - middle)
         others = [sources[name] for name in sources if name not in self.shifts]
         half = quantile * math.hypot(*others)
@@ -237,10 +251,15 @@ class Evidence:
         if math.isinf(target.certain):
             # never reached: hidden motions could be enough at some level, or it lies above the last one
             last = float(self.outcomes.intensity_levels.levels[-1])
-            return Estimate(math.inf, min(bound(self.outcomes, shift), last), math.inf, {})
+            return Estimate(
+                math.inf, min(bound(self.outcomes, shift), last), math.inf, {}
+            )
         limit, plain = (target.forward(bound(self.outcomes, by)) for by in (shift, 0.0))
         both_sides = self.moved.values()
-        ends = [max(sign * target.forward(bound(side)) for side in both) for both in both_sides]
+        ends = [
+            max(sign * target.forward(bound(side)) for side in both)
+            for both in both_sides
+        ]
         if math.isfinite(plain):
             further = [max(0.0, end - sign * plain) for end in ends]
             limit += sign * _Z * math.sqrt(sum(term**2 for term in further))
@@ -294,7 +313,11 @@ class Step:
 
 STEPS = (
     Step("low", 1e-3, "Nothing is urgent; keep it as it is."),
-    Step("moderate", 1e-2, "Have it looked at when it is next moved, and plan what helps."),
+    Step(
+        "moderate",
+        1e-2,
+        "Have it looked at when it is next moved, and plan what helps.",
+    ),
     Step("high", 1e-1, "Have it measured, and secure it."),
     Step("very high", math.inf, "Secure it now."),
 )

@@ -71,7 +71,9 @@ def asce_43(block: Block, motion: Motion) -> float:
     damping = decrement / math.sqrt(4 * math.pi**2 + decrement**2)
     theta = ANGLES * block.alpha
     lifted = np.cos(theta) + a * np.sin(theta) - 1
-    frequency = np.sqrt(2 * lifted * GRAVITY / (inertia * block.h)) / (2 * math.pi * theta)
+    frequency = np.sqrt(2 * lifted * GRAVITY / (inertia * block.h)) / (
+        2 * math.pi * theta
+    )
     capacity = 2 * GRAVITY * lifted / theta
     demand = response_spectrum(motion, 1 / frequency, damping).pseudo_acceleration
     return float((capacity / demand).max())
@@ -91,13 +93,17 @@ class RuleCheck:
     """A rule held against simulations of one object."""
 
     rule: str  # Its name
-    bias: float  # Median of its amplitude to topple the object over the simulated one [-]
+    # Median of its amplitude to topple the object over the simulated one [-]
+    bias: float
     scatter: float  # Standard deviation of the logarithm of that [-]
-    unsafe: float  # Fraction of the motions that topple the object at less than the rule says [-]
+    # Fraction of the motions that topple the object at less than the rule says [-]
+    unsafe: float
     motions: int  # Number of motions that topple it at all
 
 
-def check_rules(objects: Objects, motions: MotionSet, outcomes: ObjectOutcomes) -> list[RuleCheck]:
+def check_rules(
+    objects: Objects, motions: MotionSet, outcomes: ObjectOutcomes
+) -> list[RuleCheck]:
     """Hold every rule that applies to an object against its outcomes under the motions that shake it."""
     # least factor on each motion that topples the object; NaN where none does
     first = outcomes.first()
@@ -107,7 +113,9 @@ def check_rules(objects: Objects, motions: MotionSet, outcomes: ObjectOutcomes) 
     models, found = {objects.body.blocks[-1], objects.body.rigidly_joined()}, []
     for name, rule in RULES.items():
         # the least of the models of practice
-        least = [min(rule(block, motion) for block in models) for motion in motions.base]
+        least = [
+            min(rule(block, motion) for block in models) for motion in motions.base
+        ]
         factors = np.array(least)
         ratio = pd.Series(np.log(factors / simulated)[known])
         unsafe = float(pd.Series((factors > simulated)[known]).mean())

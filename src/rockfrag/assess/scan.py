@@ -37,7 +37,8 @@ SOURCE_OF = {
 
 WAYS = 256  # Ways to stand that are drawn
 
-KNOWN_CONTACT_SPREAD = 0.2  # Relative standard deviation of a given contact tolerance: of ours
+# Relative standard deviation of a given contact tolerance: of ours
+KNOWN_CONTACT_SPREAD = 0.2
 
 _BINS = 8
 
@@ -47,10 +48,14 @@ class Scan:
     """A scan, and the ways in which it may stand."""
 
     shape: Shape  # The scan
-    ways: pd.DataFrame  # A row each, by rising angle of balance, in its direction or the least
-    parts: Mapping[str, float]  # Part of the variance of the order by source; the sum is 1
-    order: str = "alpha_deg"  # Column with that angle: ``alpha_deg``, or in space ``least_deg``
-    space: "Scan | None" = None  # The ways in the order of space; None if it could not stand
+    # A row each, by rising angle of balance, in its direction or the least
+    ways: pd.DataFrame
+    # Part of the variance of the order by source; the sum is 1
+    parts: Mapping[str, float]
+    # Column with that angle: ``alpha_deg``, or in space ``least_deg``
+    order: str = "alpha_deg"
+    # The ways in the order of space; None if it could not stand
+    space: "Scan | None" = None
 
     def row_at(self, fraction: float) -> Mapping[str, float]:
         """The way below which a fraction of all balances."""
@@ -64,7 +69,10 @@ class Scan:
     def body(self, fraction: float = 0.5, turned_deg: float = 0.0) -> RigidBody:
         """The body in space of such a way."""
         way = self.row_at(fraction)
-        tolerance, retreat = way["contact_tolerance_mm"] / 1e3, way["edge_retreat_mm"] / 1e3
+        tolerance, retreat = (
+            way["contact_tolerance_mm"] / 1e3,
+            way["edge_retreat_mm"] / 1e3,
+        )
         return self.shape.body(way["direction_deg"] - turned_deg, tolerance, retreat)
 
     def sides(self) -> dict[str, tuple[float, float, float]]:
@@ -101,9 +109,13 @@ def make_scan(
         unknowns["contact_tolerance_mm"] = lognormal(middle, spread)
     # what is wrong with the mesh is said of its middle tolerance
     shape.contact_polygon(unknowns["contact_tolerance_mm"](0.5) / 1e3)
-    open_ones = {name: unknown for name, unknown in unknowns.items() if name not in exact}
+    open_ones = {
+        name: unknown for name, unknown in unknowns.items() if name not in exact
+    }
     ways = ways_to_stand(shape, open_ones, WAYS, 1, exact).table
-    ways["least_deg"] = [_least_angle_deg(shape, way) for way in ways.to_dict("records")]
+    ways["least_deg"] = [
+        _least_angle_deg(shape, way) for way in ways.to_dict("records")
+    ]
     assumed = [
         assume("unmeasured", source, unknown=source, median=median, accuracy=accuracy)
         for source in map(SOURCE_OF.__getitem__, open_ones)
@@ -112,7 +124,9 @@ def make_scan(
     upright = ways[ways["least_deg"] >= LEAST_ANGLE_DEG]
     carries = [name for name in open_ones if name != "direction_deg"]
     space = _ordered(shape, upright, carries, "least_deg") if len(upright) else None
-    return replace(_ordered(shape, ways, list(open_ones), "alpha_deg"), space=space), assumed
+    return replace(
+        _ordered(shape, ways, list(open_ones), "alpha_deg"), space=space
+    ), assumed
 
 
 def _ordered(shape: Shape, ways: pd.DataFrame, names: list[str], order: str) -> Scan:
@@ -122,8 +136,12 @@ def _ordered(shape: Shape, ways: pd.DataFrame, names: list[str], order: str) -> 
 
 def _least_angle_deg(shape: Shape, way: Mapping[Any, Any]) -> float:
     """Least angle of all directions at which a way to stand balances [degrees]; negative where it cannot."""
-    reach = edge_distances(shape.contact_polygon(way["contact_tolerance_mm"] / 1e3)).min()
-    return math.degrees(math.atan2(reach - way["edge_retreat_mm"] / 1e3, shape.cg_height))
+    reach = edge_distances(
+        shape.contact_polygon(way["contact_tolerance_mm"] / 1e3)
+    ).min()
+    return math.degrees(
+        math.atan2(reach - way["edge_retreat_mm"] / 1e3, shape.cg_height)
+    )
 
 
 def _parts(ways: pd.DataFrame, names: list[str], order: str) -> dict[str, float]:
@@ -131,9 +149,13 @@ def _parts(ways: pd.DataFrame, names: list[str], order: str) -> dict[str, float]
     values = norm.ppf((ways[order].rank(method="first").to_numpy() - 0.5) / len(ways))
     found = {}
     for name in names:
-        bins = (ways[name].rank(method="first", pct=True).to_numpy() * _BINS * 0.999999).astype(int)
+        bins = (
+            ways[name].rank(method="first", pct=True).to_numpy() * _BINS * 0.999999
+        ).astype(int)
         means = np.array([values[bins == k].mean() for k in range(_BINS)])
         # means of few ways differ by chance too
-        found[SOURCE_OF[name]] = max(0.0, float(means.var() - values.var() * _BINS / len(values)))
+        found[SOURCE_OF[name]] = max(
+            0.0, float(means.var() - values.var() * _BINS / len(values))
+        )
     total = sum(found.values())
     return {name: value / total for name, value in found.items() if value > 0}

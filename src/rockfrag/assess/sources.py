@@ -27,14 +27,28 @@ class Source:
     words: str  # What it is, as a reader may know it
     basis: str  # Where its size comes from
     measurement: str = (
-        ""  # What a user could measure or find out that makes it smaller; empty for nothing
+        # What a user could measure or find out that makes it smaller; empty for nothing
+        ""
     )
-    left: float = 1.0  # What that leaves of the standard deviation [-]; an estimate of ours
+    # What that leaves of the standard deviation [-]; an estimate of ours
+    left: float = 1.0
 
 
 _LEFT = {
-    **{"width": 0.25, "contact": 1 / 3, "retreat": 0.2, "facing": 0.0, "cg_height": 0.2},
-    **{"restitution": 0.2, "mass": 0.1, "period": 1 / 6, "damping": 0.4, "conversion": 0.0},
+    **{
+        "width": 0.25,
+        "contact": 1 / 3,
+        "retreat": 0.2,
+        "facing": 0.0,
+        "cg_height": 0.2,
+    },
+    **{
+        "restitution": 0.2,
+        "mass": 0.1,
+        "period": 1 / 6,
+        "damping": 0.4,
+        "conversion": 0.0,
+    },
     "hazard": 0.5,
 }
 _SAYS = Macros("rockfrag.assess", "sources.j2", MODEL_ERRORS=MODEL_ERRORS, SPACE=SPACE)
@@ -56,7 +70,8 @@ def parts_of(sources: Mapping[str, float]) -> dict[str, float]:
 
 
 LIKELY, UNLIKELY = 0.5, 0.01  # An interval of a fraction that holds both tells nothing
-LEAST_GAIN = 0.15  # Fraction of the variance that a measurement must take away to be worth naming
+# Fraction of the variance that a measurement must take away to be worth naming
+LEAST_GAIN = 0.15
 MOST_NAMED = 2  # Measurements that are named together
 
 
@@ -84,7 +99,9 @@ def narrowed(estimate: Estimate) -> tuple[list[str], Estimate] | None:
         name: variances.get(name, 0.0) * (1 - source.left**2) / total
         for name, source in MEASUREMENTS.items()
     }
-    known = sorted((n for n in gains if gains[n] >= LEAST_GAIN), key=lambda n: -gains[n])
+    known = sorted(
+        (n for n in gains if gains[n] >= LEAST_GAIN), key=lambda n: -gains[n]
+    )
     known = known[:MOST_NAMED]
     if not known:
         return None
@@ -94,5 +111,7 @@ def narrowed(estimate: Estimate) -> tuple[list[str], Estimate] | None:
     }
     ratio = math.sqrt(sum(value**2 for value in left.values()) / total)
     middle, low, high = special.logit([estimate.value, estimate.lower, estimate.upper])
-    lower, upper = (float(special.expit(middle + ratio * (end - middle))) for end in (low, high))
+    lower, upper = (
+        float(special.expit(middle + ratio * (end - middle))) for end in (low, high)
+    )
     return known, Estimate(estimate.value, lower, upper, left)

@@ -84,7 +84,11 @@ def _influential(found: Assessment) -> list[tuple[str, float]]:
         return []
     names = outcomes.earthquakes[fell]
     counts = {name: (names == name).mean() for name in dict.fromkeys(names)}
-    return [(str(name), float(fraction)) for name, fraction in counts.items() if fraction > 0.5]
+    return [
+        (str(name), float(fraction))
+        for name, fraction in counts.items()
+        if fraction > 0.5
+    ]
 
 
 def all_assumed(found: Assessment) -> list[Assumption]:
@@ -100,7 +104,11 @@ def all_assumed(found: Assessment) -> list[Assumption]:
 
 def _largest_sources(found: Assessment) -> list[str]:
     parts = parts_of(found.main.sources).items()
-    named = [f"{100 * part:.0f} % from {NAMES[name]}" for name, part in parts if part >= LEAST_PART]
+    named = [
+        f"{100 * part:.0f} % from {NAMES[name]}"
+        for name, part in parts
+        if part >= LEAST_PART
+    ]
     return named[:MOST_SOURCES]
 
 
@@ -123,7 +131,8 @@ _FUNCTIONS = (
 _WORDS |= {function.__name__: function for function in _FUNCTIONS}
 
 says, page_says, gallery_says = (
-    Says("rockfrag.assess", f"{name}.j2", **_WORDS) for name in ("words", "page", "gallery")
+    Says("rockfrag.assess", f"{name}.j2", **_WORDS)
+    for name in ("words", "page", "gallery")
 )
 """The macros of the answer, of its page, and of a gallery."""
 

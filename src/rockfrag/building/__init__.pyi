@@ -1,4 +1,8 @@
-from .floors import floor_motions as floor_motions, judge_drift as judge_drift, respond as respond
+from .floors import (
+    floor_motions as floor_motions,
+    judge_drift as judge_drift,
+    respond as respond,
+)
 from .model import (
     ModalDamping as ModalDamping,
     ShearBuilding as ShearBuilding,

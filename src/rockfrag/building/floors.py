@@ -41,14 +41,21 @@ def vertical_motions(building: ShearBuilding, vertical: Motion) -> list[Motion]:
         factor = float(building.vertical_factors.get(label, 1.0))
         level = building.level(label)
         felt = vertical.after(
-            "floor_motion", factor * vertical.acceleration, floor=label, level=level, factor=factor
+            "floor_motion",
+            factor * vertical.acceleration,
+            floor=label,
+            level=level,
+            factor=factor,
         )
         moved.append(_named(felt, label, level))
     return moved
 
 
 def response_motions(
-    building: ShearBuilding, motion: Motion, response: BuildingResponse, floors: Sequence[str]
+    building: ShearBuilding,
+    motion: Motion,
+    response: BuildingResponse,
+    floors: Sequence[str],
 ) -> list[Motion]:
     """Motions of labelled floors in a response that is known; see :func:`floor_motions`."""
     moved = []
@@ -107,9 +114,11 @@ class DriftOutcome:
 
     storey: int  # Its number, from 1
     drift: float  # Its largest drift over height [-]
-    strength_fraction: float  # Largest shear over strength [-]; above 1 of elastic models only
+    # Largest shear over strength [-]; above 1 of elastic models only
+    strength_fraction: float
     state: str  # One of the states of ``_ELASTIC`` and ``_HYSTERETIC``
-    credible: bool  # Whether the model may be used there: up to the strength, or the rocking limit
+    # Whether the model may be used there: up to the strength, or the rocking limit
+    credible: bool
     statement: str  # One sentence for a report
 
 
@@ -126,7 +135,11 @@ def judge_drift(building: ShearBuilding, response: BuildingResponse) -> DriftOut
     shear strength [-]) and ``state``, whether the model is ``credible`` there, and a sentence (``statement``).
     """
     law, elastic = building.masonry, building.model == "elastic"
-    shear = np.asarray(building.stiffnesses) * np.asarray(building.heights) * response.peak_drift
+    shear = (
+        np.asarray(building.stiffnesses)
+        * np.asarray(building.heights)
+        * response.peak_drift
+    )
     fractions = shear / shear_strengths(building)
     worst = int(np.argmax(fractions if elastic else response.peak_drift))
     fraction, drift = float(fractions[worst]), float(response.peak_drift[worst])

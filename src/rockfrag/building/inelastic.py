@@ -21,7 +21,12 @@ import numpy as np
 
 from rockfrag.arrays import Floats
 from rockfrag.building.model import MasonryLaw, ShearBuilding
-from rockfrag.building.response import BuildingResponse, EnergyBalance, damping_matrix, find_modes
+from rockfrag.building.response import (
+    BuildingResponse,
+    EnergyBalance,
+    damping_matrix,
+    find_modes,
+)
 from rockfrag.errors import InputError
 from rockfrag.machine_code import cached_njit
 from rockfrag.records.motion import Motion
@@ -43,10 +48,16 @@ def shear_strengths(building: ShearBuilding) -> Floats:
 def storey_envelopes(building: ShearBuilding) -> tuple[Floats, Floats]:
     """Corners of the envelope of each storey: cracking, yield, shear limit, rocking limit."""
     law = building.masonry
-    heights, stiffnesses = np.asarray(building.heights), np.asarray(building.stiffnesses)
+    heights, stiffnesses = (
+        np.asarray(building.heights),
+        np.asarray(building.stiffnesses),
+    )
     strength = shear_strengths(building)
     cracking = law.cracking * strength
-    limits = (limit * heights for limit in (law.yield_drift, law.shear_drift, law.rocking_drift))
+    limits = (
+        limit * heights
+        for limit in (law.yield_drift, law.shear_drift, law.rocking_drift)
+    )
     displacement = np.column_stack([cracking / stiffnesses, *limits])
     force = np.column_stack([cracking, strength, strength, law.residual * strength])
     soft = np.flatnonzero(strength / stiffnesses > displacement[:, 1])
@@ -64,7 +75,13 @@ def storey_envelopes(building: ShearBuilding) -> tuple[Floats, Floats]:
 def law_parameters(law: MasonryLaw) -> Floats:
     """Parameters of the law as the kernels take them, shape (5,)."""
     return np.array(
-        [law.pinch_force, law.pinch_drift, law.damage_ductility, law.damage_energy, law.unloading]
+        [
+            law.pinch_force,
+            law.pinch_drift,
+            law.damage_ductility,
+            law.damage_energy,
+            law.unloading,
+        ]
     )
 
 
@@ -81,7 +98,9 @@ def envelope(x: float, corner: Any, strength: Any) -> float:
 
 
 @cached_njit()
-def unloading_stiffness(aim: float, corner: Any, strength: Any, exponent: float) -> float:
+def unloading_stiffness(
+    aim: float, corner: Any, strength: Any, exponent: float
+) -> float:
     """Stiffness of unloading from the side whose largest displacement is ``aim``."""
     ductility = max(aim / corner[0], 1.0)
     return float(strength[0] / corner[0] / ductility**exponent)
@@ -97,7 +116,9 @@ def _area(corner: Any, strength: Any) -> float:
 
 
 @cached_njit()
-def move(memory: Any, to: float, corner: Any, strength: Any, law: Any, moved: Any) -> None:
+def move(
+    memory: Any, to: float, corner: Any, strength: Any, law: Any, moved: Any
+) -> None:
     """Move a storey from the state ``memory`` to a displacement, as seen from where it moves; fill ``moved``."""
     moved[:] = memory
     step = to - memory[DISPLACEMENT]
@@ -127,7 +148,9 @@ def move(memory: Any, to: float, corner: Any, strength: Any, law: Any, moved: An
     elif x < moved[zero]:
         force = min(f0 + back_stiffness * (x - x0), 0.0)
     else:
-        force = _reload(x, moved[zero], aim, envelope(aim, corner, strength), front_stiffness, law)
+        force = _reload(
+            x, moved[zero], aim, envelope(aim, corner, strength), front_stiffness, law
+        )
         force = min(force, f0 + front_stiffness * (x - x0))
     moved[DISPLACEMENT] = to
     moved[FORCE] = side * force
@@ -136,7 +159,9 @@ def move(memory: Any, to: float, corner: Any, strength: Any, law: Any, moved: An
 
 
 @cached_njit()
-def _reload(x: float, zero: float, aim: float, force: float, stiffness: float, law: Any) -> float:
+def _reload(
+    x: float, zero: float, aim: float, force: float, stiffness: float, law: Any
+) -> float:
     """Force at x on the two lines from (zero, 0) through the pinching point to (aim, force)."""
     pinch = zero + (aim - (1.0 - law[0]) * force / stiffness - zero) * law[1]
     if x < pinch:
@@ -159,7 +184,9 @@ def respond_hysteretically(
     step = motion.dt / parts
     mass = np.asarray(building.masses)
     viscous = damping_matrix(building, find_modes(building))
-    effective = building.stiffness_matrix() + 2 / step * viscous + np.diag(4 / step**2 * mass)
+    effective = (
+        building.stiffness_matrix() + 2 / step * viscous + np.diag(4 / step**2 * mass)
+    )
     matrices = mass, viscous, np.linalg.inv(effective)
     law = corner, strength, law_parameters(building.masonry)
     total, shift, energy = _integrate(motion.acceleration, step, parts, matrices, law)
@@ -186,7 +213,9 @@ def _shears(u: Any, memory: Any, moved: Any, masonry: Any, force: Any) -> None:
 
 
 @cached_njit()
-def _integrate(ground: Any, step: float, parts: int, matrices: Any, masonry: Any) -> Any:
+def _integrate(
+    ground: Any, step: float, parts: int, matrices: Any, masonry: Any
+) -> Any:
     mass, viscous, inverse = matrices
     corner, strength, law = masonry
     n, samples = mass.size, ground.size

@@ -19,13 +19,16 @@ class MasonryLaw:
     residue is left; the storey carries its shear strength from the yield drift to the shear limit.
     """
 
-    base_shear: float = 0.12  # Shear strength of the ground storey over the whole weight [-]
-    cracking: float = 0.5  # Shear at which the elastic stiffness ends, over the shear strength [-]
+    # Shear strength of the ground storey over the whole weight [-]
+    base_shear: float = 0.12
+    # Shear at which the elastic stiffness ends, over the shear strength [-]
+    cracking: float = 0.5
     # Drift over storey height at yield and at the two limits [-]
     yield_drift: float = 0.001
     shear_drift: float = 0.004
     rocking_drift: float = 0.008
-    residual: float = 0.4  # Shear left beyond the rocking limit, over the shear strength [-]
+    # Shear left beyond the rocking limit, over the shear strength [-]
+    residual: float = 0.4
     # Force at the point through which a storey reloads, over the force it aims for, and where that point lies on
     # the way from zero force to the line of unloading through the aim [-]; both 1 is no pinching
     pinch_force: float = 0.4
@@ -34,21 +37,32 @@ class MasonryLaw:
     # area under both sides of the envelope [-]
     damage_ductility: float = 0.0
     damage_energy: float = 0.02
-    unloading: float = 0.3  # Exponent by which the unloading stiffness falls with ductility [-]
+    # Exponent by which the unloading stiffness falls with ductility [-]
+    unloading: float = 0.3
 
     def __post_init__(self) -> None:
         for known in fields(self):
             value = float(getattr(self, known.name))
             if not (math.isfinite(value) and value >= 0):
-                raise InputError(f"masonry: {known.name} must be zero or more, got {value}.")
+                raise InputError(
+                    f"masonry: {known.name} must be zero or more, got {value}."
+                )
             object.__setattr__(self, known.name, value)
-        for fraction in ("cracking", "residual", "pinch_force", "pinch_drift", "unloading"):
+        for fraction in (
+            "cracking",
+            "residual",
+            "pinch_force",
+            "pinch_drift",
+            "unloading",
+        ):
             if getattr(self, fraction) > 1:
                 raise InputError(
                     f"masonry: {fraction} is a fraction and at most 1, got {getattr(self, fraction)}."
                 )
         if not (self.base_shear > 0 and self.cracking > 0):
-            raise InputError("masonry: base_shear and cracking must be greater than zero.")
+            raise InputError(
+                "masonry: base_shear and cracking must be greater than zero."
+            )
         if not 0 < self.yield_drift < self.shear_drift < self.rocking_drift:
             raise InputError(
                 "masonry: drifts must rise from yield_drift over shear_drift to rocking_drift, got "
@@ -56,7 +70,8 @@ class MasonryLaw:
             )
 
 
-MOST_STOREYS = 100  # more storeys than this are a slip of the keyboard and not a masonry building
+# more storeys than this are a slip of the keyboard and not a masonry building
+MOST_STOREYS = 100
 _LEAST, _MOST = 1e-9, 1e21
 
 
@@ -159,9 +174,15 @@ class ShearBuilding:
         """Level of a labelled floor, 0 for the ground; InputError if there is none."""
         if floor not in self.floors:
             known = ", ".join(self.floors)
-            raise InputError(f"{self.name}: floor {floor!r} is not defined; known are {known}.")
+            raise InputError(
+                f"{self.name}: floor {floor!r} is not defined; known are {known}."
+            )
         level = self.floors[floor]
-        if isinstance(level, bool) or not isinstance(level, int) or not 0 <= level <= self.storeys:
+        if (
+            isinstance(level, bool)
+            or not isinstance(level, int)
+            or not 0 <= level <= self.storeys
+        ):
             raise InputError(
                 f"{self.name}: floor {floor!r} is level {level!r}, but levels run from 0, the "
                 f"ground, to {self.storeys}, the top."

@@ -16,8 +16,10 @@ class Modes:
 
     period: Floats  # natural periods [s], shape (storeys,)
     shape: Floats  # shapes [-], shape (floors, modes)
-    participation: Floats  # Γ [-], shape (modes,); times the shape they sum to one at every floor
-    mass_fraction: Floats  # effective modal mass over the total mass [-], shape (modes,)
+    # Γ [-], shape (modes,); times the shape they sum to one at every floor
+    participation: Floats
+    # effective modal mass over the total mass [-], shape (modes,)
+    mass_fraction: Floats
     damping: Floats  # fraction of critical damping [-], shape (modes,)
 
     __repr__ = short_repr
@@ -33,7 +35,9 @@ def find_modes(building: ShearBuilding) -> Modes:
     mass = np.asarray(building.masses)
     root = 1 / np.sqrt(mass)
     # the symmetric form M^-1/2 K M^-1/2 keeps the shapes orthogonal to machine precision
-    eigenvalues, vectors = np.linalg.eigh(root[:, None] * building.stiffness_matrix() * root)
+    eigenvalues, vectors = np.linalg.eigh(
+        root[:, None] * building.stiffness_matrix() * root
+    )
     frequency = np.sqrt(eigenvalues)
     shape = root[:, None] * vectors
     shape /= shape[-1]
@@ -91,9 +95,11 @@ class BuildingResponse:
     """Histories at the samples of the ground motion."""
 
     time: Floats  # [s], shape (n,)
-    acceleration: Floats  # Absolute, of ground and floors [m/s²], shape (storeys + 1, n)
+    # Absolute, of ground and floors [m/s²], shape (storeys + 1, n)
+    acceleration: Floats
     drift: Floats  # Of every storey over its height [-], shape (storeys, n)
-    energy: EnergyBalance | None = None  # Up to each sample, if the model keeps the balance
+    # Up to each sample, if the model keeps the balance
+    energy: EnergyBalance | None = None
 
     __repr__ = short_repr
 
@@ -121,5 +127,6 @@ def respond_elastically(building: ShearBuilding, motion: Motion) -> BuildingResp
     return BuildingResponse(
         time=motion.time,
         acceleration=np.vstack([motion.acceleration, acceleration]),
-        drift=np.diff(displacement, axis=0, prepend=0.0) / np.array(building.heights)[:, None],
+        drift=np.diff(displacement, axis=0, prepend=0.0)
+        / np.array(building.heights)[:, None],
     )

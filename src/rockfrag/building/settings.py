@@ -46,7 +46,9 @@ def _building(settings: Mapping[str, Any]) -> model.ShearBuilding:
         ("storey_heights_m", heights, "m", STOREY_HEIGHTS),
         ("masses_kg", masses, "kg", FLOOR_MASSES),
     ):
-        wrong = next((i for i, value in enumerate(values) if not least <= value <= most), None)
+        wrong = next(
+            (i for i, value in enumerate(values) if not least <= value <= most), None
+        )
         if wrong is not None:
             raise InputError(
                 f"{key}[{wrong}]: {values[wrong]:g} {unit} is no building's, which have from {least:g} to "
@@ -54,13 +56,17 @@ def _building(settings: Mapping[str, Any]) -> model.ShearBuilding:
             )
     distinct_file_names(settings.get("floors", {}))
     if "first_period_s" in settings:
-        stiffnesses = model.stiffnesses_for_period(masses, heights, settings["first_period_s"])
+        stiffnesses = model.stiffnesses_for_period(
+            masses, heights, settings["first_period_s"]
+        )
     else:
         stiffnesses = settings["storey_stiffnesses_N_m"]
     asked = settings.get("damping", {})
     damping = model.ModalDamping(float(asked.get("ratio", 0.05)))
     if asked.get("kind", "modal") == "rayleigh":
-        damping = model.RayleighDamping(damping.ratio, tuple(asked.get("modes", (1, 2))))
+        damping = model.RayleighDamping(
+            damping.ratio, tuple(asked.get("modes", (1, 2)))
+        )
     building = model.ShearBuilding(
         masses=masses,
         heights=heights,
@@ -74,7 +80,11 @@ def _building(settings: Mapping[str, Any]) -> model.ShearBuilding:
     )
     period, (shortest, longest) = float(find_modes(building).period[0]), FIRST_PERIODS
     if not shortest <= period <= longest:
-        key = "first_period_s" if "first_period_s" in settings else "storey_stiffnesses_N_m"
+        key = (
+            "first_period_s"
+            if "first_period_s" in settings
+            else "storey_stiffnesses_N_m"
+        )
         raise InputError(
             f"{key}: the first period would be {period:.3g} s, and those of buildings are from {shortest:g} to "
             f"{longest:g} s; check the units."

@@ -20,14 +20,16 @@ from rockfrag.short_repr import short_repr
 STANDARD_ERRORS = 2.0
 """A trial is plausible if its fraction of right outcomes is within this many standard errors of the best."""
 
-FEWEST_VOTERS = 10  # plausible trials below which votes say little: with ten they are tenths
+# plausible trials below which votes say little: with ten they are tenths
+FEWEST_VOTERS = 10
 
 HALF = 0.5  # an object overturns where at least so many of the votes say so
 
 NEAR_CRITICAL = (0.1, 0.9)
 """A test is near-critical if plausible trials disagree: this fraction of votes or more says each outcome."""
 
-REPEATS = "majority of repeated tests (ceiling)"  # who gave these outcomes, in the tables
+# who gave these outcomes, in the tables
+REPEATS = "majority of repeated tests (ceiling)"
 
 REPLICATES = 400
 """Resamples of input motions behind the limits of a fragility and of ratios of fragilities."""
@@ -38,7 +40,8 @@ class MeasuredTests:
     """What a laboratory saw, and how simulated and other outcomes are held against it."""
 
     overturned: Flags  # shape (tests,)
-    groups: NDArray[np.int64]  # number of each test's input motion, from 0 up, shape (tests,)
+    # number of each test's input motion, from 0 up, shape (tests,)
+    groups: NDArray[np.int64]
     seed: int
     folds: int = 5
     repeats: int = 20  # random divisions into folds
@@ -66,7 +69,10 @@ class MeasuredTests:
         the outcomes that they are chosen by. Returned is the fraction of plausible trials that say so of each
         test, shape (repeats, tests).
         """
-        right, answers = simulated == self.overturned, simulated if asked is None else asked
+        right, answers = (
+            simulated == self.overturned,
+            simulated if asked is None else asked,
+        )
         votes = np.empty((self.repeats, len(self.overturned)))
         for repeat, chosen_by in self.divisions():
             voters = plausible_trials(right[:, chosen_by], self.groups[chosen_by])
@@ -81,13 +87,19 @@ class MeasuredTests:
         """
         outcomes = np.empty((self.repeats, len(self.overturned)), dtype=bool)
         for repeat, chosen_by in self.divisions():
-            known, fell, asked = measures[chosen_by], self.overturned[chosen_by], ~chosen_by
+            known, fell, asked = (
+                measures[chosen_by],
+                self.overturned[chosen_by],
+                ~chosen_by,
+            )
             if measures.ndim == 1:
                 outcomes[repeat, asked] = measures[asked] >= best_threshold(known, fell)
                 continue
             counts = fell[None].astype(np.float64), np.ones((1, len(fell)))
             fit = fit_batch(_design(known), *counts, penalised=True)
-            outcomes[repeat, asked] = _design(measures[asked]) @ fit.coefficients[0] >= 0
+            outcomes[repeat, asked] = (
+                _design(measures[asked]) @ fit.coefficients[0] >= 0
+            )
         return outcomes
 
     def agreement(self, name: str, outcomes: Flags) -> dict[str, object]:
@@ -113,10 +125,14 @@ class MeasuredTests:
         tests that are not independent).
         """
         right, others = (
-            (np.atleast_2d(outcomes) == self.overturned).mean(axis=0) for outcomes in (ours, theirs)
+            (np.atleast_2d(outcomes) == self.overturned).mean(axis=0)
+            for outcomes in (ours, theirs)
         )
         difference = right - others
-        sums, rng = np.bincount(self.groups, difference), np.random.default_rng(self.seed)
+        sums, rng = (
+            np.bincount(self.groups, difference),
+            np.random.default_rng(self.seed),
+        )
         found = stats.permutation_test(
             (sums,), np.sum, permutation_type="samples", n_resamples=9999, rng=rng
         )
@@ -129,7 +145,9 @@ class MeasuredTests:
         quantile = stats.t.ppf(0.5 + self.level / 2, len(np.unique(self.groups)) - 1)
         return float(quantile * clustered_error(values, self.groups))
 
-    def fragility(self, measure: Floats, simulated: Mapping[str, Flags | Floats]) -> pd.DataFrame:
+    def fragility(
+        self, measure: Floats, simulated: Mapping[str, Flags | Floats]
+    ) -> pd.DataFrame:
         """Lognormal fragility of the measured and of simulated outcomes, with their ratio.
 
         ``simulated`` has outcomes by name, or the part of votes to overturn, shape (tests,) each; the bootstrap
@@ -188,7 +206,9 @@ def best_threshold(measure: Floats, overturned: Flags) -> float:
     values = measure[order]
     # right outcomes, but for a constant, if the first k tests are taken as survived
     first = int(np.cumsum(np.append(0, 1 - 2 * overturned[order])).argmax())
-    return float(np.sqrt(np.append(values[0], values)[first] * np.append(values, np.inf)[first]))
+    return float(
+        np.sqrt(np.append(values[0], values)[first] * np.append(values, np.inf)[first])
+    )
 
 
 def _design(measures: Floats) -> Floats:
@@ -204,7 +224,10 @@ def curves_of(measure: Floats, outcomes: Flags | Floats, weights: Floats) -> Flo
 
 def by_region(judged: pd.DataFrame, first: str, second: str) -> pd.DataFrame:
     """Thirds of two measures, a row each: limits, ``tests``, ``overturned``, ``simulated``, ``right``."""
-    ends = {name: np.quantile(judged[name], [0, 1 / 3, 2 / 3, 1]) for name in (first, second)}
+    ends = {
+        name: np.quantile(judged[name], [0, 1 / 3, 2 / 3, 1])
+        for name in (first, second)
+    }
     rows = []
     for thirds in product(range(3), repeat=2):
         inside, row = judged, dict[str, object]()
@@ -213,7 +236,9 @@ def by_region(judged: pd.DataFrame, first: str, second: str) -> pd.DataFrame:
             inside = inside[np.clip(third, 0, 2) == k]
             row[f"{name}_from"], row[f"{name}_to"] = ends[name][k : k + 2]
         counts = {name: int(inside[name].sum()) for name in ("overturned", "simulated")}
-        rows.append({**row, "tests": len(inside), **counts, "right": inside["right"].mean()})
+        rows.append(
+            {**row, "tests": len(inside), **counts, "right": inside["right"].mean()}
+        )
     return pd.DataFrame(rows)
 
 

@@ -57,26 +57,36 @@ def read_campaign(
     product it is.
     """
     source = Path(path).name
-    factors = [part for recipe in measures.values() for part in recipe if isinstance(part, str)]
+    factors = [
+        part for recipe in measures.values() for part in recipe if isinstance(part, str)
+    ]
     keys = {
         "label": ("test", "motion", "group", "which_way"),
         "positive": ("amplitude_g", "lower_g", "upper_g"),
         "outcome": (MEASURED, *NOTED),
     }
-    kinds = {columns[key]: kind for kind, some in keys.items() for key in some if key in columns}
+    kinds = {
+        columns[key]: kind
+        for kind, some in keys.items()
+        for key in some
+        if key in columns
+    }
     raw = read_columns(path, dict.fromkeys(factors, "positive") | kinds)
     motion = raw[columns["motion"]] if "motion" in columns else ""
     tests = pd.DataFrame({"test": raw[columns["test"]], "motion": motion, "group": ""})
     doubled = tests["test"][tests["test"].duplicated()]
     if len(doubled):
-        raise InputError(f"{source}: test {doubled.iloc[0]} stands twice; keep one row a test.")
+        raise InputError(
+            f"{source}: test {doubled.iloc[0]} stands twice; keep one row a test."
+        )
     for name, recipe in measures.items():
         tests[name] = product_of(raw, recipe)
     if "motion" not in columns:
         # tests that repeat a setting share its name, the measures in words
         rows = tests[list(measures)].to_numpy().tolist()
         tests["motion"] = [
-            ", ".join(f"{m} {v:g}" for m, v in zip(measures, row, strict=True)) for row in rows
+            ", ".join(f"{m} {v:g}" for m, v in zip(measures, row, strict=True))
+            for row in rows
         ]
     tests["group"] = raw[columns["group"]] if "group" in columns else tests["motion"]
     for key in NOTED:
@@ -85,7 +95,9 @@ def read_campaign(
     if "which_way" in columns:
         tests["which_way"] = raw[columns["which_way"]]
     tests = _with_outcomes(tests, raw, columns, source)
-    return Campaign(tests, tuple(measures), _codes(other_codes, columns["test"], tests["test"]))
+    return Campaign(
+        tests, tuple(measures), _codes(other_codes, columns["test"], tests["test"])
+    )
 
 
 def _with_outcomes(
@@ -99,8 +111,13 @@ def _with_outcomes(
     parts = []
     for key, fell in (("lower_g", False), ("upper_g", True)):
         amplitude = raw[columns[key]]
-        names = [f"{test} at {a:g} g" for test, a in zip(tests["test"], amplitude, strict=True)]
-        parts.append(tests.assign(test=names, amplitude_g=amplitude, **{MEASURED: fell}))
+        names = [
+            f"{test} at {a:g} g"
+            for test, a in zip(tests["test"], amplitude, strict=True)
+        ]
+        parts.append(
+            tests.assign(test=names, amplitude_g=amplitude, **{MEASURED: fell})
+        )
     wrong = np.flatnonzero(parts[0]["amplitude_g"] >= parts[1]["amplitude_g"])
     if wrong.size:
         raise InputError(
@@ -117,9 +134,9 @@ def _codes(
         return pd.DataFrame(index=range(len(tests)))
     source = Path(path).name
     names = [name for name in read_titles(path) if name != column]
-    table = read_columns(path, {column: "label"} | dict.fromkeys(names, "outcome")).set_index(
-        column
-    )
+    table = read_columns(
+        path, {column: "label"} | dict.fromkeys(names, "outcome")
+    ).set_index(column)
     if not set(tests) & set(table.index):
         raise InputError(
             f"{source}: has none of the {len(tests)} tests; check that the column {column!r} has their names."
@@ -132,7 +149,8 @@ LARGEST_PEAK = 10 * GRAVITY
 
 KEY = "{motion}"  # stands for the test's motion in a pattern of file names
 
-DRIFT_CORNER_HZ = 0.1  # high-pass before a measured motion is integrated: its noise would drift
+# high-pass before a measured motion is integrated: its noise would drift
+DRIFT_CORNER_HZ = 0.1
 
 LARGEST_FACTOR = 1.5
 """Factor between the middle listed and measured peak beyond which they are not of one motion: of ours.  On a table
@@ -145,7 +163,11 @@ _CAUSES = {
 
 
 def table_motions(
-    source: str, names: Sequence[str], unit: str | None, dt: float | None, channel: str | None
+    source: str,
+    names: Sequence[str],
+    unit: str | None,
+    dt: float | None,
+    channel: str | None,
 ) -> list[Motion]:
     """Read the measured motion of the table in each test, in the order of the tests [m/s²].
 
@@ -163,7 +185,9 @@ def table_motions(
         found = _of_archive(source, names, unit, dt)
     else:
         read = (read_motion(_path(source, name), unit, channel, dt) for name in names)
-        found = [replace(motion, name=name) for motion, name in zip(read, names, strict=True)]
+        found = [
+            replace(motion, name=name) for motion, name in zip(read, names, strict=True)
+        ]
     for motion in found:
         if motion.pga > LARGEST_PEAK:
             raise InputError(
@@ -198,7 +222,9 @@ def _archive(source: str) -> Any:
         # arrays only: an archive with Python objects could run code
         return np.load(source, allow_pickle=False)
     except (OSError, ValueError, EOFError, zipfile.BadZipFile) as error:
-        raise InputError(f"{source}: cannot be read as an .npz archive ({error}).") from error
+        raise InputError(
+            f"{source}: cannot be read as an .npz archive ({error})."
+        ) from error
 
 
 def _of_archive(
@@ -215,7 +241,9 @@ def _of_archive(
             try:
                 values = np.asarray(content[name], dtype=np.float64)
             except (ValueError, OSError, EOFError, zipfile.BadZipFile) as error:
-                raise InputError(f"{source}: motion {name} cannot be read ({error}).") from error
+                raise InputError(
+                    f"{source}: motion {name} cannot be read ({error})."
+                ) from error
             found.append(Motion(values * factor, dt, name, provenance=about))
     return found
 
@@ -223,14 +251,18 @@ def _of_archive(
 def measured_peaks(motions: Sequence[Motion]) -> pd.DataFrame:
     """Peak acceleration and velocity of motions, ``pga_g`` and ``pgv_cm_s``."""
     velocities = [100 * pgv(highpass(motion, DRIFT_CORNER_HZ)) for motion in motions]
-    return pd.DataFrame({"pga_g": [m.pga / GRAVITY for m in motions], "pgv_cm_s": velocities})
+    return pd.DataFrame(
+        {"pga_g": [m.pga / GRAVITY for m in motions], "pgv_cm_s": velocities}
+    )
 
 
 def check_peaks(tests: pd.DataFrame, motions: Sequence[Motion], source: str) -> None:
     """Refuse motions whose peaks are not those that the tests list, if they do; say the factor between."""
     listed = tests.filter(items=list(_CAUSES))
     if "pgv_cm_s" not in listed and {"pga_g", "pgv_over_pga_s"} <= set(tests):
-        listed = listed.assign(pgv_cm_s=100 * GRAVITY * tests["pga_g"] * tests["pgv_over_pga_s"])
+        listed = listed.assign(
+            pgv_cm_s=100 * GRAVITY * tests["pga_g"] * tests["pgv_over_pga_s"]
+        )
     if listed.empty:
         return
     found = measured_peaks(motions)

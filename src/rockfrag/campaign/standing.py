@@ -28,13 +28,20 @@ from rockfrag.system.contact import Contact, Friction
 from rockfrag.system.mesh import Shape
 from rockfrag.system.system import System
 
-UNKNOWNS = ("direction_deg", "contact_tolerance_mm", "edge_retreat_mm", "restitution", "friction")
+UNKNOWNS = (
+    "direction_deg",
+    "contact_tolerance_mm",
+    "edge_retreat_mm",
+    "restitution",
+    "friction",
+)
 """What may be given as a range: direction of shaking from the mesh's x axis, height above the lowest point up
 to which points carry, distance by which edges lie further in, and in the plane the ratio of angular velocities in
 an impact (values above the one that conserves momentum stand for that); in space, and of blocks on each other, the
 coefficient of friction."""
 
-Quantile = Callable[[float], float]  # quantile function of something that nobody measured
+# quantile function of something that nobody measured
+Quantile = Callable[[float], float]
 
 BATCH = 50  # motions whose outcomes are in memory at a time
 
@@ -70,11 +77,16 @@ def even_guesses(
     sobol = qmc.Sobol(len(quantiles), scramble=True, rng=np.random.default_rng(seed))
     for point in sobol.random(count):
         fractions = zip(quantiles.items(), point, strict=True)
-        yield {name: float(quantile(fraction)) for (name, quantile), fraction in fractions}
+        yield {
+            name: float(quantile(fraction)) for (name, quantile), fraction in fractions
+        }
 
 
 def sample_trials(
-    thing: Shape | Block | Column, ranges: Mapping[str, tuple[float, float]], count: int, seed: int
+    thing: Shape | Block | Column,
+    ranges: Mapping[str, tuple[float, float]],
+    count: int,
+    seed: int,
 ) -> Trials:
     """Fill the ranges of the unknowns evenly with trials.
 
@@ -86,7 +98,9 @@ def sample_trials(
     }
     if "contact_tolerance_mm" in ranges:
         low, high = ranges["contact_tolerance_mm"]
-        quantiles["contact_tolerance_mm"] = lambda fraction: low * (high / low) ** fraction
+        quantiles["contact_tolerance_mm"] = lambda fraction: (
+            low * (high / low) ** fraction
+        )
     rows, systems, planar = [], [], []
     for guess in even_guesses(quantiles, count, seed):
         try:
@@ -138,9 +152,14 @@ def _standing(
     if "friction" not in guess:
         return _in_plane(planar, guess)
     if isinstance(thing, Shape):
-        tolerance, retreat = guess["contact_tolerance_mm"] / 1e3, guess["edge_retreat_mm"] / 1e3
+        tolerance, retreat = (
+            guess["contact_tolerance_mm"] / 1e3,
+            guess["edge_retreat_mm"] / 1e3,
+        )
         body = thing.body(guess["direction_deg"], tolerance, retreat)
-        return System((body,), (Contact(friction=Friction(guess["friction"], guess["friction"])),))
+        return System(
+            (body,), (Contact(friction=Friction(guess["friction"], guess["friction"])),)
+        )
     return system_of(planar, friction=guess["friction"])
 
 
@@ -161,23 +180,32 @@ def preferred_edges(
             continue
         # by rank, so that where few trials can stand few are expected
         rank = trials[name].rank(pct=True)[plausible]
-        for limit, edge, at in ((low, "low", rank <= OUTER), (high, "high", rank > 1 - OUTER)):
+        for limit, edge, at in (
+            (low, "low", rank <= OUTER),
+            (high, "high", rank > 1 - OUTER),
+        ):
             if at.mean() > CROWDED and (name, limit) not in _NOTHING_BEYOND:
                 found[name] = f"{edge} end"
     return found
 
 
-def body_of(thing: Shape | Block | Column, guess: Mapping[str, float]) -> Block | Column:
+def body_of(
+    thing: Shape | Block | Column, guess: Mapping[str, float]
+) -> Block | Column:
     """The planar block of a guess at the unknowns of a shape or block, or blocks on each other."""
     retreat = guess["edge_retreat_mm"] / 1e3
     if isinstance(thing, Shape):
-        return thing.block(guess["direction_deg"], guess["contact_tolerance_mm"] / 1e3, retreat)
+        return thing.block(
+            guess["direction_deg"], guess["contact_tolerance_mm"] / 1e3, retreat
+        )
     return thing.narrowed(retreat)
 
 
 def possible_restitution(block: Block, restitution: float) -> float | None:
     """Return a restitution that gains no energy: as given, or None, which conserves momentum, where it would."""
-    largest = min(geometry.largest_restitution(block.shape, pivot) for pivot in (+1, -1))
+    largest = min(
+        geometry.largest_restitution(block.shape, pivot) for pivot in (+1, -1)
+    )
     return restitution if restitution < largest else None
 
 
@@ -189,7 +217,9 @@ LEAST_ANGLE_DEG = 2.0
 floor out of level and a push reach."""
 
 
-def unknowns_of(kind: str, scan_accuracy_mm: float | None = None) -> dict[str, Quantile]:
+def unknowns_of(
+    kind: str, scan_accuracy_mm: float | None = None
+) -> dict[str, Quantile]:
     """Distributions, of ours, of what nobody measured of a ``cut block`` or a ``scan`` of this accuracy [mm]."""
     if kind == CUT:
         return {
@@ -236,7 +266,9 @@ def ways_to_stand(
             continue
         momentum = min(block.momentum_restitution(+1), block.momentum_restitution(-1))
         rows.append(way | {"width_m": block.width, "alpha_deg": angle})
-        ratio = possible_restitution(block, way.get("restitution_ratio", 1.0) * momentum)
+        ratio = possible_restitution(
+            block, way.get("restitution_ratio", 1.0) * momentum
+        )
         systems.append(system_of(block, restitution=ratio))
     if not rows:
         raise InputError(

@@ -44,7 +44,9 @@ _REASONS = {
 class PureRocking(BuiltIn):
     """One or two planar bodies that rock and never slide; the lower one is as wide above as below."""
 
-    def supports(self, system: System, motion: GroundMotion, request: Request) -> Support:
+    def supports(
+        self, system: System, motion: GroundMotion, request: Request
+    ) -> Support:
         """Say whether it computes this system under this motion as requested, and if not, why."""
         found = super().supports(system, motion, request)
         if not found or system.count != 2:
@@ -52,27 +54,37 @@ class PureRocking(BuiltIn):
         lower = system.in_plane().bodies[0]
         if lower.face != lower.base:
             return Support(reason="the lower body's face is not as wide as its base")
-        return Support(reason=_REASONS.get(geometry.failed_stability_check(system.pile), ""))
+        return Support(
+            reason=_REASONS.get(geometry.failed_stability_check(system.pile), "")
+        )
 
 
 class SpatialEngine(BuiltIn):
     """One rigid body on a polygon or a circle, contact event by contact event (``docs/space.md``)."""
 
-    def supports(self, system: System, motion: GroundMotion, request: Request) -> Support:
+    def supports(
+        self, system: System, motion: GroundMotion, request: Request
+    ) -> Support:
         """Say whether it computes this system under this motion as requested, and if not, why."""
         found = super().supports(system, motion, request)
         if found and system.planar:
-            return Support(reason="a planar body moves in its own plane only; give its depth")
+            return Support(
+                reason="a planar body moves in its own plane only; give its depth"
+            )
         return found
 
 
 _STANDING = frozenset({Wish.VERTICAL, Wish.RESTITUTION})
 
-LONE_BLOCKS = PureRocking("lanes of lone blocks", _STANDING, "rockfrag.engines.lanes:run_blocks")
+LONE_BLOCKS = PureRocking(
+    "lanes of lone blocks", _STANDING, "rockfrag.engines.lanes:run_blocks"
+)
 """Lone bodies, from rest: 64 lanes side by side (``kernels.lanes.block``)."""
 
 TWO_BLOCKS = PureRocking(
-    "lanes of two blocks", _STANDING | {Wish.TWO_BODIES}, "rockfrag.engines.lanes:run_stacks"
+    "lanes of two blocks",
+    _STANDING | {Wish.TWO_BODIES},
+    "rockfrag.engines.lanes:run_stacks",
 )
 """Two bodies on each other, from rest: lanes of stacks side by side (``kernels.lanes.stack_case``)."""
 
@@ -86,7 +98,8 @@ SINGLE = PureRocking(
 
 PLANAR = BuiltIn(
     "planar contact",
-    _STANDING | {Wish.TWO_BODIES, Wish.MANY_BODIES, Wish.FRICTION, Wish.START, Wish.HISTORY},
+    _STANDING
+    | {Wish.TWO_BODIES, Wish.MANY_BODIES, Wish.FRICTION, Wish.START, Wish.HISTORY},
     "rockfrag.engines.planar.engine:run",
     "rockfrag.engines.planar.engine:history",
 )

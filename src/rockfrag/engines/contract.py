@@ -126,7 +126,9 @@ class Engine(Protocol):
     name: str  # that stands in outcomes
     meets: frozenset[Wish]  # wishes that it can meet, in any combination
 
-    def supports(self, system: System, motion: GroundMotion, request: Request) -> Support:
+    def supports(
+        self, system: System, motion: GroundMotion, request: Request
+    ) -> Support:
         """Say whether it computes this system under this motion as requested, and if not, why."""
         return Support(wishes(system, motion, request) - self.meets)
 
@@ -146,12 +148,15 @@ def wishes(system: System, motion: GroundMotion, request: Request) -> frozenset[
         Wish.SPACE: motion.y is not None,
         Wish.VERTICAL: motion.z is not None,
         Wish.FRICTION: system.loose,
-        Wish.RESTITUTION: any(contact.law.name != "momentum" for contact in system.contacts),
+        Wish.RESTITUTION: any(
+            contact.law.name != "momentum" for contact in system.contacts
+        ),
         Wish.START: start is not None and np.any([*start.rotation, *start.velocity]),
         Wish.LINEAR: request.linear,
         Wish.FORCES: request.forces,
         Wish.HISTORY: request.history,
-        Wish.TILT: motion.y is not None and any(contact.tilt for contact in system.contacts),
+        Wish.TILT: motion.y is not None
+        and any(contact.tilt for contact in system.contacts),
     }
     return frozenset(wish for wish, there in made.items() if there)
 
@@ -163,9 +168,13 @@ def register_engine(engine: Engine, before: str | None = None) -> Engine:
     """Add an engine to the registry, behind all others or before the one of a name; its name must not be taken."""
     names = [other.name for other in engines()]
     if engine.name in names:
-        raise InputError(f"engine {engine.name!r} is registered already; give it another name.")
+        raise InputError(
+            f"engine {engine.name!r} is registered already; give it another name."
+        )
     if before is not None and before not in names:
-        raise InputError(f"engine {before!r} is not known; choose one of {', '.join(names)}.")
+        raise InputError(
+            f"engine {before!r} is not known; choose one of {', '.join(names)}."
+        )
     _ENGINES.insert(len(names) if before is None else names.index(before), engine)
     return engine
 
@@ -198,7 +207,9 @@ def refusal(system: System, motion: GroundMotion, request: Request) -> str:
                 if not others:
                     return f"{first} is beyond every engine; leave it out."
                 return f"{first} cannot be had together with {' and '.join(others)}; leave one of them out."
-    reasons = [str(engine.supports(system, motion, request).reason) for engine in engines()]
+    reasons = [
+        str(engine.supports(system, motion, request).reason) for engine in engines()
+    ]
     said = next((reason for reason in reasons if reason), "there is no engine for it")
     return f"this system cannot be computed: {said}."
 

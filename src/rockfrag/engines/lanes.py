@@ -60,7 +60,12 @@ def afters(system: System) -> tuple[Told, ...]:
         law = system.contacts[0].law
         if law.name == "momentum":
             return (BY_MOMENTUM,) * 4
-        return BY_MOMENTUM, BY_MOMENTUM, (ratio.NUMBER, law.right), (ratio.NUMBER, law.left)
+        return (
+            BY_MOMENTUM,
+            BY_MOMENTUM,
+            (ratio.NUMBER, law.right),
+            (ratio.NUMBER, law.left),
+        )
     return tuple(
         after_impact(contact.law, shape, pivot)
         for contact, shape in zip(system.contacts, system.carried, strict=True)
@@ -73,7 +78,9 @@ def after_impact(law: ImpactLaw, shape: geometry.Shape, pivot: int) -> Told:
     return law_named(law.name).tell(shape, law.right if pivot > 0 else law.left, pivot)
 
 
-def integrate(kernel: Any, worker: Callable[[], Any], threads: int, *arguments: Any) -> None:
+def integrate(
+    kernel: Any, worker: Callable[[], Any], threads: int, *arguments: Any
+) -> None:
     """Let threads call an entry kernel, each with memory of its own, until no case is left."""
     ensemble, *others = arguments
     with compiling_alone(kernel):
@@ -87,7 +94,9 @@ def integrate(kernel: Any, worker: Callable[[], Any], threads: int, *arguments: 
         list(pool.map(work, range(min(threads, int(ensemble.count)))))
 
 
-def sampled(cases: Cases, per_gravity: float) -> tuple[Motions, NDArray[np.int64], Floats]:
+def sampled(
+    cases: Cases, per_gravity: float
+) -> tuple[Motions, NDArray[np.int64], Floats]:
     """Sample the motions as densely as systems need; which each uses, its interval [s]; vertical over gravity."""
     values = [motion.x.acceleration for motion in cases.motions]
     dts = np.array([motion.dt for motion in cases.motions])
@@ -96,7 +105,9 @@ def sampled(cases: Cases, per_gravity: float) -> tuple[Motions, NDArray[np.int64
     # the next power of two
     mantissa, exponent = np.frexp(times)
     times = 2 ** (exponent - (mantissa == 0.5))
-    kinds, number = np.unique(times * len(values) + np.arange(len(values)), return_inverse=True)
+    kinds, number = np.unique(
+        times * len(values) + np.arange(len(values)), return_inverse=True
+    )
 
     each_kind = [divmod(kind, len(values)) for kind in kinds.tolist()]
     sizes = np.array([values[motion].size * times + 1 for times, motion in each_kind])
@@ -114,14 +125,22 @@ def sampled(cases: Cases, per_gravity: float) -> tuple[Motions, NDArray[np.int64
     upward = np.zeros(0)
     if cases.motions[0].z is not None:
         upward = end_to_end(
-            [per_gravity * motion.z.acceleration for motion in cases.motions if motion.z]
+            [
+                per_gravity * motion.z.acceleration
+                for motion in cases.motions
+                if motion.z
+            ]
         )
     extremes = *_extremes(horizontal, offsets), *_extremes(upward, offsets)[2:]
-    motions = Motions(horizontal, upward, *extremes, offsets, lasts=offsets[:-1] + sizes - 1)
+    motions = Motions(
+        horizontal, upward, *extremes, offsets, lasts=offsets[:-1] + sizes - 1
+    )
     return motions, number.reshape(times.shape), dts[np.newaxis, :] / times
 
 
-def _extremes(samples: Floats, offsets: NDArray[np.int64]) -> tuple[Floats, Floats, Floats, Floats]:
+def _extremes(
+    samples: Floats, offsets: NDArray[np.int64]
+) -> tuple[Floats, Floats, Floats, Floats]:
     """Extremes of each BLOCK of samples, and from the beginning of each to the end of its motion."""
     blocks = samples.reshape(-1, BLOCK)
     high, low = blocks.max(axis=1, initial=-np.inf), blocks.min(axis=1, initial=np.inf)
@@ -180,7 +199,9 @@ def run_blocks(cases: Cases) -> Outcomes:
     pivots["per_swing"] /= intervals[:, :, np.newaxis] ** 2
     parts, free = np.ones(intervals.shape), np.zeros(intervals.shape, np.int64)
     told = {"bodies": pivots, "factors": cases.scales / g, "parts": parts, "free": free}
-    return _by_lanes(LONE_BLOCKS.name, cases, block.integrate_blocks, block.worker, made, **told)
+    return _by_lanes(
+        LONE_BLOCKS.name, cases, block.integrate_blocks, block.worker, made, **told
+    )
 
 
 def _pivots(system: System, g: float) -> NDArray[np.void]:
@@ -189,7 +210,10 @@ def _pivots(system: System, g: float) -> NDArray[np.void]:
     shape, law = system.shapes[0], system.contacts[0].law
     # of the impact that ends rocking on a pivot and comes down on the other
     for at, pivot, measured in ((0, +1, law.left), (1, -1, law.right)):
-        p, alpha = geometry.frequency(shape, pivot, g), geometry.critical_angle(shape, pivot)
+        p, alpha = (
+            geometry.frequency(shape, pivot, g),
+            geometry.critical_angle(shape, pivot),
+        )
         if not p * p * alpha * alpha > 0:
             raise InputError(
                 "body: lengths, mass and inertia are too far apart; check their units."
@@ -215,7 +239,12 @@ def run_stacks(cases: Cases) -> Outcomes:
 
 
 def _by_lanes(
-    name: str, cases: Cases, kernel: Any, worker: Callable[[], Any], sampled: Any, **told: Any
+    name: str,
+    cases: Cases,
+    kernel: Any,
+    worker: Callable[[], Any],
+    sampled: Any,
+    **told: Any,
 ) -> Outcomes:
     """Return what lanes make of motions ``sampled`` for an ensemble, and of what its kernel is ``told``."""
     motions, rows, intervals = sampled
@@ -227,6 +256,8 @@ def _by_lanes(
     found, interval = found.reshape(cases.shape), intervals[:, :, np.newaxis]
     # lanes count time in samples
     write_rocking(outcomes, found)
-    outcomes.certain_time[:] = np.where(outcomes.overturned, found["certain"] * interval, np.nan)
+    outcomes.certain_time[:] = np.where(
+        outcomes.overturned, found["certain"] * interval, np.nan
+    )
     outcomes.peak_velocity[..., -1] = found["fast"] / interval
     return outcomes

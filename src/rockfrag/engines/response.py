@@ -45,7 +45,11 @@ def rocking_mode_name(states: Sequence[int]) -> str:
     if len(states) > 2:
         return "".join(LETTERS[int(state)] for state in states)
     ground, interface = (0, *states)[-2:]
-    return "flight" if FLIGHT in (ground, interface) else ROCKING_MODES[int(ground), int(interface)]
+    return (
+        "flight"
+        if FLIGHT in (ground, interface)
+        else ROCKING_MODES[int(ground), int(interface)]
+    )
 
 
 def mode_name(state: int, slides: int) -> str:
@@ -200,12 +204,15 @@ def _rocking_modes(states: Ints) -> list[str]:
     return [rocking_mode_name(row) for row in states.tolist()]
 
 
-def with_slips(table: pd.DataFrame, states: Ints, slides: Ints, slip: Floats) -> pd.DataFrame:
+def with_slips(
+    table: pd.DataFrame, states: Ints, slides: Ints, slip: Floats
+) -> pd.DataFrame:
     """Return a table of contact events with what each interface does from then on, and its slip [m]."""
     pairs = np.stack([states, slides], axis=-1).tolist()
     modes = [tuple(mode_name(*pair) for pair in each) for each in pairs]
     return table.assign(
-        modes=pd.Series(modes, dtype=object), slip=pd.Series(_tuples(slip), dtype=object)
+        modes=pd.Series(modes, dtype=object),
+        slip=pd.Series(_tuples(slip), dtype=object),
     )
 
 
@@ -232,7 +239,11 @@ def energy_table(
     total = kinetic + potential
     for each in so_far:
         total = total + each
-    residual = total - work - total[0] if friction is None else total + friction - work - total[0]
+    residual = (
+        total - work - total[0]
+        if friction is None
+        else total + friction - work - total[0]
+    )
     return pd.DataFrame(
         {
             "time": time,

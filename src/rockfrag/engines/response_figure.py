@@ -25,14 +25,20 @@ _ROCKING_MODES = ("1a", "1b", "2a", "2b", "3a", "3b", "4a", "4b", "flight")
 def response_figure(response: Response, title: str) -> Figure:
     """Draw acceleration [g], rotations over the critical angle with impacts, slip and the pattern over time."""
     shapes, names = rocking_shapes(response.system), response.system.names
-    critical = [min(geometry.critical_angle(shape, side) for side in (+1, -1)) for shape in shapes]
+    critical = [
+        min(geometry.critical_angle(shape, side) for side in (+1, -1))
+        for shape in shapes
+    ]
     single = len(names) == 1
     # the object has its colour wherever it stands
     colours = [style.BLUE, style.ORANGE, *style.OKABE_ITO[2:]][: len(names)][::-1]
     slides = bool((response.slides != 0).any())
     heights = [2, 3, 2, 2] if slides else [2, 3, 2]
     shape: Any = {"nrows": len(heights), "sharex": True, "height_ratios": heights}
-    with style.panels(style.COLUMN_WIDTH, 0.6 * sum(heights), **shape) as (figure, panels):
+    with style.panels(style.COLUMN_WIDTH, 0.6 * sum(heights), **shape) as (
+        figure,
+        panels,
+    ):
         ground, rotation, *between, rocking_mode = panels
         acceleration = response.ground_acceleration / GRAVITY
         ground.plot(response.time, acceleration, color=style.BLACK, lw=0.5)
@@ -47,9 +53,17 @@ def response_figure(response: Response, title: str) -> Figure:
         largest = float(np.abs(response.theta / critical).max()) or 1.0
         rotation.set_ylim(-min(1.6, 1.15 * largest), min(1.6, 1.15 * largest))
         rotation.set_ylabel("Rotation / critical [-]")
-        impacts = response.contact_events.loc[response.contact_events["kind"] == "impact", "time"]
+        impacts = response.contact_events.loc[
+            response.contact_events["kind"] == "impact", "time"
+        ]
         rotation.plot(
-            impacts, np.zeros(len(impacts)), "|", color=style.BLACK, ms=5, mew=0.5, label="impact"
+            impacts,
+            np.zeros(len(impacts)),
+            "|",
+            color=style.BLACK,
+            ms=5,
+            mew=0.5,
+            label="impact",
         )
         if not single or len(impacts):
             rotation.legend(loc="upper right", ncols=3)
@@ -68,7 +82,9 @@ def _slips(panel: Axes, response: Response, colours: list[str]) -> None:
     """Draw how far each interface has slid."""
     names = ["ground", *(f"under {name}" for name in response.system.names[1:])]
     for i, (name, colour) in enumerate(zip(names, colours, strict=True)):
-        panel.plot(response.time, 1000 * response.slip[:, i], color=colour, lw=0.8, label=name)
+        panel.plot(
+            response.time, 1000 * response.slip[:, i], color=colour, lw=0.8, label=name
+        )
     panel.set_ylabel("Slip [mm]")
     if len(colours) > 1:
         panel.legend(loc="upper right", ncols=2)
@@ -87,14 +103,24 @@ def _rocking_modes(panel: Axes, response: Response) -> None:
         return
     for row, name in enumerate(seen):
         times = response.time[labels == name]
-        panel.plot(times, np.full(times.size, row), "|", color=style.OKABE_ITO[row], ms=6, mew=0.6)
+        panel.plot(
+            times,
+            np.full(times.size, row),
+            "|",
+            color=style.OKABE_ITO[row],
+            ms=6,
+            mew=0.6,
+        )
     panel.set_yticks(range(len(seen)), seen)
     panel.set_ylim(-0.6, max(len(seen), 1) - 0.4)
     panel.set_ylabel("Pattern")
 
 
 def spatial_figure(
-    outcome: "SpatialOutcome", history: pd.DataFrame, outline: NDArray[np.float64], title: str
+    outcome: "SpatialOutcome",
+    history: pd.DataFrame,
+    outline: NDArray[np.float64],
+    title: str,
 ) -> Figure:
     """Draw the path of the axis [rad] and the plan [m] of a response, whose base has this outline, (n, 2) [m]."""
     with style.panels(style.COLUMN_WIDTH, 6.0, 2) as (figure, (axis, plan)):
@@ -104,7 +130,9 @@ def spatial_figure(
         return figure
 
 
-def _path_of_axis(panel: Axes, outcome: "SpatialOutcome", history: pd.DataFrame) -> None:
+def _path_of_axis(
+    panel: Axes, outcome: "SpatialOutcome", history: pd.DataFrame
+) -> None:
     axis = history[["axis_x", "axis_y"]].to_numpy()
     sine = np.maximum(np.hypot(*axis.T), 1e-300)
     x, y = axis.T * (history["tilt_rad"].to_numpy() / sine)
@@ -113,7 +141,8 @@ def _path_of_axis(panel: Axes, outcome: "SpatialOutcome", history: pd.DataFrame)
     if outcome.overturned:
         towards = np.degrees(outcome.fall_direction)
         panel.set_title(
-            f"Falls over {outcome.fell_over} towards {towards:.0f}°".replace("-", "−"), loc="left"
+            f"Falls over {outcome.fell_over} towards {towards:.0f}°".replace("-", "−"),
+            loc="left",
         )
     else:
         panel.set_title("Does not fall", loc="left")
@@ -134,7 +163,11 @@ def _plan(panel: Axes, history: pd.DataFrame, outline: NDArray[np.float64]) -> N
         panel.plot(*moved.T, color=colour, lw=1.0, label=name)
         corners.append(moved)
     panel.plot(
-        history.base_x_m, history.base_y_m, color=style.BLUE, lw=0.7, label="path of its middle"
+        history.base_x_m,
+        history.base_y_m,
+        color=style.BLUE,
+        lw=0.7,
+        label="path of its middle",
     )
     corners.append(history[["base_x_m", "base_y_m"]].to_numpy())
     turn = round(float(np.degrees(history.turn_rad.iloc[-1])), 1) + 0.0
@@ -142,7 +175,9 @@ def _plan(panel: Axes, history: pd.DataFrame, outline: NDArray[np.float64]) -> N
     _square(panel, np.vstack(corners).T, 1.1)
     panel.set_xlabel("x [m]")
     panel.set_ylabel("y [m]")
-    panel.legend(loc="upper center", bbox_to_anchor=(0.5, -0.2), ncols=3, columnspacing=1.0)
+    panel.legend(
+        loc="upper center", bbox_to_anchor=(0.5, -0.2), ncols=3, columnspacing=1.0
+    )
 
 
 def _square(panel: Axes, points: NDArray[np.float64], margin: float) -> None:

@@ -30,7 +30,8 @@ Link = tuple[Floats, ...]
 def run(cases: Cases) -> Outcomes:
     """Return the outcomes of cases, whose histories are not kept."""
     records = [
-        body_record(system, cases.request.linear, cases.request.g) for system in cases.systems
+        body_record(system, cases.request.linear, cases.request.g)
+        for system in cases.systems
     ]
     starts = [initial_state(system) for system in cases.systems]
     summaries = np.zeros(cases.shape, kept.SUMMARY)
@@ -38,7 +39,9 @@ def run(cases: Cases) -> Outcomes:
 
     def work(place: tuple[int, int, int]) -> None:
         i, j, k = place
-        case = Case(cases.systems[i], cases.motions[j], float(cases.scales[j, k]), cases.request)
+        case = Case(
+            cases.systems[i], cases.motions[j], float(cases.scales[j, k]), cases.request
+        )
         shaking = shaking_of(case, case.request.g)
         summaries[place] = run_integration(records[i], shaking, starts[i], *nothing)[1]
 
@@ -81,7 +84,12 @@ class SingleRun:
                 f"motion: {most} samples, with the free rocking after it, are more than the "
                 f"{MOST_SAMPLES} allowed."
             )
-        told = self.record, self.shaking, initial_state(case.system), np.zeros(most, kept.SAMPLE)
+        told = (
+            self.record,
+            self.shaking,
+            initial_state(case.system),
+            np.zeros(most, kept.SAMPLE),
+        )
         room, count = 0, 4096
         while count > room:
             room, found = count, np.zeros(count, kept.CONTACT_EVENT)
@@ -97,7 +105,11 @@ class SingleRun:
 
     def response(self) -> Response:
         """Return the response that the kernel wrote."""
-        summary, demand, blocks = self.summary, self.summary["demand"], BLOCKS[-self.count :]
+        summary, demand, blocks = (
+            self.summary,
+            self.summary["demand"],
+            BLOCKS[-self.count :],
+        )
         theta, state, n = self.of("theta"), self.of("c"), len(self.history)
         fallen = int(summary["fallen"])
         samples, ground = self.shaking.samples * self.shaking.scale, np.zeros(n)
@@ -117,7 +129,9 @@ class SingleRun:
             slip=np.zeros_like(theta),
             contact_events=self._contact_events(),
             overturned=fallen > 0,
-            overturned_body=("", *self.system.names)[fallen - (2 - self.count) if fallen else 0],
+            overturned_body=("", *self.system.names)[
+                fallen - (2 - self.count) if fallen else 0
+            ],
             overturning_time=float(summary["fall_time"]),
             energy=self._energies(),
             normal_force=normal,
@@ -126,7 +140,10 @@ class SingleRun:
             least_normal_force=np.array([demand["normal" + block] for block in blocks]),
             lost_contact=float(summary["lost_contact"]),
             unstable_distance=float(summary["unstable_distance"]),
-            **{name: int(summary[name]) for name in ("impacts", "grazings", "given_way")},
+            **{
+                name: int(summary[name])
+                for name in ("impacts", "grazings", "given_way")
+            },
         )
 
     def _links(self, theta: Floats, state: NDArray[Any]) -> tuple[Floats, list[Link]]:
@@ -149,7 +166,11 @@ class SingleRun:
             (x, y), w, q = turned(arms, body), omega[:, body], alpha[:, body]
             return x, y, q * y - w * w * x, -q * x - w * w * y
 
-        lower, side, ways = self.system.shapes[0], (state < 0).astype(np.int64), (+1, -1)
+        lower, side, ways = (
+            self.system.shapes[0],
+            (state < 0).astype(np.int64),
+            (+1, -1),
+        )
         arm = np.array([geometry.arm(lower, way) for way in ways])[side[:, 0]]
         links = [link(arm, 0)]
         centres = [links[0][:2]]
@@ -212,7 +233,9 @@ class SingleRun:
         """Balance of energy by cause over time [J]."""
         kinetic, potential = np.empty((2, len(self.history)))
         with compiling_alone(kept.fill_energies):
-            kept.fill_energies(self.record, self.history, kinetic, potential, np.zeros(1, STATE)[0])
+            kept.fill_energies(
+                self.record, self.history, kinetic, potential, np.zeros(1, STATE)[0]
+            )
         # an impact closes the ground if the lower body's contact changed, the interface otherwise
         found = self.contact_events
         before = found["before"]["c1"]
@@ -220,7 +243,11 @@ class SingleRun:
         lost = found["energy_before"] - found["energy_after"]
         # of a lone body, the kernels' second, the interface is the ground
         closed = np.where(by_ground, 0, self.count - 1)
-        losses = found["time"], closed, np.where(found["kind"] == kept.OPENING, 0.0, lost)
+        losses = (
+            found["time"],
+            closed,
+            np.where(found["kind"] == kept.OPENING, 0.0, lost),
+        )
         balance = kinetic, potential, self.history["work"], losses
         return energy_table(self.time, *balance, contacts=self.count)
 
@@ -229,7 +256,10 @@ def initial_state(system: System) -> np.void:
     """Return the STATE that the integration begins with."""
     initial: np.void = np.zeros(1, STATE)[0]
     if system.start is not None:
-        for name, values in (("theta", system.start.rotation), ("omega", system.start.velocity)):
+        for name, values in (
+            ("theta", system.start.rotation),
+            ("omega", system.start.velocity),
+        ):
             initial[name + "1"], initial[name + "2"] = (0.0, *values)[-2:]
     return initial
 
@@ -251,10 +281,16 @@ def shaking_of(case: Case, unit: float) -> Any:
 
 
 def run_integration(
-    record: np.void, shaking: Any, initial: np.void, history: Records, contact_events: Records
+    record: np.void,
+    shaking: Any,
+    initial: np.void,
+    history: Records,
+    contact_events: Records,
 ) -> tuple[int, np.void]:
     """Integrate one system; return the number of samples done and the summary."""
     summary, work = np.zeros(1, kept.SUMMARY)[0], np.zeros(1, SCRATCH)[0]
     with compiling_alone(integrate):
-        done = integrate(record, shaking, initial, history, contact_events, summary, work)
+        done = integrate(
+            record, shaking, initial, history, contact_events, summary, work
+        )
     return int(done), summary

@@ -13,7 +13,8 @@ STACK_STEP = 0.35
 """Fraction of that step that two bodies of an ensemble take while both rotate: they are chaotic, and keep the
 memory of smaller errors."""
 
-FREE_TIME = 60.0  # free rocking after the motion is followed for at most this long, in units of 1/p
+# free rocking after the motion is followed for at most this long, in units of 1/p
+FREE_TIME = 60.0
 MOST_SAMPLES = 20_000_000
 """Samples of a history, the motion and the free rocking after it, that are admitted."""
 
@@ -38,9 +39,13 @@ def rocking_shapes(system: System) -> list[geometry.Shape]:
 def free_samples(system: System | Body, dt: ArrayLike, g: float) -> NDArray[np.int64]:
     """Return the most samples of free rocking that are followed after a motion, for every interval."""
     shapes = rocking_shapes(as_system(system))
-    slowest = min(geometry.frequency(shape, pivot, g) for shape in shapes for pivot in (+1, -1))
+    slowest = min(
+        geometry.frequency(shape, pivot, g) for shape in shapes for pivot in (+1, -1)
+    )
     if not slowest > 0:
-        raise InputError("body: its frequency parameter p is 0; check lengths, mass and inertia.")
+        raise InputError(
+            "body: its frequency parameter p is 0; check lengths, mass and inertia."
+        )
     samples = np.ceil(FREE_TIME / slowest / np.asarray(dt))
     if samples.max(initial=0) > MOST_SAMPLES:
         raise InputError(
@@ -50,10 +55,14 @@ def free_samples(system: System | Body, dt: ArrayLike, g: float) -> NDArray[np.i
     return np.asarray(samples).astype(np.int64)
 
 
-def step_count(system: System | Body, dt: ArrayLike, g: float, step: float) -> NDArray[np.int64]:
+def step_count(
+    system: System | Body, dt: ArrayLike, g: float, step: float
+) -> NDArray[np.int64]:
     """Return the steps per sample for which p h does not exceed ``step``, for every sampling interval."""
     frequency = fastest_frequency(system, g)
     steps = np.ceil(frequency * np.asarray(dt) / step - 1e-9)
     if steps.max(initial=0) > 10_000:
-        raise InputError(f"dt: {np.max(dt)} s is too long for a block of p = {frequency:.3g} 1/s.")
+        raise InputError(
+            f"dt: {np.max(dt)} s is too long for a block of p = {frequency:.3g} 1/s."
+        )
     return np.maximum(1, steps).astype(np.int64)

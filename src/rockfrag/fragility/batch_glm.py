@@ -14,7 +14,8 @@ from rockfrag.fragility.observations import Floats
 
 Link = Literal["probit", "logit"]
 
-MOST_STEPS = 100  # steps after which a regression that has not converged is left as it is
+# steps after which a regression that has not converged is left as it is
+MOST_STEPS = 100
 _LARGEST_PREDICTOR = 30.0
 _LOG_ROOT_TWO_PI = 0.5 * np.log(2.0 * np.pi)
 
@@ -60,7 +61,9 @@ def fit_batch(
     """
     batch, columns = failures.shape[0], design.shape[1]
     mixed = (failures.sum(axis=1) > 0) & (failures.sum(axis=1) < trials.sum(axis=1))
-    coefficients = np.zeros((batch, columns)) if start is None else np.tile(start, (batch, 1))
+    coefficients = (
+        np.zeros((batch, columns)) if start is None else np.tile(start, (batch, 1))
+    )
     coefficients[~mixed] = np.nan
     objective = np.full(batch, -np.inf)
     information = np.full((batch, columns, columns), np.nan)
@@ -83,7 +86,9 @@ def fit_batch(
             goal = goal + 0.5 * np.linalg.slogdet(fisher)[1]
         worse = goal < objective[active] - 1e-10
         settled = (
-            ~worse & (np.abs(step[active]).max(axis=1) < tolerance) & (objective[active] > -np.inf)
+            ~worse
+            & (np.abs(step[active]).max(axis=1) < tolerance)
+            & (objective[active] > -np.inf)
         )
         step[active[worse]] *= 0.5
         stuck = worse & (np.abs(step[active]).max(axis=1) < 1e-14)
@@ -92,7 +97,9 @@ def fit_batch(
         coefficients[where] = trial[better]
         objective[where] = goal[better]
         information[where] = fisher[better]
-        score = (y * np.exp(log_density - log_p) - (m - y) * np.exp(log_density - log_q))[better]
+        score = (
+            y * np.exp(log_density - log_p) - (m - y) * np.exp(log_density - log_q)
+        )[better]
         inverse = np.linalg.pinv(fisher[better], hermitian=True)
         if penalised:
             hat = weight[better] * np.einsum("ri,bij,rj->br", design, inverse, design)

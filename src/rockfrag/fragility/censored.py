@@ -15,7 +15,14 @@ from scipy import special
 from rockfrag.errors import InputError
 from rockfrag.fragility import intervals, lognormal
 from rockfrag.fragility.intervals import MOST_BLOCKS, Interval
-from rockfrag.fragility.observations import Floats, Grouped, Over, labels, name_and_unit, numbers
+from rockfrag.fragility.observations import (
+    Floats,
+    Grouped,
+    Over,
+    labels,
+    name_and_unit,
+    numbers,
+)
 from rockfrag.short_repr import short_repr
 
 _LOG_ROOT_TWO_PI = 0.5 * np.log(2.0 * np.pi)
@@ -61,7 +68,9 @@ def brackets_from_table(
         raise InputError("table: there is no row; give at least one test.")
     low = numbers(table, lower)
     if upper not in table:
-        raise InputError(f"table: there is no column {upper!r}; correct the name of the column.")
+        raise InputError(
+            f"table: there is no column {upper!r}; correct the name of the column."
+        )
     high = pd.to_numeric(table[upper], errors="coerce").to_numpy(dtype=np.float64)
     high = np.where(np.isnan(high), np.inf, high)
     bad = (low < 0) | (high <= 0) | (high < low) | ((low == 0) & np.isinf(high))
@@ -90,7 +99,11 @@ def fit_brackets(brackets: Brackets) -> lognormal.FragilityFit:
         method, case = "none: all tests overturned at once", "at once"
     else:
         found = _fit_weighted(low, high, np.ones((1, low.size)))
-        coefficients, information, log_likelihood = found[0][0], found[1][0], float(found[2][0])
+        coefficients, information, log_likelihood = (
+            found[0][0],
+            found[1][0],
+            float(found[2][0]),
+        )
         # where all brackets share an amplitude there is no information
         overlap = not np.isfinite(information).all()
         if not np.isfinite(coefficients).all():
@@ -107,7 +120,14 @@ def fit_brackets(brackets: Brackets) -> lognormal.FragilityFit:
     counted = (low.size, brackets.n_overturned, brackets.n_motions)
     notes = tuple(lognormal.SAY("brackets", brackets, case))
     return lognormal.FragilityFit(
-        *curve, log_likelihood, *counted, method, brackets.name, brackets.unit, "probit", notes
+        *curve,
+        log_likelihood,
+        *counted,
+        method,
+        brackets.name,
+        brackets.unit,
+        "probit",
+        notes,
     )
 
 
@@ -122,11 +142,17 @@ def bracket_interval(
 
     def refit(weights: Floats) -> Floats:
         each = weights[:, codes]
-        if groups > MOST_BLOCKS and len(weights) > 1 and (each.max(), each.min()) == (1, 0):
+        if (
+            groups > MOST_BLOCKS
+            and len(weights) > 1
+            and (each.max(), each.min()) == (1, 0)
+        ):
             return _without_a_block(low, high, each)
         return _fit_weighted(low, high, each)[0]
 
-    found = intervals.resampled_interval(refit, groups, over=over, notes=notes, level=level)
+    found = intervals.resampled_interval(
+        refit, groups, over=over, notes=notes, level=level
+    )
     if found.method == "none" and groups > 1 and brackets.n_overturned:
         # neighbouring steps touch, so the brackets may share no more than a point: all of them count
         lowest, highest = float(brackets.lower.min()), float(brackets.upper.max())
@@ -170,10 +196,14 @@ def _without_a_block(low: Floats, high: Floats, weights: Floats) -> Floats:
 def _shared(low: Floats, high: Floats, weights: Floats) -> tuple[Floats, Floats]:
     """Ends of what all brackets with a weight share, for each row of weights; the wrong way round for nothing."""
     used = weights > 0
-    return np.where(used, low, -np.inf).max(axis=1), np.where(used, high, np.inf).min(axis=1)
+    return np.where(used, low, -np.inf).max(axis=1), np.where(used, high, np.inf).min(
+        axis=1
+    )
 
 
-def _fit_weighted(low: Floats, high: Floats, weights: Floats) -> tuple[Floats, Floats, Floats]:
+def _fit_weighted(
+    low: Floats, high: Floats, weights: Floats
+) -> tuple[Floats, Floats, Floats]:
     """Fit (intercept, slope) for each row of weights, shape (batch, n)."""
     coefficients, information, log_likelihood = (
         np.full((len(weights), *shape), np.nan) for shape in ((2,), (2, 2), ())
@@ -181,7 +211,9 @@ def _fit_weighted(low: Floats, high: Floats, weights: Floats) -> tuple[Floats, F
     left, right = _shared(low, high, weights)
     overlap = left <= right
     if overlap.any():
-        closed = np.asarray(((weights[overlap] > 0) & np.isfinite(high - low)).any(axis=1))
+        closed = np.asarray(
+            ((weights[overlap] > 0) & np.isfinite(high - low)).any(axis=1)
+        )
         coefficients[overlap] = _common_bracket(left[overlap], right[overlap], closed)
     if not overlap.all():
         found = _newton(low, high, weights[~overlap])
@@ -189,7 +221,9 @@ def _fit_weighted(low: Floats, high: Floats, weights: Floats) -> tuple[Floats, F
     return coefficients, information, log_likelihood
 
 
-def _common_bracket(left: Floats, right: Floats, any_closed: NDArray[np.bool_]) -> Floats:
+def _common_bracket(
+    left: Floats, right: Floats, any_closed: NDArray[np.bool_]
+) -> Floats:
     """Return middle and width / √12 of the amplitudes that all brackets share, as intercept and slope.
 
     There is no curve where all are open and end at one amplitude: some are below, some above, and any β will do.
@@ -206,9 +240,13 @@ def _common_bracket(left: Floats, right: Floats, any_closed: NDArray[np.bool_]) 
     return np.asarray(result)
 
 
-def _newton(low: Floats, high: Floats, weights: Floats) -> tuple[Floats, Floats, Floats]:
+def _newton(
+    low: Floats, high: Floats, weights: Floats
+) -> tuple[Floats, Floats, Floats]:
     finite_low, finite_high = np.isfinite(low), np.isfinite(high)
-    middle = np.where(finite_low & finite_high, 0.5 * (low + high), np.where(finite_low, low, high))
+    middle = np.where(
+        finite_low & finite_high, 0.5 * (low + high), np.where(finite_low, low, high)
+    )
     total = weights.sum(axis=1)
     mean = weights @ middle / total
     spread = np.sqrt((weights * (middle - mean[:, None]) ** 2).sum(axis=1) / total)
@@ -233,7 +271,9 @@ def _newton(low: Floats, high: Floats, weights: Floats) -> tuple[Floats, Floats,
             size[waiting] *= 0.5
             if waiting.size == 0:
                 break
-        moved = np.abs(size[:, None] * step).max(axis=1) / np.abs(coefficients[active]).max(axis=1)
+        moved = np.abs(size[:, None] * step).max(axis=1) / np.abs(
+            coefficients[active]
+        ).max(axis=1)
         # a slope that sinks below what counts as a curve would sink for ever
         flat = coefficients[active, 1] < 0.1 * lognormal.LEAST_SLOPE
         active = active[(moved > 1e-10) & ~flat]
@@ -247,7 +287,9 @@ def _likelihood(
 ) -> tuple[Floats, Floats, Floats]:
     """Return log-likelihood, score and Hessian in (intercept, slope), for each row of weights."""
     pulls = _pulls(low, high, coefficients)
-    value, score0, score1, h00, h01, h11 = ((weights * pull).sum(axis=1) for pull in pulls)
+    value, score0, score1, h00, h01, h11 = (
+        (weights * pull).sum(axis=1) for pull in pulls
+    )
     hessian = np.stack([h00, h01, h01, h11], axis=1).reshape(-1, 2, 2)
     return value, np.stack([score0, score1], axis=1), hessian
 
@@ -255,7 +297,10 @@ def _likelihood(
 def _pulls(low: Floats, high: Floats, coefficients: Floats) -> tuple[Floats, ...]:
     """Log-likelihood of each bracket and its derivatives in (intercept, slope), each of shape (batch, n)."""
     c0, c1 = coefficients[:, :1], coefficients[:, 1:]
-    x_low, x_high = np.where(np.isfinite(low), low, 0.0), np.where(np.isfinite(high), high, 0.0)
+    x_low, x_high = (
+        np.where(np.isfinite(low), low, 0.0),
+        np.where(np.isfinite(high), high, 0.0),
+    )
     exact = low == high
     # the density of ln IM, so that equal bounds and narrow brackets rank models alike
     at = c0 + c1 * x_low
@@ -280,7 +325,9 @@ def _pulls(low: Floats, high: Floats, coefficients: Floats) -> tuple[Floats, ...
         bend_low * x_low**2 - bend_high * x_high**2 - g1**2,
     )
     of_fraction = (log_fraction, g0, g1, *bends)
-    return tuple(np.where(exact, *pair) for pair in zip(of_density, of_fraction, strict=True))
+    return tuple(
+        np.where(exact, *pair) for pair in zip(of_density, of_fraction, strict=True)
+    )
 
 
 def _log_difference(z_low: Floats, z_high: Floats) -> Floats:
@@ -290,5 +337,7 @@ def _log_difference(z_low: Floats, z_high: Floats) -> Floats:
     lower, upper = np.where(flip, -z_high, z_low), np.where(flip, -z_low, z_high)
     log_upper, log_lower = special.log_ndtr(upper), special.log_ndtr(lower)
     same = lower == upper
-    gap = np.where(same | np.isneginf(log_lower), -np.inf, log_lower - np.where(same, 0, log_upper))
+    gap = np.where(
+        same | np.isneginf(log_lower), -np.inf, log_lower - np.where(same, 0, log_upper)
+    )
     return np.asarray(np.where(same, 0.0, log_upper + np.log1p(-np.exp(gap))))

@@ -15,14 +15,19 @@ from rockfrag.fragility.batch_glm import Link, fit_batch
 from rockfrag.fragility.censored import Brackets
 from rockfrag.fragility.curve_facts import REJECTED
 from rockfrag.fragility.empirical import wilson_interval
-from rockfrag.fragility.fractions import Fractions, fractions_of_capacities, fractions_of_outcomes
+from rockfrag.fragility.fractions import (
+    Fractions,
+    fractions_of_capacities,
+    fractions_of_outcomes,
+)
 from rockfrag.fragility.intervals import Interval
 from rockfrag.fragility.lognormal import FragilityFit
 from rockfrag.fragility.observations import Floats, Observations, cells
 from rockfrag.sentences import Macros
 from rockfrag.short_repr import short_repr
 
-BINS = 10  # bins of about equal numbers of tests in which observed and fitted numbers are compared
+# bins of about equal numbers of tests in which observed and fitted numbers are compared
+BINS = 10
 CELLS = 60
 """Cells of the measure in which simulated outcomes are refitted; finer ones move p values by one replicate."""
 
@@ -85,7 +90,9 @@ def goodness_of_fit(
     if dependence == "tests":
         fraction = np.bincount(cell, outcomes.trials * probability) / tests
         drawn = rng.binomial(
-            tests.astype(np.int64), np.minimum(fraction, 1.0), size=(replicates, fraction.size)
+            tests.astype(np.int64),
+            np.minimum(fraction, 1.0),
+            size=(replicates, fraction.size),
         ).astype(np.float64)
     else:
         law = rng.normal if fit.link == "probit" else rng.logistic
@@ -93,7 +100,9 @@ def goodness_of_fit(
         drawn = outcomes.drawn(np.log(fit.theta) + fit.beta * draw, cell)
     design = np.column_stack([np.ones(values.size), values - 1e3 * home])
     start = np.array(fit.coefficients)
-    simulated = refitted_deviance(design, drawn, tests, home, link=fit.link, start=start)
+    simulated = refitted_deviance(
+        design, drawn, tests, home, link=fit.link, start=start
+    )
     p_value = float((1 + np.sum(simulated >= deviance - 1e-9)) / (1 + simulated.size))
     columns = {
         "im": np.exp(by_bin(outcomes.trials * outcomes.log_im) / trials),
@@ -102,9 +111,13 @@ def goodness_of_fit(
         "observed": observed / trials,
     }
     limits = zip(
-        ("observed_lower", "observed_upper"), wilson_interval(observed, trials), strict=True
+        ("observed_lower", "observed_upper"),
+        wilson_interval(observed, trials),
+        strict=True,
     )
-    calibration = pd.DataFrame(columns | dict(limits)).sort_values("im", ignore_index=True)
+    calibration = pd.DataFrame(columns | dict(limits)).sort_values(
+        "im", ignore_index=True
+    )
     miss = outcomes.overturned * (1 - probability) ** 2
     miss += (outcomes.trials - outcomes.overturned) * probability**2
     brier = float(miss.sum() / outcomes.n)
@@ -149,7 +162,9 @@ def refitted_deviance(
     eta = batch.coefficients[usable] @ design.T
     probability = special.ndtr(eta) if link == "probit" else special.expit(eta)
     member = (bins[:, None] == np.arange(bins.max() + 1)).astype(np.float64)
-    return binned_deviance(drawn[usable] @ member, (trials * probability) @ member, trials @ member)
+    return binned_deviance(
+        drawn[usable] @ member, (trials * probability) @ member, trials @ member
+    )
 
 
 TAILS = (
@@ -161,7 +176,8 @@ TAILS = (
 REJECTION = re.compile(r"The lognormal curve is rejected \(p = .*?\.(?= [A-Z]|$)")
 """Finds the sentence about a rejected curve among its warnings."""
 
-FEWEST_MOTIONS = 10  # below so many motions every table and export says how few they are
+# below so many motions every table and export says how few they are
+FEWEST_MOTIONS = 10
 
 _words = {"REJECTED": REJECTED, "TAILS": TAILS, "FEWEST_MOTIONS": FEWEST_MOTIONS}
 _say = Macros("rockfrag.fragility", "checks.j2", **_words)
@@ -176,7 +192,8 @@ class Checks:
     test: str  # how that was tested
     # observed less fitted fraction of overturned tests in the bin where they differ most [-]
     largest_residual: float
-    influential: str  # motion (earthquake) without which θ changes most; empty where there is none
+    # motion (earthquake) without which θ changes most; empty where there is none
+    influential: str
     influence: float  # θ without it over θ [-]
     # the non-parametric fragility function, to use where the fitted one is rejected
     fractions: Fractions
@@ -201,22 +218,40 @@ def checks_of_outcomes(
     p_fit, test, residual, found = float("nan"), "none", float("nan"), None
     if np.isfinite(fit.theta):
         found = goodness_of_fit(outcomes, fit, dependence=dependence, seed=seed)
-        p_fit, test = found.p_value, f"deviance, parametric bootstrap of {found.dependence}"
-        apart = (found.calibration["observed"] - found.calibration["predicted"]).to_numpy()
+        p_fit, test = (
+            found.p_value,
+            f"deviance, parametric bootstrap of {found.dependence}",
+        )
+        apart = (
+            found.calibration["observed"] - found.calibration["predicted"]
+        ).to_numpy()
         residual = float(apart[np.abs(apart).argmax()])
     groups = outcomes.groups(interval.over)
     fractions = fractions_of_outcomes(outcomes, groups, interval.level)
     notes = tuple(_say("notes", fit, interval, p_fit, fractions))
-    return Checks(p_fit, test, residual, *_influence(interval, groups), fractions, notes, found)
+    return Checks(
+        p_fit, test, residual, *_influence(interval, groups), fractions, notes, found
+    )
 
 
-def checks_of_brackets(brackets: Brackets, fit: FragilityFit, interval: Interval) -> Checks:
+def checks_of_brackets(
+    brackets: Brackets, fit: FragilityFit, interval: Interval
+) -> Checks:
     """Judge a lognormal capacity fitted to brackets, by Lilliefors' test of the middles of ln amplitude."""
     lower, upper = brackets.lower, brackets.upper
     closed = np.isfinite(upper) & (lower > 0)
     middle = 0.5 * np.log(lower[closed] * upper[closed])
-    p_fit, test, residual = float("nan"), "none: too few, or open brackets", float("nan")
-    if closed.all() and middle.size > 3 and np.ptp(middle) > 0 and np.isfinite(fit.theta):
+    p_fit, test, residual = (
+        float("nan"),
+        "none: too few, or open brackets",
+        float("nan"),
+    )
+    if (
+        closed.all()
+        and middle.size > 3
+        and np.ptp(middle) > 0
+        and np.isfinite(fit.theta)
+    ):
         p_fit = float(lilliefors(middle, dist="norm")[1])
         test = "Lilliefors, middles of the brackets"
         fraction = (np.arange(middle.size) + 0.5) / middle.size
@@ -228,14 +263,19 @@ def checks_of_brackets(brackets: Brackets, fit: FragilityFit, interval: Interval
     groups = brackets.groups(interval.over)
     fractions = fractions_of_capacities(capacity, groups, interval.level)
     notes = tuple(_say("notes", fit, interval, p_fit, fractions))
-    return Checks(p_fit, test, residual, *_influence(interval, groups), fractions, notes)
+    return Checks(
+        p_fit, test, residual, *_influence(interval, groups), fractions, notes
+    )
 
 
 def _influence(interval: Interval, groups: NDArray[np.object_]) -> tuple[str, float]:
     """Group without which θ changes most, from the jackknife's refits, and by what factor."""
     names = pd.factorize(pd.Series(groups))[1]
     refits = interval.replicates
-    if interval.method != "jackknife" or not len(refits) == len(names) == interval.groups:
+    if (
+        interval.method != "jackknife"
+        or not len(refits) == len(names) == interval.groups
+    ):
         return "", float("nan")
     slope = np.where(refits[:, 1] > 0, refits[:, 1], np.nan)
     change = -refits[:, 0] / slope + interval.estimate[0] / interval.estimate[1]

@@ -14,7 +14,12 @@ from numpy.typing import ArrayLike, NDArray
 from rockfrag.fragility.empirical import TableIda
 from rockfrag.fragility.ida_curves import scale_power
 from rockfrag.fragility.intervals import blocks_of
-from rockfrag.fragility.observations import Floats, Observations, name_and_unit, positive
+from rockfrag.fragility.observations import (
+    Floats,
+    Observations,
+    name_and_unit,
+    positive,
+)
 from rockfrag.shaketable.definitions import Swept
 
 CELLS = 2000  # cells of equal width in the logarithm of a measure
@@ -56,14 +61,18 @@ class CountedObservations(Observations):
         first = np.unique(block, return_index=True)[1]
         found = weights[:, first]
         if not np.array_equal(found[:, block], weights):
-            raise ValueError("counts are kept by block, whose motions cannot be weighted apart")
+            raise ValueError(
+                "counts are kept by block, whose motions cannot be weighted apart"
+            )
         return found
 
     def independent(self, inside: NDArray[np.bool_]) -> tuple[int, float]:
         """Motions with a test in the rows ``inside``, which are neighbours."""
         low = self._edge_below(self.im[inside].min())
         edges, rise, scale = self.of.edges, self.of.rise, self.of.scale
-        high = edges[np.searchsorted(edges, np.log(self.im[inside].max()), side="right")]
+        high = edges[
+            np.searchsorted(edges, np.log(self.im[inside].max()), side="right")
+        ]
         first, after = (np.searchsorted(rise, end - scale) for end in (low, high))
         count = int((after > first).sum())
         return count, float(count)
@@ -78,7 +87,9 @@ class CountedObservations(Observations):
         before = [np.searchsorted(rise, end - scale) for end in ends]
         below = np.array([np.zeros(scale.size, dtype=np.intp), *before])
         stood = np.searchsorted(rise, capacity - scale, side="right")
-        fallen = [np.diff(np.maximum(below, of_motion).sum(axis=1)) for of_motion in stood]
+        fallen = [
+            np.diff(np.maximum(below, of_motion).sum(axis=1)) for of_motion in stood
+        ]
         return np.array(fallen, dtype=np.float64)
 
     def _edge_below(self, im: ArrayLike) -> Floats:
@@ -119,14 +130,21 @@ def count_ida(
     counts: dict[str, dict[str, _Counts]] = {}
     for part in parts:
         counts = counts or {
-            floor: {name: _Counts(known, windows, floor, name, part.amplitude_g) for name in some}
+            floor: {
+                name: _Counts(known, windows, floor, name, part.amplitude_g)
+                for name in some
+            }
             for floor, some in columns.items()
         }
         rows = motions.get_indexer(pd.Index(part.about["motion"]))
-        for count in (count for of_floor in counts.values() for count in of_floor.values()):
+        for count in (
+            count for of_floor in counts.values() for count in of_floor.values()
+        ):
             count.add(rows, part.overturned)
     return {
-        floor: CountedIda(windows[windows["floor"] == floor] if floor else windows, counts=of_floor)
+        floor: CountedIda(
+            windows[windows["floor"] == floor] if floor else windows, counts=of_floor
+        )
         for floor, of_floor in counts.items()
     }
 
@@ -148,7 +166,11 @@ class _Counts:
         amplitude_g: Floats,
     ) -> None:
         power = scale_power(column)
-        here = np.flatnonzero(motions["floor"] == floor) if floor else np.arange(len(motions))
+        here = (
+            np.flatnonzero(motions["floor"] == floor)
+            if floor
+            else np.arange(len(motions))
+        )
         value = positive(known.iloc[here], column, "measures")
         pga = positive(known.iloc[here], "pga_g", "measures")
         self.column, self.here = column, here
@@ -167,7 +189,11 @@ class _Counts:
         # a hair more on either side, so that rounding puts no test outside
         self.edges = np.linspace(low - 1e-9, high + 1e-9, CELLS + 1)
         shape = int(self.block.max()) + 1, CELLS
-        self.trials, self.fell, self.total = np.zeros(shape), np.zeros(shape), np.zeros(CELLS)
+        self.trials, self.fell, self.total = (
+            np.zeros(shape),
+            np.zeros(shape),
+            np.zeros(CELLS),
+        )
 
     def add(self, rows: NDArray[np.intp], overturned: NDArray[np.bool_]) -> None:
         used = self.of_motion[rows] >= 0
@@ -176,7 +202,10 @@ class _Counts:
         width = (self.edges[-1] - self.edges[0]) / CELLS
         cell = np.clip(((log_im - self.edges[0]) / width).astype(np.intp), 0, CELLS - 1)
         flat = self.row[own, np.newaxis] * CELLS + cell
-        for counts, some in ((self.trials, flat.ravel()), (self.fell, flat[overturned[used]])):
+        for counts, some in (
+            (self.trials, flat.ravel()),
+            (self.fell, flat[overturned[used]]),
+        ):
             counts += np.bincount(some, minlength=counts.size).reshape(counts.shape)
         # one after the other, so that parts give the sum of the whole
         terms = np.append(self.total, log_im)
@@ -188,5 +217,11 @@ class _Counts:
             middle = np.exp(self.total / self.trials.sum(axis=0))
         names = [f"block {number + 1}" for number in range(len(self.trials))]
         labels = np.array(names, dtype=object)[block]
-        tests = (middle[cell], self.fell[block, cell], self.trials[block, cell], labels, labels)
+        tests = (
+            middle[cell],
+            self.fell[block, cell],
+            self.trials[block, cell],
+            labels,
+            labels,
+        )
         return CountedObservations(*tests, *name_and_unit(self.column), of=self)

@@ -27,15 +27,24 @@ def total_beta(beta: float, beta_statistical: float) -> float:
 _say = Macros(
     "rockfrag.fragility",
     "curve_facts.j2",
-    **{"REJECTED": REJECTED, "OF_THE_MODEL": OF_THE_MODEL, "CUT": CUT, "total_beta": total_beta},
+    **{
+        "REJECTED": REJECTED,
+        "OF_THE_MODEL": OF_THE_MODEL,
+        "CUT": CUT,
+        "total_beta": total_beta,
+    },
     **{"INFINITE": math.inf, "NAN": math.nan},
 )
 
 
 def curve_facts(row: Mapping[Hashable, Any]) -> str:
     """Say of a row of a fragility table what it rests on, in sentences; empty where nothing is known."""
-    known = {name for name, x in row.items() if isinstance(x, Real) and math.isfinite(x)}
-    return " ".join(_say("facts", row, known, float(row.get("beta_statistical", math.nan))))
+    known = {
+        name for name, x in row.items() if isinstance(x, Real) and math.isfinite(x)
+    }
+    return " ".join(
+        _say("facts", row, known, float(row.get("beta_statistical", math.nan)))
+    )
 
 
 class Compared(NamedTuple):
@@ -44,7 +53,8 @@ class Compared(NamedTuple):
     # rows of the table with ``theta`` and ``beta``, and their limits, all by the same estimator;
     # theta is missing where that estimator gives none
     rows: pd.DataFrame
-    nonparametric: bool  # whether the estimator is the monotone curve without an assumed form
+    # whether the estimator is the monotone curve without an assumed form
+    nonparametric: bool
     rejected: list[str]  # configurations whose lognormal curve is rejected
 
 

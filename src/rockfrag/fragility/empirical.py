@@ -22,7 +22,9 @@ def wilson_interval(
     """Confidence limits of binomial fractions [-] (Wilson, 1927, J. Am. Stat. Assoc. 22: 209-212)."""
     from statsmodels.stats.proportion import proportion_confint
 
-    lower, upper = proportion_confint(overturned, trials, alpha=1.0 - level, method="wilson")
+    lower, upper = proportion_confint(
+        overturned, trials, alpha=1.0 - level, method="wilson"
+    )
     return np.asarray(lower, dtype=np.float64), np.asarray(upper, dtype=np.float64)
 
 
@@ -36,11 +38,17 @@ def fraction_in_bins(outcomes: Observations, level: float = 0.90) -> pd.DataFram
     for k in np.unique(code):
         inside = code == k
         im, trials, fell = (
-            values[inside] for values in (outcomes.im, outcomes.trials, outcomes.overturned)
+            values[inside]
+            for values in (outcomes.im, outcomes.trials, outcomes.overturned)
         )
         motions, counted_once = outcomes.independent(inside)
         middle = np.exp(np.average(outcomes.log_im[inside], weights=trials))
-        numbers = (int(trials.sum()), motions, int(fell.sum()), fell.sum() / trials.sum())
+        numbers = (
+            int(trials.sum()),
+            motions,
+            int(fell.sum()),
+            fell.sum() / trials.sum(),
+        )
         rows.append([middle, im.min(), im.max(), *numbers])
         once.append(counted_once)
     names = ["im", "im_lower", "im_upper", "tests", "motions", "overturned", "fraction"]
@@ -96,7 +104,9 @@ def find_resurrections(
     rows = []
     for name, group in table.groupby(keys, sort=True):
         ordered = group.sort_values("amplitude")
-        found = _resurrections(ordered["amplitude"].to_numpy(), ordered["overturned"].to_numpy())
+        found = _resurrections(
+            ordered["amplitude"].to_numpy(), ordered["overturned"].to_numpy()
+        )
         rows.append({**dict(zip(keys, name, strict=True)), **found})
     return pd.DataFrame(rows)
 
@@ -107,11 +117,15 @@ def resurrections_of(parts: Iterable[Swept]) -> pd.DataFrame:
     rows: list[dict[Hashable, object]] = []
     for part in parts:
         curves = zip(part.about[keys].to_dict("records"), part.overturned, strict=True)
-        rows += [about | _resurrections(part.amplitude_g, fell) for about, fell in curves]
+        rows += [
+            about | _resurrections(part.amplitude_g, fell) for about, fell in curves
+        ]
     return pd.DataFrame(rows).sort_values(keys, ignore_index=True)
 
 
-def _resurrections(amplitude: Floats, overturned: NDArray[np.bool_]) -> dict[str, float | int]:
+def _resurrections(
+    amplitude: Floats, overturned: NDArray[np.bool_]
+) -> dict[str, float | int]:
     fell, stood = np.flatnonzero(overturned), np.flatnonzero(~overturned)
     first = fell[0] if fell.size else amplitude.size
     always = stood[-1] + 1 if stood.size else 0
@@ -134,8 +148,10 @@ def _resurrections(amplitude: Floats, overturned: NDArray[np.bool_]) -> dict[str
 class TableIda:
     """IDA curves of one configuration, as a table with a row per motion and amplitude."""
 
-    table: pd.DataFrame  # with ``motion``, ``overturned``, the amplitude and the measures
-    earthquake: str | None = "earthquake"  # column of the earthquake; None where motions have none
+    # with ``motion``, ``overturned``, the amplitude and the measures
+    table: pd.DataFrame
+    # column of the earthquake; None where motions have none
+    earthquake: str | None = "earthquake"
     motion: str = "motion"  # column of the motion
 
     def resurrections(self, amplitude: str) -> pd.DataFrame:
@@ -143,7 +159,9 @@ class TableIda:
         by = [name for name in (self.motion, self.earthquake) if name is not None]
         return find_resurrections(self.table, amplitude=amplitude, by=by)
 
-    def brackets(self, windows: pd.DataFrame, definition: str, amplitude: str) -> Brackets:
+    def brackets(
+        self, windows: pd.DataFrame, definition: str, amplitude: str
+    ) -> Brackets:
         """Bounds of each motion's ``first`` amplitude that overturns, or that above which all ``always`` do."""
         return brackets_from_table(
             windows,
@@ -157,7 +175,11 @@ class TableIda:
     def outcomes(self, column: str) -> Observations:
         """All outcomes with a measure."""
         return observations.observations_from_table(
-            self.table, column, motion=self.motion, earthquake=self.earthquake, source="ida"
+            self.table,
+            column,
+            motion=self.motion,
+            earthquake=self.earthquake,
+            source="ida",
         )
 
     def motions(self) -> pd.DataFrame:

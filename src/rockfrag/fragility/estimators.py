@@ -81,7 +81,9 @@ def fragility_of(
     """
     fit = fit_lognormal(outcomes)
     limits = interval_over_motions(outcomes, level=level)
-    return Fragility(fit, limits, checks_of_outcomes(outcomes, fit, limits, dependence, seed))
+    return Fragility(
+        fit, limits, checks_of_outcomes(outcomes, fit, limits, dependence, seed)
+    )
 
 
 @named_keywords
@@ -138,7 +140,12 @@ def fit_stripes(
     The :class:`Fragility`.
     """
     outcomes = observations.observations_from_table(
-        table, im, overturned=overturned, trials=trials, motion=motion, earthquake=earthquake
+        table,
+        im,
+        overturned=overturned,
+        trials=trials,
+        motion=motion,
+        earthquake=earthquake,
     )
     whole = fragility_of(outcomes, level=level)
     if trials is not None:
@@ -170,12 +177,16 @@ def fit_incremental(
     data = TableIda(ida, earthquake, motion) if isinstance(ida, pd.DataFrame) else ida
     resurrections = data.resurrections(amplitude)
     first, always = (
-        fragility_of_brackets(data.brackets(resurrections, definition, amplitude), level)
+        fragility_of_brackets(
+            data.brackets(resurrections, definition, amplitude), level
+        )
         for definition in ("first", "always")
     )
     fell = resurrections["first_upper"].notna()
     fraction = (
-        float((resurrections.loc[fell, "resurrections"] > 0).mean()) if fell.any() else float("nan")
+        float((resurrections.loc[fell, "resurrections"] > 0).mean())
+        if fell.any()
+        else float("nan")
     )
     probability = fragility_of(data.outcomes(amplitude), level=level)
     return IncrementalFragility(first, always, probability, resurrections, fraction)

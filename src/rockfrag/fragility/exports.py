@@ -25,7 +25,8 @@ from rockfrag.outcomes.limit_states import OVERTURNS, limit_state_named, limit_s
 from rockfrag.sentences import environment
 
 LONGEST = 75  # characters of an identifier that OpenQuake takes
-STEP = 0.01  # β with which an exact threshold, a step, is written [-]; the formats take no step
+# β with which an exact threshold, a step, is written [-]; the formats take no step
+STEP = 0.01
 
 
 def identifiers(names: Iterable[str], others: str = "") -> dict[str, str]:
@@ -34,7 +35,9 @@ def identifiers(names: Iterable[str], others: str = "") -> dict[str, str]:
     Where two would be equal, or one would be too long, a digest of the name follows.
     """
     plain = {
-        name: "".join(c if c.isascii() and (c.isalnum() or c in others) else "_" for c in name)
+        name: "".join(
+            c if c.isascii() and (c.isalnum() or c in others) else "_" for c in name
+        )
         for name in dict.fromkeys(names)
     }
     count = Counter(plain.values())
@@ -67,7 +70,9 @@ def curves_by_name(
 ) -> dict[str, dict[str, StateCurve]]:
     """Return the curves of a fragility table by the identifier of ``by`` and by limit state, the milder first."""
     if table.empty:
-        raise InputError(f"{export}: there is no curve to write; give at least one row.")
+        raise InputError(
+            f"{export}: there is no curve to write; give at least one row."
+        )
     known = identifiers(map(str, table[by]), others)
     curves: dict[str, dict[str, StateCurve]] = {}
     for row in table.to_dict("records"):
@@ -79,15 +84,21 @@ def curves_by_name(
                 f"{export}: {name!r} has two curves; choose one estimator and one measure for each."
             )
         theta, beta = float(str(row["theta"])), float(str(row["beta"]))
-        if row.get("link", "probit") != "probit" or not (theta > 0 and 0 < beta < math.inf):
+        if row.get("link", "probit") != "probit" or not (
+            theta > 0 and 0 < beta < math.inf
+        ):
             raise InputError(
                 f"{export}: {str(row[by])!r} has no lognormal curve; leave the row out."
             )
         points = np.empty((0, 2))
         if fractions is not None:
-            own = (fractions[by].astype(str) == str(row[by])) & (fractions["state"] == state)
+            own = (fractions[by].astype(str) == str(row[by])) & (
+                fractions["state"] == state
+            )
             points = fractions.loc[own, ["x", "fraction"]].to_numpy(dtype=np.float64)
-        states[state] = StateCurve(row, theta, max(beta, STEP), points[:, 0], points[:, 1])
+        states[state] = StateCurve(
+            row, theta, max(beta, STEP), points[:, 0], points[:, 1]
+        )
     order = [state.name for state in limit_states()]
     return {
         name: {state: states[state] for state in order if state in states}
@@ -101,7 +112,10 @@ CROSSING = 1e-9
 _STEPS = np.linspace(-4.0, 4.0, 33)
 """Levels of a discrete function around each median, in standard deviations."""
 
-_FACTORS = {"g": {"g": 1.0, "m/s²": 1.0 / constants.g}, "cm/s": {"cm/s": 1.0, "m/s": 100.0}}
+_FACTORS = {
+    "g": {"g": 1.0, "m/s²": 1.0 / constants.g},
+    "cm/s": {"cm/s": 1.0, "m/s": 100.0},
+}
 """Factors from units to that of OpenQuake."""
 
 
@@ -109,7 +123,9 @@ def intensity_measure_type(name: str, unit: str) -> tuple[str, float]:
     """OpenQuake's name of a measure and the factor to its unit (g, cm/s)."""
     measure = measure_labelled(name)
     if measure is None or not measure.openquake:
-        known = ", ".join(dict.fromkeys(each.openquake for each in declared() if each.openquake))
+        known = ", ".join(
+            dict.fromkeys(each.openquake for each in declared() if each.openquake)
+        )
         raise InputError(
             f"NRML: {name} is no intensity measure of ground motion in OpenQuake; export curves in one of {known}."
         )
@@ -166,7 +182,9 @@ def write_nrml(
             sentences += re.split(r"(?<=\.)\s+(?=[A-Z])", note)
         # two hyphens would end the comment
         comment = f"{name}: {' '.join(said)}".replace("--", "- -")
-        functions.append({"id": name, "comment": comment, **_function(name, curves[name], by)})
+        functions.append(
+            {"id": name, "comment": comment, **_function(name, curves[name], by)}
+        )
     description = [
         "Free-standing bodies in earthquakes. The comment before each function gives its limits, its "
         "goodness of fit and the number of its motions.",
@@ -189,10 +207,14 @@ def model_text(
     loaded = environment("rockfrag.fragility")
     loaded.filters["escaped"] = escape
     about = {"description": description, "states": states, "identifier": identifier}
-    return str(loaded.get_template("nrml.j2").render(functions=functions, **about)) + "\n"
+    return (
+        str(loaded.get_template("nrml.j2").render(functions=functions, **about)) + "\n"
+    )
 
 
-def _function(taxonomy: str, states: Mapping[str, StateCurve], by: str) -> dict[str, object]:
+def _function(
+    taxonomy: str, states: Mapping[str, StateCurve], by: str
+) -> dict[str, object]:
     """Measure and curves of a function, in OpenQuake's units: lognormal ones, or levels."""
     factors: dict[str, float] = {}
     for curve in states.values():
@@ -201,7 +223,9 @@ def _function(taxonomy: str, states: Mapping[str, StateCurve], by: str) -> dict[
                 f"NRML: {str(curve.row[by])!r} is keyed to the motion of floor {floor}, which OpenQuake does not "
                 "compute; export curves in a measure of the ground motion."
             )
-        imt, factor = intensity_measure_type(str(curve.row["im"]), str(curve.row["unit"]))
+        imt, factor = intensity_measure_type(
+            str(curve.row["im"]), str(curve.row["unit"])
+        )
         factors[imt] = factor
     if len(factors) > 1:
         raise InputError(
@@ -227,7 +251,9 @@ def _nested(
     states: Mapping[str, StateCurve], factor: float
 ) -> tuple[Floats, dict[str, Floats], float]:
     """Levels, the chance of each state there, never above that of the state before, and by how much it was."""
-    parts = [curve.theta * factor * np.exp(curve.beta * _STEPS) for curve in states.values()]
+    parts = [
+        curve.theta * factor * np.exp(curve.beta * _STEPS) for curve in states.values()
+    ]
     levels = np.unique(
         np.concatenate([*parts, *(curve.levels * factor for curve in states.values())])
     )
@@ -236,14 +262,19 @@ def _nested(
     for state, curve in states.items():
         chance = special.ndtr(np.log(levels / (curve.theta * factor)) / curve.beta)
         if curve.levels.size:
-            chance = np.interp(np.log(levels), np.log(curve.levels * factor), curve.fraction)
+            chance = np.interp(
+                np.log(levels), np.log(curve.levels * factor), curve.fraction
+            )
         lowered = max(lowered, float((chance - before).max()))
         before = np.minimum(chance, before)
         found[state] = before
     return levels, found, lowered
 
 
-_DEMAND_UNITS = {"g": {"g": "g", "m/s²": "mps2"}, "cm/s": {"cm/s": "cmps", "m/s": "mps"}}
+_DEMAND_UNITS = {
+    "g": {"g": "g", "m/s²": "mps2"},
+    "cm/s": {"cm/s": "cmps", "m/s": "mps"},
+}
 """What SimCenter calls the units of measures in these."""
 
 BEYOND = 2.0
@@ -288,11 +319,16 @@ def write_simcenter(
     }
     notes: dict[str, object] = {"_GeneralInformation": about}
     rows = []
-    for name, states in curves_by_name("SimCenter", table, by, "_", fractions, "ROCKFRAG.").items():
+    for name, states in curves_by_name(
+        "SimCenter", table, by, "_", fractions, "ROCKFRAG."
+    ).items():
         line, notes[name] = _component(name, states, by)
         rows.append(line)
     write_table(pd.DataFrame(rows).sort_values("ID", ignore_index=True), csv_path)
-    write_text(json.dumps(notes, indent=2, ensure_ascii=False, sort_keys=True) + "\n", json_path)
+    write_text(
+        json.dumps(notes, indent=2, ensure_ascii=False, sort_keys=True) + "\n",
+        json_path,
+    )
 
 
 def _component(
@@ -315,7 +351,9 @@ def _component(
         if levels.size:
             family = "multilinear_CDF", _multilinear(levels, fraction), "", ""
         keys = ("Family", "Theta_0", "Theta_1", "DamageStateWeights")
-        parameters |= {f"LS{number}-{key}": x for key, x in zip(keys, family, strict=True)}
+        parameters |= {
+            f"LS{number}-{key}": x for key, x in zip(keys, family, strict=True)
+        }
         reached = limit_state_named(state)
         words = reached.damage or reached.label
         damage = {"Description": words, "RepairAction": reached.repair}
@@ -329,7 +367,12 @@ def _component(
             f"SimCenter: the limit states of {identifier} have two demands; choose one."
         )
     ((demand, demand_unit),) = demands
-    about = {"ID": identifier, "Incomplete": 0, "Demand-Type": demand, "Demand-Unit": demand_unit}
+    about = {
+        "ID": identifier,
+        "Incomplete": 0,
+        "Demand-Type": demand,
+        "Demand-Unit": demand_unit,
+    }
     # the curves are for one horizontal component; a block falls about either of its edges
     line = {**about, "Demand-Offset": 0, "Demand-Directional": 1, **parameters}
     note: dict[str, object] = {
@@ -345,6 +388,12 @@ def _component(
 def _multilinear(levels: Floats, fraction: Floats) -> str:
     """Points of a distribution from 0 to 1, as pelicun's ``multilinear_CDF`` takes them."""
     if fraction[-1] < 1.0:
-        levels, fraction = np.append(levels, BEYOND * levels[-1]), np.append(fraction, 1.0)
-    texts = (",".join(repr(float(value)) for value in values) for values in (levels, fraction))
+        levels, fraction = (
+            np.append(levels, BEYOND * levels[-1]),
+            np.append(fraction, 1.0),
+        )
+    texts = (
+        ",".join(repr(float(value)) for value in values)
+        for values in (levels, fraction)
+    )
     return "|".join(texts)

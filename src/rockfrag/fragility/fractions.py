@@ -21,7 +21,8 @@ from rockfrag.fragility.observations import Floats, Observations, cells, counts
 ENDS = (0.1587, 0.8413)
 """Shares one standard deviation below and above the median of a lognormal curve [-]."""
 
-ROUNDING = 1e-6  # values and fractions that differ by less are one point of the curve [-]
+# values and fractions that differ by less are one point of the curve [-]
+ROUNDING = 1e-6
 Limits = tuple[float, float]
 
 UNKNOWN: Limits = (float("nan"), float("nan"))
@@ -53,7 +54,9 @@ class Fractions:
         # between two values the limits are the outer ones
         before = np.searchsorted(self.im, x, side="right")
         lower = np.concatenate([[0.0], self.lower])[before]
-        upper = np.concatenate([self.upper, [1.0]])[np.searchsorted(self.im, x, side="left")]
+        upper = np.concatenate([self.upper, [1.0]])[
+            np.searchsorted(self.im, x, side="left")
+        ]
         if np.isnan(self.lower).any():
             lower, upper = np.full(x.shape, np.nan), np.full(x.shape, np.nan)
         return np.asarray(value), np.minimum(lower, value), np.maximum(upper, value)
@@ -102,7 +105,9 @@ def fractions_of_capacities(
     finite = np.isfinite(log_capacity)
     if not finite.any():
         nothing = np.empty(0)
-        return Fractions(*(nothing, nothing, nothing, nothing), np.nan, UNKNOWN, np.nan, UNKNOWN)
+        return Fractions(
+            *(nothing, nothing, nothing, nothing), np.nan, UNKNOWN, np.nan, UNKNOWN
+        )
     # many neighbouring capacities are one
     cell, values = cells(log_capacity[finite])
     capacity = log_capacity.copy()
@@ -113,9 +118,13 @@ def fractions_of_capacities(
     # an infinite capacity lies in the column after the last value
     columns = values.size + 1
     flat = block * columns + np.searchsorted(values, capacity)
-    each = np.bincount(flat, minlength=(int(block.max()) + 1) * columns).reshape(-1, columns)
+    each = np.bincount(flat, minlength=(int(block.max()) + 1) * columns).reshape(
+        -1, columns
+    )
     fell = np.cumsum(each, axis=1)[:, :-1].astype(np.float64)
-    total = np.repeat(np.bincount(block)[:, None], values.size, axis=1).astype(np.float64)
+    total = np.repeat(np.bincount(block)[:, None], values.size, axis=1).astype(
+        np.float64
+    )
     return _fractions(values, values, fell, total, log_capacity.size, level, len(names))
 
 
@@ -146,15 +155,24 @@ def _fractions(
     pairs = zip(weights @ fell, weights @ total, strict=True)
     left_out = np.array([_rising(*pair) for pair in pairs])
     seen = _witnesses(fraction, total) if witnesses is None else np.float64(witnesses)
-    lower, upper = _limits(fraction, intervals.jackknife_error(left_out), seen, motions, level)
+    lower, upper = _limits(
+        fraction, intervals.jackknife_error(left_out), seen, motions, level
+    )
     theta_limits = UNKNOWN
     if np.isfinite(theta):
         # values between which the limits of the curve hold one half
-        low, high = im[upper < 0.5].max(initial=0.0), im[lower > 0.5].min(initial=np.inf)
+        low, high = (
+            im[upper < 0.5].max(initial=0.0),
+            im[lower > 0.5].min(initial=np.inf),
+        )
         theta_limits = min(float(low), theta), max(float(high), theta)
     fewer = motions * weights.mean(axis=1)
-    betas = np.array([_dispersion(middle, *pair) for pair in zip(left_out, fewer, strict=True)])
-    beta_limits = intervals.beta_limits(beta, betas, level) if np.isfinite(beta) else UNKNOWN
+    betas = np.array(
+        [_dispersion(middle, *pair) for pair in zip(left_out, fewer, strict=True)]
+    )
+    beta_limits = (
+        intervals.beta_limits(beta, betas, level) if np.isfinite(beta) else UNKNOWN
+    )
     return Fractions(im, fraction, lower, upper, theta, theta_limits, beta, beta_limits)
 
 
@@ -163,7 +181,9 @@ def _rising(fell: Floats, total: Floats) -> Floats:
     tried = total > 0
     if not tried.any():
         return np.zeros(total.shape)
-    fitted = optimize.isotonic_regression(fell[tried] / total[tried], weights=total[tried]).x
+    fitted = optimize.isotonic_regression(
+        fell[tried] / total[tried], weights=total[tried]
+    ).x
     fraction = np.concatenate([[0.0], np.clip(fitted, 0.0, 1.0)])
     return np.asarray(fraction[np.cumsum(tried)])
 
@@ -171,13 +191,19 @@ def _rising(fell: Floats, total: Floats) -> Floats:
 def _witnesses(fraction: Floats, total: Floats) -> Floats:
     """Groups that bear witness to a fraction of 0 (none fell there or above) or 1, shape (values,)."""
     tried, none, every = total > 0, fraction <= 0.0, fraction >= 1.0
-    above = np.logical_or.accumulate((tried & none)[:, ::-1], axis=1)[:, ::-1].sum(axis=0)
+    above = np.logical_or.accumulate((tried & none)[:, ::-1], axis=1)[:, ::-1].sum(
+        axis=0
+    )
     below = np.logical_or.accumulate(tried & every, axis=1).sum(axis=0)
     return np.asarray(above * none + below * every, dtype=np.float64)
 
 
 def _limits(
-    fraction: Floats, error: Floats, witnesses: Floats | np.float64, motions: int, level: float
+    fraction: Floats,
+    error: Floats,
+    witnesses: Floats | np.float64,
+    motions: int,
+    level: float,
 ) -> tuple[Floats, Floats]:
     """Pointwise limits of shares with a standard error over groups."""
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -199,7 +225,9 @@ def _dispersion(middle: Floats, fraction: Floats, motions: float) -> float:
         return float("nan")
     points = []
     for end in ENDS:
-        reached = stats.beta.cdf(fraction, (motions + 1) * end, (motions + 1) * (1.0 - end))
+        reached = stats.beta.cdf(
+            fraction, (motions + 1) * end, (motions + 1) * (1.0 - end)
+        )
         # what lies beyond the last value counts there
         weight = np.diff(reached, prepend=0.0)
         weight[-1] += 1.0 - reached[-1]

@@ -30,7 +30,11 @@ def outcome_scores(
     the others only share in putting tests into cells, so that scores with and without them compare.
     """
     # cells of rows that are near each other in every measure, and their means
-    most = int(MOST_VALUES ** (1.0 / logs.shape[1])) if len(logs) > MOST_VALUES else len(logs)
+    most = (
+        int(MOST_VALUES ** (1.0 / logs.shape[1]))
+        if len(logs) > MOST_VALUES
+        else len(logs)
+    )
     parts = [cells(column, most)[0] for column in logs.T]
     cell = np.unique(np.column_stack(parts), axis=0, return_inverse=True)[1].ravel()
     n = np.bincount(cell)

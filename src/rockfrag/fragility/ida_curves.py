@@ -44,7 +44,9 @@ def with_measures(
     known = measures.set_index("name")
     missing = sorted(set(ida["motion"]) - set(known.index))
     if missing:
-        raise InputError(f"measures: there is no row for motion {missing[0]!r}; add it.")
+        raise InputError(
+            f"measures: there is no row for motion {missing[0]!r}; add it."
+        )
     rows = known.loc[ida["motion"]].reset_index()
     amplitude = positive(ida, "amplitude_g", "ida")
     factor = amplitude / positive(rows, "pga_g", "measures")
@@ -95,7 +97,9 @@ def fragility_row(
         "resampled": interval.over,
         "groups": interval.groups,
         **{name: getattr(fit, name) for name in (*of_fit, *counted)},
-        "n_earthquakes": interval.groups if interval.over == "earthquake" else fit.n_motions,
+        "n_earthquakes": interval.groups
+        if interval.over == "earthquake"
+        else fit.n_motions,
         "p_fit": checks.p_fit,
         "fit_test": checks.test,
         **{name: getattr(checks, name) for name in of_checks},
@@ -156,12 +160,16 @@ def fragility_table(
     """
     for column in by:
         if column not in ida:
-            raise InputError(f"IDA curve: there is no column {column!r}; correct the name.")
+            raise InputError(
+                f"IDA curve: there is no column {column!r}; correct the name."
+            )
     parts = (
         (dict(zip(by, key, strict=True)), TableIda(part, earthquake))
         for key, part in ida.groupby(list(by), sort=True)
     )
-    return tables_of_ida_curves(parts, columns, record_set=record_set, level=level).curves
+    return tables_of_ida_curves(
+        parts, columns, record_set=record_set, level=level
+    ).curves
 
 
 def tables_of_ida_curves(
@@ -186,11 +194,15 @@ def tables_of_ida_curves(
                 }
             else:
                 definitions = {"mean_probability": fragility_of(outcomes, level=level)}
-            bands.append(curve_points(labels, definitions["mean_probability"], outcomes))
+            bands.append(
+                curve_points(labels, definitions["mean_probability"], outcomes)
+            )
             bins.append(outcome_bins(labels, definitions["mean_probability"], outcomes))
             for name, fragility in definitions.items():
                 rows.append(fragility_row(fragility, labels, name, record_set))
-                fractions.append(fraction_points({**labels, "estimator": name}, fragility))
+                fractions.append(
+                    fraction_points({**labels, "estimator": name}, fragility)
+                )
     points = (pd.concat(parts, ignore_index=True) for parts in (bands, bins, fractions))
     return FragilityTables(pd.DataFrame(rows), *points)
 
@@ -225,7 +237,11 @@ def curve_points(
     probability = lower = upper = nothing
     if np.isfinite(fit.theta):
         probability, (lower, upper) = fit.probability(x), curve.interval.band(x)
-    inside = (x >= outcomes.im.min()) & (x <= outcomes.im.max()) & (np.ptp(outcomes.log_im) > 0)
+    inside = (
+        (x >= outcomes.im.min())
+        & (x <= outcomes.im.max())
+        & (np.ptp(outcomes.log_im) > 0)
+    )
     local = nothing.copy()
     if inside.any():
         local[inside] = local_fraction(outcomes, x[inside])
@@ -241,9 +257,15 @@ def fraction_points(labels: Mapping[str, Any], curve: Fragility) -> pd.DataFrame
     ``fraction`` of overturned tests never falls, and is straight over ln ``x`` between the points.
     """
     fractions = curve.checks.fractions
-    x = knots_of(fractions.im, fractions.fraction)[0] if curve.checks.rejected else np.empty(0)
+    x = (
+        knots_of(fractions.im, fractions.fraction)[0]
+        if curve.checks.rejected
+        else np.empty(0)
+    )
     fraction, lower, upper = fractions.at(x) if x.size else (x, x, x)
-    return _about(labels, curve, x.size).assign(x=x, fraction=fraction, lower=lower, upper=upper)
+    return _about(labels, curve, x.size).assign(
+        x=x, fraction=fraction, lower=lower, upper=upper
+    )
 
 
 def outcome_bins(

@@ -16,7 +16,14 @@ from scipy import special, stats
 from rockfrag.errors import InputError
 from rockfrag.fragility.batch_glm import fit_batch, separated
 from rockfrag.fragility.lognormal import LEAST_SLOPE, ROUNDING
-from rockfrag.fragility.observations import Floats, Grouped, Observations, Over, cells, counts
+from rockfrag.fragility.observations import (
+    Floats,
+    Grouped,
+    Observations,
+    Over,
+    cells,
+    counts,
+)
 from rockfrag.short_repr import short_repr
 
 FEWEST_GROUPS = 4  # fewest groups for which the jackknife's coverage was validated
@@ -96,7 +103,9 @@ def outcome_fitter(outcomes: Observations, over: Over) -> tuple[WeightedFit, int
     design = np.column_stack([np.ones(values.size), values])
     one_level = np.ptp(values) < ROUNDING
 
-    whole = fit_batch(design, fell.sum(axis=0)[None], total.sum(axis=0)[None], penalised=True)
+    whole = fit_batch(
+        design, fell.sum(axis=0)[None], total.sum(axis=0)[None], penalised=True
+    )
     start = whole.coefficients[0] if np.isfinite(whole.coefficients).all() else None
 
     def fit(weights: Floats) -> Floats:
@@ -106,7 +115,9 @@ def outcome_fitter(outcomes: Observations, over: Over) -> tuple[WeightedFit, int
         result = np.empty((len(weights), 2))
         for chosen, penalised in ((apart, True), (~apart, False)):
             if chosen.any():
-                batch = fit_batch(design, y[chosen], m[chosen], penalised=penalised, start=start)
+                batch = fit_batch(
+                    design, y[chosen], m[chosen], penalised=penalised, start=start
+                )
                 result[chosen] = batch.coefficients
         if one_level:
             result[:] = np.nan  # no curve
@@ -135,7 +146,9 @@ def interval_over_motions(
     over, notes = population(outcomes, over)
     fit, groups = outcome_fitter(outcomes, over)
     found = resampled_interval(fit, groups, over=over, notes=notes, level=level)
-    apart = separated(outcomes.log_im, outcomes.overturned[None], outcomes.trials[None] + 0.0)[0]
+    apart = separated(
+        outcomes.log_im, outcomes.overturned[None], outcomes.trials[None] + 0.0
+    )[0]
     if not apart:
         return found
     if found.method == "none" and groups > 1 and 0 < outcomes.n_overturned < outcomes.n:
@@ -143,7 +156,9 @@ def interval_over_motions(
         fell = outcomes.im[outcomes.overturned > 0].min()
         return step_limits(found, float(survived), float(fell))
     # separated tests allow any small β, whatever the penalised refits say
-    return replace(found, beta=(0.0, found.beta[1])) if found.method != "none" else found
+    return (
+        replace(found, beta=(0.0, found.beta[1])) if found.method != "none" else found
+    )
 
 
 def step_limits(nothing: Interval, lower: float, upper: float) -> Interval:
@@ -182,14 +197,18 @@ def resampled_interval(
 ) -> Interval:
     """Confidence limits of θ and β from a function that refits reweighted groups, see :func:`outcome_fitter`."""
     if not 0.0 < level < 1.0:
-        raise InputError(f"level: a confidence level lies between 0 and 1, got {level:g}.")
+        raise InputError(
+            f"level: a confidence level lies between 0 and 1, got {level:g}."
+        )
     estimate = fit(np.ones((1, groups)))[0]
     centre = (float(estimate[0]), float(estimate[1]))
 
     def without_limits(reason: str) -> Interval:
         nan = (float("nan"), float("nan"))
         said = (*notes, reason)
-        return Interval(nan, nan, level, "none", groups, over, centre, np.empty((0, 2)), said)
+        return Interval(
+            nan, nan, level, "none", groups, over, centre, np.empty((0, 2)), said
+        )
 
     if groups < 2:
         return without_limits(f"One {over} gives no interval for other {over}s.")
@@ -216,13 +235,17 @@ def resampled_interval(
     low, high = beta_limits(own, betas, level, unbiased=True)
     # stretched to hold the estimate, to more digits than two ways of fitting agree to
     beta = min(low, own * (1 - 1e-9)), max(high, own * (1 + 1e-9))
-    return Interval(theta, beta, level, "jackknife", groups, over, centre, deleted, notes)
+    return Interval(
+        theta, beta, level, "jackknife", groups, over, centre, deleted, notes
+    )
 
 
 def all_but_one(groups: int) -> Floats:
     """Weights that leave one group out in turn, or one of ``MOST_BLOCKS`` blocks of many groups."""
     block = blocks_of(groups)
-    return np.asarray(block != np.arange(min(groups, MOST_BLOCKS))[:, None], dtype=np.float64)
+    return np.asarray(
+        block != np.arange(min(groups, MOST_BLOCKS))[:, None], dtype=np.float64
+    )
 
 
 def blocks_of(groups: int) -> NDArray[np.intp]:
@@ -260,7 +283,9 @@ def beta_limits(
         powers = left_out**BETA_POWER
     # of two groups each alone has no scatter, so two say nothing about β; nor do those without which
     # there is no curve
-    if groups < 3 or not (beta > 0 and np.isfinite(powers).all() and (powers > 0).all()):
+    if groups < 3 or not (
+        beta > 0 and np.isfinite(powers).all() and (powers > 0).all()
+    ):
         return 0.0, np.inf
     half, centre = float(half_width(powers, level)), float(beta**BETA_POWER)
     if unbiased:

@@ -31,7 +31,8 @@ Covariance = tuple[tuple[float, float], tuple[float, float]]
 Curve = tuple[float, float, Covariance]  # θ, β and the covariance of (ln θ, β)
 NO_CURVE: Curve = (np.nan, np.nan, ((np.nan, np.nan), (np.nan, np.nan)))
 
-SAY = Macros("rockfrag.fragility", "fits.j2")  # what a reader must know of a fit, in sentences
+# what a reader must know of a fit, in sentences
+SAY = Macros("rockfrag.fragility", "fits.j2")
 
 
 @dataclass(frozen=True)
@@ -92,7 +93,9 @@ class FragilityFit:
         values = np.asarray(im, dtype=np.float64)
         with np.errstate(divide="ignore"):
             eta = (np.log(values) - np.log(self.theta)) / self.beta
-        return np.asarray(special.ndtr(eta) if self.link == "probit" else special.expit(eta))
+        return np.asarray(
+            special.ndtr(eta) if self.link == "probit" else special.expit(eta)
+        )
 
 
 def curve_parameters(coefficients: Floats, covariance: Floats) -> Curve:
@@ -125,9 +128,13 @@ def fit_lognormal(outcomes: Observations, *, link: Link = "probit") -> Fragility
         whole, outcomes = outcomes, outcomes.pooled(cell, np.exp(values))
         found = fit_lognormal(outcomes, link=link)
         # cells are not tests: which of a cell's tests overturned is known
-        likelihood = found.log_likelihood + float(whole.ways().sum() - outcomes.ways().sum())
+        likelihood = found.log_likelihood + float(
+            whole.ways().sum() - outcomes.ways().sum()
+        )
         said = (*notes, *found.warnings)
-        return replace(found, n_motions=whole.n_motions, log_likelihood=likelihood, warnings=said)
+        return replace(
+            found, n_motions=whole.n_motions, log_likelihood=likelihood, warnings=said
+        )
     curve, log_likelihood = NO_CURVE, 0.0
     if outcomes.n_overturned in (0, outcomes.n):
         method = "none: all tests agree"
@@ -137,23 +144,41 @@ def fit_lognormal(outcomes: Observations, *, link: Link = "probit") -> Fragility
         notes += SAY("one_level", outcomes, outcomes.n, outcomes.name, outcomes.im[0])
     else:
         method, coefficients, information = _estimated(outcomes, link, notes)
-        log_p, log_q, *_ = log_terms(coefficients[0] + coefficients[1] * outcomes.log_im, link)
-        terms = outcomes.overturned * log_p + (outcomes.trials - outcomes.overturned) * log_q
+        log_p, log_q, *_ = log_terms(
+            coefficients[0] + coefficients[1] * outcomes.log_im, link
+        )
+        terms = (
+            outcomes.overturned * log_p
+            + (outcomes.trials - outcomes.overturned) * log_q
+        )
         log_likelihood = float((terms + outcomes.ways()).sum())
         if coefficients[1] < LEAST_SLOPE:
             method = "none: probability does not rise"
             notes += SAY("falling", outcomes)
         else:
-            curve = curve_parameters(coefficients, np.asarray(np.linalg.inv(information)))
+            curve = curve_parameters(
+                coefficients, np.asarray(np.linalg.inv(information))
+            )
     counted = (outcomes.n, outcomes.n_overturned, outcomes.n_motions)
     return FragilityFit(
-        *curve, log_likelihood, *counted, method, outcomes.name, outcomes.unit, link, tuple(notes)
+        *curve,
+        log_likelihood,
+        *counted,
+        method,
+        outcomes.name,
+        outcomes.unit,
+        link,
+        tuple(notes),
     )
 
 
-def _estimated(outcomes: Observations, link: Link, notes: list[str]) -> tuple[str, Floats, Floats]:
+def _estimated(
+    outcomes: Observations, link: Link, notes: list[str]
+) -> tuple[str, Floats, Floats]:
     """How the coefficients were found, these and their information; ``notes`` grow by what is to be known."""
-    apart = separated(outcomes.log_im, outcomes.overturned[None], outcomes.trials[None])[0]
+    apart = separated(
+        outcomes.log_im, outcomes.overturned[None], outcomes.trials[None]
+    )[0]
     if not apart:
         try:
             return f"{link}, maximum likelihood (GLM)", *_statsmodels(outcomes, link)
@@ -172,7 +197,10 @@ def _statsmodels(outcomes: Observations, link: Link) -> tuple[Floats, Floats]:
     links = {"probit": families.links.Probit, "logit": families.links.Logit}
     # tests at one value are one row of counts: the same likelihood, and a tenth of the time
     values, level = np.unique(outcomes.log_im, return_inverse=True)
-    fell, trials = np.bincount(level, outcomes.overturned), np.bincount(level, outcomes.trials)
+    fell, trials = (
+        np.bincount(level, outcomes.overturned),
+        np.bincount(level, outcomes.trials),
+    )
     design = np.column_stack([np.ones(values.size), values])
     counts = np.column_stack([fell, trials - fell])
     model = GLM(counts, design, family=families.Binomial(links[link]()))
@@ -180,4 +208,6 @@ def _statsmodels(outcomes: Observations, link: Link) -> tuple[Floats, Floats]:
         python_warnings.simplefilter("error", PerfectSeparationWarning)
         python_warnings.simplefilter("error", ConvergenceWarning)
         result = model.fit(tol=1e-13, maxiter=200)
-    return np.asarray(result.params), -np.asarray(model.hessian(result.params, observed=False))
+    return np.asarray(result.params), -np.asarray(
+        model.hessian(result.params, observed=False)
+    )

@@ -71,7 +71,9 @@ def area_under_curve(outcomes: Observations) -> float:
     return float((falls * (below + 0.5 * stands)).sum() / (falls.sum() * stands.sum()))
 
 
-def dependence_p_value(residual: Floats, column: Floats, groups: NDArray[np.object_]) -> float:
+def dependence_p_value(
+    residual: Floats, column: Floats, groups: NDArray[np.object_]
+) -> float:
     """Return the p value of a linear dependence of residuals on a column, robust to dependence within groups.
 
     A measure is sufficient for a property, such as magnitude or distance, on which nothing of its residual depends
@@ -122,7 +124,9 @@ def recommend_measure(
     The :class:`MeasureSelection`.
     """
     if not measures:
-        raise InputError("measures: name at least one column with an intensity measure.")
+        raise InputError(
+            "measures: name at least one column with an intensity measure."
+        )
     rows, data, scores = [], {}, []
     extra = {column: numbers(table, column, source) for column in given}
     for column in measures:
@@ -134,7 +138,10 @@ def recommend_measure(
             earthquake=earthquake,
             source=source,
         )
-        fit, interval = fit_lognormal(outcomes), interval_over_motions(outcomes, level=level)
+        fit, interval = (
+            fit_lognormal(outcomes),
+            interval_over_motions(outcomes, level=level),
+        )
         residual = outcomes.overturned / outcomes.trials - fit.probability(outcomes.im)
         p = {
             name: dependence_p_value(residual, values, outcomes.earthquake)
@@ -142,7 +149,11 @@ def recommend_measure(
         }
         rows.append(_row(column, fit, interval, outcomes, p))
         group = pd.factorize(pd.Series(outcomes.earthquake))[0]
-        logs, fell, trials = outcomes.log_im[:, None], outcomes.overturned, outcomes.trials
+        logs, fell, trials = (
+            outcomes.log_im[:, None],
+            outcomes.overturned,
+            outcomes.trials,
+        )
         scores.append(held_out.outcome_scores(logs, fell, trials, group))
         data[column] = outcomes
     found = _selection(rows, np.array(scores), outcomes.n, given, (replicates, seed))
@@ -170,7 +181,13 @@ def _row(
         "beta_upper": interval.beta[1],
     }
     fitted = {"aic": fit.aic, "auc": area_under_curve(outcomes)}
-    return {**about, **beta, **more, **fitted, **{f"p_{name}": value for name, value in p.items()}}
+    return {
+        **about,
+        **beta,
+        **more,
+        **fitted,
+        **{f"p_{name}": value for name, value in p.items()},
+    }
 
 
 def _selection(
@@ -205,7 +222,9 @@ def _selection(
         late=~rising,
         rank=np.where(near, compared[efficiency], np.inf),
         total=-total,
-    ).sort_values(["late", "rank", "total", "measure"], kind="stable", ignore_index=True)
+    ).sort_values(
+        ["late", "rank", "total", "measure"], kind="stable", ignore_index=True
+    )
     table = table.drop(columns=["late", "rank", "total"])
     if known.any():
         scored = table[table["score"].notna()]
@@ -217,7 +236,9 @@ def _selection(
     else:
         words = _say("no_choice", rising.any())
     first = table.iloc[0] if table[needed].notna().any() else {"measure": "", "im": ""}
-    return MeasureSelection(str(first["measure"]), str(first["im"]), table, " ".join(words))
+    return MeasureSelection(
+        str(first["measure"]), str(first["im"]), table, " ".join(words)
+    )
 
 
 def _best_pair(
@@ -227,7 +248,9 @@ def _best_pair(
     found = ("", float("nan"), -np.inf)
     for name, other in data.items() if best else ():
         logs = np.column_stack([data[best].log_im, other.log_im])
-        proportional = np.linalg.matrix_rank(np.column_stack([np.ones(len(logs)), logs])) < 3
+        proportional = (
+            np.linalg.matrix_rank(np.column_stack([np.ones(len(logs)), logs])) < 3
+        )
         # proportional measures (PGA and a/(g tan α) of one block) tell nothing together
         if name == best or proportional:
             continue
@@ -295,12 +318,16 @@ def recommend_ida_measure(
         interval = censored.bracket_interval(scaled, level=level)
         # residual of ln capacity of the motions that overturned above a survived step
         seen = np.isfinite(scaled.upper) & (scaled.lower > 0)
-        residual = 0.5 * np.log(scaled.lower[seen] * scaled.upper[seen]) - np.log(fit.theta)
+        residual = 0.5 * np.log(scaled.lower[seen] * scaled.upper[seen]) - np.log(
+            fit.theta
+        )
         p = {
             name: dependence_p_value(residual, values[seen], scaled.earthquake[seen])
             for name, values in extra.items()
         }
-        rows.append(_row(column, fit, interval, outcomes, p, beta_amplitude=fit.beta / power))
+        rows.append(
+            _row(column, fit, interval, outcomes, p, beta_amplitude=fit.beta / power)
+        )
         scores.append(held_out.capacity_scores(scaled, group))
     about = (rows, np.array(scores), group.size, given, (200, seed))
     return _selection(*about, "beta_amplitude", needed="score")

@@ -28,7 +28,9 @@ MODEL_ERRORS: Mapping[str, ModelError] = {
     SCAN: ModelError(0.258, 0.053, _SEEN),
     # edges that were measured leave less open than a scan, so that this is more than theirs, if anything
     CUT: ModelError(
-        0.258, 0.258, f"that of scans, as no campaign of a cut block is at hand: {_SEEN}"
+        0.258,
+        0.258,
+        f"that of scans, as no campaign of a cut block is at hand: {_SEEN}",
     ),
 }
 """Errors of the model by the kind of body."""

@@ -79,7 +79,9 @@ class Observations(Grouped):
     @property
     def n_repeated(self) -> int:
         """Number of rows that repeat the motion, the value and the outcome of an earlier row."""
-        rows = pd.DataFrame({"m": self.motion, "x": self.im, "y": self.overturned / self.trials})
+        rows = pd.DataFrame(
+            {"m": self.motion, "x": self.im, "y": self.overturned / self.trials}
+        )
         return int(rows.duplicated().sum())
 
     @property
@@ -96,7 +98,8 @@ class Observations(Grouped):
     def pooled(self, cell: NDArray[np.intp], im: Floats) -> "Observations":
         """Tests of each cell as one row at a value of the measure, and one motion of its own."""
         fell, trials = (
-            np.bincount(cell, part).astype(np.float64) for part in (self.overturned, self.trials)
+            np.bincount(cell, part).astype(np.float64)
+            for part in (self.overturned, self.trials)
         )
         labels = np.arange(im.size).astype(object)
         return Observations(im, fell, trials, labels, labels, self.name, self.unit)
@@ -136,7 +139,9 @@ def name_and_unit(column: str) -> tuple[str, str]:
     return name.replace("_", " "), unit
 
 
-def numbers(table: pd.DataFrame, column: str, source: str = "table", first: int = 1) -> Floats:
+def numbers(
+    table: pd.DataFrame, column: str, source: str = "table", first: int = 1
+) -> Floats:
     """Return a column as finite numbers, shape (n,); messages count rows from ``first``."""
     if column not in table:
         check_names(source, table.columns, [column])
@@ -154,7 +159,9 @@ def numbers(table: pd.DataFrame, column: str, source: str = "table", first: int 
     return values
 
 
-def positive(table: pd.DataFrame, column: str, source: str = "table", first: int = 1) -> Floats:
+def positive(
+    table: pd.DataFrame, column: str, source: str = "table", first: int = 1
+) -> Floats:
     """Return a column as numbers above zero, shape (n,), because they enter by their logarithm."""
     values = numbers(table, column, source, first)
     for row in np.flatnonzero(values <= 0):
@@ -165,7 +172,9 @@ def positive(table: pd.DataFrame, column: str, source: str = "table", first: int
     return values
 
 
-def read_observations(table: pd.DataFrame, column: str, source: str = "table") -> Floats:
+def read_observations(
+    table: pd.DataFrame, column: str, source: str = "table"
+) -> Floats:
     """Return a column of yes/no outcomes as 0 and 1, shape (n,)."""
     values = numbers(table, column, source)
     for row in np.flatnonzero((values != 0) & (values != 1)):
@@ -181,7 +190,9 @@ def labels(
 ) -> NDArray[np.object_]:
     """Return a column of labels, shape (n,); one label per row where ``column`` is None."""
     if column is None:
-        return np.array([f"row {row + first}" for row in range(len(table))], dtype=object)
+        return np.array(
+            [f"row {row + first}" for row in range(len(table))], dtype=object
+        )
     if column not in table:
         check_names(source, table.columns, [column])
         raise InputError(
@@ -236,7 +247,9 @@ def observations_from_table(
             )
     motions = labels(table, motion, source)
     earthquakes = motions if earthquake is None else labels(table, earthquake, source)
-    return Observations(values, failed, counts, motions, earthquakes, *name_and_unit(im))
+    return Observations(
+        values, failed, counts, motions, earthquakes, *name_and_unit(im)
+    )
 
 
 MOST_VALUES = 1000
@@ -256,7 +269,9 @@ def cells(
         return cell, values
     count = np.bincount(cell, tests)
     middle = np.cumsum(count) - 0.5 * count
-    coarse = np.unique((middle / count.sum() * most).astype(np.intp), return_inverse=True)[1]
+    coarse = np.unique(
+        (middle / count.sum() * most).astype(np.intp), return_inverse=True
+    )[1]
     cell = coarse[cell]
     return cell, np.bincount(cell, measure) / np.bincount(cell)
 

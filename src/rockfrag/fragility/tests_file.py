@@ -28,7 +28,10 @@ _YES = {
     *("1", "true", "yes", "y", "overturned", "toppled", "fell"),
     *("ja", "wahr", "oui", "vrai", "si", "sì", "vero", "sí", "verdadero"),
 }
-_NO = {*("0", "false", "no", "n", "survived", "stood"), *("nein", "falsch", "non", "faux", "falso")}
+_NO = {
+    *("0", "false", "no", "n", "survived", "stood"),
+    *("nein", "falsch", "non", "faux", "falso"),
+}
 
 
 def read_tests(
@@ -46,24 +49,40 @@ def read_tests(
     numbers ``given``. Without columns of motion and earthquake every row is a motion of its own.
     """
     recipes: dict[str, Sequence[str | float]] = (
-        dict(measures) if isinstance(measures, Mapping) else {name: [name] for name in measures}
+        dict(measures)
+        if isinstance(measures, Mapping)
+        else {name: [name] for name in measures}
     )
     if not recipes:
-        raise InputError("measures: name at least one column with an intensity measure.")
+        raise InputError(
+            "measures: name at least one column with an intensity measure."
+        )
     for name in recipes:
-        if not name_and_unit(name)[1] and not name.startswith(("uplift_ratio", "velocity_ratio")):
+        if not name_and_unit(name)[1] and not name.startswith(
+            ("uplift_ratio", "velocity_ratio")
+        ):
             raise InputError(
                 f"measures, {name!r}: the name does not tell a unit; end it with one, such as pga_g, "
                 f"pgv_cm_s or sa_0_3s_g (write {name}_g: [{name}] for a column of the file in g)."
             )
-    factors = [part for recipe in recipes.values() for part in recipe if isinstance(part, str)]
+    factors = [
+        part for recipe in recipes.values() for part in recipe if isinstance(part, str)
+    ]
     labels = [name for name in (motion, earthquake) if name is not None]
     kinds = dict.fromkeys(labels, "label") | {overturned: "outcome"}
     kinds |= dict.fromkeys(factors, "positive")
-    raw = read_columns(path, kinds | {name: "number" for name in given if name not in kinds})
-    motions = raw[motion] if motion is not None else [f"row {row + 2}" for row in raw.index]
+    raw = read_columns(
+        path, kinds | {name: "number" for name in given if name not in kinds}
+    )
+    motions = (
+        raw[motion] if motion is not None else [f"row {row + 2}" for row in raw.index]
+    )
     earthquakes = motions if earthquake is None else raw[earthquake]
-    about = {"motion": motions, "earthquake": earthquakes, "overturned": raw[overturned]}
+    about = {
+        "motion": motions,
+        "earthquake": earthquakes,
+        "overturned": raw[overturned],
+    }
     products = {name: product_of(raw, recipe) for name, recipe in recipes.items()}
     table = pd.DataFrame({**about, **products, **{name: raw[name] for name in given}})
     for name in recipes:
@@ -97,7 +116,9 @@ _PEAKS = (
 overturn nothing taller than a centimetre."""
 
 
-def read_columns(path: str | os.PathLike[str], kinds: Mapping[str, str]) -> pd.DataFrame:
+def read_columns(
+    path: str | os.PathLike[str], kinds: Mapping[str, str]
+) -> pd.DataFrame:
     """Read columns of a table of tests, each as what it is: label, number, positive or outcome (0 and 1)."""
     source = Path(path).name
     encoding, comments, separator, titles = _head(path)
@@ -132,7 +153,9 @@ def read_columns(path: str | os.PathLike[str], kinds: Mapping[str, str]) -> pd.D
             "the columns by semicolons."
         ) from error
     if cells.empty:
-        raise InputError(f"{source}: there is no row below the header; give at least one test.")
+        raise InputError(
+            f"{source}: there is no row below the header; give at least one test."
+        )
     found = {}
     for name, kind in kinds.items():
         column = cells[[titles.index(name)]].set_axis([name], axis=1)
@@ -141,7 +164,9 @@ def read_columns(path: str | os.PathLike[str], kinds: Mapping[str, str]) -> pd.D
             if separator != ",":
                 column[name] = column[name].str.replace(",", ".")
         values = _READERS[kind](column, name, source, 2)
-        found[name] = [str(value).strip() for value in values] if kind == "label" else values
+        found[name] = (
+            [str(value).strip() for value in values] if kind == "label" else values
+        )
     return pd.DataFrame(found)
 
 
@@ -149,7 +174,9 @@ def product_of(raw: pd.DataFrame, recipe: Sequence[str | float]) -> Floats:
     """Return the product of columns and numbers, shape (rows,)."""
     result = np.ones(len(raw))
     for factor in recipe:
-        result = result * (raw[factor].to_numpy() if isinstance(factor, str) else float(factor))
+        result = result * (
+            raw[factor].to_numpy() if isinstance(factor, str) else float(factor)
+        )
     return result
 
 
@@ -191,7 +218,11 @@ def _head(path: str | os.PathLike[str]) -> tuple[str, int, str, list[str]]:
             f"{source}: is not text in one encoding; save the table as CSV (UTF-8)."
         ) from error
     separator = max(",;\t", key=head.count)
-    titles = [title.strip() for title in next(csv.reader([head], delimiter=separator), [])]
+    titles = [
+        title.strip() for title in next(csv.reader([head], delimiter=separator), [])
+    ]
     if not any(titles):
-        raise InputError(f"{source}: not a readable CSV table (it has no header); mend the file.")
+        raise InputError(
+            f"{source}: not a readable CSV table (it has no header); mend the file."
+        )
     return encoding, comments, separator, titles

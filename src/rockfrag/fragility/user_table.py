@@ -46,7 +46,9 @@ class UserFragility:
     def goodness(self) -> dict[str, GoodnessOfFit]:
         """Goodness of fit by measure, where there is a curve."""
         found = {name: fit.checks.goodness for name, fit in self.fits.items()}
-        return {name: goodness for name, goodness in found.items() if goodness is not None}
+        return {
+            name: goodness for name, goodness in found.items() if goodness is not None
+        }
 
 
 def fit_user_table(
@@ -78,18 +80,29 @@ def fit_user_table(
     """
     source = Path(path).name
     tests = read_tests(
-        path, measures, overturned=overturned, motion=motion, earthquake=earthquake, given=given
+        path,
+        measures,
+        overturned=overturned,
+        motion=motion,
+        earthquake=earthquake,
+        given=given,
     )
     columns = list(measures)
     earthquake_column = "earthquake" if earthquake is not None else None
     outcomes, fits, rows, bins = {}, {}, [], []
     digest = table_hash(tests)
     for column in columns:
-        data = observations_from_table(tests, column, earthquake=earthquake_column, source=source)
+        data = observations_from_table(
+            tests, column, earthquake=earthquake_column, source=source
+        )
         # rows of one motion are tests at different scales, each with its own outcome
         result = fragility_of(data, level=level, dependence="tests", seed=seed)
         outcomes[column], fits[column] = data, result
-        rows.append(fragility_row(result, {"source": source, "measure": column}, "cloud", digest))
+        rows.append(
+            fragility_row(
+                result, {"source": source, "measure": column}, "cloud", digest
+            )
+        )
         bins.append(fraction_in_bins(data, level=level).assign(measure=column))
     choice = recommend_measure(
         tests,

@@ -87,9 +87,14 @@ class VectorFragility:
 
     def probability(self, first: ArrayLike, second: ArrayLike) -> Floats:
         """Probability of overturning at values of the two measures, which broadcast [-]."""
-        x, y = np.log(np.asarray(first, np.float64)), np.log(np.asarray(second, np.float64))
+        x, y = (
+            np.log(np.asarray(first, np.float64)),
+            np.log(np.asarray(second, np.float64)),
+        )
         slopes = zip(self.coefficients[1:], (x, y, x * y), strict=False)
-        return np.asarray(special.ndtr(sum((c * v for c, v in slopes), self.coefficients[0])))
+        return np.asarray(
+            special.ndtr(sum((c * v for c, v in slopes), self.coefficients[0]))
+        )
 
     def contour(
         self, probability: float, second: ArrayLike, of: int = 0
@@ -147,7 +152,9 @@ def fit_vector(
     The :class:`VectorFragility`, with replicates by earthquake.
     """
     if not 0.0 < level < 1.0:
-        raise InputError(f"level: a confidence level lies between 0 and 1, got {level:g}.")
+        raise InputError(
+            f"level: a confidence level lies between 0 and 1, got {level:g}."
+        )
     logs = [np.log(observations.positive(table, column, source)) for column in measures]
     outcome = observations.read_observations(table, overturned, source)
     if outcome.min() == outcome.max():
@@ -164,7 +171,11 @@ def fit_vector(
     group = pd.factorize(pd.Series(observations.labels(table, earthquake, source)))[0]
     fit, interaction = _fitted(design, outcome), Interaction(np.nan, np.nan, kept=False)
     product = design_of(logs, interaction=True)
-    if try_interaction and np.linalg.matrix_rank(product) == 4 and "penalised" not in fit.method:
+    if (
+        try_interaction
+        and np.linalg.matrix_rank(product) == 4
+        and "penalised" not in fit.method
+    ):
         full = _fitted(product, outcome)
         interaction = _interaction(fit, full, product, outcome, group)
         if interaction.kept:
@@ -174,9 +185,16 @@ def fit_vector(
     names = [observations.name_and_unit(column)[0] for column in measures]
     notes = tuple(_say("notes", names, fit, replicates, groups))
     covariance = tuple(tuple(row) for row in np.linalg.inv(fit.information).tolist())
-    found = (tuple(fit.coefficients.tolist()), covariance, fit.log_likelihood, fit.method)
+    found = (
+        tuple(fit.coefficients.tolist()),
+        covariance,
+        fit.log_likelihood,
+        fit.method,
+    )
     counted = (int(outcome.size), int(outcome.sum()), groups)
-    return VectorFragility(measures, *found, replicates, interaction, *counted, level, notes)
+    return VectorFragility(
+        measures, *found, replicates, interaction, *counted, level, notes
+    )
 
 
 class _Fit(NamedTuple):
@@ -218,12 +236,17 @@ def linearly_separable(design: Floats, outcome: Floats) -> bool:
     """
     signed = np.where(outcome > 0, 1.0, -1.0)[:, None] * design
     found = optimize.linprog(
-        -signed.sum(axis=0), A_ub=-signed, b_ub=np.zeros(len(signed)), bounds=(-1.0, 1.0)
+        -signed.sum(axis=0),
+        A_ub=-signed,
+        b_ub=np.zeros(len(signed)),
+        bounds=(-1.0, 1.0),
     )
     return bool(-found.fun > 1e-9)
 
 
-def _replicates(design: Floats, outcome: Floats, group: NDArray[np.intp], start: Floats) -> Floats:
+def _replicates(
+    design: Floats, outcome: Floats, group: NDArray[np.intp], start: Floats
+) -> Floats:
     """Coefficients without one earthquake (or block of many) each; empty with one earthquake."""
     groups = int(group.max()) + 1
     if groups < 2:
@@ -233,7 +256,9 @@ def _replicates(design: Floats, outcome: Floats, group: NDArray[np.intp], start:
     coefficients = fit.coefficients.copy()
     wild = ~fit.converged | ~(np.abs(coefficients) < LARGEST_COEFFICIENT).all(axis=1)
     if wild.any():
-        again = fit_batch(design, (weights * outcome)[wild], weights[wild], penalised=True)
+        again = fit_batch(
+            design, (weights * outcome)[wild], weights[wild], penalised=True
+        )
         coefficients[wild] = again.coefficients
     return coefficients
 
@@ -255,7 +280,9 @@ def _interaction(
         variance = special.ndtr(eta) * special.ndtr(-eta)
         weighted = others * (density**2 / variance)[:, np.newaxis]
         left = last - others @ np.linalg.solve(weighted.T @ others, weighted.T @ last)
-        score = np.bincount(group, left * (outcome - special.ndtr(eta)) * density / variance)
+        score = np.bincount(
+            group, left * (outcome - special.ndtr(eta)) * density / variance
+        )
         spread = float(np.sqrt(groups * score.var(ddof=1)))
         if spread != 0:
             p = float(2.0 * stats.t.sf(abs(score.sum()) / spread, groups - 1))
@@ -266,7 +293,8 @@ def _interaction(
     return Interaction(p, ratio, kept)
 
 
-BINS = 10  # bins of the fitted probability in which observed and fitted numbers are compared
+# bins of the fitted probability in which observed and fitted numbers are compared
+BINS = 10
 MOST_CELLS = 12  # cells of each measure in the non-parametric surface
 TOLERANCE = 1e-9
 """Change of a probability at which the alternating projections of the surface end [-]."""
@@ -326,7 +354,9 @@ def check_vector(
     bins, values = observations.cells(eta, BINS)
     bins = bins if values.size > 1 else np.zeros(eta.size, dtype=np.intp)
     motions = pd.factorize(pd.Series(observations.labels(table, motion, "table")))[0]
-    capacity = np.random.default_rng(seed).normal(size=(replicates, int(motions.max()) + 1))
+    capacity = np.random.default_rng(seed).normal(
+        size=(replicates, int(motions.max()) + 1)
+    )
     ones = np.ones(eta.size)
     fell, expected, trials = (
         np.asarray(np.bincount(bins, values), dtype=np.float64)
@@ -336,16 +366,24 @@ def check_vector(
     at_once = max(MOST_DRAWN // eta.size, 1)
     parts = np.split(capacity, range(at_once, replicates, at_once))
     simulated = np.concatenate(
-        [refitted_deviance(design, 1.0 * (eta > part[:, motions]), ones, bins) for part in parts]
+        [
+            refitted_deviance(design, 1.0 * (eta > part[:, motions]), ones, bins)
+            for part in parts
+        ]
     )
     p_fit = float((1 + np.sum(simulated >= own - 1e-9)) / (1 + simulated.size))
     return VectorChecks(p_fit, _surface_table(fit, logs, outcome))
 
 
-def _surface_table(fit: VectorFragility, logs: list[Floats], outcome: Floats) -> pd.DataFrame:
-    (row, first), (column, second) = (observations.cells(values, MOST_CELLS) for values in logs)
+def _surface_table(
+    fit: VectorFragility, logs: list[Floats], outcome: Floats
+) -> pd.DataFrame:
+    (row, first), (column, second) = (
+        observations.cells(values, MOST_CELLS) for values in logs
+    )
     tests, fell = (
-        observations.counts(row, column, each) for each in (np.ones(outcome.size), outcome)
+        observations.counts(row, column, each)
+        for each in (np.ones(outcome.size), outcome)
     )
     probability = monotone_probability(fell, tests)
     i, j = np.nonzero(tests)
@@ -389,17 +427,38 @@ def _rising(values: Floats, weights: Floats) -> Floats:
     return np.array([optimize.isotonic_regression(v, weights=w).x for v, w in pairs])
 
 
-PROBABILITIES = (0.1, 0.5, 0.9)  # probabilities of overturning of which contours are given [-]
+# probabilities of overturning of which contours are given [-]
+PROBABILITIES = (0.1, 0.5, 0.9)
 POINTS = 40  # points of a contour, over the values of the second measure
 MOST_TESTS = 100_000
 """Tests of one fit; of more every so many-th is taken, which changes limits over earthquakes little."""
 
 FITS = (
-    *("first", "second", "c0", "c1", "c2", "c12", "aic", "tests", "overturned", "earthquakes"),
+    *(
+        "first",
+        "second",
+        "c0",
+        "c1",
+        "c2",
+        "c12",
+        "aic",
+        "tests",
+        "overturned",
+        "earthquakes",
+    ),
     *("p_interaction", "likelihood_ratio", "p_fit", "method", "warnings"),
 )
 CONTOURS = ("first", "second", "probability", "of", "at", "value", "lower", "upper")
-CELLS = ("first", "second", "at_first", "at_second", "tests", "overturned", "probability", "fitted")
+CELLS = (
+    "first",
+    "second",
+    "at_first",
+    "at_second",
+    "tests",
+    "overturned",
+    "probability",
+    "fitted",
+)
 
 
 @dataclass(frozen=True)
@@ -440,21 +499,31 @@ def vector_tables(
         for pair in pairs:
             about = {label: name, "first": pair[0], "second": pair[1]}
             try:
-                fit = fit_vector(used, pair, earthquake=earthquake, level=level, source=name)
+                fit = fit_vector(
+                    used, pair, earthquake=earthquake, level=level, source=name
+                )
             except InputError as error:
                 fits.append({**about, "method": "none", "warnings": str(error)})
                 continue
             checks = check_vector(fit, used, motion=motion, seed=seed)
             values = (
                 *(*fit.coefficients, 0.0)[:4],
-                *(fit.aic, fit.n, fit.n_overturned, fit.n_earthquakes, fit.interaction.p),
+                *(
+                    fit.aic,
+                    fit.n,
+                    fit.n_overturned,
+                    fit.n_earthquakes,
+                    fit.interaction.p,
+                ),
                 *(fit.interaction.likelihood_ratio, checks.p_fit, fit.method),
                 " ".join(fit.warnings),
             )
             fits.append({**about, **dict(zip(FITS[2:], values, strict=True))})
             contours.append(_contours(fit, used).assign(**about))
             # measures are named alike for every pair, whose tables are joined
-            surface = checks.surface.rename(columns=dict(zip(pair, CELLS[2:4], strict=True)))
+            surface = checks.surface.rename(
+                columns=dict(zip(pair, CELLS[2:4], strict=True))
+            )
             cells.append(surface.assign(**about))
     return VectorTables(
         pd.DataFrame(fits, columns=[label, *FITS]),
@@ -476,6 +545,8 @@ def _contours(fit: VectorFragility, tests: pd.DataFrame) -> pd.DataFrame:
     parts = []
     for probability in PROBABILITIES:
         value, lower, upper = fit.contour(probability, other, of)
-        limits = pd.DataFrame({"at": other, "value": value, "lower": lower, "upper": upper})
+        limits = pd.DataFrame(
+            {"at": other, "value": value, "lower": lower, "upper": upper}
+        )
         parts.append(limits.assign(probability=probability, of=fit.measures[of]))
     return pd.concat(parts, ignore_index=True)

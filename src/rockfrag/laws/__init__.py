@@ -45,7 +45,10 @@ _LAWS: dict[str, Law] = {}
 
 
 def declare(
-    name: str, tell: Callable[[Shape, float, int], Told], rate: Rate | None = None, **more: bool
+    name: str,
+    tell: Callable[[Shape, float, int], Told],
+    rate: Rate | None = None,
+    **more: bool,
 ) -> Law:
     """Declare a law (:class:`Law`), with a rate before anything is simulated: kernels are compiled with it."""
     if name in _LAWS:
@@ -75,5 +78,7 @@ def law_named(name: str) -> Law:
     """Return the law of a name."""
     laws()
     if name not in _LAWS:
-        raise InputError(f"restitution: the law {name!r} is none of {', '.join(law_names())}.")
+        raise InputError(
+            f"restitution: the law {name!r} is none of {', '.join(law_names())}."
+        )
     return _LAWS[name]

@@ -32,11 +32,18 @@ def motions_of_row(
     component of ``file`` itself. A motion and its vertical one are over the time that they have in common.
     """
     if vertical and not row.get("vertical"):
-        raise InputError(f"{row['name']}: the catalogue names no vertical component of it.")
+        raise InputError(
+            f"{row['name']}: the catalogue names no vertical component of it."
+        )
     direction = str(row.get("direction") or "")
     wanted = {"vertical": vertical, "second": bool(direction)}
-    others = (load_component(row, row[key], folder, records) for key in wanted if wanted[key])
-    motions = [load_motion(row, folder, records), *(scaled(other, row) for other in others)]
+    others = (
+        load_component(row, row[key], folder, records) for key in wanted if wanted[key]
+    )
+    motions = [
+        load_motion(row, folder, records),
+        *(scaled(other, row) for other in others),
+    ]
     if vertical:
         motions = common_time(motions, verticals=(1,))
     if direction:
@@ -59,10 +66,14 @@ def turned(first: Motion, second: Motion, direction: str) -> Motion:
     return rotate_to_azimuth(first, second, float(match["angle"]) + turn)
 
 
-def pair_of_row(row: dict[str, Any], folder: Path, records: Path) -> tuple[Motion, Motion]:
+def pair_of_row(
+    row: dict[str, Any], folder: Path, records: Path
+) -> tuple[Motion, Motion]:
     """Read both horizontal components that a row names, with its factor, at common times."""
     if not row.get("second"):
-        raise InputError(f"{row['name']}: the catalogue names no second component of it.")
+        raise InputError(
+            f"{row['name']}: the catalogue names no second component of it."
+        )
     files = row["file"], row["second"]
     motions = [load_component(row, file, folder, records) for file in files]
     first, second = common_time(motions, verticals=())
@@ -91,6 +102,8 @@ def measure_records(
         pair = frozenset((row["file"], row["second"]))
         if pair not in known:
             first, second = pair_of_row(row, folder, records)
-            known[pair] = measure_pair(process(first, processing), process(second, processing))
+            known[pair] = measure_pair(
+                process(first, processing), process(second, processing)
+            )
         table.append({"name": row["name"], **known[pair]})
     return pd.DataFrame(table)

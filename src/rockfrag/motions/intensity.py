@@ -31,7 +31,8 @@ from rockfrag.units import CENTIMETRES_PER_METRE, GRAVITY
 if TYPE_CHECKING:
     from rockfrag.motions.pulse_extraction import StrongestPulse
 
-SPECTRAL_PERIODS = (0.3, 1.0)  # of the 5 % damped spectrum in a table, unless others are asked for
+# of the 5 % damped spectrum in a table, unless others are asked for
+SPECTRAL_PERIODS = (0.3, 1.0)
 SUFFIXES = {
     "g": "g", "cm/s": "cm_s", "m/s": "m_s", "m/s²": "m_s2", "cm": "cm", "m": "m", "s": "s", "1/s": "1_s",
     "Hz": "hz",
@@ -39,7 +40,9 @@ SUFFIXES = {
 """What a unit adds to the name of a column."""
 
 _UNITS = {suffix: unit for unit, suffix in SUFFIXES.items()}
-_COLUMN = re.compile(rf"(?P<name>.+?)_(?P<unit>{'|'.join(sorted(_UNITS, key=len, reverse=True))})")
+_COLUMN = re.compile(
+    rf"(?P<name>.+?)_(?P<unit>{'|'.join(sorted(_UNITS, key=len, reverse=True))})"
+)
 _SPECTRAL = re.compile(r"(?P<name>.+?)_(?P<whole>\d+)(_(?P<part>\d+))?s")
 _PEAKS = ("amplitude", "input")  # what else tables call the peak acceleration
 Shared = Callable[[Motion, float], Any]
@@ -59,12 +62,15 @@ class IntensityMeasure:
     # of the motion and the damping [-], whose result several measures read; None: the motion itself
     shared: Shared | None = None
     spectral: bool = False  # whether there is one for each period
-    of_block: bool = False  # whether it compares a motion with a block; tables of motions have none
+    # whether it compares a motion with a block; tables of motions have none
+    of_block: bool = False
     compared: bool = False  # whether a study compares how well it predicts overturning
-    decimals: int | None = None  # in the table of motions of a report; None: not shown there
+    # in the table of motions of a report; None: not shown there
+    decimals: int | None = None
     title: str = ""  # in that table, if it is not the label
     openquake: str = ""  # name in OpenQuake; empty where it has none
-    demand: str = ""  # what SimCenter calls it behind "Peak Ground" and "Peak Floor"; empty if none
+    # what SimCenter calls it behind "Peak Ground" and "Peak Floor"; empty if none
+    demand: str = ""
     floor_label: str = ""  # where the motion is that of a floor above the ground
     period: float | None = None  # of a spectral measure [s]
 
@@ -77,20 +83,32 @@ class IntensityMeasure:
         """Return the spectral measure of one period [s]."""
         digits = f"{period:.12g}".replace(".", "_") + ("" if period % 1 else "_0")
         name, label = f"{self.name}_{digits}s", f"{self.label}({period:g}s)"
-        return replace(self, name=name, label=label, period=period, shared=_spectrum_at(period))
+        return replace(
+            self, name=name, label=label, period=period, shared=_spectrum_at(period)
+        )
 
     @property
     def imt(self) -> str:
         """Name in hazard models, as OpenQuake writes it: ``PGA``, ``SA(0.3)``."""
-        return self.openquake if self.period is None else f"{self.openquake}({self.period:g})"
+        return (
+            self.openquake
+            if self.period is None
+            else f"{self.openquake}({self.period:g})"
+        )
 
     def of_motion(self, motion: Motion, damping: float = 0.05) -> float:
         """Return its value of a motion, in its unit; ``damping`` [-] is that of what is spectral."""
-        return float(self.of(motion if self.shared is None else self.shared(motion, damping)))
+        return float(
+            self.of(motion if self.shared is None else self.shared(motion, damping))
+        )
 
     def of(self, subject: Any) -> Any:
         """Return its value of a motion, or of what several measures share of it, in its unit."""
-        value = self.value(subject) if self.period is None else float(self.value(subject)[0])
+        value = (
+            self.value(subject)
+            if self.period is None
+            else float(self.value(subject)[0])
+        )
         if self.unit == "g":
             return value / GRAVITY
         return value * CENTIMETRES_PER_METRE if self.unit in ("cm", "cm/s") else value
@@ -124,7 +142,9 @@ def intensity_measure(
                 f"intensity measure {known!r} is declared twice; give the second another name."
             )
         if unit and unit not in SUFFIXES:
-            raise InputError(f"unit {unit!r} is not known; choose one of {', '.join(SUFFIXES)}.")
+            raise InputError(
+                f"unit {unit!r} is not known; choose one of {', '.join(SUFFIXES)}."
+            )
         _MEASURES[known] = IntensityMeasure(known, unit, power, label, function, **more)
         return function
 
@@ -136,7 +156,9 @@ def declared() -> tuple[IntensityMeasure, ...]:
     return tuple(_MEASURES.values())
 
 
-def intensity_measures(periods: Sequence[float] = SPECTRAL_PERIODS) -> tuple[IntensityMeasure, ...]:
+def intensity_measures(
+    periods: Sequence[float] = SPECTRAL_PERIODS,
+) -> tuple[IntensityMeasure, ...]:
     """Return the measures that a table of motions has, in its order, spectral ones at these periods [s]."""
     found: list[IntensityMeasure] = []
     spectral = [measure for measure in declared() if measure.spectral]
@@ -150,7 +172,9 @@ def intensity_measures(periods: Sequence[float] = SPECTRAL_PERIODS) -> tuple[Int
 
 def measure_columns(growing: bool = False) -> tuple[str, ...]:
     """Return the columns of the measures of motions; only of those that grow with the amplitude if asked."""
-    found = (measure for measure in intensity_measures() if measure.power > 0 or not growing)
+    found = (
+        measure for measure in intensity_measures() if measure.power > 0 or not growing
+    )
     return tuple(measure.column for measure in found)
 
 
@@ -266,11 +290,15 @@ def arias_times(motion: Motion, lower: float, upper: float) -> tuple[float, floa
     history = cumulative_arias(motion)
     if history[-1] <= 0:
         return math.nan, math.nan
-    times = [float(np.interp(f * history[-1], history, motion.time)) for f in (lower, upper)]
+    times = [
+        float(np.interp(f * history[-1], history, motion.time)) for f in (lower, upper)
+    ]
     return times[0], times[1]
 
 
-def significant_duration(motion: Motion, lower: float = 0.05, upper: float = 0.95) -> float:
+def significant_duration(
+    motion: Motion, lower: float = 0.05, upper: float = 0.95
+) -> float:
     """Time between two fractions of the Arias intensity [s]; NaN for a motion of zeros.
 
     D5-95 by Trifunac & Brady (1975, Bull. Seism. Soc. Am. 65(3), 581-626), D5-75 by Somerville et
@@ -284,7 +312,12 @@ intensity_measure("s", power=0, label="D5-75", name="d5_75")(
     partial(significant_duration, upper=0.75)
 )
 intensity_measure(
-    "s", power=0, label="D5-95", name="d5_95", decimals=1, title="Significant duration, 5–95 %"
+    "s",
+    power=0,
+    label="D5-95",
+    name="d5_95",
+    decimals=1,
+    title="Significant duration, 5–95 %",
 )(significant_duration)
 
 
@@ -318,11 +351,16 @@ def predominant_period(motion: Motion) -> float:
 
     if motion.pga == 0:
         return math.nan
-    psa = peak_displacements(motion, PREDOMINANT_PERIODS) * (2 * math.pi / PREDOMINANT_PERIODS) ** 2
+    psa = (
+        peak_displacements(motion, PREDOMINANT_PERIODS)
+        * (2 * math.pi / PREDOMINANT_PERIODS) ** 2
+    )
     return float(PREDOMINANT_PERIODS[psa.argmax()])
 
 
-def spectral_acceleration(motion: Motion, period: float, damping: float = 0.05) -> float:
+def spectral_acceleration(
+    motion: Motion, period: float, damping: float = 0.05
+) -> float:
     """Pseudo-spectral acceleration Sa(T) = ω² Sd [m/s²], the one that hazard maps are made for."""
     from rockfrag.motions.spectra import response_spectrum
 
@@ -347,7 +385,9 @@ def housner_and_average(motion: Motion, damping: float = 0.05) -> tuple[float, f
     from rockfrag.motions.spectra import peak_displacements
 
     periods = np.concatenate([HOUSNER_PERIODS, AVERAGE_PERIODS])
-    peaks = np.split(peak_displacements(motion, periods, damping), [HOUSNER_PERIODS.size])
+    peaks = np.split(
+        peak_displacements(motion, periods, damping), [HOUSNER_PERIODS.size]
+    )
     housner = np.trapezoid(peaks[0] * (2 * math.pi / HOUSNER_PERIODS), HOUSNER_PERIODS)
     spectrum = peaks[1] * (2 * math.pi / AVERAGE_PERIODS) ** 2
     return float(housner), float(np.prod(spectrum ** (1 / spectrum.size)))
@@ -363,23 +403,27 @@ def _pulse(motion: Motion, damping: float) -> StrongestPulse:
 intensity_measure(
     "g", power=1, label="SA", name="sa", spectral=True, compared=True, openquake="SA"
 )(attrgetter("pseudo_acceleration"))
-intensity_measure("cm/s", power=1, label="SV", name="sv", spectral=True)(attrgetter("velocity"))
-intensity_measure("cm", power=1, label="SD", name="sd", spectral=True)(attrgetter("displacement"))
+intensity_measure("cm/s", power=1, label="SV", name="sv", spectral=True)(
+    attrgetter("velocity")
+)
+intensity_measure("cm", power=1, label="SD", name="sd", spectral=True)(
+    attrgetter("displacement")
+)
 intensity_measure(
     "g", power=1, label="AvgSA", name="avgsa", shared=housner_and_average, compared=True, openquake="AvgSA"
 )(itemgetter(1))  # fmt: skip
 intensity_measure(
     "cm", power=1, label="Housner intensity", name="housner", shared=housner_and_average, compared=True
 )(itemgetter(0))  # fmt: skip
-intensity_measure("s", power=0, label="pulse period", name="pulse_period", shared=_pulse)(
-    attrgetter("period")
-)
-intensity_measure("cm/s", power=1, label="pulse velocity", name="pulse_velocity", shared=_pulse)(
-    attrgetter("velocity")
-)
-intensity_measure("", power=0, label="pulse explained", name="pulse_explained", shared=_pulse)(
-    attrgetter("explained")
-)
+intensity_measure(
+    "s", power=0, label="pulse period", name="pulse_period", shared=_pulse
+)(attrgetter("period"))
+intensity_measure(
+    "cm/s", power=1, label="pulse velocity", name="pulse_velocity", shared=_pulse
+)(attrgetter("velocity"))
+intensity_measure(
+    "", power=0, label="pulse explained", name="pulse_explained", shared=_pulse
+)(attrgetter("explained"))
 
 
 @intensity_measure("", power=1, label="a/(g tan α)", of_block=True)

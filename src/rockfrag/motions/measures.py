@@ -68,11 +68,15 @@ def measure_motions(
     -------
     A table with a row per motion, a column per measure, the unit in its name.
     """
-    rows = in_processes(lambda motion: measure_motion(motion, periods, damping), motions, processes)
+    rows = in_processes(
+        lambda motion: measure_motion(motion, periods, damping), motions, processes
+    )
     table = pd.DataFrame(rows)
     if rows and table["name"].duplicated().any():
         twice = table.loc[table["name"].duplicated(), "name"].iloc[0]
-        raise InputError(f"measures: two motions are called {twice!r}; give each its own name.")
+        raise InputError(
+            f"measures: two motions are called {twice!r}; give each its own name."
+        )
     return table
 
 
@@ -98,7 +102,13 @@ def measure_rocking(
             uplift = intensity.uplift_ratio(motion, alpha)
             velocity = intensity.velocity_ratio(motion, alpha, p)
             rows.append(
-                (motion.name, block, uplift, velocity, intensity.frequency_ratio(period, p))
+                (
+                    motion.name,
+                    block,
+                    uplift,
+                    velocity,
+                    intensity.frequency_ratio(period, p),
+                )
             )
     columns = ["name", "block", "uplift_ratio", "velocity_ratio", "frequency_ratio"]
     return pd.DataFrame(rows, columns=columns)

@@ -27,7 +27,12 @@ from numpy.polynomial import Polynomial
 
 from rockfrag.arrays import Floats
 from rockfrag.errors import InputError
-from rockfrag.input_checks import number_from_zero, positive_number, real_number, whole_within
+from rockfrag.input_checks import (
+    number_from_zero,
+    positive_number,
+    real_number,
+    whole_within,
+)
 from rockfrag.motions import intensity
 from rockfrag.records.motion import MOST_SAMPLES, Motion, integrate
 from rockfrag.units import CENTIMETRES_PER_METRE, GRAVITY
@@ -42,7 +47,9 @@ def demean(motion: Motion) -> Motion:
 def remove_median(motion: Motion) -> Motion:
     """Subtract the median of the acceleration: the zero line of an instrument, whatever the shaking."""
     median = float(np.median(motion.acceleration))
-    return motion.after("remove_median", motion.acceleration - median, removed_m_s2=median)
+    return motion.after(
+        "remove_median", motion.acceleration - median, removed_m_s2=median
+    )
 
 
 def despike(motion: Motion, times: float = 50.0) -> Motion:
@@ -59,7 +66,11 @@ def despike(motion: Motion, times: float = 50.0) -> Motion:
     smooth = median_filter(motion.acceleration, size=5, mode="nearest")
     difference = np.abs(motion.acceleration - smooth)
     scale = float(np.quantile(difference, 0.95)) / 1.96
-    spikes = difference > times * scale if scale > 0 else np.zeros(difference.size, dtype=bool)
+    spikes = (
+        difference > times * scale
+        if scale > 0
+        else np.zeros(difference.size, dtype=bool)
+    )
     cleaned = np.where(spikes, smooth, motion.acceleration)
     return motion.after("despike", cleaned, times=times, replaced=int(spikes.sum()))
 
@@ -86,8 +97,12 @@ def displacement_baseline(motion: Motion, order: int = 6) -> Motion:
     x = motion.time / length
     powers = np.arange(2, order + 1)
     coefficients = np.linalg.lstsq(x[:, None] ** powers, displacement, rcond=None)[0]
-    trend = x[:, None] ** (powers - 2) @ (coefficients * powers * (powers - 1)) / length**2
-    return motion.after("displacement_baseline", motion.acceleration - trend, order=order)
+    trend = (
+        x[:, None] ** (powers - 2) @ (coefficients * powers * (powers - 1)) / length**2
+    )
+    return motion.after(
+        "displacement_baseline", motion.acceleration - trend, order=order
+    )
 
 
 def taper(motion: Motion, duration_s: float) -> Motion:
@@ -191,22 +206,32 @@ def trim(motion: Motion, start_s: float, end_s: float) -> Motion:
     return _between(motion, "trim", start_s, end_s)
 
 
-def _between(motion: Motion, step: str, start: float, end: float, **parameters: float) -> Motion:
+def _between(
+    motion: Motion, step: str, start: float, end: float, **parameters: float
+) -> Motion:
     """Cut to whole samples; a time that is a sample but for rounding counts as that sample."""
     first = math.floor(start / motion.dt + 1e-6)
     last = math.ceil(end / motion.dt - 1e-6)
     kept = motion.after(
-        step, motion.acceleration[first : last + 1], **parameters, start_s=start, end_s=end
+        step,
+        motion.acceleration[first : last + 1],
+        **parameters,
+        start_s=start,
+        end_s=end,
     )
     return starting_later(kept, first * motion.dt)
 
 
-def highpass(motion: Motion, corner_hz: float, order: int = 4, causal: bool = False) -> Motion:
+def highpass(
+    motion: Motion, corner_hz: float, order: int = 4, causal: bool = False
+) -> Motion:
     """Butterworth high-pass filter of an order from 1 to 10, acausal unless a causal one is asked for."""
     return _filtered("highpass", motion, order, causal, corner_hz=corner_hz)
 
 
-def lowpass(motion: Motion, corner_hz: float, order: int = 4, causal: bool = False) -> Motion:
+def lowpass(
+    motion: Motion, corner_hz: float, order: int = 4, causal: bool = False
+) -> Motion:
     """Butterworth low-pass filter of an order from 1 to 10, acausal unless a causal one is asked for."""
     return _filtered("lowpass", motion, order, causal, corner_hz=corner_hz)
 
@@ -218,7 +243,9 @@ def bandpass(
     return _filtered("bandpass", motion, order, causal, low_hz=low_hz, high_hz=high_hz)
 
 
-def _filtered(kind: str, motion: Motion, order: int, causal: bool, **corners_hz: float) -> Motion:
+def _filtered(
+    kind: str, motion: Motion, order: int, causal: bool, **corners_hz: float
+) -> Motion:
     corners, nyquist = {}, 0.5 / motion.dt
     for name, value in corners_hz.items():
         corner = corners[name] = positive_number(f"step {kind}: {name}", value, "hertz")
@@ -239,11 +266,17 @@ def _filtered(kind: str, motion: Motion, order: int, causal: bool, **corners_hz:
     from obspy.signal import filter as obspy_filter
 
     samples = getattr(obspy_filter, kind)(
-        motion.acceleration, *corners.values(), 1 / motion.dt, corners=order, zerophase=not causal
+        motion.acceleration,
+        *corners.values(),
+        1 / motion.dt,
+        corners=order,
+        zerophase=not causal,
     )
     ends = [float(samples[0]), float(samples[-1])]
     settings = {**corners, "order": order, "causal": causal}
-    return motion.after(kind, samples, **settings, **motion.peaks(samples), ends_m_s2=ends)
+    return motion.after(
+        kind, samples, **settings, **motion.peaks(samples), ends_m_s2=ends
+    )
 
 
 def resample(motion: Motion, dt_s: float) -> Motion:
@@ -255,7 +288,9 @@ def resample(motion: Motion, dt_s: float) -> Motion:
     """
     dt_s = positive_number("step resample: dt_s", dt_s, "seconds")
     if dt_s >= motion.dt * motion.acceleration.size:
-        raise InputError(f"step resample: dt_s {dt_s} is not shorter than motion {motion.name!r}.")
+        raise InputError(
+            f"step resample: dt_s {dt_s} is not shorter than motion {motion.name!r}."
+        )
     ratio = Fraction(motion.dt / dt_s).limit_denominator(1000)
     if ratio.numerator > 1000 or abs(float(ratio) * dt_s / motion.dt - 1) > 1e-9:
         raise InputError(
@@ -265,10 +300,14 @@ def resample(motion: Motion, dt_s: float) -> Motion:
     from scipy.signal import resample_poly
 
     ends = "line" if motion.acceleration.size > 1 else "constant"
-    samples = resample_poly(motion.acceleration, ratio.numerator, ratio.denominator, padtype=ends)
+    samples = resample_poly(
+        motion.acceleration, ratio.numerator, ratio.denominator, padtype=ends
+    )
     count = int((motion.acceleration.size - 1) * motion.dt / dt_s * (1 + 1e-12)) + 1
     samples = samples[:count]
-    return motion.after("resample", samples, dt=dt_s, dt_s=dt_s, **motion.peaks(samples))
+    return motion.after(
+        "resample", samples, dt=dt_s, dt_s=dt_s, **motion.peaks(samples)
+    )
 
 
 def interpolate(motion: Motion, dt_s: float) -> Motion:
@@ -320,7 +359,9 @@ def scale_to_pga(motion: Motion, pga_g: float) -> Motion:
     The :class:`Motion` so changed, with the step in its provenance.
     """
     target = positive_number("step scale_to_pga: pga_g", pga_g, "g")
-    return _scaled("scale_to_pga", motion, target * GRAVITY, intensity.pga(motion), pga_g=target)
+    return _scaled(
+        "scale_to_pga", motion, target * GRAVITY, intensity.pga(motion), pga_g=target
+    )
 
 
 def scale_to_pgv(motion: Motion, pgv_cm_s: float) -> Motion:
@@ -337,10 +378,14 @@ def scale_to_pgv(motion: Motion, pgv_cm_s: float) -> Motion:
     """
     target = positive_number("step scale_to_pgv: pgv_cm_s", pgv_cm_s, "cm/s")
     wanted = target / CENTIMETRES_PER_METRE
-    return _scaled("scale_to_pgv", motion, wanted, intensity.pgv(motion), pgv_cm_s=target)
+    return _scaled(
+        "scale_to_pgv", motion, wanted, intensity.pgv(motion), pgv_cm_s=target
+    )
 
 
-def scale_to_sa(motion: Motion, sa_g: float, period_s: float, damping: float = 0.05) -> Motion:
+def scale_to_sa(
+    motion: Motion, sa_g: float, period_s: float, damping: float = 0.05
+) -> Motion:
     """Scale to a pseudo-spectral acceleration [g] at a period [s] and a damping [-]."""
     target = positive_number("step scale_to_sa: sa_g", sa_g, "g")
     period_s = positive_number("step scale_to_sa: period_s", period_s, "seconds")
@@ -353,7 +398,9 @@ def scale_to_sa(motion: Motion, sa_g: float, period_s: float, damping: float = 0
 def scale_to_arias(motion: Motion, arias_m_s: float) -> Motion:
     """Scale to an Arias intensity [m/s]."""
     target = positive_number("step scale_to_arias: arias_m_s", arias_m_s, "m/s")
-    return _scaled("scale_to_arias", motion, target, intensity.arias(motion), 0.5, arias_m_s=target)
+    return _scaled(
+        "scale_to_arias", motion, target, intensity.arias(motion), 0.5, arias_m_s=target
+    )
 
 
 def compress_time(motion: Motion, factor: float) -> Motion:
@@ -364,11 +411,18 @@ def compress_time(motion: Motion, factor: float) -> Motion:
     and Experimental Techniques, 2nd ed.).  A factor below one stretches time.
     """
     factor = positive_number("step compress_time: factor", factor)
-    return motion.after("compress_time", motion.acceleration, dt=motion.dt / factor, factor=factor)
+    return motion.after(
+        "compress_time", motion.acceleration, dt=motion.dt / factor, factor=factor
+    )
 
 
 def _scaled(
-    step: str, motion: Motion, target: float, actual: float, power: float = 1.0, **settings: float
+    step: str,
+    motion: Motion,
+    target: float,
+    actual: float,
+    power: float = 1.0,
+    **settings: float,
 ) -> Motion:
     """Scale a motion from the actual value of a measure to a target, by a power of their ratio."""
     _check_not_zero(step, motion, actual)
@@ -387,15 +441,41 @@ STEPS: Mapping[str, Callable[..., Motion]] = MappingProxyType(
     {
         step.__name__: step
         for step in (
-            *(demean, remove_median, despike, baseline, displacement_baseline, taper, pad),
-            *(highpass, lowpass, bandpass, resample, interpolate, strong_part, bracketed_part),
-            *(trim, scale, scale_to_pga, scale_to_pgv, scale_to_sa, scale_to_arias, compress_time),
+            *(
+                demean,
+                remove_median,
+                despike,
+                baseline,
+                displacement_baseline,
+                taper,
+                pad,
+            ),
+            *(
+                highpass,
+                lowpass,
+                bandpass,
+                resample,
+                interpolate,
+                strong_part,
+                bracketed_part,
+            ),
+            *(
+                trim,
+                scale,
+                scale_to_pga,
+                scale_to_pgv,
+                scale_to_sa,
+                scale_to_arias,
+                compress_time,
+            ),
         )
     }
 )
 """Every step that :func:`process` knows, by its name."""
 
-_FOUND = frozenset({"removed_m_s2", "replaced", "peak_before_m_s2", "peak_after_m_s2", "ends_m_s2"})
+_FOUND = frozenset(
+    {"removed_m_s2", "replaced", "peak_before_m_s2", "peak_after_m_s2", "ends_m_s2"}
+)
 """What steps write into the provenance of what they found: no parameters, when they are taken again."""
 
 
@@ -428,7 +508,9 @@ def check_steps(
     return [_checked(number, entry) for number, entry in enumerate(steps, start=1)]
 
 
-def _checked(number: int, entry: Mapping[str, Any]) -> tuple[Callable[..., Motion], dict[str, Any]]:
+def _checked(
+    number: int, entry: Mapping[str, Any]
+) -> tuple[Callable[..., Motion], dict[str, Any]]:
     """Return the function of the ``number``-th entry of a list of steps, and the parameters that it names."""
     if not isinstance(entry, Mapping) or "step" not in entry:
         raise InputError(
@@ -439,7 +521,11 @@ def _checked(number: int, entry: Mapping[str, Any]) -> tuple[Callable[..., Motio
         raise InputError(
             f"processing, entry {number}: there is no step {name!r}; known are {', '.join(STEPS)}."
         )
-    parameters = {key: value for key, value in entry.items() if key != "step" and key not in _FOUND}
+    parameters = {
+        key: value
+        for key, value in entry.items()
+        if key != "step" and key not in _FOUND
+    }
     # the first parameter is the motion itself
     known = dict(list(inspect.signature(STEPS[name]).parameters.items())[1:])
     unknown = [key for key in parameters if key not in known]
@@ -448,7 +534,13 @@ def _checked(number: int, entry: Mapping[str, Any]) -> tuple[Callable[..., Motio
             f"processing, entry {number}: step {name} has no parameter {unknown[0]!r}; "
             f"known are {', '.join(known) or 'none'}."
         )
-    missing = [key for key, p in known.items() if p.default is p.empty and key not in parameters]
+    missing = [
+        key
+        for key, p in known.items()
+        if p.default is p.empty and key not in parameters
+    ]
     if missing:
-        raise InputError(f"processing, entry {number}: step {name} needs {', '.join(missing)}.")
+        raise InputError(
+            f"processing, entry {number}: step {name} needs {', '.join(missing)}."
+        )
     return STEPS[name], parameters

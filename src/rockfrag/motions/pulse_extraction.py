@@ -25,7 +25,8 @@ SHORTEST_PERIOD, LONGEST_PERIOD, PERIOD_RATIO = 0.1, 15.0, 1.05
 """Periods that are tried [s] and the ratio of one to the next; none is shorter than 10 samples or
 longer than the record.  The best is then refined between its neighbours."""
 
-SAMPLES_PER_PERIOD = 40  # a wavelet needs no finer; denser records are thinned for the search
+# a wavelet needs no finer; denser records are thinned for the search
+SAMPLES_PER_PERIOD = 40
 
 
 @dataclass(frozen=True)
@@ -86,13 +87,20 @@ def strongest_pulse(motion: Motion) -> StrongestPulse:
     longest = motion.time[-1] / cycles
     refined = minimize_scalar(
         # near the best period no place explains less than half as much
-        lambda x: -best_place(velocity, energy, motion.dt, math.exp(x), cycles, gain / 2)[0],
-        bounds=(math.log(period) - step, min(math.log(period) + step, math.log(longest))),
+        lambda x: (
+            -best_place(velocity, energy, motion.dt, math.exp(x), cycles, gain / 2)[0]
+        ),
+        bounds=(
+            math.log(period) - step,
+            min(math.log(period) + step, math.log(longest)),
+        ),
         method="bounded",
         options={"xatol": 1e-4},
     )
     period = math.exp(refined.x)
-    gain, middle, even, odd = best_place(velocity, energy, motion.dt, period, cycles, 0.0)
+    gain, middle, even, odd = best_place(
+        velocity, energy, motion.dt, period, cycles, 0.0
+    )
     return StrongestPulse(
         period=period,
         velocity=math.hypot(even, odd),
@@ -103,12 +111,16 @@ def strongest_pulse(motion: Motion) -> StrongestPulse:
     )
 
 
-def _best_of(velocity: Floats, dt: float, periods: Floats) -> tuple[float, float, float]:
+def _best_of(
+    velocity: Floats, dt: float, periods: Floats
+) -> tuple[float, float, float]:
     """What the best of the pulses that are tried explains [m²/s²], its period and its cycles."""
     best = (0.0, 0.0, 0.0)
     # long pulses first: they cost little and leave few places at which a short one could explain more
     longest_first = periods[::-1].tolist()
-    for every, some in groupby(longest_first, lambda T: max(1, int(T / (SAMPLES_PER_PERIOD * dt)))):
+    for every, some in groupby(
+        longest_first, lambda T: max(1, int(T / (SAMPLES_PER_PERIOD * dt)))
+    ):
         thinned = np.ascontiguousarray(velocity[::every])
         energy, step, hopeless = _energy(thinned), every * dt, 0.0
         for period, cycles in product(some, CYCLES[::-1]):
@@ -137,7 +149,12 @@ def half_length(length: float, dt: float) -> int:
 
 @cached_njit(error_model="numpy")
 def best_place(
-    velocity: Floats, energy: Floats, dt: float, period: float, cycles: float, known: float
+    velocity: Floats,
+    energy: Floats,
+    dt: float,
+    period: float,
+    cycles: float,
+    known: float,
 ) -> tuple[float, int, float, float]:
     """Find the best place of a pulse of a period [s], γ = ``cycles`` ≥ 1, by least squares at each place.
 
@@ -158,8 +175,14 @@ def best_place(
     # one sample's turn of each harmonic, and its value at the last sample of the pulse
     step = 2 * math.pi * dt / period
     turn0, edge0 = _phasor(step), _phasor(step * half)
-    turn1, edge1 = _phasor(step * (1 + 1 / cycles)), _phasor(step * (1 + 1 / cycles) * half)
-    turn2, edge2 = _phasor(step * (1 - 1 / cycles)), _phasor(step * (1 - 1 / cycles) * half)
+    turn1, edge1 = (
+        _phasor(step * (1 + 1 / cycles)),
+        _phasor(step * (1 + 1 / cycles) * half),
+    )
+    turn2, edge2 = (
+        _phasor(step * (1 - 1 / cycles)),
+        _phasor(step * (1 - 1 / cycles) * half),
+    )
 
     # norms of both pulses, and the products of the first window
     wave0 = wave1 = wave2 = complex(1.0, 0.0)

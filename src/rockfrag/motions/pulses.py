@@ -38,7 +38,9 @@ def sine(amplitude: float, period: float, cycles: int, dt: float = DT) -> Motion
     length = cycles * _seconds("sine: period", period)
     given = {"amplitude": amplitude, "period": period, "cycles": cycles}
     source = "steady harmonic motion from rest"
-    return _pulse("sine", source, lambda t: np.sin(2 * np.pi * t / period), length, dt, given)
+    return _pulse(
+        "sine", source, lambda t: np.sin(2 * np.pi * t / period), length, dt, given
+    )
 
 
 def one_sine(amplitude: float, period: float, dt: float = DT) -> Motion:
@@ -54,9 +56,14 @@ def one_sine(amplitude: float, period: float, dt: float = DT) -> Motion:
     -------
     The :class:`Motion` [m/s²].
     """
-    length, given = _seconds("one_sine: period", period), {"amplitude": amplitude, "period": period}
+    length, given = (
+        _seconds("one_sine: period", period),
+        {"amplitude": amplitude, "period": period},
+    )
     source = "Makris & Roussos (2000)"
-    return _pulse("one_sine", source, lambda t: np.sin(2 * np.pi * t / period), length, dt, given)
+    return _pulse(
+        "one_sine", source, lambda t: np.sin(2 * np.pi * t / period), length, dt, given
+    )
 
 
 def one_cosine(amplitude: float, period: float, dt: float = DT) -> Motion:
@@ -74,8 +81,13 @@ def one_cosine(amplitude: float, period: float, dt: float = DT) -> Motion:
     The :class:`Motion` [m/s²].
     """
     name, source = "one_cosine", "Makris & Roussos (2000)"
-    length, given = _seconds(f"{name}: period", period), {"amplitude": amplitude, "period": period}
-    return _pulse(name, source, lambda t: np.cos(2 * np.pi * t / period), length, dt, given, True)
+    length, given = (
+        _seconds(f"{name}: period", period),
+        {"amplitude": amplitude, "period": period},
+    )
+    return _pulse(
+        name, source, lambda t: np.cos(2 * np.pi * t / period), length, dt, given, True
+    )
 
 
 def commanded_cosine(pga: float, pgv_over_pga: float, cycles: int = 1) -> Motion:
@@ -91,7 +103,15 @@ def commanded_cosine(pga: float, pgv_over_pga: float, cycles: int = 1) -> Motion
     source = "motion of a shake table commanded by PGA and PGV/PGA"
     length, step = cycles * period, min(DT, period / 400)
     given = {"amplitude": pga, "period": period, "cycles": cycles}
-    return _pulse(name, source, lambda t: np.cos(2 * np.pi * t / period), length, step, given, True)
+    return _pulse(
+        name,
+        source,
+        lambda t: np.cos(2 * np.pi * t / period),
+        length,
+        step,
+        given,
+        True,
+    )
 
 
 def half_sine(amplitude: float, duration: float, dt: float = DT) -> Motion:
@@ -110,7 +130,12 @@ def half_sine(amplitude: float, duration: float, dt: float = DT) -> Motion:
     length = _seconds("half_sine: duration", duration)
     given = {"amplitude": amplitude, "duration": duration}
     return _pulse(
-        "half_sine", "Housner (1963)", lambda t: np.sin(np.pi * t / duration), length, dt, given
+        "half_sine",
+        "Housner (1963)",
+        lambda t: np.sin(np.pi * t / duration),
+        length,
+        dt,
+        given,
     )
 
 
@@ -129,7 +154,9 @@ def rectangular(amplitude: float, duration: float, dt: float = DT) -> Motion:
     """
     length = _seconds("rectangular: duration", duration)
     given = {"amplitude": amplitude, "duration": duration}
-    return _pulse("rectangular", "Housner (1963)", np.ones_like, length, dt, given, True)
+    return _pulse(
+        "rectangular", "Housner (1963)", np.ones_like, length, dt, given, True
+    )
 
 
 def ricker_symmetric(amplitude: float, period: float, dt: float = DT) -> Motion:
@@ -183,11 +210,22 @@ def ricker_antisymmetric(amplitude: float, period: float, dt: float = DT) -> Mot
         return x * (x**2 - 3) * np.exp(-(x**2) / 2) / largest
 
     given = {"amplitude": amplitude, "period": period}
-    return _pulse("ricker_antisymmetric", "Vassiliou & Makris (2011)", shape, 2 * centre, dt, given)
+    return _pulse(
+        "ricker_antisymmetric",
+        "Vassiliou & Makris (2011)",
+        shape,
+        2 * centre,
+        dt,
+        given,
+    )
 
 
 def mavroeidis_papageorgiou(
-    velocity: float, period: float, cycles: float = 1.5, phase_deg: float = 0.0, dt: float = DT
+    velocity: float,
+    period: float,
+    cycles: float = 1.5,
+    phase_deg: float = 0.0,
+    dt: float = DT,
 ) -> Motion:
     """Near-fault velocity pulse v(t) = (A/2) [1 + cos(2πt/(γT))] cos(2πt/T + ν), |t| ≤ γT/2.
 
@@ -217,15 +255,26 @@ def mavroeidis_papageorgiou(
         s = t - length / 2
         slow, fast = omega * s / cycles, omega * s + phase
         return np.asarray(
-            -omega / 2 * (np.sin(slow) * np.cos(fast) / cycles + (1 + np.cos(slow)) * np.sin(fast))
+            -omega
+            / 2
+            * (np.sin(slow) * np.cos(fast) / cycles + (1 + np.cos(slow)) * np.sin(fast))
         )
 
-    given = {"amplitude": velocity, "period": period, "cycles": cycles, "phase_deg": phase_deg}
+    given = {
+        "amplitude": velocity,
+        "period": period,
+        "cycles": cycles,
+        "phase_deg": phase_deg,
+    }
     return _pulse(who, "Mavroeidis & Papageorgiou (2003)", shape, length, dt, given)
 
 
 def sine_sweep(
-    amplitude: float, start_hz: float, end_hz: float, octaves_per_minute: float, dt: float = DT
+    amplitude: float,
+    start_hz: float,
+    end_hz: float,
+    octaves_per_minute: float,
+    dt: float = DT,
 ) -> Motion:
     """Logarithmic sine sweep of constant acceleration amplitude.
 
@@ -250,7 +299,9 @@ def sine_sweep(
     rate = positive_number(f"{who}: octaves_per_minute", octaves_per_minute) / 60
     octaves = math.log2(end / start)
     if octaves == 0:
-        raise InputError(f"{who}: start_hz and end_hz are both {start_hz} and nothing is swept.")
+        raise InputError(
+            f"{who}: start_hz and end_hz are both {start_hz} and nothing is swept."
+        )
     if max(start, end) > 0.25 / step:
         raise InputError(
             f"{who}: {max(start, end):g} Hz is above a quarter of the sampling frequency, "
@@ -263,7 +314,9 @@ def sine_sweep(
 
     given = {"amplitude": amplitude, "start_hz": start_hz, "end_hz": end_hz}
     given["octaves_per_minute"] = octaves_per_minute
-    return _pulse(who, "IEC 60068-2-6, logarithmic sweep", shape, abs(octaves) / rate, dt, given)
+    return _pulse(
+        who, "IEC 60068-2-6, logarithmic sweep", shape, abs(octaves) / rate, dt, given
+    )
 
 
 def _seconds(name: str, value: float) -> float:
@@ -297,4 +350,6 @@ def _pulse(
 
 def plain(parameters: Mapping[str, Any]) -> dict[str, Any]:
     """Return parameters with numbers of NumPy's types as Python's own, which JSON can carry."""
-    return {k: v.item() if isinstance(v, np.generic) else v for k, v in parameters.items()}
+    return {
+        k: v.item() if isinstance(v, np.generic) else v for k, v in parameters.items()
+    }

@@ -14,7 +14,8 @@ from rockfrag.records.motion import Motion
 from rockfrag.records.parsing.quantities import azimuth_of, is_vertical
 
 _RIGHT_ANGLE = 5.0  # degrees by which two components may be off a right angle
-DIRECTIONS_DEG = range(180)  # directions looked in; the other half of the circle sees the same
+# directions looked in; the other half of the circle sees the same
+DIRECTIONS_DEG = range(180)
 
 
 def rotate(first: Motion, second: Motion, angle_deg: float) -> Motion:
@@ -31,7 +32,9 @@ def rotate(first: Motion, second: Motion, angle_deg: float) -> Motion:
     """
     _check_pair(first, second)
     angle = math.radians(real_number("rotate: angle_deg", angle_deg, "degrees"))
-    turned = first.acceleration * math.cos(angle) + second.acceleration * math.sin(angle)
+    turned = first.acceleration * math.cos(angle) + second.acceleration * math.sin(
+        angle
+    )
     return first.after("rotate", turned, second=second.name, angle_deg=float(angle_deg))
 
 
@@ -56,14 +59,18 @@ def rotd(
     """
     percentile = real_number("rotd: percentile", percentile)
     if not 0 <= percentile <= 100:
-        raise InputError(f"rotd: percentile must lie between 0 and 100, got {percentile}.")
+        raise InputError(
+            f"rotd: percentile must lie between 0 and 100, got {percentile}."
+        )
     values = [measure(rotate(first, second, angle)) for angle in DIRECTIONS_DEG]
     return float(np.percentile(values, percentile))
 
 
 def rotate_to_azimuth(first: Motion, second: Motion, azimuth_deg: float) -> Motion:
     """Component of a horizontal motion in the direction of an azimuth."""
-    wanted = math.radians(real_number("rotate_to_azimuth: azimuth_deg", azimuth_deg, "degrees"))
+    wanted = math.radians(
+        real_number("rotate_to_azimuth: azimuth_deg", azimuth_deg, "degrees")
+    )
     angles = [math.radians(azimuth(motion)) for motion in (first, second)]
     sine = math.sin(angles[1] - angles[0])
     if abs(sine) < math.cos(math.radians(_RIGHT_ANGLE)):
@@ -76,7 +83,9 @@ def rotate_to_azimuth(first: Motion, second: Motion, azimuth_deg: float) -> Moti
     parts = math.sin(angles[1] - wanted) / sine, math.sin(wanted - angles[0]) / sine
     turned = parts[0] * first.acceleration + parts[1] * other.acceleration
     full = float(azimuth_deg) % 360
-    moved = first.after("rotate to azimuth", turned, second=second.name, azimuth_deg=full)
+    moved = first.after(
+        "rotate to azimuth", turned, second=second.name, azimuth_deg=full
+    )
     facts = {**moved.metadata, "component": f"{full:g}"}
     facts.pop("azimuth_deg", None)
     return replace(moved, metadata=facts)
@@ -97,7 +106,13 @@ def azimuth(motion: Motion) -> float:
     name = str(motion.metadata.get("component") or "")
     found = float(stated) if stated is not None else azimuth_of(name)
     if found is None:
-        kind = "a vertical one" if is_vertical(name) else f"{name!r}" if name else "not stated"
+        kind = (
+            "a vertical one"
+            if is_vertical(name)
+            else f"{name!r}"
+            if name
+            else "not stated"
+        )
         raise InputError(
             f"motion {motion.name!r}: its component is {kind}, so that its azimuth is not known; give "
             "metadata['azimuth_deg']."
@@ -124,7 +139,8 @@ def _check_pair(first: Motion, second: Motion) -> None:
         )
 
 
-_WHOLE = 1e-3  # fraction of a sampling interval within which a shift counts as one of whole samples
+# fraction of a sampling interval within which a shift counts as one of whole samples
+_WHOLE = 1e-3
 
 
 def common_time(
@@ -146,12 +162,17 @@ def common_time(
         named = (str(motion.metadata.get("component") or "") for motion in motions)
         verticals = [place for place, name in enumerate(named) if is_vertical(name)]
     # whose samples the others follow
-    lying = [i for i in range(len(motions)) if i not in verticals] or range(len(motions))
+    lying = [i for i in range(len(motions)) if i not in verticals] or range(
+        len(motions)
+    )
     lead = min(lying, key=lambda i: motions[i].dt)
     dt = motions[lead].dt
     after = (max(starts) - starts[lead]) / dt
     first = starts[lead] + math.ceil(after - _WHOLE) * dt
-    last = min(s + (m.acceleration.size - 1) * m.dt for s, m in zip(starts, motions, strict=True))
+    last = min(
+        s + (m.acceleration.size - 1) * m.dt
+        for s, m in zip(starts, motions, strict=True)
+    )
     count = int(np.floor((last - first) / dt + _WHOLE)) + 1
     names = ", ".join(repr(motion.name) for motion in motions)
     if count < 2:
@@ -159,7 +180,8 @@ def common_time(
             f"{names}: these components have no time in common; are they of one record?"
         )
     return [
-        _at(motion, first - start, dt, count) for start, motion in zip(starts, motions, strict=True)
+        _at(motion, first - start, dt, count)
+        for start, motion in zip(starts, motions, strict=True)
     ]
 
 
@@ -170,7 +192,9 @@ def _at(motion: Motion, begin: float, dt: float, count: int) -> Motion:
     if same:
         samples = motion.acceleration[round(shift) : round(shift) + count]
     else:
-        samples = np.interp(begin + np.arange(count) * dt, motion.time, motion.acceleration)
+        samples = np.interp(
+            begin + np.arange(count) * dt, motion.time, motion.acceleration
+        )
     if same and round(shift) == 0 and samples.size == motion.acceleration.size:
         return motion
     if begin > 0:

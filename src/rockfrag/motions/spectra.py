@@ -81,13 +81,18 @@ def oscillator_matrix(omega: float, damping: float, step: float) -> Floats:
     turn = omega * math.sqrt(abs(1 - damping**2))
     if damping < 1:
         decay = math.exp(-rate * step)
-        cosine, sine = decay * math.cos(turn * step), decay * math.sin(turn * step) / turn
+        cosine, sine = (
+            decay * math.cos(turn * step),
+            decay * math.sin(turn * step) / turn,
+        )
     elif damping > 1:
         slow, fast = math.exp((turn - rate) * step), math.exp(-(turn + rate) * step)
         cosine, sine = (slow + fast) / 2, (slow - fast) / (2 * turn)
     else:
         cosine, sine = math.exp(-rate * step), step * math.exp(-rate * step)
-    free = np.array([[cosine + rate * sine, sine], [-(omega**2) * sine, cosine - rate * sine]])
+    free = np.array(
+        [[cosine + rate * sine, sine], [-(omega**2) * sine, cosine - rate * sine]]
+    )
     # the steady answer to a and to s at the beginning of the step, and one step later
     before = np.array([[-1.0, 2 * damping / omega], [0.0, -1.0]]) / omega**2
     after = before + np.array([[0.0, -step], [0.0, 0.0]]) / omega**2
@@ -95,15 +100,27 @@ def oscillator_matrix(omega: float, damping: float, step: float) -> Floats:
 
 
 @cached_njit()
-def _histories(acceleration: Floats, step: float, matrix: Floats) -> tuple[Floats, Floats]:
+def _histories(
+    acceleration: Floats, step: float, matrix: Floats
+) -> tuple[Floats, Floats]:
     """Relative displacement and velocity at the samples, from rest."""
     n = acceleration.size
     u, v = np.zeros(n), np.zeros(n)
     for i in range(n - 1):
         a = acceleration[i]
         s = (acceleration[i + 1] - a) / step
-        u[i + 1] = matrix[0, 0] * u[i] + matrix[0, 1] * v[i] + matrix[0, 2] * a + matrix[0, 3] * s
-        v[i + 1] = matrix[1, 0] * u[i] + matrix[1, 1] * v[i] + matrix[1, 2] * a + matrix[1, 3] * s
+        u[i + 1] = (
+            matrix[0, 0] * u[i]
+            + matrix[0, 1] * v[i]
+            + matrix[0, 2] * a
+            + matrix[0, 3] * s
+        )
+        v[i + 1] = (
+            matrix[1, 0] * u[i]
+            + matrix[1, 1] * v[i]
+            + matrix[1, 2] * a
+            + matrix[1, 3] * s
+        )
     return u, v
 
 
@@ -158,7 +175,12 @@ def _response(
 
 @cached_njit()
 def _peak_near(
-    order: int, start: tuple[float, float, float, float], c: float, k: float, t: float, h: float
+    order: int,
+    start: tuple[float, float, float, float],
+    c: float,
+    k: float,
+    t: float,
+    h: float,
 ) -> float:
     """Largest value of a response within a step of length h, of which it turns about t after its beginning."""
     _, slope, curvature = _response(order, start, c, k, t)
@@ -194,13 +216,21 @@ def peak_within(
     early = turning_time(x0, m0, x, m, middle)
     late = middle + turning_time(x, m, x1, m1, h - middle)
     return float(
-        max(_peak_near(order, start, c, k, early, h), _peak_near(order, start, c, k, late, h))
+        max(
+            _peak_near(order, start, c, k, early, h),
+            _peak_near(order, start, c, k, late, h),
+        )
     )
 
 
 @cached_njit()
 def _peaks(
-    acceleration: Floats, step: float, parts: int, matrix: Floats, omega: float, damping: float
+    acceleration: Floats,
+    step: float,
+    parts: int,
+    matrix: Floats,
+    omega: float,
+    damping: float,
 ) -> tuple[float, float, float]:
     """Peaks of relative displacement and velocity and total acceleration, between steps too."""
     c, k = 2 * damping * omega, omega * omega
@@ -213,8 +243,18 @@ def _peaks(
         s = (acceleration[i + 1] - start) / (parts * step)
         for j in range(parts):
             a = start + j * step * s
-            u1 = matrix[0, 0] * u + matrix[0, 1] * v + matrix[0, 2] * a + matrix[0, 3] * s
-            v1 = matrix[1, 0] * u + matrix[1, 1] * v + matrix[1, 2] * a + matrix[1, 3] * s
+            u1 = (
+                matrix[0, 0] * u
+                + matrix[0, 1] * v
+                + matrix[0, 2] * a
+                + matrix[0, 3] * s
+            )
+            v1 = (
+                matrix[1, 0] * u
+                + matrix[1, 1] * v
+                + matrix[1, 2] * a
+                + matrix[1, 3] * s
+            )
             total1 = -(c * v1 + k * u1)
             relative1 = total1 - (a + step * s)
             jerk1 = -(c * relative1 + k * v1)
@@ -280,7 +320,9 @@ def response_spectrum(
         parts = steps_within(motion.dt, period, damping)
         step = motion.dt / parts
         # one period of free vibration holds the first peak of either sign, and later ones are smaller
-        acceleration = np.pad(motion.acceleration, (0, math.ceil(period / motion.dt) + 1))
+        acceleration = np.pad(
+            motion.acceleration, (0, math.ceil(period / motion.dt) + 1)
+        )
         matrix = oscillator_matrix(omega, damping, step)
         peaks[i] = _peaks(acceleration, step, parts, matrix, omega, damping)
     return ResponseSpectrum(checked, damping, *peaks.T)
@@ -301,7 +343,9 @@ def fourier_amplitude(motion: Motion, least_length: int = 0) -> tuple[Floats, Fl
 def _checked_periods(periods: ArrayLike | Sequence[float]) -> Floats:
     checked = np.atleast_1d(np.asarray(periods, dtype=np.float64))
     if checked.ndim != 1 or checked.size == 0:
-        raise InputError("response spectrum: at least one period [s] is needed, in one dimension.")
+        raise InputError(
+            "response spectrum: at least one period [s] is needed, in one dimension."
+        )
     bad = checked[~(np.isfinite(checked) & (checked > 0))]
     if bad.size:
         raise InputError(
@@ -335,10 +379,13 @@ _ROWS = 21
 _Group = tuple[NDArray[np.intp], int, float, int, Floats]
 """Which oscillators take steps of one length, steps a sample, step [s], samples of quiet at the end, and table."""
 
-LOOK_EVERY = 32  # samples of a stretch, after which is asked whether anything larger can still come
+# samples of a stretch, after which is asked whether anything larger can still come
+LOOK_EVERY = 32
 
 
-def peak_displacements(motion: Motion, periods: Floats, damping: float = 0.05) -> Floats:
+def peak_displacements(
+    motion: Motion, periods: Floats, damping: float = 0.05
+) -> Floats:
     """Sd of many oscillators [m], shape (k,), as :func:`response_spectrum` gives it, bit by bit.
 
     The motion is linear between samples and zero after the last one; ``periods`` [s], shape (k,), are positive.
@@ -347,7 +394,9 @@ def peak_displacements(motion: Motion, periods: Floats, damping: float = 0.05) -
     peaks = np.empty(periods.size)
     # largest |a| from each sample on
     to_come = np.maximum.accumulate(np.abs(motion.acceleration[::-1]))[::-1]
-    for which, parts, step, quiet, table in _groups(periods.tobytes(), damping, motion.dt):
+    for which, parts, step, quiet, table in _groups(
+        periods.tobytes(), damping, motion.dt
+    ):
         x = table.copy()
         x[_ADDED : _ADDED + LANES] *= to_come[0]
         _integrate(motion.acceleration, to_come, quiet, step, parts, x)
@@ -398,7 +447,12 @@ def _sample(acceleration: Floats, i: int) -> float:
 
 @cached_njit(error_model="numpy")
 def _integrate(
-    acceleration: Floats, to_come: Floats, quiet: int, step: float, parts: int, x: Floats
+    acceleration: Floats,
+    to_come: Floats,
+    quiet: int,
+    step: float,
+    parts: int,
+    x: Floats,
 ) -> None:
     """Take all lanes through a motion and ``quiet`` samples after it; the peaks are in the table then."""
     end = acceleration.size - 1 + quiet
@@ -409,7 +463,9 @@ def _integrate(
     for first in range(0, end, LOOK_EVERY):
         if _settled(x, _sample(to_come, first)):
             break
-        steps = _fill_ground(acceleration, first, min(first + LOOK_EVERY, end), step, parts, ground)
+        steps = _fill_ground(
+            acceleration, first, min(first + LOOK_EVERY, end), step, parts, ground
+        )
         stretches[count, : 2 * LANES] = x[_U : _U + 2 * LANES]
         for i in range(LANES):
             x[_HIGHEST + i] = abs(x[_U + i])
@@ -424,7 +480,9 @@ def _integrate(
             continue
         x[_U : _U + 2 * LANES] = stretches[number, : 2 * LANES]
         first = number * LOOK_EVERY
-        steps = _fill_ground(acceleration, first, min(first + LOOK_EVERY, end), step, parts, ground)
+        steps = _fill_ground(
+            acceleration, first, min(first + LOOK_EVERY, end), step, parts, ground
+        )
         for j in range(steps):
             for i in range(LANES):
                 x[_U0 + i], x[_V0 + i] = x[_U + i], x[_V + i]
@@ -498,7 +556,14 @@ def _turns_high(x: Floats, a: float, s: float, step: float) -> bool:
 @cached_njit(error_model="numpy")
 def _look_between(x: Floats, i: int, a: float, s: float, step: float) -> None:
     """Let the peaks of lane i between the last two steps count, if they can be the largest."""
-    u, v, u1, v1, c, k = x[_U0 + i], x[_V0 + i], x[_U + i], x[_V + i], x[_C + i], x[_K + i]
+    u, v, u1, v1, c, k = (
+        x[_U0 + i],
+        x[_V0 + i],
+        x[_U + i],
+        x[_V + i],
+        x[_C + i],
+        x[_K + i],
+    )
     if max(abs(u), abs(u1)) + x[_ADDED + i] > x[_KEPT + i] * x[_LARGEST + i]:
         first = u, v, -(c * v + k * u) - a
         last = u1, v1, -(c * v1 + k * u1) - (a + step * s)

@@ -28,7 +28,8 @@ LOWEST_FREQUENCY = 0.3
 """The filter frequency of the evolutionary process never falls below this [Hz] (Rezaeian & Der
 Kiureghian 2010)."""
 
-ITERATIONS = 50  # corrections of the Fourier amplitudes on the way to a spectrum-compatible motion
+# corrections of the Fourier amplitudes on the way to a spectrum-compatible motion
+ITERATIONS = 50
 
 
 def evolutionary(
@@ -67,12 +68,18 @@ def evolutionary(
     """
     who = "evolutionary"
     seed = whole_within(who, "seed", seed, 0, 2**63 - 1)
-    for name, value in (("arias_m_s", arias_m_s), ("mid_hz", mid_hz), ("corner_hz", corner_hz)):
+    for name, value in (
+        ("arias_m_s", arias_m_s),
+        ("mid_hz", mid_hz),
+        ("corner_hz", corner_hz),
+    ):
         positive_number(f"{who}: {name}", value)
     positive_number(f"{who}: dt", dt, "seconds")
     real_number(f"{who}: slope_hz_s", slope_hz_s)
     if not 0.02 <= real_number(f"{who}: filter_damping", filter_damping) < 1:
-        raise InputError(f"{who}: filter_damping must lie in 0.02 … 1, got {filter_damping}.")
+        raise InputError(
+            f"{who}: filter_damping must lie in 0.02 … 1, got {filter_damping}."
+        )
     shape, spread = _envelope(who, d5_95_s, mid_s)
     end = float(gamma.ppf(1 - 1e-4, shape, scale=spread))
     count = whole_within(who, "number of samples", math.ceil(end / dt) + 1, 10, 200_000)
@@ -91,8 +98,17 @@ def evolutionary(
     padded = Motion(np.pad(strong, (0, math.ceil(2 / (corner_hz * dt)))), dt)
     drift = oscillator_response(padded, 1 / corner_hz, damping=1.0)[2]
     given = {
-        **{"arias_m_s": arias_m_s, "d5_95_s": d5_95_s, "mid_s": mid_s, "mid_hz": mid_hz},
-        **{"slope_hz_s": slope_hz_s, "filter_damping": filter_damping, "corner_hz": corner_hz},
+        **{
+            "arias_m_s": arias_m_s,
+            "d5_95_s": d5_95_s,
+            "mid_s": mid_s,
+            "mid_hz": mid_hz,
+        },
+        **{
+            "slope_hz_s": slope_hz_s,
+            "filter_damping": filter_damping,
+            "corner_hz": corner_hz,
+        },
     }
     source = "Rezaeian & Der Kiureghian (2008, 2010)"
     return _synthetic(padded.acceleration - drift, dt, who, source, seed, given)
@@ -142,14 +158,22 @@ def spectrum_compatible(
     quiet = float(given[-1])
     strong = float(gamma.ppf(1 - 1e-3, shape, scale=spread))
     count = whole_within(
-        who, "number of samples", math.ceil((strong + 2 * quiet) / dt) + 1, 10, 1_000_000
+        who,
+        "number of samples",
+        math.ceil((strong + 2 * quiet) / dt) + 1,
+        10,
+        1_000_000,
     )
     noise = np.random.default_rng(seed).standard_normal(count)
-    acceleration = noise * np.sqrt(gamma.pdf(np.arange(count) * dt - quiet, shape, scale=spread))
+    acceleration = noise * np.sqrt(
+        gamma.pdf(np.arange(count) * dt - quiet, shape, scale=spread)
+    )
     window = tukey(count, alpha=2 * quiet / (count * dt))
     frequency = np.asarray(np.fft.rfftfreq(count, dt), dtype=np.float64)
     # one above 1 / quiet, zero below half of it, half a cosine between them
-    low_cut = (1 - np.cos(np.pi * np.clip(2 * frequency / (1 / quiet) - 1, 0.0, 1.0))) / 2
+    low_cut = (
+        1 - np.cos(np.pi * np.clip(2 * frequency / (1 / quiet) - 1, 0.0, 1.0))
+    ) / 2
 
     best, best_rms, best_max = acceleration, math.inf, math.inf
     for _ in range(ITERATIONS + 1):
@@ -167,7 +191,9 @@ def spectrum_compatible(
         **{"damping": damping, "d5_95_s": d5_95_s, "mid_s": mid_s},
     }
     misfit = {"misfit_rms": best_rms, "misfit_max": best_max}
-    return _synthetic(best, dt, who, "Gasparini & Vanmarcke (1976)", seed, parameters, **misfit)
+    return _synthetic(
+        best, dt, who, "Gasparini & Vanmarcke (1976)", seed, parameters, **misfit
+    )
 
 
 def _envelope(who: str, d5_95_s: float, mid_s: float) -> tuple[float, float]:
@@ -189,7 +215,9 @@ def _envelope(who: str, d5_95_s: float, mid_s: float) -> tuple[float, float]:
     return shape, middle / float(gamma.ppf(0.45, shape))
 
 
-def _unit_process(noise: Floats, frequency: Floats, damping: float, dt: float) -> Floats:
+def _unit_process(
+    noise: Floats, frequency: Floats, damping: float, dt: float
+) -> Floats:
     """White noise through a filter that changes with the time of each impulse, at unit variance."""
     count = noise.size
     lag = np.arange(count) * dt
@@ -210,7 +238,9 @@ def _unit_process(noise: Floats, frequency: Floats, damping: float, dt: float) -
     return np.divide(total, np.sqrt(variance), out=np.zeros(count), where=variance > 0)
 
 
-def _target(who: str, periods: ArrayLike, target_g: ArrayLike, dt: float) -> tuple[Floats, Floats]:
+def _target(
+    who: str, periods: ArrayLike, target_g: ArrayLike, dt: float
+) -> tuple[Floats, Floats]:
     given = np.asarray(periods, dtype=np.float64)
     wanted = np.asarray(target_g, dtype=np.float64)
     if given.ndim != 1 or given.shape != wanted.shape or given.size < 2:
@@ -218,19 +248,25 @@ def _target(who: str, periods: ArrayLike, target_g: ArrayLike, dt: float) -> tup
             f"{who}: periods and target_g need one common length of two or more, "
             f"got shapes {given.shape} and {wanted.shape}."
         )
-    if not (np.isfinite(given).all() and (np.diff(given) > 0).all() and given[0] >= 4 * dt):
+    if not (
+        np.isfinite(given).all() and (np.diff(given) > 0).all() and given[0] >= 4 * dt
+    ):
         raise InputError(
             f"{who}: periods must increase from at least 4 dt = {4 * dt:g} s, got {given.tolist()}."
         )
     if not (np.isfinite(wanted).all() and (wanted > 0).all()):
-        raise InputError(f"{who}: target_g must be positive numbers, got {wanted.tolist()}.")
+        raise InputError(
+            f"{who}: target_g must be positive numbers, got {wanted.tolist()}."
+        )
     return given, wanted * GRAVITY
 
 
 def _at_rest(acceleration: Floats, window: Floats, dt: float) -> Floats:
     """Bring velocity and displacement to rest at the end with a windowed straight line."""
     lines = [window, window * np.linspace(0.0, 1.0, window.size)]
-    ends = np.array([[history[-1] for history in integrate(line, dt)] for line in lines])
+    ends = np.array(
+        [[history[-1] for history in integrate(line, dt)] for line in lines]
+    )
     drift = np.array([history[-1] for history in integrate(acceleration, dt)])
     first, second = np.linalg.solve(ends.T, drift)
     return np.asarray(acceleration - first * lines[0] - second * lines[1])

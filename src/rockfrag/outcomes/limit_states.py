@@ -18,7 +18,8 @@ Predicate = Callable[[Outcomes], NDArray[np.bool_]]
 
 OVERTURNS = "overturns"  # name of the limit state that every IDA curve counts
 ROCKS = "rocks"  # name of the limit state that begins at an exactly known acceleration
-VISIBLE = 0.001  # slip above which a body counts as having slid [m]: a displacement that one sees
+# slip above which a body counts as having slid [m]: a displacement that one sees
+VISIBLE = 0.001
 
 
 @dataclass(frozen=True)
@@ -58,7 +59,9 @@ class LimitState:
 _STATES: dict[str, LimitState] = {}
 
 
-def limit_state(name: str, order: int, label: str, **more: Any) -> Callable[[Predicate], Predicate]:
+def limit_state(
+    name: str, order: int, label: str, **more: Any
+) -> Callable[[Predicate], Predicate]:
     """Declare the function below as the predicate of a limit state.
 
     Parameters
@@ -71,7 +74,9 @@ def limit_state(name: str, order: int, label: str, **more: Any) -> Callable[[Pre
     What takes the predicate and returns it as it is.
     """
     if not name.isidentifier():
-        raise InputError(f"limit state {name!r}: expected one word of letters, digits and _.")
+        raise InputError(
+            f"limit state {name!r}: expected one word of letters, digits and _."
+        )
 
     def declare(predicate: Predicate) -> Predicate:
         if name in _STATES:
@@ -106,7 +111,12 @@ _PUT_BACK = "Inspect and put back"
 
 
 @limit_state(
-    ROCKS, 10, "rocking", damage="Rocks and may be displaced", repair=_PUT_BACK, exact=True
+    ROCKS,
+    10,
+    "rocking",
+    damage="Rocks and may be displaced",
+    repair=_PUT_BACK,
+    exact=True,
 )
 def _rocks(outcomes: Outcomes) -> NDArray[np.bool_]:
     with np.errstate(invalid="ignore"):
@@ -114,15 +124,27 @@ def _rocks(outcomes: Outcomes) -> NDArray[np.bool_]:
 
 
 @limit_state(
-    "slides", 20, "sliding", damage="Slides and may be displaced", repair=_PUT_BACK, slipping=True
+    "slides",
+    20,
+    "sliding",
+    damage="Slides and may be displaced",
+    repair=_PUT_BACK,
+    slipping=True,
 )
 def _slides(outcomes: Outcomes) -> NDArray[np.bool_]:
     with np.errstate(invalid="ignore"):
-        return np.asarray((outcomes.peak_slip > VISIBLE).any(axis=-1)) | outcomes.overturned
+        return (
+            np.asarray((outcomes.peak_slip > VISIBLE).any(axis=-1))
+            | outcomes.overturned
+        )
 
 
 @limit_state(
-    OVERTURNS, 90, "overturning", damage="Overturned", repair="Restore or replace the object"
+    OVERTURNS,
+    90,
+    "overturning",
+    damage="Overturned",
+    repair="Restore or replace the object",
 )
 def _overturns(outcomes: Outcomes) -> NDArray[np.bool_]:
     return outcomes.overturned

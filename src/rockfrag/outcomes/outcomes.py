@@ -44,7 +44,11 @@ class Column:
     @property
     def dtype(self) -> np.dtype[Any]:
         """Type of its values; words are objects, as numpy cuts longer ones off otherwise."""
-        return np.dtype(object) if isinstance(self.empty, str) else np.asarray(self.empty).dtype
+        return (
+            np.dtype(object)
+            if isinstance(self.empty, str)
+            else np.asarray(self.empty).dtype
+        )
 
 
 def column(empty: Any = math.nan, unit: str = "", table: Table = "cases") -> Any:
@@ -88,7 +92,8 @@ class Outcomes:
     parted_contact: Small = column(np.int8(0))
     # times that more than one mode of contact was found consistent
     several_modes: Whole = column(np.int64(0))
-    paradoxes: Whole = column(np.int64(0))  # times that no mode of contact was consistent
+    # times that no mode of contact was consistent
+    paradoxes: Whole = column(np.int64(0))
     # least distance to an unstable equilibrium; infinite if it never rocked, NaN not told
     unstable_distance: Floats = column(math.inf)
     # least effective gravity over gravity while the ground moves
@@ -109,7 +114,8 @@ class Outcomes:
     fell_over: Words = column("", table="bodies")
     # displacement along the contact at the end, positive to the right
     slip: Floats = column(unit="m", table="contacts")
-    peak_slip: Floats = column(unit="m", table="contacts")  # largest displacement along the contact
+    # largest displacement along the contact
+    peak_slip: Floats = column(unit="m", table="contacts")
     # largest friction over normal force until the fall was due; NaN not told
     friction_demand: Floats = column(table="contacts")
     # least normal force until the fall was due; NaN not told
@@ -131,7 +137,9 @@ class Outcomes:
     def of_top(self, name: str) -> NDArray[Any]:
         """Return a column of bodies or contacts of the uppermost one, shape (systems, motions, scales)."""
         values = getattr(self, name)
-        return np.stack([values[i, ..., count - 1] for i, count in enumerate(self.counts)])
+        return np.stack(
+            [values[i, ..., count - 1] for i, count in enumerate(self.counts)]
+        )
 
     def of_any(self, name: str) -> NDArray[Any]:
         """Column of bodies or contacts where it is largest, or least of least ones, (systems, motions, scales)."""
@@ -174,10 +182,15 @@ class Outcomes:
         of cases ``engine`` too.
         """
         chosen = [
-            known for known in columns(which) if columns_of is None or known.name in columns_of
+            known
+            for known in columns(which)
+            if columns_of is None or known.name in columns_of
         ]
         whole = which == "cases"
-        (systems, motions, _), most = self.shape, 1 if whole else max(self.counts, default=0)
+        (systems, motions, _), most = (
+            self.shape,
+            1 if whole else max(self.counts, default=0),
+        )
         full = (*self.shape, most)
         made: dict[str, Any] = {
             "system": np.arange(systems)[:, np.newaxis, np.newaxis, np.newaxis],
@@ -188,11 +201,16 @@ class Outcomes:
             made["body" if which == "bodies" else "contact"] = np.arange(1, most + 1)
             padded = [[*names, *[""] * (most - len(names))] for names in self.names]
             made["name"] = np.array(padded, dtype=object)[:, np.newaxis, np.newaxis, :]
-        made |= {known.title: getattr(self, known.name).reshape(full) for known in chosen}
+        made |= {
+            known.title: getattr(self, known.name).reshape(full) for known in chosen
+        }
         if whole:
             engines = np.array(self.engines, dtype=object)
             made["engine"] = engines[self.engine][..., np.newaxis]
-        there = np.arange(most) < np.array(self.counts)[:, np.newaxis, np.newaxis, np.newaxis]
+        there = (
+            np.arange(most)
+            < np.array(self.counts)[:, np.newaxis, np.newaxis, np.newaxis]
+        )
         rows = np.broadcast_to(there, full).ravel()
         return pd.DataFrame(
             {name: np.broadcast_to(a, full).ravel()[rows] for name, a in made.items()}
@@ -217,7 +235,9 @@ def empty_outcomes(
     most = max((len(each) for each in names), default=0)
     arrays = {
         known.name: np.full(
-            shape if known.table == "cases" else (*shape, most), known.empty, known.dtype
+            shape if known.table == "cases" else (*shape, most),
+            known.empty,
+            known.dtype,
         )
         for known in columns()
     }
@@ -233,7 +253,9 @@ def empty_outcomes(
 def merge_outcomes(into: Outcomes, rows: Sequence[int], found: Outcomes) -> None:
     """Write the outcomes of some systems, answered by one engine, into the rows of those of all."""
     place = np.asarray(rows, dtype=np.intp)
-    numbers = np.array([into.engines.index(name) for name in found.engines], dtype=np.int8)
+    numbers = np.array(
+        [into.engines.index(name) for name in found.engines], dtype=np.int8
+    )
     into.engine[place] = numbers[found.engine]
     for known in columns():
         values = getattr(found, known.name)

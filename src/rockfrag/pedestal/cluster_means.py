@@ -19,13 +19,16 @@ from scipy import special, stats
 Array = npt.NDArray[np.float64]
 
 CONFIDENCE = 0.95
-MARGIN = 0.10  # largest change of the overturning amplitude that counts as none, ±10 % [-]
+# largest change of the overturning amplitude that counts as none, ±10 % [-]
+MARGIN = 0.10
 ROUNDING = 1e-12  # differences of logarithms below this are rounding, not scatter [-]
 POWER, LEVEL = 0.80, 0.05
 DRAWS = 9_999
 """Up to so many sign patterns (13 units) all are enumerated; of more, so many are drawn."""
-MOST_DRAWN = 500  # units beyond which the mean under flipped signs has the normal distribution
-MOST_LEFT_OUT = 100  # earthquakes up to which each is left out in turn; of more, none says much
+# units beyond which the mean under flipped signs has the normal distribution
+MOST_DRAWN = 500
+# earthquakes up to which each is left out in turn; of more, none says much
+MOST_LEFT_OUT = 100
 WITHOUT_COLUMNS = ["without", "ratio", "lower", "upper", "p", "largest_change"]
 """Columns of `leave_one_earthquake_out`."""
 
@@ -75,7 +78,13 @@ class Estimate:
         lower, upper = sorted((self.lower * factor, self.upper * factor))
         resolution = self.resolution * abs(factor)
         return Estimate(
-            self.mean * factor, self.se * abs(factor), self.units, lower, upper, self.p, resolution
+            self.mean * factor,
+            self.se * abs(factor),
+            self.units,
+            lower,
+            upper,
+            self.p,
+            resolution,
         )
 
     def p_above(self, bound: float) -> float:
@@ -121,7 +130,9 @@ def t_estimate(
     se = max(scatter, resolution / math.sqrt(3 * x.size))
     if se == 0:
         return Estimate(mean, 0.0, x.size, math.nan, math.nan, math.nan)
-    half = max(float(special.stdtrit(x.size - 1, 0.5 + confidence / 2)) * se, resolution)
+    half = max(
+        float(special.stdtrit(x.size - 1, 0.5 + confidence / 2)) * se, resolution
+    )
     p = 1.0
     if abs(mean) > resolution:
         p = float(2 * special.stdtr(x.size - 1, -abs(mean) / se))
@@ -131,7 +142,9 @@ def t_estimate(
 def tied_resolution(values: npt.ArrayLike, resolution: npt.ArrayLike) -> Array:
     """Resolution of the values that equal the most frequent one (to 9 decimals), 0 for the others, (n,) [-]."""
     rounded = np.round(np.asarray(values, dtype=float), 9) + 0.0
-    different, place, count = np.unique(rounded, return_inverse=True, return_counts=True)
+    different, place, count = np.unique(
+        rounded, return_inverse=True, return_counts=True
+    )
     tied = place == int(count.argmax()) if different.size else np.zeros(0, dtype=bool)
     return np.asarray(np.where(tied, np.asarray(resolution, dtype=float), 0.0))
 
@@ -143,7 +156,12 @@ def resolution_of(table: pd.DataFrame) -> Array:
 
 def earthquake_means(table: pd.DataFrame) -> pd.Series:
     """Means of d by earthquake: over the pairs of a motion, then over motions."""
-    return table.groupby(["earthquake", "motion"])["d"].mean().groupby(level="earthquake").mean()
+    return (
+        table.groupby(["earthquake", "motion"])["d"]
+        .mean()
+        .groupby(level="earthquake")
+        .mean()
+    )
 
 
 def mean_effect(table: pd.DataFrame) -> Estimate:
@@ -187,7 +205,10 @@ def sampled_units(table: pd.DataFrame, by: str) -> dict[Hashable, Units]:
     motions = motions.reset_index()
     units = pd.concat([several, motions[~motions[by].isin(several[by])]])
     d, hidden = units["d"].to_numpy(), units["hidden"].to_numpy()
-    return {name: Units(d[rows], hidden[rows]) for name, rows in units.groupby(by).indices.items()}
+    return {
+        name: Units(d[rows], hidden[rows])
+        for name, rows in units.groupby(by).indices.items()
+    }
 
 
 def equivalence(effect: Estimate, margin: float = MARGIN) -> float:
@@ -222,7 +243,9 @@ def _detectable_size(units: int) -> float:
     from statsmodels.stats.power import TTestPower
 
     return float(
-        TTestPower().solve_power(nobs=units, alpha=LEVEL / 2, power=POWER, alternative="larger")
+        TTestPower().solve_power(
+            nobs=units, alpha=LEVEL / 2, power=POWER, alternative="larger"
+        )
     )
 
 

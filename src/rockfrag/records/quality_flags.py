@@ -13,7 +13,9 @@ _KINDS: dict[tuple[bytes, ...], str] = {
     (b"\xff\xfe", b"\xfe\xff"): "UTF-16 text; save it as UTF-8",
     (b"%PDF",): "a PDF document",
     (b"\xd0\xcf\x11\xe0",): "an Excel workbook; save the sheet as CSV",
-    (b"version https://git-lfs",): "a pointer of git-lfs; fetch the file itself with git lfs pull",
+    (
+        b"version https://git-lfs",
+    ): "a pointer of git-lfs; fetch the file itself with git lfs pull",
     (b"\x89HDF",): "an HDF5 file; export the record as text",
     (b"MATLAB 5.0 MAT-file",): "a MATLAB file; export the record as text",
     (b"PAR1",): "a Parquet table; export the record as text",
@@ -25,7 +27,9 @@ _KINDS: dict[tuple[bytes, ...], str] = {
 
 _HTML = re.compile(rb"^\s*(?:<!--.*?-->\s*)*<(?:!doctype\s+html|html)\b", re.I | re.S)
 _XML = re.compile(rb"^\s*<\?xml\b")
-_SPECTRA = re.compile(rb"\b(?:response|fourier|pseudo\S*|elastic)\s+(?:\w+\s+){0,3}spectr", re.I)
+_SPECTRA = re.compile(
+    rb"\b(?:response|fourier|pseudo\S*|elastic)\s+(?:\w+\s+){0,3}spectr", re.I
+)
 
 
 def foreign_kind(head: bytes) -> str:
@@ -40,20 +44,30 @@ def foreign_kind(head: bytes) -> str:
         return "a web page (HTML), perhaps of a login or an error, and not the record"
     if _XML.match(head):
         station = b"StationXML" in head
-        return "StationXML, which describes instruments and has no samples" if station else "XML"
+        return (
+            "StationXML, which describes instruments and has no samples"
+            if station
+            else "XML"
+        )
     if b"\x00" not in head and _SPECTRA.search(head[:2000]):
         return "a file of spectra, not of acceleration in time"
     return ""
 
 
 STRONGEST_G = 3.0  # peak [g] that hardly any record of an earthquake exceeds
-_COARSEST = 0.025  # sampling interval [s] above which 20 Hz, which rocking bodies feel, are lost
-_DRIFT = 0.5  # fraction of the peak velocity that is left at the end of a record with a drift
-_CLIPPED_RUN = 4  # samples in a row at the largest value of a record cut off at its sensor's range
-_LATE = 0.2  # fraction of the peak in the first tenth of a second of a record begun too late
+# sampling interval [s] above which 20 Hz, which rocking bodies feel, are lost
+_COARSEST = 0.025
+# fraction of the peak velocity that is left at the end of a record with a drift
+_DRIFT = 0.5
+# samples in a row at the largest value of a record cut off at its sensor's range
+_CLIPPED_RUN = 4
+# fraction of the peak in the first tenth of a second of a record begun too late
+_LATE = 0.2
 _SPIKE = 0.5  # fraction of the peak by which a lone sample leaves its neighbours
-_SPIKE_RATIO = 20.0  # ratio of a spike to what nine tenths of the samples leave their neighbours by
-_DOUBLED = 0.9  # fraction of the samples that repeat the one before in a record of doubled samples
+# ratio of a spike to what nine tenths of the samples leave their neighbours by
+_SPIKE_RATIO = 20.0
+# fraction of the samples that repeat the one before in a record of doubled samples
+_DOUBLED = 0.9
 
 
 def quality_flags(motion: Motion) -> list[str]:
@@ -67,15 +81,21 @@ def quality_flags(motion: Motion) -> list[str]:
             f"a peak of {peak / GRAVITY:.3g} g, above {STRONGEST_G:g} g (is the unit right?)"
         )
     if motion.dt > _COARSEST:
-        found.append(f"a sampling interval of {motion.dt:g} s, too long for short impacts")
+        found.append(
+            f"a sampling interval of {motion.dt:g} s, too long for short impacts"
+        )
     if a.size < 10:
         return [*found, f"only {a.size} samples"]
     velocity = np.cumsum(0.5 * (a[1:] + a[:-1]))
     left, fastest = abs(float(velocity[-1])), float(np.abs(velocity).max())
     left = left / fastest if fastest else 0.0
     if left > _DRIFT:
-        found.append(f"a drift: {100 * left:.0f} % of the peak velocity is left at the end")
-    edges = np.flatnonzero(np.diff(np.abs(a) >= peak * (1 - 1e-9), prepend=False, append=False))
+        found.append(
+            f"a drift: {100 * left:.0f} % of the peak velocity is left at the end"
+        )
+    edges = np.flatnonzero(
+        np.diff(np.abs(a) >= peak * (1 - 1e-9), prepend=False, append=False)
+    )
     if (edges[1::2] - edges[::2]).max() >= _CLIPPED_RUN:
         found.append("its peak is flat, as if clipped")
     first = a[: max(2, round(0.1 / motion.dt))]

@@ -25,20 +25,24 @@ from rockfrag.tabular import printable
 from rockfrag.units import GRAVITY
 
 FORMATS = (*HEADED, plain.FORMAT)  # those read here; ObsPy reads some others
-_GRAVITY_FRACTION = 0.05  # a mean within this fraction of g is the weight of the sensor's mass
+# a mean within this fraction of g is the weight of the sensor's mass
+_GRAVITY_FRACTION = 0.05
 
-_SAME_STEP = 1e-9  # fraction of an interval by which the user's may differ from the stated one
+# fraction of an interval by which the user's may differ from the stated one
+_SAME_STEP = 1e-9
 
 
 @dataclass(frozen=True)
 class Record:
     """The acceleration channels of one file, or of one member or all of an archive."""
 
-    name: str  # path of the file, with ``#member`` where one member of an archive was asked for
+    # path of the file, with ``#member`` where one member of an archive was asked for
+    name: str
     format: str  # of those of an archive's members, joined by ``+``
     sha256: str  # of the file; of the archive for its members
     channels: tuple[Channel, ...]
-    left_out: tuple[tuple[str, InputError], ...] = ()  # members without acceleration, and why
+    # members without acceleration, and why
+    left_out: tuple[tuple[str, InputError], ...] = ()
 
     __repr__ = short_repr
 
@@ -49,7 +53,9 @@ def read_record(
     """Return what is in a file, before units are settled."""
     name, (file, mark, member) = str(path), str(path).partition("#")
     # a file whose own name has a # is that file
-    if not (mark and not os.path.lexists(name) and os.path.isfile(file) and is_archive(file)):
+    if not (
+        mark and not os.path.lexists(name) and os.path.isfile(file) and is_archive(file)
+    ):
         file, member = name, ""
     check_file(file)
     if is_archive(file):
@@ -68,13 +74,17 @@ def read_untold(path: Path, dt: float | None) -> tuple[Record, float | None]:
     return read_record(path, dt), dt
 
 
-def _channels(path: Path, dt: float | None, cut_short: bool) -> tuple[str, list[Channel]]:
+def _channels(
+    path: Path, dt: float | None, cut_short: bool
+) -> tuple[str, list[Channel]]:
     found = next((known for known in FORMATS if known.is_format(path)), None)
     if found is None:
         name, channels = obspy_channels(path, cut_short)
     else:
         name, channels = found.name, found.channels(path, dt, cut_short)
-    if dt is not None and any(abs(channel.dt - dt) > _SAME_STEP * dt for channel in channels):
+    if dt is not None and any(
+        abs(channel.dt - dt) > _SAME_STEP * dt for channel in channels
+    ):
         raise InputError(
             f"{path}: the file states dt = {channels[0].dt:g} s, not {dt:g} s; leave dt= out."
         )
@@ -99,7 +109,9 @@ def _archived(file: str, wanted: str, dt: float | None, cut_short: bool) -> Reco
                 found = [replace(channel, member=member.name) for channel in found]
             except InputError as error:
                 # the user knows the archive's names, not where they lie unpacked
-                told = type(error)(str(error).replace(str(member.path), f"{file}#{member.name}"))
+                told = type(error)(
+                    str(error).replace(str(member.path), f"{file}#{member.name}")
+                )
                 if wanted:
                     raise told from None
                 left_out.append((member.name, told))
@@ -115,7 +127,9 @@ def _archived(file: str, wanted: str, dt: float | None, cut_short: bool) -> Reco
         channels = [replace(channel, member="") for channel in channels]
     name = f"{file}#{wanted}" if wanted else file
     digest = sha256_of(Path(file))
-    return Record(name, "+".join(sorted(forms)), digest, tuple(channels), tuple(left_out))
+    return Record(
+        name, "+".join(sorted(forms)), digest, tuple(channels), tuple(left_out)
+    )
 
 
 @named_keywords
@@ -160,7 +174,10 @@ def choose_channel(record: Record, wanted: str | None) -> Channel:
         raise InputError(
             f"{record.name}: the file has several channels, {_listed(record)}; choose one with channel=."
         )
-    azimuth, letter = quantities.azimuth_of(wanted), len(wanted) == 1 and wanted.isalpha()
+    azimuth, letter = (
+        quantities.azimuth_of(wanted),
+        len(wanted) == 1 and wanted.isalpha(),
+    )
     names, ending = quantities.plain_name(wanted), wanted.upper()
     # a SEED code names its sensor, not always its direction
     turned = [c for c in channels if azimuth is not None and c.component != c.code]
@@ -175,7 +192,9 @@ def choose_channel(record: Record, wanted: str | None) -> Channel:
     if wanted.isdigit() and not found and 1 <= int(wanted) <= len(channels):
         return channels[int(wanted) - 1]
     problem = "several channels answer" if found else "no channel answers"
-    raise InputError(f"{record.name}: {problem} to {wanted!r}; there are {_listed(record)}.")
+    raise InputError(
+        f"{record.name}: {problem} to {wanted!r}; there are {_listed(record)}."
+    )
 
 
 def motion_of(
@@ -196,7 +215,11 @@ def motion_of(
         "unit_stated": bool(channel.unit),
         "factor_to_m_s2": factor,
         **({"member": channel.member} if channel.member else {}),
-        **({"left_out": [name for name, _ in record.left_out]} if record.left_out else {}),
+        **(
+            {"left_out": [name for name, _ in record.left_out]}
+            if record.left_out
+            else {}
+        ),
     }
     steps: list[Mapping[str, Any]] = [read, *channel.steps]
     mean = float(acceleration.mean())
@@ -214,7 +237,9 @@ def motion_of(
     return Motion(acceleration, channel.dt, name, metadata, tuple(steps))
 
 
-def _in_si(record: Record, samples: NDArray[np.float64], factor: float) -> NDArray[np.float64]:
+def _in_si(
+    record: Record, samples: NDArray[np.float64], factor: float
+) -> NDArray[np.float64]:
     """Return samples in m/s², all of them finite numbers."""
     with np.errstate(over="ignore"):
         acceleration = samples * factor
@@ -282,7 +307,9 @@ def _settled_unit(
 def _listed(record: Record) -> str:
     named = ((c.member, c.code, c.component) for c in record.channels)
     words = (" ".join(dict.fromkeys(filter(None, names))) for names in named)
-    return "; ".join(f"{k}: {both}" if both else str(k) for k, both in enumerate(words, start=1))
+    return "; ".join(
+        f"{k}: {both}" if both else str(k) for k, both in enumerate(words, start=1)
+    )
 
 
 def _names_of(channel: Channel) -> set[str]:

@@ -22,7 +22,10 @@ _USUAL_UNITS = {"AT2": "g", "SEISMOSOFT": "g"}
 
 @named_keywords
 def write_motion(
-    motion: Motion, path: str | os.PathLike[str], format: str | None = None, unit: str | None = None
+    motion: Motion,
+    path: str | os.PathLike[str],
+    format: str | None = None,
+    unit: str | None = None,
 ) -> Path:
     """Write a motion, be it a record, processed, of a floor or synthetic, and return the path.
 
@@ -45,26 +48,38 @@ def write_motion(
     name = _format(path, format)
     stored = asked_unit(unit) if unit is not None else _USUAL_UNITS.get(name, "m/s2")
     if name == "MSEED" and stored != "m/s2":
-        raise InputError(f"{path}: MiniSEED is written in m/s2, not {unit}; leave unit= out.")
+        raise InputError(
+            f"{path}: MiniSEED is written in m/s2, not {unit}; leave unit= out."
+        )
     try:
         facts = motion.metadata
         described = {
-            **{key: facts.get(key) for key in ("network", "location", "channel", "start_time")},
+            **{
+                key: facts.get(key)
+                for key in ("network", "location", "channel", "start_time")
+            },
             "unit": stored,
             "earthquake": str(facts.get("earthquake") or motion.name),
             "component": str(facts.get("component") or ""),
             "source": str(facts.get("source") or "rockfrag"),
         }
         header = {"delta": motion.dt, "station": str(facts.get("station") or "")}
-        trace = Trace(motion.acceleration / TO_SI[stored], {**header, "rockfrag": described})
+        trace = Trace(
+            motion.acceleration / TO_SI[stored], {**header, "rockfrag": described}
+        )
         WRITERS[name][1](Stream([trace]), path)
     except OSError as error:
-        raise InputError(f"{path}: cannot be written ({error.strerror or error}).") from error
+        raise InputError(
+            f"{path}: cannot be written ({error.strerror or error})."
+        ) from error
     return Path(path)
 
 
 def write_motions(
-    motions: Iterable[Motion], folder: str | os.PathLike[str], format: str, unit: str | None = None
+    motions: Iterable[Motion],
+    folder: str | os.PathLike[str],
+    format: str,
+    unit: str | None = None,
 ) -> list[Path]:
     """Write each motion into a folder, named as the motion, and return the paths."""
     name = _format("", format)
@@ -73,7 +88,9 @@ def write_motions(
     for motion in motions:
         path = Path(folder) / f"{file_name(motion.name)}{ending}"
         if path in paths:
-            raise InputError(f"{path}: {motion.name!r} and {paths[path]!r} would have one file.")
+            raise InputError(
+                f"{path}: {motion.name!r} and {paths[path]!r} would have one file."
+            )
         write_motion(motion, path, name, unit)
         paths[path] = motion.name
     return list(paths)
@@ -85,15 +102,21 @@ def motions_of_study(path: str | os.PathLike[str]) -> list[Motion]:
         return read_motion_set(path)
     except (OSError, ValueError, KeyError) as error:
         words = " ".join(str(error).split())[:200]
-        raise InputError(f"{path}: no motions of a study can be read from it ({words}).") from None
+        raise InputError(
+            f"{path}: no motions of a study can be read from it ({words})."
+        ) from None
 
 
 def _format(path: str | os.PathLike[str], format: str | None) -> str:
     endings = {ending.lower(): name for name, (ending, _) in WRITERS.items()}
-    name = endings.get(Path(path).suffix.lower(), "") if format is None else format.upper()
+    name = (
+        endings.get(Path(path).suffix.lower(), "") if format is None else format.upper()
+    )
     if name not in WRITERS:
         what = f"{format!r} is" if format else f"the ending {Path(path).suffix!r} names"
-        raise InputError(f"{path}: {what} no format that is written: {', '.join(WRITERS)}.")
+        raise InputError(
+            f"{path}: {what} no format that is written: {', '.join(WRITERS)}."
+        )
     return name
 
 

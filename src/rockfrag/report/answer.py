@@ -56,7 +56,9 @@ def sentences(results: Results) -> list[Finding]:
     found = [findings.strength_found(curves, results.level) or amplitudes, recorded]
     if results.study.has_pairs:
         return [*found, findings.pedestal_effect(table("pedestal/effects"), about)[0]]
-    compared = findings.objects_compared(table("mean_amplitudes"), results.study.slenderness)
+    compared = findings.objects_compared(
+        table("mean_amplitudes"), results.study.slenderness
+    )
     resurrections = findings.resurrections_found(table("resurrections"), table("tests"))
     return [*found, *compared, resurrections][:3]
 
@@ -74,7 +76,9 @@ def advice(results: Results) -> list[str]:
 
 def _headline_curves(results: Results) -> pd.DataFrame:
     """Curves that the first page compares, none of a single record."""
-    curves = findings.headline_curves(results.table("fragility")).rows.dropna(subset=["theta"])
+    curves = findings.headline_curves(results.table("fragility")).rows.dropna(
+        subset=["theta"]
+    )
     return curves.iloc[:0] if has_one_record(results) else curves
 
 
@@ -91,7 +95,9 @@ def _earthquakes(results: Results) -> int:
 MOST_ROWS = 24  # more configurations than this are not legible; the first are drawn
 
 
-def strength_figure(tests: pd.DataFrame, curves: pd.DataFrame, names: Sequence[str]) -> Figure:
+def strength_figure(
+    tests: pd.DataFrame, curves: pd.DataFrame, names: Sequence[str]
+) -> Figure:
     """Draw a row for each configuration: its tests, and its curves with medians of PGA [g], if any."""
     shown = list(names)[:MOST_ROWS]
     with panels(COLUMN_WIDTH, 0.8 + 0.33 * len(shown)) as (figure, axes):
@@ -100,9 +106,20 @@ def strength_figure(tests: pd.DataFrame, curves: pd.DataFrame, names: Sequence[s
             colour = SIDE_COLOUR[str(rows["pedestal"].iloc[0])]
             known = ~(rows["up"] | rows["down"])
             # carets to the right and to the left for bounds
-            for own, marker, size in ((known, "|", 7), (rows["up"], 5, 5), (rows["down"], 4, 5)):
+            for own, marker, size in (
+                (known, "|", 7),
+                (rows["up"], 5, 5),
+                (rows["down"], 4, 5),
+            ):
                 x = rows.loc[own, "a"].to_numpy(dtype=float)
-                axes.plot(x, np.full(x.size, y + 0.12), ls="", marker=marker, color=colour, ms=size)
+                axes.plot(
+                    x,
+                    np.full(x.size, y + 0.12),
+                    ls="",
+                    marker=marker,
+                    color=colour,
+                    ms=size,
+                )
             below = y - 0.2
             for row in curves[curves["configuration"] == name].to_dict("records"):
                 limits = [row["theta_lower"], row["theta_upper"]]
@@ -120,14 +137,22 @@ def strength_figure(tests: pd.DataFrame, curves: pd.DataFrame, names: Sequence[s
         handles = []
         for side in sides if len(sides) > 1 else []:
             words, colour = f"tests {SIDE_NAME[side]}", SIDE_COLOUR[side]
-            handles.append(Line2D([], [], ls="", marker="|", color=colour, ms=8, label=words))
+            handles.append(
+                Line2D([], [], ls="", marker="|", color=colour, ms=8, label=words)
+            )
         if len(curves):
             words = "median, interval"
-            handles.append(Line2D([], [], color=BLACK, marker="D", mfc="white", ms=4, label=words))
+            handles.append(
+                Line2D([], [], color=BLACK, marker="D", mfc="white", ms=4, label=words)
+            )
         if tests["amplitude_g"].isna().any():
-            handles.append(Line2D([], [], ls="", marker=5, color=GREY, label="bound only"))
+            handles.append(
+                Line2D([], [], ls="", marker=5, color=GREY, label="bound only")
+            )
         if handles:
-            figure.legend(handles=handles, loc="outside upper center", ncols=2, handlelength=1.4)
+            figure.legend(
+                handles=handles, loc="outside upper center", ncols=2, handlelength=1.4
+            )
         return figure
 
 

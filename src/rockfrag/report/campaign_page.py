@@ -40,7 +40,12 @@ def run(job: Job[CampaignStudy]) -> Results:
     sections.append(says.section("conditioning", [table], steps))
     tests = tables["tests"]
     near = says("near_critical", int(tests["near_critical"].sum()), len(tests))
-    specs = [part for section in sections for part in section.parts if isinstance(part, FigureSpec)]
+    specs = [
+        part
+        for section in sections
+        for part in section.parts
+        if isinstance(part, FigureSpec)
+    ]
     answer = Answer(
         asked="How often does the simulation predict what happened on the shaking table?",
         sentences=found[:3],
@@ -54,7 +59,9 @@ def run(job: Job[CampaignStudy]) -> Results:
 
 
 def _percent(row: Row) -> str:
-    return estimate(100 * row["right"], 100 * row["lower"], 100 * row["upper"], 1) + " %"
+    return (
+        estimate(100 * row["right"], 100 * row["lower"], 100 * row["upper"], 1) + " %"
+    )
 
 
 def _better(row: Row) -> str:
@@ -86,7 +93,9 @@ def _who(name: str) -> str:
     for start in ("threshold on ", "probit on "):
         if name.startswith(start):
             measures = name.removeprefix(start).split(" and ")
-            return start + " and ".join(name_and_unit(measure)[0] for measure in measures)
+            return start + " and ".join(
+                name_and_unit(measure)[0] for measure in measures
+            )
     return name
 
 
@@ -94,30 +103,49 @@ def _findings(tables: dict[str, pd.DataFrame]) -> list[Finding]:
     ours, *others = tables["agreement"].to_dict("records")
     found = [says.finding("predicted", ours)]
     # whether three dimensions predict better than one plane
-    found += [says.finding("beside_plane", ours, row) for row in others if row["who"] == IN_PLANE]
+    found += [
+        says.finding("beside_plane", ours, row)
+        for row in others
+        if row["who"] == IN_PLANE
+    ]
     # what is read off the tests themselves is the ceiling of all models, not one of them
     rivals = [row for row in others if row["who"] not in (REPEATS, IN_PLANE)]
     if rivals:
         best = max(rivals, key=lambda row: float(row["right"]))
-        found.append(says.finding("beside_rivals", best, _who(best["who"]), len(rivals)))
+        found.append(
+            says.finding("beside_rivals", best, _who(best["who"]), len(rivals))
+        )
     found += _fragility_found(tables["fragility"])
     tests = tables["tests"]
     near, wrong = tests["near_critical"], ~tests["right"]
     if wrong.any():
-        counts = (int((wrong & near).sum()), int(wrong.sum()), int(near.sum()), len(tests))
+        counts = (
+            int((wrong & near).sum()),
+            int(wrong.sum()),
+            int(near.sum()),
+            len(tests),
+        )
         found.append(says.finding("wrong", *counts))
     return found
 
 
 def _fragility_found(fragility: pd.DataFrame) -> list[Finding]:
     measure = _ordering(fragility)
-    rows = fragility[(fragility["measure"] == measure) & fragility["theta_ratio"].notna()]
+    rows = fragility[
+        (fragility["measure"] == measure) & fragility["theta_ratio"].notna()
+    ]
     if rows.empty:
         return []
     # simulated over measured median and dispersion, with limits
-    texts = zip(*(estimates(rows, f"{key}_ratio", 2) for key in ("theta", "beta")), strict=True)
+    texts = zip(
+        *(estimates(rows, f"{key}_ratio", 2) for key in ("theta", "beta")), strict=True
+    )
     found = dict(zip(rows["who"], texts, strict=True))
-    return [says.finding("fragility_found", name_and_unit(measure)[0], found[OURS], found[VOTES])]
+    return [
+        says.finding(
+            "fragility_found", name_and_unit(measure)[0], found[OURS], found[VOTES]
+        )
+    ]
 
 
 def _ordering(fragility: pd.DataFrame) -> str:
@@ -137,7 +165,9 @@ def _agreement(tables: dict[str, pd.DataFrame], found: Finding, level: str) -> S
     named = named.assign(who=[_who(name) for name in named["who"]], lead=lead)
     best = max(named.to_dict("records"), key=lambda row: float(row["right"]))
     parts: list[Markup | FigureSpec] = [
-        says.figure("agreement", lambda: agreement_figure(named), best, best["who"], level),
+        says.figure(
+            "agreement", lambda: agreement_figure(named), best, best["who"], level
+        ),
         says.table("agreement", named),
         # empty where the laboratory noted nothing of it
         says.table("rocking", _with_percents(tables["rocking"])),
@@ -148,8 +178,12 @@ def _agreement(tables: dict[str, pd.DataFrame], found: Finding, level: str) -> S
 def _fragility(tables: dict[str, pd.DataFrame], level: str) -> Section:
     fragility, tests = tables["fragility"], tables["tests"]
     shown = fragility.assign(
-        measure=["{} [{}]".format(*name_and_unit(name)) for name in fragility["measure"]],
-        who=fragility["who"].map({"measured": "measured"} | says.pairs("outcomes", OURS, VOTES)),
+        measure=[
+            "{} [{}]".format(*name_and_unit(name)) for name in fragility["measure"]
+        ],
+        who=fragility["who"].map(
+            {"measured": "measured"} | says.pairs("outcomes", OURS, VOTES)
+        ),
     )
     measure = _ordering(fragility)
     name, unit = name_and_unit(measure)
@@ -157,14 +191,22 @@ def _fragility(tables: dict[str, pd.DataFrame], level: str) -> Section:
     own = fragility[fragility["measure"] == measure]
     draw = partial(beside_figure, tests, own, measure, f"{name} [{unit}]")
     figure = says.figure("fragility_beside", draw, found, name)
-    return says.section("fragility", [figure, says.table("fragility", shown)], found, level)
+    return says.section(
+        "fragility", [figure, says.table("fragility", shown)], found, level
+    )
 
 
 def _tests(study: CampaignStudy, tables: dict[str, pd.DataFrame]) -> Section:
     tests, regions = tables["tests"], tables["regions"]
-    names = [name.removesuffix("_from") for name in map(str, regions) if name.endswith("_from")]
+    names = [
+        name.removesuffix("_from")
+        for name in map(str, regions)
+        if name.endswith("_from")
+    ]
     listed = study.measures or names
-    labels = {name: "{} [{}]".format(*name_and_unit(name)) for name in (*names, *listed)}
+    labels = {
+        name: "{} [{}]".format(*name_and_unit(name)) for name in (*names, *listed)
+    }
     shown = regions[regions["tests"] > 0].assign(right=100 * regions["right"])
     for name in names:
         ends = zip(shown[f"{name}_from"], shown[f"{name}_to"], strict=True)
@@ -181,21 +223,36 @@ def _tests(study: CampaignStudy, tables: dict[str, pd.DataFrame]) -> Section:
 
 
 def _object(study: CampaignStudy, tables: dict[str, pd.DataFrame]) -> Section:
-    trials, contact, footprint = tables["trials"], tables["contact"], tables["footprint"]
+    trials, contact, footprint = (
+        tables["trials"],
+        tables["contact"],
+        tables["footprint"],
+    )
     likely = trials[trials["plausible"]]
     parts: list[Markup | FigureSpec] = []
     if not footprint.empty:
         draw = partial(footprint_figure, footprint, trials)
-        parts.append(says.figure("footprint", draw, 100 * (likely["left_m"] + likely["right_m"])))
+        parts.append(
+            says.figure("footprint", draw, 100 * (likely["left_m"] + likely["right_m"]))
+        )
     titles = says.pairs("properties")
     rows = [
-        (words, _range(trials[name]), _range(likely[name]), f"{likely[name].median():.3g}")
+        (
+            words,
+            _range(trials[name]),
+            _range(likely[name]),
+            f"{likely[name].median():.3g}",
+        )
         for name, words in titles.items()
         if name in trials
     ]
-    properties = pd.DataFrame(rows, columns=["property", "tried", "plausible", "median"])
+    properties = pd.DataFrame(
+        rows, columns=["property", "tried", "plausible", "median"]
+    )
     parts.append(says.table("properties", properties))
-    in_percent = {name: 100 * contact[name] for name in ("width_m", "overturned", "right")}
+    in_percent = {
+        name: 100 * contact[name] for name in ("width_m", "overturned", "right")
+    }
     parts.append(says.table("contact", contact.assign(**in_percent)))
     # ranges that end where the tests would have them go on
     edges = [
@@ -231,19 +288,26 @@ def agreement_figure(agreement: pd.DataFrame) -> Figure:
         return figure
 
 
-def beside_figure(tests: pd.DataFrame, curves: pd.DataFrame, measure: str, label: str) -> Figure:
+def beside_figure(
+    tests: pd.DataFrame, curves: pd.DataFrame, measure: str, label: str
+) -> Figure:
     """Draw measured and simulated fragility in one measure: curves, and fractions of tests in bins."""
     values = tests[measure].to_numpy()
     x = np.geomspace(values.min(), values.max(), 200)
     edges = np.unique(np.quantile(values, np.linspace(0, 1, _BINS + 1)))
     bins = np.clip(np.searchsorted(edges, values, side="right") - 1, 0, len(edges) - 2)
     with style.panels(style.COLUMN_WIDTH, 2.4) as (figure, axes):
-        middle = [np.exp(np.log(values[bins == k]).mean()) for k in range(len(edges) - 1)]
+        middle = [
+            np.exp(np.log(values[bins == k]).mean()) for k in range(len(edges) - 1)
+        ]
         for who, column, name, colour, marker, line in (
             ("measured", "overturned", "measured", style.BLACK, "o", "-"),
             (OURS, "simulated", "simulated", style.BLUE, "s", "--"),
         ):
-            fraction = [tests[column].to_numpy()[bins == k].mean() for k in range(len(edges) - 1)]
+            fraction = [
+                tests[column].to_numpy()[bins == k].mean()
+                for k in range(len(edges) - 1)
+            ]
             axes.plot(middle, fraction, ls="", marker=marker, mfc="white", color=colour)
             row = curves[curves["who"] == who].iloc[0]
             if np.isfinite(row["theta"]):
@@ -255,7 +319,9 @@ def beside_figure(tests: pd.DataFrame, curves: pd.DataFrame, measure: str, label
         return figure
 
 
-def tests_figure(tests: pd.DataFrame, x: str, y: str, labels: tuple[str, str]) -> Figure:
+def tests_figure(
+    tests: pd.DataFrame, x: str, y: str, labels: tuple[str, str]
+) -> Figure:
     """Draw every test in two measures: what happened by colour, wrong predictions as crosses."""
     with style.panels(style.COLUMN_WIDTH, 2.8) as (figure, axes):
         for right, fell, colour, word in (
@@ -266,7 +332,15 @@ def tests_figure(tests: pd.DataFrame, x: str, y: str, labels: tuple[str, str]) -
         ):
             rows = tests[(tests["overturned"] == fell) & (tests["right"] == right)]
             marker, size = ("o", 2.6) if right else ("x", 4.5)
-            axes.plot(rows[x], rows[y], ls="", marker=marker, ms=size, color=colour, label=word)
+            axes.plot(
+                rows[x],
+                rows[y],
+                ls="",
+                marker=marker,
+                ms=size,
+                color=colour,
+                label=word,
+            )
         style.plain_log(axes, "xy")
         axes.set(xlabel=labels[0], ylabel=labels[1])
         figure.legend(loc="outside upper center", ncols=2)
@@ -288,7 +362,11 @@ def footprint_figure(footprint: pd.DataFrame, trials: pd.DataFrame) -> Figure:
                 continue
             closed = corners[["x_m", "y_m"]].to_numpy()[[*range(len(corners)), 0]]
             tolerance = corners["contact_tolerance_mm"].iloc[0]
-            label = word if not np.isfinite(tolerance) else f"contact within {tolerance:.1f} mm"
+            label = (
+                word
+                if not np.isfinite(tolerance)
+                else f"contact within {tolerance:.1f} mm"
+            )
             axes.plot(closed[:, 0], closed[:, 1], ls=line, color=colour, label=label)
         axes.plot(0, 0, "+", color=style.BLACK, ms=9, label="centre of gravity")
         reach = float(footprint[["x_m", "y_m"]].abs().to_numpy().max())

@@ -30,7 +30,8 @@ SIDE_NAME = {"NP": "without pedestal", "P": "with pedestal"}
 SIDE_SHIFT = {"NP": -0.13, "P": 0.13}
 MARKERS = ("o", "s", "^", "D", "v", "P")
 AMPLITUDE = "Overturning amplitude [g]"
-MOST_MARKS = 150  # of more tests than this a figure shows the distribution, not every one
+# of more tests than this a figure shows the distribution, not every one
+MOST_MARKS = 150
 BOX = "median, 25–75 %, 5–95 %"  # what a box of that distribution shows
 
 _ARROW = np.array([(0, 0), (0, 1.6), (-0.4, 1.0), (0, 1.6), (0.4, 1.0)])
@@ -49,7 +50,9 @@ def drawn_tests(tests: pd.DataFrame) -> pd.DataFrame:
     return tests.assign(a=a, up=up, down=down)
 
 
-def plot_tests(axes: Axes, x: Floats, rows: pd.DataFrame, marker: str, colour: str) -> None:
+def plot_tests(
+    axes: Axes, x: Floats, rows: pd.DataFrame, marker: str, colour: str
+) -> None:
     """Draw tests at ``x``, with arrows where only a bound is known."""
     y = rows["a"].to_numpy(dtype=float)
     axes.plot(x, y, ls="", marker=marker, mfc="none", mec=colour, ms=4, mew=0.9)
@@ -62,14 +65,27 @@ def _plot_arrows(
     axes: Axes, x: Floats, y: Floats, bound: pd.Series, arrow: Path, colour: str
 ) -> None:
     chosen = bound.to_numpy(dtype=bool)
-    axes.plot(x[chosen], y[chosen], ls="", marker=arrow, mfc="none", mec=colour, ms=11, mew=0.9)
+    axes.plot(
+        x[chosen],
+        y[chosen],
+        ls="",
+        marker=arrow,
+        mfc="none",
+        mec=colour,
+        ms=11,
+        mew=0.9,
+    )
 
 
 def bound_handle(tests: pd.DataFrame) -> list[Line2D]:
     """Entry of a legend for tests that never overturned, if there are any."""
     if not tests["amplitude_g"].isna().any():
         return []
-    return [Line2D([], [], ls="", marker=_UP, color=GREY, mfc="none", ms=9, label="bound only")]
+    return [
+        Line2D(
+            [], [], ls="", marker=_UP, color=GREY, mfc="none", ms=9, label="bound only"
+        )
+    ]
 
 
 def top(rows: pd.DataFrame) -> float:
@@ -81,7 +97,9 @@ def amplitudes_by(by: str, tests: pd.DataFrame, means: pd.DataFrame) -> Figure:
     """Amplitudes by ``object`` or ``floor``, with and without a pedestal, of one definition, with their means."""
     means = means[means["by"] == ("configuration" if by == "object" else by)]
     levels, rows = list(dict.fromkeys(tests[by])), drawn_tests(tests)
-    width = style.PAGE_WIDTH if by == "object" and len(levels) > 5 else style.COLUMN_WIDTH
+    width = (
+        style.PAGE_WIDTH if by == "object" and len(levels) > 5 else style.COLUMN_WIDTH
+    )
     with style.panels(width, 2.8) as (figure, axes):
         _sides_panel(axes, rows, by, levels, means)
         axes.set_ylim(0, highest_box(rows, by) if len(rows) > MOST_MARKS else top(rows))
@@ -101,9 +119,17 @@ def _sides_panel(
     if both and not crowded:
         keys, placed = ["object", "motion"], rows.assign(x=x)
         without = placed[placed["pedestal"] == "NP"].drop_duplicates(keys)
-        pairs = placed[placed["pedestal"] == "P"].merge(without, on=keys, suffixes=("_p", "_np"))
-        ends = pairs[["x_np", "a_np", "x_p", "a_p"]].to_numpy(dtype=float).reshape(-1, 2, 2)
-        axes.add_collection(LineCollection(list(ends), colors="#cccccc", linewidths=0.5, zorder=1))
+        pairs = placed[placed["pedestal"] == "P"].merge(
+            without, on=keys, suffixes=("_p", "_np")
+        )
+        ends = (
+            pairs[["x_np", "a_np", "x_p", "a_p"]]
+            .to_numpy(dtype=float)
+            .reshape(-1, 2, 2)
+        )
+        axes.add_collection(
+            LineCollection(list(ends), colors="#cccccc", linewidths=0.5, zorder=1)
+        )
     for side in SIDES:
         own = rows["pedestal"] == side
         if crowded and own.any():
@@ -127,10 +153,14 @@ def _finish_sides(figure: Figure, axes: Axes, tests: pd.DataFrame, means: bool) 
     handles = []
     for side in sides if len(sides) > 1 else []:
         marker, colour, name = SIDE_MARKER[side], SIDE_COLOUR[side], SIDE_NAME[side]
-        handles.append(Line2D([], [], ls="", color=colour, mfc="none", marker=marker, label=name))
+        handles.append(
+            Line2D([], [], ls="", color=colour, mfc="none", marker=marker, label=name)
+        )
     if means:
         words = "geometric mean"
-        handles.append(Line2D([], [], ls="", marker="_", ms=12, mew=2.4, color=GREY, label=words))
+        handles.append(
+            Line2D([], [], ls="", marker="_", ms=12, mew=2.4, color=GREY, label=words)
+        )
     if len(tests) > MOST_MARKS:
         handles.append(Line2D([], [], color=GREY, label=BOX))
     else:
@@ -139,12 +169,16 @@ def _finish_sides(figure: Figure, axes: Axes, tests: pd.DataFrame, means: bool) 
         figure.legend(handles=handles, loc="outside upper center", ncols=2)
 
 
-def pedestal_scatter(tests: pd.DataFrame, title: str, sides: Sides = WITH_PEDESTAL) -> Figure:
+def pedestal_scatter(
+    tests: pd.DataFrame, title: str, sides: Sides = WITH_PEDESTAL
+) -> Figure:
     """Amplitude of an arrangement against that of its counterpart under the same motion."""
     rows = drawn_tests(tests)
     keys = ["object", "earthquake", "floor", "motion"]
     without = rows[rows["pedestal"] == "NP"]
-    pairs = rows[rows["pedestal"] == "P"].merge(without, on=keys, suffixes=("_p", "_np"))
+    pairs = rows[rows["pedestal"] == "P"].merge(
+        without, on=keys, suffixes=("_p", "_np")
+    )
     objects = list(dict.fromkeys(pairs["object"]))
     upper = 1.08 * float(pairs[["a_p", "a_np"]].to_numpy(dtype=float).max())
     with style.panels(style.COLUMN_WIDTH, 0.6 + style.COLUMN_WIDTH) as (figure, axes):
@@ -155,7 +189,9 @@ def pedestal_scatter(tests: pd.DataFrame, title: str, sides: Sides = WITH_PEDEST
         for name, (marker, colour) in styles_of(objects).items():
             own = pairs[pairs["object"] == name]
             x, y = own["a_np"].to_numpy(dtype=float), own["a_p"].to_numpy(dtype=float)
-            axes.plot(x, y, ls="", marker=marker, mfc="none", mec=colour, mew=1.0, ms=4.5)
+            axes.plot(
+                x, y, ls="", marker=marker, mfc="none", mec=colour, mew=1.0, ms=4.5
+            )
             for bound, arrow in (("up_p", _UP), ("up_np", _RIGHT)):
                 _plot_arrows(axes, x, y, own[bound], arrow, colour)
         axes.set(xlim=(0, upper), ylim=(0, upper), aspect="equal")
@@ -172,7 +208,9 @@ def pedestal_scatter(tests: pd.DataFrame, title: str, sides: Sides = WITH_PEDEST
 def handles_of(names: Sequence[str]) -> list[Line2D]:
     """Entries of a legend for names that differ in marker and colour."""
     return [
-        Line2D([], [], ls="", marker=marker, mfc="none", mec=colour, label=shortened(name))
+        Line2D(
+            [], [], ls="", marker=marker, mfc="none", mec=colour, label=shortened(name)
+        )
         for name, (marker, colour) in styles_of(names).items()
         if len(names) <= len(MARKERS)
     ]
@@ -191,10 +229,17 @@ def highest_box(rows: pd.DataFrame, by: str) -> float:
 
 
 def box_at(
-    axes: Axes, part: pd.DataFrame, by: str, levels: Sequence[Any], width: float, colour: str
+    axes: Axes,
+    part: pd.DataFrame,
+    by: str,
+    levels: Sequence[Any],
+    width: float,
+    colour: str,
 ) -> None:
     """Draw the distribution of amplitudes at each level of a column."""
-    values = [part.loc[part[by] == level, "a"].to_numpy(dtype=float) for level in levels]
+    values = [
+        part.loc[part[by] == level, "a"].to_numpy(dtype=float) for level in levels
+    ]
     drawn: dict[str, Any] = {
         f"{name}props": {"color": colour} for name in ("box", "whisker", "cap")
     }

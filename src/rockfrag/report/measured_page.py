@@ -37,11 +37,17 @@ says = Says("rockfrag.report", "measured_page.j2")
 def run(job: Job[MeasuredTable]) -> Results:
     """Yield the fitted tables; draw the figures and write the page, ``report.html``."""
     study = job.study
-    settings: dict[str, Any] = {"level": study.confidence, "replicates": study.replicates}
+    settings: dict[str, Any] = {
+        "level": study.confidence,
+        "replicates": study.replicates,
+    }
     settings |= {**study.columns, "seed": study.seed}
     found = fit_user_table(study.table, study.measures, **settings)
     goodness = pd.DataFrame(
-        [(name, g.deviance, g.p_value, g.brier, g.words) for name, g in found.goodness.items()],
+        [
+            (name, g.deviance, g.p_value, g.brier, g.words)
+            for name, g in found.goodness.items()
+        ],
         columns=["measure", "deviance", "p_value", "brier", "finding"],
     )
     yield "tests", found.tests
@@ -55,10 +61,14 @@ def run(job: Job[MeasuredTable]) -> Results:
     given = [name for name in map(str, choice.columns) if name.startswith("p_")]
     columns = [p_values(name, f"p, {name.removeprefix('p_')}") for name in given]
     sections = [
-        says.section("measure", [says.table("choice", choice, more=columns)], answer.sentences[0]),
+        says.section(
+            "measure", [says.table("choice", choice, more=columns)], answer.sentences[0]
+        ),
         _curves(study, found.table, goodness, calibration),
     ]
-    both = found.two_measures and two_measures_section(found.two_measures, study.confidence)
+    both = found.two_measures and two_measures_section(
+        found.two_measures, study.confidence
+    )
     if both:
         sections.append(both)
     digest = found.table["record_set_sha256"].iloc[0]
@@ -71,14 +81,18 @@ def run(job: Job[MeasuredTable]) -> Results:
 def _figures(found: UserFragility) -> tuple[FigureSpec, FigureSpec]:
     """Curves over each measure and how well they fit; what the data cannot carry says so in words."""
     words = "No curve: the tests show no measure with which overturning becomes more frequent."
-    curves = {name: fit for name, fit in found.fits.items() if np.isfinite(fit.fit.theta)}
+    curves = {
+        name: fit for name, fit in found.fits.items() if np.isfinite(fit.fit.theta)
+    }
     over = calibration = partial(style.note_figure, words)
     if curves:
         over = partial(measures_figure, curves, found.outcomes)
     if found.goodness:
         calibration = partial(calibration_figure, found.goodness)
     best = found.choice.words
-    return says.figure("measures", over, best), says.figure("calibration", calibration, best)
+    return says.figure("measures", over, best), says.figure(
+        "calibration", calibration, best
+    )
 
 
 def _answer(study: MeasuredTable, found: UserFragility, measures: FigureSpec) -> Answer:
@@ -89,7 +103,9 @@ def _answer(study: MeasuredTable, found: UserFragility, measures: FigureSpec) ->
     best = best[best["im"] == name] if name in set(best["im"]) else best
     if len(best):
         (theta,), (beta,) = (estimates(best.head(1), key) for key in ("theta", "beta"))
-        sentences.append(says.finding("median", best.iloc[0], theta, beta, _level(study)))
+        sentences.append(
+            says.finding("median", best.iloc[0], theta, beta, _level(study))
+        )
     judged = found.goodness.items()
     doubtful = [found.fits[name].fit.im for name, fit in judged if fit.p_value < 0.05]
     if found.goodness:
@@ -99,7 +115,9 @@ def _answer(study: MeasuredTable, found: UserFragility, measures: FigureSpec) ->
         sentences=sentences,
         figure=measures,
         rests_on=says("rests_on", found.tests),
-        could_change=list(dict.fromkeys(note for note in found.table["warnings"] if note)),
+        could_change=list(
+            dict.fromkeys(note for note in found.table["warnings"] if note)
+        ),
     )
 
 
@@ -108,12 +126,17 @@ def _level(study: MeasuredTable) -> str:
 
 
 def _curves(
-    study: MeasuredTable, fitted: pd.DataFrame, goodness: pd.DataFrame, calibration: FigureSpec
+    study: MeasuredTable,
+    fitted: pd.DataFrame,
+    goodness: pd.DataFrame,
+    calibration: FigureSpec,
 ) -> Section:
     warnings = dict.fromkeys(note for note in fitted["warnings"] if note)
     level, notes = _level(study), [*goodness["finding"], *warnings]
     tables = says.table("curves", fitted, level), says.table("fits", goodness)
-    return says.section("fragility", [*tables, calibration], len(goodness), level, notes)
+    return says.section(
+        "fragility", [*tables, calibration], len(goodness), level, notes
+    )
 
 
 def measures_figure(
@@ -123,24 +146,33 @@ def measures_figure(
     columns = min(len(curves), 2)
     rows = -(-len(curves) // columns)
     width, shape = style.COLUMN_WIDTH if columns == 1 else style.WIDEST, (rows, columns)
-    with style.panels(width, 2.4 * rows, *shape, squeeze=False, sharey=True) as (figure, panels):
+    with style.panels(width, 2.4 * rows, *shape, squeeze=False, sharey=True) as (
+        figure,
+        panels,
+    ):
         for axes in panels.flat[len(curves) :]:
             axes.set_visible(False)
         for axes, (label, curve) in zip(panels.flat, curves.items(), strict=False):
             data = outcomes[label]
             grid = levels_drawn(curve, data, 400)
-            draw_fractions(axes, fraction_in_bins(data).rename(columns={"im": "x"}), style.BLACK)
+            draw_fractions(
+                axes, fraction_in_bins(data).rename(columns={"im": "x"}), style.BLACK
+            )
             inside = grid[(grid >= data.im.min()) & (grid <= data.im.max())]
             if inside.size and np.ptp(data.log_im) > 0:
                 local = local_fraction(data, inside)
                 axes.plot(inside, local, "--", color=style.BLACK, linewidth=0.8)
             lower, upper = curve.interval.band(grid)
             if np.isfinite(lower).any():
-                axes.fill_between(grid, lower, upper, color=style.BLUE, alpha=0.18, linewidth=0)
+                axes.fill_between(
+                    grid, lower, upper, color=style.BLUE, alpha=0.18, linewidth=0
+                )
             axes.plot(grid, curve.fit.probability(grid), color=style.BLUE)
             probability_axis(axes, grid)
             fit = curve.fit
-            axes.set_title(f"{fit.im}: AIC {fit.aic:.1f}, β = {fit.beta:.2f}", loc="left")
+            axes.set_title(
+                f"{fit.im}: AIC {fit.aic:.1f}, β = {fit.beta:.2f}", loc="left"
+            )
             axes.set_xlabel(axis_label(fit.im, fit.unit))
         for axes in panels[:, 0]:
             axes.set_ylabel("Probability of overturning")
@@ -158,7 +190,9 @@ def calibration_figure(judged: Mapping[str, GoodnessOfFit]) -> Figure:
             x, y, lower, upper = (fit.calibration[name].to_numpy() for name in names)
             reach = [np.maximum(y - lower, 0.0), np.maximum(upper - y, 0.0)]
             words = f"{label} (p = {fit.p_value:.2g})"
-            axes.errorbar(x, y, reach, fmt=mark, color=colour, ms=3.5, elinewidth=0.8, label=words)
+            axes.errorbar(
+                x, y, reach, fmt=mark, color=colour, ms=3.5, elinewidth=0.8, label=words
+            )
         axes.set(aspect="equal", xlim=(-0.02, 1.02), ylim=(-0.02, 1.02))
         for axis in (axes.xaxis, axes.yaxis):
             axis.set_major_formatter(PercentFormatter(1.0, decimals=0, symbol=" %"))

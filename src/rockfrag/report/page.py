@@ -61,11 +61,14 @@ class Column:
     title: str  # What its head says, with the unit
     # Decimals of numbers, or what words the column of a table; None for text
     shown: int | Words | None = None
-    numeric: bool = False  # Whether text is of numbers and stands to the right, as they do
+    # Whether text is of numbers and stands to the right, as they do
+    numeric: bool = False
 
 
 _SPEC = re.compile(r"(\w+)(?: = (.+?))?(?: ([.±#p])(\d?))?")
-_UNITS = {unit: unit for unit in ("m", "cm", "mm", "kg", "g", "rad", "bit")} | {"deg": "°"}
+_UNITS = {unit: unit for unit in ("m", "cm", "mm", "kg", "g", "rad", "bit")} | {
+    "deg": "°"
+}
 
 
 Columns = Sequence[str | Column]
@@ -83,10 +86,17 @@ def column(words: str) -> Column:
     name, title, kind, digits = spec.groups()
     stem, _, unit = name.rpartition("_")
     usual = f"{stem} [{_UNITS[unit]}]" if stem and unit in _UNITS else name
-    title, decimals = title or sentence(usual.replace("_", " ")), int(digits) if digits else None
+    title, decimals = (
+        title or sentence(usual.replace("_", " ")),
+        int(digits) if digits else None,
+    )
     if kind == "±":
         return estimated(name, title, decimals)
-    return p_values(name, title) if kind == "p" else Column(name, title, decimals, kind == "#")
+    return (
+        p_values(name, title)
+        if kind == "p"
+        else Column(name, title, decimals, kind == "#")
+    )
 
 
 def by_row(words: Callable[[Row], str]) -> Words:
@@ -95,7 +105,10 @@ def by_row(words: Callable[[Row], str]) -> Words:
 
 
 def estimated(
-    name: str, title: str, decimals: int | None = None, limits: tuple[str, str] | None = None
+    name: str,
+    title: str,
+    decimals: int | None = None,
+    limits: tuple[str, str] | None = None,
 ) -> Column:
     """Return a column of estimates with their limits, see :func:`rockfrag.sentences.estimates`."""
     return Column(name, title, lambda table: estimates(table, name, decimals, limits))
@@ -123,7 +136,9 @@ MOST_TABLE_ROWS = 500
 """Rows of a table on the page; of more the first so many, and the name of the file that has all."""
 
 
-def table_html(table: pd.DataFrame, shown: Columns, caption: str, file: str = "") -> Markup:
+def table_html(
+    table: pd.DataFrame, shown: Columns, caption: str, file: str = ""
+) -> Markup:
     """Render a table, empty without rows; where the file with all rows is named ``MOST_TABLE_ROWS`` are shown."""
     if table.empty:
         return Markup("")
@@ -147,16 +162,24 @@ def table_html(table: pd.DataFrame, shown: Columns, caption: str, file: str = ""
 
 
 def framed(
-    caption: str, head: Sequence[tuple[str, str]], rows: Sequence[Sequence[str | Markup]], room: int
+    caption: str,
+    head: Sequence[tuple[str, str]],
+    rows: Sequence[Sequence[str | Markup]],
+    room: int,
 ) -> Markup:
     """A table of titles and kinds of columns; the more room they need, the sooner its rows become lists."""
     size = "few" if room <= 4 else "some" if room <= 7 else "many"
     template = TEMPLATES.get_template("table.html.j2")
-    return Markup(template.render(caption=caption, head=head, rows=rows, room=size).strip())
+    return Markup(
+        template.render(caption=caption, head=head, rows=rows, room=size).strip()
+    )
 
 
 def text_table(
-    titles: Sequence[str], rows: Iterable[Sequence[str]], caption: str, numeric: Sequence[str] = ()
+    titles: Sequence[str],
+    rows: Iterable[Sequence[str]],
+    caption: str,
+    numeric: Sequence[str] = (),
 ) -> Markup:
     """Render rows of texts under their titles; columns that are of numbers stand to the right."""
     columns = [Column(title, title, numeric=title in numeric) for title in titles]
@@ -220,18 +243,25 @@ def terms_used(text: str) -> dict[str, str]:
     def occurs(term: str) -> bool:
         """Whether it is there as a word of its own, abbreviations as they are written."""
         flags = re.NOFLAG if term.isupper() or len(term) < 3 else re.IGNORECASE
-        return re.search(rf"(?<![\w/&]){re.escape(term)}(?![\w/&])", text, flags) is not None
+        return (
+            re.search(rf"(?<![\w/&]){re.escape(term)}(?![\w/&])", text, flags)
+            is not None
+        )
 
     used = [name for name in TERMS if any(map(occurs, name.split(", ")))]
     return {name: TERMS[name] for name in sorted(used, key=str.lower)}
 
 
-def draw_all(specs: Sequence[FigureSpec], folder: Path, processes: int = 1) -> dict[str, Picture]:
+def draw_all(
+    specs: Sequence[FigureSpec], folder: Path, processes: int = 1
+) -> dict[str, Picture]:
     """Draw figures into a folder and return them by name; whoever draws, the bytes are the same."""
     folder.mkdir(parents=True, exist_ok=True)
 
     def drawn(spec: FigureSpec) -> None:
-        save_figure(spec.draw(), *(folder / f"{spec.name}.{end}" for end in ("svg", "png")))
+        save_figure(
+            spec.draw(), *(folder / f"{spec.name}.{end}" for end in ("svg", "png"))
+        )
 
     in_processes(drawn, specs, processes)
     found = {}
@@ -251,7 +281,8 @@ class Page:
     lead: str
     answer: Answer
     sections: Sequence[Section] = ()  # Chapters in order, which open on demand
-    provenance: Mapping[str, str] = field(default_factory=dict)  # What gives the same results again
+    # What gives the same results again
+    provenance: Mapping[str, str] = field(default_factory=dict)
     basis: str = "simulated"  # The page warns of what is not ``measured``
     live: Markup = _NOTHING  # See :func:`rockfrag.report.live.live_kernel`
 
@@ -259,7 +290,9 @@ class Page:
     def figures(self) -> dict[str, tuple[FigureSpec, str]]:
         """Figures by name, each with the title of the chapter where it stands first."""
         parts: list[tuple[Any, str]] = [(self.answer.figure, "The answer")]
-        parts += [(part, section.title) for section in self.sections for part in section.parts]
+        parts += [
+            (part, section.title) for section in self.sections for part in section.parts
+        ]
         found: dict[str, tuple[FigureSpec, str]] = {}
         for part, title in parts:
             if isinstance(part, FigureSpec):
@@ -275,7 +308,9 @@ class Page:
         for section in self.sections:
             words += [section.title, section.message, *section.paragraphs]
             for part in section.parts:
-                words.append(part.caption if isinstance(part, FigureSpec) else part.striptags())
+                words.append(
+                    part.caption if isinstance(part, FigureSpec) else part.striptags()
+                )
         return " ".join(words)
 
     def html(self, folder: Path | None = None, processes: int = 1) -> str:
@@ -291,14 +326,18 @@ class Page:
             vars(self),
             pictures=pictures,
             glossary=terms_used(self.words),
-            style=Markup("".join(environment.get_template(name).render() for name in style)),
+            style=Markup(
+                "".join(environment.get_template(name).render() for name in style)
+            ),
             script=Markup(environment.get_template("page.js").render()),
         )
 
 
 def scripts_of(*names: str) -> Markup:
     """Return scripts of the package as text of a page."""
-    return Markup("\n".join(TEMPLATES.get_template(f"{name}.js").render() for name in names))
+    return Markup(
+        "\n".join(TEMPLATES.get_template(f"{name}.js").render() for name in names)
+    )
 
 
 def base64_text(content: bytes) -> str:

@@ -72,7 +72,8 @@ class Section:
     # Its place and its heading
     anchor: str
     title: str
-    message: str  # What it found, in one short sentence that stands on the page before it is opened
+    # What it found, in one short sentence that stands on the page before it is opened
+    message: str
     paragraphs: Sequence[str] = ()  # How to read it
     parts: Sequence[Markup | FigureSpec] = ()  # Its figures, and the tables behind them
 
@@ -92,7 +93,12 @@ class Says(Macros):
         return FigureSpec(name, alt, caption, draw)
 
     def table(
-        self, name: str, table: pd.DataFrame, *about: Any, more: Sequence[Any] = (), file: str = ""
+        self,
+        name: str,
+        table: pd.DataFrame,
+        *about: Any,
+        more: Sequence[Any] = (),
+        file: str = "",
     ) -> Markup:
         """A table of which ``<name>_table`` says caption and columns, with ``more`` behind them."""
         from rockfrag.report.page import table_html
@@ -101,7 +107,11 @@ class Says(Macros):
         return table_html(table, [*columns, *more], " ".join(caption), file)
 
     def section(
-        self, anchor: str, parts: Sequence[Markup | FigureSpec], *about: Any, of: str = ""
+        self,
+        anchor: str,
+        parts: Sequence[Markup | FigureSpec],
+        *about: Any,
+        of: str = "",
     ) -> Section:
         """A chapter of which the macro of its anchor, or another, says title, message and paragraphs."""
         title, message, paragraphs = self.parts(of or anchor.replace("-", "_"), *about)
@@ -139,19 +149,25 @@ class Results:
     @cached_property
     def ground(self) -> Sequence[Motion]:
         """Ground motions, no more than a page shows."""
-        return read_motion_set(self.folder / "motions" / "ground.parquet", most=MOST_MOTIONS)
+        return read_motion_set(
+            self.folder / "motions" / "ground.parquet", most=MOST_MOTIONS
+        )
 
     @cached_property
     def floors(self) -> Sequence[Motion]:
         """Motions of every floor, which shake the bodies, no more than a page shows."""
-        return read_motion_set(self.folder / "motions" / "floors.parquet", most=MOST_MOTIONS)
+        return read_motion_set(
+            self.folder / "motions" / "floors.parquet", most=MOST_MOTIONS
+        )
 
     @cached_property
     def outcomes(self) -> pd.DataFrame:
         """Outcomes of every configuration at every amplitude, under no more motions than a page shows."""
         parts, jobs = [], range(self.study.ida_jobs)
         for configuration in self.study.configurations:
-            files = (self.folder / self.study.ida_file(configuration, job) for job in jobs)
+            files = (
+                self.folder / self.study.ida_file(configuration, job) for job in jobs
+            )
             shown = 0
             for part in read_swept(files):
                 parts.append(part.rows(["configuration", "object", "motion"]))
@@ -163,8 +179,13 @@ class Results:
     @cached_property
     def least_gravity_ratio(self) -> NDArray[np.float64]:
         """Least weight over that on a ground at rest, of every history of a study with vertical motion."""
-        name, paths = "minimum_gravity_ratio", (self.folder / path for path in self.study.ida_files)
-        return np.concatenate([pd.read_parquet(path, columns=[name])[name] for path in paths])
+        name, paths = (
+            "minimum_gravity_ratio",
+            (self.folder / path for path in self.study.ida_files),
+        )
+        return np.concatenate(
+            [pd.read_parquet(path, columns=[name])[name] for path in paths]
+        )
 
     @property
     def objects(self) -> list[str]:

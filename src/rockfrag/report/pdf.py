@@ -15,7 +15,13 @@ from rockfrag.files import whole_file
 from rockfrag.stages.running import results_folder
 from rockfrag.study.loading import load_any
 
-BROWSERS = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable", "msedge")
+BROWSERS = (
+    "chromium",
+    "chromium-browser",
+    "google-chrome",
+    "google-chrome-stable",
+    "msedge",
+)
 """Programs that print without a window, the first one found is taken."""
 
 

@@ -38,7 +38,9 @@ def write_play_page(
     if isinstance(motion, GroundMotion):
         amplitudes, peak = np.array(space.AMPLITUDES_G), space.peak_of(motion)
         live = space.live_in_space({name: space.Standing(system)}, [motion])
-        rests_on = ["A peak is the geometric mean of those of both components; nothing slides."]
+        rests_on = [
+            "A peak is the geometric mean of those of both components; nothing slides."
+        ]
     else:
         amplitudes, peak, rests_on = np.array(AMPLITUDES_G), motion.pga, []
         if not in_page(system):
@@ -47,7 +49,9 @@ def write_play_page(
             )
         live = live_kernel({name: system}, [motion])
     # at every amplitude, and last as recorded
-    found = overturns([system], [motion], scales=np.append(amplitudes * GRAVITY / peak, 1.0))
+    found = overturns(
+        [system], [motion], scales=np.append(amplitudes * GRAVITY / peak, 1.0)
+    )
     *fell, recorded = found.overturned.ravel().tolist()
     page = Page(
         title=f"{name} under {motion.name}",

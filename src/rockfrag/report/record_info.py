@@ -78,9 +78,13 @@ def _error_row(file: str, error: InputError) -> dict[str, Any]:
     return {"file": printable(file), "error": str(error), "status": status}
 
 
-def _row(record: Record, channel: Channel, unit: str | None, force: bool) -> dict[str, Any]:
+def _row(
+    record: Record, channel: Channel, unit: str | None, force: bool
+) -> dict[str, Any]:
     row: dict[str, Any] = {
-        "file": printable(f"{record.name}#{channel.member}" if channel.member else record.name),
+        "file": printable(
+            f"{record.name}#{channel.member}" if channel.member else record.name
+        ),
         "format": record.format,
         "station": channel.station,
         "channel": channel.code or channel.component,
@@ -118,12 +122,16 @@ def draw_files(
     for path in record_files(*paths):
         try:
             record, _ = read_untold(path, dt)
-            motions = [_motion(record, channel, unit, force) for channel in record.channels]
+            motions = [
+                _motion(record, channel, unit, force) for channel in record.channels
+            ]
         except InputError:
             continue
         for motion in motions:
             stem = file_name(motion.name)
-            endings = itertools.chain([""], (f"-{number}" for number in itertools.count(2)))
+            endings = itertools.chain(
+                [""], (f"-{number}" for number in itertools.count(2))
+            )
             pictures = (Path(folder) / f"{stem}{ending}.png" for ending in endings)
             picture = next(picture for picture in pictures if picture not in drawn)
             draw_record(motion, picture)
@@ -158,27 +166,38 @@ def record_figure(motion: Motion) -> Figure:
         left, right = figure.subfigures(1, 2, squeeze=False, width_ratios=(1.7, 1))[0]
         panels = left.subplots(3, 1, sharex=True)
         for panel, (values, label, colour, peak) in zip(panels, histories, strict=True):
-            highest = 1.2 * style.draw_history(panel, motion.time, values, color=colour) or 1.0
+            highest = (
+                1.2 * style.draw_history(panel, motion.time, values, color=colour)
+                or 1.0
+            )
             panel.set(ylim=(-highest, highest), ylabel=label)
             panel.set_title(f"peak {peak}", loc="right", pad=2)
         panels[-1].set_xlabel("Time [s]")
         panels[-1].set_xlim(0, max(motion.time[-1], motion.dt))
         upper, lower = right.subplots(2, 1)
         spectrum = response_spectrum(motion, _SPECTRUM_PERIODS, _DAMPING)
-        _logarithmic(upper, _SPECTRUM_PERIODS, spectrum.pseudo_acceleration / GRAVITY, style.BLUE)
+        _logarithmic(
+            upper, _SPECTRUM_PERIODS, spectrum.pseudo_acceleration / GRAVITY, style.BLUE
+        )
         upper.set(xlabel="Period [s]", ylabel="PSA, 5 % damping [g]")
         frequency, amplitude = fourier_amplitude(motion)
         _logarithmic(lower, frequency[1:], amplitude[1:], style.PURPLE)
         lower.set(xlabel="Frequency [Hz]", ylabel="Fourier amplitude [m/s]")
         told = {key: str(value or "") for key, value in motion.metadata.items()}
         station = f"{told.get('station', '')} {told.get('station_name', '')}".strip()
-        found = ", ".join(filter(None, (station, told.get("component"), told.get("earthquake"))))
-        titles = [shorten(line, 100, placeholder="…") for line in (motion.name, found) if line]
+        found = ", ".join(
+            filter(None, (station, told.get("component"), told.get("earthquake")))
+        )
+        titles = [
+            shorten(line, 100, placeholder="…") for line in (motion.name, found) if line
+        ]
         figure.suptitle("\n".join(titles), fontsize=9)
         return figure
 
 
-def _logarithmic(panel: Axes, x: NDArray[np.float64], y: NDArray[np.float64], colour: str) -> None:
+def _logarithmic(
+    panel: Axes, x: NDArray[np.float64], y: NDArray[np.float64], colour: str
+) -> None:
     """Draw a positive curve on logarithmic axes, over five decades at most."""
     largest = float(y.max()) if y.size and y.max() > 0 else 1.0
     panel.loglog(x, np.maximum(y, 1e-9 * largest), color=colour, linewidth=0.8)

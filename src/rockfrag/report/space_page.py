@@ -28,7 +28,9 @@ def run(job: Job[SpaceStudy]) -> Results:
     for base in study.bases:
         # what the second component does to one base, as the range of its rows
         rows = medians[(medians["base"] == base) & (medians["planar_impacts"] == LOSS)]
-        spans = {name: f"{rows[name].min():.2f} to {rows[name].max():.2f}" for name in PLANAR}
+        spans = {
+            name: f"{rows[name].min():.2f} to {rows[name].max():.2f}" for name in PLANAR
+        }
         findings.append(says.finding("finding", base, spans))
     answer = Answer(
         asked="At which shaking does a body topple under both components, beside planar rocking under one?",
@@ -41,7 +43,13 @@ def run(job: Job[SpaceStudy]) -> Results:
     table = says.table("medians", shown, WORDS)
     sections = [
         Section("medians", "Medians", f"{findings[0].headline}.", [], [table, ratios]),
-        Section("fractions", "Fractions by level", "What the medians come from.", [], [levels]),
+        Section(
+            "fractions",
+            "Fractions by level",
+            "What the medians come from.",
+            [],
+            [levels],
+        ),
     ]
     live = _live(study, job.motions("motions/ground"))
     write_page(job, answer, sections, {}, lead=says.line("lead", study), live=live)
@@ -53,7 +61,10 @@ def _live(study: SpaceStudy, ground: Sequence[Motion]) -> Markup:
     if study.sweep["base_spread"] > 0:
         return Markup()
     words = "{}, height over width {:g}, {:g} m"
-    bodies = {words.format(*about): Standing(body_of(*about).system()) for about in study.bodies}
+    bodies = {
+        words.format(*about): Standing(body_of(*about).system())
+        for about in study.bodies
+    }
     return live_in_space(bodies, list(map(GroundMotion, ground[::2], ground[1::2])))
 
 
@@ -67,7 +78,9 @@ COLOURS = dict(zip(PLANAR, (style.BLUE, style.ORANGE, style.GREEN), strict=True)
 
 def _bases(medians: pd.DataFrame) -> pd.Series:
     """Return the base of each row in words, and that planar impacts lose nothing where they do not."""
-    return medians["base"] + np.where(medians["planar_impacts"] == NO_LOSS, ", no loss", "")
+    return medians["base"] + np.where(
+        medians["planar_impacts"] == NO_LOSS, ", no loss", ""
+    )
 
 
 def ratios_figure(medians: pd.DataFrame) -> Figure:
@@ -78,12 +91,23 @@ def ratios_figure(medians: pd.DataFrame) -> Figure:
             low, high = (medians[f"{name}_{end}"] for end in ("lower", "upper"))
             off = places + 0.2 * (1 - k)
             panel.hlines(off, low, high, color=COLOURS[name], lw=1.0)
-            panel.plot(medians[name], off, "os^"[k], color=COLOURS[name], ms=3.5, label=WORDS[name])
+            panel.plot(
+                medians[name],
+                off,
+                "os^"[k],
+                color=COLOURS[name],
+                ms=3.5,
+                label=WORDS[name],
+            )
         panel.axvline(1.0, color=style.BLACK, lw=0.8, ls="--")
         slenderness = _bases(medians) + medians["slenderness"].map(", {:g}".format)
-        panel.set_yticks(places, slenderness + medians["height_m"].map(", {:g} m".format))
+        panel.set_yticks(
+            places, slenderness + medians["height_m"].map(", {:g} m".format)
+        )
         panel.set_ylim(places[-1] - 0.6, 0.6)
-        panel.set_xlabel("Median level in space over that of planar rocking [-]; unsafe below 1")
+        panel.set_xlabel(
+            "Median level in space over that of planar rocking [-]; unsafe below 1"
+        )
         panel.set_ylabel("Base, height over width, height")
         figure.legend(loc="outside upper center", ncols=3)
         return figure
@@ -96,11 +120,17 @@ def fractions_figure(fractions: pd.DataFrame) -> Figure:
     rows = -(-len(bodies) // columns)
     size, shape = (style.PAGE_WIDTH, 0.6 + 1.35 * rows), (rows, columns)
     with style.panels(*size, *shape, sharey=True, squeeze=False) as (figure, panels):
-        for panel, ((base, slenderness, height), part) in zip(panels.flat, bodies, strict=False):
+        for panel, ((base, slenderness, height), part) in zip(
+            panels.flat, bodies, strict=False
+        ):
             first = part[part["planar_impacts"] == part["planar_impacts"].iloc[0]]
-            panel.plot(first["level_g"], first["space"], color=style.RED, label="in space")
+            panel.plot(
+                first["level_g"], first["space"], color=style.RED, label="in space"
+            )
             for name in PLANAR:
-                curve = panel.plot(first["level_g"], first[name], color=COLOURS[name], lw=0.9)
+                curve = panel.plot(
+                    first["level_g"], first[name], color=COLOURS[name], lw=0.9
+                )
                 curve[0].set_label(WORDS[name])
             style.plain_log(panel, "x")
             panel.set_title(f"{base}\n{slenderness:g}, {height:g} m", loc="left")

@@ -47,12 +47,17 @@ def _settings(results: StudyResults) -> dict[str, str]:
     """What the numbers of a simulated study depend on."""
     study = results.study
     shown = study.catalogue.head(MOST_TABLE_ROWS)
-    digests = shown["sha256"].map(lambda sha: f", SHA-256 {sha[:12]} checked" if sha else "")
+    digests = shown["sha256"].map(
+        lambda sha: f", SHA-256 {sha[:12]} checked" if sha else ""
+    )
     records = ", ".join(shown["name"] + " (" + shown["source"] + digests + ")")
     if rest := len(study.catalogue) - len(shown):
         records += f" and {rest} more of {study.catalogue_file.name}"
     digest = ", ".join(sorted(set(results.table("fragility")["record_set_sha256"])))
-    return says.pairs("settings", study) | {"Records": records, "Motions, SHA-256": digest}
+    return says.pairs("settings", study) | {
+        "Records": records,
+        "Motions, SHA-256": digest,
+    }
 
 
 def write_page(
@@ -78,12 +83,19 @@ def write_page(
         "Source": f"rockfrag {version('rockfrag')}, digest {digest}",
     }
     if libraries:
-        provenance["Libraries"] = ", ".join(f"{name} {version(name)}" for name in libraries)
+        provenance["Libraries"] = ", ".join(
+            f"{name} {version(name)}" for name in libraries
+        )
     shown = Page(study.title, lead, answer, sections, provenance, **page)
     text = shown.html(folder, job.threads)
     # chapter and caption of each figure, for Snakemake's report
     each = shown.figures.items()
-    captions = {name: {"chapter": at, "caption": spec.caption} for name, (spec, at) in each}
-    write_text(json.dumps(captions, ensure_ascii=False, indent=1) + "\n", folder / "captions.json")
+    captions = {
+        name: {"chapter": at, "caption": spec.caption} for name, (spec, at) in each
+    }
+    write_text(
+        json.dumps(captions, ensure_ascii=False, indent=1) + "\n",
+        folder / "captions.json",
+    )
     write_text(text, job.folder / "report.html")
     job.log.info("%s", job.folder / "report.html")

@@ -29,7 +29,10 @@ def one_sine_pulse(omega: float, p: float) -> float:
 
     def excess(x: float) -> float:
         begin = math.asin(1 / x)
-        return x * p * (math.exp(-p * (phase - begin) / omega) * part(phase) - part(begin)) - 1
+        return (
+            x * p * (math.exp(-p * (phase - begin) / omega) * part(phase) - part(begin))
+            - 1
+        )
 
     upper = 2.0
     while excess(upper) < 0:

@@ -38,7 +38,8 @@ on a warning is given: rocking adds to it (19 of 27 blocks of h/b 0.5 to 1.2 at 
 contact, while slender ones need several g)."""
 
 
-LEAST_LIFTING = 0.8  # acceleration over g below which no uniform block both rocks and is warned of
+# acceleration over g below which no uniform block both rocks and is warned of
+LEAST_LIFTING = 0.8
 
 
 class LightBodies(UserWarning):
@@ -182,14 +183,19 @@ def shaken(cases: Cases) -> Outcomes:
     if not outcomes.overturned.size:
         return outcomes
     if any(motion.z is not None for motion in cases.motions):
-        ups = [motion.z.acceleration if motion.z else np.zeros(1) for motion in cases.motions]
+        ups = [
+            motion.z.acceleration if motion.z else np.zeros(1)
+            for motion in cases.motions
+        ]
         ends = np.array([(up.min(initial=0.0), up.max(initial=0.0)) for up in ups])
         least = np.min(ends[:, np.newaxis, :] * cases.scales[..., np.newaxis], axis=2)
         outcomes.minimum_gravity_ratio[:] = 1.0 + least / cases.request.g
     # a body that is answered in space leaves the ground where it has to, and so do more than two bodies
     in_space = any(motion.y is not None for motion in cases.motions)
     held = [not system.loose and system.count < 3 for system in cases.systems]
-    stuck = np.array(held) & np.array([system.planar or not in_space for system in cases.systems])
+    stuck = np.array(held) & np.array(
+        [system.planar or not in_space for system in cases.systems]
+    )
     if stuck.any() and not cases.request.forces:
         for words in _light_words(cases, outcomes, stuck):
             # past the door that shakes, and its keywords
@@ -210,8 +216,13 @@ def overturned_cases(
         column = pd.Series(row).groupby(row).cumcount().to_numpy()
         scales = np.zeros((used.size, column.max() + 1))
         scales[row, column] = scale[mine]
-        systems, motions = (cases.systems[number],), tuple(cases.motions[m] for m in used)
-        some = replace(cases, systems=systems, motions=motions, scales=scales, threads=1)
+        systems, motions = (
+            (cases.systems[number],),
+            tuple(cases.motions[m] for m in used),
+        )
+        some = replace(
+            cases, systems=systems, motions=motions, scales=scales, threads=1
+        )
         overturned[mine] = run_cases(some).overturned[0, row, column]
 
     with ThreadPoolExecutor(cases.threads) as pool:
@@ -219,7 +230,9 @@ def overturned_cases(
     return overturned
 
 
-def _light_words(cases: Cases, outcomes: Outcomes, stuck: NDArray[np.bool_]) -> Iterator[str]:
+def _light_words(
+    cases: Cases, outcomes: Outcomes, stuck: NDArray[np.bool_]
+) -> Iterator[str]:
     """Say in how many cases bodies may leave the ground: it drops, or squat ones rock in strong motions."""
     ratio = outcomes.minimum_gravity_ratio[stuck]
     light, none = int((ratio < LIGHT).sum()), int((ratio <= 0).sum())
@@ -234,8 +247,12 @@ def _light_words(cases: Cases, outcomes: Outcomes, stuck: NDArray[np.bool_]) -> 
     # a body that rocks at less is too slender or too squat to lift itself
     if not (peaks > LEAST_LIFTING * cases.request.g).any():
         return
-    least = np.array([lifting_acceleration(system, cases.request.g) for system in cases.systems])
-    strong = (peaks > LIFTING * least[:, np.newaxis, np.newaxis]) & stuck[:, np.newaxis, np.newaxis]
+    least = np.array(
+        [lifting_acceleration(system, cases.request.g) for system in cases.systems]
+    )
+    strong = (peaks > LIFTING * least[:, np.newaxis, np.newaxis]) & stuck[
+        :, np.newaxis, np.newaxis
+    ]
     with np.errstate(invalid="ignore"):
         found = int((strong & (outcomes.peak_rotation > 0).any(axis=-1)).sum())
     if found:
@@ -256,6 +273,8 @@ def lifting_acceleration(system: System, g: float) -> float:
         for pivot in (+1, -1):
             x, y = geometry.arm(shape, pivot)
             if x:
-                needed = geometry.pivot_inertia(shape, pivot) / (shape.mass * abs(x)) - abs(x)
+                needed = geometry.pivot_inertia(shape, pivot) / (
+                    shape.mass * abs(x)
+                ) - abs(x)
                 found = min(found, g * needed / y)
     return float(found)

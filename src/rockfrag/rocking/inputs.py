@@ -36,14 +36,23 @@ def _checked_motion(motion: Any, dt: float | None, name: str) -> Motion:
         values = motion.acceleration
     else:
         if dt is None:
-            raise InputError(f"dt: {name} is an array; give its sampling interval in seconds.")
-        interval, values = positive_number("dt", dt, "seconds"), real_array(name, motion, "m/s²")
+            raise InputError(
+                f"dt: {name} is an array; give its sampling interval in seconds."
+            )
+        interval, values = (
+            positive_number("dt", dt, "seconds"),
+            real_array(name, motion, "m/s²"),
+        )
     if values.ndim != 1:
         raise InputError(f"{name}: expected shape (n,), got {values.shape}.")
     if values.size < 2:
-        raise InputError(f"{name}: a motion needs at least two samples, got {values.size}.")
+        raise InputError(
+            f"{name}: a motion needs at least two samples, got {values.size}."
+        )
     if values.size > MOST_SAMPLES:
-        raise InputError(f"{name}: {values.size} samples are more than the {MOST_SAMPLES} allowed.")
+        raise InputError(
+            f"{name}: {values.size} samples are more than the {MOST_SAMPLES} allowed."
+        )
     if not np.isfinite(values).all():
         first = int(np.flatnonzero(~np.isfinite(values))[0])
         raise InputError(f"{name}: sample {first} is not a finite number.")
@@ -58,7 +67,9 @@ def _checked_motion(motion: Any, dt: float | None, name: str) -> Motion:
 def _checked_vertical(vertical: MotionLike, horizontal: Motion, name: str) -> Motion:
     """Return the vertical component that belongs to a horizontal one."""
     interval = horizontal.dt
-    if isinstance(vertical, Motion) and not math.isclose(vertical.dt, interval, rel_tol=1e-9):
+    if isinstance(vertical, Motion) and not math.isclose(
+        vertical.dt, interval, rel_tol=1e-9
+    ):
         raise InputError(
             f"{name}: sampled every {vertical.dt:g} s, the horizontal motion every {interval:g} s; "
             "resample one of them."
@@ -77,7 +88,9 @@ def listed_bodies(bodies: object) -> list[SystemLike]:
     """Return the bodies as a list."""
     if is_system(bodies):
         return [bodies]
-    if not isinstance(bodies, (Sequence, np.ndarray)) or isinstance(bodies, (str, bytes)):
+    if not isinstance(bodies, (Sequence, np.ndarray)) or isinstance(
+        bodies, (str, bytes)
+    ):
         raise InputError(
             f"bodies: expected a Block, a Stack, a Column, a System or a list of them, got {shown(bodies)}."
         )
@@ -102,7 +115,9 @@ def listed_motions(
     else:
         intervals = list(real_array("dt", dt, "s").ravel().tolist())
         if len(intervals) != len(each):
-            raise InputError(f"dt: expected one number or {len(each)}, got {len(intervals)}.")
+            raise InputError(
+                f"dt: expected one number or {len(each)}, got {len(intervals)}."
+            )
     ups: list[MotionLike | None] = [None] * len(each)
     if vertical is not None:
         ups = list(_listed_motions(vertical, "vertical"))
@@ -112,7 +127,9 @@ def listed_motions(
             )
     return [
         ground_motion(motion, interval, up, f"motions[{i}]", f"vertical[{i}]")
-        for i, (motion, interval, up) in enumerate(zip(each, intervals, ups, strict=True))
+        for i, (motion, interval, up) in enumerate(
+            zip(each, intervals, ups, strict=True)
+        )
     ]
 
 
@@ -151,13 +168,25 @@ def _listed_motions(motions: Any, name: str = "motions") -> list[MotionLike]:
     _refuse_file_name(name, motions)
     if isinstance(motions, (Motion, GroundMotion)):
         return [motions]
-    if isinstance(motions, np.ndarray) and motions.ndim == 1 and motions.dtype != object:
+    if (
+        isinstance(motions, np.ndarray)
+        and motions.ndim == 1
+        and motions.dtype != object
+    ):
         return [motions]
-    if motions is None or isinstance(motions, (str, bytes, Mapping)) or not np.iterable(motions):
+    if (
+        motions is None
+        or isinstance(motions, (str, bytes, Mapping))
+        or not np.iterable(motions)
+    ):
         raise InputError(
             f"{name}: expected a Motion, accelerations or a list of them, got {shown(motions)}."
         )
-    if isinstance(motions, np.ndarray) and motions.ndim == 2 and 2 <= motions.shape[1] <= 3:
+    if (
+        isinstance(motions, np.ndarray)
+        and motions.ndim == 2
+        and 2 <= motions.shape[1] <= 3
+    ):
         raise InputError(
             f"{name}: an array of shape {motions.shape} looks like {motions.shape[1]} components in columns, not "
             f"like {motions.shape[0]} motions; give each motion as an array of shape (n,), or a GroundMotion."
@@ -169,7 +198,9 @@ def _listed_motions(motions: Any, name: str = "motions") -> list[MotionLike]:
     return each
 
 
-def checked_scales(scales: ArrayLike, motions: Sequence[GroundMotion]) -> NDArray[np.float64]:
+def checked_scales(
+    scales: ArrayLike, motions: Sequence[GroundMotion]
+) -> NDArray[np.float64]:
     """Return factors on the accelerations as an array of shape (motions, scales)."""
     if isinstance(scales, np.ndarray):
         # before anything is asked of so many numbers
@@ -199,7 +230,9 @@ def checked_threads(threads: object) -> int:
         return os.cpu_count() or 1
     count = whole_number("threads", threads)
     if not 1 <= count <= 4096:
-        raise InputError(f"threads: expected a whole number from 1 to 4096, got {count}.")
+        raise InputError(
+            f"threads: expected a whole number from 1 to 4096, got {count}."
+        )
     return count
 
 
@@ -234,14 +267,19 @@ def warn_of_units(cases: Cases, given: object, stacklevel: int = 5) -> None:
     g = cases.request.g
     largest = np.abs(cases.scales).max(axis=1, initial=0.0)
     peaks = [
-        motion.x.pga * float(scale) for motion, scale in zip(cases.motions, largest, strict=True)
+        motion.x.pga * float(scale)
+        for motion, scale in zip(cases.motions, largest, strict=True)
     ]
     peak = max(peaks)
     own = (Motion, GroundMotion)
     plain = any(not isinstance(motion, own) for motion in _listed_motions(given))
     # a stronger motion is hardly one in g, and needs no look at the bodies
     doubtful = plain and 0 < peak <= units.LARGEST_IN_G
-    least = g * min(min(uplift_ratios(system)) for system in cases.systems) if doubtful else None
+    least = (
+        g * min(min(uplift_ratios(system)) for system in cases.systems)
+        if doubtful
+        else None
+    )
     longest = max(motion.dt for motion in cases.motions)
     flags = [units.peak_warning(peak, least)]
     if g > units.LARGEST_GRAVITY:

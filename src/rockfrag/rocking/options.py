@@ -79,13 +79,19 @@ def system_of(
     if friction is not None:
         given = _frictions_of(system.count, friction, "friction" + name)
         contacts = [
-            replace(contact, friction=mu) for contact, mu in zip(contacts, given, strict=True)
+            replace(contact, friction=mu)
+            for contact, mu in zip(contacts, given, strict=True)
         ]
     if restitution is not None:
         laws = _impact_laws(system, restitution, "restitution" + name)
-        contacts = [replace(contact, law=law) for contact, law in zip(contacts, laws, strict=True)]
+        contacts = [
+            replace(contact, law=law)
+            for contact, law in zip(contacts, laws, strict=True)
+        ]
     if theta0 is not None or omega0 is not None:
-        start = Start(_start(system, theta0, "theta0"), _start(system, omega0, "omega0"))
+        start = Start(
+            _start(system, theta0, "theta0"), _start(system, omega0, "omega0")
+        )
     if all(given is None for given in (friction, restitution, theta0, omega0)):
         return system
     return replace(system, contacts=tuple(contacts), start=start)
@@ -97,13 +103,19 @@ def _start(system: System, value: object, name: str) -> tuple[float, ...]:
         return (0.0,) * system.count
     values = np.atleast_1d(real_array(name, value))
     if values.shape != (system.count,) or not np.isfinite(values).all():
-        raise InputError(f"{name}: expected {system.count} finite number(s), got {shown(value)}.")
+        raise InputError(
+            f"{name}: expected {system.count} finite number(s), got {shown(value)}."
+        )
     if name == "theta0" and (np.abs(values) >= math.pi / 2).any():
-        raise InputError("theta0: a block turned by π/2 or more lies on its side already.")
+        raise InputError(
+            "theta0: a block turned by π/2 or more lies on its side already."
+        )
     return tuple(values.tolist())
 
 
-def systems_of(bodies: Sequence[SystemLike], options: Mapping[str, Any]) -> tuple[System, ...]:
+def systems_of(
+    bodies: Sequence[SystemLike], options: Mapping[str, Any]
+) -> tuple[System, ...]:
     """Return the systems that bodies and their options, as of :func:`rockfrag.rocking.overturns`, are."""
     count = len(bodies)
     friction = _friction_of_each(options.get("friction"), count)
@@ -120,9 +132,13 @@ def _one_per_body(name: str, given: Any, count: int) -> list[Any]:
     if given is None:
         return [None] * count
     if not isinstance(given, (list, tuple, np.ndarray)):
-        raise InputError(f"{name}: expected a list with one entry per body, got {shown(given)}.")
+        raise InputError(
+            f"{name}: expected a list with one entry per body, got {shown(given)}."
+        )
     if len(given) != count:
-        raise InputError(f"{name}: expected {count} entries, one per body, got {len(given)}.")
+        raise InputError(
+            f"{name}: expected {count} entries, one per body, got {len(given)}."
+        )
     return list(given)
 
 
@@ -132,7 +148,9 @@ def _friction_of_each(friction: Any, count: int) -> list[Any]:
         friction = friction.item()
     if friction is None or isinstance(friction, (numbers.Real, Friction, dict)):
         return [friction] * count
-    bare = isinstance(friction, tuple) and all(isinstance(v, numbers.Real) for v in friction)
+    bare = isinstance(friction, tuple) and all(
+        isinstance(v, numbers.Real) for v in friction
+    )
     if bare:
         raise InputError(
             f"friction: {shown(friction)} could be one coefficient per body, (ground, interface) or (static, "
@@ -164,7 +182,9 @@ def _frictions_of(count: int, friction: object, name: str) -> list[Friction | No
     ]
 
 
-def _impact_laws(system: System, restitution: Restitution, name: str) -> tuple[ImpactLaw, ...]:
+def _impact_laws(
+    system: System, restitution: Restitution, name: str
+) -> tuple[ImpactLaw, ...]:
     """Return the law of the impacts of each contact of a system; messages call the restitution by ``name``."""
     law, given = "position", restitution
     if isinstance(restitution, MeasuredRestitution):
@@ -172,22 +192,30 @@ def _impact_laws(system: System, restitution: Restitution, name: str) -> tuple[I
     if given is None:
         return (BY_MOMENTUM,) * system.count
     wanted = (
-        "a pair (ground, interface)" if system.count == 2 else f"{system.count} entries from below"
+        "a pair (ground, interface)"
+        if system.count == 2
+        else f"{system.count} entries from below"
     )
     wanted = f"a stack takes {wanted}, each of which may be None"
     each = each_contact(name, given, system.count, wanted)
     places = ("block",) if system.count == 1 else ("ground", "interface")
     return tuple(
-        _law_of(f"{name} of the {places[min(k, 1)]}", law, value, shape, system.count == 1)
+        _law_of(
+            f"{name} of the {places[min(k, 1)]}", law, value, shape, system.count == 1
+        )
         for k, (value, shape) in enumerate(zip(each, system.carried, strict=True))
     )
 
 
-def _law_of(name: str, law: str, value: object, shape: geometry.Shape, lone: bool) -> ImpactLaw:
+def _law_of(
+    name: str, law: str, value: object, shape: geometry.Shape, lone: bool
+) -> ImpactLaw:
     if value is None:
         return BY_MOMENTUM
     both = _ratios(name, value, shape)
-    told = [law_named(law).tell(shape, *side) for side in zip(both, (+1, -1), strict=True)]
+    told = [
+        law_named(law).tell(shape, *side) for side in zip(both, (+1, -1), strict=True)
+    ]
     if any(math.isnan(number) for _, number in told):
         raise InputError(
             f"{name}: momentum leaves this block nothing to rock on with, so the law {law} has nothing to "

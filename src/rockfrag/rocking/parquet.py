@@ -83,13 +83,18 @@ def stream_overturns(
     cases = prepared(bodies, motions, dt, scales, forces=forces, **options)
     chosen = [known[name] for name in known if name in columns]
     types = {
-        each.title: pa.string() if each.dtype == object else pa.from_numpy_dtype(each.dtype)
+        each.title: pa.string()
+        if each.dtype == object
+        else pa.from_numpy_dtype(each.dtype)
         for each in chosen
     }
     schema = pa.schema(PLACE | WITHIN[table] | types)
     total = len(cases.systems) * cases.scales.size
     done = 0
-    with whole_file(path) as file, pq.ParquetWriter(file, schema, compression="zstd") as writer:
+    with (
+        whole_file(path) as file,
+        pq.ParquetWriter(file, schema, compression="zstd") as writer,
+    ):
         parts = 1 if table == "cases" else max(system.count for system in cases.systems)
         for some, rows, cols in _groups(max(1, ROWS // parts), cases.shape):
             part = replace(
@@ -112,7 +117,9 @@ def _groups(most: int, shape: tuple[int, int, int]) -> Iterator[tuple[slice, ...
     """Cut systems × motions × scales, in this order, into boxes of at most so many cases."""
     _, n_motions, n_scales = shape
     motions, systems = most // max(1, n_scales), most // max(1, n_motions * n_scales)
-    steps = (max(1, each) for each in (systems, min(motions, n_motions), min(most, n_scales)))
+    steps = (
+        max(1, each) for each in (systems, min(motions, n_motions), min(most, n_scales))
+    )
     return itertools.product(
         *(
             [slice(i, i + step) for i in range(0, count, step)]
@@ -166,8 +173,13 @@ def stream_histories(
         # refused here and not in the middle of the file: the longest interval needs most steps
         _ = cases.answering
         for system in cases.systems:
-            step_count(system, [motion.dt for motion in cases.motions], request.g, request.step)
-    total, places = len(cases.systems) * cases.scales.size, iter(np.ndindex(*cases.shape))
+            step_count(
+                system, [motion.dt for motion in cases.motions], request.g, request.step
+            )
+    total, places = (
+        len(cases.systems) * cases.scales.size,
+        iter(np.ndindex(*cases.shape)),
+    )
     with (
         whole_file(path) as file,
         pq.ParquetWriter(file, SCHEMA, compression="zstd") as writer,
@@ -186,7 +198,9 @@ def stream_histories(
 def _history_table(cases: Cases, place: tuple[int, ...]) -> pa.Table:
     """Make the rows of one history, of a system, a motion and a scale."""
     b, m, s = place
-    case = Case(cases.systems[b], cases.motions[m], float(cases.scales[m, s]), cases.request)
+    case = Case(
+        cases.systems[b], cases.motions[m], float(cases.scales[m, s]), cases.request
+    )
     response = engine_for(case.system, case.motion, case.request).history(case)
     theta = response.theta
     samples, bodies = theta.shape

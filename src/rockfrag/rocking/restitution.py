@@ -29,14 +29,16 @@ _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(48)
 class RestitutionFit:
     """Coefficient of restitution that explains a free-rocking history best."""
 
-    restitution: float  # e, ratio of the angular velocities after and before an impact [-]
+    # e, ratio of the angular velocities after and before an impact [-]
+    restitution: float
     # lower, upper: limits of its confidence interval; NaN where the data leave no degree of freedom
     lower: float
     upper: float
     impacts: int  # impacts that speak about e
     # standard deviation of the data about the fit, in their own unit (rad or s); NaN likewise
     scatter: float
-    computed: float  # what conservation of momentum gives for this block, 1 - 1.5 sin²α if it is uniform [-]
+    # what conservation of momentum gives for this block, 1 - 1.5 sin²α if it is uniform [-]
+    computed: float
 
 
 def peak_after(block: Block, speed: float, pivot: int = 1) -> float:
@@ -57,7 +59,9 @@ def speed_before(block: Block, peak: float, pivot: int = 1) -> float:
     return p * math.sqrt(4 * math.sin(alpha - peak / 2) * math.sin(peak / 2))
 
 
-def quarter_period(block: Block, peak: float, pivot: int = 1, *, linear: bool = False) -> float:
+def quarter_period(
+    block: Block, peak: float, pivot: int = 1, *, linear: bool = False
+) -> float:
     """Time from rest at a rotation ``peak`` [rad] to the impact [s] (Housner, 1963, if linear).
 
     The nonlinear one is the integral of dθ/θ' with the energy of eq. 2.4, by Gauss-Legendre after
@@ -102,7 +106,10 @@ def restitution_from_peaks(
         return np.array(found)
 
     # the ratio of the first and the last speed is already an estimate
-    speeds = [speed_before(block, peak, pivot) for peak, pivot in zip(values, pivots, strict=True)]
+    speeds = [
+        speed_before(block, peak, pivot)
+        for peak, pivot in zip(values, pivots, strict=True)
+    ]
     start = (speeds[-1] / speeds[0]) ** (1 / (len(values) - 1))
     ceiling = min(block.critical_angle(pivot) for pivot in pivots)
     bounds = [(1e-9 * ceiling, ceiling * (1 - 1e-9))]
@@ -148,7 +155,9 @@ def restitution_from_impacts(
             speed *= e
         return np.array(found)
 
-    over = min(speed_before(block, block.critical_angle(pivot), pivot) for pivot in (+1, -1))
+    over = min(
+        speed_before(block, block.critical_angle(pivot), pivot) for pivot in (+1, -1)
+    )
     largest = over * (1 - 1e-12)
 
     def speed_of(interval: float, pivot: int) -> float:
@@ -159,7 +168,9 @@ def restitution_from_impacts(
         ends = 1e-9 * largest, largest
         return float(brentq(lambda s: flight(s, pivot) - interval, *ends, xtol=1e-14))
 
-    speeds = [speed_of(float(T), pivot) for T, pivot in zip(intervals, pivots, strict=True)]
+    speeds = [
+        speed_of(float(T), pivot) for T, pivot in zip(intervals, pivots, strict=True)
+    ]
     start = min(max((speeds[-1] / speeds[0]) ** (1 / (len(speeds) - 1)), 0.01), 0.9999)
     bounds = [(-np.inf, np.inf), (1e-9 * largest, largest)]
     fit = _least_squares(model, values, [values[0], speeds[0], start], bounds)
@@ -187,10 +198,14 @@ def restitution_from_history(
     """
     t, values = _numbers("time", time, 8), _numbers("theta", theta, 8)
     if t.shape != values.shape:
-        raise InputError(f"theta: {values.size} rotations for {t.size} times; give one per time.")
+        raise InputError(
+            f"theta: {values.size} rotations for {t.size} times; give one per time."
+        )
     dt = float((t[-1] - t[0]) / (t.size - 1))
     if dt <= 0 or np.abs(np.diff(t) - dt).max() > 1e-3 * dt:
-        raise InputError("time: samples must be evenly spaced and rising; resample the history.")
+        raise InputError(
+            "time: samples must be evenly spaced and rising; resample the history."
+        )
     peaks = _peaks_of(values)
     if len(peaks) < 3:
         raise InputError(
@@ -202,22 +217,31 @@ def restitution_from_history(
 
     def model(parameters: Floats) -> Floats:
         theta0, omega0, e = parameters
-        response = simulate(block, quiet, dt, theta0=theta0, omega0=omega0, restitution=float(e))
+        response = simulate(
+            block, quiet, dt, theta0=theta0, omega0=omega0, restitution=float(e)
+        )
         return response.theta[: t.size, 0]
 
     slope = float(np.polyfit(t[:5] - t[0], values[:5], 1)[0])
     top = block.critical_angle(1 if peaks[0] > 0 else -1)
     # a first sample near the base must not start on the wrong side of it
     begin = float(np.clip(values[0], -0.999 * top, 0.999 * top))
-    scale, bounds = [top, top * block.frequency(), 1.0], [(-top, top), (-np.inf, np.inf)]
-    fit = _least_squares(model, values, [begin, slope, min(guess, 0.999)], bounds, scale)
+    scale, bounds = (
+        [top, top * block.frequency(), 1.0],
+        [(-top, top), (-np.inf, np.inf)],
+    )
+    fit = _least_squares(
+        model, values, [begin, slope, min(guess, 0.999)], bounds, scale
+    )
     return _summary(block, fit, len(peaks) - 1, confidence)
 
 
 def _numbers(name: str, data: ArrayLike, least: int) -> Floats:
     values = real_array(name, data, "s" if "time" in name else "rad")
     if values.ndim != 1 or values.size < least:
-        raise InputError(f"{name}: expected at least {least} numbers in a row, got {values.shape}.")
+        raise InputError(
+            f"{name}: expected at least {least} numbers in a row, got {values.shape}."
+        )
     if not np.isfinite(values).all():
         bad = int(np.flatnonzero(~np.isfinite(values))[0])
         raise InputError(f"{name}: entry {bad} is not a finite number; leave it out.")
@@ -282,10 +306,14 @@ def _least_squares(
     )
 
 
-def _summary(block: Block, fit: OptimizeResult, impacts: int, confidence: float) -> RestitutionFit:
+def _summary(
+    block: Block, fit: OptimizeResult, impacts: int, confidence: float
+) -> RestitutionFit:
     """Interval of e by Student's t and the curvature of the sum of squares."""
     if not 0 < confidence < 1:
-        raise InputError(f"confidence: expected a level between 0 and 1, got {confidence}.")
+        raise InputError(
+            f"confidence: expected a level between 0 and 1, got {confidence}."
+        )
     n, k = fit.jac.shape
     e = float(fit.x[-1])
     computed = block.momentum_restitution()
@@ -293,7 +321,14 @@ def _summary(block: Block, fit: OptimizeResult, impacts: int, confidence: float)
         return RestitutionFit(e, math.nan, math.nan, impacts, math.nan, computed)
     variance = 2 * fit.cost / (n - k)
     covariance = variance * np.linalg.pinv(fit.jac.T @ fit.jac)
-    half = float(student.ppf((1 + confidence) / 2, n - k)) * math.sqrt(covariance[-1, -1])
+    half = float(student.ppf((1 + confidence) / 2, n - k)) * math.sqrt(
+        covariance[-1, -1]
+    )
     return RestitutionFit(
-        e, max(e - half, 0.0), min(e + half, 1.0), impacts, math.sqrt(variance), computed
+        e,
+        max(e - half, 0.0),
+        min(e + half, 1.0),
+        impacts,
+        math.sqrt(variance),
+        computed,
     )

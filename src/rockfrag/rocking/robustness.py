@@ -23,7 +23,14 @@ from rockfrag.rocking.ensemble import Options, overturned_cases, prepared, shake
 from rockfrag.rocking.inputs import MotionLike
 from rockfrag.short_repr import short_repr
 from rockfrag.system.blocks import SystemLike
-from rockfrag.system.body import Circle, Interval, Outline, Polygon, RigidBody, checked_tensor
+from rockfrag.system.body import (
+    Circle,
+    Interval,
+    Outline,
+    Polygon,
+    RigidBody,
+    checked_tensor,
+)
 from rockfrag.system.geometry import shape_of
 from rockfrag.system.system import System
 
@@ -90,7 +97,9 @@ def outcome_robustness(
 def perturbed(system: System, size: float, rng: np.random.Generator) -> System:
     """Return a system whose widths and heights differ by at most ``size``, relative, drawn evenly."""
     drawn = [(1 + size * rng.uniform(-1, 1, 2)).tolist() for _ in system.bodies]
-    bodies = (_resized(body, *sizes) for body, sizes in zip(system.bodies, drawn, strict=True))
+    bodies = (
+        _resized(body, *sizes) for body, sizes in zip(system.bodies, drawn, strict=True)
+    )
     return replace(system, bodies=tuple(bodies))
 
 
@@ -105,7 +114,10 @@ def _resized(body: RigidBody, across: float, up: float) -> RigidBody:
         face=None if body.face is None else _scaled(body.face, across),
     )
     if isinstance(body.inertia, tuple):
-        inertia, stretch = body.tensor, (across, across if isinstance(base, Circle) else 1.0, up)
+        inertia, stretch = (
+            body.tensor,
+            (across, across if isinstance(base, Circle) else 1.0, up),
+        )
         # I = tr(S) 1 - S of the second moments S, which grow with the product of their two axes
         second_moments = np.trace(inertia) / 2 * np.eye(3) - inertia
         second_moments *= np.outer(stretch, stretch)
@@ -118,7 +130,9 @@ def _resized(body: RigidBody, across: float, up: float) -> RigidBody:
 
 def _uniform(body: RigidBody) -> float:
     """Moment of inertia of a uniform rectangle of the body's size [kg m²]."""
-    return shape_of(body.width, body.height, body.mass, math.nan, math.nan, 0.0, 0.0).inertia
+    return shape_of(
+        body.width, body.height, body.mass, math.nan, math.nan, 0.0, 0.0
+    ).inertia
 
 
 def _scaled(outline: Outline, across: float) -> Outline:
@@ -185,8 +199,12 @@ def find_step_size_sensitive(
     factors, shape = grid.scales, grid.shape
     total = int(np.prod(shape))
     if whole_number("sample", sample) < 1 or total < 1:
-        raise InputError(f"sample: expected at least one of {total} cases, got {sample}.")
-    chosen = np.random.default_rng(seed).choice(total, min(sample, total), replace=False)
+        raise InputError(
+            f"sample: expected at least one of {total} cases, got {sample}."
+        )
+    chosen = np.random.default_rng(seed).choice(
+        total, min(sample, total), replace=False
+    )
     cases = np.stack(np.unravel_index(np.sort(chosen), shape), axis=1).astype(np.int64)
     body, motion, column = cases.T
     drawn = (body, motion, factors[motion, column])
@@ -207,7 +225,9 @@ def _doubled(motion: GroundMotion) -> GroundMotion:
 
     def dense(component: Motion) -> Motion:
         return replace(
-            component, acceleration=refined(component.acceleration, 2), dt=component.dt / 2
+            component,
+            acceleration=refined(component.acceleration, 2),
+            dt=component.dt / 2,
         )
 
     y, z = (None if part is None else dense(part) for part in (motion.y, motion.z))

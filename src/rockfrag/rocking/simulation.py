@@ -12,7 +12,12 @@ from rockfrag.engines.response import Response
 from rockfrag.input_checks import positive_number
 from rockfrag.keywords import named_keywords
 from rockfrag.rocking.ensemble import LightBodies
-from rockfrag.rocking.inputs import MotionLike, checked_switch, ground_motion, warn_of_units
+from rockfrag.rocking.inputs import (
+    MotionLike,
+    checked_switch,
+    ground_motion,
+    warn_of_units,
+)
 from rockfrag.rocking.options import FrictionInput, Restitution, StartInput, system_of
 from rockfrag.system.blocks import SystemLike
 from rockfrag.units import GRAVITY
@@ -89,7 +94,9 @@ def simulate(
     request = Request(history=True, linear=checked_switch("linear", linear), g=g)
     engine = engine_for(system, shaking, request)
     response: Response = engine.history(Case(system, shaking, 1.0, request))
-    warn_of_units(Cases((system,), (shaking,), np.ones((1, 1)), request), motion, stacklevel=4)
+    warn_of_units(
+        Cases((system,), (shaking,), np.ones((1, 1)), request), motion, stacklevel=4
+    )
     if not math.isnan(response.lost_contact):
         warnings.warn(
             f"at {response.lost_contact:.3f} s the body would have left the ground, on which pure rocking holds "

@@ -36,7 +36,8 @@ class RockingSpectrum:
     alpha: Floats  # critical angles of the blocks, their slenderness [rad], shape (j,)
     # max |θ| / α [-], shape (j, k); infinite where the block overturns, zero where it never rocks
     rotation: Floats
-    velocity: Floats  # max |θ'| / p [rad], shape (j, k); infinite where the block overturns
+    # max |θ'| / p [rad], shape (j, k); infinite where the block overturns
+    velocity: Floats
 
     __repr__ = short_repr
 
@@ -49,9 +50,13 @@ class RockingSpectrum:
 def uniform_block(alpha: float, period: float, g: float = GRAVITY) -> Block:
     """Return the uniform block of critical angle α [rad] and period 2π/p [s], p = √(3g/4R) (Housner, 1963)."""
     if not 0 < alpha < math.pi / 2:
-        raise InputError(f"alpha: a critical angle lies between 0 and π/2 rad, got {alpha}.")
+        raise InputError(
+            f"alpha: a critical angle lies between 0 and π/2 rad, got {alpha}."
+        )
     if not (math.isfinite(period) and period > 0):
-        raise InputError(f"period: 2π/p must be a positive number of seconds, got {period}.")
+        raise InputError(
+            f"period: 2π/p must be a positive number of seconds, got {period}."
+        )
     radius = 3 * g * period * period / (16 * math.pi * math.pi)
     sine, cosine = sin_cos(alpha)
     width, height = 2 * radius * sine, 2 * radius * cosine
@@ -95,7 +100,9 @@ def rocking_spectrum(
     period = np.atleast_1d(real_array("periods", periods, "s"))
     angle = np.atleast_1d(real_array("alpha", alpha, "rad"))
     if period.ndim != 1 or angle.ndim != 1 or period.size == 0 or angle.size == 0:
-        raise InputError("rocking spectrum: give at least one period and one angle, in a row each.")
+        raise InputError(
+            "rocking spectrum: give at least one period and one angle, in a row each."
+        )
     blocks = [uniform_block(float(a), float(T)) for a in angle for T in period]
     found = overturns(
         blocks,

@@ -119,7 +119,9 @@ def find_thresholds(
     body, motion, left = np.nonzero(fallen[..., 1:] != fallen[..., :-1])
     low, high = grid[left], grid[left + 1]
     falls = fallen[body, motion, left + 1]
-    for _ in range(max(0, math.ceil(math.log2(highest / intervals / tolerance) - 1e-9))):
+    for _ in range(
+        max(0, math.ceil(math.log2(highest / intervals / tolerance) - 1e-9))
+    ):
         middle = 0.5 * (low + high)
         above = overturned_cases(cases, body, motion, middle) == falls
         low, high = np.where(above, low, middle), np.where(above, middle, high)
@@ -166,7 +168,8 @@ def _read(
 DIRECTIONS_DEG = tuple(range(0, 360, 10))
 """Directions that are tried [degrees]: all around, for opposite ones are not alike to a body that leans."""
 
-TOLERANCE, NARROWEST = 0.005, 0.05  # of thresholds, and narrowest resurrection found, in scale
+# of thresholds, and narrowest resurrection found, in scale
+TOLERANCE, NARROWEST = 0.005, 0.05
 
 
 @dataclass(frozen=True)
@@ -212,11 +215,18 @@ def worst_direction(
     The :class:`WorstDirection`: ``angle_deg``, the ``motion`` in it, and a ``table`` of a row per direction.
     """
     if not len(directions_deg):
-        raise InputError("worst_direction: directions_deg is empty; give at least one angle.")
+        raise InputError(
+            "worst_direction: directions_deg is empty; give at least one angle."
+        )
     common, other = common_time([first, second])
     motions = [rotate(common, other, angle) for angle in directions_deg]
     found = find_thresholds(
-        body, motions, None, highest, tolerance=TOLERANCE, narrowest_resurrection=NARROWEST
+        body,
+        motions,
+        None,
+        highest,
+        tolerance=TOLERANCE,
+        narrowest_resurrection=NARROWEST,
     ).table
     table = pd.DataFrame(
         {

@@ -36,7 +36,8 @@ class Swept:
     amplitude_g: NDArray[np.float64]  # amplitudes [g], rising, shape (n,)
     # whether the limit state that was asked for was reached, shape (motions, n)
     overturned: NDArray[np.bool_]
-    fallen: NDArray[np.intp]  # place in ``bodies`` of what overturned, shape (motions, n)
+    # place in ``bodies`` of what overturned, shape (motions, n)
+    fallen: NDArray[np.intp]
     bodies: Sequence[str]  # names of what overturned in any of them, empty for nothing
 
     def rows(self, columns: Sequence[str], step: int = 1) -> pd.DataFrame:
@@ -44,10 +45,15 @@ class Swept:
 
         Columns: those asked for of ``about``, ``amplitude_g`` and ``overturned``.
         """
-        amplitude, overturned = self.amplitude_g[::step], self.overturned[:, ::step].ravel()
+        amplitude, overturned = (
+            self.amplitude_g[::step],
+            self.overturned[:, ::step].ravel(),
+        )
         motions = np.repeat(np.arange(len(self.about)), amplitude.size)
         rows = self.about[list(columns)].iloc[motions].reset_index(drop=True)
-        return rows.assign(amplitude_g=np.tile(amplitude, len(self.about)), overturned=overturned)
+        return rows.assign(
+            amplitude_g=np.tile(amplitude, len(self.about)), overturned=overturned
+        )
 
 
 def labels_of(system: System) -> dict[str, str]:
@@ -58,7 +64,14 @@ def labels_of(system: System) -> dict[str, str]:
 
 def fallen_names(system: System) -> tuple[str, ...]:
     """Return what tables of a study call the body that fell, by its number in outcomes."""
-    return ("", *(system.names if system.count > 2 else ("pedestal", "statue")[-system.count :]))
+    return (
+        "",
+        *(
+            system.names
+            if system.count > 2
+            else ("pedestal", "statue")[-system.count :]
+        ),
+    )
 
 
 def read_swept(paths: Iterable[Path], *, state: str = OVERTURNS) -> Iterator[Swept]:
@@ -79,10 +92,14 @@ def _swept(part: pa.Table, reached: str, path: Path) -> Swept:
     ends = np.flatnonzero(np.diff(code)) + 1
     each = int(ends[0]) if ends.size else code.size
     if code.size % each or not np.array_equal(ends, np.arange(each, code.size, each)):
-        raise InputError(f"{path}: its motions have not equally many amplitudes; make it anew.")
+        raise InputError(
+            f"{path}: its motions have not equally many amplitudes; make it anew."
+        )
     grid = amplitude.reshape(-1, each)
     if not (grid == grid[0]).all() or (np.diff(grid[0]) <= 0).any():
-        raise InputError(f"{path}: its motions have not the same rising amplitudes; make it anew.")
+        raise InputError(
+            f"{path}: its motions have not the same rising amplitudes; make it anew."
+        )
     first = part.select(list(ABOUT)).take(pa.array(np.arange(0, code.size, each)))
     about = pd.DataFrame({name: first[name].to_pylist() for name in ABOUT}, dtype="str")
     body = part["overturned_body"].combine_chunks()
@@ -100,18 +117,25 @@ def swept_of(ida: pd.DataFrame) -> Iterator[Swept]:
         ordered = rows[np.argsort(amplitude[rows], kind="stable")]
         head = ida[list(ABOUT)].iloc[rows[:1]].reset_index(drop=True)
         yield Swept(
-            head, amplitude[ordered], overturned[None, ordered], number[None, ordered], list(bodies)
+            head,
+            amplitude[ordered],
+            overturned[None, ordered],
+            number[None, ordered],
+            list(bodies),
         )
 
 
 DEFINITIONS = ("step_protocol", "first_overturning", "always_overturning")
-DEFINITION = "step_protocol"  # as in a laboratory: statistics rest on it, the others stand beside
+# as in a laboratory: statistics rest on it, the others stand beside
+DEFINITION = "step_protocol"
 _LABELS = ("configuration", "object", "pedestal", "floor")
 
 
 def first_overturning(amplitudes: Floats, overturned: Flags) -> Outcome:
     """Bounds of the least amplitude that overturns, of rising ones [g], shape (n,)."""
-    return _between(amplitudes, int(overturned.argmax()) if overturned.any() else overturned.size)
+    return _between(
+        amplitudes, int(overturned.argmax()) if overturned.any() else overturned.size
+    )
 
 
 def always_overturning(amplitudes: Floats, overturned: Flags) -> Outcome:
@@ -181,7 +205,9 @@ def tests_from_ida(
             raise InputError(
                 f"protocol: definition {definition!r} is not one of {', '.join(DEFINITIONS)}."
             )
-    return tests_from_swept(swept_of(ida), protocol, definitions=definitions, limits_g=limits_g)
+    return tests_from_swept(
+        swept_of(ida), protocol, definitions=definitions, limits_g=limits_g
+    )
 
 
 def tests_from_swept(
@@ -195,7 +221,10 @@ def tests_from_swept(
     rows: list[dict[str, object]] = []
     for part in parts:
         amplitudes_g, first = part.amplitude_g, part.about.iloc[0]
-        rising = np.isfinite(amplitudes_g).all() and (np.diff(amplitudes_g, prepend=0.0) > 0).all()
+        rising = (
+            np.isfinite(amplitudes_g).all()
+            and (np.diff(amplitudes_g, prepend=0.0) > 0).all()
+        )
         if not (amplitudes_g.size and rising):
             raise InputError(
                 f"{first['configuration']} {first['motion']}: amplitudes must be positive, rise, and occur once; "
@@ -205,7 +234,9 @@ def tests_from_swept(
         every = np.arange(amplitudes_g.size)
         for place, about in enumerate(part.about.to_dict("records")):
             limit = None if limits_g is None else limits_g.get(about["motion"])
-            climbed = [levels(limit, number) for number in range(1, protocol.repetitions + 1)]
+            climbed = [
+                levels(limit, number) for number in range(1, protocol.repetitions + 1)
+            ]
             for definition in definitions:
                 series = climbed if definition == DEFINITION else [every]
                 rows += [
@@ -225,7 +256,9 @@ def _row(
     climbed: NDArray[np.intp],
 ) -> dict[str, object]:
     """Outcome of a motion at the amplitudes that were climbed."""
-    bounds = always_overturning if definition == "always_overturning" else first_overturning
+    bounds = (
+        always_overturning if definition == "always_overturning" else first_overturning
+    )
     true = bounds(part.amplitude_g[climbed], part.overturned[place][climbed])
     shown = true
     if protocol.measurement is not None:
@@ -238,7 +271,9 @@ def _row(
         "upper_g": shown.upper_g,
         "amplitude_g": protocol.report(shown),
         "censored": "right" if shown.censored else "none",
-        "overturned_body": "" if true.censored else part.bodies[part.fallen[place, upper]],
+        "overturned_body": ""
+        if true.censored
+        else part.bodies[part.fallen[place, upper]],
         "remark": shown.remark,
     }
 
@@ -270,14 +305,17 @@ def _means(
     """Means of each of ``compared`` over the ``units`` in which all of them are known."""
     parts = [part for _, part in tests.groupby(compared, sort=False)]
     ln_a = [
-        part.groupby(units)["ln_a"].agg(lambda values: values.mean(skipna=False)) for part in parts
+        part.groupby(units)["ln_a"].agg(lambda values: values.mean(skipna=False))
+        for part in parts
     ]
     table = pd.concat(ln_a, axis=1)
     complete = table.dropna()
     rows: list[dict[str, object]] = []
     for column, part in enumerate(parts):
         alike = (name for name in _LABELS if len(set(part[name])) == 1)
-        labels = dict.fromkeys(_LABELS, "") | {name: str(part[name].iloc[0]) for name in alike}
+        labels = dict.fromkeys(_LABELS, "") | {
+            name: str(part[name].iloc[0]) for name in alike
+        }
         mean_g = float(np.exp(complete.iloc[:, column].mean()))
         about = {"mean_g": mean_g, "motions": len(complete), "of": len(table)}
         rows.append({"by": by, **labels, **about})

@@ -47,7 +47,9 @@ class GeometricSteps:
         ratio = limit_g / self.start_g
         levels = math.log(ratio) / math.log1p(self.growth) if ratio > 0 else -1.0
         count = _count(levels - phase)
-        return np.asarray(self.start_g * (1 + self.growth) ** (phase + np.arange(count)))
+        return np.asarray(
+            self.start_g * (1 + self.growth) ** (phase + np.arange(count))
+        )
 
 
 Steps = LinearSteps | GeometricSteps
@@ -67,7 +69,8 @@ def _count(levels: float) -> int:
 class Outcome:
     """Bounds of the overturning amplitude of one test."""
 
-    lower_g: float  # largest amplitude survived on the way [g]; 0 if the first one overturned
+    # largest amplitude survived on the way [g]; 0 if the first one overturned
+    lower_g: float
     upper_g: float  # amplitude that overturned [g]; NaN if none did
     remark: str = ""  # what a reader of the figure has to know
 
@@ -90,7 +93,9 @@ class ForceOverMass:
 
     def __post_init__(self) -> None:
         for configuration, mass in self.believed_mass.items():
-            if not (math.isfinite(mass) and mass > 0 and mass + self.unaccounted_mass > 0):
+            if not (
+                math.isfinite(mass) and mass > 0 and mass + self.unaccounted_mass > 0
+            ):
                 raise InputError(
                     f"force over mass: configuration {configuration!r} moves {mass} kg and "
                     f"{self.unaccounted_mass} kg unaccounted for, which must be positive masses."
@@ -104,7 +109,9 @@ class ForceOverMass:
                 f"{', '.join(self.believed_mass)}."
             )
         factor = 1 + self.unaccounted_mass / self.believed_mass[configuration]
-        return replace(outcome, lower_g=outcome.lower_g * factor, upper_g=outcome.upper_g * factor)
+        return replace(
+            outcome, lower_g=outcome.lower_g * factor, upper_g=outcome.upper_g * factor
+        )
 
 
 @dataclass(frozen=True)
@@ -121,7 +128,9 @@ class Accelerometer:
         true = outcome.lower_g if outcome.censored else outcome.upper_g
         if true <= self.clip_g:
             return outcome
-        return Outcome(min(outcome.lower_g, self.clip_g), math.nan, "accelerometer clipped")
+        return Outcome(
+            min(outcome.lower_g, self.clip_g), math.nan, "accelerometer clipped"
+        )
 
 
 Measurement = ForceOverMass | Accelerometer

@@ -20,11 +20,15 @@ from rockfrag.schema import checked
 from rockfrag.units import CENTIMETRES_PER_METRE, GRAVITY
 from rockfrag.yaml_file import read_yaml
 
-FILTER_ORDER = 4  # order of the zero-phase Butterworth high-pass that makes room for a motion
-CORNERS_HZ = tuple(float(corner) for corner in np.round(np.arange(0.02, 5.001, 0.02), 2))
+# order of the zero-phase Butterworth high-pass that makes room for a motion
+FILTER_ORDER = 4
+CORNERS_HZ = tuple(
+    float(corner) for corner in np.round(np.arange(0.02, 5.001, 0.02), 2)
+)
 """Corners tried, from the mildest on [Hz]."""
 
-_UNIT = re.compile(r"_(?:m_s|m|n|kg)$")  # what keys of a shaker's file have more than its fields
+# what keys of a shaker's file have more than its fields
+_UNIT = re.compile(r"_(?:m_s|m|n|kg)$")
 
 
 @dataclass(frozen=True)
@@ -41,7 +45,8 @@ class Shaker:
     # armature_mass, table_mass: masses that always move [kg]
     armature_mass: float = 5.0
     table_mass: float = 5.0
-    velocity: float | None = None  # largest velocity [m/s]; None where it is not limited
+    # largest velocity [m/s]; None where it is not limited
+    velocity: float | None = None
 
     def __post_init__(self) -> None:
         for name in ("stroke", "force", "lowest_hz", "velocity"):
@@ -52,17 +57,27 @@ class Shaker:
                 f"shaker: the band from {self.lowest_hz} to {self.highest_hz} Hz is empty."
             )
         if self.start not in ("off-centre", "centred"):
-            raise InputError(f"shaker: start must be off-centre or centred, got {self.start!r}.")
+            raise InputError(
+                f"shaker: start must be off-centre or centred, got {self.start!r}."
+            )
         for name in ("armature_mass", "table_mass"):
             number_from_zero(f"shaker: {name}", getattr(self, name), "kg")
 
-    def demand(self, motion: Motion, amplitude_g: float, payload: float = 0.0) -> "Demand":
+    def demand(
+        self, motion: Motion, amplitude_g: float, payload: float = 0.0
+    ) -> "Demand":
         """What a motion scaled to a peak of ``amplitude_g`` [g] asks, with ``payload`` [kg] on it."""
         velocity, displacement = integrate(
             scale_to_pga(motion, amplitude_g).acceleration, motion.dt
         )
-        travel, excursion = float(np.ptp(displacement)), float(np.abs(displacement).max())
-        force, speed = amplitude_g * GRAVITY * self.moved_mass(payload), np.abs(velocity).max()
+        travel, excursion = (
+            float(np.ptp(displacement)),
+            float(np.abs(displacement).max()),
+        )
+        force, speed = (
+            amplitude_g * GRAVITY * self.moved_mass(payload),
+            np.abs(velocity).max(),
+        )
         reach = 2 * excursion if self.start == "centred" else travel
         uses = {"stroke": reach / self.stroke, "force": force / self.force}
         if self.velocity is not None:
@@ -74,7 +89,9 @@ class Shaker:
         mass = self.armature_mass + self.table_mass
         mass += number_from_zero("shaker: the payload", payload, "kg")
         if mass <= 0:
-            raise InputError("shaker: nothing moves; give armature_mass, table_mass or payload.")
+            raise InputError(
+                "shaker: nothing moves; give armature_mass, table_mass or payload."
+            )
         return mass
 
     def limit(self, motion: Motion, payload: float = 0.0) -> tuple[float, str]:
@@ -159,11 +176,15 @@ def produced_motion(
     The motion with zeros before and after it, for the filter's transients.
     """
     wanted = scale_to_pga(motion, amplitude_g)
-    corner = max(shaker.lowest_hz, required_corner(shaker, motion, amplitude_g, payload))
+    corner = max(
+        shaker.lowest_hz, required_corner(shaker, motion, amplitude_g, payload)
+    )
     return _filtered(wanted, corner)
 
 
-def shaker_table(shaker: Shaker, motions: Sequence[Motion], payload: float = 0.0) -> pd.DataFrame:
+def shaker_table(
+    shaker: Shaker, motions: Sequence[Motion], payload: float = 0.0
+) -> pd.DataFrame:
     """What each motion, as it is, asks per g of its peak, and up to which amplitude it fits.
 
     A row a motion: ``motion``, ``earthquake``, ``floor``, ``travel_cm_per_g``, ``excursion_cm_per_g``,

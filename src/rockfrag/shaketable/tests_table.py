@@ -40,7 +40,15 @@ _CHOICES = {
     "overturned_body": ("", "statue", "pedestal"),
     "pedestal": ("P", "NP"),
 }
-_TEXT = ("test", "object", "pedestal", "earthquake", "floor", "censored", "overturned_body")
+_TEXT = (
+    "test",
+    "object",
+    "pedestal",
+    "earthquake",
+    "floor",
+    "censored",
+    "overturned_body",
+)
 _IN_G = {"g": 1.0, "m_s2": 1 / GRAVITY}
 _OPTIONAL = ("remark", "motion", "amplitude_g", "amplitude_m_s2")
 
@@ -51,7 +59,12 @@ def as_tests_table(rows: list[dict[str, object]]) -> pd.DataFrame:
     Rows without a ``configuration`` are of the object alone, or of the object on its one pedestal.
     """
     named = [
-        {"configuration": f"P&{row['object']}" if row["pedestal"] == "P" else row["object"], **row}
+        {
+            "configuration": f"P&{row['object']}"
+            if row["pedestal"] == "P"
+            else row["object"],
+            **row,
+        }
         for row in rows
     ]
     types = dict.fromkeys(COLUMNS, "str") | {"repetition": "int64"}
@@ -98,18 +111,23 @@ def _test(row: Row, bounds: tuple[str, str], in_g: float) -> dict[str, object]:
     for column, known in _CHOICES.items():
         if row.cells[column] not in known:
             choice = ", ".join(name or "nothing" for name in known)
-            raise row.error(column, f"must be one of {choice}, got {row.cells[column]!r}")
+            raise row.error(
+                column, f"must be one of {choice}, got {row.cells[column]!r}"
+            )
     censored, body = row.cells["censored"] == "right", row.cells["overturned_body"]
     lower, upper = _bounds(row, *bounds, censored)
     if (body == "") != censored:
         raise row.error(
-            "overturned_body", "names what overturned, and is empty only where nothing did"
+            "overturned_body",
+            "names what overturned, and is empty only where nothing did",
         )
     if body == "pedestal" and row.cells["pedestal"] == "NP":
         raise row.error("overturned_body", "is pedestal in a test without one")
     repetition = row.number("repetition", above=0)
     if repetition != int(repetition):
-        raise row.error("repetition", f"must be a whole number from 1, got {repetition:g}")
+        raise row.error(
+            "repetition", f"must be a whole number from 1, got {repetition:g}"
+        )
     texts = {name: row.text(name) for name in ("test", "object", "earthquake", "floor")}
     motion = row.cells.get("motion") or f"{texts['earthquake']}_{texts['floor']}"
     return {

@@ -36,7 +36,8 @@ TABLES = (
 
 VARIED_FRACTION = 4  # other conditionings are tried with this fraction of the trials
 FEWEST_GROUPS = 2
-SCANS = 50  # repetitions of a scan, with its noise, behind the limits of a critical angle
+# repetitions of a scan, with its noise, behind the limits of a critical angle
+SCANS = 50
 
 
 def run(job: Job[CampaignStudy]) -> Results:
@@ -45,7 +46,9 @@ def run(job: Job[CampaignStudy]) -> Results:
     campaign, measured, mean = found.campaign, found.measured, found.votes.mean(axis=0)
     words = "%d tests under %d motions: %.1f %% of the outcomes right"
     as_measured = ((found.votes >= HALF) == measured.overturned).mean()
-    job.log.info(words, len(campaign.tests), measured.groups.max() + 1, 100 * as_measured)
+    job.log.info(
+        words, len(campaign.tests), measured.groups.max() + 1, 100 * as_measured
+    )
     judged = campaign.tests.assign(
         votes_to_overturn=mean,
         simulated=mean >= HALF,
@@ -74,16 +77,22 @@ def campaign_with_motions(
     """Read the tests and the motion of each, scaled where the table says so; log how many are left out."""
     for public in study.fetch:
         fetch_url(*public)
-    campaign = read_campaign(study.tests, study.columns, study.measures, study.other_codes)
+    campaign = read_campaign(
+        study.tests, study.columns, study.measures, study.other_codes
+    )
     if study.leave_out:
-        absent = laboratory.missing_motions(study.motions, list(campaign.tests["motion"]))
+        absent = laboratory.missing_motions(
+            study.motions, list(campaign.tests["motion"])
+        )
         keep = ~campaign.tests["motion"].isin(absent).to_numpy()
         tests = campaign.tests[keep].reset_index(drop=True)
         codes = campaign.codes[keep].reset_index(drop=True)
         campaign = replace(campaign, tests=tests, codes=codes)
         log.info("%d tests without a motion are left out", len(absent))
         if campaign.tests.empty:
-            raise InputError(f"{study.motions}: has no motion of any test of {study.tests.name}.")
+            raise InputError(
+                f"{study.motions}: has no motion of any test of {study.tests.name}."
+            )
     if campaign.tests["group"].nunique() < FEWEST_GROUPS:
         raise InputError(
             f"{study.tests}: its tests are of a single input motion; give those of two or more, as guesses are "
@@ -98,24 +107,36 @@ def campaign_with_motions(
     return campaign, motions
 
 
-def _motions(study: CampaignStudy, campaign: Campaign, conditioning: Any) -> list[Motion]:
+def _motions(
+    study: CampaignStudy, campaign: Campaign, conditioning: Any
+) -> list[Motion]:
     """Motion of the table in each test, conditioned, and scaled where the table of tests says so."""
     tests = campaign.tests
     if study.pulse_cycles:
         settings = tests[list(PULSE_MEASURES)].to_numpy()
-        told = [commanded_cosine(a * GRAVITY, ratio, study.pulse_cycles) for a, ratio in settings]
+        told = [
+            commanded_cosine(a * GRAVITY, ratio, study.pulse_cycles)
+            for a, ratio in settings
+        ]
         return [process(motion, conditioning) for motion in told]
-    motions = laboratory.table_motions(study.motions, list(tests["motion"]), *study.unstated)
+    motions = laboratory.table_motions(
+        study.motions, list(tests["motion"]), *study.unstated
+    )
     shaken = (process(motion, conditioning) for motion in motions)
     each = zip(shaken, tests["amplitude_g"], strict=True)
-    return [motion if np.isnan(peak) else scale_to_pga(motion, peak) for motion, peak in each]
+    return [
+        motion if np.isnan(peak) else scale_to_pga(motion, peak)
+        for motion, peak in each
+    ]
 
 
 def standing_object(study: CampaignStudy) -> Shape | Block | Column:
     """Return the object, and what is under it if it has a pedestal."""
     if "pedestal" not in study.object:
         return object_of(study)
-    return Column(tuple(map(_block, (*reversed(study.object["pedestal"]), study.object))))
+    return Column(
+        tuple(map(_block, (*reversed(study.object["pedestal"]), study.object)))
+    )
 
 
 def object_of(study: CampaignStudy) -> Shape | Block:
@@ -159,9 +180,13 @@ class _Simulated:
         self.job, study = job, job.study
         self.campaign, self.motions = campaign_with_motions(study, job.log)
         self.thing = standing_object(study)
-        self.trials = sample_trials(self.thing, study.unknowns, study.trials, study.seed)
+        self.trials = sample_trials(
+            self.thing, study.unknowns, study.trials, study.seed
+        )
         # whether the object overturned, and whether anything rocked, shape (trials, tests)
-        self.outcomes, self.rocked = simulate_tests(self.trials.systems, self.motions, job.threads)
+        self.outcomes, self.rocked = simulate_tests(
+            self.trials.systems, self.motions, job.threads
+        )
         self.measured = measured_tests(study, self.campaign)
         # of plausible trials, chosen by tests with other motions, shape (repeats, tests)
         self.votes = self.measured.cross_validate(self.outcomes)
@@ -180,17 +205,26 @@ class _Simulated:
             flat, _ = simulate_tests(self.trials.planar, self.motions, self.job.threads)
             rivals[IN_PLANE] = self.measured.cross_validate(flat) >= HALF
         for name in measures:
-            rivals[f"threshold on {name}"] = self.measured.by_threshold(tests[name].to_numpy())
+            rivals[f"threshold on {name}"] = self.measured.by_threshold(
+                tests[name].to_numpy()
+            )
         if len(measures) > 1:
             both = tests[list(measures[:2])].to_numpy()
-            rivals[f"probit on {' and '.join(measures[:2])}"] = self.measured.by_threshold(both)
+            rivals[f"probit on {' and '.join(measures[:2])}"] = (
+                self.measured.by_threshold(both)
+            )
         shaken = tests["motion"].to_numpy()
         majority = comparison.majority_of_repeats(shaken, self.measured.overturned)
         if majority is not None:
             rivals[comparison.REPEATS] = majority
-        codes = {f"code {name}": given.to_numpy() for name, given in self.campaign.codes.items()}
+        codes = {
+            f"code {name}": given.to_numpy()
+            for name, given in self.campaign.codes.items()
+        }
         rows = [self.measured.agreement(OURS, self.votes >= HALF)]
-        rows += [self._beside(name, given) for name, given in {**rivals, **codes}.items()]
+        rows += [
+            self._beside(name, given) for name, given in {**rivals, **codes}.items()
+        ]
         judged = dict.fromkeys(codes, "as given")
         judged[comparison.REPEATS] = "by repeats of the same test"
         table = pd.DataFrame(rows)
@@ -212,7 +246,15 @@ class _Simulated:
         """Whether the object rocked, where the laboratory noted it: trials chosen by overturning vote on it."""
         noted = self.campaign.tests.get("rocked")
         if noted is None:
-            columns = ["who", "right", "lower", "upper", "false_alarms", "missed", "tests"]
+            columns = [
+                "who",
+                "right",
+                "lower",
+                "upper",
+                "false_alarms",
+                "missed",
+                "tests",
+            ]
             return pd.DataFrame(columns=columns)
         votes = self.measured.cross_validate(self.outcomes, self.rocked)
         seen = replace(self.measured, overturned=noted.to_numpy())
@@ -224,7 +266,9 @@ class _Simulated:
         parts = []
         for name in self.campaign.measures:
             measure = self.campaign.tests[name].to_numpy()
-            curves = self.measured.fragility(measure, {OURS: votes >= HALF, VOTES: votes})
+            curves = self.measured.fragility(
+                measure, {OURS: votes >= HALF, VOTES: votes}
+            )
             parts.append(curves.assign(measure=name))
         return pd.concat(parts, ignore_index=True)
 
@@ -235,7 +279,10 @@ class _Simulated:
         outcomes = {"measured": self.measured.overturned, OURS: ours}
         pair = self.campaign.measures[:2]
         found = vector_tables(
-            {name: tests.assign(**{MEASURED: fell * 1.0}) for name, fell in outcomes.items()},
+            {
+                name: tests.assign(**{MEASURED: fell * 1.0})
+                for name, fell in outcomes.items()
+            },
             ((pair[0], pair[1]),) if len(pair) == len(set(pair)) == 2 else (),
             earthquake="group",
             # no IDA curve: each test has a capacity of its own
@@ -267,7 +314,12 @@ class _Simulated:
     def contact(self) -> pd.DataFrame:
         """How base and outcomes depend on the contact tolerance; the critical angle with scans repeated."""
         columns = [
-            *("contact_tolerance_mm", "worst_direction_deg", "alpha_deg", "alpha_lower_deg"),
+            *(
+                "contact_tolerance_mm",
+                "worst_direction_deg",
+                "alpha_deg",
+                "alpha_lower_deg",
+            ),
             *("alpha_upper_deg", "trials", "width_m", "overturned", "right"),
         ]
         thing, study, trials = self.thing, self.job.study, self.trials.table
@@ -284,14 +336,23 @@ class _Simulated:
             direction, angle = _worst_direction(thing, tolerance)
             if np.isnan(angle):
                 continue
-            scans = [thing.scanned_again(scan, rng) for _ in range(SCANS if scan else 0)]
-            angles = [_worst_direction(shape, tolerance)[1] for shape in scans] or [angle]
+            scans = [
+                thing.scanned_again(scan, rng) for _ in range(SCANS if scan else 0)
+            ]
+            angles = [_worst_direction(shape, tolerance)[1] for shape in scans] or [
+                angle
+            ]
             limits = np.degrees(np.nanquantile(angles, [0.05, 0.95]))
             near = nearest == number
             found = [0, *[float("nan")] * 3]
             if near.any():
                 right = (self.outcomes[near] == self.measured.overturned).mean()
-                found = [near.sum(), width[near].mean(), self.outcomes[near].mean(), right]
+                found = [
+                    near.sum(),
+                    width[near].mean(),
+                    self.outcomes[near].mean(),
+                    right,
+                ]
             rows.append([tolerance, direction, np.degrees(angle), *limits, *found])
         return pd.DataFrame(rows, columns=columns)
 
@@ -302,7 +363,11 @@ class _Simulated:
             return pd.DataFrame(columns=columns)
         likely = self.trials.table.loc[self.plausible, "contact_tolerance_mm"]
         rows = [("outline", float("nan"), *corner) for corner in self.thing.outline]
-        for name, fraction in (("contact, low", 0.05), ("contact", 0.5), ("contact, high", 0.95)):
+        for name, fraction in (
+            ("contact, low", 0.05),
+            ("contact", 0.5),
+            ("contact, high", 0.95),
+        ):
             tolerance = float(likely.quantile(fraction))
             carries = self.thing.contact_polygon(tolerance / 1e3)
             rows += [(name, tolerance, *corner) for corner in carries]

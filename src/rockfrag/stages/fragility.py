@@ -63,7 +63,9 @@ def run(job: Job[Study]) -> Results:
     exported = ", ".join(export_curves(by_floor, exports, floor_fractions))
     job.log.info("exported %s", exported or "no curve")
     best = ", ".join(best_of(choice, columns)) or "none stands out"
-    job.log.info("curves: %d; best of the measures asked for: %s", len(found.curves), best)
+    job.log.info(
+        "curves: %d; best of the measures asked for: %s", len(found.curves), best
+    )
 
 
 def _two_measures(job: Job[Study], measures: pd.DataFrame) -> Results:
@@ -139,7 +141,10 @@ def _ida_curves(
     """IDA curves by configuration, and by limit state, configuration and floor; resurrections of all."""
     study = job.study
     floors = {name: floor_measures(level) for name, level in study.floors.items()}
-    wanted = {"": tuple(dict.fromkeys([*study.fragility.measures, *candidates()])), **floors}
+    wanted = {
+        "": tuple(dict.fromkeys([*study.fragility.measures, *candidates()])),
+        **floors,
+    }
     of_all: dict[str, TableIda] = {}
     of_floors: StateIdaCurves = defaultdict(dict)
     resurrections = []
@@ -159,7 +164,9 @@ def _ida_curves(
             for floor in floors:
                 of_floors[state.name][system.name, floor] = found[floor]
     by = ["configuration", "earthquake", "floor", "motion"]
-    table = pd.concat(resurrections, ignore_index=True).sort_values(by, ignore_index=True)
+    table = pd.concat(resurrections, ignore_index=True).sort_values(
+        by, ignore_index=True
+    )
     return of_all, of_floors, table
 
 
@@ -169,7 +176,9 @@ def _rows(
     """IDA curves with a row an outcome, by floor, those under the empty name of all floors."""
     ida = rows_of(parts)
     return {
-        floor: TableIda(with_measures(ida[ida["floor"] == floor] if floor else ida, measures, some))
+        floor: TableIda(
+            with_measures(ida[ida["floor"] == floor] if floor else ida, measures, some)
+        )
         for floor, some in columns.items()
     }
 
@@ -190,7 +199,9 @@ def floor_measures(level: int) -> tuple[str, ...]:
     """
     known = intensity_measures()
     return tuple(
-        measure.column for measure in known if (measure.demand if level else measure.openquake)
+        measure.column
+        for measure in known
+        if (measure.demand if level else measure.openquake)
     )
 
 
@@ -209,9 +220,14 @@ def floor_curves(
     of :func:`rockfrag.fragility.ida_curves.fragility_table`; fractions are points of those that are rejected, see
     :func:`rockfrag.fragility.ida_curves.fraction_points`.
     """
-    floor_labels = {measure.label: measure.floor_label for measure in intensity_measures()}
+    floor_labels = {
+        measure.label: measure.floor_label for measure in intensity_measures()
+    }
     systems = {system.name: system for system in study.configurations}
-    rocks_at_once, level = not (study.slides or study.vertical), study.fragility.confidence
+    rocks_at_once, level = (
+        not (study.slides or study.vertical),
+        study.fragility.confidence,
+    )
     fractions = []
     rows = []
     for (name, floor), ida in ida_curves[OVERTURNS].items():
@@ -219,7 +235,9 @@ def floor_curves(
         columns = floor_measures(height)
         motions = ida.motions()
         threshold = min(uplift_ratios(systems[name]))
-        at_uplift = with_measures(motions.assign(amplitude_g=threshold), measures, [*columns])
+        at_uplift = with_measures(
+            motions.assign(amplitude_g=threshold), measures, [*columns]
+        )
         for column, state in product(columns, limit_states()):
             about = {"configuration": name, "floor": floor, "floor_level": height}
             about |= {"measure": column, "state": state.name}
@@ -241,7 +259,9 @@ def floor_curves(
     return pd.DataFrame(rows), pd.concat(fractions, ignore_index=True)
 
 
-def export_curves(curves: pd.DataFrame, folder: Path, fractions: pd.DataFrame) -> list[str]:
+def export_curves(
+    curves: pd.DataFrame, folder: Path, fractions: pd.DataFrame
+) -> list[str]:
     """Write the curves for OpenQuake and SimCenter; return the names of the files.
 
     One file per measure and floor, as both formats take one curve per object. OpenQuake knows motions of
@@ -258,10 +278,14 @@ def export_curves(curves: pd.DataFrame, folder: Path, fractions: pd.DataFrame) -
         usable = rows[~rows["configuration"].isin(rows.loc[~whole, "configuration"])]
         if usable.empty:
             continue
-        points = fractions[(fractions["floor"] == floor) & (fractions["measure"] == column)]
+        points = fractions[
+            (fractions["floor"] == floor) & (fractions["measure"] == column)
+        ]
         # SA(0.3s) becomes sa_0_3s
         name = re.sub(r"[\W_]", "_", str(usable["im"].iloc[0]).lower()).strip("_")
-        stem = f"fragility_{name}" + (f"_{file_name(str(floor))}" if height != 0 else "")
+        stem = f"fragility_{name}" + (
+            f"_{file_name(str(floor))}" if height != 0 else ""
+        )
         xml, *both = (folder / f"{stem}.{end}" for end in ("xml", "csv", "json"))
         if height == 0:
             # the formats know the ground by an empty floor, whatever its user calls it

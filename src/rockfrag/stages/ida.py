@@ -14,7 +14,12 @@ from numpy.typing import NDArray
 
 from rockfrag.files import whole_file
 from rockfrag.motions.processing import factors_to_pga
-from rockfrag.outcomes.limit_states import OVERTURNS, ROCKS, limit_state_named, limit_states
+from rockfrag.outcomes.limit_states import (
+    OVERTURNS,
+    ROCKS,
+    limit_state_named,
+    limit_states,
+)
 from rockfrag.outcomes.outcomes import Outcomes
 from rockfrag.records.motion import Motion
 from rockfrag.rocking.ensemble import LIGHT, LightBodies, overturns
@@ -27,10 +32,17 @@ from rockfrag.units import GRAVITY
 NEAR = 1 + 0.01 * np.arange(-10, 11)
 """Factors on a motion as recorded: itself, and up to a tenth weaker and stronger."""
 
-RECORDED = ("overturning_time", "certain_time", "impacts", "unstable_distance", "peak_rotation")
+RECORDED = (
+    "overturning_time",
+    "certain_time",
+    "impacts",
+    "unstable_distance",
+    "peak_rotation",
+)
 """Columns of outcomes in every IDA curve."""
 
-SLID = ("flights", "slip", "peak_slip")  # Columns of outcomes in IDA curves with friction
+# Columns of outcomes in IDA curves with friction
+SLID = ("flights", "slip", "peak_slip")
 ROWS_AT_ONCE = 131_072  # Histories in memory at a time, and of a row group of a file
 FEWEST_AT_ONCE = 12  # Motions shaken at a time are no fewer, to keep every core busy
 
@@ -70,7 +82,10 @@ def run_as_recorded(job: Job[Study]) -> Results:
     """Yield the outcomes under the motions as recorded."""
     motions, study = job.motions("motions/floors"), job.study
     ups = job.motions("motions/vertical") if study.vertical else None
-    each = [as_recorded(system, motions, job.threads, ups) for system in study.configurations]
+    each = [
+        as_recorded(system, motions, job.threads, ups)
+        for system in study.configurations
+    ]
     yield "as_recorded", pd.concat(each, ignore_index=True)
 
 
@@ -86,7 +101,9 @@ def ida_curves_of(
 def _say_how_light(job: Job[Study], configuration: System, number: int) -> None:
     """Log in how many histories the ground takes more than half of all weight."""
     path = job.folder / job.study.ida_file(configuration, number)
-    ratio = pq.read_table(path, columns=["minimum_gravity_ratio"])["minimum_gravity_ratio"]
+    ratio = pq.read_table(path, columns=["minimum_gravity_ratio"])[
+        "minimum_gravity_ratio"
+    ]
     light = int((ratio.to_numpy() < LIGHT).sum())
     words = "%s: the ground takes more than half of all weight in %d of %d histories"
     job.log.info(words, configuration.name, light, len(ratio))
@@ -97,7 +114,9 @@ def _write(tables: Iterator[pa.Table], path: Path) -> int:
     first = next(tables)
     rows = 0
     # texts are read as texts, however compactly they are handed on here
-    with pq.ParquetWriter(path, first.schema, compression="zstd", store_schema=False) as writer:
+    with pq.ParquetWriter(
+        path, first.schema, compression="zstd", store_schema=False
+    ) as writer:
         for table in chain([first], tables):
             writer.write_table(table)
             rows += table.num_rows
@@ -136,7 +155,9 @@ def ida_table(
             for state in limit_states()
             if state.counted(configuration)
         },
-        "overturned_body": _texts(fallen_names(configuration), result.overturned_body[0].ravel()),
+        "overturned_body": _texts(
+            fallen_names(configuration), result.overturned_body[0].ravel()
+        ),
         **result.wide(0, RECORDED),
     }
     if configuration.loose:
@@ -151,10 +172,14 @@ def ida_table(
 
 def _about(configuration: System, motions: Sequence[Motion]) -> dict[str, list[str]]:
     """What tables call a configuration and each motion."""
-    labels = {key: [text] * len(motions) for key, text in labels_of(configuration).items()}
+    labels = {
+        key: [text] * len(motions) for key, text in labels_of(configuration).items()
+    }
     return labels | {
         "motion": [motion.name for motion in motions],
-        "earthquake": [motion.metadata.get("earthquake") or motion.name for motion in motions],
+        "earthquake": [
+            motion.metadata.get("earthquake") or motion.name for motion in motions
+        ],
         "floor": [motion.metadata["floor"] for motion in motions],
     }
 
@@ -175,7 +200,9 @@ def _shaken(
     with warnings.catch_warnings():
         # told of in the column minimum_gravity_ratio and in the report
         warnings.simplefilter("ignore", LightBodies)
-        return overturns(configuration, motions, scales=scales, vertical=vertical, threads=threads)
+        return overturns(
+            configuration, motions, scales=scales, vertical=vertical, threads=threads
+        )
 
 
 def as_recorded(

@@ -20,7 +20,8 @@ S = TypeVar("S")
 Results = Iterator[tuple[str, "pd.DataFrame | list[Motion]"]]
 """What a stage yields: each of its results by name, as soon as it is there."""
 
-_LIBRARIES_MB = 1500  # Memory of a process that has loaded and compiled all that a stage uses [MiB]
+# Memory of a process that has loaded and compiled all that a stage uses [MiB]
+_LIBRARIES_MB = 1500
 
 _BYTES_A_IDA = 20_000
 """Memory for what statistics know of a configuration under a motion, whatever the number of amplitudes."""
@@ -61,7 +62,9 @@ class Job(Generic[S]):
         """
         whole = self.folder / path
         if self.inputs is not None and whole not in self.inputs:
-            raise ValueError(f"{path} is read, but its rule does not declare it as an input")
+            raise ValueError(
+                f"{path} is read, but its rule does not declare it as an input"
+            )
         return whole
 
     def write(self, name: str, result: "pd.DataFrame | list[Motion]") -> None:
@@ -70,7 +73,9 @@ class Job(Generic[S]):
         if isinstance(result, pd.DataFrame):
             paths.insert(0, self.folder / f"{name}.csv")
         if self.outputs is not None and not self.outputs.issuperset(paths):
-            raise ValueError(f"{name} is written, but its rule does not declare it as an output")
+            raise ValueError(
+                f"{name} is written, but its rule does not declare it as an output"
+            )
         if isinstance(result, pd.DataFrame):
             write_table(result, *paths)
         else:

@@ -54,7 +54,10 @@ def _used() -> tuple[float, float]:
         return time.process_time(), math.nan
     import resource
 
-    both = [resource.getrusage(who) for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN)]
+    both = [
+        resource.getrusage(who)
+        for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN)
+    ]
     unit = 2**20 if sys.platform == "darwin" else 2**10
     seconds = sum(usage.ru_utime + usage.ru_stime for usage in both)
     return seconds, max(usage.ru_maxrss for usage in both) / unit
@@ -92,9 +95,7 @@ def in_words(error: Exception) -> str:
         name = getattr(error, "filename", None) or "a file"
         return f"{name} may not be written or read; allow it, and run it again."
     if isinstance(error, MemoryError):
-        return (
-            "there is not enough memory; close other programs or use fewer cores, and run it again."
-        )
+        return "there is not enough memory; close other programs or use fewer cores, and run it again."
     if isinstance(error, BrokenExecutor):
         return f"one of its processes {KILLED}"
     return f"{type(error).__name__}: {text}"
@@ -115,7 +116,9 @@ def last_finding(path: Path) -> str:
 def says_why(path: Path, since: float) -> bool:
     """Whether a job that began at ``since`` has said in its log why it failed."""
     try:
-        return path.stat().st_mtime >= since and any(" ERROR " in line for line in _lines(path))
+        return path.stat().st_mtime >= since and any(
+            " ERROR " in line for line in _lines(path)
+        )
     except OSError:
         return False
 
@@ -160,4 +163,6 @@ def check_folders(*folders: Path) -> None:
     for top in folders:
         for folder in [top, *(path for path in top.rglob("*") if path.is_dir())]:
             if folder.is_dir() and not os.access(folder, os.W_OK | os.X_OK):
-                raise PermissionError(errno.EACCES, os.strerror(errno.EACCES), str(folder))
+                raise PermissionError(
+                    errno.EACCES, os.strerror(errno.EACCES), str(folder)
+                )

@@ -20,7 +20,12 @@ from scipy import stats
 from rockfrag.arrays import Flags, Floats
 from rockfrag.campaign.comparison import MeasuredTests, curves_of
 from rockfrag.campaign.laboratory import Campaign
-from rockfrag.campaign.standing import kind_of, simulate_tests, unknowns_of, ways_to_stand
+from rockfrag.campaign.standing import (
+    kind_of,
+    simulate_tests,
+    unknowns_of,
+    ways_to_stand,
+)
 from rockfrag.errors import InputError
 from rockfrag.records.motion import Motion
 from rockfrag.stages.campaign import campaign_with_motions, measured_tests, object_of
@@ -64,7 +69,9 @@ class BlindAnswer:
         return self.median * math.exp(-low), self.median * math.exp(high)
 
 
-def blind_answer(tests: MeasuredTests, measure: Floats, simulated: Flags) -> BlindAnswer:
+def blind_answer(
+    tests: MeasuredTests, measure: Floats, simulated: Flags
+) -> BlindAnswer:
     """Hold ways to stand, ``simulated`` (ways, tests), against what was measured; no way is chosen by it."""
     measured = tests.overturned
     seen = replace(tests, level=LEVEL)
@@ -78,10 +85,14 @@ def blind_answer(tests: MeasuredTests, measure: Floats, simulated: Flags) -> Bli
     theta = float(table["theta"].to_dict()["measured"])
     ratio = table.loc["blind", ["theta_ratio_lower", "theta_ratio_upper"]].astype(float)
     if not (np.isfinite([theta, *ratio]).all() and 0 < middle < math.inf):
-        raise InputError("the outcomes do not rise with the measure, so they have no median.")
+        raise InputError(
+            "the outcomes do not rise with the measure, so they have no median."
+        )
     sampling = float(np.log(ratio.iloc[1] / ratio.iloc[0])) / (2 * _Z)
     dispersion = float(np.nanmedian(each[:, 1]))
-    return BlindAnswer(theta, float(middle), float(low), float(high), sampling, dispersion)
+    return BlindAnswer(
+        theta, float(middle), float(low), float(high), sampling, dispersion
+    )
 
 
 def model_error(answers: Sequence[BlindAnswer]) -> tuple[float, float]:
@@ -123,7 +134,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
         prog="python -m rockfrag.stages.model_error",
         description="Simulate campaigns blind and print the error of the median by kind of body.",
     )
-    parser.add_argument("studies", nargs="+", metavar="STUDY", help="configurations of campaigns")
+    parser.add_argument(
+        "studies", nargs="+", metavar="STUDY", help="configurations of campaigns"
+    )
     answers: dict[str, list[BlindAnswer]] = {}
     try:
         for path in parser.parse_args(arguments).studies:

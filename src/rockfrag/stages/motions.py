@@ -47,7 +47,9 @@ def run(job: Job[Study]) -> Results:
         table = table.merge(pairs, on="name", how="left")
     yield "measures", table
     missing = f", {len(left_out)} left out" if left_out else ""
-    job.log.info("records: %d%s, motions of floors: %d", len(rows), missing, len(floors))
+    job.log.info(
+        "records: %d%s, motions of floors: %d", len(rows), missing, len(floors)
+    )
 
 
 def _felt(
@@ -70,11 +72,19 @@ def _felt(
                 raise unfetched[source]
             record, *up = motions_of_row(named, *_place(study), study.vertical)
             if record.pga == 0:
-                raise InputError(f"{record.name}: the record is zero throughout; leave it out.")
+                raise InputError(
+                    f"{record.name}: the record is zero throughout; leave it out."
+                )
             ground = process(record, study.processing)
-            found = {"records": [record], "ground": [ground], "floors": _floors(study, ground)}
+            found = {
+                "records": [record],
+                "ground": [ground],
+                "floors": _floors(study, ground),
+            }
             if up:
-                found["vertical"] = _floors(study, process(up[0], study.processing), vertical=True)
+                found["vertical"] = _floors(
+                    study, process(up[0], study.processing), vertical=True
+                )
             for kind, motions in found.items():
                 felt[kind] += motions
             rows.append(named)
@@ -86,7 +96,9 @@ def _felt(
             left_out.append({"motion": str(named["name"]), "reason": str(error)})
             job.log.warning("left out: %s", error)
     if not rows:
-        raise InputError(f"{study.catalogue_file}: no record can be used; {left_out[0]['reason']}")
+        raise InputError(
+            f"{study.catalogue_file}: no record can be used; {left_out[0]['reason']}"
+        )
     return rows, felt, left_out
 
 
@@ -102,5 +114,10 @@ def _floors(study: Study, ground: Motion, vertical: bool = False) -> list[Motion
 
 def on_the_ground(motion: Motion) -> Motion:
     """Return a ground motion labelled as the floors of a building are: ``<name>_ground``."""
-    metadata = {**motion.metadata, "floor": GROUND, "level": 0, "ground_motion": motion.name}
+    metadata = {
+        **motion.metadata,
+        "floor": GROUND,
+        "level": 0,
+        "ground_motion": motion.name,
+    }
     return replace(motion, name=f"{motion.name}_{GROUND}", metadata=metadata)

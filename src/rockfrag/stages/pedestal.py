@@ -50,9 +50,16 @@ def pedestal_tables(
         if rows["pedestal"].nunique() < 2:
             continue
         found = study_pedestal(rows, seed=seed, slenderness=slenderness)
-        tables = (found.pairs.table, found.effects, found.whole, found.without_earthquake)
+        tables = (
+            found.pairs.table,
+            found.effects,
+            found.whole,
+            found.without_earthquake,
+        )
         notes = pd.DataFrame({"note": list(found.notes)})
-        for name, table in zip(PEDESTAL_TABLES, (*tables, found.ranks, notes), strict=True):
+        for name, table in zip(
+            PEDESTAL_TABLES, (*tables, found.ranks, notes), strict=True
+        ):
             labelled = table.copy()
             labelled.insert(0, "definition", definition)
             parts[name].append(labelled)
@@ -122,7 +129,9 @@ def beside(measured: pd.DataFrame, simulated: pd.DataFrame) -> pd.DataFrame:
 def _curves(measured: pd.DataFrame, level: float, notes: list[str]) -> pd.DataFrame:
     rows = []
     digest = table_hash(measured)
-    for (object_name, side), tests in measured.groupby(["object", "pedestal"], sort=True):
+    for (object_name, side), tests in measured.groupby(
+        ["object", "pedestal"], sort=True
+    ):
         name = f"P&{object_name}" if side == "P" else str(object_name)
         try:
             fit = fit_step_tests(tests, level=level)

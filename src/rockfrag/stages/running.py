@@ -29,14 +29,20 @@ OWNER = "configuration.txt"
 LOCK = ".run"
 """File in a study's folder that its run holds locked, and that says which process it is."""
 
-RUN = "ROCKFRAG_RUN"  # Variable of the environment: the process of the run, with which its jobs end
+# Variable of the environment: the process of the run, with which its jobs end
+RUN = "ROCKFRAG_RUN"
 
 
-def prepared(content: Mapping[str, Any], path: str | os.PathLike[str]) -> tuple[AnyStudy, Path]:
+def prepared(
+    content: Mapping[str, Any], path: str | os.PathLike[str]
+) -> tuple[AnyStudy, Path]:
     """Make all checks that come before the first job; return the study, and the folder of its results."""
     study = any_study(content, path)
     folder = results_folder(study)
-    if isinstance(study, Study) and not (folder / "motions" / "records.parquet").exists():
+    if (
+        isinstance(study, Study)
+        and not (folder / "motions" / "records.parquet").exists()
+    ):
         check_records(study)
     return study, folder
 
@@ -97,7 +103,9 @@ def run_job(
         study = any_study(config, study_file)
         folder = RESULTS / study.name
         write_text(f"{_named(study)}\n", folder / OWNER)
-        declared = [frozenset(Path(path) for path in paths) for paths in (inputs, outputs)]
+        declared = [
+            frozenset(Path(path) for path in paths) for paths in (inputs, outputs)
+        ]
         job = Job(study, folder, threads, log, part, *declared)
         for name, value in getattr(import_module(module), function)(job):
             job.write(name, value)
@@ -113,7 +121,12 @@ def _named(study: AnyStudy) -> str:
     return Path(os.path.relpath(study.source)).as_posix()
 
 
-_BLAS = {"x86_64": "PRESCOTT", "AMD64": "PRESCOTT", "aarch64": "ARMV8", "arm64": "ARMV8"}
+_BLAS = {
+    "x86_64": "PRESCOTT",
+    "AMD64": "PRESCOTT",
+    "aarch64": "ARMV8",
+    "arm64": "ARMV8",
+}
 """The kernels of OpenBLAS that every processor of an architecture can run."""
 
 _C_LIBRARY = "glibc.cpu.hwcaps=" + ",".join(
@@ -131,11 +144,15 @@ def same_numbers(environment: Mapping[str, str]) -> dict[str, str]:
     job takes the oldest of each, so that all machines of one architecture write the same bytes; kernels need none.
     """
     tunables = environment.get("GLIBC_TUNABLES", "").split(":")
-    kept = [each for each in tunables if each and not each.startswith("glibc.cpu.hwcaps=")]
+    kept = [
+        each for each in tunables if each and not each.startswith("glibc.cpu.hwcaps=")
+    ]
     simd = np.show_config(mode="dicts")["SIMD Extensions"]
     chosen = {
         "NPY_ENABLE_CPU_FEATURES": "",
-        "NPY_DISABLE_CPU_FEATURES": " ".join([*simd.get("found", ()), *simd.get("not found", ())]),
+        "NPY_DISABLE_CPU_FEATURES": " ".join(
+            [*simd.get("found", ()), *simd.get("not found", ())]
+        ),
         # sums of several threads are added in another order
         "OPENBLAS_NUM_THREADS": "1",
         "GLIBC_TUNABLES": ":".join([*kept, _C_LIBRARY]),

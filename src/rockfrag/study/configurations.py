@@ -43,7 +43,9 @@ def _block(row: Row) -> Block:
     columns = {"width": "width_m", "height": "height_m", "mass": "mass_kg"}
     stated = {"inertia": "inertia_kg_m2", "cg_height": "cg_height_m"}
     columns |= {name: column for name, column in stated.items() if row.has(column)}
-    values: dict[str, Any] = {key: row.quantity(name, above=0) for key, name in columns.items()}
+    values: dict[str, Any] = {
+        key: row.quantity(name, above=0) for key, name in columns.items()
+    }
     if row.has("cg_offset_m"):
         values["cg_offset"] = row.quantity("cg_offset_m")
     with errors_of(f"{row.path}, line {row.line}"):
@@ -70,21 +72,32 @@ def read_configurations(
         object_name, *behind = names_from_above(row.text("object")) or ("",)
         under = names_from_above(row.cells.get("pedestal", ""))
         if behind and under:
-            raise row.error("pedestal", "what stands under the object is named behind it already")
+            raise row.error(
+                "pedestal", "what stands under the object is named behind it already"
+            )
         below = tuple(behind) or under
-        for column, block in (("object", object_name), *(("pedestal", name) for name in below)):
+        for column, block in (
+            ("object", object_name),
+            *(("pedestal", name) for name in below),
+        ):
             if block not in blocks:
                 known = ", ".join(blocks)
-                raise row.error(column, f"expected one of the specimens {known}, found {block}")
+                raise row.error(
+                    column, f"expected one of the specimens {known}, found {block}"
+                )
         if name in found:
             raise row.error("name", f"{name} is given twice")
         with errors_of(f"{row.path}, line {row.line}"):
-            found[name] = configuration_of(name, (*reversed(below), object_name), blocks)
+            found[name] = configuration_of(
+                name, (*reversed(below), object_name), blocks
+            )
             distinct_file_names([name], checked)
         if row.has("counterpart"):
             counterparts[name] = other = row.text("counterpart")
             if other == name or all(other != row.cells["name"] for row in rows):
-                raise row.error("counterpart", f"expected another arrangement, found {other}")
+                raise row.error(
+                    "counterpart", f"expected another arrangement, found {other}"
+                )
     return list(found.values()), counterparts
 
 
@@ -93,10 +106,15 @@ def names_from_above(text: str) -> tuple[str, ...]:
     return tuple(name.strip() for name in text.split("|")) if text.strip() else ()
 
 
-def configuration_of(name: str, names: Sequence[str], blocks: Mapping[str, Block]) -> System:
+def configuration_of(
+    name: str, names: Sequence[str], blocks: Mapping[str, Block]
+) -> System:
     """Return the system of the blocks of these names, from below, whose bodies have these names too."""
     system = stacked([blocks[name] for name in names]).system()
-    bodies = (replace(body, name=name) for body, name in zip(system.bodies, names, strict=True))
+    bodies = (
+        replace(body, name=name)
+        for body, name in zip(system.bodies, names, strict=True)
+    )
     return replace(system, bodies=tuple(bodies), name=name)
 
 
@@ -106,7 +124,10 @@ def each_alone(blocks: Mapping[str, Block]) -> list[System]:
 
 
 def with_contacts(
-    systems: Sequence[System], blocks: Mapping[str, Block], content: Mapping[str, Any], source: str
+    systems: Sequence[System],
+    blocks: Mapping[str, Block],
+    content: Mapping[str, Any],
+    source: str,
 ) -> tuple[System, ...]:
     """Return systems whose contacts are as a study's configuration states, which was read from ``source``.
 
@@ -125,7 +146,9 @@ def with_contacts(
             found = tuple(_with_restitution(system, measured, law) for system in found)
     if (friction := content.get("friction")) is not None:
         with errors_of(f"{source}: key friction"):
-            found = tuple(system_of(system, _friction(system, friction)) for system in found)
+            found = tuple(
+                system_of(system, _friction(system, friction)) for system in found
+            )
     return found
 
 

@@ -24,7 +24,11 @@ class Heading:
 
 def heading_of(content: Mapping[str, Any], source: Path) -> dict[str, Any]:
     """Return the fields of :class:`Heading` of a configuration that was read from ``source``."""
-    named = {"name": content["study"], "title": content["title"], "seed": content["seed"]}
+    named = {
+        "name": content["study"],
+        "title": content["title"],
+        "seed": content["seed"],
+    }
     return {**named, "source": source}
 
 

@@ -43,7 +43,9 @@ def any_study(content: Mapping[str, Any], path: str | os.PathLike[str]) -> AnySt
         CAMPAIGN_KEY: ("campaign", campaign_from),
         SPACE_KEY: ("space", space_study_from),
     }
-    schema, make = next((kind for key, kind in kinds.items() if key in content), ("study", _study))
+    schema, make = next(
+        (kind for key, kind in kinds.items() if key in content), ("study", _study)
+    )
     return make(checked(content, schema, str(path)), Path(path))
 
 
@@ -58,7 +60,9 @@ def _study(content: Mapping[str, Any], source: Path) -> Study:
     if "configurations" in bodies:
         name = bodies["configurations"]
         configurations_file = existing_file(source, "bodies.configurations", name)
-        known, counterparts = arrangements.read_configurations(configurations_file, specimens)
+        known, counterparts = arrangements.read_configurations(
+            configurations_file, specimens
+        )
     building_file, shaker_file, measured_tests = (
         None if content.get(key) is None else existing_file(source, key, content[key])
         for key in ("building", "shaker", "measured_tests")
@@ -71,12 +75,16 @@ def _study(content: Mapping[str, Any], source: Path) -> Study:
     with errors_of(f"{source}"):
         amplitudes = Amplitudes(**content["amplitudes"])
     catalogue = read_catalogue(catalogue_file).set_index("name", drop=False)
-    shaken = _used(source, "motions", motions.get("use"), list(catalogue.index), "motions")
+    shaken = _used(
+        source, "motions", motions.get("use"), list(catalogue.index), "motions"
+    )
     study = Study(
         **heading_of(content, source),
         catalogue_file=catalogue_file,
         catalogue=catalogue.loc[shaken].reset_index(drop=True),
-        processing=checked_steps(source, "motions.processing", motions.get("processing", ())),
+        processing=checked_steps(
+            source, "motions.processing", motions.get("processing", ())
+        ),
         building_file=building_file,
         building=None if building_file is None else read_building(building_file),
         specimens_file=specimens_file,
@@ -87,7 +95,9 @@ def _study(content: Mapping[str, Any], source: Path) -> Study:
         protocol_step_percent=float(content["protocol"]["step_percent"]),
         fragility=FragilitySettings(
             measures=tuple(measure for measure in measures if isinstance(measure, str)),
-            pairs=tuple((pair[0], pair[1]) for pair in measures if isinstance(pair, list)),
+            pairs=tuple(
+                (pair[0], pair[1]) for pair in measures if isinstance(pair, list)
+            ),
             confidence=content["fragility"]["confidence"],
         ),
         keep_going=content.get("keep_going", False),
@@ -98,7 +108,9 @@ def _study(content: Mapping[str, Any], source: Path) -> Study:
         shaker=None if shaker_file is None else read_shaker(shaker_file),
         measured_tests=measured_tests,
         counterparts={
-            name: other for name in tested if (other := counterparts.get(name, "")) in tested
+            name: other
+            for name in tested
+            if (other := counterparts.get(name, "")) in tested
         },
     )
     asked = plugins_asked(content)
@@ -199,13 +211,17 @@ def _state(path: Path) -> tuple[str, int, int]:
 def _read_all(study: Study) -> list[str]:
     from rockfrag.motions.directions import motions_of_row
 
-    warnings = [f"{study.catalogue_file}: {line}" for line in repeated_motions(study.catalogue)]
+    warnings = [
+        f"{study.catalogue_file}: {line}" for line in repeated_motions(study.catalogue)
+    ]
     folder = study.catalogue_file.parent
     own = study.catalogue[study.catalogue["source"] == "folder"]
     for row in cast("list[dict[str, Any]]", own.to_dict("records")):
         where = f"{study.catalogue_file}, motion {row['name']}"
         try:
-            motion = motions_of_row(row, folder, Path(RECORDS_FOLDER), study.vertical)[0]
+            motion = motions_of_row(row, folder, Path(RECORDS_FOLDER), study.vertical)[
+                0
+            ]
             if motion.pga == 0:
                 raise InputError("the record is zero throughout; leave it out.")
         except InputError as error:

@@ -44,7 +44,9 @@ class SpaceStudy(Heading):
         """Files that must be there before anything runs."""
         if self.catalogue_file is None or self.catalogue is None:
             return []
-        own = own_records(self.catalogue, self.catalogue_file.parent, ("file", "second"))
+        own = own_records(
+            self.catalogue, self.catalogue_file.parent, ("file", "second")
+        )
         return [str(self.catalogue_file), *map(str, own)]
 
 
@@ -75,5 +77,7 @@ def _pairs(path: Path) -> pd.DataFrame:
             f"{path}: motion {alone.iloc[0]} has no second component; name its file in the column second, "
             "or leave the motion out."
         )
-    pairs = pd.Series(list(map(frozenset, zip(rows["file"], rows["second"], strict=True))))
+    pairs = pd.Series(
+        list(map(frozenset, zip(rows["file"], rows["second"], strict=True)))
+    )
     return rows.loc[~pairs.duplicated()]

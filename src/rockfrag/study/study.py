@@ -53,7 +53,9 @@ class Amplitudes:
     def values_g(self) -> NDArray[np.float64]:
         """Amplitudes [g], shape (n,), increasing."""
         ratio = 1 + self.step_percent / 100
-        steps = math.floor(math.log(self.highest_g / self.lowest_g) / math.log(ratio) + 1e-9)
+        steps = math.floor(
+            math.log(self.highest_g / self.lowest_g) / math.log(ratio) + 1e-9
+        )
         return np.asarray(self.lowest_g * ratio ** np.arange(steps + 1))
 
 
@@ -73,7 +75,8 @@ class Study(Heading):
     # Path of the table of motions, and its rows that are used, in order
     catalogue_file: Path
     catalogue: pd.DataFrame
-    processing: tuple[Mapping[str, Any], ...]  # Steps that each record goes through, in order
+    # Steps that each record goes through, in order
+    processing: tuple[Mapping[str, Any], ...]
     # Path of the building whose floors are shaken, and the building; None for ground motions alone
     building_file: Path | None
     building: ShearBuilding | None
@@ -91,7 +94,8 @@ class Study(Heading):
     keep_going: bool
     slides: bool  # Whether friction is limited, so that bodies slide and fly
     vertical: bool  # Whether the vertical components of the records shake too
-    write_motions: str | None  # Format in which the motions of all floors are written too, or None
+    # Format in which the motions of all floors are written too, or None
+    write_motions: str | None
     # A shaking table whose limits are read beside the unlimited protocol, and its YAML file, or None
     shaker_file: Path | None
     shaker: Shaker | None
@@ -122,9 +126,13 @@ class Study(Heading):
 
     def quality_flags(self) -> list[str]:
         """Warnings about sizes that look as if they were in another unit."""
-        sizes = ((name, block.width, block.height) for name, block in self.specimens.items())
+        sizes = (
+            (name, block.width, block.height) for name, block in self.specimens.items()
+        )
         flags = ((name, size_warning(*size)) for name, *size in sizes)
-        return [f"{self.specimens_file}, {name}: {flag}." for name, flag in flags if flag]
+        return [
+            f"{self.specimens_file}, {name}: {flag}." for name, flag in flags if flag
+        ]
 
     @property
     def slenderness(self) -> dict[str, float]:
@@ -161,7 +169,11 @@ class Study(Heading):
     @property
     def body_files(self) -> list[str]:
         """Paths of the tables of bodies."""
-        return [str(path) for path in (self.specimens_file, self.configurations_file) if path]
+        return [
+            str(path)
+            for path in (self.specimens_file, self.configurations_file)
+            if path
+        ]
 
     @property
     def is_large(self) -> bool:
@@ -172,7 +184,9 @@ class Study(Heading):
     def ida_jobs(self) -> int:
         """Number of jobs that share the motions of the IDA curves."""
         motions = len(self.catalogue) * len(self.floors)
-        return max(1, min(math.ceil(self.histories / HISTORIES_A_JOB), MOST_JOBS, motions))
+        return max(
+            1, min(math.ceil(self.histories / HISTORIES_A_JOB), MOST_JOBS, motions)
+        )
 
     def ida_file(self, configuration: System, job: int | None = None) -> str:
         """Path of a configuration's IDA curve under the motions of a job; without one the pattern of all jobs."""
@@ -197,6 +211,11 @@ class Study(Heading):
     def record_files(self, records: str) -> list[str]:
         """Files that must exist before the records can be read, fetched ones under ``records``."""
         wheels = self.catalogue["source"].isin(list(WHEELS))
-        fetched = [f"{records}/{name}/{PROVENANCE}" for name in self.catalogue["source"][wheels]]
-        own = (path for path in self.own_records if is_file(path) or not self.keep_going)
+        fetched = [
+            f"{records}/{name}/{PROVENANCE}"
+            for name in self.catalogue["source"][wheels]
+        ]
+        own = (
+            path for path in self.own_records if is_file(path) or not self.keep_going
+        )
         return [*dict.fromkeys(fetched), *(str(path) for path in own)]

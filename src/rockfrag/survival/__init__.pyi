@@ -1,2 +1,6 @@
-from .reweight import Constrained as Constrained, Reweighted as Reweighted, constrain as constrain
+from .reweight import (
+    Constrained as Constrained,
+    Reweighted as Reweighted,
+    constrain as constrain,
+)
 from .site import Site as Site, read_site as read_site

@@ -17,7 +17,9 @@ from rockfrag.report.page import Page, table_html
 from rockfrag.report.part import Answer, Finding, Says, Section
 from rockfrag.survival.reweight import DECISION_RATE, RULED_OUT, Constrained
 
-BRANCHES = ("branch; weight_before .4; weight_after .4; survival = Probability that all stand .4",)
+BRANCHES = (
+    "branch; weight_before .4; weight_after .4; survival = Probability that all stand .4",
+)
 OBJECTS = (
     "object; information_bit = Information alone [bit] .2",
     "level_ratio_alone = Level at 1e-4 with it alone, after / before .2",
@@ -71,7 +73,10 @@ def json_of(found: Constrained) -> str:
         "unit": found.site.measure.unit,
         "information_bit": found.result.information,
         "ruled_out": found.ruled_out,
-        **{name: json.loads(table.to_json(orient="records")) for name, table in tables.items()},
+        **{
+            name: json.loads(table.to_json(orient="records"))
+            for name, table in tables.items()
+        },
         "limits": _say("limits"),
     }
     return json.dumps(content, indent=2, ensure_ascii=False) + "\n"
@@ -117,12 +122,16 @@ def page_of(found: Constrained) -> str:
         lead=lead,
         answer=Answer(
             asked="How strong can shaking have been, since these objects stand?",
-            sentences=list(map(Finding, ("Hazard", "Evidence", "It hangs on"), (hazard, *told))),
+            sentences=list(
+                map(Finding, ("Hazard", "Evidence", "It hangs on"), (hazard, *told))
+            ),
             figure=curves,
             rests_on=limits,
         ),
         sections=[
-            Section("hazard", "Mean hazard before and after", hazard, (), [_hazard(found)]),
+            Section(
+                "hazard", "Mean hazard before and after", hazard, (), [_hazard(found)]
+            ),
             Section("branches", "Branches", branches, (), [weights, branch_table]),
             Section("objects", "Which object decides", evidence, (), [objects]),
             Section("hangs-on", "What it hangs on", hangs_on, limits, [assumed]),
@@ -142,7 +151,8 @@ def _hazard(found: Constrained) -> Markup:
     return table_html(table, shown, "Mean hazard at annual rates of 1e-2 to 1e-5.")
 
 
-MOST_BRANCHES_SHOWN = 20  # Branches whose weights are drawn: those that matter most before or after
+# Branches whose weights are drawn: those that matter most before or after
+MOST_BRANCHES_SHOWN = 20
 LONGEST_LABEL = 34  # Characters of a branch's name beside its weights
 
 
@@ -176,11 +186,24 @@ def weights_figure(found: Constrained) -> Figure:
     table = found.result.table()
     largest = table[["weight_before", "weight_after"]].max(axis=1)
     order = largest.sort_values(ascending=False, kind="stable").index
-    table = table.loc[order[:MOST_BRANCHES_SHOWN]].sort_values("weight_after", kind="stable")
-    before, after, place = table["weight_before"], table["weight_after"], np.arange(len(table))
+    table = table.loc[order[:MOST_BRANCHES_SHOWN]].sort_values(
+        "weight_after", kind="stable"
+    )
+    before, after, place = (
+        table["weight_before"],
+        table["weight_after"],
+        np.arange(len(table)),
+    )
     with style.panels(style.WIDEST, 0.7 + 0.2 * len(table)) as (figure, axes):
         axes.hlines(place, before, after, color="#999999", linewidth=0.8)
-        axes.plot(before, place, "o", color=style.ORANGE, markerfacecolor="none", label="before")
+        axes.plot(
+            before,
+            place,
+            "o",
+            color=style.ORANGE,
+            markerfacecolor="none",
+            label="before",
+        )
         axes.plot(after, place, "s", color=style.BLUE, label="after survival")
         names = [_short(name, number) for number, name in table["branch"].items()]
         axes.set_yticks(place, names)

@@ -85,7 +85,9 @@ class Reweighted:
         """
         curves = self.curves()
         log_level = np.log(curves["level"].to_numpy())
-        before, after = (np.log(curves[f"mean_{when}"].to_numpy()) for when in ("before", "after"))
+        before, after = (
+            np.log(curves[f"mean_{when}"].to_numpy()) for when in ("before", "after")
+        )
         wanted = np.log(RATES)
         levels = [
             np.exp(np.interp(-wanted, -rates, log_level, left=np.nan, right=np.nan))
@@ -132,7 +134,9 @@ def reweight(site: Site, samples: int = SAMPLES) -> Reweighted:
             topples = objects[k].probability(indices[k], error[k])
             if site.same_earthquakes:
                 stands = stands * (1.0 - topples)
-                expected[at] += (exposure[k] - next_exposure) * (shaking.rates @ (1.0 - stands))
+                expected[at] += (exposure[k] - next_exposure) * (
+                    shaking.rates @ (1.0 - stands)
+                )
             else:
                 expected[at] += exposure[k] * (shaking.rates @ topples)
     log_survival = special.logsumexp(-expected, axis=0) - np.log(samples)
@@ -180,13 +184,18 @@ class Constrained:
     result: Reweighted  #: Weights and curves
     #: A row an object: ``object``, ``information_bit``, ``level_ratio_alone`` and ``level_ratio_without``
     by_object: pd.DataFrame
-    sensitivity: pd.DataFrame  #: A row an assumption: ``assumption`` and ``level_ratio``
+    #: A row an assumption: ``assumption`` and ``level_ratio``
+    sensitivity: pd.DataFrame
 
     @property
     def ruled_out(self) -> list[str]:
         """Branches whose weight fell below ``RULED_OUT`` of what it was."""
         kept = self.result.weights >= RULED_OUT * self.result.prior
-        return [b.name for b, stays in zip(self.site.branches, kept, strict=True) if not stays]
+        return [
+            b.name
+            for b, stays in zip(self.site.branches, kept, strict=True)
+            if not stays
+        ]
 
 
 def constrain(site: Site) -> Constrained:
@@ -195,7 +204,9 @@ def constrain(site: Site) -> Constrained:
     if float(result.log_survival.max()) < np.log(LEAST_SURVIVAL):
         alone = {}
         for body in site.objects:
-            alone[body.name] = reweight(replace(site, objects=(body,))).log_survival.max()
+            alone[body.name] = reweight(
+                replace(site, objects=(body,))
+            ).log_survival.max()
         worst = min(alone, key=alone.__getitem__)
         raise InputError(
             "objects: in no branch of the hazard do all of them stand with a probability above "

@@ -36,7 +36,8 @@ from rockfrag.yaml_file import read_yaml
 
 MOST_BRANCHES = 10_000  # Branches of one site
 
-WEIGHT_ERROR = 1e-3  # Of the sum of weights from 1, which rounding to four digits explains
+# Of the sum of weights from 1, which rounding to four digits explains
+WEIGHT_ERROR = 1e-3
 
 
 @dataclass(frozen=True)
@@ -49,7 +50,8 @@ class Branch:
 
 
 def read_branches(
-    paths: Sequence[str | os.PathLike[str]], realizations: str | os.PathLike[str] | None = None
+    paths: Sequence[str | os.PathLike[str]],
+    realizations: str | os.PathLike[str] | None = None,
 ) -> list[Branch]:
     """Read the branches of a site in the order of the file, with weights of sum 1 to the last digit.
 
@@ -59,11 +61,15 @@ def read_branches(
     named = _realizations(realizations) if realizations else {}
     for path in paths:
         curves = (
-            [_of_openquake(path, realizations, named)] if realizations else _of_table(path, named)
+            [_of_openquake(path, realizations, named)]
+            if realizations
+            else _of_table(path, named)
         )
         for name, branch, curve in curves:
             if curve.measure in branch.curves:
-                raise InputError(f"{path}: {curve.measure.imt} of {name} is given twice.")
+                raise InputError(
+                    f"{path}: {curve.measure.imt} of {name} is given twice."
+                )
             branch.curves[curve.measure] = curve
     found, where = list(named.values()), str(realizations or paths[0])
     if len(found) > MOST_BRANCHES:
@@ -112,9 +118,13 @@ def _of_table(
         for row in mine:
             if row.number("weight") != weight:
                 raise row.error(
-                    "weight", f"branch {name} has the weight {weight:g} in an earlier row"
+                    "weight",
+                    f"branch {name} has the weight {weight:g} in an earlier row",
                 )
-        branch, called = named.setdefault(name, Branch(name, weight)), f"branch {name[:60]}"
+        branch, called = (
+            named.setdefault(name, Branch(name, weight)),
+            f"branch {name[:60]}",
+        )
         if branch.weight != weight:
             raise InputError(
                 f"{path}: {called} has the weight {weight:g}, and {branch.weight:g} elsewhere."
@@ -164,7 +174,8 @@ def _realizations(path: str | os.PathLike[str]) -> dict[str, Branch]:
 
 
 GRID = 600  # Levels on which a hazard curve is integrated
-NODES = 15  # Nodes of Gauss and Hermite over the velocity that comes with a level of acceleration
+# Nodes of Gauss and Hermite over the velocity that comes with a level of acceleration
+NODES = 15
 
 
 @dataclass(frozen=True)
@@ -172,7 +183,8 @@ class VelocityRatio:
     """How fast the ground moves at a site when its peak acceleration is known: ln(PGV/PGA) is normal."""
 
     median_s: float  # Median of PGV/PGA [s]
-    sd_ln: float  # Standard deviation of its logarithm from one earthquake to the next [-]
+    # Standard deviation of its logarithm from one earthquake to the next [-]
+    sd_ln: float
 
 
 @dataclass(frozen=True)
@@ -211,7 +223,9 @@ def shaking_rates(
         return ShakingRates(
             {PGA: np.repeat(levels, NODES), PGV: pgv}, spread.reshape(len(rates), -1)
         )
-    missing = sorted(measure.imt for measure in wanted - measures) or ["PGV that comes with PGA"]
+    missing = sorted(measure.imt for measure in wanted - measures) or [
+        "PGV that comes with PGA"
+    ]
     raise InputError(
         f"hazard: an object's fragility needs {' and '.join(missing)}, but the branches give "
         f"{', '.join(sorted(measure.imt for measure in measures))}; give velocity: {{median_s: …, sd_ln: …}}, "
@@ -219,12 +233,16 @@ def shaking_rates(
     )
 
 
-def _on_grid(curves: Sequence[HazardCurve], reach: tuple[float, float]) -> tuple[Floats, Floats]:
+def _on_grid(
+    curves: Sequence[HazardCurve], reach: tuple[float, float]
+) -> tuple[Floats, Floats]:
     """Levels over all curves and the reach of the fragilities, and the rates that they stand for in each curve."""
     known = np.concatenate([curve.levels for curve in curves])
     grid = np.geomspace(min(known.min(), reach[0]), max(known.max(), reach[1]), GRID)
     # a few hundred branches with levels of their own would make the grid needlessly fine
-    levels = np.union1d(grid, np.unique(known)) if np.unique(known).size <= GRID else grid
+    levels = (
+        np.union1d(grid, np.unique(known)) if np.unique(known).size <= GRID else grid
+    )
     return levels, np.array([rate_weights(curve, levels) for curve in curves])
 
 
@@ -237,17 +255,21 @@ def quantile_weights(values: Floats, weights: Floats, quantiles: Floats) -> Floa
     return np.array([np.interp(quantiles, c, v) for c, v in columns]).T
 
 
-TAIL = 6.0  # Standard deviations from the median beyond which a fragility no longer changes
+# Standard deviations from the median beyond which a fragility no longer changes
+TAIL = 6.0
 
 
 @dataclass(frozen=True)
 class Age:
     """For how long an object has stood as fragile as it is today [year]: certain, a range, or lognormal."""
 
-    low: float  # ends of a range in which every value is equally probable; equal for a certain age
+    # ends of a range in which every value is equally probable; equal for a certain age
+    low: float
     high: float
-    sd_ln: float = 0.0  # standard deviation of ln of a lognormal age of median ``low``, else 0
-    fragile_for: float = math.inf  # longest time of being so fragile, which limits the age
+    # standard deviation of ln of a lognormal age of median ``low``, else 0
+    sd_ln: float = 0.0
+    # longest time of being so fragile, which limits the age
+    fragile_for: float = math.inf
 
     def exposure(self, uniform: Floats) -> Floats:
         """Years of exposure at given probabilities, shape (n,)."""
@@ -293,7 +315,9 @@ class StandingObject:
         if len(c) == 2:
             return np.asarray(c[0] + c[1] * np.log(shaking.values[self.measure]))
         pga, pgv = shaking.values[PGA], shaking.values[PGV]
-        return np.asarray(c[0] + c[1] * np.log(pga) + c[2] * np.log(pgv / (VELOCITY_PER_G * pga)))
+        return np.asarray(
+            c[0] + c[1] * np.log(pga) + c[2] * np.log(pgv / (VELOCITY_PER_G * pga))
+        )
 
     def probability(self, index: Floats, error: float) -> Floats:
         """Probability of toppling where the object withstands exp(error) times the shaking estimated."""
@@ -310,18 +334,31 @@ def draw_errors(objects: int, shared: float, samples: int) -> tuple[Floats, Floa
 
     Both are spread evenly (Sobol; a power of two) and have the shape (samples, objects).
     """
-    sobol = stats.qmc.Sobol(2 * objects + 1, scramble=True, rng=np.random.default_rng(0))
+    sobol = stats.qmc.Sobol(
+        2 * objects + 1, scramble=True, rng=np.random.default_rng(0)
+    )
     drawn = sobol.random(samples)
     normal = special.ndtri(np.clip(drawn[:, : objects + 1], 1e-12, 1 - 1e-12))
     common, own = normal[:, :1], normal[:, 1:]
-    return math.sqrt(shared) * common + math.sqrt(1.0 - shared) * own, drawn[:, objects + 1 :]
+    return math.sqrt(shared) * common + math.sqrt(1.0 - shared) * own, drawn[
+        :, objects + 1 :
+    ]
 
 
 RECORDS = "resources/records"  # Folder of fetched records
 
-ANY_LEVEL = {"PGA": 0.1, "SA": 0.1, "PGV": 10.0}  # One a measure: fractions at all levels count
+# One a measure: fractions at all levels count
+ANY_LEVEL = {"PGA": 0.1, "SA": 0.1, "PGV": 10.0}
 
-SHAKING = ("pga", "pgv", "sa", "hazard", "return_period", "return_period_years", "years")
+SHAKING = (
+    "pga",
+    "pgv",
+    "sa",
+    "hazard",
+    "return_period",
+    "return_period_years",
+    "years",
+)
 """Keys of ``statue.yaml`` that say what shakes the site, which the branches of the hazard do here."""
 
 
@@ -335,7 +372,8 @@ class Site:
     #: Correlation of the errors of the objects' fragilities, 0 (each its own) to 1 (all the same) [-]
     shared_error: float = 0.0
     same_earthquakes: bool = True  #: Whether the objects feel the same earthquakes
-    velocity: VelocityRatio | None = None  #: PGV that comes with a PGA; None if not stated
+    #: PGV that comes with a PGA; None if not stated
+    velocity: VelocityRatio | None = None
 
     @property
     def measure(self) -> IntensityMeasure:
@@ -354,7 +392,9 @@ def read_site(path: str | os.PathLike[str], records: str | Path = RECORDS) -> Si
     realizations = hazard.get("realizations")
     try:
         curves = [folder / name for name in hazard["curves"]]
-        branches = read_branches(curves, folder / realizations if realizations else None)
+        branches = read_branches(
+            curves, folder / realizations if realizations else None
+        )
         site = Site(
             name=known.get("name", "the site"),
             branches=tuple(branches),
@@ -363,10 +403,14 @@ def read_site(path: str | os.PathLike[str], records: str | Path = RECORDS) -> Si
             same_earthquakes=bool(known.get("same_earthquakes", True)),
             velocity=velocity and VelocityRatio(**velocity),
         )
-        return replace(site, objects=tuple(_objects(known["objects"], site, folder, Path(records))))
+        return replace(
+            site, objects=tuple(_objects(known["objects"], site, folder, Path(records)))
+        )
     except InputError as error:
         text = str(error)
-        raise InputError(text if text.startswith(str(folder)) else f"{path}: {text}") from None
+        raise InputError(
+            text if text.startswith(str(folder)) else f"{path}: {text}"
+        ) from None
 
 
 def _objects(
@@ -382,16 +426,24 @@ def _objects(
             if "measure" in settings:
                 measure = read_measure(settings["measure"], "measure")
             if "statue" in settings:
-                coefficients, sd_ln = _simulated(settings, measure, site, folder, records)
+                coefficients, sd_ln = _simulated(
+                    settings, measure, site, folder, records
+                )
             else:
                 coefficients, sd_ln = _stated(settings, measure), 0.0
             sd_ln = float(settings.get("median_sd_ln", sd_ln))
-            found.append(StandingObject(name, measure, coefficients, sd_ln, _age(settings)))
+            found.append(
+                StandingObject(name, measure, coefficients, sd_ln, _age(settings))
+            )
     return found
 
 
 def _simulated(
-    known: Mapping[str, Any], measure: IntensityMeasure, site: Site, folder: Path, records: Path
+    known: Mapping[str, Any],
+    measure: IntensityMeasure,
+    site: Site,
+    folder: Path,
+    records: Path,
 ) -> tuple[tuple[float, ...], float]:
     """Coefficients of the fragility, and the spread of what is not known of its median in ln level [-].
 
@@ -440,10 +492,14 @@ def _simulated(
     return coefficients, spread
 
 
-def _stated(settings: Mapping[str, Any], measure: IntensityMeasure) -> tuple[float, ...]:
+def _stated(
+    settings: Mapping[str, Any], measure: IntensityMeasure
+) -> tuple[float, ...]:
     coefficients = settings.get("coefficients")
     if (coefficients is None) == ("median" not in settings):
-        raise InputError("give statue, median and beta, or coefficients, of its fragility.")
+        raise InputError(
+            "give statue, median and beta, or coefficients, of its fragility."
+        )
     if coefficients is None:
         if "beta" not in settings:
             raise InputError(
@@ -451,7 +507,9 @@ def _stated(settings: Mapping[str, Any], measure: IntensityMeasure) -> tuple[flo
             )
         median = read_level(settings["median"], measure)
         if not median > 0:
-            raise InputError(f"median: expected more than 0, found {settings['median']}.")
+            raise InputError(
+                f"median: expected more than 0, found {settings['median']}."
+            )
         coefficients = lognormal_coefficients(median, settings["beta"])
     if coefficients[1] <= 0:
         raise InputError(
@@ -465,7 +523,10 @@ def _stated(settings: Mapping[str, Any], measure: IntensityMeasure) -> tuple[flo
 
 
 def _age(settings: Mapping[str, Any]) -> Age:
-    age, longest = settings["age_years"], float(settings.get("fragile_for_years", math.inf))
+    age, longest = (
+        settings["age_years"],
+        float(settings.get("fragile_for_years", math.inf)),
+    )
     if isinstance(age, Mapping):
         return Age(age["median"], age["median"], age["sd_ln"], longest)
     low, high = age if isinstance(age, list) else (age, age)

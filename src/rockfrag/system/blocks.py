@@ -71,7 +71,11 @@ class Block:
     round: bool = False
 
     def __post_init__(self) -> None:
-        for name, unit in (("width", "metres"), ("height", "metres"), ("mass", "kilograms")):
+        for name, unit in (
+            ("width", "metres"),
+            ("height", "metres"),
+            ("mass", "kilograms"),
+        ):
             self._check_number(name, unit, positive_number)
         if max(self.width, self.height) > LARGEST:
             raise InputError(
@@ -87,7 +91,9 @@ class Block:
             raise InputError(
                 f"Block: cg_height {self.cg_height} m is above the top, which is at height {self.height} m."
             )
-        if flag := block_warning(self.width, self.height, self.mass, self.centroidal_inertia):
+        if flag := block_warning(
+            self.width, self.height, self.mass, self.centroidal_inertia
+        ):
             warnings.warn(f"Block: {flag}", UnlikelyBlock, stacklevel=4)
         if not geometry.can_stand(self.shape):
             raise InputError(
@@ -106,11 +112,15 @@ class Block:
     def _check_space(self) -> None:
         """Refuse an inertia, depth or roundness that do not fit together."""
         if not isinstance(self.round, bool):
-            raise InputError(f"Block: round: expected True or False, got {shown(self.round)}.")
+            raise InputError(
+                f"Block: round: expected True or False, got {shown(self.round)}."
+            )
         if self.depth is not None:
             self._check_number("depth", "metres", positive_number)
             if self.round:
-                raise InputError("Block: a round block has its width as depth; leave depth out.")
+                raise InputError(
+                    "Block: a round block has its width as depth; leave depth out."
+                )
         if self.inertia is not None and self.in_space:
             object.__setattr__(self, "inertia", checked_tensor(self.inertia))
         elif self.inertia is not None:
@@ -151,7 +161,9 @@ class Block:
             sides = self.width, self.depth, self.height
             return systems.box(sides, self.mass, self.inertia, centre, "block")
         ends = Interval(-self.width / 2, self.width / 2)
-        return RigidBody(self.mass, self.shape.inertia, centre, ends, self.height, ends, "block")
+        return RigidBody(
+            self.mass, self.shape.inertia, centre, ends, self.height, ends, "block"
+        )
 
     def system(self) -> System:
         """Return the block as a system: it rocks, never slides, and conserves momentum in impacts."""
@@ -161,7 +173,9 @@ class Block:
     def shape(self) -> geometry.Shape:
         """The block as the kernels know it, in the plane of its width."""
         size = self.width, self.height, self.mass
-        inertia = self.inertia[1][1] if isinstance(self.inertia, tuple) else self.inertia
+        inertia = (
+            self.inertia[1][1] if isinstance(self.inertia, tuple) else self.inertia
+        )
         if inertia is None:
             inertia = systems.round_inertia(*size) if self.round else math.nan
         cg_height = math.nan if self.cg_height is None else self.cg_height
@@ -246,7 +260,9 @@ class Stack:
         pile, failed = self.pile, geometry.failed_stability_check(self.pile)
         if failed == geometry.STANDS:
             return
-        overhang, pivot = max((geometry.overhang(pile, pivot), pivot) for pivot in (1, -1))
+        overhang, pivot = max(
+            (geometry.overhang(pile, pivot), pivot) for pivot in (1, -1)
+        )
         wrong = {
             geometry.BESIDE: f"the statue's base (width {self.upper.width} m, offset {self.offset} m) "
             f"does not lie on the pedestal (width {self.lower.width} m).",
@@ -273,7 +289,9 @@ class Stack:
     def pile(self) -> geometry.Pile:
         """The stack as the kernels know it."""
         lower, upper = self.lower, self.upper
-        return geometry.pile_of(lower.shape, upper.shape, lower.height, lower.lean, self.offset)
+        return geometry.pile_of(
+            lower.shape, upper.shape, lower.height, lower.lean, self.offset
+        )
 
     @property
     def mass(self) -> float:
@@ -282,8 +300,13 @@ class Stack:
 
     def rigidly_joined(self) -> Block:
         """Return the two as one rigid body, which is what rocks in pattern 3."""
-        whole, height = geometry.joined(self.pile), self.lower.height + self.upper.height
-        return Block(self.lower.width, height, whole.mass, whole.inertia, whole.y, whole.x)
+        whole, height = (
+            geometry.joined(self.pile),
+            self.lower.height + self.upper.height,
+        )
+        return Block(
+            self.lower.width, height, whole.mass, whole.inertia, whole.y, whole.x
+        )
 
 
 @named_fields
@@ -304,12 +327,18 @@ class Column:
         object.__setattr__(self, "blocks", tuple(self.blocks))
         for block in self.blocks:
             if not isinstance(block, Block):
-                raise InputError(f"Column: expected blocks from below, got {shown(block)}.")
+                raise InputError(
+                    f"Column: expected blocks from below, got {shown(block)}."
+                )
         if not 1 <= len(self.blocks) <= systems.MOST_BODIES:
             raise InputError(
                 f"Column: expected 1 to {systems.MOST_BODIES} blocks, got {len(self.blocks)}."
             )
-        offsets = (0.0,) * (len(self.blocks) - 1) if self.offsets is None else tuple(self.offsets)
+        offsets = (
+            (0.0,) * (len(self.blocks) - 1)
+            if self.offsets is None
+            else tuple(self.offsets)
+        )
         if len(offsets) != len(self.blocks) - 1:
             raise InputError(
                 f"Column: expected {len(self.blocks) - 1} offset(s), one for each block but the lowest, got "
@@ -333,7 +362,9 @@ class Column:
         """Return all blocks as one rigid body on the lowest base."""
         x, y = systems.common_centre(self.system())
         inertia = 0.0
-        for block, at in zip(self.blocks, systems.standing_centres(self.system()), strict=True):
+        for block, at in zip(
+            self.blocks, systems.standing_centres(self.system()), strict=True
+        ):
             apart = (at[0] - x) ** 2 + (at[1] - y) ** 2
             inertia += block.centroidal_inertia + block.mass * apart
         height = sum(block.height for block in self.blocks)
@@ -341,7 +372,9 @@ class Column:
 
     def narrowed(self, retreat: float) -> "Column":
         """Return the column with both edges of every block by ``retreat`` [m] further in."""
-        return replace(self, blocks=tuple(block.narrowed(retreat) for block in self.blocks))
+        return replace(
+            self, blocks=tuple(block.narrowed(retreat) for block in self.blocks)
+        )
 
     def system(self) -> System:
         """Return the column as a system: it rocks, never slides, and conserves momentum in impacts."""
@@ -349,13 +382,18 @@ class Column:
         return piled(self.blocks, (0.0, *(self.offsets or ())), names)
 
 
-def piled(blocks: Sequence[Block], offsets: Sequence[float], names: Sequence[str]) -> System:
+def piled(
+    blocks: Sequence[Block], offsets: Sequence[float], names: Sequence[str]
+) -> System:
     """Return the system of blocks on each other, from below, each with its offset [m] and name."""
     contacts = (
         Contact(tilt=block.lean, offset=(offset, 0.0))
         for block, offset in zip(blocks, offsets, strict=True)
     )
-    bodies = [replace(block.body, name=name) for block, name in zip(blocks, names, strict=True)]
+    bodies = [
+        replace(block.body, name=name)
+        for block, name in zip(blocks, names, strict=True)
+    ]
     # one body that is known in a plane leaves all of them known there only
     if any(body.planar for body in bodies):
         bodies = [body.seen_along() for body in bodies]

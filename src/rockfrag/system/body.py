@@ -95,7 +95,9 @@ class RigidBody:
         else:
             object.__setattr__(self, "inertia", checked_tensor(self.inertia))
         outlines = self.base, self.face or self.base
-        if any(isinstance(outline, Interval) is not self.planar for outline in outlines):
+        if any(
+            isinstance(outline, Interval) is not self.planar for outline in outlines
+        ):
             raise InputError(
                 "RigidBody: a planar body has a number as inertia and intervals as base and face, a body in "
                 "space a tensor and polygons or circles."
@@ -140,7 +142,9 @@ class RigidBody:
         (xx, xy, _), (_, yy, _), _ = self.inertia  # type: ignore[misc]
         return replace(
             self,
-            inertia=along[1] ** 2 * xx - 2 * along[0] * along[1] * xy + along[0] ** 2 * yy,
+            inertia=along[1] ** 2 * xx
+            - 2 * along[0] * along[1] * xy
+            + along[0] ** 2 * yy,
             centre=(x * along[0] + y * along[1], 0.0, z),
             base=interval_of(self.base, along),
             face=None if self.face is None else interval_of(self.face, along),
@@ -165,7 +169,9 @@ def checked_tensor(given: object) -> Tensor:
         raise InputError(
             f"RigidBody: inertia is a number of kg m² or a tensor of shape (3, 3), got {shown(given)}."
         )
-    if not np.allclose(values, values.T, rtol=1e-9, atol=1e-12 * float(np.abs(values).max())):
+    if not np.allclose(
+        values, values.T, rtol=1e-9, atol=1e-12 * float(np.abs(values).max())
+    ):
         raise InputError("RigidBody: the tensor of inertia must be symmetric.")
     moments = np.linalg.eigvalsh(values)
     if not moments[0] > 0 or moments[2] > (moments[0] + moments[1]) * (1 + 1e-9):

@@ -80,9 +80,13 @@ def checked_friction(name: str, value: object) -> Friction | None:
             f"{name}: expected a coefficient or a pair (static, kinetic), got {shown(value)}."
         )
     for number in pair:
-        known = isinstance(number, numbers.Real) and not isinstance(number, (bool, np.bool_))
+        known = isinstance(number, numbers.Real) and not isinstance(
+            number, (bool, np.bool_)
+        )
         if not known or math.isnan(number) or number < 0:
-            raise InputError(f"{name}: a coefficient is 0 or more, got {shown(number)}.")
+            raise InputError(
+                f"{name}: a coefficient is 0 or more, got {shown(number)}."
+            )
     static, kinetic = (min(float(number), ROUGHEST) for number in pair)
     if kinetic > static:
         raise InputError(

@@ -27,9 +27,11 @@ class Pile(NamedTuple):
     # the two blocks, each as it stands by itself
     lower: Shape
     above: Shape
-    upper: Shape  # as if its base were no wider than the part of it that lies on the pedestal
+    # as if its base were no wider than the part of it that lies on the pedestal
+    upper: Shape
     lean: float  # of the pedestal [rad]
-    offset: float  # of the middle of the statue's base from the middle of the pedestal's top [m]
+    # of the middle of the statue's base from the middle of the pedestal's top [m]
+    offset: float
     # ends of the contact, likewise, and from the middle of the pedestal's base [m]
     low: float
     high: float
@@ -49,7 +51,9 @@ def turned(x: float, y: float, angle: float) -> tuple[float, float]:
     return x * c + y * s, -x * s + y * c
 
 
-def turned_in_plan(x: float, y: float, sine: float, cosine: float) -> tuple[float, float]:
+def turned_in_plan(
+    x: float, y: float, sine: float, cosine: float
+) -> tuple[float, float]:
     """Turn a vector about the vertical, from x towards y."""
     return cosine * x - sine * y, sine * x + cosine * y
 
@@ -70,7 +74,11 @@ def shape_of(
     width: float, height: float, mass: float, inertia: float, cg_height: float, cg_offset: float, lean: float
 ) -> Shape:  # fmt: skip
     """Return a block as it stands; NaN stands for an inertia or a height of the centre that is not given."""
-    own = mass * (width * width + height * height) / 12 if math.isnan(inertia) else inertia
+    own = (
+        mass * (width * width + height * height) / 12
+        if math.isnan(inertia)
+        else inertia
+    )
     h = height / 2 if math.isnan(cg_height) else cg_height
     x, y = turned(cg_offset, h, lean)
     return Shape(width / 2, mass, own, x, y)
@@ -101,7 +109,9 @@ def pivot_inertia(shape: Shape, pivot: int) -> float:
 
 def frequency(shape: Shape, pivot: int, g: float) -> float:
     """Frequency parameter p [1/s]."""
-    return math.sqrt(shape.mass * g * radius(shape, pivot) / pivot_inertia(shape, pivot))
+    return math.sqrt(
+        shape.mass * g * radius(shape, pivot) / pivot_inertia(shape, pivot)
+    )
 
 
 def can_stand(shape: Shape) -> bool:
@@ -118,7 +128,9 @@ def _product(shape: Shape, pivot: int) -> float:
 def momentum_restitution(shape: Shape, pivot: int) -> float:
     """Ratio of the rates after and before an impact on this pivot that conserves momentum [-]."""
     (x1, y1), (x2, y2) = arm(shape, -pivot), arm(shape, pivot)
-    return (shape.inertia + shape.mass * (x1 * x2 + y1 * y2)) / pivot_inertia(shape, pivot)
+    return (shape.inertia + shape.mass * (x1 * x2 + y1 * y2)) / pivot_inertia(
+        shape, pivot
+    )
 
 
 def largest_restitution(shape: Shape, pivot: int) -> float:
@@ -126,7 +138,9 @@ def largest_restitution(shape: Shape, pivot: int) -> float:
     return math.sqrt(pivot_inertia(shape, -pivot) / pivot_inertia(shape, pivot))
 
 
-def scaled_restitution(shape: Shape, pivot: int, measured: float, factor: float) -> float:
+def scaled_restitution(
+    shape: Shape, pivot: int, measured: float, factor: float
+) -> float:
     """Ratio of an impact on this pivot, measured or else of momentum, times a factor [-]; none gains energy."""
     e = momentum_restitution(shape, pivot) if math.isnan(measured) else measured
     return min(max(e, 0.0) * factor, largest_restitution(shape, pivot))
@@ -139,7 +153,9 @@ def impulse_position(shape: Shape, restitution: float, pivot: int) -> float:
     return excess / (shape.mass * pivot * shape.b * (old - restitution * new))
 
 
-def pile_of(lower: Shape, upper: Shape, height: float, lean: float, offset: float) -> Pile:
+def pile_of(
+    lower: Shape, upper: Shape, height: float, lean: float, offset: float
+) -> Pile:
     """Return a statue as it stands on a pedestal of this height [m], lean [rad] and offset [m]."""
     low = max(-lower.b, offset - upper.b)
     high = min(lower.b, offset + upper.b)
@@ -147,7 +163,11 @@ def pile_of(lower: Shape, upper: Shape, height: float, lean: float, offset: floa
     if abs(offset) + upper.b > lower.b * (1 + 1e-12):
         middle = (low + high) / 2
         on_contact = Shape(
-            (high - low) / 2, upper.mass, upper.inertia, upper.x - (middle - offset), upper.y
+            (high - low) / 2,
+            upper.mass,
+            upper.inertia,
+            upper.x - (middle - offset),
+            upper.y,
         )
     left = turned(middle - on_contact.b, height, lean)
     right = turned(middle + on_contact.b, height, lean)
@@ -172,7 +192,9 @@ def common_arm(pile: Pile, pivot: int) -> tuple[float, float]:
     x1, y1 = arm(pile.lower, pivot)
     dx, dy = reach(pile, pivot, 1)
     x2, y2 = upper_arm(pile, 1)
-    return (m1 * x1 + m2 * (dx + x2)) / (m1 + m2), (m1 * y1 + m2 * (dy + y2)) / (m1 + m2)
+    return (m1 * x1 + m2 * (dx + x2)) / (m1 + m2), (m1 * y1 + m2 * (dy + y2)) / (
+        m1 + m2
+    )
 
 
 def joined(pile: Pile) -> Shape:
@@ -210,7 +232,10 @@ def failed_stability_check(pile: Pile) -> int:
     if not pile.low < pile.offset + pile.above.x < pile.high:
         return OFF_CONTACT
     for pivot in (1, -1):
-        if pivot * upper_arm(pile, pivot)[0] >= 0.0 or pivot * common_arm(pile, pivot)[0] >= 0.0:
+        if (
+            pivot * upper_arm(pile, pivot)[0] >= 0.0
+            or pivot * common_arm(pile, pivot)[0] >= 0.0
+        ):
             return TILTED_OFF
         beyond = overhang(pile, pivot)
         # the statue may have turned by a right angle on that edge by then
@@ -236,10 +261,23 @@ def pivot_constants(
 
     ``restitution`` is that of the impact that ends rocking on this pivot and comes down on the other.
     """
-    alpha, (x, y), p = critical_angle(shape, pivot), arm(shape, pivot), frequency(shape, pivot, g)
+    alpha, (x, y), p = (
+        critical_angle(shape, pivot),
+        arm(shape, pivot),
+        frequency(shape, pivot, g),
+    )
     aside, length, swing = -pivot * x, radius(shape, pivot), p * p
     ends = 1 / alpha, 1 / (swing * alpha * alpha)
-    return alpha, aside / y, aside / length, y / length, swing, restitution, ends[0], ends[1]
+    return (
+        alpha,
+        aside / y,
+        aside / length,
+        y / length,
+        swing,
+        restitution,
+        ends[0],
+        ends[1],
+    )
 
 
 def fill_pile(body: Any, pile: Pile) -> None:

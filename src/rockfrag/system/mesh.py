@@ -98,7 +98,9 @@ class Shape:
         The direction runs from the mesh's x axis towards its y axis [degrees].
         """
         angle = math.radians(direction_deg)
-        along = self.contact_polygon(tolerance) @ np.array([math.cos(angle), math.sin(angle)])
+        along = self.contact_polygon(tolerance) @ np.array(
+            [math.cos(angle), math.sin(angle)]
+        )
         return float(-along.min()), float(along.max())
 
     def scanned_again(self, scan_tolerance: float, rng: np.random.Generator) -> "Shape":
@@ -107,7 +109,9 @@ class Shape:
         points[:, 2] += scan_tolerance * rng.standard_normal(len(points))
         return replace(self, points=points)
 
-    def block(self, direction_deg: float, tolerance: float, retreat: float = 0.0) -> Block:
+    def block(
+        self, direction_deg: float, tolerance: float, retreat: float = 0.0
+    ) -> Block:
         """Return the planar block that rocks in the vertical plane of a direction, as of :meth:`edges` [degrees].
 
         Points up to ``tolerance`` above the lowest carry; edges lie ``retreat`` further in than their polygon [m].
@@ -122,9 +126,13 @@ class Shape:
         size = {"cg_height": self.cg_height, "height": self.height, "mass": self.mass}
         angle = math.radians(direction_deg)
         axis = np.array([-math.sin(angle), math.cos(angle), 0.0])
-        return Block.from_edges(left, right, **size, inertia=float(axis @ self.inertia @ axis))
+        return Block.from_edges(
+            left, right, **size, inertia=float(axis @ self.inertia @ axis)
+        )
 
-    def body(self, direction_deg: float, tolerance: float, retreat: float = 0.0) -> RigidBody:
+    def body(
+        self, direction_deg: float, tolerance: float, retreat: float = 0.0
+    ) -> RigidBody:
         """Return the body in space on the polygon that carries, turned so that a direction [degrees] is its x.
 
         Its origin lies below its centre of gravity; its edges lie ``retreat`` [m] further in than the polygon.
@@ -149,7 +157,9 @@ class Shape:
             name="body",
         )
 
-    def worst_direction(self, tolerance: float, step_deg: float = 1.0) -> tuple[float, float]:
+    def worst_direction(
+        self, tolerance: float, step_deg: float = 1.0
+    ) -> tuple[float, float]:
         """Return the direction in which the body leans over its edge at the least angle, and that angle [rad].
 
         Points up to ``tolerance`` [m] above the lowest carry; directions [degrees] are ``step_deg`` apart.
@@ -181,7 +191,9 @@ def _without_hardly_turning(corners: Floats) -> Floats:
     while len(kept) > FEWEST_CARRY:
         chord = np.roll(kept, -1, axis=0) - np.roll(kept, 1, axis=0)
         side = kept - np.roll(kept, 1, axis=0)
-        off = np.abs(chord[:, 0] * side[:, 1] - chord[:, 1] * side[:, 0]) / np.hypot(*chord.T)
+        off = np.abs(chord[:, 0] * side[:, 1] - chord[:, 1] * side[:, 0]) / np.hypot(
+            *chord.T
+        )
         least = int(off.argmin())
         if len(kept) <= MOST_CORNERS and off[least] >= FLAT * size:
             break
@@ -248,7 +260,9 @@ def read_shape(
         )
     volume = float(mesh.volume)
     given = (
-        density if density is not None else positive_number(f"{path}: mass", mass, "kg") / volume
+        density
+        if density is not None
+        else positive_number(f"{path}: mass", mass, "kg") / volume
     )
     weight = positive_number(f"{path}: density", given, "kg/m³") * volume
     if not MEAN_DENSITIES[0] <= given <= MEAN_DENSITIES[1]:
@@ -270,7 +284,9 @@ def _closed_mesh(path: Path, hull: bool) -> Any:
     import trimesh
 
     if path.suffix.lower() not in MESH_ENDINGS:
-        raise InputError(f"{path}: a mesh is read from {', '.join(MESH_ENDINGS)} files.")
+        raise InputError(
+            f"{path}: a mesh is read from {', '.join(MESH_ENDINGS)} files."
+        )
     if not path.is_file():
         raise InputError(f"{path}: there is no such file; correct the path.")
     try:
@@ -280,14 +296,18 @@ def _closed_mesh(path: Path, hull: bool) -> Any:
         vertices = np.asarray(mesh.vertices, dtype=np.float64)
         faces = np.asarray(getattr(mesh, "faces", ()))
     except Exception as error:
-        raise InputError(f"{path}: cannot be read as a mesh ({type(error).__name__}).") from error
+        raise InputError(
+            f"{path}: cannot be read as a mesh ({type(error).__name__})."
+        ) from error
     if not np.isfinite(vertices).all():
         raise InputError(f"{path}: the mesh has a vertex that is not finite.")
     if hull:
         try:
             return trimesh.convex.convex_hull(vertices)
         except (QhullError, ValueError, IndexError) as error:
-            raise InputError(f"{path}: its {len(vertices)} points enclose no volume.") from error
+            raise InputError(
+                f"{path}: its {len(vertices)} points enclose no volume."
+            ) from error
     if len(faces) == 0:
         raise InputError(
             f"{path}: is a cloud of {len(vertices)} points without triangles; make a closed mesh of it, or take "

@@ -68,7 +68,10 @@ class System:
                 "System: planar bodies and bodies in space cannot stand on each other."
             )
         start = self.start
-        if start is not None and not len(start.rotation) == len(start.velocity) == count:
+        if (
+            start is not None
+            and not len(start.rotation) == len(start.velocity) == count
+        ):
             raise InputError(
                 f"System: expected {count} rotation(s) and velocities at the start, got {shown(start)}."
             )
@@ -106,7 +109,10 @@ class System:
     def held(self) -> "System":
         """Return the system with contacts that never slide."""
         return replace(
-            self, contacts=tuple(replace(contact, friction=None) for contact in self.contacts)
+            self,
+            contacts=tuple(
+                replace(contact, friction=None) for contact in self.contacts
+            ),
         )
 
     def in_plane(self) -> "System":
@@ -122,7 +128,9 @@ class System:
         for body, contact in zip(self.in_plane().bodies, self.contacts, strict=True):
             base, inertia = body.ends[0], body.inertia
             assert isinstance(inertia, float | int)
-            x, y = geometry.turned(body.centre[0] - base.middle, body.centre[2], contact.tilt)
+            x, y = geometry.turned(
+                body.centre[0] - base.middle, body.centre[2], contact.tilt
+            )
             half = (base.right - base.left) / 2
             found.append(geometry.Shape(half, body.mass, inertia, x, y))
         return tuple(found)
@@ -133,7 +141,9 @@ class System:
         lower, upper = self.in_plane().bodies
         aside = self.contacts[1].offset[0] + upper.ends[0].middle - lower.ends[1].middle
         below, above = self.shapes
-        return geometry.pile_of(below, above, lower.height, self.contacts[0].tilt, aside)
+        return geometry.pile_of(
+            below, above, lower.height, self.contacts[0].tilt, aside
+        )
 
     @cached_property
     def carried(self) -> tuple[geometry.Shape, ...]:
@@ -145,8 +155,15 @@ class System:
         for k in range(1, self.count):
             shape, face = self.shapes[k], bodies[k - 1].ends[1]
             middle = self.contacts[k].offset[0] + bodies[k].ends[0].middle
-            low, high = max(face.left, middle - shape.b), min(face.right, middle + shape.b)
-            found.append(shape._replace(b=(high - low) / 2, x=shape.x + middle - (low + high) / 2))
+            low, high = (
+                max(face.left, middle - shape.b),
+                min(face.right, middle + shape.b),
+            )
+            found.append(
+                shape._replace(
+                    b=(high - low) / 2, x=shape.x + middle - (low + high) / 2
+                )
+            )
         return tuple(found)
 
 
@@ -165,10 +182,14 @@ def uplift_ratios(system: System) -> tuple[float, ...]:
     else:
         arms = [arms_above(system, k) for k in range(system.count)]
     # a body with its centre below its pivots never opens
-    return tuple(min(abs(x) / y if y > 0 else math.inf for x, y in pair) for pair in arms)
+    return tuple(
+        min(abs(x) / y if y > 0 else math.inf for x, y in pair) for pair in arms
+    )
 
 
-def each_contact(name: str, given: Any, count: int, wanted: str = "") -> tuple[Any, ...]:
+def each_contact(
+    name: str, given: Any, count: int, wanted: str = ""
+) -> tuple[Any, ...]:
     """Return what is given for each contact of a system, from the ground up.
 
     It is a mapping with ``ground`` and ``interface``, the latter one value for all contacts above the ground or a
@@ -194,19 +215,28 @@ def each_contact(name: str, given: Any, count: int, wanted: str = "") -> tuple[A
     return (given.get("ground"), *each)
 
 
-def box(sides: Vector3, mass: float, inertia: Any, centre: Vector3, name: str = "") -> RigidBody:
+def box(
+    sides: Vector3, mass: float, inertia: Any, centre: Vector3, name: str = ""
+) -> RigidBody:
     """Return a body in space of width, depth and height [m], of uniform mass where inertia is None."""
     width, depth, height = sides
     x, y = width / 2, depth / 2
     outline = Polygon(((-x, -y), (x, -y), (x, y), (-x, y)))
     if inertia is None:
         w, d, h = width * width, depth * depth, height * height
-        inertia = np.diag((mass * (d + h) / 12, mass * (w + h) / 12, mass * (w + d) / 12))
+        inertia = np.diag(
+            (mass * (d + h) / 12, mass * (w + h) / 12, mass * (w + d) / 12)
+        )
     return RigidBody(mass, inertia, centre, outline, height, outline, name)
 
 
 def cylinder(
-    diameter: float, height: float, mass: float, inertia: Any, centre: Vector3, name: str = ""
+    diameter: float,
+    height: float,
+    mass: float,
+    inertia: Any,
+    centre: Vector3,
+    name: str = "",
 ) -> RigidBody:
     """Return a body in space with a round base and face [m], of uniform mass where inertia is None."""
     outline = Circle(diameter / 2)
@@ -236,7 +266,9 @@ def turned_about_vertical(system: System, angle_deg: float) -> System:
         body,
         inertia=((xx, xy, xz), (xy, yy, yz), (xz, yz, zz)),
         centre=(*geometry.turned_in_plan(x, y, *turn), z),
-        base=Polygon(tuple(geometry.turned_in_plan(*at, *turn) for at in body.base.vertices)),
+        base=Polygon(
+            tuple(geometry.turned_in_plan(*at, *turn) for at in body.base.vertices)
+        ),
         face=None,
     )
     return replace(system, bodies=(turned,))

@@ -14,7 +14,8 @@ from ...oracle.space_stepping import falls
 from .samples import DT, box, cylinder, solid, synthetic_motion
 
 ANGLES = np.arange(0.9, 44.2, 0.9)
-RADII = (1.0, 3.0, 10.0, 30.0)  # slendernesses [degrees] and half diagonals [m] of solid cylinders
+# slendernesses [degrees] and half diagonals [m] of solid cylinders
+RADII = (1.0, 3.0, 10.0, 30.0)
 SIDES = (12, 24, 48)
 PASSES = [
     (True, 0.3, 7.501), (True, 0.1, 7.251), (True, 0.03, 7.115),
@@ -66,7 +67,10 @@ def uplift(direction_deg, depth=0.6):
     _, history = run_case(box(*sides, height), motion, DT, samples=700)
     closed = history_table(history, DT, height / 2).contacts
     moving = closed.notna().to_numpy().argmax()
-    limit = min(GRAVITY * b / height / max(way, 1e-12) for b, way in zip(sides, ways, strict=True))
+    limit = min(
+        GRAVITY * b / height / max(way, 1e-12)
+        for b, way in zip(sides, ways, strict=True)
+    )
     return ramp[moving - 1], ramp[moving], limit, closed[moving]
 
 
@@ -78,7 +82,9 @@ def wobbling(tilt, radius=0.3, height=1.4, g=9.81):
     body = cylinder(radius, height)
     across, along = body["inertia"][0, 0], body["inertia"][2, 2]
     s, c, h = math.sin(tilt), math.cos(tilt), height / 2
-    rate = math.sqrt(g * (radius * c - h * s) / (s * (across * c - along * h / radius * s)))
+    rate = math.sqrt(
+        g * (radius * c - h * s) / (s * (across * c - along * h / radius * s))
+    )
     # the centre at rest: ω lies along the arm to the contact, and the axis goes round at Ω
     arm = np.array([radius, 0.0, -h])
     up = np.array([-s, 0.0, c])
@@ -94,7 +100,9 @@ def wobble(tilt):
     period = 2 * math.pi / rate
     dt = period / 40
     still = ground_at_rest(3 * period, dt)
-    outcome, history = run_case(body, still, dt, start=start, samples=122, g=9.81, tolerance=1e-11)
+    outcome, history = run_case(
+        body, still, dt, start=start, samples=122, g=9.81, tolerance=1e-11
+    )
     table = history_table(history, dt, float(body["height"]))
     turn = np.unwrap(np.arctan2(table.axis_y, table.axis_x))
     return outcome, table, abs(turn[-1] - turn[0]) / table.time_s.iloc[-1], rate
@@ -110,7 +118,9 @@ def near_flat_pass(disk, speed, tilt=0.05, radius=0.3, g=9.81):
     # sideways: the lowest point goes round at this speed times the tilt
     start = tilted_on_rim(body, tilt, np.array([speed, 0.0, 0.0]))
     dt = 1e-4
-    _, history = run_case(body, ground_at_rest(1.0, dt), dt, start=start, samples=10001, g=g)
+    _, history = run_case(
+        body, ground_at_rest(1.0, dt), dt, start=start, samples=10001, g=g
+    )
     table = history_table(history, dt, float(body["height"]))
     rising = np.diff(table.tilt_rad)
     low = int((rising > 0).argmax())
@@ -148,7 +158,9 @@ def polygons():
     for sides in SIDES:
         body = cylinder(0.3, 1.4, sides=sides)
         # half a turn of the contact
-        outcome, history = run_case(body, ground_at_rest(3.1 / rate), DT, start=start, samples=60)
+        outcome, history = run_case(
+            body, ground_at_rest(3.1 / rate), DT, start=start, samples=60
+        )
         losses.append(outcome.dissipated[0] / outcome.impacts)
         tilts = history_table(history, DT, float(body["height"])).tilt_rad
         changes.append(float(np.abs(tilts - 0.2).max()))
@@ -184,5 +196,7 @@ def by_stepping(boxes, pairs, seed):
             for k, level in enumerate(LEVELS):
                 ground = motion * (level * min(width, depth) / height)
                 found[i, j, k] = run_case(body, ground, DT)[0].overturned
-                expected[i, j, k] = falls(corners, inertia, 20.0, ground, DT, 9.81, 5e-4)
+                expected[i, j, k] = falls(
+                    corners, inertia, 20.0, ground, DT, 9.81, 5e-4
+                )
     return found, expected

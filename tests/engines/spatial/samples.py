@@ -32,7 +32,9 @@ def box(width, depth, height, friction=20.0):
     """A uniform box."""
     x, y = width / 2, depth / 2
     base = Polygon(((-x, -y), (x, -y), (x, y), (-x, y)))
-    inertia = np.diag([depth**2 + height**2, width**2 + height**2, width**2 + depth**2]) / 12
+    inertia = (
+        np.diag([depth**2 + height**2, width**2 + height**2, width**2 + depth**2]) / 12
+    )
     return solid(base, inertia, height / 2, friction)
 
 
@@ -41,7 +43,9 @@ def cylinder(radius, height, friction=20.0, sides=0):
     base = Circle(radius)
     if sides:
         angle = 2 * math.pi * np.arange(sides) / sides
-        base = Polygon(tuple(zip(radius * np.cos(angle), radius * np.sin(angle), strict=True)))
+        base = Polygon(
+            tuple(zip(radius * np.cos(angle), radius * np.sin(angle), strict=True))
+        )
     across = (3 * radius**2 + height**2) / 12
     inertia = np.diag([across, across, radius**2 / 2])
     return solid(base, inertia, height / 2, friction)

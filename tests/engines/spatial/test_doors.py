@@ -45,16 +45,24 @@ def test_outcomes_do_not_depend_on_threads_or_on_what_else_is_asked():
         other = np.flip(getattr(second, name), axis=(0, 1, 2))
         np.testing.assert_array_equal(getattr(first, name), other)
     assert 0 < first.overturned.sum() < first.overturned.size
-    assert set(first.table("bodies").columns) >= {"turn_rad", "walk_m", "fall_direction_rad"}
+    assert set(first.table("bodies").columns) >= {
+        "turn_rad",
+        "walk_m",
+        "fall_direction_rad",
+    }
 
 
-def test_outcomes_say_over_which_edge_or_vertex_each_body_fell_and_a_file_keeps_it(tmp_path):
+def test_outcomes_say_over_which_edge_or_vertex_each_body_fell_and_a_file_keeps_it(
+    tmp_path,
+):
     motions, scales = [ground_motion(seed, 1.0) for seed in range(3)], [0.1, 0.6]
     table = run_in_space([BOX, ROUND], motions, scales).table("bodies")
     fell = table["fell_over"]
     alone = [
         ENGINE.history(Case((BOX, ROUND)[i], motions[j], scale)).outcome.fell_over
-        for i, j, scale in zip(table["system"], table["motion"], table["scale"], strict=True)
+        for i, j, scale in zip(
+            table["system"], table["motion"], table["scale"], strict=True
+        )
     ]
     assert fell.tolist() == alone
     assert (fell[table["system"] == 0].str.match(r"edge \d-\d$|vertex \d$|$")).all()
@@ -73,7 +81,9 @@ def test_a_round_body_falls_before_a_box_of_its_slenderness():
     assert fallen[0].sum() > fallen[1].sum()
 
 
-@pytest.mark.parametrize(("peak_g", "said"), [(0.2, "Does not fall"), (0.6, "Falls over")])
+@pytest.mark.parametrize(
+    ("peak_g", "said"), [(0.2, "Does not fall"), (0.6, "Falls over")]
+)
 def test_a_response_draws_the_path_of_its_axis_and_its_plan(peak_g, said):
     response = simulate(BOX, ground_motion(2, peak_g))
     assert response.history.tilt_rad.max() <= response.outcome.peak_tilt + 1e-9
@@ -88,7 +98,9 @@ def test_a_response_draws_the_path_of_its_axis_and_its_plan(peak_g, said):
 
 def test_a_spread_moves_vertices_and_turns_the_body_by_no_more_than_it_says():
     other, turned = bodies.perturbed(BOX, 0.01, np.random.default_rng([0, 0, 0]))
-    moved = np.array(other.bodies[0].base.vertices) - np.array(BOX.bodies[0].base.vertices)
+    moved = np.array(other.bodies[0].base.vertices) - np.array(
+        BOX.bodies[0].base.vertices
+    )
     assert 0 < np.abs(moved).max() <= 0.0035
     assert 0 < abs(turned) <= 0.01
     motion = ground_motion(1, 0.4)
@@ -111,9 +123,17 @@ def test_the_usual_doors_answer_in_space_under_two_components():
     expected = run_in_space(BLOCKS, motions, scales)
     np.testing.assert_array_equal(found.overturned, expected.overturned)
     np.testing.assert_array_equal(found.turn, expected.turn)
-    assert simulate(BLOCKS[0], motions[0]).overturned == overturns(BLOCKS[0], motions[0]).overturned
+    assert (
+        simulate(BLOCKS[0], motions[0]).overturned
+        == overturns(BLOCKS[0], motions[0]).overturned
+    )
     thresholds = find_thresholds(
-        BLOCKS[1], motions[0], None, highest=0.6, tolerance=0.01, narrowest_resurrection=0.2
+        BLOCKS[1],
+        motions[0],
+        None,
+        highest=0.6,
+        tolerance=0.01,
+        narrowest_resurrection=0.2,
     )
     first = float(thresholds.table.first_overturning[0])
     either_side = overturns(BLOCKS[1], motions[0], scales=[first - 0.011, first])
@@ -145,7 +165,18 @@ def two_files(tmp_path):
 
 def test_the_command_line_shakes_a_body_by_both_components(two_files, tmp_path, capsys):
     first, second = two_files
-    case = ["simulate", first, "--unit", "g", "--second", second, "--body", "0.35", "1.2", "300"]
+    case = [
+        "simulate",
+        first,
+        "--unit",
+        "g",
+        "--second",
+        second,
+        "--body",
+        "0.35",
+        "1.2",
+        "300",
+    ]
     assert main([*case, "--depth", "35cm", "--plot", str(tmp_path / "box.svg")]) == 0
     said = capsys.readouterr().out
     motion = ground_motion(2, 0.6)
@@ -157,10 +188,23 @@ def test_the_command_line_shakes_a_body_by_both_components(two_files, tmp_path, 
     assert "overturned over rim" in capsys.readouterr().out
 
 
-def test_the_played_page_shows_a_body_in_space_and_says_when_it_falls(two_files, tmp_path, capsys):
+def test_the_played_page_shows_a_body_in_space_and_says_when_it_falls(
+    two_files, tmp_path, capsys
+):
     first, second = two_files
     page = tmp_path / "page.html"
-    case = ["play", first, "--unit", "g", "--second", second, "--body", "0.35", "1.2", "300"]
+    case = [
+        "play",
+        first,
+        "--unit",
+        "g",
+        "--second",
+        second,
+        "--body",
+        "0.35",
+        "1.2",
+        "300",
+    ]
     output = ["--output", str(page)]
     motion = ground_motion(2, 0.6)
     ground = GroundMotion(motion.x, motion.y)
@@ -173,20 +217,32 @@ def test_the_played_page_shows_a_body_in_space_and_says_when_it_falls(two_files,
         text = page.read_text(encoding="utf-8")
         fell = run_in_space([block], [ground], levels).overturned.ravel()
         assert f"<h1>{name} under x</h1>" in text
-        assert f"first overturns at a peak of {number(AMPLITUDES_G[fell.argmax()], 3)} g" in text
-        words = "overturns it" if simulate(block, ground).overturned else "does not overturn it"
+        assert (
+            f"first overturns at a peak of {number(AMPLITUDES_G[fell.argmax()], 3)} g"
+            in text
+        )
+        words = (
+            "overturns it"
+            if simulate(block, ground).overturned
+            else "does not overturn it"
+        )
         assert f"as recorded {words}" in text
         assert page.stat().st_size < 700_000
         assert 'src="http' not in text
     page.unlink()
     capsys.readouterr()
-    np.savetxt(tmp_path / "still.txt", np.column_stack([motion.x.time, 0 * motion.x.time]))
+    np.savetxt(
+        tmp_path / "still.txt", np.column_stack([motion.x.time, 0 * motion.x.time])
+    )
     for wrong, word in (
         ([*case], "--depth or is --round"),
         ([*case, "--depth", "wide"], "--depth: expected a length"),
         ([*case, "--round", "--pedestal", "1", "1"], "leave out --pedestal"),
         ([*case[:4], *case[6:], "--round"], "give --second"),
-        ([*case, "--round", "--second", str(tmp_path / "still.txt")], "zero throughout"),
+        (
+            [*case, "--round", "--second", str(tmp_path / "still.txt")],
+            "zero throughout",
+        ),
         ([*case, "--round", "--second", "absent.txt"], "absent.txt"),
     ):
         assert main([*wrong, *output]) == 2

@@ -30,7 +30,9 @@ def test_the_mesh_of_a_box_is_the_box(shape):
     x, y, _ = (synthetic_motion(np.random.default_rng(4), 2) * 0.5).T
     motion = GroundMotion(Motion(x, DT), Motion(y, DT))
     found = run_in_space([System((body,), (Contact(),))], [motion], [0.6, 0.8, 1.0])
-    expected = run_in_space([Block(0.35, 1.2, 300.0, depth=0.5)], [motion], [0.6, 0.8, 1.0])
+    expected = run_in_space(
+        [Block(0.35, 1.2, 300.0, depth=0.5)], [motion], [0.6, 0.8, 1.0]
+    )
     np.testing.assert_array_equal(found.overturned, expected.overturned)
 
 
@@ -54,7 +56,9 @@ def test_trials_with_friction_are_bodies_in_space(shape):
     trials = sample_trials(shape, ranges, 16, 1)
     assert not any(system.planar for system in trials.systems)
     rng = np.random.default_rng(2)
-    motions = [Motion(synthetic_motion(rng, 1)[:, 0] * peak, DT) for peak in (0.1, 0.5, 1.5)]
+    motions = [
+        Motion(synthetic_motion(rng, 1)[:, 0] * peak, DT) for peak in (0.1, 0.5, 1.5)
+    ]
     overturned, rocked = simulate_tests(trials.systems, motions, 1)
     assert not overturned[:, 0].any() and overturned[:, 2].any()
     assert (overturned <= rocked).all()

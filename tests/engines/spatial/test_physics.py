@@ -28,7 +28,8 @@ from .samples import DT, box, cylinder, synthetic_motion, turned
 
 
 @pytest.mark.parametrize(
-    ("direction_deg", "depth"), [(0, 0.6), (20, 0.6), (45, 0.6), (70, 0.6), (90, 0.6), (45, 0.4)]
+    ("direction_deg", "depth"),
+    [(0, 0.6), (20, 0.6), (45, 0.6), (70, 0.6), (90, 0.6), (45, 0.4)],
 )
 def test_rest_ends_where_the_line_of_thrust_leaves_the_base(direction_deg, depth):
     before, after, limit, closed = uplift(direction_deg, depth)
@@ -38,7 +39,8 @@ def test_rest_ends_where_the_line_of_thrust_leaves_the_base(direction_deg, depth
 
 
 @pytest.mark.parametrize(
-    ("tilt", "expected"), [(0.05, 16.9709), (0.1, 11.3488), (0.2, 6.8880), (0.3, 4.2506)]
+    ("tilt", "expected"),
+    [(0.05, 16.9709), (0.1, 11.3488), (0.2, 6.8880), (0.3, 4.2506)],
 )
 def test_wobble_of_a_round_body_with_its_centre_at_rest(tilt, expected):
     outcome, table, found, rate = wobble(tilt)
@@ -118,7 +120,9 @@ def test_a_turned_and_a_mirrored_case_are_the_same_case():
     level=st.floats(0.7, 4.0),
     is_round=st.booleans(),
 )
-def test_energy_never_grows_and_its_balance_closes(seed, friction, slenderness, level, is_round):
+def test_energy_never_grows_and_its_balance_closes(
+    seed, friction, slenderness, level, is_round
+):
     rng = np.random.default_rng(seed)
     width = rng.uniform(0.2, 0.8)
     height = slenderness * width
@@ -148,7 +152,9 @@ def test_a_rim_that_tips_slides_and_passes_near_flat_gains_nothing(
     rng = np.random.default_rng(seed)
     width = rng.uniform(0.2, 0.8)
     motion = synthetic_motion(rng, 3, 8.0) * (level / slenderness)
-    outcome, _ = run_case(cylinder(width / 2, slenderness * width, friction), motion, DT)
+    outcome, _ = run_case(
+        cylinder(width / 2, slenderness * width, friction), motion, DT
+    )
     assert outcome.slidings >= slidings
     assert outcome.gained < most
     assert abs(outcome.residual) < most

@@ -59,7 +59,9 @@ class System:
         places = zip(*np.broadcast_arrays(s1, s2, self.b1)[:2], strict=True)
         found = [
             quantity(name, model, at, state)
-            for model, at, state in zip(models, places, np.moveaxis(states, -1, 0), strict=True)
+            for model, at, state in zip(
+                models, places, np.moveaxis(states, -1, 0), strict=True
+            )
         ]
         return np.array(found).T
 
@@ -164,7 +166,10 @@ def symbols(s: System) -> dict[str, object]:
     m, top = s.m1 + s.m2, 2 * s.h1 + s.h2
     r = np.hypot(top, s.b1)
     io1, io2 = s.ic1 + s.m1 * r1**2, s.ic2 + s.m2 * r2**2
-    known = {name: getattr(s, name) for name in ("b1", "b2", "h1", "h2", "m1", "m2", "g", "a")}
+    known = {
+        name: getattr(s, name)
+        for name in ("b1", "b2", "h1", "h2", "m1", "m2", "g", "a")
+    }
     for i, (th, w, q) in enumerate([(s.th1, s.w1, s.q1), (s.th2, s.w2, s.q2)], start=1):
         known |= {f"θ{i}": th, f"θ{i}_": w, f"θ{i}__": q}
     return known | {
@@ -197,7 +202,9 @@ def sides(equation: dict, mended: bool) -> tuple[Array, Array]:
     s = SYSTEMS[equation.get("of", "random")]
     known = symbols(s)
     if "impact" in equation:
-        known["θ1_after"], known["θ2_after"] = impact_map(s, *map(tuple, equation["impact"]))
+        known["θ1_after"], known["θ2_after"] = impact_map(
+            s, *map(tuple, equation["impact"])
+        )
     for name, text in equation.get("let", {}).items():
         known[name] = value(text if isinstance(text, str) else text[mended], known)
     left, right = (value(side, known) for side in equation["says"].split(" = "))
@@ -226,7 +233,21 @@ def test_every_equation_is_judged_and_the_misprints_are_those_of_the_table():
     assert judged == {*range(1, 87)} - {26, 77}
     wrong = {equation["eq"][0] for equation in EQUATIONS if is_misprinted(equation)}
     # those that docs/derivation.md lists
-    assert wrong == {15, 16, 33, 39, 46, 47, 51, 60, 62, 64, 66, *range(69, 77), *range(78, 86)}
+    assert wrong == {
+        15,
+        16,
+        33,
+        39,
+        46,
+        47,
+        51,
+        60,
+        62,
+        64,
+        66,
+        *range(69, 77),
+        *range(78, 86),
+    }
 
 
 def test_lagranges_equations_are_those_of_newton_and_euler():
@@ -242,7 +263,9 @@ def test_lagranges_equations_are_those_of_newton_and_euler():
     assert error(np.array([both - upper, upper]), S.get("τ", 1, -1)).max() < 1e-12
 
 
-@pytest.mark.parametrize(("old", "new"), [(o, n) for o in STATES for n in STATES if o != n])
+@pytest.mark.parametrize(
+    ("old", "new"), [(o, n) for o in STATES for n in STATES if o != n]
+)
 def test_impact_maps_keep_angular_momentum_about_the_new_pivots(old, new):
     s = S
     if 0 in (old[0], new[0]) or old[0] != new[0]:
@@ -272,7 +295,9 @@ def momentum(s: System, at: tuple[int, int], about: Array, contact: int) -> Arra
     bodies = ((s.ic1, s.m1, s.w1), (s.ic2, s.m2, s.w2))
     return sum(
         inertia * omega + mass * (arm[1] * v[0] - arm[0] * v[1])
-        for (inertia, mass, omega), arm, v in list(zip(bodies, arms, speeds, strict=True))[contact:]
+        for (inertia, mass, omega), arm, v in list(
+            zip(bodies, arms, speeds, strict=True)
+        )[contact:]
     )
 
 
@@ -341,7 +366,10 @@ def test_an_impact_has_one_outcome_which_takes_energy_and_which_the_fast_kernel_
         assert model.kinetic_energy(new, theta, after) <= before * (1 + 1e-12)
         p = body_record(STACKS[k].system(), g=S.g[k])
         n1, n2, w1, w2, fast_gave_way = kernel_impact(
-            p, state_record(old, theta, omega, (0.0, S.g[k])), closing[0] != 0, closing[1] != 0
+            p,
+            state_record(old, theta, omega, (0.0, S.g[k])),
+            closing[0] != 0,
+            closing[1] != 0,
         )
         assert (n1, n2) == new and not gave_way and not fast_gave_way
         assert (w1, w2) == pytest.approx(after, rel=1e-10, abs=1e-12)

@@ -36,7 +36,8 @@ labelled floor."""
 class Variant:
     """One building of a sensitivity study."""
 
-    axis: str  # Assumption that differs from the reference, one of ``AXES``, or ``reference``
+    # Assumption that differs from the reference, one of ``AXES``, or ``reference``
+    axis: str
     value: float  # Its value; for ``floors`` the level of the highest floor
     label: str  # The same for a reader
     building: ShearBuilding  # The building
@@ -74,7 +75,9 @@ def run(job: Job[Study]) -> Results:
 
 
 def building_variants(
-    settings: Mapping[str, Any], axes: Mapping[str, Sequence[Any]], source: str = "building"
+    settings: Mapping[str, Any],
+    axes: Mapping[str, Sequence[Any]],
+    source: str = "building",
 ) -> list[Variant]:
     """Buildings that differ from one in a single assumption each, after the one itself.
 
@@ -93,7 +96,9 @@ def building_variants(
     return variants
 
 
-def _variant(settings: Mapping[str, Any], axis: str, value: Any, source: str) -> Variant:
+def _variant(
+    settings: Mapping[str, Any], axis: str, value: Any, source: str
+) -> Variant:
     def changed(**changes: Any) -> ShearBuilding:
         kept = {k: v for k, v in settings.items() if k != "storey_stiffnesses_N_m"}
         return make_building(kept | changes, source)
@@ -101,9 +106,13 @@ def _variant(settings: Mapping[str, Any], axis: str, value: Any, source: str) ->
     if axis == "floors":
         levels = {**settings.get("floors", {}), **value}
         named = ", ".join(f"{label} {level}" for label, level in value.items())
-        return Variant(axis, float(max(value.values())), f"levels {named}", changed(floors=levels))
+        return Variant(
+            axis, float(max(value.values())), f"levels {named}", changed(floors=levels)
+        )
     if axis == "first_period_s":
-        return Variant(axis, value, f"first period {value:g} s", changed(first_period_s=value))
+        return Variant(
+            axis, value, f"first period {value:g} s", changed(first_period_s=value)
+        )
     if axis == "damping_ratio":
         damping = {**settings.get("damping", {}), "ratio": value}
         return Variant(axis, value, f"damping {value:.0%}", changed(damping=damping))
@@ -142,8 +151,12 @@ def building_sensitivity(
             ida_table(specimen, [motion], amplitudes_g, threads).to_pandas()
             for specimen in specimens
         ]
-        earthquake = motion.metadata.get("earthquake") or motion.metadata["ground_motion"]
-        found: pd.DataFrame = pd.concat(tables, ignore_index=True).assign(earthquake=earthquake)
+        earthquake = (
+            motion.metadata.get("earthquake") or motion.metadata["ground_motion"]
+        )
+        found: pd.DataFrame = pd.concat(tables, ignore_index=True).assign(
+            earthquake=earthquake
+        )
         if motion.metadata["level"] == 0:
             known[motion.name] = found
         return found
@@ -152,7 +165,9 @@ def building_sensitivity(
     for done, variant in enumerate(variants, start=1):
         floors, credible = _floors(variant, motions)
         tests = tests_from_ida(pd.concat(map(ida, floors), ignore_index=True), protocol)
-        tests = tests.assign(axis=variant.axis, value=variant.value, label=variant.label)
+        tests = tests.assign(
+            axis=variant.axis, value=variant.value, label=variant.label
+        )
         tables.append(tests.assign(credible=credible))
         progress(done)
     return pd.concat(tables, ignore_index=True)

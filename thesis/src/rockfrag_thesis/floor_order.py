@@ -72,5 +72,14 @@ def margins_table(tests: pd.DataFrame) -> pd.DataFrame:
             {**about, "hypothesis": name, "margin": margin, "holds": margin > TIE}
             for name, margin in floor_margins(group).items()
         ]
-    columns = ["axis", "value", "label", "definition", "hypothesis", "margin", "holds", "credible"]
+    columns = [
+        "axis",
+        "value",
+        "label",
+        "definition",
+        "hypothesis",
+        "margin",
+        "holds",
+        "credible",
+    ]
     return pd.DataFrame(rows, columns=columns)

@@ -28,7 +28,14 @@ def with_thesis(parts: Sequence[Part], compares: bool) -> list[Part]:
     Where the study is compared with the thesis, the counterparts of its figures take the place of the figures
     that compare amplitudes, of which they are a finer version; what is compared follows at the end.
     """
-    ours = [p for part in parts for p in (*_BEFORE.get(part, ()), part, *_BEHIND.get(part, ()))]
+    ours = [
+        p
+        for part in parts
+        for p in (*_BEFORE.get(part, ()), part, *_BEHIND.get(part, ()))
+    ]
     if not compares:
         return ours
-    return [*(counterparts if part is comparisons else part for part in ours), *_COMPARED]
+    return [
+        *(counterparts if part is comparisons else part for part in ours),
+        *_COMPARED,
+    ]

@@ -14,7 +14,9 @@ if TYPE_CHECKING:
 FOLDER = Path(__file__).parent
 
 
-def report(study: "Study", parts: "Parts", answer: "FirstPage") -> "tuple[Parts, FirstPage]":
+def report(
+    study: "Study", parts: "Parts", answer: "FirstPage"
+) -> "tuple[Parts, FirstPage]":
     """Return the parts of a study's report with those of the thesis, and what makes its first page."""
     from rockfrag_thesis.parts import with_thesis
     from rockfrag_thesis.sections.first_page import thesis_answer

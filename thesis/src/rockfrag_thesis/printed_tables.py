@@ -42,24 +42,40 @@ def uplift_accelerations(body: SystemLike) -> tuple[float, float]:
 
 TABLE_3_1 = (
     Quantity("critical_angle_rad", "θc", "rad", lambda block: block.alpha),
-    Quantity("radius_cm", "R", "cm", lambda block: block.radius() * CENTIMETRES_PER_METRE),
+    Quantity(
+        "radius_cm", "R", "cm", lambda block: block.radius() * CENTIMETRES_PER_METRE
+    ),
     Quantity("frequency_1_s", "p", "1/s", lambda block: block.frequency()),
     Quantity("slenderness", "H/B", "-", lambda block: block.slenderness),
 )
 TABLE_3_3 = (
     Quantity("pga_g", "PGA", "g", lambda motion: pga(motion) / GRAVITY),
-    Quantity("pgv_cm_s", "PGV", "cm/s", lambda motion: pgv(motion) * CENTIMETRES_PER_METRE),
+    Quantity(
+        "pgv_cm_s", "PGV", "cm/s", lambda motion: pgv(motion) * CENTIMETRES_PER_METRE
+    ),
     Quantity("pgd_cm", "PGD", "cm", lambda motion: pgd(motion) * CENTIMETRES_PER_METRE),
 )
 TABLE_4_1 = (
-    Quantity("pattern_3_m_s2", "pattern 3", "m/s²", lambda body: uplift_accelerations(body)[0]),
-    Quantity("pattern_4_m_s2", "pattern 4", "m/s²", lambda body: uplift_accelerations(body)[1]),
+    Quantity(
+        "pattern_3_m_s2",
+        "pattern 3",
+        "m/s²",
+        lambda body: uplift_accelerations(body)[0],
+    ),
+    Quantity(
+        "pattern_4_m_s2",
+        "pattern 4",
+        "m/s²",
+        lambda body: uplift_accelerations(body)[1],
+    ),
 )
 """Quantities of blocks, of ground motions, and of what stands on the table."""
 
 
 def compare(
-    things: Mapping[str, Any], quantities: Sequence[Quantity], printed: str | os.PathLike[str]
+    things: Mapping[str, Any],
+    quantities: Sequence[Quantity],
+    printed: str | os.PathLike[str],
 ) -> pd.DataFrame:
     """Compute quantities of things by their names, and put them beside printed ones.
 
@@ -79,7 +95,9 @@ def compare(
     table = pd.DataFrame(rows, columns=list(COLUMNS))
     table["agrees"] = table["agrees"].astype("boolean")
     # a quantity that exists neither on paper nor in theory, such as pattern 3 of a lone block
-    return table[table["computed"].notna() | (table["printed"] != "")].reset_index(drop=True)
+    return table[table["computed"].notna() | (table["printed"] != "")].reset_index(
+        drop=True
+    )
 
 
 def _printed(
@@ -91,4 +109,8 @@ def _printed(
         for column in columns:
             if row.cells[column]:
                 row.number(column)
-    return {(row.text("name"), column): row.cells[column] for row in rows for column in columns}
+    return {
+        (row.text("name"), column): row.cells[column]
+        for row in rows
+        for column in columns
+    }

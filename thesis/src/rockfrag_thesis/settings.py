@@ -27,13 +27,17 @@ class Settings:
     @property
     def wanted_percent(self) -> Mapping[str, float]:
         """Changes of P/NP that are asked for, on the ``ground`` and ``above`` it [%]; empty where none are."""
-        wanted: Mapping[str, float] = self.sensitivity_analysis.get("wanted_percent", {})
+        wanted: Mapping[str, float] = self.sensitivity_analysis.get(
+            "wanted_percent", {}
+        )
         return wanted
 
     @property
     def friction(self) -> Mapping[str, Sequence[float]]:
         """Coefficients of friction at ``ground`` and ``interface`` of which all pairs are tried [-]; or empty."""
-        tried: Mapping[str, Sequence[float]] = self.sensitivity_analysis.get("friction", {})
+        tried: Mapping[str, Sequence[float]] = self.sensitivity_analysis.get(
+            "friction", {}
+        )
         return tried
 
 
@@ -115,8 +119,12 @@ def _check_varied_building(study: Study, varied: Mapping[str, Sequence[Any]]) ->
 def tested_blocks(study: Study) -> dict[str, Block]:
     """Blocks of the objects tested and, as ``P``, the first pedestal: the names of tables."""
     tested = study.configurations
-    pedestals = [configuration.names[-2] for configuration in tested if configuration.count > 1]
-    blocks = {name: study.specimens[name] for name in (system.names[-1] for system in tested)}
+    pedestals = [
+        configuration.names[-2] for configuration in tested if configuration.count > 1
+    ]
+    blocks = {
+        name: study.specimens[name] for name in (system.names[-1] for system in tested)
+    }
     if pedestals:
         blocks["P"] = study.specimens[pedestals[0]]
     return blocks

@@ -12,7 +12,11 @@ from rockfrag.records.motion import Motion
 from rockfrag.rocking import overturns
 from rockfrag.rocking.ensemble import LightBodies
 from rockfrag.rocking.robustness import perturbed
-from rockfrag.shaketable.definitions import always_overturning, first_overturning, step_protocol
+from rockfrag.shaketable.definitions import (
+    always_overturning,
+    first_overturning,
+    step_protocol,
+)
 from rockfrag.shaketable.protocols import Protocol
 from rockfrag.system.system import System
 
@@ -43,7 +47,9 @@ def standing_definitions(
     rows = []
     for configuration in configurations:
         fell = overturns(configuration, motions, scales=scales, threads=threads)
-        found = [_definitions(amplitudes_g, flags, protocol) for flags in fell.overturned[0]]
+        found = [
+            _definitions(amplitudes_g, flags, protocol) for flags in fell.overturned[0]
+        ]
         stands = {
             (size, i, name): True
             for size in SIZES
@@ -59,7 +65,9 @@ def standing_definitions(
                 fell = overturns(copy, motions, scales=scales * factor, threads=threads)
             for i, flags in enumerate(fell.overturned[0]):
                 for name, bounds in _definitions(amplitudes_g, flags, protocol).items():
-                    stands[size, i, name] &= np.array_equal(bounds, found[i][name], equal_nan=True)
+                    stands[size, i, name] &= np.array_equal(
+                        bounds, found[i][name], equal_nan=True
+                    )
         for i, motion in enumerate(motions):
             rows += [
                 {
@@ -85,4 +93,6 @@ def _definitions(
         "first_overturning": first_overturning(amplitudes_g, flags),
         "always_overturning": always_overturning(amplitudes_g, flags),
     }
-    return {name: (outcome.lower_g, outcome.upper_g) for name, outcome in outcomes.items()}
+    return {
+        name: (outcome.lower_g, outcome.upper_g) for name, outcome in outcomes.items()
+    }

@@ -40,7 +40,8 @@ from rockfrag.rocking.browser import driver_text
 SCRIPTS = ("statistics", "risk", "conversion", "building", "space", "objects", "answer")
 """Scripts that compute, in the order in which they need each other."""
 
-TABLED_STOREYS = 8  # Storeys up to which modes of the usual building stand in the page, to the bit
+# Storeys up to which modes of the usual building stand in the page, to the bit
+TABLED_STOREYS = 8
 
 
 def script(name: str) -> str:
@@ -78,7 +79,11 @@ def data_of(motions: MotionSet, asked: Request | None = None) -> dict[str, Any]:
         "onFloor": asked is not None and asked.records.on_floor,
         # curves of the hazard's quantiles, by the standard normal score of each
         "quantiles": [
-            {"z": float(special.ndtri(q)), "levels": c.levels.tolist(), "rates": c.rates.tolist()}
+            {
+                "z": float(special.ndtri(q)),
+                "levels": c.levels.tolist(),
+                "rates": c.rates.tolist(),
+            }
             for each in hazard
             for q, c in each.quantiles.items()
         ],
@@ -87,14 +92,19 @@ def data_of(motions: MotionSet, asked: Request | None = None) -> dict[str, Any]:
         "floors": {n: _with_variants(at, intervals) for n, at in usual.items()},
         "own": asked and _own(asked.place, intervals),
         "steps": [
-            {"name": step.name, "below": step.below if math.isfinite(step.below) else None}
+            {
+                "name": step.name,
+                "below": step.below if math.isfinite(step.below) else None,
+            }
             for step in risk.STEPS
         ],
         "limits": {"storey": units.STOREY_HEIGHTS, "period": units.FIRST_PERIODS},
         "units": {
             "dimensions": units.DIMENSIONS,
             "examples": units.EXAMPLES,
-            "known": {name: ", ".join(known) for name, known in units.DIMENSIONS.items()},
+            "known": {
+                name: ", ".join(known) for name, known in units.DIMENSIONS.items()
+            },
         },
     }
 
@@ -118,7 +128,10 @@ def _measure(motions: MotionSet, measure: IntensityMeasure) -> dict[str, Any]:
 def _with_variants(at: Place, intervals: Sequence[float]) -> dict[str, Any]:
     each = {"": at}
     for moved in at.variants():
-        each |= {f"{moved.name}{sign}": side for sign, side in zip("-+", moved.sides, strict=True)}
+        each |= {
+            f"{moved.name}{sign}": side
+            for sign, side in zip("-+", moved.sides, strict=True)
+        }
     return {name: _modes(side.building, intervals) for name, side in each.items()}
 
 
@@ -127,7 +140,9 @@ def _own(at: Place, intervals: Sequence[float]) -> dict[str, Any] | None:
     building = at.building
     if building is None:
         return None
-    usual = place.make_place({"floor": f"{building.level(at.floor)}/{building.storeys}"}, Path())
+    usual = place.make_place(
+        {"floor": f"{building.level(at.floor)}/{building.storeys}"}, Path()
+    )
     if building == usual.building:
         return None
     top = replace(building, floors={**building.floors, "": building.storeys})
@@ -142,7 +157,9 @@ def _own(at: Place, intervals: Sequence[float]) -> dict[str, Any] | None:
     }
 
 
-def _modes(model: ShearBuilding | None, intervals: Sequence[float]) -> list[dict[str, Any]]:
+def _modes(
+    model: ShearBuilding | None, intervals: Sequence[float]
+) -> list[dict[str, Any]]:
     """What :func:`rockfrag.building.response.respond_elastically` does with each mode, by sampling interval."""
     assert model is not None
     modes, found = find_modes(model), []
@@ -155,7 +172,10 @@ def _modes(model: ShearBuilding | None, intervals: Sequence[float]) -> list[dict
                 "fractions": fraction,
                 "damper": 2 * damping * omega,
                 "spring": omega**2,
-                "steps": {dt: oscillator_matrix(omega, damping, dt).tolist() for dt in intervals},
+                "steps": {
+                    dt: oscillator_matrix(omega, damping, dt).tolist()
+                    for dt in intervals
+                },
             }
         )
     return found
@@ -184,7 +204,9 @@ def _constants() -> dict[str, Any]:
         **_of(units, "STONE", "DENSITIES", "DEPTHS"),
         **_of(mitigations, "WIDER", "PLATE", "STEEL", "LOWER", "BALLAST", "BALLAST_AT"),
         **_of(mitigations, "PEDESTAL_HEIGHT"),
-        **_of(place, "PERIOD_FACTORS", "STOREY_HEIGHT", "STOREY_MASS", "HIGHEST_BUILDING"),
+        **_of(
+            place, "PERIOD_FACTORS", "STOREY_HEIGHT", "STOREY_MASS", "HIGHEST_BUILDING"
+        ),
         **_of(words, "MANY", "FEW", "LEAST_PART", "MOST_SOURCES", "MOST_ASSUMPTIONS"),
         "DAMPING": ModalDamping().ratio,
         **_of(objects, "TOLERANCES"),
@@ -194,7 +216,9 @@ def _constants() -> dict[str, Any]:
     }
 
 
-def in_space(motions: MotionSet, measures: Iterable[IntensityMeasure]) -> dict[str, Any]:
+def in_space(
+    motions: MotionSet, measures: Iterable[IntensityMeasure]
+) -> dict[str, Any]:
     """Return records, levels and constants of bodies in space, of motions one component at a time."""
     both = motions.with_both_components()
     fewer = both.thinned()
@@ -202,10 +226,16 @@ def in_space(motions: MotionSet, measures: Iterable[IntensityMeasure]) -> dict[s
     levels = {}
     for measure in measures:
         few, fewest = (
-            outcomes.make_intensity_levels(each, measure, (), outcomes.FEW_LEVELS).levels.tolist()
+            outcomes.make_intensity_levels(
+                each, measure, (), outcomes.FEW_LEVELS
+            ).levels.tolist()
             for each in (both, fewer)
         )
-        about = {"levels": few, "fewer": fewest, "values": both.values(measure).tolist()}
+        about = {
+            "levels": few,
+            "fewer": fewest,
+            "values": both.values(measure).tolist(),
+        }
         levels[measure.imt] = {**about, "ratios": ratios_of(both, measure)}
     turns = [math.radians(angle) for angle in range(0, 180, outcomes.STEP_DEG)]
     return {
@@ -232,7 +262,12 @@ def _times(motions: MotionSet, pair: tuple[int, int]) -> list[dict[str, Any] | N
         step = common.provenance[-1]
         begin = float(step["left_out_at_beginning_s"])
         skip = None if step["interpolated"] else round(begin / motions.base[own].dt)
-        about = {"begin": begin, "skip": skip, "count": common.acceleration.size, "dt": common.dt}
+        about = {
+            "begin": begin,
+            "skip": skip,
+            "count": common.acceleration.size,
+            "dt": common.dt,
+        }
         found.append(about)
     return found
 
@@ -242,7 +277,9 @@ def ratios_of(motions: MotionSet, measure: IntensityMeasure) -> dict[str, Any] |
     if measure == PGV:
         return None
     logs = motions.log_ratios(measure)
-    relation = VelocityRelation.of(motions.about, motions.log_ratios(measure, of_all=True))
+    relation = VelocityRelation.of(
+        motions.about, motions.log_ratios(measure, of_all=True)
+    )
     return {
         "logs": logs.tolist(),
         "median": float(np.median(logs)),

@@ -18,15 +18,23 @@ from rockfrag.assess.words import says
 from rockfrag.errors import InputError
 from rockfrag.files import write_text
 from rockfrag.records.motion import Motion
-from rockfrag.report.page import TEMPLATES, base64_text, json_text, scripts_of, zipped_text
+from rockfrag.report.page import (
+    TEMPLATES,
+    base64_text,
+    json_text,
+    scripts_of,
+    zipped_text,
+)
 from rockfrag.rocking.browser import driver_text, module_bytes
 from rockfrag.units import GRAVITY
 
 MOST_BYTES = 6_000_000  # Largest page [bytes], which a memory stick and a mail take
 
-LANGUAGES = ("en", "it")  # Of the page, each a file of texts; what one lacks is said in the first
+# Of the page, each a file of texts; what one lacks is said in the first
+LANGUAGES = ("en", "it")
 
-_FACTORS = (GRAVITY, 0.01, 1.0)  # Factors of units in which records state decimals [m/s²]
+# Factors of units in which records state decimals [m/s²]
+_FACTORS = (GRAVITY, 0.01, 1.0)
 
 _MOST_DIGITS = 9
 
@@ -55,7 +63,11 @@ def write_app(
 
 
 def page_of(
-    motions: MotionSet, form: Mapping[str, str], request: Request | None = None, *, made: bool
+    motions: MotionSet,
+    form: Mapping[str, str],
+    request: Request | None = None,
+    *,
+    made: bool,
 ) -> str:
     """Return the page as HTML, which loads nothing."""
     packed, about = packed_samples(motions.ground)
@@ -66,7 +78,9 @@ def page_of(
         "form": dict(form),
         "made": made,
         "texts": {language: texts(language) for language in LANGUAGES},
-        "modules": {name: zipped_text(module_bytes(of)) for name, of in modules.items()},
+        "modules": {
+            name: zipped_text(module_bytes(of)) for name, of in modules.items()
+        },
         "samples": about,
         "packed": base64_text(packed),
     }
@@ -90,7 +104,9 @@ def texts(language: str) -> dict[str, Any]:
         return own
     return own | {
         "sources": {name: source.words for name, source in SOURCES.items()},
-        "measurements": {name: source.measurement for name, source in MEASUREMENTS.items()},
+        "measurements": {
+            name: source.measurement for name, source in MEASUREMENTS.items()
+        },
         "steps": [step.name for step in STEPS],
         "advice": [step.advice for step in STEPS],
         "scale": says.line("scale"),
@@ -111,7 +127,11 @@ def packed_samples(motions: Sequence[Motion]) -> tuple[bytes, dict[str, Any]]:
         whole, power = _decimals(samples, factor)
         if (power >= 0).all():
             content = _by_rank(whole.astype("<i4")) + power.astype(np.uint8).tobytes()
-            return zlib.compress(content, 9), {**about, "factor": factor, "decimal": True}
+            return zlib.compress(content, 9), {
+                **about,
+                "factor": factor,
+                "decimal": True,
+            }
     content = _by_rank(samples.astype("<f8"))
     return zlib.compress(content, 9), {**about, "factor": 1.0, "decimal": False}
 
@@ -129,6 +149,10 @@ def _decimals(samples: np.ndarray, factor: float) -> tuple[np.ndarray, np.ndarra
     for digits in range(1, _MOST_DIGITS + 1):
         tried = np.clip(digits - 1 - size, 0, 22)
         number = np.round(plain * 10.0**tried)
-        hit = (power < 0) & (number / 10.0**tried * factor == samples) & (np.abs(number) < 2**31)
+        hit = (
+            (power < 0)
+            & (number / 10.0**tried * factor == samples)
+            & (np.abs(number) < 2**31)
+        )
         whole[hit], power[hit] = number[hit], tried[hit]
     return whole, power

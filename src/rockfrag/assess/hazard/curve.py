@@ -24,18 +24,23 @@ from rockfrag.short_repr import short_repr
 from rockfrag.tabular import Row, read_table, read_text
 from rockfrag.units import CENTIMETRES_PER_METRE, GRAVITY, quantity
 
-HIGHEST = {"PGA": 10.0, "SA": 30.0, "PGV": 2000.0}  # Beyond, a curve is in another unit: g, g, cm/s
+# Beyond, a curve is in another unit: g, g, cm/s
+HIGHEST = {"PGA": 10.0, "SA": 30.0, "PGV": 2000.0}
 
-HIGHEST_RATE = 100.0  # Shaking that is exceeded more often a year is no earthquake hazard [1/year]
+# Shaking that is exceeded more often a year is no earthquake hazard [1/year]
+HIGHEST_RATE = 100.0
 
 DAMAGING = {"PGA": 0.02, "SA": 0.02, "PGV": 1.0}
 """A curve that ends below this level says nothing about what topples: g, g and cm/s."""
 
-EC8_SLOPE = 3.0  # Exponent k of H ~ a^-k where one point is known (EN 1998-1:2004, note to 2.1(4))
+# Exponent k of H ~ a^-k where one point is known (EN 1998-1:2004, note to 2.1(4))
+EC8_SLOPE = 3.0
 
-EC8_SLOPE_SD = 0.6  # Standard deviation of that exponent: 2 to 4 are seen in Europe and America
+# Standard deviation of that exponent: 2 to 4 are seen in Europe and America
+EC8_SLOPE_SD = 0.6
 
-FLANKS = (0.16, 0.84)  # Quantiles of a level continued with exponents a standard deviation away
+# Quantiles of a level continued with exponents a standard deviation away
+FLANKS = (0.16, 0.84)
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,15 +69,21 @@ class HazardCurve:
     def rate(self, level: ArrayLike) -> Floats:
         """Annual rate with which levels above 0 are exceeded [1/year]; the ends are continued as they slope."""
         given = np.asarray(level, dtype=np.float64)
-        start = np.clip(np.searchsorted(self.levels, given) - 1, 0, self.levels.size - 2)
+        start = np.clip(
+            np.searchsorted(self.levels, given) - 1, 0, self.levels.size - 2
+        )
         away = np.log(given) - np.log(self.levels[start])
-        return np.asarray(np.exp(np.log(self.rates[start]) + self._slopes[start] * away))
+        return np.asarray(
+            np.exp(np.log(self.rates[start]) + self._slopes[start] * away)
+        )
 
     def level(self, rate: float) -> float:
         """Level that is exceeded with an annual rate [1/year], in the measure's unit."""
         logs, x = np.log(self.rates), np.log(self.levels)
         start = int(np.clip(np.searchsorted(-logs, -math.log(rate)) - 1, 0, x.size - 2))
-        return float(np.exp(x[start] + (math.log(rate) - logs[start]) / self._slopes[start]))
+        return float(
+            np.exp(x[start] + (math.log(rate) - logs[start]) / self._slopes[start])
+        )
 
     @property
     def _slopes(self) -> Floats:
@@ -88,7 +99,9 @@ def rate_weights(curve: HazardCurve, levels: Floats) -> Floats:
     rate = curve.rate(levels)
     fall = -np.diff(np.log(rate))
     # mean of ν over a piece in ln x, (ν0 - ν1) / ln(ν0/ν1)
-    mean = rate[:-1] * np.where(fall > 1e-12, -np.expm1(-fall) / np.maximum(fall, 1e-300), 1.0)
+    mean = rate[:-1] * np.where(
+        fall > 1e-12, -np.expm1(-fall) / np.maximum(fall, 1e-300), 1.0
+    )
     weights = np.zeros(levels.size)
     weights[:-1] += rate[:-1] - mean
     weights[1:] += mean - rate[1:]
@@ -106,16 +119,22 @@ def make_curve(
     """
     x, y = np.asarray(levels, dtype=np.float64), np.asarray(rates, dtype=np.float64)
     if x.size != y.size:
-        raise InputError(f"{where}: {x.size} levels have {y.size} rates; give one rate a level.")
+        raise InputError(
+            f"{where}: {x.size} levels have {y.size} rates; give one rate a level."
+        )
     if not np.isfinite(x).all() or np.isnan(y).any():
-        raise InputError(f"{where}: a level or a rate of the hazard curve is not a finite number.")
+        raise InputError(
+            f"{where}: a level or a rate of the hazard curve is not a finite number."
+        )
     if (y < 0).any() or (np.isfinite(y) & (y > HIGHEST_RATE)).any():
         raise InputError(
             f"{where}: rates of exceedance must lie from 0 to {HIGHEST_RATE:g} a year, found "
             f"{y[(y < 0) | (y > HIGHEST_RATE)][0]:g}; check the column and the investigation time."
         )
     if (x < 0).any() or (np.diff(x) <= 0).any():
-        raise InputError(f"{where}: the levels of the hazard curve must rise from above 0.")
+        raise InputError(
+            f"{where}: the levels of the hazard curve must rise from above 0."
+        )
     if (np.diff(y[np.isfinite(y)]) > 0).any():
         raise InputError(
             f"{where}: the rate of exceedance rises with the level, which no hazard curve does; check the columns."
@@ -142,16 +161,22 @@ def make_curve(
 def rates_of(poes: Sequence[float], years: float, where: str) -> Floats:
     """Annual rates of probabilities of exceedance in some years, by Poisson's law [1/year]; infinite for 1."""
     if not (math.isfinite(years) and years > 0):
-        raise InputError(f"{where}: the investigation time must be above 0 years, found {years:g}.")
+        raise InputError(
+            f"{where}: the investigation time must be above 0 years, found {years:g}."
+        )
     p = np.asarray(poes, dtype=np.float64)
     if np.isnan(p).any() or (p < 0).any() or (p > 1).any():
         wrong = p[~((p >= 0) & (p <= 1))][0]
-        raise InputError(f"{where}: {wrong:g} is no probability of exceedance from 0 to 1.")
+        raise InputError(
+            f"{where}: {wrong:g} is no probability of exceedance from 0 to 1."
+        )
     with np.errstate(divide="ignore"):
         return np.asarray(-np.log1p(-p) / years)
 
 
-def curve_of_one_level(measure: IntensityMeasure, level: float, years: float) -> HazardCurve:
+def curve_of_one_level(
+    measure: IntensityMeasure, level: float, years: float
+) -> HazardCurve:
     """Continue one level with its mean return period [year] as a power law."""
 
     def curve(k: float, source: str) -> HazardCurve:
@@ -174,7 +199,9 @@ PERIODS = (0.01, 10.0)  # Periods of Sa that hazard models cover [s]
 VELOCITY_PER_G = GRAVITY * CENTIMETRES_PER_METRE
 """PGV over (a measure in g times PGV over it): cm/s for g and s."""
 
-_SA = re.compile(r"(?:P?SA)\s*[(\[_]?\s*T?=?\s*(\d*[.P]?\d+)\s*S?\s*[)\]]?", re.IGNORECASE)
+_SA = re.compile(
+    r"(?:P?SA)\s*[(\[_]?\s*T?=?\s*(\d*[.P]?\d+)\s*S?\s*[)\]]?", re.IGNORECASE
+)
 
 
 _KNOWN = {measure.openquake: measure for measure in declared()}
@@ -205,7 +232,8 @@ def read_level(text: str, measure: IntensityMeasure) -> float:
 
 LARGEST_FILE = 50_000_000  # Bytes of a hazard file; that of one site has some thousand
 
-Found = tuple[HazardCurve, str]  # A curve and which statistic it is; empty for the only one
+# A curve and which statistic it is; empty for the only one
+Found = tuple[HazardCurve, str]
 
 
 def read_hazard(paths: Sequence[str | os.PathLike[str]]) -> list[HazardCurve]:
@@ -224,7 +252,10 @@ def read_hazard(paths: Sequence[str | os.PathLike[str]]) -> list[HazardCurve]:
     for path in map(str, paths):
         text = read_text(path, LARGEST_FILE)
         for curve, kind in _reader(text)(text, path):
-            named, statistic = found.setdefault(curve.measure.imt, {}), _statistic(kind, path)
+            named, statistic = (
+                found.setdefault(curve.measure.imt, {}),
+                _statistic(kind, path),
+            )
             if statistic in named:
                 raise InputError(
                     f"{path}: {curve.measure.imt} ({statistic}) is given twice, in {named[statistic].source} "
@@ -241,7 +272,9 @@ def _reader(text: str) -> Callable[[str, str], Sequence[Found]]:
         return _read_nrml
     if start.startswith(("{", "[")):
         return _read_usgs
-    if "poe-" in text[:20_000] and start.startswith(("#", '"#', "lon", "custom_site_id")):
+    if "poe-" in text[:20_000] and start.startswith(
+        ("#", '"#', "lon", "custom_site_id")
+    ):
         return lambda text, path: [read_openquake(text, path)]
     return _read_levels
 
@@ -272,7 +305,9 @@ def _assembled(name: str, named: Mapping[str, HazardCurve]) -> HazardCurve:
             f"{next(iter(named.values())).source}: only {', '.join(sorted(named))} of {name} is given; give the "
             "mean or the median curve too."
         )
-    return replace(main, quantiles={q: c for q, c in sorted(quantiles.items()) if q != 0.5})
+    return replace(
+        main, quantiles={q: c for q, c in sorted(quantiles.items()) if q != 0.5}
+    )
 
 
 def read_openquake(text: str, path: str) -> Found:
@@ -282,7 +317,11 @@ def read_openquake(text: str, path: str) -> Found:
     whose names hold the levels (g; cm/s for PGV), and a row of probabilities of exceedance for each site.
     """
     try:
-        rows = [row for row in csv.reader(io.StringIO(text)) if any(cell.strip() for cell in row)]
+        rows = [
+            row
+            for row in csv.reader(io.StringIO(text))
+            if any(cell.strip() for cell in row)
+        ]
     except csv.Error as error:
         raise InputError(f"{path}: it is damaged as a table ({error}).") from None
     comment = ",".join(rows[0]) if rows[0][0].lstrip().startswith("#") else ""
@@ -303,15 +342,21 @@ def read_openquake(text: str, path: str) -> Found:
             f"{path}: found {len(sites)} sites with {len(columns)} levels; leave the row of one site."
         )
     if len(sites[0]) != len(header):
-        raise InputError(f"{path}: the row has {len(sites[0])} cells, its header {len(header)}.")
+        raise InputError(
+            f"{path}: the row has {len(sites[0])} cells, its header {len(header)}."
+        )
     try:
         levels = [float(level) for level in columns.values()]
         poes = [float(sites[0][i]) for i in columns]
         years = float(facts["investigation_time"])
     except ValueError as error:
-        raise InputError(f"{path}: a level, probability or time is no number ({error}).") from None
+        raise InputError(
+            f"{path}: a level, probability or time is no number ({error})."
+        ) from None
     measure = read_measure(facts["imt"], path)
-    return make_curve(measure, levels, rates_of(poes, years, path), path), facts.get("kind", "")
+    return make_curve(measure, levels, rates_of(poes, years, path), path), facts.get(
+        "kind", ""
+    )
 
 
 def _read_usgs(text: str, path: str) -> list[Found]:
@@ -324,15 +369,23 @@ def _read_usgs(text: str, path: str) -> list[Found]:
     try:
         answer = json.loads(text)
     except (ValueError, RecursionError) as error:
-        raise InputError(f"{path}: is not whole JSON ({error}); ask the service again.") from None
+        raise InputError(
+            f"{path}: is not whole JSON ({error}); ask the service again."
+        ) from None
     try:
         response = answer["response"]
         is_old = isinstance(response, list)
         found = []
         for curve in response if is_old else response["hazardCurves"]:
             total = {part["component"]: part for part in curve["data"]}["Total"]
-            about, values = (curve["metadata"], total) if is_old else (curve, total["values"])
-            x, y = (about["xvalues"], values["yvalues"]) if is_old else (values["xs"], values["ys"])
+            about, values = (
+                (curve["metadata"], total) if is_old else (curve, total["values"])
+            )
+            x, y = (
+                (about["xvalues"], values["yvalues"])
+                if is_old
+                else (values["xs"], values["ys"])
+            )
             measure = read_measure(str(about["imt"]["value"]), path)
             found.append((make_curve(measure, _numbers(x), _numbers(y), path), ""))
     except (KeyError, TypeError, IndexError, OverflowError) as error:
@@ -347,14 +400,20 @@ def _read_usgs(text: str, path: str) -> list[Found]:
 
 def _numbers(values: Any) -> list[float]:
     if not isinstance(values, list) or any(
-        isinstance(value, bool) or not isinstance(value, int | float) for value in values
+        isinstance(value, bool) or not isinstance(value, int | float)
+        for value in values
     ):
         raise TypeError("levels and rates are lists of numbers")
     return [float(value) for value in values]
 
 
 _VERSIONS = (
-    ("hazardCurveField", "IML", "poE", "a hazardCurveField has no IML, the levels of the curve"),
+    (
+        "hazardCurveField",
+        "IML",
+        "poE",
+        "a hazardCurveField has no IML, the levels of the curve",
+    ),
     ("hazardCurves", "IMLs", "poEs", "the hazardCurves have no IMLs, the levels"),
 )
 """Elements of curves, of their levels and of probabilities, and what is said where levels are missing."""
@@ -368,7 +427,9 @@ def _read_nrml(text: str, path: str) -> list[Found]:
     Levels are in g.
     """
     if "<!DOCTYPE" in text or "<!ENTITY" in text:
-        raise InputError(f"{path}: has a document type, which no hazard file needs; remove it.")
+        raise InputError(
+            f"{path}: has a document type, which no hazard file needs; remove it."
+        )
     try:
         root = ET.fromstring(text)
     except (ET.ParseError, ValueError) as error:
@@ -396,23 +457,33 @@ def _of_element(
         raise InputError(f"{path}: {missing}.")
     poes = list(_named(curves, poe))
     if len(poes) != 1:
-        raise InputError(f"{path}: found the curves of {len(poes)} sites; leave that of one.")
+        raise InputError(
+            f"{path}: found the curves of {len(poes)} sites; leave that of one."
+        )
     about = {**above, **curves.attrib, **levels.attrib}
     years = about.get("investigationTimeSpan", about.get("investigationTime"))
     if years is None:
-        raise InputError(f"{path}: the investigation time of the probabilities is not stated.")
+        raise InputError(
+            f"{path}: the investigation time of the probabilities is not stated."
+        )
     imt = about.get("IMT", "")
     # the period of SA stands elsewhere
-    measure = read_measure(f"SA({about.get('saPeriod', '')})" if imt.upper() == "SA" else imt, path)
+    measure = read_measure(
+        f"SA({about.get('saPeriod', '')})" if imt.upper() == "SA" else imt, path
+    )
     try:
         values, fractions, times = (
             [float(word) for word in words.split()]
             for words in (levels.text or "", poes[0].text or "", years)
         )
     except ValueError as error:
-        raise InputError(f"{path}: a level or probability is no number ({error}).") from None
+        raise InputError(
+            f"{path}: a level or probability is no number ({error})."
+        ) from None
     if len(times) != 1:
-        raise InputError(f"{path}: the investigation time is {len(times)} numbers; give one.")
+        raise InputError(
+            f"{path}: the investigation time is {len(times)} numbers; give one."
+        )
     kind = curves.get("statistics", "")
     if kind == "quantile":
         kind = f"quantile-{curves.get('quantileValue', '')}"
@@ -423,7 +494,9 @@ def _of_element(
 
 def _named(root: ET.Element, name: str) -> Iterator[ET.Element]:
     """Elements of a name in any namespace."""
-    return (element for element in root.iter() if element.tag.rpartition("}")[2] == name)
+    return (
+        element for element in root.iter() if element.tag.rpartition("}")[2] == name
+    )
 
 
 _EXPECTED = (
@@ -471,7 +544,9 @@ def read_levels(
 
 def _plain(title: str) -> str:
     """A title as this table calls it: ``PGA (g)`` is ``pga_g``, ``Tr (anni)`` is ``return_period_years``."""
-    words = re.sub(r"[\s()\[\]/]+", "_", title.strip().lower().replace("²", "2")).strip("_")
+    words = re.sub(r"[\s()\[\]/]+", "_", title.strip().lower().replace("²", "2")).strip(
+        "_"
+    )
     return "return_period_years" if _RETURN_PERIOD.fullmatch(words) else words
 
 
@@ -484,7 +559,9 @@ def _measure_of(title: str, path: str) -> tuple[IntensityMeasure, float]:
     try:
         return measure, read_level(f"1 {unit}", measure)
     except InputError:
-        raise InputError(f"{path}: {title} is no unit of {name.upper()}; use g or cm_s.") from None
+        raise InputError(
+            f"{path}: {title} is no unit of {name.upper()}; use g or cm_s."
+        ) from None
 
 
 def _annual_rates(title: str, values: list[float], path: str) -> list[float]:
@@ -498,4 +575,6 @@ def _annual_rates(title: str, values: list[float], path: str) -> list[float]:
     poe = _POE.fullmatch(title)
     if poe:
         return list(rates_of(values, float(poe[1]), path))
-    raise InputError(f"{path}: column {title[:60]!r} is not known; expected {_EXPECTED}.")
+    raise InputError(
+        f"{path}: column {title[:60]!r} is not known; expected {_EXPECTED}."
+    )

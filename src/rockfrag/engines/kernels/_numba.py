@@ -35,7 +35,10 @@ class Part(JITCodeLibrary):
     def finalize(self) -> None:
         """Leave the code as it is, for others to link."""
         for function in self._final_module.functions:
-            if not function.is_declaration and function.linkage == llvm.Linkage.external:
+            if (
+                not function.is_declaration
+                and function.linkage == llvm.Linkage.external
+            ):
                 # may be there many times, and vanish where it is inlined
                 function.linkage = "linkonce_odr"
         self._finalized = True
@@ -76,7 +79,9 @@ def _callers_first(libraries: list[Any]) -> list[Any]:
         library = left.pop()
         if library not in calls:
             library._ensure_finalized()
-            calls[library] = library._linking_libraries if isinstance(library, Part) else []
+            calls[library] = (
+                library._linking_libraries if isinstance(library, Part) else []
+            )
             left += calls[library]
     return [*TopologicalSorter(calls).static_order()][::-1]
 
@@ -92,7 +97,9 @@ class LowerPart(typed_passes.NativeLowering):
         super().run_pass(state)
         made = state["cr"]
         names = made.fndesc.lookup_module(), made.fndesc.qualname
-        function = _dynfunc.make_function(*names, "kernel", 0, made.env, (state.library,))
+        function = _dynfunc.make_function(
+            *names, "kernel", 0, made.env, (state.library,)
+        )
         state["cr"] = made._replace(cfunc=function)
         state.targetctx.insert_user_function(function, made.fndesc, [state.library])
         return True
@@ -127,7 +134,9 @@ class _KernelCompiler(CompilerBase):
     def _compile_core(self) -> Any:
         """Take the kernel through its passes, without what numba works out between them for others."""
         state = self.state
-        state.library = self.library(state.targetctx.codegen(), state.func_id.func_qualname)
+        state.library = self.library(
+            state.targetctx.codegen(), state.func_id.func_qualname
+        )
         state.library.enable_object_caching()
         state.type_annotation = None
         with _plain_types(), ConfigStack().enter(state.flags.copy()):

@@ -50,7 +50,9 @@ class _Fields(AttributeTemplate):  # type: ignore[misc]
 
 
 @extending.lower_getattr_generic(Reference)  # type: ignore[untyped-decorator]
-def _field(context: Any, builder: Any, reference: Reference, pointer: Any, name: str) -> Any:
+def _field(
+    context: Any, builder: Any, reference: Reference, pointer: Any, name: str
+) -> Any:
     at = reference.tuple_type.fields.index(name)
     return builder.load(cgutils.gep_inbounds(builder, pointer, 0, at))
 

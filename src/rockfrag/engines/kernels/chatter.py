@@ -20,17 +20,22 @@ from rockfrag.engines.kernels.jit import inlined_kernel, kernel
 class ChatterTolerance(NamedTuple):
     """How long chatter is followed before it is closed."""
 
-    closing_speed: float  # a contact that comes off slower than this stays closed [rad/s]
-    drop: float  # flights higher than this are followed even if they are sure to end at rest [rad]
+    # a contact that comes off slower than this stays closed [rad/s]
+    closing_speed: float
+    # flights higher than this are followed even if they are sure to end at rest [rad]
+    drop: float
 
 
 HISTORY = ChatterTolerance(closing_speed=1e-6, drop=1e-9)  # where the history is kept
-OUTCOME = ChatterTolerance(closing_speed=1e-4, drop=1e-2)  # where only the outcome matters
+# where only the outcome matters
+OUTCOME = ChatterTolerance(closing_speed=1e-4, drop=1e-2)
 CHATTER_ERROR = 1e-7
 """Largest w² T [rad²/s] of a chatter that is closed at once on a body that rocks on."""
 FASTEST_CHATTER = 0.1  # speed [rad/s] above which it is not
-CHATTER_TIME = 0.08  # time [s] over which the ground is looked at, at most, before it is
-LONGEST_FRACTION = 0.999  # fraction of the speed left by impacts above which no end is foreseen
+# time [s] over which the ground is looked at, at most, before it is
+CHATTER_TIME = 0.08
+# fraction of the speed left by impacts above which no end is foreseen
+LONGEST_FRACTION = 0.999
 MOST_AHEAD = 32  # samples of the ground that are looked at, at most
 
 
@@ -273,5 +278,7 @@ def closed(hop, two):
     m11, m12, m22, _ = mass_matrix(two, cosine, sine)
     if hop.ground:
         return 0.0, hop.omega2 + m12 * hop.omega1 / m22
-    both = ((m11 + m12) * hop.omega1 + (m12 + m22) * hop.omega2) / (m11 + 2.0 * m12 + m22)
+    both = ((m11 + m12) * hop.omega1 + (m12 + m22) * hop.omega2) / (
+        m11 + 2.0 * m12 + m22
+    )
     return both, both

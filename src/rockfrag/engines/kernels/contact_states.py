@@ -23,7 +23,9 @@ def side_of(value):
 def first_contacts(state):
     """Contacts at the start: those with an angle, or opening, are open."""
     c1 = side_of(state.theta1) or side_of(state.omega1)
-    return c1, side_of(state.theta2 - state.theta1) or side_of(state.omega2 - state.omega1)
+    return c1, side_of(state.theta2 - state.theta1) or side_of(
+        state.omega2 - state.omega1
+    )
 
 
 @kernel

@@ -20,9 +20,11 @@ that momentum gives (COUPLE), the place of the impulse from the middle (0) to th
 
 BODY = np.dtype(
     [
-        *fields("m1 i1 b1 c1x c1y"),  # pedestal: mass, inertia, half width, centre of gravity
+        # pedestal: mass, inertia, half width, centre of gravity
+        *fields("m1 i1 b1 c1x c1y"),
         *fields("tx ty ex ey"),  # middle and direction of the statue's footing
-        *fields("m2 i2 b2 c2x c2y"),  # statue: likewise, centre from the middle of its footing
+        # statue: likewise, centre from the middle of its footing
+        *fields("m2 i2 b2 c2x c2y"),
         # how ground and interface come off impacts that end rocking on the right and on the left pivot
         *fields("after1r after1l after2r after2l", of=IMPACT_LAW),
         *fields("gravity"),  # of a ground that does not move vertically
@@ -268,11 +270,18 @@ def potential_energy(body, state):
     v2x, v2y = first_moment2(body, s2)
     g = body.gravity
     if body.linear > 0:
-        return -g * (theta1 * (v1x + 0.5 * v1y * theta1) + theta2 * (v2x + 0.5 * v2y * theta2))
+        return -g * (
+            theta1 * (v1x + 0.5 * v1y * theta1) + theta2 * (v2x + 0.5 * v2y * theta2)
+        )
     # V_y(θ) - V_y(0), with 1 - cos θ = 2 sin²(θ/2) so that nothing cancels
     h1 = sin(0.5 * theta1)
     h2 = sin(0.5 * theta2)
-    return -g * (v1x * sin(theta1) + 2.0 * v1y * h1 * h1 + v2x * sin(theta2) + 2.0 * v2y * h2 * h2)
+    return -g * (
+        v1x * sin(theta1)
+        + 2.0 * v1y * h1 * h1
+        + v2x * sin(theta2)
+        + 2.0 * v2y * h2 * h2
+    )
 
 
 @kernel

@@ -15,7 +15,8 @@ from rockfrag.engines.kernels.equations import (
 from rockfrag.engines.kernels.jit import inlined_kernel, kernel
 from rockfrag.engines.kernels.laws import moves_impulse, rate
 
-GAIN = 1e-9  # relative growth of the kinetic energy in an impact that counts as rounding
+# relative growth of the kinetic energy in an impact that counts as rounding
+GAIN = 1e-9
 
 
 @kernel
@@ -119,7 +120,10 @@ def _admissible(body, state, closes1, closes2, moved):
         for n2 in _choices(c2, closes2):
             if n2 == 2:
                 continue
-            test = pivot(n1) * (at1 if n1 != 0 else 1.0), pivot(n2) * (at2 if n2 != 0 else 1.0)
+            test = (
+                pivot(n1) * (at1 if n1 != 0 else 1.0),
+                pivot(n2) * (at2 if n2 != 0 else 1.0),
+            )
             w1, w2 = _projected(body, state, n1, n2, test)
             if free1 and n1 != 0 and n1 * w1 <= tiny:
                 continue
@@ -171,7 +175,9 @@ def _measured(body, state, closes, momentum):
     want1 = open1 * max(0.0, open1 * want1) if has1 else want1
     want2 = open2 * max(0.0, open2 * want2) if has2 else want2
     others = n1, n2
-    n1, n2, w1, w2 = _with_rates(body, state, closes, others, (has1, want1), (has2, want2))
+    n1, n2, w1, w2 = _with_rates(
+        body, state, closes, others, (has1, want1), (has2, want2)
+    )
     limit = kinetic_energy(body, state) * (1.0 + GAIN)
     if energy_with(body, state, (n1, n2), (w1, w2)) <= limit:
         return n1, n2, w1, w2, 0 if exists else 1
@@ -210,7 +216,9 @@ def _with_rates(body, state, closes, others, ground, interface):
     turn = turn_between(body, state)
     old = pivot(state.c1), pivot(state.c2)
     tiny = 1e-13 * (abs(state.omega1) + abs(state.omega2))
-    c, shuts, n = (state.c2, closes[1], others[1]) if given1 else (state.c1, closes[0], others[0])
+    c, shuts, n = (
+        (state.c2, closes[1], others[1]) if given1 else (state.c1, closes[0], others[0])
+    )
     stays = c != 0 and not shuts
     if n == 0:
         n = -c if shuts else 1
@@ -246,7 +254,12 @@ def _with_rates(body, state, closes, others, ground, interface):
 @inlined_kernel
 def mass_matrix(two, cosine, sine):
     """M11, M12, M22 and D of a contact state in which both blocks rotate, at cos Δ, sin Δ."""
-    return two.m11, two.e * cosine + two.f * sine, two.m22, two.f * cosine - two.e * sine
+    return (
+        two.m11,
+        two.e * cosine + two.f * sine,
+        two.m22,
+        two.f * cosine - two.e * sine,
+    )
 
 
 @inlined_kernel

@@ -25,7 +25,8 @@ from rockfrag.system import geometry
 TESTED_NUMBA = ("0.68.",)
 """Versions of numba whose private parts are known to be as this module takes them to be."""
 
-PATIENCE_S = 300.0  # how long a process waits for another one that compiles the same [s]
+# how long a process waits for another one that compiles the same [s]
+PATIENCE_S = 300.0
 KNOWN = numba.__version__.startswith(TESTED_NUMBA)
 
 if KNOWN:
@@ -69,7 +70,10 @@ inlined_kernel: Callable[..., Any] = numba.njit(**_EVERY, **_PART, forceinline=T
 def share_with_kernels(module: ModuleType) -> None:
     """Let kernels call the functions of a module, plain Python, as if they were some of them."""
     for function in list(vars(module).values()):
-        if isinstance(function, FunctionType) and function.__module__ == module.__name__:
+        if (
+            isinstance(function, FunctionType)
+            and function.__module__ == module.__name__
+        ):
             register_jitable(**_EVERY, **_PART)(function)
 
 
@@ -82,7 +86,11 @@ def compiling_alone(entry: Any) -> Iterator[None]:
     """Let the first of several processes compile an entry kernel; the others wait, at most ``PATIENCE_S``."""
     folder: Any = getattr(getattr(entry, "_cache", None), "cache_path", None)
     alone = folder and not entry.signatures
-    with locked(Path(folder) / f"{entry.__name__}.lock", PATIENCE_S) if alone else nullcontext():
+    with (
+        locked(Path(folder) / f"{entry.__name__}.lock", PATIENCE_S)
+        if alone
+        else nullcontext()
+    ):
         yield
 
 

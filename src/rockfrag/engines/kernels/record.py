@@ -23,7 +23,8 @@ SUMMARY = np.dtype(
         *fields("unstable_distance work"),
         # given_way: impacts in which the law of a measured restitution had to give way
         *whole("contact_events given_way"),
-        *fields("lost_contact"),  # when a normal force first was none [s], NaN if it never was
+        # when a normal force first was none [s], NaN if it never was
+        *fields("lost_contact"),
         # until the fall is certain, and since a block has last passed balance
         *fields("demand beyond", of=DEMAND),
     ],
@@ -74,14 +75,22 @@ def move_within(step, series, tau, state):
     first, two = series.one.angle, series.two.angle
     state.theta1, state.omega1 = value(first, tau), slope(first, tau) / step.length
     state.theta2, state.omega2 = value(two, tau), slope(two, tau) / step.length
-    state.ground, state.gravity = step.ground + step.rise * tau, step.gravity + step.lift * tau
+    state.ground, state.gravity = (
+        step.ground + step.rise * tau,
+        step.gravity + step.lift * tau,
+    )
 
 
 @kernel
 def begin(state, summary):
     """Set the summary to that of a history that has not moved yet."""
     summary.fallen, summary.fall_time = 0, math.nan
-    summary.impacts, summary.grazings, summary.contact_events, summary.given_way = 0, 0, 0, 0
+    summary.impacts, summary.grazings, summary.contact_events, summary.given_way = (
+        0,
+        0,
+        0,
+        0,
+    )
     summary.unstable_distance, summary.work = math.inf, 0.0
     summary.lost_contact = math.nan
     no_demand(summary.demand)
@@ -122,10 +131,14 @@ def track(balances, state, summary):
     summary.speed2 = max(summary.speed2, abs(omega2))
     c1, c2 = state.c1, state.c2
     if c2 != 0:
-        ratio2 = _approach(balances[equations.number_of(0, c2)], c2, theta2, omega2, summary)
+        ratio2 = _approach(
+            balances[equations.number_of(0, c2)], c2, theta2, omega2, summary
+        )
         summary.ratio2 = max(summary.ratio2, ratio2)
     if c1 != 0:
-        ratio1 = _approach(balances[equations.number_of(c1, c2)], c1, theta1, omega1, summary)
+        ratio1 = _approach(
+            balances[equations.number_of(c1, c2)], c1, theta1, omega1, summary
+        )
         summary.ratio1 = max(summary.ratio1, ratio1)
     return ratio1 >= 1.0 or ratio2 >= 1.0
 
@@ -155,7 +168,9 @@ def note_demand(body, step, series, end, work, summary):
         tau = 0.5 * part * end
         move_within(step, series, tau, trial)
         before = least
-        least = ask_forces(body, trial, bend(first, tau) * per, bend(two, tau) * per, demand)
+        least = ask_forces(
+            body, trial, bend(first, tau) * per, bend(two, tau) * per, demand
+        )
         if least <= 0.0 and lifts == NEVER and inside:
             # a straight line between the two
             fraction = before / (before - least) if part > 0 else 0.0
@@ -186,8 +201,12 @@ def work_of(body, c1, c2, series, end, step):
             else:
                 sine1, cosine1 = sin_cos(t1)
                 sine2, cosine2 = sin_cos(t2)
-                rate = w1 * (v1y * cosine1 - v1x * sine1) + w2 * (v2y * cosine2 - v2x * sine2)
-                fall = w1 * (v1x * cosine1 + v1y * sine1) + w2 * (v2x * cosine2 + v2y * sine2)
+                rate = w1 * (v1y * cosine1 - v1x * sine1) + w2 * (
+                    v2y * cosine2 - v2x * sine2
+                )
+                fall = w1 * (v1x * cosine1 + v1y * sine1) + w2 * (
+                    v2x * cosine2 + v2y * sine2
+                )
             upward = step.gravity + step.lift * tau - body.gravity
             total -= weights[i] * (step.ground + step.rise * tau) * rate
             total += weights[i] * upward * fall
@@ -200,7 +219,12 @@ def keep_sample(body, state, sample, work):
     alpha1, alpha2 = equations.accelerations(body, state.c1, state.c2, state)
     sample.theta1, sample.omega1 = state.theta1, state.omega1
     sample.theta2, sample.omega2 = state.theta2, state.omega2
-    sample.c1, sample.c2, sample.alpha1, sample.alpha2 = state.c1, state.c2, alpha1, alpha2
+    sample.c1, sample.c2, sample.alpha1, sample.alpha2 = (
+        state.c1,
+        state.c2,
+        alpha1,
+        alpha2,
+    )
     sample.work = work
 
 

@@ -11,7 +11,13 @@ from numpy.typing import NDArray
 
 from rockfrag.arrays import fields
 from rockfrag.engines.kernels import contact_states, equations, record, roots
-from rockfrag.engines.kernels.chatter import HISTORY, RESTORING, Ahead, dies_out, fill_restoring
+from rockfrag.engines.kernels.chatter import (
+    HISTORY,
+    RESTORING,
+    Ahead,
+    dies_out,
+    fill_restoring,
+)
 from rockfrag.engines.kernels.demand import add_demand, ask_impulses, no_demand
 from rockfrag.engines.kernels.impact import impact, stuck
 from rockfrag.engines.kernels.jit import entry_kernel, inlined_kernel, kernel
@@ -32,7 +38,8 @@ class Shaking(NamedTuple):
     scale: float  # factor on them
     dt: float  # sampling interval [s]
     substeps: int  # steps per sample
-    free_samples: int  # samples that the integration goes on after the last one, at most
+    # samples that the integration goes on after the last one, at most
+    free_samples: int
 
 
 SCRATCH = np.dtype(
@@ -120,7 +127,11 @@ def _through_sample(body, shaking, k, contact_events, summary, work):
         while tau < 1.0 and count <= MAX_CONTACT_EVENTS_PER_STEP + 20:
             remaining = 1.0 - tau
             step = Step(
-                h * remaining, a0 + rise * tau, rise * remaining, g0 + lift * tau, lift * remaining
+                h * remaining,
+                a0 + rise * tau,
+                rise * remaining,
+                g0 + lift * tau,
+                lift * remaining,
             )
             fill_series(body, state, step, series)
             when, fails, closes1, closes2 = _next_contact_event(
@@ -133,10 +144,14 @@ def _through_sample(body, shaking, k, contact_events, summary, work):
             if lifts != roots.NEVER and math.isnan(summary.lost_contact):
                 clock = (k + (sub + tau + lifts * remaining) / substeps) * shaking.dt
                 summary.lost_contact, kind = clock, record.LIFTING
-                record.keep_contact_event(body, clock, kind, state, state, contact_events, summary)
+                record.keep_contact_event(
+                    body, clock, kind, state, state, contact_events, summary
+                )
             if moves:
                 work.beyond = record.track(work.balances, state, summary)
-                summary.work += record.work_of(body, state.c1, state.c2, series, at, step)
+                summary.work += record.work_of(
+                    body, state.c1, state.c2, series, at, step
+                )
             tau += at * remaining
             if when > 1.0:
                 break
@@ -150,13 +165,17 @@ def _through_sample(body, shaking, k, contact_events, summary, work):
             record.copy_state(state, before)
             if fails != 0:
                 kind = record.OPENING
-                state.c1, state.c2 = contact_states.release(body, state, fails, at == 0.0)
+                state.c1, state.c2 = contact_states.release(
+                    body, state, fails, at == 0.0
+                )
             else:
                 summary.impacts += 1
                 speed = abs(state.omega1 if closes1 else state.omega2 - state.omega1)
                 summary.grazings += 1 if speed < GRAZING_SPEED else 0
                 part = (sub + tau) / substeps
-                ahead = Ahead(samples, shaking.vertical, scale, n - 1, k, part, shaking.dt)
+                ahead = Ahead(
+                    samples, shaking.vertical, scale, n - 1, k, part, shaking.dt
+                )
                 forced = count > MAX_CONTACT_EVENTS_PER_STEP
                 closes = closes1, closes2
                 kind, gave_way = resolve_impact(
@@ -166,11 +185,15 @@ def _through_sample(body, shaking, k, contact_events, summary, work):
                 demand = summary.beyond if work.beyond else summary.demand
                 # of a series of impacts that is ended at once, its first one asks as all do
                 after = (
-                    state if kind == record.CLOSING else _struck(body, before, closes, work.trial)
+                    state
+                    if kind == record.CLOSING
+                    else _struck(body, before, closes, work.trial)
                 )
                 ask_impulses(body, before, after, demand)
             clock = (k + (sub + tau) / substeps) * shaking.dt
-            record.keep_contact_event(body, clock, kind, before, state, contact_events, summary)
+            record.keep_contact_event(
+                body, clock, kind, before, state, contact_events, summary
+            )
 
 
 @kernel
@@ -217,7 +240,12 @@ def resolve_impact(body, state, closes, restoring, ahead, chatter_tolerance, for
     state.c1, state.c2, state.omega1, state.omega2 = n1, n2, w1, w2
     level = state.theta1 == 0.0 and state.theta2 == 0.0
     speed = max(abs(w1), abs(w2))
-    if kind == record.CLOSING and level and (n1 != 0 or n2 != 0) and speed < restoring.fastest:
+    if (
+        kind == record.CLOSING
+        and level
+        and (n1 != 0 or n2 != 0)
+        and speed < restoring.fastest
+    ):
         fraction = math.sqrt(equations.kinetic_energy(body, state) / before)
         # a pedestal that is thrown about lengthens the flights of the statue
         safety = 1.03 if body.fixed else 1.5
@@ -266,7 +294,9 @@ def _failing_time(body, contact, step, series, end, trial):
         if roots.is_narrow(bracket):
             break
         tau = roots.guess_between(bracket)
-        bracket = roots.narrowed(bracket, tau, _hold_at(body, contact, step, series, tau, trial))
+        bracket = roots.narrowed(
+            bracket, tau, _hold_at(body, contact, step, series, tau, trial)
+        )
     return bracket[2]
 
 
@@ -276,7 +306,11 @@ def fill_gap(series, contact, side):
     first, two, gap = series.one.angle, series.two.angle, series.gap
     end = 0.0
     for i in range(ORDER + 1):
-        gap[i] = side * first[i] if contact == contact_states.GROUND else side * (two[i] - first[i])
+        gap[i] = (
+            side * first[i]
+            if contact == contact_states.GROUND
+            else side * (two[i] - first[i])
+        )
         end += gap[i]
     return end
 

@@ -108,7 +108,10 @@ def _fill_two(body, c1, c2, step, series):
     m11 = equations.inertia1(body, s1, s2)
     m22 = equations.inertia2(body, s2)
     e, f = equations.coupling(body, s1, s2)
-    moment1, moment2 = equations.first_moment1(body, s1, s2), equations.first_moment2(body, s2)
+    moment1, moment2 = (
+        equations.first_moment1(body, s1, s2),
+        equations.first_moment2(body, s2),
+    )
     linear = body.linear > 0
     first, two, between = series.one, series.two, series.between
     for k in range(ORDER - 1):
@@ -120,8 +123,12 @@ def _fill_two(body, c1, c2, step, series):
             between.cosine[k] = 1.0 if k == 0 else 0.0
         elif k == 0:
             # sine and cosine of the difference from those already there
-            between.sine[0] = two.sine[0] * first.cosine[0] - two.cosine[0] * first.sine[0]
-            between.cosine[0] = two.cosine[0] * first.cosine[0] + two.sine[0] * first.sine[0]
+            between.sine[0] = (
+                two.sine[0] * first.cosine[0] - two.cosine[0] * first.sine[0]
+            )
+            between.cosine[0] = (
+                two.cosine[0] * first.cosine[0] + two.sine[0] * first.sine[0]
+            )
         else:
             _extend_circular(between, k)
         right1 = -hh * _weight(body, moment1, step, first, k)

@@ -29,7 +29,8 @@ from rockfrag.system.system import System
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
-CLOSING = 1e-4  # parting speed over √(g b) below which a contact stays closed after an impact [-]
+# parting speed over √(g b) below which a contact stays closed after an impact [-]
+CLOSING = 1e-4
 CHUNK = 8  # cases that a thread takes at once
 
 _KINDS = {
@@ -68,10 +69,14 @@ def run(cases: Cases) -> Outcomes:
 def _pure(system: System, motion: GroundMotion, request: Request) -> Engine | None:
     """Engine of pure rocking of a system, if there is one."""
     others = (engine for engine in engines() if engine is not PLANAR)
-    return next((other for other in others if other.supports(system, motion, request)), None)
+    return next(
+        (other for other in others if other.supports(system, motion, request)), None
+    )
 
 
-def _write(into: Outcomes, i: int, count: int, found: NDArray[np.void], everything: bool) -> None:
+def _write(
+    into: Outcomes, i: int, count: int, found: NDArray[np.void], everything: bool
+) -> None:
     """Write what became of one system over what pure rocking has found, where it slid or flew."""
     flights = found["flights"].sum(axis=-1)
     other = (found["slid"].max(axis=-1) > 0) | (flights > 0) | (found["paradoxes"] > 0)
@@ -85,7 +90,10 @@ def _write(into: Outcomes, i: int, count: int, found: NDArray[np.void], everythi
     into.flights[place] = flights[other]
     for name in _OF_CASES:
         getattr(into, name)[place] = left[name]
-    own, first = (*place, slice(0, count)), fell[:, np.newaxis] == np.arange(1, count + 1)
+    own, first = (
+        (*place, slice(0, count)),
+        fell[:, np.newaxis] == np.arange(1, count + 1),
+    )
     for name in ("peak_velocity", "slip", "peak_slip"):
         getattr(into, name)[own] = left[name][:, :count]
     into.peak_rotation[own] = np.where(first, np.inf, left["peak_rotation"][:, :count])
@@ -107,7 +115,9 @@ def without_slip(response: Response) -> Response:
     """Give a response of pure rocking the columns of one with friction."""
     bodies = response.slip.shape[1]
     states = {name: pair[2 - bodies :] for pair, name in ROCKING_MODES.items()}
-    after = np.array([states[name] for name in response.contact_events["to"]], dtype=np.int64)
+    after = np.array(
+        [states[name] for name in response.contact_events["to"]], dtype=np.int64
+    )
     after = after.reshape(-1, bodies)
     still = np.zeros_like(after)
     contact_events = responses.with_slips(
@@ -118,7 +128,9 @@ def without_slip(response: Response) -> Response:
     return replace(response, contact_events=contact_events, energy=energy)
 
 
-def contact_outcomes(grid: Cases, wanted: NDArray[np.bool_] | None = None) -> NDArray[np.void]:
+def contact_outcomes(
+    grid: Cases, wanted: NDArray[np.bool_] | None = None
+) -> NDArray[np.void]:
     """Integrate the ``wanted`` cases of systems × motions × scales, all if None; others are left zero."""
     g, step = grid.request.g, grid.request.step
     dts = np.array([motion.dt for motion in grid.motions])
@@ -133,12 +145,18 @@ def contact_outcomes(grid: Cases, wanted: NDArray[np.bool_] | None = None) -> ND
         offsets=np.concatenate([[0], np.cumsum(sizes)]),
         dts=dts,
         factors=grid.scales,
-        substeps=np.array([step_count(system, dts, g, step) for system in grid.systems]),
-        free_samples=np.array([free_samples(system, dts, g) for system in grid.systems]),
+        substeps=np.array(
+            [step_count(system, dts, g, step) for system in grid.systems]
+        ),
+        free_samples=np.array(
+            [free_samples(system, dts, g) for system in grid.systems]
+        ),
     )
     numbers = np.flatnonzero(np.ones(grid.shape) if wanted is None else wanted)
     outcome = np.zeros(grid.shape, records.OUTCOME)
-    nothing = contact.Kept(np.zeros(0, contact.SAMPLE), np.zeros(0, contact.CONTACT_EVENT))
+    nothing = contact.Kept(
+        np.zeros(0, contact.SAMPLE), np.zeros(0, contact.CONTACT_EVENT)
+    )
 
     def work(chunk: Ints) -> None:
         memory = records.working_memory()
@@ -170,7 +188,9 @@ class ContactRun:
         most = 4096
         while True:
             kept = contact.Kept(history, np.zeros(most, contact.CONTACT_EVENT))
-            done = contact.integrate(self.body, shaking, start, closing, kept, self.work)
+            done = contact.integrate(
+                self.body, shaking, start, closing, kept, self.work
+            )
             found = int(self.work["noted"])
             if found <= most:
                 break
@@ -180,16 +200,24 @@ class ContactRun:
     def response(self) -> Response:
         """Return the response that the contact kernels wrote."""
         case, told, history = self.case, self.work["told"], self.history
-        done, count, fallen = len(history), case.system.count, int(told["overturned_body"])
+        done, count, fallen = (
+            len(history),
+            case.system.count,
+            int(told["overturned_body"]),
+        )
         values, ground = case.scale * case.motion.x.acceleration, np.zeros(done)
         ground[: values.size] = values[:done]
-        centres, speeds = (history[name][:, : 3 * count].reshape(done, count, 3) for name in "qv")
+        centres, speeds = (
+            history[name][:, : 3 * count].reshape(done, count, 3) for name in "qv"
+        )
         slips, normal, shear, alpha = (
             history[name][:, :count] for name in ("slip", "normal", "shear", "alpha")
         )
         state, slides = _modes(history["mode"], count)
         table = _contact_events(self.contact_events, count)
-        meets = np.array([np.abs(np.diff([0.0, *w])).max() for w in table["omega_before"]])
+        meets = np.array(
+            [np.abs(np.diff([0.0, *w])).max() for w in table["omega_before"]]
+        )
         time = np.arange(done, dtype=np.float64) * case.motion.dt
         return Response(
             system=case.system,
@@ -222,11 +250,15 @@ class ContactRun:
         count = self.case.system.count
         inertia, at = 1.0 / p["inverse"][: 3 * count], slice(1, 3 * count, 3)
         kinetic = (inertia * history["v"][:, : 3 * count] ** 2).sum(axis=1) / 2
-        potential = float(p["g"]) * (p["mass"][:count] * history["q"][:, at]).sum(axis=1)
+        potential = float(p["g"]) * (p["mass"][:count] * history["q"][:, at]).sum(
+            axis=1
+        )
         lost = struck["energy_before"] - struck["energy_after"]
         lost[~np.isin(struck["kind"], (contact.IMPACT, contact.PARADOX))] = 0.0
         # the lowest contact whose mode changes as it comes down, or the uppermost
-        opened, closed = (_modes(struck[name], count)[0] for name in ("before", "after"))
+        opened, closed = (
+            _modes(struck[name], count)[0] for name in ("before", "after")
+        )
         closes = (opened != 0) & (opened != closed)
         closes[:, -1] = True
         losses = struck["time"], closes.argmax(axis=1), lost
@@ -245,11 +277,14 @@ def _contact_events(found: NDArray[Any], blocks: int) -> pd.DataFrame:
     before, slid = _modes(found["before"], blocks)
     after, slides = _modes(found["after"], blocks)
     slip, theta, old, new = (
-        found[name][:, :blocks] for name in ("slip", "theta", "omega_before", "omega_after")
+        found[name][:, :blocks]
+        for name in ("slip", "theta", "omega_before", "omega_after")
     )
     kinds = [
         _KINDS.get(kind) or _kind_of_change(*change)
-        for kind, *change in zip(found["kind"].tolist(), before, after, slid, slides, strict=True)
+        for kind, *change in zip(
+            found["kind"].tolist(), before, after, slid, slides, strict=True
+        )
     ]
     energies = found["energy_before"], found["energy_after"]
     table = responses.contact_event_table(

@@ -7,8 +7,22 @@ from rockfrag.elementary import sin_cos
 from rockfrag.engines.kernels.jit import kernel
 from rockfrag.engines.kernels.laws import moves_impulse, scales_momentum
 from rockfrag.engines.kernels.laws import rate as lawful_rate
-from rockfrag.engines.planar.search import Trial, mode_number, search, take_number, try_mode
-from rockfrag.engines.planar.solve import bias, copy, end_of, look_at, rate, solve, standing_bodies
+from rockfrag.engines.planar.search import (
+    Trial,
+    mode_number,
+    search,
+    take_number,
+    try_mode,
+)
+from rockfrag.engines.planar.solve import (
+    bias,
+    copy,
+    end_of,
+    look_at,
+    rate,
+    solve,
+    standing_bodies,
+)
 from rockfrag.laws.momentum import NUMBER as MOMENTUM
 
 NO_GAIN = 1e-12  # fraction of the kinetic energy below which a gain is rounding
@@ -127,14 +141,18 @@ def strike(p, w, ah, av, closing, push):
     lawful = _read_laws(p, w, push)
     for k in range(p.count):
         w.moves[k] = 0
-        w.limit[k] = p.static[k] if slip_speed(p, w, w.v, k, True) == 0.0 else p.kinetic[k]
+        w.limit[k] = (
+            p.static[k] if slip_speed(p, w, w.v, k, True) == 0.0 else p.kinetic[k]
+        )
         if push:
             w.v[3 * k + 1] -= 1e-7 * p.speed
     scale = 1e-300
     mass = 0.0
     for k in range(p.count):
         mass += p.mass[k]
-        scale = max(scale, abs(w.v[3 * k]), abs(w.v[3 * k + 1]), p.size * abs(w.v[3 * k + 2]))
+        scale = max(
+            scale, abs(w.v[3 * k]), abs(w.v[3 * k + 1]), p.size * abs(w.v[3 * k + 2])
+        )
     trial = Trial(ah, av, True, mass * scale, scale)
     search(p, w, trial, -1)
     solve(p, w, w.q, w.v, ah, av, True)
@@ -197,7 +215,9 @@ def _obey(p, w, trial):
         w.goal[k, 0] = max(0.0, rate(p, w.q, w.out, k, x, y, -ty, tx))
         law, before = p.law[k, end], w.goal[k, 1]
         w.goal[k, 1] = lawful_rate(law, p.number[k, end], w.goal[k, 0], before, before)
-        if scales_momentum(law) and (w.closed[k, end] == 0 or w.closed[k, 1 - end] == 1):
+        if scales_momentum(law) and (
+            w.closed[k, end] == 0 or w.closed[k, 1 - end] == 1
+        ):
             # it stays shut, or leaves altogether: nothing to multiply
             w.falls[k] = -1
     if _outcome(p, w, trial, 1.0, energy):
@@ -248,7 +268,11 @@ def _shut_weak(p, w, ah, av, closing):
                 if (pull < 0.0 or crowd) and approach(p, w, k, end) < closing:
                     w.closed[k, end] = 1
                     found = True
-        if crowd and w.slides[k] != 0 and abs(slip_speed(p, w, w.v, k, False)) < closing:
+        if (
+            crowd
+            and w.slides[k] != 0
+            and abs(slip_speed(p, w, w.v, k, False)) < closing
+        ):
             w.slides[k] = 0
             found = True
     return found

@@ -17,11 +17,13 @@ from rockfrag.engines.planar.solve import copy, end_of, look_at, solve
 
 # contact events within a sample after which accumulating ones are ended ten times as coarsely, and again
 MOST_CONTACT_EVENTS = 300
-MOST_IDLE = 30  # contact events on the spot after which a step is taken without looking for more
+# contact events on the spot after which a step is taken without looking for more
+MOST_IDLE = 30
 # impulses on the spot after which a step is taken in any case, so that time goes on; fewer lose energy where ever
 # coarser impacts end what repeats
 MOST_JOLTS = 60
-LARGEST_FAILURE = 1e-3  # margin of a step after contact events on the spot that is no small one [-]
+# margin of a step after contact events on the spot that is no small one [-]
+LARGEST_FAILURE = 1e-3
 BURST = 100.0  # margin at the end of a step beyond which a shorter one is taken [-] ...
 LEAST_STEP = 1e-9  # ... down to this part of a sample
 
@@ -29,7 +31,8 @@ LEAST_STEP = 1e-9  # ... down to this part of a sample
 SAMPLE = np.dtype(
     [
         *fields("q v", 3 * MOST),  # coordinates of the bodies and their rates
-        *fields("slip normal shear alpha", MOST),  # of each interface and, α = θ'', of each body
+        # of each interface and, α = θ'', of each body
+        *fields("slip normal shear alpha", MOST),
         *fields("work rubbed struck"),  # ledgers so far, as in WORK [J]
         *whole("mode"),
     ]
@@ -130,7 +133,9 @@ def integrate(p, shaking, start, closing, kept, w):
     jolts = 0
     for i in range(n - 1 + shaking.free_samples):
         late = _now(shaking, i + 1)
-        sample = stepping.Stretch(dt, now.ah, now.av, late.ah - now.ah, late.av - now.av)
+        sample = stepping.Stretch(
+            dt, now.ah, now.av, late.ah - now.ah, late.av - now.av
+        )
         tau = 0.0
         w.met = 0
         while tau < 1.0:
@@ -352,7 +357,10 @@ def _handle(p, w, now, closing, exclude, kept):
     hit = False
     for k in range(p.count):
         for end in range(2):
-            if w.touching[k, end] == 1 and impact.approach(p, w, k, end) < -1e-13 * p.speed:
+            if (
+                w.touching[k, end] == 1
+                and impact.approach(p, w, k, end) < -1e-13 * p.speed
+            ):
                 hit = True
     if hit:
         impact.strike(p, w, now.ah, now.av, closing * p.speed, False)
@@ -437,7 +445,9 @@ def _rest_ends(p, w, tau, early, late):
     for row in range(4 * p.count):
         margin = w.rest[row, 0] + w.rest[row, 1] * late.ah + w.rest[row, 2] * late.av
         if margin < 0.0:
-            slope = w.rest[row, 1] * (late.ah - early.ah) + w.rest[row, 2] * (late.av - early.av)
+            slope = w.rest[row, 1] * (late.ah - early.ah) + w.rest[row, 2] * (
+                late.av - early.av
+            )
             if slope < 0.0:
                 when = min(when, max(tau, 1.0 - margin / slope))
     return when
@@ -457,7 +467,10 @@ def _note(p, w, time, kind, kept):
         found.energy_after = impact.kinetic_energy(p, w.v)
         for k in range(p.count):
             found.slip[k], found.theta[k] = slip(p, w, k), w.q[3 * k + 2]
-            found.omega_before[k], found.omega_after[k] = w.old_v[3 * k + 2], w.v[3 * k + 2]
+            found.omega_before[k], found.omega_after[k] = (
+                w.old_v[3 * k + 2],
+                w.v[3 * k + 2],
+            )
     w.noted += 1
 
 

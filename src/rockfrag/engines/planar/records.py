@@ -27,13 +27,16 @@ BODY = np.dtype(
         *fields("g"),
         *fields("mass inertia", MOST),
         *fields("inverse", 3 * MOST),  # 1/m, 1/m, 1/I of each body
-        *fields("corner", MOST, 2, 2),  # [body, end] of its base from its centre, x and y [m]
+        # [body, end] of its base from its centre, x and y [m]
+        *fields("corner", MOST, 2, 2),
         # [interface] middle of the face below from the centre of the body below
         *fields("face", MOST, 2),
-        *fields("half", MOST),  # [interface] half width of the face below; infinite for the ground
+        # [interface] half width of the face below; infinite for the ground
+        *fields("half", MOST),
         # [interface] tilt of face and base as all stand, coefficients of friction
         *fields("tilt_cos tilt_sin static kinetic", MOST),
-        *whole("law", MOST, 2),  # [interface, corner that comes down] law of the impact ...
+        # [interface, corner that comes down] law of the impact ...
+        *whole("law", MOST, 2),
         *fields("number", MOST, 2),  # ... and its number
         # [body, side] its critical angle to the left, to the right [rad]
         *fields("critical", MOST, 2),
@@ -64,7 +67,8 @@ OUTCOME = np.dtype(
 
 WORK = np.dtype(
     [
-        *fields("q v a", 3 * MOST),  # x, y, θ of each body relative to the ground, and their rates
+        # x, y, θ of each body relative to the ground, and their rates
+        *fields("q v a", 3 * MOST),
         *whole("closed", MOST, 2),  # [interface, end] the mode: closed ends ...
         *whole("slides", MOST),  # ... and the sign of slip, 0 where an interface sticks
         # of closed ends: 1 a corner on the face, 0 the edge of the face on the base
@@ -85,7 +89,8 @@ WORK = np.dtype(
         # a step: start, end, stages
         *fields("q0 v0 a0 q1 v1 a1", 3 * MOST),
         *fields("kv ka", 3 * MOST, 7),
-        *fields("early", MOST, 2),  # speeds at which open ends part at the start of a step
+        # speeds at which open ends part at the start of a step
+        *fields("early", MOST, 2),
         *whole("fails", MOST, 6),  # [interface, channel] what has become negative
         # search for a mode
         *whole("touching", MOST, 2),
@@ -94,7 +99,8 @@ WORK = np.dtype(
         *fields("old_v", 3 * MOST),
         *whole("old_closed", MOST, 2),
         *whole("old_slides", MOST),
-        *whole("flip", 3),  # interface, what and how: the change that mends the worst of a mode
+        # interface, what and how: the change that mends the worst of a mode
+        *whole("flip", 3),
         *whole("count"),  # of the modes that a search has tried ...
         *whole("tried", TRIES),  # ... their numbers ...
         *fields("wrong", TRIES),  # ... and how far each is from consistent
@@ -103,9 +109,12 @@ WORK = np.dtype(
         *fields("fraction", MOST, 2),
         *whole("drive", MOST),
         *fields("depart", MOST),
-        *whole("falls", MOST),  # end that comes down while the other is closed, -1: none
-        *fields("goal", MOST, 2),  # speed at which the other end departs: without the law, with it
-        *fields("rest", 4 * MOST, 3),  # margins of rest, linear in the two accelerations
+        # end that comes down while the other is closed, -1: none
+        *whole("falls", MOST),
+        # speed at which the other end departs: without the law, with it
+        *fields("goal", MOST, 2),
+        # margins of rest, linear in the two accelerations
+        *fields("rest", 4 * MOST, 3),
         # ledgers [J]: of the ground, lost to friction, lost in impacts
         *fields("work rubbed struck"),
         *fields("told", of=OUTCOME),
@@ -120,7 +129,8 @@ def fill_geometry(p: np.void, system: System) -> None:
     bodies, contacts, shapes = system.in_plane().bodies, system.contacts, system.shapes
     p["count"], p["weight"] = system.count, p["g"] * system.mass
     p["half"][0], p["tilt_cos"][:] = math.inf, 1.0
-    middle, tilt = np.zeros(2), 0.0  # of the face under a body, from the middle of the lowest base
+    # of the face under a body, from the middle of the lowest base
+    middle, tilt = np.zeros(2), 0.0
     for k, shape in enumerate(shapes):
         foot, base = middle, middle
         if k > 0:
@@ -128,7 +138,11 @@ def fill_geometry(p: np.void, system: System) -> None:
             lean = contacts[k - 1].tilt
             wide = shapes[k - 1]._replace(b=(face.right - face.left) / 2)
             right = face.middle - stand.middle
-            offset = contacts[k].offset[0] + bodies[k].ends[0].middle - (right + stand.middle)
+            offset = (
+                contacts[k].offset[0]
+                + bodies[k].ends[0].middle
+                - (right + stand.middle)
+            )
             pile = geometry.pile_of(wide, shape, below.height, lean, offset)
             shape = pile.upper
             aside = np.array(geometry.turned(right, 0.0, lean))
@@ -141,7 +155,11 @@ def fill_geometry(p: np.void, system: System) -> None:
             tilt += lean
             p["tilt_sin"][k], p["tilt_cos"][k] = sin_cos(tilt)
         p["mass"][k], p["inertia"][k] = shape.mass, shape.inertia
-        p["inverse"][3 * k : 3 * k + 3] = 1 / shape.mass, 1 / shape.mass, 1 / shape.inertia
+        p["inverse"][3 * k : 3 * k + 3] = (
+            1 / shape.mass,
+            1 / shape.mass,
+            1 / shape.inertia,
+        )
         for end, pivot in enumerate((-1, 1)):
             x, y = geometry.turned(*geometry.arm(shape, pivot), tilt)
             p["corner"][k, end] = -x, -y
@@ -162,10 +180,14 @@ def system_record(system: System, g: float) -> np.void:
     p: np.void = np.zeros(1, BODY)[0]
     p["g"] = g
     fill_geometry(p, system)
-    for k, (contact, shape) in enumerate(zip(system.contacts, system.carried, strict=True)):
+    for k, (contact, shape) in enumerate(
+        zip(system.contacts, system.carried, strict=True)
+    ):
         p["static"][k], p["kinetic"][k] = contact.friction or (ROUGHEST, ROUGHEST)
         for end, pivot in enumerate((-1, 1)):
-            p["law"][k, end], p["number"][k, end] = after_impact(contact.law, shape, pivot)
+            p["law"][k, end], p["number"][k, end] = after_impact(
+                contact.law, shape, pivot
+            )
     return p
 
 
@@ -175,7 +197,9 @@ def working_memory() -> np.void:
     return work
 
 
-def posed(p: np.void, theta: Sequence[float], omega: Sequence[float]) -> NDArray[np.float64]:
+def posed(
+    p: np.void, theta: Sequence[float], omega: Sequence[float]
+) -> NDArray[np.float64]:
     """Coordinates and velocities, shape (2, 3 MOST), of bodies turned about the corners that this leaves them."""
     start = np.zeros((2, 3 * MOST))
     standing = p["standing"]

@@ -16,10 +16,12 @@ from rockfrag.engines.planar.solve import bias, end_of, rate, solve_generally
 # violation below which a mode is consistent: forces over the weight, accelerations over g [-].  Less than the
 # slack of contact events, so that a mode that has just failed is not
 CONSISTENT = 2e-13
-UNSOLVED = 1e-6  # relative motion of a closed end where a mode was singular but for rounding [-]
+# relative motion of a closed end where a mode was singular but for rounding [-]
+UNSOLVED = 1e-6
 ROUNDING = 1e-10  # violation up to which a mode is taken where none is consistent
 FAILS, SEEN = -1, -2  # what a mode that is tried is, unless it is consistent
-SLIP = 2  # what changes between modes: whether the end 0 or 1 is closed, or how an interface slides
+# what changes between modes: whether the end 0 or 1 is closed, or how an interface slides
+SLIP = 2
 
 
 class Trial(NamedTuple):
@@ -91,7 +93,9 @@ def try_mode(p, w, trial):
             continue
         if slides == 0:
             margin = (w.limit[k] * pressed - abs(shear)) / max(w.limit[k], 1.0)
-            worst = _note_worst(w, worst, margin / trial.force, k, SLIP, -1 if shear > 0.0 else 1)
+            worst = _note_worst(
+                w, worst, margin / trial.force, k, SLIP, -1 if shear > 0.0 else 1
+            )
         elif trial.impact or w.moves[k] == 0:
             speed = _motion_of(p, w, k, closed, True, trial.impact)
             worst = _note_worst(w, worst, slides * speed / trial.motion, k, SLIP, 0)

@@ -159,7 +159,9 @@ def _fill_equations(p, w, q, v, impact, rough, standing):
             fill_row(q, k, x, y, -ty - friction * tx, tx - friction * ty, w.column[m])
             if impact and w.fraction[k, end] > 0.0:
                 # what the impulse brings about at the other end
-                xo, yo, to, no, _, _, _ = end_of(p, w, q, k, 1 - end, w.kind[k, 1 - end])
+                xo, yo, to, no, _, _, _ = end_of(
+                    p, w, q, k, 1 - end, w.kind[k, 1 - end]
+                )
                 fill_row(q, k, xo, yo, -no - friction * to, to - friction * no, w.light)
                 for d in range(6):
                     w.column[m, d] += w.fraction[k, end] * w.light[d]
@@ -262,7 +264,9 @@ def _hold_still(p, w, q, k, push_x, push_y, moment):
     near = -ty * ry - tx * rx
     far = -ty * (far_y - q[3 * k + 1]) - tx * (far_x - q[3 * k])
     w.shear[k] = shear
-    w.normal[k, 1] = -(moment + shear * (tx * ry - ty * rx) + push * near) / (far - near)
+    w.normal[k, 1] = -(moment + shear * (tx * ry - ty * rx) + push * near) / (
+        far - near
+    )
     w.normal[k, 0] = push - w.normal[k, 1]
 
 
@@ -315,7 +319,9 @@ def _solve_top(p, w, q, v, ah, av):
     w.out[3 * k + 2] = twist * slow
     if k > 0:
         w.out[0] = w.out[1] = w.out[2] = 0.0
-        _hold_still(p, w, q, 0, pull_x + p.mass[0] * ah, pull_y + p.mass[0] * (p.g + av), moment)
+        _hold_still(
+            p, w, q, 0, pull_x + p.mass[0] * ah, pull_y + p.mass[0] * (p.g + av), moment
+        )
 
 
 @kernel

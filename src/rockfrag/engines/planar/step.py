@@ -11,12 +11,14 @@ from rockfrag.engines.planar.solve import AT_EDGE, copy, end_of, look_at, rate, 
 # weight; speeds over √(g b) and lengths over b
 SLACK, TOUCH = 1e-12, 1e-13
 ERROR = 1e-7  # error of a step above which it is taken again, half as long [-]
-SHORTEST = 1e-7  # fraction of a sampling interval below which a step is not made shorter
+# fraction of a sampling interval below which a step is not made shorter
+SHORTEST = 1e-7
 # fraction of the half width by which a corner that comes in under an edge hangs beside the face and not over it:
 # its base is at a right angle to the face, and the body has fallen
 HANGING = 1e-6
 WIDTH = 1e-12  # fraction of a step to which the time of a contact event is found
-GAP, EDGE = 0, 2  # channels of an interface: its two ends (gap or pressure), their edges, ...
+# channels of an interface: its two ends (gap or pressure), their edges, ...
+GAP, EDGE = 0, 2
 FRICTION, FALL = 4, 5  # ... stick or slip, and the fall of the body above it
 
 
@@ -105,8 +107,16 @@ def step_error(p, w, h):
     """Error of a step's velocities by the pair's own estimate over √(g b) [-]; large in Painlevé's cases."""
     worst = 0.0
     for d in range(3 * p.count):
-        off = 71.0 / 57600.0 * w.ka[d, 0] - 71.0 / 16695.0 * w.ka[d, 2] + 71.0 / 1920.0 * w.ka[d, 3]
-        off += -17253.0 / 339200.0 * w.ka[d, 4] + 22.0 / 525.0 * w.ka[d, 5] - 0.025 * w.ka[d, 6]
+        off = (
+            71.0 / 57600.0 * w.ka[d, 0]
+            - 71.0 / 16695.0 * w.ka[d, 2]
+            + 71.0 / 1920.0 * w.ka[d, 3]
+        )
+        off += (
+            -17253.0 / 339200.0 * w.ka[d, 4]
+            + 22.0 / 525.0 * w.ka[d, 5]
+            - 0.025 * w.ka[d, 6]
+        )
         worst = max(worst, abs(off) * (p.size if d % 3 == 2 else 1.0))
     return worst * h / p.speed
 
@@ -207,7 +217,9 @@ def margin_at(p, w, tau, stretch):
         c4 = -15.0 * rise + 7.0 * turn - 2.0 * bend
         c5 = 6.0 * rise - 3.0 * turn + bend
         w.q[d] = q0 + v0 * tau + a0 * t2 + t3 * (c3 + tau * (c4 + tau * c5))
-        w.v[d] = (v0 + 2.0 * a0 * tau + t2 * (3.0 * c3 + tau * (4.0 * c4 + 5.0 * tau * c5))) / h
+        w.v[d] = (
+            v0 + 2.0 * a0 * tau + t2 * (3.0 * c3 + tau * (4.0 * c4 + 5.0 * tau * c5))
+        ) / h
     look_at(p, w, w.q)
     ah, av = ground_at(stretch, tau)
     solve(p, w, w.q, w.v, ah, av, False)

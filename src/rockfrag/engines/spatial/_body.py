@@ -24,13 +24,15 @@ BODY = np.dtype(
         # distances in the base from below the centre of mass: of its furthest point, of its nearest edge [m]
         *fields("furthest nearest"),
         *fields("static kinetic"),  # coefficients of friction [-]
-        *fields("barrier"),  # energy over rest below which nothing falls on ground at rest [J/kg]
+        # energy over rest below which nothing falls on ground at rest [J/kg]
+        *fields("barrier"),
         # turn of the contact of a round base that passes through flat, rolling, and sliding without friction [rad]
         *fields("pass_turn slide_turn"),
         # tensor over the mass, about the centre of mass [m²], and its inverse
         *fields("inertia inverse", 3, 3),
         *fields("points", MOST_VERTICES, 3),  # vertices, anticlockwise [m]
-        *fields("about about_inverse", MOST_VERTICES, 3, 3),  # tensor about each vertex [m²]
+        # tensor about each vertex [m²]
+        *fields("about about_inverse", MOST_VERTICES, 3, 3),
     ],
     align=True,
 )
@@ -57,7 +59,11 @@ def arm(body, up, i):
     """Point i from the centre of mass, in the body, where ``up`` is the vertical as the body sees it."""
     if i == rim_contact(body):
         u, _ = rim_direction(up)
-        return (body.centre[0] + body.rim * u[0], body.centre[1] + body.rim * u[1], -body.height)
+        return (
+            body.centre[0] + body.rim * u[0],
+            body.centre[1] + body.rim * u[1],
+            -body.height,
+        )
     return (body.points[i, 0], body.points[i, 1], body.points[i, 2])
 
 
@@ -104,7 +110,9 @@ def velocity_of(body, y, rows, i):
 def energy(body, y, g):
     """Kinetic energy and the energy of height over rest [J/kg]."""
     omega = omega_of(y)
-    kinetic = 0.5 * (y[7] ** 2 + y[8] ** 2 + y[9] ** 2 + dot(omega, times(body.inertia, omega)))
+    kinetic = 0.5 * (
+        y[7] ** 2 + y[8] ** 2 + y[9] ** 2 + dot(omega, times(body.inertia, omega))
+    )
     return kinetic + g * (y[2] - body.height)
 
 

@@ -14,16 +14,24 @@ import numpy as np
 from rockfrag.elementary import sin_cos
 from rockfrag.engines.kernels.jit import kernel
 from rockfrag.engines.spatial._algebra import factor, norm, solve_symmetric, substitute
-from rockfrag.engines.spatial._forces import MOST, in_set, largest_compliance, stick_together
+from rockfrag.engines.spatial._forces import (
+    MOST,
+    in_set,
+    largest_compliance,
+    stick_together,
+)
 
 ORDER = (0, 1, 2, 4, 8, 3, 5, 6, 9, 10, 12, 7, 11, 13, 14, 15)
 """Sets of four contacts as bits, the smallest first."""
 
-SOFT = 1e-8  # part of the largest compliance added while solving, and removed by repetition [-]
-CLOSE_ENOUGH = 1e-13  # residual over what is to be stopped at which Newton's method ends [-]
+# part of the largest compliance added while solving, and removed by repetition [-]
+SOFT = 1e-8
+# residual over what is to be stopped at which Newton's method ends [-]
+CLOSE_ENOUGH = 1e-13
 NEWTON_STEPS = 60
 HALVINGS = 12  # times that a step of Newton's method is halved at most
-MOST_STUCK = 4  # steps that may leave the residual as it was; then there is no solution nearby
+# steps that may leave the residual as it was; then there is no solution nearby
+MOST_STUCK = 4
 
 RAYS = np.array(
     [(4.0, y) for y in range(-4, 4)]
@@ -124,8 +132,12 @@ def slopes_in_plane(s, m, x, pace, size):
             dv = -pace * s.delassus[b, j] + (1.0 if j == b else 0.0)
             along = e * du + f * dv
             grow = s.friction[i] if j == c and x[c] > 0 else 0.0
-            s.matrix[3 * m, at] = (1.0 if j == a else 0.0) - ratio * (du - along * e) - grow * e
-            s.matrix[3 * m + 1, at] = (1.0 if j == b else 0.0) - ratio * (dv - along * f) - grow * f
+            s.matrix[3 * m, at] = (
+                (1.0 if j == a else 0.0) - ratio * (du - along * e) - grow * e
+            )
+            s.matrix[3 * m + 1, at] = (
+                (1.0 if j == b else 0.0) - ratio * (dv - along * f) - grow * f
+            )
 
 
 @kernel
@@ -138,7 +150,9 @@ def fill_slopes(s, size, x, pace):
             for k in range(3):
                 at = 3 * other + k
                 s.matrix[row, at] = s.matrix[row + 1, at] = 0.0
-                s.matrix[row + 2, at] = pace * s.delassus[3 * i + 2, 3 * s.member[other] + k]
+                s.matrix[row + 2, at] = (
+                    pace * s.delassus[3 * i + 2, 3 * s.member[other] + k]
+                )
         if s.given[i]:
             for k in range(2):
                 s.matrix[row + k, row + k] = 1.0
@@ -238,7 +252,11 @@ def stick_alone(s, i):
     if s.given[i]:
         way = (-s.friction[i] * s.way[i, 0], -s.friction[i] * s.way[i, 1])
         normal = -s.free[c] / (w[c, c] + w[c, a] * way[0] + w[c, b] * way[1])
-        s.impulse[a], s.impulse[b], s.impulse[c] = way[0] * normal, way[1] * normal, normal
+        s.impulse[a], s.impulse[b], s.impulse[c] = (
+            way[0] * normal,
+            way[1] * normal,
+            normal,
+        )
     else:
         s.impulse[a], s.impulse[b], s.impulse[c] = solve_symmetric(
             w[a, a], w[a, b], w[a, c], w[b, b], w[b, c], w[c, c],
@@ -307,7 +325,9 @@ def slide_alone(s, n, i):
             normal = -s.free[c] / gives if gives != 0.0 else -1.0
             # the slip is over the denominator of the impulse
             if normal > 0 and slip * gives > 0:
-                left = normal * (s.free[c] - s.friction[i] * (s.free[a] * e + s.free[b] * f))
+                left = normal * (
+                    s.free[c] - s.friction[i] * (s.free[a] * e + s.free[b] * f)
+                )
                 left -= normal * s.friction[i] * slip / gives
                 if not found or left < least:
                     found, least = True, left
@@ -400,7 +420,11 @@ def fewest(s, n, least, slide):
             else stick_set(s, n, mask, size, largest)
         )
         fill_after(s, n)
-        if solved and cones_hold(s, n, mask, small / largest) and others_open(s, n, mask, small):
+        if (
+            solved
+            and cones_hold(s, n, mask, small / largest)
+            and others_open(s, n, mask, small)
+        ):
             ways += 1
             # change of kinetic energy by the impulses: P·b + P·W P / 2
             change = 0.0

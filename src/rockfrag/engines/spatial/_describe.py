@@ -42,7 +42,9 @@ def _fill_rim(body: Any) -> None:
     body.nearest, body.furthest = radius - off, radius + off
     across = (body.inertia[0, 0] + body.inertia[1, 1]) / 2
     square = radius * radius
-    body.pass_turn = math.pi * math.sqrt(1 + square / (across + body.height * body.height))
+    body.pass_turn = math.pi * math.sqrt(
+        1 + square / (across + body.height * body.height)
+    )
     body.slide_turn = math.pi * math.sqrt(1 + square / across)
 
 
@@ -64,7 +66,11 @@ def _invert(of: Any, into: Any) -> None:
     d, e, f = of[1, 1] / size, of[1, 2] / size, of[2, 2] / size
     p, q, s = d * f - e * e, c * e - b * f, b * e - c * d
     scale = 1.0 / ((a * p + b * q + c * s) * size)
-    into[0, 0], into[1, 1], into[2, 2] = p * scale, (a * f - c * c) * scale, (a * d - b * b) * scale
+    into[0, 0], into[1, 1], into[2, 2] = (
+        p * scale,
+        (a * f - c * c) * scale,
+        (a * d - b * b) * scale,
+    )
     into[0, 1] = into[1, 0] = q * scale
     into[0, 2] = into[2, 0] = s * scale
     into[1, 2] = into[2, 1] = (b * c - a * e) * scale

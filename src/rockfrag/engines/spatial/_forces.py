@@ -26,7 +26,8 @@ from rockfrag.engines.spatial._algebra import (
 MOST = 4  # contacts that carry at once
 STICKS, SLIDES = 0, 1
 FLIGHT, PIVOT, HINGE, GENERAL, REST, SLIDER = 0, 1, 2, 3, 4, 5
-SLIP_FLOOR = 1e-4  # slip velocity below which a point slips in the direction noted, if at all [m/s]
+# slip velocity below which a point slips in the direction noted, if at all [m/s]
+SLIP_FLOOR = 1e-4
 # part of the largest compliance that is added to all, so that redundant forces are the least ones [-]
 SOFTNESS = 1e-9
 STAGES = 7
@@ -36,7 +37,8 @@ CASE = np.dtype(
         # the mode: number of closed points, whether it rests; whether nothing holds but what sticks, so that cones
         # are not looked at; whether the rates at the end of the last step are still right
         *whole("count rests jammed goes_on"),
-        *whole("closed slides", MOST),  # numbers of the closed points, and which of them slide ...
+        # numbers of the closed points, and which of them slide ...
+        *whole("closed slides", MOST),
         *fields("direction anchor", MOST, 2),  # ... and where to, or where they stick
         *fields("lam", MOST, 3),  # contact forces or impulses in the world
         # effective gravity at the beginning of the interval, its rate, and gravity on ground at rest
@@ -82,7 +84,11 @@ def kind_of(s):
 @kernel
 def pull_at(field, tau):
     """Effective gravity in the world."""
-    return (field[0] + field[3] * tau, field[1] + field[4] * tau, field[2] + field[5] * tau)
+    return (
+        field[0] + field[3] * tau,
+        field[1] + field[4] * tau,
+        field[2] + field[5] * tau,
+    )
 
 
 @kernel
@@ -141,7 +147,9 @@ def pivot_acceleration(body, up, omega, weight, i):
     p = solid.arm(body, up, i)
     b = solid.bias(body, up, omega, p, i)
     load = plus(b, weight)
-    moment = minus(scaled(-1.0, cross(omega, times(body.inertia, omega))), cross(p, load))
+    moment = minus(
+        scaled(-1.0, cross(omega, times(body.inertia, omega))), cross(p, load)
+    )
     if i == solid.rim_contact(body):
         m = body.inertia
         square = dot(p, p)
@@ -186,7 +194,10 @@ def hinge_acceleration(body, rows, omega, weight, i, j):
 @kernel
 def share_force(body, rows, omega, alpha, force, e, s):
     """Share the force of a hinge between its ends so that both hold if they can; world components."""
-    p, q = (solid.arm(body, rows[2], s.closed[0]), solid.arm(body, rows[2], s.closed[1]))
+    p, q = (
+        solid.arm(body, rows[2], s.closed[0]),
+        solid.arm(body, rows[2], s.closed[1]),
+    )
     gyroscopic = cross(omega, times(body.inertia, omega))
     # but for its part along the edge, the force at the far end follows from the moment about the near one
     left = minus(plus(times(body.inertia, alpha), gyroscopic), cross(p, force))

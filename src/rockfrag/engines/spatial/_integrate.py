@@ -11,11 +11,15 @@ from rockfrag.engines.spatial import _forces as forces
 from rockfrag.engines.spatial import _modes as modes
 from rockfrag.engines.spatial import _step as step
 
-RIM_START = 1e-7  # tilt with which a round base begins to roll: at none it has no direction [rad]
-FLAT_PASS = 1e-8  # tilt below which a round base passes through flat in closed form [rad]
+# tilt with which a round base begins to roll: at none it has no direction [rad]
+RIM_START = 1e-7
+# tilt below which a round base passes through flat in closed form [rad]
+FLAT_PASS = 1e-8
 SHORTEST = 1e-11  # step [s]
-BRIEF = 1e-7  # time in which rates stay: its square times an acceleration is less than TOUCH [s]
-MANY = 40  # contact events in one interval after which the velocity that closes contacts is doubled
+# time in which rates stay: its square times an acceleration is less than TOUCH [s]
+BRIEF = 1e-7
+# contact events in one interval after which the velocity that closes contacts is doubled
+MANY = 40
 # steps in one interval after which errors of COARSE [m, m/s, rad/s] are allowed to what slides: slip that hardly
 # begins is stiff.  What rolls keeps its tolerance, as it may pass near flat, where such errors feed energy
 HURRY, COARSE = 1000, 1e-6
@@ -23,7 +27,8 @@ HURRY, COARSE = 1000, 1e-6
 # ends.  Both are counted as paradoxes
 GIVE_UP = 2000
 PATIENCE = 30  # times that this may happen before an analysis ends as one that stood
-MOST_STEPS = 400_000  # after which an analysis ends as one that stood, counted as a paradox
+# after which an analysis ends as one that stood, counted as a paradox
+MOST_STEPS = 400_000
 
 OUTCOME = 16
 (
@@ -153,7 +158,11 @@ def start_rolling(body, y, x, z, pull, s):
 def tilt_about(body, y, u, tilt):
     """Give a flat body a small tilt, with its lowest point towards u in the base, where that point was."""
     modes.lay_flat(body, y)
-    p = (body.centre[0] + body.rim * u[0], body.centre[1] + body.rim * u[1], -body.height)
+    p = (
+        body.centre[0] + body.rim * u[0],
+        body.centre[1] + body.rim * u[1],
+        -body.height,
+    )
     before = solid.position_of_base(y, algebra.rotation(y), p)
     algebra.turn(y, (-tilt * u[1], tilt * u[0], 0.0))
     after = solid.position_of_base(y, algebra.rotation(y), p)
@@ -176,7 +185,10 @@ def pass_flat(body, y, s):
     if sinking[0] * from_here[1] - sinking[1] * from_here[0] > 0:
         angle = -angle
     d, c = sin_cos(angle)
-    to_there = (c * from_here[0] - d * from_here[1], d * from_here[0] + c * from_here[1])
+    to_there = (
+        c * from_here[0] - d * from_here[1],
+        d * from_here[0] + c * from_here[1],
+    )
     tilt_about(body, y, to_there, max(2 * FLAT_PASS, sine))
     rise(body, y, to_there, algebra.norm(sinking[0], sinking[1]), s)
     # a base that is not symmetrical would gain in the new direction
@@ -248,7 +260,11 @@ def locate(body, tau, h, y, s):
         step.attempt(body, tau, middle, y, s)
         value, what = step.margin(body, s.new, s)
         at, middle = middle, 0.0
-        rate = rising(body, s.new, lowest_open(body, s.new, s)) if what == modes.LANDS else 0.0
+        rate = (
+            rising(body, s.new, lowest_open(body, s.new, s))
+            if what == modes.LANDS
+            else 0.0
+        )
         if rate < 0.0:
             # a last step of Newton's, so short that the rates at its beginning suffice
             rest = -value / rate
@@ -458,7 +474,10 @@ def small_rim(body, y, tau, cut, s):
     lift = s.field[6] * body.rim * algebra.norm(rows[2][0], rows[2][1])
     if tilting + 0.5 * y[9] ** 2 + lift >= small:
         return
-    if modes.rest_margin(body, y, rows, pull) >= 0 and solid.energy(body, y, s.field[6]) < small:
+    if (
+        modes.rest_margin(body, y, rows, pull) >= 0
+        and solid.energy(body, y, s.field[6]) < small
+    ):
         modes.come_to_rest(body, y, s)
     elif s.slides[0] == forces.SLIDES and body.kinetic * body.height < body.rim:
         y[9] = y[10] = y[11] = 0.0
@@ -496,7 +515,9 @@ def advance(body, tau, dt, next_step, y, tolerance, cut, stuck, s, out):
                 continue
             break
         h *= max(0.2, 0.9 * slow_power(tolerance / error))
-    grow = 5.0 if error == 0.0 else min(5.0, max(0.3, 0.9 * slow_power(tolerance / error)))
+    grow = (
+        5.0 if error == 0.0 else min(5.0, max(0.3, 0.9 * slow_power(tolerance / error)))
+    )
     ahead = h * grow
     if least < 0:
         h, what = locate(body, tau, h, y, s)
@@ -542,7 +563,9 @@ def look_after_rim(body, y, tau, cut, ahead, s, out):
 
 
 @entry_kernel
-def integrate(body, acceleration, peaks, scale, dt, g, extra, tolerance, cut, y, history, out, s):
+def integrate(
+    body, acceleration, peaks, scale, dt, g, extra, tolerance, cut, y, history, out, s
+):
     """Integrate one analysis of a BODY from the state ``y`` into ``out``, shape (OUTCOME,).
 
     ``acceleration`` of the ground (x, y, up), shape (n, 3) [m/s²], is linear between samples and counts times
@@ -591,7 +614,9 @@ def integrate(body, acceleration, peaks, scale, dt, g, extra, tolerance, cut, y,
                     break
             hurries = many >= HURRY and slides_any(s)
             allowed = max(tolerance, COARSE) if hurries else tolerance
-            tau, ahead, h = advance(body, tau, dt, ahead, y, allowed, cut, stuck, s, out)
+            tau, ahead, h = advance(
+                body, tau, dt, ahead, y, allowed, cut, stuck, s, out
+            )
             stuck = stuck + 1 if h < SHORTEST else 0
             many += 1
             if out[STEPS] > MOST_STEPS:
@@ -621,7 +646,11 @@ def integrate(body, acceleration, peaks, scale, dt, g, extra, tolerance, cut, y,
     if out[FELL] == 0.0:
         record(history, k, y, out, s)
     out[ENERGY_BALANCE] = (
-        solid.energy(body, y, g) - started - y[solid.WORK] + y[solid.FRICTION] + out[LOST]
+        solid.energy(body, y, g)
+        - started
+        - y[solid.WORK]
+        + y[solid.FRICTION]
+        + out[LOST]
     )
 
 

@@ -11,9 +11,12 @@ from rockfrag.engines.spatial._cone import solve_cones
 
 TOUCH = 1e-10  # gap below which a point touches [m]
 CLOSE = 1e-6  # velocity after an impact below which a point stays closed at first [m/s]
-AT_REST = forces.SLIP_FLOOR  # the velocity that points slip above when the mode is chosen [m/s]
-SLOW_SLIP = 30 * AT_REST  # the same where no mode was found otherwise: one may hardly slip [m/s]
-LEAVES = 1e-8  # velocity above which points that touch leave when the mode is chosen [m/s]
+# the velocity that points slip above when the mode is chosen [m/s]
+AT_REST = forces.SLIP_FLOOR
+# the same where no mode was found otherwise: one may hardly slip [m/s]
+SLOW_SLIP = 30 * AT_REST
+# velocity above which points that touch leave when the mode is chosen [m/s]
+LEAVES = 1e-8
 LANDS, OPENS, LEAVES_CONE, SLIP_ENDS, NOTHING = 1, 2, 3, 4, 0
 
 COUNTERS = 6
@@ -85,7 +88,9 @@ def hold(body, y, rows, s):
     forces.fill_velocities(body, y, rows, s.closed, n, s.free)
     forces.solve_general(body, y, rows, n, 0.0, s)
     for i in range(n):
-        forces.push_at(body, y, rows, s.closed[i], (s.lam[i, 0], s.lam[i, 1], s.lam[i, 2]))
+        forces.push_at(
+            body, y, rows, s.closed[i], (s.lam[i, 0], s.lam[i, 1], s.lam[i, 2])
+        )
 
 
 @kernel
@@ -131,7 +136,9 @@ def keep_slow_contacts(body, y, rows, n, found, s):
             slow = slow or not forces.in_set(found, i)
             s.closed[count] = s.which[i]
             slip = algebra.norm(s.after[3 * i], s.after[3 * i + 1])
-            s.slides[count] = forces.SLIDES if slip > max(s.close, AT_REST) else forces.STICKS
+            s.slides[count] = (
+                forces.SLIDES if slip > max(s.close, AT_REST) else forces.STICKS
+            )
             count += 1
     s.count, s.rests = count, 0
     if slow:
@@ -172,7 +179,11 @@ def topple_margin(body, rows, pull):
 @kernel
 def carried_flat(body, y, rows, pull):
     """Whether a round body that is flat, and slides or is about to, stays on its face."""
-    if body.rim == 0.0 or algebra.norm(rows[2][0], rows[2][1]) > 1e-9 or abs(y[9]) > LEAVES:
+    if (
+        body.rim == 0.0
+        or algebra.norm(rows[2][0], rows[2][1]) > 1e-9
+        or abs(y[9]) > LEAVES
+    ):
         return False
     if algebra.norm(y[10], y[11]) > LEAVES / body.rim:
         return False
@@ -204,7 +215,9 @@ def edge_margin(body, y, rows, pull, i, j):
     length = algebra.norm(q[0] - p[0], q[1] - p[1])
     normal = ((q[1] - p[1]) / length, -(q[0] - p[0]) / length)
     reach = normal[0] * (p[0] - y[0]) + normal[1] * (p[1] - y[1])
-    return -(y[2] * (normal[0] * pull[0] + normal[1] * pull[1]) + reach * pull[2]) / y[2]
+    return (
+        -(y[2] * (normal[0] * pull[0] + normal[1] * pull[1]) + reach * pull[2]) / y[2]
+    )
 
 
 @kernel
@@ -241,7 +254,11 @@ def choose_mode(body, tau, y, s):
     pull = forces.pull_at(s.field, tau)
     spin = body.height * math.sqrt(y[10] ** 2 + y[11] ** 2 + y[12] ** 2)
     still = math.sqrt(y[7] ** 2 + y[8] ** 2 + y[9] ** 2) + spin < 10 * CLOSE
-    if still and count_touching(body, y, rows) >= 3 and rest_margin(body, y, rows, pull) >= 0:
+    if (
+        still
+        and count_touching(body, y, rows) >= 3
+        and rest_margin(body, y, rows, pull) >= 0
+    ):
         come_to_rest(body, y, s)
         return True
     if carried_flat(body, y, rows, pull):
@@ -293,7 +310,9 @@ def pick_closed(body, y, rows, slow, s):
 def solve_forces(body, y, rows, pull, n, s):
     """Solve for the forces at the contacts s.which; return the set that pushes, and how many would do."""
     forces.fill_delassus(body, rows, s.which, n, s.delassus)
-    forces.fill_accelerations(body, y, rows, algebra.to_body(rows, pull), s.which, n, s.free)
+    forces.fill_accelerations(
+        body, y, rows, algebra.to_body(rows, pull), s.which, n, s.free
+    )
     fill_edges(body, y, rows, s.which, n, s)
     return solve_cones(s, n, 0)
 
@@ -338,7 +357,10 @@ def insist(body, what, s):
         for i in range(worst, s.count - 1):
             s.closed[i], s.slides[i] = s.closed[i + 1], s.slides[i + 1]
             for k in range(2):
-                s.direction[i, k], s.anchor[i, k] = s.direction[i + 1, k], s.anchor[i + 1, k]
+                s.direction[i, k], s.anchor[i, k] = (
+                    s.direction[i + 1, k],
+                    s.anchor[i + 1, k],
+                )
         s.count -= 1
     else:
         shear = algebra.norm(s.lam[worst, 0], s.lam[worst, 1])
@@ -414,4 +436,6 @@ def lift_at(body, y, rows, i, size):
     """Displace the body as a small vertical impulse at point i would."""
     p = solid.arm(body, rows[2], i)
     y[2] += size
-    algebra.turn(y, algebra.scaled(size, algebra.times(body.inverse, algebra.cross(p, rows[2]))))
+    algebra.turn(
+        y, algebra.scaled(size, algebra.times(body.inverse, algebra.cross(p, rows[2])))
+    )

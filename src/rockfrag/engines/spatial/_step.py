@@ -9,7 +9,8 @@ from rockfrag.engines.spatial._forces import SLIDES, STAGES, rates
 
 BACKWARD = 1e-8  # slip against its own direction that is rounding [m/s]
 NEAR_FLAT = 1e-6  # tilt below which a rim that rolls goes on to roll [rad]
-LEAST_FORCE = 1e-9  # over the weight that a contact may pull, or shear beyond its cone, unseen [-]
+# over the weight that a contact may pull, or shear beyond its cone, unseen [-]
+LEAST_FORCE = 1e-9
 
 
 @kernel
@@ -137,7 +138,9 @@ def margin(body, y, s):
         if value < least:
             least, what = value, modes.OPENS
         if s.slides[i] == SLIDES:
-            value = slip_along(body, y, rows, i, s) + (-modes.AT_REST if s.armed[i] else BACKWARD)
+            value = slip_along(body, y, rows, i, s) + (
+                -modes.AT_REST if s.armed[i] else BACKWARD
+            )
             if value < least:
                 least, what = value, modes.SLIP_ENDS
         elif not (s.jammed or passes):
@@ -158,7 +161,9 @@ def dips(body, y, h, s):
         sinking = solid.velocity_of(body, y, before, i)[2]
         rising = solid.velocity_of(body, new, after, i)[2]
         if sinking < 0 < rising:
-            lowest = solid.gap(body, y, before[2], i) - 0.5 * h * sinking**2 / (rising - sinking)
+            lowest = solid.gap(body, y, before[2], i) - 0.5 * h * sinking**2 / (
+                rising - sinking
+            )
             if lowest - 0.02 * h * (rising - sinking) < -0.5 * modes.TOUCH:
                 return True
     return False

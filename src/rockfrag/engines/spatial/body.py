@@ -37,10 +37,16 @@ def kernel_body(system: System, g: float = GRAVITY) -> np.void:
                 f"base: {count} vertices are more than the {MOST_VERTICES} that a body in space may have; "
                 "leave out those that hardly turn the outline, or give a circle."
             )
-        body["count"], body["points"][:count, :2] = count, np.array(base.vertices) - below
+        body["count"], body["points"][:count, :2] = (
+            count,
+            np.array(base.vertices) - below,
+        )
     body["height"], body["inertia"] = given.centre[2], given.tensor / given.mass
     static, kinetic = contact.friction or (NEVER_SLIDES, NEVER_SLIDES)
-    body["static"], body["kinetic"] = min(static, NEVER_SLIDES), min(kinetic, NEVER_SLIDES)
+    body["static"], body["kinetic"] = (
+        min(static, NEVER_SLIDES),
+        min(kinetic, NEVER_SLIDES),
+    )
     if not fill_body(made.view(np.recarray)[0], g):
         raise InputError(
             "base: the centre of mass is not above the base, so the body cannot stand."
@@ -64,7 +70,9 @@ def later_peaks(acceleration: Floats) -> Floats:
     return np.ascontiguousarray(np.maximum.accumulate(both[::-1], axis=0)[::-1])
 
 
-def perturbed(system: System, spread: float, rng: np.random.Generator) -> tuple[System, float]:
+def perturbed(
+    system: System, spread: float, rng: np.random.Generator
+) -> tuple[System, float]:
     """Return a body with its base moved by up to ``spread`` of its extent, and a turn within that angle [rad]."""
     body = system.bodies[0]
     if isinstance(body.base, Circle):

@@ -28,8 +28,10 @@ from rockfrag.units import GRAVITY
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-TOLERANCE = 1e-9  # largest error of a step: position [m], attitude [-], velocities [m/s, rad/s]
-CUT_OFF = 1e-6  # energy over rest, as a part of what a fall takes, at which a body rests [-]
+# largest error of a step: position [m], attitude [-], velocities [m/s, rad/s]
+TOLERANCE = 1e-9
+# energy over rest, as a part of what a fall takes, at which a body rests [-]
+CUT_OFF = 1e-6
 AFTER = 30.0  # time after the motion at which an analysis ends at the latest [s]
 RESTS = 99
 
@@ -42,19 +44,23 @@ class SpatialOutcome:
     certain_time: float  # instant from which the fall was certain [s]; NaN without one
     fall_direction: float  # from x towards y [rad]; NaN without a fall
     fell_over: str  # "edge 1-2", "vertex 2", "rim", "flight"; empty without a fall
-    peak_rotation: float  # largest tilt over that of unstable balance [-]; infinite if it fell
+    # largest tilt over that of unstable balance [-]; infinite if it fell
+    peak_rotation: float
     peak_tilt: float  # largest tilt until the outcome was known [rad]
     peak_velocity: float  # largest angular velocity until then [rad/s]
-    walk: tuple[float, float]  # (x, y) at the end of the base's point below the centre of mass [m]
+    # (x, y) at the end of the base's point below the centre of mass [m]
+    walk: tuple[float, float]
     turn: float  # rotation about the vertical at the end [rad], several turns counted
     impacts: int  # number of impacts
     slidings: int  # number of contacts that began to slide
     flights: int  # number of flights
     ambiguous: int  # impacts and changes of mode with more than one admissible outcome
-    paradoxes: int  # impacts and changes without one, and jams: contacts that no finite force holds
+    # impacts and changes without one, and jams: contacts that no finite force holds
+    paradoxes: int
     dissipated: tuple[float, float]  # energy lost in impacts, and by friction [J/kg]
     residual: float  # what the balance of energy does not close by [J/kg]
-    gained: float  # energy that events of contact added, by rounding or as a rim leaves rest tilted [J/kg]
+    # energy that events of contact added, by rounding or as a rim leaves rest tilted [J/kg]
+    gained: float
 
 
 @dataclass(frozen=True)
@@ -106,7 +112,9 @@ def run(cases: Cases, spread: float = 0.0, seed: int = 0) -> Outcomes:
         ground, start = motion.accelerations, standing(body, turned)
         later = later_peaks(ground)
         for k, scale in enumerate(cases.scales[j].tolist()):
-            found, _ = run_case(body, ground, motion.dt, scale, g=g, peaks=later, start=start)
+            found, _ = run_case(
+                body, ground, motion.dt, scale, g=g, peaks=later, start=start
+            )
             least_gravity_ratio = 1.0 + scale * float(ground[:, 2].min()) / g
             _write(result, (i, j, k), found, least_gravity_ratio)
 
@@ -121,7 +129,9 @@ def history(case: Case) -> SpatialResponse:
     body = kernel_body(case.system, g)
     ground = case.motion.accelerations
     samples = len(ground) + math.ceil(AFTER / case.motion.dt) + 2
-    found, history = run_case(body, ground, case.motion.dt, case.scale, g=g, samples=samples)
+    found, history = run_case(
+        body, ground, case.motion.dt, case.scale, g=g, samples=samples
+    )
     table = history_table(history, case.motion.dt, float(body["height"]))
     outline = np.array(body["points"][: body["count"], :2])
     return SpatialResponse(found, table, outline)
@@ -152,12 +162,16 @@ def run_case(
     later = later_peaks(acceleration) if peaks is None else peaks
     steps = dt, g, math.ceil(AFTER / dt), tolerance, CUT_OFF
     with compiling_alone(kernel.integrate):
-        kernel.integrate(body, acceleration, later, scale, *steps, y, history, out, case)
+        kernel.integrate(
+            body, acceleration, later, scale, *steps, y, history, out, case
+        )
     kept = ~np.isnan(history[:, 0])
     return _outcome(body, out, case["counters"], y), history[kept]
 
 
-def _outcome(body: np.void, out: Floats, counters: NDArray[np.int64], y: Floats) -> SpatialOutcome:
+def _outcome(
+    body: np.void, out: Floats, counters: NDArray[np.int64], y: Floats
+) -> SpatialOutcome:
     fell = bool(out[kernel.FELL])
     return SpatialOutcome(
         overturned=fell,
@@ -208,14 +222,20 @@ def history_table(history: Floats, dt: float, height: float) -> pd.DataFrame:
             "turn_rad": history[:, 13],
             "base_x_m": history[:, 0] - height * axis[0],
             "base_y_m": history[:, 1] - height * axis[1],
-            **{f"omega_{axis}_rad_s": history[:, 10 + k] for k, axis in enumerate("xyz")},
+            **{
+                f"omega_{axis}_rad_s": history[:, 10 + k]
+                for k, axis in enumerate("xyz")
+            },
             "contacts": closed,
         }
     )
 
 
 def _write(
-    result: Outcomes, case: tuple[int, int, int], found: SpatialOutcome, least_gravity_ratio: float
+    result: Outcomes,
+    case: tuple[int, int, int],
+    found: SpatialOutcome,
+    least_gravity_ratio: float,
 ) -> None:
     """Write one outcome into those of all."""
     for name in ("overturned", "certain_time", "impacts", "flights", "paradoxes"):
@@ -224,7 +244,13 @@ def _write(
     result.several_modes[case] = found.ambiguous
     result.unstable_distance[case] = math.nan
     result.minimum_gravity_ratio[case] = least_gravity_ratio
-    for name in ("peak_rotation", "peak_velocity", "turn", "fall_direction", "fell_over"):
+    for name in (
+        "peak_rotation",
+        "peak_velocity",
+        "turn",
+        "fall_direction",
+        "fell_over",
+    ):
         getattr(result, name)[(*case, 0)] = getattr(found, name)
     result.walk[(*case, 0)] = math.hypot(*found.walk)
 
@@ -253,8 +279,11 @@ def run_in_space(
             found = ENGINE.supports(system, motion, request)
             if not found:
                 missing = " and ".join(sorted(wish.value for wish in found.missing))
-                raise InputError(f"in space: {found.reason or missing + ' cannot be had'}.")
+                raise InputError(
+                    f"in space: {found.reason or missing + ' cannot be had'}."
+                )
     factors = np.broadcast_to(
-        np.atleast_2d(np.asarray(scales, dtype=np.float64)), (len(motions), np.shape(scales)[-1])
+        np.atleast_2d(np.asarray(scales, dtype=np.float64)),
+        (len(motions), np.shape(scales)[-1]),
     )
     return run(Cases(systems, tuple(motions), factors, request, threads), spread, seed)

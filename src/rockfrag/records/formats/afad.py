@@ -30,7 +30,9 @@ def _parse(text: TextFile) -> list[form.Channel]:
     dt = text.interval(_number_of(text, facts, "sampling interval"), 0)
     components = re.findall(r"[NSEWUD]\s*-?\s*[NSEWUD]", header[titles])
     values = text.numbers(titles + 1, count=count * len(components))
-    table = values[: values.size // len(components) * len(components)].reshape(-1, len(components))
+    table = values[: values.size // len(components) * len(components)].reshape(
+        -1, len(components)
+    )
     time = facts["record time"]
     known = {
         "unit": form.stated(_UNIT, header),
@@ -46,7 +48,9 @@ def _parse(text: TextFile) -> list[form.Channel]:
     in_utc = re.search(r"\((?:GMT|UTC)\)", time, re.I)
     start = time_of(time.split("(")[0]) if in_utc else None
     shared = form.Channel(count, dt, table, start_time=start).saying(known)
-    return form.in_columns(shared, table, [name.replace(" ", "") for name in components])
+    return form.in_columns(
+        shared, table, [name.replace(" ", "") for name in components]
+    )
 
 
 def _number_of(text: TextFile, facts: dict[str, str], key: str) -> float:
@@ -61,5 +65,8 @@ def _number_of(text: TextFile, facts: dict[str, str], key: str) -> float:
 
 
 FORMAT = form.Format(
-    "AFAD", form.headed(_FIRST, _TITLES, within=_MAX_HEADER), _parse, encoding="iso8859-9"
+    "AFAD",
+    form.headed(_FIRST, _TITLES, within=_MAX_HEADER),
+    _parse,
+    encoding="iso8859-9",
 )

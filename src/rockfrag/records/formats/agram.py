@@ -31,23 +31,34 @@ _WIDTH = 8
 
 
 def _recognise(lines: list[str], name: str) -> bool:
-    return any(_RATE.match(line) and _SIZE.match(below) for line, below in pairwise(lines[:20]))
+    return any(
+        _RATE.match(line) and _SIZE.match(below) for line, below in pairwise(lines[:20])
+    )
 
 
 def _parse(text: TextFile) -> Iterator[Channel]:
     for line, following in text.parts(_RATE_LINE):
         stop = following if following == len(text) else following - _ABOVE
-        values, words = _section(text, line, stop), text.lines(max(0, line - _ABOVE), line)
+        values, words = (
+            _section(text, line, stop),
+            text.lines(max(0, line - _ABOVE), line),
+        )
         start, component = None, ""
         for match in filter(None, map(_TIME.search, words)):
             year, day, hour, minute = (int(part) for part in match.groups()[:4])
-            component = f"{int(match[6]):03d}" if (match[6] or "").isdigit() else match[6] or ""
-            start = time_at(float(match[5]), year=year, julday=day, hour=hour, minute=minute)
+            component = (
+                f"{int(match[6]):03d}" if (match[6] or "").isdigit() else match[6] or ""
+            )
+            start = time_at(
+                float(match[5]), year=year, julday=day, hour=hour, minute=minute
+            )
         facts = {
             "start_time": start,
             "station": words[0].strip() if words else "",
             "component": component,
-            "earthquake": next((x.strip() for x in words if "EARTHQUAKE" in x.upper()), ""),
+            "earthquake": next(
+                (x.strip() for x in words if "EARTHQUAKE" in x.upper()), ""
+            ),
         }
         yield values.saying(facts)
 

@@ -8,7 +8,13 @@ any case), then values in rows. The header may be longer and freer in files made
 import re
 from collections.abc import Iterator
 
-from rockfrag.records.parsing.format import QUANTITIES, Channel, Format, stated, text_writer
+from rockfrag.records.parsing.format import (
+    QUANTITIES,
+    Channel,
+    Format,
+    stated,
+    text_writer,
+)
 from rockfrag.records.parsing.number_fields import number_in
 from rockfrag.records.parsing.quantities import canonical_unit, quantity_of
 from rockfrag.records.parsing.text_file import TextFile, last_row
@@ -29,8 +35,12 @@ _WORDS_OF_UNIT = (
     r"(?P<unit>G(?:'?S)?(?![A-Z0-9/])|G\s*/\s*10\b|M?GALS?\b|"
     r"(?:[CM]?M|IN\w*)\s*/\s*\(?S\w*(?:\s*/\s*S\w*|\*\*2|\^2)?|[CM]?M\b|IN\b)"
 )
-_UNIT = re.compile(rf"\bUNITS?\s*(?:OF|ARE|IS)?\s*[:=]?\s*[(\[]?\s*{_WORDS_OF_UNIT}", re.I)
-_IN_UNIT = re.compile(rf"\b(?:ACC|VEL|DIS)\w*\.?\s*(?:\bIN\s+|[,(\[]\s*){_WORDS_OF_UNIT}", re.I)
+_UNIT = re.compile(
+    rf"\bUNITS?\s*(?:OF|ARE|IS)?\s*[:=]?\s*[(\[]?\s*{_WORDS_OF_UNIT}", re.I
+)
+_IN_UNIT = re.compile(
+    rf"\b(?:ACC|VEL|DIS)\w*\.?\s*(?:\bIN\s+|[,(\[]\s*){_WORDS_OF_UNIT}", re.I
+)
 _QUANTITY = re.compile(r"\b(?P<quantity>ACCEL|VELOC|DISPL)\w*", re.I)
 _HISTORY = rf"{_QUANTITY.pattern}\s+TIME\b"
 _ENDINGS = {".VT2": "velocity", ".DT2": "displacement"}
@@ -47,7 +57,9 @@ def _size(lines: list[str]) -> tuple[int, str, str, float] | None:
     for number, line in enumerate(lines[:_MAX_HEADER]):
         if pair := _TRAILING.match(line) or _LEADING.search(line):
             words = pair["first"], pair["second"]
-            count, step = words[::-1] if pair["names"].upper().startswith("DT") else words
+            count, step = (
+                words[::-1] if pair["names"].upper().startswith("DT") else words
+            )
             return number, count, step, 1.0
         points, interval = _COUNT.search(line), _STEP.search(line)
         if points and interval:
@@ -112,7 +124,13 @@ def _parse(text: TextFile) -> Iterator[Channel]:
 def _facts(header: list[str]) -> dict[str, str]:
     """Take earthquake, station and component from PEER's line ``earthquake date, station, component``."""
     title = header[0].strip() if header else ""
-    facts = {"title": title, "earthquake": "", "station": "", "component": "", "agency": ""}
+    facts = {
+        "title": title,
+        "earthquake": "",
+        "station": "",
+        "component": "",
+        "agency": "",
+    }
     azimuth = stated(r"\bazimuth\s*=\s*(\d{1,3})", header)
     for line in header[1:]:
         found = _COMPONENT.search(line.strip())
@@ -125,7 +143,9 @@ def _facts(header: list[str]) -> dict[str, str]:
         while first < len(parts) - 1 and re.fullmatch(r"[\d/:.\s]+", parts[first]):
             first += 1
         return facts | {
-            "earthquake": ", ".join(parts[:first]).removeprefix("H1 for rotation:").strip(),
+            "earthquake": ", ".join(parts[:first])
+            .removeprefix("H1 for rotation:")
+            .strip(),
             "station": ", ".join(parts[first:]),
             "component": azimuth or found["component"],
             "agency": (found["agency"] or "").strip(),

@@ -45,7 +45,9 @@ def _parse(text: TextFile) -> Iterator[form.Channel]:
         count, component = int(facts.pop("count")), facts["component"].upper()
         dt = _step(text, at_reals, count, float(facts.pop("duration")))
         samples = text.numbers(at_reals + _REAL_LINES, stop, _WIDTH, count=count)
-        azimuth = re.search(rf"\b{component or 'none'}\s*(\d{{1,3}})\b", facts.pop("azimuths"))
+        azimuth = re.search(
+            rf"\b{component or 'none'}\s*(\d{{1,3}})\b", facts.pop("azimuths")
+        )
         facts |= {"network": "I1", "component": component}
         facts |= {"azimuth_deg": azimuth[1]} if azimuth else {}
         yield form.Channel(count, dt, samples).saying(facts)

@@ -29,7 +29,15 @@ _END = re.compile(rf"^\s*(?:/&|End-of-data)|\(Format\s+v|{_VALUES.pattern}", re.
 Number = TypeVar("Number", int, float)
 _HEAD = re.compile(r"\(\s*Format\s+v", re.I)
 
-_UNITS_BY_CODE = {2: "g", 4: "cm/s2", 5: "cm/s", 6: "cm", 7: "in/s2", 8: "in/s", 9: "in"}
+_UNITS_BY_CODE = {
+    2: "g",
+    4: "cm/s2",
+    5: "cm/s",
+    6: "cm",
+    7: "in/s2",
+    8: "in/s",
+    9: "in",
+}
 _UNITS_BY_CODE |= {10: "cm/s2", 11: "mg", 12: "ug", 50: "counts", 51: "volts"}
 """Table of physical units of the format (its table 2), as far as motion is concerned."""
 
@@ -37,7 +45,14 @@ _UNITS_BY_CODE |= {10: "cm/s2", 11: "mg", 12: "ug", 50: "counts", 51: "volts"}
 _RECORD_TIME, _AZIMUTH = 39, 53
 _SECOND, _RECORDER_STEP, _STEP_MS = 29, 33, 61
 _PLACE = ("latitude", "longitude")
-_NAMED_AZIMUTHS = {400: "UP", 401: "DOWN", 402: "VERT", 500: "RADL", 501: "TRAN", 600: "LONG"}
+_NAMED_AZIMUTHS = {
+    400: "UP",
+    401: "DOWN",
+    402: "VERT",
+    500: "RADL",
+    501: "TRAN",
+    600: "LONG",
+}
 _NAMED_AZIMUTHS |= {601: "TRAN", 700: "H1", 701: "H2", 800: "OTHER"}
 
 _FACTS = {
@@ -52,7 +67,9 @@ _FACTS = {
 
 def _parse(text: TextFile) -> Iterator[form.Channel]:
     if re.search(r"\bspectr", text.line(0), re.I):
-        text.refuse("this file holds response spectra, not acceleration; give the V2 file")
+        text.refuse(
+            "this file holds response spectra, not acceleration; give the V2 file"
+        )
     line = text.find(_HEAD)
     while 0 <= line < len(text):
         at_values, dt, facts = _header(text, line)
@@ -69,7 +86,11 @@ def _header(text: TextFile, first: int) -> tuple[int, float, dict[str, Any]]:
     at_reals, numbers = _block(text, at_integers, "real", text.reals, 15)
     at_samples = _above_samples(text, at_reals)
     words = text.lines(first, at_integers)
-    comments = [line for line in text.lines(at_reals, at_samples) if line.lstrip().startswith("|")]
+    comments = [
+        line
+        for line in text.lines(at_reals, at_samples)
+        if line.lstrip().startswith("|")
+    ]
     matches = (re.search(r"unknown/unspecified:\s*(-?[\d.]+)", line) for line in words)
     unknown = next((float(match[1]) for match in matches if match), -999.0)
     whole += [int(unknown)] * max(0, _AZIMUTH + 1 - len(whole))
@@ -77,7 +98,10 @@ def _header(text: TextFile, first: int) -> tuple[int, float, dict[str, Any]]:
     stated = numbers[_STEP_MS] != unknown
     dt = numbers[_STEP_MS] / 1000 if stated else numbers[_RECORDER_STEP]
     facts = _facts([*words, *comments], whole[_AZIMUTH])
-    facts |= {name: None if numbers[i] == unknown else numbers[i] for i, name in enumerate(_PLACE)}
+    facts |= {
+        name: None if numbers[i] == unknown else numbers[i]
+        for i, name in enumerate(_PLACE)
+    }
     year, _, month, day, hour, minute = whole[_RECORD_TIME : _RECORD_TIME + 6]
     if unknown not in (year, month, day, hour, minute) and year > 0:
         second = 0.0 if numbers[_SECOND] == unknown else numbers[_SECOND]
@@ -94,7 +118,9 @@ def _above_samples(text: TextFile, at_reals: int) -> int:
         count = int(text.raw(at_comments).split()[0])
         line = text.find(_VALUES, at_comments + 1 + count)
     if line < 0:
-        text.fail("no line with the number of samples below the header; the file is cut short")
+        text.fail(
+            "no line with the number of samples below the header; the file is cut short"
+        )
     return line
 
 
@@ -118,14 +144,21 @@ def _section(text: TextFile, line: int, stop: int, dt: float) -> form.Channel:
     match = _VALUES_LINE.match(text.line(line))
     if match is None:
         text.fail("the line above the samples does not state their unit", line)
-    quantity = form.QUANTITIES.get(match["quantity"].upper()[:3], match["quantity"].lower())
+    quantity = form.QUANTITIES.get(
+        match["quantity"].upper()[:3], match["quantity"].lower()
+    )
     unit = canonical_unit(match["unit"])
     if match["code"] is not None:
         unit = _UNITS_BY_CODE.get(int(match["code"]), unit)
     if unit in {"counts", "volts"}:
-        text.refuse(f"the samples are raw {unit}; give the V1 or V2 file, in units of motion", line)
+        text.refuse(
+            f"the samples are raw {unit}; give the V1 or V2 file, in units of motion",
+            line,
+        )
     width = form.field_width(text.line(line).split("ormat", 1)[-1])
-    return form.section(text, line, stop, int(match["count"]), dt, unit, width, quantity)
+    return form.section(
+        text, line, stop, int(match["count"]), dt, unit, width, quantity
+    )
 
 
 def _facts(words: list[str], azimuth: int) -> dict[str, Any]:
@@ -137,7 +170,12 @@ def _facts(words: list[str], azimuth: int) -> dict[str, Any]:
         component = f"{azimuth:03d}" if 1 <= azimuth <= 360 else named
     earthquake = " ".join(words[1].split()) if len(words) > 1 else ""
     location = facts["location"].strip("-")
-    return {**facts, "location": location, "component": component, "earthquake": earthquake}
+    return {
+        **facts,
+        "location": location,
+        "component": component,
+        "earthquake": earthquake,
+    }
 
 
 FORMAT = form.Format("COSMOS", form.headed(_FIRST, _INTEGERS, within=60), _parse)

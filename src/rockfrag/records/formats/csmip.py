@@ -11,7 +11,11 @@ from collections.abc import Iterator
 
 from rockfrag.records.parsing import format as form
 from rockfrag.records.parsing.text_file import TextFile
-from rockfrag.records.parsing.timestamps import american_time, is_pairs_header, read_pairs
+from rockfrag.records.parsing.timestamps import (
+    american_time,
+    is_pairs_header,
+    read_pairs,
+)
 
 _FIRST = re.compile(r"^\s*(?:un)?corrected\s+acc?elero(?:gram|graph)\b", re.I)
 _SPECTRA = re.compile(r"^\s*(?:response|fourier)\b.*\bspectr", re.I)
@@ -40,7 +44,8 @@ _MAX_HEADER = 60
 
 _BEGINS = re.compile(f"{_FIRST.pattern}|{_SPECTRA.pattern}", re.I)
 _PARTS = (
-    re.compile(rf"^\s*{part}", re.I) for part in (r"station\s+(?:no|id)\b", r"chan\s*\d+\s*:")
+    re.compile(rf"^\s*{part}", re.I)
+    for part in (r"station\s+(?:no|id)\b", r"chan\s*\d+\s*:")
 )
 _headed = form.headed(_BEGINS, *_PARTS, within=_MAX_HEADER)
 
@@ -62,7 +67,10 @@ def _parse(text: TextFile) -> Iterator[form.Channel]:
             yield _described(_section(text, line, end), words)
         if not sections:
             if not is_pairs_header(text, first):
-                text.fail("no line with the number of samples below; the file is cut short", first)
+                text.fail(
+                    "no line with the number of samples below; the file is cut short",
+                    first,
+                )
             yield _described(read_pairs(text, first, stop), words)
 
 
@@ -78,17 +86,27 @@ def _section(text: TextFile, line: int, stop: int) -> form.Channel:
     unit = _DEFAULT_UNITS[quantity] if second else ""
     if stated := _UNIT.search(match["rest"]):
         unit = stated["unit"]
-    return form.section(text, line, stop, int(match["count"]), dt, unit, width, quantity)
+    return form.section(
+        text, line, stop, int(match["count"]), dt, unit, width, quantity
+    )
 
 
 def _described(values: form.Channel, lines: list[str]) -> form.Channel:
     """Add what the text header says: the line below the station's number has its name."""
-    at_station = next((i for i, line in enumerate(lines) if _STATION.match(line)), len(lines))
+    at_station = next(
+        (i for i, line in enumerate(lines) if _STATION.match(line)), len(lines)
+    )
     below = next(iter(lines[at_station + 1 :]), "")
-    component = form.stated(r"^\s*chan\s*\d+\s*:\s*(.*?)\s*(?:\(|location|from\s*$|$)", lines)
+    component = form.stated(
+        r"^\s*chan\s*\d+\s*:\s*(.*?)\s*(?:\(|location|from\s*$|$)", lines
+    )
     # the earthquake's name and the time of it or of the record stand in lines 2 to 4
-    words = [re.split(r"\s{3,}|\(origin", line.strip(), flags=re.I)[0] for line in lines[1:4]]
-    words = [word for word in words if word and not word.upper().startswith("UNCORRECTED")]
+    words = [
+        re.split(r"\s{3,}|\(origin", line.strip(), flags=re.I)[0] for line in lines[1:4]
+    ]
+    words = [
+        word for word in words if word and not word.upper().startswith("UNCORRECTED")
+    ]
     starts = (american_time(match[1]) for match in map(_START.search, lines) if match)
     facts = {
         "start_time": next(filter(None, starts), None),

@@ -17,7 +17,8 @@ _SIZE = re.compile(
     r"(?P<dt>[\d.]+(?:E[+-]?\d+)?)\s*SEC"
 )
 _QUANTITY = re.compile(
-    r"\b(?P<quantity>ACCELERATION|VELOCITY|DISPLACEMENT)\b.*?\bUNIT\s*:\s*(?P<unit>\S+)", re.I
+    r"\b(?P<quantity>ACCELERATION|VELOCITY|DISPLACEMENT)\b.*?\bUNIT\s*:\s*(?P<unit>\S+)",
+    re.I,
 )
 _STATION = r"^\s*STATION\s*:\s*(\S+)"
 _FACTS = {
@@ -40,7 +41,10 @@ def _parse(text: TextFile) -> Iterator[form.Channel]:
     if size is None or kind is None or not facts["station"]:
         text.fail("the header of 16 lines states no number of points, unit or station")
     unit, held = kind["unit"], kind["quantity"]
-    if held.upper() != "ACCELERATION" or quantity_of(canonical_unit(unit)) != "acceleration":
+    if (
+        held.upper() != "ACCELERATION"
+        or quantity_of(canonical_unit(unit)) != "acceleration"
+    ):
         text.refuse(f"this file holds {held.lower()} in {unit}, not acceleration")
     count, dt = int(size["count"]), text.interval(float(size["dt"]), at_size)
     found = form.Channel(count, dt, text.numbers(_HEADER, count=count), unit)

@@ -12,14 +12,18 @@ from rockfrag.records.parsing.text_file import TextFile
 from rockfrag.records.parsing.timestamps import step_of_times, time_of
 
 _FIRST = re.compile(r"^\s*#\s*(?:Earthquake Information|StationCode)", re.I)
-_NEEDED = [re.compile(rf"^\s*#\s*{key}\s*[:(]", re.I) for key in ("stationcode", "samplerate")]
+_NEEDED = [
+    re.compile(rf"^\s*#\s*{key}\s*[:(]", re.I) for key in ("stationcode", "samplerate")
+]
 _MAX_HEADER = 60
 _ORDER = ("U", "N", "E")
 
 
 def _parse(text: TextFile) -> list[form.Channel]:
     header = text.lines(0, _MAX_HEADER)
-    below = (i for i, x in enumerate(header) if x.strip() and not x.lstrip().startswith("#"))
+    below = (
+        i for i, x in enumerate(header) if x.strip() and not x.lstrip().startswith("#")
+    )
     start = next(below, len(header))
     facts = form.header_keys(line.lstrip(" \t#") for line in header[:start])
     order = re.findall(r"\b([UNEZ])\s*\(", facts["datasequence"]) or list(_ORDER)
@@ -30,10 +34,14 @@ def _parse(text: TextFile) -> list[form.Channel]:
     if table.shape[0] > 1:
         measured = step_of_times(table[:, 0], text, start)
         if abs(measured - dt) > 1e-6:
-            text.fail(f"times step by {measured:g} s, but #SampleRate gives {dt:g} s", start)
+            text.fail(
+                f"times step by {measured:g} s, but #SampleRate gives {dt:g} s", start
+            )
     _check_length(text, facts["recordlength"], table.shape[0] * dt, start)
     began = time_of(facts["starttime"])
-    zone = form.stated(r"^\s*#\s*starttime\s*\(.*(?:GMT|UTC)\s*([+-]\d+)[^)]*\)\s*:", header)
+    zone = form.stated(
+        r"^\s*#\s*starttime\s*\(.*(?:GMT|UTC)\s*([+-]\d+)[^)]*\)\s*:", header
+    )
     known = {
         "unit": facts["amplitudeunit"].split(".")[0],
         "start_time": began and began - 3600.0 * int(zone or 0),

@@ -33,7 +33,11 @@ _SAMPLE_TIME = "DATE_TIME_FIRST_SAMPLE_YYYYMMDD_HHMMSS"
 
 def _header(lines: list[str]) -> tuple[dict[str, str], int]:
     """Return the keys and the number of lines above the samples."""
-    keys = [(number, match) for number, line in enumerate(lines) if (match := _KEY.match(line))]
+    keys = [
+        (number, match)
+        for number, line in enumerate(lines)
+        if (match := _KEY.match(line))
+    ]
     facts = {match["key"]: match["value"].strip() for _, match in keys}
     return facts, keys[-1][0] + 1 if keys else 0
 

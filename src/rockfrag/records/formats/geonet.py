@@ -43,17 +43,25 @@ def _component(text: TextFile, first: int) -> Generator[Channel, None, int]:
         # V1A has the digitised samples only
         counts[0], dt = whole[30], dt or digitised_dt
     if min(counts) < 0 or counts[0] < 1:
-        text.fail(f"the header promises {counts[0]} samples of acceleration", at_integers + 3)
+        text.fail(
+            f"the header promises {counts[0]} samples of acceleration", at_integers + 3
+        )
     found = []
     for count in counts:
         after = line - (-count // _A_LINE)
         found.append(text.numbers(line, after, _WIDTH, count=count))
         line = after
     values = found[0] * float(stated(r"\bunits of\s+([\d.]+)\s*mm/s/s", words) or 1)
-    (year, month), (day, hour), (minute, milliseconds) = whole[8:10], whole[18:20], whole[38:40]
+    (year, month), (day, hour), (minute, milliseconds) = (
+        whole[8:10],
+        whole[18:20],
+        whole[38:40],
+    )
     seconds, clock = milliseconds / 1000, {"day": day, "hour": hour, "minute": minute}
     facts = {
-        "start_time": time_at(seconds, year=year, month=month, **clock) if year > 0 else None,
+        "start_time": time_at(seconds, year=year, month=month, **clock)
+        if year > 0
+        else None,
         "network": "NZ",
         "station": stated(r"\bsite\s+(\S+)", words),
         "component": stated(r"\bcomponent\s+(\S+)", words),

@@ -27,11 +27,20 @@ from rockfrag.records.parsing.quantities import canonical_unit
 from rockfrag.records.parsing.text_file import MAX_BYTES, MAX_LINE, NotAcceleration
 from rockfrag.records.quality_flags import foreign_kind
 
-_READ_BY_OBSPY = ("MSEED", "SAC", "KNET", "KINEMETRICS_EVT", "SLIST", "TSPAIR", "SH_ASC")
+_READ_BY_OBSPY = (
+    "MSEED",
+    "SAC",
+    "KNET",
+    "KINEMETRICS_EVT",
+    "SLIST",
+    "TSPAIR",
+    "SH_ASC",
+)
 """Formats left to ObsPy. Of its others PICKLE would run what a file says, GSE ends the process on a
 damaged file, and the rest are of other fields."""
 
-_SCALED_FORMATS = frozenset({"KNET", "KINEMETRICS_EVT"})  # whose ``calib`` turns counts into m/s²
+# whose ``calib`` turns counts into m/s²
+_SCALED_FORMATS = frozenset({"KNET", "KINEMETRICS_EVT"})
 _SAC_QUANTITIES = {6: "displacement", 7: "velocity"}
 _WATER_LEVEL = 60.0
 
@@ -50,7 +59,12 @@ def obspy_channels(path: Path, cut_short: bool = False) -> tuple[str, list[Chann
     if kind:
         problem = NotAcceleration if "spectra" in kind else InputError
         raise problem(f"{path}: this is {kind}.")
-    if len(head) > MAX_LINE and b"\x00" not in head and b"\n" not in head and b"\r" not in head:
+    if (
+        len(head) > MAX_LINE
+        and b"\x00" not in head
+        and b"\n" not in head
+        and b"\r" not in head
+    ):
         raise InputError(
             f"{path}, line 1: the line is longer than {MAX_LINE} characters, which no record format has."
         )
@@ -166,9 +180,13 @@ def _channel(trace: Trace, format_name: str, path: Path, cut_short: bool) -> Cha
     elif format_name == "SAC":
         quantity = _SAC_QUANTITIES.get(int(stats.get("sac", {}).get("idep", 5)))
         if quantity is not None:
-            raise NotAcceleration(f"{path}: its header says {quantity}, not acceleration.")
+            raise NotAcceleration(
+                f"{path}: its header says {quantity}, not acceleration."
+            )
     if not np.isfinite(samples).all():
-        raise InputError(f"{path}: channel {trace.id} has samples that are not finite numbers.")
+        raise InputError(
+            f"{path}: channel {trace.id} has samples that are not finite numbers."
+        )
     knet, earthquake = stats.get("knet", {}), {}
     if "evot" in knet:
         said = f"{knet['evot']} M {knet.get('mag', '?')}"
@@ -190,14 +208,20 @@ def _channel(trace: Trace, format_name: str, path: Path, cut_short: bool) -> Cha
     return channel
 
 
-def _shortness(trace: Trace, format_name: str, path: Path, cut_short: bool) -> list[dict[str, Any]]:
+def _shortness(
+    trace: Trace, format_name: str, path: Path, cut_short: bool
+) -> list[dict[str, Any]]:
     """Check K-NET's duration against its samples; return the note of a shorter file that is wanted."""
-    duration = trace.stats.get("knet", {}).get("duration") if format_name == "KNET" else None
+    duration = (
+        trace.stats.get("knet", {}).get("duration") if format_name == "KNET" else None
+    )
     if duration is None:
         return []
     product = float(duration) * float(trace.stats.sampling_rate)
     if not math.isfinite(product):
-        raise InputError(f"{path}: its duration of {duration} s is no length; the file is damaged.")
+        raise InputError(
+            f"{path}: its duration of {duration} s is no length; the file is damaged."
+        )
     promised, found = round(product), int(trace.stats.npts)
     if found == promised or (cut_short and found < promised):
         return [] if found == promised else [cut_short_step(promised, found)]
@@ -220,7 +244,9 @@ def _inventory_for(trace: Trace, path: Path) -> tuple[Response, str] | None:
         # another kind of file, a broken one, or ObsPy's bare Exception for "no matching response"
         with suppress(Exception):
             inventory = _inventory(str(candidate), state.st_mtime_ns, state.st_size)
-            return inventory.get_response(trace.id, trace.stats.starttime), candidate.name
+            return inventory.get_response(
+                trace.id, trace.stats.starttime
+            ), candidate.name
     return None
 
 
@@ -238,11 +264,17 @@ def _physical(
             raise InputError(
                 f"{path}: the response of {trace.id} cannot be removed ({_one_line(error)})."
             ) from error
-        step = {"step": "remove response", "output": "acceleration", "water_level_db": _WATER_LEVEL}
+        step = {
+            "step": "remove response",
+            "output": "acceleration",
+            "water_level_db": _WATER_LEVEL,
+        }
         return np.asarray(physical.data, dtype=np.float64), step
     sensitivity = response.instrument_sensitivity
     if sensitivity is None or not sensitivity.value:
-        raise InputError(f"{path}: its StationXML has neither stages nor a sensitivity.")
+        raise InputError(
+            f"{path}: its StationXML has neither stages nor a sensitivity."
+        )
     if canonical_unit(str(sensitivity.input_units or "")) != "m/s2":
         raise InputError(
             f"{path}: its StationXML has no stages and a sensitivity in {sensitivity.input_units}, "

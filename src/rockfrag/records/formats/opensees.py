@@ -27,18 +27,25 @@ _OPTION = r"-{name}\s+(?:\{{(?P<list>[^{{}}]*)\}}|\"(?P<quoted>[^\"]*)\"|(?P<wor
 
 def _parse(text: TextFile) -> Iterator[Channel]:
     unit = _UNIT.search(text.data)
-    stated = canonical_unit(unit["unit"].decode("ascii", errors="replace")) if unit else ""
+    stated = (
+        canonical_unit(unit["unit"].decode("ascii", errors="replace")) if unit else ""
+    )
     promised = int(unit["count"]) if unit and unit["count"] else None
     for first, stop in text.parts(_SERIES):
         yield _series(text, first, stop, stated, promised)
 
 
-def _series(text: TextFile, line: int, stop: int, unit: str, promised: int | None) -> Channel:
+def _series(
+    text: TextFile, line: int, stop: int, unit: str, promised: int | None
+) -> Channel:
     script = _command(text, line, stop)
     tag = re.search(r"Path[\"']?\s+(\w+)", script, re.I)
     step = _number(text, line, script, "dt")
     if step is None:
-        text.fail("the Path series states no -dt; a series of -time or -fileTime is not read", line)
+        text.fail(
+            "the Path series states no -dt; a series of -time or -fileTime is not read",
+            line,
+        )
     dt, factor = text.interval(step, line), _number(text, line, script, "factor")
     scale = 1.0 if factor is None else factor
     samples = scale * _values(text, line, script)
@@ -49,7 +56,9 @@ def _series(text: TextFile, line: int, stop: int, unit: str, promised: int | Non
             line,
         )
     known = {"component": tag[1] if tag else "", "factor": scale}
-    return Channel(samples.size, dt, samples, unit if unit in TO_SI else "").saying(known)
+    return Channel(samples.size, dt, samples, unit if unit in TO_SI else "").saying(
+        known
+    )
 
 
 def _command(text: TextFile, line: int, stop: int) -> str:
@@ -91,7 +100,9 @@ def _values(text: TextFile, line: int, script: str) -> NDArray[np.float64]:
 
 def _option(script: str, name: str) -> str | None:
     match = re.search(_OPTION.format(name=name), script, re.I)
-    return next(group for group in match.groups() if group is not None) if match else None
+    return (
+        next(group for group in match.groups() if group is not None) if match else None
+    )
 
 
 def _number(text: TextFile, line: int, script: str, name: str) -> float | None:

@@ -30,12 +30,15 @@ _OF_OBSPY = re.compile(
 """First words of text formats that ObsPy reads, or that are refused by name."""
 
 _MIN_ROWS = 3
-_RISING = 0.9  # fraction of the rows in which a column without title must rise to be one of times
+# fraction of the rows in which a column without title must rise to be one of times
+_RISING = 0.9
 _FEW_ROWS = 20
 
-_SMOOTHER = 0.6  # ratio of steps along columns to steps along rows below which columns are channels
+# ratio of steps along columns to steps along rows below which columns are channels
+_SMOOTHER = 0.6
 _SHOWN = 60
-_LONGEST_ROUND = 3  # significant digits of an interval that stands above samples of more digits
+# significant digits of an interval that stands above samples of more digits
+_LONGEST_ROUND = 3
 
 
 @dataclass
@@ -62,15 +65,31 @@ class _Layout:
 
     def agree(self, npts: int | None, dt: float | None, line: int) -> None:
         """Take count and interval of numbers above the samples, which must agree with the words there."""
-        for what, stated, own in (("samples", self.npts, npts), ("s as interval", self.dt, dt)):
-            if stated is not None and own is not None and abs(stated - own) > 1e-6 * own:
+        for what, stated, own in (
+            ("samples", self.npts, npts),
+            ("s as interval", self.dt, dt),
+        ):
+            if (
+                stated is not None
+                and own is not None
+                and abs(stated - own) > 1e-6 * own
+            ):
                 self.text.fail(
-                    f"{own:g} {what} here, but {stated:g} in the words of the header; mend it", line
+                    f"{own:g} {what} here, but {stated:g} in the words of the header; mend it",
+                    line,
                 )
-        self.npts, self.dt = (self.npts if npts is None else npts), (self.dt if dt is None else dt)
+        self.npts, self.dt = (
+            (self.npts if npts is None else npts),
+            (self.dt if dt is None else dt),
+        )
 
     def channel(
-        self, samples: NDArray[np.float64], step: float, column: Column, component: str, title: str
+        self,
+        samples: NDArray[np.float64],
+        step: float,
+        column: Column,
+        component: str,
+        title: str,
     ) -> Channel:
         """Return samples that are ``step`` seconds apart as a channel with what the file says of it."""
         stated = self.facts.unit
@@ -122,7 +141,11 @@ def _parse(text: TextFile) -> list[Channel]:
     if columns == 1:
         return [_series(layout, _without_leading(layout, values))]
     filled = widths[widths > 0]
-    if layout.titles or _is_timed(values, columns) or _are_channels(layout, values, filled):
+    if (
+        layout.titles
+        or _is_timed(values, columns)
+        or _are_channels(layout, values, filled)
+    ):
         text.check_widths(widths, columns, layout.line)
         return _channels(layout, values.reshape(-1, columns))
     return [_series(layout, values)]
@@ -137,7 +160,9 @@ def _layout(text: TextFile) -> _Layout:
     filled = [n for n in range(table.start) if not number_fields.is_blank(lines[n])]
     for number in filled[-1:]:
         if number_fields.is_damaged_row(lines[number]):
-            text.fail(f"{lines[number].strip()[:_SHOWN]!r} is no row of numbers", number)
+            text.fail(
+                f"{lines[number].strip()[:_SHOWN]!r} is no row of numbers", number
+            )
     facts = stated_facts([words for _, words in table.words])
     if facts.contradiction:
         text.fail(f"{facts.contradiction}; mend the header")
@@ -150,7 +175,9 @@ def _layout(text: TextFile) -> _Layout:
     _take_numbers_above(layout, lines)
     dt = text.asked_dt
     if dt is not None and layout.dt is not None and abs(dt - layout.dt) > 1e-6 * dt:
-        text.fail(f"the file states an interval of {layout.dt:g} s, not {dt:g} s; leave dt= out")
+        text.fail(
+            f"the file states an interval of {layout.dt:g} s, not {dt:g} s; leave dt= out"
+        )
     return layout
 
 
@@ -164,8 +191,12 @@ def _take_numbers_above(layout: _Layout, lines: list[str]) -> None:
     above = [(number, word) for number, row in table.numbers for word in row]
     if not above and table.columns > 1:
         row = number_fields.numbers_of(lines[table.start], table.decimal_comma)
-        below = next((x for x in lines[table.start + 1 :] if not number_fields.is_blank(x)), "")
-        if _is_count_row(row, number_fields.numbers_of(below, table.decimal_comma), table.columns):
+        below = next(
+            (x for x in lines[table.start + 1 :] if not number_fields.is_blank(x)), ""
+        )
+        if _is_count_row(
+            row, number_fields.numbers_of(below, table.decimal_comma), table.columns
+        ):
             above = [(table.start, word) for word in row]
             layout.table = replace(table, start=table.start + 1)
     if not above:
@@ -188,7 +219,12 @@ def _take_numbers_above(layout: _Layout, lines: list[str]) -> None:
 def _is_count_row(row: list[str], below: list[str], columns: int) -> bool:
     """Tell a count and an interval from the first row of samples of several columns."""
     npts, dt = _count_and_step(row[:2])
-    if npts is None or dt is None or not number_fields.are_numbers(below) or len(below) != columns:
+    if (
+        npts is None
+        or dt is None
+        or not number_fields.are_numbers(below)
+        or len(below) != columns
+    ):
         return False
     if columns == 2:
         # as a time, the first number would not come before the next
@@ -198,8 +234,12 @@ def _is_count_row(row: list[str], below: list[str], columns: int) -> bool:
 
 def _count_and_step(words: list[str]) -> tuple[int | None, float | None]:
     """Return the count and the interval [s] that one or two numbers are, in either order."""
-    npts = next((int(number_fields.number_in(word)) for word in words if _is_count(word)), None)
-    dt = next((number_fields.number_in(word) for word in words if not _is_whole(word)), None)
+    npts = next(
+        (int(number_fields.number_in(word)) for word in words if _is_count(word)), None
+    )
+    dt = next(
+        (number_fields.number_in(word) for word in words if not _is_whole(word)), None
+    )
     if dt is not None and not SHORTEST_STEP <= dt <= LONGEST_STEP:
         return None, None
     if len(words) == 2 and (npts is None or dt is None):
@@ -223,7 +263,9 @@ def _is_timed(values: NDArray[np.float64], columns: int) -> bool:
     return bool(even and (steps > 0).mean() > _RISING)
 
 
-def _are_channels(layout: _Layout, values: NDArray[np.float64], widths: NDArray[np.int64]) -> bool:
+def _are_channels(
+    layout: _Layout, values: NDArray[np.float64], widths: NDArray[np.int64]
+) -> bool:
     """Tell columns of channels side by side from one series that goes on row after row.
 
     Components that are named and a count of rows tell it. Else the samples do: those of one channel
@@ -245,7 +287,9 @@ def _are_channels(layout: _Layout, values: NDArray[np.float64], widths: NDArray[
             "write titles above them, or one number a row",
             layout.line,
         )
-    layout.steps.append({"step": "take numbers as " + ("columns" if side_by_side else "rows")})
+    layout.steps.append(
+        {"step": "take numbers as " + ("columns" if side_by_side else "rows")}
+    )
     return side_by_side
 
 
@@ -257,12 +301,18 @@ def _series(layout: _Layout, values: NDArray[np.float64]) -> Channel:
         layout.text.check_count(layout.npts, values.size, layout.line)
     if layout.interval is None:
         what = "one column" if layout.table.columns == 1 else "rows of numbers"
-        layout.text.fail(f"{what} without sampling interval; give it with dt= (in seconds)")
+        layout.text.fail(
+            f"{what} without sampling interval; give it with dt= (in seconds)"
+        )
     names = layout.facts.components if len(layout.facts.components) == 1 else ()
-    return layout.channel(values, layout.interval, stated, "".join(names), layout.table.title)
+    return layout.channel(
+        values, layout.interval, stated, "".join(names), layout.table.title
+    )
 
 
-def _without_leading(layout: _Layout, values: NDArray[np.float64]) -> NDArray[np.float64]:
+def _without_leading(
+    layout: _Layout, values: NDArray[np.float64]
+) -> NDArray[np.float64]:
     """Take count and interval, a line each, from the top of one column of numbers.
 
     They are told by the count, which is that of the numbers below, and by a notation that no sample has.
@@ -278,7 +328,9 @@ def _without_leading(layout: _Layout, values: NDArray[np.float64]) -> NDArray[np
     ]
     first, body = words[:2], words[2:]
     whole = [_is_whole(word) for word in first]
-    odd = [_notation(word) not in {_notation(sample) for sample in body} for word in first]
+    odd = [
+        _notation(word) not in {_notation(sample) for sample in body} for word in first
+    ]
     count, step = _count_and_step(first) if len(first) == 2 else (None, None)
     skip = 0
     if count == values.size - 2 and step is not None:
@@ -302,8 +354,13 @@ def _without_leading(layout: _Layout, values: NDArray[np.float64]) -> NDArray[np
         return values
     layout.agree(count, step, layout.line)
     if dt is not None and step is not None and abs(dt - step) > 1e-6 * dt:
-        text.fail(f"states an interval of {step:g} s, not {dt:g} s; leave dt= out", layout.line)
-    layout.steps.append({"step": "take first lines as header", "lines": " ".join(words[:skip])})
+        text.fail(
+            f"states an interval of {step:g} s, not {dt:g} s; leave dt= out",
+            layout.line,
+        )
+    layout.steps.append(
+        {"step": "take first lines as header", "lines": " ".join(words[:skip])}
+    )
     return values[skip:]
 
 
@@ -314,7 +371,8 @@ def _is_interval(word: str, odd: bool, body: list[str]) -> bool:
         return False
     digits = [_digits(sample) for sample in body]
     return odd or (
-        _digits(word) <= _LONGEST_ROUND and _digits(word) < float(np.median(digits or [0]))
+        _digits(word) <= _LONGEST_ROUND
+        and _digits(word) < float(np.median(digits or [0]))
     )
 
 
@@ -335,7 +393,8 @@ def _refuse_other(layout: _Layout, quantity: str) -> None:
     """Refuse samples that are stated to be of another quantity than acceleration."""
     if quantity not in ("", "acceleration"):
         layout.text.refuse(
-            f"the lines above the samples say that they are {quantity}, not acceleration", 0
+            f"the lines above the samples say that they are {quantity}, not acceleration",
+            0,
         )
 
 
@@ -347,7 +406,8 @@ def _channels(layout: _Layout, table: NDArray[np.float64]) -> list[Channel]:
     kinds = [column.quantity for column in columns]
     if kinds[0] == "spectrum" or (len(columns) == 2 and "spectrum" in kinds):
         text.refuse(
-            f"the columns {titles} are a spectrum, not acceleration in time", layout.line - 1
+            f"the columns {titles} are a spectrum, not acceleration in time",
+            layout.line - 1,
         )
     chosen = [i for i, kind in enumerate(kinds) if kind == "acceleration"]
     if not chosen:
@@ -379,7 +439,11 @@ def _untitled(layout: _Layout, table: NDArray[np.float64]) -> list[Column]:
     count = table.shape[1]
     timed = _is_timed(table.ravel(), count)
     number, words = layout.table.words[-1] if layout.table.words else (0, "")
-    if timed and count > 2 and len(re.findall(r"\b(?:acc|vel|disp|time)", words, re.I)) > 1:
+    if (
+        timed
+        and count > 2
+        and len(re.findall(r"\b(?:acc|vel|disp|time)", words, re.I)) > 1
+    ):
         layout.text.fail(
             f"{words[:_SHOWN]!r} cannot be told apart into {layout.table.columns} titles of columns; "
             "separate them as the numbers are",
@@ -420,7 +484,11 @@ def _interval(
         times = times * seconds
         check_rising(times, text, layout.line)
         mean = float((times[-1] - times[0]) / max(times.size - 1, 1))
-        replaced = {"step": "replace time column", "dt_s": dt, "mean_step_in_file_s": mean}
+        replaced = {
+            "step": "replace time column",
+            "dt_s": dt,
+            "mean_step_in_file_s": mean,
+        }
         return dt, (() if abs(mean - dt) <= 1e-6 * dt else (replaced,))
     if not title.title and (np.diff(times) == 1).all():
         text.fail(
@@ -430,7 +498,9 @@ def _interval(
         )
     measured = step_of_times(times, text, layout.line, seconds)
     if layout.dt is not None and abs(measured - layout.dt) > 1e-6 * layout.dt:
-        text.fail(f"the header gives dt = {layout.dt:g} s, but times step by {measured:g} s")
+        text.fail(
+            f"the header gives dt = {layout.dt:g} s, but times step by {measured:g} s"
+        )
     return measured, ()
 
 

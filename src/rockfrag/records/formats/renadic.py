@@ -23,7 +23,10 @@ def _parse(text: TextFile) -> Iterator[Channel]:
         facts = {
             "start_time": american_time(stated(r"TRIGGER\s+TIME\s*:(.*)$", header)),
             # the station that the file is named by, without the record's number
-            "station": PurePath(text.name).name.split(".")[0].replace(number, "").strip(" _-"),
+            "station": PurePath(text.name)
+            .name.split(".")[0]
+            .replace(number, "")
+            .strip(" _-"),
             "component": stated(r"^\s*CHAN\s*\d+\s*:\s*(\S+)", header),
             "earthquake": re.split(r"\s*\(ORIGIN", " ".join(header[2].split()))[0],
             "record": number,
@@ -31,4 +34,6 @@ def _parse(text: TextFile) -> Iterator[Channel]:
         yield values.saying(facts)
 
 
-FORMAT = Format("RENADIC", headed(_FIRST, re.compile("RENADIC", re.I), within=_HEADER), _parse)
+FORMAT = Format(
+    "RENADIC", headed(_FIRST, re.compile("RENADIC", re.I), within=_HEADER), _parse
+)

@@ -25,7 +25,9 @@ def _titles(lines: list[str]) -> list[tuple[int, re.Match[str]]]:
 
 def _recognise(lines: list[str], name: str) -> bool:
     # the titles of the columns alone are a plain two-column file
-    return any(_KEYS.match(line) for number, _ in _titles(lines)[:1] for line in lines[:number])
+    return any(
+        _KEYS.match(line) for number, _ in _titles(lines)[:1] for line in lines[:number]
+    )
 
 
 def _parse(text: TextFile) -> Iterator[Channel]:
@@ -33,7 +35,8 @@ def _parse(text: TextFile) -> Iterator[Channel]:
     unit = canonical_unit(titles["unit"])
     if quantity_of(unit) != "acceleration":
         text.refuse(
-            f"the file holds {titles['quantity']}[{titles['unit']}], not acceleration", columns
+            f"the file holds {titles['quantity']}[{titles['unit']}], not acceleration",
+            columns,
         )
     header = header_keys(text.lines(0, columns))
     values, widths = text.rows(columns + 1)

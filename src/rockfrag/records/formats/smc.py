@@ -56,10 +56,15 @@ def _parse(text: TextFile) -> Iterator[Channel]:
     numbers = text.reals(at_reals, _FIRST_DATA, 15, 50)
     count, comments = whole[_COUNT], whole[_COMMENTS]
     if count < 1 or not 0 <= comments < len(text):
-        text.fail(f"the header promises {count} samples and {comments} comments", _TEXT_LINES + 1)
+        text.fail(
+            f"the header promises {count} samples and {comments} comments",
+            _TEXT_LINES + 1,
+        )
     start = _FIRST_DATA + comments
     rate = numbers[_RATE]
-    samples, left_out = _without_surplus_lines(text, start, count, _width(text, start, whole))
+    samples, left_out = _without_surplus_lines(
+        text, start, count, _width(text, start, whole)
+    )
     if rate == numbers[_MISSING_REAL]:
         # without a rate the values are pairs of time and acceleration
         values = pairs_of(samples, "cm/s2", text, start, count // 2)
@@ -67,7 +72,10 @@ def _parse(text: TextFile) -> Iterator[Channel]:
         dt = float(f"{1 / rate:.9g}") if rate > 0 else 0.0
         values = Channel(count, text.interval(dt, at_reals), samples, "cm/s2")
     if left_out:
-        step = {"step": "leave out values beyond the count of the header", "values": left_out}
+        step = {
+            "step": "leave out values beyond the count of the header",
+            "values": left_out,
+        }
         values = replace(values, steps=(step, *values.steps))
     place = {"latitude": numbers[_LATITUDE], "longitude": numbers[_LONGITUDE]}
     # a fifth character of the code names the channel
@@ -80,7 +88,11 @@ def _parse(text: TextFile) -> Iterator[Channel]:
         "station_name": station[1] if station else "",
         "earthquake": " ".join(words[3].split()),
         "corrected": held.startswith("CORRECTED"),
-        **{key: value for key, value in place.items() if value != numbers[_MISSING_REAL]},
+        **{
+            key: value
+            for key, value in place.items()
+            if value != numbers[_MISSING_REAL]
+        },
     }
     yield values.saying(facts)
 
@@ -97,7 +109,9 @@ def _without_surplus_lines(
     surplus = values.size - count
     widths = (len(text.raw(line).rstrip()) for line in range(start, len(text)))
     ends = accumulate(-(-each // width) for each in widths)
-    if 0 < surplus <= _SURPLUS_LINES * _PER_LINE and count in takewhile(lambda n: n <= count, ends):
+    if 0 < surplus <= _SURPLUS_LINES * _PER_LINE and count in takewhile(
+        lambda n: n <= count, ends
+    ):
         return values[:count], surplus
     return text.numbers(start, None, width, count=count), 0
 
@@ -115,7 +129,9 @@ def _start(whole: list[int]) -> UTCDateTime | None:
     if missing in (year, day, hour, minute) or year <= 0:
         return None
     second, millisecond = (0 if value == missing else value for value in rest)
-    return time_at(second + millisecond / 1000, year=year, julday=day, hour=hour, minute=minute)
+    return time_at(
+        second + millisecond / 1000, year=year, julday=day, hour=hour, minute=minute
+    )
 
 
 def _component(whole: list[int], words: str) -> str:

@@ -41,7 +41,9 @@ def _parse(text: TextFile) -> list[form.Channel]:
     except ValueError:
         text.fail("sampling interval or number of samples is not a number")
     dt = text.interval(dt, at_data)
-    width = next((value for key, value in facts.items() if key.startswith("formato datos")), "")
+    width = next(
+        (value for key, value in facts.items() if key.startswith("formato datos")), ""
+    )
     values = text.numbers(rulers[1] + 1, None, form.field_width(f"({width})"))
     if text.cut_short:
         values = values[: values.size // len(intervals) * len(intervals)]
@@ -66,7 +68,9 @@ def _parse(text: TextFile) -> list[form.Channel]:
 def _list(facts: dict[str, str], key: str) -> list[str]:
     """Return the values ``/a/b/c`` of the first six channels, then those of the others."""
     values = [value for name, value in facts.items() if name.startswith(key)]
-    return [part.strip() for value in values for part in value.split("/") if part.strip()]
+    return [
+        part.strip() for value in values for part in value.split("/") if part.strip()
+    ]
 
 
 def _start(facts: dict[str, str]) -> UTCDateTime | None:
@@ -76,17 +80,22 @@ def _start(facts: dict[str, str]) -> UTCDateTime | None:
     if start is None or origin is None:
         return None
     late = start - origin
-    return start + (86400 if late < -_HALF_A_DAY else -86400 if late > _HALF_A_DAY else 0)
+    return start + (
+        86400 if late < -_HALF_A_DAY else -86400 if late > _HALF_A_DAY else 0
+    )
 
 
 def _facts(facts: dict[str, str]) -> dict[str, object]:
     stated = facts["coordenadas de la estacion"]
     coordinates = re.findall(r"(\d+(?:\.\d+)?)\s*(LAT|LONG)\.?\s*([NSEW])", stated)
     place = {
-        "latitude" if axis == "LAT" else "longitude": float(value) * (-1 if side in "SW" else 1)
+        "latitude" if axis == "LAT" else "longitude": float(value)
+        * (-1 if side in "SW" else 1)
         for value, axis, side in coordinates
     }
-    magnitudes = re.findall(r"M\w*\s*=\s*(\d+(?:\.\d+)?)", facts.get("magnitud(es)", ""))
+    magnitudes = re.findall(
+        r"M\w*\s*=\s*(\d+(?:\.\d+)?)", facts.get("magnitud(es)", "")
+    )
     magnitudes = magnitudes or re.findall(r"=\s*(\d\.\d)", facts["magnitud"])
     return {
         "start_time": _start(facts),
@@ -99,4 +108,6 @@ def _facts(facts: dict[str, str]) -> dict[str, object]:
     }
 
 
-FORMAT = form.Format("UNAM", form.headed(None, _TITLE, within=30), _parse, encoding="latin-1")
+FORMAT = form.Format(
+    "UNAM", form.headed(None, _TITLE, within=30), _parse, encoding="latin-1"
+)

@@ -33,7 +33,9 @@ def _parse(text: TextFile) -> Iterator[Channel]:
 def place_of(words: list[str], values: Channel) -> Channel:
     """Return a channel with the station, component and earthquake of the text header above it."""
     lines = [line[: _LENGTH.start].strip() for line in words]
-    station = next((i for i, line in enumerate(lines) if _STATION.match(line)), len(lines))
+    station = next(
+        (i for i, line in enumerate(lines) if _STATION.match(line)), len(lines)
+    )
     # the earthquake's name and date stand below the line that names the volume
     volume = next((i for i, line in enumerate(lines) if "OF VOLUME" in line.upper()), 0)
     facts = {

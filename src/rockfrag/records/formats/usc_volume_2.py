@@ -26,13 +26,17 @@ _VALUES_LINE = re.compile(
     r"AT\s+(?P<dt>[\d.]+)\s*SEC\.?(?:\s*(?:\(|IN\s+)?\s*(?:UNITS?\b\s*(?:OF|:)?\s*)?(?P<unit>[A-Z]+/[A-Z/*\d]+))?"
 )
 _PEAK = re.compile(
-    r"PEAK\s+ACCELERATION\s*=\s*(?P<value>[-+]?[\d.]+)\s+(?P<unit>[A-Z]+/[A-Z/*\d]+)", re.I
+    r"PEAK\s+ACCELERATION\s*=\s*(?P<value>[-+]?[\d.]+)\s+(?P<unit>[A-Z]+/[A-Z/*\d]+)",
+    re.I,
 )
-_COUNT_IN_WORDS = re.compile(r"(?P<count>\d+)\s+INSTRUMENT\s+AND\s+BASELINE\s+CORRECTED", re.I)
+_COUNT_IN_WORDS = re.compile(
+    r"(?P<count>\d+)\s+INSTRUMENT\s+AND\s+BASELINE\s+CORRECTED", re.I
+)
 _STEP_IN_WORDS = re.compile(r"SPACED\s+INTERVALS?\s+OF\s+(?P<dt>[\d.]+)\s*SEC", re.I)
 _WHOLE_NUMBERS = re.compile(r"^\s*(?:-?\d+\s+){9,}-?\d+\s*$")
 _AS_STATED = 0.01  # fraction by which the largest value may be off the stated peak
-_NUMBER_LINES = 7 + 13  # lines of 100 integers (16I5) and of 100 reals (8F10) above the samples
+# lines of 100 integers (16I5) and of 100 reals (8F10) above the samples
+_NUMBER_LINES = 7 + 13
 _MAX_HEADER = 60
 _SECOND_LINES = 6
 _WIDTH = 10
@@ -67,7 +71,8 @@ def _in_words(text: TextFile, first: int, stop: int) -> form.Channel:
     )
     if start < 0 or count is None or step is None or peak is None:
         text.fail(
-            "no number of samples, interval or peak is stated below; the file is cut short", first
+            "no number of samples, interval or peak is stated below; the file is cut short",
+            first,
         )
     promised, line = int(count["count"]), start + _NUMBER_LINES
     values = text.numbers(line, stop, _WIDTH)
@@ -84,10 +89,15 @@ def _unit(words: str) -> str:
     return canonical_unit(words.upper().replace("CMS", "CM"))
 
 
-def _check_peak(text: TextFile, words: list[str], samples: NDArray[np.float64], line: int) -> None:
+def _check_peak(
+    text: TextFile, words: list[str], samples: NDArray[np.float64], line: int
+) -> None:
     """Check the largest value against the peak that the header states, in the same unit."""
     peak = form.first_match(_PEAK, words)
-    stated, found = abs(float(peak["value"])) if peak else 0.0, float(np.abs(samples).max())
+    stated, found = (
+        abs(float(peak["value"])) if peak else 0.0,
+        float(np.abs(samples).max()),
+    )
     if stated and not text.cut_short and abs(found - stated) > _AS_STATED * stated:
         text.fail(
             f"the largest value is {found:g}, but the header states a peak of {stated:g}; mend the header or "

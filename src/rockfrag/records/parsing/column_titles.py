@@ -19,7 +19,9 @@ _SECONDS = {"(?:s|sek)?": 1.0, "(?:milli|ms).*": 1e-3, "micro.*|[uµμ]s": 1e-6}
 _SECONDS |= {"min.*": 60.0, "h|hrs?|hours?": 3600.0}
 """Units of time, as patterns, in seconds."""
 
-_SPECTRA = re.compile(r"^(?:period|freq|omega)|\bspectr|\b(?:psa|psv|sa|sv|sd|rotd\d*)\b", re.I)
+_SPECTRA = re.compile(
+    r"^(?:period|freq|omega)|\bspectr|\b(?:psa|psv|sa|sv|sd|rotd\d*)\b", re.I
+)
 _WORDS = {
     "acceleration": re.compile(r"(?<![a-z])a(?:cc(?:el\w*|n)?)?(?![a-z])|accel", re.I),
     "velocity": re.compile(r"(?<![a-z])(?:v|vel(?:oc\w*)?)(?![a-z])", re.I),
@@ -52,7 +54,9 @@ class Column:
     @property
     def seconds(self) -> float | None:
         """Seconds of a unit of a time column, None where its unit is not known."""
-        return next((s for unit, s in _SECONDS.items() if re.fullmatch(unit, self.unit)), None)
+        return next(
+            (s for unit, s in _SECONDS.items() if re.fullmatch(unit, self.unit)), None
+        )
 
 
 def column_titles(table: NumberTable, row: str) -> list[Column]:
@@ -63,18 +67,28 @@ def column_titles(table: NumberTable, row: str) -> list[Column]:
     """
     if not table.words:
         return []
-    separators = [] if table.decimal_comma else [mark for mark in (";", ",", "\t") if mark in row]
+    separators = (
+        []
+        if table.decimal_comma
+        else [mark for mark in (";", ",", "\t") if mark in row]
+    )
     above = [words for _, words in table.words]
     words = above[-1]
     units = next(iter(_splits(words, separators, table.columns)), [])
     stated = [canonical_unit(cell.strip("[](){}")) for cell in units]
-    if len(above) > 1 and units and all(u in _NO_QUANTITY or quantity_of(u) for u in stated):
+    if (
+        len(above) > 1
+        and units
+        and all(u in _NO_QUANTITY or quantity_of(u) for u in stated)
+    ):
         words = above[-2]
     else:
         units = [""] * table.columns
     for cells in _splits(words, separators, table.columns):
         columns = _columns(cells, units)
-        if _are_titles(columns, " " in words.strip() and not any(" " in cell for cell in cells)):
+        if _are_titles(
+            columns, " " in words.strip() and not any(" " in cell for cell in cells)
+        ):
             return columns
     return []
 
@@ -87,16 +101,27 @@ def _are_titles(columns: list[Column], by_blanks: bool) -> bool:
         return bool(columns[0].unit) and known == ["acceleration"]
     if not by_blanks:
         return any(known)
-    return all(known) or known[0] not in ("", "acceleration", "velocity", "displacement")
+    return all(known) or known[0] not in (
+        "",
+        "acceleration",
+        "velocity",
+        "displacement",
+    )
 
 
 def _splits(words: str, separators: list[str], width: int) -> Iterator[list[str]]:
     """Yield the ways in which words make as many titles as a row has columns."""
-    patterns = [re.escape(mark) for mark in separators] + [r"\s{2,}|\t", r"\s+(?![\[(])", r"\s+"]
+    patterns = [re.escape(mark) for mark in separators] + [
+        r"\s{2,}|\t",
+        r"\s+(?![\[(])",
+        r"\s+",
+    ]
     if not separators:
         patterns.append(",")
     for pattern in patterns:
-        cells = [cell.strip(" \t\"'") for cell in re.split(pattern, words.rstrip(" \t,;"))]
+        cells = [
+            cell.strip(" \t\"'") for cell in re.split(pattern, words.rstrip(" \t,;"))
+        ]
         # tables that programs write number their rows in a column without a title
         cells[0] = cells[0] or "#"
         if len(cells) == width and all(cells):
@@ -124,8 +149,14 @@ def _columns(titles: list[str], units: list[str]) -> list[Column]:
 
 def _column(title: str, unit_below: str, first: bool) -> Column:
     bracketed = _BRACKETED.search(title)
-    words = title if bracketed is None else title[: bracketed.start()] + title[bracketed.end() :]
-    unit = canonical_unit(bracketed["unit"] if bracketed else unit_below.strip("[](){}"))
+    words = (
+        title
+        if bracketed is None
+        else title[: bracketed.start()] + title[bracketed.end() :]
+    )
+    unit = canonical_unit(
+        bracketed["unit"] if bracketed else unit_below.strip("[](){}")
+    )
     if _TIME.match(words) and (first or words.strip().lower() != "t"):
         return Column(title, "time", _time_unit(words, unit), "")
     if not unit:

@@ -39,7 +39,9 @@ def _fact(key: str, value: Any) -> Any:
     if not isinstance(value, str):
         return value
     number = _NUMBER.match(value)
-    return (float(number[0]) if number else None) if key in _NUMBERS else printable(value)
+    return (
+        (float(number[0]) if number else None) if key in _NUMBERS else printable(value)
+    )
 
 
 @dataclass(frozen=True)
@@ -49,7 +51,8 @@ class Channel:
     npts: int  # number of samples, as the header promises it
     dt: float  # sampling interval [s]
     samples: NDArray[np.float64]  # in the unit of the file, shape (npts,)
-    unit: str = ""  # made canonical (``g``, ``cm/s2``, …); empty if the file does not state it
+    # made canonical (``g``, ``cm/s2``, …); empty if the file does not state it
+    unit: str = ""
     quantity: str = "acceleration"  # other quantities of a file are left out
     # time of the first sample, or None if the file does not state it; a time before 1900 or after
     # 2100 is a mistake of the header and counts as not stated
@@ -61,11 +64,14 @@ class Channel:
     location: str = ""
     code: str = ""
     component: str = ""  # orientation as the file words it (``090``, ``N10E``, ``UP``)
-    member: str = ""  # name of the file within an archive of several records, else empty
-    raw: bool = False  # whether a recorder's, whose mean is the zero of the sensor and not motion
+    # name of the file within an archive of several records, else empty
+    member: str = ""
+    # whether a recorder's, whose mean is the zero of the sensor and not motion
+    raw: bool = False
     # more facts for the metadata: ``station_name``, ``earthquake``, ``title``, …; numbers may be words
     details: Mapping[str, Any] = field(default_factory=dict)
-    steps: tuple[Mapping[str, Any], ...] = ()  # what was done to the samples, for the provenance
+    # what was done to the samples, for the provenance
+    steps: tuple[Mapping[str, Any], ...] = ()
 
     def __post_init__(self) -> None:
         # what a file says goes to terminals and tables, and may hold anything
@@ -73,7 +79,9 @@ class Channel:
             object.__setattr__(self, name, printable(getattr(self, name)))
         object.__setattr__(self, "unit", canonical_unit(self.unit))
         known = {key: _fact(key, value) for key, value in self.details.items()}
-        details = {key: value for key, value in known.items() if value not in ("", None)}
+        details = {
+            key: value for key, value in known.items() if value not in ("", None)
+        }
         object.__setattr__(self, "details", details)
         if self.start_time is not None and not _FIRST < self.start_time < _LAST:
             object.__setattr__(self, "start_time", None)
@@ -110,7 +118,10 @@ class Channel:
             **({"steps": self.steps} if self.steps else {}),
         }
         header = {
-            **{key: getattr(self, key) for key in ("network", "station", "location", "npts")},
+            **{
+                key: getattr(self, key)
+                for key in ("network", "station", "location", "npts")
+            },
             "channel": self.label,
             "delta": self.dt,
             "rockfrag": AttribDict(facts),
@@ -129,8 +140,10 @@ class Format:
     name: str  # name of the ObsPy plugin
     # tells from the first lines of a file (and its name) whether it is of this format
     recognise: Callable[[list[str], str], bool]
-    parse: Callable[[text_file.TextFile], Iterable[Channel]]  # gives channels of any quantity
-    encoding: str = ""  # of text that is not UTF-8, where the format's network writes in one
+    # gives channels of any quantity
+    parse: Callable[[text_file.TextFile], Iterable[Channel]]
+    # of text that is not UTF-8, where the format's network writes in one
+    encoding: str = ""
 
     def is_format(self, source: text_file.Source) -> bool:
         """Tell whether a file is of this format, from a bounded piece of its head; never raises."""
@@ -158,12 +171,16 @@ class Format:
                 raise
         # without a last line that does not end
         whole = text.data[: text.data.rfind(b"\n") + 1]
-        return [*map(_shortened, self._parsed(replace(text, data=whole, cut_short=True)))]
+        return [
+            *map(_shortened, self._parsed(replace(text, data=whole, cut_short=True)))
+        ]
 
     def _parsed(self, text: text_file.TextFile) -> list[Channel]:
         try:
             found = list(self.parse(text))
-            channels = [channel for channel in found if channel.quantity == "acceleration"]
+            channels = [
+                channel for channel in found if channel.quantity == "acceleration"
+            ]
             if found and not channels:
                 held = sorted({channel.quantity for channel in found})
                 text.refuse(f"this file holds {' and '.join(held)}, not acceleration")
@@ -172,16 +189,24 @@ class Format:
         except InputError:
             raise
         except (ValueError, IndexError, KeyError, ArithmeticError) as error:
-            raise InputError(f"{text.name}: not a readable {self.name} file ({error}).") from error
+            raise InputError(
+                f"{text.name}: not a readable {self.name} file ({error})."
+            ) from error
         if not channels:
             raise InputError(f"{text.name}: no acceleration in this {self.name} file.")
         return channels
 
     def read(
-        self, source: text_file.Source, headonly: bool = False, dt: float | None = None, **_: Any
+        self,
+        source: text_file.Source,
+        headonly: bool = False,
+        dt: float | None = None,
+        **_: Any,
     ) -> Stream:
         """Return the acceleration channels of a file as an ObsPy stream, in the unit of the file."""
-        return Stream([channel.trace(headonly) for channel in self.channels(source, dt)])
+        return Stream(
+            [channel.trace(headonly) for channel in self.channels(source, dt)]
+        )
 
 
 def headed(
@@ -231,13 +256,19 @@ def text_writer(macro: str, with_unit: bool = True) -> Callable[..., None]:
 
     def write(stream: Stream, filename: str | os.PathLike[str], **_: Any) -> None:
         if len(stream) != 1:
-            raise InputError(f"{filename}: a file holds one trace, not {len(stream)}; choose one.")
+            raise InputError(
+                f"{filename}: a file holds one trace, not {len(stream)}; choose one."
+            )
         stats, samples = stream[0].stats, np.asarray(stream[0].data, dtype=np.float64)
         if samples.size == 0 or not np.isfinite(samples).all():
             raise InputError(
                 f"{filename}: a record needs at least one sample, and all of them finite."
             )
-        facts = {**stats.get("rockfrag", {}), "station": stats.station, "channel": stats.channel}
+        facts = {
+            **stats.get("rockfrag", {}),
+            "station": stats.station,
+            "channel": stats.channel,
+        }
         unit = str(facts.get("unit") or "")
         if with_unit and unit not in TO_SI:
             raise InputError(
@@ -301,14 +332,19 @@ def first_match(pattern: re.Pattern[str], lines: Iterable[str]) -> re.Match[str]
 def stated(pattern: str, lines: Iterable[str]) -> str:
     """Return what a pattern's first group holds in the first line in which it holds anything, or nothing."""
     found = (
-        (match[1] or "").strip() for match in map(re.compile(pattern, re.I).search, lines) if match
+        (match[1] or "").strip()
+        for match in map(re.compile(pattern, re.I).search, lines)
+        if match
     )
     return next(filter(None, found), "")
 
 
 def facts_in(lines: Iterable[str], patterns: Mapping[str, str]) -> dict[str, str]:
     """Return what lines state of each pattern, by its name, see :func:`stated`, with single blanks."""
-    return {name: " ".join(stated(pattern, lines).split()) for name, pattern in patterns.items()}
+    return {
+        name: " ".join(stated(pattern, lines).split())
+        for name, pattern in patterns.items()
+    }
 
 
 def section(
@@ -337,7 +373,9 @@ def in_columns(
     ]
 
 
-_FORTRAN = re.compile(r"\(\s*\d*\s*\(?\s*(?:\d+P\s*,?\s*\d*)?\s*[FEGID]S?\s*(?P<width>\d+)", re.I)
+_FORTRAN = re.compile(
+    r"\(\s*\d*\s*\(?\s*(?:\d+P\s*,?\s*\d*)?\s*[FEGID]S?\s*(?P<width>\d+)", re.I
+)
 
 
 def field_width(words: str) -> int | None:

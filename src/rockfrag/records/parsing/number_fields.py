@@ -16,7 +16,8 @@ _D_EXPONENT = bytes.maketrans(b"Dd", b"Ee")
 _EXPONENT_WITHOUT_LETTER = re.compile(rb"^([+-]?(?:\d+\.?\d*|\.\d+))([+-]\d{1,3})$")
 _NUMBER = re.compile(rb"^[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d{1,4})?$")
 _SHOWN = 24
-_LONGEST = 400  # digits of a number: float64 needs no more than 350 even written out in full
+# digits of a number: float64 needs no more than 350 even written out in full
+_LONGEST = 400
 
 
 class NumberError(ValueError):
@@ -44,7 +45,9 @@ def parse_separated(text: bytes) -> NDArray[np.float64]:
         if np.isfinite(values).all():
             return values
     lines = enumerate(text.split(b"\n"))
-    return np.array([_number(token, number) for number, line in lines for token in line.split()])
+    return np.array(
+        [_number(token, number) for number, line in lines for token in line.split()]
+    )
 
 
 def parse_columns(lines: list[bytes], width: int) -> NDArray[np.float64]:
@@ -81,7 +84,8 @@ _NEARLY_A_NUMBER = re.compile(
 )
 _DATE = re.compile(r"\d{1,4}-\d{1,2}-\d{1,4}")
 _MARKS = " \t#%!/\"'"
-_RUN = 4  # rows of one width, one below the other, that are samples and not a header of numbers
+# rows of one width, one below the other, that are samples and not a header of numbers
+_RUN = 4
 LOOKED_AT = 300  # first lines of a file from which its layout is told
 
 
@@ -95,7 +99,8 @@ class NumberTable:
     words: tuple[tuple[int, str], ...]
     # number (from zero) and numbers of each row of numbers above that is not one of the samples
     numbers: tuple[tuple[int, tuple[str, ...]], ...]
-    decimal_comma: bool  # whether a comma is the decimal sign although no semicolon separates
+    # whether a comma is the decimal sign although no semicolon separates
+    decimal_comma: bool
 
     @property
     def title(self) -> str:
@@ -119,7 +124,9 @@ def number_table(lines: list[str]) -> NumberTable | None:
         for number, line in enumerate(lines[:start])
         if number not in rows and line.strip(_MARKS)
     )
-    above = tuple((number, tuple(found)) for number, found in rows.items() if number < start)
+    above = tuple(
+        (number, tuple(found)) for number, found in rows.items() if number < start
+    )
     return NumberTable(start, len(rows[start]), words, above, comma)
 
 
@@ -147,7 +154,9 @@ def first_odd_row(lines: list[str]) -> int | None:
         return None
     filled = [i for i in range(table.start, len(lines)) if not is_blank(lines[i])]
     rows = {i: numbers_of(lines[i]) for i in filled}
-    odd = [i for i in filled if len(rows[i]) != table.columns or not are_numbers(rows[i])]
+    odd = [
+        i for i in filled if len(rows[i]) != table.columns or not are_numbers(rows[i])
+    ]
     return odd[0] if odd and 2 * len(odd) < len(filled) else None
 
 
@@ -159,7 +168,9 @@ def is_blank(line: str) -> bool:
 def is_damaged_row(line: str) -> bool:
     """Tell whether a line is a row of numbers of which some are none: ``0.02 nan``, ``*****``."""
     others = [word for word in numbers_of(line) if not are_numbers([word])]
-    nearly = (_NEARLY_A_NUMBER.match(word) and not _DATE.search(word) for word in others)
+    nearly = (
+        _NEARLY_A_NUMBER.match(word) and not _DATE.search(word) for word in others
+    )
     return bool(others) and not _COMMENT.match(line) and all(nearly)
 
 
@@ -183,7 +194,9 @@ def has_decimal_commas(lines: list[str]) -> bool:
     So they are where blanks separate numbers that all have one, or where a number such as ``0,012``
     would begin with a zero if the comma separated.
     """
-    rows = [line.split() for line in lines if "," in line and are_numbers(numbers_of(line))]
+    rows = [
+        line.split() for line in lines if "," in line and are_numbers(numbers_of(line))
+    ]
     if not rows or any("." in word or ";" in word for row in rows for word in row):
         return False
     with_comma = [word for row in rows for word in row if "," in word]

@@ -6,7 +6,13 @@ from rockfrag.errors import InputError
 from rockfrag.units import GRAVITY
 
 TO_SI = {"g": GRAVITY, "g/10": GRAVITY / 10, "%g": GRAVITY / 100, "mg": GRAVITY / 1e3}
-TO_SI |= {"ug": GRAVITY / 1e6, "m/s2": 1.0, "cm/s2": 0.01, "mm/s2": 0.001, "in/s2": 0.0254}
+TO_SI |= {
+    "ug": GRAVITY / 1e6,
+    "m/s2": 1.0,
+    "cm/s2": 0.01,
+    "mm/s2": 0.001,
+    "in/s2": 0.0254,
+}
 """Factor from each unit of acceleration to m/s²."""
 
 ASKED_UNITS = ("g", "m/s2", "cm/s2", "gal", "mm/s2")  # that a user may name
@@ -31,7 +37,9 @@ _OTHER_UNITS = {
     "level": "db dba",
     "raw counts": "counts",
 }
-_OTHER_QUANTITIES = {unit: name for name, units in _OTHER_UNITS.items() for unit in units.split()}
+_OTHER_QUANTITIES = {
+    unit: name for name, units in _OTHER_UNITS.items() for unit in units.split()
+}
 """Units that no acceleration has; single letters are left out, which may name a direction."""
 
 
@@ -42,7 +50,9 @@ def canonical_unit(words: str) -> str:
     """
     unit = re.sub(r"\s+", "", words.strip().strip("().,;").lower())
     unit = re.sub(r"seconds?|secs?", "s", unit)
-    unit = unit.replace("**", "").replace("^", "").replace("²", "2").replace("cm.", "cm")
+    unit = (
+        unit.replace("**", "").replace("^", "").replace("²", "2").replace("cm.", "cm")
+    )
     unit = re.sub(r"/s/s$|/\(s2\)$|/ss$|\.?s-2$|/s\*s$", "/s2", unit)
     unit = re.sub(r"\.?s-1$", "/s", unit)
     return _SYNONYMS.get(unit, unit)
@@ -66,9 +76,18 @@ def asked_unit(unit: str) -> str:
 
 
 _NAMED = {"N": 0.0, "NS": 0.0, "NORTH": 0.0, "E": 90.0, "EW": 90.0, "EAST": 90.0}
-_NAMED |= {"S": 180.0, "SOUTH": 180.0, "W": 270.0, "WEST": 270.0, "SN": 180.0, "WE": 90.0}
+_NAMED |= {
+    "S": 180.0,
+    "SOUTH": 180.0,
+    "W": 270.0,
+    "WEST": 270.0,
+    "SN": 180.0,
+    "WE": 90.0,
+}
 _SEED = re.compile(r"^[BCDEHFLS][HNLG](?P<axis>[NEZ])\d{0,2}$")
-_VERTICAL = re.compile(r"^(?:V|Z|U|UD|DU|UP|DOWN|DN|DWN|VERT(?:ICAL)?|VRT|UPDO|UPDN)\d?$")
+_VERTICAL = re.compile(
+    r"^(?:V|Z|U|UD|DU|UP|DOWN|DN|DWN|VERT(?:ICAL)?|VRT|UPDO|UPDN)\d?$"
+)
 
 
 def plain_name(words: str) -> str:

@@ -18,7 +18,8 @@ _STEP = re.compile(
     rf"{_IS}(?P<value>{_VALUE})\s*(?P<unit>ms|msec\w*|millis\w*|[uµ]s|microsec\w*|min\w*|deg\w*|km|°)?"
 )
 _STEP_BEFORE = re.compile(
-    rf"(?P<value>{_VALUE})\s*(?:s|sec\w*)\.?\s+(?:time\s+)?(?:intervals?|steps?|spacing)\b", re.I
+    rf"(?P<value>{_VALUE})\s*(?:s|sec\w*)\.?\s+(?:time\s+)?(?:intervals?|steps?|spacing)\b",
+    re.I,
 )
 _RATE = re.compile(
     rf"(?i)\bsampl\w*[\s_-]*(?P<named>rate|freq\w*)?(?:\s+at\b)?{_IS}(?P<value>{_VALUE})\s*"
@@ -31,10 +32,12 @@ _COUNT = re.compile(
     rf"{_IS}(?P<count>\d+)(?![\d.,]*\d)(?!\s*(?:hz|s\b|sec|/|per))"
 )
 _COUNTED = re.compile(
-    r"^\s*(?P<count>\d+)\s+(?:data\s+)?(?:points?|samples?|values?)\b(?!\s*(?:/|per))", re.I
+    r"^\s*(?P<count>\d+)\s+(?:data\s+)?(?:points?|samples?|values?)\b(?!\s*(?:/|per))",
+    re.I,
 )
 _UNIT_WORDS = re.compile(
-    r"\bunits?\b(?:\s*\([^)]*\))?\s*(?:of|are|is|in|for\s+\w+)?\s*[=:]?(?P<rest>.*)$", re.I
+    r"\bunits?\b(?:\s*\([^)]*\))?\s*(?:of|are|is|in|for\s+\w+)?\s*[=:]?(?P<rest>.*)$",
+    re.I,
 )
 _QUANTITY = r"\b(?P<quantity>acc|vel|dis(?=p))(?:[a-z]*\.?)"
 _QUANTITY_IN = re.compile(
@@ -42,7 +45,9 @@ _QUANTITY_IN = re.compile(
 )
 _NAMED_QUANTITY = re.compile(rf"{_QUANTITY}", re.I)
 _IN_UNIT = re.compile(r"(?:\bin\s+|[(\[{]\s*)(?P<rest>[^)\]}]+)", re.I)
-_ONE_VALUE = re.compile(r"\b(?:pga|pgv|pgd|peak|max\w*|largest|min\w*|full\s*scale|filter)\b", re.I)
+_ONE_VALUE = re.compile(
+    r"\b(?:pga|pgv|pgd|peak|max\w*|largest|min\w*|full\s*scale|filter)\b", re.I
+)
 _VALUE_OF = re.compile(r"[=:]\s*[-+]?\.?\d")
 _UNIT_TOKEN = re.compile(
     r"[\s\"'=:(\[{]*(?P<unit>(?:[a-z%°µ]+[\w%°^*²-]*(?:\.[a-z-]+\d?)?(?:\s*/\s*\(?\s*[a-z\d]+\)?(?:\^|\*\*)?[\d²]*)*))",
@@ -50,7 +55,8 @@ _UNIT_TOKEN = re.compile(
 )
 _LIST = r"^\W*(?:components?|channels?|directions?|orientations?)\s*[=:]\s*(.+)$"
 _FACTOR = re.compile(
-    rf"\b(?:scal(?:e|ing)|conversion|calibration)[\s_-]*factor{_IS}(?P<value>[+-]?{_VALUE})", re.I
+    rf"\b(?:scal(?:e|ing)|conversion|calibration)[\s_-]*factor{_IS}(?P<value>[+-]?{_VALUE})",
+    re.I,
 )
 _KEYS = {
     "earthquake": r"^\W*(?:event|earthquake)\b[^:=]*[:=]\s*(\S.*)$",
@@ -68,9 +74,12 @@ class StatedFacts:
     unit: str = ""  # canonical unit of acceleration
     # what the samples are, where words say so: ``acceleration``, ``velocity``, ``force``, …
     quantity: str = ""
-    components: tuple[str, ...] = ()  # names of the components, in the order of the columns
-    factor: str = ""  # a factor that the samples are still to be multiplied by, with its words
-    details: dict[str, str] = field(default_factory=dict)  # ``earthquake`` and ``station``
+    # names of the components, in the order of the columns
+    components: tuple[str, ...] = ()
+    # a factor that the samples are still to be multiplied by, with its words
+    factor: str = ""
+    # ``earthquake`` and ``station``
+    details: dict[str, str] = field(default_factory=dict)
     contradiction: str = ""  # two statements that exclude each other, in words
 
 
@@ -80,12 +89,22 @@ def stated_facts(lines: Sequence[str]) -> StatedFacts:
     counts = list(dict.fromkeys(count for line in lines for count in _counts(line)))
     behind = (_units_in(m["rest"]) for line in lines if (m := _UNIT_WORDS.search(line)))
     # of each line that has the word unit one of acceleration
-    units = list(dict.fromkeys(u for found in behind for u in [u for u in found if u in TO_SI][:1]))
+    units = list(
+        dict.fromkeys(
+            u for found in behind for u in [u for u in found if u in TO_SI][:1]
+        )
+    )
     contradiction = next(
         (
             f"the header states {what} "
-            + " and ".join(f"{v:g}" if isinstance(v, float) else str(v) for v in found[:2])
-            for what, found in (("intervals of", steps), ("counts of", counts), ("units of", units))
+            + " and ".join(
+                f"{v:g}" if isinstance(v, float) else str(v) for v in found[:2]
+            )
+            for what, found in (
+                ("intervals of", steps),
+                ("counts of", counts),
+                ("units of", units),
+            )
             if len(found) > 1 and not _close(found)
         ),
         "",
@@ -98,7 +117,12 @@ def stated_facts(lines: Sequence[str]) -> StatedFacts:
         quantity="acceleration" if units else quantity,
         components=tuple(re.findall(r"[^\s,;]+", stated(_LIST, lines))),
         factor=next(
-            (x for x in lines if (m := _FACTOR.search(x)) and number_in(m["value"]) != 1), ""
+            (
+                x
+                for x in lines
+                if (m := _FACTOR.search(x)) and number_in(m["value"]) != 1
+            ),
+            "",
         ),
         details={key: stated(pattern, lines) for key, pattern in _KEYS.items()},
         contradiction=contradiction,
@@ -113,13 +137,17 @@ def _steps(line: str) -> list[float]:
         if match["unsure"] and (not match["sign"] or unit.startswith(("d", "k", "°"))):
             continue
         note = (match["note"] or match["note2"] or "").strip().lower()
-        factor = next((f for u, f in _SECONDS.items() if (unit or note).startswith(u)), 1.0)
+        factor = next(
+            (f for u, f in _SECONDS.items() if (unit or note).startswith(u)), 1.0
+        )
         factor = 60.0 if (unit or note).startswith("min") else factor
         found.append(float(f"{number_in(match['value']) * factor:.12g}"))
     found += [number_in(match["value"]) for match in _STEP_BEFORE.finditer(line)]
     for match in _RATE.finditer(line):
         words = match["value"] or match["value2"] or match["value3"]
-        note = f"{match['note'] or ''}{match['note2'] or ''}{match['unit'] or ''}".lower()
+        note = (
+            f"{match['note'] or ''}{match['note2'] or ''}{match['unit'] or ''}".lower()
+        )
         sure = match["named"] or match["unit"] or match["value2"] or match["value3"]
         rate = number_in(words.rstrip(".")) if sure and words.strip(".") else 0.0
         if rate > 0:
@@ -131,12 +159,18 @@ def _steps(line: str) -> list[float]:
 def _counts(line: str) -> list[int]:
     found = [m for m in _COUNT.finditer(line) if m["sign"] or not m["unsure"]]
     counted = _COUNTED.match(line)
-    return [int(m["count"]) for m in (*found, *([counted] if counted else [])) if int(m["count"])]
+    return [
+        int(m["count"])
+        for m in (*found, *([counted] if counted else []))
+        if int(m["count"])
+    ]
 
 
 def _units_in(words: str) -> list[str]:
     """Return what may be units in words, canonical, from left to right."""
-    parts = re.split(r"[,;]|\s+and\s+|(?<=[\w)\]])\s+(?![/\d])|[()\[\]]", words, flags=re.I)
+    parts = re.split(
+        r"[,;]|\s+and\s+|(?<=[\w)\]])\s+(?![/\d])|[()\[\]]", words, flags=re.I
+    )
     tokens = (_UNIT_TOKEN.match(part) for part in parts)
     return [canonical_unit(token["unit"]) for token in tokens if token]
 
@@ -145,11 +179,17 @@ def _quantity_and_unit(lines: Sequence[str]) -> tuple[str, str]:
     """Return the quantity and the unit of acceleration that the line nearest the numbers states."""
     for line in reversed(lines):
         explicit = _UNIT_WORDS.search(line)
-        held = next(iter(map(quantity_of, _units_in(explicit["rest"])[:1])), "") if explicit else ""
+        held = (
+            next(iter(map(quantity_of, _units_in(explicit["rest"])[:1])), "")
+            if explicit
+            else ""
+        )
         if held:
             return held, ""
         # one value, as of a velocity of waves, is not what the samples are
-        of_one = _VALUE_OF.search(line) and not (_STEP.search(line) or _COUNT.search(line))
+        of_one = _VALUE_OF.search(line) and not (
+            _STEP.search(line) or _COUNT.search(line)
+        )
         if _ONE_VALUE.search(line) or of_one:
             continue
         match = _QUANTITY_IN.search(line) or _IN_UNIT.search(line)
@@ -159,9 +199,15 @@ def _quantity_and_unit(lines: Sequence[str]) -> tuple[str, str]:
             return "acceleration", first
         if named and quantity_of(first):
             return quantity_of(first), ""
-    last = [m["quantity"].lower() for line in lines[-1:] if (m := _NAMED_QUANTITY.match(line))]
+    last = [
+        m["quantity"].lower()
+        for line in lines[-1:]
+        if (m := _NAMED_QUANTITY.match(line))
+    ]
     everywhere = any(
-        m["quantity"].lower() == "acc" for x in lines for m in _NAMED_QUANTITY.finditer(x)
+        m["quantity"].lower() == "acc"
+        for x in lines
+        for m in _NAMED_QUANTITY.finditer(x)
     )
     if last and not everywhere:
         return {"vel": "velocity", "dis": "displacement"}[last[0]], ""
@@ -183,4 +229,6 @@ def _sure_unit(line: str) -> str:
 def _close(found: Sequence[float | int | str]) -> bool:
     """Tell whether statements of one fact are numbers that differ by rounding only, to a ten-thousandth."""
     numbers = [value for value in found if isinstance(value, float)]
-    return len(numbers) == len(found) and max(numbers) - min(numbers) <= 1e-4 * max(numbers)
+    return len(numbers) == len(found) and max(numbers) - min(numbers) <= 1e-4 * max(
+        numbers
+    )

@@ -15,15 +15,22 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockfrag.errors import InputError
-from rockfrag.records.parsing.number_fields import NumberError, parse_columns, parse_separated
+from rockfrag.records.parsing.number_fields import (
+    NumberError,
+    parse_columns,
+    parse_separated,
+)
 from rockfrag.units import LONGEST_STEP, SHORTEST_STEP
 
 HEAD_BYTES = 16_384  # how much of a file is looked at to recognise its format
 MAX_BYTES = 256 * 2**20  # three components of a day at 200 Hz are a third of it
-MAX_TEXT = 96 * 2**20  # bytes of a text file: three components of a day at 200 Hz have as many
-MOST_NUMBERS = 20_000_000  # numbers of a table: more than memory should hold beside the text
+# bytes of a text file: three components of a day at 200 Hz have as many
+MAX_TEXT = 96 * 2**20
+# numbers of a table: more than memory should hold beside the text
+MOST_NUMBERS = 20_000_000
 MAX_LINE = 8_192  # no line of a known format is longer, comments and citations included
-MAX_LINES = 6_000_000  # no record has more: eight hours of samples at 200 Hz, one a line
+# no record has more: eight hours of samples at 200 Hz, one a line
+MAX_LINES = 6_000_000
 _BLOCK = 2**20
 _PIECE = 4 * _BLOCK
 _MOST_ZEROS = 4 * _BLOCK  # bytes after which a file that has only zeros is given up
@@ -77,8 +84,10 @@ class TextFile:
     name: str  # name for messages
     data: bytes  # all bytes, ``\n`` line ends
     encoding: str = ""  # of lines that are not UTF-8; empty if the format has no other
-    cut_short: bool = False  # whether fewer samples than the header promises are read, not refused
-    asked_dt: float | None = None  # the user's interval [s], for text that does not state its own
+    # whether fewer samples than the header promises are read, not refused
+    cut_short: bool = False
+    # the user's interval [s], for text that does not state its own
+    asked_dt: float | None = None
 
     @cached_property
     def _lines(self) -> list[str]:
@@ -115,10 +124,14 @@ class TextFile:
         """Return lines ``start`` up to ``stop`` (from zero), as many as there are."""
         return [self.line(i) for i in range(start, min(stop, len(self)))]
 
-    def find(self, pattern: re.Pattern[str], start: int = 0, stop: int | None = None) -> int:
+    def find(
+        self, pattern: re.Pattern[str], start: int = 0, stop: int | None = None
+    ) -> int:
         """Return the first line from ``start`` (before ``stop``) that has the pattern, or -1."""
         last = len(self) if stop is None else min(stop, len(self))
-        return next((i for i in range(start, last) if pattern.search(self._lines[i])), -1)
+        return next(
+            (i for i in range(start, last) if pattern.search(self._lines[i])), -1
+        )
 
     def until(self, pattern: re.Pattern[str], start: int) -> int:
         """Return the first line from ``start`` that has the pattern, or the number of lines."""
@@ -151,7 +164,9 @@ class TextFile:
         self, promised: int, found: int, line: int, noun: str = "samples", each: int = 1
     ) -> None:
         """Check that as many numbers were found, ``each`` of them a sample, as the header promises."""
-        if found != promised * each and not (self.cut_short and 0 < found < promised * each):
+        if found != promised * each and not (
+            self.cut_short and 0 < found < promised * each
+        ):
             self.fail(
                 f"the header promises {promised} {noun} but {found / each:g} follow; "
                 "the file is cut short, or its header is wrong",
@@ -163,7 +178,11 @@ class TextFile:
         self.fail(what, line, NotAcceleration)
 
     def numbers(
-        self, start: int, stop: int | None = None, *widths: int | None, count: int | None = None
+        self,
+        start: int,
+        stop: int | None = None,
+        *widths: int | None,
+        count: int | None = None,
     ) -> NDArray[np.float64]:
         """Parse lines ``start`` up to ``stop`` as numbers, shape (n,), of ``count`` if one is promised.
 
@@ -175,7 +194,11 @@ class TextFile:
         wrong: list[NumberError] = []
         for width in dict.fromkeys((*widths, None)):
             try:
-                values = parse_columns(body.split(b"\n"), width) if width else parse_separated(body)
+                values = (
+                    parse_columns(body.split(b"\n"), width)
+                    if width
+                    else parse_separated(body)
+                )
             except NumberError as error:
                 wrong.append(error)
                 continue
@@ -195,21 +218,28 @@ class TextFile:
         """Return the numbers of header lines ``start`` up to ``stop`` (columns of ``width``)."""
         values = self.numbers(start, stop, width)
         if values.size < count:
-            self.fail(f"{count} {kind} are expected in this header, not {values.size}", start)
+            self.fail(
+                f"{count} {kind} are expected in this header, not {values.size}", start
+            )
         return [*map(float, values)]
 
     def integers(self, start: int, stop: int, width: int, count: int) -> list[int]:
         """Return the whole numbers of header lines ``start`` up to ``stop`` (columns of ``width``)."""
         values = self.reals(start, stop, width, count, "whole numbers")
         if any(value % 1 for value in values):
-            self.fail("the header has a fraction where whole numbers are expected", start)
+            self.fail(
+                "the header has a fraction where whole numbers are expected", start
+            )
         return [int(value) for value in values]
 
-    def in_rows(self, values: NDArray[np.float64], columns: int, start: int) -> NDArray[np.float64]:
+    def in_rows(
+        self, values: NDArray[np.float64], columns: int, start: int
+    ) -> NDArray[np.float64]:
         """Return the values from line ``start`` on as whole rows, shape (rows, columns)."""
         if values.size == 0 or values.size % columns:
             self.fail(
-                f"{values.size} values do not fill rows of {columns}; the file is cut short", start
+                f"{values.size} values do not fill rows of {columns}; the file is cut short",
+                start,
             )
         return values.reshape(-1, columns)
 

@@ -8,7 +8,11 @@ from obspy import UTCDateTime
 
 from rockfrag.errors import InputError
 from rockfrag.records.parsing.format import Channel, cut_short_step, first_match
-from rockfrag.records.parsing.number_fields import NumberError, parse_columns, parse_separated
+from rockfrag.records.parsing.number_fields import (
+    NumberError,
+    parse_columns,
+    parse_separated,
+)
 from rockfrag.records.parsing.quantities import canonical_unit
 from rockfrag.records.parsing.text_file import TextFile
 from rockfrag.units import LONGEST_STEP
@@ -16,11 +20,31 @@ from rockfrag.units import LONGEST_STEP
 _FRACTION_OF_STEP = 1e-4  # of which a time may be off beyond the rounding of its print
 _FINEST_DIGITS = 9
 
-_EVEN_STEPS = (0.005, 0.002, 0.001, 0.0005)  # [s], to which unevenly digitised film is interpolated
-_COARSEST = 1.25  # largest ratio of that interval to the mean distance of the digitised points
+# [s], to which unevenly digitised film is interpolated
+_EVEN_STEPS = (0.005, 0.002, 0.001, 0.0005)
+# largest ratio of that interval to the mean distance of the digitised points
+_COARSEST = 1.25
 
-_HOURS_BEHIND = {"UTC": 0, "UT": 0, "GMT": 0, "Z": 0, "EST": 5, "EDT": 4, "CST": 6, "CDT": 5}
-_HOURS_BEHIND |= {"MST": 7, "MDT": 6, "PST": 8, "PDT": 7, "AKST": 9, "AKDT": 8, "AST": 9, "HST": 10}
+_HOURS_BEHIND = {
+    "UTC": 0,
+    "UT": 0,
+    "GMT": 0,
+    "Z": 0,
+    "EST": 5,
+    "EDT": 4,
+    "CST": 6,
+    "CDT": 5,
+}
+_HOURS_BEHIND |= {
+    "MST": 7,
+    "MDT": 6,
+    "PST": 8,
+    "PDT": 7,
+    "AKST": 9,
+    "AKDT": 8,
+    "AST": 9,
+    "HST": 10,
+}
 """Hours that the time zones of American networks are behind UTC (AST is Alaska's, as they use it)."""
 
 _LAST_YEAR_OF_2000S = 30
@@ -81,7 +105,9 @@ def resolution_of(times: NDArray[np.float64]) -> float:
     """Return the coarsest decimal unit [s] that all times are multiples of, from 1 to 1e-9."""
     for digits in range(_FINEST_DIGITS):
         scaled = times * 10.0**digits
-        if bool((np.abs(scaled - np.round(scaled)) <= 1e-6 + 1e-12 * np.abs(scaled)).all()):
+        if bool(
+            (np.abs(scaled - np.round(scaled)) <= 1e-6 + 1e-12 * np.abs(scaled)).all()
+        ):
             return float(10.0**-digits)
     return float(10.0**-_FINEST_DIGITS)
 
@@ -97,7 +123,13 @@ def _printed_resolution(times: NDArray[np.float64]) -> NDArray[np.float64]:
 
 
 def clock_time(
-    year: str, month: str, day: str, hour: str, minute: str, second: str, zone: str = "UTC"
+    year: str,
+    month: str,
+    day: str,
+    hour: str,
+    minute: str,
+    second: str,
+    zone: str = "UTC",
 ) -> UTCDateTime | None:
     """Return a date and time as UTC, or None if it is no time or its zone is not known."""
     behind = _HOURS_BEHIND.get(zone.strip().upper() or "UTC")
@@ -108,7 +140,12 @@ def clock_time(
         full += 2000 if full <= _LAST_YEAR_OF_2000S else 1900
     seconds = float(second) + 3600.0 * behind
     return time_at(
-        seconds, year=full, month=int(month), day=int(day), hour=int(hour), minute=int(minute)
+        seconds,
+        year=full,
+        month=int(month),
+        day=int(day),
+        hour=int(hour),
+        minute=int(minute),
     )
 
 
@@ -142,7 +179,9 @@ _NOTATIONS = (
 
 def time_of(words: str) -> UTCDateTime | None:
     """Return the time in words such as ``20190728_160905.700`` or ``14/11/2010 23:09:19.3``."""
-    match = next(filter(None, (re.match(pattern, words.strip()) for pattern in _NOTATIONS)), None)
+    match = next(
+        filter(None, (re.match(pattern, words.strip()) for pattern in _NOTATIONS)), None
+    )
     return clock_time(*match.group("y", "m", "d", "h", "min", "s")) if match else None
 
 
@@ -166,7 +205,11 @@ def read_pairs(text: TextFile, first: int, stop: int) -> Channel:
     """
     header = text.lines(first, first + _MAX_HEADER)
     points, units = first_match(_POINTS, header), first_match(_UNITS, header)
-    numbers = (i for i, x in enumerate(header) if i > 8 and x.strip() and _NUMBERS_ONLY.match(x))
+    numbers = (
+        i
+        for i, x in enumerate(header)
+        if i > 8 and x.strip() and _NUMBERS_ONLY.match(x)
+    )
     at_numbers = first + next(numbers, -first)
     if points is None or units is None or not at_numbers:
         text.fail("no number of points, unit or numeric header below this line", first)
@@ -200,12 +243,18 @@ def pairs_of(
                 line,
             )
         # about as many samples as points
-        dt = next((step for step in _EVEN_STEPS if step <= _COARSEST * mean), _EVEN_STEPS[-1])
+        dt = next(
+            (step for step in _EVEN_STEPS if step <= _COARSEST * mean), _EVEN_STEPS[-1]
+        )
         count = int(np.floor((times[-1] - times[0]) / dt * (1 + 1e-12))) + 1
-        accelerations = np.interp(times[0] + np.arange(count) * dt, times, accelerations)
+        accelerations = np.interp(
+            times[0] + np.arange(count) * dt, times, accelerations
+        )
         found = {"dt_s": dt, "digitised_points": int(times.size)}
         steps.append({"step": "interpolate linearly to even intervals", **found})
-    return Channel(accelerations.size, dt, accelerations.copy(), unit, steps=tuple(steps))
+    return Channel(
+        accelerations.size, dt, accelerations.copy(), unit, steps=tuple(steps)
+    )
 
 
 def _flat(text: TextFile, start: int, stop: int, count: int) -> NDArray[np.float64]:

@@ -57,19 +57,29 @@ class _Room:
         """Write the members of an archive, whose names begin with a prefix."""
         members = _from_zip(path) if _kind(path) == "zip" else _from_tar(path)
         try:
-            return [Member(prefix + printable(n), self._put(n, file, path)) for n, file in members]
+            return [
+                Member(prefix + printable(n), self._put(n, file, path))
+                for n, file in members
+            ]
         except InputError:
             raise
-        except Exception as error:  # zipfile, tarfile and what unpacks for them raise many kinds
+        # zipfile, tarfile and what unpacks for them raise many kinds
+        except Exception as error:
             words = " ".join(str(error).split()) or type(error).__name__
-            raise InputError(f"{path}: the archive cannot be unpacked ({words}).") from None
+            raise InputError(
+                f"{path}: the archive cannot be unpacked ({words})."
+            ) from None
 
     def _put(self, name: str, file: IO[bytes], archive: str | os.PathLike[str]) -> Path:
         """Write one member, in a folder like that of the archive, whatever its name says."""
         parts = [
-            part for part in PurePosixPath(name.replace("\\", "/")).parts if part not in ("/", "..")
+            part
+            for part in PurePosixPath(name.replace("\\", "/")).parts
+            if part not in ("/", "..")
         ]
-        safe = [re.sub(r"[^\w.+@=, ()\[\]-]", "_", part)[-100:] for part in parts] or ["unnamed"]
+        safe = [re.sub(r"[^\w.+@=, ()\[\]-]", "_", part)[-100:] for part in parts] or [
+            "unnamed"
+        ]
         self.count += 1
         if self.count > MAX_MEMBERS:
             raise InputError(f"{archive}: it has more than {MAX_MEMBERS} members.")
@@ -97,12 +107,16 @@ def _kind(path: str | os.PathLike[str]) -> str:
 def _from_zip(path: str | os.PathLike[str]) -> Iterator[tuple[str, IO[bytes]]]:
     with zipfile.ZipFile(path) as archive:
         if "[Content_Types].xml" in archive.namelist():
-            raise InputError(f"{path}: this is an Excel workbook or a document; save it as CSV.")
+            raise InputError(
+                f"{path}: this is an Excel workbook or a document; save it as CSV."
+            )
         for info in archive.infolist():
             if info.is_dir() or is_hidden(info.filename):
                 continue
             if info.flag_bits & 1:
-                raise InputError(f"{path}: the archive is locked by a password; unpack it first.")
+                raise InputError(
+                    f"{path}: the archive is locked by a password; unpack it first."
+                )
             with archive.open(info) as file:
                 yield info.filename, file
 
@@ -111,7 +125,11 @@ def _from_tar(path: str | os.PathLike[str]) -> Iterator[tuple[str, IO[bytes]]]:
     with tarfile.open(path) as archive:
         for info in archive:
             # links and devices are nothing that a record can be
-            file = archive.extractfile(info) if info.isfile() and not is_hidden(info.name) else None
+            file = (
+                archive.extractfile(info)
+                if info.isfile() and not is_hidden(info.name)
+                else None
+            )
             if file is not None:
                 yield info.name, file
 
@@ -131,7 +149,19 @@ def _by_number(name: str) -> list[tuple[int, str]]:
 
 
 _NO_RECORDS = frozenset(
-    (".xml", ".pdf", ".md", ".json", ".html", ".htm", ".png", ".jpg", ".svg", ".yaml", ".yml")
+    (
+        ".xml",
+        ".pdf",
+        ".md",
+        ".json",
+        ".html",
+        ".htm",
+        ".png",
+        ".jpg",
+        ".svg",
+        ".yaml",
+        ".yml",
+    )
 )
 """Endings of what lies beside records: descriptions of stations, papers, pictures, facts."""
 

@@ -56,15 +56,23 @@ def parse_request(words: str) -> FdsnRequest:
         )
     window, times = _WINDOW.match(match["rest"]), match["rest"].split()
     if window is None and len(times) != 2:
-        raise InputError(f"FDSN request {words!r}: expected START and END, or EVENT -30 +120.")
+        raise InputError(
+            f"FDSN request {words!r}: expected START and END, or EVENT -30 +120."
+        )
     try:
-        limits = map(float, window.group("before", "after")) if window else map(UTCDateTime, times)
+        limits = (
+            map(float, window.group("before", "after"))
+            if window
+            else map(UTCDateTime, times)
+        )
         begin, end = limits
     except Exception as error:  # UTCDateTime raises several kinds
         raise InputError(f"FDSN request {words!r}: a time is not readable.") from error
     if end <= begin:
         raise InputError(f"FDSN request {words!r}: the window ends before it begins.")
-    codes = {name: match[name] for name in ("network", "station", "location", "channel")}
+    codes = {
+        name: match[name] for name in ("network", "station", "location", "channel")
+    }
     earthquake = window["earthquake"] if window else ""
     return FdsnRequest(match["client"], codes, begin, end, earthquake)
 
@@ -89,14 +97,18 @@ def fetch_fdsn(words: str, records: Path) -> Path:
         asked["location"] = asked["location"] or "--"
         stream = client.get_waveforms(**asked)
         if not stream:
-            raise InputError(f"FDSN request {words!r}: the service has no records of it.")
+            raise InputError(
+                f"FDSN request {words!r}: the service has no records of it."
+            )
         inventory = client.get_stations(**asked, level="response")
         with whole_file(stations) as part:
             inventory.write(str(part), format="STATIONXML")
         with whole_file(found) as part:
             stream.write(str(part), format="MSEED")
         digests = {RECORDS: sha256_of(found), STATIONS: sha256_of(stations)}
-        text = json.dumps({"request": words, **facts, "files": digests}, indent=2) + "\n"
+        text = (
+            json.dumps({"request": words, **facts, "files": digests}, indent=2) + "\n"
+        )
         write_text(text, folder / FACTS)
     except InputError:
         raise
@@ -112,7 +124,9 @@ def _answered(folder: Path) -> bool:
     """Tell whether a folder has the whole answer to its request, with the bytes it came with."""
     try:
         listed = json.loads((folder / FACTS).read_text(encoding="utf-8"))["files"]
-        return all(sha256_of(folder / name) == digest for name, digest in listed.items())
+        return all(
+            sha256_of(folder / name) == digest for name, digest in listed.items()
+        )
     except (OSError, ValueError, KeyError, AttributeError, TypeError):
         return False
 
@@ -125,7 +139,9 @@ def _window(
     earthquake = client.get_events(eventid=request.earthquake)[0]
     origin = earthquake.preferred_origin() or earthquake.origins[0]
     facts = {"earthquake": request.earthquake, "origin_time": str(origin.time)}
-    magnitudes = filter(None, [earthquake.preferred_magnitude(), *earthquake.magnitudes])
+    magnitudes = filter(
+        None, [earthquake.preferred_magnitude(), *earthquake.magnitudes]
+    )
     for magnitude in itertools.islice(magnitudes, 1):
         facts["magnitude"] = str(magnitude.mag)
     return origin.time + request.begin, origin.time + request.end, facts

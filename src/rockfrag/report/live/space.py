@@ -20,7 +20,8 @@ from rockfrag.units import GRAVITY
 AMPLITUDES_G = tuple(np.geomspace(0.05, 2.0, 60).tolist())
 """Amplitudes [g] that are tried in the page."""
 
-MOST_SAMPLES = 30_000  # times of all motions that a page carries: half a megabyte of two components
+# times of all motions that a page carries: half a megabyte of two components
+MOST_SAMPLES = 30_000
 
 
 @dataclass(frozen=True)
@@ -32,7 +33,9 @@ class Standing:
 
 
 def live_in_space(
-    bodies: Mapping[str, Standing], motions: Sequence[GroundMotion], left_out: Sequence[str] = ()
+    bodies: Mapping[str, Standing],
+    motions: Sequence[GroundMotion],
+    left_out: Sequence[str] = (),
 ) -> Markup:
     """Return the element of a page in which bodies in space rock under motions, live; one to a page.
 
@@ -60,7 +63,9 @@ def live_in_space(
 
 def peak_of(motion: GroundMotion) -> float:
     """Peak of a motion [m/s²]: of its horizontal components, in the geometric mean."""
-    level = [component.pga for component in (motion.x, motion.y) if component is not None]
+    level = [
+        component.pga for component in (motion.x, motion.y) if component is not None
+    ]
     return float(np.prod(level) ** (1 / len(level)))
 
 
@@ -80,7 +85,9 @@ def _body(name: str, standing: Standing) -> dict[str, Any]:
         "height": body.height,
         "round": "rim" in solid,
         "sizes": _sizes(body),
-        "pedestal": None if below is None else {"width": below.width, "height": below.height},
+        "pedestal": None
+        if below is None
+        else {"width": below.width, "height": below.height},
     }
 
 
@@ -105,7 +112,11 @@ def _sizes(body: RigidBody) -> dict[str, Any] | None:
 
 
 def _motion(motion: GroundMotion) -> dict[str, Any]:
-    each = [component for component in (motion.x, motion.y, motion.z) if component is not None]
+    each = [
+        component
+        for component in (motion.x, motion.y, motion.z)
+        if component is not None
+    ]
     return {
         "name": motion.name,
         "dt": motion.dt,

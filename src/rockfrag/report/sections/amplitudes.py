@@ -21,7 +21,9 @@ from rockfrag.report.part import Results, Section, says
 from rockfrag.sentences import amplitude, label, shortened
 
 
-def _wide(table: pd.DataFrame, texts: list[str], about: tuple[str, ...]) -> pd.DataFrame:
+def _wide(
+    table: pd.DataFrame, texts: list[str], about: tuple[str, ...]
+) -> pd.DataFrame:
     """A row per motion, with what is known about it and a column of texts per configuration."""
     rows: dict[tuple[Any, ...], dict[str, Any]] = {}
     for row, text in zip(table.to_dict("records"), texts, strict=True):
@@ -68,7 +70,9 @@ def amplitudes(results: Results) -> Section:
         fallen, motions = curves["first_upper"].count(), curves["motion"].nunique()
         draw = partial(outcome_map, own, configurations)
         about = (name, fallen, len(curves), motions, MOST_ROWS)
-        parts.append(says.figure(f"outcomes_{file_name(name)}", draw, *about, of="outcomes"))
+        parts.append(
+            says.figure(f"outcomes_{file_name(name)}", draw, *about, of="outcomes")
+        )
     found = findings.amplitudes_found(results.tests)
     return says.section("amplitudes", parts, found, resurrections)
 
@@ -81,9 +85,13 @@ def comparisons(results: Results) -> Section | None:
     found = findings.objects_compared(means, results.study.slenderness)
     words = findings.mean_sentence(means)
     known = means[means["mean_g"].notna()]
-    whole = known[known["by"] == "configuration"].assign(what=lambda t: t["configuration"])
+    whole = known[known["by"] == "configuration"].assign(
+        what=lambda t: t["configuration"]
+    )
     floors = known[known["by"] == "floor"].assign(
-        what=lambda t: t["floor"] + t["pedestal"].map({"P": ", with pedestal", "NP": ""})
+        what=lambda t: (
+            t["floor"] + t["pedestal"].map({"P": ", with pedestal", "NP": ""})
+        )
     )
     draw, about = figures.amplitudes_by, (len(results.objects), words, study.has_pairs)
     by_object = partial(draw, "object", tests, means)
@@ -120,7 +128,9 @@ def recorded_map(recorded: pd.DataFrame) -> Figure:
         motions = motions.nlargest(MOST_MOTIONS, "pga_g")
     rows = list(motions["motion"])
     shown = recorded[recorded["motion"].isin(rows)]
-    rotation = np.where(shown["overturned"], 2.0, shown["peak_rotation"].clip(0.0, 0.999))
+    rotation = np.where(
+        shown["overturned"], 2.0, shown["peak_rotation"].clip(0.0, 0.999)
+    )
     table = shown.assign(rotation=rotation).pivot_table(
         index="motion", columns="configuration", values="rotation", aggfunc="first"
     )
@@ -130,19 +140,38 @@ def recorded_map(recorded: pd.DataFrame) -> Figure:
         colours = _SHADES.with_extremes(over=_OVERTURNED, bad="#ffffff")
         edges = (np.arange(count + 1) - 0.5 for count in (len(names), len(rows)))
         mesh = axes.pcolormesh(
-            *edges, table, cmap=colours, vmin=0, vmax=1, edgecolors="#cccccc", linewidth=0.4
+            *edges,
+            table,
+            cmap=colours,
+            vmin=0,
+            vmax=1,
+            edgecolors="#cccccc",
+            linewidth=0.4,
         )
-        x, y = sensitive["configuration"].map(names.index), sensitive["motion"].map(rows.index)
+        x, y = (
+            sensitive["configuration"].map(names.index),
+            sensitive["motion"].map(rows.index),
+        )
         axes.plot(x, y, "o", ms=3.4, mfc="white", mec=style.BLACK, mew=0.7)
         axes.set_ylim(len(rows) - 0.5, -0.5)
         peaks = dict(zip(motions["motion"], motions["pga_g"], strict=True))
-        axes.set_yticks(range(len(rows)), [f"{label(row)}, {peaks[row]:.2f} g" for row in rows])
-        axes.set_xticks(range(len(names)), [shortened(name, 16) for name in names], rotation=90)
+        axes.set_yticks(
+            range(len(rows)), [f"{label(row)}, {peaks[row]:.2f} g" for row in rows]
+        )
+        axes.set_xticks(
+            range(len(names)), [shortened(name, 16) for name in names], rotation=90
+        )
         axes.tick_params(length=0, labelsize=7)
         axes.xaxis.tick_top()
         axes.spines[:].set_visible(False)
         bar = figure.colorbar(
-            mesh, ax=axes, location="bottom", extend="max", extendfrac=0.12, aspect=28, pad=0.02
+            mesh,
+            ax=axes,
+            location="bottom",
+            extend="max",
+            extendfrac=0.12,
+            aspect=28,
+            pad=0.02,
         )
         bar.set_label("Rotation / critical angle (brown: overturned)")
         return figure
@@ -162,17 +191,27 @@ def outcome_map(ida: pd.DataFrame, configurations: Sequence[str]) -> Figure:
     line = {motion: len(motions) - 1 - i for i, motion in enumerate(motions)}
     for (motion, name), group in rows.groupby(["motion", "configuration"], sort=False):
         if motion in line:
-            bottom = line[motion] + 0.4 - (list(configurations).index(str(name)) + 1) * height
+            bottom = (
+                line[motion]
+                + 0.4
+                - (list(configurations).index(str(name)) + 1) * height
+            )
             bars[str(name)] += _bars(group, bottom, height)
     low, high = rows["amplitude_g"].min(), rows["amplitude_g"].max()
     with style.panels(style.WIDEST, 0.9 + 0.22 * len(motions)) as (figure, axes):
         handles = []
-        for name, colour in zip(configurations, style.CONFIGURATION_COLOURS, strict=False):
-            axes.add_collection(PolyCollection(bars[name], facecolor=colour, linewidth=0))
+        for name, colour in zip(
+            configurations, style.CONFIGURATION_COLOURS, strict=False
+        ):
+            axes.add_collection(
+                PolyCollection(bars[name], facecolor=colour, linewidth=0)
+            )
             handles.append(Patch(color=colour, label=f"{shortened(name)} overturns"))
         axes.set_xscale("log")
         axes.set_xlim(0.98 * low, 1.02 * high)
-        ticks = [tick for tick in _TICKS if low <= tick <= high] or [float(f"{low:.2g}")]
+        ticks = [tick for tick in _TICKS if low <= tick <= high] or [
+            float(f"{low:.2g}")
+        ]
         axes.set_xticks(ticks, [f"{tick:g}" for tick in ticks])
         axes.minorticks_off()
         axes.set_ylim(-0.6, len(motions) - 0.4)
@@ -183,7 +222,9 @@ def outcome_map(ida: pd.DataFrame, configurations: Sequence[str]) -> Figure:
         return figure
 
 
-def _bars(table: pd.DataFrame, bottom: float, height: float) -> list[NDArray[np.float64]]:
+def _bars(
+    table: pd.DataFrame, bottom: float, height: float
+) -> list[NDArray[np.float64]]:
     """Corners of a bar over each range of consecutive amplitudes that overturn."""
     ordered = table.sort_values("amplitude_g")
     amplitude = ordered["amplitude_g"].to_numpy(dtype=float)

@@ -30,8 +30,13 @@ from rockfrag.stages.fragility import best_of
 def fragility(results: Results) -> Section:
     """Curves by object, in the measures and definitions that the study asks for."""
     if has_one_record(results):
-        return Section("fragility", "Fragility", f"{ONE_MOTION.headline}.", [ONE_MOTION.text])
-    order = {configuration.name: i for i, configuration in enumerate(results.study.configurations)}
+        return Section(
+            "fragility", "Fragility", f"{ONE_MOTION.headline}.", [ONE_MOTION.text]
+        )
+    order = {
+        configuration.name: i
+        for i, configuration in enumerate(results.study.configurations)
+    }
     curves = results.table("fragility").sort_values(
         "configuration", key=lambda names: names.map(order), kind="stable"
     )
@@ -43,7 +48,9 @@ def fragility(results: Results) -> Section:
     total = len(known_curves)
     # without warnings that the tables show number by number
     kept = [REJECTION.sub("", str(note)).strip() for note in curves["warnings"] if note]
-    others = dict.fromkeys(rest for note in kept if (rest := note.replace(TAILS, "").strip()))
+    others = dict.fromkeys(
+        rest for note in kept if (rest := note.replace(TAILS, "").strip())
+    )
     notes = [*others, *([TAILS] if any(TAILS in note for note in kept) else [])]
     figures, tables = _figures(results, curves), _tables(known_curves, results.level)
     about = (found, results.level, rejected, total, REJECTED, without, notes)
@@ -53,11 +60,15 @@ def fragility(results: Results) -> Section:
 def _figures(results: Results, curves: pd.DataFrame) -> list[FigureSpec]:
     bands, bins = results.table("fragility_bands"), results.table("fragility_bins")
     measure = str(results.table("fragility")["im"].iloc[0])
-    same = curves[(curves["im"] == measure) & (curves["estimator"] == "mean_probability")]
+    same = curves[
+        (curves["im"] == measure) & (curves["estimator"] == "mean_probability")
+    ]
     same, nonparametric, _ = compared_curves(same)
     specs = []
     for name in results.objects:
-        own = [each.name for each in results.study.configurations if each.names[-1] == name]
+        own = [
+            each.name for each in results.study.configurations if each.names[-1] == name
+        ]
         chosen = same[same["configuration"].isin(own)]
         medians = [
             f"{row['configuration']} {number(row['theta'], decimals_of(row['theta']))} {row['unit']}"
@@ -69,7 +80,9 @@ def _figures(results: Results, curves: pd.DataFrame) -> list[FigureSpec]:
         )
         draw = partial(fragility_figure, chosen, band, points, nonparametric)
         about = (name, measure, results.level, nonparametric, medians)
-        specs.append(says.figure(f"fragility_{file_name(name)}", draw, *about, of="fragility"))
+        specs.append(
+            says.figure(f"fragility_{file_name(name)}", draw, *about, of="fragility")
+        )
     return specs
 
 
@@ -107,16 +120,21 @@ def two_measures_section(tables: VectorTables, confidence: float) -> Section | N
     if found.empty:
         return None
     both = found[["first", "second"]].to_numpy()
-    pairs = [" and ".join(name_and_unit(measure)[0] for measure in pair) for pair in both]
+    pairs = [
+        " and ".join(name_and_unit(measure)[0] for measure in pair) for pair in both
+    ]
     keys, parts = ["configuration", "first", "second"], []
     for pair, row in zip(pairs, found[keys].to_dict("records"), strict=True):
         own, tests = (
-            t[(t[keys] == pd.Series(row)).all(axis=1)] for t in (tables.contours, tables.cells)
+            t[(t[keys] == pd.Series(row)).all(axis=1)]
+            for t in (tables.contours, tables.cells)
         )
         name = file_name(f"two_measures_{'_'.join(map(str, row.values()))}")
         draw, of = partial(two_measures_figure, own, tests), row["configuration"]
         parts.append(says.figure(name, draw, of, pair, of="two_measures"))
-    table = says.table("two_measures", found.assign(pair=pairs), file="fragility_two_measures")
+    table = says.table(
+        "two_measures", found.assign(pair=pairs), file="fragility_two_measures"
+    )
     rejected, level = int((found["p_fit"] < REJECTED).sum()), f"{100 * confidence:g} %"
     limits, notes = (INTERACTION_LEVEL, level), list(dict.fromkeys(fits["warnings"]))
     named = ", ".join(dict.fromkeys(pairs))
@@ -131,7 +149,9 @@ def floor_curves(results: Results) -> Section | None:
     if has_one_record(results) or shown.empty:
         return None
     # hidden files are the workflow's own marks
-    names = (path.name for path in (results.folder / "exports").iterdir() if path.is_file())
+    names = (
+        path.name for path in (results.folder / "exports").iterdir() if path.is_file()
+    )
     files = sorted(name for name in names if not name.startswith("."))
     labels = {state.name: state.label for state in limit_states()}
     theta = estimates(shown, "theta")
@@ -148,7 +168,9 @@ def measures(results: Results) -> Section:
     asked = results.study.fragility.measures
     best = choice[choice["recommended"].astype(bool)]
     named = set(best["configuration"])
-    none = [name for name in dict.fromkeys(choice["configuration"]) if name not in named]
+    none = [
+        name for name in dict.fromkeys(choice["configuration"]) if name not in named
+    ]
     better = list(dict.fromkeys(best.loc[~best["measure"].isin(list(asked)), "im"]))
     compared = choice["measure"].nunique()
     about = (best_of(choice, asked), better, compared, none)
@@ -156,7 +178,10 @@ def measures(results: Results) -> Section:
 
 
 def fragility_figure(
-    curves: pd.DataFrame, bands: pd.DataFrame, bins: pd.DataFrame, nonparametric: bool | None = None
+    curves: pd.DataFrame,
+    bands: pd.DataFrame,
+    bins: pd.DataFrame,
+    nonparametric: bool | None = None,
 ) -> Figure:
     """Draw fragility curves of one measure, a panel per configuration, with bands and the outcomes behind them.
 
@@ -166,13 +191,25 @@ def fragility_figure(
     compared with each other need the same.
     """
     rows, nonparametric, _ = compared_curves(curves, nonparametric)
-    used, other = ("fraction", "probability") if nonparametric else ("probability", None)
-    lower, upper = ("fraction_lower", "fraction_upper") if nonparametric else ("lower", "upper")
+    used, other = (
+        ("fraction", "probability") if nonparametric else ("probability", None)
+    )
+    lower, upper = (
+        ("fraction_lower", "fraction_upper") if nonparametric else ("lower", "upper")
+    )
     first = curves.iloc[0]
-    size, shape = (style.COLUMN_WIDTH, 0.75 + 1.65 * len(curves)), {"nrows": len(curves)}
-    with style.panels(*size, **shape, sharex=True, sharey=True, squeeze=False) as (figure, grid):
+    size, shape = (
+        (style.COLUMN_WIDTH, 0.75 + 1.65 * len(curves)),
+        {"nrows": len(curves)},
+    )
+    with style.panels(*size, **shape, sharex=True, sharey=True, squeeze=False) as (
+        figure,
+        grid,
+    ):
         panels = grid[:, 0]
-        for k, (panel, curve) in enumerate(zip(panels, rows.to_dict("records"), strict=True)):
+        for k, (panel, curve) in enumerate(
+            zip(panels, rows.to_dict("records"), strict=True)
+        ):
             colour = style.CONFIGURATION_COLOURS[k % len(style.CONFIGURATION_COLOURS)]
             own = str(curve["configuration"])
             draw_fractions(panel, bins[bins["configuration"] == own], colour)
@@ -186,14 +223,26 @@ def fragility_figure(
             words = "no median"
             if np.isfinite(curve["theta"]):
                 words = f"θ = {curve['theta']:.3g} {curve['unit']}"
-                words += f", β = {curve['beta']:.2f}" if np.isfinite(curve["beta"]) else ""
+                words += (
+                    f", β = {curve['beta']:.2f}" if np.isfinite(curve["beta"]) else ""
+                )
             panel.set_title(f"{shortened(own)}: {words}", loc="left")
         style.letter_panels(panels)
         panels[-1].set_xlabel(axis_label(first["im"], first["unit"]))
         figure.supylabel("Probability of overturning", fontsize=8)
-        names = ["nonparametric", "lognormal (rejected)"] if nonparametric else ["lognormal"]
-        handles = [Line2D([], [], color=GREY), Line2D([], [], color=style.BLACK, ls=":", lw=0.9)]
-        handles = [*handles[: len(names)], Line2D([], [], color=GREY, marker="o", ls="", ms=3.2)]
+        names = (
+            ["nonparametric", "lognormal (rejected)"]
+            if nonparametric
+            else ["lognormal"]
+        )
+        handles = [
+            Line2D([], [], color=GREY),
+            Line2D([], [], color=style.BLACK, ls=":", lw=0.9),
+        ]
+        handles = [
+            *handles[: len(names)],
+            Line2D([], [], color=GREY, marker="o", ls="", ms=3.2),
+        ]
         names.append("analyses in bins")
         figure.legend(handles, names, loc="outside upper center", ncols=2)
         return figure
@@ -202,10 +251,14 @@ def fragility_figure(
 def draw_fractions(axes: Axes, bins: pd.DataFrame, colour: str) -> None:
     """Fractions of overturned tests in bins with their binomial limits."""
     fraction = bins["fraction"].to_numpy(dtype=float)
-    lower, upper = (bins[f"fraction_{end}"].to_numpy(dtype=float) for end in ("lower", "upper"))
+    lower, upper = (
+        bins[f"fraction_{end}"].to_numpy(dtype=float) for end in ("lower", "upper")
+    )
     reach = [np.maximum(fraction - lower, 0.0), np.maximum(upper - fraction, 0.0)]
     x = bins["x"].to_numpy(dtype=float)
-    axes.errorbar(x, fraction, yerr=reach, fmt="o", color=colour, elinewidth=0.7, ms=3.2, mew=0)
+    axes.errorbar(
+        x, fraction, yerr=reach, fmt="o", color=colour, elinewidth=0.7, ms=3.2, mew=0
+    )
 
 
 def probability_axis(axes: Axes, grid: Floats) -> None:
@@ -221,7 +274,8 @@ def axis_label(name: str, unit: str) -> str:
     return f"{name} [{unit}]" if unit else name
 
 
-LINES = {0.1: "dotted", 0.5: "solid", 0.9: "dashed"}  # how contours of probabilities are drawn
+# how contours of probabilities are drawn
+LINES = {0.1: "dotted", 0.5: "solid", 0.9: "dashed"}
 
 MEDIAN = 0.5
 
@@ -234,8 +288,13 @@ def two_measures_figure(contours: pd.DataFrame, cells: pd.DataFrame) -> Figure:
     first, second = str(cells["first"].iloc[0]), str(cells["second"].iloc[0])
     x, y = cells["at_first"].to_numpy(), cells["at_second"].to_numpy()
     with style.panels(style.COLUMN_WIDTH, 3.2) as (figure, axes):
-        size, shades = 6 + 30 * np.sqrt(cells["tests"] / cells["tests"].max()), cells["probability"]
-        shown = axes.scatter(x, y, size, shades, marker="s", cmap="Greys", vmin=0, vmax=1)
+        size, shades = (
+            6 + 30 * np.sqrt(cells["tests"] / cells["tests"].max()),
+            cells["probability"],
+        )
+        shown = axes.scatter(
+            x, y, size, shades, marker="s", cmap="Greys", vmin=0, vmax=1
+        )
         shown.set(edgecolor="#999999", linewidth=0.3)
         reach, rise = (0.8 * x.min(), 1.25 * x.max()), (0.9 * y.min(), 1.1 * y.max())
         across = bool((contours["of"] == first).all())
@@ -245,7 +304,12 @@ def two_measures_figure(contours: pd.DataFrame, cells: pd.DataFrame) -> Figure:
             part = contours[np.isclose(contours["probability"], probability)]
             at, value = part["at"], part["value"].where(part["value"].between(*within))
             drawn = (value, at) if across else (at, value)
-            axes.plot(*drawn, color=style.BLUE, linestyle=line, label=f"{100 * probability:.0f} %")
+            axes.plot(
+                *drawn,
+                color=style.BLUE,
+                linestyle=line,
+                label=f"{100 * probability:.0f} %",
+            )
             if probability == MEDIAN:
                 lower, upper = (part[side].clip(*within) for side in ("lower", "upper"))
                 fill(at, lower, upper, color=style.BLUE, alpha=0.2, linewidth=0)

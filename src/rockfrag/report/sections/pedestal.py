@@ -15,7 +15,13 @@ from numpy.typing import NDArray
 from rockfrag import figure_style as style
 from rockfrag.report import figures, page
 from rockfrag.report.figures import BAND, GREY
-from rockfrag.report.findings import WITH_PEDESTAL, Sides, pedestal_effect, ratio_of, sides_of
+from rockfrag.report.findings import (
+    WITH_PEDESTAL,
+    Sides,
+    pedestal_effect,
+    ratio_of,
+    sides_of,
+)
 from rockfrag.report.page import Columns, estimated, table_html
 from rockfrag.report.part import FigureSpec, Results, Section, says
 from rockfrag.sentences import amplitude, counted, has_interval, sentence, shortened
@@ -65,7 +71,9 @@ def pedestal(results: Results) -> Section | None:
         methods = whole.assign(definition=whole["definition"].str.replace("_", " "))
         columns: Columns = (
             "definition; method",
-            estimated("estimate", f"{ratio} [95 % interval]", 3, limits=("lower", "upper")),
+            estimated(
+                "estimate", f"{ratio} [95 % interval]", 3, limits=("lower", "upper")
+            ),
             "p = p p; smallest_p = Smallest possible p p; remark",
         )
         caption = "All pairs, by other methods and other ways to read the amplitude."
@@ -73,13 +81,17 @@ def pedestal(results: Results) -> Section | None:
         caption = "Effect by scope, step protocol."
         if len(here) > page.MOST_TABLE_ROWS:
             each = here["scope"] == "earthquake"
-            caption += f" Each of the {each.sum()} earthquakes is in pedestal/effects.csv."
+            caption += (
+                f" Each of the {each.sum()} earthquakes is in pedestal/effects.csv."
+            )
             here = here[~each]
         file, columns = "pedestal/effects.csv", effect_columns(ratio)
         parts.insert(1, table_html(shown_effects(here), columns, caption, file))
     notes = results.table("pedestal/notes")
     notes = notes[notes["definition"] == DEFINITION] if len(notes) else notes
-    return says.section("pedestal", parts, found, about, study.counterparts, notes["note"])
+    return says.section(
+        "pedestal", parts, found, about, study.counterparts, notes["note"]
+    )
 
 
 def _forest(effects: pd.DataFrame, about: Sides) -> FigureSpec:
@@ -97,14 +109,17 @@ NONE = (1 / 1.1, 1.1)  # ratios between which an effect counts as none
 
 _TICKS = (0.1, 0.2, 0.3, 0.5, 0.7, 0.8, 0.9, 1, 1.1, 1.2, 1.5, 2, 3, 5, 10)
 _MOST_TICKS = 7
-_LEAST_APART = 0.11  # ticks nearer than this part of the axis would print over each other
+# ticks nearer than this part of the axis would print over each other
+_LEAST_APART = 0.11
 
 
 def forest_figure(effects: pd.DataFrame, sides: Sides = WITH_PEDESTAL) -> Figure:
     """Ratio of amplitudes of every scope with its 95 % interval, and the ±10 % that counts as none."""
     scope = effects["scope"].to_numpy()
     # room for one empty line between the scopes
-    place = np.arange(len(effects)) + 0.7 * np.cumsum(np.r_[False, scope[1:] != scope[:-1]])
+    place = np.arange(len(effects)) + 0.7 * np.cumsum(
+        np.r_[False, scope[1:] != scope[:-1]]
+    )
     names = ["level", "units", "unit"]
     labels = [_label(*row) for row in effects[names].itertuples(index=False, name=None)]
     columns = ["lower", "ratio", "upper", "p_holm"]
@@ -116,7 +131,14 @@ def forest_figure(effects: pd.DataFrame, sides: Sides = WITH_PEDESTAL) -> Figure
         for y, (lower, ratio, upper, p) in zip(place, figures, strict=True):
             if np.isfinite([lower, upper]).all():
                 axes.plot([lower, upper], [y, y], color=style.BLUE, lw=1.2)
-            axes.plot(ratio, y, "o", mec=style.BLUE, mfc=style.BLUE if p < 0.05 else "white", ms=5)
+            axes.plot(
+                ratio,
+                y,
+                "o",
+                mec=style.BLUE,
+                mfc=style.BLUE if p < 0.05 else "white",
+                ms=5,
+            )
         axes.set_yticks(place, labels)
         axes.invert_yaxis()
         axes.tick_params(axis="y", length=0)
@@ -127,7 +149,9 @@ def forest_figure(effects: pd.DataFrame, sides: Sides = WITH_PEDESTAL) -> Figure
             mark(mfc="white", label="does not"),
             Line2D([], [], color=BAND, lw=6, label="±10 %"),
         ]
-        figure.legend(handles=handles, loc="outside upper center", ncols=3, handlelength=1.4)
+        figure.legend(
+            handles=handles, loc="outside upper center", ncols=3, handlelength=1.4
+        )
     return figure
 
 
@@ -137,7 +161,9 @@ def _label(level: str, units: int, unit: str) -> str:
 
 
 def ratio_axis(
-    axes: Axes, values: NDArray[np.float64] | Sequence[float], sides: Sides = WITH_PEDESTAL
+    axes: Axes,
+    values: NDArray[np.float64] | Sequence[float],
+    sides: Sides = WITH_PEDESTAL,
 ) -> None:
     """A logarithmic axis of ratios with plain ticks that covers all values and the band of none."""
     known = np.asarray(values, dtype=float)
@@ -164,12 +190,21 @@ def measured(results: Results) -> Section | None:
         return None
     beside = results.table("measured/beside")
     ratio = np.log(beside["ratio"].dropna())
-    words = says.line("beside", len(beside), len(ratio), np.exp(ratio.mean()), ratio.std())
+    words = says.line(
+        "beside", len(beside), len(ratio), np.exp(ratio.mean()), ratio.std()
+    )
     parts: list[Markup | FigureSpec] = []
     if beside["simulated_g"].notna().any():
-        parts.append(says.figure("measured_beside", lambda: measured_beside(beside), words))
-    curves, effects = results.table("measured/fragility"), results.table("measured/effects")
-    shown = beside.assign(measured=[amplitude(row) for row in beside.to_dict("records")])
+        parts.append(
+            says.figure("measured_beside", lambda: measured_beside(beside), words)
+        )
+    curves, effects = (
+        results.table("measured/fragility"),
+        results.table("measured/effects"),
+    )
+    shown = beside.assign(
+        measured=[amplitude(row) for row in beside.to_dict("records")]
+    )
     parts += [says.table("measured", shown), says.table("measured_curves", curves)]
     if len(effects):
         caption = "Measured effect of the pedestal."
@@ -189,7 +224,9 @@ def measured_beside(beside: pd.DataFrame) -> Figure:
             if rows.empty:
                 continue
             marker, colour = figures.SIDE_MARKER[side], figures.SIDE_COLOUR[side]
-            figures.plot_tests(axes, rows["simulated_g"].to_numpy(float), rows, marker, colour)
+            figures.plot_tests(
+                axes, rows["simulated_g"].to_numpy(float), rows, marker, colour
+            )
             axes.plot([], [], marker, mfc="none", color=colour, label=name)
         axes.set(xlim=(0, largest), ylim=(0, largest), aspect="equal")
         axes.set(xlabel="Simulated amplitude [g]", ylabel="Measured amplitude [g]")

@@ -28,7 +28,9 @@ def left_out(results: Results) -> Section | None:
     if not results.study.keep_going or (table := results.table("left_out")).empty:
         return None
     shown = says.table("left_out", table, file="left_out.csv")
-    return says.section("left-out", [shown], list(table["motion"]), len(results.study.catalogue))
+    return says.section(
+        "left-out", [shown], list(table["motion"]), len(results.study.catalogue)
+    )
 
 
 def shaker(results: Results) -> Section | None:
@@ -51,7 +53,11 @@ def motions(results: Results) -> Section:
     """The motions, how strong each is and how it goes."""
     measures, ground = results.table("measures"), results.ground
     columns = [
-        Column(each.column, f"{each.title or each.label} [{each.unit or '-'}]", each.decimals)
+        Column(
+            each.column,
+            f"{each.title or each.label} [{each.unit or '-'}]",
+            each.decimals,
+        )
         for each in intensity_measures()
         if each.decimals is not None
     ]
@@ -59,7 +65,9 @@ def motions(results: Results) -> Section:
     shown = min(len(ground), MOST_PANELS)
     peak = max(ground[:shown], key=lambda motion: motion.pga)
     about = (shown, len(results.records), peak, peak.pga / GRAVITY)
-    figure = says.figure("accelerations", lambda: acceleration_histories(ground), *about)
+    figure = says.figure(
+        "accelerations", lambda: acceleration_histories(ground), *about
+    )
     floors = list(dict.fromkeys(measures["floor"]))
     return says.section("motions", [table, figure], floors, results.study.building)
 
@@ -73,9 +81,13 @@ def bodies(results: Results) -> Section:
         height_cm=table["height_m"] * CENTIMETRES_PER_METRE,
         uplift_g=table["uplift_m_s2"] / GRAVITY,
     )
-    ends = (number(value, 2) for value in (shown["uplift_g"].min(), shown["uplift_g"].max()))
+    ends = (
+        number(value, 2) for value in (shown["uplift_g"].min(), shown["uplift_g"].max())
+    )
     may_differ = results.study.slides or results.study.vertical
-    return says.section("bodies", [says.table("bodies", shown)], len(shown), *ends, may_differ)
+    return says.section(
+        "bodies", [says.table("bodies", shown)], len(shown), *ends, may_differ
+    )
 
 
 def validity(results: Results) -> Section | None:
@@ -89,7 +101,10 @@ def validity(results: Results) -> Section | None:
     if tests.empty:
         return None
     demand = tests["friction_demand"].astype(float)
-    needed, lifted = demand.where(np.isfinite(demand)), tests["least_normal_force_n"] <= 0
+    needed, lifted = (
+        demand.where(np.isfinite(demand)),
+        tests["least_normal_force_n"] <= 0,
+    )
     known = tests.assign(needed=needed, lifted=lifted)
     shown = known.groupby(["object", "pedestal"], sort=False, as_index=False).agg(
         tests=("needed", "size"),
@@ -120,11 +135,20 @@ def shaker_limits(limits: pd.DataFrame, tests: pd.DataFrame) -> Figure:
         for name, marker, colour in zip(names, cycle(MARKERS), cycle(style.OKABE_ITO)):
             own = rows[rows["configuration"] == name]
             y = own["motion"].map(place).to_numpy(dtype=float)
-            (line,) = axes.plot(own["a"], y, ls="", marker=marker, mfc="none", mec=colour, ms=4)
+            (line,) = axes.plot(
+                own["a"], y, ls="", marker=marker, mfc="none", mec=colour, ms=4
+            )
             line.set_label(f"{shortened(name)} overturns")
             handles.append(line)
             bounds = own["up"].to_numpy(dtype=bool)
-            axes.plot(own["a"].to_numpy()[bounds], y[bounds], ls="", marker=">", color=colour, ms=3)
+            axes.plot(
+                own["a"].to_numpy()[bounds],
+                y[bounds],
+                ls="",
+                marker=">",
+                color=colour,
+                ms=3,
+            )
         reasons = limits.set_index("motion")["limited_by"]
         for y, motion in enumerate(motions):
             reason = axes.text(largest[motion], y, f" {reasons[motion]}", color=GREY)
@@ -144,7 +168,10 @@ def acceleration_histories(motions: Sequence[Motion]) -> Figure:
     """Draw the acceleration of ``MOST_PANELS`` motions over time with its peak, a panel a motion, on one scale."""
     shown = motions[:MOST_PANELS]
     size, shape = (style.COLUMN_WIDTH, 0.5 + 0.95 * len(shown)), {"nrows": len(shown)}
-    with style.panels(*size, **shape, sharex=True, sharey=True, squeeze=False) as (figure, grid):
+    with style.panels(*size, **shape, sharex=True, sharey=True, squeeze=False) as (
+        figure,
+        grid,
+    ):
         panels = grid[:, 0]
         highest = 1.12 * max(motion.pga for motion in shown) / GRAVITY
         for panel, motion in zip(panels, shown, strict=True):

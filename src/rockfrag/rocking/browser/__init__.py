@@ -34,4 +34,6 @@ IN_PAGE = PureRocking("page", frozenset({Wish.TWO_BODIES, Wish.HISTORY}))
 
 def in_page(system: System) -> Support:
     """Say whether a page simulates a system under horizontal motions."""
-    return IN_PAGE.supports(system, GroundMotion(Motion(np.zeros(1), 1.0)), Request(history=True))
+    return IN_PAGE.supports(
+        system, GroundMotion(Motion(np.zeros(1), 1.0)), Request(history=True)
+    )

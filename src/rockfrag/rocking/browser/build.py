@@ -46,11 +46,23 @@ Entries = dict[str, tuple[Any, tuple[Any, ...]]]
 def build_integrate() -> bytes:
     """Return the bytes of the module of one history."""
     call = np.zeros(1, CALL)[0]
-    history = (call, np.zeros(1), np.zeros(1), np.zeros(1, SAMPLE), np.zeros(1, CONTACT_EVENT))
-    entries: Entries = {"describe": (describe, (call,)), "integrate": (integrate_call, history)}
+    history = (
+        call,
+        np.zeros(1),
+        np.zeros(1),
+        np.zeros(1, SAMPLE),
+        np.zeros(1, CONTACT_EVENT),
+    )
+    entries: Entries = {
+        "describe": (describe, (call,)),
+        "integrate": (integrate_call, history),
+    }
     constants = {"gravity": GRAVITY, "step": STEP, "free_time": FREE_TIME}
     return _module(
-        entries, {"call": CALL, "sample": SAMPLE, "event": CONTACT_EVENT}, constants, fused=None
+        entries,
+        {"call": CALL, "sample": SAMPLE, "event": CONTACT_EVENT},
+        constants,
+        fused=None,
     )
 
 
@@ -58,23 +70,43 @@ def build_ensemble(*, fused: bool) -> bytes:
     """Return the bytes of the module that counts outcomes, with fused multiply-adds or without."""
     call = np.zeros(1, ensemble.SHAKEN)[0]
     table, whole = np.zeros((1, 1)), np.zeros((1, 1), np.int64)
-    motions = table, whole, table, whole, np.zeros(1), table, whole, np.zeros(1, OUTCOME)
+    motions = (
+        table,
+        whole,
+        table,
+        whole,
+        np.zeros(1),
+        table,
+        whole,
+        np.zeros(1, OUTCOME),
+    )
     entries: Entries = {
         "describe": (ensemble.describe_shaken, (call,)),
         "multiplyAdd": (ensemble.multiply_add, (call,)),
-        "countBlocks": (ensemble.count_blocks, (call, np.zeros((1, 1, 2), PIVOT), *motions)),
+        "countBlocks": (
+            ensemble.count_blocks,
+            (call, np.zeros((1, 1, 2), PIVOT), *motions),
+        ),
         "countStacks": (ensemble.count_stacks, (call, table, *motions)),
     }
     constants = {
         "gravity": GRAVITY, "step": STEP, "stack_step": STACK_STEP, "free_time": FREE_TIME, "block": BLOCK,
     }  # fmt: skip
-    records = {"call": ensemble.SHAKEN, "body": BODY, "pivot": PIVOT, "outcome": OUTCOME}
+    records = {
+        "call": ensemble.SHAKEN,
+        "body": BODY,
+        "pivot": PIVOT,
+        "outcome": OUTCOME,
+    }
     return _module(entries, records, constants, fused=fused)
 
 
 def build_space() -> bytes:
     """Return the bytes of the module of a body in space."""
-    call, tables = np.zeros(1, SPACE)[0], [np.zeros((1, n)) for n in (3, 2, spatial.COLUMNS)]
+    call, tables = (
+        np.zeros(1, SPACE)[0],
+        [np.zeros((1, n)) for n in (3, 2, spatial.COLUMNS)],
+    )
     entries: Entries = {
         "describe": (describe_solid, (call,)),
         "integrate": (integrate_solid, (call, *tables)),
@@ -119,7 +151,9 @@ def _module(
     return _linked(objects, list(entries)) + b"\0" + _length(len(section)) + section
 
 
-def _object(name: str, function: Any, arguments: tuple[Any, ...], fused: bool | None) -> bytes:
+def _object(
+    name: str, function: Any, arguments: tuple[Any, ...], fused: bool | None
+) -> bytes:
     """Compile a function and all that it needs; it gets this name, and all others none."""
     text, entry = whole_ir(function, tuple(map(numba.typeof, arguments)))
     text = text.replace(f"@{entry}", f"@{name}").replace(f'@"{entry}"', f"@{name}")
@@ -133,7 +167,11 @@ def _object(name: str, function: Any, arguments: tuple[Any, ...], fused: bool | 
     text = text.replace("= common ", "= internal ")
     module = llvm.parse_assembly(text)
     machine = llvm.Target.from_triple(TRIPLE).create_target_machine(
-        cpu="", features=FEATURES + _VECTORS[fused], opt=3, reloc="static", codemodel="default"
+        cpu="",
+        features=FEATURES + _VECTORS[fused],
+        opt=3,
+        reloc="static",
+        codemodel="default",
     )
     module.triple, module.data_layout = TRIPLE, str(machine.target_data)
     for symbol in [*module.functions, *module.global_variables]:
@@ -159,9 +197,13 @@ def _with_multiply_adds(text: str, fused: bool) -> str:
     What the second leaves to chance is below 2**-50 an operation.
     """
     text = re.sub(r"^declare .*@llvm\.fmuladd\..*$", "", text, flags=re.MULTILINE)
-    text = text.replace("@llvm.fmuladd.v2f64", "@fma2").replace("@llvm.fmuladd.f64", "@fma1")
+    text = text.replace("@llvm.fmuladd.v2f64", "@fma2").replace(
+        "@llvm.fmuladd.f64", "@fma1"
+    )
     parts = ("fused" if fused else "by-parts"), "of-one"
-    return text + "".join(_beside(f"multiply-add-{part}.ll").read_text() for part in parts)
+    return text + "".join(
+        _beside(f"multiply-add-{part}.ll").read_text() for part in parts
+    )
 
 
 def _beside(name: str) -> Path:
@@ -193,7 +235,8 @@ def _described(dtype: np.dtype[Any]) -> dict[str, Any]:
         elif kind.subdtype is None:
             fields[name] = [offset, kind.kind + str(kind.itemsize)]
         else:
-            fields[name] = [offset]  # of an array the place, which is all that is asked for
+            # of an array the place, which is all that is asked for
+            fields[name] = [offset]
     return {"size": dtype.itemsize, "fields": fields}
 
 
@@ -218,4 +261,6 @@ if __name__ == "__main__":
         print(f"{path}: {path.stat().st_size} bytes")
     # what one process has compiled before changes the bytes
     for name in MODULES if not sys.argv[1:] else ():
-        subprocess.run([sys.executable, "-m", "rockfrag.rocking.browser.build", name], check=True)
+        subprocess.run(
+            [sys.executable, "-m", "rockfrag.rocking.browser.build", name], check=True
+        )

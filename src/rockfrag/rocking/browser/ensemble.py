@@ -63,7 +63,9 @@ def describe_shaken(call):
         for pivot in (1, -1):
             after = geometry.momentum_restitution(upper, -pivot)
             if told:
-                after = geometry.scaled_restitution(upper, -pivot, call.above, call.livelier)
+                after = geometry.scaled_restitution(
+                    upper, -pivot, call.above, call.livelier
+                )
             here = call.pivots[(1 - pivot) // 2]
             (
                 here.alpha, here.tan, here.sine, here.cosine, here.swing, here.restitution,
@@ -83,7 +85,9 @@ def describe_shaken(call):
         _note_uplift(call, geometry.common_arm(pile, pivot))
         _note_uplift(call, geometry.upper_arm(pile, pivot))
         call.largest = min(call.largest, geometry.largest_restitution(lower, pivot))
-        call.largest = min(call.largest, geometry.largest_restitution(pile.upper, pivot))
+        call.largest = min(
+            call.largest, geometry.largest_restitution(pile.upper, pivot)
+        )
 
 
 @kernel
@@ -110,7 +114,9 @@ def count_blocks(
     ``extremes`` are the four tables of ``Motions`` in rows, and ``places`` its offsets and last samples.
     """
     ensemble = referred(
-        Ensemble(call.counter, call.cases, pivots, factors, rows, intervals, intervals, free)
+        Ensemble(
+            call.counter, call.cases, pivots, factors, rows, intervals, intervals, free
+        )
     )
     motions = referred(_motions(samples, extremes, places))
     _integrate_blocks(ensemble, motions, call.blocks, outcomes)
@@ -122,7 +128,9 @@ def count_stacks(
 ):  # fmt: skip
     """Integrate a block on a pedestal likewise; see ``lanes.scheduler.integrate_stacks``."""
     ensemble = referred(
-        Ensemble(call.counter, call.cases, call.body, factors, rows, intervals, parts, free)
+        Ensemble(
+            call.counter, call.cases, call.body, factors, rows, intervals, parts, free
+        )
     )
     own = call.stacks
     worker = stack_case.Worker(

@@ -24,7 +24,8 @@ CALL = np.dtype(
         *fields("statue pedestal", of=BLOCK),
         *fields("offset"),
         *whole("stacked"),
-        *fields("ground interface"),  # measured restitution, NaN where momentum is conserved
+        # measured restitution, NaN where momentum is conserved
+        *fields("ground interface"),
         # what it leaves: whether the body stands (``geometry``), and the frequency parameters that steps and the
         # length of free rocking follow from [1/s]
         *whole("fault"),
@@ -89,7 +90,9 @@ def note_frequencies(call, shape, g):
 @kernel
 def stacked(call, body, lower, upper, offset):
     """Describe a block on a pedestal: whether it stands, its record, its frequencies; return it as a pile."""
-    pile = geometry.pile_of(lower, upper, call.pedestal.height, call.pedestal.lean, offset)
+    pile = geometry.pile_of(
+        lower, upper, call.pedestal.height, call.pedestal.lean, offset
+    )
     if not geometry.can_stand(lower):
         call.fault = geometry.FALLS_ALONE
     if call.fault == geometry.STANDS:
@@ -99,8 +102,12 @@ def stacked(call, body, lower, upper, offset):
     call.fastest, call.slowest = 0.0, np.inf
     for pivot in (1, -1):
         above = geometry.frequency(pile.upper, pivot, g)
-        call.fastest = max(call.fastest, max(geometry.frequency(lower, pivot, g), above))
-        call.slowest = min(call.slowest, min(above, geometry.frequency(whole, pivot, g)))
+        call.fastest = max(
+            call.fastest, max(geometry.frequency(lower, pivot, g), above)
+        )
+        call.slowest = min(
+            call.slowest, min(above, geometry.frequency(whole, pivot, g))
+        )
     return pile
 
 
@@ -117,7 +124,9 @@ def _measure(call, block, restitution, right, left):
 @kernel
 def _check_restitution(call, block, restitution):
     """Note a restitution with which energy could grow."""
-    largest = min(geometry.largest_restitution(block, 1), geometry.largest_restitution(block, -1))
+    largest = min(
+        geometry.largest_restitution(block, 1), geometry.largest_restitution(block, -1)
+    )
     if call.fault == geometry.STANDS and not 0.0 <= restitution <= largest:
         call.fault = GAINS_ENERGY
 
@@ -125,7 +134,15 @@ def _check_restitution(call, block, restitution):
 @kernel
 def integrate_call(call, samples, vertical, history, contact_events):
     """Integrate the body of a call; see ``single.integrate``."""
-    shaking = Shaking(samples, vertical, call.scale, call.dt, call.substeps, call.free_samples)
+    shaking = Shaking(
+        samples, vertical, call.scale, call.dt, call.substeps, call.free_samples
+    )
     call.done = _integrate(
-        call.body, shaking, call.initial, history, contact_events, call.summary, call.work
+        call.body,
+        shaking,
+        call.initial,
+        history,
+        contact_events,
+        call.summary,
+        call.work,
     )

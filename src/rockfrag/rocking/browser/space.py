@@ -45,9 +45,15 @@ def describe_solid(call):
     if call.turn != 0.0:
         for i in range(body.count):
             point = body.points[i]
-            point[0], point[1] = geometry.turned_in_plan(point[0], point[1], sine, cosine)
-        call.at[0], call.at[1] = geometry.turned_in_plan(call.at[0], call.at[1], sine, cosine)
-        xx, xy, yy = geometry.turned_moments(tensor[0, 0], tensor[0, 1], tensor[1, 1], sine, cosine)
+            point[0], point[1] = geometry.turned_in_plan(
+                point[0], point[1], sine, cosine
+            )
+        call.at[0], call.at[1] = geometry.turned_in_plan(
+            call.at[0], call.at[1], sine, cosine
+        )
+        xx, xy, yy = geometry.turned_moments(
+            tensor[0, 0], tensor[0, 1], tensor[1, 1], sine, cosine
+        )
         xz, yz = geometry.turned_in_plan(tensor[0, 2], tensor[1, 2], sine, cosine)
         tensor[0, 0], tensor[1, 1] = xx, yy
         tensor[0, 1] = tensor[1, 0] = xy

@@ -16,5 +16,7 @@ from rockfrag_thesis.hypotheses.hypothesis import HYPOTHESES as HYPOTHESES
 from rockfrag_thesis.hypotheses.hypothesis import Finding as Finding
 from rockfrag_thesis.hypotheses.hypothesis import Undecidable as Undecidable
 from rockfrag_thesis.hypotheses.hypothesis_table import COLUMNS as COLUMNS
-from rockfrag_thesis.hypotheses.hypothesis_table import hypothesis_table as hypothesis_table
+from rockfrag_thesis.hypotheses.hypothesis_table import (
+    hypothesis_table as hypothesis_table,
+)
 from rockfrag_thesis.hypotheses.hypothesis_table import theory_table as theory_table

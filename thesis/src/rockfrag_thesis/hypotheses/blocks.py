@@ -13,7 +13,12 @@ from rockfrag.rocking.restitution import quarter_period
 from rockfrag.rocking.spectra import uniform_block
 from rockfrag.system.blocks import Block
 from rockfrag.units import GRAVITY
-from rockfrag_thesis.hypotheses.hypothesis import Finding, Result, Undecidable, hypothesis
+from rockfrag_thesis.hypotheses.hypothesis import (
+    Finding,
+    Result,
+    Undecidable,
+    hypothesis,
+)
 from rockfrag_thesis.hypotheses.outcomes import SEEN, most
 from rockfrag_thesis.hypotheses.setting import (
     EXACT,
@@ -31,7 +36,9 @@ from rockfrag_thesis.printed_tables import FOLDER, TABLE_3_1, compare
 @hypothesis(1)
 def c1(setting: Setting) -> Result:
     """The closed form, and simulations on either side of it."""
-    agree = [starts_at(block, setting.alone[name]) for name, block in setting.blocks.items()]
+    agree = [
+        starts_at(block, setting.alone[name]) for name, block in setting.blocks.items()
+    ]
     return Result(
         Finding.FOR if all(agree) else Finding.AGAINST,
         f"{listed(setting.alone)} m/s²; {sum(agree)} of {len(agree)} simulated blocks start there",
@@ -64,7 +71,10 @@ def c3(setting: Setting) -> Result:
 @hypothesis(4)
 def c4(setting: Setting) -> Result:
     """Restitution of simulated impacts over sizes, speeds and slendernesses."""
-    law = {name: 1 - 1.5 * math.sin(block.alpha) ** 2 for name, block in setting.blocks.items()}
+    law = {
+        name: 1 - 1.5 * math.sin(block.alpha) ** 2
+        for name, block in setting.blocks.items()
+    }
     worst = 0.0
     for name, period, start in itertools.product(law, (0.5, 6.0), (0.1, 0.9)):
         alpha = setting.blocks[name].alpha
@@ -89,7 +99,9 @@ def _first_impact(block: Block, theta0: float, linear: bool = False) -> float:
     """Time of the first impact after a release from rest [s]."""
     dt = 0.002
     seconds = 4 / block.frequency()
-    response = simulate(block, np.zeros(int(seconds / dt)), dt, theta0=theta0, linear=linear)
+    response = simulate(
+        block, np.zeros(int(seconds / dt)), dt, theta0=theta0, linear=linear
+    )
     return float(response.contact_events.query("kind == 'impact'")["time"].iloc[0])
 
 
@@ -118,7 +130,9 @@ def _least_half_sine(block: Block, linear: bool) -> float:
     unit = block.alpha * GRAVITY
     return bisect(
         lambda x: (
-            simulate(block, Motion(x * unit * shape, duration / 100), linear=linear).overturned
+            simulate(
+                block, Motion(x * unit * shape, duration / 100), linear=linear
+            ).overturned
         ),
         1.0,
         8.0,
@@ -129,7 +143,9 @@ def _least_half_sine(block: Block, linear: bool) -> float:
 @hypothesis(7)
 def c7(setting: Setting) -> Result:
     """What the linearisation changes for blocks of H/B of 3 and more."""
-    slender = {k: block for k, block in setting.blocks.items() if block.slenderness >= 3 - 1e-9}
+    slender = {
+        k: block for k, block in setting.blocks.items() if block.slenderness >= 3 - 1e-9
+    }
     if not slender:
         raise Undecidable("no specimen has H/B of 3 or more")
     period, pulse = {}, {}
@@ -138,7 +154,9 @@ def c7(setting: Setting) -> Result:
         period[name] = 100 * abs(
             _first_impact(block, theta0, True) / _first_impact(block, theta0) - 1
         )
-        pulse[name] = 100 * (_least_half_sine(block, True) / _least_half_sine(block, False) - 1)
+        pulse[name] = 100 * (
+            _least_half_sine(block, True) / _least_half_sine(block, False) - 1
+        )
     worst = max(*period.values(), *(abs(value) for value in pulse.values()))
     return Result(
         Finding.FOR if worst < 100 * SEEN else Finding.AGAINST,
@@ -158,7 +176,9 @@ def perturbed(block: Block, rng: np.random.Generator) -> tuple[Block, float]:
     """Copy of a block within ±1 % of width and ±0.5 % of height, and a restitution within ±0.02."""
     width = block.width * (1 + rng.uniform(-0.01, 0.01))
     height = block.height * (1 + rng.uniform(-0.005, 0.005))
-    changed = Block(width, height, block.mass * width * height / (block.width * block.height))
+    changed = Block(
+        width, height, block.mass * width * height / (block.width * block.height)
+    )
     return changed, min(1.0, changed.momentum_restitution() + rng.uniform(-0.02, 0.02))
 
 
@@ -168,7 +188,9 @@ def least_overturning_amplitudes(
     """Least overturning amplitude of `AMPLITUDES_G`, shape (bodies, motions); NaN if none does [g]."""
     motions, threads = setting.sample, setting.threads
     scales = np.array([factors_to_pga(motion, AMPLITUDES_G) for motion in motions])
-    found = overturns(bodies, motions, scales=scales, restitution=restitution, threads=threads)
+    found = overturns(
+        bodies, motions, scales=scales, restitution=restitution, threads=threads
+    )
     first = found.overturned.argmax(axis=2)
     return np.where(found.overturned.any(axis=2), AMPLITUDES_G[first], np.nan)
 
@@ -181,8 +203,12 @@ def c8(setting: Setting) -> Result:
     for block in setting.blocks.values():
         changed = [perturbed(block, rng) for _ in range(DRAWS)]
         bodies = [body for body, _ in changed]
-        amplitude = np.log(least_overturning_amplitudes(setting, bodies, [e for _, e in changed]))
-        static = float(np.std([math.log(math.tan(body.alpha)) for body in bodies], ddof=1))
+        amplitude = np.log(
+            least_overturning_amplitudes(setting, bodies, [e for _, e in changed])
+        )
+        static = float(
+            np.std([math.log(math.tan(body.alpha)) for body in bodies], ddof=1)
+        )
         for column in amplitude.T:
             if np.isfinite(column).all():
                 spread.append(float(np.std(column, ddof=1)))

@@ -33,7 +33,9 @@ def _by(evidence: Evidence, scope: str) -> str:
         str(level): mean_effect(rows)
         for level, rows in evidence.table.groupby(scope, observed=True)
     }
-    return "P/NP " + ", ".join(f"{level} {effect.ratio:.3f}" for level, effect in effects.items())
+    return "P/NP " + ", ".join(
+        f"{level} {effect.ratio:.3f}" for level, effect in effects.items()
+    )
 
 
 def _upper_cells(evidence: Evidence) -> str:
@@ -42,7 +44,9 @@ def _upper_cells(evidence: Evidence) -> str:
         for floor in UPPER
         for tower in TOWERS
     }
-    return "P/NP " + ", ".join(f"{name} {cell.ratio:.3f}" for name, cell in cells.items())
+    return "P/NP " + ", ".join(
+        f"{name} {cell.ratio:.3f}" for name, cell in cells.items()
+    )
 
 
 def _stack(evidence: Evidence) -> str:
@@ -67,7 +71,9 @@ _SHOWN: Mapping[str, Callable[[Evidence], str]] = {
 def contradictions(evidence: Evidence) -> pd.DataFrame:
     """Table of the thesis's contradictions with itself: hypotheses, what, why, in_these_tests."""
     table = pd.read_csv(
-        Path(__file__).with_name("contradictions.csv"), comment="#", keep_default_na=False
+        Path(__file__).with_name("contradictions.csv"),
+        comment="#",
+        keep_default_na=False,
     )
     seen = [_seen(evidence, shown) for shown in table.pop("shown")]
     return table.assign(in_these_tests=seen)

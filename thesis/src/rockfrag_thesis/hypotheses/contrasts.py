@@ -23,7 +23,11 @@ def slope_effect(table: pd.DataFrame, x: str = "s_c", value: str = "d") -> Estim
 
     Only differences between the objects of one motion (and one side, if there is a column side) enter.
     """
-    by_motion = [table[name] for name in ("earthquake", "motion", "side") if name in table.columns]
+    by_motion = [
+        table[name]
+        for name in ("earthquake", "motion", "side")
+        if name in table.columns
+    ]
     across = table[x] - table[x].groupby(by_motion).transform("mean")
     hidden = tied_resolution(table[value], resolution_of(table))
     sums = pd.DataFrame(
@@ -32,7 +36,9 @@ def slope_effect(table: pd.DataFrame, x: str = "s_c", value: str = "d") -> Estim
     by_earthquake = sums.groupby(table["earthquake"]).sum()
     by_earthquake = by_earthquake[by_earthquake["xx"] > 0]
     resolution = (by_earthquake["hidden"] / by_earthquake["xx"]).mean()
-    return t_estimate(by_earthquake["xy"] / by_earthquake["xx"], resolution=float(resolution))
+    return t_estimate(
+        by_earthquake["xy"] / by_earthquake["xx"], resolution=float(resolution)
+    )
 
 
 def contrast(
@@ -52,13 +58,19 @@ def contrast(
     matched = [name for name in design if name in table.columns and name != factor]
     work = table.assign(known=resolution_of(table))
     cells = work.pivot_table(
-        index=matched, columns=factor, values=[value, "known"], aggfunc="mean", observed=True
+        index=matched,
+        columns=factor,
+        values=[value, "known"],
+        aggfunc="mean",
+        observed=True,
     )
     for wanted in (level, reference):
         if (value, wanted) not in cells:
             raise TooFewUnitsError(f"no row has {factor} {wanted}")
     difference = (cells[value, level] - cells[value, reference]).dropna()
-    known = (cells["known", level] + cells["known", reference]).reindex(difference.index)
+    known = (cells["known", level] + cells["known", reference]).reindex(
+        difference.index
+    )
     hidden = pd.Series(tied_resolution(difference, known), index=difference.index)
     resolution = float(hidden.groupby(level=block).mean().mean())
     return t_estimate(difference.groupby(level=block).mean(), resolution=resolution)
@@ -70,7 +82,9 @@ def power_of_t(ratio: float, sd: float, n: int) -> float:
 
     size = abs(math.log(ratio)) / sd
     # the two-sided power less the chance to reject on the wrong side, which underflows to NaN
-    found = TTestPower().power(effect_size=size, nobs=n, alpha=LEVEL / 2, alternative="larger")
+    found = TTestPower().power(
+        effect_size=size, nobs=n, alpha=LEVEL / 2, alternative="larger"
+    )
     return float(found)
 
 

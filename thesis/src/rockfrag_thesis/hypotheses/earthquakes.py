@@ -25,7 +25,10 @@ INFERENCE = "about motions of the same earthquakes on the tested floors"
 @order_hypothesis(45, unit="motion", more=lambda _: INFERENCE)
 def c45(tests: Evidence) -> Parts:
     """Three increases."""
-    return {f"P/NP in {name}": Part(tests.effect(earthquake=name)) for name in EARTHQUAKES[:3]}
+    return {
+        f"P/NP in {name}": Part(tests.effect(earthquake=name))
+        for name in EARTHQUAKES[:3]
+    }
 
 
 @order_hypothesis(46, unit="motion", more=lambda _: INFERENCE)
@@ -79,12 +82,16 @@ def _motions_with_measures(tests: Evidence) -> pd.DataFrame:
         raise Undecidable("the intensity measures of the motions were not given")
     wanted = [name for name in MEASURES if name in tests.measures.columns]
     if not wanted or "name" not in tests.measures:
-        raise Undecidable(f"the measures lack the columns {', '.join(['name', *MEASURES])}")
+        raise Undecidable(
+            f"the measures lack the columns {', '.join(['name', *MEASURES])}"
+        )
     effects = tests.table.groupby(["motion", "earthquake"])["d"].mean().reset_index()
     measures = tests.measures.drop_duplicates("name").set_index("name")[wanted]
     joined = effects.join(measures, on="motion", how="inner")
     if joined["earthquake"].nunique() < 3:
-        raise Undecidable("motions of fewer than three earthquakes have measures by their name")
+        raise Undecidable(
+            "motions of fewer than three earthquakes have measures by their name"
+        )
     return joined
 
 
@@ -100,7 +107,8 @@ def rank_correlation(joined: pd.DataFrame, measure: str) -> Estimate:
         return math.atanh(min(max(rho, -0.999), 0.999))
 
     return jackknife(
-        z(joined), [z(joined[joined["earthquake"] != earthquake]) for earthquake in earthquakes]
+        z(joined),
+        [z(joined[joined["earthquake"] != earthquake]) for earthquake in earthquakes],
     )
 
 
@@ -124,7 +132,8 @@ def c52(tests: Evidence) -> Result:
     strongest = min(p, key=p.__getitem__)
     bound = math.atanh(COULD_BE_FOUND)
     p_none = max(
-        max(estimate.p_above(-bound), estimate.p_below(bound)) for estimate in found.values()
+        max(estimate.p_above(-bound), estimate.p_below(bound))
+        for estimate in found.values()
     )
     p_some = min(1.0, p[strongest] * len(p) / 2)
     estimate = found[strongest]

@@ -9,7 +9,12 @@ import pandas as pd
 
 from rockfrag.errors import InputError
 from rockfrag.pedestal.cluster_means import Estimate, mean_effect
-from rockfrag.pedestal.paired_tests import Pairs, check_tests, pair_tests, pedestals_apart
+from rockfrag.pedestal.paired_tests import (
+    Pairs,
+    check_tests,
+    pair_tests,
+    pedestals_apart,
+)
 from rockfrag.system.blocks import Block
 from rockfrag_thesis.hypotheses.contrasts import contrast
 from rockfrag_thesis.hypotheses.hypothesis import Undecidable
@@ -46,7 +51,11 @@ class Evidence:
     @property
     def slenderness(self) -> dict[str, float]:
         """Height over width by object [-]."""
-        return {name: body.slenderness for name, body in self.specimens.items() if name != PEDESTAL}
+        return {
+            name: body.slenderness
+            for name, body in self.specimens.items()
+            if name != PEDESTAL
+        }
 
     @cached_property
     def clean(self) -> pd.DataFrame:
@@ -115,7 +124,9 @@ class Evidence:
         """Mean log ratio P/NP at the given levels."""
         return mean_effect(self.part(**levels))
 
-    def lead(self, factor: str, word: str, other: str, block: str = "earthquake") -> Estimate:
+    def lead(
+        self, factor: str, word: str, other: str, block: str = "earthquake"
+    ) -> Estimate:
         """By how much the effect at one level of a factor exceeds that at another, block by block."""
         names = self.level(factor, word), self.level(factor, other)
         return contrast(self.table, factor, *names, block=block)

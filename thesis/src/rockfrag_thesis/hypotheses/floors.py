@@ -8,10 +8,19 @@ from dataclasses import replace
 
 import pandas as pd
 
-from rockfrag.pedestal.cluster_means import earthquake_means, mean_effect, sign_flip_test
+from rockfrag.pedestal.cluster_means import (
+    earthquake_means,
+    mean_effect,
+    sign_flip_test,
+)
 from rockfrag_thesis.hypotheses.contrasts import contrast
 from rockfrag_thesis.hypotheses.evidence import Evidence
-from rockfrag_thesis.hypotheses.hypothesis import Finding, Result, Undecidable, hypothesis
+from rockfrag_thesis.hypotheses.hypothesis import (
+    Finding,
+    Result,
+    Undecidable,
+    hypothesis,
+)
 from rockfrag_thesis.hypotheses.orders import (
     Part,
     Parts,
@@ -93,7 +102,9 @@ def c41(tests: Evidence) -> Parts:
     sign = 1.0 if tests.effect(floor=GROUND).mean >= 0 else -1.0
     parts = {}
     for other in others:
-        mirrored = table.assign(d=table["d"].where(table["floor"] != other, -table["d"]))
+        mirrored = table.assign(
+            d=table["d"].where(table["floor"] != other, -table["d"])
+        )
         for word, rows in (("change", table), ("opposite change", mirrored)):
             lead = contrast(rows, "floor", ground, other).times(sign)
             parts[f"change on {ground} over the {word} on {other}"] = Part(lead)
@@ -110,7 +121,9 @@ def _leading_floor(tests: Evidence, side: str, floor: str) -> Parts:
     rows = tests.amplitudes[tests.amplitudes["side"] == side]
     top = tests.level("floor", floor)
     others = [tests.level("floor", name) for name in FLOORS if name != floor]
-    return {f"{side} on {top} over {other}": _over(rows, top, other) for other in others}
+    return {
+        f"{side} on {top} over {other}": _over(rows, top, other) for other in others
+    }
 
 
 @order_hypothesis(42, more=lambda tests: _means(tests, "P"))
@@ -167,7 +180,9 @@ def c51(tests: Evidence) -> Result:
 def floor_steps(tests: Evidence) -> Parts:
     """The thesis's order of the floors for lone towers: 3rd below 5th below ground."""
     rows = tests.amplitudes[tests.amplitudes["side"] == "NP"]
-    third, fifth, ground = (tests.level("floor", name) for name in (THIRD, FIFTH, GROUND))
+    third, fifth, ground = (
+        tests.level("floor", name) for name in (THIRD, FIFTH, GROUND)
+    )
     return {
         f"NP on {first} over {other}": _over(rows, first, other)
         for first, other in ((fifth, third), (ground, fifth))
@@ -179,7 +194,9 @@ def floor_means(tests: Evidence) -> pd.DataFrame:
     for floor in FLOORS:
         tests.level("floor", floor)
     rows = tests.amplitudes
-    means = rows.pivot_table(index="floor", columns="side", values="a_g", aggfunc="mean")
+    means = rows.pivot_table(
+        index="floor", columns="side", values="a_g", aggfunc="mean"
+    )
     if means.isna().any(axis=None):
         raise Undecidable("a floor was tested on one side only")
     return means
@@ -187,4 +204,6 @@ def floor_means(tests: Evidence) -> pd.DataFrame:
 
 def _means(tests: Evidence, side: str) -> str:
     means = floor_means(tests)[side].to_dict()
-    return "arithmetic means " + ", ".join(f"{name} {means[name]:.3f} g" for name in means)
+    return "arithmetic means " + ", ".join(
+        f"{name} {means[name]:.3f} g" for name in means
+    )

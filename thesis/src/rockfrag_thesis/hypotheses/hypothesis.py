@@ -44,7 +44,10 @@ _FROM_THE_MODEL = {
     Finding.OPEN: UNDECIDED,
     Finding.BOUNDED: EXCLUDED,
 }
-_FROM_A_LABORATORY = _FROM_THE_MODEL | {Finding.FOR: "confirmed", Finding.AGAINST: "rejected"}
+_FROM_A_LABORATORY = _FROM_THE_MODEL | {
+    Finding.FOR: "confirmed",
+    Finding.AGAINST: "rejected",
+}
 _ABOUT_THE_MODEL = _FROM_A_LABORATORY | {
     Finding.AGAINST: "refuted",
     Finding.SPECIMENS_ONLY: "confirmed for the specimens, with exceptions elsewhere",
@@ -99,7 +102,8 @@ class Hypothesis:
     source: str
     kind: Kind
     evidence: str  # What is looked at
-    rule: str  # When it is held to be true, and when false, in words a statistician can repeat
+    # When it is held to be true, and when false, in words a statistician can repeat
+    rule: str
     error_rate: str  # How often the rule errs by chance, or why it cannot
     test: Test  # Function that applies the rule
 
@@ -132,7 +136,14 @@ def hypothesis(number: int, **figures: Any) -> Callable[[Test], Test]:
             for name in ("evidence", "rule")
         )
         error_rate = said.get("error_rate", "none: nothing is sampled")
-        about = (said["statement"], said["source"], Kind(said["kind"]), evidence, rule, error_rate)
+        about = (
+            said["statement"],
+            said["source"],
+            Kind(said["kind"]),
+            evidence,
+            rule,
+            error_rate,
+        )
         HYPOTHESES[number] = Hypothesis(number, *about, test)
         return test
 

@@ -30,10 +30,20 @@ from rockfrag_thesis.hypotheses.hypothesis import (
 )
 from rockfrag_thesis.hypotheses.setting import Setting, make_setting
 
-THEORY = range(1, 25)  # numbers of the hypotheses about theory; the others are about tests
+# numbers of the hypotheses about theory; the others are about tests
+THEORY = range(1, 25)
 
 COLUMNS = (
-    *("number", "hypothesis", "source", "kind", "evidence", "rule", "error_rate", "finding"),
+    *(
+        "number",
+        "hypothesis",
+        "source",
+        "kind",
+        "evidence",
+        "rule",
+        "error_rate",
+        "finding",
+    ),
     *("outcome", "figure", "estimate", "lower", "upper", "unit", "p", "p_of", "p_holm"),
     *("basis", "remark"),
 )
@@ -54,7 +64,10 @@ def theory_table(
     is the pedestal: without ``assemblies``, stacks by name, others stand on it. Motions are as recorded.
     """
     setting = make_setting(specimens, motions, seed, threads, assemblies)
-    return _table(_row(hypothesis, setting, "simulated") for hypothesis in _hypotheses(theory=True))
+    return _table(
+        _row(hypothesis, setting, "simulated")
+        for hypothesis in _hypotheses(theory=True)
+    )
 
 
 def hypothesis_table(tests: Evidence) -> pd.DataFrame:
@@ -63,8 +76,11 @@ def hypothesis_table(tests: Evidence) -> pd.DataFrame:
     A hypothesis about which the table cannot speak (a floor that was not tested, a column that is absent, a single
     object) is open, with the reason.
     """
-    _ = tests.clean  # a table that cannot be used is the user's error, and no hypothesis's
-    return _table(_row(hypothesis, tests, tests.basis) for hypothesis in _hypotheses(theory=False))
+    # a table that cannot be used is the user's error, and no hypothesis's
+    _ = tests.clean
+    return _table(
+        _row(hypothesis, tests, tests.basis) for hypothesis in _hypotheses(theory=False)
+    )
 
 
 def _hypotheses(theory: bool) -> list[Hypothesis]:
@@ -80,7 +96,9 @@ def _row(
             warnings.simplefilter("ignore", LightBodies)
             result = hypothesis.test(evidence)
     except (Undecidable, TooFewUnitsError) as reason:
-        result = Result(Finding.OPEN, "no figure", remark=f"these data cannot decide it: {reason}")
+        result = Result(
+            Finding.OPEN, "no figure", remark=f"these data cannot decide it: {reason}"
+        )
     if hypothesis.kind is Kind.IDENTITY:
         basis = "computed"
     basis = result.basis or basis

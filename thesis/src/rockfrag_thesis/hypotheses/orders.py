@@ -91,7 +91,9 @@ def _p_bounded(parts: Parts) -> float:
     Where a hypothesis claims noticeable changes it is enough that one of them is excluded, with Bonferroni's
     adjustment; where it names no size every one has to be (an intersection-union test, which needs none).
     """
-    noticeable = [part.p_bounded() for part in parts.values() if part.size is Size.NOTICEABLE]
+    noticeable = [
+        part.p_bounded() for part in parts.values() if part.size is Size.NOTICEABLE
+    ]
     if noticeable:
         return min(1.0, min(noticeable) * len(noticeable))
     return max(part.p_bounded() for part in parts.values())
@@ -103,7 +105,9 @@ def _listed(parts: Parts, decisive: str) -> str:
     names = list(parts) if len(parts) <= 4 else [decisive]
     ratios = ", ".join(f"{name} {parts[name].estimate.text()}" for name in names)
     if len(parts) == 1:
-        return f"{ratios}; the mean is {'' if positive else 'not '}in the stated direction"
+        return (
+            f"{ratios}; the mean is {'' if positive else 'not '}in the stated direction"
+        )
     return f"{ratios}; {positive} of {len(parts)} means are in the stated direction"
 
 
@@ -119,7 +123,10 @@ ORDERS: dict[int, Differences] = {}
 
 
 def order_hypothesis(
-    number: int, *, unit: str = "earthquake", more: Callable[[Evidence], str] = lambda _: ""
+    number: int,
+    *,
+    unit: str = "earthquake",
+    more: Callable[[Evidence], str] = lambda _: "",
 ) -> Callable[[Differences], Differences]:
     """Enter the decorated function, from tests to differences, as a hypothesis about their order, see `order`.
 
@@ -128,7 +135,9 @@ def order_hypothesis(
 
     def enter(differences: Differences) -> Differences:
         ORDERS[number] = differences
-        hypothesis(number)(lambda tests: order(differences(tests), unit=unit, more=more(tests)))
+        hypothesis(number)(
+            lambda tests: order(differences(tests), unit=unit, more=more(tests))
+        )
         return differences
 
     return enter

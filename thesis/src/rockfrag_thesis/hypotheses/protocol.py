@@ -5,7 +5,12 @@ import numpy as np
 from rockfrag.pedestal.cluster_means import t_estimate
 from rockfrag.units import GRAVITY
 from rockfrag_thesis.hypotheses.evidence import PEDESTAL, Evidence
-from rockfrag_thesis.hypotheses.hypothesis import Finding, Result, Undecidable, hypothesis
+from rockfrag_thesis.hypotheses.hypothesis import (
+    Finding,
+    Result,
+    Undecidable,
+    hypothesis,
+)
 from rockfrag_thesis.hypotheses.outcomes import decided, same
 
 MOTIONS = 12
@@ -34,7 +39,8 @@ def c55(tests: Evidence) -> Result:
         float(counts.max()),
         unit="motions",
         remark="'just before overturning' (3.4) and 'leads to overturning' (abstract) differ by "
-        "that width" + ("" if as_told else "; this table is not the thesis's twelve motions"),
+        "that width"
+        + ("" if as_told else "; this table is not the thesis's twelve motions"),
     )
 
 
@@ -65,7 +71,9 @@ def c56(tests: Evidence) -> Result:
     exact = clean[(clean["censored"] == "none") & clean["force_n"].notna()]
     step = float((exact["upper_g"] / exact["lower_g"]).median()) - 1
     if not step > 0:
-        raise Undecidable("the steps of the protocol are not known (lower_g and upper_g agree)")
+        raise Undecidable(
+            "the steps of the protocol are not known (lower_g and upper_g agree)"
+        )
     computed = exact["force_n"] / exact["moved_mass_kg"] / GRAVITY
     errors = exact.assign(error=np.log(computed / exact["amplitude_g"]))
     error = t_estimate(errors.groupby("earthquake")["error"].mean())
@@ -85,7 +93,9 @@ def c57(tests: Evidence) -> Result:
         raise Undecidable(
             "the tests carry no friction_demand and least_normal_force_n (simulations can)"
         )
-    need = clean[clean["friction_demand"].notna() & clean["least_normal_force_n"].notna()]
+    need = clean[
+        clean["friction_demand"].notna() & clean["least_normal_force_n"].notna()
+    ]
     if need.empty:
         raise Undecidable("friction_demand and least_normal_force_n are empty")
     demand = need["friction_demand"]
@@ -107,4 +117,6 @@ def c57(tests: Evidence) -> Result:
 @hypothesis(58)
 def c58(tests: Evidence) -> Result:
     """Overturning amplitude with sliding allowed against without, which no study has side by side."""
-    raise Undecidable("there are no overturning amplitudes with and without sliding to compare")
+    raise Undecidable(
+        "there are no overturning amplitudes with and without sliding to compare"
+    )

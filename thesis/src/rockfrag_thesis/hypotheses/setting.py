@@ -55,7 +55,9 @@ class MotionSpectra:
 
     def displacement(self, damping: float) -> Floats:
         """Sd over `PERIODS`, shape (motions, periods) [m]."""
-        return np.array([spectrum.displacement for spectrum in self.oscillator(damping)])
+        return np.array(
+            [spectrum.displacement for spectrum in self.oscillator(damping)]
+        )
 
     def rotation(self, factor: float = 1.0) -> Floats:
         """Largest |θ|/θc over `SIZES`, shape (slendernesses, motions, sizes) [-]; infinite if it fell.
@@ -66,7 +68,9 @@ class MotionSpectra:
             blocks = [uniform_block(a * factor, T) for a in self.alpha for T in SIZES]
             found = overturns(blocks, self.motions, scales=[1.0], threads=self.threads)
             shape = (self.alpha.size, SIZES.size, len(self.motions))
-            self._rotation[factor] = np.moveaxis(found.of_top("peak_rotation").reshape(shape), 2, 1)
+            self._rotation[factor] = np.moveaxis(
+                found.of_top("peak_rotation").reshape(shape), 2, 1
+            )
         return self._rotation[factor]
 
 
@@ -93,7 +97,9 @@ class Setting:
     def assemblies(self) -> dict[str, Stack]:
         """Stacks; raises Undecidable if there is none."""
         if not self.stacks:
-            raise Undecidable("there is no stack among the specimens and no block named P")
+            raise Undecidable(
+                "there is no stack among the specimens and no block named P"
+            )
         return dict(self.stacks)
 
     @cached_property
@@ -112,10 +118,14 @@ class Setting:
     @property
     def where(self) -> str:
         """Which histories were looked at, in words."""
-        more = f" of {len(self.motions)}" if len(self.sample) < len(self.motions) else ""
+        more = (
+            f" of {len(self.motions)}" if len(self.sample) < len(self.motions) else ""
+        )
         peaks = ", ".join(f"{peak:g}" for peak in PEAKS_G)
         stacks = len(self.assemblies)
-        return f"stacks: {stacks}; motions: {len(self.sample)}{more}, scaled to {peaks} g"
+        return (
+            f"stacks: {stacks}; motions: {len(self.sample)}{more}, scaled to {peaks} g"
+        )
 
     @cached_property
     def histories(self) -> list[Response]:
@@ -130,7 +140,9 @@ class Setting:
     @cached_property
     def impacts(self) -> pd.DataFrame:
         """Impacts of all histories, a row each, as in `rockfrag.engines.response.Response.contact_events`."""
-        found = pd.concat([each.contact_events for each in self.histories], ignore_index=True)
+        found = pd.concat(
+            [each.contact_events for each in self.histories], ignore_index=True
+        )
         return found[found["kind"] == "impact"]
 
     @cached_property
@@ -142,17 +154,25 @@ class Setting:
     @cached_property
     def alone(self) -> dict[str, float]:
         """Least acceleration that starts each lone block (thesis eq. 2.1) [m/s²]."""
-        return {name: uplift_accelerations(block)[1] for name, block in self.blocks.items()}
+        return {
+            name: uplift_accelerations(block)[1] for name, block in self.blocks.items()
+        }
 
     @cached_property
     def rocking_mode_3(self) -> dict[str, float]:
         """Likewise each stack held together as one body (thesis eq. 2.21, 2.22) [m/s²]."""
-        return {name: uplift_accelerations(stack)[0] for name, stack in self.assemblies.items()}
+        return {
+            name: uplift_accelerations(stack)[0]
+            for name, stack in self.assemblies.items()
+        }
 
     @cached_property
     def rocking_mode_4(self) -> dict[str, float]:
         """Likewise the statue of each stack on a still pedestal (thesis eq. 2.24, 2.25) [m/s²]."""
-        return {name: uplift_accelerations(stack)[1] for name, stack in self.assemblies.items()}
+        return {
+            name: uplift_accelerations(stack)[1]
+            for name, stack in self.assemblies.items()
+        }
 
     @cached_property
     def pedestal_too(self) -> dict[str, float]:
@@ -183,7 +203,9 @@ def make_setting(
     return Setting(blocks, pedestal, stacks or {}, list(motions), seed, threads)
 
 
-def bisect(happens: Callable[[float], bool], low: float, high: float, tolerance: float) -> float:
+def bisect(
+    happens: Callable[[float], bool], low: float, high: float, tolerance: float
+) -> float:
     """Least argument at which something happens that does not at ``low`` and does at ``high``, else Undecidable.
 
     ``tolerance`` is the relative width of the bracket at which the search ends [-].
@@ -208,22 +230,35 @@ def moves(body: Body, acceleration: float) -> bool:
 
 def starts_at(body: Body, acceleration: float) -> bool:
     """Whether a simulated body starts to rock at this acceleration [m/s²] and not just below it."""
-    return moves(body, acceleration * (1 + EXACT)) and not moves(body, acceleration * (1 - EXACT))
+    return moves(body, acceleration * (1 + EXACT)) and not moves(
+        body, acceleration * (1 - EXACT)
+    )
 
 
 def require_thesis_specimens(setting: Setting) -> None:
     """Raise Undecidable unless the specimens are those of which the thesis printed figures."""
     given: dict[str, Block | None] = {**setting.objects, PEDESTAL: setting.pedestal}
-    lower = {name: (stack.lower, THESIS_BODIES[PEDESTAL]) for name, stack in setting.stacks.items()}
-    bodies = {name: (given.get(name), body) for name, body in THESIS_BODIES.items()} | lower
+    lower = {
+        name: (stack.lower, THESIS_BODIES[PEDESTAL])
+        for name, stack in setting.stacks.items()
+    }
+    bodies = {
+        name: (given.get(name), body) for name, body in THESIS_BODIES.items()
+    } | lower
     for name, (block, body) in bodies.items():
         if block is None or not same_block(block, body):
-            raise Undecidable(f"the printed figures are of other specimens: {name} differs")
+            raise Undecidable(
+                f"the printed figures are of other specimens: {name} differs"
+            )
 
 
 def same_block(block: Block, other: Block) -> bool:
     """Whether two blocks have the same size and mass but for rounding, and are uniform."""
-    uniform = block.inertia is block.cg_height is None and not block.cg_offset and not block.lean
+    uniform = (
+        block.inertia is block.cg_height is None
+        and not block.cg_offset
+        and not block.lean
+    )
     own, wanted = ((each.width, each.height, each.mass) for each in (block, other))
     return uniform and bool(np.allclose(own, wanted, rtol=1e-6))
 

@@ -11,7 +11,12 @@ from rockfrag.system import geometry
 from rockfrag.system.blocks import Stack
 from rockfrag_thesis.hypotheses.contrasts import contrast, power_note, slope_effect
 from rockfrag_thesis.hypotheses.evidence import PEDESTAL, Evidence
-from rockfrag_thesis.hypotheses.hypothesis import Finding, Result, Undecidable, hypothesis
+from rockfrag_thesis.hypotheses.hypothesis import (
+    Finding,
+    Result,
+    Undecidable,
+    hypothesis,
+)
 from rockfrag_thesis.hypotheses.orders import (
     Part,
     Parts,
@@ -19,7 +24,14 @@ from rockfrag_thesis.hypotheses.orders import (
     order,
     order_hypothesis,
 )
-from rockfrag_thesis.hypotheses.outcomes import LEVEL, all_of, decided, p_nonzero, ratios, same
+from rockfrag_thesis.hypotheses.outcomes import (
+    LEVEL,
+    all_of,
+    decided,
+    p_nonzero,
+    ratios,
+    same,
+)
 
 TOWERS = ("T1", "T2", "T3")  # the towers from the squattest to the most slender
 
@@ -33,7 +45,9 @@ def _earthquake_means(tests: Evidence) -> pd.DataFrame:
     """Arithmetic mean amplitude by earthquake, a column per tower [g]."""
     names = [tests.level("object", name) for name in TOWERS]
     rows = tests.amplitudes
-    means = rows.pivot_table(index="earthquake", columns="object", values="a_g", aggfunc="mean")
+    means = rows.pivot_table(
+        index="earthquake", columns="object", values="a_g", aggfunc="mean"
+    )
     return means[names].dropna()
 
 
@@ -71,7 +85,9 @@ def c26(tests: Evidence) -> Parts:
 def c27(tests: Evidence) -> Result:
     """Equal relative decrease from T1 to T3."""
     difference = tests.lead("object", "T3", "T1")
-    return same(difference, f"decrease with P over decrease without {difference.text()}")
+    return same(
+        difference, f"decrease with P over decrease without {difference.text()}"
+    )
 
 
 @hypothesis(28)
@@ -90,7 +106,9 @@ def c28(tests: Evidence) -> Result:
         ],
         columns=["earthquake", "floor", "fall"],
     )
-    table = falls.pivot_table(index="earthquake", columns="floor", values="fall").dropna()
+    table = falls.pivot_table(
+        index="earthquake", columns="floor", values="fall"
+    ).dropna()
     if table.shape[1] < 2:
         raise Undecidable("two towers on each of two floors are needed")
     pairs = {
@@ -104,13 +122,17 @@ def c28(tests: Evidence) -> Result:
     finding = decided(p_differ[widest] < LEVEL, all_alike)
     pair = pairs[widest]
     p_alike = max(each.p for each in alike)
-    means = ", ".join(f"{floor} {math.exp(-fall):.3f}" for floor, fall in table.mean().items())
+    means = ", ".join(
+        f"{floor} {math.exp(-fall):.3f}" for floor, fall in table.mean().items()
+    )
     return Result(
         finding,
         f"mean of the most slender tower over that of the squattest: {means}; decrease on {widest} {pair.text()}",
         *ratios(pair),
         p=min(1.0, p_differ[widest], p_alike),
-        p_of="no difference" if p_differ[widest] <= p_alike else "a difference of 10 % or more",
+        p_of="no difference"
+        if p_differ[widest] <= p_alike
+        else "a difference of 10 % or more",
         remark=power_note(pair) if finding is Finding.OPEN else "",
     )
 
@@ -212,7 +234,9 @@ def c54(tests: Evidence) -> Result:
     # errors as fractions of one mean: a ratio in each earthquake would be biased by its scatter
     misses = {
         "a on H/B": (squat + weight * (middle - squat) - slender) / reached,
-        "ln a on H/B": np.log(squat) + weight * np.log(middle / squat) - np.log(slender),
+        "ln a on H/B": np.log(squat)
+        + weight * np.log(middle / squat)
+        - np.log(slender),
         "a on B/H": (squat + inverse * (middle - squat) - slender) / reached,
     }
     errors = {name: t_estimate(miss) for name, miss in misses.items()}

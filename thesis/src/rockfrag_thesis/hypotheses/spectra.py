@@ -13,7 +13,12 @@ from rockfrag.motions.spectra import oscillator_response
 from rockfrag.pedestal.cluster_means import Estimate
 from rockfrag.rocking import overturns
 from rockfrag.units import GRAVITY
-from rockfrag_thesis.hypotheses.hypothesis import Finding, Result, Undecidable, hypothesis
+from rockfrag_thesis.hypotheses.hypothesis import (
+    Finding,
+    Result,
+    Undecidable,
+    hypothesis,
+)
 from rockfrag_thesis.hypotheses.outcomes import (
     SEEN,
     decided,
@@ -30,7 +35,8 @@ PERCENTS = tuple(100 * damping for damping in DAMPINGS)
 LONG = 200.0  # a period that counts as infinite [s]
 ROCKS = 0.01
 """Rotation below which a block hardly rocks and its spectrum has no shape, of the critical angle [-]."""
-CHANGE = 0.05  # small change of slenderness or damping whose effects are compared with it [-]
+# small change of slenderness or damping whose effects are compared with it [-]
+CHANGE = 0.05
 
 
 @hypothesis(14, blocks=SIZES.size, ends=SIZES[[0, -1]])
@@ -62,10 +68,14 @@ def c15(setting: Setting) -> Result:
     """Displacement spectrum: the rise to its maximum, and its value at a very long period."""
     rise, end, top = [], [], []
     damping = 0.05
-    for motion, sd in zip(setting.motions, setting.spectra.displacement(damping), strict=True):
+    for motion, sd in zip(
+        setting.motions, setting.spectra.displacement(damping), strict=True
+    ):
         ground = pgd(motion)
         peak = int(sd.argmax())
-        rise.append(float(stats.spearmanr(PERIODS[: peak + 1], sd[: peak + 1]).statistic))
+        rise.append(
+            float(stats.spearmanr(PERIODS[: peak + 1], sd[: peak + 1]).statistic)
+        )
         top.append(float(sd[peak]) / ground)
         # within the record: after it a residual velocity would carry the ground on for ever
         far = oscillator_response(motion, LONG, damping)[0]
@@ -89,7 +99,9 @@ BAND = 2 ** (1 / 3)
 def _longest_band(inside: NDArray[np.bool_]) -> tuple[float, float]:
     """Ends of the longest run of periods inside, in ratio; equal if there is none."""
     best = (1.0, 1.0)
-    for flag, run in itertools.groupby(range(len(inside)), key=lambda k: bool(inside[k])):
+    for flag, run in itertools.groupby(
+        range(len(inside)), key=lambda k: bool(inside[k])
+    ):
         members = list(run)
         ends = (float(PERIODS[members[0]]), float(PERIODS[members[-1]]))
         if flag and ends[1] / ends[0] > best[1] / best[0]:
@@ -103,13 +115,17 @@ def c16(setting: Setting) -> Result:
     low, high = (setting.spectra.displacement(damping) for damping in DAMPINGS)
     inside = np.abs(np.log(low / high)) < math.log1p(SEEN)
     bands = {
-        motion.name: _longest_band(row) for motion, row in zip(setting.motions, inside, strict=True)
+        motion.name: _longest_band(row)
+        for motion, row in zip(setting.motions, inside, strict=True)
     }
     wide = {name: ends for name, ends in bands.items() if ends[1] / ends[0] >= BAND}
-    shown = ", ".join(f"{name} {a:.2g} to {b:.2g} s" for name, (a, b) in list(wide.items())[:4])
+    shown = ", ".join(
+        f"{name} {a:.2g} to {b:.2g} s" for name, (a, b) in list(wide.items())[:4]
+    )
     return Result(
         Finding.FOR if wide else Finding.OPEN,
-        f"motions with such a range: {len(wide)} of {len(bands)}" + (f": {shown}" if wide else ""),
+        f"motions with such a range: {len(wide)} of {len(bands)}"
+        + (f": {shown}" if wide else ""),
         float(inside.mean()),
         float(inside.mean(axis=1).min()),
         float(inside.mean(axis=1).max()),
@@ -134,7 +150,9 @@ def c17(setting: Setting) -> Result:
         raise Undecidable("no block rocks by more than 1 % of its critical angle")
     ratio = np.nanmedian(by_motion, axis=1) / CHANGE
     more = int((ratio > 1).sum())
-    damping = setting.spectra.displacement(0.05 * (1 + CHANGE)) / setting.spectra.displacement(0.05)
+    damping = setting.spectra.displacement(
+        0.05 * (1 + CHANGE)
+    ) / setting.spectra.displacement(0.05)
     return Result(
         most(more, ratio.size),
         f"motions: {more} of {ratio.size}; rotation changes {np.median(ratio):.1f} times as much as "
@@ -174,7 +192,9 @@ def c18(setting: Setting) -> Result:
     low, high = (setting.spectra.displacement(damping) for damping in DAMPINGS)
     changed, total = exchanges(low, high)
     rotation = setting.spectra.rotation()
-    blocks = [exchanges(first, other) for first, other in itertools.combinations(rotation, 2)]
+    blocks = [
+        exchanges(first, other) for first, other in itertools.combinations(rotation, 2)
+    ]
     exchanged, compared = (
         (sum(counts) for counts in zip(*blocks, strict=True)) if blocks else (0, 0)
     )
@@ -229,13 +249,17 @@ def c19(setting: Setting) -> Result:
     pga = np.where(falls, np.log(AMPLITUDES_G[fell.argmax(axis=2)]), np.nan)
     if (falls.sum(axis=1) < 3).all():
         raise Undecidable("no block overturns under three motions at these amplitudes")
-    sa = np.log([spectrum.pseudo_acceleration for spectrum in setting.spectra.oscillator(0.05)])
+    sa = np.log(
+        [spectrum.pseudo_acceleration for spectrum in setting.spectra.oscillator(0.05)]
+    )
     periods = np.log([2 * math.pi / block.frequency() for block in blocks])
     own = np.column_stack([np.interp(periods, np.log(PERIODS), row) for row in sa])
     at_sa = pga + own - np.log(peak)
     at_pgv = pga + np.log([pgv(motion) for motion in motions]) - np.log(peak)
     others = {"PGA": pga, "PGV": at_pgv}
-    found = {name: dispersion_ratio(at_sa, other, groups) for name, other in others.items()}
+    found = {
+        name: dispersion_ratio(at_sa, other, groups) for name, other in others.items()
+    }
     p_more = min(known(ratio.p_above(0.0)) for ratio in found.values())
     p_less = max(known(ratio.p_below(0.0)) for ratio in found.values())
     spread = {

@@ -11,7 +11,12 @@ from rockfrag.engines.response import ROCKING_MODES
 from rockfrag.rocking import simulate
 from rockfrag.system.blocks import Block, Stack
 from rockfrag.units import GRAVITY
-from rockfrag_thesis.hypotheses.hypothesis import Finding, Result, Undecidable, hypothesis
+from rockfrag_thesis.hypotheses.hypothesis import (
+    Finding,
+    Result,
+    Undecidable,
+    hypothesis,
+)
 from rockfrag_thesis.hypotheses.outcomes import most
 from rockfrag_thesis.hypotheses.setting import (
     EXACT,
@@ -35,7 +40,10 @@ def c2(setting: Setting) -> Result:
     require_thesis_specimens(setting)
     printed = {
         **TABLE_4_1,
-        **{f"{name} pattern 3": value for name, value in TABLE_4_1_ROCKING_MODE_3.items()},
+        **{
+            f"{name} pattern 3": value
+            for name, value in TABLE_4_1_ROCKING_MODE_3.items()
+        },
         **{f"P&{name} pattern 4": value for name, value in TABLE_4_1.items()},
     }
     computed, agree = dict(setting.alone), []
@@ -77,8 +85,12 @@ def c9(setting: Setting) -> Result:
         for factor in SUDDEN:
             state = jump(stack, factor * setting.rocking_mode_4[name]).state[0]
             sudden[ROCKING_MODES[int(state[0]), int(state[1])]] += 1
-    usual = sum(count for rocking_mode, count in first.items() if rocking_mode[0] in "34")
-    suddenly = sum(count for rocking_mode, count in sudden.items() if rocking_mode[0] in "34")
+    usual = sum(
+        count for rocking_mode, count in first.items() if rocking_mode[0] in "34"
+    )
+    suddenly = sum(
+        count for rocking_mode, count in sudden.items() if rocking_mode[0] in "34"
+    )
     if not first:
         raise Undecidable("no stack rocks under the motions")
     finding = Finding.FOR if suddenly == sudden.total() else Finding.SPECIMENS_ONLY
@@ -105,12 +117,16 @@ def c10(setting: Setting) -> Result:
     sources: Counter[str] = Counter()
     for response in setting.histories:
         sources.update(
-            response.contact_events.loc[response.contact_events["kind"] == "opening", "from"]
+            response.contact_events.loc[
+                response.contact_events["kind"] == "opening", "from"
+            ]
         )
     moving = Counter({k: v for k, v in sources.items() if k != "rest"})
     if not moving:
         raise Undecidable("no interface opened during rocking")
-    other = sum(count for rocking_mode, count in moving.items() if rocking_mode[0] not in "34")
+    other = sum(
+        count for rocking_mode, count in moving.items() if rocking_mode[0] not in "34"
+    )
     return Result(
         Finding.AGAINST if other else Finding.FOR,
         f"openings from {_counted(moving)}; from rest {sources['rest']}; from patterns 1 and 2 {other}",
@@ -204,7 +220,9 @@ def _random_stack(rng: np.random.Generator) -> Stack:
 def free_fall(stack: Stack) -> pd.DataFrame:
     """Contact events after the statue is tilted a little on a still pedestal and released."""
     dt = 0.2 / stack.upper.frequency()
-    response = simulate(stack, np.zeros(10), dt, theta0=(0.0, 0.05 * stack.upper.critical_angle(1)))
+    response = simulate(
+        stack, np.zeros(10), dt, theta0=(0.0, 0.05 * stack.upper.critical_angle(1))
+    )
     return response.contact_events
 
 
@@ -271,7 +289,9 @@ def c12(setting: Setting) -> Result:
         finding,
         "; ".join(
             f"{name}: the pedestal "
-            + ", ".join(f"{what} after {found[what]}" for what in (STILL, SETTLES, LIFTED))
+            + ", ".join(
+                f"{what} after {found[what]}" for what in (STILL, SETTLES, LIFTED)
+            )
             + f" of {found.total()} landings"
             for name, found in (("specimens", own), ("random stacks", random))
         ),
@@ -293,9 +313,13 @@ def c13(setting: Setting) -> Result:
         if len(impacts):
             change = impacts["energy_after"] / impacts["energy_before"] - 1
             gain = max(gain, float(change.max()))
-            loss.append(float((impacts["energy_before"] - impacts["energy_after"]).sum()))
+            loss.append(
+                float((impacts["energy_before"] - impacts["energy_after"]).sum())
+            )
         opened = contact_events[contact_events["kind"] == "opening"]
-        for before, after in zip(opened["omega_before"], opened["omega_after"], strict=True):
+        for before, after in zip(
+            opened["omega_before"], opened["omega_after"], strict=True
+        ):
             kink = max(kink, float(np.abs(np.subtract(after, before)).max()))
         energy = response.energy
         scale = float(np.abs(energy[["kinetic", "input"]].to_numpy()).max())
@@ -319,10 +343,15 @@ SQUAT_ON_SLENDER = Stack(Block(0.1, 1.0, 10.0), Block(0.1, 0.05, 0.5))
 @hypothesis(21)
 def c21(setting: Setting) -> Result:
     """Threshold of pattern 4 over that of pattern 3."""
-    ratio = {k: setting.rocking_mode_4[k] / setting.rocking_mode_3[k] for k in setting.assemblies}
+    ratio = {
+        k: setting.rocking_mode_4[k] / setting.rocking_mode_3[k]
+        for k in setting.assemblies
+    }
     other_3, other_4 = uplift_accelerations(SQUAT_ON_SLENDER)
     return Result(
-        Finding.SPECIMENS_ONLY if max(ratio.values()) < 1 < other_4 / other_3 else Finding.AGAINST,
+        Finding.SPECIMENS_ONLY
+        if max(ratio.values()) < 1 < other_4 / other_3
+        else Finding.AGAINST,
         f"pattern 4 over pattern 3: {listed(ratio)}; squat statue on a slender pedestal {other_4 / other_3:.1f}",
         max(ratio.values()),
     )
@@ -344,8 +373,14 @@ def c22(setting: Setting) -> Result:
 @hypothesis(23)
 def c23(setting: Setting) -> Result:
     """Acceleration that moves the pedestal too, against that of the statue alone."""
-    held = {k: setting.rocking_mode_3[k] / setting.rocking_mode_4[k] for k in setting.assemblies}
-    free = {k: setting.pedestal_too[k] / setting.rocking_mode_4[k] for k in setting.assemblies}
+    held = {
+        k: setting.rocking_mode_3[k] / setting.rocking_mode_4[k]
+        for k in setting.assemblies
+    }
+    free = {
+        k: setting.pedestal_too[k] / setting.rocking_mode_4[k]
+        for k in setting.assemblies
+    }
     least = min(*held.values(), *free.values())
     other_3, other_4 = uplift_accelerations(SQUAT_ON_SLENDER)
     return Result(
@@ -363,7 +398,10 @@ def c24(setting: Setting) -> Result:
     if len(setting.blocks) < 2:
         raise Undecidable("there is one lone block only")
     groups = {
-        "lone": [(block.slenderness, setting.alone[name]) for name, block in setting.blocks.items()]
+        "lone": [
+            (block.slenderness, setting.alone[name])
+            for name, block in setting.blocks.items()
+        ]
     }
     if len(setting.stacks) > 1:
         for label, found in (
@@ -371,14 +409,16 @@ def c24(setting: Setting) -> Result:
             ("pattern 4", setting.rocking_mode_4),
         ):
             groups[label] = [
-                (stack.upper.slenderness, found[name]) for name, stack in setting.assemblies.items()
+                (stack.upper.slenderness, found[name])
+                for name, stack in setting.assemblies.items()
             ]
     ordered = {name: [a for _, a in sorted(points)] for name, points in groups.items()}
     falls = all(np.all(np.diff(values) < 0) for values in ordered.values())
     return Result(
         Finding.FOR if falls else Finding.AGAINST,
         "; ".join(
-            f"{name} " + ", ".join(f"{a:.2f}" for a in values) for name, values in ordered.items()
+            f"{name} " + ", ".join(f"{a:.2f}" for a in values)
+            for name, values in ordered.items()
         )
         + " m/s²",
     )

@@ -37,7 +37,11 @@ def building(results: Results) -> Section | None:
     means = results.table("building_sensitivity/means")
     floors = means[(means["by"] == "floor") & (means["pedestal"] == "NP")]
     varied = floors[floors["axis"] != "reference"]
-    span = varied.groupby(["axis", "floor"], sort=False)["mean_g"].agg(["min", "max"]).reset_index()
+    span = (
+        varied.groupby(["axis", "floor"], sort=False)["mean_g"]
+        .agg(["min", "max"])
+        .reset_index()
+    )
     span = span.assign(axis=span["axis"].map(AXIS_NAMES))
     variants = means.drop_duplicates("label")
     doubtful = int((~variants["credible"].astype(bool)).sum())
@@ -61,7 +65,9 @@ def floor_amplitudes(means: pd.DataFrame, axis: str) -> Figure:
 
     ``means`` are those by floor of every variant, with its ``axis``, ``label``, ``value`` and ``credible``.
     """
-    rows = means[(means["axis"] == axis) & (means["by"] == "floor") & (means["pedestal"] == "NP")]
+    rows = means[
+        (means["axis"] == axis) & (means["by"] == "floor") & (means["pedestal"] == "NP")
+    ]
     rows = rows.sort_values("value", kind="stable")
     labels = list(dict.fromkeys(rows["label"]))
     place = {label: number for number, label in enumerate(labels)}
@@ -77,9 +83,15 @@ def floor_amplitudes(means: pd.DataFrame, axis: str) -> Figure:
                 label=str(floor),
             )
             doubtful = own[~own["credible"].astype(bool)]
-            axes.plot(doubtful["label"].map(place), doubtful["mean_g"], "x", color=GREY, ms=6)
-        names = values if len(set(values)) == len(labels) else list(map(shortened, labels))
-        axes.set_xticks(range(len(labels)), names, rotation=90 if len(labels) > 8 else 0)
+            axes.plot(
+                doubtful["label"].map(place), doubtful["mean_g"], "x", color=GREY, ms=6
+            )
+        names = (
+            values if len(set(values)) == len(labels) else list(map(shortened, labels))
+        )
+        axes.set_xticks(
+            range(len(labels)), names, rotation=90 if len(labels) > 8 else 0
+        )
         axes.set_ylim(bottom=0)
         axes.set(xlabel=AXIS_NAMES[axis], ylabel="Mean overturning amplitude [g]")
         figure.legend(loc="outside upper center", ncols=4)

@@ -22,7 +22,11 @@ from rockfrag.shaketable.definitions import DEFINITION
 from rockfrag_thesis.hypotheses.floors import FIFTH, FLOORS, GROUND, THIRD
 from rockfrag_thesis.hypotheses.hypothesis import Finding as Evidence
 from rockfrag_thesis.sections import says
-from rockfrag_thesis.sections.inverse_problem import asks_inverse_problem, goals, mechanism_name
+from rockfrag_thesis.sections.inverse_problem import (
+    asks_inverse_problem,
+    goals,
+    mechanism_name,
+)
 from rockfrag_thesis.sections.sensitivity_analysis import asks_sensitivity_analysis
 from rockfrag_thesis.sections.signs import perturbations_by_floor
 from rockfrag_thesis.settings import settings_of
@@ -53,8 +57,12 @@ def thesis_answer(results: Results) -> Answer:
     found = first_page(
         effects,
         results.table("hypotheses"),
-        results.table(f"{analysis}/effects") if asks_sensitivity_analysis(study) else None,
-        results.table(f"{analysis}/inverse_problem") if asks_inverse_problem(study) else None,
+        results.table(f"{analysis}/effects")
+        if asks_sensitivity_analysis(study)
+        else None,
+        results.table(f"{analysis}/inverse_problem")
+        if asks_inverse_problem(study)
+        else None,
         settings_of(study).wanted_percent,
     )
     here = effects[effects["definition"] == DEFINITION]
@@ -63,7 +71,10 @@ def thesis_answer(results: Results) -> Answer:
         asked="Does a pedestal delay overturning on the ground and hasten it on upper floors?",
         sentences=found,
         figure=says.figure(
-            "answer", lambda: ratios_figure(here), found[0].headline, has_thesis_floors(here)
+            "answer",
+            lambda: ratios_figure(here),
+            found[0].headline,
+            has_thesis_floors(here),
         ),
         advice=_advice(results),
     )
@@ -109,12 +120,18 @@ def _reported(effects: pd.DataFrame, hypotheses: pd.DataFrame) -> Finding:
     on_floors = {row["level"]: row for row in of_floors}
     found = {number: Evidence(value) for number, value in hypotheses["finding"].items()}
     all_pairs = effects[effects["scope"] == "whole"].to_dict("records")
-    whole = ratio_text(all_pairs[0]) if all_pairs else "no pair with both amplitudes known"
+    whole = (
+        ratio_text(all_pairs[0]) if all_pairs else "no pair with both amplitudes known"
+    )
     if not set(FLOORS) <= set(on_floors):
         return says.finding("other_floors", whole)
     ratios = [f"{floor} {ratio_text(on_floors[floor])}" for floor in FLOORS]
     pairs = sum(int(on_floors[floor]["pairs"]) for floor in FLOORS)
-    stated = {GROUND: (35, "a gain"), THIRD: (36, "a decrease"), FIFTH: (37, "a decrease")}
+    stated = {
+        GROUND: (35, "a gain"),
+        THIRD: (36, "a decrease"),
+        FIFTH: (37, "a decrease"),
+    }
     outcomes = [
         f"{floor}: {_ON_FLOOR[found[number]].format(change)}"
         for floor, (number, change) in stated.items()
@@ -138,7 +155,9 @@ def _what_would(sensitivity_analysis: pd.DataFrame) -> Finding:
     return says.finding("what_would", *about, strong, computed["ratio"])
 
 
-def _inverted(inverse_problem: pd.DataFrame, wanted_percent: Mapping[str, float]) -> str:
+def _inverted(
+    inverse_problem: pd.DataFrame, wanted_percent: Mapping[str, float]
+) -> str:
     """Say which perturbation, or which two, come closest to the effect asked for, and how close."""
     everywhere = inverse_problem["acts_on"] == "all floors"
     pairs = inverse_problem["factor_2"] != ""
@@ -154,20 +173,31 @@ def _inverted(inverse_problem: pd.DataFrame, wanted_percent: Mapping[str, float]
             mechanism = mechanism_name(row) + _ACTING[row["acts_on"]]
             nearest.append(f"the closest {what} gives {both} ({mechanism})")
     reached = int(inverse_problem["reaches"].sum())
-    return says.line("inverted", reached, len(inverse_problem), goals(wanted_percent), nearest)
+    return says.line(
+        "inverted", reached, len(inverse_problem), goals(wanted_percent), nearest
+    )
 
 
-_ACTING = {"all floors": "", "ground": " on the ground alone", "above": " above the ground alone"}
+_ACTING = {
+    "all floors": "",
+    "ground": " on the ground alone",
+    "above": " above the ground alone",
+}
 
 
 def has_thesis_floors(effects: pd.DataFrame) -> bool:
     """Whether effects have a floor of which the thesis reports a direction."""
-    return bool(set(effects.loc[effects["scope"] == "floor", "level"]) & set(REPORTED_SIDE))
+    return bool(
+        set(effects.loc[effects["scope"] == "floor", "level"]) & set(REPORTED_SIDE)
+    )
 
 
 def ratios_figure(effects: pd.DataFrame) -> Figure:
     """Draw the ratio with over without pedestal, of all pairs and on each floor, of effects of one definition."""
-    whole, floors = effects[effects["scope"] == "whole"], effects[effects["scope"] == "floor"]
+    whole, floors = (
+        effects[effects["scope"] == "whole"],
+        effects[effects["scope"] == "floor"],
+    )
     rows = [("all pairs", row) for row in whole.to_dict("records")]
     rows += [(str(row["level"]), row) for row in floors.to_dict("records")]
     with panels(COLUMN_WIDTH, 1.0 + 0.33 * len(rows)) as (figure, axes):
@@ -189,9 +219,15 @@ def ratios_figure(effects: pd.DataFrame) -> Figure:
         axes.set_ylim(len(rows) - 0.5, -0.5)
         axes.tick_params(axis="y", length=0)
         ratio_axis(axes, drawn)
-        handles = [Line2D([], [], color=BLUE, marker="o", mfc="white", label="simulated")]
+        handles = [
+            Line2D([], [], color=BLUE, marker="o", mfc="white", label="simulated")
+        ]
         if has_thesis_floors(effects):
             words = "direction in the thesis"
-            handles.append(Line2D([], [], color=ORANGE, lw=1.8, marker=">", label=words))
-        figure.legend(handles=handles, loc="outside upper center", ncols=2, handlelength=1.6)
+            handles.append(
+                Line2D([], [], color=ORANGE, lw=1.8, marker=">", label=words)
+            )
+        figure.legend(
+            handles=handles, loc="outside upper center", ncols=2, handlelength=1.6
+        )
     return figure

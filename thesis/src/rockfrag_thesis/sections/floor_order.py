@@ -45,26 +45,39 @@ def floor_order_found(results: Results) -> Section | None:
     margins = results.table("building_sensitivity/margins")
     rows = margins[margins["definition"] == DEFINITION]
     order = rows[(rows["axis"] == "first_period_s") & (rows["hypothesis"] == "order")]
-    holds = [f"{value:g} s" for value in order.loc[order["margin"] > MEANINGFUL, "value"]]
+    holds = [
+        f"{value:g} s" for value in order.loc[order["margin"] > MEANINGFUL, "value"]
+    ]
     varied = rows[rows["axis"] != "reference"]
-    span = varied.groupby(["axis", "hypothesis"], sort=False)["margin"].agg(["min", "max"])
+    span = varied.groupby(["axis", "hypothesis"], sort=False)["margin"].agg(
+        ["min", "max"]
+    )
     # adding zero turns a negative zero into a plain one
     shown = ((100 * span).round(1) + 0.0).reset_index()
     shown["axis"] = shown["axis"].map(AXIS_NAMES)
     ends = (100 * float(value) for value in (span["min"].min(), span["max"].max()))
-    section = says.section("sensitivity", [], holds, len(order), *ends, of="floor_order")
+    section = says.section(
+        "sensitivity", [], holds, len(order), *ends, of="floor_order"
+    )
     parts: list[Markup | FigureSpec] = []
     if len(order):
         draw = partial(
-            floor_order, results.table("building_sensitivity/means"), margins, DEFINITION
+            floor_order,
+            results.table("building_sensitivity/means"),
+            margins,
+            DEFINITION,
         )
         parts.append(says.figure("sensitivity_order", draw, section.message))
     for axis in dict.fromkeys(varied["axis"]):
         draw = partial(floor_hypotheses, margins, axis, DEFINITION)
         parts.append(
-            says.figure(f"sensitivity_hypotheses_{axis}", draw, AXIS_NAMES[axis], of="margins")
+            says.figure(
+                f"sensitivity_hypotheses_{axis}", draw, AXIS_NAMES[axis], of="margins"
+            )
         )
-    parts.append(table_html(shown, _COLUMNS, "Range of the margins of each hypothesis."))
+    parts.append(
+        table_html(shown, _COLUMNS, "Range of the margins of each hypothesis.")
+    )
     return replace(section, parts=parts)
 
 
@@ -76,16 +89,25 @@ def floor_order(means: pd.DataFrame, margins: pd.DataFrame, definition: str) -> 
     """
     means = means[(means["axis"] == "first_period_s") & (means["by"] == "floor")]
     means = means[means["pedestal"] == "NP"]
-    by_floor = means.pivot_table(index="value", columns="floor", values="mean_g", dropna=False)
-    margins = margins[(margins["axis"] == "first_period_s") & (margins["hypothesis"] == "order")]
+    by_floor = means.pivot_table(
+        index="value", columns="floor", values="mean_g", dropna=False
+    )
+    margins = margins[
+        (margins["axis"] == "first_period_s") & (margins["hypothesis"] == "order")
+    ]
     order = margins[margins["definition"] == definition].sort_values("value")
     with panels(COLUMN_WIDTH, 2.9) as (figure, axes):
         for floor, (name, colour, marker) in FLOOR_STYLES.items():
             of_floor = by_floor[floor]
-            axes.plot(by_floor.index, of_floor, color=colour, marker=marker, ms=3, label=name)
+            axes.plot(
+                by_floor.index, of_floor, color=colour, marker=marker, ms=3, label=name
+            )
         axes.set_ylim(bottom=0)
         _shade(axes, order["value"].to_numpy(), order["margin"].to_numpy())
-        axes.set(xlabel="First period [s]", ylabel="Mean overturning amplitude,\nlone objects [g]")
+        axes.set(
+            xlabel="First period [s]",
+            ylabel="Mean overturning amplitude,\nlone objects [g]",
+        )
         handles, labels = axes.get_legend_handles_labels()
         handles += [Patch(color="#bbbbbb"), Patch(color="#e8e8e8")]
         labels += ["the thesis's order", f"by less than {100 * MEANINGFUL:.0f} %"]
@@ -115,9 +137,13 @@ def floor_hypotheses(margins: pd.DataFrame, axis: str, definition: str) -> Figur
     table = chosen.pivot_table(index="hypothesis", columns="label", values="margin")
     table = table.reindex(index=list(HYPOTHESES), columns=labels)
     with panels(WIDEST, 4.6) as (figure, axes):
-        largest = 100 * max(0.1, float(np.nanmax(np.abs(table.to_numpy()), initial=0.0)))
+        largest = 100 * max(
+            0.1, float(np.nanmax(np.abs(table.to_numpy()), initial=0.0))
+        )
         norm = SymLogNorm(linthresh=1, vmin=-largest, vmax=largest)
-        image = axes.imshow(100 * table.to_numpy(), norm=norm, cmap="PuOr", aspect="auto")
+        image = axes.imshow(
+            100 * table.to_numpy(), norm=norm, cmap="PuOr", aspect="auto"
+        )
         # a dot where a hypothesis holds by enough to mean something
         rows, columns = np.nonzero(table.to_numpy() > MEANINGFUL)
         axes.plot(columns, rows, "o", color="black", ms=2)

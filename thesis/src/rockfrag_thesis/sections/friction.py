@@ -28,7 +28,11 @@ def _ratio(row: Row | None) -> str:
 
 
 _COLUMNS = (
-    Column("ground", "Friction at the ground", by_row(lambda row: _coefficient(row["ground"]))),
+    Column(
+        "ground",
+        "Friction at the ground",
+        by_row(lambda row: _coefficient(row["ground"])),
+    ),
     Column(
         "interface",
         "between pedestal and object",
@@ -59,7 +63,9 @@ def friction(results: Results) -> Section | None:
             "interface": pair[1],
             "here": ground[pair],
             "above": above.get(pair),
-            "left_out": sum(table[pair]["left_out"] for table in tables.values() if pair in table),
+            "left_out": sum(
+                table[pair]["left_out"] for table in tables.values() if pair in table
+            ),
         }
         for pair in ground
     ]
@@ -70,7 +76,9 @@ def friction(results: Results) -> Section | None:
 
 
 def _by_pair(effects: pd.DataFrame, place: str) -> Means:
-    rows = effects[(effects["object"] == "all") & (effects["place"] == place)].to_dict("records")
+    rows = effects[(effects["object"] == "all") & (effects["place"] == place)].to_dict(
+        "records"
+    )
     return {(float(row["ground"]), float(row["interface"])): row for row in rows}
 
 
@@ -89,14 +97,21 @@ def _found(tables: Mapping[str, Means], wanted: Mapping[str, float]) -> list[str
     asked = [(tables[name], percent) for name, percent in wanted.items()]
 
     def has_signs(pair: tuple[float, float], rising: str, falling: str) -> bool:
-        ends = [(table[pair][rising if goal > 0 else falling], goal) for table, goal in asked]
-        return all(math.isfinite(end) and goal * math.log(end) > 0 for end, goal in ends)
+        ends = [
+            (table[pair][rising if goal > 0 else falling], goal)
+            for table, goal in asked
+        ]
+        return all(
+            math.isfinite(end) and goal * math.log(end) > 0 for end, goal in ends
+        )
 
     known = tables["ground"] if asked and all(table for table, _ in asked) else {}
     signs = [pair for pair in known if has_signs(pair, "ratio", "ratio")]
     clear = [pair for pair in signs if has_signs(pair, "lower", "upper")]
     goal = " and ".join(goals(wanted)) if known else ""
-    named = [f"{_coefficient(first)} and {_coefficient(other)}" for first, other in signs]
+    named = [
+        f"{_coefficient(first)} and {_coefficient(other)}" for first, other in signs
+    ]
     usual = sum(map(_is_ordinary, signs))
     about = (ordinary, *ORDINARY, goal, len(tables["ground"]), named, len(clear), usual)
     return says("friction_found", *about)

@@ -42,11 +42,20 @@ def hypotheses_found(results: Results) -> Section | None:
     """What was found of each hypothesis, and where the thesis contradicts itself."""
     if not results.study.has_pairs:
         return None
-    hypotheses, contradictions = results.table("hypotheses"), results.table("contradictions")
+    hypotheses, contradictions = (
+        results.table("hypotheses"),
+        results.table("contradictions"),
+    )
     parts = [
-        table_html(outcomes_by_kind(hypotheses), _KINDS, "What was found, by kind of hypothesis."),
+        table_html(
+            outcomes_by_kind(hypotheses),
+            _KINDS,
+            "What was found, by kind of hypothesis.",
+        ),
         hypotheses_html(hypotheses),
-        table_html(contradictions, _CONTRADICTIONS, "Where the thesis contradicts itself."),
+        table_html(
+            contradictions, _CONTRADICTIONS, "Where the thesis contradicts itself."
+        ),
     ]
     return outcomes_section("hypotheses", "The thesis’s hypotheses", hypotheses, parts)
 
@@ -58,7 +67,10 @@ def measured_hypotheses(results: Results) -> Section | None:
     hypotheses = results.table("measured/hypotheses")
     if hypotheses.empty:
         return None
-    title, parts = "The thesis’s hypotheses on measured tests", [hypotheses_html(hypotheses)]
+    title, parts = (
+        "The thesis’s hypotheses on measured tests",
+        [hypotheses_html(hypotheses)],
+    )
     return outcomes_section("measured_hypotheses", title, hypotheses, parts)
 
 
@@ -67,14 +79,22 @@ def outcomes_section(
 ) -> Section:
     """A chapter that says how many hypotheses have each outcome, and how many may be wrong by chance."""
     outcomes = hypotheses["outcome"].value_counts()
-    counts = [f"{count} {SHORT.get(str(outcome), outcome)}" for outcome, count in outcomes.items()]
-    inferred, tested = int(hypotheses["p"].notna().sum()), hypotheses["number"].nunique()
+    counts = [
+        f"{count} {SHORT.get(str(outcome), outcome)}"
+        for outcome, count in outcomes.items()
+    ]
+    inferred, tested = (
+        int(hypotheses["p"].notna().sum()),
+        hypotheses["number"].nunique(),
+    )
     return says.section(anchor, parts, title, tested, counts, inferred, of="hypotheses")
 
 
 def spelled(words: str) -> str:
     """The words with P/NP and NP/P, the names of ratios in tables, written out for a reader."""
-    return words.replace("NP/P", "without/with pedestal").replace("P/NP", "with/without pedestal")
+    return words.replace("NP/P", "without/with pedestal").replace(
+        "P/NP", "with/without pedestal"
+    )
 
 
 def hypotheses_html(hypotheses: pd.DataFrame) -> Markup:
@@ -88,16 +108,24 @@ def hypotheses_html(hypotheses: pd.DataFrame) -> Markup:
         )
         for row in hypotheses.to_dict("records")
     ]
-    return Markup('<div class="table of hypotheses">{}</div>').format(Markup("").join(boxes))
+    return Markup('<div class="table of hypotheses">{}</div>').format(
+        Markup("").join(boxes)
+    )
 
 
 def _rule(row: Row) -> list[str]:
     """How a row was tested, how often that errs, and what else there is to say."""
-    parts = [f"Evidence: {row['evidence']}", f"Rule: {row['rule']}", f"Error: {row['error_rate']}"]
+    parts = [
+        f"Evidence: {row['evidence']}",
+        f"Rule: {row['rule']}",
+        f"Error: {row['error_rate']}",
+    ]
     if not math.isnan(row["p"]):
         p, adjusted = probability(row["p"]), probability(row["p_holm"])
         what = f" of “{row['p_of']}”" if row["p_of"] else ""
-        parts.append(f"p value{what}: {p}; adjusted for all hypotheses (Holm): {adjusted}")
+        parts.append(
+            f"p value{what}: {p}; adjusted for all hypotheses (Holm): {adjusted}"
+        )
     return [*parts, f"Remark: {row['remark']}"] if row["remark"] else parts
 
 
@@ -105,7 +133,11 @@ def outcomes_by_kind(hypotheses: pd.DataFrame) -> pd.DataFrame:
     """How many hypotheses of each kind have each outcome: kind, hypotheses, outcomes (in words)."""
     by_kind = hypotheses.groupby("kind", sort=False)["outcome"]
     rows = [
-        (kind, len(part), ", ".join(f"{n} {word}" for word, n in Counter(part).most_common()))
+        (
+            kind,
+            len(part),
+            ", ".join(f"{n} {word}" for word, n in Counter(part).most_common()),
+        )
         for kind, part in by_kind
     ]
     return pd.DataFrame(rows, columns=["kind", "hypotheses", "outcomes"])

@@ -10,7 +10,10 @@ from rockfrag.report.part import Results, Section
 from rockfrag.sentences import sentence
 from rockfrag.study.study import Study
 from rockfrag_thesis.sections import says
-from rockfrag_thesis.sections.sensitivity_analysis import FACTORS, asks_sensitivity_analysis
+from rockfrag_thesis.sections.sensitivity_analysis import (
+    FACTORS,
+    asks_sensitivity_analysis,
+)
 from rockfrag_thesis.settings import settings_of
 
 SHOWN = 12
@@ -19,7 +22,11 @@ SHOWN = 12
 
 def _together(row: Row) -> str:
     values = [row.get("simulated_ground"), row.get("simulated_above")]
-    known = [float(value) for value in values if isinstance(value, float) and math.isfinite(value)]
+    known = [
+        float(value)
+        for value in values
+        if isinstance(value, float) and math.isfinite(value)
+    ]
     return ", ".join(f"{number:.3f}" for number in known) or "–"
 
 
@@ -48,7 +55,9 @@ def inverse_problem(results: Results) -> Section | None:
     percents = settings_of(results.study).wanted_percent
     wanted = {name: 1 + percent / 100 for name, percent in percents.items()}
     titles = {"": ""} | {name: factor.title for name, factor in FACTORS.items()}
-    readable = table.assign(**{name: table[name].map(titles) for name in ("factor_1", "factor_2")})
+    readable = table.assign(
+        **{name: table[name].map(titles) for name in ("factor_1", "factor_2")}
+    )
     shown = table.head(SHOWN)
     shown = shown.assign(
         name=[sentence(mechanism_name(row)) for row in shown.to_dict("records")],
@@ -72,18 +81,28 @@ def goals(wanted_percent: Mapping[str, float]) -> list[str]:
     ]
 
 
-def inverse_problem_words(table: pd.DataFrame, wanted: Mapping[str, float]) -> list[str]:
+def inverse_problem_words(
+    table: pd.DataFrame, wanted: Mapping[str, float]
+) -> list[str]:
     """Say what would and what would not produce the wanted effect, the most important sentence first.
 
     Mechanisms are those of `rockfrag_thesis.sensitivity_analysis.inverse_problem.invert`, with readable names.
     """
-    asked = " and ".join(goals({name: round(100 * (wanted[name] - 1)) for name in wanted}))
+    asked = " and ".join(
+        goals({name: round(100 * (wanted[name] - 1)) for name in wanted})
+    )
     can = table[table["reaches"]].to_dict("records")
     everywhere = [row for row in can if row["acts_on"] == "all floors"]
     alone = [row["factor_1"] for row in everywhere if not row["factor_2"]]
-    pairs = [f"{row['factor_1']} with {row['factor_2']}" for row in everywhere if row["factor_2"]]
+    pairs = [
+        f"{row['factor_1']} with {row['factor_2']}"
+        for row in everywhere
+        if row["factor_2"]
+    ]
     local = [
-        f"{row['factor_1']} {PLACES[row['acts_on']]} alone" for row in can if row not in everywhere
+        f"{row['factor_1']} {PLACES[row['acts_on']]} alone"
+        for row in can
+        if row not in everywhere
     ]
     excluded, several = int((~table["plausible"]).sum()), len(wanted) > 1
     return says("mechanisms", asked, alone, pairs, several, local, excluded, len(table))

@@ -23,11 +23,16 @@ _CAPTIONS = {
 
 def printed(results: Results) -> Section:
     """The printed tables beside what is computed."""
-    comparison = pd.concat([results.table(name) for name in _CAPTIONS], ignore_index=True)
+    comparison = pd.concat(
+        [results.table(name) for name in _CAPTIONS], ignore_index=True
+    )
     known = comparison[comparison["agrees"].notna()]
     wrong = known[~known["agrees"].astype(bool)]
     names = list(wrong["name"] + " " + wrong["quantity"])
-    parts = [comparison_html(results.table(name), caption) for name, caption in _CAPTIONS.items()]
+    parts = [
+        comparison_html(results.table(name), caption)
+        for name, caption in _CAPTIONS.items()
+    ]
     return says.section("printed", parts, len(known) - len(wrong), len(known), names)
 
 

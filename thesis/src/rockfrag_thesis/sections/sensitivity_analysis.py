@@ -54,7 +54,8 @@ FACTORS = {
     },
     "pedestal_lean_deg": Factor("a leaning pedestal", "a pedestal leaning by {}°"),
     "statue_offset_mm": Factor(
-        "the object off the pedestal's middle", "the object {} mm off the pedestal's middle"
+        "the object off the pedestal's middle",
+        "the object {} mm off the pedestal's middle",
     ),
     "statue_cg_offset_mm": Factor(
         "the object's centre of gravity off its middle",
@@ -62,7 +63,8 @@ FACTORS = {
     ),
     "pedestal_width_cm": Factor("the width of the pedestal", "a pedestal {} cm wide"),
     "pedestal_not_counted": Factor(
-        "the pedestal's mass neglected", "neglecting the pedestal's mass on a {} kg table"
+        "the pedestal's mass neglected",
+        "neglecting the pedestal's mass on a {} kg table",
     ),
     "table_not_counted": Factor(
         "the table's mass neglected", "neglecting the mass of a {} kg table"
@@ -76,7 +78,8 @@ FACTORS = {
     ),
     "step_percent": Factor("the step of the protocol", "a protocol with steps of {} %"),
     "tolerances": Factor(
-        "tolerances of lengths and restitution", "tolerances of {} % in lengths and restitution"
+        "tolerances of lengths and restitution",
+        "tolerances of {} % in lengths and restitution",
     ),
 }
 """Words for the factors at their levels."""
@@ -84,7 +87,8 @@ FACTORS = {
 ARITHMETIC = ("pedestal_not_counted", "table_not_counted")
 """Factors that multiply every amplitude by a known number: computed without a simulation, and without chance."""
 
-MOST_DRAWN = 16  # so many perturbations are drawn, those with the largest effect; the table has all
+# so many perturbations are drawn, those with the largest effect; the table has all
+MOST_DRAWN = 16
 
 
 def _p(row: Row) -> str:
@@ -154,9 +158,15 @@ def sensitivity_analysis(results: Results) -> Section | None:
         ),
     ]
     draw = partial(sensitivity_analysis_figure, effects, list(results.study.floors))
-    figure = says.figure("sensitivity_analysis", draw, message, len(simulated), MOST_DRAWN)
+    figure = says.figure(
+        "sensitivity_analysis", draw, message, len(simulated), MOST_DRAWN
+    )
     figures = [figure] if len(simulated) else []
-    about = (*_beyond(simulated), adjusted_words(simulated), len(whole) - len(simulated))
+    about = (
+        *_beyond(simulated),
+        adjusted_words(simulated),
+        len(whole) - len(simulated),
+    )
     return says.section("sensitivity_analysis", [*figures, *tables], message, *about)
 
 
@@ -170,7 +180,9 @@ def adjusted_words(simulated: pd.DataFrame, level: float = 0.05) -> str:
 
 def _beyond(simulated: pd.DataFrame) -> list[list[str]]:
     """Perturbations beyond ±10 % with their ratios, and those whose laws disagree on which side of it they are."""
-    beyond = (simulated["ratio"] > NONE[1]).astype(int) - (simulated["ratio"] < NONE[0]).astype(int)
+    beyond = (simulated["ratio"] > NONE[1]).astype(int) - (
+        simulated["ratio"] < NONE[0]
+    ).astype(int)
     base = simulated["factor"].map(lambda factor: LAW_OF.get(factor, (factor, ""))[0])
     differ = beyond.groupby([base, simulated["level"]]).transform("nunique") > 1
     return [
@@ -179,22 +191,35 @@ def _beyond(simulated: pd.DataFrame) -> list[list[str]]:
     ]
 
 
-def sensitivity_analysis_figure(effects: pd.DataFrame, order: Sequence[str] = ()) -> Figure:
+def sensitivity_analysis_figure(
+    effects: pd.DataFrame, order: Sequence[str] = ()
+) -> Figure:
     """Draw the ratio with over without pedestal of the perturbations with the largest effect.
 
     Floors are in the given order in the legend; others follow.
     """
     simulated = perturbations(effects)
     simulated = simulated[~simulated["arithmetic"]]
-    largest = simulated["ratio"].astype(float).map(np.log).abs().nlargest(MOST_DRAWN).index
+    largest = (
+        simulated["ratio"].astype(float).map(np.log).abs().nlargest(MOST_DRAWN).index
+    )
     shown = simulated.loc[largest].sort_values("ratio", kind="stable")
-    ideal = effects[(effects["floor"] == "all") & (effects["level"] == REFERENCE)].head(1)
-    ideal = ideal.assign(name="ideal model", lower=ideal["ratio_lower"], upper=ideal["ratio_upper"])
+    ideal = effects[(effects["floor"] == "all") & (effects["level"] == REFERENCE)].head(
+        1
+    )
+    ideal = ideal.assign(
+        name="ideal model", lower=ideal["ratio_lower"], upper=ideal["ratio_upper"]
+    )
     rows = pd.concat([ideal, shown], ignore_index=True)
     own = set(effects["floor"]) - {"all"}
-    floors = [floor for floor in dict.fromkeys([*order, *effects["floor"]]) if floor in own]
+    floors = [
+        floor for floor in dict.fromkeys([*order, *effects["floor"]]) if floor in own
+    ]
     styles: dict[str, dict[str, Any]] = {
-        floor: {"color": OKABE_ITO[k % len(OKABE_ITO)], "marker": MARKERS[k % len(MARKERS)]}
+        floor: {
+            "color": OKABE_ITO[k % len(OKABE_ITO)],
+            "marker": MARKERS[k % len(MARKERS)],
+        }
         for k, floor in enumerate(floors if len(floors) > 1 else [])
     }
     with panels(WIDEST, 1.0 + 0.26 * len(rows)) as (figure, axes):
@@ -202,25 +227,33 @@ def sensitivity_analysis_figure(effects: pd.DataFrame, order: Sequence[str] = ()
         axes.axvline(1.0, color=GREY, lw=0.8)
         drawn: list[float] = []
         for y, row in enumerate(rows.to_dict("records")):
-            low, middle, high = (float(row[name]) for name in ("lower", "ratio", "upper"))
+            low, middle, high = (
+                float(row[name]) for name in ("lower", "ratio", "upper")
+            )
             drawn += [low, middle, high]
             if np.isfinite([low, high]).all():
                 axes.plot([low, high], [y - 0.14] * 2, color=BLACK, lw=1.0, zorder=3)
             axes.plot(middle, y - 0.14, "D", color=BLACK, mfc="white", ms=3.8, zorder=4)
             drawn += _draw_floors(axes, effects, row, y + 0.22, styles)
-        axes.set_yticks(range(len(rows)), [_figure_label(str(name)) for name in rows["name"]])
+        axes.set_yticks(
+            range(len(rows)), [_figure_label(str(name)) for name in rows["name"]]
+        )
         axes.set_ylim(len(rows) - 0.4, -0.6)
         axes.tick_params(axis="y", length=0, labelsize=7)
         ratio_axis(axes, drawn)
         handles = [
-            Line2D([], [], color=BLACK, marker="D", mfc="white", ms=4, label="all floors"),
+            Line2D(
+                [], [], color=BLACK, marker="D", mfc="white", ms=4, label="all floors"
+            ),
             *(
                 Line2D([], [], ls="", ms=4, label=shortened(floor), **style)
                 for floor, style in styles.items()
             ),
             Line2D([], [], color=BAND, lw=6, label="±10 %"),
         ]
-        figure.legend(handles=handles, loc="outside upper center", ncols=5, columnspacing=1.2)
+        figure.legend(
+            handles=handles, loc="outside upper center", ncols=5, columnspacing=1.2
+        )
     return figure
 
 
@@ -231,12 +264,18 @@ def _figure_label(name: str) -> str:
 
 
 def _draw_floors(
-    axes: Axes, effects: pd.DataFrame, row: Row, y: float, styles: Mapping[str, dict[str, Any]]
+    axes: Axes,
+    effects: pd.DataFrame,
+    row: Row,
+    y: float,
+    styles: Mapping[str, dict[str, Any]],
 ) -> list[float]:
     """Draw the ratios on single floors below the mean, where there are several; return them."""
     if not styles:
         return []
-    own = effects[(effects["factor"] == row["factor"]) & (effects["level"] == row["level"])]
+    own = effects[
+        (effects["factor"] == row["factor"]) & (effects["level"] == row["level"])
+    ]
     ratios = own.drop_duplicates("floor").set_index("floor")["ratio"].astype(float)
     for floor, style in styles.items():
         if floor in ratios.index:

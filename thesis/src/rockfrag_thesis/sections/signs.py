@@ -7,7 +7,10 @@ from rockfrag.report.part import Results, Section
 from rockfrag.sentences import sentence
 from rockfrag_thesis.hypotheses.floors import FLOORS, GROUND
 from rockfrag_thesis.sections import says
-from rockfrag_thesis.sections.sensitivity_analysis import asks_sensitivity_analysis, perturbations
+from rockfrag_thesis.sections.sensitivity_analysis import (
+    asks_sensitivity_analysis,
+    perturbations,
+)
 
 _UPPER = [floor for floor in FLOORS if floor != GROUND]
 _COLUMNS = (
@@ -27,7 +30,9 @@ def perturbations_by_floor(effects: pd.DataFrame) -> pd.DataFrame:
     """
     keys = ["factor", "level"]
     ratio, lower, upper = (
-        effects.pivot_table(index=keys, columns="floor", values=name).reindex(columns=list(FLOORS))
+        effects.pivot_table(index=keys, columns="floor", values=name).reindex(
+            columns=list(FLOORS)
+        )
         for name in ("ratio", "ratio_lower", "ratio_upper")
     )
     found = ratio.assign(
@@ -49,4 +54,6 @@ def signs(results: Results) -> Section | None:
         **{kind: table[kind].map({True: "yes", False: "no"}) for kind in kinds},
     )
     caption = "Mean ratio of amplitudes with/without pedestal by floor."
-    return says.section("signs", [table_html(shown, _COLUMNS, caption)], named, clear, len(table))
+    return says.section(
+        "signs", [table_html(shown, _COLUMNS, caption)], named, clear, len(table)
+    )

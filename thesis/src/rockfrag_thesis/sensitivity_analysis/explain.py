@@ -12,7 +12,12 @@ import numpy as np
 import pandas as pd
 
 from rockfrag.errors import InputError
-from rockfrag.pedestal.cluster_means import benjamini_hochberg, equivalence, holm, mean_effects
+from rockfrag.pedestal.cluster_means import (
+    benjamini_hochberg,
+    equivalence,
+    holm,
+    mean_effects,
+)
 from rockfrag.tabular import join_rows
 
 COLUMNS = ("factor", "level", "reference", "object", "earthquake", "floor", "ratio")
@@ -51,23 +56,36 @@ def explain(table: pd.DataFrame) -> pd.DataFrame:
     if "resolution" not in work:
         work["resolution"] = 0.0
     if "motion" not in work:
-        work["motion"] = work["earthquake"].astype(str) + "/" + work["floor"].astype(str)
-    parts = [_explain_factor(str(name), rows) for name, rows in work.groupby("factor", sort=True)]
+        work["motion"] = (
+            work["earthquake"].astype(str) + "/" + work["floor"].astype(str)
+        )
+    parts = [
+        _explain_factor(str(name), rows)
+        for name, rows in work.groupby("factor", sort=True)
+    ]
     result = join_rows(parts)
     result["p_bh"] = benjamini_hochberg(result["p"])
-    choices = [result["p_bh"] < 0.05, result["p_equivalence"] < 0.05, result["p_bh"].isna()]
+    choices = [
+        result["p_bh"] < 0.05,
+        result["p_equivalence"] < 0.05,
+        result["p_bh"].isna(),
+    ]
     result["judgement"] = np.select(choices, [CHANGES, SAME, ""], OPEN)
     return result
 
 
-def where_laws_agree(effects: pd.DataFrame, laws: Mapping[str, tuple[str, str]]) -> pd.DataFrame:
+def where_laws_agree(
+    effects: pd.DataFrame, laws: Mapping[str, tuple[str, str]]
+) -> pd.DataFrame:
     """Leave a judgement open where the laws of one perturbed parameter do not all give it.
 
     ``laws`` has perturbed parameter and law of each factor that has several.
     """
     known = effects[effects["factor"].isin(laws) & (effects["judgement"] != "")]
     base = known["factor"].map(lambda factor: laws[factor][0])
-    kinds = known.groupby([base, known["level"], known["floor"]])["judgement"].transform("nunique")
+    kinds = known.groupby([base, known["level"], known["floor"]])[
+        "judgement"
+    ].transform("nunique")
     judgement = effects["judgement"].copy()
     judgement.loc[kinds.index[kinds > 1]] = OPEN
     return effects.assign(judgement=judgement)
@@ -90,7 +108,9 @@ def _explain_factor(name: str, rows: pd.DataFrame) -> pd.DataFrame:
     cells = rows.groupby(["level", *key])[["d", "resolution"]].mean().reset_index()
     step = cells.groupby(key)["resolution"].max()
     reference = cells[cells["level"] == marked[0]].set_index(key)["d"]
-    levels = sorted(cells["level"].unique(), key=lambda level: (level != marked[0], level))
+    levels = sorted(
+        cells["level"].unique(), key=lambda level: (level != marked[0], level)
+    )
     both = cells.rename(columns={"d": "here"}).drop(columns="resolution")
     both = both.join(reference.rename("reference"), on=key).join(step, on=key)
     both["floor"] = both["floor"].astype(str)
@@ -99,7 +119,9 @@ def _explain_factor(name: str, rows: pd.DataFrame) -> pd.DataFrame:
     known = known.assign(scope=known["level"].astype(str) + "/" + known["floor"])
     ratios = mean_effects(known.assign(d=known["here"]), "scope")
     effects = mean_effects(
-        known.assign(d=known["here"] - known["reference"], resolution=2 * known["resolution"]),
+        known.assign(
+            d=known["here"] - known["reference"], resolution=2 * known["resolution"]
+        ),
         "scope",
     )
     tried, pairs = (rows.groupby(["level", "floor"]).size() for rows in (both, known))

@@ -81,24 +81,33 @@ def friction_effects(ratios: pd.DataFrame, floors: Mapping[str, int]) -> pd.Data
     """
     level = ratios["floor"].map(floors).fillna(0)
     places = {"ground": level == 0, "above": level > 0}
-    places |= {floor: ratios["floor"] == floor for floor in floors if floor not in places}
+    places |= {
+        floor: ratios["floor"] == floor for floor in floors if floor not in places
+    }
     work = ratios.assign(d=np.log(ratios["ratio"]))
     parts: dict[tuple[Hashable, ...], pd.DataFrame] = {}
     for (ground, interface), here in work.groupby(["ground", "interface"]):
         for place, inside in places.items():
             for thing in ("all", *ratios["object"].unique()):
-                part = here[inside[here.index] & ((thing == "all") | (here["object"] == thing))]
+                part = here[
+                    inside[here.index] & ((thing == "all") | (here["object"] == thing))
+                ]
                 if len(part):
                     parts[ground, interface, place, thing] = part
     # all at once: a grid of some hundred means takes longer to group than to compute
-    known = [part.dropna(subset="ratio").assign(scope=k) for k, part in enumerate(parts.values())]
+    known = [
+        part.dropna(subset="ratio").assign(scope=k)
+        for k, part in enumerate(parts.values())
+    ]
     found = mean_effects(pd.concat(known), "scope") if known else {}
     rows = []
     for k, (keys, part) in enumerate(parts.items()):
         mean = found.get(k)
         rows.append(
             {
-                **dict(zip(("ground", "interface", "place", "object"), keys, strict=True)),
+                **dict(
+                    zip(("ground", "interface", "place", "object"), keys, strict=True)
+                ),
                 "ratio": mean.ratio if mean else math.nan,
                 "lower": mean.ratio_lower if mean else math.nan,
                 "upper": mean.ratio_upper if mean else math.nan,
@@ -137,7 +146,9 @@ def survived_amplitudes(
         open_ = alive.copy()
         while open_.any():
             chosen = _least(open_, dominates)
-            found = _outcomes(body, frictions, motions, scales[:, [level]], chosen, threads)
+            found = _outcomes(
+                body, frictions, motions, scales[:, [level]], chosen, threads
+            )
             for p, m in np.argwhere(chosen):
                 slid = found[p, m]["slid"][: mu.shape[1]] > 0
                 holds = np.where(slid, same[p], higher[p]).all(axis=1) & open_[:, m]
@@ -167,13 +178,20 @@ def _outcomes(
     threads: int,
 ) -> NDArray[np.void]:
     """Outcomes of the chosen frictions × motions; the others are zero."""
-    rows, columns = np.flatnonzero(chosen.any(axis=1)), np.flatnonzero(chosen.any(axis=0))
+    rows, columns = (
+        np.flatnonzero(chosen.any(axis=1)),
+        np.flatnonzero(chosen.any(axis=0)),
+    )
     systems = tuple(
-        system_of(body, dict(zip(("ground", "interface"), frictions[row], strict=False)))
+        system_of(
+            body, dict(zip(("ground", "interface"), frictions[row], strict=False))
+        )
         for row in rows.tolist()
     )
     shaking = tuple(GroundMotion(motions[j]) for j in columns.tolist())
-    grid = Cases(systems, shaking, np.ascontiguousarray(scales[columns]), Request(), threads)
+    grid = Cases(
+        systems, shaking, np.ascontiguousarray(scales[columns]), Request(), threads
+    )
     wanted = chosen[np.ix_(rows, columns)][..., np.newaxis]
     found = contact_outcomes(grid, wanted)[..., 0]
     outcomes = np.zeros(chosen.shape, found.dtype)

@@ -24,7 +24,8 @@ PLAUSIBLE = 0.05
 LEAST_SCATTER = 0.005
 """Standard deviation of ln P/NP between earthquakes that a model is never taken to be more robust than [-]."""
 
-REACH = 0.02  # largest difference of ln P/NP at which the wanted effect counts as reached [-]
+# largest difference of ln P/NP at which the wanted effect counts as reached [-]
+REACH = 0.02
 
 POINTS = 25  # levels tried along each factor
 
@@ -57,7 +58,8 @@ def friction_perturbations(tried: pd.DataFrame) -> pd.DataFrame:
     Infinite coefficients are the ideal model.
     """
     rough = {
-        name: np.isinf(tried[name].to_numpy(dtype=np.float64)) for name in ("ground", "interface")
+        name: np.isinf(tried[name].to_numpy(dtype=np.float64))
+        for name in ("ground", "interface")
     }
     parts: list[pd.DataFrame] = []
     for factor, varied, other in zip(FRICTION, rough, reversed(rough), strict=True):
@@ -109,13 +111,19 @@ def invert(
     least_p = PLAUSIBLE / max(mechanisms, 1)
     for line in lines:
         for acts_on in everywhere_or_not:
-            mask = np.array([acts_on in ("all floors", name) for name in places], dtype=float)
+            mask = np.array(
+                [acts_on in ("all floors", name) for name in places], dtype=float
+            )
             tried = start + line.change * mask
-            found.append(_row([line], tried, acts_on, goal, places, resolution, least_p))
+            found.append(
+                _row([line], tried, acts_on, goal, places, resolution, least_p)
+            )
     for first, two in itertools.combinations(lines, 2):
         both = first.change[:, None] + two.change[None, :]
         tried = start + both.reshape(-1, *both.shape[2:])
-        found.append(_row([first, two], tried, "all floors", goal, places, resolution, least_p))
+        found.append(
+            _row([first, two], tried, "all floors", goal, places, resolution, least_p)
+        )
     table = pd.DataFrame(found, columns=[*COLUMNS, "distance"])
     table = table.sort_values("distance", kind="stable", ignore_index=True)
     return table.drop(columns="distance")
@@ -132,7 +140,8 @@ def _by_earthquake(
     work = ratios.assign(
         d=np.log(ratios["ratio"].astype(float)),
         place=[
-            "ground" if floors.get(str(floor), 1) == 0 else "above" for floor in ratios["floor"]
+            "ground" if floors.get(str(floor), 1) == 0 else "above"
+            for floor in ratios["floor"]
         ],
         level=ratios["level"].astype(str),
         reference=ratios["reference"].astype(bool),
@@ -145,7 +154,9 @@ def _by_earthquake(
     perturbed["d"] -= perturbed["d_ideal"]
     tables = [ideal.assign(factor="", level=""), perturbed]
     known = pd.concat(tables, ignore_index=True).dropna(subset="d")
-    by_motion = known.groupby(["factor", "level", "earthquake", "place", "motion"])["d"].mean()
+    by_motion = known.groupby(["factor", "level", "earthquake", "place", "motion"])[
+        "d"
+    ].mean()
     means = by_motion.reset_index().pivot_table(
         index=["factor", "level", "earthquake"], columns="place", values="d"
     )
@@ -157,7 +168,9 @@ def _by_earthquake(
 
 
 def _lines(
-    cells: Mapping[tuple[str, str], pd.DataFrame], ideal: pd.DataFrame, neutral: Mapping[str, float]
+    cells: Mapping[tuple[str, str], pd.DataFrame],
+    ideal: pd.DataFrame,
+    neutral: Mapping[str, float],
 ) -> list[_Line]:
     """Changes along each factor whose levels are numbers and share the ideal model's earthquakes."""
     lines = []
@@ -170,7 +183,9 @@ def _lines(
                 known.append((float(level), rows.loc[ideal.index].to_numpy()))
         if not known:
             continue
-        x = np.array([1.0 / level if name in BY_INVERSE else level for level, _ in known])
+        x = np.array(
+            [1.0 / level if name in BY_INVERSE else level for level, _ in known]
+        )
         change = np.array([value for _, value in known])
         at_rest = 0.0 if name in BY_INVERSE else neutral.get(name)
         if at_rest is None:
@@ -205,7 +220,11 @@ def _row(
     shape = [line.level.size for line in lines]
     at = np.unravel_index(best, shape)
     reached = np.unravel_index(np.flatnonzero(inside), shape)
-    row: dict[str, object] = {"acts_on": acts_on, "p": float(p[best]), "distance": distance[best]}
+    row: dict[str, object] = {
+        "acts_on": acts_on,
+        "p": float(p[best]),
+        "distance": distance[best],
+    }
     for number, line in enumerate(lines, start=1):
         levels = line.level[reached[number - 1]]
         row |= {
@@ -215,7 +234,12 @@ def _row(
             f"level_{number}_high": float(levels.max()) if levels.size else np.nan,
         }
     if len(lines) == 1:
-        row |= {"factor_2": "", "level_2": np.nan, "level_2_low": np.nan, "level_2_high": np.nan}
+        row |= {
+            "factor_2": "",
+            "level_2": np.nan,
+            "level_2_low": np.nan,
+            "level_2_high": np.nan,
+        }
     mean = tried[best].mean(axis=0)
     row |= dict(zip(places, np.exp(mean), strict=True))
     row["plausible"] = bool(inside.any())

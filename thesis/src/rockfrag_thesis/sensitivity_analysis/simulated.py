@@ -72,7 +72,9 @@ def factor_cases(
     return cases
 
 
-def perturbed_case(object_name: str, stack: Stack, perturbations: Mapping[str, float]) -> Case:
+def perturbed_case(
+    object_name: str, stack: Stack, perturbations: Mapping[str, float]
+) -> Case:
     """Object with and without its pedestal where factors of `PERTURBATIONS` are off the ideal together.
 
     A body that cannot stand or a restitution that adds energy is an InputError that names factor and level.
@@ -99,7 +101,9 @@ def perturbed_case(object_name: str, stack: Stack, perturbations: Mapping[str, f
         float(perturbations[names[0]]),
         object_name,
         system_of(stack.upper, restitution=lone),
-        system_of(stack, restitution=MeasuredRestitution(measured, law) if measured else None),
+        system_of(
+            stack, restitution=MeasuredRestitution(measured, law) if measured else None
+        ),
     )
 
 
@@ -125,7 +129,9 @@ _SHAPES: Mapping[str, Callable[[Stack, float], Stack]] = {
     "pedestal_lean_deg": lambda stack, degrees: replace(
         stack, lower=replace(stack.lower, lean=stack.lower.lean + radians(degrees))
     ),
-    "statue_offset_mm": lambda stack, mm: replace(stack, offset=stack.offset + mm / 1000),
+    "statue_offset_mm": lambda stack, mm: replace(
+        stack, offset=stack.offset + mm / 1000
+    ),
     "statue_cg_offset_mm": lambda stack, mm: replace(
         stack, upper=replace(stack.upper, cg_offset=stack.upper.cg_offset + mm / 1000)
     ),
@@ -167,11 +173,20 @@ def perturbed_cases(
     cases = []
     for number in range(1, replicates + 1):
         lone, pedestal, statue = (
-            _perturbed(block, tolerance, rng) for block in (stack.upper, stack.lower, stack.upper)
+            _perturbed(block, tolerance, rng)
+            for block in (stack.upper, stack.lower, stack.upper)
         )
         values = [
-            float(np.clip(b.momentum_restitution() + restitution * z, 0.01, LARGEST_RESTITUTION))
-            for b, z in zip((lone, pedestal, statue), rng.standard_normal(3), strict=True)
+            float(
+                np.clip(
+                    b.momentum_restitution() + restitution * z,
+                    0.01,
+                    LARGEST_RESTITUTION,
+                )
+            )
+            for b, z in zip(
+                (lone, pedestal, statue), rng.standard_normal(3), strict=True
+            )
         ]
         copy = Stack(pedestal, statue, stack.offset)
         cases.append(
@@ -191,11 +206,16 @@ def _perturbed(block: Block, tolerance: float, rng: np.random.Generator) -> Bloc
     across, up = np.exp(tolerance * rng.standard_normal(2))
     height = None if block.cg_height is None else block.cg_height * float(up)
     width = block.width * float(across)
-    return replace(block, width=width, height=block.height * float(up), cg_height=height)
+    return replace(
+        block, width=width, height=block.height * float(up), cg_height=height
+    )
 
 
 def level_amplitudes(
-    systems: Sequence[System], motions: Sequence[Motion], levels_g: Floats, threads: int = 1
+    systems: Sequence[System],
+    motions: Sequence[Motion],
+    levels_g: Floats,
+    threads: int = 1,
 ) -> Floats:
     """Largest amplitude [g] survived before the first overturning, climbing rising levels from rest.
 
@@ -207,7 +227,10 @@ def level_amplitudes(
         np.arange(len(levels_g)), np.arange(LEVELS, len(levels_g), LEVELS)
     ):
         climbing = np.logical_not(fell.any(axis=2))
-        here, under = np.flatnonzero(climbing.any(axis=1)), np.flatnonzero(climbing.any(axis=0))
+        here, under = (
+            np.flatnonzero(climbing.any(axis=1)),
+            np.flatnonzero(climbing.any(axis=0)),
+        )
         if not here.size:
             break
         found = overturns(
@@ -238,14 +261,18 @@ def case_ratios(
     ``floor``, ``motion``, ``replicate``, ``p_g``, ``np_g`` (amplitudes [g]), ``ratio``, ``resolution`` (half-width
     to which its logarithm is known, a step of the series of levels [-]).
     """
-    order = list(dict.fromkeys(name for case in cases for name in (case.lone, case.stack)))
+    order = list(
+        dict.fromkeys(name for case in cases for name in (case.lone, case.stack))
+    )
     parts = []
     for first in range(0, len(order), BATCH):
         batch = order[first : first + BATCH]
         parts.append(level_amplitudes(batch, motions, levels_g, threads))
         progress(first + len(batch))
     found = dict(zip(order, np.concatenate(parts), strict=True))
-    tables = [_rows(case, motions, found[case.stack], found[case.lone]) for case in cases]
+    tables = [
+        _rows(case, motions, found[case.stack], found[case.lone]) for case in cases
+    ]
     step = float(np.log(levels_g[1] / levels_g[0])) if len(levels_g) > 1 else 0.0
     return pd.concat(tables, ignore_index=True).assign(resolution=step)
 
@@ -253,13 +280,17 @@ def case_ratios(
 def motion_columns(motions: Sequence[Motion]) -> dict[str, list[str]]:
     """Earthquake, floor and name of each motion, as columns of a table of tests."""
     return {
-        "earthquake": [str(motion.metadata.get("earthquake") or motion.name) for motion in motions],
+        "earthquake": [
+            str(motion.metadata.get("earthquake") or motion.name) for motion in motions
+        ],
         "floor": [str(motion.metadata.get("floor") or "ground") for motion in motions],
         "motion": [motion.name for motion in motions],
     }
 
 
-def _rows(case: Case, motions: Sequence[Motion], stack: Floats, lone: Floats) -> pd.DataFrame:
+def _rows(
+    case: Case, motions: Sequence[Motion], stack: Floats, lone: Floats
+) -> pd.DataFrame:
     return pd.DataFrame(
         {
             "factor": case.factor,

@@ -44,7 +44,12 @@ def _printed_tables(job: Job[Study]) -> Results:
 
 def _hypotheses(job: Job[Study]) -> Results:
     from rockfrag.shaketable.definitions import DEFINITION
-    from rockfrag_thesis.hypotheses import Evidence, contradictions, hypothesis_table, theory_table
+    from rockfrag_thesis.hypotheses import (
+        Evidence,
+        contradictions,
+        hypothesis_table,
+        theory_table,
+    )
 
     study = job.study
     theory = theory_table(
@@ -59,14 +64,18 @@ def _hypotheses(job: Job[Study]) -> Results:
         return
     tests, measures = job.table("tests"), job.table("measures")
     forces = job.table("validity")[["test", "friction_demand", "least_normal_force_n"]]
-    tests = tests[tests["definition"] == DEFINITION].merge(forces, on="test", how="left")
+    tests = tests[tests["definition"] == DEFINITION].merge(
+        forces, on="test", how="left"
+    )
     bodies = tested_blocks(study)
     evidence = Evidence(tests, "simulated", measures, bodies)
     hypotheses = pd.concat([theory, hypothesis_table(evidence)], ignore_index=True)
     yield "hypotheses", hypotheses
     yield "contradictions", contradictions(evidence)
     outcomes = hypotheses["outcome"].value_counts().items()
-    job.log.info("hypotheses: %s", ", ".join(f"{n} {outcome}" for outcome, n in outcomes))
+    job.log.info(
+        "hypotheses: %s", ", ".join(f"{n} {outcome}" for outcome, n in outcomes)
+    )
 
 
 def _standing(job: Job[Study]) -> pd.DataFrame:
@@ -94,4 +103,6 @@ def _measured_hypotheses(job: Job[Study]) -> pd.DataFrame:
     from rockfrag_thesis.hypotheses import Evidence, hypothesis_table
 
     tests, measures = job.table("measured/tests"), job.table("measures")
-    return hypothesis_table(Evidence(tests, "measured", measures, tested_blocks(job.study)))
+    return hypothesis_table(
+        Evidence(tests, "measured", measures, tested_blocks(job.study))
+    )

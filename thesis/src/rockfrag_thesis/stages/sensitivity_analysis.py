@@ -21,13 +21,20 @@ def run(job: Job[Study]) -> Results:
     """Yield the ratio P/NP for every perturbed parameter of the ideal model, and effects."""
     from rockfrag_thesis.sensitivity_analysis import friction_grid
 
-    study, settings, motions = job.study, settings_of(job.study), job.motions("motions/floors")
+    study, settings, motions = (
+        job.study,
+        settings_of(job.study),
+        job.motions("motions/floors"),
+    )
     ratios, effects = _one_at_a_time(job, motions)
     yield "sensitivity_analysis/ratios", ratios
     yield "sensitivity_analysis/effects", effects
     found = None
     if tried := settings.friction:
-        levels_g, frictions = protocol_of(study).amplitudes(), (tried["ground"], tried["interface"])
+        levels_g, frictions = (
+            protocol_of(study).amplitudes(),
+            (tried["ground"], tried["interface"]),
+        )
         found = friction_grid.friction_ratios(
             tested_stacks(study), motions, levels_g, *frictions, job.threads
         )
@@ -39,11 +46,16 @@ def run(job: Job[Study]) -> Results:
         yield "sensitivity_analysis/inverse_problem", inverse_problem
     levels = effects[["factor", "level"]].drop_duplicates()
     job.log.info(
-        "ratios: %d, levels: %d, factors: %d", len(ratios), len(levels), effects["factor"].nunique()
+        "ratios: %d, levels: %d, factors: %d",
+        len(ratios),
+        len(levels),
+        effects["factor"].nunique(),
     )
 
 
-def _one_at_a_time(job: Job[Study], motions: Sequence[Motion]) -> tuple[pd.DataFrame, pd.DataFrame]:
+def _one_at_a_time(
+    job: Job[Study], motions: Sequence[Motion]
+) -> tuple[pd.DataFrame, pd.DataFrame]:
     """Simulate every level of every factor on the laboratory's own series of levels, and estimate effects.
 
     Returns ratios and effects. Ratios have one row per factor, level, object and motion: ``factor``, ``level``
@@ -79,7 +91,8 @@ def _one_at_a_time(job: Job[Study], motions: Sequence[Motion]) -> tuple[pd.DataF
     effects = explain.where_laws_agree(explain.explain(ratios), simulated.LAW_OF)
     # levels of a factor as numbers, the reference first; factors stay as they are
     number = [
-        -np.inf if level == simulated.REFERENCE else float(level) for level in effects["level"]
+        -np.inf if level == simulated.REFERENCE else float(level)
+        for level in effects["level"]
     ]
     ordered = effects.assign(number=number, place=pd.factorize(effects["factor"])[0])
     ordered = ordered.sort_values(["place", "number"], kind="stable", ignore_index=True)
@@ -113,7 +126,9 @@ def _inverse_problem(
         neutral["pedestal_width_cm"] = 100 * widths.pop()
     step = float(np.log1p(study.protocol_step_percent / 100))
     # restitution by the first law; what it finds is judged beside the others
-    other_laws = [factor for factor, (_, law) in simulated.LAW_OF.items() if law != law_names()[0]]
+    other_laws = [
+        factor for factor, (_, law) in simulated.LAW_OF.items() if law != law_names()[0]
+    ]
     ratios = ratios[~ratios["factor"].isin(other_laws)]
     if friction is not None:
         by_friction = inverse_problem.friction_perturbations(friction)
@@ -122,7 +137,8 @@ def _inverse_problem(
     levels_g = protocol_of(study).amplitudes()
     for row in _of_both(table, simulated.PERTURBATIONS)[:SIMULATED_PAIRS]:
         perturbations = {
-            str(table.loc[row, f"factor_{k}"]): float(table.loc[row, f"level_{k}"]) for k in (1, 2)
+            str(table.loc[row, f"factor_{k}"]): float(table.loc[row, f"level_{k}"])
+            for k in (1, 2)
         }
         try:
             cases = [
@@ -137,7 +153,10 @@ def _inverse_problem(
     if friction is not None:
         ground, interface = inverse_problem.FRICTION
         for row in _of_both(table, inverse_problem.FRICTION):
-            level = {table.loc[row, f"factor_{k}"]: table.loc[row, f"level_{k}"] for k in (1, 2)}
+            level = {
+                table.loc[row, f"factor_{k}"]: table.loc[row, f"level_{k}"]
+                for k in (1, 2)
+            }
             here = friction["ground"] == level[ground]
             here &= friction["interface"] == level[interface]
             _set_simulated(table, row, friction[here], study.floors)
@@ -146,7 +165,9 @@ def _inverse_problem(
 
 def _of_both(table: pd.DataFrame, factors: Sequence[str]) -> Any:
     """Rows of pairs of perturbed parameters that are both among some."""
-    return table.index[table["factor_1"].isin(factors) & table["factor_2"].isin(factors)]
+    return table.index[
+        table["factor_1"].isin(factors) & table["factor_2"].isin(factors)
+    ]
 
 
 def _set_simulated(
@@ -155,5 +176,7 @@ def _set_simulated(
     """Enter the mean ratios of simulated pairs of tests, over earthquakes, into a row of the inverse problem."""
     ground = found["floor"].map(floors).fillna(0) == 0
     for place, here in (("ground", ground), ("above", ~ground)):
-        mean = np.log(found.loc[here, "ratio"]).groupby(found["earthquake"]).mean().mean()
+        mean = (
+            np.log(found.loc[here, "ratio"]).groupby(found["earthquake"]).mean().mean()
+        )
         table.loc[row, f"simulated_{place}"] = np.exp(mean)

@@ -14,7 +14,13 @@ from rockfrag.engines.kernels import taylor
 from rockfrag.engines.kernels.chatter import Ahead, block_dies_out
 from rockfrag.engines.kernels.contact_states import HALF_TURN
 from rockfrag.engines.kernels.impact import block_impact
-from rockfrag.engines.kernels.jit import entry_kernel, inlined_kernel, kernel, lowest_bit, take_next
+from rockfrag.engines.kernels.jit import (
+    entry_kernel,
+    inlined_kernel,
+    kernel,
+    lowest_bit,
+    take_next,
+)
 from rockfrag.engines.kernels.lanes import case as cases
 from rockfrag.engines.kernels.roots import NEVER, crossing, graze, hops
 from rockfrag.engines.kernels.single import MAX_CONTACT_EVENTS_PER_STEP
@@ -39,11 +45,13 @@ LANE = np.dtype(
         # one reached, if its motion has one
         *whole("case body motion k first last following", LANES),
         *whole("side", LANES),  # 1 on the right pivot, -1 on the left, 0 at rest
-        *whole("fell crowded crowd", LANES),  # sample of the last impact, and how many that has had
+        # sample of the last impact, and how many that has had
+        *whole("fell crowded crowd", LANES),
         *fields("psi omega", LANES),  # the state, ψ and ψ'
         # A and W now, at the end of the sample
         *fields("ground ground_end weight weight_end", LANES),
-        *fields("part_left tau", LANES),  # part of the sample that is left, and time since sample k
+        # part of the sample that is left, and time since sample k
+        *fields("part_left tau", LANES),
         # so far: least ψ/θc, most |ψ'|, distance from balance squared
         *fields("low fast near", LANES),
         # these where the step began
@@ -52,7 +60,8 @@ LANE = np.dtype(
         *fields("angle kappa per_angle per_speed", LANES),
         # the most that A and W can be from here on, and √(light² + bound²) + heavy - light, with the least W
         *fields("bound heavy crest", LANES),
-        *fields("factor signed", LANES),  # scale of the motion over g, and that times the side
+        # scale of the motion over g, and that times the side
+        *fields("factor signed", LANES),
         *fields("flag when", LANES),  # when: time in the step at which ψ passes θc
         *fields("rates", taylor.ORDER - 1, LANES),  # Taylor coefficients 1 to 6 of ψ'
     ],
@@ -103,7 +112,9 @@ def _advance(lane, upward):
         u = lane.weight[i] if upward else 1.0
         u_end = lane.weight_end[i] if upward else 1.0
         weight = u, u_end - u, upward
-        rates = taylor.rates_of_one((s, c), w, kappa * left * left, (a, a_end - a), weight)
+        rates = taylor.rates_of_one(
+            (s, c), w, kappa * left * left, (a, a_end - a), weight
+        )
         end = psi + taylor.travel(rates, 1.0)
         v = taylor.rate_at(rates, 1.0)
         taylor.keep_rates(lane.rates, i, rates)
@@ -123,7 +134,11 @@ def _advance(lane, upward):
         v = v / left
         near = low * low + v * v * lane.per_speed[i]
         was_low, was_fast, was_near = lane.low[i], lane.fast[i], lane.near[i]
-        lane.was_low[i], lane.was_fast[i], lane.was_near[i] = was_low, was_fast, was_near
+        lane.was_low[i], lane.was_fast[i], lane.was_near[i] = (
+            was_low,
+            was_fast,
+            was_near,
+        )
         lane.low[i] = min(was_low, low)
         lane.fast[i] = max(was_fast, abs(v))
         lane.near[i] = min(was_near, near)
@@ -200,7 +215,11 @@ def _fall(lane, i, tally):
 @inlined_kernel
 def _restore_extremes(lane, i):
     """Forget what the step of a lane would have reached without its contact event."""
-    lane.low[i], lane.fast[i], lane.near[i] = lane.was_low[i], lane.was_fast[i], lane.was_near[i]
+    lane.low[i], lane.fast[i], lane.near[i] = (
+        lane.was_low[i],
+        lane.was_fast[i],
+        lane.was_near[i],
+    )
 
 
 @inlined_kernel
@@ -228,7 +247,9 @@ def _take_contact_event(lane, i, tally, ensemble, motions):
         here = _pivot(lane, i, side, ensemble)
         psi = here.alpha
         factor = lane.factor[i]
-        ahead = Ahead(motions.samples, motions.vertical, factor, lane.last[i], k, tau, 1.0)
+        ahead = Ahead(
+            motions.samples, motions.vertical, factor, lane.last[i], k, tau, 1.0
+        )
         still = w > -1e-12 or lane.crowd[i] > MAX_CONTACT_EVENTS_PER_STEP
         if still or block_dies_out(-w, side, here, there, ahead):
             side = 0
@@ -254,7 +275,9 @@ def _find_impacts(lane, stops):
         i = lowest_bit(stops)
         stops &= stops - 1
         if lane.flag[i] == TOUCHES and lane.psi[i] >= lane.angle[i]:
-            lane.when[i] = _flight(lane.was_psi[i] - lane.angle[i], _rates_of(lane, i), 1.0)
+            lane.when[i] = _flight(
+                lane.was_psi[i] - lane.angle[i], _rates_of(lane, i), 1.0
+            )
 
 
 @inlined_kernel
@@ -346,7 +369,12 @@ def _next_case(lane, i, tally, ensemble, motions, outcomes):
             return
         _take_up(lane, i, number, ensemble, motions)
         tally.fallen, tally.certain, tally.impacts = 0, 0, 0
-        tally.peak1, tally.peak2, tally.fast, tally.unstable_distance = 0.0, 0.0, 0.0, math.inf
+        tally.peak1, tally.peak2, tally.fast, tally.unstable_distance = (
+            0.0,
+            0.0,
+            0.0,
+            math.inf,
+        )
 
 
 @inlined_kernel
@@ -356,7 +384,9 @@ def _rise(lane, i, ensemble, motions):
     if lane.fell[i] != 0 or lane.side[i] != 0 or k >= last or factor == 0.0:
         return
     interval = -_pivot(lane, i, 1, ensemble).tan, _pivot(lane, i, -1, ensemble).tan
-    k, tau, ground, _ = cases.next_uplift(motions, k, lane.tau[i], last, factor, interval)
+    k, tau, ground, _ = cases.next_uplift(
+        motions, k, lane.tau[i], last, factor, interval
+    )
     if k >= 0:
         # it rocks towards the side that the ground comes from
         side = -1 if ground > 0.0 else 1
@@ -386,7 +416,9 @@ def _falls_freely(lane, i, tally, ensemble):
         here = _pivot(lane, i, side, ensemble)
         psi, kappa = here.alpha, here.swing
         left = 0.5 * w * w
-        if left < kappa * (1.0 - cos(psi)) and left < other.swing * (1.0 - cos(other.alpha)):
+        if left < kappa * (1.0 - cos(psi)) and left < other.swing * (
+            1.0 - cos(other.alpha)
+        ):
             _note(tally, acos(left / kappa + cos(psi)), 0.0, psi, kappa)
             return False
     return False
@@ -443,7 +475,10 @@ def _place(lane, i, ensemble, motions):
     lane.angle[i], lane.kappa[i] = pivot.alpha, pivot.swing
     lane.per_angle[i], lane.per_speed[i] = pivot.per_alpha, pivot.per_swing
     # largest A that can still push the block on this pivot back down
-    most, least = motions.ahead_high[k // cases.BLOCK], motions.ahead_low[k // cases.BLOCK]
+    most, least = (
+        motions.ahead_high[k // cases.BLOCK],
+        motions.ahead_low[k // cases.BLOCK],
+    )
     bound = max(max(0.0, factor * most * side), factor * least * side)
     light, heavy = cases.weights_ahead(motions, k, factor)
     lane.bound[i], lane.heavy[i] = bound, heavy

@@ -14,7 +14,8 @@ WITHIN, QUIET, CLOSES, NEARS, RELEASE = -1.0, 0.0, 1.0, 2.0, 3.0
 """Flags of a lane after a pass: it has not yet reached the end of its sample, or has; positive ones are
 contact events: a contact closes, may have closed, or lets go."""
 
-BLOCK = 16  # samples under one entry of the tables of extremes that rest is skipped with
+# samples under one entry of the tables of extremes that rest is skipped with
+BLOCK = 16
 
 OUTCOME = np.dtype(
     [
@@ -66,7 +67,8 @@ class Ensemble(NamedTuple):
     intervals: NDArray[np.float64]  # (bodies, motions) sampling interval of that [s]
     # (bodies, motions) largest part of it that a step of two rotations may take
     parts: NDArray[np.float64]
-    free: NDArray[np.int64]  # (bodies, motions) samples of free rocking after it, at most
+    # (bodies, motions) samples of free rocking after it, at most
+    free: NDArray[np.int64]
 
 
 @inlined_kernel
@@ -110,7 +112,10 @@ def next_uplift(motions, k, tau, last, factor, interval):
         while True:
             # no limit of any later sample is nearer to zero than this
             least_gravity_ratio, _ = weights_ahead(motions, m, factor)
-            least, most = low * least_gravity_ratio / factor, high * least_gravity_ratio / factor
+            least, most = (
+                low * least_gravity_ratio / factor,
+                high * least_gravity_ratio / factor,
+            )
             if factor < 0.0:
                 least, most = most, least
             m = _first_outside(motions, m, last, least, most)
@@ -165,5 +170,7 @@ def next_samples(lane, factor, lanes, motions):
         lane.ground_end[i] = factor[i] * samples[np.uint64(lane.following[i])]
     if vertical.size > 0:
         for i in range(lanes):
-            lane.weight_end[i] = 1.0 + lane.factor[i] * vertical[np.uint64(lane.following[i])]
+            lane.weight_end[i] = (
+                1.0 + lane.factor[i] * vertical[np.uint64(lane.following[i])]
+            )
     return stops

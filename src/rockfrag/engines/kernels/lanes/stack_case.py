@@ -84,7 +84,9 @@ def begin(worker):
     for i in range(lanes.LANES):
         worker.one.slot[i] = worker.two.slot[i] = -1
         # these are written only where the ground moves vertically
-        worker.one.was_weight[i] = worker.one.before_weight[i] = worker.two.was_weight[i] = 1.0
+        worker.one.was_weight[i] = worker.one.before_weight[i] = worker.two.was_weight[
+            i
+        ] = 1.0
     for slot in range(SLOTS):
         case = worker.cases[slot]
         case.number, case.body, case.slot = -1, -1, slot
@@ -152,7 +154,10 @@ def _goes_on(case, ensemble, motions, state):
 @kernel
 def _is_safe(body, state, least):
     """Whether nothing can fall once the ground is still: energy cannot grow, and is less than ``least``."""
-    if equations.kinetic_energy(body, state) + equations.potential_energy(body, state) >= least:
+    if (
+        equations.kinetic_energy(body, state) + equations.potential_energy(body, state)
+        >= least
+    ):
         return False
     # low energy on this side of balance, not beyond it
     c1, c2 = state.c1, state.c2
@@ -180,7 +185,12 @@ def _take_up(case, number, ensemble, motions, worker):
     if case.body != body or case.interval != h:
         record, scratch = ensemble.bodies[body], worker.state
         stack_constants.fill_constants(
-            record, h, worker.ones[slot], worker.twos[slot], worker.impacts[slot], scratch
+            record,
+            h,
+            worker.ones[slot],
+            worker.twos[slot],
+            worker.impacts[slot],
+            scratch,
         )
         chatter.fill_restoring(record, worker.restoring[slot], scratch)
         case.low, case.high = contact_states.rest_interval(record, scratch)
@@ -193,7 +203,14 @@ def _take_up(case, number, ensemble, motions, worker):
     case.first, case.last = motions.offsets[sampled], motions.lasts[sampled]
     case.free_last = case.last + ensemble.free[body, motion]
     case.k, case.tau = case.first, 0.0
-    case.c1, case.c2, case.fallen, case.crowded, case.impacts, case.given_way = 0, 0, 0, -1, 0, 0
+    case.c1, case.c2, case.fallen, case.crowded, case.impacts, case.given_way = (
+        0,
+        0,
+        0,
+        -1,
+        0,
+        0,
+    )
     case.peak1, case.peak2, case.fast, case.near = 0.0, 0.0, 0.0, math.inf
 
 
@@ -255,7 +272,9 @@ def contact_event_of_one(i, case, worker, ensemble, motions, g):
     if fails:
         to_state(case, worker.state)
         contact = contact_states.GROUND if c1 == 0 else contact_states.INTERFACE
-        case.c1, case.c2 = contact_states.release(body, worker.state, contact, at == 0.0)
+        case.c1, case.c2 = contact_states.release(
+            body, worker.state, contact, at == 0.0
+        )
         return False, False
     case.impacts += 1
     case.theta1, case.theta2 = 0.0, 0.0
@@ -274,8 +293,8 @@ def find_contact_events_of_two(stops, worker):
         if lane.slot[i] >= 0 and lane.flag[i] > lanes.QUIET:
             case, series = worker.cases[lane.slot[i]], worker.series[i]
             stack_two.take_series(lane, i, series)
-            lane.when[i], lane.closes1[i], lane.closes2[i] = stack_two.next_contact_event(
-                case.c1, case.c2, lane.flag[i], series
+            lane.when[i], lane.closes1[i], lane.closes2[i] = (
+                stack_two.next_contact_event(case.c1, case.c2, lane.flag[i], series)
             )
 
 
@@ -289,7 +308,9 @@ def contact_event_of_two(i, case, worker, ensemble, motions, g):
     at = min(1.0, when)
     t1, w1 = value(series.one.angle, at), slope(series.one.angle, at) / span
     t2, w2 = value(series.two.angle, at), slope(series.two.angle, at) / span
-    case.peak1, case.peak2, case.fast, case.near = stack_two.nearest(lane, i, (t1, w1, t2, w2))
+    case.peak1, case.peak2, case.fast, case.near = stack_two.nearest(
+        lane, i, (t1, w1, t2, w2)
+    )
     case.tau = 1.0 - left + span * at
     case.theta1, case.omega1, case.theta2, case.omega2 = t1, w1, t2, w2
     if when > 1.0:
@@ -351,7 +372,12 @@ def _impact_alone(case, worker, body, g, motions):
     if not rests and speed < restoring.fastest:
         ahead = _ahead(case, motions)
         rests = chatter.dies_out(
-            speed, impact_constants.fraction, 1.5, restoring, chatter.OUTCOME.drop, ahead
+            speed,
+            impact_constants.fraction,
+            1.5,
+            restoring,
+            chatter.OUTCOME.drop,
+            ahead,
         )
     if rests:
         n1, n2, v1, v2 = 0, 0, 0.0, 0.0
@@ -381,7 +407,9 @@ def close_one(case, worker, ground, g, motions):
     if ground:
         n1, n2 = -c1, c2
         after = constants[equations.number_of(n1, n2)]
-        v1, v2 = ground_impact(before, after, products.ground, (cosine, sine), omega1, omega2)
+        v1, v2 = ground_impact(
+            before, after, products.ground, (cosine, sine), omega1, omega2
+        )
         side, off, old = n1, v1, omega1
         gap, toward = abs(case.theta2), c2 * (v1 - v2)
     else:
@@ -429,7 +457,10 @@ def after_contact_event(case):
         case.k += 1
     if abs(case.theta1) >= contact_states.HALF_TURN:
         case.fallen = 1
-    elif max(abs(case.theta2), abs(case.theta2 - case.theta1)) >= contact_states.HALF_TURN:
+    elif (
+        max(abs(case.theta2), abs(case.theta2 - case.theta1))
+        >= contact_states.HALF_TURN
+    ):
         case.fallen = 2
 
 
@@ -460,15 +491,27 @@ def place_one(i, case, worker, motions):
 @inlined_kernel
 def place_two(i, case, worker, motions):
     """Place a case into lane i of those of two rotations."""
-    lane, two = worker.two, worker.twos[case.slot, equations.number_of(case.c1, case.c2)]
-    lane.v1x[i], lane.v1y[i], lane.v2x[i], lane.v2y[i] = two.v1x, two.v1y, two.v2x, two.v2y
+    lane, two = (
+        worker.two,
+        worker.twos[case.slot, equations.number_of(case.c1, case.c2)],
+    )
+    lane.v1x[i], lane.v1y[i], lane.v2x[i], lane.v2y[i] = (
+        two.v1x,
+        two.v1y,
+        two.v2x,
+        two.v2y,
+    )
     lane.m11[i], lane.m22[i], lane.e[i], lane.f[i] = two.m11, two.m22, two.e, two.f
     lane.per_angle1[i], lane.per_angle2[i] = two.per_angle1, two.per_angle2
     lane.per_speed1[i], lane.per_speed2[i] = two.per_speed1, two.per_speed2
     lane.side1[i], lane.side2[i] = case.c1, case.c2
     lane.theta1[i], lane.omega1[i] = case.theta1, case.omega1
     lane.theta2[i], lane.omega2[i] = case.theta2, case.omega2
-    lane.factor[i], lane.part_left[i], lane.part[i] = case.factor, 1.0 - case.tau, case.part
+    lane.factor[i], lane.part_left[i], lane.part[i] = (
+        case.factor,
+        1.0 - case.tau,
+        case.part,
+    )
     lane.ground[i], lane.ground_end[i] = _ground(case, motions.samples)
     lane.weight[i], lane.weight_end[i] = _weight(case, motions)
     lane.ratio1[i], lane.ratio2[i] = case.peak1, case.peak2
@@ -478,8 +521,12 @@ def place_two(i, case, worker, motions):
 @inlined_kernel
 def _weight(case, motions):
     """Weight at the time of a case and at the end of its sample."""
-    before = lanes.weight_of(motions, case.k, case.factor) if case.k <= case.last else 1.0
-    after = lanes.weight_of(motions, case.k + 1, case.factor) if case.k < case.last else 1.0
+    before = (
+        lanes.weight_of(motions, case.k, case.factor) if case.k <= case.last else 1.0
+    )
+    after = (
+        lanes.weight_of(motions, case.k + 1, case.factor) if case.k < case.last else 1.0
+    )
     return before + case.tau * (after - before), after
 
 

@@ -21,14 +21,17 @@ ONE = np.dtype(
     [
         # first moments about the pivot times g over the moment of inertia, per sample²
         *fields("gx gy"),
-        *fields("per_angle"),  # 1 over the critical angle, positive on the side of the pivot
+        # 1 over the critical angle, positive on the side of the pivot
+        *fields("per_angle"),
         *fields("per_speed"),  # (1 over critical angle, frequency and interval)²
         *fields("right left", HOLD, 1),  # corners of the closed contact
     ]
 )
 """A contact state in which one rotates: the statue (pattern 4), or both blocks as one (pattern 3)."""
 
-TWO = np.dtype(fields("v1x v1y v2x v2y m11 m22 e f per_angle1 per_angle2 per_speed1 per_speed2"))
+TWO = np.dtype(
+    fields("v1x v1y v2x v2y m11 m22 e f per_angle1 per_angle2 per_speed1 per_speed2")
+)
 """A contact state in which both rotate (patterns 1 and 2), with first moments v per sample²."""
 
 IMPACT = np.dtype(
@@ -125,7 +128,12 @@ def _closing(body, c1, c2, products):
     old, level = (s1, s2), (1.0, 0.0)
     products.ground, _, _, _ = equations.metric(body, (-s1, s2), old, level)
     k11, k12, k21, k22 = equations.metric(body, (s1, -s2), old, level)
-    products.both11, products.both12, products.both21, products.both22 = k11, k12, k21, k22
+    products.both11, products.both12, products.both21, products.both22 = (
+        k11,
+        k12,
+        k21,
+        k22,
+    )
 
 
 @kernel

@@ -35,7 +35,9 @@ LANE = np.dtype(
         *fields("was_theta was_omega was_ground was_left was_weight", LANES),
         *fields("was_ratio was_fast was_near", LANES),
         # ... and where the step before that began, if it was of the same lane's case
-        *fields("before_theta before_omega before_ground before_weight before_left", LANES),
+        *fields(
+            "before_theta before_omega before_ground before_weight before_left", LANES
+        ),
         *fields("has_before has_step", LANES),
         *fields("rates", taylor.ORDER - 1, LANES),  # Taylor coefficients 1 to 6 of θ'
     ],
@@ -59,7 +61,9 @@ def _moment(hold, i, turn, alpha, square, pull):
 def _rates(g_over_inertia, turn, w, left, ground, weight):
     """Taylor coefficients of θ' over the rest of a sample; ``ground`` is over -g, ``weight`` as in ``pulled``."""
     (gx, gy), (s, c) = g_over_inertia, turn
-    return taylor.rates_of_one((gx * c + gy * s, gy * c - gx * s), w, left * left, ground, weight)
+    return taylor.rates_of_one(
+        (gx * c + gy * s, gy * c - gx * s), w, left * left, ground, weight
+    )
 
 
 @kernel
@@ -97,7 +101,9 @@ def _advance(lane, g, upward):
         gap = side * theta
         out = side * w
         out_end = side * z
-        near = roots.dips(gap, out, out_end) | roots.hops(gap, out, out_end, side * rates[1])
+        near = roots.dips(gap, out, out_end) | roots.hops(
+            gap, out, out_end, side * rates[1]
+        )
         flag = NEARS if near | (abs(end) >= HALF_TURN) else QUIET
         flag = CLOSES if side * end < 0.0 else flag
         # the closed contact would have to be pulled
@@ -126,7 +132,11 @@ def _advance(lane, g, upward):
             lane.weight[i] = u_end
         lane.part_left[i] = 1.0
         was_ratio, was_fast, was_near = lane.ratio[i], lane.fast[i], lane.near[i]
-        lane.was_ratio[i], lane.was_fast[i], lane.was_near[i] = was_ratio, was_fast, was_near
+        lane.was_ratio[i], lane.was_fast[i], lane.was_near[i] = (
+            was_ratio,
+            was_fast,
+            was_near,
+        )
         ratio = lane.per_angle[i] * end
         away = (1.0 - ratio) * (1.0 - ratio) + lane.per_speed[i] * z * z
         lane.ratio[i] = max(was_ratio, ratio)
@@ -159,7 +169,12 @@ def go_back(lane, i, g, upward):
     ground = a * down, (end - a) * down
     turn = taylor.quick_sine_cosine(theta)
     rates = _rates(
-        (lane.gx[i], lane.gy[i]), turn, omega * left, left, ground, (u, heavy - u, upward)
+        (lane.gx[i], lane.gy[i]),
+        turn,
+        omega * left,
+        left,
+        ground,
+        (u, heavy - u, upward),
     )
     taylor.keep_rates(lane.rates, i, rates)
 
@@ -209,11 +224,15 @@ def least_hold(lanes_of_one, theta, omega, pull, g):
 def _release_time(lanes_of_one, lane, i, series, end, g):
     """Time up to ``end`` at which the closed contact lets go; NEVER if it holds."""
     angle, left = series.one.angle, lane.was_left[i]
-    at_low = least_hold(lanes_of_one, angle[0], angle[1] / left, pull_at(lane, i, 0.0), g)
+    at_low = least_hold(
+        lanes_of_one, angle[0], angle[1] / left, pull_at(lane, i, 0.0), g
+    )
     if at_low < 0.0:
         return 0.0
     omega = roots.slope(angle, end) / left
-    at_high = least_hold(lanes_of_one, roots.value(angle, end), omega, pull_at(lane, i, end), g)
+    at_high = least_hold(
+        lanes_of_one, roots.value(angle, end), omega, pull_at(lane, i, end), g
+    )
     if at_high >= 0.0:
         return roots.NEVER
     bracket = (0.0, at_low, end, at_high, -1)
@@ -222,7 +241,9 @@ def _release_time(lanes_of_one, lane, i, series, end, g):
             break
         tau = roots.guess_between(bracket)
         omega = roots.slope(angle, tau) / left
-        hold = least_hold(lanes_of_one, roots.value(angle, tau), omega, pull_at(lane, i, tau), g)
+        hold = least_hold(
+            lanes_of_one, roots.value(angle, tau), omega, pull_at(lane, i, tau), g
+        )
         bracket = roots.narrowed(bracket, tau, hold)
     return bracket[2]
 

@@ -32,7 +32,8 @@ LANE = np.dtype(
         *whole("closes1 closes2", LANES),
         # these where the step began
         *fields(
-            "was_theta1 was_omega1 was_theta2 was_omega2 was_ground was_weight was_left", LANES
+            "was_theta1 was_omega1 was_theta2 was_omega2 was_ground was_weight was_left",
+            LANES,
         ),
         *fields("was_ratio1 was_ratio2 was_fast was_near", LANES),
         *fields("rates1 rates2", taylor.ORDER - 1, LANES),  # Taylor coefficients 1 to 6
