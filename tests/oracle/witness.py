@@ -159,6 +159,9 @@ def violations(column: Column, impact: Impact, kept: bool = True) -> dict[str, f
         note("friction", (abs(along) - limit * max(0.0, pressed)) / unit)
         way = 1.0 if slips > 0 else -1.0
         missing = abs(along + way * kinetic * max(0.0, pressed)) / unit
+        if slid * slips < 0:
+            # a slip that has turned round was braked first
+            missing = (abs(along) - kinetic * max(0.0, pressed)) / unit
         note("direction", min(missing, abs(slips) / column.speed))
     gain = kinetic_energy(column, after) - kinetic_energy(column, before)
     found["gain"] = gain / (column.mass * column.speed**2)

@@ -7,6 +7,7 @@ from rockfrag.elementary import sin_cos
 from rockfrag.engines.kernels.jit import kernel
 from rockfrag.engines.kernels.laws import moves_impulse, scales_momentum
 from rockfrag.engines.kernels.laws import rate as lawful_rate
+from rockfrag.engines.planar.routh import contact_alone, strike_alone
 from rockfrag.engines.planar.search import (
     Trial,
     mode_number,
@@ -89,7 +90,7 @@ def settle(p, w, ah, av, exclude):
     """Find the mode in which touching ends go on, not the old one on ``exclude``; False if there is none."""
     all_touch = True
     for k in range(p.count):
-        w.limit[k] = p.static[k]
+        w.against[k] = w.along[k] = p.static[k]
         for end in range(2):
             if w.touching[k, end] == 1 and approach(p, w, k, end) >= STILL * p.speed:
                 w.touching[k, end] = 0
@@ -140,10 +141,10 @@ def strike(p, w, ah, av, closing, push):
     before = kinetic_energy(p, w.v)
     lawful = _read_laws(p, w, push)
     for k in range(p.count):
-        w.moves[k] = 0
-        w.limit[k] = (
-            p.static[k] if slip_speed(p, w, w.v, k, True) == 0.0 else p.kinetic[k]
-        )
+        slip = slip_speed(p, w, w.v, k, True)
+        w.moves[k], w.slid[k] = 0, 1 if slip > 0.0 else (-1 if slip < 0.0 else 0)
+        w.along[k] = p.static[k]
+        w.against[k] = p.static[k] if slip == 0.0 else p.kinetic[k]
         if push:
             w.v[3 * k + 1] -= 1e-7 * p.speed
     scale = 1e-300
@@ -158,6 +159,10 @@ def strike(p, w, ah, av, closing, push):
     solve(p, w, w.q, w.v, ah, av, True)
     if lawful:
         _obey(p, w, trial)
+    else:
+        k, end = contact_alone(p, w)
+        if k >= 0:
+            strike_alone(p, w, k, end)
     lift_laws(p, w)
     remember_slides(p, w)
     copy(p, w.out, w.v)
