@@ -6,7 +6,7 @@ System of Rigid Bodies, 1905; J. B. Keller, Journal of Applied Mechanics 53, 198
 
 import math
 
-from rockfrag.engines.kernels.jit import kernel
+from rockfrag.engines.compile.jit import kernel
 from rockfrag.engines.planar.solve import copy, end_of, fill_row, rate
 
 
