@@ -1,8 +1,8 @@
 """Names of comprehensions: what Python 3.12.1 and 3.13.0 read unset is written nowhere.
 
-Since PEP 709 a list, set or dict comprehension runs in its function's frame. Where it binds a name that the function
-has from an enclosing one, those versions take the comprehension's name for the enclosing one, and a function or
-generator inside of this one finds it without a value.
+Since PEP 709 a list, set or dict comprehension runs in its function's frame. Where it binds a name that the
+function has from an enclosing one, those versions take the comprehension's name for the enclosing one, and a
+function or generator inside of this one finds it without a value.
 """
 
 import symtable
