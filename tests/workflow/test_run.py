@@ -211,6 +211,17 @@ def test_a_synthetic_table_runs_from_csv_to_report(tmp_path: Path):
     ).stat().st_size > 1000
 
 
+def test_a_home_that_may_not_be_written_is_none_of_a_study_s_concern(tmp_path: Path):
+    write_synthetic(tmp_path)
+    write_example(tmp_path, "synthetic.csv", replicates=20)
+    run = (*LAUNCHER, "study.yaml", "--cores", "1", "--logger", "rockfrag")
+    # nobody makes folders there, whatever the permissions
+    nowhere = {"HOME": "/proc/nothing", "XDG_CACHE_HOME": "/proc/nothing/cache"}
+    done = finished(called(tmp_path, *run, env=os.environ | nowhere))
+    assert "Traceback" not in done.stderr
+    assert (tmp_path / "results" / "measured-example" / "report.html").is_file()
+
+
 MODULE = Path(__file__).with_name("module.smk").read_text()
 
 
