@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 import trimesh
 
-from rockfrag.errors import InputError
+from rockfrag.base.errors import InputError
 from rockfrag.system.mesh import read_shape
 from rockfrag.system.mesh_file import (
     DEEPEST_NODE,
@@ -187,7 +187,7 @@ def png(side: int) -> bytes:
 
 MEASURED = """
 import resource, sys
-from rockfrag.errors import InputError
+from rockfrag.base.errors import InputError
 from rockfrag.system.mesh import read_shape
 try:
     print(read_shape(sys.argv[1], density=1000.0).volume)

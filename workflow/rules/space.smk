@@ -15,7 +15,7 @@ rule space:
         mem_mb=MEMORY_MB,
         runtime=120,
     params:
-        stage="rockfrag.stages.space:run",
+        stage="rockfrag.stages.space_study:run",
         study=study_file,
         settings=settings("seed", "space", files=STUDY.files),
     script:

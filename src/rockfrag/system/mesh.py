@@ -16,14 +16,14 @@ from typing import Any
 import numpy as np
 from scipy.spatial import ConvexHull, QhullError
 
-from rockfrag.arrays import Floats
-from rockfrag.errors import InputError
-from rockfrag.input_checks import positive_number
-from rockfrag.short_repr import short_repr
+from rockfrag.base.arrays import Floats
+from rockfrag.base.errors import InputError
+from rockfrag.base.input_checks import positive_number
+from rockfrag.base.plausible import LARGEST_SIZE, MEAN_DENSITIES
+from rockfrag.base.short_repr import short_repr
 from rockfrag.system.blocks import Block
 from rockfrag.system.body import Polygon, RigidBody
 from rockfrag.system.mesh_file import Y_UP, load_mesh
-from rockfrag.units import LARGEST_SIZE, MEAN_DENSITIES
 
 FEWEST_CARRY = 3  # points that make a polygon to stand on
 MOST_CORNERS = 48  # of a polygon to stand on in space

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any, cast
 from urllib.parse import unquote
 
-from rockfrag.errors import InputError
+from rockfrag.base.errors import InputError
 
 MESH_ENDINGS = (".obj", ".ply", ".stl", ".glb", ".gltf")
 Y_UP = (".glb", ".gltf")  # formats whose specification says so (glTF 2.0, section 3.4)
