@@ -19,6 +19,7 @@ from tempfile import TemporaryFile
 from rockfrag.base.errors import InputError
 from rockfrag.base.yaml_file import read_yaml
 from rockfrag.runtime.memory import check_memory
+from rockfrag.runtime.processes import speak_utf8
 from rockfrag.stages.log import check_folders, in_words
 
 SNAKEFILE = Path(os.path.relpath(Path(__file__).resolve().parent / "Snakefile"))
@@ -130,4 +131,5 @@ def _snakemake(study_file: str, arguments: Sequence[str]) -> int:
 
 
 if __name__ == "__main__":
+    speak_utf8()
     sys.exit(main(sys.argv[1], sys.argv[2:]))

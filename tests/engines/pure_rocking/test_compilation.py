@@ -3,6 +3,8 @@
 import ast
 import importlib.util
 import os
+import subprocess
+import sys
 from pathlib import Path
 
 import numba
@@ -93,6 +95,22 @@ print(found.peak_velocity.ravel().tolist())
 def test_an_unknown_numba_gives_the_same_bits(tmp_path):
     known = overturns(BLOCK, MOTION, 0.01, [0.5, 1.0]).peak_velocity.ravel().tolist()
     assert printed_alone("-c", UNKNOWN, NUMBA_CACHE_DIR=str(tmp_path)) == str(known)
+
+
+def test_kernels_that_may_not_be_compiled_are_one_sentence(tmp_path):
+    record = tmp_path / "record.txt"
+    record.write_text("".join(f"{0.01 * i:.2f} {i % 7}\n" for i in range(100)))
+    asked = ("simulate", str(record), "--unit", "g", "--width", "30cm")
+    done = subprocess.run(
+        [sys.executable, "-m", "rockfrag.cli.main", *asked, "--height", "90cm"],
+        env={**os.environ, "NUMBA_DISABLE_JIT": "1"},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.returncode == 2
+    assert done.stderr.startswith("NUMBA_DISABLE_JIT is set")
+    assert done.stderr.count("\n") == 1
 
 
 # --------------------------------------------------------------------------- machine code on disk
