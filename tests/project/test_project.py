@@ -127,6 +127,31 @@ def test_hosted_checks_and_the_makefile_agree():
         assert (ROOT / folder).exists() or any(ROOT.glob(f"{folder}*.py")), folder
 
 
+def test_no_job_of_the_hosted_checks_may_run_without_end():
+    for path in WORKFLOWS.glob("*.yml"):
+        for name, job in hosted(path.name)["jobs"].items():
+            publishes = "environment" in job
+            assert publishes or 0 < job["timeout-minutes"] <= 350, (
+                f"{path.name}: {name}"
+            )
+
+
+FIRST_THAT_WORKS = {
+    "jinja2": "3.1.2",  # Environment.overlay(keep_trailing_newline=)
+    "pandas": "2.2.2",  # works with numpy 2
+    "setuptools": "77",  # license = "MIT" beside license-files (PEP 639)
+}
+
+
+def test_lower_bounds_are_versions_that_work():
+    named = [*PROJECT["project"]["dependencies"], *PROJECT["build-system"]["requires"]]
+    asked = dict(line.split(">=") for line in named)
+    for package, version in FIRST_THAT_WORKS.items():
+        assert tuple(map(int, asked[package].split("."))) >= tuple(
+            map(int, version.split("."))
+        ), package
+
+
 def test_every_supported_version_of_python_is_checked():
     tested = hosted("ci.yml")["jobs"]["test"]["strategy"]["matrix"]["python"]
     said = [

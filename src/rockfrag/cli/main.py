@@ -19,6 +19,7 @@ from rockfrag.cli.assess_commands import (
     add_records_option,
 )
 from rockfrag.cli.record_commands import add_record_commands, read_told
+from rockfrag.runtime.processes import speak_utf8
 
 if TYPE_CHECKING:
     from rockfrag.records.motion import Motion
@@ -37,6 +38,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
             f"warning: {said}", file=sys.stderr
         )
         try:
+            if arguments is None:
+                speak_utf8()
             options = make_parser().parse_args(arguments)
             status = int(options.run(options))
             sys.stdout.flush()
