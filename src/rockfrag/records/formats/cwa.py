@@ -9,7 +9,8 @@ import re
 
 from rockfrag.records.parsing import format as form
 from rockfrag.records.parsing.text_file import TextFile
-from rockfrag.records.parsing.timestamps import step_of_times, time_of
+from rockfrag.records.parsing.time_column import Notes, TimeColumn
+from rockfrag.records.parsing.timestamps import time_of
 
 _FIRST = re.compile(r"^\s*#\s*(?:Earthquake Information|StationCode)", re.I)
 _NEEDED = [
@@ -31,12 +32,9 @@ def _parse(text: TextFile) -> list[form.Channel]:
     table = text.in_rows(values, len(order) + 1, start)
     rate = text.number(facts["samplerate"], "#SampleRate is not a number")
     dt = text.interval(1 / rate if rate > 0 else 0.0, 0)
+    notes: Notes = ()
     if table.shape[0] > 1:
-        measured = step_of_times(table[:, 0], text, start)
-        if abs(measured - dt) > 1e-6:
-            text.fail(
-                f"times step by {measured:g} s, but #SampleRate gives {dt:g} s", start
-            )
+        notes = TimeColumn(table[:, 0], text, start).check(dt, "#SampleRate gives")
     _check_length(text, facts["recordlength"], table.shape[0] * dt, start)
     began = time_of(facts["starttime"])
     zone = form.stated(
@@ -51,7 +49,7 @@ def _parse(text: TextFile) -> list[form.Channel]:
         "earthquake": f"{facts['origin time']} M {facts['magnitude']}".strip(" M"),
         "instrument": facts["instrumentkind"],
     }
-    shared = form.Channel(table.shape[0], dt, table).saying(known)
+    shared = form.Channel(table.shape[0], dt, table, steps=notes).saying(known)
     return form.in_columns(shared, table[:, 1:], order)
 
 
