@@ -70,7 +70,7 @@ def test_the_peak_of_knet_is_about_the_mean(tmp_path):
     path = tmp_path / "AOM0011801241951.EW"
     path.write_text(text)
     peak = read_motion(path).pga
-    assert f"Max. Acc. (gal)   {100 * peak:.2f}" in text
+    assert f"Max. Acc. (gal)   {100 * peak:.3f}" in text
     path.write_text(re.sub(r"(Max\. Acc\. \(gal\)   )", r"\g<1>9", text))
     with pytest.raises(InputError, match="header states a peak"):
         read_motion(path)

@@ -126,10 +126,11 @@ def time_of(words: str) -> UTCDateTime | None:
     )
     if match is None:
         return None
-    year, month, *clock = match.group("y", "m", "d", "h", "min")
+    year, month, day, hour, minute = match.group("y", "m", "d", "h", "min")
     if not month.isdigit():
         month = _number_of_month(month)
-    return clock_time(year, month, *clock, match["s"] or "0") if month else None
+    second = match["s"] or "0"
+    return clock_time(year, month, day, hour, minute, second) if month else None
 
 
 def _number_of_month(name: str) -> str:
