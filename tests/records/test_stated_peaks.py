@@ -4,7 +4,7 @@ import re
 
 import pytest
 
-from rockfrag.errors import InputError
+from rockfrag.base.errors import InputError
 from rockfrag.records.quality_flags import quality_flags
 from rockfrag.records.read import motion_of, read_motion, read_record
 

@@ -5,7 +5,7 @@ import re
 import numpy as np
 import pytest
 
-from rockfrag.errors import InputError
+from rockfrag.base.errors import InputError
 from rockfrag.records.parsing.text_file import read_text
 from rockfrag.records.parsing.time_column import JITTER, STATED_JITTER, TimeColumn
 from rockfrag.records.quality_flags import quality_flags

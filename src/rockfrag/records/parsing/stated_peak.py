@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from rockfrag.errors import InputError
+from rockfrag.base.errors import InputError
 from rockfrag.records.parsing.format import SAID, Channel
 from rockfrag.records.parsing.quantities import TO_SI, canonical_unit
 

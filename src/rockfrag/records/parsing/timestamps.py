@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 from obspy import UTCDateTime
 
+from rockfrag.base.plausible import LONGEST_STEP
 from rockfrag.records.parsing.format import Channel, cut_short_step, first_match
 from rockfrag.records.parsing.number_fields import (
     NumberError,
@@ -15,7 +16,6 @@ from rockfrag.records.parsing.number_fields import (
 from rockfrag.records.parsing.quantities import canonical_unit
 from rockfrag.records.parsing.text_file import TextFile
 from rockfrag.records.parsing.time_column import TimeColumn
-from rockfrag.units import LONGEST_STEP
 
 # [s], to which unevenly digitised film is interpolated
 _EVEN_STEPS = (0.005, 0.002, 0.001, 0.0005)
