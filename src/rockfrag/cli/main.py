@@ -18,6 +18,7 @@ from rockfrag.cli.assess_commands import (
     add_assess_commands,
     add_records_option,
 )
+from rockfrag.cli.collection_commands import add_collection_command
 from rockfrag.cli.record_commands import add_record_commands, read_told
 from rockfrag.runtime.processes import speak_utf8
 
@@ -67,6 +68,7 @@ def make_parser() -> argparse.ArgumentParser:
     add_app_command(commands)
     _add_constrain(commands)
     add_record_commands(commands)
+    add_collection_command(commands)
 
     command = commands.add_parser("simulate", help="shake one body by one record")
     _add_case(command)
