@@ -20,7 +20,9 @@ ROOT = Path(__file__).resolve().parents[2]
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
 PINNED = dict(
     line.lower().split("==")
-    for line in (ROOT / "constraints.txt").read_text(encoding="utf-8").splitlines()
+    for line in (ROOT / "requirements/constraints.txt")
+    .read_text(encoding="utf-8")
+    .splitlines()
     if "==" in line
 )
 
