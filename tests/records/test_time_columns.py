@@ -5,9 +5,9 @@ import re
 import numpy as np
 import pytest
 
-from rockfrag.errors import InputError
-from rockfrag.records.parsing.time_column import JITTER, STATED_JITTER, TimeColumn
+from rockfrag.base.errors import InputError
 from rockfrag.records.parsing.text_file import read_text
+from rockfrag.records.parsing.time_column import JITTER, STATED_JITTER, TimeColumn
 from rockfrag.records.quality_flags import quality_flags
 from rockfrag.records.read import read_motion
 
@@ -84,7 +84,7 @@ def test_a_clock_that_drifts_is_read_and_a_step_that_changes_is_not(tmp_path):
     assert motion.dt == pytest.approx(0.005, rel=1e-3)
     assert any("off even ones" in flag for flag in quality_flags(motion))
     changing = np.cumsum(np.where(count < 10_000, 0.005, 0.0051))
-    with pytest.raises(InputError, match="not equally spaced.*interpolate"):
+    with pytest.raises(InputError, match=r"not equally spaced.*interpolate"):
         read_motion(written(tmp_path / "b.csv", changing))
 
 

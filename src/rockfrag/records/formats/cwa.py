@@ -8,6 +8,7 @@ local (UTC+8) where the key says ``GMT+08``.
 import re
 
 from rockfrag.records.parsing import format as form
+from rockfrag.records.parsing.stated_peak import StatedPeak, with_checked_peak
 from rockfrag.records.parsing.text_file import TextFile
 from rockfrag.records.parsing.time_column import Notes, TimeColumn
 from rockfrag.records.parsing.timestamps import time_of
@@ -16,6 +17,8 @@ _FIRST = re.compile(r"^\s*#\s*(?:Earthquake Information|StationCode)", re.I)
 _NEEDED = [
     re.compile(rf"^\s*#\s*{key}\s*[:(]", re.I) for key in ("stationcode", "samplerate")
 ]
+_PEAKS = re.compile(r"^\s*#\s*amplitude\s*max\w*\b", re.I)
+_EXTREMES = re.compile(r"\b([UNEZ])\s*(?:\([^)]*\))?\s*[:=]([^:=A-Z]*)")
 _MAX_HEADER = 60
 _ORDER = ("U", "N", "E")
 
@@ -50,7 +53,27 @@ def _parse(text: TextFile) -> list[form.Channel]:
         "instrument": facts["instrumentkind"],
     }
     shared = form.Channel(table.shape[0], dt, table, steps=notes).saying(known)
-    return form.in_columns(shared, table[:, 1:], order)
+    numbers = _peaks(header[:start])
+    return [
+        with_checked_peak(
+            channel,
+            StatedPeak(numbers.get(channel.component, ""), channel.unit),
+            text.name,
+            text.cut_short,
+        )
+        for channel in form.in_columns(shared, table[:, 1:], order)
+    ]
+
+
+def _peaks(header: list[str]) -> dict[str, str]:
+    """Return the larger of the extremes of each component, ``#AmplitudeMAX. U: 16.2~-11.5``, without sign."""
+    found = {}
+    for line in header:
+        if _PEAKS.match(line):
+            for axis, extremes in _EXTREMES.findall(line):
+                numbers = re.findall(r"\d+\.?\d*", extremes)
+                found[axis] = max(numbers, key=float, default="")
+    return found
 
 
 def _check_length(text: TextFile, stated: str, length: float, line: int) -> None:

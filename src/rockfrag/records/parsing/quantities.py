@@ -11,9 +11,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import lru_cache
 
-from rockfrag.errors import InputError
+from rockfrag.base.errors import InputError
+from rockfrag.base.units import GRAVITY
 from rockfrag.records.parsing.vocabulary import folded, words_for
-from rockfrag.units import GRAVITY
 
 TO_SI: Mapping[str, float] = {
     **{"g": GRAVITY, "g/10": GRAVITY / 10, "%g": GRAVITY / 100},

@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cache
 
+from rockfrag.base.plausible import LONGEST_STEP, SHORTEST_STEP
 from rockfrag.records.parsing.directions import is_direction
 from rockfrag.records.parsing.format import stated
 from rockfrag.records.parsing.number_fields import number_in
@@ -18,7 +19,6 @@ from rockfrag.records.parsing.quantities import (
     read_unit,
 )
 from rockfrag.records.parsing.vocabulary import alternatives, folded
-from rockfrag.units import LONGEST_STEP, SHORTEST_STEP
 
 _VALUE = r"(?:\d+[.,]\d+|\d+\.?|[.,]\d+)(?:[ed][+-]?\d+)?"
 _IS = (

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 from obspy import UTCDateTime
 
+from rockfrag.base.plausible import LONGEST_STEP
 from rockfrag.records.parsing.format import Channel, cut_short_step, first_match
 from rockfrag.records.parsing.number_fields import (
     NumberError,
@@ -15,7 +16,6 @@ from rockfrag.records.parsing.number_fields import (
 from rockfrag.records.parsing.quantities import canonical_unit
 from rockfrag.records.parsing.text_file import TextFile
 from rockfrag.records.parsing.time_column import TimeColumn
-from rockfrag.units import LONGEST_STEP
 
 # [s], to which unevenly digitised film is interpolated
 _EVEN_STEPS = (0.005, 0.002, 0.001, 0.0005)
@@ -94,20 +94,50 @@ def american_time(words: str) -> UTCDateTime | None:
     return None if match is None else clock_time(**match.groupdict(default=""))
 
 
-_CLOCK = r"[ T_-]+(?P<h>\d{1,2}):(?P<min>\d\d):(?P<s>\d\d(?:\.\d*)?)$"
+_MONTHS = (
+    ("jan", "ene", "gen"),
+    ("feb", "fev", "fév"),
+    ("mar", "mär", "mrz"),
+    ("apr", "abr", "avr"),
+    ("may", "mai", "mag"),
+    ("jun", "giu", "juin"),
+    ("jul", "lug", "juil"),
+    ("aug", "ago", "aou", "aoû"),
+    ("sep", "set"),
+    ("oct", "okt", "ott", "out"),
+    ("nov",),
+    ("dec", "dez", "dic", "déc"),
+)
+"""How the names of months begin in English, Spanish, Italian, Portuguese, French and German."""
+
+_CLOCK = r"[ T_-]+(?P<h>\d{1,2}):(?P<min>\d{1,2})(?::(?P<s>\d{1,2}(?:\.\d*)?))?$"
 _NOTATIONS = (
     r"^(?P<y>\d{4})(?P<m>\d\d)(?P<d>\d\d)[_ T](?P<h>\d\d)(?P<min>\d\d)(?P<s>\d\d(?:\.\d*)?)$",
     r"^(?P<d>\d{1,2})[/.-](?P<m>\d{1,2})[/.-](?P<y>\d{4})" + _CLOCK,
     r"^(?P<y>\d{4})[/.-](?P<m>\d{1,2})[/.-](?P<d>\d{1,2})" + _CLOCK,
+    r"^(?P<d>\d{1,2})[/. -](?P<m>[^\W\d_]{3,12})\.?[/. ,-]+(?P<y>\d{4}|\d\d)" + _CLOCK,
 )
 
 
 def time_of(words: str) -> UTCDateTime | None:
-    """Return the time in words such as ``20190728_160905.700`` or ``14/11/2010 23:09:19.3``."""
+    """Return the time in words as ``20190728_160905.700``, ``14/11/2010 23:09:19.3``, ``10/DIC/94 15:2:18``."""
     match = next(
         filter(None, (re.match(pattern, words.strip()) for pattern in _NOTATIONS)), None
     )
-    return clock_time(*match.group("y", "m", "d", "h", "min", "s")) if match else None
+    if match is None:
+        return None
+    year, month, day, hour, minute = match.group("y", "m", "d", "h", "min")
+    if not month.isdigit():
+        month = _number_of_month(month)
+    second = match["s"] or "0"
+    return clock_time(year, month, day, hour, minute, second) if month else None
+
+
+def _number_of_month(name: str) -> str:
+    """Return the number of the month that a name begins like, or an empty string."""
+    beginnings = enumerate(_MONTHS, start=1)
+    known = (number for number, words in beginnings if name.lower().startswith(words))
+    return str(next(known, ""))
 
 
 _POINTS = re.compile(r"\bno\.?\s+of\s+points\s*=?\s*(?P<count>\d+)", re.I)
