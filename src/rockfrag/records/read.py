@@ -18,7 +18,7 @@ from rockfrag.base.units import GRAVITY
 from rockfrag.records.formats import HEADED, plain
 from rockfrag.records.formats.obspy_native import obspy_channels
 from rockfrag.records.motion import Motion
-from rockfrag.records.parsing import quantities
+from rockfrag.records.parsing import directions, quantities
 from rockfrag.records.parsing.format import Channel
 from rockfrag.records.parsing.text_file import NotAcceleration, check_file
 from rockfrag.records.quality_flags import STRONGEST_G
@@ -175,15 +175,15 @@ def choose_channel(record: Record, wanted: str | None) -> Channel:
             f"{record.name}: the file has several channels, {_listed(record)}; choose one with channel=."
         )
     azimuth, letter = (
-        quantities.azimuth_of(wanted),
+        directions.azimuth_of(wanted),
         len(wanted) == 1 and wanted.isalpha(),
     )
-    names, ending = quantities.plain_name(wanted), wanted.upper()
+    names, ending = directions.plain_name(wanted), wanted.upper()
     # a SEED code names its sensor, not always its direction
     turned = [c for c in channels if azimuth is not None and c.component != c.code]
     ways = (
         [c for c in channels if names in _names_of(c)],
-        [c for c in turned if quantities.azimuth_of(c.component) == azimuth],
+        [c for c in turned if directions.azimuth_of(c.component) == azimuth],
         [c for c in channels if letter and c.code.upper().endswith(ending)],
     )
     found = next(filter(None, ways), [])
@@ -203,7 +203,7 @@ def motion_of(
     """Return one channel of a record as a motion in m/s²; ``unit`` and ``force`` as of :func:`read_motion`."""
     samples = channel.samples
     stored = _settled_unit(record, channel, samples, unit)
-    factor = quantities.TO_SI[stored]
+    factor = quantities.to_si(stored)
     acceleration = _in_si(record, samples, factor)
     read = {
         "step": "read",
@@ -281,8 +281,19 @@ def _settled_unit(
     record: Record, channel: Channel, samples: NDArray[np.float64], unit: str | None
 ) -> str:
     asked = None if unit is None else quantities.asked_unit(unit)
+    velocity = directions.is_seismometer(channel.code)
+    if channel.counts and (velocity or asked is None):
+        of_what = (
+            f"counts of a seismometer ({channel.code}), which records velocity"
+            if velocity
+            else "counts of a recorder"
+        )
+        raise InputError(
+            f"{record.name}: the file does not state its unit: whole numbers without StationXML are {of_what}; "
+            "put the StationXML of the station beside the file, which turns them into acceleration."
+        )
     if channel.unit:
-        if channel.unit not in quantities.TO_SI:
+        if quantities.quantity_of(channel.unit) != "acceleration":
             raise InputError(
                 f"{record.name}: samples in {channel.unit!r} are no acceleration known here."
             )
@@ -295,11 +306,16 @@ def _settled_unit(
         return asked
     peak = float(np.abs(samples - samples.mean()).max())
     candidates = ", ".join(
-        f"{peak * quantities.TO_SI[quantities.asked_unit(name)] / GRAVITY:.3g} g if {name}"
+        f"{peak * quantities.to_si(name) / GRAVITY:.3g} g if {name}"
         for name in quantities.ASKED_UNITS
     )
+    doubt = (
+        f" ({channel.code} is a channel of a seismometer: velocity, unless it has been differentiated)"
+        if velocity
+        else ""
+    )
     raise InputError(
-        f"{record.name}: the file does not state its unit; give unit= "
+        f"{record.name}: the file does not state its unit{doubt}; give unit= "
         f"({', '.join(quantities.ASKED_UNITS)}): the peak about the mean would be {candidates}."
     )
 
@@ -321,4 +337,4 @@ def _names_of(channel: Channel) -> set[str]:
         files = {channel.member, Path(channel.member).name}
         names |= files | {f"{file} {name}" for file in files for name in names}
         names |= {f"{file}#{name}" for file in files for name in names}
-    return {quantities.plain_name(name) for name in names if name}
+    return {directions.plain_name(name) for name in names if name}
