@@ -201,6 +201,8 @@ def motion_of(
     record: Record, channel: Channel, unit: str | None = None, force: bool = False
 ) -> Motion:
     """Return one channel of a record as a motion in m/s²; ``unit`` and ``force`` as of :func:`read_motion`."""
+    if channel.fault:
+        raise InputError(f"{record.name}: {channel.fault}.")
     samples = channel.samples
     stored = _settled_unit(record, channel, samples, unit)
     factor = quantities.TO_SI[stored]

@@ -47,7 +47,7 @@ _ENDINGS = {".VT2": "velocity", ".DT2": "displacement"}
 _MAX_HEADER = 30
 _WIDTH = 15
 _COMPONENT = re.compile(
-    r"(?i),\s*(?P<component>\d{1,3}|UP|DWN|DN|V|VERT\w*|[NSEWLTXYZ]{1,2}|[NS]\d{1,2}[EW]|[BHELS][HNLG][ENZ123]\d?\d?"
+    r"(?i),\s*(?P<component>\d{1,3}|UP|DWN|DN|V|VERT\w*|[LTVH]\d|[NSEWLTXYZ]{1,2}|[NS]\d{1,2}[EW]|[BHELS][HNLG][ENZ123]\d?\d?"
     r"|FN|FP)\s*(?:\((?P<agency>[^)]*)\)\s*)?$"
 )
 

@@ -9,6 +9,7 @@ stated must agree, with the file and with what the user names; what is not state
 
 import re
 from dataclasses import dataclass, field, replace
+from pathlib import PurePath
 from typing import Any
 
 import numpy as np
@@ -20,6 +21,8 @@ from rockfrag.records.formats import HEADED
 from rockfrag.records.parsing import number_fields
 from rockfrag.records.parsing.column_titles import Column, column_titles
 from rockfrag.records.parsing.format import Channel, Format, text_writer
+from rockfrag.records.parsing.quantities import quantity_in_name
+from rockfrag.records.parsing.resultant import without_resultants
 from rockfrag.records.parsing.stated_facts import StatedFacts, stated_facts
 from rockfrag.records.parsing.text_file import TextFile, is_remark, last_row
 from rockfrag.records.parsing.time_column import TimeColumn
@@ -133,6 +136,7 @@ def _parse(text: TextFile) -> list[Channel]:
     if dt is not None and not (np.isfinite(dt) and dt > 0):
         raise InputError(f"dt must be a positive number of seconds, got {dt}.")
     layout = _layout(text)
+    _refuse_by_name(layout)
     columns = layout.table.columns
     stop = last_row(text, layout.line)
     values, widths = text.rows(layout.line, stop, layout.table.decimal_comma)
@@ -149,6 +153,17 @@ def _parse(text: TextFile) -> list[Channel]:
         text.check_widths(widths, columns, layout.line)
         return _channels(layout, values.reshape(-1, columns))
     return [_series(layout, values)]
+
+
+def _refuse_by_name(layout: _Layout) -> None:
+    """Refuse a file whose name says velocity or displacement, and in which nothing says acceleration."""
+    said = [layout.facts.quantity, *(column.quantity for column in layout.titles)]
+    named = quantity_in_name(PurePath(layout.text.name).name)
+    if named and "acceleration" not in said:
+        layout.text.refuse(
+            f"its name says {named}, and nothing in it says acceleration; if it holds that, write the word above "
+            "the numbers"
+        )
 
 
 def _layout(text: TextFile) -> _Layout:
@@ -431,7 +446,13 @@ def _channels(layout: _Layout, table: NDArray[np.float64]) -> list[Channel]:
         title = columns[i].title if layout.titles else layout.table.title
         noted = replace(layout, steps=[*layout.steps, *notes])
         channels.append(noted.channel(table[:, i], step, columns[i], component, title))
-    return channels
+    components = without_resultants(channels)
+    if not components:
+        text.refuse(
+            f"the columns {titles} are lengths of vectors, which are no components of acceleration",
+            layout.line - 1,
+        )
+    return components
 
 
 def _untitled(layout: _Layout, table: NDArray[np.float64]) -> list[Column]:

@@ -75,6 +75,23 @@ def asked_unit(unit: str) -> str:
     return found
 
 
+_NAMED_QUANTITIES = {
+    "velocity": re.compile(r"(?i)(?:^|[-_. ])vel(?:o|oc\w*)?(?=[-_. ]|$)|\.vt2\b"),
+    "displacement": re.compile(
+        r"(?i)(?:^|[-_. ])(?:disp|displ|displacement)(?=[-_. ]|$)|\.(?:dis|dt2)\b"
+    ),
+}
+_NAMED_ACCELERATION = re.compile(r"(?i)(?:^|[-_. ])acc(?:el\w*)?(?=[-_. ]|$)")
+
+
+def quantity_in_name(name: str) -> str:
+    """Return the quantity other than acceleration that the name of a file says it holds, empty if it says none."""
+    if _NAMED_ACCELERATION.search(name):
+        return ""
+    found = (key for key, words in _NAMED_QUANTITIES.items() if words.search(name))
+    return next(found, "")
+
+
 _NAMED = {"N": 0.0, "NS": 0.0, "NORTH": 0.0, "E": 90.0, "EW": 90.0, "EAST": 90.0}
 _NAMED |= {
     "S": 180.0,
@@ -84,7 +101,8 @@ _NAMED |= {
     "SN": 180.0,
     "WE": 90.0,
 }
-_SEED = re.compile(r"^[BCDEHFLS][HNLG](?P<axis>[NEZ])\d{0,2}$")
+# of three orthogonal components that FDSN numbers, the third is the vertical
+_SEED = re.compile(r"^[BCDEHFLS][HNLG](?P<axis>[NEZ3])\d{0,2}$")
 _VERTICAL = re.compile(
     r"^(?:V|Z|U|UD|DU|UP|DOWN|DN|DWN|VERT(?:ICAL)?|VRT|UPDO|UPDN)\d?$"
 )
@@ -118,4 +136,4 @@ def is_vertical(words: str) -> bool:
     """Tell whether the name of a component is that of a vertical one."""
     plain = plain_name(words)
     seed = _SEED.match(plain)
-    return bool(_VERTICAL.match(plain)) or (seed is not None and seed["axis"] == "Z")
+    return bool(_VERTICAL.match(plain)) or (seed is not None and seed["axis"] in "Z3")
