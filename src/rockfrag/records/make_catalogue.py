@@ -18,8 +18,8 @@ from rockfrag.base.text_files import printable
 from rockfrag.records.catalogue import COLUMNS, passed_over, record_files
 from rockfrag.records.component_names import NUMBERS, numbered_records, parts_of
 from rockfrag.records.motion import Motion
+from rockfrag.records.parsing.directions import azimuth_of, is_vertical
 from rockfrag.records.parsing.format import Channel
-from rockfrag.records.parsing.quantities import azimuth_of, is_vertical
 from rockfrag.records.parsing.text_file import NotAcceleration
 from rockfrag.records.quality_flags import quality_flags
 from rockfrag.records.read import motion_of, read_untold

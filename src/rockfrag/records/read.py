@@ -18,7 +18,7 @@ from rockfrag.base.units import GRAVITY
 from rockfrag.records.formats import HEADED, plain
 from rockfrag.records.formats.obspy_native import obspy_channels
 from rockfrag.records.motion import Motion
-from rockfrag.records.parsing import quantities
+from rockfrag.records.parsing import directions, quantities
 from rockfrag.records.parsing.format import Channel
 from rockfrag.records.parsing.text_file import NotAcceleration, check_file
 from rockfrag.records.quality_flags import STRONGEST_G
@@ -175,15 +175,15 @@ def choose_channel(record: Record, wanted: str | None) -> Channel:
             f"{record.name}: the file has several channels, {_listed(record)}; choose one with channel=."
         )
     azimuth, letter = (
-        quantities.azimuth_of(wanted),
+        directions.azimuth_of(wanted),
         len(wanted) == 1 and wanted.isalpha(),
     )
-    names, ending = quantities.plain_name(wanted), wanted.upper()
+    names, ending = directions.plain_name(wanted), wanted.upper()
     # a SEED code names its sensor, not always its direction
     turned = [c for c in channels if azimuth is not None and c.component != c.code]
     ways = (
         [c for c in channels if names in _names_of(c)],
-        [c for c in turned if quantities.azimuth_of(c.component) == azimuth],
+        [c for c in turned if directions.azimuth_of(c.component) == azimuth],
         [c for c in channels if letter and c.code.upper().endswith(ending)],
     )
     found = next(filter(None, ways), [])
@@ -205,7 +205,7 @@ def motion_of(
         raise InputError(f"{record.name}: {channel.fault}.")
     samples = channel.samples
     stored = _settled_unit(record, channel, samples, unit)
-    factor = quantities.TO_SI[stored]
+    factor = quantities.to_si(stored)
     acceleration = _in_si(record, samples, factor)
     read = {
         "step": "read",
@@ -284,7 +284,7 @@ def _settled_unit(
 ) -> str:
     asked = None if unit is None else quantities.asked_unit(unit)
     if channel.unit:
-        if channel.unit not in quantities.TO_SI:
+        if quantities.quantity_of(channel.unit) != "acceleration":
             raise InputError(
                 f"{record.name}: samples in {channel.unit!r} are no acceleration known here."
             )
@@ -297,7 +297,7 @@ def _settled_unit(
         return asked
     peak = float(np.abs(samples - samples.mean()).max())
     candidates = ", ".join(
-        f"{peak * quantities.TO_SI[quantities.asked_unit(name)] / GRAVITY:.3g} g if {name}"
+        f"{peak * quantities.to_si(name) / GRAVITY:.3g} g if {name}"
         for name in quantities.ASKED_UNITS
     )
     raise InputError(
@@ -323,4 +323,4 @@ def _names_of(channel: Channel) -> set[str]:
         files = {channel.member, Path(channel.member).name}
         names |= files | {f"{file} {name}" for file in files for name in names}
         names |= {f"{file}#{name}" for file in files for name in names}
-    return {quantities.plain_name(name) for name in names if name}
+    return {directions.plain_name(name) for name in names if name}

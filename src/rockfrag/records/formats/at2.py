@@ -17,6 +17,7 @@ from rockfrag.records.parsing.format import (
 )
 from rockfrag.records.parsing.number_fields import number_in
 from rockfrag.records.parsing.quantities import canonical_unit, quantity_of
+from rockfrag.records.parsing.stated_facts import factor_beside_unit
 from rockfrag.records.parsing.text_file import TextFile, last_row
 
 _NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[EeDd][+-]?\d+)?"
@@ -110,6 +111,9 @@ def _parse(text: TextFile) -> Iterator[Channel]:
     npts = int(points)
     dt = text.interval(dt * factor if factor != 1 else dt, size)
     quantity, unit = _quantity_and_unit(header)
+    for number, line in enumerate(header):
+        if problem := factor_beside_unit(line):
+            text.fail(f"{problem}; apply it to the samples and take it out", number)
     quantity = quantity or _ENDINGS.get(text.name.upper().removesuffix(".GZ")[-4:], "")
     if quantity not in ("", "acceleration"):
         held = f"{quantity} history" + (f" in {unit}" if unit else "")
