@@ -523,9 +523,10 @@ def _numbered(components: Sequence[Component]) -> set[str]:
     for component in components:
         folder = component.packed, str(Path(component.path).parent)
         folders.setdefault(folder, {})[component.plain_name] = component.file
-    return {
+    counted = {
         files[name] for files in folders.values() for name in numbered_records(files)
     }
+    return {c.file for c in components if c.suffix in NUMBERS and c.file in counted}
 
 
 def _record_without_vertical(

@@ -350,6 +350,12 @@ def _series(layout: _Layout, values: NDArray[np.float64]) -> Channel:
     stated = next(iter(layout.titles), Column("", "", "", ""))
     _refuse_other(layout, stated.quantity or layout.facts.quantity)
     if layout.npts is not None:
+        filled = layout.table.columns
+        if layout.text.is_filled_up(values, layout.npts, filled):
+            surplus = values.size - layout.npts
+            note = {"step": "leave out zeros that fill the last row", "values": surplus}
+            layout.steps.append(note)
+            values = values[: layout.npts]
         layout.text.check_count(layout.npts, values.size, layout.line)
     if layout.interval is None:
         what = "one column" if layout.table.columns == 1 else "rows of numbers"
