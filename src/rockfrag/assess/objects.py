@@ -16,6 +16,7 @@ from rockfrag.assess.assumed import (
     tolerances_in,
 )
 from rockfrag.assess.scan import Scan, make_scan
+from rockfrag.assess.texts import Text
 from rockfrag.errors import InputError, errors_of
 from rockfrag.fragility.model_error import CUT, SCAN
 from rockfrag.rocking.options import system_of
@@ -31,6 +32,15 @@ from rockfrag.system.system import (
     uplift_ratios,
 )
 from rockfrag.units import DENSITIES, STONE, check_density, size_warning
+from rockfrag.words.findings import (
+    Finding,
+    Form,
+    Number,
+    Value,
+    finding,
+    three,
+    whole,
+)
 
 # Usual densities of the box around an object, from wood to bronze [kg/m³]
 COMMON = (150.0, 9000.0)
@@ -50,7 +60,7 @@ HIGHER = 1.0 + 1e-9
 # To both sides of how it faces the shaking, where nobody said it [degrees]
 ASIDE = 45.0
 
-ALONE = "on the floor"  # How an object stands without a pedestal
+ALONE = Text.ON_THE_FLOOR  # How an object stands without a pedestal
 
 
 @dataclass(frozen=True)
@@ -66,7 +76,7 @@ class Objects:
     friction: float | None
     # Relative standard deviations of width, height of the centre of gravity, restitution and mass
     tolerances: Mapping[str, float]
-    plane: str  # In words, in which direction it rocks
+    plane: Finding  # In which direction it rocks
     # Whether its base is round: it rolls on its rim in space and loses nothing
     round: bool = False
     # Side of a rectangular base across that plane [m]; None if not used
@@ -83,8 +93,7 @@ class Objects:
     scanned: RigidBody | None = None
     livelier: float = 1.0  # Factor on every restitution [-]; impacts never gain energy
     assumed: tuple[Assumption, ...] = ()  # What was not given
-    # Sentences, one for each thing that looks wrong
-    quality_flags: tuple[str, ...] = ()
+    quality_flags: tuple[Value, ...] = ()  # What looks wrong
     # Coefficient of a pad to be tried [-]; None to try none
     pad_friction: float | None = None
 
@@ -104,18 +113,15 @@ class Objects:
         return len(self.pedestals) > 1
 
     @property
-    def stand(self) -> str:
-        """What it stands on in a word."""
-        return "pedestals" if self.many else "pedestal"
-
-    @property
     def arrangements(self) -> dict[str, Body]:
-        """The ways in which it can stand, as it stands now first."""
-        body, under = self.body, f"its {self.stand}"
+        """The ways in which it can stand, by the ids of their texts, as it stands now first."""
+        body = self.body
         if not self.pedestals:
             return {ALONE: body}
-        joined = body.rigidly_joined()
-        return {f"on {under}": body, f"fixed to {under}": joined, ALONE: self.block}
+        on, fixed = Text.ON_ITS_PEDESTAL, Text.FIXED_TO_ITS_PEDESTAL
+        if self.many:
+            on, fixed = Text.ON_ITS_PEDESTALS, Text.FIXED_TO_ITS_PEDESTALS
+        return {on: body, fixed: body.rigidly_joined(), ALONE: self.block}
 
     @property
     def least_uplift(self) -> float:
@@ -294,7 +300,7 @@ def stretched_block(
 def make_objects(settings: Mapping[str, Any], folder: Path) -> Objects:
     """Make the object and what it stands on of checked keys of ``statue.yaml``."""
     assumed: list[Assumption] = []
-    quality_flags: list[str] = []
+    quality_flags: list[Value] = []
     is_round = bool(settings.get("round", False))
     scan = None
     if "mesh" in settings:
@@ -359,9 +365,17 @@ def _check_restitution(objects: Objects) -> None:
         )
 
 
+def _centimetres(metres: float) -> Number:
+    return Number(100 * metres, Form.FOUR)
+
+
+def _across(text: Text, side: float) -> Finding:
+    return finding(text, width=_centimetres(side))
+
+
 def _from_dimensions(
-    settings: Mapping[str, Any], assumed: list[Assumption], quality_flags: list[str]
-) -> tuple[Block, str, float | None, float]:
+    settings: Mapping[str, Any], assumed: list[Assumption], quality_flags: list[Value]
+) -> tuple[Block, Finding, float | None, float]:
     """Block and the plane in which it rocks, across its narrower side; the other side and the plane's direction.
 
     Side and direction [degrees] are those of a base that is known in space: None and 0 of others.
@@ -373,18 +387,19 @@ def _from_dimensions(
             "key depth: a round base has one width, its diameter; leave the depth out, or round."
         )
     depth = float(settings.get("depth_m", width))
-    plane, across = f"across its {100 * width:.4g} cm", depth < width
+    plane, across = _across(Text.ROCKS_ACROSS, width), depth < width
     if across:
-        plane = f"across its {100 * depth:.4g} cm, the narrower side"
+        plane = _across(Text.ROCKS_ACROSS_NARROWER, depth)
         width, depth = depth, width
     elif "depth_m" not in settings and not is_round:
         # the mass that follows counts only on a pedestal
-        assumed.append(assume("depth", depth=depth))
+        assumed.append(assume("depth", depth=_centimetres(depth)))
     mass = settings.get("mass_kg")
     if mass is None:
         mass = STONE * width * depth * height * (math.pi / 4 if is_round else 1.0)
         solid = "cylinder" if is_round else "box"
-        assumed.append(assume("mass", "mass", mass=mass, solid=solid, density=STONE))
+        about = {"mass": three(mass), "density": whole(STONE)}
+        assumed.append(assume(f"mass_of_{solid}", "mass", **about))
     mass = float(mass)
     check_density(width, height, mass)
     if "depth_m" in settings:
@@ -396,7 +411,14 @@ def _from_dimensions(
                 f"key mass: {words}, a density that no solid has; check the units."
             )
         if not COMMON[0] <= density <= COMMON[1]:
-            quality_flags.append(f"{words}, which is unusual; check the units.")
+            quality_flags.append(
+                finding(
+                    Text.FLAG_DENSITY,
+                    mass=three(mass),
+                    volume=three(volume),
+                    density=three(density),
+                )
+            )
     if "cg_height_m" not in settings:
         assumed.append(assume("cg_height", "cg_height"))
     cg_height = settings.get("cg_height_m")
@@ -415,14 +437,14 @@ def _from_dimensions(
 
 def _from_mesh(
     settings: Mapping[str, Any], folder: Path, assumed: list[Assumption]
-) -> tuple[Scan, Block, str]:
+) -> tuple[Scan, Block, Finding]:
     """The planar block of a scanned statue, in the direction towards which it leans over at the least angle."""
     mesh = settings["mesh"]
     if "facing_deg" in settings:
         mesh = mesh | {"direction_deg": -settings["facing_deg"] % 360.0}
     mass = settings.get("mass_kg")
     if mass is None:
-        assumed.append(assume("solid", "mass", density=STONE))
+        assumed.append(assume("solid", "mass", density=whole(STONE)))
     if mesh.get("hull"):
         assumed.append(assume("hull", "cg_height"))
     try:
@@ -441,9 +463,11 @@ def _from_mesh(
         raise InputError(_in_keys(str(error))) from None
     assumed += of_scan
     way = scan.row_at(0.5)
-    plane = (
-        f"towards {way['direction_deg']:.0f}° of the mesh, where it balances at {way['alpha_deg']:.1f}°, as the "
-        f"middle one of {len(scan.ways)} ways to stand does"
+    plane = finding(
+        Text.ROCKS_TOWARDS,
+        direction=whole(way["direction_deg"]),
+        angle=three(way["alpha_deg"]),
+        count=len(scan.ways),
     )
     return scan, scan.block(), plane
 
@@ -475,10 +499,11 @@ def _pedestals(
         mass = block.get("mass_kg")
         if mass is None:
             mass = STONE * width * depth * height
-            name = f"pedestal {i}" if len(given) > 1 else "the pedestal"
-            assumed.append(
-                assume("pedestal", "mass", name=name, mass=mass, density=STONE)
-            )
+            about: dict[str, Value] = {"mass": three(mass), "density": whole(STONE)}
+            what = "pedestal"
+            if len(given) > 1:
+                what, about["number"] = "pedestal_of_several", i
+            assumed.append(assume(what, "mass", **about))
         with errors_of("key pedestal"):
             check_density(width, height, float(mass))
         found.append(Block(width, height, float(mass)))

@@ -4,7 +4,7 @@ import math
 import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -40,6 +40,8 @@ LARGEST_FACTOR = 10.0
 """Largest and 1/smallest factor by which a motion is scaled; beyond, its shape belongs to another earthquake."""
 
 STEP_DEG = 15  # Angle between directions that are tried [degrees]
+
+Key = TypeVar("Key")  # By which bodies are told apart
 
 
 @dataclass(frozen=True, eq=False)
@@ -189,8 +191,8 @@ class Shaking(IntensityLevels):
         return [found[""] for found in self.outcomes_of_each(objects, bodies)]
 
     def outcomes_of_each(
-        self, objects: Sequence[Objects], bodies: Sequence[Mapping[str, Body]]
-    ) -> list[dict[str, ObjectOutcomes]]:
+        self, objects: Sequence[Objects], bodies: Sequence[Mapping[Key, Body]]
+    ) -> list[dict[Key, ObjectOutcomes]]:
         """Shake several bodies of each of several objects by every motion at every level."""
         every = [
             (object_, body)
