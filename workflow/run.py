@@ -15,9 +15,10 @@ from importlib.util import find_spec
 from itertools import pairwise
 from pathlib import Path
 
-from rockfrag.errors import InputError
-from rockfrag.stages.log import check_folders, check_memory, in_words
-from rockfrag.yaml_file import read_yaml
+from rockfrag.base.errors import InputError
+from rockfrag.base.yaml_file import read_yaml
+from rockfrag.runtime.memory import check_memory
+from rockfrag.stages.log import check_folders, in_words
 
 SNAKEFILE = Path(os.path.relpath(Path(__file__).resolve().parent / "Snakefile"))
 
@@ -27,7 +28,7 @@ def main(study_file: str, arguments: Sequence[str]) -> int:
     try:
         check_memory()
         # what takes much memory is loaded now that there is some
-        from rockfrag.cli import main as rockfrag
+        from rockfrag.cli.main import main as rockfrag
         from rockfrag.stages.running import results_folder, run_lock
         from rockfrag.study.loading import load_any
     except InputError as error:

@@ -31,9 +31,9 @@ from rockfrag.assess.place import PERIOD_FACTORS, Place
 from rockfrag.assess.request import Records, make_request, read_request
 from rockfrag.assess.risk import Estimate, Evidence, fraction_target
 from rockfrag.assess.texts import Text
+from rockfrag.base.errors import InputError
 from rockfrag.building.response import find_modes
-from rockfrag.cli import main
-from rockfrag.errors import InputError
+from rockfrag.cli.main import main
 from rockfrag.outcomes.limit_states import _STATES, limit_state
 from rockfrag.words.catalogue import catalogue
 from rockfrag.words.findings import finding

@@ -12,12 +12,12 @@ import pytest
 from rockfrag.assess.answer import Assessment, assess_with
 from rockfrag.assess.app.contents import computing, script
 from rockfrag.assess.app.writing import page_of
-from rockfrag.assess.commands import form_of
 from rockfrag.assess.findings import details, first_screen
 from rockfrag.assess.motions import MotionSet
 from rockfrag.assess.request import make_request
-from rockfrag.cli import main
-from rockfrag.errors import InputError
+from rockfrag.base.errors import InputError
+from rockfrag.cli.assess_commands import form_of
+from rockfrag.cli.main import main
 from rockfrag.words.catalogue import formatter
 from rockfrag.words.findings import as_data
 

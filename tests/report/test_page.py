@@ -9,8 +9,8 @@ import pandas as pd
 import pytest
 from matplotlib.figure import Figure
 
-from rockfrag.errors import InputError
-from rockfrag.figure_style import figure_style, new_figure
+from rockfrag.base.errors import InputError
+from rockfrag.base.figure_style import figure_style, new_figure
 from rockfrag.report import pdf
 from rockfrag.report.page import (
     MOST_TABLE_ROWS,

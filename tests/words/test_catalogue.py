@@ -10,13 +10,13 @@ from pathlib import Path
 import pytest
 
 from rockfrag.assess.app.writing import page_of as app_of
-from rockfrag.assess.commands import form_of
 from rockfrag.assess.motions import MotionSet
 from rockfrag.assess.request import make_request
 from rockfrag.assess.texts import Text
-from rockfrag.cli import main
-from rockfrag.errors import InputError
-from rockfrag.rocking.browser import driver_text
+from rockfrag.base.errors import InputError
+from rockfrag.cli.assess_commands import form_of
+from rockfrag.cli.main import main
+from rockfrag.web import driver_text
 from rockfrag.words import catalogue as catalogues
 from rockfrag.words.catalogue import TEXTS, catalogue, formatter, languages
 from rockfrag.words.findings import Finding, Form, Number, as_data, finding, listed

@@ -12,7 +12,7 @@ import pandas as pd
 import pytest
 import yaml
 
-from rockfrag.cli import main
+from rockfrag.cli.main import main
 from rockfrag.stages.running import same_numbers
 from rockfrag.study.loading import load_any
 

@@ -7,11 +7,11 @@ import sys
 from snakemake.logging import logger
 from snakemake.utils import update_config
 
-from rockfrag.errors import InputError
-from rockfrag.plugins import plugins_of
+from rockfrag.base.errors import InputError
+from rockfrag.config.plugins import plugins_of
 from rockfrag.stages.job import memory_mb, package_digest
 from rockfrag.stages.running import RUN, prepared, same_numbers
-from rockfrag.yaml_file import read_yaml
+from rockfrag.base.yaml_file import read_yaml
 
 # jobs inherit it: no number depends on what the processor at hand could do beyond others of its kind
 os.environ |= same_numbers(os.environ)

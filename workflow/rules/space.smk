@@ -17,7 +17,7 @@ rule space:
         mem_mb=MEMORY_MB,
         runtime=120,
     params:
-        stage="rockfrag.stages.space:run",
+        stage="rockfrag.stages.space_study:run",
         study=STUDY_FILE,
         settings=settings("seed", "space"),
     script:

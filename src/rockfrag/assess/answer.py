@@ -8,7 +8,6 @@ from pathlib import Path
 import numpy as np
 from scipy import special
 
-from rockfrag.arrays import Floats
 from rockfrag.assess import outcomes, risk
 from rockfrag.assess.assumed import Moved
 from rockfrag.assess.conversion import Conversion, find_conversion
@@ -21,12 +20,13 @@ from rockfrag.assess.risk import Estimate
 from rockfrag.assess.rules import RuleCheck, check_rules
 from rockfrag.assess.sources import SPACE
 from rockfrag.assess.texts import Text
-from rockfrag.errors import InputError
+from rockfrag.base.arrays import Floats
+from rockfrag.base.errors import InputError
+from rockfrag.base.short_repr import short_repr
 from rockfrag.fragility.estimators import Fragility, fragility_of
 from rockfrag.fragility.model_error import MODEL_ERRORS
 from rockfrag.motions.intensity import IntensityMeasure
 from rockfrag.outcomes.limit_states import ROCKS
-from rockfrag.short_repr import short_repr
 from rockfrag.system.blocks import Body
 from rockfrag.words.findings import Finding, finding, two
 

@@ -18,7 +18,6 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from rockfrag.arrays import Flags, Floats
 from rockfrag.assess.answer import RECORDS, Assessment, assessed, plan_for, shake_all
 from rockfrag.assess.core.likelihood import likelihood_of
 from rockfrag.assess.decision import Action, decide
@@ -30,10 +29,11 @@ from rockfrag.assess.request import Request, make_request
 from rockfrag.assess.risk import Evidence, probability_in, risk_target, toppling_rate
 from rockfrag.assess.sources import SPACE
 from rockfrag.assess.texts import Text
-from rockfrag.errors import InputError
-from rockfrag.files import check_name, file_name
+from rockfrag.base.arrays import Flags, Floats
+from rockfrag.base.errors import InputError
+from rockfrag.base.files import check_name, file_name
+from rockfrag.base.tabular import Row, read_rows
 from rockfrag.fragility.model_error import CUT, MODEL_ERRORS
-from rockfrag.tabular import Row, read_rows
 from rockfrag.words.catalogue import FIRST, catalogue
 from rockfrag.words.findings import (
     Finding,

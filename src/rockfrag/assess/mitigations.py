@@ -6,11 +6,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from rockfrag.arrays import Floats
 from rockfrag.assess.objects import Objects, stretched_block
 from rockfrag.assess.outcomes import ObjectOutcomes
 from rockfrag.assess.risk import LEVEL, Target, earthquake_weights
 from rockfrag.assess.texts import Text
+from rockfrag.base.arrays import Floats
 from rockfrag.fragility.intervals import half_width
 from rockfrag.system.blocks import Block, Body, Stack, stacked
 from rockfrag.words.findings import Finding, finding, percent, three

@@ -17,9 +17,10 @@ from rockfrag.assess.assumed import (
 )
 from rockfrag.assess.scan import Scan, make_scan
 from rockfrag.assess.texts import Text
-from rockfrag.errors import InputError, errors_of
+from rockfrag.base.errors import InputError, errors_of
+from rockfrag.base.plausible import DENSITIES, STONE, check_density, size_warning
 from rockfrag.fragility.model_error import CUT, SCAN
-from rockfrag.rocking.options import system_of
+from rockfrag.simulation.options import system_of
 from rockfrag.system import geometry
 from rockfrag.system.blocks import Block, Body, stacked
 from rockfrag.system.body import Polygon, RigidBody, checked_tensor
@@ -31,7 +32,6 @@ from rockfrag.system.system import (
     turned_about_vertical,
     uplift_ratios,
 )
-from rockfrag.units import DENSITIES, STONE, check_density, size_warning
 from rockfrag.words.findings import (
     Finding,
     Form,

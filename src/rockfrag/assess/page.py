@@ -32,18 +32,18 @@ from rockfrag.assess.motions import MotionSet
 from rockfrag.assess.objects import Objects
 from rockfrag.assess.sources import SOURCES, parts_of
 from rockfrag.assess.texts import Text
-from rockfrag.figure_style import BLUE, COLUMN_WIDTH, OKABE_ITO, panels, plain_log
-from rockfrag.files import file_name, write_text
+from rockfrag.base.figure_style import BLUE, COLUMN_WIDTH, OKABE_ITO, panels, plain_log
+from rockfrag.base.files import file_name, write_text
 from rockfrag.outcomes.limit_states import ROCKS, limit_states
 from rockfrag.records.motion import GroundMotion, Motion
 from rockfrag.report.live import carried, live_kernel
-from rockfrag.report.live.space import Standing, live_in_space
+from rockfrag.report.live.live_space import Standing, live_in_space
 from rockfrag.report.page import Page, text_table
 from rockfrag.report.part import Answer, FigureSpec, Finding, Section
-from rockfrag.sentences import number
 from rockfrag.words import findings as said
 from rockfrag.words.catalogue import FIRST, Catalogue, catalogue
 from rockfrag.words.findings import Value, finding
+from rockfrag.words.sentences import number
 
 Rows = Sequence[Sequence[Value]]
 """Rows of a table."""

@@ -14,12 +14,12 @@ from rockfrag.assess.assumed import (
     tolerances_in,
 )
 from rockfrag.assess.texts import Text
+from rockfrag.base.errors import InputError
 from rockfrag.building.floors import floor_motions
 from rockfrag.building.model import ModalDamping, ShearBuilding, stiffnesses_for_period
 from rockfrag.building.settings import make_building, read_building
-from rockfrag.errors import InputError
+from rockfrag.config.schema import checked
 from rockfrag.records.motion import Motion
-from rockfrag.schema import checked
 from rockfrag.words.findings import (
     Finding,
     Form,

@@ -5,8 +5,8 @@ import re
 import numpy as np
 from numpy.typing import NDArray
 
+from rockfrag.base.units import GRAVITY
 from rockfrag.records.motion import Motion
-from rockfrag.units import GRAVITY
 
 _GSE = "a GSE file, which is not read here; convert it with ObsPy: obspy.read(file).write('record.mseed', 'MSEED')"
 _KINDS: dict[tuple[bytes, ...], str] = {

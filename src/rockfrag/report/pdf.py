@@ -10,8 +10,8 @@ import sys
 import tempfile
 from pathlib import Path
 
-from rockfrag.errors import InputError
-from rockfrag.files import whole_file
+from rockfrag.base.errors import InputError
+from rockfrag.base.files import whole_file
 from rockfrag.stages.running import results_folder
 from rockfrag.study.loading import load_any
 

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 import pandas as pd
 
-from rockfrag.files import write_table
+from rockfrag.base.files import write_table
 
 if TYPE_CHECKING:
     from rockfrag.records.motion import Motion

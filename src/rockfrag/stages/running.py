@@ -11,10 +11,10 @@ from typing import Any
 
 import numpy as np
 
-from rockfrag.errors import InputError
-from rockfrag.files import write_text
-from rockfrag.lock import locked
-from rockfrag.processes import end_with
+from rockfrag.base.errors import InputError
+from rockfrag.base.files import write_text
+from rockfrag.runtime.lock import locked
+from rockfrag.runtime.processes import end_with
 from rockfrag.stages.job import Job
 from rockfrag.stages.log import logged
 from rockfrag.study.loading import AnyStudy, any_study, check_records

@@ -6,10 +6,10 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from rockfrag.errors import InputError
-from rockfrag.files import is_file
+from rockfrag.base.errors import InputError
+from rockfrag.base.files import is_file
+from rockfrag.base.tabular import read_table
 from rockfrag.study.heading import Heading, Steps, beside, checked_steps, heading_of
-from rockfrag.tabular import read_table
 
 PULSE_MEASURES = ("pga_g", "pgv_over_pga_s")
 """Measures from which the motion of a commanded pulse follows."""

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from rockfrag.errors import InputError, errors_of
-from rockfrag.files import is_file
+from rockfrag.base.errors import InputError, errors_of
+from rockfrag.base.files import is_file
 
 Steps = tuple[Mapping[str, Any], ...]
 

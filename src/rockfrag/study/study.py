@@ -10,16 +10,16 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
+from rockfrag.base.errors import InputError
+from rockfrag.base.files import file_name, is_file
+from rockfrag.base.plausible import size_warning
 from rockfrag.building.model import ShearBuilding
-from rockfrag.errors import InputError
-from rockfrag.files import file_name, is_file
 from rockfrag.records.catalogue import own_records
 from rockfrag.records.sources.wheel import PROVENANCE, WHEELS
 from rockfrag.shaketable.shaker import Shaker
 from rockfrag.study.heading import Heading
 from rockfrag.system.blocks import Block
 from rockfrag.system.system import System
-from rockfrag.units import size_warning
 
 GROUND = "ground"  # label of the only floor of a study without a building
 MOST_ROWS = 100_000
@@ -103,7 +103,7 @@ class Study(Heading):
     measured_tests: Path | None
     # Name of the configuration with which one is compared, where that is not its object alone on the floor
     counterparts: Mapping[str, str] = field(default_factory=dict)
-    # Settings of the plugins that it asks for, by name; see :mod:`rockfrag.plugins`
+    # Settings of the plugins that it asks for, by name; see :mod:`rockfrag.config.plugins`
     added: Mapping[str, Any] = field(default_factory=dict)
 
     @property
@@ -157,7 +157,7 @@ class Study(Heading):
     @property
     def simulated_in_page(self) -> bool:
         """Whether the simulation in a page has the outcomes of any of its configurations."""
-        from rockfrag.rocking.browser import in_page
+        from rockfrag.web import in_page
 
         return not self.vertical and any(map(in_page, self.configurations))
 

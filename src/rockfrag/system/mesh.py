@@ -16,13 +16,13 @@ from typing import Any
 import numpy as np
 from scipy.spatial import ConvexHull, QhullError
 
-from rockfrag.arrays import Floats
-from rockfrag.errors import InputError
-from rockfrag.input_checks import positive_number
-from rockfrag.short_repr import short_repr
+from rockfrag.base.arrays import Floats
+from rockfrag.base.errors import InputError
+from rockfrag.base.input_checks import positive_number
+from rockfrag.base.plausible import LARGEST_SIZE, MEAN_DENSITIES
+from rockfrag.base.short_repr import short_repr
 from rockfrag.system.blocks import Block
 from rockfrag.system.body import Polygon, RigidBody
-from rockfrag.units import LARGEST_SIZE, MEAN_DENSITIES
 
 MESH_ENDINGS = (".obj", ".ply", ".stl", ".glb", ".gltf")
 Y_UP = (".glb", ".gltf")  # formats whose specification says so (glTF 2.0, section 3.4)

@@ -8,7 +8,7 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
-from rockfrag.errors import InputError
+from rockfrag.base.errors import InputError
 from rockfrag.words.findings import Finding, Form, Listed, Number, Value
 from rockfrag.words.numbers import limit_percent, significant, whole_number
 

@@ -11,7 +11,6 @@ from typing import Any
 import numpy as np
 from scipy import special, stats
 
-from rockfrag import units
 from rockfrag.assess import (
     conversion,
     decision,
@@ -31,13 +30,14 @@ from rockfrag.assess.hazard.curve import PGA, PGV
 from rockfrag.assess.motions import FEWEST_EARTHQUAKES, MotionSet
 from rockfrag.assess.place import Place
 from rockfrag.assess.request import Records, Request
+from rockfrag.base import plausible, units
 from rockfrag.building.model import ModalDamping, ShearBuilding
 from rockfrag.building.response import find_modes
 from rockfrag.fragility import held_out, vector
 from rockfrag.fragility.model_error import CUT, MODEL_ERRORS
 from rockfrag.motions.intensity import IntensityMeasure
-from rockfrag.motions.spectra import oscillator_matrix
-from rockfrag.rocking.browser import driver_text
+from rockfrag.motions.response_spectra import oscillator_matrix
+from rockfrag.web import driver_text
 from rockfrag.words.findings import as_data
 
 SCRIPTS = ("statistics", "risk", "conversion", "building", "space", "objects", "answer")
@@ -95,7 +95,10 @@ def data_of(motions: MotionSet, asked: Request | None = None) -> dict[str, Any]:
         "constants": _constants(),
         "floors": {n: _with_variants(at, intervals) for n, at in usual.items()},
         "own": asked and _own(asked.place, intervals),
-        "limits": {"storey": units.STOREY_HEIGHTS, "period": units.FIRST_PERIODS},
+        "limits": {
+            "storey": plausible.STOREY_HEIGHTS,
+            "period": plausible.FIRST_PERIODS,
+        },
         "units": {
             "dimensions": units.DIMENSIONS,
             "examples": units.EXAMPLES,
@@ -187,7 +190,7 @@ def _constants() -> dict[str, Any]:
     return {
         **_of(units, "GRAVITY"),
         **_of(outcomes, "AT_REST", "LARGEST_FACTOR"),
-        **_of(units, "LARGEST_PEAK"),
+        **_of(plausible, "LARGEST_PEAK"),
         **_of(risk, "LEVEL", "HALF"),
         "Z": float(stats.norm.ppf(0.5 + risk.LEVEL / 2)),
         "FLANK_Z": float(special.ndtri(curve.FLANKS[1])),
@@ -197,7 +200,7 @@ def _constants() -> dict[str, Any]:
         **_of(conversion, "MOST_LEVELS", "OF_DISPLACEMENT"),
         **_of(vector, "INTERACTION_LEVEL"),
         **_of(held_out, "FOLDS", "WORST_SCORE"),
-        **_of(units, "STONE", "DENSITIES", "DEPTHS"),
+        **_of(plausible, "STONE", "DENSITIES", "DEPTHS"),
         **_of(mitigations, "WIDER", "PLATE", "STEEL", "LOWER", "BALLAST", "BALLAST_AT"),
         **_of(mitigations, "PEDESTAL_HEIGHT"),
         **_of(

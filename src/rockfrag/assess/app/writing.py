@@ -11,8 +11,9 @@ from markupsafe import Markup
 from rockfrag.assess.app.contents import computing, data_of, script
 from rockfrag.assess.motions import MotionSet
 from rockfrag.assess.request import Request
-from rockfrag.errors import InputError
-from rockfrag.files import write_text
+from rockfrag.base.errors import InputError
+from rockfrag.base.files import write_text
+from rockfrag.base.units import GRAVITY
 from rockfrag.records.motion import Motion
 from rockfrag.report.page import (
     TEMPLATES,
@@ -21,8 +22,7 @@ from rockfrag.report.page import (
     scripts_of,
     zipped_text,
 )
-from rockfrag.rocking.browser import driver_text, module_bytes
-from rockfrag.units import GRAVITY
+from rockfrag.web import driver_text, module_bytes
 from rockfrag.words.catalogue import catalogue, formatter, languages
 
 MOST_BYTES = 6_000_000  # Largest page [bytes], which a memory stick and a mail take

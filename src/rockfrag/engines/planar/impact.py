@@ -3,10 +3,8 @@
 An impact has impulses at touching ends, Coulomb's law on them, and each contact's own law.
 """
 
-from rockfrag.elementary import sin_cos
-from rockfrag.engines.kernels.jit import kernel
-from rockfrag.engines.kernels.laws import moves_impulse, scales_momentum
-from rockfrag.engines.kernels.laws import rate as lawful_rate
+from rockfrag.base.elementary import sin_cos
+from rockfrag.engines.compile.jit import kernel
 from rockfrag.engines.planar.search import (
     Trial,
     mode_number,
@@ -23,6 +21,8 @@ from rockfrag.engines.planar.solve import (
     solve,
     standing_bodies,
 )
+from rockfrag.engines.pure_rocking.kernels.laws import moves_impulse, scales_momentum
+from rockfrag.engines.pure_rocking.kernels.laws import rate as lawful_rate
 from rockfrag.laws.momentum import NUMBER as MOMENTUM
 
 NO_GAIN = 1e-12  # fraction of the kinetic energy below which a gain is rounding

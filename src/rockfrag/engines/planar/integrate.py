@@ -6,14 +6,14 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from rockfrag.arrays import fields, whole
-from rockfrag.engines.kernels.jit import entry_kernel, kernel
-from rockfrag.engines.kernels.single import Shaking
+from rockfrag.base.arrays import fields, whole
+from rockfrag.engines.compile.jit import entry_kernel, kernel
 from rockfrag.engines.planar import impact
 from rockfrag.engines.planar import step as stepping
 from rockfrag.engines.planar.records import MOST
 from rockfrag.engines.planar.search import mode_number
 from rockfrag.engines.planar.solve import copy, end_of, look_at, solve
+from rockfrag.engines.pure_rocking.kernels.single import Shaking
 
 # contact events within a sample after which accumulating ones are ended ten times as coarsely, and again
 MOST_CONTACT_EVENTS = 300

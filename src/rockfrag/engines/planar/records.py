@@ -9,9 +9,9 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from rockfrag.arrays import fields, whole
-from rockfrag.elementary import atan2, sin_cos
-from rockfrag.engines.lanes import after_impact
+from rockfrag.base.arrays import fields, whole
+from rockfrag.base.elementary import atan2, sin_cos
+from rockfrag.engines.pure_rocking.ensembles import after_impact
 from rockfrag.system import geometry
 from rockfrag.system.contact import ROUGHEST
 from rockfrag.system.system import System

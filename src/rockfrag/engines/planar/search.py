@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from rockfrag.engines.kernels.jit import kernel
+from rockfrag.engines.compile.jit import kernel
 from rockfrag.engines.planar.solve import bias, end_of, rate, solve_generally
 
 # violation below which a mode is consistent: forces over the weight, accelerations over g [-].  Less than the

@@ -19,7 +19,7 @@ from obspy import Inventory, Stream, Trace, read_inventory
 from obspy.core.inventory import Response
 from obspy.core.util.base import ENTRY_POINTS, buffered_load_entry_point
 
-from rockfrag.errors import InputError
+from rockfrag.base.errors import InputError
 from rockfrag.records.parsing import text_file
 from rockfrag.records.parsing.format import Channel, cut_short_step, head_lines
 from rockfrag.records.parsing.number_fields import first_odd_row

@@ -14,7 +14,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from rockfrag.errors import InputError
+from rockfrag.base.errors import InputError
+from rockfrag.base.plausible import LONGEST_STEP, SHORTEST_STEP
 from rockfrag.records.formats import HEADED
 from rockfrag.records.parsing import number_fields
 from rockfrag.records.parsing.column_titles import Column, column_titles
@@ -22,7 +23,6 @@ from rockfrag.records.parsing.format import Channel, Format, text_writer
 from rockfrag.records.parsing.stated_facts import StatedFacts, stated_facts
 from rockfrag.records.parsing.text_file import TextFile, is_remark, last_row
 from rockfrag.records.parsing.timestamps import check_rising, step_of_times
-from rockfrag.units import LONGEST_STEP, SHORTEST_STEP
 
 _OF_OBSPY = re.compile(
     r"\s*(?:Origin Time|TIMESERIES |WID[12]\b|BEGIN (?:GSE|IMS)|XW01|DELTA\s*:)", re.I

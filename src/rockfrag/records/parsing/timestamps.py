@@ -6,7 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 from obspy import UTCDateTime
 
-from rockfrag.errors import InputError
+from rockfrag.base.errors import InputError
+from rockfrag.base.plausible import LONGEST_STEP
 from rockfrag.records.parsing.format import Channel, cut_short_step, first_match
 from rockfrag.records.parsing.number_fields import (
     NumberError,
@@ -15,7 +16,6 @@ from rockfrag.records.parsing.number_fields import (
 )
 from rockfrag.records.parsing.quantities import canonical_unit
 from rockfrag.records.parsing.text_file import TextFile
-from rockfrag.units import LONGEST_STEP
 
 _FRACTION_OF_STEP = 1e-4  # of which a time may be off beyond the rounding of its print
 _FINEST_DIGITS = 9
