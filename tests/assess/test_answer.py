@@ -30,6 +30,8 @@ from rockfrag.assess.page import page_of, write_answer
 from rockfrag.assess.place import PERIOD_FACTORS, Place
 from rockfrag.assess.request import Records, make_request, read_request
 from rockfrag.assess.risk import Estimate, Evidence, fraction_target
+from rockfrag.assess.standing.planar import Planar
+from rockfrag.assess.standing.rolling import Round
 from rockfrag.assess.texts import Text
 from rockfrag.base.errors import InputError
 from rockfrag.building.response import find_modes
@@ -109,7 +111,7 @@ def test_sizes_beyond_all_measure_are_refused_in_a_sentence():
 
 def test_densities_and_hazards_that_are_unusual_are_doubted(motions, tmp_path):
     for depth, doubts in (("3 m", 1), ("30 cm", 0), ("3 cm", 1)):
-        flags = asked(**FIGURE, depth=depth).objects.quality_flags
+        flags = asked(**FIGURE, depth=depth).objects.under.quality_flags
         said = catalogue().lines(flags)
         assert ["kg/m³" in flag for flag in said] == [True] * doubts
     (tmp_path / "h.csv").write_text("pga_g,annual_rate\n1.5,0.01\n3,0.0021\n6,0.0001\n")
@@ -565,7 +567,7 @@ def test_a_round_base_of_an_inventory(tmp_path):
     path.write_text("name,width,height,round\nvase,18 cm,60 cm,yes\nbox,18 cm,60 cm,\n")
     requests, faults = read_inventory(path, {})
     assert not faults
-    assert [request.objects.round for request in requests] == [True, False]
+    assert [type(request.objects) for request in requests] == [Round, Planar]
 
 
 def test_the_page_says_it_all_without_false_digits_and_loads_nothing(

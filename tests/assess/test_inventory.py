@@ -8,9 +8,9 @@ import pytest
 from rockfrag.assess.answer import assess_with
 from rockfrag.assess.hazard.curve import PGA
 from rockfrag.assess.inventory import assess_inventory, inventory_table, joint_lines
-from rockfrag.assess.mitigations import mitigations_of, on_plate, with_ballast
 from rockfrag.assess.motions import motion_set
 from rockfrag.assess.outcomes import make_intensity_levels
+from rockfrag.assess.standing.changes import on_plate, with_ballast
 from rockfrag.base.errors import InputError
 from rockfrag.cli.main import main
 from rockfrag.system.blocks import Block
@@ -94,7 +94,7 @@ def test_mitigations_are_bodies():
     assert plate.mass == pytest.approx(100 + 7850 * 0.02 * 0.375**2)
     plinth = {"width": "50 cm", "height": "80 cm"}
     on_plinth = asked(width="30 cm", height="1.2 m", pedestal=plinth)
-    names = " ".join(catalogue().lines(mitigations_of(on_plinth.objects)))
+    names = " ".join(catalogue().lines(on_plinth.objects.changes()))
     for what in ("plate", "allast", "centre of gravity", "nother pedestal", "ixing"):
         assert what in names
 

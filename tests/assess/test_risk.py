@@ -334,7 +334,7 @@ def test_how_a_scan_stands_is_a_source_until_it_is_measured(tmp_path, few):
     cut = asked(width="0.3 m", height="1 m", pga="0.6 g")
     assert blind["model"] < sources(cut)["model"]
     # on few points it loses more in impacts than a cut block
-    tolerances = request.objects.tolerances
+    tolerances = request.objects.under.tolerances
     assert request.objects.livelier == pytest.approx((0.7 + 1) / 2)
     assert tolerances["restitution"] == pytest.approx(
         0.3 / math.sqrt(12) / 0.85, rel=0.03

@@ -12,7 +12,7 @@ from rockfrag.assess import outcomes, risk
 from rockfrag.assess.assumed import Moved
 from rockfrag.assess.conversion import Conversion, find_conversion
 from rockfrag.assess.hazard.curve import PGA, PGV, HazardCurve
-from rockfrag.assess.mitigations import Mitigation, compare, mitigations_of
+from rockfrag.assess.mitigations import Mitigation, compare
 from rockfrag.assess.motions import MotionSet, motion_set
 from rockfrag.assess.outcomes import Directions, ObjectOutcomes, Shaking
 from rockfrag.assess.request import Level, Request
@@ -177,7 +177,7 @@ def assess_with(
 def plan_for(request: Request, motions: MotionSet, *, brief: bool) -> Plan:
     """Return under which levels of which motions an object is shaken; ``brief`` takes few motions and levels."""
     objects = request.objects
-    if objects.round or (objects.in_space and motions.pairs):
+    if objects.from_all_sides or (objects.in_space and motions.pairs):
         motions = motions.with_both_components()
     curves = _governing(request, motions)
     hazard = curves[0] if curves else None
@@ -199,7 +199,7 @@ def shake_all(requests: Sequence[Request], plan: Plan) -> list[Shaken]:
     """Shake objects in one place at once; of each the same results as alone, to the bit."""
     objects = [request.objects for request in requests]
     ways = [
-        dict(list(object_.arrangements.items())[: 1 if plan.brief else None])
+        dict(list(object_.arrangements().items())[: 1 if plan.brief else None])
         for object_ in objects
     ]
     arrangements = plan.shaking.outcomes_of_each(objects, ways)
@@ -207,7 +207,7 @@ def shake_all(requests: Sequence[Request], plan: Plan) -> list[Shaken]:
     changes: list[dict[Finding, Body]] = []
     alike: list[dict[Finding, str]] = []
     for object_, bodies in zip(objects, ways, strict=True):
-        tried = mitigations_of(object_)
+        tried = object_.changes()
         known = {
             name: way for name in tried for way in bodies if bodies[way] == tried[name]
         }
@@ -228,10 +228,10 @@ def shake_all(requests: Sequence[Request], plan: Plan) -> list[Shaken]:
         if plan.compares_few:
             before = change.pop(_AS_IT_STANDS)
         slides_off = False
-        if object_.pad_friction is not None:
-            on_it, slip = under.on_pad(object_, object_.pad_friction)
+        if object_.under.pad_friction is not None:
+            on_it, slip = under.on_pad(object_, object_.under.pad_friction)
             far = _slip_at(slip, plan.level, under)
-            change[_pad(object_.pad_friction, far, plan.level)] = on_it
+            change[_pad(object_.under.pad_friction, far, plan.level)] = on_it
             slides_off = far > object_.block.width / 2
         planar = None
         if plan.shaking.motions.both and not plan.brief:
@@ -282,7 +282,7 @@ def assessed(request: Request, plan: Plan, shaken: Shaken) -> Assessment:
     shaken = _at_site(shaken, plan, conversion)
     arrangements, moved = shaken.arrangements, shaken.moved
     both_sides = {change.name: change.sides for change in moved}
-    shifts = {"model": MODEL_ERRORS[objects.kind].beyond}
+    shifts = {"model": MODEL_ERRORS[objects.measured_as].beyond}
     if not motions.both:
         shifts["space"] = SPACE
     if conversion:

@@ -153,7 +153,7 @@ def as_nrml(found: Assessment) -> str:
             state: outcomes.fractions(state=state).tolist() for state in states
         },
     }
-    kind = found.request.objects.kind
+    kind = found.request.objects.measured_as
     error = MODEL_ERRORS[kind]
     about = {"where": found.request.place.where, "motions": found.motions.about_set}
     said = finding(

@@ -317,7 +317,7 @@ def moves(found: Assessment) -> list[Finding]:
     objects = found.request.objects
     if not found.motions.both:
         return [objects.plane]
-    said = [finding(Text.ROLLS_IN_SPACE if objects.round else Text.MOVES_IN_SPACE)]
+    said = [finding(objects.in_space_text)]
     if found.planar is not None:
         said.append(finding(Text.IN_ONE_PLANE, value=value_of(found, found.planar)))
     return said
@@ -405,7 +405,7 @@ def how_sure(found: Assessment) -> list[Finding]:
 def all_assumed(found: Assessment) -> list[Assumption]:
     """What was assumed, that first which widens the interval most."""
     sources = found.main.sources
-    lines = [*found.request.place.assumed, *found.request.objects.assumed]
+    lines = [*found.request.place.assumed, *found.request.objects.under.assumed]
 
     def size(assumption: Assumption) -> float:
         return sum(sources.get(name, 0.0) ** 2 for name in assumption.sources)
@@ -478,7 +478,8 @@ def _velocity(found: Assessment) -> list[Finding]:
 
 def quality_flags(found: Assessment) -> list[Value]:
     """What a reader should check."""
-    said: list[Value] = [*found.request.objects.quality_flags, *found.motions.warnings]
+    said: list[Value] = [*found.request.objects.under.quality_flags]
+    said += found.motions.warnings
     said += [*_hazard_flags(found), *_velocity_flags(found)]
     if found.request.objects.in_space and not found.motions.pairs:
         said.append(finding(Text.FLAG_ONE_COMPONENT))

@@ -237,7 +237,7 @@ def _all_assessed(requests: Sequence[Request], motions: MotionSet) -> list[Asses
     groups: dict[object, list[Request]] = {}
     for request in requests:
         about = request.objects
-        kind = request.place.key, about.round, about.in_space, about.many
+        kind = request.place.key, type(about), about.in_space, about.many
         # of several curves the one that counts may differ from object to object
         alone = request.name if len(request.hazard) > 2 else ""
         groups.setdefault((*kind, alone), []).append(request)

@@ -29,15 +29,16 @@ from rockfrag.assess.findings import (
     verdict,
 )
 from rockfrag.assess.motions import MotionSet
-from rockfrag.assess.objects import Objects
 from rockfrag.assess.sources import SOURCES, parts_of
+from rockfrag.assess.standing import Standing
 from rockfrag.assess.texts import Text
 from rockfrag.base.figure_style import BLUE, COLUMN_WIDTH, OKABE_ITO, panels, plain_log
 from rockfrag.base.files import file_name, write_text
 from rockfrag.outcomes.limit_states import ROCKS, limit_states
 from rockfrag.records.motion import GroundMotion, Motion
 from rockfrag.report.live import carried, live_kernel
-from rockfrag.report.live.live_space import Standing, live_in_space
+from rockfrag.report.live.live_space import Standing as Shown
+from rockfrag.report.live.live_space import live_in_space
 from rockfrag.report.page import Page, text_table
 from rockfrag.report.part import Answer, FigureSpec, Finding, Section
 from rockfrag.words import findings as said
@@ -127,7 +128,7 @@ class _Layout:
             (Text.ASK_SURE, "sure"),
             (Text.ASK_ASSUMED, "assumed"),
         ]
-        if not found.request.objects.round:
+        if not found.request.objects.from_all_sides:
             asked.append((Text.ASK_LIVE, "live"))
         return Answer(
             asked=self._text(Text.PAGE_ASKED),
@@ -437,7 +438,7 @@ def live_of(found: Assessment, texts: Catalogue) -> Markup:
         return _in_space(objects, motions, chosen, texts)
     bodies = {
         texts.text(way): objects.system_of(body)
-        for way, body in objects.arrangements.items()
+        for way, body in objects.arrangements().items()
     }
     return live_kernel(
         bodies, carried([_named(motions, motions.base[i], i) for i in chosen])
@@ -445,18 +446,18 @@ def live_of(found: Assessment, texts: Catalogue) -> Markup:
 
 
 def _in_space(
-    objects: Objects, motions: MotionSet, chosen: list[int], texts: Catalogue
+    objects: Standing, motions: MotionSet, chosen: list[int], texts: Catalogue
 ) -> Markup:
     """The ways to stand that are known in space, on pedestals that stay where they are, under both components."""
     bodies, left_out = {}, []
-    for way, body in objects.arrangements.items():
+    for way, body in objects.arrangements().items():
         name = texts.text(way)
         solid, pedestals = objects.solid(body), body.blocks[:-1]
         if solid is None:
             left_out.append(name)
             continue
         tall = sum(block.height for block in pedestals)
-        bodies[name] = Standing(
+        bodies[name] = Shown(
             solid, replace(pedestals[-1], height=tall) if pedestals else None
         )
     records, place = motions.records, motions.place_of_record()

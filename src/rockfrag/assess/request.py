@@ -18,8 +18,8 @@ from rockfrag.assess.hazard.curve import (
     read_level,
     read_measure,
 )
-from rockfrag.assess.objects import Objects, make_objects
 from rockfrag.assess.place import Place, make_place
+from rockfrag.assess.standing import Standing, make_standing
 from rockfrag.assess.texts import Text
 from rockfrag.base.errors import InputError, errors_of
 from rockfrag.base.units import quantity
@@ -80,7 +80,7 @@ class Request:
     """An object at a place, ready to be assessed."""
 
     name: str  # What the object is called
-    objects: Objects  # The object, its pedestal, and what is not known of them
+    objects: Standing  # The object, its pedestal, and what is not known of them
     place: Place  # The floor on which it stands
     level: Level | None = None  # The level of shaking asked about
     hazard: tuple[HazardCurve, ...] = ()  # Hazard curves of the site, one a measure
@@ -132,7 +132,7 @@ def make_request(
     with errors_of(source):
         return Request(
             name=known.get("name", UNNAMED),
-            objects=make_objects(known, where),
+            objects=make_standing(known, where),
             place=make_place(known, where),
             level=_level(known),
             hazard=_hazard(known, where),

@@ -15,8 +15,6 @@ from rockfrag.assess import (
     conversion,
     decision,
     findings,
-    mitigations,
-    objects,
     outcomes,
     place,
     request,
@@ -30,6 +28,7 @@ from rockfrag.assess.hazard.curve import PGA, PGV
 from rockfrag.assess.motions import FEWEST_EARTHQUAKES, MotionSet
 from rockfrag.assess.place import Place
 from rockfrag.assess.request import Records, Request
+from rockfrag.assess.standing import box, changes, contract, rolling
 from rockfrag.base import plausible, units
 from rockfrag.building.model import ModalDamping, ShearBuilding
 from rockfrag.building.response import find_modes
@@ -201,8 +200,8 @@ def _constants() -> dict[str, Any]:
         **_of(vector, "INTERACTION_LEVEL"),
         **_of(held_out, "FOLDS", "WORST_SCORE"),
         **_of(plausible, "STONE", "DENSITIES", "DEPTHS"),
-        **_of(mitigations, "WIDER", "PLATE", "STEEL", "LOWER", "BALLAST", "BALLAST_AT"),
-        **_of(mitigations, "PEDESTAL_HEIGHT"),
+        **_of(changes, "WIDER", "PLATE", "STEEL", "LOWER", "BALLAST", "BALLAST_AT"),
+        **_of(changes, "PEDESTAL_HEIGHT"),
         **_of(
             place, "PERIOD_FACTORS", "STOREY_HEIGHT", "STOREY_MASS", "HIGHEST_BUILDING"
         ),
@@ -215,7 +214,7 @@ def _constants() -> dict[str, Any]:
         "UP_TO": [[limit, step.value] for limit, step in UP_TO],
         "CERTAIN": Likelihood.VIRTUALLY_CERTAIN.value,
         "DAMPING": ModalDamping().ratio,
-        **_of(objects, "TOLERANCES"),
+        **_of(contract, "TOLERANCES"),
         "PLACE_TOLERANCES": place.TOLERANCES,
         "KNOWN_PERIOD": place.TOLERANCE_OF_KNOWN_PERIOD,
         **_of(request, "LONGEST_PERIOD"),
@@ -252,9 +251,9 @@ def in_space(
         "fewer": [names.index(motion.name) for motion in fewer.ground],
         "measures": levels,
         "turns": [[math.cos(angle), math.sin(angle)] for angle in turns],
-        "aside": objects.ASIDE,
-        "higher": objects.HIGHER,
-        "rolling": objects.ROLLING,
+        "aside": box.ASIDE,
+        "higher": contract.HIGHER,
+        "rolling": rolling.ROLLING,
     }
 
 
