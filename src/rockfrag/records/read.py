@@ -293,6 +293,17 @@ def _settled_unit(
     record: Record, channel: Channel, samples: NDArray[np.float64], unit: str | None
 ) -> str:
     asked = None if unit is None else quantities.asked_unit(unit)
+    velocity = directions.is_seismometer(channel.code)
+    if channel.counts and (velocity or asked is None):
+        of_what = (
+            f"counts of a seismometer ({channel.code}), which records velocity"
+            if velocity
+            else "counts of a recorder"
+        )
+        raise InputError(
+            f"{record.name}: the file does not state its unit: whole numbers without StationXML are {of_what}; "
+            "put the StationXML of the station beside the file, which turns them into acceleration."
+        )
     if channel.unit:
         if quantities.quantity_of(channel.unit) != "acceleration":
             raise InputError(
@@ -310,8 +321,13 @@ def _settled_unit(
         f"{peak * quantities.to_si(name) / GRAVITY:.3g} g if {name}"
         for name in quantities.ASKED_UNITS
     )
+    remark = (
+        f" ({channel.code} is a channel of a seismometer: velocity, unless it has been differentiated)"
+        if velocity
+        else ""
+    )
     raise InputError(
-        f"{record.name}: the file does not state its unit; give unit= "
+        f"{record.name}: the file does not state its unit{remark}; give unit= "
         f"({', '.join(quantities.ASKED_UNITS)}): the peak about the mean would be {candidates}."
     )
 

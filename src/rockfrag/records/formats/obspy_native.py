@@ -245,6 +245,7 @@ def _channel(trace: Trace, format_name: str, path: Path, cut_short: bool) -> Cha
         code=stats.channel,
         # MiniSEED of floating point has been computed: its mean is meant
         raw=not (format_name == "MSEED" and trace.data.dtype.kind == "f"),
+        counts=not unit and trace.data.dtype.kind in "iu",
         details=earthquake,
         steps=tuple(steps),
     )

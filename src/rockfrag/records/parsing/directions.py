@@ -63,6 +63,11 @@ def is_vertical(words: str) -> bool:
     return bool(vertical.search(folded(plain))) or any(map(_VERTICAL.match, ends))
 
 
+def is_seismometer(code: str) -> bool:
+    """Tell whether a SEED code such as ``EHZ`` is that of a seismometer or geophone, which records velocity."""
+    return re.fullmatch(r"(?i)[A-Z][HP][A-Z0-9]", code.strip()) is not None
+
+
 def is_direction(words: str) -> bool:
     """Tell whether words name the direction of a component, and nothing else."""
     plain = folded(words).strip(" _.,;:()[]")

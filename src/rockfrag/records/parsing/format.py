@@ -74,6 +74,8 @@ class Channel:
     fault: str = ""
     # whether a recorder's, whose mean is the zero of the sensor and not motion
     raw: bool = False
+    # whether whole numbers of a recorder that nothing turns into a unit
+    counts: bool = False
     # more facts for the metadata: ``station_name``, ``earthquake``, ``title``, …; numbers may be words
     details: Mapping[str, Any] = field(default_factory=dict)
     # what was done to the samples, for the provenance

@@ -310,7 +310,8 @@ _REMARKS = frozenset(
 )
 _SIGNS_OF_UNITS = re.compile(r"[/^%*·²]|\bper\b")
 _FACTOR = re.compile(
-    r"[×*]\s*\d|\d\s*[×*]|\bx\s*(?:10|0?[.,]\d|\d+e)|10\s*\^|\b1?0?e[+-]?\d|\b10-\d"
+    r"(?:×|(?<!\*)\*(?!\*))\s*\d|\d\s*(?:×|\*(?!\*))|\bx\s*(?:10|0?[.,]\d|\d+e)"
+    r"|10\s*(?:\^|\*\*)|\b1?0?e[+-]?\d|\b10-\d"
 )
 
 
