@@ -64,8 +64,8 @@ def own_records(
 ) -> list[Path]:
     """Files of the user's own records that columns of a catalogue name, which lies in ``folder``."""
     rows = table[table["source"] == "folder"]
-    names = (name for column in columns for name in rows[column])
-    return list(dict.fromkeys(folder / name.partition("#")[0] for name in names))
+    names = (name.partition("#")[0] for column in columns for name in rows[column])
+    return list(dict.fromkeys(folder / name for name in names if name))
 
 
 def repeated_motions(table: pd.DataFrame) -> list[str]:
