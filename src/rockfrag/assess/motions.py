@@ -225,9 +225,9 @@ def _own(records: Records, folder: Path) -> MotionSet:
                 )
             motions += motions_of_catalogue(path, folder)
             continue
-        found_there, said = motions_of_files(path, records.unit, records.dt)
+        found_there, notes = motions_of_files(path, records.unit, records.dt)
         motions += found_there
-        warnings += said
+        warnings += notes
     still = [motion.name for motion in motions if motion.pga == 0]
     if still:
         raise InputError(
