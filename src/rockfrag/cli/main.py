@@ -18,7 +18,9 @@ from rockfrag.cli.assess_commands import (
     add_assess_commands,
     add_records_option,
 )
+from rockfrag.cli.collection_commands import add_collection_command
 from rockfrag.cli.record_commands import add_record_commands, read_told
+from rockfrag.runtime.processes import speak_utf8
 
 if TYPE_CHECKING:
     from rockfrag.records.motion import Motion
@@ -37,6 +39,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
             f"warning: {said}", file=sys.stderr
         )
         try:
+            if arguments is None:
+                speak_utf8()
             options = make_parser().parse_args(arguments)
             status = int(options.run(options))
             sys.stdout.flush()
@@ -64,6 +68,7 @@ def make_parser() -> argparse.ArgumentParser:
     add_app_command(commands)
     _add_constrain(commands)
     add_record_commands(commands)
+    add_collection_command(commands)
 
     command = commands.add_parser("simulate", help="shake one body by one record")
     _add_case(command)

@@ -14,7 +14,6 @@ import numpy as np
 import pandas as pd
 
 from rockfrag.base.errors import InputError
-from rockfrag.base.keywords import check_names
 from rockfrag.base.short_repr import short_repr
 from rockfrag.words.sentences import Macros
 
@@ -70,7 +69,6 @@ def check_tests(tests: pd.DataFrame) -> pd.DataFrame:
     0), repetition, definition. What is absent is filled in, and rows are sorted so that results do not depend on
     their order.
     """
-    check_names("Table of tests", tests.columns, _NEEDED)
     missing = [name for name in _NEEDED if name not in tests.columns]
     if missing:
         raise InputError(

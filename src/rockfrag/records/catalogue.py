@@ -64,8 +64,8 @@ def own_records(
 ) -> list[Path]:
     """Files of the user's own records that columns of a catalogue name, which lies in ``folder``."""
     rows = table[table["source"] == "folder"]
-    names = (name for column in columns for name in rows[column])
-    return list(dict.fromkeys(folder / name.partition("#")[0] for name in names))
+    names = (name.partition("#")[0] for column in columns for name in rows[column])
+    return list(dict.fromkeys(folder / name for name in names if name))
 
 
 def repeated_motions(table: pd.DataFrame) -> list[str]:
@@ -270,11 +270,25 @@ def record_files(*paths: str | os.PathLike[str]) -> list[Path]:
     """Return the files that may be records: those below each folder, in order of name, or the path itself."""
     found: list[Path] = []
     for path in map(Path, paths):
-        files = sorted(file for file in path.rglob("*") if not file.is_dir())
-        shown = (f for f in files if not is_hidden(f.relative_to(path).as_posix()))
-        inside = (f for f in shown if not (is_no_record(f.name) or is_catalogue(f)))
+        left_out = {file for file, _ in passed_over(path)}
+        inside = (file for file in _shown_files(path) if file not in left_out)
         found += inside if path.is_dir() else [path]
     return found
+
+
+def passed_over(folder: Path) -> list[tuple[Path, str]]:
+    """Return the files below a folder that are no records by their name or first line, and what they are."""
+    return [
+        (file, "a catalogue" if is_catalogue(file) else "no record by its name")
+        for file in _shown_files(folder)
+        if is_no_record(file.name) or is_catalogue(file)
+    ]
+
+
+def _shown_files(folder: Path) -> list[Path]:
+    """Return the files below a folder that are not hidden, in order of name."""
+    files = sorted(file for file in folder.rglob("*") if not file.is_dir())
+    return [f for f in files if not is_hidden(f.relative_to(folder).as_posix())]
 
 
 def _listed(problems: list[str]) -> str:
