@@ -104,6 +104,7 @@ def _within(answer: dict[str, Any]) -> list[str]:
         "a tenth topples at more than half": _of(amplitudes["0.1"])
         <= _of(amplitudes["0.5"]),
         "counts": _counts_agree(answer),
+        "decision": _decided(answer),
         "below uplift": _at_rest(answer),
         "lines": _lines_agree(answer),
         "what helps": _helps(answer),
@@ -124,18 +125,27 @@ def _ordered(item: dict[str, Any]) -> bool:
 
 
 def _counts_agree(answer: dict[str, Any]) -> bool:
+    """No more motions topple it than rock it, and none where it does not move."""
     counts = answer["counts"]
     if counts is None:
         return True
-    fractions = (
-        answer["fraction_toppling"]["value"],
-        answer["fraction_rocking"]["value"],
-    )
-    expected = (counts[key] / counts["motions"] for key in ("topple", "rock"))
     ordered = counts["topple"] <= counts["rock"] <= counts["motions"]
-    return ordered and all(
-        abs(a - b) < 1e-9 for a, b in zip(fractions, expected, strict=True)
-    )
+    return ordered and not (answer["does_not_move"] and counts["topple"])
+
+
+def _decided(answer: dict[str, Any]) -> bool:
+    """What is done without a measurement follows from the probability and the one that is accepted."""
+    decision, main = answer["decision"], answer["probability"]
+    main = main or answer["fraction_toppling"]
+    if decision is None:
+        return main is None
+    secure = main["value"] > answer["accepted"]
+    chance = decision["chance"]
+    named = decision["action"] == "measure"
+    # on the mean of a rate and of its probability alike, but for what lies between them
+    near = abs(main["value"] - answer["accepted"]) < 0.2 * answer["accepted"]
+    right = near or decision["otherwise"] == ("secure" if secure else "leave")
+    return right and named == bool(decision["source"]) and 0 <= chance <= 1
 
 
 def _at_rest(answer: dict[str, Any]) -> bool:
@@ -145,30 +155,15 @@ def _at_rest(answer: dict[str, Any]) -> bool:
         return True
     if starts is not None and level >= starts:
         return not answer["does_not_move"]
-    still = (
-        answer["fraction_rocking"]["value"] == 0 == answer["fraction_toppling"]["value"]
-    )
-    words = answer["lines"][0]
-    return still and ("does not move" in words or "is not expected to move" in words)
+    counts = answer["counts"]
+    return counts is None or not answer["does_not_move"] or counts["rock"] == 0
 
 
 def _lines_agree(answer: dict[str, Any]) -> bool:
     """Five lines; a bound is called one, none of n is said as that, and no interval says nothing."""
     lines = answer["lines"]
     text = "\n".join(lines)
-    if len(lines) != 5 or _EMPTY.search(text):
-        return False
-    toppling = answer["fraction_toppling"]
-    if toppling and toppling["value"] == 0 and answer["fraction_rocking"]["value"] > 0:
-        return "none of" in lines[0] and "upper limit" in lines[0]
-    if (
-        toppling
-        and toppling["lower"] < 0.01
-        and toppling["upper"] > 0.5
-        and toppling["value"] > 0
-    ):
-        return "not decidable" in lines[0]
-    return True
+    return len(lines) == 5 and not _EMPTY.search(text)
 
 
 def _helps(answer: dict[str, Any]) -> bool:

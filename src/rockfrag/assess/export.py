@@ -3,6 +3,7 @@
 import json
 import math
 from dataclasses import is_dataclass
+from enum import Enum
 from typing import Any
 
 import numpy as np
@@ -46,6 +47,8 @@ def as_json(found: Assessment) -> str:
         "fraction_toppling_with_sliding": found.sliding_fraction,
         "fraction_toppling": found.fraction,
         "probability": found.probability,
+        "accepted": request.accepted,
+        "decision": found.decision,
         "amplitude_toppling": {f"{p:g}": e for p, e in found.amplitudes.items()},
         "arrangements": found.by_arrangement,
         "in_space": found.motions.both,
@@ -58,6 +61,10 @@ def as_json(found: Assessment) -> str:
         "fragility": {
             "levels": outcomes.intensity_levels.levels,
             "fraction": outcomes.fractions(),
+            "probability": found.predicted.fractions,
+            "median": found.predicted.median,
+            "beta_of_records": found.predicted.of_records,
+            "beta_of_what_is_unknown": found.predicted.of_unknown,
             "other_states": {
                 name: outcomes.fractions(state=name) for name in outcomes.others
             },
@@ -107,6 +114,8 @@ def _plain(value: Any) -> Any:
     if isinstance(value, Estimate):
         limits = {"value": value.value, "lower": value.lower, "upper": value.upper}
         return _plain({**limits, "standard_deviations": dict(value.sources)})
+    if isinstance(value, Enum):
+        return value.value
     if is_dataclass(value):
         return _plain(vars(value))
     if isinstance(value, np.ndarray):
@@ -129,9 +138,8 @@ def as_nrml(found: Assessment) -> str:
         "id": identifiers([name], "_:-")[name],
         "imt": found.measure.imt,
         "levels": outcomes.intensity_levels.levels.tolist(),
-        "chances": {
-            state: outcomes.fractions(state=state).tolist() for state in states
-        },
+        "chances": {state: outcomes.fractions(state=state).tolist() for state in states}
+        | {OVERTURNS: found.predicted.fractions.tolist()},
     }
     kind = found.request.objects.kind
     return model_text(

@@ -6,10 +6,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from rockfrag.arrays import Floats
 from rockfrag.assess.objects import Objects, stretched_block
 from rockfrag.assess.outcomes import ObjectOutcomes
-from rockfrag.assess.risk import LEVEL, Target, earthquake_weights
-from rockfrag.fragility.intervals import half_width
+from rockfrag.assess.risk import LEVEL, Evidence, Target
 from rockfrag.system.blocks import Block, Body, Stack, stacked
 
 WIDER = 1.25  # Width of a foot plate over that of the base
@@ -35,6 +35,8 @@ class Mitigation:
     upper: float
     # Whether the object is better off: the risk shrinks, or an amplitude grows
     helps: bool
+    # Whether the motions show that it is, beyond what one earthquake decides
+    shown: bool
 
 
 def mitigations_of(objects: Objects) -> dict[str, Body]:
@@ -124,22 +126,41 @@ def _fixed(objects: Objects) -> dict[str, Body]:
 
 
 def compare(
-    target: Target, now: ObjectOutcomes, changed: Mapping[str, ObjectOutcomes]
+    target: Target,
+    evidence: Evidence,
+    now: ObjectOutcomes,
+    changed: Mapping[str, ObjectOutcomes],
 ) -> list[Mitigation]:
-    """Estimate again with each change of the object."""
-    before, found = target.value(now), []
-    weights = earthquake_weights(now.earthquakes)
+    """Estimate again with each change of the object, with the same errors of all that is not known.
+
+    Limits of the factor are over the earthquakes; a change is shown to help if they leave nothing else open.
+    """
+    before, by_weights = _compared(target, evidence, now)
+    found = []
     for name, outcomes in changed.items():
-        after, factor, limits = target.value(outcomes), math.nan, (math.nan, math.nan)
+        after, with_it = _compared(target, evidence, outcomes)
+        factor, limits = math.nan, (math.nan, math.nan)
         if math.isfinite(before) and before > 0 and math.isfinite(after):
             factor = after / before
-            # by a jackknife over earthquakes; none where one of them decides alone
-            pairs = np.array(
-                [[target.value(v, w) for v in (outcomes, now)] for w in weights]
-            )
-            if len(weights) > 1 and np.isfinite(pairs).all() and (pairs > 0).all():
-                half = float(half_width(np.log(pairs[:, 0] / pairs[:, 1]), LEVEL))
-                limits = (factor * math.exp(-half), factor * math.exp(half))
-        helps = after > before if math.isinf(target.certain) else after < before
-        found.append(Mitigation(name, after, factor, *limits, helps))
+            both = np.isfinite(by_weights) & np.isfinite(with_it) & (by_weights > 0)
+            ratios = with_it[both] / by_weights[both]
+            ends = [(1 - LEVEL) / 2, (1 + LEVEL) / 2]
+            if ratios.size:
+                low, high = np.quantile(ratios, ends).tolist()
+                limits = min(low, factor), max(high, factor)
+        helps = after > before if target.is_level else after < before
+        shown = limits[0] > 1 if target.is_level else limits[1] < 1
+        found.append(Mitigation(name, after, factor, *limits, helps, shown))
     return found
+
+
+def _compared(
+    target: Target, evidence: Evidence, outcomes: ObjectOutcomes
+) -> tuple[float, Floats]:
+    """What is estimated, and by each set of weights of the earthquakes, shape (sets,)."""
+    prediction = evidence.of(outcomes)
+    values = target.shown(evidence.drawn(target, prediction))
+    sets = values.reshape(len(prediction.draws.weights), -1)
+    if target.is_level:
+        return float(np.quantile(values, 0.5, method="lower")), np.median(sets, axis=1)
+    return float(values.mean()), sets.mean(axis=1)

@@ -30,6 +30,13 @@ LONGEST_PERIOD = 1e6  # Longest return period of a level [year]
 # Time for which the probability is given unless another is asked for [year]
 YEARS = 50.0
 
+ACCEPTED_IN_FIFTY_YEARS = 0.01
+"""Probability in 50 years that is accepted unless another is stated [-]: that of the collapse of a new building at
+which ASCE/SEI 7-16 (21.2.1) aims."""
+
+ACCEPTED_AT_A_LEVEL = 0.1
+"""The same at a level without a hazard [-]: securing pays if it costs less than that part of what a fall costs."""
+
 
 @dataclass(frozen=True)
 class Level:
@@ -73,6 +80,18 @@ class Request:
     years: float = YEARS  # Time for the probability [year]
     records: Records = field(default_factory=Records)  # Where the motions come from
     value: float = math.nan  # What the object is worth, in any unit; NaN if not given
+    # Probability of toppling that is accepted; None for the usual one
+    accept: float | None = None
+
+    @property
+    def accepted(self) -> float:
+        """Probability of toppling that is accepted in the years, or at the level without a hazard [-]."""
+        if self.accept is not None:
+            return self.accept
+        if not self.hazard:
+            return ACCEPTED_AT_A_LEVEL
+        rate = -math.log1p(-ACCEPTED_IN_FIFTY_YEARS) / YEARS
+        return -math.expm1(-rate * self.years)
 
 
 def read_request(path: str | os.PathLike[str]) -> Request:
@@ -106,6 +125,7 @@ def make_request(
             level=_level(known),
             hazard=_hazard(known, where),
             years=float(known.get("years", YEARS)),
+            accept=known.get("accept"),
             records=_records(known, where),
         )
 

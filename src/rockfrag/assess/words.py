@@ -66,7 +66,16 @@ def _limit(fraction: float) -> str:
 
 def does_not_move(found: Assessment) -> bool:
     """Whether even what is not known leaves the object at rest at the level."""
-    return found.rocking is not None and found.rocking.upper == 0
+    return found.does_not_move
+
+
+def not_expected_to_move(found: Assessment) -> bool:
+    """Whether the level is below that at which it starts to rock."""
+    assert found.level is not None
+    assert found.rocking is not None
+    return found.does_not_move or (
+        found.rocks_from > found.level.value and found.rocking.value < MANY
+    )
 
 
 def not_decidable(found: Assessment) -> bool:
@@ -126,7 +135,7 @@ _WORDS: dict[str, Any] = {
 }
 _FUNCTIONS = (
     *(all_assumed, does_not_move, estimate_words, fraction_words, narrowed),
-    *(not_decidable, parts_of, range_words, step_of),
+    *(not_decidable, not_expected_to_move, parts_of, range_words, step_of),
 )
 _WORDS |= {function.__name__: function for function in _FUNCTIONS}
 

@@ -1,7 +1,7 @@
 /* The answer in the words of rockfrag.assess.words, from a table of texts. */
 const words = (data, texts) => {
   "use strict";
-  const { steps, constants: { MANY, FEW, LEAST_PART, MOST_SOURCES, MOST_ASSUMPTIONS, LEVEL } } = data;
+  const { steps, constants: { EXCEPTIONALLY, MANY, FEW, LEAST_PART, MOST_SOURCES, MOST_ASSUMPTIONS, LEVEL } } = data;
   const fill = (text, values = {}) => text.replace(/\{(\w+)\}/g, (whole, name) => String(values[name] ?? whole));
   const say = (id, values) => fill(texts[id] ?? id, values);
   const local = (text) => text.replace(".", texts.decimal).replace("e+", "e");
