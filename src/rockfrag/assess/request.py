@@ -18,13 +18,15 @@ from rockfrag.assess.hazard.curve import (
     read_level,
     read_measure,
 )
-from rockfrag.assess.objects import Objects, make_objects
 from rockfrag.assess.place import Place, make_place
-from rockfrag.errors import InputError, errors_of
+from rockfrag.assess.standing import Standing, make_standing
+from rockfrag.assess.texts import Text
+from rockfrag.base.errors import InputError, errors_of
+from rockfrag.base.units import quantity
+from rockfrag.base.yaml_file import read_yaml
+from rockfrag.config.schema import checked
 from rockfrag.motions.intensity import IntensityMeasure
-from rockfrag.schema import checked
-from rockfrag.units import quantity
-from rockfrag.yaml_file import read_yaml
+from rockfrag.words.findings import Finding, finding, three
 
 LONGEST_PERIOD = 1e6  # Longest return period of a level [year]
 # Time for which the probability is given unless another is asked for [year]
@@ -37,6 +39,8 @@ which ASCE/SEI 7-16 (21.2.1) aims."""
 ACCEPTED_AT_A_LEVEL = 0.1
 """The same at a level without a hazard [-]: securing pays if it costs less than that part of what a fall costs."""
 
+UNNAMED = "the object"  # Name of an object that was given none
+
 
 @dataclass(frozen=True)
 class Level:
@@ -48,10 +52,13 @@ class Level:
     pgv: float = math.nan
 
     @property
-    def words(self) -> str:
+    def amount(self) -> Finding:
         """Such as ``PGA 0.25 g``, or ``PGA 0.25 g and PGV 20 cm/s``."""
-        more = "" if math.isnan(self.pgv) else f" and PGV {self.pgv:.3g} cm/s"
-        return f"{self.measure.imt} {self.value:.3g} {self.measure.unit}{more}"
+        measure, unit, value = self.measure.imt, self.measure.unit, three(self.value)
+        if math.isnan(self.pgv):
+            return finding(Text.AMOUNT, measure=measure, value=value, unit=unit)
+        about = {"measure": measure, "unit": unit}
+        return finding(Text.AMOUNT_WITH_PGV, value=value, pgv=three(self.pgv), **about)
 
 
 @dataclass(frozen=True)
@@ -73,7 +80,7 @@ class Request:
     """An object at a place, ready to be assessed."""
 
     name: str  # What the object is called
-    objects: Objects  # The object, its pedestal, and what is not known of them
+    objects: Standing  # The object, its pedestal, and what is not known of them
     place: Place  # The floor on which it stands
     level: Level | None = None  # The level of shaking asked about
     hazard: tuple[HazardCurve, ...] = ()  # Hazard curves of the site, one a measure
@@ -92,6 +99,11 @@ class Request:
             return ACCEPTED_AT_A_LEVEL
         rate = -math.log1p(-ACCEPTED_IN_FIFTY_YEARS) / YEARS
         return -math.expm1(-rate * self.years)
+
+    @property
+    def called(self) -> str | Finding:
+        """What the object is called, in words where it has no name."""
+        return finding("the_object") if self.name == UNNAMED else self.name
 
 
 def read_request(path: str | os.PathLike[str]) -> Request:
@@ -119,8 +131,8 @@ def make_request(
     where = folder or Path()
     with errors_of(source):
         return Request(
-            name=known.get("name", "the object"),
-            objects=make_objects(known, where),
+            name=known.get("name", UNNAMED),
+            objects=make_standing(known, where),
             place=make_place(known, where),
             level=_level(known),
             hazard=_hazard(known, where),
@@ -149,8 +161,8 @@ def _level_of(key: str, given: Any) -> Level:
         level = Level(measure, read_level(given, measure))
         if not 0 < level.value <= HIGHEST[measure.openquake]:
             raise InputError(
-                f"{level.words} is no shaking of an earthquake; expected more than 0 and at most "
-                f"{HIGHEST[measure.openquake]:g} {measure.unit}."
+                f"{measure.imt} {level.value:.3g} {measure.unit} is no shaking of an earthquake; "
+                f"expected more than 0 and at most {HIGHEST[measure.openquake]:g} {measure.unit}."
             )
     return level
 

@@ -15,12 +15,12 @@ from functools import cached_property, lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from rockfrag.arrays import Floats
 from rockfrag.assess.core.draws import MEMBERS
 from rockfrag.assess.core.fractions import count_motions
 from rockfrag.assess.core.prediction import Prediction, Shift, predict
 from rockfrag.assess.hazard.curve import HazardCurve, rate_weights
 from rockfrag.assess.outcomes import ObjectOutcomes
+from rockfrag.base.arrays import Floats
 from rockfrag.outcomes.limit_states import OVERTURNS, ROCKS
 
 LEVEL = 0.90  # Confidence of the intervals
@@ -306,35 +306,3 @@ def _mean_log(levels: Floats) -> float:
 def _both_sides(lower: float, middle: float, upper: float) -> tuple[float, float]:
     """Half the distance of both sides, and how far their mean is from the middle."""
     return (upper - lower) / 2, (upper + lower) / 2 - middle
-
-
-REFERENCE_YEARS = 50.0  # Time for which the steps hold [year]
-
-
-@dataclass(frozen=True)
-class Step:
-    """A step of the scale."""
-
-    name: str  # What it is called
-    below: float  # Probability in 50 years below which it holds [-]
-    advice: str  # What to do, in a sentence
-
-
-STEPS = (
-    Step("low", 1e-3, "Nothing is urgent; keep it as it is."),
-    Step(
-        "moderate",
-        1e-2,
-        "Have it looked at when it is next moved, and plan what helps.",
-    ),
-    Step("high", 1e-1, "Have it measured, and secure it."),
-    Step("very high", math.inf, "Secure it now."),
-)
-"""Steps of the scale, rising."""
-
-
-def step_of(probability: float, years: float) -> Step:
-    """Step of a probability in some years, by the rate that it stands for."""
-    rate = -math.log1p(-min(probability, 1 - 1e-15)) / years
-    in_fifty = probability_in(rate, REFERENCE_YEARS)
-    return next(step for step in STEPS if in_fifty < step.below)

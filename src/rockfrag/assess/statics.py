@@ -4,12 +4,12 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from rockfrag.arrays import Floats
+from rockfrag.base.arrays import Floats
+from rockfrag.base.units import GRAVITY
 from rockfrag.records.motion import GroundMotion, Motion
 from rockfrag.system.body import Circle, Polygon
 from rockfrag.system.mesh import outward_normals
 from rockfrag.system.system import System, uplift_ratios
-from rockfrag.units import GRAVITY
 
 
 def lifting_in_plane(system: System, shaking: Sequence[Motion]) -> Floats:

@@ -8,10 +8,9 @@ import pandas as pd
 from numpy.typing import NDArray
 from scipy import special
 
-from rockfrag.errors import InputError
-from rockfrag.keywords import check_names
+from rockfrag.base.errors import InputError
+from rockfrag.base.short_repr import short_repr
 from rockfrag.motions.intensity import measure_of, split_column
-from rockfrag.short_repr import short_repr
 
 Floats = NDArray[np.float64]  # an array of floating-point numbers
 Over = Literal["motion", "earthquake"]
@@ -144,7 +143,6 @@ def numbers(
 ) -> Floats:
     """Return a column as finite numbers, shape (n,); messages count rows from ``first``."""
     if column not in table:
-        check_names(source, table.columns, [column])
         known = ", ".join(map(str, table.columns))
         raise InputError(
             f"{source}: there is no column {column!r}; name one of the columns {known}."
@@ -194,7 +192,6 @@ def labels(
             [f"row {row + first}" for row in range(len(table))], dtype=object
         )
     if column not in table:
-        check_names(source, table.columns, [column])
         raise InputError(
             f"{source}: there is no column {column!r}; correct the name of the column."
         )

@@ -16,7 +16,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rockfrag.arrays import Floats
+from rockfrag.base.arrays import Floats
 
 MAGNITUDES = (3.0, 8.5)
 """Magnitudes for which the report holds."""

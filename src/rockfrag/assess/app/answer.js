@@ -87,7 +87,7 @@ const answer = (data) => {
     return found;
   }
 
-  const ESTIMATED = ["fraction", "rocking", "probability", "main", "half", "decision", "narrowed", "narrowedFraction", "wide", "shifts", "rates"];
+  const ESTIMATED = ["fraction", "rocking", "probability", "main", "half", "decision", "shifts", "rates"];
   // what is known so far of runs whose outcomes are complete; `outcomes` by the place of the run in the plan, `earlier`
   // what was found when there were fewer
   function found(request, runs, outcomes, ensemble, earlier) {
@@ -101,6 +101,8 @@ const answer = (data) => {
     answer.rockingValue = judge.valueOf(judge.fractionTarget(level, "rocked"), now);
     answer.probabilityValue = hazard ? judge.valueOf(target, now) : null;
     answer.deciding = deciding(now, level);
+    answer.earthquakes = judge.groups;
+    answer.accepted = hazard ? ACCEPTED_IN_FIFTY_YEARS : ACCEPTED_AT_A_LEVEL;
     const moved = known("moved"), sides = [];
     for (let i = 0; i + 1 < moved.length; i += 2) sides.push([moved[i].name, moved[i].outcomes, moved[i + 1].outcomes]);
     answer.complete = runs.every((run, i) => run.role !== "moved" || outcomes[i]);
@@ -118,10 +120,8 @@ const answer = (data) => {
       const rocking = judge.estimate(judge.fractionTarget(level, "rocked"), prediction, rates);
       Object.assign(answer, { fraction, rocking, shifts, rates });
       if (hazard) answer.probability = judge.estimate(target, prediction, rates);
-      const main = answer.probability ?? fraction, accepted = hazard ? ACCEPTED_IN_FIFTY_YEARS : ACCEPTED_AT_A_LEVEL;
-      answer.half = judge.estimate(judge.amplitudeTarget(0.5), prediction, rates);
-      answer.decision = judge.decide(prediction, main.draws, Object.entries(data.measurements), accepted);
-      Object.assign(answer, { main, narrowed: judge.narrowed(main), narrowedFraction: judge.narrowed(fraction), wide: judge.isWide(fraction) });
+      const main = answer.probability ?? fraction, half = judge.estimate(judge.amplitudeTarget(0.5), prediction, rates);
+      Object.assign(answer, { main, half, decision: judge.decide(prediction, main.draws, data.measurements, answer.accepted) });
     }
     const { shifts = [], rates = {} } = answer, meanOf = (outcomes) => (answer.shifts ? judge.meanOf(target, shifts, rates, outcomes) : judge.valueOf(target, outcomes));
     answer.arrangements = [["on_its_pedestal", answer.main?.value ?? meanOf(now)], ...known("arrangement").map((run) => [run.name, meanOf(run.outcomes)])];
@@ -131,7 +131,14 @@ const answer = (data) => {
     const changes = [...known("mitigation"), ...known("arrangement")].filter(({ change }) => change);
     answer.mitigations = changes.map(({ role, change, values, outcomes: with_ }) => ({ name: change, values, ...as[role](with_) }))
       .sort((a, b) => Number.isNaN(a.factor) - Number.isNaN(b.factor) || (a.factor || 0) - (b.factor || 0) || a.value - b.value);
+    answer.safer = saferOf(known("arrangement"), answer.mitigations);
     return answer;
+  }
+  // arrangements that the motions show to be safer than its own, or its own if it is safer than all others
+  function saferOf(arrangements, mitigations) {
+    const each = arrangements.map(({ name, change }) => [name, mitigations.find((item) => item.name === change)]);
+    const better = each.filter(([, item]) => item.shown).map(([name]) => name);
+    return each.length && each.every(([, { lower, helps }]) => lower > 1 && !helps) ? [...better, "on_its_pedestal"] : better;
   }
   function countsOf({ levels, allowed, rocked, overturned }, level) {
     const at = levels.indexOf(level), counts = [0, 0, 0];

@@ -1,7 +1,7 @@
 /* From outcomes to shares, probabilities and their intervals, as rockfrag.assess.risk and its like have them. */
 const risk = (data) => {
   "use strict";
-  const { FLANK_Z, LEVEL, NONE_BELOW, LEAST_SPAN, LIKELY, UNLIKELY, LEAST_GAIN, MOST_NAMED, EC8_SLOPE, EC8_SLOPE_SD } = data.constants;
+  const { FLANK_Z, LEVEL, NONE_BELOW, LEAST_SPAN, EC8_SLOPE, EC8_SLOPE_SD } = data.constants;
   const drawn = core(data);
   const hypot = (values) => Math.sqrt(values.reduce((sum, value) => sum + value * value, 0));
   const logit = (p) => Math.log(p / (1 - p));
@@ -201,24 +201,20 @@ const risk = (data) => {
     };
   }
 
-  // the measurements that would narrow an interval most, and to what; null where none is worth it
-  function narrowed(estimate) {
-    const { value, lower, upper, sources } = estimate, total = hypot(Object.values(sources)) ** 2;
-    if (!(value > 0 && value < 1 && Number.isFinite(total) && total > 0) || (lower <= 0 && upper >= 1)) return null;
-    const left = (name) => data.measurements[name] ?? 1;
-    const gain = (name) => ((sources[name] ?? 0) ** 2 * (1 - left(name) ** 2)) / total;
-    const known = Object.keys(data.measurements).filter((name) => gain(name) >= LEAST_GAIN)
-      .sort((a, b) => gain(b) - gain(a)).slice(0, MOST_NAMED);
-    if (!known.length) return null;
-    const ratio = Math.sqrt(hypot(Object.entries(sources).map(([name, s]) => s * (known.includes(name) ? left(name) : 1))) ** 2 / total);
-    const ends = [lower, upper].map((end) => expit(logit(value) + ratio * (logit(end) - logit(value))));
-    return { known, lower: ends[0], upper: ends[1] };
+  // what to do, as rockfrag.assess.decision has it
+  function decide({ value, sources }, accepted) {
+    const action = value > accepted ? "secure" : "leave", away = Math.abs(logit(value) - logit(accepted));
+    if (!(value > 0 && value < 1)) return { action };
+    for (const [source, left] of data.measurements) {
+      const spread = (sources[source] ?? 0) * Math.sqrt(1 - left ** 2), chance = spread > 0 ? Math.exp(statistics.logNdtr(-away / spread)) : 0;
+      if (chance >= LEAST_CHANCE) return { action: "measure", source, chance };
+    }
+    return { action };
   }
-  const isWide = (estimate) => estimate.lower < UNLIKELY && estimate.upper > LIKELY;
 
   return {
     fractions, curveOf, curveOfOneLevel, rateOf, levelOf, probabilityIn, riskTarget, fractionTarget, amplitudeTarget, valueOf,
-    estimate, meanOf, shiftOf, afterUplift, predict, decide: drawn.decide, ofQuantiles, compared, narrowed, isWide,
+    estimate, meanOf, shiftOf, afterUplift, predict, decide: drawn.decide, ofQuantiles, compared, groups,
   };
 };
 if (typeof module !== "undefined") module.exports = risk;

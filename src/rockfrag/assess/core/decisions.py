@@ -4,8 +4,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import Enum
 
-from rockfrag.arrays import Floats
 from rockfrag.assess.core.parts import means_once_known
+from rockfrag.base.arrays import Floats
 
 LEAST_CHANCE = (
     0.2  # With which a measurement must turn the decision round to be named [-]

@@ -13,7 +13,7 @@ import numpy as np
 from scipy import special, stats
 from scipy.stats import qmc
 
-from rockfrag.arrays import Floats
+from rockfrag.base.arrays import Floats
 
 BLOCKS = 256  # Sets of weights
 MEMBERS = 16  # Draws of the sources under each set of weights

@@ -15,8 +15,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from rockfrag.arrays import Flags, Floats
-from rockfrag.machine_code import cached_njit
+from rockfrag.base.arrays import Flags, Floats
+from rockfrag.runtime.machine_code import cached_njit
 
 CLASSES = 48  # Most levels of uplift that are told apart
 ROUNDING = 1e-9  # Of logarithms of levels

@@ -7,8 +7,8 @@ estimated from the draws that are there (Plischke, Borgonovo and Smith 2013, Eur
 import numpy as np
 from scipy import special
 
-from rockfrag.arrays import Floats
 from rockfrag.assess.core.draws import Draws
+from rockfrag.base.arrays import Floats
 
 BINS = 32  # Of equally many draws, by which a source is known
 

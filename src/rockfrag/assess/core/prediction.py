@@ -6,7 +6,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from rockfrag.arrays import Floats
 from rockfrag.assess.core.draws import MEMBERS, Draws, make_draws
 from rockfrag.assess.core.fractions import Counts, draw_fractions
 from rockfrag.assess.core.parts import (
@@ -14,6 +13,7 @@ from rockfrag.assess.core.parts import (
     part_of_earthquakes,
     part_of_source,
 )
+from rockfrag.base.arrays import Floats
 
 MOTIONS = "motions"  # The source that the earthquakes are
 
