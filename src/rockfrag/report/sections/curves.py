@@ -13,7 +13,7 @@ from matplotlib.ticker import PercentFormatter
 
 from rockfrag import figure_style as style
 from rockfrag.files import file_name
-from rockfrag.fragility.checks import REJECTION, TAILS
+from rockfrag.fragility.check_notes import REJECTION, TAILS
 from rockfrag.fragility.curve_facts import REJECTED, compared_curves
 from rockfrag.fragility.observations import Floats, name_and_unit
 from rockfrag.fragility.vector import INTERACTION_LEVEL, VectorTables
