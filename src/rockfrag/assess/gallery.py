@@ -25,19 +25,24 @@ from rockfrag.assess.risk import probability_in
 from rockfrag.assess.words import estimate_words, gallery_says, says
 from rockfrag.figure_style import BLUE, COLUMN_WIDTH, PAGE_WIDTH, panels, plain_log
 from rockfrag.files import write_table, write_text
-from rockfrag.report.page import Page, table_html
+from rockfrag.report.page import Page, column, table_html
 from rockfrag.report.part import Answer, FigureSpec, Finding, Section
 
 MOST_DRAWN = 40  # Objects of which the correlation is drawn: those that add most
 
 RANKING = (
-    "name = Object; place = Stands; probability = Topples (90 % interval) #",
-    "contribution = Part of the mean [%] .1; change = What helps most",
+    column("name", "Object"),
+    column("place", "Stands"),
+    column("probability", "Topples (90 % interval)", numeric=True),
+    column("contribution", "Part of the mean [%]", decimals=1),
+    column("change", "What helps most"),
 )
 NUMBERS = (
-    "at_least = At least so many .0; rate = Earthquakes that topple so many [1/year] #",
-    "probability = Probability [%] .2; probability_lower = Lower limit [%] .2",
-    "probability_upper = Upper limit [%] .2",
+    column("at_least", "At least so many", decimals=0),
+    column("rate", "Earthquakes that topple so many [1/year]", numeric=True),
+    column("probability", "Probability [%]", decimals=2),
+    column("probability_lower", "Lower limit [%]", decimals=2),
+    column("probability_upper", "Upper limit [%]", decimals=2),
 )
 
 

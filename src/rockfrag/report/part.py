@@ -1,4 +1,9 @@
-"""What a report is made of: parts, each with its words, tables and figures in one file of ``report/sections``."""
+"""Parts of a report: findings, figures, sections, and the results that they are made of.
+
+In: the tables of a study (:class:`Results`). Out: :class:`Section`, :class:`Finding` and :class:`Answer`, which
+:class:`rockfrag.report.page.Page` lays out; a part of the report is a function of the results that returns its
+section. Docs: ``docs/report.md``, ``CONTRIBUTING.md`` ("How to add a section of the report").
+"""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
@@ -78,8 +83,38 @@ class Section:
     parts: Sequence[Markup | FigureSpec] = ()  # Its figures, and the tables behind them
 
 
+def chapter(
+    anchor: str,
+    title: str,
+    found: Finding,
+    paragraphs: Sequence[str] = (),
+    parts: Sequence[Markup | FigureSpec] = (),
+) -> Section:
+    """Chapter whose message is the headline of a finding, with the sentences behind it first.
+
+    Parameters
+    ----------
+    anchor, title : its place and its heading
+    found : the finding
+    paragraphs, parts : further paragraphs, and figures and tables
+
+    Returns
+    -------
+    The :class:`Section`.
+    """
+    words = [found.text, found.numbers, *paragraphs]
+    return Section(
+        anchor, title, f"{found.headline}.", [text for text in words if text], parts
+    )
+
+
+def joined(*sentences: str) -> str:
+    """Sentences that are not empty, in a row."""
+    return " ".join(filter(None, sentences))
+
+
 class Says(Macros):
-    """What the parts of a page say: macros that part what they say by ``{{ part }}``."""
+    """Words of the pages of ``assess``: macros whose parts are separated by ``{{ part }}``."""
 
     def finding(self, macro: str, *about: Any) -> Finding:
         """A finding of which a macro says headline, text and numbers."""
@@ -92,20 +127,6 @@ class Says(Macros):
         alt, caption = map(" ".join, self.parts(f"{of or name}_figure", *about))
         return FigureSpec(name, alt, caption, draw)
 
-    def table(
-        self,
-        name: str,
-        table: pd.DataFrame,
-        *about: Any,
-        more: Sequence[Any] = (),
-        file: str = "",
-    ) -> Markup:
-        """A table of which ``<name>_table`` says caption and columns, with ``more`` behind them."""
-        from rockfrag.report.page import table_html
-
-        caption, columns = self.parts(f"{name}_table", *about)
-        return table_html(table, [*columns, *more], " ".join(caption), file)
-
     def section(
         self,
         anchor: str,
@@ -116,9 +137,6 @@ class Says(Macros):
         """A chapter of which the macro of its anchor, or another, says title, message and paragraphs."""
         title, message, paragraphs = self.parts(of or anchor.replace("-", "_"), *about)
         return Section(anchor, " ".join(title), " ".join(message), paragraphs, parts)
-
-
-says = Says("rockfrag.report.sections", "sections.j2")  # what the parts of a report say
 
 
 class Results:
@@ -179,10 +197,8 @@ class Results:
     @cached_property
     def least_gravity_ratio(self) -> NDArray[np.float64]:
         """Least weight over that on a ground at rest, of every history of a study with vertical motion."""
-        name, paths = (
-            "minimum_gravity_ratio",
-            (self.folder / path for path in self.study.ida_files),
-        )
+        name = "minimum_gravity_ratio"
+        paths = [self.folder / path for path in self.study.ida_files]
         return np.concatenate(
             [pd.read_parquet(path, columns=[name])[name] for path in paths]
         )
