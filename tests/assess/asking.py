@@ -13,13 +13,15 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from rockfrag.cli import main
+from rockfrag.cli.main import main
 
 from ..case_tables import case_tables
 
 CASES = case_tables(__file__)
 
-_EMPTY = re.compile(r"\bnan\b|\binf\b|\bNone\b(?! of)|less than 0 %|\b0 to 100 %")
+_EMPTY = re.compile(
+    r"\bnan\b|\binf\b|\bNone\b(?! of)|less than 0 %|\b0 to 100 %|\{\w+\}"
+)
 """Words of an answer that say nothing."""
 
 
@@ -149,37 +151,41 @@ def _at_rest(answer: dict[str, Any]) -> bool:
         answer["fraction_rocking"]["value"] == 0 == answer["fraction_toppling"]["value"]
     )
     words = answer["lines"][0]
-    return still and ("does not move" in words or "is not expected to move" in words)
+    return still and re.search("does not move|unlikely|too few", words) is not None
 
 
 def _lines_agree(answer: dict[str, Any]) -> bool:
-    """Five lines; a bound is called one, none of n is said as that, and no interval says nothing."""
-    lines = answer["lines"]
-    text = "\n".join(lines)
-    if len(lines) != 5 or _EMPTY.search(text):
+    """At most sixty words; each says how likely, how far away, what to do, and they agree with the numbers."""
+    lines, details = answer["lines"], answer["details"]
+    if len(" ".join(lines).split()) > 60 or _EMPTY.search("\n".join(lines + details)):
         return False
-    toppling = answer["fraction_toppling"]
-    if toppling and toppling["value"] == 0 and answer["fraction_rocking"]["value"] > 0:
-        return "none of" in lines[0] and "upper limit" in lines[0]
-    if (
-        toppling
-        and toppling["lower"] < 0.01
-        and toppling["upper"] > 0.5
-        and toppling["value"] > 0
-    ):
-        return "not decidable" in lines[0]
-    return True
+    ids = [each["id"] for each in answer["findings"]]
+    if ids[0] == "verdict_few_earthquakes":
+        return ids[1:] == ["give_earthquakes"]
+    toppling, likely = answer["fraction_toppling"], answer["probability"]
+    rocks = toppling and answer["fraction_rocking"]["value"] > 0
+    if rocks and toppling["value"] == 0 and "at most" not in lines[0]:
+        return False
+    estimate = likely or toppling
+    if estimate is None:
+        return ids[-1] == "give_level"
+    # what is above the accepted risk is never left, what is below never secured
+    above = estimate["value"] > answer["accepted"]
+    wrong = ("leave_it", "leave_unless") if above else ("secure_it", "secure_unless")
+    return ids[-1] not in wrong
 
 
 def _helps(answer: dict[str, Any]) -> bool:
-    """What is printed as help makes nothing worse, and only that which helps is printed."""
-    line = answer["lines"][3].lower()
+    """What is said to help makes nothing worse in its limits, and only what is shown to help is said."""
+    line = " ".join(line for line in answer["details"] if line.startswith("What helps"))
     amplitude = answer["fraction_toppling"] is None and answer["probability"] is None
-    for mitigation in answer["mitigations"]:
-        factor = mitigation["factor"]
+    for change in answer["mitigations"]:
+        factor, upper = change["factor"], change["upper"]
         better = factor is None or (factor > 1 if amplitude else factor < 1)
-        if mitigation["helps"] and not better:
+        if change["helps"] and not better:
             return False
-        if mitigation["name"].lower() in line and not mitigation["helps"]:
+        if change["shown"] and not amplitude and upper is not None and upper >= 1:
+            return False
+        if change["change"]["words"].lower() in line.lower() and not change["shown"]:
             return False
     return True

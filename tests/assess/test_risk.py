@@ -21,6 +21,12 @@ from rockfrag.assess.conversion import (
     VelocityRelation,
 )
 from rockfrag.assess.export import as_nrml
+from rockfrag.assess.findings import (
+    assumptions,
+    details_of,
+    lines_of,
+    quality_flags,
+)
 from rockfrag.assess.hazard.curve import (
     PGA,
     PGV,
@@ -43,8 +49,8 @@ from rockfrag.assess.risk import (
 )
 from rockfrag.assess.rules import rules_study
 from rockfrag.assess.sources import SOURCES, parts_of
-from rockfrag.assess.words import five_lines, says
 from rockfrag.fragility.model_error import CUT, MODEL_ERRORS
+from rockfrag.words.catalogue import catalogue
 
 from .conftest import asked, outcomes_of
 
@@ -284,10 +290,10 @@ def test_every_source_says_where_its_size_comes_from(motions):
     assert list(parts.values()) == sorted(parts.values(), reverse=True)
     page = html.unescape(page_of(found))
     for name in found.main.sources:
-        assert SOURCES[name].basis.split(",")[0].split("(")[0] in page
-    # the three largest are named, and what would narrow the interval
+        assert catalogue().sentence(SOURCES[name].basis) in page
+    # the three largest are named
     for name in list(parts)[:3]:
-        assert SOURCES[name].words in five_lines(found)[4]
+        assert catalogue().say(SOURCES[name].called) in details_of(found)[4]
 
 
 def test_how_a_scan_stands_is_a_source_until_it_is_measured(tmp_path, few):
@@ -328,7 +334,7 @@ def test_how_a_scan_stands_is_a_source_until_it_is_measured(tmp_path, few):
     cut = asked(width="0.3 m", height="1 m", pga="0.6 g")
     assert blind["model"] < sources(cut)["model"]
     # on few points it loses more in impacts than a cut block
-    tolerances = request.objects.tolerances
+    tolerances = request.objects.under.tolerances
     assert request.objects.livelier == pytest.approx((0.7 + 1) / 2)
     assert tolerances["restitution"] == pytest.approx(
         0.3 / math.sqrt(12) / 0.85, rel=0.03
@@ -425,13 +431,14 @@ def test_what_is_known_of_velocity_counts_and_is_no_longer_a_source(motions):
         assert found.conversion.known.spread > found.conversion.spread == 0
         assert nothing.conversion.spread > 0
         assert "together" in found.probability.sources
-        assert "two measures" in " ".join(says("assumptions", found))
+        assert "two measures" in " ".join(catalogue().lines(assumptions(found)))
     # of a level in both the velocity is known, and the made motions are quicker
     found = assess_with(figure(pga="0.6 g", pgv="40 cm/s"), motions, brief=True)
-    assert "PGA 0.6 g and PGV 40 cm/s" in five_lines(found)[0]
+    assert "PGA 0.6 g, PGV 40 cm/s" in lines_of(found)[0]
     assert found.conversion.known.spread == 0
     assert any(
-        "PGV of 66.7 cm/s per g" in flag for flag in says("quality_flags", found)
+        "PGV of 66.7 cm/s per g" in flag
+        for flag in catalogue().lines(quality_flags(found))
     )
     # the export says which errors are not in it
     text = as_nrml(slow)

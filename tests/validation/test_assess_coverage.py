@@ -17,13 +17,15 @@ import pytest
 from rockfrag.assess.answer import assess_with
 from rockfrag.assess.hazard.curve import PGA, PGV, VELOCITY_PER_G
 from rockfrag.assess.motions import MotionSet
-from rockfrag.assess.objects import ON_POINTS, Objects, stretched_block
 from rockfrag.assess.outcomes import make_intensity_levels
 from rockfrag.assess.place import Place
 from rockfrag.assess.request import Request, make_request
 from rockfrag.assess.risk import amplitude_target, fraction_target
 from rockfrag.assess.scan import make_scan
 from rockfrag.assess.sources import SPACE
+from rockfrag.assess.standing import Standing
+from rockfrag.assess.standing.contract import stretched_block
+from rockfrag.assess.standing.scanned import ON_POINTS, Scanned
 from rockfrag.campaign.standing import body_of, unknowns_of, ways_to_stand
 from rockfrag.fragility.model_error import CUT, MODEL_ERRORS, SCAN
 from rockfrag.motions import scale_to_pga
@@ -84,15 +86,15 @@ def _scanned(random: np.random.Generator) -> Shape:
     return Shape(points, 200.0, np.diag([26.0, 26.0, 3.0]), 0.09, "synthetic scan")
 
 
-def _told_of(shape: Shape, objects: Objects) -> Objects:
+def _told_of(shape: Shape, objects: Standing) -> Standing:
     """The object as assess takes it from a scan of which nothing else is known."""
     scan, _ = make_scan(shape, {}, None)
-    tolerances = {**objects.tolerances, "restitution": ON_POINTS["restitution"]}
-    on_points = {"livelier": ON_POINTS["livelier"], "tolerances": tolerances}
-    return replace(objects, block=scan.block(), scan=scan, **on_points)
+    usual = {**objects.under.tolerances, "restitution": ON_POINTS["restitution"]}
+    under = replace(objects.under, tolerances=usual)
+    return Scanned(scan.block(), objects.plane, under, ON_POINTS["livelier"], scan=scan)
 
 
-def _true_scan(shape: Shape, told: Objects, seed: int, outside: float) -> Objects:
+def _true_scan(shape: Shape, told: Standing, seed: int, outside: float) -> Standing:
     """The object as it stands, with a contact tolerance whose quantiles may lie further from the middle."""
     unknowns = unknowns_of(SCAN)
     tolerance = unknowns["contact_tolerance_mm"]
@@ -152,7 +154,7 @@ def _drawn(
     outside: float,
     random: np.random.Generator,
     level: dict[str, str],
-) -> tuple[Request, Objects, Place, float]:
+) -> tuple[Request, Standing, Place, float]:
     """What assess is told of a world, the object and the place in it, and the error of the model's ln level."""
     in_building = IN_A_BUILDING if seed % 2 else {}
     request = make_request({**SETTINGS, **in_building, **level}, "synthetic")
@@ -163,11 +165,13 @@ def _drawn(
         truth = _true_scan(shape, told, seed, outside)
     else:
         truth = replace(
-            told, livelier=1 + told.tolerances["restitution"] * random.standard_normal()
+            told,
+            livelier=1
+            + told.under.tolerances["restitution"] * random.standard_normal(),
         )
     z = random.standard_normal(2)
-    block = stretched_block(truth.block, 1 + told.tolerances["width"] * z[0])
-    height = 1 + told.tolerances["cg_height"] * z[1]
+    block = stretched_block(truth.block, 1 + told.under.tolerances["width"] * z[0])
+    height = 1 + told.under.tolerances["cg_height"] * z[1]
     truth = replace(truth, block=stretched_block(block, height=height))
     place = _true_place(request.place, random)
     spread = MODEL_ERRORS[kind].beyond * (outside if kind == CUT else 1.0)

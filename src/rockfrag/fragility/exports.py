@@ -21,14 +21,13 @@ import numpy as np
 import pandas as pd
 from scipy import constants, special
 
-from rockfrag.errors import InputError
-from rockfrag.files import write_table, write_text
+from rockfrag.base.errors import InputError
+from rockfrag.base.files import write_table, write_text
 from rockfrag.fragility.check_notes import REJECTION
 from rockfrag.fragility.curve_facts import curve_facts
 from rockfrag.fragility.observations import Floats
 from rockfrag.motions.intensity import declared, measure_labelled
 from rockfrag.outcomes.limit_states import OVERTURNS, limit_state_named, limit_states
-from rockfrag.sentences import environment
 
 LONGEST = 75  # characters of an identifier that OpenQuake takes
 # β with which an exact threshold, a step, is written [-]; the formats take no step
@@ -225,12 +224,22 @@ def model_text(
     -------
     The text of the file.
     """
-    loaded = environment("rockfrag.fragility")
-    loaded.filters["escaped"] = escape
-    about = {"description": description, "states": states, "identifier": identifier}
-    return (
-        str(loaded.get_template("nrml.j2").render(functions=functions, **about)) + "\n"
+    # imported when a file is written, which most commands never do
+    from jinja2 import Environment, PackageLoader, StrictUndefined
+
+    templates = Environment(
+        loader=PackageLoader("rockfrag.fragility", ""),
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
     )
+    text = templates.get_template("nrml.j2").render(
+        functions=functions,
+        description=escape(description),
+        states=states,
+        identifier=identifier,
+    )
+    return f"{text}\n"
 
 
 def _function(

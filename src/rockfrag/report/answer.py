@@ -14,14 +14,14 @@ import pandas as pd
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from rockfrag.figure_style import BLACK, COLUMN_WIDTH, panels, plain_log
+from rockfrag.base.figure_style import BLACK, COLUMN_WIDTH, panels, plain_log
 from rockfrag.fragility.curve_facts import REJECTED
 from rockfrag.report import findings
 from rockfrag.report.figures import GREY, SIDE_COLOUR, SIDE_NAME, drawn_tests
 from rockfrag.report.part import Answer, FigureSpec, Finding, Results, joined
-from rockfrag.rocking.ensemble import LIGHT
-from rockfrag.sentences import counted, listed, of_all, shortened
+from rockfrag.simulation.ensemble import LIGHT
 from rockfrag.study.study import Study
+from rockfrag.words.sentences import counted, listed, of_all, shortened
 
 FEW = 10  # intervals over fewer earthquakes than this rest on little
 MOST_NAMED = 4  # so many objects are named in the question

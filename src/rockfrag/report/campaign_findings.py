@@ -16,7 +16,8 @@ import pandas as pd
 from rockfrag.campaign.comparison import REPEATS
 from rockfrag.fragility.observations import name_and_unit
 from rockfrag.report.part import Finding
-from rockfrag.sentences import (
+from rockfrag.stages.campaign import IN_PLANE, OURS, VOTES
+from rockfrag.words.sentences import (
     agree,
     counted,
     estimate,
@@ -26,7 +27,6 @@ from rockfrag.sentences import (
     probability,
     sentence,
 )
-from rockfrag.stages.campaign import IN_PLANE, OURS, VOTES
 
 LEVEL = 0.05  # a difference between programs is stated below this adjusted p value [-]
 

@@ -13,7 +13,7 @@ from markupsafe import Markup
 from matplotlib.figure import Figure
 from scipy.stats import norm
 
-from rockfrag import figure_style as style
+from rockfrag.base import figure_style as style
 from rockfrag.campaign.comparison import FEWEST_VOTERS
 from rockfrag.campaign.standing import preferred_edges
 from rockfrag.fragility.observations import name_and_unit
@@ -30,10 +30,17 @@ from rockfrag.report.page import column, estimated, p_values, table_html
 from rockfrag.report.part import Answer, FigureSpec, Finding, Section, chapter
 from rockfrag.report.sections.curves import two_measures_section
 from rockfrag.report.study_report import write_page
-from rockfrag.sentences import agree, counted, label, listed, of_all, sentence
 from rockfrag.stages.campaign import OURS, TABLES, VOTES
 from rockfrag.stages.job import Job, Results
 from rockfrag.study.campaign import CampaignStudy
+from rockfrag.words.sentences import (
+    agree,
+    counted,
+    label,
+    listed,
+    of_all,
+    sentence,
+)
 
 Tables = Mapping[str, pd.DataFrame]  # of the stages of a campaign, by name
 

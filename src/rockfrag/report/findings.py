@@ -13,12 +13,12 @@ from typing import Any, NamedTuple
 import numpy as np
 import pandas as pd
 
-from rockfrag import sentences as wording
 from rockfrag.fragility.curve_facts import Compared, compared_curves
 from rockfrag.report.part import Finding
-from rockfrag.sentences import agree, counted, listed, number, of_all, sentence
 from rockfrag.shaketable.definitions import DEFINITION
 from rockfrag.study.study import Study
+from rockfrag.words import sentences as wording
+from rockfrag.words.sentences import agree, counted, listed, number, of_all, sentence
 
 # coefficient of friction of dry stone on stone, with which demands are compared [-]
 FRICTION = 0.6
@@ -436,7 +436,7 @@ def ratio_of(
 
     Parameters
     ----------
-    effects : table of :func:`rockfrag.pedestal.study.effects_table` by definition
+    effects : table of :func:`rockfrag.effects.study.effects_table` by definition
     sides, scope, level : the comparison, and the pairs of it
 
     Returns
@@ -461,7 +461,7 @@ def pedestal_effect(
 
     Parameters
     ----------
-    effects : table of :func:`rockfrag.pedestal.study.effects_table` by definition
+    effects : table of :func:`rockfrag.effects.study.effects_table` by definition
     sides : the comparison
 
     Returns

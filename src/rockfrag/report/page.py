@@ -22,11 +22,12 @@ import pandas as pd
 from jinja2 import Environment, PackageLoader, StrictUndefined, select_autoescape
 from markupsafe import Markup
 
-from rockfrag.figure_style import BLUE, GREEN, PURPLE, RED, save_figure
-from rockfrag.processes import in_processes
+from rockfrag.base.figure_style import BLUE, GREEN, PURPLE, RED, save_figure
 from rockfrag.report.figures import BAND, GREY
 from rockfrag.report.part import Answer, FigureSpec, Section
-from rockfrag.sentences import estimates, number, probability, sentence
+from rockfrag.runtime.processes import in_processes
+from rockfrag.words.catalogue import FIRST, catalogue
+from rockfrag.words.sentences import estimates, number, probability, sentence
 
 TEMPLATES = Environment(
     loader=PackageLoader("rockfrag.report"),
@@ -122,7 +123,7 @@ def estimated(
     decimals: int | None = None,
     limits: tuple[str, str] | None = None,
 ) -> Column:
-    """Column of estimates with their limits, see :func:`rockfrag.sentences.estimates`.
+    """Column of estimates with their limits, see :func:`rockfrag.words.sentences.estimates`.
 
     Parameters
     ----------
@@ -353,6 +354,7 @@ class Page:
     provenance: Mapping[str, str] = field(default_factory=dict)
     basis: str = "simulated"  # The page warns of what is not ``measured``
     live: Markup = _NOTHING  # See :func:`rockfrag.report.live.live_kernel`
+    language: str = FIRST  # Of what stands on every page
 
     @property
     def figures(self) -> dict[str, tuple[FigureSpec, str]]:
@@ -392,6 +394,7 @@ class Page:
             pictures = draw_all(specs, folder or Path(scratch), processes)
         return environment.get_template("report.html.j2").render(
             vars(self),
+            shell=catalogue(self.language).texts,
             pictures=pictures,
             glossary=terms_used(self.words),
             style=Markup(

@@ -18,7 +18,6 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from rockfrag.records.motion import Motion, read_motion_metadata, read_motion_set
-from rockfrag.sentences import Macros
 from rockfrag.shaketable.definitions import DEFINITION, read_swept
 from rockfrag.study.study import Study
 
@@ -111,32 +110,6 @@ def chapter(
 def joined(*sentences: str) -> str:
     """Sentences that are not empty, in a row."""
     return " ".join(filter(None, sentences))
-
-
-class Says(Macros):
-    """Words of the pages of ``assess``: macros whose parts are separated by ``{{ part }}``."""
-
-    def finding(self, macro: str, *about: Any) -> Finding:
-        """A finding of which a macro says headline, text and numbers."""
-        return Finding(*map(" ".join, self.parts(macro, *about)))
-
-    def figure(
-        self, name: str, draw: Callable[[], Figure], *about: Any, of: str = ""
-    ) -> FigureSpec:
-        """A figure of which ``<name>_figure``, or that ``of`` others, says what it shows and its caption."""
-        alt, caption = map(" ".join, self.parts(f"{of or name}_figure", *about))
-        return FigureSpec(name, alt, caption, draw)
-
-    def section(
-        self,
-        anchor: str,
-        parts: Sequence[Markup | FigureSpec],
-        *about: Any,
-        of: str = "",
-    ) -> Section:
-        """A chapter of which the macro of its anchor, or another, says title, message and paragraphs."""
-        title, message, paragraphs = self.parts(of or anchor.replace("-", "_"), *about)
-        return Section(anchor, " ".join(title), " ".join(message), paragraphs, parts)
 
 
 class Results:

@@ -11,17 +11,17 @@ from typing import Any
 
 from markupsafe import Markup
 
-from rockfrag.files import write_text
-from rockfrag.plugins import plugins_of
+from rockfrag.base.files import write_text
+from rockfrag.config.plugins import plugins_of
 from rockfrag.report.answer import study_answer
 from rockfrag.report.live import live_kernel
 from rockfrag.report.page import MOST_TABLE_ROWS, Page
 from rockfrag.report.part import Answer, Part, Section
 from rockfrag.report.part import Results as StudyResults
 from rockfrag.report.sections import PARTS
-from rockfrag.sentences import counted
 from rockfrag.stages.job import Job, Results, package_digest
 from rockfrag.study.study import Study
+from rockfrag.words.sentences import counted
 
 _LIBRARIES = ("numpy", "scipy", "pandas", "numba", "statsmodels", "obspy", "matplotlib")
 

@@ -1,7 +1,7 @@
 /* The answer about one object: outcomes of its bodies by motion and level, and what follows from them. */
 const answer = (data) => {
   "use strict";
-  const { constants: { AT_REST, LARGEST_FACTOR, LARGEST_PEAK, MODEL, SPACE }, measures } = data;
+  const { constants: { AT_REST, LARGEST_FACTOR, LARGEST_PEAK, MODEL, SPACE, ACCEPTED_AT_A_LEVEL, ACCEPTED_IN_FIFTY_YEARS }, measures } = data;
   const judge = risk(data), spatial = inSpace(data), shiftOf = conversion(data);
 
   // levels of a run: the asked one among those of the measure
@@ -81,7 +81,7 @@ const answer = (data) => {
     return found;
   }
 
-  const ESTIMATED = ["fraction", "rocking", "probability", "main", "narrowed", "narrowedFraction", "wide"];
+  const ESTIMATED = ["fraction", "rocking", "probability", "main", "half", "decision"];
   // what is known so far of runs whose outcomes are complete; `outcomes` by the place of the run in the plan, `earlier`
   // what was found when there were fewer
   function found(request, runs, outcomes, ensemble, earlier) {
@@ -95,6 +95,8 @@ const answer = (data) => {
     answer.rockingValue = judge.valueOf(judge.fractionTarget(level, "rocked"), now);
     answer.probabilityValue = hazard ? judge.valueOf(target, now) : null;
     answer.deciding = deciding(now, level);
+    answer.earthquakes = judge.groups;
+    answer.accepted = hazard ? ACCEPTED_IN_FIFTY_YEARS : ACCEPTED_AT_A_LEVEL;
     const moved = known("moved"), sides = [];
     for (let i = 0; i + 1 < moved.length; i += 2) sides.push([moved[i].name, moved[i].outcomes, moved[i + 1].outcomes]);
     answer.complete = runs.every((run, i) => run.role !== "moved" || outcomes[i]);
@@ -110,7 +112,8 @@ const answer = (data) => {
       Object.assign(answer, { fraction, rocking });
       if (hazard) answer.probability = judge.estimate(target, now, sides, judge.ofQuantiles(now, hazard), shifts);
       const main = answer.probability ?? fraction;
-      Object.assign(answer, { main, narrowed: judge.narrowed(main), narrowedFraction: judge.narrowed(fraction), wide: judge.isWide(fraction) });
+      const half = judge.estimate(judge.amplitudeTarget(0.5), now, sides, {}, shifts);
+      Object.assign(answer, { main, half, decision: judge.decide(main, answer.accepted) });
     }
     answer.arrangements = [["on_its_pedestal", judge.valueOf(target, now)], ...known("arrangement").map((run) => [run.name, judge.valueOf(target, run.outcomes)])];
     const [before] = known("before"), [planar] = known("planar"), as = { mitigation: before?.outcomes ?? now, arrangement: now };
@@ -118,7 +121,14 @@ const answer = (data) => {
     const changes = [...known("mitigation"), ...known("arrangement")].filter(({ change }) => change);
     answer.mitigations = changes.map(({ role, change, values, outcomes: with_ }) => ({ name: change, values, ...judge.compared(target, as[role], with_) }))
       .sort((a, b) => Number.isNaN(a.factor) - Number.isNaN(b.factor) || (a.factor || 0) - (b.factor || 0) || a.value - b.value);
+    answer.safer = saferOf(known("arrangement"), answer.mitigations);
     return answer;
+  }
+  // arrangements that the motions show to be safer than its own, or its own if it is safer than all others
+  function saferOf(arrangements, mitigations) {
+    const each = arrangements.map(({ name, change }) => [name, mitigations.find((item) => item.name === change)]);
+    const better = each.filter(([, item]) => item.shown).map(([name]) => name);
+    return each.length && each.every(([, { lower, helps }]) => lower > 1 && !helps) ? [...better, "on_its_pedestal"] : better;
   }
   function countsOf({ levels, allowed, rocked, overturned }, level) {
     const at = levels.indexOf(level), counts = [0, 0, 0];

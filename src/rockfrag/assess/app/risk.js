@@ -1,7 +1,7 @@
 /* From outcomes to shares, probabilities and their intervals, as rockfrag.assess.risk and its like have them. */
 const risk = (data) => {
   "use strict";
-  const { HALF, Z, FLANK_Z, LEVEL, LIKELY, UNLIKELY, LEAST_GAIN, MOST_NAMED, EC8_SLOPE, EC8_SLOPE_SD } = data.constants;
+  const { HALF, Z, FLANK_Z, LEVEL, LEAST_CHANCE, EC8_SLOPE, EC8_SLOPE_SD } = data.constants;
   const hypot = (values) => Math.sqrt(values.reduce((sum, value) => sum + value * value, 0));
   const logit = (p) => Math.log(p / (1 - p));
   const expit = (x) => 1 / (1 + Math.exp(-x));
@@ -182,37 +182,38 @@ const risk = (data) => {
     return { hazard: Math.abs(known.at(-1)[1] - known[0][1]) / (known.at(-1)[0] - known[0][0]) };
   }
 
-  // what a change does, with limits of the factor by the same motions
+  // what a change does, with limits of the factor by the same motions, and whether these show that it helps
   function compared(target, now, changed) {
-    const before = valueOf(target, now), after = valueOf(target, changed);
-    const helps = target.certain === Infinity ? after > before : after < before;
-    const found = { value: after, factor: NaN, lower: NaN, upper: NaN, helps };
+    const before = valueOf(target, now), after = valueOf(target, changed), grows = target.certain === Infinity;
+    const helps = grows ? after > before : after < before;
+    const found = { value: after, factor: NaN, lower: NaN, upper: NaN, helps, shown: false };
     if (!(Number.isFinite(before) && before > 0 && Number.isFinite(after))) return found;
     found.factor = after / before;
     const shaken = groupsOf(now), pairs = shaken.map((without) => [valueOf(target, changed, without), valueOf(target, now, without)]);
-    if (shaken.length < 2 || !pairs.flat().every((value) => Number.isFinite(value) && value > 0)) return found;
-    const half = quantile(shaken.length - 1) * jackknife(pairs.map(([a, b]) => Math.log(a / b)));
-    return { ...found, lower: found.factor * Math.exp(-half), upper: found.factor * Math.exp(half) };
+    if (shaken.length > 1 && pairs.flat().every((value) => Number.isFinite(value) && value > 0)) {
+      const half = quantile(shaken.length - 1) * jackknife(pairs.map(([a, b]) => Math.log(a / b)));
+      Object.assign(found, { lower: found.factor * Math.exp(-half), upper: found.factor * Math.exp(half) });
+    }
+    found.shown = helps && (grows ? found.lower > 1 : found.upper < 1);
+    // no motion is left; more than one earthquake must have had one
+    if (found.factor === 0) found.shown = helps && shaken.length > 1 && pairs.every(([, without]) => without > 0);
+    return found;
   }
 
-  // the measurements that would narrow an interval most, and to what; null where none is worth it
-  function narrowed(estimate) {
-    const { value, lower, upper, sources } = estimate, total = hypot(Object.values(sources)) ** 2;
-    if (!(value > 0 && value < 1 && Number.isFinite(total) && total > 0) || (lower <= 0 && upper >= 1)) return null;
-    const left = (name) => data.measurements[name] ?? 1;
-    const gain = (name) => ((sources[name] ?? 0) ** 2 * (1 - left(name) ** 2)) / total;
-    const known = Object.keys(data.measurements).filter((name) => gain(name) >= LEAST_GAIN)
-      .sort((a, b) => gain(b) - gain(a)).slice(0, MOST_NAMED);
-    if (!known.length) return null;
-    const ratio = Math.sqrt(hypot(Object.entries(sources).map(([name, s]) => s * (known.includes(name) ? left(name) : 1))) ** 2 / total);
-    const ends = [lower, upper].map((end) => expit(logit(value) + ratio * (logit(end) - logit(value))));
-    return { known, lower: ends[0], upper: ends[1] };
+  // what to do, as rockfrag.assess.decision has it
+  function decide({ value, sources }, accepted) {
+    const action = value > accepted ? "secure" : "leave", away = Math.abs(logit(value) - logit(accepted));
+    if (!(value > 0 && value < 1)) return { action };
+    for (const [source, left] of data.measurements) {
+      const spread = (sources[source] ?? 0) * Math.sqrt(1 - left ** 2), chance = spread > 0 ? Math.exp(statistics.logNdtr(-away / spread)) : 0;
+      if (chance >= LEAST_CHANCE) return { action: "measure", source, chance };
+    }
+    return { action };
   }
-  const isWide = (estimate) => estimate.lower < UNLIKELY && estimate.upper > LIKELY;
 
   return {
     fractions, curveOf, curveOfOneLevel, rateOf, levelOf, probabilityIn, riskTarget, fractionTarget, amplitudeTarget, valueOf,
-    estimate, estimateRocking, ofQuantiles, compared, narrowed, isWide,
+    estimate, estimateRocking, ofQuantiles, compared, decide, groups,
   };
 };
 if (typeof module !== "undefined") module.exports = risk;

@@ -13,14 +13,18 @@ from numpy.typing import NDArray
 from obspy import Stream, Trace, UTCDateTime
 from obspy.core import AttribDict
 
-from rockfrag.errors import InputError
-from rockfrag.files import write_text
+from rockfrag.base.errors import InputError
+from rockfrag.base.files import write_text
+from rockfrag.base.plausible import LONGEST_STEP, SHORTEST_STEP
+from rockfrag.base.text_files import printable
 from rockfrag.records.parsing import text_file
 from rockfrag.records.parsing.quantities import TO_SI, canonical_unit
-from rockfrag.tabular import printable
-from rockfrag.units import LONGEST_STEP, SHORTEST_STEP
 
 _FIRST, _LAST = UTCDateTime(1900, 1, 1), UTCDateTime(2100, 1, 1)
+
+
+SAID = "said"
+"""Key of a step of the provenance: words that everybody who uses the motion should read."""
 
 
 def cut_short_step(promised: int, found: int) -> dict[str, Any]:
@@ -66,8 +70,12 @@ class Channel:
     component: str = ""  # orientation as the file words it (``090``, ``N10E``, ``UP``)
     # name of the file within an archive of several records, else empty
     member: str = ""
+    # what is wrong with this channel alone, where others of the file may be in order; empty if nothing is
+    fault: str = ""
     # whether a recorder's, whose mean is the zero of the sensor and not motion
     raw: bool = False
+    # whether whole numbers of a recorder that nothing turns into a unit
+    counts: bool = False
     # more facts for the metadata: ``station_name``, ``earthquake``, ``title``, …; numbers may be words
     details: Mapping[str, Any] = field(default_factory=dict)
     # what was done to the samples, for the provenance

@@ -18,13 +18,13 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 from numpy.typing import NDArray
 
-from rockfrag import figure_style as style
-from rockfrag.files import file_name
-from rockfrag.pedestal.paired_tests import with_counterparts
+from rockfrag.base import figure_style as style
+from rockfrag.base.files import file_name
+from rockfrag.effects.paired_tests import with_counterparts
 from rockfrag.report import figures, findings
 from rockfrag.report.page import Column, column, table_html
 from rockfrag.report.part import FigureSpec, Results, Section, chapter
-from rockfrag.sentences import amplitude, counted, label, of_all, shortened
+from rockfrag.words.sentences import amplitude, counted, label, of_all, shortened
 
 
 def _wide(

@@ -18,8 +18,8 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import PercentFormatter
 
-from rockfrag import figure_style as style
-from rockfrag.files import file_name
+from rockfrag.base import figure_style as style
+from rockfrag.base.files import file_name
 from rockfrag.fragility.check_notes import REJECTION, TAILS
 from rockfrag.fragility.curve_facts import REJECTED, compared_curves
 from rockfrag.fragility.observations import Floats, name_and_unit
@@ -30,7 +30,8 @@ from rockfrag.report.figures import GREY
 from rockfrag.report.findings import ONE_MOTION, strength_found
 from rockfrag.report.page import Row, column, estimated, p_values, table_html
 from rockfrag.report.part import FigureSpec, Finding, Results, Section, chapter
-from rockfrag.sentences import (
+from rockfrag.stages.fragility import best_of
+from rockfrag.words.sentences import (
     agree,
     decimals_of,
     estimates,
@@ -40,7 +41,6 @@ from rockfrag.sentences import (
     sentence,
     shortened,
 )
-from rockfrag.stages.fragility import best_of
 
 
 def fragility(results: Results) -> Section:

@@ -18,7 +18,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from numpy.typing import NDArray
 
-from rockfrag import figure_style as style
+from rockfrag.base import figure_style as style
 from rockfrag.report import figures, page
 from rockfrag.report.figures import BAND, GREY
 from rockfrag.report.findings import (
@@ -30,7 +30,8 @@ from rockfrag.report.findings import (
 )
 from rockfrag.report.page import Column, column, estimated, p_values, table_html
 from rockfrag.report.part import FigureSpec, Finding, Results, Section, chapter
-from rockfrag.sentences import (
+from rockfrag.shaketable.definitions import DEFINITION
+from rockfrag.words.sentences import (
     amplitude,
     counted,
     has_interval,
@@ -38,7 +39,6 @@ from rockfrag.sentences import (
     sentence,
     shortened,
 )
-from rockfrag.shaketable.definitions import DEFINITION
 
 MOST_ROWS = 45
 """More rows than this are not legible in one figure; the finest scopes are then left to the table."""
@@ -47,7 +47,7 @@ _SCOPES = {"whole": "all pairs", "cell": "floor and object"}
 
 
 def effect_columns(ratio: str = "With/without pedestal") -> list[Column]:
-    """Columns of :func:`rockfrag.pedestal.study.effects_table` after :func:`shown_effects`."""
+    """Columns of :func:`rockfrag.effects.study.effects_table` after :func:`shown_effects`."""
     return [
         column("scope"),
         column("level", "Of"),

@@ -16,7 +16,8 @@ from matplotlib.artist import Artist
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
-from rockfrag import figure_style as style
+from rockfrag.base import figure_style as style
+from rockfrag.base.units import CENTIMETRES_PER_METRE, GRAVITY
 from rockfrag.motions.intensity import intensity_measures
 from rockfrag.records.motion import Motion
 from rockfrag.report.figures import GREY, MARKERS, drawn_tests
@@ -24,7 +25,8 @@ from rockfrag.report.findings import model_allowed, sliding_found
 from rockfrag.report.page import Column, column, table_html
 from rockfrag.report.part import FigureSpec, Results, Section, chapter
 from rockfrag.report.sections.amplitudes import MOST_ROWS
-from rockfrag.sentences import (
+from rockfrag.stages.tests import LIMITED, MOST_TESTED
+from rockfrag.words.sentences import (
     counted,
     label,
     listed,
@@ -33,8 +35,6 @@ from rockfrag.sentences import (
     sentence,
     shortened,
 )
-from rockfrag.stages.tests import LIMITED, MOST_TESTED
-from rockfrag.units import CENTIMETRES_PER_METRE, GRAVITY
 
 
 def left_out(results: Results) -> Section | None:

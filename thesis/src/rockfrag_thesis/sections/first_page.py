@@ -13,14 +13,14 @@ import pandas as pd
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from rockfrag.figure_style import BLUE, COLUMN_WIDTH, ORANGE, panels
+from rockfrag.base.figure_style import BLUE, COLUMN_WIDTH, ORANGE, panels
 from rockfrag.report.answer import study_answer
 from rockfrag.report.figures import BAND, GREY
 from rockfrag.report.findings import FRICTION, ratio_text
 from rockfrag.report.part import Answer, FigureSpec, Finding, Results
 from rockfrag.report.sections.pedestal import NONE, ratio_axis
-from rockfrag.sentences import agree, counted, listed, of_all, sentence
 from rockfrag.shaketable.definitions import DEFINITION
+from rockfrag.words.sentences import agree, counted, listed, of_all, sentence
 from rockfrag_thesis.hypotheses.floors import FIFTH, FLOORS, GROUND, THIRD
 from rockfrag_thesis.hypotheses.hypothesis import Finding as Evidence
 from rockfrag_thesis.sections.inverse_problem import (

@@ -16,11 +16,11 @@ from matplotlib.colors import SymLogNorm
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
-from rockfrag.figure_style import BLUE, COLUMN_WIDTH, GREEN, ORANGE, WIDEST, panels
+from rockfrag.base.figure_style import BLUE, COLUMN_WIDTH, GREEN, ORANGE, WIDEST, panels
 from rockfrag.report.page import Column, table_html
 from rockfrag.report.part import FigureSpec, Results, Section
-from rockfrag.sentences import number
 from rockfrag.shaketable.definitions import DEFINITION
+from rockfrag.words.sentences import number
 from rockfrag_thesis.floor_order import HYPOTHESES, TIE
 from rockfrag_thesis.sections.building import AXIS_NAMES
 from rockfrag_thesis.settings import settings_of

@@ -13,7 +13,7 @@ import pandas as pd
 from rockfrag.report.findings import ratio_text
 from rockfrag.report.page import Column, Row, by_row, table_html
 from rockfrag.report.part import Results, Section
-from rockfrag.sentences import listed
+from rockfrag.words.sentences import listed
 from rockfrag_thesis.sections.inverse_problem import PLACES, goals
 from rockfrag_thesis.settings import settings_of
 

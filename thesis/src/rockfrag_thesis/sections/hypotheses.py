@@ -13,7 +13,7 @@ from markupsafe import Markup
 
 from rockfrag.report.page import Column, Row, table_html
 from rockfrag.report.part import Results, Section
-from rockfrag.sentences import listed, number, probability
+from rockfrag.words.sentences import listed, number, probability
 from rockfrag_thesis.hypotheses.hypothesis import EXCLUDED
 
 _CONTRADICTIONS = (

@@ -11,7 +11,7 @@ from markupsafe import Markup
 
 from rockfrag.report.page import framed
 from rockfrag.report.part import Results, Section
-from rockfrag.sentences import listed, number
+from rockfrag.words.sentences import listed, number
 
 _CAPTIONS = {
     "table_3_1": "Table 3.1: critical angle, radius, frequency parameter and slenderness of the "

@@ -15,14 +15,15 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from rockfrag.figure_style import BLACK, OKABE_ITO, WIDEST, panels
-from rockfrag.pedestal.cluster_means import benjamini_hochberg
+from rockfrag.base.figure_style import BLACK, OKABE_ITO, WIDEST, panels
+from rockfrag.effects.cluster_means import benjamini_hochberg
 from rockfrag.report.figures import BAND, GREY, MARKERS
 from rockfrag.report.findings import ratio_text
 from rockfrag.report.page import Column, Row, by_row, estimated, table_html
 from rockfrag.report.part import FigureSpec, Results, Section
 from rockfrag.report.sections.pedestal import NONE, ratio_axis
-from rockfrag.sentences import (
+from rockfrag.study.study import Study
+from rockfrag.words.sentences import (
     agree,
     counted,
     has_interval,
@@ -32,7 +33,6 @@ from rockfrag.sentences import (
     sentence,
     shortened,
 )
-from rockfrag.study.study import Study
 from rockfrag_thesis.sensitivity_analysis.simulated import LAW_OF, REFERENCE
 from rockfrag_thesis.settings import settings_of
 

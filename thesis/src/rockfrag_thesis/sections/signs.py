@@ -8,7 +8,7 @@ import pandas as pd
 
 from rockfrag.report.page import Column, table_html
 from rockfrag.report.part import Results, Section
-from rockfrag.sentences import agree, listed, of_all, sentence
+from rockfrag.words.sentences import agree, listed, of_all, sentence
 from rockfrag_thesis.hypotheses.floors import FLOORS, GROUND
 from rockfrag_thesis.sections.sensitivity_analysis import (
     asks_sensitivity_analysis,
