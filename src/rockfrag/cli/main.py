@@ -158,7 +158,11 @@ def _add_constrain(commands: Any) -> None:
 
 # each command imports what it needs when it runs: `rockfrag --help` should not wait for numba
 def _simulate(options: argparse.Namespace) -> int:
-    from rockfrag.cli.main import simulated
+    from rockfrag.cli.simulated import (
+        contact_event_lines,
+        lines_in_plane,
+        lines_in_space,
+    )
     from rockfrag.motions.processing import scale
     from rockfrag.records.motion import GroundMotion
     from rockfrag.simulation import simulate
@@ -182,7 +186,7 @@ def _simulate(options: argparse.Namespace) -> int:
         response = simulate(block, GroundMotion(*components), **given)
         peaks = [component.pga / GRAVITY for component in components]
         title = motion.name
-        lines = simulated.lines_in_space(options.record, peaks, response.outcome)
+        lines = lines_in_space(options.record, peaks, response.outcome)
     else:
         up = None
         if options.vertical is not None:
@@ -197,11 +201,11 @@ def _simulate(options: argparse.Namespace) -> int:
         most = sys.maxsize if options.all_contact_events else MOST_CONTACT_EVENTS
         title = f"{motion.name}, peak {peak:.3f} g"
         is_loose = options.friction is not None
-        lines = simulated.lines_in_plane(
+        lines = lines_in_plane(
             options.record, motion, peak, response, is_loose=is_loose
         )
         events = response.contact_events.to_dict("records")
-        lines += simulated.contact_event_lines(events, most)
+        lines += contact_event_lines(events, most)
     print("\n".join(lines))
     if options.plot:
         from rockfrag.base.figure_style import save_figure

@@ -1,7 +1,7 @@
 """Lines that ``rockfrag simulate`` prints: outcome, largest rotations, impacts and contact events of one response.
 
-In: a response of one or two bodies, or of one body in space. Out: lines for a screen; rotations [rad], slips and walk
-[mm], times [s].
+In: a response of one or two bodies, or of one body in space. Out: lines for a screen; rotations [rad], slips and
+walk [mm], times [s].
 """
 
 import math
