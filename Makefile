@@ -22,7 +22,7 @@ SCREEN := $(if $(VERBOSE),,--logger rockfrag)
 RUN := .venv/bin/python -m
 PIP := $(RUN) pip install --quiet --disable-pip-version-check
 # where the digests of all wheels are known they are checked (maintenance/pins.py writes them)
-HASHES = hashes/$(shell "$(PYTHON)" -c 'import sys, platform; print(f"{sys.platform}-{platform.machine()}-py{sys.version_info[0]}{sys.version_info[1]}")').txt
+HASHES = requirements/$(shell "$(PYTHON)" -c 'import sys, platform; print(f"{sys.platform}-{platform.machine()}-py{sys.version_info[0]}{sys.version_info[1]}")').txt
 # what failed has said so in a sentence, which stays the last: SIGQUIT makes make end with status 1 and without a word
 # (where that signal is ignored, as in the background of some shells, make adds its line and ends with status 2)
 QUIETLY := || { trap 'kill -QUIT $$PPID; sleep 1; exit 0' QUIT; kill -QUIT $$$$; exit 1; }
@@ -72,22 +72,22 @@ torture: .venv/installed
 	@$(RUN) tests.fault_injection
 
 docs: .venv/installed
-	@$(RUN) pip install --quiet --constraint constraints.txt --editable ".[docs]"
+	@$(RUN) pip install --quiet --constraint requirements/constraints.txt --editable ".[docs]"
 	@$(RUN) sphinx -q -E -W --keep-going -b html docs docs/_build
 	@echo "docs/_build/index.html"
 
 bench: .venv/installed
-	@$(RUN) pip install --quiet --constraint constraints.txt --editable ".[peers]" || \
+	@$(RUN) pip install --quiet --constraint requirements/constraints.txt --editable ".[peers]" || \
 		echo "Not all other programs can be had here: rows of those that are absent are left out"
 	@.venv/bin/python benchmarks/run.py
 	@.venv/bin/python benchmarks/space.py || echo "MuJoCo cannot be had here: bodies in space are not compared"
 	@.venv/bin/python benchmarks/latency.py
 
-.venv/installed: pyproject.toml thesis/pyproject.toml constraints.txt $(wildcard hashes/*.txt)
+.venv/installed: pyproject.toml thesis/pyproject.toml requirements/constraints.txt $(wildcard requirements/*.txt)
 	@"$(PYTHON)" -c 'import sys; sys.exit(sys.version_info < (3, 11) and "Python 3.11 or newer is needed, found " + sys.version.split()[0] + "; name another with make PYTHON=…")'
 	@test -x .venv/bin/python || "$(PYTHON)" -m venv .venv
 	@echo "Installing into .venv (once)"
 	@if test -f "$(HASHES)"; then $(PIP) --require-hashes --no-deps --requirement "$(HASHES)" && \
 		$(PIP) --no-deps --no-build-isolation --editable . --editable thesis; \
-		else $(PIP) --constraint constraints.txt --editable ".[workflow,test,lint]" --editable thesis; fi
+		else $(PIP) --constraint requirements/constraints.txt --editable ".[workflow,test,lint]" --editable thesis; fi
 	@touch .venv/installed
