@@ -100,7 +100,7 @@ def test_a_name_that_is_looked_for_at_the_top_is_said_to_be_elsewhere():
 
 
 def test_what_is_slow_to_load_is_loaded_only_when_it_is_used():
-    names = ", ".join(f"rockfrag{package}" for package in (*SUBPACKAGES, ".cli"))
+    names = ", ".join(f"rockfrag{package}" for package in (*SUBPACKAGES, ".cli.main"))
     heavy = ("numba", "pandas", "obspy", "scipy", "statsmodels", "matplotlib")
     program = (
         f"import sys, {names}; print([one for one in {heavy} if one in sys.modules])"

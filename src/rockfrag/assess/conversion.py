@@ -169,6 +169,7 @@ class Conversion:
             rocked=rocked | overturned,
             others={name: cases[row, place] for name, cases in outcomes.others.items()},
             earthquakes=np.repeat(outcomes.earthquakes, count),
+            lifting=np.repeat(outcomes.lifts_from(), count),
         )
 
 

@@ -11,7 +11,7 @@ from rockfrag.base.errors import InputError
 from rockfrag.base.input_checks import real_number
 from rockfrag.motions.processing import starting_later
 from rockfrag.records.motion import Motion
-from rockfrag.records.parsing.quantities import azimuth_of, is_vertical
+from rockfrag.records.parsing.directions import azimuth_of, is_vertical
 
 _RIGHT_ANGLE = 5.0  # degrees by which two components may be off a right angle
 # directions looked in; the other half of the circle sees the same

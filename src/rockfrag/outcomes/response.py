@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pandas as pd
@@ -58,6 +58,13 @@ def mode_name(state: int, slides: int) -> str:
     if state == 0 and way:
         return way
     return MODES[state] + (f", {way}" if way else "")
+
+
+SPATIAL_COLUMNS = (
+    *("x_m", "y_m", "z_m", "tilt_rad", "axis_x", "axis_y", "turn_rad", "base_x_m"),
+    *("base_y_m", "omega_x_rad_s", "omega_y_rad_s", "omega_z_rad_s", "contacts"),
+)
+"""What a sample of a body in space tells, beside its time."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -147,6 +154,17 @@ class Response:
         from rockfrag.outcomes.response_figure import response_figure
 
         return response_figure(self, title)
+
+    def samples(self) -> dict[str, NDArray[Any]]:
+        """Return the columns of a row per sample and body, the bodies running fastest (from below, from 1)."""
+        count, bodies = self.theta.shape
+        return {
+            "time_s": np.repeat(self.time, bodies),
+            "body": np.tile(np.arange(1, bodies + 1), count),
+            "theta_rad": self.theta.ravel(),
+            "omega_rad_s": self.omega.ravel(),
+            "state": self.state.ravel(),
+        }
 
     @property
     def rocking_mode(self) -> NDArray[np.str_]:

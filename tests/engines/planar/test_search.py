@@ -42,7 +42,8 @@ def situation(
     w = working_memory()
     w["drive"][:], w["kind"][:] = -1, 1
     w["q"], _ = posed(p, theta.tolist(), [0.0] * bodies)
-    w["touching"][:bodies], w["limit"][:bodies] = touching, mus
+    w["touching"][:bodies] = touching
+    w["along"][:bodies] = w["against"][:bodies] = mus
     v = np.zeros(3 * MOST)
     if impact:
         v[: 3 * bodies] = rng.normal(0, 1, 3 * bodies) * np.tile(

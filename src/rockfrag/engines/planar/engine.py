@@ -276,9 +276,9 @@ def _contact_events(found: NDArray[Any], blocks: int) -> pd.DataFrame:
     """Make the table of contact events of a response."""
     before, slid = _modes(found["before"], blocks)
     after, slides = _modes(found["after"], blocks)
-    slip, theta, old, new = (
-        found[name][:, :blocks]
-        for name in ("slip", "theta", "omega_before", "omega_after")
+    slip = found["slip"][:, :blocks]
+    theta, old, new = (
+        found[name][:, 2 : 3 * blocks : 3] for name in ("q", "v_before", "v_after")
     )
     kinds = [
         _KINDS.get(kind) or _kind_of_change(*change)

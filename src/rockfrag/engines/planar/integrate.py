@@ -44,7 +44,9 @@ CONTACT_EVENT = np.dtype(
         *fields("time"),
         *whole("kind before after"),  # its kind, and the modes before and after
         *fields("energy_before energy_after"),
-        *fields("slip theta omega_before omega_after", MOST),
+        *fields("slip", MOST),
+        # coordinates of the bodies, and their rates before and after
+        *fields("q v_before v_after", 3 * MOST),
     ]
 )
 """What is kept of a contact event."""
@@ -465,12 +467,11 @@ def _note(p, w, time, kind, kept):
         found.time, found.kind, found.before, found.after = time, kind, before, after
         found.energy_before = impact.kinetic_energy(p, w.old_v)
         found.energy_after = impact.kinetic_energy(p, w.v)
+        copy(p, w.q, found.q)
+        copy(p, w.old_v, found.v_before)
+        copy(p, w.v, found.v_after)
         for k in range(p.count):
-            found.slip[k], found.theta[k] = slip(p, w, k), w.q[3 * k + 2]
-            found.omega_before[k], found.omega_after[k] = (
-                w.old_v[3 * k + 2],
-                w.v[3 * k + 2],
-            )
+            found.slip[k] = slip(p, w, k)
     w.noted += 1
 
 

@@ -95,7 +95,10 @@ WORK = np.dtype(
         # search for a mode
         *whole("touching", MOST, 2),
         *whole("moves", MOST),
-        *fields("limit", MOST),
+        # of a contact that sticks: coefficients for a shear against its slip before an impact and for one
+        # along it, and the sign of that slip
+        *fields("against along", MOST),
+        *whole("slid", MOST),
         *fields("old_v", 3 * MOST),
         *whole("old_closed", MOST, 2),
         *whole("old_slides", MOST),
