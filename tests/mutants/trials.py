@@ -14,6 +14,7 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from types import FrameType, ModuleType
 from typing import Any
 
@@ -57,10 +58,11 @@ class Mutant:
 class _Changed(importlib.abc.MetaPathFinder, importlib.machinery.SourceFileLoader):
     """Finds and loads the changed file in the place of what lies on the disk."""
 
-    def __init__(self, mutant: Mutant) -> None:
+    def __init__(self, mutant: Mutant, scratch: str) -> None:
         parts = mutant.path.relative_to(SOURCE.parent).with_suffix("").parts
         super().__init__(".".join(parts).removesuffix(".__init__"), str(mutant.path))
         self.mutant = mutant
+        self.place = Path(scratch) / mutant.path.name
 
     def find_spec(
         self, name: str, path: Any = None, target: ModuleType | None = None
@@ -71,9 +73,11 @@ class _Changed(importlib.abc.MetaPathFinder, importlib.machinery.SourceFileLoade
         return importlib.util.spec_from_file_location(name, self.path, loader=self)
 
     def get_code(self, fullname: str) -> Any:
-        """Compile the changed source, whatever lies in a cache."""
+        """Compile the changed source; it has a place of its own, where no machine code of the other lies."""
         source = self.mutant.path.read_text(encoding="utf-8")
-        return compile(self.mutant.change.applied(source), self.path, "exec")
+        changed = self.mutant.change.applied(source)
+        self.place.write_text(changed, encoding="utf-8")
+        return compile(changed, self.place, "exec")
 
 
 _FORKING = threading.Lock()
@@ -129,25 +133,26 @@ def _silent() -> Iterator[None]:
 
 
 def run_tests(
-    names: Sequence[str], plain: bool, mutant: Mutant | None, all_of_them: bool
+    names: Sequence[str], plain: bool, mutant: Mutant | None = None
 ) -> dict[str, Any]:
     """Run tests in a fork: (times of those that passed, first that failed or what became of the process)."""
-    # a fork of another thread in between would hold this one's pipe open
-    with _FORKING:
-        read, write = os.pipe()
-        child = os.fork()
-        if child == 0:
-            os.close(read)
-            # whatever happens, this process ends here
-            try:
-                with _silent():
-                    _run_here(names, plain, mutant, all_of_them, write)
-            finally:
-                os._exit(3)
-        os.close(write)
-    with os.fdopen(read) as answer:
-        said = answer.read()
-    _, status = os.waitpid(child, 0)
+    with TemporaryDirectory(prefix="mutant ") as scratch:
+        # a fork of another thread in between would hold this one's pipe open
+        with _FORKING:
+            read, write = os.pipe()
+            child = os.fork()
+            if child == 0:
+                os.close(read)
+                # whatever happens, this process ends here
+                try:
+                    with _silent():
+                        _run_here(names, plain, mutant, scratch, write)
+                finally:
+                    os._exit(3)
+            os.close(write)
+        with os.fdopen(read) as answer:
+            said = answer.read()
+        _, status = os.waitpid(child, 0)
     if said:
         return dict(json.loads(said))
     ended = os.waitstatus_to_exitcode(status)
@@ -158,11 +163,11 @@ def _run_here(
     names: Sequence[str],
     plain: bool,
     mutant: Mutant | None,
-    all_of_them: bool,
+    scratch: str,
     write: int,
 ) -> None:
     os.chdir(ROOT)
-    if not all_of_them:
+    if mutant is not None:
         # what does not end is noticed too
         most = int(3 * LONGEST_TRIAL_S + 10)
         resource.setrlimit(resource.RLIMIT_CPU, (most, most))
@@ -171,10 +176,10 @@ def _run_here(
 
         without_compiling()
     if mutant is not None:
-        sys.meta_path.insert(0, _Changed(mutant))
+        sys.meta_path.insert(0, _Changed(mutant, scratch))
     watch = _Watch()
     options = ["-q", "-p", "no:cacheprovider", "-m", "not slow", "--hypothesis-seed=1"]
-    stop = [] if all_of_them else ["-x"]
+    stop = ["-x"] if mutant else []
     status = pytest.main([*options, *stop, *names], plugins=[watch])
     failed = next(iter(watch.failed), "")
     if status not in (0, 1, 2) and not failed:
@@ -190,9 +195,9 @@ def _run_here(
 
 def quick_tests(group: Group) -> list[str]:
     """Tests of a group that pass on what is not changed, the shortest first, as many as may be asked."""
-    seconds = run_tests(
-        [f"tests/{name}" for name in group.tests], group.plain, None, True
-    )["seconds"]
+    seconds = run_tests([f"tests/{name}" for name in group.tests], group.plain)[
+        "seconds"
+    ]
     chosen, total = [], 0.0
     for name in sorted(seconds, key=lambda name: seconds[name]):
         total += seconds[name]
@@ -204,4 +209,4 @@ def quick_tests(group: Group) -> list[str]:
 
 def noticed_by(mutant: Mutant, group: Group, tests: Sequence[str]) -> str:
     """First test that fails on a mutant, or what became of its process; empty if nothing was noticed."""
-    return str(run_tests(tests, group.plain, mutant, False)["failed"])
+    return str(run_tests(tests, group.plain, mutant)["failed"])
