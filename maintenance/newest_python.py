@@ -2,8 +2,9 @@
 
     .venv/bin/python maintenance/newest_python.py
 
-Makes an environment in a temporary folder, installs the wheel alone, asks for an answer from a hazard table, and runs
-a few quick tests. Where there is no newer Python, or nothing can be installed for it, it says so and ends well.
+Makes an environment in a temporary folder, installs the wheel alone, asks for an answer from a hazard table, and
+runs a few quick tests. Where there is no newer Python, or nothing can be installed for it, it says so and ends
+well.
 """
 
 import os
@@ -81,11 +82,24 @@ def newest_python() -> Path | None:
 
 def installed(python: Path, folder: Path) -> Path | None:
     """Python of a new environment with the wheel and what its tests need, or None where that cannot be had."""
+    project = folder / "project"
+    # building leaves files in the folder that it builds
+    shutil.copytree(ROOT / "src", project / "src")
+    for name in ("pyproject.toml", "README.md", "LICENSE"):
+        shutil.copy2(ROOT / name, project)
     own = folder / "venv" / ("Scripts" if os.name == "nt" else "bin") / "python"
     pip = [str(own), "-m", "pip", "--disable-pip-version-check"]
     steps = (
         [str(python), "-m", "venv", str(folder / "venv")],
-        [*pip, "wheel", "--quiet", "--no-deps", "--wheel-dir", str(folder), str(ROOT)],
+        [
+            *pip,
+            "wheel",
+            "--quiet",
+            "--no-deps",
+            "--wheel-dir",
+            str(folder),
+            str(project),
+        ],
         [*pip, "install", "--quiet", "--find-links", str(folder), "rockfrag[test]"],
     )
     for step in steps:

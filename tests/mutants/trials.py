@@ -179,6 +179,7 @@ def _run_here(
         sys.meta_path.insert(0, _Changed(mutant, scratch))
     watch = _Watch()
     options = ["-q", "-p", "no:cacheprovider", "-m", "not slow", "--hypothesis-seed=1"]
+    options += ["--continue-on-collection-errors"]
     stop = ["-x"] if mutant else []
     status = pytest.main([*options, *stop, *names], plugins=[watch])
     failed = next(iter(watch.failed), "")
