@@ -203,7 +203,7 @@ def test_intervals_hold_the_truth_as_often_as_they_say():
         outcomes = outcomes_from(capacities, names)
         sides = (
             outcomes_from(capacities * math.exp(sign * of_width), names)
-            for sign in (-1, 0, 1)
+            for sign in (-1, 1)
         )
         shifts = {"width": shift_of(*sides), "model": after_uplift(of_model)}
         found = Evidence(outcomes, shifts).estimate(risk_target(hazard, 50))

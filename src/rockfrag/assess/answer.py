@@ -367,18 +367,14 @@ def _evidence(
     """What estimates rest on: outcomes, and all that is not known."""
     counted = next(iter(shaken.arrangements.values()))
     error = MODEL_ERRORS[objects.measured_as].beyond
-    shifts = {
-        change.name: risk.shift_of(change.lower, shaken.before, change.upper)
-        for change in shaken.moved
-    }
+    shifts = {change.name: risk.shift_of(*change.sides) for change in shaken.moved}
     shifts["model"] = risk.after_uplift(error)
     if not plan.shaking.motions.both:
         shifts["space"] = risk.after_uplift(SPACE)
     if conversion:
         shifts["conversion"] = risk.after_uplift(conversion.shift)
         if shaken.together is not None:
-            lower, upper = shaken.together
-            shifts["together"] = risk.shift_of(lower, counted, upper)
+            shifts["together"] = risk.shift_of(*shaken.together)
     rates = _of_quantiles(counted, plan.hazard) if plan.hazard else {}
     return risk.Evidence(counted, shifts, rates)
 

@@ -223,6 +223,7 @@ class Text(StrEnum):
     COLUMN_RECORDED = auto()
     COLUMN_TOPPLES_FROM = auto()
     IN_NRML = auto()
+    IN_NRML_SPREADS = auto()
     GALLERY_TITLE = auto()
     GALLERY_LEAD = auto()
     GALLERY_ASKED = auto()

@@ -108,9 +108,8 @@ const answer = (data) => {
     answer.complete = runs.every((run, i) => run.role !== "moved" || outcomes[i]);
     if (earlier?.complete) for (const name of ESTIMATED) answer[name] = earlier[name];
     else if (answer.complete) {
-      const { ratios } = tableOf(request), fit = ratios ? shiftFrom(now, ratios) : null, [before] = known("before");
-      const between = before?.outcomes ?? now, { shiftOf, afterUplift } = judge;
-      const shifts = [...sides.map(([name, lower, upper]) => shiftOf(name, lower, between, upper)), afterUplift("model", MODEL)];
+      const { ratios } = tableOf(request), fit = ratios ? shiftFrom(now, ratios) : null, { shiftOf, afterUplift } = judge;
+      const shifts = [...sides.map(([name, lower, upper]) => shiftOf(name, lower, upper)), afterUplift("model", MODEL)];
       if (!request.solid) shifts.push(afterUplift("space", SPACE));
       if (fit) shifts.push(afterUplift("conversion", fit.shift));
       const rates = hazard ? judge.ofQuantiles(now, hazard) : {};
@@ -152,8 +151,7 @@ const answer = (data) => {
   }
   function rocksFrom(request, now, exact, ensemble) {
     if (exact) return ensemble.bodyOf({ ...request, measured: request.restitution }).uplift;
-    const first = judge.fractions(now, "rocked").findIndex((share) => share > 0);
-    return first < 0 ? Infinity : now.levels[first];
+    return Math.min(...judge.liftsFrom(now));
   }
   // the motion that topples it first, and at which level; the first one at the site's where none does
   function deciding({ levels, allowed, overturned }, level) {
