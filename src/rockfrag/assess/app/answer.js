@@ -120,7 +120,7 @@ const answer = (data) => {
       Object.assign(answer, { fraction, rocking, shifts, rates });
       if (hazard) answer.probability = judge.estimate(target, prediction, rates);
       const main = answer.probability ?? fraction, half = judge.estimate(judge.amplitudeTarget(0.5), prediction, rates);
-      Object.assign(answer, { main, half, decision: judge.decide(prediction, main.draws, data.measurements, answer.accepted) });
+      Object.assign(answer, { main, half, decision: judge.decision(target, prediction, main, answer.accepted, answer.years) });
     }
     const { shifts = [], rates = {} } = answer, meanOf = (outcomes) => (answer.shifts ? judge.meanOf(target, shifts, rates, outcomes) : judge.valueOf(target, outcomes));
     answer.arrangements = [["on_its_pedestal", answer.main?.value ?? meanOf(now)], ...known("arrangement").map((run) => [run.name, meanOf(run.outcomes)])];

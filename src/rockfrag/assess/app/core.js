@@ -131,8 +131,8 @@ const core = (data) => {
     });
   }
   // leave it, secure it, or measure first what would turn that round with a chance; the cheapest measurement first
-  function decide(prediction, values, measurements, accepted) {
-    const middle = mean(values), otherwise = middle > accepted ? "secure" : "leave";
+  function decide(prediction, middle, values, measurements, accepted) {
+    const otherwise = middle > accepted ? "secure" : "leave";
     for (const [source, left] of measurements) {
       if (!prediction.names.includes(source)) continue;
       const turned = meansOnceKnown(values, sourceOf(prediction, source), left).filter((each) => each > accepted !== middle > accepted);

@@ -155,7 +155,12 @@ const risk = (data) => {
     const last = prediction.levels.at(-1), scaled = target.scale(target.kind === "level" ? values.map((each) => Math.min(each, last)) : values);
     const spread = Math.sqrt(variance(scaled));
     const sources = Object.fromEntries(Object.entries(parts(prediction, scaled)).map(([name, part]) => [name, spread * Math.sqrt(part)]));
-    return { value, lower: Math.min(lower, value), upper: Math.max(upper, value), sources, draws: shown };
+    return { value, lower: Math.min(lower, value), upper: Math.max(upper, value), sources, draws: values };
+  }
+  // what to do by a probability; of one in some years by its rate, of which means are taken
+  function decision(target, prediction, { value, draws }, accepted, years) {
+    const rate = (p) => (target.kind === "rate" ? -Math.log1p(-Math.min(p, 1 - 1e-15)) / years : p);
+    return drawn.decide(prediction, rate(value), draws, data.measurements, rate(accepted));
   }
   // standard deviation of ln rate that the quantiles of a hazard stand for
   function ofQuantiles(outcomes, curve) {
@@ -194,7 +199,7 @@ const risk = (data) => {
 
   return {
     fractions, curveOf, curveOfOneLevel, rateOf, levelOf, probabilityIn, riskTarget, fractionTarget, amplitudeTarget, valueOf,
-    liftsFrom, estimate, meanOf, shiftOf, afterUplift, predict, decide: drawn.decide, ofQuantiles, compared, groups,
+    liftsFrom, estimate, meanOf, shiftOf, afterUplift, predict, decision, ofQuantiles, compared, groups,
   };
 };
 if (typeof module !== "undefined") module.exports = risk;
