@@ -236,8 +236,11 @@ def counted(found: Assessment) -> Finding:
     if found.counts is None:
         rock, topple = percent(found.rocking.value), percent(found.fraction.value)
         return finding(Text.COUNTED_MOVED, rock=rock, topple=topple)
-    total, rocked, fell = found.counts
-    return finding(Text.COUNTED, total=total, rock=rocked, topple=fell)
+    (total, rocked, fell), every = found.counts, len(found.motions.ground)
+    about = {"total": total, "rock": rocked, "topple": fell}
+    if total < every:
+        return finding(Text.COUNTED_SOME, every=every, **about)
+    return finding(Text.COUNTED, **about)
 
 
 def between(fraction: Estimate) -> Finding:

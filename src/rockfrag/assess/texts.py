@@ -48,6 +48,7 @@ class Text(StrEnum):
     TITLE_HELPS = auto()
     TITLE_SURE = auto()
     COUNTED = auto()
+    COUNTED_SOME = auto()
     COUNTED_MOVED = auto()
     FRACTION_BETWEEN = auto()
     FRACTION_AT_MOST = auto()

@@ -66,7 +66,8 @@ const findings = (data) => {
     // ---- behind it
 
     function atLevel() {
-      const counted = counts ? finding("counted", { total: counts[0], rock: counts[1], topple: counts[2] })
+      const every = data.earthquakes.length, [total, rock, topple] = counts ?? [];
+      const counted = counts ? finding(total < every ? "counted_some" : "counted", { ...(total < every ? { every } : {}), total, rock, topple })
         : finding("counted_moved", { rock: percent(found.rockingValue), topple: percent(found.value) });
       const starts = Number.isFinite(found.rocksFrom) ? finding("starts_at", { starts: amount(found.rocksFrom) }) : finding("starts_beyond");
       return [counted, ...(fraction && !atRest ? [between()] : []), starts, ...(request.level === null ? [finding("exceeded_in_475", { level })] : [])];
