@@ -170,7 +170,7 @@ def _lines_agree(answer: dict[str, Any]) -> bool:
     if len(" ".join(lines).split()) > 60 or _EMPTY.search("\n".join(lines + details)):
         return False
     ids = [each["id"] for each in answer["findings"]]
-    if ids[0] == "verdict_few_earthquakes":
+    if ids[0] == "how_likely_few_earthquakes":
         return ids[1:] == ["give_earthquakes"]
     toppling, likely = answer["fraction_toppling"], answer["probability"]
     estimate = likely or toppling

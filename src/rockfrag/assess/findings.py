@@ -70,8 +70,8 @@ def first_screen(found: Assessment) -> list[Finding]:
     """How likely it topples, how far that is away, how likely in some years, and what to do."""
     if few_earthquakes(found):
         about = finding(Text.GIVE_EARTHQUAKES, least=FEWEST_EARTHQUAKES)
-        return [verdict(found), about]
-    said = [verdict(found)]
+        return [how_likely(found), about]
+    said = [how_likely(found)]
     if not (found.fraction is not None and found.does_not_move):
         said.append(how_far(found))
     if found.probability is not None:
@@ -94,21 +94,21 @@ def _amount(found: Assessment, value: float) -> Finding:
     return finding(Text.AMOUNT, value=two(value), **about)
 
 
-def verdict(found: Assessment) -> Finding:
+def how_likely(found: Assessment) -> Finding:
     """How likely the object topples at the level, or where it starts to rock without one."""
     level, rocking, fraction = found.level, found.rocking, found.fraction
     if level is None or rocking is None or fraction is None:
         if not math.isfinite(found.rocks_from):
-            return finding(Text.VERDICT_NEVER_ROCKS, **_who(found))
+            return finding(Text.HOW_LIKELY_NEVER_ROCKS, **_who(found))
         starts = _amount(found, found.rocks_from)
-        return finding(Text.VERDICT_NO_LEVEL, starts=starts, **_who(found))
+        return finding(Text.HOW_LIKELY_NO_LEVEL, starts=starts, **_who(found))
     about = {**_who(found), "level": level.amount}
     if few_earthquakes(found):
         return _few(found, fraction, about)
     if found.does_not_move:
         about["starts"] = _amount(found, found.rocks_from)
-        return finding(Text.VERDICT_AT_REST, fraction, **about)
-    text = Text.VERDICT_HARDLY_ROCKS if rocking.value <= HARDLY else Text.VERDICT
+        return finding(Text.HOW_LIKELY_AT_REST, fraction, **about)
+    text = Text.HOW_LIKELY_HARDLY_ROCKS if rocking.value <= HARDLY else Text.HOW_LIKELY
     about["likelihood"] = finding(likelihood_of(fraction.value).value)
     return finding(text, fraction, p=_said_chance(fraction), **about)
 
@@ -120,7 +120,7 @@ def _few(found: Assessment, fraction: Estimate, about: dict[str, Value]) -> Find
         total, _, topple = found.counts
     number = len(set(found.counted.earthquakes))
     counts = {"topple": topple, "total": total, "n": number}
-    return finding(Text.VERDICT_FEW_EARTHQUAKES, fraction, **counts, **about)
+    return finding(Text.HOW_LIKELY_FEW_EARTHQUAKES, fraction, **counts, **about)
 
 
 def _said_chance(estimate: Estimate) -> Value:

@@ -1,8 +1,11 @@
-"""The test that holds its level: t on the means of the units that were sampled, see ``docs/pedestal.md``.
+"""Tests on the means of the units that were sampled: Student's t, which keeps its level, and sign flips, exact.
 
-Pairs share motion and earthquake, so the mean of d over one earthquake is one observation. Where pairs agree to
-the step of the series of levels a shift may hide in all of them: the resolution of a mean is that of the pairs
-that share the most frequent value, times their fraction. Beside it stand sign flips, the exact test.
+In: pairs with d = ln a_P - ln a_NP [-] and its resolution. Out: :class:`Estimate`, the mean with interval and p
+value. Theory: ``docs/pedestal.md``, "Which test, and about what"; ``docs/validation-pedestal.md``.
+
+Pairs of one motion and earthquake are dependent, so the mean of d over one earthquake is one observation. Where
+pairs agree to the step of the series of levels a shift may hide in all of them: the resolution of a mean is that
+of the pairs that have the most frequent value, times their fraction.
 """
 
 import math
@@ -180,10 +183,10 @@ def mean_effects(table: pd.DataFrame, by: str) -> dict[Hashable, Estimate]:
 
 
 class Units(NamedTuple):
-    """What was sampled: the earthquakes of some pairs, or the motions of their single earthquake."""
+    """Sampled units: the earthquakes of some pairs, or the motions of their single earthquake."""
 
-    d: Array  # mean of d over each one's pairs [-], shape (k,)
-    hidden: Array  # what the steps of these pairs hide of it [-], shape (k,)
+    d: Array  # mean of d over the pairs of each [-], shape (k,)
+    hidden: Array  # half-width that the steps of these pairs leave open [-], shape (k,)
 
     def effect(self) -> Estimate:
         """Mean with interval and p value."""
@@ -191,7 +194,7 @@ class Units(NamedTuple):
 
 
 def sampled_units(table: pd.DataFrame, by: str) -> dict[Hashable, Units]:
-    """What was sampled of every group of rows with the same value of a column."""
+    """Units of every group of rows with the same value of a column."""
     d, known = table["d"].to_numpy(dtype=float), resolution_of(table)
     hidden = np.zeros(len(table))
     groups = table.groupby(by, sort=True).indices
@@ -200,7 +203,7 @@ def sampled_units(table: pd.DataFrame, by: str) -> dict[Hashable, Units]:
     work = table[[by, "earthquake", "motion", "d"]].assign(hidden=hidden)
     motions = work.groupby([by, "earthquake", "motion"])[["d", "hidden"]].mean()
     earthquakes = motions.groupby(level=[by, "earthquake"]).mean().reset_index()
-    # what was sampled of a single earthquake are its motions
+    # the units of a single earthquake are its motions
     several = earthquakes[earthquakes.duplicated(by, keep=False)]
     motions = motions.reset_index()
     units = pd.concat([several, motions[~motions[by].isin(several[by])]])
@@ -264,7 +267,13 @@ def holm(p: npt.ArrayLike) -> Array:
 def benjamini_hochberg(p: npt.ArrayLike) -> Array:
     """Adjust p values so that the fraction of false rejections is held (Benjamini, Hochberg 1995).
 
-    NaN stays NaN and does not count.
+    Parameters
+    ----------
+    p : p values [-], shape (n,); NaN stays NaN and does not count
+
+    Returns
+    -------
+    The adjusted p values [-], shape (n,).
     """
     from statsmodels.stats.multitest import fdrcorrection
 
@@ -337,8 +346,16 @@ def leave_one_earthquake_out(table: pd.DataFrame) -> pd.DataFrame:
     whole, rows = mean_effect(table).mean, []
     for name in earthquakes:
         effect = mean_effect(table[table["earthquake"] != name])
-        limits = (effect.ratio, effect.ratio_lower, effect.ratio_upper)
-        rows.append([name, *limits, effect.p, abs(effect.mean - whole)])
+        rows.append(
+            {
+                "without": name,
+                "ratio": effect.ratio,
+                "lower": effect.ratio_lower,
+                "upper": effect.ratio_upper,
+                "p": effect.p,
+                "largest_change": abs(effect.mean - whole),
+            }
+        )
     result = pd.DataFrame(rows, columns=WITHOUT_COLUMNS)
     shift = result["largest_change"]
     return result.assign(largest_change=shift == shift.max())

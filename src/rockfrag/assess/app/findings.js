@@ -26,14 +26,14 @@ const findings = (data) => {
     // exceptionally unlikely that it rocks, limits included
     const atRest = rocking?.upper < BELOW[0][0], value = fraction?.value ?? found.value, rocks = rocking?.value ?? found.rockingValue;
 
-    function verdict() {
+    function howLikely() {
       const about = { ...who, level };
       if (few) {
         const topple = counts ? counts[2] : percent(found.value), total = counts ? counts[0] : data.earthquakes.length;
-        return finding("verdict_few_earthquakes", { ...about, topple, total, n: found.earthquakes });
+        return finding("how_likely_few_earthquakes", { ...about, topple, total, n: found.earthquakes });
       }
-      if (atRest) return finding("verdict_at_rest", { ...about, starts: amount(found.rocksFrom) });
-      const id = rocks <= HARDLY ? "verdict_hardly_rocks" : "verdict";
+      if (atRest) return finding("how_likely_at_rest", { ...about, starts: amount(found.rocksFrom) });
+      const id = rocks <= HARDLY ? "how_likely_hardly_rocks" : "how_likely";
       return finding(id, { ...about, likelihood: finding(likelihoodOf(value)), p: chance(fraction ?? { value: found.value, lower: 1, upper: 0 }) });
     }
     function chance({ value, lower, upper }) {
@@ -58,9 +58,9 @@ const findings = (data) => {
       return finding(action === "secure" ? "secure_unless" : "leave_unless", { p: percent(fraction.value || fraction.upper) });
     }
     function first() {
-      if (few) return [verdict(), finding("give_earthquakes", { least: FEWEST_EARTHQUAKES })];
-      if (!fraction) return [verdict()];
-      return [verdict(), ...(atRest ? [] : [howFar(found.half)]), ...(probability ? [inYears()] : []), advice()];
+      if (few) return [howLikely(), finding("give_earthquakes", { least: FEWEST_EARTHQUAKES })];
+      if (!fraction) return [howLikely()];
+      return [howLikely(), ...(atRest ? [] : [howFar(found.half)]), ...(probability ? [inYears()] : []), advice()];
     }
 
     // ---- behind it
