@@ -49,7 +49,8 @@ def find_modes(building: ShearBuilding) -> Modes:
         # factors of mass [1/s] and stiffness [s] in C = α M + β K (Chopra, eq. 11.4.11)
         alpha, beta = 2 * damping.ratio * float(frequency[0]), 0.0
         if building.storeys > 1:
-            first, second = (float(frequency[number - 1]) for number in damping.modes)
+            lower, higher = damping.modes
+            first, second = float(frequency[lower - 1]), float(frequency[higher - 1])
             beta = 2 * damping.ratio / (first + second)
             alpha = beta * first * second
         ratios = alpha / (2 * frequency) + beta * frequency / 2

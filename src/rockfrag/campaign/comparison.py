@@ -87,16 +87,13 @@ class MeasuredTests:
         """
         outcomes = np.empty((self.repeats, len(self.overturned)), dtype=bool)
         for repeat, chosen_by in self.divisions():
-            known, fell, asked = (
-                measures[chosen_by],
-                self.overturned[chosen_by],
-                ~chosen_by,
-            )
+            known, fell = measures[chosen_by], self.overturned[chosen_by]
+            asked = ~chosen_by
             if measures.ndim == 1:
                 outcomes[repeat, asked] = measures[asked] >= best_threshold(known, fell)
                 continue
-            counts = fell[None].astype(np.float64), np.ones((1, len(fell)))
-            fit = fit_batch(_design(known), *counts, penalised=True)
+            failures, trials = fell[None].astype(np.float64), np.ones((1, len(fell)))
+            fit = fit_batch(_design(known), failures, trials, penalised=True)
             outcomes[repeat, asked] = (
                 _design(measures[asked]) @ fit.coefficients[0] >= 0
             )
@@ -124,15 +121,11 @@ class MeasuredTests:
         ``better_upper`` and ``p``: two-sided, by changing the sign of whole groups at random (McNemar's test for
         tests that are not independent).
         """
-        right, others = (
-            (np.atleast_2d(outcomes) == self.overturned).mean(axis=0)
-            for outcomes in (ours, theirs)
-        )
+        right = (np.atleast_2d(ours) == self.overturned).mean(axis=0)
+        others = (np.atleast_2d(theirs) == self.overturned).mean(axis=0)
         difference = right - others
-        sums, rng = (
-            np.bincount(self.groups, difference),
-            np.random.default_rng(self.seed),
-        )
+        sums = np.bincount(self.groups, difference)
+        rng = np.random.default_rng(self.seed)
         found = stats.permutation_test(
             (sums,), np.sum, permutation_type="samples", n_resamples=9999, rng=rng
         )

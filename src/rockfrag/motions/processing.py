@@ -189,7 +189,7 @@ def bracketed_part(motion: Motion, threshold_g: float = 0.05) -> Motion:
             f"step bracketed_part: motion {motion.name!r} never reaches {threshold_g} g "
             f"(its peak is {motion.pga / GRAVITY:.3g} g); lower threshold_g."
         )
-    start, end = (float(place * motion.dt) for place in above[[0, -1]])
+    start, end = float(above[0] * motion.dt), float(above[-1] * motion.dt)
     return _between(motion, "bracketed_part", start, end, threshold_g=threshold_g)
 
 
@@ -248,7 +248,8 @@ def _filtered(
 ) -> Motion:
     corners, nyquist = {}, 0.5 / motion.dt
     for name, value in corners_hz.items():
-        corner = corners[name] = positive_number(f"step {kind}: {name}", value, "hertz")
+        corner = positive_number(f"step {kind}: {name}", value, "hertz")
+        corners[name] = corner
         # ObsPy takes what is within a millionth of Nyquist for Nyquist and changes the filter
         if corner >= nyquist * (1 - 2e-6):
             raise InputError(

@@ -58,11 +58,11 @@ def plot_tests(
     axes.plot(x, y, ls="", marker=marker, mfc="none", mec=colour, ms=4, mew=0.9)
     for bound, arrow in (("up", _UP), ("down", _DOWN)):
         if rows[bound].any():
-            _plot_arrows(axes, x, y, rows[bound], arrow, colour)
+            _plot_arrows(axes, x, y, bound=rows[bound], arrow=arrow, colour=colour)
 
 
 def _plot_arrows(
-    axes: Axes, x: Floats, y: Floats, bound: pd.Series, arrow: Path, colour: str
+    axes: Axes, x: Floats, y: Floats, *, bound: pd.Series, arrow: Path, colour: str
 ) -> None:
     chosen = bound.to_numpy(dtype=bool)
     axes.plot(
@@ -134,7 +134,8 @@ def _sides_panel(
         own = rows["pedestal"] == side
         if crowded and own.any():
             part = rows[own].assign(x=x[own])
-            box_at(axes, part, "x", sorted(part["x"].unique()), 0.18, SIDE_COLOUR[side])
+            levels_x = sorted(part["x"].unique())
+            box_at(axes, part, "x", levels_x, width=0.18, colour=SIDE_COLOUR[side])
         elif own.any():
             where = x[own].to_numpy(dtype=float)
             plot_tests(axes, where, rows[own], SIDE_MARKER[side], SIDE_COLOUR[side])
@@ -193,7 +194,7 @@ def pedestal_scatter(
                 x, y, ls="", marker=marker, mfc="none", mec=colour, mew=1.0, ms=4.5
             )
             for bound, arrow in (("up_p", _UP), ("up_np", _RIGHT)):
-                _plot_arrows(axes, x, y, own[bound], arrow, colour)
+                _plot_arrows(axes, x, y, bound=own[bound], arrow=arrow, colour=colour)
         axes.set(xlim=(0, upper), ylim=(0, upper), aspect="equal")
         axes.locator_params(nbins=5)
         # above the panel, where it hides no test
@@ -233,6 +234,7 @@ def box_at(
     part: pd.DataFrame,
     by: str,
     levels: Sequence[Any],
+    *,
     width: float,
     colour: str,
 ) -> None:

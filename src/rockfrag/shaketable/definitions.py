@@ -6,7 +6,7 @@ always overturns are three different figures; between the last two lie structura
 """
 
 import math
-from collections.abc import Hashable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache, partial
 from pathlib import Path
@@ -232,8 +232,8 @@ def tests_from_swept(
             )
         levels = cache(partial(_levels, amplitudes_g, protocol))
         every = np.arange(amplitudes_g.size)
-        for place, about in enumerate(part.about.to_dict("records")):
-            limit = None if limits_g is None else limits_g.get(about["motion"])
+        for place, motion in enumerate(part.about["motion"]):
+            limit = None if limits_g is None else limits_g.get(motion)
             climbed = [
                 levels(limit, number) for number in range(1, protocol.repetitions + 1)
             ]
@@ -241,7 +241,13 @@ def tests_from_swept(
                 series = climbed if definition == DEFINITION else [every]
                 rows += [
                     {"repetition": repetition, "definition": definition}
-                    | _row(part, place, about, protocol, definition, amplitudes)
+                    | _row(
+                        part,
+                        place,
+                        protocol,
+                        definition=definition,
+                        climbed=amplitudes,
+                    )
                     for repetition, amplitudes in enumerate(series, start=1)
                 ]
     return as_tests_table(rows)
@@ -250,15 +256,16 @@ def tests_from_swept(
 def _row(
     part: Swept,
     place: int,
-    about: Mapping[Hashable, object],
     protocol: Protocol,
+    *,
     definition: str,
     climbed: NDArray[np.intp],
 ) -> dict[str, object]:
-    """Outcome of a motion at the amplitudes that were climbed."""
-    bounds = (
-        always_overturning if definition == "always_overturning" else first_overturning
-    )
+    """Outcome of the motion in a row of a part, at the amplitudes that were climbed."""
+    about = part.about.iloc[place]
+    bounds = first_overturning
+    if definition == "always_overturning":
+        bounds = always_overturning
     true = bounds(part.amplitude_g[climbed], part.overturned[place][climbed])
     shown = true
     if protocol.measurement is not None:

@@ -165,8 +165,11 @@ def restitution_from_impacts(
             return largest
         if flight(1e-9 * largest, pivot) >= interval:
             return 1e-9 * largest
-        ends = 1e-9 * largest, largest
-        return float(brentq(lambda s: flight(s, pivot) - interval, *ends, xtol=1e-14))
+
+        def too_long(speed: float) -> float:
+            return flight(speed, pivot) - interval
+
+        return float(brentq(too_long, 1e-9 * largest, largest, xtol=1e-14))
 
     speeds = [
         speed_of(float(T), pivot) for T, pivot in zip(intervals, pivots, strict=True)

@@ -86,7 +86,8 @@ def limited_tests(
     tests = tests_from_swept(
         ida_curves, protocol, definitions=[DEFINITION], limits_g=largest
     )
-    at, by = (tests["motion"].map(known[name]) for name in ("limit_g", "limited_by"))
+    at = tests["motion"].map(known["limit_g"])
+    by = tests["motion"].map(known["limited_by"])
     ended = (tests["censored"] == "right") & (at < protocol.limit_g)
     reached = "shaker's " + by + " reached at " + at.map("{:.3f} g".format)
     return tests.assign(
@@ -244,12 +245,12 @@ def sliding_table(files: Iterable[Path]) -> pd.DataFrame:
     parts = []
     for path in files:
         cases = pd.read_parquet(path, columns=["configuration", *outcomes])
-        fell, fell_rough, slip, flights = (cases[name] for name in outcomes)
+        fell, fell_rough = cases["overturned"], cases["overturned_without_sliding"]
         each = cases[["configuration"]].assign(
             cases=1,
-            slid=slip > 0,
-            flew=flights > 0,
-            largest_slip_m=slip,
+            slid=cases["peak_slip_m"] > 0,
+            flew=cases["flights"] > 0,
+            largest_slip_m=cases["peak_slip_m"],
             saved=fell_rough & ~fell,
             felled=fell & ~fell_rough,
         )

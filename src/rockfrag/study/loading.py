@@ -63,10 +63,15 @@ def _study(content: Mapping[str, Any], source: Path) -> Study:
         known, counterparts = arrangements.read_configurations(
             configurations_file, specimens
         )
-    building_file, shaker_file, measured_tests = (
-        None if content.get(key) is None else existing_file(source, key, content[key])
-        for key in ("building", "shaker", "measured_tests")
-    )
+
+    def optional_file(key: str) -> Path | None:
+        if content.get(key) is None:
+            return None
+        return existing_file(source, key, content[key])
+
+    building_file = optional_file("building")
+    shaker_file = optional_file("shaker")
+    measured_tests = optional_file("measured_tests")
     catalogue_file = existing_file(source, "motions.catalogue", motions["catalogue"])
     by_name = {configuration.name: configuration for configuration in known}
     tested = _used(source, "bodies", bodies.get("use"), list(by_name), "configurations")

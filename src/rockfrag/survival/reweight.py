@@ -85,9 +85,8 @@ class Reweighted:
         """
         curves = self.curves()
         log_level = np.log(curves["level"].to_numpy())
-        before, after = (
-            np.log(curves[f"mean_{when}"].to_numpy()) for when in ("before", "after")
-        )
+        before = np.log(curves["mean_before"].to_numpy())
+        after = np.log(curves["mean_after"].to_numpy())
         wanted = np.log(RATES)
         levels = [
             np.exp(np.interp(-wanted, -rates, log_level, left=np.nan, right=np.nan))

@@ -60,8 +60,8 @@ def run(job: Job[Study]) -> Results:
         study.configurations,
         study.amplitudes.values_g,
         protocol_of(study),
-        job.threads,
-        lambda done: job.log.info("%d of %d buildings", done, len(variants)),
+        threads=job.threads,
+        progress=lambda done: job.log.info("%d of %d buildings", done, len(variants)),
     )
     yield "building_sensitivity/tests", tests
     by = ["axis", "value", "label", "credible"]
@@ -130,6 +130,7 @@ def building_sensitivity(
     specimens: Sequence[System],
     amplitudes_g: Floats,
     protocol: Protocol,
+    *,
     threads: int = 1,
     progress: Callable[[int], None] = lambda done: None,
 ) -> pd.DataFrame:

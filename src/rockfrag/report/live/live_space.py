@@ -95,7 +95,7 @@ def _sizes(body: RigidBody) -> dict[str, Any] | None:
     """Width, depth, and turn about the vertical of a box or cylinder, and what else is typed; None of others."""
     turn = 0.0
     if isinstance(body.base, Circle):
-        width = depth = 2 * body.base.radius
+        width, depth = 2 * body.base.radius, 2 * body.base.radius
     else:
         base = np.array(body.base.vertices)  # type: ignore[union-attr]
         if len(base) != 4 or np.ptp(np.hypot(*(base - base.mean(axis=0)).T)) > 1e-9:
