@@ -31,7 +31,16 @@ class Modes:
 
 
 def find_modes(building: ShearBuilding) -> Modes:
-    """Solve the undamped eigenproblem of the elastic building (Chopra, ch. 10)."""
+    """Solve the undamped eigenproblem of the elastic building (Chopra, ch. 10).
+
+    Parameters
+    ----------
+    building : the storeys, from below
+
+    Returns
+    -------
+    The :class:`Modes`: frequencies [rad/s], shape (storeys,), and mode shapes, shape (storeys, storeys).
+    """
     mass = np.asarray(building.masses)
     root = 1 / np.sqrt(mass)
     # the symmetric form M^-1/2 K M^-1/2 keeps the shapes orthogonal to machine precision

@@ -107,10 +107,19 @@ def one_cosine(amplitude: float, period: float, dt: float = DT) -> Motion:
 
 
 def commanded_cosine(pga: float, pgv_over_pga: float, cycles: int = 1) -> Motion:
-    """Whole cosines of acceleration, as a table is told to make by PGA and PGV/PGA.
+    """Whole cosines of acceleration, as commanded of a table by PGA and PGV/PGA.
 
     The displacement A - A cos 2πFt has the acceleration PGA cos 2πFt with F = PGA / (2π PGV) and A = PGA / (2πF)²:
     the table starts and ends at rest, and its acceleration jumps to PGA at the start and from it at the end.
+
+    Parameters
+    ----------
+    pga, pgv_over_pga : peak acceleration [m/s²], and peak velocity over it [s]
+    cycles : whole number of cosines
+
+    Returns
+    -------
+    The motion [m/s²].
     """
     name = "commanded_cosine"
     positive_number(f"{name}: pga", pga, "m/s²")

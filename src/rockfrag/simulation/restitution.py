@@ -66,6 +66,15 @@ def quarter_period(
 
     The nonlinear one is the integral of dθ/θ' with the energy of eq. 2.4, by Gauss-Legendre after
     θ = θ0 (1 - u²), which takes the singularity away.
+
+    Parameters
+    ----------
+    block, peak, pivot : the block, its rotation at rest [rad], and 1 for the right pivot, -1 for the left
+    linear : whether by the linearised equation
+
+    Returns
+    -------
+    The time [s].
     """
     alpha, p = block.critical_angle(pivot), block.frequency(pivot)
     if linear:

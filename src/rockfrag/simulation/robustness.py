@@ -95,7 +95,16 @@ def outcome_robustness(
 
 
 def perturbed(system: System, size: float, rng: np.random.Generator) -> System:
-    """Return a system whose widths and heights differ by at most ``size``, relative, drawn evenly."""
+    """System whose widths and heights differ by at most ``size``, relative, drawn evenly.
+
+    Parameters
+    ----------
+    system, size, rng : the system, the largest relative difference [-], and the random numbers
+
+    Returns
+    -------
+    The system.
+    """
     bodies = []
     for body in system.bodies:
         across, up = (1 + size * rng.uniform(-1, 1, 2)).tolist()

@@ -93,7 +93,16 @@ GIVEN = ("mean_period_s", "d5_95_s")
 
 
 def best_of(choice: pd.DataFrame, asked: Sequence[str]) -> list[str]:
-    """Names of the best measures of all configurations among those that a study asks for."""
+    """Names of the best measures of all configurations among those that a study asks for.
+
+    Parameters
+    ----------
+    choice, asked : table of the intensity-measure selection, and columns of measures
+
+    Returns
+    -------
+    The names as the field writes them.
+    """
     known = choice[choice["measure"].isin(list(asked)) & choice["score"].notna()]
     return list(dict.fromkeys(known.drop_duplicates("configuration")["im"]))
 

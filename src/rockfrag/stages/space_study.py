@@ -89,7 +89,16 @@ def wide_set(every: int) -> tuple[list[Pair], list[str]]:
 
 
 def body_of(base: str, slenderness: float, height: float) -> Block:
-    """Return a stone body, ``square``, ``one to two`` or ``round``; slenderness is over the narrow side [-]."""
+    """Stone body, ``square``, ``one to two`` or ``round``.
+
+    Parameters
+    ----------
+    base, slenderness, height : kind of base, height over the narrow side [-], and height [m]
+
+    Returns
+    -------
+    The block.
+    """
     width = height / slenderness
     if base == ROUND:
         mass = STONE * math.pi / 4 * width**2 * height

@@ -32,12 +32,30 @@ AnyStudy = Study | MeasuredTable | CampaignStudy | SpaceStudy
 
 
 def load_any(path: str | os.PathLike[str]) -> AnyStudy:
-    """Read a configuration of any kind: a simulated study, a measured table, a campaign, bodies in space."""
+    """Read a configuration of any kind: a simulated study, a measured table, a campaign, bodies in space.
+
+    Parameters
+    ----------
+    path : YAML file
+
+    Returns
+    -------
+    The study.
+    """
     return any_study(read_yaml(path), path)
 
 
 def any_study(content: Mapping[str, Any], path: str | os.PathLike[str]) -> AnyStudy:
-    """Make a study of any kind of a configuration that was read from ``path``."""
+    """Study of any kind from a configuration that was read from ``path``.
+
+    Parameters
+    ----------
+    content, path : the configuration, and its file
+
+    Returns
+    -------
+    The study.
+    """
     kinds: dict[str, tuple[str, Callable[..., AnyStudy]]] = {
         TABLE_KEY: ("measured_table", measured_table_from),
         CAMPAIGN_KEY: ("campaign", campaign_from),
@@ -194,6 +212,14 @@ def check_records(study: Study) -> list[str]:
     """Read every record that lies in a folder of the user's own, once in a process as long as none changes.
 
     Returns warnings: of accelerations that look as if in another unit, of records that will be left out.
+
+    Parameters
+    ----------
+    study : the study
+
+    Returns
+    -------
+    The warnings, a sentence each.
     """
     columns = ("file", "second", "vertical")
     files = own_records(study.catalogue, study.catalogue_file.parent, columns)

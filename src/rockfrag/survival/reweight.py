@@ -198,7 +198,16 @@ class Constrained:
 
 
 def constrain(site: Site) -> Constrained:
-    """Reweight branches of a site by the survival of its objects; InputError if none lets all of them stand."""
+    """Reweight branches of a site by the survival of its objects; InputError if none lets all of them stand.
+
+    Parameters
+    ----------
+    site : branches of its hazard and its objects
+
+    Returns
+    -------
+    The :class:`Constrained`.
+    """
     result = reweight(site)
     if float(result.log_survival.max()) < np.log(LEAST_SURVIVAL):
         alone = {}

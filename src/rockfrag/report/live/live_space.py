@@ -37,10 +37,19 @@ def live_in_space(
     motions: Sequence[GroundMotion],
     left_out: Sequence[str] = (),
 ) -> Markup:
-    """Return the element of a page in which bodies in space rock under motions, live; one to a page.
+    """Element of a page in which bodies in space rock under motions, live; one to a page.
 
     It shows bodies and motions by name and loads nothing; no more motions are taken than have ``MOST_SAMPLES``
     times, the first ones, at least one. ``left_out`` names what is not shown.
+
+    Parameters
+    ----------
+    bodies, motions : by the names that the page shows, and what shakes them
+    left_out : names of bodies that are not shown
+
+    Returns
+    -------
+    HTML.
     """
     total = np.cumsum([motion.x.acceleration.size for motion in motions])
     kept = motions[: max(1, int((total <= MOST_SAMPLES).sum()))]
