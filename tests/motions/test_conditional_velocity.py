@@ -8,12 +8,10 @@ import pytest
 from rockfrag.motions.conditional_velocity import (
     BY_PGA,
     BY_SA_1S,
-    GENERAL,
-    reference_period,
 )
 
 # ln of the measure [ln g], distance [km], Vs30 [m/s] and ln PGV of the tests of ShakeMap 4 (shakelib, version of
-# 2021, conversions/imt), for M 8 and M 7.4
+# 2021, conversions/imt), for M 7.4
 POINTS = [
     (2.0, 2.0, 200.0),
     (1.4, 30.0, 630.0),
@@ -21,7 +19,6 @@ POINTS = [
     (0.1, 100.0, 600.0),
 ]
 SHAKEMAP = [
-    (GENERAL, 8.0, [6.76516894, 5.88822518, 5.33554182, 4.68435124]),
     (BY_SA_1S, 7.4, [5.61589861, 4.54874047, 4.11077608, 3.43577395]),
     (BY_PGA, 7.4, [5.64284705, 4.4158703, 4.17526695, 3.45235077]),
 ]
@@ -45,8 +42,3 @@ def test_medians_and_spreads_are_those_by_hand():
     assert BY_SA_1S.spreads(6.0) == pytest.approx((0.145, 0.33))
     assert BY_PGA.spreads(7.5) == pytest.approx((0.26, 0.42))
     assert BY_PGA.spreads(4.0) == pytest.approx((0.12, 0.32))
-
-
-def test_the_reference_period_grows_with_magnitude():
-    periods = [reference_period(m) for m in (3.0, 5.0, 6.0, 7.0, 8.0, 9.0)]
-    assert periods == [0.2, 0.4, 0.95, 1.4, 2.8, 2.8]

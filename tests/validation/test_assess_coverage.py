@@ -21,7 +21,7 @@ from scipy.stats import binom
 from rockfrag.assess.answer import Assessment, assess_with
 from rockfrag.assess.hazard.curve import PGA, PGV, VELOCITY_PER_G
 from rockfrag.assess.motions import MotionSet
-from rockfrag.assess.outcomes import make_intensity_levels
+from rockfrag.assess.outcomes import ObjectOutcomes, make_intensity_levels
 from rockfrag.assess.place import Place
 from rockfrag.assess.request import Request, make_request
 from rockfrag.assess.risk import Estimate, amplitude_target, fraction_target
@@ -157,7 +157,8 @@ def world(seed: int, kind: str, outside: float = 1.0, *, scored: bool = False) -
     (outcomes,) = make_intensity_levels(all_of_it.at(place), PGV).outcomes_of([truth])
     seen = _set(random.choice(EARTHQUAKES, OF_A_SET, replace=False)).at(request.place)
     found = assess_with(request, seen, brief=True)
-    true = fraction_target(level / np.exp(error)).value(outcomes)
+    levels, fractions = true_curve(outcomes, error)
+    true = float(fraction_target(level).of(levels, fractions))
     rivals = {}
     if scored:
         most = assess_with(request, all_of_it.at(request.place), brief=True)
@@ -170,11 +171,27 @@ def world(seed: int, kind: str, outside: float = 1.0, *, scored: bool = False) -
         said=found.fraction,
         half=found.amplitudes[0.5],
         truth=true,
-        true_half=amplitude_target(0.5).value(outcomes) * np.exp(error),
+        true_half=float(amplitude_target(0.5).of(levels, fractions)),
         counts=found.counts,
         happened=bool(random.uniform() < true),
         rivals=rivals,
     )
+
+
+def true_curve(outcomes: ObjectOutcomes, error: float) -> tuple[np.ndarray, np.ndarray]:
+    """Levels, and the fraction of motions that topple an object whose model errs by so much of ln level.
+
+    The error acts on what was lifted: a motion topples nothing that it does not rock.
+    """
+    levels = outcomes.intensity_levels.levels
+    allowed, lifts_from = outcomes.intensity_levels.allowed, outcomes.lifts_from()
+    found = [0.0]
+    for level in levels:
+        at = int(np.abs(np.log(levels / level) + error).argmin())
+        known = allowed[:, at]
+        fell = outcomes.overturned[known, at] & (lifts_from[known] <= level)
+        found.append(float(fell.mean()) if known.any() else found[-1])
+    return levels, np.array(found[1:])
 
 
 OF_RULES = (
@@ -294,7 +311,7 @@ def world_of_both(seed: int) -> bool:
     chosen = tuple(everything.ground[i] for i in near)
     motions = MotionSet(chosen, chosen, (), "synthetic motions").at(place)
     (outcomes,) = make_intensity_levels(motions, PGA).outcomes_of([truth])
-    fraction = fraction_target(request.level.value / np.exp(error)).value(outcomes)
+    fraction = fraction_target(request.level.value).of(*true_curve(outcomes, error))
     seen = _set(random.choice(EARTHQUAKES, OF_A_SET, replace=False)).at(request.place)
     found = assess_with(request, seen, brief=True).fraction
     return bool(found.lower <= fraction <= found.upper)

@@ -308,9 +308,7 @@ def assessed(request: Request, plan: Plan, shaken: Shaken) -> Assessment:
         probability = evidence.estimate(risk.risk_target(hazard, request.years))
     main = probability or fraction
     if main:
-        left = {name: source.left for name, source in MEASUREMENTS.items()}
-        sources = evidence.prediction.sources
-        decision = decide(main.draws, sources, left, request.accepted)
+        decision = _decision(main.value, evidence, target, request)
     values = {
         name: evidence.mean(target, arrangement)
         for name, arrangement in arrangements.items()
@@ -367,20 +365,29 @@ def _evidence(
     """What estimates rest on: outcomes, and all that is not known."""
     counted = next(iter(shaken.arrangements.values()))
     error = MODEL_ERRORS[objects.measured_as].beyond
-    shifts = {
-        change.name: risk.shift_of(change.lower, shaken.before, change.upper)
-        for change in shaken.moved
-    }
+    shifts = {change.name: risk.shift_of(*change.sides) for change in shaken.moved}
     shifts["model"] = risk.after_uplift(error)
     if not plan.shaking.motions.both:
         shifts["space"] = risk.after_uplift(SPACE)
     if conversion:
         shifts["conversion"] = risk.after_uplift(conversion.shift)
         if shaken.together is not None:
-            lower, upper = shaken.together
-            shifts["together"] = risk.shift_of(lower, counted, upper)
+            shifts["together"] = risk.shift_of(*shaken.together)
     rates = _of_quantiles(counted, plan.hazard) if plan.hazard else {}
     return risk.Evidence(counted, shifts, rates)
+
+
+def _decision(
+    value: float, evidence: risk.Evidence, target: risk.Target, request: Request
+) -> Decision:
+    """What to do by a probability; of one in some years by its rate, of which means are taken."""
+    accepted, values = request.accepted, evidence.drawn(target)
+    if target.is_rate:
+        value, accepted = (
+            -math.log1p(-min(p, 1 - 1e-15)) / request.years for p in (value, accepted)
+        )
+    left = {name: source.left for name, source in MEASUREMENTS.items()}
+    return decide(value, values, evidence.prediction.sources, left, accepted)
 
 
 def _effect(

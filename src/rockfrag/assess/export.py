@@ -24,7 +24,7 @@ from rockfrag.fragility.exports import identifiers, model_text
 from rockfrag.fragility.model_error import MODEL_ERRORS
 from rockfrag.outcomes.limit_states import OVERTURNS, limit_states
 from rockfrag.words.catalogue import catalogue
-from rockfrag.words.findings import Finding, as_data, finding, three
+from rockfrag.words.findings import Finding, as_data, finding, three, two
 
 
 def as_json(found: Assessment) -> str:
@@ -157,18 +157,34 @@ def as_nrml(found: Assessment) -> str:
         "id": identifiers([name], "_:-")[name],
         "imt": found.measure.imt,
         "levels": outcomes.intensity_levels.levels.tolist(),
-        "chances": {state: outcomes.fractions(state=state).tolist() for state in states}
-        | {OVERTURNS: found.predicted.fractions.tolist()},
+        "chances": {state: _chances(found, state) for state in states},
     }
     kind = found.request.objects.measured_as
     error = MODEL_ERRORS[kind]
     about = {"where": found.request.place.where, "motions": found.motions.about_set}
-    said = finding(
-        Text.IN_NRML,
-        name=name,
-        error=three(error.beyond),
-        kind=kind,
-        about=error.words,
-        **about,
-    )
-    return model_text(catalogue().say(said), states, [function])
+    said = [
+        finding(
+            Text.IN_NRML,
+            name=name,
+            error=three(error.beyond),
+            kind=kind,
+            about=error.words,
+            **about,
+        )
+    ]
+    curve = found.predicted
+    if math.isfinite(curve.median + curve.of_records + curve.of_unknown):
+        spreads = {"records": two(curve.of_records), "unknown": two(curve.of_unknown)}
+        median = finding(
+            Text.QUANTITY, value=two(curve.median), unit=found.measure.unit
+        )
+        said.append(finding(Text.IN_NRML_SPREADS, median=median, **spreads))
+    return model_text(" ".join(catalogue().lines(said)), states, [function])
+
+
+def _chances(found: Assessment, state: str) -> list[float]:
+    """Probability of a limit state at each level, that of toppling with all that is not known; none is less."""
+    toppling = found.predicted.fractions
+    if state == OVERTURNS:
+        return list(map(float, toppling))
+    return list(map(float, np.maximum(found.outcomes.fractions(state=state), toppling)))

@@ -215,7 +215,9 @@ def at_level(found: Assessment) -> list[Finding]:
     """What the motions do at the level, and where rocking starts."""
     said = []
     if found.fraction is not None and found.rocking is not None:
-        said += [counted(found), between(found.fraction)]
+        said.append(counted(found))
+        if not found.does_not_move:
+            said.append(between(found.fraction))
     said.append(starts(found))
     if found.level is not None and found.request.level is None:
         said.append(finding(Text.EXCEEDED_IN_475, level=found.level.amount))
@@ -234,8 +236,11 @@ def counted(found: Assessment) -> Finding:
     if found.counts is None:
         rock, topple = percent(found.rocking.value), percent(found.fraction.value)
         return finding(Text.COUNTED_MOVED, rock=rock, topple=topple)
-    total, rocked, fell = found.counts
-    return finding(Text.COUNTED, total=total, rock=rocked, topple=fell)
+    (total, rocked, fell), every = found.counts, len(found.motions.ground)
+    about = {"total": total, "rock": rocked, "topple": fell}
+    if total < every:
+        return finding(Text.COUNTED_SOME, every=every, **about)
+    return finding(Text.COUNTED, **about)
 
 
 def between(fraction: Estimate) -> Finding:
@@ -323,7 +328,8 @@ def helps(found: Assessment) -> list[Finding]:
     """The changes that are shown to help, the best first."""
     if not found.mitigations:
         return [finding(Text.NOTHING_TRIED)]
-    if found.main.value == 0:
+    at_rest = found.does_not_move and found.probability is None
+    if found.main.value == 0 or at_rest:
         return [finding(Text.NO_CHANGE_NEEDED)]
     shown = [change for change in found.mitigations if change.shown][:MOST_CHANGES]
     said = [mitigation(found, change) for change in shown]

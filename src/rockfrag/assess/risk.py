@@ -275,34 +275,23 @@ LEAST_SPAN = (
 )
 
 
-def shift_of(
-    lower: ObjectOutcomes, middle: ObjectOutcomes, upper: ObjectOutcomes
-) -> Shift:
-    """What a property moves at its standard deviation, by outcomes with it on both sides and between.
+def shift_of(lower: ObjectOutcomes, upper: ObjectOutcomes) -> Shift:
+    """What a property moves at its standard deviation, by outcomes with it on both sides.
 
-    Levels of uplift move by the mean over the motions; those of toppling by the area between two fractions over ln
-    level, which of a curve that is moved is the move times its height.
+    Levels of uplift move by the mean over the motions; those of toppling by the area between both fractions over
+    ln level, which of a curve that is moved is the move times its height.
     """
-    sides = lower, middle, upper
-    lifts = [_mean_log(side.lifts_from()) for side in sides]
-    lifts_by = _both_sides(*lifts)
-    curves = [side.fractions() for side in sides]
-    span = float(np.median([curve.max() - curve[0] for curve in curves]))
+    sides = lower, upper
+    lifts = (_mean_log(upper.lifts_from()) - _mean_log(lower.lifts_from())) / 2
+    low, high = (side.fractions() for side in sides)
+    middle = (low + high) / 2
+    span = float(middle.max() - middle[0])
     if span < LEAST_SPAN:
-        return Shift(lifts_by[0], lifts_by[0], lifts_by[1], lifts_by[1])
-    heights = [
-        -float(np.trapezoid(curve, np.log(side.intensity_levels.levels))) / span
-        for curve, side in zip(curves, sides, strict=True)
-    ]
-    topples_by = _both_sides(*heights)
-    return Shift(lifts_by[0], topples_by[0], lifts_by[1], topples_by[1])
+        return Shift(lifts, lifts)
+    x = np.log(lower.intensity_levels.levels)
+    return Shift(lifts, float(np.trapezoid(low - high, x)) / 2 / span)
 
 
 def _mean_log(levels: Floats) -> float:
     known = levels[np.isfinite(levels)]
     return float(np.log(known).mean()) if known.size else 0.0
-
-
-def _both_sides(lower: float, middle: float, upper: float) -> tuple[float, float]:
-    """Half the distance of both sides, and how far their mean is from the middle."""
-    return (upper - lower) / 2, (upper + lower) / 2 - middle

@@ -204,8 +204,8 @@ def _simulate(options: argparse.Namespace) -> int:
         lines = lines_in_plane(
             options.record, motion, peak, response, is_loose=is_loose
         )
-        events = response.contact_events.to_dict("records")
-        lines += contact_event_lines(events, most)
+        contact_events = response.contact_events.to_dict("records")
+        lines += contact_event_lines(contact_events, most)
     print("\n".join(lines))
     if options.plot:
         from rockfrag.base.figure_style import save_figure
@@ -307,7 +307,7 @@ def _block(option: str, given: Sequence[str]) -> "Block":
             raise InputError(
                 f"expected width, height and, if known, mass, such as 35cm 120cm 180kg; got {' '.join(given)}."
             )
-        width, height = (quantity(text, "m", "m") for text in given[:2])
+        width, height = quantity(given[0], "m", "m"), quantity(given[1], "m", "m")
         mass = (
             quantity(given[2], "kg", "kg")
             if len(given) == 3

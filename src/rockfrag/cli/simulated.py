@@ -59,27 +59,27 @@ def lines_in_plane(
     return lines
 
 
-def contact_event_lines(events: Sequence[Any], most: int) -> list[str]:
+def contact_event_lines(contact_events: Sequence[Any], most: int) -> list[str]:
     """Lines of the first contact events, and the number of the others.
 
     Parameters
     ----------
-    events : rows of the table of contact events
+    contact_events : rows of the table of contact events
     most : number of events that are shown
 
     Returns
     -------
     The lines.
     """
-    if not events:
+    if not contact_events:
         return ["it never rocked"]
     lines = ["pattern history:"]
-    for row in events[:most]:
+    for row in contact_events[:most]:
         lines.append(
             f"{row['time']:9.4f} s  {row['kind']:<10} {row['from']:>4} → {row['to']}"
         )
-    if len(events) > most:
-        lines.append(f"… and {len(events) - most} more (--all-contact-events)")
+    if len(contact_events) > most:
+        lines.append(f"… and {len(contact_events) - most} more (--all-contact-events)")
     return lines
 
 

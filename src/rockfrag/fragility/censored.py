@@ -375,11 +375,13 @@ def _likelihood(
 ) -> _Likelihood:
     """Log-likelihood and derivatives in (intercept, slope), for each row of weights."""
     terms = _terms(low, high, coefficients)
-    value, score0, score1, h00, h01, h11 = [
-        (weights * term).sum(axis=1) for term in terms
-    ]
-    hessian = np.stack([h00, h01, h01, h11], axis=1).reshape(-1, 2, 2)
-    return _Likelihood(value, np.stack([score0, score1], axis=1), hessian)
+    sums = _Terms._make((weights * term).sum(axis=1) for term in terms)
+    hessian = np.stack([sums.h00, sums.h01, sums.h01, sums.h11], axis=1)
+    return _Likelihood(
+        sums.value,
+        np.stack([sums.score0, sums.score1], axis=1),
+        hessian.reshape(-1, 2, 2),
+    )
 
 
 class _Terms(NamedTuple):

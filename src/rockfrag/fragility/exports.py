@@ -35,9 +35,17 @@ STEP = 0.01
 
 
 def identifiers(names: Iterable[str], others: str = "") -> dict[str, str]:
-    """Return an identifier for each name: ASCII letters, digits and ``others``; all else becomes ``_``.
+    """Identifier for each name: ASCII letters, digits and ``others``; all else becomes ``_``.
 
     Where two would be equal, or one would be too long, a digest of the name follows.
+
+    Parameters
+    ----------
+    names, others : the names, and further characters that are allowed
+
+    Returns
+    -------
+    The identifiers by name.
     """
     plain = {
         name: "".join(

@@ -331,6 +331,14 @@ def fraction_points(labels: Mapping[str, Any], curve: Fragility) -> pd.DataFrame
     """Points of the non-parametric fragility function, if the fitted one is rejected; no row otherwise.
 
     ``fraction`` of overturned tests never falls, and is straight over ln ``x`` between the points.
+
+    Parameters
+    ----------
+    labels, curve : columns by which the curve differs from others, and the curve
+
+    Returns
+    -------
+    pandas.DataFrame: the labels, ``im``, ``unit``, ``x`` in that unit, ``fraction``, ``lower``, ``upper`` [-].
     """
     fractions = curve.checks.fractions
     x = (

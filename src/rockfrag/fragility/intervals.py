@@ -278,7 +278,16 @@ def blocks_of(groups: int) -> NDArray[np.intp]:
 
 
 def jackknife_error(left_out: Floats) -> Floats:
-    """Return the standard error from delete-one-group values along the first axis (Tukey)."""
+    """Standard error from delete-one-group values along the first axis (Tukey 1958).
+
+    Parameters
+    ----------
+    left_out : values without each group, shape (groups, …)
+
+    Returns
+    -------
+    The standard error in the unit of the values, shape (…).
+    """
     groups = len(left_out)
     # an infinite value makes the error NaN, which the caller turns into limits without an end
     with np.errstate(invalid="ignore"):

@@ -6,8 +6,8 @@ Report 2020/05, Berkeley. With f = a2 up to M 5, a3 from M 7.5 and straight betw
     ln PGV [cm/s] = a1 + f ln Y + a4 (M - 6) + a5 (8.5 - M)² + a6 ln(R + 5 exp(0.4 (M - 6)))
                     + (a7 + a8 (M - 5)) ln(Vs30 / 425)                                                    (3.4)
 
-For PGA and for the spectral acceleration at 1 s the standard deviation grows from M 5 to 7 (3.9); for that at the
-period of the velocity's pulse, which grows with magnitude, it is constant.
+with coefficients for PGA and for the spectral acceleration at 1 s; the standard deviation grows between M 5 and 7
+(3.9).
 """
 
 import math
@@ -17,19 +17,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from rockfrag.base.arrays import Floats
-
-MAGNITUDES = (3.0, 8.5)
-"""Magnitudes for which the report holds."""
-
-REFERENCE_PERIODS = (
-    (3.5, 0.2),
-    (4.5, 0.28),
-    (5.5, 0.4),
-    (6.5, 0.95),
-    (7.5, 1.4),
-    (8.5, 2.8),
-)
-"""Largest magnitude and the period [s] that goes with the general model up to it (Table 3.1)."""
 
 
 @dataclass(frozen=True)
@@ -82,11 +69,6 @@ class ConditionalModel:
         return tau, phi
 
 
-GENERAL = ConditionalModel(
-    a=(5.39, 0.799, 0.654, 0.479, -0.062, -0.359, -0.134, 0.023),
-    tau=(0.16, 0.16),
-    phi=(0.29, 0.29),
-)
 BY_PGA = ConditionalModel(
     a=(4.77, 0.738, 0.484, 0.275, -0.036, -0.332, -0.44, 0.0),
     tau=(0.12, 0.26),
@@ -98,17 +80,5 @@ BY_SA_1S = ConditionalModel(
     phi=(0.28, 0.38),
 )
 
-MODELS: Mapping[str, ConditionalModel] = {
-    "PGA": BY_PGA,
-    "SA(1.0)": BY_SA_1S,
-    "SA(1)": BY_SA_1S,
-}
+MODELS: Mapping[str, ConditionalModel] = {"PGA": BY_PGA, "SA(1)": BY_SA_1S}
 """Models by measure."""
-
-
-def reference_period(magnitude: float) -> float:
-    """Period of the spectral acceleration of :data:`GENERAL` [s]."""
-    for largest, period in REFERENCE_PERIODS:
-        if magnitude <= largest:
-            return period
-    return REFERENCE_PERIODS[-1][1]

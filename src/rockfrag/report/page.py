@@ -421,7 +421,16 @@ def scripts_of(*names: str) -> Markup:
 
 
 def base64_text(content: bytes) -> str:
-    """Return bytes as text of a page."""
+    """Bytes as text of a page.
+
+    Parameters
+    ----------
+    content : any bytes
+
+    Returns
+    -------
+    Base 64.
+    """
     return base64.b64encode(content).decode("ascii")
 
 

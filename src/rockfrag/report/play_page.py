@@ -34,6 +34,11 @@ def write_play_page(
     """Write the page of a body that rocks under a motion of at most ``MOST_SAMPLES``.
 
     It is at most two blocks under one component, or a body in space under both.
+
+    Parameters
+    ----------
+    body, motion : what rocks, and what shakes it
+    path : file to write
     """
     system = as_system(body)
     samples = _samples(motion)

@@ -60,6 +60,14 @@ def write_constrained(found: Constrained, folder: str | os.PathLike[str]) -> Pat
 
     Files: ``<site>.html``, ``<site>.json``, ``<site>-weights.csv`` (``rlz_id``, ``branch_path`` and ``weight`` as
     in OpenQuake's realizations, and the weight before) and ``<site>-curves.csv``.
+
+    Parameters
+    ----------
+    found, folder : the site with its new weights, and where files go
+
+    Returns
+    -------
+    Path of the page.
     """
     stem = Path(folder) / file_name(found.site.name)
     write_table(weights_table(found), Path(f"{stem}-weights.csv"))
@@ -87,7 +95,16 @@ def weights_table(found: Constrained) -> pd.DataFrame:
 
 
 def json_of(found: Constrained) -> str:
-    """Numbers of the answer as JSON."""
+    """Numbers of the answer as JSON.
+
+    Parameters
+    ----------
+    found : the site with its new weights
+
+    Returns
+    -------
+    JSON.
+    """
     tables = {
         "branches": found.result.table(),
         "mean_hazard": found.result.ratios(),

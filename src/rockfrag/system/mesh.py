@@ -116,7 +116,8 @@ class Shape:
         Points up to ``tolerance`` above the lowest carry; edges lie ``retreat`` further in than their polygon [m].
         """
         # rounded or crushed edges carry further in
-        left, right = (edge - retreat for edge in self.edges(direction_deg, tolerance))
+        left, right = self.edges(direction_deg, tolerance)
+        left, right = left - retreat, right - retreat
         if min(left, right) <= 0:
             raise InputError(
                 f"{self.name}: along {direction_deg:g}° its edges are {left:.4f} and {right:.4f} m "

@@ -106,18 +106,18 @@ def test_a_measurement_is_named_where_it_would_turn_the_decision_round():
     sources = {"velocity": known, "width": other}
     # the probability is 5 or 25 %, as the velocity is low or high
     values = np.where(known > 0.5, 0.25, 0.05)
-    found = decide(values, sources, {"width": 0.2, "velocity": 0.0}, 0.1)
+    found = decide(values.mean(), values, sources, {"width": 0.2, "velocity": 0.0}, 0.1)
     assert (found.action, found.source) == (Action.MEASURE, "velocity")
     # the mean is above 10 %; it is low with a probability of 69 %
     assert found.otherwise is Action.SECURE
     assert found.chance == pytest.approx(stats.norm.cdf(0.5), abs=0.04)
     # the cheapest of those that would do
     both = {"velocity": known, "width": known}
-    first = decide(values, both, {"width": 0.2, "velocity": 0.0}, 0.1)
+    first = decide(values.mean(), values, both, {"width": 0.2, "velocity": 0.0}, 0.1)
     assert first.source == "width"
     # far from what is accepted nothing turns it round
     for accepted, action in ((0.001, Action.SECURE), (0.6, Action.LEAVE)):
-        sure = decide(values, sources, {"velocity": 0.0}, accepted)
+        sure = decide(values.mean(), values, sources, {"velocity": 0.0}, accepted)
         assert (sure.action, sure.source) == (action, "")
 
 
@@ -126,7 +126,7 @@ def test_a_measurement_that_leaves_much_decides_less():
     z = draws.sources[:, 0]
     values = stats.norm.cdf(z - 1.0)
     chances = [
-        decide(values, {"a": z}, {"a": left}, 0.1).measurements[0].chance
+        decide(values.mean(), values, {"a": z}, {"a": left}, 0.1).measurements[0].chance
         for left in (0.0, 0.5, 0.95)
     ]
     assert chances[0] >= chances[1] > chances[2] == 0

@@ -108,9 +108,8 @@ const answer = (data) => {
     answer.complete = runs.every((run, i) => run.role !== "moved" || outcomes[i]);
     if (earlier?.complete) for (const name of ESTIMATED) answer[name] = earlier[name];
     else if (answer.complete) {
-      const { ratios } = tableOf(request), fit = ratios ? shiftFrom(now, ratios) : null, [before] = known("before");
-      const between = before?.outcomes ?? now, { shiftOf, afterUplift } = judge;
-      const shifts = [...sides.map(([name, lower, upper]) => shiftOf(name, lower, between, upper)), afterUplift("model", MODEL)];
+      const { ratios } = tableOf(request), fit = ratios ? shiftFrom(now, ratios) : null, { shiftOf, afterUplift } = judge;
+      const shifts = [...sides.map(([name, lower, upper]) => shiftOf(name, lower, upper)), afterUplift("model", MODEL)];
       if (!request.solid) shifts.push(afterUplift("space", SPACE));
       if (fit) shifts.push(afterUplift("conversion", fit.shift));
       const rates = hazard ? judge.ofQuantiles(now, hazard) : {};
@@ -121,7 +120,7 @@ const answer = (data) => {
       Object.assign(answer, { fraction, rocking, shifts, rates });
       if (hazard) answer.probability = judge.estimate(target, prediction, rates);
       const main = answer.probability ?? fraction, half = judge.estimate(judge.amplitudeTarget(0.5), prediction, rates);
-      Object.assign(answer, { main, half, decision: judge.decide(prediction, main.draws, data.measurements, answer.accepted) });
+      Object.assign(answer, { main, half, decision: judge.decision(target, prediction, main, answer.accepted, answer.years) });
     }
     const { shifts = [], rates = {} } = answer, meanOf = (outcomes) => (answer.shifts ? judge.meanOf(target, shifts, rates, outcomes) : judge.valueOf(target, outcomes));
     answer.arrangements = [["on_its_pedestal", answer.main?.value ?? meanOf(now)], ...known("arrangement").map((run) => [run.name, meanOf(run.outcomes)])];
@@ -152,8 +151,7 @@ const answer = (data) => {
   }
   function rocksFrom(request, now, exact, ensemble) {
     if (exact) return ensemble.bodyOf({ ...request, measured: request.restitution }).uplift;
-    const first = judge.fractions(now, "rocked").findIndex((share) => share > 0);
-    return first < 0 ? Infinity : now.levels[first];
+    return Math.min(...judge.liftsFrom(now));
   }
   // the motion that topples it first, and at which level; the first one at the site's where none does
   function deciding({ levels, allowed, overturned }, level) {

@@ -323,5 +323,5 @@ def ratios_of(motions: MotionSet, measure: IntensityMeasure) -> dict[str, Any] |
     return {
         "logs": logs.tolist(),
         "median": float(np.median(logs)),
-        "spread": relation.unknown(Records()),
+        "spread": relation.unknown(Records(), of_site=False),
     }

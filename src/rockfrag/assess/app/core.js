@@ -65,7 +65,7 @@ const core = (data) => {
     if (spread <= 0) return value - middle >= -ROUNDING ? 1 : 0;
     return Math.exp(statistics.logNdtr((value - middle) / spread));
   };
-  // fractions that topple and rock under each draw, by draw and level; `shifts`: [name, lifts, topples and both aside]
+  // fractions that topple and rock under each draw, by draw and level; `shifts`: [name, lifts, topples]
   function predict(outcomes, shifts, few = false) {
     const counts = countMotions(outcomes), { logs, count, width, classes, topplesNext, liftsNext } = counts, size = logs.length;
     const members = few ? FEW_MEMBERS : MEMBERS, w = weights[count], sets = w.length / (count + 1), draws = sets * members;
@@ -81,10 +81,9 @@ const core = (data) => {
     for (let d = 0; d < draws; d++) {
       const set = Math.floor(d / members) * (count + 1), own = w[set + count];
       let lifts = 0, topples = 0, total = 0, lifted = 0, place = 0;
-      shifts.forEach(([, lift, topple, liftAside, toppleAside], j) => {
-        const z = normals[d * columns + j];
-        lifts += z * lift + Math.abs(z) * liftAside;
-        topples += z * topple + Math.abs(z) * toppleAside;
+      shifts.forEach(([, lift, topple], j) => {
+        lifts += normals[d * columns + j] * lift;
+        topples += normals[d * columns + j] * topple;
       });
       for (let e = 0; e < count; e++) total += w[set + e] * counts.each[e];
       for (let k = 0; k < size; k++) {
@@ -132,8 +131,8 @@ const core = (data) => {
     });
   }
   // leave it, secure it, or measure first what would turn that round with a chance; the cheapest measurement first
-  function decide(prediction, values, measurements, accepted) {
-    const middle = mean(values), otherwise = middle > accepted ? "secure" : "leave";
+  function decide(prediction, middle, values, measurements, accepted) {
+    const otherwise = middle > accepted ? "secure" : "leave";
     for (const [source, left] of measurements) {
       if (!prediction.names.includes(source)) continue;
       const turned = meansOnceKnown(values, sourceOf(prediction, source), left).filter((each) => each > accepted !== middle > accepted);

@@ -66,10 +66,11 @@ const findings = (data) => {
     // ---- behind it
 
     function atLevel() {
-      const counted = counts ? finding("counted", { total: counts[0], rock: counts[1], topple: counts[2] })
+      const every = data.earthquakes.length, [total, rock, topple] = counts ?? [];
+      const counted = counts ? finding(total < every ? "counted_some" : "counted", { ...(total < every ? { every } : {}), total, rock, topple })
         : finding("counted_moved", { rock: percent(found.rockingValue), topple: percent(found.value) });
       const starts = Number.isFinite(found.rocksFrom) ? finding("starts_at", { starts: amount(found.rocksFrom) }) : finding("starts_beyond");
-      return [counted, ...(fraction ? [between()] : []), starts, ...(request.level === null ? [finding("exceeded_in_475", { level })] : [])];
+      return [counted, ...(fraction && !atRest ? [between()] : []), starts, ...(request.level === null ? [finding("exceeded_in_475", { level })] : [])];
     }
     function between() {
       if (isOpen(fraction)) return finding("fraction_open");
@@ -103,7 +104,7 @@ const findings = (data) => {
     }
     function helps() {
       if (!main) return [];
-      if (main.value === 0) return [finding("no_change_needed")];
+      if (main.value === 0 || (atRest && !probability)) return [finding("no_change_needed")];
       const shown = found.mitigations.filter((each) => each.shown).slice(0, MOST_CHANGES);
       if (!shown.length) return [finding("no_change_shown")];
       return shown.map((each) => (each.factor === 0 ? finding("none_left", { change: changeOf(each) }) : finding("reduces", { change: changeOf(each), ...reduction(each) })));

@@ -3,9 +3,6 @@ const risk = (data) => {
   "use strict";
   const { FLANK_Z, LEVEL, NONE_BELOW, LEAST_SPAN, EC8_SLOPE, EC8_SLOPE_SD } = data.constants;
   const drawn = core(data);
-  const hypot = (values) => Math.sqrt(values.reduce((sum, value) => sum + value * value, 0));
-  const logit = (p) => Math.log(p / (1 - p));
-  const expit = (x) => 1 / (1 + Math.exp(-x));
 
   // numpy's interp, flat beyond the ends
   function interpolated(x, xs, ys) {
@@ -107,25 +104,19 @@ const risk = (data) => {
 
   // ---- what is not known
 
-  const afterUplift = (name, spread) => [name, 0, spread, 0, 0];
-  const bothSides = ([lower, middle, upper]) => [(upper - lower) / 2, (upper + lower) / 2 - middle];
-  // what a property moves at its standard deviation, by outcomes with it on both sides and between
-  function shiftOf(name, lower, middle, upper) {
-    const sides = [lower, middle, upper];
-    const [lifts, liftsAside] = bothSides(sides.map((side) => {
+  const afterUplift = (name, spread) => [name, 0, spread];
+  // what a property moves at its standard deviation, by outcomes with it on both sides
+  function shiftOf(name, lower, upper) {
+    const [low, high] = [lower, upper].map((side) => {
       const known = liftsFrom(side).filter(Number.isFinite);
       return known.length ? mean(known.map(Math.log)) : 0;
-    }));
-    const curves = sides.map((side) => fractions(side));
-    const span = curves.map((curve) => Math.max(...curve) - curve[0]).sort((a, b) => a - b)[1];
-    if (span < LEAST_SPAN) return [name, lifts, lifts, liftsAside, liftsAside];
-    const heights = sides.map(({ levels }, i) => {
-      let area = 0;
-      for (let k = 0; k + 1 < levels.length; k++) area += (Math.log(levels[k + 1] / levels[k]) * (curves[i][k] + curves[i][k + 1])) / 2;
-      return -area / span;
     });
-    const [topples, topplesAside] = bothSides(heights);
-    return [name, lifts, topples, liftsAside, topplesAside];
+    const lifts = (high - low) / 2, { levels } = lower, [below, above] = [lower, upper].map((side) => fractions(side));
+    const middle = below.map((share, k) => (share + above[k]) / 2), span = Math.max(...middle) - middle[0];
+    if (span < LEAST_SPAN) return [name, lifts, lifts];
+    let area = 0;
+    for (let k = 0; k + 1 < levels.length; k++) area += (Math.log(levels[k + 1] / levels[k]) * (below[k] - above[k] + below[k + 1] - above[k + 1])) / 2;
+    return [name, lifts, area / 2 / span];
   }
 
   // ---- intervals
@@ -164,7 +155,12 @@ const risk = (data) => {
     const last = prediction.levels.at(-1), scaled = target.scale(target.kind === "level" ? values.map((each) => Math.min(each, last)) : values);
     const spread = Math.sqrt(variance(scaled));
     const sources = Object.fromEntries(Object.entries(parts(prediction, scaled)).map(([name, part]) => [name, spread * Math.sqrt(part)]));
-    return { value, lower: Math.min(lower, value), upper: Math.max(upper, value), sources, draws: shown };
+    return { value, lower: Math.min(lower, value), upper: Math.max(upper, value), sources, draws: values };
+  }
+  // what to do by a probability; of one in some years by its rate, of which means are taken
+  function decision(target, prediction, { value, draws }, accepted, years) {
+    const rate = (p) => (target.kind === "rate" ? -Math.log1p(-Math.min(p, 1 - 1e-15)) / years : p);
+    return drawn.decide(prediction, rate(value), draws, data.measurements, rate(accepted));
   }
   // standard deviation of ln rate that the quantiles of a hazard stand for
   function ofQuantiles(outcomes, curve) {
@@ -201,20 +197,9 @@ const risk = (data) => {
     };
   }
 
-  // what to do, as rockfrag.assess.decision has it
-  function decide({ value, sources }, accepted) {
-    const action = value > accepted ? "secure" : "leave", away = Math.abs(logit(value) - logit(accepted));
-    if (!(value > 0 && value < 1)) return { action };
-    for (const [source, left] of data.measurements) {
-      const spread = (sources[source] ?? 0) * Math.sqrt(1 - left ** 2), chance = spread > 0 ? Math.exp(statistics.logNdtr(-away / spread)) : 0;
-      if (chance >= LEAST_CHANCE) return { action: "measure", source, chance };
-    }
-    return { action };
-  }
-
   return {
     fractions, curveOf, curveOfOneLevel, rateOf, levelOf, probabilityIn, riskTarget, fractionTarget, amplitudeTarget, valueOf,
-    estimate, meanOf, shiftOf, afterUplift, predict, decide: drawn.decide, ofQuantiles, compared, groups,
+    liftsFrom, estimate, meanOf, shiftOf, afterUplift, predict, decision, ofQuantiles, compared, groups,
   };
 };
 if (typeof module !== "undefined") module.exports = risk;

@@ -57,6 +57,7 @@ class Decision:
 
 
 def decide(
+    mean: float,
     values: Floats,
     sources: Mapping[str, Floats],
     left: Mapping[str, float],
@@ -66,16 +67,16 @@ def decide(
 
     Parameters
     ----------
-    values : probability in each draw, shape (draws,) [-]
+    mean : of the probability, or rate, over what is not known
+    values : the same in each draw, shape (draws,)
     sources : standard normal values of each source in the draws, shape (draws,) each
     left : what measuring a source leaves of its standard deviation [-], the cheapest measurement first
-    accepted : probability that is accepted [-]
+    accepted : probability, or rate, that is accepted
 
     Returns
     -------
     The decision; to measure is named where that would turn it round with a chance of ``LEAST_CHANCE``.
     """
-    mean = float(values.mean())
     tried = tuple(
         _tried(name, means_once_known(values, sources[name], rest), mean, accepted)
         for name, rest in left.items()

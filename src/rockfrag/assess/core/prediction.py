@@ -19,19 +19,16 @@ MOTIONS = "motions"  # The source that the earthquakes are
 
 
 class Shift(NamedTuple):
-    """What a source moves, as shifts of ln level [-]: straight to each side of the middle.
+    """What a source moves at its standard deviation, as shifts of ln level [-].
 
     Attributes
     ----------
-    lifts, topples : at one standard deviation upwards, half the distance of both sides, of the level at which
-        motions lift the object and at which they topple it
-    lifts_aside, topples_aside : mean of both sides, where these lie to one side of the middle
+    lifts : the level at which motions lift the object
+    topples : the level at which they topple it
     """
 
     lifts: float
     topples: float
-    lifts_aside: float = 0.0
-    topples_aside: float = 0.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -94,9 +91,8 @@ def predict(
     Fractions of motions under each draw. Shifts of sources add up.
     """
     draws = make_draws(len(shifts), counts.motions.size, members)
-    by = np.array(list(shifts.values())).reshape(len(shifts), 4)
-    moved = draws.sources @ by[:, :2] + np.abs(draws.sources) @ by[:, 2:]
-    lifts, topples = np.ascontiguousarray(moved.T)
+    moved = np.array(list(shifts.values())).reshape(len(shifts), 2)
+    lifts, topples = np.ascontiguousarray((draws.sources @ moved).T)
     toppling, rocking = draw_fractions(counts, draws.weights, lifts, topples)
     sources = dict(zip(shifts, draws.sources.T, strict=True))
     return Prediction(levels, sources, draws, toppling, rocking)

@@ -135,7 +135,16 @@ def _outcomes_figure(
 
 
 def comparisons(results: Results) -> Section | None:
-    """Objects, floors and pedestals side by side."""
+    """Objects, floors and pedestals side by side.
+
+    Parameters
+    ----------
+    results : tables of the study
+
+    Returns
+    -------
+    The section; None for a single test.
+    """
     study, tests, means = results.study, results.tests, results.table("mean_amplitudes")
     if len(tests) < 2:
         return None

@@ -215,7 +215,13 @@ def ratio_axis(
     values: NDArray[np.float64] | Sequence[float],
     sides: Sides = WITH_PEDESTAL,
 ) -> None:
-    """A logarithmic axis of ratios with plain ticks that covers all values and the band of none."""
+    """Set a logarithmic axis of ratios with plain ticks that covers all values and the band of none.
+
+    Parameters
+    ----------
+    axes, values : where ratios are drawn, and the ratios [-]
+    sides : the comparison
+    """
     known = np.asarray(values, dtype=float)
     known = known[np.isfinite(known) & (known > 0)]
     # one interval without a useful limit may not press all others together

@@ -106,7 +106,16 @@ def shaker(results: Results) -> Section | None:
 
 
 def motions(results: Results) -> Section:
-    """The motions, how strong each is and how it goes."""
+    """Motions with their measures and histories.
+
+    Parameters
+    ----------
+    results : tables of the study
+
+    Returns
+    -------
+    The section.
+    """
     measures, ground = results.table("measures"), results.ground
     columns = [
         Column(
@@ -183,7 +192,16 @@ def bodies(results: Results) -> Section:
 
 
 def validity(results: Results) -> Section | None:
-    """What the model assumes, or what friction did where it is limited."""
+    """Validity of the model, or effect of friction where it is limited.
+
+    Parameters
+    ----------
+    results : tables of the study
+
+    Returns
+    -------
+    The section; None without tests that overturned.
+    """
     if results.study.slides:
         return _sliding(results.table("sliding"))
     tests = results.table("validity")

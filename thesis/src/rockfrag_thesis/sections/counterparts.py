@@ -92,9 +92,8 @@ def slenderness_figure(
         for axes, side in zip(grid, amplitudes.SIDES, strict=True):
             part = rows[rows["pedestal"] == side]
             if crowded:
-                amplitudes.box_at(
-                    axes, part, "x", sorted(part["x"].unique()), 0.3, style.BLUE
-                )
+                levels = sorted(part["x"].unique())
+                amplitudes.box_at(axes, part, "x", levels, width=0.3, colour=style.BLUE)
             # by earthquake with a little sideways shift
             shifts = np.linspace(-0.14, 0.14, max(len(earthquakes), 2))
             styles = {} if crowded else amplitudes.styles_of(earthquakes)
