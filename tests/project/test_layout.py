@@ -13,7 +13,7 @@ from ..case_tables import case_tables
 SOURCE = Path(__file__).resolve().parents[2] / "src" / "rockfrag"
 THESIS = SOURCE.parents[1] / "thesis" / "src"
 SUBPACKAGES = (
-    *("base", "runtime", "words"),
+    *("base", "runtime", "words", "collections"),
     *("records", "motions", "system", "laws", "outcomes", "config", "building"),
     *("engines", "simulation", "web", "shaketable"),
     *("fragility", "campaign", "effects"),

@@ -27,6 +27,7 @@ from rockfrag.fragility.model_error import SCAN
 from rockfrag.system.blocks import Block
 from rockfrag.system.body import RigidBody
 from rockfrag.system.mesh import Shape, edge_distances
+from rockfrag.words.findings import two
 
 SOURCE_OF = {
     "contact_tolerance_mm": "contact",
@@ -116,8 +117,9 @@ def make_scan(
     ways["least_deg"] = [
         _least_angle_deg(shape, way) for way in ways.to_dict("records")
     ]
+    contact = {"median": two(median), "spread": 50 if accuracy is None else 30}
     assumed = [
-        assume("unmeasured", source, unknown=source, median=median, accuracy=accuracy)
+        assume(source, source, **(contact if source == "contact" else {}))
         for source in map(SOURCE_OF.__getitem__, open_ones)
         if source != "contact" or given is None
     ]

@@ -3,7 +3,7 @@
 These are loaded, and the kernels with them, when one is first called.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pkgutil import resolve_name
 from typing import Any
 
@@ -67,6 +67,9 @@ class SpatialEngine(BuiltIn):
     ) -> Support:
         """Say whether it computes this system under this motion as requested, and if not, why."""
         found = super().supports(system, motion, request)
+        if any(contact.tilt for contact in system.contacts):
+            # a planar body may lean under one component; one in space may not
+            found = replace(found, missing=found.missing | {Wish.TILT})
         if found and system.planar:
             return Support(
                 reason="a planar body moves in its own plane only; give its depth"

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pandas as pd
@@ -58,6 +58,13 @@ def mode_name(state: int, slides: int) -> str:
     if state == 0 and way:
         return way
     return MODES[state] + (f", {way}" if way else "")
+
+
+SPATIAL_COLUMNS = (
+    *("x_m", "y_m", "z_m", "tilt_rad", "axis_x", "axis_y", "turn_rad", "base_x_m"),
+    *("base_y_m", "omega_x_rad_s", "omega_y_rad_s", "omega_z_rad_s", "contacts"),
+)
+"""What a sample of a body in space tells, beside its time."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -148,6 +155,17 @@ class Response:
 
         return response_figure(self, title)
 
+    def samples(self) -> dict[str, NDArray[Any]]:
+        """Return the columns of a row per sample and body, the bodies running fastest (from below, from 1)."""
+        count, bodies = self.theta.shape
+        return {
+            "time_s": np.repeat(self.time, bodies),
+            "body": np.tile(np.arange(1, bodies + 1), count),
+            "theta_rad": self.theta.ravel(),
+            "omega_rad_s": self.omega.ravel(),
+            "state": self.state.ravel(),
+        }
+
     @property
     def rocking_mode(self) -> NDArray[np.str_]:
         """Pattern of rocking at each sample ("rest", "4a", …, "flight"), shape (n,)."""
@@ -161,7 +179,16 @@ class Response:
 
 
 def sampled_demand(normal: Floats, friction: Floats) -> Floats:
-    """Return the largest |T| / N of each interface over the samples, infinite where N is not positive."""
+    """Largest |T| / N of each interface over the samples, infinite where N is not positive.
+
+    Parameters
+    ----------
+    normal, friction : forces [N], shape (n, contacts)
+
+    Returns
+    -------
+    The ratios [-], shape (contacts,).
+    """
     with np.errstate(divide="ignore", invalid="ignore"):
         ratio = np.abs(friction) / normal
     return np.asarray(np.where(normal > 0, ratio, np.inf).max(axis=0))
@@ -175,10 +202,20 @@ def contact_event_table(
     theta: Floats,
     kinetic: tuple[Floats, Floats],
 ) -> pd.DataFrame:
-    """Make the columns of ``Response.contact_events`` that a response without friction has.
+    """Columns of ``Response.contact_events`` of a response without friction.
 
     ``states`` and ``omega`` [rad/s] are those before and after, each of shape (n, contacts), ``kinetic`` energies
     before and after [J], each of shape (n,).
+
+    Parameters
+    ----------
+    time, kind : instants [s], shape (n,), and kinds
+    states, omega : contact states, and angular velocities [rad/s], before and after, shape (n, contacts) each
+    theta, kinetic : rotations [rad], shape (n, contacts), and energies before and after [J], shape (n,) each
+
+    Returns
+    -------
+    pandas.DataFrame, n rows.
     """
     return pd.DataFrame(
         {
@@ -207,7 +244,17 @@ def _rocking_modes(states: Ints) -> list[str]:
 def with_slips(
     table: pd.DataFrame, states: Ints, slides: Ints, slip: Floats
 ) -> pd.DataFrame:
-    """Return a table of contact events with what each interface does from then on, and its slip [m]."""
+    """Table of contact events with the mode of each interface from then on, and its slip.
+
+    Parameters
+    ----------
+    table : n contact events
+    states, slides, slip : contact states, directions of sliding and slips [m], shape (n, contacts)
+
+    Returns
+    -------
+    pandas.DataFrame, n rows.
+    """
     pairs = np.stack([states, slides], axis=-1).tolist()
     modes = [tuple(mode_name(*pair) for pair in each) for each in pairs]
     return table.assign(
@@ -226,10 +273,20 @@ def energy_table(
     *,
     contacts: int,
 ) -> pd.DataFrame:
-    """Make the balance of energy by cause over time [J], with the columns of ``Response.energy``.
+    """Balance of energy by cause over time [J], with the columns of ``Response.energy``.
 
     ``losses`` are of each impact its time [s], its contact from 0 and what it lost [J]; ``friction`` is what
     friction has taken so far [J], shape (n,), None where nothing slides.
+
+    Parameters
+    ----------
+    time, kinetic, potential, work : instants [s] and energies [J], shape (n,) each
+    losses : instants [s], contacts from 0 and losses [J] of the impacts
+    friction, contacts : work against friction so far [J], shape (n,), and number of contacts
+
+    Returns
+    -------
+    pandas.DataFrame, n rows.
     """
     when, contact, lost = losses
     at = np.searchsorted(time, when - 1e-12 * max(1.0, time[-1]))

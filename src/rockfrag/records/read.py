@@ -136,7 +136,7 @@ def _archived(file: str, wanted: str, dt: float | None, cut_short: bool) -> Reco
 def read_motion(
     path: str | os.PathLike[str],
     unit: str | None = None,
-    channel: str | None = None,
+    channel: str | int | None = None,
     dt: float | None = None,
     cut_short: bool = False,
     force: bool = False,
@@ -165,9 +165,16 @@ def read_motion(
     return motion_of(record, choose_channel(record, channel), unit, force)
 
 
-def choose_channel(record: Record, wanted: str | None) -> Channel:
-    """Return the channel of a record with a name, orientation or number."""
+def choose_channel(record: Record, wanted: str | int | None) -> Channel:
+    """Return the channel of a record with a name, orientation or number from 1."""
     channels = record.channels
+    if isinstance(wanted, int) and not isinstance(wanted, bool):
+        if not 1 <= wanted <= len(channels):
+            raise InputError(
+                f"{record.name}: there is no channel {wanted}; there are {_listed(record)}."
+            )
+        return channels[wanted - 1]
+    wanted = None if wanted is None else str(wanted)
     if wanted is None:
         if len(channels) == 1:
             return channels[0]
@@ -201,10 +208,15 @@ def motion_of(
     record: Record, channel: Channel, unit: str | None = None, force: bool = False
 ) -> Motion:
     """Return one channel of a record as a motion in m/s²; ``unit`` and ``force`` as of :func:`read_motion`."""
+    if channel.fault:
+        raise InputError(f"{record.name}: {channel.fault}.")
     samples = channel.samples
-    stored = _settled_unit(record, channel, samples, unit)
+    number = next((n for n, c in enumerate(record.channels, 1) if c is channel), 1)
+    where = f", channel {channel.label or number}" if len(record.channels) > 1 else ""
+    told = replace(record, name=f"{record.name}{where}")
+    stored = _settled_unit(told, channel, samples, unit)
     factor = quantities.to_si(stored)
-    acceleration = _in_si(record, samples, factor)
+    acceleration = _in_si(told, samples, factor)
     read = {
         "step": "read",
         "file": printable(Path(record.name).name),
@@ -228,7 +240,7 @@ def motion_of(
         acceleration = acceleration - mean
         steps.append({"step": "remove zero level", "offset_m_s2": mean})
     if not channel.unit and not force:
-        _check_peak(record, acceleration, stored)
+        _check_peak(told, acceleration, stored)
     own = channel.member or record.name.rpartition("#")[2]
     name = printable(Path(own).name.removesuffix(".gz").rsplit(".", 1)[0])
     if len(record.channels) > 1:

@@ -24,9 +24,20 @@ BROWSERS = (
 )
 """Programs that print without a window, the first one found is taken."""
 
+_PATIENCE = 300.0  # seconds that a browser may take
+
 
 def print_page(page: Path) -> Path:
-    """Print a page, and return the path of the PDF beside it; this needs a browser that prints."""
+    """Print a page to a PDF beside it; this needs a browser that prints.
+
+    Parameters
+    ----------
+    page : path of the HTML file
+
+    Returns
+    -------
+    Path of the PDF.
+    """
     if not page.is_file():
         raise InputError(f"{page}: there is no report yet; run the study first.")
     browser = next((path for name in BROWSERS if (path := shutil.which(name))), None)
@@ -44,8 +55,12 @@ def print_page(page: Path) -> Path:
             *(["--no-sandbox"] if hasattr(os, "geteuid") and os.geteuid() == 0 else []),
             page.resolve().as_uri(),
         ]
-        done = subprocess.run(command, capture_output=True, check=False, timeout=300)
-        if done.returncode != 0 or not part.read_bytes().startswith(b"%PDF"):
+        try:
+            subprocess.run(command, capture_output=True, check=True, timeout=_PATIENCE)
+        except (OSError, subprocess.SubprocessError):
+            # what it left is no page
+            part.write_bytes(b"")
+        if not part.read_bytes().startswith(b"%PDF"):
             raise InputError(
                 f"{browser} did not print {page}; open it in any browser and print it from there."
             )

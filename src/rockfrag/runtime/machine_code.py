@@ -1,6 +1,10 @@
 """Machine code that numba keeps between processes, and what becomes of it when its files are damaged."""
 
+import hashlib
+import pickle
 from collections.abc import Callable
+from contextlib import suppress
+from pathlib import Path
 from typing import Any
 
 import numba
@@ -12,9 +16,9 @@ def cached_njit(
     """Compile a function with options of ``numba.njit`` and keep its machine code where that can be written.
 
     ``stamp`` gives a digest of all sources that the machine code is made of; numba looks at the function's own
-    file only, and would keep code with an old copy of another function. A file of machine code that cannot be
-    read is made anew, as if it were not there; without a folder for it the function is compiled for this process
-    alone.
+    file only, and would keep code with an old copy of another function. A file of machine code that is damaged or
+    may not be read is made anew, as if it were not there; without a folder for it, or where it may not be written,
+    the function is compiled for this process alone.
     """
 
     def decorate(function: Callable[..., Any]) -> Any:
@@ -30,8 +34,8 @@ def cached_njit(
             if not hasattr(file, "_source_stamp"):
                 return numba.njit(**options)(function)
             file._source_stamp = (file._source_stamp, stamp())
-        if hasattr(file, "load") and hasattr(file, "flush"):
-            file.load = _whole_or_nothing(file.load, file.flush)
+        if all(hasattr(file, name) for name in _OF_A_FILE):
+            _seal(file)
         if not options.get("_nrt", True) and hasattr(cache, "_load_overload"):
             cache.load_overload = _loading_alone(cache)
         return compiled
@@ -39,19 +43,42 @@ def cached_njit(
     return decorate
 
 
-def _whole_or_nothing(
-    load: Callable[[Any], Any], forget: Callable[[], None]
-) -> Callable[[Any], Any]:
+_OF_A_FILE = ("load", "save", "flush", "_dump", "_load_data", "_data_path")
+"""What is asked of numba's file of machine code."""
+
+_SEAL = hashlib.sha256().digest_size  # bytes of the digest at the end of a file
+
+
+def _seal(file: Any) -> None:
+    """Let a digest stand behind what numba writes of a function, and read nothing that it does not fit."""
+    dump, load, save = file._dump, file.load, file.save
+
+    def sealed(content: Any) -> bytes:
+        written: bytes = dump(content)
+        return written + hashlib.sha256(written).digest()
+
+    def load_data(name: str) -> Any:
+        found = Path(file._data_path(name)).read_bytes()
+        content, seal = found[:-_SEAL], found[-_SEAL:]
+        if hashlib.sha256(content).digest() != seal:
+            raise ValueError(f"{name} is damaged")
+        return pickle.loads(content)
+
     def load_whole(signature: Any) -> Any:
         try:
             return load(signature)
-        except OSError:
-            raise
         except Exception:  # half a pickle raises nearly anything
-            forget()
+            with suppress(OSError):
+                file.flush()
             return None
 
-    return load_whole
+    def save_if_allowed(signature: Any, content: Any) -> None:
+        # a full disk, or an index of another user in a folder where it cannot be replaced
+        with suppress(OSError):
+            save(signature, content)
+
+    file._dump, file._load_data = sealed, load_data
+    file.load, file.save = load_whole, save_if_allowed
 
 
 def _loading_alone(cache: Any) -> Callable[[Any, Any], Any]:

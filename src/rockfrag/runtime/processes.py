@@ -3,6 +3,7 @@
 import multiprocessing
 import os
 import select
+import sys
 import threading
 import time
 from collections.abc import Callable, Iterable, Sequence
@@ -44,6 +45,13 @@ def in_processes(
 def _call(number: int) -> Any:
     function, things = _waiting
     return function(things[number])
+
+
+def speak_utf8() -> None:
+    """Begin anew where Python takes names of files for ASCII, as with LC_ALL=C; what it starts inherits that."""
+    if sys.getfilesystemencoding() != "utf-8":
+        os.environ["PYTHONUTF8"] = "1"
+        os.execv(sys.executable, [sys.executable, *sys.orig_argv[1:]])
 
 
 def end_with(process: int) -> None:

@@ -19,10 +19,12 @@ from numpy.typing import ArrayLike
 from rockfrag.base.errors import InputError
 from rockfrag.base.files import whole_file
 from rockfrag.base.keywords import named_keywords
-from rockfrag.engines.contract import Case, Cases, engine_for
+from rockfrag.engines.built_in import SPATIAL
+from rockfrag.engines.contract import Case, Cases, Engine
 from rockfrag.engines.steps import step_count
 from rockfrag.outcomes.outcomes import Table
 from rockfrag.outcomes.outcomes import columns as columns_of
+from rockfrag.outcomes.response import SPATIAL_COLUMNS
 from rockfrag.simulation.ensemble import Options, prepared, shaken
 from rockfrag.simulation.inputs import MotionLike
 from rockfrag.system.blocks import SystemLike
@@ -132,11 +134,9 @@ def _groups(most: int, shape: tuple[int, int, int]) -> Iterator[tuple[slice, ...
 
 AHEAD = 16  # histories that are in memory at a time
 
-SCHEMA = pa.schema(
-    PLACE
-    | {"time_s": pa.float64(), "body": pa.int32()}
-    | {"theta_rad": pa.float64(), "omega_rad_s": pa.float64(), "state": pa.int8()}
-)
+SAMPLE = PLACE | {"time_s": pa.float64(), "body": pa.int32()}
+IN_PLANE = {"theta_rad": pa.float64(), "omega_rad_s": pa.float64(), "state": pa.int8()}
+"""What a sample of a planar body tells."""
 
 
 @named_keywords
@@ -153,10 +153,12 @@ def stream_histories(
     """Write the history of every body × motion × scale to a Parquet file, in memory that stays flat.
 
     One row per case, sample and body, the bodies running fastest (from below, from 1), then the samples, then the
-    scale: ``system``, ``motion`` (positions in the lists given), ``scale``, ``time_s``, ``body``, rotation
-    ``theta_rad``, angular velocity ``omega_rad_s`` and contact ``state`` as in :class:`Response`.  At the default
-    step the numbers are, bit for bit, those that :func:`simulate` gives for the scaled motion.  The file appears
-    whole or not at all, and its bytes do not depend on the number of threads.
+    scale: ``system``, ``motion`` (positions in the lists given), ``scale``, ``time_s``, ``body``; of planar bodies
+    rotation ``theta_rad``, angular velocity ``omega_rad_s`` and contact ``state`` as in :class:`Response`; of
+    bodies in space the columns of :class:`rockfrag.engines.spatial.SpatialResponse`.  Where a file holds both, a
+    row tells nothing in the columns of the other kind.  At the default step the numbers are, bit for bit, those
+    that :func:`simulate` gives for the scaled motion.  The file appears whole or not at all, and its bytes do not
+    depend on the number of threads.
 
     Parameters
     ----------
@@ -169,9 +171,10 @@ def stream_histories(
     cases = prepared(bodies, motions, dt, scales, **options)
     request = replace(cases.request, history=True)
     cases = replace(cases, request=request)
+    answering: list[Engine] = []
     if cases.motions:
         # refused here and not in the middle of the file: the longest interval needs most steps
-        _ = cases.answering
+        answering = cases.answering
         for system in cases.systems:
             step_count(
                 system, [motion.dt for motion in cases.motions], request.g, request.step
@@ -180,14 +183,15 @@ def stream_histories(
         len(cases.systems) * cases.scales.size,
         iter(np.ndindex(*cases.shape)),
     )
+    schema = _history_schema(answering)
     with (
         whole_file(path) as file,
-        pq.ParquetWriter(file, SCHEMA, compression="zstd") as writer,
+        pq.ParquetWriter(file, schema, compression="zstd") as writer,
         ThreadPoolExecutor(cases.threads) as pool,
     ):
         written = 0
         while batch := list(itertools.islice(places, AHEAD)):
-            tables = pool.map(partial(_history_table, cases), batch)
+            tables = pool.map(partial(_history_table, cases, schema), batch)
             writer.write_table(pa.concat_tables(tables), row_group_size=ROWS)
             written += len(batch)
             if progress is not None:
@@ -195,23 +199,32 @@ def stream_histories(
     return total
 
 
-def _history_table(cases: Cases, place: tuple[int, ...]) -> pa.Table:
+def _history_schema(answering: Sequence[Engine]) -> pa.Schema:
+    """Columns of histories that these engines tell."""
+    in_space = {engine is SPATIAL for engine in answering}
+    told = IN_PLANE if in_space != {True} else {}
+    if True in in_space:
+        told = told | dict.fromkeys(SPATIAL_COLUMNS, pa.float64())
+    return pa.schema(SAMPLE | told)
+
+
+def _history_table(cases: Cases, schema: pa.Schema, place: tuple[int, ...]) -> pa.Table:
     """Make the rows of one history, of a system, a motion and a scale."""
     b, m, s = place
     case = Case(
         cases.systems[b], cases.motions[m], float(cases.scales[m, s]), cases.request
     )
-    response = engine_for(case.system, case.motion, case.request).history(case)
-    theta = response.theta
-    samples, bodies = theta.shape
-    values = {
-        "system": np.full(theta.size, b),
-        "motion": np.full(theta.size, m),
-        "scale": np.full(theta.size, case.scale),
-        "time_s": np.repeat(response.time, bodies),
-        "body": np.tile(np.arange(1, bodies + 1), samples),
-        "theta_rad": theta.ravel(),
-        "omega_rad_s": response.omega.ravel(),
-        "state": response.state.ravel(),
-    }
-    return pa.Table.from_pydict(values, schema=SCHEMA)
+    samples = cases.answering[b].history(case).samples()
+    count = len(samples["time_s"])
+    places = {"system": b, "motion": m, "scale": case.scale}
+    values = {name: np.full(count, value) for name, value in places.items()} | samples
+    nothing = pa.nulls(count)
+    return pa.Table.from_arrays(
+        [
+            pa.array(values[each.name], each.type)
+            if each.name in values
+            else nothing.cast(each.type)
+            for each in schema
+        ],
+        schema=schema,
+    )

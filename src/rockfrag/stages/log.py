@@ -37,7 +37,7 @@ def logged(path: str, name: str) -> Iterator[logging.Logger]:
         _fail(name, str(error), path)
     except KeyboardInterrupt:
         log.error("stopped")
-        sys.exit(1)
+        _fail(name, "it was stopped; the same command takes it up again", path)
     except Exception as error:
         log.exception("failed")
         _fail(name, in_words(error), path)

@@ -11,7 +11,7 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from rockfrag.base.errors import InputError
-from rockfrag.base.files import file_name, is_file
+from rockfrag.base.files import file_name
 from rockfrag.base.plausible import size_warning
 from rockfrag.building.model import ShearBuilding
 from rockfrag.records.catalogue import own_records
@@ -208,14 +208,18 @@ class Study(Heading):
         """Files of the user's own records."""
         return own_records(self.catalogue, self.catalogue_file.parent)
 
-    def record_files(self, records: str) -> list[str]:
-        """Files that must exist before the records can be read, fetched ones under ``records``."""
+    @property
+    def motion_files(self) -> list[str]:
+        """Paths of the user's files that the motions depend on: catalogue, records of each component, building."""
+        folder, turned = self.catalogue_file.parent, self.catalogue["direction"] != ""
+        files = [self.catalogue_file, *self.own_records]
+        files += own_records(self.catalogue[turned], folder, ("second",))
+        files += own_records(self.catalogue, folder, ("vertical",) * self.vertical)
+        files += [self.building_file] if self.building_file else []
+        return [str(path) for path in files]
+
+    def fetched_records(self, records: str) -> list[str]:
+        """Files under ``records`` that are there as soon as the records of pinned packages are."""
         wheels = self.catalogue["source"].isin(list(WHEELS))
-        fetched = [
-            f"{records}/{name}/{PROVENANCE}"
-            for name in self.catalogue["source"][wheels]
-        ]
-        own = (
-            path for path in self.own_records if is_file(path) or not self.keep_going
-        )
-        return [*dict.fromkeys(fetched), *(str(path) for path in own)]
+        names = dict.fromkeys(self.catalogue["source"][wheels])
+        return [f"{records}/{name}/{PROVENANCE}" for name in names]

@@ -23,9 +23,8 @@ from rockfrag.base.plausible import LARGEST_SIZE, MEAN_DENSITIES
 from rockfrag.base.short_repr import short_repr
 from rockfrag.system.blocks import Block
 from rockfrag.system.body import Polygon, RigidBody
+from rockfrag.system.mesh_file import Y_UP, load_mesh
 
-MESH_ENDINGS = (".obj", ".ply", ".stl", ".glb", ".gltf")
-Y_UP = (".glb", ".gltf")  # formats whose specification says so (glTF 2.0, section 3.4)
 FEWEST_CARRY = 3  # points that make a polygon to stand on
 MOST_CORNERS = 48  # of a polygon to stand on in space
 FLAT = 1e-3  # distance over the polygon's size at which a corner hardly turns it [-]
@@ -117,7 +116,8 @@ class Shape:
         Points up to ``tolerance`` above the lowest carry; edges lie ``retreat`` further in than their polygon [m].
         """
         # rounded or crushed edges carry further in
-        left, right = (edge - retreat for edge in self.edges(direction_deg, tolerance))
+        left, right = self.edges(direction_deg, tolerance)
+        left, right = left - retreat, right - retreat
         if min(left, right) <= 0:
             raise InputError(
                 f"{self.name}: along {direction_deg:g}° its edges are {left:.4f} and {right:.4f} m "
@@ -172,7 +172,7 @@ class Shape:
         return float(directions[least]), float(math.atan2(reach[least], self.cg_height))
 
 
-def _outward(corners: Floats) -> Floats:
+def outward_normals(corners: Floats) -> Floats:
     """Unit normals of the edges of a convex polygon in order, shape (n, 2)."""
     edges = np.roll(corners, -1, axis=0) - corners
     lengths = np.hypot(*edges.T)[:, np.newaxis]
@@ -181,7 +181,7 @@ def _outward(corners: Floats) -> Floats:
 
 def edge_distances(corners: Floats) -> Floats:
     """Distances of a convex polygon's edges from the origin, negative where that is outside [m], shape (n,)."""
-    return np.asarray(np.einsum("ni,ni->n", _outward(corners), corners))
+    return np.asarray(np.einsum("ni,ni->n", outward_normals(corners), corners))
 
 
 def _without_hardly_turning(corners: Floats) -> Floats:
@@ -203,7 +203,7 @@ def _without_hardly_turning(corners: Floats) -> Floats:
 
 def _retreated(corners: Floats, distance: float) -> Floats | None:
     """Move the edges of a convex polygon about the origin inwards; None where the origin is left outside."""
-    outward = _outward(corners)
+    outward = outward_normals(corners)
     reach = edge_distances(corners) - distance
     if not (reach > 0).all():
         return None
@@ -283,22 +283,9 @@ def _closed_mesh(path: Path, hull: bool) -> Any:
     """Read a mesh with trimesh and turn it outside out; refuse one with holes."""
     import trimesh
 
-    if path.suffix.lower() not in MESH_ENDINGS:
-        raise InputError(
-            f"{path}: a mesh is read from {', '.join(MESH_ENDINGS)} files."
-        )
-    if not path.is_file():
-        raise InputError(f"{path}: there is no such file; correct the path.")
-    try:
-        mesh: Any = trimesh.load(path, process=False)
-        if not isinstance(mesh, trimesh.PointCloud):
-            mesh = trimesh.load(path, process=False, force="mesh")
-        vertices = np.asarray(mesh.vertices, dtype=np.float64)
-        faces = np.asarray(getattr(mesh, "faces", ()))
-    except Exception as error:
-        raise InputError(
-            f"{path}: cannot be read as a mesh ({type(error).__name__})."
-        ) from error
+    mesh = load_mesh(path)
+    vertices = np.asarray(mesh.vertices, dtype=np.float64)
+    faces = np.asarray(getattr(mesh, "faces", ()))
     if not np.isfinite(vertices).all():
         raise InputError(f"{path}: the mesh has a vertex that is not finite.")
     if hull:

@@ -12,6 +12,7 @@ from rockfrag.engines.planar.search import (
     CONSISTENT,
     Trial,
     mode_number,
+    prepare,
     search,
     take_number,
     try_mode,
@@ -42,7 +43,8 @@ def situation(
     w = working_memory()
     w["drive"][:], w["kind"][:] = -1, 1
     w["q"], _ = posed(p, theta.tolist(), [0.0] * bodies)
-    w["touching"][:bodies], w["limit"][:bodies] = touching, mus
+    w["touching"][:bodies] = touching
+    w["along"][:bodies] = w["against"][:bodies] = mus
     v = np.zeros(3 * MOST)
     if impact:
         v[: 3 * bodies] = rng.normal(0, 1, 3 * bodies) * np.tile(
@@ -128,6 +130,7 @@ def modes_of(touching: np.ndarray, moves: np.ndarray, impact: bool) -> np.ndarra
 def try_all(p, w, trial, numbers, margins):
     """Least margin of every mode."""
     look_at(p, w, w.q)
+    prepare(p, w, trial)
     for i in range(numbers.size):
         take_number(p, w, numbers[i])
         margins[i] = try_mode(p, w, trial)

@@ -2,6 +2,9 @@
 
 import ast
 import importlib.util
+import os
+import subprocess
+import sys
 from pathlib import Path
 
 import numba
@@ -94,6 +97,22 @@ def test_an_unknown_numba_gives_the_same_bits(tmp_path):
     assert printed_alone("-c", UNKNOWN, NUMBA_CACHE_DIR=str(tmp_path)) == str(known)
 
 
+def test_kernels_that_may_not_be_compiled_are_one_sentence(tmp_path):
+    record = tmp_path / "record.txt"
+    record.write_text("".join(f"{0.01 * i:.2f} {i % 7}\n" for i in range(100)))
+    asked = ("simulate", str(record), "--unit", "g", "--width", "30cm")
+    done = subprocess.run(
+        [sys.executable, "-m", "rockfrag.cli.main", *asked, "--height", "90cm"],
+        env={**os.environ, "NUMBA_DISABLE_JIT": "1"},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.returncode == 2
+    assert done.stderr.startswith("NUMBA_DISABLE_JIT is set")
+    assert done.stderr.count("\n") == 1
+
+
 # --------------------------------------------------------------------------- machine code on disk
 
 PROGRAM = """
@@ -128,6 +147,59 @@ def test_damaged_machine_code_is_made_anew(tmp_path, monkeypatch, damaged, left)
     again = fresh(path)
     assert again(2) == 6
     assert sum(again.stats.cache_hits.values()) == 1
+
+
+def test_no_byte_of_machine_code_may_be_another(tmp_path, monkeypatch):
+    """A byte that is not what was written would be a crash, or another number."""
+    monkeypatch.setattr(numba.config, "CACHE_DIR", str(tmp_path / "cache"))
+    path = tmp_path / "of_this_test.py"
+    path.write_text(PROGRAM)
+    rng = np.random.default_rng(2)
+    for pattern in ("*.nbc", "*.nbi"):
+        for _ in range(20):
+            assert fresh(path)(2) == 6
+            (file,) = (tmp_path / "cache").rglob(pattern)
+            content = bytearray(file.read_bytes())
+            content[rng.integers(len(content))] ^= 1 << rng.integers(8)
+            file.write_bytes(content)
+            assert fresh(path)(2) == 6
+    damaged = fresh(path)
+    assert damaged(2) == 6
+    assert sum(damaged.stats.cache_hits.values()) == 1
+
+
+@pytest.mark.parametrize("names", [["*.nbi"], ["*.nbc"], ["*.nbi", "*.nbc"]])
+@pytest.mark.parametrize("replaced", [True, False])
+def test_machine_code_of_another_user_that_may_not_be_read_is_as_if_it_were_not_there(
+    tmp_path, monkeypatch, names, replaced
+):
+    """``replaced``: whether the folder lets this user put files in the place of others'."""
+    monkeypatch.setattr(numba.config, "CACHE_DIR", str(tmp_path / "cache"))
+    path = tmp_path / "of_this_test.py"
+    path.write_text(PROGRAM)
+    assert fresh(path)(2) == 6
+    closed = {str(file) for name in names for file in (tmp_path / "cache").rglob(name)}
+    replace, opened = os.replace, open
+
+    # permissions do not bind everybody who runs the tests
+    def refuse(file, mode="r", *given, **named):
+        if str(file) in closed:
+            raise PermissionError(13, "Permission denied", str(file))
+        return opened(file, mode, *given, **named)
+
+    def put(source, target):
+        if str(target) in closed and not replaced:
+            raise PermissionError(13, "Permission denied", str(target))
+        closed.discard(str(target))
+        replace(source, target)
+
+    monkeypatch.setattr("builtins.open", refuse)
+    monkeypatch.setattr("io.open", refuse)
+    monkeypatch.setattr("os.replace", put)
+    assert fresh(path)(2) == 6
+    again = fresh(path)
+    assert again(2) == 6
+    assert sum(again.stats.cache_hits.values()) == replaced
 
 
 ALONE = """

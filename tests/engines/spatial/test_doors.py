@@ -15,8 +15,8 @@ from rockfrag.engines.spatial.body import kernel_body
 from rockfrag.engines.spatial.engine import ENGINE, run_case
 from rockfrag.records.motion import GroundMotion, Motion
 from rockfrag.report.live.live_space import AMPLITUDES_G
-from rockfrag.simulation.parquet import stream_overturns
-from rockfrag.system import Block, Contact, System, as_system
+from rockfrag.simulation.parquet import stream_histories, stream_overturns
+from rockfrag.system import Block, Contact, Stack, System, as_system
 from rockfrag.system.system import box, cylinder
 from rockfrag.words.sentences import number
 
@@ -151,6 +151,35 @@ def test_under_one_component_a_block_with_a_depth_is_a_planar_one():
 def test_planar_bodies_and_stacks_are_refused_in_one_sentence():
     with pytest.raises(InputError, match="give its depth"):
         run_in_space([as_system(Block(0.3, 1.0, 100.0))], [ground_motion(0, 0.3)])
+
+
+def test_a_base_that_leans_is_refused_in_space_and_taken_in_the_plane():
+    leans = Block(0.3, 1.0, 100.0, lean=0.05, depth=0.35)
+    along_x = ground_motion(0, 0.3).x
+    for motion in (GroundMotion(along_x), ground_motion(0, 0.3)):
+        with pytest.raises(InputError, match="an uneven base in space"):
+            run_in_space([leans], [motion])
+    upright = overturns([Block(0.3, 1.0, 100.0, depth=0.35)], along_x)
+    assert overturns([leans], along_x).peak_rotation != upright.peak_rotation
+
+
+def test_histories_in_space_are_streamed_as_simulate_tells_them(tmp_path):
+    motions, scales, path = [ground_motion(0, 1.0)], [0.2, 0.5], tmp_path / "h.parquet"
+    assert stream_histories(BLOCKS, motions, None, scales, path) == 4
+    found = pd.read_parquet(path)
+    for i, block in enumerate(BLOCKS):
+        for scale in scales:
+            case = Case(as_system(block), motions[0], scale)
+            rows = found[(found.system == i) & (found.scale == scale)]
+            expected = ENGINE.history(case).history
+            given = rows[list(expected.columns)].reset_index(drop=True)
+            pd.testing.assert_frame_equal(given, expected, check_exact=True)
+            assert (rows.body == 1).all()
+    # a stack under one component is planar, and its file tells nothing of space
+    one = GroundMotion(Motion(motions[0].x.acceleration, DT))
+    stack = Stack(Block(0.6, 0.3, 100.0), Block(0.3, 0.9, 100.0))
+    stream_histories([stack], [one], None, scales, path)
+    assert "theta_rad" in pd.read_parquet(path) and "x_m" not in pd.read_parquet(path)
 
 
 @pytest.fixture

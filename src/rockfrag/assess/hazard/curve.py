@@ -538,7 +538,7 @@ def read_levels(
     def curve(rows: Sequence[Row], where: str) -> HazardCurve:
         points = sorted((row.number(level) * factor, row.number(often)) for row in rows)
         rates = _annual_rates(often, [value for _, value in points], where)
-        return make_curve(measure, [level for level, _ in points], rates, where)
+        return make_curve(measure, [intensity for intensity, _ in points], rates, where)
 
     return table.rows(titles), curve
 

@@ -17,6 +17,7 @@ from numba import types
 from numba.extending import intrinsic, register_jitable
 
 from rockfrag.base import elementary
+from rockfrag.base.errors import InputError
 from rockfrag.laws import couple, laws, position
 from rockfrag.runtime.lock import locked
 from rockfrag.runtime.machine_code import cached_njit
@@ -56,6 +57,11 @@ _WHOLE: dict[str, Any] = {}
 _PART: dict[str, Any] = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
 if KNOWN:
     _WHOLE["pipeline_class"], _PART["pipeline_class"] = WholeCompiler, PartCompiler
+
+if getattr(numba.config, "DISABLE_JIT", 0):
+    raise InputError(
+        "NUMBA_DISABLE_JIT is set, and kernels are what they are as machine code only; unset it."
+    )
 
 entry_kernel: Callable[..., Any] = cached_njit(_digest, **_EVERY, **_WHOLE)
 """Compile a function that Python calls, without the interpreter's lock, and cache the machine code."""

@@ -23,6 +23,8 @@ BODY = np.dtype(
         *fields("height"),  # of the centre of mass over the base [m]
         # distances in the base from below the centre of mass: of its furthest point, of its nearest edge [m]
         *fields("furthest nearest"),
+        # mean distance of the base's points from its centre: arm of the friction of a base that spins flat [m]
+        *fields("twist"),
         *fields("static kinetic"),  # coefficients of friction [-]
         # energy over rest below which nothing falls on ground at rest [J/kg]
         *fields("barrier"),
@@ -65,6 +67,13 @@ def arm(body, up, i):
             -body.height,
         )
     return (body.points[i, 0], body.points[i, 1], body.points[i, 2])
+
+
+@kernel
+def towards_centre(body, p, part):
+    """Point p of the base moved towards the base's centre, from which it keeps a part of its distance."""
+    x, y = body.centre[0], body.centre[1]
+    return (x + part * (p[0] - x), y + part * (p[1] - y), p[2])
 
 
 @kernel

@@ -62,7 +62,7 @@ def cones_hold(s, n, mask, small):
             if p < -small:
                 return False
             shear = norm(s.impulse[3 * i], s.impulse[3 * i + 1])
-            if not s.given[i] and shear > s.friction[i] * p * (1 + 1e-12) + small:
+            if not s.given[i] and shear > s.grip[i] * p * (1 + 1e-12) + small:
                 return False
     return True
 
@@ -100,7 +100,7 @@ def residuals(s, size, x, pace, out):
             out[3 * m + 1] = x[b] + s.friction[i] * x[c] * s.way[i, 1]
         else:
             u, v = x[a] - pace * s.after[a], x[b] - pace * s.after[b]
-            limit = s.friction[i] * max(x[c], 0.0)
+            limit = s.grip[i] * max(x[c], 0.0)
             length = norm(u, v)
             factor_ = 1.0 if length <= limit else limit / length
             out[3 * m], out[3 * m + 1] = x[a] - factor_ * u, x[b] - factor_ * v
@@ -115,7 +115,7 @@ def slopes_in_plane(s, m, x, pace, size):
     i = s.member[m]
     a, b, c = 3 * i, 3 * i + 1, 3 * i + 2
     u, v = x[a] - pace * s.after[a], x[b] - pace * s.after[b]
-    limit = s.friction[i] * max(x[c], 0.0)
+    limit = s.grip[i] * max(x[c], 0.0)
     length = norm(u, v)
     sticks = length <= limit
     e, f, ratio = 0.0, 0.0, 1.0
@@ -131,7 +131,7 @@ def slopes_in_plane(s, m, x, pace, size):
             du = -pace * s.delassus[a, j] + (1.0 if j == a else 0.0)
             dv = -pace * s.delassus[b, j] + (1.0 if j == b else 0.0)
             along = e * du + f * dv
-            grow = s.friction[i] if j == c and x[c] > 0 else 0.0
+            grow = s.grip[i] if j == c and x[c] > 0 else 0.0
             s.matrix[3 * m, at] = (
                 (1.0 if j == a else 0.0) - ratio * (du - along * e) - grow * e
             )
@@ -215,8 +215,9 @@ def start_sliding(s, n, mask, turned):
         e, f = e * cosine - f * sine, e * sine + f * cosine
         if s.given[i]:
             e, f = s.way[i, 0], s.way[i, 1]
-        s.impulse[a] = -s.friction[i] * normal * e
-        s.impulse[a + 1] = -s.friction[i] * normal * f
+        grip = s.friction[i] if s.given[i] else s.grip[i]
+        s.impulse[a] = -grip * normal * e
+        s.impulse[a + 1] = -grip * normal * f
         s.impulse[a + 2] = normal
 
 
@@ -231,7 +232,19 @@ def others_open(s, n, mask, small):
 
 @kernel
 def stick_set(s, n, mask, size, largest):
-    """Solve for one set that sticks; return whether its equations have a solution."""
+    """Solve for one set that sticks, and what it holds with; return whether its equations have a solution."""
+    for m in range(size):
+        s.grip[s.member[m]] = s.holds[s.member[m]]
+    if not stop_set(s, n, mask, size, largest):
+        return False
+    if lose_grip(s, n, mask, size, largest) and size == 2:
+        fraction_in_set(s, s.member[0], s.member[1])
+    return True
+
+
+@kernel
+def stop_set(s, n, mask, size, largest):
+    """Solve for the impulses at which one set stops (or slides the given way); whether there is a solution."""
     for i in range(3 * n):
         s.impulse[i] = 0.0
     if size == 1:
@@ -242,6 +255,40 @@ def stick_set(s, n, mask, size, largest):
         if size == 2:
             fraction_in_set(s, s.member[0], s.member[1])
     return True
+
+
+@kernel
+def lose_grip(s, n, mask, size, largest):
+    """Give contacts that slipped before kinetic friction where Routh's path asks for it; whether there are any.
+
+    Slip that ends is rubbed by kinetic friction until it does, so a shear against it is of that.  A shear along it
+    is of what has stuck since, if what then comes down straight is within the static cone; else slip never ends.
+    """
+    lost, regains = False, False
+    for m in range(size):
+        i = s.member[m]
+        if s.slid[i] and s.friction[i] < s.holds[i]:
+            along = (
+                s.impulse[3 * i] * s.came[i, 0] + s.impulse[3 * i + 1] * s.came[i, 1]
+            )
+            regains = regains or along >= 0.0
+            if along < 0.0:
+                s.grip[i], lost = s.friction[i], True
+    if not regains:
+        return lost
+    for i in range(3 * n):
+        s.trial[i], s.kept[i] = s.impulse[i], s.free[i]
+        if i % 3 != 2:
+            s.free[i] = 0.0
+    stop_set(s, n, mask, size, largest)
+    for m in range(size):
+        i = s.member[m]
+        shear = norm(s.impulse[3 * i], s.impulse[3 * i + 1])
+        if s.slid[i] and shear > s.holds[i] * s.impulse[3 * i + 2]:
+            s.grip[i], lost = s.friction[i], True
+    for i in range(3 * n):
+        s.impulse[i], s.free[i] = s.trial[i], s.kept[i]
+    return lost
 
 
 @kernel
@@ -276,7 +323,8 @@ def slide_set(s, n, mask, size, largest, scale):
     for i in range(n):
         if in_set(mask, i) and not s.given[i]:
             a = 3 * i
-            limit = s.friction[i] * max(s.impulse[a + 2], 0.0)
+            s.grip[i] = s.friction[i] if s.slid[i] else s.holds[i]
+            limit = s.grip[i] * max(s.impulse[a + 2], 0.0)
             shear = norm(s.impulse[a], s.impulse[a + 1])
             if shear > limit:
                 s.impulse[a] *= limit / shear
@@ -287,7 +335,21 @@ def slide_set(s, n, mask, size, largest, scale):
             break
         start_sliding(s, n, mask, 1.5707963267948966 * k)
         found = newton(s, size, pace, CLOSE_ENOUGH * scale)
+    while found and slip_kinetically(s, size, 1e-9 * scale):
+        found = newton(s, size, pace, CLOSE_ENOUGH * scale)
     return found
+
+
+@kernel
+def slip_kinetically(s, size, slow):
+    """Give contacts of a set that slide with static friction kinetic one; whether there were any."""
+    changed = False
+    for m in range(size):
+        i = s.member[m]
+        slides = not s.given[i] and norm(s.after[3 * i], s.after[3 * i + 1]) > slow
+        if slides and s.grip[i] > s.friction[i]:
+            s.grip[i], changed = s.friction[i], True
+    return changed
 
 
 @kernel
@@ -374,7 +436,7 @@ def fraction_in_set(s, first, second):
         along += part
         p[3 * i] -= part * edge[0]
         p[3 * i + 1] -= part * edge[1]
-        free = (s.friction[i] * p[3 * i + 2]) ** 2 - p[3 * i] ** 2 - p[3 * i + 1] ** 2
+        free = (s.grip[i] * p[3 * i + 2]) ** 2 - p[3 * i] ** 2 - p[3 * i + 1] ** 2
         room_for = (room_for[1], math.sqrt(max(free, 0.0)))
     whole = room_for[0] + room_for[1]
     part = 0.5 if whole == 0.0 else room_for[0] / whole
@@ -396,6 +458,8 @@ def solve_cones(s, n, least):
     if chosen >= 0:
         for i in range(3 * n):
             s.impulse[i] = s.best[i]
+        for i in range(n):
+            s.grip[i] = s.best_grip[i]
         fill_after(s, n)
     return chosen, ways
 
@@ -434,4 +498,6 @@ def fewest(s, n, least, slide):
                 chosen, lowest, size_found = mask, change, size
                 for i in range(3 * n):
                     s.best[i] = s.impulse[i]
+                for i in range(n):
+                    s.best_grip[i] = s.grip[i]
     return chosen, ways

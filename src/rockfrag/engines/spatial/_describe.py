@@ -41,6 +41,7 @@ def _fill_rim(body: Any) -> None:
     off = hypot(x, y)
     body.nearest, body.furthest = radius - off, radius + off
     across = (body.inertia[0, 0] + body.inertia[1, 1]) / 2
+    body.twist = 2 * radius / 3
     square = radius * radius
     body.pass_turn = math.pi * math.sqrt(
         1 + square / (across + body.height * body.height)
@@ -50,13 +51,40 @@ def _fill_rim(body: Any) -> None:
 
 def _reach_of_polygon(body: Any) -> None:
     body.nearest, body.furthest = math.inf, 0.0
+    moment = area = 0.0
     for i in range(body.count):
         j = i + 1 if i + 1 < body.count else 0
         x, y = body.points[i, 0], body.points[i, 1]
         along, across = body.points[j, 0] - x, body.points[j, 1] - y
-        edge = (across * x - along * y) / hypot(along, across)
+        length = hypot(along, across)
+        edge = (across * x - along * y) / length
+        moment += edge * _distances_of_edge(
+            edge, x, y, along / length, across / length, length
+        )
+        area += edge * length / 2
         body.nearest = min(body.nearest, edge)
         body.furthest = max(body.furthest, hypot(x, y))
+    body.twist = moment / area
+
+
+def _distances_of_edge(
+    far: float, x: float, y: float, e: float, f: float, length: float
+) -> float:
+    """Integral of distances over the triangle between an edge and the origin, over its height ``far`` [m²]."""
+    start = x * e + y * f
+    end = start + length
+    first, last = hypot(far, start), hypot(far, end)
+    logarithm = _logarithm((end + last) / (start + first))
+    return (end * last - start * first + far * far * logarithm) / 6
+
+
+def _logarithm(x: float) -> float:
+    """Natural logarithm, to 1e-14, by square roots and the series of the inverse hyperbolic tangent."""
+    for _ in range(8):
+        x = math.sqrt(x)
+    z = (x - 1) / (x + 1)
+    s = z * z
+    return 512 * z * (1 + s * (1 / 3 + s * (1 / 5 + s * (1 / 7 + s * (1 / 9)))))
 
 
 def _invert(of: Any, into: Any) -> None:

@@ -43,13 +43,15 @@ CASE = np.dtype(
         *fields("lam", MOST, 3),  # contact forces or impulses in the world
         # effective gravity at the beginning of the interval, its rate, and gravity on ground at rest
         *fields("field", 7),
-        # a small system: contacts, whether and which way of slip is given, coefficients, directions between
-        *whole("which given", MOST),
-        *fields("way", MOST, 2),
-        *fields("friction", MOST),
+        # a small system: contacts, whether and which way of slip is given; whether they slipped before an impact,
+        # and where to; coefficients of what slides, of what has not slipped, of what sticks (tried, and chosen);
+        # directions between
+        *whole("which given slid", MOST),
+        *fields("way came", MOST, 2),
+        *fields("friction holds grip best_grip", MOST),
         *fields("edge", MOST, MOST, 2),
         *fields("delassus matrix", 3 * MOST, 3 * MOST),
-        *fields("free vector right unknown impulse after best trial", 3 * MOST),
+        *fields("free vector right unknown impulse after best trial kept", 3 * MOST),
         *whole("order", 3 * MOST),
         *whole("member", MOST),  # contacts of a set
         # a step: rates at its stages, the state at its end, slip at its beginning
@@ -100,28 +102,67 @@ def response(body, rows, p, q, axis):
 
 
 @kernel
-def fill_delassus(body, rows, which, n, delassus):
-    """Fill in what impulses at the contacts do to their velocities, in world components."""
+def twist_of(body, s):
+    """Part of its distance from the centre at which the friction of a closed point acts; 1 but on a flat face.
+
+    Pressed evenly, a face that spins is held by µ N times the mean distance of its points from the centre
+    (``docs/space.md``), which is less than the distance of the points that carry it here.
+    """
+    if s.count < 3:
+        return 1.0
+    total = 0.0
+    for k in range(s.count):
+        p = body.points[s.closed[k]]
+        total += norm(p[0] - body.centre[0], p[1] - body.centre[1])
+    return body.twist * s.count / total
+
+
+@kernel
+def slip_of(body, y, rows, k, s):
+    """Velocity in the world of where the friction of the closed point number k acts."""
+    p = solid.arm(body, rows[2], s.closed[k])
+    if s.count >= 3:
+        p = solid.towards_centre(body, p, twist_of(body, s))
+    return solid.point_velocity(y, rows, p)
+
+
+@kernel
+def fill_delassus(body, rows, which, n, delassus, twist=1.0):
+    """Fill in what impulses at the contacts do to their velocities, in world components.
+
+    Along the ground they act, and velocities are, at the part ``twist`` of the contacts' distance from the centre.
+    """
     up = rows[2]
     for j in range(n):
         q = solid.arm(body, up, which[j])
+        rubs = solid.towards_centre(body, q, twist)
         for axis in range(3):
+            at = q if axis == 2 else rubs
             for i in range(n):
-                u = response(body, rows, solid.arm(body, up, which[i]), q, axis)
+                p = solid.arm(body, up, which[i])
+                u = response(body, rows, p, at, axis)
+                if twist != 1.0:
+                    p = solid.towards_centre(body, p, twist)
+                    flat = response(body, rows, p, at, axis)
+                    u = (flat[0], flat[1], u[2])
                 for k in range(3):
                     delassus[3 * i + k, 3 * j + axis] = u[k]
 
 
 @kernel
-def fill_velocities(body, y, rows, which, n, out):
+def fill_velocities(body, y, rows, which, n, out, twist=1.0):
     """Fill in the velocities of contacts."""
     for i in range(n):
-        u = solid.velocity_of(body, y, rows, which[i])
+        p = solid.arm(body, rows[2], which[i])
+        u = solid.point_velocity(y, rows, p)
         out[3 * i], out[3 * i + 1], out[3 * i + 2] = u
+        if twist != 1.0:
+            p = solid.towards_centre(body, p, twist)
+            out[3 * i], out[3 * i + 1], _ = solid.point_velocity(y, rows, p)
 
 
 @kernel
-def fill_accelerations(body, y, rows, weight, which, n, out):
+def fill_accelerations(body, y, rows, weight, which, n, out, twist=1.0):
     """Fill in the accelerations of contacts without contact forces, with ``weight`` as the body sees it."""
     omega = solid.omega_of(y)
     spin = solid.free_spin(body, omega)
@@ -130,6 +171,11 @@ def fill_accelerations(body, y, rows, weight, which, n, out):
         b = solid.bias(body, rows[2], omega, p, which[i])
         u = to_world(rows, plus(plus(weight, cross(spin, p)), b))
         out[3 * i], out[3 * i + 1], out[3 * i + 2] = u
+        if twist != 1.0:
+            p = solid.towards_centre(body, p, twist)
+            b = solid.bias(body, rows[2], omega, p, which[i])
+            u = to_world(rows, plus(plus(weight, cross(spin, p)), b))
+            out[3 * i], out[3 * i + 1] = u[0], u[1]
 
 
 @kernel
@@ -277,9 +323,9 @@ def spread(s, n, mask):
 @kernel
 def solve_general(body, y, rows, n, friction, s):
     """Solve for the forces (or impulses) that undo s.free in a mode; fill ``lam`` in world components."""
-    fill_delassus(body, rows, s.closed, n, s.delassus)
+    fill_delassus(body, rows, s.closed, n, s.delassus, twist_of(body, s))
     for i in range(n):
-        u = solid.velocity_of(body, y, rows, s.closed[i])
+        u = slip_of(body, y, rows, i, s)
         s.way[i, 0], s.way[i, 1] = slip_direction(s, i, u[0], u[1])
         s.given[i], s.friction[i] = s.slides[i], friction
     stick_together(s, n, (1 << n) - 1, SOFTNESS * largest_compliance(s, n))
@@ -334,15 +380,15 @@ def rates(body, tau, y, dy, s, share=True):
         acceleration = pull
         n = s.count
         if n > 0:
-            fill_accelerations(body, y, rows, weight, s.closed, n, s.free)
+            twist = twist_of(body, s)
+            fill_accelerations(body, y, rows, weight, s.closed, n, s.free, twist)
             solve_general(body, y, rows, n, body.kinetic, s)
             for i in range(n):
                 push = (s.lam[i, 0], s.lam[i, 1], s.lam[i, 2])
-                p = solid.arm(body, rows[2], s.closed[i])
                 acceleration = plus(acceleration, push)
-                alpha = plus(alpha, times(body.inverse, cross(p, to_body(rows, push))))
+                alpha = plus(alpha, turned_by(body, rows, s.closed[i], push, twist))
                 if s.slides[i]:
-                    u = solid.point_velocity(y, rows, p)
+                    u = slip_of(body, y, rows, i, s)
                     lost -= push[0] * u[0] + push[1] * u[1]
     fill_rates(y, omega, alpha, acceleration, dy)
     dy[13] = pull[0] * y[7] + pull[1] * y[8] + (pull[2] + s.field[6]) * y[9]
@@ -364,10 +410,21 @@ def fill_rates(y, omega, alpha, acceleration, dy):
 
 
 @kernel
-def push_at(body, y, rows, i, impulse):
-    """Change the velocities in ``y`` by an impulse [N s], in axes of the ground, at contact i."""
+def turned_by(body, rows, i, push, twist):
+    """Angular acceleration by a force, in axes of the ground, at contact i."""
     p = solid.arm(body, rows[2], i)
-    turned = times(body.inverse, cross(p, to_body(rows, impulse)))
+    if twist == 1.0:
+        return times(body.inverse, cross(p, to_body(rows, push)))
+    rubs = solid.towards_centre(body, p, twist)
+    level = to_body(rows, (push[0], push[1], 0.0))
+    moment = plus(cross(p, scaled(push[2], rows[2])), cross(rubs, level))
+    return times(body.inverse, moment)
+
+
+@kernel
+def push_at(body, y, rows, i, impulse, twist=1.0):
+    """Change the velocities in ``y`` by an impulse [N s], in axes of the ground, at contact i."""
+    turned = turned_by(body, rows, i, impulse, twist)
     for k in range(3):
         y[7 + k] += impulse[k]
         y[10 + k] += turned[k]

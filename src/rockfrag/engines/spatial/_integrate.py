@@ -117,7 +117,7 @@ def slide_or_jump(body, y, tau, s, pull, level, jumps):
     """Leave rest by sliding on the whole base, or, after a jump of the ground's acceleration, in any way."""
     if jumps and modes.choose_mode(body, tau, y, s):
         return
-    n = modes.touching(body, y, algebra.rotation(y), s)
+    n = modes.pick_feet(body, y, algebra.rotation(y), s)
     for i in range(n):
         s.closed[i], s.slides[i] = s.which[i], forces.SLIDES
         s.direction[i, 0], s.direction[i, 1] = pull[0] / level, pull[1] / level
@@ -288,7 +288,7 @@ def stop_slips(body, y, s):
     rows = algebra.rotation(y)
     for i in range(s.count):
         if s.slides[i] == forces.SLIDES:
-            u = solid.velocity_of(body, y, rows, s.closed[i])
+            u = forces.slip_of(body, y, rows, i, s)
             if algebra.norm(u[0], u[1]) < 2 * modes.AT_REST:
                 s.slides[i] = forces.STICKS
     modes.hold(body, y, rows, s)
@@ -358,7 +358,7 @@ def happen(body, what, tau, y, cut, stuck, s):
     elif what == modes.SLIP_ENDS:
         stop_slips(body, y, s)
     if what == modes.OPENS and body.rim > 0 and s.count >= 3:
-        x, z = step.pressure_centre(body, s)
+        x, z = modes.pressure_centre(body, s)
         tip_over_rim(body, y, x, z, forces.SLIDES, pull, s)
     elif stuck > 3 and what in (modes.OPENS, modes.LEAVES_CONE):
         modes.insist(body, what, s)

@@ -85,12 +85,12 @@ def hold(body, y, rows, s):
     n = s.count
     if n == 0:
         return
-    forces.fill_velocities(body, y, rows, s.closed, n, s.free)
+    twist = forces.twist_of(body, s)
+    forces.fill_velocities(body, y, rows, s.closed, n, s.free, twist)
     forces.solve_general(body, y, rows, n, 0.0, s)
     for i in range(n):
-        forces.push_at(
-            body, y, rows, s.closed[i], (s.lam[i, 0], s.lam[i, 1], s.lam[i, 2])
-        )
+        push = (s.lam[i, 0], s.lam[i, 1], s.lam[i, 2])
+        forces.push_at(body, y, rows, s.closed[i], push, twist)
 
 
 @kernel
@@ -100,12 +100,7 @@ def impact(body, y, least, s):
     n = touching(body, y, rows, s)
     forces.fill_delassus(body, rows, s.which, n, s.delassus)
     forces.fill_velocities(body, y, rows, s.which, n, s.free)
-    for i in range(n):
-        # points that slid keep kinetic friction
-        s.given[i], slid = 0, False
-        for k in range(s.count):
-            slid = slid or (s.closed[k] == s.which[i] and s.slides[k] == forces.SLIDES)
-        s.friction[i] = body.kinetic if slid else body.static
+    note_slips(body, n, s)
     fill_edges(body, y, rows, s.which, n, s)
     found, ways = solve_cones(s, n, least)
     s.counters[IMPACTS] += 1
@@ -123,6 +118,18 @@ def impact(body, y, least, s):
         push = (s.impulse[3 * i], s.impulse[3 * i + 1], s.impulse[3 * i + 2])
         forces.push_at(body, y, rows, s.which[i], push)
     keep_slow_contacts(body, y, rows, n, found, s)
+
+
+@kernel
+def note_slips(body, n, s):
+    """Note which contacts slip before an impact, and where to, and the coefficients of friction in it."""
+    for i in range(n):
+        u, v = s.free[3 * i], s.free[3 * i + 1]
+        speed = algebra.norm(u, v)
+        s.given[i], s.slid[i] = 0, speed > AT_REST
+        if s.slid[i]:
+            s.came[i, 0], s.came[i, 1] = u / speed, v / speed
+        s.friction[i], s.holds[i] = body.kinetic, body.static
 
 
 @kernel
@@ -168,6 +175,12 @@ def rest_margin(body, y, rows, pull):
 
 
 @kernel
+def pulled_off(body, pull):
+    """Whether static friction of the whole base cannot hold it."""
+    return algebra.norm(pull[0], pull[1]) > -body.static * pull[2]
+
+
+@kernel
 def topple_margin(body, rows, pull):
     """Margin by which the ground carries a round body that is flat, whatever it slides."""
     centre = algebra.to_world(rows, (body.centre[0], body.centre[1], 0.0))
@@ -177,16 +190,21 @@ def topple_margin(body, rows, pull):
 
 
 @kernel
-def carried_flat(body, y, rows, pull):
-    """Whether a round body that is flat, and slides or is about to, stays on its face."""
-    if (
-        body.rim == 0.0
-        or algebra.norm(rows[2][0], rows[2][1]) > 1e-9
-        or abs(y[9]) > LEAVES
-    ):
+def lies_flat(body, y, rows):
+    """Whether a body lies flat and does not tilt."""
+    if algebra.norm(rows[2][0], rows[2][1]) > 1e-9 or abs(y[9]) > LEAVES:
         return False
-    if algebra.norm(y[10], y[11]) > LEAVES / body.rim:
-        return False
+    turns = algebra.norm(y[10], y[11]) > LEAVES / body.furthest
+    return not turns and abs(y[2] - body.height) < TOUCH
+
+
+@kernel
+def carried_flat(body, tau, y, rows, pull, s):
+    """Whether a body that lies flat, and slides or is about to, stays on its face; a polygon slides on it then."""
+    if body.rim == 0.0:
+        slide_flat(body, y, rows, pull, s)
+        forces.rates(body, tau, y, s.slopes[0], s)
+        return pressure_margin(body, s) > 1e-9 * body.furthest
     off = algebra.norm(body.centre[0], body.centre[1])
     if body.kinetic * body.height + off < body.rim:
         return True
@@ -194,17 +212,54 @@ def carried_flat(body, y, rows, pull):
 
 
 @kernel
+def pressure_centre(body, s):
+    """Where the normal forces of closed points act, from the centre of a round base, in the body."""
+    x, y, whole = 0.0, 0.0, 1e-300
+    for i in range(s.count):
+        x += s.lam[i, 2] * (body.points[s.closed[i], 0] - body.centre[0])
+        y += s.lam[i, 2] * (body.points[s.closed[i], 1] - body.centre[1])
+        whole += s.lam[i, 2]
+    return x / whole, y / whole
+
+
+@kernel
+def pressure_margin(body, s):
+    """Distance of the centre of pressure of a face from its edge, negative outside [m]."""
+    x, y = pressure_centre(body, s)
+    if body.rim > 0:
+        return body.rim - algebra.norm(x, y)
+    least = 1e300
+    for i in range(body.count):
+        p, q = body.points[i], body.points[i + 1 if i + 1 < body.count else 0]
+        along, across = q[0] - p[0], q[1] - p[1]
+        moment = across * (p[0] - x) - along * (p[1] - y)
+        least = min(least, moment / algebra.norm(along, across))
+    return least
+
+
+@kernel
+def pick_feet(body, y, rows, s):
+    """Fill in s.which with the points on which a face slides; return their number."""
+    if body.rim > 0:
+        return touching(body, y, rows, s)
+    n = min(body.count, forces.MOST)
+    for k in range(n):
+        s.which[k] = k * body.count // n
+    return n
+
+
+@kernel
 def slide_flat(body, y, rows, pull, s):
-    """Let a round body slide on four points of its face, those that do not slip yet the way it is pulled."""
+    """Let a body slide on points of its face, those that do not slip yet the way it is pulled."""
     level = max(algebra.norm(pull[0], pull[1]), 1e-300)
-    n = touching(body, y, rows, s)
+    n = pick_feet(body, y, rows, s)
+    s.count, s.rests = n, 0
     for i in range(n):
-        u = solid.velocity_of(body, y, rows, s.which[i])
         s.closed[i], s.slides[i] = s.which[i], forces.SLIDES
+    for i in range(n):
+        u = forces.slip_of(body, y, rows, i, s)
         s.direction[i, 0], s.direction[i, 1] = pull[0] / level, pull[1] / level
         s.direction[i, 0], s.direction[i, 1] = forces.slip_direction(s, i, u[0], u[1])
-    s.count, s.rests, s.jammed = n, 0, 0
-    s.counters[SLIDINGS] += 1
 
 
 @kernel
@@ -261,13 +316,19 @@ def choose_mode(body, tau, y, s):
     ):
         come_to_rest(body, y, s)
         return True
-    if carried_flat(body, y, rows, pull):
-        slip = algebra.norm(y[7], y[8]) + body.rim * abs(y[12])
-        if slip < 2 * AT_REST and rest_margin(body, y, rows, pull) >= 0:
-            come_to_rest(body, y, s)
-        else:
-            slide_flat(body, y, rows, pull, s)
-        return True
+    was_flying = s.count == 0
+    if lies_flat(body, y, rows):
+        slip = algebra.norm(y[7], y[8]) + body.furthest * abs(y[12])
+        stands = rest_margin(body, y, rows, pull) >= 0
+        slides = slip >= 2 * AT_REST or pulled_off(body, pull) or body.rim > 0
+        if slides and carried_flat(body, tau, y, rows, pull, s):
+            if slip < 2 * AT_REST and stands:
+                come_to_rest(body, y, s)
+            else:
+                slide_flat(body, y, rows, pull, s)
+                s.counters[SLIDINGS] += 1
+            s.jammed = 0
+            return True
     n, slipping = pick_closed(body, y, rows, AT_REST, s)
     found, ways = solve_forces(body, y, rows, pull, n, s)
     if found < 0:
@@ -278,7 +339,6 @@ def choose_mode(body, tau, y, s):
     if found < 0:
         return False
     s.jammed = 0
-    was_flying = s.count == 0
     write_mode(body, y, rows, n, found, s)
     hold(body, y, rows, s)
     if s.count == 0 and not was_flying:
@@ -301,7 +361,8 @@ def pick_closed(body, y, rows, slow, s):
         slipping += s.given[kept]
         if s.given[kept]:
             s.way[kept, 0], s.way[kept, 1] = u[0] / speed, u[1] / speed
-        s.friction[kept] = body.kinetic if s.given[kept] else body.static
+        s.slid[kept] = 0
+        s.friction[kept], s.holds[kept] = body.kinetic, body.static
         kept += 1
     return kept, slipping
 
@@ -333,7 +394,7 @@ def write_mode(body, y, rows, n, found, s):
             s.direction[count, 0], s.direction[count, 1] = s.way[i, 0], s.way[i, 1]
         else:
             shear = algebra.norm(s.impulse[3 * i], s.impulse[3 * i + 1])
-            limit = s.friction[i] * s.impulse[3 * i + 2]
+            limit = s.grip[i] * s.impulse[3 * i + 2]
             size = algebra.norm(u, v)
             if size > 1e-9 and shear > limit * (1 - 1e-9):
                 s.slides[count] = forces.SLIDES

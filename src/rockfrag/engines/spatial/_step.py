@@ -5,7 +5,7 @@ from rockfrag.engines.pure_rocking.kernels.dormand_prince import INSTANTS, WEIGH
 from rockfrag.engines.spatial import _body as solid
 from rockfrag.engines.spatial import _modes as modes
 from rockfrag.engines.spatial._algebra import norm, normalise, rotation
-from rockfrag.engines.spatial._forces import SLIDES, STAGES, rates
+from rockfrag.engines.spatial._forces import SLIDES, STAGES, rates, slip_of
 
 BACKWARD = 1e-8  # slip against its own direction that is rounding [m/s]
 NEAR_FLAT = 1e-6  # tilt below which a rim that rolls goes on to roll [rad]
@@ -56,7 +56,7 @@ def error_of(body, h, y, s):
 @kernel
 def slip_along(body, y, rows, i, s):
     """Slip velocity of closed point i along a direction of the plan."""
-    u = solid.velocity_of(body, y, rows, s.closed[i])
+    u = slip_of(body, y, rows, i, s)
     return u[0] * s.slip[i, 0] + u[1] * s.slip[i, 1]
 
 
@@ -76,7 +76,7 @@ def begin_slips(body, y, s):
     for i in range(s.count):
         s.armed[i] = 0
         if s.slides[i] == SLIDES:
-            u = solid.velocity_of(body, y, rows, s.closed[i])
+            u = slip_of(body, y, rows, i, s)
             speed = norm(u[0], u[1])
             s.slip[i, 0], s.slip[i, 1] = s.direction[i, 0], s.direction[i, 1]
             if speed > 2 * modes.AT_REST:
@@ -86,26 +86,24 @@ def begin_slips(body, y, s):
 
 
 @kernel
-def pressure_centre(body, s):
-    """Where the normal forces of closed points act, from the centre of a round base, in the body."""
-    x, y, whole = 0.0, 0.0, 1e-300
-    for i in range(s.count):
-        x += s.lam[i, 2] * (body.points[s.closed[i], 0] - body.centre[0])
-        y += s.lam[i, 2] * (body.points[s.closed[i], 1] - body.centre[1])
-        whole += s.lam[i, 2]
-    return x / whole, y / whole
-
-
-@kernel
 def face_slip(body, y, rows, s):
     """By how much the fastest point of a face slips; one that has not begun to may not slip backwards [m/s]."""
     fastest, forwards, armed = 0.0, -1.0, 0
     for i in range(s.count):
-        u = solid.velocity_of(body, y, rows, s.closed[i])
+        u = slip_of(body, y, rows, i, s)
         fastest = max(fastest, norm(u[0], u[1]))
         forwards = max(forwards, slip_along(body, y, rows, i, s))
         armed = max(armed, s.armed[i])
     return fastest - modes.AT_REST if armed else forwards + BACKWARD
+
+
+@kernel
+def slides_flat(s):
+    """Whether a body slides on its face."""
+    found = s.count >= 3
+    for i in range(s.count):
+        found = found and s.slides[i] == SLIDES
+    return found
 
 
 @kernel
@@ -125,11 +123,10 @@ def margin(body, y, s):
     small = LEAST_FORCE * s.field[6]
     # a rim that passes near flat is pushed as by an impact, of which the cone is not asked
     passes = body.rim > 0 and norm(rows[2][0], rows[2][1]) < NEAR_FLAT
-    on_face = body.rim > 0 and s.count >= 3
+    on_face = slides_flat(s)
     if on_face:
-        # where the centre of pressure leaves a round face, it tips
-        x, z = pressure_centre(body, s)
-        least, what = body.rim - norm(x, z) + 1e-12, modes.OPENS
+        # where the centre of pressure leaves a face, it tips
+        least, what = modes.pressure_margin(body, s) + 1e-12, modes.OPENS
         value = face_slip(body, y, rows, s)
         if value < least:
             least, what = value, modes.SLIP_ENDS

@@ -89,6 +89,11 @@ class SpatialResponse:
 
         return spatial_figure(self.outcome, self.history, self.outline, title)
 
+    def samples(self) -> dict[str, NDArray[Any]]:
+        """Return the columns of a row per sample and body, here one body: those of the history."""
+        columns = {str(name): told.to_numpy() for name, told in self.history.items()}
+        return columns | {"body": np.ones(len(self.history), np.int64)}
+
     @property
     def lost_contact(self) -> float:
         """NaN: a body in space leaves the ground where it has to, so no contact is held shut."""

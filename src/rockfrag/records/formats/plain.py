@@ -9,6 +9,7 @@ stated must agree, with the file and with what the user names; what is not state
 
 import re
 from dataclasses import dataclass, field, replace
+from pathlib import PurePath
 from typing import Any, NoReturn
 
 import numpy as np
@@ -27,6 +28,7 @@ from rockfrag.records.parsing.column_titles import (
 from rockfrag.records.parsing.encodings import encoding_of
 from rockfrag.records.parsing.format import Channel, Format, text_writer
 from rockfrag.records.parsing.plain_rows import PlainRows, plain_rows, with_plain_rows
+from rockfrag.records.parsing.quantities import quantity_in_name
 from rockfrag.records.parsing.stated_facts import StatedFacts, stated_facts
 from rockfrag.records.parsing.text_file import TextFile, is_remark, last_row
 from rockfrag.records.parsing.time_column import TimeColumn
@@ -161,6 +163,7 @@ def _parse(text: TextFile) -> list[Channel]:
         raise InputError(f"dt must be a positive number of seconds, got {dt}.")
     text, rows = with_plain_rows(_decoded(text))
     layout = _layout(text, rows)
+    _refuse_by_name(layout)
     columns = layout.table.columns
     stop = last_row(text, layout.line)
     values, widths = text.rows(layout.line, stop, layout.table.decimal_comma)
@@ -177,6 +180,17 @@ def _parse(text: TextFile) -> list[Channel]:
         text.check_widths(widths, columns, layout.line)
         return _channels(layout, values.reshape(-1, columns))
     return [_series(layout, values)]
+
+
+def _refuse_by_name(layout: _Layout) -> None:
+    """Refuse a file whose name says velocity or displacement, and in which nothing says acceleration."""
+    said = [layout.facts.quantity, *(column.quantity for column in layout.titles)]
+    named = quantity_in_name(PurePath(layout.text.name).name)
+    if named and "acceleration" not in said:
+        layout.text.refuse(
+            f"its name says {named}, and nothing in it says acceleration; if it holds that, write the word above "
+            "the numbers"
+        )
 
 
 def _decoded(text: TextFile) -> TextFile:
@@ -341,6 +355,12 @@ def _series(layout: _Layout, values: NDArray[np.float64]) -> Channel:
     stated = next(iter(layout.titles), Column("", "", "", ""))
     _refuse_other(layout, stated.quantity or layout.facts.quantity)
     if layout.npts is not None:
+        filled = layout.table.columns
+        if layout.text.is_filled_up(values, layout.npts, filled):
+            surplus = values.size - layout.npts
+            note = {"step": "leave out zeros that fill the last row", "values": surplus}
+            layout.steps.append(note)
+            values = values[: layout.npts]
         layout.text.check_count(layout.npts, values.size, layout.line)
     if layout.interval is None:
         what = "one column" if layout.table.columns == 1 else "rows of numbers"

