@@ -21,6 +21,7 @@ from rockfrag.records.formats import HEADED
 from rockfrag.records.parsing import number_fields
 from rockfrag.records.parsing.column_titles import (
     Column,
+    are_titles_of_other_columns,
     column_titles,
     components_of,
 )
@@ -111,6 +112,10 @@ class _Layout:
                 f"column {column.title!r}: {column.problem}; write the unit of the numbers into its title, such "
                 "as (m/s2)",
                 self.line - 1,
+            )
+        if self.facts.other_unit and not column.unit and not stated:
+            self.text.fail(
+                f"the header states the unit {self.facts.other_unit!r}, which no acceleration has; mend it"
             )
         if column.unit and stated and column.unit != stated:
             self.text.fail(
@@ -537,7 +542,7 @@ def _untitled(layout: _Layout, table: NDArray[np.float64]) -> list[Column]:
     count = table.shape[1]
     timed = _is_timed(table.ravel(), count)
     number, words = layout.table.words[-1] if layout.table.words else (0, "")
-    if (
+    if are_titles_of_other_columns(words) or (
         timed
         and count > 2
         and len(re.findall(r"\b(?:acc|vel|disp|time)", words, re.I)) > 1

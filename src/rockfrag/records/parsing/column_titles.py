@@ -23,18 +23,25 @@ _INDEX = re.compile(
 _SPECTRUM = re.compile(
     r"spectr|spettr|spektr|спектр|谱|スヘクトル|\b(?:psa|psv|sa|sv|sd|rotd\d*)\b"
 )
+_LETTERS_OF_UNITS = frozenset("NVACKJW%")
 _NO_QUANTITY = frozenset({"-", ""})
 _AMBIGUOUS = frozenset("vud")
-# letters that are units of other quantities and directions
-_UNITS_OR_DIRECTIONS = frozenset("NV")
+# letters in brackets that are units of other quantities and directions
+_DOUBTFUL = re.compile(r"[\[({]\s*([NV])\s*[\])}]")
 _WORD = re.compile(r"[^\W_]")
 _BRACKETED = re.compile(r"[\[({](?P<inside>(?:[^\[\](){}]|\([^()]*\))*)[\])}]")
+_UNKNOWN_UNIT = re.compile(r"[^\W\d_]{1,10}[/^²][^\W_^]{0,6}[\^²]?\d?")
+_LIKE_UNIT = re.compile(r"[^\W\d_]\s*[/^²]")
 _SEPARATOR = re.compile(r"[\s_.,:/-]+")
 # words that stand in sentences above columns and never in titles
 _SENTENCE = re.compile(
     r"(?i)^(?:in|of|the|and|at|from|to|for|by|de|del|la|el|en|der|die|das|von|und|di|du|des|et|is|are"
     r"|=|:|component|comp|station|direction|orientation|units?|unidades|event|earthquake)$|[=:]$|^[\[({].*[\])}]$"
 )
+
+
+# a fact and its value
+_NO_TITLE = re.compile(r"[=:]\s*(?:[+-]?\d.*)?$|^[+-]?\d*[.,]\d+$")
 
 
 @dataclass(frozen=True)
@@ -89,19 +96,33 @@ def column_titles(table: NumberTable, row: str) -> tuple[list[Column], int]:
         if table.decimal_comma
         else [mark for mark in (";", ",", "\t") if mark in row]
     )
-    words, taken = above[-1], 1
-    units = next(iter(_splits(words, separators, table.columns)), [])
-    if len(above) > 1 and units and all(map(_is_unit, units)):
-        words = above[-2]
-        taken = 2
-    else:
-        units = [""] * table.columns
-    for cells in _splits(words, separators, table.columns):
-        columns = _columns(cells, units)
-        if _are_titles(columns, _by_blanks(words, cells)):
-            first = [i for i, line in enumerate(every) if _WORD.search(line)][-taken]
-            return columns, len(every) - first
+    for words, units, taken in _places(above, separators, table.columns):
+        for cells in _splits(words, separators, table.columns):
+            columns = _columns(cells, units)
+            if _are_titles(columns, _by_blanks(words, cells)):
+                first = [i for i, line in enumerate(every) if _WORD.search(line)][
+                    -taken
+                ]
+                return columns, len(every) - first
     return [], 0
+
+
+def _places(
+    above: list[str], separators: list[str], width: int
+) -> Iterator[tuple[str, list[str], int]]:
+    """Yield where titles may stand: above a line of units, or last; words, units, and lines that both take."""
+    units = next(iter(_splits(above[-1], separators, width)), [])
+    if len(above) > 1 and units and all(map(_is_unit, units)):
+        yield above[-2], units, 2
+    yield above[-1], [""] * width, 1
+
+
+def are_titles_of_other_columns(words: str) -> bool:
+    """Tell whether words are titles, of more or fewer columns than there are."""
+    cells = [cell for cell in re.split(r"[\t,;]|\s{2,}", words) if cell.strip()]
+    found = [_column(cell, "", first=False) for cell in cells]
+    known = [c for c in found if c.quantity and not has_factor(c.title)]
+    return len(cells) > 1 and len(known) > 1
 
 
 def column_of(title: str, unit: str) -> Column:
@@ -110,7 +131,11 @@ def column_of(title: str, unit: str) -> Column:
 
 
 def _is_unit(cell: str) -> bool:
-    return cell.strip("[](){} ") in _NO_QUANTITY or bool(read_unit(cell).quantity)
+    """Tell whether a cell of a line of units is one, known here or not."""
+    bare = cell.strip("[](){} ")
+    if bare in _NO_QUANTITY or bare in _LETTERS_OF_UNITS or read_unit(cell).quantity:
+        return True
+    return _UNKNOWN_UNIT.fullmatch(bare) is not None and not is_direction(bare)
 
 
 def _by_blanks(words: str, cells: list[str]) -> bool:
@@ -126,9 +151,11 @@ def _are_titles(columns: list[Column], by_blanks: bool) -> bool:
         stated = bool(columns[0].unit or columns[0].problem)
         return stated and known == ["acceleration"]
     bare_units = [bool(read_unit(column.title).quantity) for column in columns]
+    if any(_NO_TITLE.search(column.title) for column in columns):
+        return False
     if not by_blanks:
         named = (k for k, bare in zip(known, bare_units, strict=True) if not bare)
-        return any(named) or all(known)
+        return any(named) or all(known) or any(column.problem for column in columns)
     if any(_SENTENCE.search(column.title) for column in columns):
         return False
     directed = sum(names_direction(column.title) for column in columns)
@@ -142,6 +169,14 @@ def _are_titles(columns: list[Column], by_blanks: bool) -> bool:
 
 def _splits(words: str, separators: list[str], width: int) -> Iterator[list[str]]:
     """Yield the ways in which words make as many titles as a row has columns."""
+    if words.startswith("#"):
+        # the title of a column of numbers, or else the mark of a comment
+        marks = [r"\s{2,}"] if words[1:2] == " " else separators or ["\t"]
+        numbered = [c.strip(" \t\"'") for c in re.split("|".join(marks), words)]
+        if len(numbered) == width and all(numbered):
+            yield numbered
+            return
+        words = words.lstrip("# \t")
     patterns = [r"[\"']\s*[,;\t]\s*[\"']", *map(re.escape, separators)]
     patterns += [r"\s{2,}|\t", r"\s+(?![\[(])", r"\s+"]
     if not separators:
@@ -172,13 +207,23 @@ def _columns(titles: list[str], units: list[str]) -> list[Column]:
         else c
         for c in columns
     ]
-    named = sum(is_direction(c.component) for c in columns)
-    # alone a V in brackets is as likely volts
+    return _with_doubtful_letters(columns)
+
+
+def _with_doubtful_letters(columns: list[Column]) -> list[Column]:
+    """Say of columns such as ``Acc (V)`` that V may be volts: where it is alone, or stands beside a direction."""
+    named = sum(
+        names_direction(c.component) or is_direction(c.component) for c in columns
+    )
+    letters = [_DOUBTFUL.search(c.title) for c in columns]
+    every = [match[1] for match in letters if match]
     return [
-        replace(c, problem=f"({c.component}) may be a unit or a direction")
-        if named == 1 and c.component in _UNITS_OR_DIRECTIONS and len(c.title) > 1
+        replace(c, problem=f"({match[1]}) may be a unit or a direction")
+        if match
+        and not c.unit
+        and (named == 1 or every.count(match[1]) > 1 or " " in c.component)
         else c
-        for c in columns
+        for c, match in zip(columns, letters, strict=True)
     ]
 
 
@@ -211,7 +256,11 @@ def _column(title: str, unit_below: str, first: bool) -> Column:
     problem = found.problem
     if unit.factor:
         problem = f"{unit.factor!r} has a factor that may be meant either way"
-    elif unit.name and quantity == "acceleration" != unit.quantity:
+    elif (
+        unit.name
+        and not (unit.quantity and quantity != "acceleration")
+        and unit.quantity != "acceleration"
+    ):
         problem = problem or f"{unit.name!r} is no unit of acceleration known here"
     stated = unit.name if unit.quantity == "acceleration" and not problem else ""
     return Column(title, quantity, stated, component, problem)
@@ -246,13 +295,16 @@ def _taken_apart(title: str, unit_below: str) -> _Title:
 def _unit_behind(words: str) -> tuple[str, Unit]:
     """Return words without the unit that ends them, and the unit: ``acc_g``, ``acc_m_s2``, ``a / g``."""
     whole = read_unit(words)
-    if whole.quantity not in ("", "time"):
+    if whole.quantity not in ("", "time") and not is_direction(words):
         return "", whole
     marks = [m for m in _SEPARATOR.finditer(words) if m.start()][-3:][::-1]
     # acc_m_s2 before acc m/s2: the s2 alone is no unit; m_s_2 has three parts
     for mark in [*marks[1:2], *marks[:1], *marks[2:]]:
-        unit = read_unit(words[mark.end() :])
-        if unit.quantity not in ("", "time"):
+        tail = words[mark.end() :]
+        unit = read_unit(tail)
+        # KG and DB are north and east in Turkish
+        named = is_direction(tail) and unit.quantity != "acceleration"
+        if unit.quantity not in ("", "time") and not named:
             return words[: mark.start()], unit
     return words, Unit("")
 
@@ -260,8 +312,8 @@ def _unit_behind(words: str) -> tuple[str, Unit]:
 def _unknown_unit_behind(words: str) -> str:
     """Return what ends words and looks like a unit, as ``acc furlong/s2``, or nothing."""
     parts = words.split()
-    last = parts[-1] if len(parts) > 1 else ""
-    if not re.search(r"\w\s*[/^²]", last) or is_direction(last.replace("/", "-")):
+    last = parts[-1] if parts else ""
+    if not _LIKE_UNIT.search(last) or is_direction(last.replace("/", "-")):
         return ""
     return last
 

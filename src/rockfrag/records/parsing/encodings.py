@@ -30,7 +30,8 @@ def encoding_of(head: bytes) -> str:
     str
         A name that Python knows; ``latin-1`` where no word is understood in any.
     """
-    return max(_ENCODINGS, key=lambda name: _understood(head, name))
+    foreign = b"\n".join(line for line in head.split(b"\n") if not line.isascii())
+    return max(_ENCODINGS, key=lambda name: _understood(foreign, name))
 
 
 def _understood(head: bytes, encoding: str) -> int:

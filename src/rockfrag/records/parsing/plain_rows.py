@@ -17,7 +17,7 @@ _DAY = r"\d{4}[-/.]\d{1,2}[-/.]\d{1,2}|\d{1,2}[-/.]\d{1,2}[-/.]\d{2,4}"
 _CLOCK = re.compile(
     rf"(?:(?<=^)|(?<=[\s,;\"']))(?:(?P<day>{_DAY})(?P<between>[T ]|\s*[,;\t]\s*|\s+))?"
     r"(?P<hour>[01]?\d|2[0-3]):(?P<minute>[0-5]\d)(?::(?P<second>[0-5]?\d(?:\.\d+|,\d+(?=[;\t ]))?))?"
-    r"\s*(?P<zone>Z|UTC|GMT|[+-]\d\d:?\d\d(?![\d.]))?(?=$|[\s,;\"'])"
+    r"(?P<zone>Z|\s?UTC|\s?GMT|[+-]\d\d:?\d\d)?(?=$|[\s,;\"'])"
 )
 _SECONDS_A_DAY = 86_400
 
@@ -110,6 +110,9 @@ def _has_day_of_its_own(line: str, clock: re.Match[str]) -> bool:
     between = clock["between"] or ""
     if re.search("[,;\t]", between):
         return True
+    behind = line[max(clock.end("minute"), clock.end("second")) :]
+    if between == " " and re.match(r"\s{2}", behind):
+        return False
     return between.isspace() and not re.search("[,;\t]", line.replace(clock[0], ""))
 
 

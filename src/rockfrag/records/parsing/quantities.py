@@ -127,7 +127,7 @@ def read_unit(words: str) -> Unit:
     if _is_fraction_of_g(plain):
         return _named(_is_fraction_of_g(plain))
     before = _FACTOR_BEFORE.match(plain)
-    if before and (found := _bare_unit(before["unit"])):
+    if before and (found := _without_factor(before["unit"])):
         value = _value(before)
         if found.quantity == "acceleration" and 0 < value < 1:
             # as in 10⁻³ g: the unit is a part of another one
@@ -136,11 +136,17 @@ def read_unit(words: str) -> Unit:
     if found := _bare_unit(plain) or _said_twice(plain) or _with_remark(plain):
         return found
     behind = _FACTOR_BEHIND.match(plain)
-    if behind and (found := _bare_unit(behind["unit"])):
+    if behind and (found := _without_factor(behind["unit"])):
         return (
             found if _value(behind) == 1 else Unit(plain, found.quantity, factor=plain)
         )
     return Unit(plain)
+
+
+def _without_factor(plain: str) -> Unit | None:
+    """Return the unit beside a factor, or None."""
+    part_of_g = _is_fraction_of_g(plain)
+    return _named(part_of_g) if part_of_g else _bare_unit(plain)
 
 
 def _plain(words: str) -> str:
@@ -203,6 +209,9 @@ def _named(to_si: float) -> Unit:
     return Unit(f"{to_si:.12g} m/s2", "acceleration", to_si)
 
 
+_PREFIX_WORD_APART = re.compile(r"(milli|micro|mikro|nano|\bg)[\s_-]+(?!$)")
+
+
 def _bare_unit(plain: str) -> Unit | None:
     """Return the unit that words without a factor are, or None."""
     plain = plain.strip(" .,;:()[]")
@@ -210,7 +219,9 @@ def _bare_unit(plain: str) -> Unit | None:
     if squeezed in _OTHER_QUANTITIES:
         name = "counts" if _OTHER_QUANTITIES[squeezed] == "raw counts" else squeezed
         return Unit(name, _OTHER_QUANTITIES[squeezed])
-    of_gravity = _prefixed(re.sub(r"[\s_-]", "", squeezed), f"{_GAL}|{_GRAVITY_UNIT}")
+    # N_gal is a component in gal, and no nanogal
+    joined = _PREFIX_WORD_APART.sub(r"\1", plain)
+    of_gravity = _prefixed(joined, f"{_GAL}|{_GRAVITY_UNIT}")
     if of_gravity is not None:
         prefix, symbol = of_gravity
         to_si = 0.01 if re.fullmatch(_GAL, symbol) else GRAVITY
@@ -268,7 +279,7 @@ def _of_dimension(parts: list[tuple[str, int]]) -> Unit | None:
         # a first m is a metre, one below the stroke a minute is never
         if metres is not None and (seconds is None or not length):
             length, factor = length + power, factor * metres**power
-        elif seconds is not None:
+        elif seconds is not None and (length or len(parts) == 1):
             # m s2 and m_s2 have lost their stroke: nothing is measured in metres times seconds
             below = abs(power) if length else -abs(power)
             time, factor = time + below, factor / seconds**below
@@ -310,7 +321,7 @@ _REMARKS = frozenset(
 )
 _SIGNS_OF_UNITS = re.compile(r"[/^%*·²]|\bper\b")
 _FACTOR = re.compile(
-    r"(?:×|(?<!\*)\*(?!\*))\s*\d|\d\s*(?:×|\*(?!\*))|\bx\s*(?:10|0?[.,]\d|\d+e)"
+    r"(?:×|(?<!\*)\*(?!\*))\s*\d|\d\s*(?:×|\*(?!\*))|\bx\s*(?:10|\d*[.,]\d|\d+e)"
     r"|10\s*(?:\^|\*\*)|\b1?0?e[+-]?\d|\b10-\d"
 )
 

@@ -22,10 +22,12 @@ from rockfrag.records.parsing.vocabulary import alternatives, folded
 
 _VALUE = r"(?:\d+[.,]\d+|\d+\.?|[.,]\d+)(?:[ed][+-]?\d+)?"
 _IS = (
-    r"(?:[\s_]*\b(?P<behind>m?s|m?sec|[uμ]s|k?hz))?[\s\"']*(?:\((?P<note>[^)]*)\)|\[(?P<note2>[^\]]*)\])?"
+    r"(?:[\s_]+(?P<behind>m?s|m?sec|[uμ]s|k?hz)(?![^\W\d_]))?[\s\"']*(?:\((?P<note>[^)]*)\)|\[(?P<note2>[^\]]*)\])?"
     r"[\s\"',]*(?P<sign>[=:]|\bis\b|\bes\b|\best\b)?[\s\"',]*"
 )
 _UNIT_BEHIND_VALUE = r"\s*(?P<unit>°|[^\W\d_]+(?:\s*/\s*s\w*|\s+p[eo]r\s+s\w*)?)?"
+_NUMBER = re.compile(_VALUE)
+_LONE_FACTOR = re.compile(r"\W*[x×*]\s*(?:10|0?[.,]\d|\d+e|1\d*)[\d\s^.,+-]*\W*")
 _STEP_BEFORE = re.compile(
     rf"(?P<value>{_VALUE})\s*(?:s|sec\w*)\.?\s+(?:time\s+)?(?:intervals?|steps?|spacing)\b"
 )
@@ -39,6 +41,9 @@ _OF_SAMPLING = re.compile(
     "sampl|muestr|amostr|echantillon|campion|abtast|дискрет|采样|ornek"
 )
 _SHOWN = 60
+# in the place of a unit; A-1 may be the name of an instrument
+_SHORT_WORDS = re.compile(r"(?!\W*[^\W\d_]+-\d)(?=.*[^\W\d_]).{1,14}")
+_PER_SECOND = re.compile(r"[^\W\d_]+\s*/\s*s[ec]*(?:\^?2|/s)$")
 _IMPERATIVE = re.compile("multipl|divide|divid")
 _QUANTITY_LETTERS = {"acc": "acceleration", "vel": "velocity", "dis": "displacement"}
 _QUANTITY = r"\b(?P<quantity>acc|vel|dis(?=p))(?:[a-z]*\.?)"
@@ -67,6 +72,7 @@ class StatedFacts:
     npts: int | None = None  # number of samples
     dt: float | None = None  # interval [s]
     unit: str = ""  # canonical unit of acceleration
+    other_unit: str = ""  # unit of another quantity, where a line says unit
     # what the samples are, where words say so: ``acceleration``, ``velocity``, ``force``, …
     quantity: str = ""
     # names of the components, in the order of the columns
@@ -133,6 +139,7 @@ def stated_facts(lines: Sequence[str]) -> StatedFacts:
     steps = list(dict.fromkeys(step for line in plain for step in _steps(line)))
     counts = list(dict.fromkeys(count for line in plain for count in _counts(line)))
     units = list(dict.fromkeys(filter(None, map(_unit_in_so_many_words, plain))))
+    others = [u.name for line in plain for u in _other_units(line)]
     impossible = [s for s in steps if not SHORTEST_STEP <= s <= LONGEST_STEP]
     if impossible:
         wrong = (
@@ -148,6 +155,7 @@ def stated_facts(lines: Sequence[str]) -> StatedFacts:
         npts=counts[0] if counts else None,
         dt=steps[0] if steps else None,
         unit=units[0] if units else unit,
+        other_unit=next(iter(others), ""),
         quantity="acceleration" if units else quantity,
         components=tuple(re.findall(r"[^\s,;]+", stated(_LIST, lines))),
         factor=next(
@@ -201,7 +209,8 @@ def _close(found: Sequence[float | int | str]) -> bool:
 
 def _has_factor(line: str) -> bool:
     found = _patterns()["factor"].search(line)
-    return found is not None and number_in(found["value"]) != 1
+    alone = _LONE_FACTOR.fullmatch(line) is not None
+    return alone or (found is not None and number_in(found["value"]) != 1)
 
 
 def _steps(line: str) -> list[float]:
@@ -280,6 +289,10 @@ def _units_in(words: str) -> list[Unit]:
             ends = range(len(tokens), start, -1)
             every = ((read_unit(" ".join(tokens[start:end])), end) for end in ends)
             known = next((pair for pair in every if pair[0].quantity), None)
+            if known and start and _NUMBER.fullmatch(tokens[start - 1]):
+                # a number before a unit is a factor that was not understood
+                words = " ".join(tokens[start - 1 : known[1]])
+                known = Unit(words, known[0].quantity, factor=words), known[1]
             start = known[1] if known else start + 1
             found += [known[0]] if known else []
     return found
@@ -291,6 +304,14 @@ def _unit_in_so_many_words(line: str) -> str:
     units = _units_in(match["rest"]) if match else []
     known = [u.name for u in units if u.quantity == "acceleration" and not u.factor]
     return next(iter(known), "")
+
+
+def _other_units(line: str) -> list[Unit]:
+    """Return the units of a folded line that states a unit with a colon, if none is of acceleration."""
+    match = _patterns()["unit"].search(line)
+    units = _units_in(match["rest"]) if match and match["colon"] else []
+    of_motion = any(u.quantity == "acceleration" for u in units)
+    return [] if of_motion else [u for u in units if u.quantity != "time"]
 
 
 def _unknown_unit(words: str) -> str:
@@ -328,6 +349,8 @@ def _problem_of_unit(line: str, explicit: re.Match[str], units: list[Unit]) -> s
     """Return why the unit of a line that has the word unit cannot be used, or nothing."""
     stated_so = explicit["sign"] or explicit["colon"]
     unknown = _unknown_unit(explicit["rest"]) if stated_so and not units else ""
+    if explicit["colon"] and not units and _SHORT_WORDS.fullmatch(explicit["rest"]):
+        unknown = explicit["rest"].strip()
     if unknown:
         return f"the header states the unit {unknown!r}, which is not known here"
     of_motion = [u for u in units if u.quantity == "acceleration"]
@@ -368,8 +391,8 @@ def _of_named_quantity(line: str) -> tuple[str, str, str]:
             return "acceleration", "" if problem else first.name, problem
     elif named and first.quantity not in ("", "time"):
         return first.quantity, "", ""
-    elif named and not units and (unknown := _unknown_unit(match["rest"])):
-        is_unit = re.search(r"[/^]", unknown)
+    elif not units and (unknown := _unknown_unit(match["rest"])):
+        is_unit = (re.search(r"[/^]", unknown) and named) or _PER_SECOND.match(unknown)
         problem = f"the header states the unit {unknown!r}, which is not known here"
         return ("", "", problem) if is_unit else ("", "", "")
     return "", "", ""
