@@ -1,7 +1,6 @@
 """The command line: whether an object topples, what is in a record, how a body rocks, whether a study is right."""
 
 import argparse
-import math
 import os
 import sys
 import warnings
@@ -159,10 +158,14 @@ def _add_constrain(commands: Any) -> None:
 
 # each command imports what it needs when it runs: `rockfrag --help` should not wait for numba
 def _simulate(options: argparse.Namespace) -> int:
+    from rockfrag.cli.simulated import (
+        contact_event_lines,
+        lines_in_plane,
+        lines_in_space,
+    )
     from rockfrag.motions.processing import scale
     from rockfrag.records.motion import GroundMotion
     from rockfrag.simulation import simulate
-    from rockfrag.words.sentences import environment
 
     if options.plot is not None and not options.plot.endswith((".png", ".svg")):
         raise InputError(
@@ -175,22 +178,15 @@ def _simulate(options: argparse.Namespace) -> int:
     restitution: Any = options.restitution
     if restitution is not None and options.pedestal:
         restitution = (restitution,) * len(body.blocks)
-    told = {"restitution": restitution, "friction": _friction(options)}
-    says: Any = (
-        environment("rockfrag.cli")
-        .get_template("simulate.j2", globals={"math": math})
-        .module
-    )
+    given = {"restitution": restitution, "friction": _friction(options)}
     response: Any
     if options.second is not None:
         block, components = _case_in_space(options, body, motion, options.vertical)
         components = [scale(component, factor) for component in components]
-        response = simulate(block, GroundMotion(*components), **told)
+        response = simulate(block, GroundMotion(*components), **given)
         peaks = [component.pga / GRAVITY for component in components]
-        title, words = (
-            motion.name,
-            says.in_space(options.record, peaks, response.outcome),
-        )
+        title = motion.name
+        lines = lines_in_space(options.record, peaks, response.outcome)
     else:
         up = None
         if options.vertical is not None:
@@ -199,13 +195,18 @@ def _simulate(options: argparse.Namespace) -> int:
             # what `simulate` doubts of the acceleration has been said
             warnings.simplefilter("ignore", UserWarning)
             response = simulate(
-                body, scaled.acceleration, motion.dt, vertical=up, **told
+                body, scaled.acceleration, motion.dt, vertical=up, **given
             )
         peak = scaled.pga / GRAVITY
         most = sys.maxsize if options.all_contact_events else MOST_CONTACT_EVENTS
-        title, loose = f"{motion.name}, peak {peak:.3f} g", options.friction is not None
-        words = says.in_plane(options.record, motion, peak, response, loose, most)
-    print(words, end="")
+        title = f"{motion.name}, peak {peak:.3f} g"
+        is_loose = options.friction is not None
+        lines = lines_in_plane(
+            options.record, motion, peak, response, is_loose=is_loose
+        )
+        contact_events = response.contact_events.to_dict("records")
+        lines += contact_event_lines(contact_events, most)
+    print("\n".join(lines))
     if options.plot:
         from rockfrag.base.figure_style import save_figure
 
@@ -306,7 +307,7 @@ def _block(option: str, given: Sequence[str]) -> "Block":
             raise InputError(
                 f"expected width, height and, if known, mass, such as 35cm 120cm 180kg; got {' '.join(given)}."
             )
-        width, height = (quantity(text, "m", "m") for text in given[:2])
+        width, height = quantity(given[0], "m", "m"), quantity(given[1], "m", "m")
         mass = (
             quantity(given[2], "kg", "kg")
             if len(given) == 3

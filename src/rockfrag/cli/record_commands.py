@@ -106,8 +106,9 @@ def _info(options: argparse.Namespace) -> int:
     from rockfrag.base.files import csv_text
     from rockfrag.report import record_info
 
-    told = options.files, options.unit, options.dt, options.force
-    table = record_info.describe_files(*told)
+    table = record_info.describe_files(
+        options.files, options.unit, options.dt, options.force
+    )
     if options.format == "csv":
         print(csv_text(table), end="")
     elif options.format == "json":
@@ -124,7 +125,9 @@ def _info(options: argparse.Namespace) -> int:
         record_info.draw_record(motion, options.picture)
         print(f"drawn in {options.picture}", file=sys.stderr)
     if options.pictures:
-        drawn = record_info.draw_files(told[0], options.pictures, *told[1:])
+        drawn = record_info.draw_files(
+            options.files, options.pictures, options.unit, options.dt, options.force
+        )
         print(f"{len(drawn)} pictures drawn in {options.pictures}", file=sys.stderr)
     named = table["file"].isin([printable(str(Path(file))) for file in options.files])
     status = table["status"]

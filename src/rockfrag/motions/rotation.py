@@ -146,11 +146,19 @@ _WHOLE = 1e-3
 def common_time(
     motions: Sequence[Motion], verticals: Collection[int] | None = None
 ) -> list[Motion]:
-    """Return motions at the same times: those that all of them have, at samples of a horizontal one.
+    """Components at the same times: those that all of them have, at samples of a horizontal one.
 
     Where all state the time of their first sample they are shifted by it, else they are taken to begin
     together. The times are those of the horizontal component of the shortest interval, which is not moved
     for a vertical. Samples between those of a motion are on the straight line between its neighbours.
+
+    Parameters
+    ----------
+    motions, verticals : the components, and the places of vertical ones among them
+
+    Returns
+    -------
+    The components, of equal length and interval.
     """
     # of the first samples after the earliest [s]
     starts = [0.0] * len(motions)

@@ -164,12 +164,15 @@ def _block(given: Mapping[str, Any]) -> Block:
 
 
 def measured_tests(study: CampaignStudy, campaign: Campaign) -> MeasuredTests:
-    """Return what the laboratory saw, to be compared as the study says."""
+    """Outcomes of the laboratory, to be compared as the study says."""
     tests = campaign.tests
     return MeasuredTests(
         tests[MEASURED].to_numpy(),
         pd.factorize(tests["group"])[0],
-        *(study.seed, study.folds, study.repeats, study.confidence),
+        study.seed,
+        study.folds,
+        study.repeats,
+        study.confidence,
     )
 
 

@@ -48,7 +48,16 @@ def prepared(
 
 
 def results_folder(study: AnyStudy) -> Path:
-    """Folder of a study's results; refuse one that holds those of another configuration."""
+    """Folder of a study's results; refuse one that holds those of another configuration.
+
+    Parameters
+    ----------
+    study : the study
+
+    Returns
+    -------
+    The folder.
+    """
     folder = RESULTS / study.name
     owner = folder / OWNER
     if owner.is_file():
