@@ -4,6 +4,7 @@
 # make test     the tests; make validate the long ones; make coverage what they reach; make lint the checks of form
 # make torture  a small study killed, starved and misused; make fuzz damaged inputs
 #               (INPUTS=10000 for fewer), random requests of assess (REQUESTS=200) and studies (STUDIES=20)
+# make mutants  one line changed of what computes, MUTANTS=100 times: do the quick tests notice (SEED=1)
 # make docs     the documentation as a site, docs/_build/index.html
 # make bench    speed against other programs, and what a user waits for
 # Only Python (3.11 or newer) and a package index are needed; everything else goes into .venv.
@@ -17,6 +18,8 @@ STUDY ?= config/thesis.yaml
 INPUTS ?= 1000000
 REQUESTS ?= 2000
 STUDIES ?= 500
+MUTANTS ?= 100
+SEED ?= 1
 # one line a stage; all that Snakemake says with VERBOSE=1
 SCREEN := $(if $(VERBOSE),,--logger rockfrag)
 RUN := .venv/bin/python -m
@@ -27,7 +30,7 @@ HASHES = requirements/$(shell "$(PYTHON)" -c 'import sys, platform; print(f"{sys
 # (where that signal is ignored, as in the background of some shells, make adds its line and ends with status 2)
 QUIETLY := || { trap 'kill -QUIT $$PPID; sleep 1; exit 0' QUIT; kill -QUIT $$$$; exit 1; }
 
-.PHONY: run smoke report-pdf test validate coverage lint docs bench fuzz torture format
+.PHONY: run smoke report-pdf test validate coverage lint docs bench fuzz torture mutants format
 .DEFAULT_GOAL := run
 
 run: .venv/installed
@@ -40,7 +43,7 @@ report-pdf: .venv/installed
 	@$(RUN) rockfrag.report.pdf "$(STUDY)"
 
 # each process has a processor to itself, so threads of its linear algebra would only wait for each other
-test validate coverage fuzz: export OPENBLAS_NUM_THREADS = 1
+test validate coverage fuzz mutants: export OPENBLAS_NUM_THREADS = 1
 
 test: .venv/installed
 	@$(RUN) pytest -n auto --dist worksteal -m "not slow"
@@ -70,6 +73,9 @@ fuzz: .venv/installed
 
 torture: .venv/installed
 	@$(RUN) tests.fault_injection
+
+mutants: .venv/installed
+	@$(RUN) tests.mutants --number $(MUTANTS) --seed $(SEED)
 
 docs: .venv/installed
 	@$(RUN) pip install --quiet --constraint requirements/constraints.txt --editable ".[docs]"

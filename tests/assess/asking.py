@@ -106,6 +106,7 @@ def _within(answer: dict[str, Any]) -> list[str]:
         "a tenth topples at more than half": _of(amplitudes["0.1"])
         <= _of(amplitudes["0.5"]),
         "counts": _counts_agree(answer),
+        "decision": _decided(answer),
         "below uplift": _at_rest(answer),
         "lines": _lines_agree(answer),
         "what helps": _helps(answer),
@@ -126,18 +127,27 @@ def _ordered(item: dict[str, Any]) -> bool:
 
 
 def _counts_agree(answer: dict[str, Any]) -> bool:
+    """No more motions topple it than rock it, and none where it does not move."""
     counts = answer["counts"]
     if counts is None:
         return True
-    fractions = (
-        answer["fraction_toppling"]["value"],
-        answer["fraction_rocking"]["value"],
-    )
-    expected = (counts[key] / counts["motions"] for key in ("topple", "rock"))
     ordered = counts["topple"] <= counts["rock"] <= counts["motions"]
-    return ordered and all(
-        abs(a - b) < 1e-9 for a, b in zip(fractions, expected, strict=True)
-    )
+    return ordered and not (answer["does_not_move"] and counts["topple"])
+
+
+def _decided(answer: dict[str, Any]) -> bool:
+    """What is done without a measurement follows from the probability and the one that is accepted."""
+    decision, main = answer["decision"], answer["probability"]
+    main = main or answer["fraction_toppling"]
+    if decision is None:
+        return main is None
+    secure = main["value"] > answer["accepted"]
+    chance = decision["chance"]
+    named = decision["action"] == "measure"
+    # on the mean of a rate and of its probability alike, but for what lies between them
+    near = abs(main["value"] - answer["accepted"]) < 0.2 * answer["accepted"]
+    right = near or decision["otherwise"] == ("secure" if secure else "leave")
+    return right and named == bool(decision["source"]) and 0 <= chance <= 1
 
 
 def _at_rest(answer: dict[str, Any]) -> bool:
@@ -147,11 +157,11 @@ def _at_rest(answer: dict[str, Any]) -> bool:
         return True
     if starts is not None and level >= starts:
         return not answer["does_not_move"]
-    still = (
-        answer["fraction_rocking"]["value"] == 0 == answer["fraction_toppling"]["value"]
-    )
     words = answer["lines"][0]
-    return still and re.search("does not move|unlikely|too few", words) is not None
+    unlikely = re.search("does not move|unlikely|too few|hardly rocks", words)
+    counts = answer["counts"]
+    still = counts is None or counts["rock"] == 0
+    return still and (not answer["does_not_move"] or unlikely is not None)
 
 
 def _lines_agree(answer: dict[str, Any]) -> bool:
@@ -160,12 +170,9 @@ def _lines_agree(answer: dict[str, Any]) -> bool:
     if len(" ".join(lines).split()) > 60 or _EMPTY.search("\n".join(lines + details)):
         return False
     ids = [each["id"] for each in answer["findings"]]
-    if ids[0] == "verdict_few_earthquakes":
+    if ids[0] == "how_likely_few_earthquakes":
         return ids[1:] == ["give_earthquakes"]
     toppling, likely = answer["fraction_toppling"], answer["probability"]
-    rocks = toppling and answer["fraction_rocking"]["value"] > 0
-    if rocks and toppling["value"] == 0 and "at most" not in lines[0]:
-        return False
     estimate = likely or toppling
     if estimate is None:
         return ids[-1] == "give_level"

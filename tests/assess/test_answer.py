@@ -9,10 +9,11 @@ from unittest.mock import patch
 import numpy as np
 import pandas as pd
 import pytest
+from scipy.stats import norm
 
 from rockfrag.assess.answer import assess_with
+from rockfrag.assess.core.decisions import decide
 from rockfrag.assess.core.likelihood import Likelihood, likelihood_of
-from rockfrag.assess.decision import Action, decide
 from rockfrag.assess.export import as_json, as_nrml
 from rockfrag.assess.findings import (
     advice,
@@ -30,6 +31,7 @@ from rockfrag.assess.page import page_of, write_answer
 from rockfrag.assess.place import PERIOD_FACTORS, Place
 from rockfrag.assess.request import Records, make_request, read_request
 from rockfrag.assess.risk import Estimate, Evidence, fraction_target
+from rockfrag.assess.sources import MEASUREMENTS
 from rockfrag.assess.standing.planar import Planar
 from rockfrag.assess.standing.rolling import Round
 from rockfrag.assess.texts import Text
@@ -65,18 +67,18 @@ def test_below_b_over_h_nothing_rocks_and_far_above_everything_topples(motions):
     # a uniform block rocks from b/h g on
     weak = assess_with(asked(**FIGURE, pga="0.28 g"), motions, brief=True)
     strong = assess_with(asked(**FIGURE, pga="1.4 g"), motions, brief=True)
-    assert (weak.rocking.value, weak.fraction.value) == (0, 0)
+    assert weak.counts[1:] == (0, 0)
     assert strong.fraction.value > 0.5
     # an edge that is 2 % further in, or a centre of gravity 5 % higher, would let it rock at 0.28 g
-    assert "exceptionally unlikely to topple" in lines_of(weak)[0]
-    assert "hardly rocks" in lines_of(weak)[0]
+    assert "very unlikely to topple" in lines_of(weak)[0]
+    away = np.log(35 / 120 / 0.28) / np.hypot(0.02, 0.05)
+    assert weak.rocking.value == pytest.approx(norm.sf(away), abs=0.01)
     assert 0 < weak.fraction.upper <= weak.rocking.upper == 1
-    rest = assess_with(asked(**FIGURE, pga="0.25 g"), motions, brief=True)
-    assert rest.fraction.upper == rest.rocking.upper == 0
+    rest = assess_with(asked(**FIGURE, pga="0.24 g"), motions, brief=True)
+    assert rest.fraction.upper <= rest.rocking.upper < 0.001
     verdict, to_do = lines_of(rest)
-    assert "does not move at PGA 0.25 g: it starts to rock at PGA 0.29 g" in verdict
+    assert "does not move at PGA 0.24 g: it starts to rock at PGA 0.29 g" in verdict
     assert to_do == "Leave it."
-    assert "needs no change" in _behind(rest, Text.TITLE_HELPS)
 
 
 def test_what_a_pedestal_changes_and_what_helps(on_pedestal):
@@ -86,11 +88,13 @@ def test_what_a_pedestal_changes_and_what_helps(on_pedestal):
     assert list(ways) == [on, fixed, Text.ON_THE_FLOOR]
     helps = {each.change.id: each.factor for each in found.mitigations}
     assert helps[Text.LOWER_CENTRE] < 1
-    assert helps[Text.FIX_OBJECT] == pytest.approx(ways[fixed] / ways[on])
+    # changes are compared by fewer draws
+    assert helps[Text.FIX_OBJECT] == pytest.approx(ways[fixed] / ways[on], rel=0.1)
     assert found.probability.lower < found.probability.value < found.probability.upper
     # in any direction as many topple as along the components, in the worst one more
     turned = found.directions
-    assert turned.fraction == pytest.approx(found.fraction.value, abs=0.1)
+    total, _, fell = found.counts
+    assert turned.fraction == pytest.approx(fell / total, abs=0.1)
     assert turned.fraction < turned.worst_fraction
 
 
@@ -200,11 +204,12 @@ def test_where_one_earthquake_alone_topples_it_nothing_is_divided_by_zero():
     levels = np.geomspace(0.1, 1.0, 10)
     outcomes = outcomes_of(fell, levels, range(6), all_rock=True)
     target = fraction_target(float(levels[5]))
-    (change,) = compare(target, outcomes, {finding("a_change"): outcomes})
-    assert change.factor == 1 and not change.helps
-    found = Evidence(outcomes).estimate(target)
+    evidence = Evidence(outcomes)
+    (change,) = compare(target, evidence, outcomes, {finding("a_change"): outcomes})
+    assert change.factor == 1 and not change.helps and not change.shown
+    found = evidence.estimate(target)
     # one of six: an exact binomial interval of 90 % runs from 0.9 to 58 %
-    assert 0.005 < found.lower < found.value < found.upper < 0.75
+    assert 0.001 < found.lower < found.value < found.upper < 0.75
 
 
 def test_pedestals_on_each_other_are_given_from_above(own_records, tmp_path, capsys):
@@ -236,17 +241,13 @@ def test_what_helps_says_what_the_positions_say(motions):
     found = assess_with(request, motions)
     _, _, toppled = found.counts
     assert 0 < toppled < 0.2 * len(motions.ground)
-    assert found.by_arrangement[Text.FIXED_TO_ITS_PEDESTALS] == 0
-    best = found.mitigations[0]
-    assert best.change.id == Text.FIX_TO_EACH_OTHER and best.factor == 0
-    # that no motion is left is said only if more than one earthquake had one
-    fell = found.outcomes.overturned[
-        :, found.outcomes.intensity_levels.place_of(found.level.value)
-    ]
-    several = len(set(found.outcomes.earthquakes[fell])) > 1
-    assert best.shown == several
-    said = _behind(found, Text.TITLE_HELPS)
-    assert ("each other no motion topples it" in said) == several
+    place = found.outcomes.intensity_levels.place_of(found.level.value)
+    fixed = found.arrangements[Text.FIXED_TO_ITS_PEDESTALS]
+    assert fixed.fractions()[place] == 0
+    least = min(found.by_arrangement.values())
+    assert found.by_arrangement[Text.FIXED_TO_ITS_PEDESTALS] == least
+    joined = {each.change.id: each for each in found.mitigations}
+    assert joined[Text.FIX_TO_EACH_OTHER].factor < 1
 
 
 def test_a_list_with_objects_in_the_plane_and_in_space_shakes_each_by_its_own_motions(
@@ -269,31 +270,23 @@ def test_a_list_with_objects_in_the_plane_and_in_space_shakes_each_by_its_own_mo
 def test_friction_and_a_measured_restitution_go_together(few):
     request = asked(**STATUE, pga="0.9 g", friction=1.5, restitution=0.93)
     found = assess_with(request, few)
-    assert abs(found.sliding_fraction - found.fraction.value) <= 0.34
+    total, _, fell = found.counts
+    assert abs(found.sliding_fraction - fell / total) <= 0.34
 
 
-def test_a_measurement_comes_first_only_where_it_would_turn_what_to_do():
-    """Chances are those of a normal logit that moves by what the measurement takes from its variance."""
-    sources = {"conversion": 1.6, "period": 1.2, "model": 0.5}
-    near = decide(Estimate(0.011, 0.001, 0.1, sources), 0.01)
-    assert near.action is Action.MEASURE and near.source == "conversion"
-    # almost on the boundary a known velocity turns it in nearly half of the cases
-    assert 0.45 < near.chance < 0.5
-    assert decide(Estimate(0.9, 0.5, 0.99, sources), 0.01).action is Action.SECURE
-    assert decide(Estimate(1e-6, 1e-7, 1e-5, sources), 0.01).action is Action.LEAVE
-    # what nobody can measure is never named, however large it is
-    unmeasurable = {"model": 2.0, "motions": 2.0, "restitution": 2.0, "space": 2.0}
-    assert decide(Estimate(0.011, 0, 1, unmeasurable), 0.01).action is Action.SECURE
-    # the cheapest of two that would turn it
-    cheap = decide(Estimate(0.011, 0.001, 0.1, {"period": 2.0, "facing": 1.0}), 0.01)
-    assert cheap.source == "facing"
+def test_what_nobody_can_measure_is_no_measurement():
+    assert not set(MEASUREMENTS) & {"model", "motions", "restitution", "space"}
+    # the cheapest first
+    assert next(iter(MEASUREMENTS)) == "facing"
 
 
 def test_advice_agrees_with_the_risk_that_is_accepted(on_pedestal):
     def said(value, **more):
         estimate = Estimate(value, value / 2, min(1, 2 * value), {})
-        found = replace(on_pedestal, probability=estimate)
-        return advice(replace(found, request=replace(found.request, **more))).id
+        request = replace(on_pedestal.request, **more)
+        decision = decide(value, np.full(32, value), {}, {}, request.accepted)
+        about = {"request": request, "decision": decision}
+        return advice(replace(on_pedestal, probability=estimate, **about)).id
 
     assert said(0.02) == Text.SECURE_IT and said(0.005) == Text.LEAVE_IT
     assert said(0.02, accept=0.05) == Text.LEAVE_IT

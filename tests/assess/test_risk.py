@@ -6,6 +6,7 @@ import json
 import math
 import re
 from dataclasses import replace
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -17,6 +18,7 @@ from rockfrag.assess.conversion import (
     OF_THE_SITE,
     UNKNOWN,
     Conversion,
+    PublishedVelocity,
     SiteVelocity,
     VelocityRelation,
 )
@@ -41,10 +43,12 @@ from rockfrag.assess.page import page_of, write_answer
 from rockfrag.assess.request import Records, make_request
 from rockfrag.assess.risk import (
     Evidence,
+    after_uplift,
     amplitude_target,
     fraction_target,
     probability_in,
     risk_target,
+    shift_of,
     toppling_rate,
 )
 from rockfrag.assess.rules import rules_study
@@ -101,7 +105,9 @@ def rates_at(answer, levels):
 
 
 def test_probability_agrees_with_a_plain_integration_of_what_the_answer_says(answer):
-    x, fraction = (np.array(answer["fragility"][key]) for key in ("levels", "fraction"))
+    x, fraction = (
+        np.array(answer["fragility"][key]) for key in ("levels", "probability")
+    )
     # P straight in ln x, by a plain sum over very fine steps
     fine = np.geomspace(x[0], x[-1], 400_001)
     rates = rates_at(answer, fine)
@@ -128,14 +134,19 @@ def test_an_object_that_bears_more_topples_less_often():
     assert ratio == pytest.approx(math.exp(-3 * 0.2), rel=1e-9)
 
 
-def test_where_nothing_topples_there_is_a_bound_and_no_zero():
-    rocks = outcomes_from(np.full(20, 100.0), range(20), all_rock=True)
-    found = Evidence(rocks, shifts={"model": 0.2}).estimate(risk_target(BENT, 50))
-    assert found.value == 0
-    # 19 of 20 chances that fewer than 1 - 0.1^(1/20) of all earthquakes topple it
-    assert (
-        0 < found.upper <= probability_in(0.11 * float(BENT.rate(LEVELS[0])), 50) * 1.9
-    )
+def test_what_topples_no_motion_is_as_unlikely_as_it_is_far_away():
+    found = [
+        Evidence(
+            outcomes_from(np.full(20, capacity), range(20), all_rock=True),
+            shifts={"model": after_uplift(0.2)},
+        ).estimate(fraction_target(0.5))
+        for capacity in (0.51, 0.7, 1.0, 2.0)
+    ]
+    for near, far in pairwise(found):
+        assert near.value > far.value and near.upper > far.upper
+    # ln(0.7/0.5) is 1.7 standard deviations of the model away, ln(2/0.5) is 6.9
+    assert found[1].value == pytest.approx(stats.norm.sf(1.7), rel=0.5)
+    assert found[3].upper < 1e-4
 
 
 def test_one_earthquake_that_topples_leaves_more_open_than_none():
@@ -143,20 +154,24 @@ def test_one_earthquake_that_topples_leaves_more_open_than_none():
     for toppling in range(4):
         capacities = np.where(np.arange(20) < toppling, 0.3, 100.0)
         outcomes = outcomes_from(capacities, range(20), all_rock=True)
-        found = Evidence(outcomes, shifts={"model": 0.2}).estimate(fraction_target(0.5))
+        found = Evidence(outcomes, shifts={"model": after_uplift(0.2)}).estimate(
+            fraction_target(0.5)
+        )
         assert found.lower <= found.value <= found.upper
-        # the exact binomial limit of 5 % on that side (Clopper and Pearson 1934)
-        exact = stats.beta.ppf(0.95, toppling + 1, 20 - toppling)
-        assert found.upper > 0.75 * exact
+        # no less than what was counted and its standard error
+        counted = toppling / 20
+        assert found.upper >= counted + math.sqrt(counted * (1 - counted) / 20)
         limits.append(found.upper)
-    assert limits[0] < min(limits[1:])
+    assert limits == sorted(limits)
 
 
 def test_share_at_a_level_and_level_of_a_share_are_inverse():
     outcomes = outcomes_from(np.geomspace(0.1, 1.5, 40), range(40))
-    level = Evidence(outcomes).estimate(amplitude_target(0.5)).value
-    assert Evidence(outcomes).estimate(fraction_target(level)).value == pytest.approx(
-        0.5, abs=1e-9
+    level = amplitude_target(0.5).value(outcomes)
+    assert fraction_target(level).value(outcomes) == pytest.approx(0.5, abs=1e-9)
+    # the median over what is not known of either lies there too
+    assert Evidence(outcomes).estimate(amplitude_target(0.5)).value == pytest.approx(
+        level, rel=0.05
     )
 
 
@@ -187,15 +202,12 @@ def test_intervals_hold_the_truth_as_often_as_they_say():
         )
         names = np.repeat(np.arange(earthquakes), each)
         outcomes = outcomes_from(capacities, names)
-        moved = {
-            "width": tuple(
-                outcomes_from(capacities * math.exp(sign * of_width), names)
-                for sign in (-1, 1)
-            )
-        }
-        found = Evidence(outcomes, moved, {"model": of_model}).estimate(
-            risk_target(hazard, 50)
+        sides = (
+            outcomes_from(capacities * math.exp(sign * of_width), names)
+            for sign in (-1, 1)
         )
+        shifts = {"width": shift_of(*sides), "model": after_uplift(of_model)}
+        found = Evidence(outcomes, shifts).estimate(risk_target(hazard, 50))
         held += found.lower <= probability_in(truth, 50) <= found.upper
     fraction = held / runs
     assert 0.85 < fraction < 0.95
@@ -211,7 +223,7 @@ def test_all_of_the_motions_are_not_a_bit_less():
         fractions = np.where(
             levels < levels[first], np.linspace(0, 0.9, levels.size), 1.0
         )
-        assert fraction_target(float(levels[first])).of(levels, fractions, 0.0) == 1
+        assert fraction_target(float(levels[first])).of(levels, fractions) == 1
 
 
 @pytest.mark.peers
@@ -268,6 +280,33 @@ def test_what_differs_between_motions_of_one_site_is_not_all_ignorance(noise):
     assert known == pytest.approx(0.4 * math.sqrt(OF_THE_SITE), rel=0.05)
     few = VelocityRelation.of(motions.about[:20], logs[:20]).unknown(Records())
     assert few == pytest.approx(logs[:20].std(ddof=1) * math.sqrt(OF_THE_SITE))
+
+
+def test_the_velocity_of_a_site_is_the_published_one_of_its_earthquakes(motions):
+    """PGV/PGA at 0.2 g of three earthquakes as Abrahamson and Bhasin (2020) have it on their reference ground."""
+    for magnitude, distance, expected in (
+        (6, 20, 58.0),
+        (6.5, 12, 87.0),
+        (7, 20, 101.0),
+    ):
+        known = Records(magnitude=magnitude, distance_km=distance)
+        site = replace(PublishedVelocity.of(PGA, known), vs30=425.0)
+        ratio = math.exp(float(site.log_ratio(np.array(0.2)))) * VELOCITY_PER_G
+        assert ratio == pytest.approx(expected, abs=0.5)
+    # less is open the more is given
+    full, part = (
+        PublishedVelocity.of(PGA, given).unknown(given, 0.2)
+        for given in (known, Records(magnitude=7.0))
+    )
+    assert math.sqrt(OF_THE_SITE) * site.scatter < full < part
+    slow, fast = (
+        assess_with(
+            figure(pga="0.6 g", magnitude=m, distance_km=20.0), motions, brief=True
+        )
+        for m in (6.0, 7.5)
+    )
+    assert slow.conversion.known.published.magnitude == 6.0
+    assert slow.fraction.value < fast.fraction.value
 
 
 def figure(**settings):

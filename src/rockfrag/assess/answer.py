@@ -11,14 +11,18 @@ from scipy import special
 from rockfrag.assess import outcomes, risk
 from rockfrag.assess.assumed import Moved
 from rockfrag.assess.conversion import Conversion, find_conversion
+from rockfrag.assess.core.decisions import Decision, decide
+from rockfrag.assess.core.draws import FEW_MEMBERS
+from rockfrag.assess.core.likelihood import Likelihood, likelihood_of
 from rockfrag.assess.hazard.curve import PGA, PGV, HazardCurve
 from rockfrag.assess.mitigations import Mitigation, compare
 from rockfrag.assess.motions import MotionSet, motion_set
 from rockfrag.assess.outcomes import Directions, ObjectOutcomes, Shaking
 from rockfrag.assess.request import Level, Request
-from rockfrag.assess.risk import Estimate
+from rockfrag.assess.risk import Estimate, PredictedCurve
 from rockfrag.assess.rules import RuleCheck, check_rules
-from rockfrag.assess.sources import SPACE
+from rockfrag.assess.sources import MEASUREMENTS, SPACE
+from rockfrag.assess.standing import Standing
 from rockfrag.assess.texts import Text
 from rockfrag.base.arrays import Floats
 from rockfrag.base.errors import InputError
@@ -54,6 +58,8 @@ class Assessment:
     by_arrangement : what is estimated of each arrangement
     shown_safer : arrangements that the motions show to be safer than the others
     curve : lognormal curve of the motions as recorded, NaN where there is none; None with the site's velocity
+    predicted : fraction at each level, the mean over what is not known, with its median and its two spreads
+    decision : what to do by an accepted risk; None without a level
     conversion : what hazard in another measure than PGV leaves open; None in PGV
     planar : what is estimated in one plane, beside the answer in space, which counts; None where there is none
     directions : the worst direction; None where no record has two components
@@ -79,6 +85,8 @@ class Assessment:
     by_arrangement: Mapping[str, float]
     shown_safer: frozenset[str]
     curve: Fragility | None
+    predicted: PredictedCurve
+    decision: Decision | None
     conversion: Conversion | None
     planar: float | None
     directions: Directions | None
@@ -99,6 +107,12 @@ class Assessment:
     def outcomes(self) -> ObjectOutcomes:
         """Outcomes of the object as it stands."""
         return next(iter(self.arrangements.values()))
+
+    @property
+    def does_not_move(self) -> bool:
+        """Whether it is exceptionally unlikely that it rocks at the level, limits included."""
+        limit = self.rocking.upper if self.rocking else 1.0
+        return likelihood_of(limit) is Likelihood.EXCEPTIONALLY_UNLIKELY
 
     @property
     def main(self) -> Estimate:
@@ -145,6 +159,8 @@ class Shaken:
     alike: Mapping[Finding, str]
     # Whether the object slides off what it stands on, on the pad that is tried
     slides_off: bool = False
+    # Outcomes with less and more spread of velocities at a given level; None where that is not open
+    together: tuple[ObjectOutcomes, ObjectOutcomes] | None = None
 
 
 def assess(
@@ -280,48 +296,32 @@ def assessed(request: Request, plan: Plan, shaken: Shaken) -> Assessment:
             counted, motions, *about, by_statics=exact, brief=plan.brief
         )
     shaken = _at_site(shaken, plan, conversion)
-    arrangements, moved = shaken.arrangements, shaken.moved
-    both_sides = {change.name: change.sides for change in moved}
-    shifts = {"model": MODEL_ERRORS[objects.measured_as].beyond}
-    if not motions.both:
-        shifts["space"] = SPACE
-    if conversion:
-        shifts["conversion"] = conversion.shift
-        if together := conversion.sides(counted):
-            both_sides["together"] = together
+    arrangements = shaken.arrangements
     now = next(iter(arrangements.values()))
-
-    evidence = risk.Evidence(now, both_sides, shifts)
-    probability = None
-    if hazard:
-        fixed = _of_quantiles(now, hazard)
-        probability = evidence.estimate(risk.risk_target(hazard, request.years), fixed)
-    rocking, fraction = None, None
-    rocks_from = objects.least_uplift
-    if not exact:
-        # the least level that was tried
-        rocked = np.flatnonzero(counted.fractions(state=ROCKS) > 0)
-        rocks_from = plan.shaking.levels[rocked[0]] if rocked.size else math.inf
+    evidence = _evidence(objects, shaken, plan, conversion)
+    compared = replace(evidence, members=FEW_MEMBERS)
+    probability, rocking, fraction, decision = None, None, None, None
     if level:
-        rocking = evidence.rocking(level.value, exact=exact)
+        rocking = evidence.estimate(risk.fraction_target(level.value, state=ROCKS))
         fraction = evidence.estimate(risk.fraction_target(level.value))
-        if rocking.value == 0:
-            # what does not rock cannot topple
-            fraction = replace(fraction, upper=min(fraction.upper, rocking.upper))
-        # what topples rocks: limits of rocking are at least those of toppling
-        limits = (
-            max(rocking.lower, fraction.lower),
-            max(rocking.upper, fraction.upper),
-        )
-        rocking = replace(rocking, lower=limits[0], upper=limits[1])
+    if hazard:
+        probability = evidence.estimate(risk.risk_target(hazard, request.years))
+    main = probability or fraction
+    if main:
+        decision = _decision(main.value, evidence, target, request)
+    values = {
+        name: evidence.mean(target, arrangement)
+        for name, arrangement in arrangements.items()
+    }
     at = level.value if level else None
     brief = plan.brief
-    helps = _mitigations(request, target, shaken)
+    helps = _mitigations(target, compared, shaken)
     here = (
         None
         if brief or at is None
         else outcomes.scaled_to(np.array([at]), motions, measure)
     )
+    lifts_from = objects.least_uplift if exact else counted.lifts_from().min()
     return Assessment(
         request=request,
         motions=motions,
@@ -330,24 +330,23 @@ def assessed(request: Request, plan: Plan, shaken: Shaken) -> Assessment:
         counted=counted,
         arrangements=arrangements,
         rocking=rocking,
-        rocks_from=float(rocks_from),
+        rocks_from=float(lifts_from),
         fraction=fraction,
         probability=probability,
         counts=_counts(counted, level) if now is counted else None,
         amplitudes={p: evidence.estimate(risk.amplitude_target(p)) for p in (0.1, 0.5)},
-        by_arrangement={
-            name: target.value(arrangement)
-            for name, arrangement in arrangements.items()
-        },
+        by_arrangement=values,
         shown_safer=_shown_safer(shaken, helps),
         curve=None if brief or now is not counted else fragility_of(now.outcomes()),
+        predicted=evidence.curve(),
+        decision=decision,
         conversion=conversion,
         directions=None
         if brief or motions.both or objects.many
         else outcomes.find_directions(objects, motions, measure, at),
-        planar=None if shaken.planar is None else target.value(shaken.planar),
+        planar=None if shaken.planar is None else evidence.mean(target, shaken.planar),
         mitigations=helps,
-        effects=tuple(change.turned(target.value) for change in moved),
+        effects=tuple(_effect(target, evidence, change) for change in shaken.moved),
         rules=()
         if brief or motions.both
         else tuple(check_rules(objects, motions, counted)),
@@ -360,14 +359,56 @@ def assessed(request: Request, plan: Plan, shaken: Shaken) -> Assessment:
     )
 
 
+def _evidence(
+    objects: Standing, shaken: Shaken, plan: Plan, conversion: Conversion | None
+) -> risk.Evidence:
+    """What estimates rest on: outcomes, and all that is not known."""
+    counted = next(iter(shaken.arrangements.values()))
+    error = MODEL_ERRORS[objects.measured_as].beyond
+    shifts = {change.name: risk.shift_of(*change.sides) for change in shaken.moved}
+    shifts["model"] = risk.after_uplift(error)
+    if not plan.shaking.motions.both:
+        shifts["space"] = risk.after_uplift(SPACE)
+    if conversion:
+        shifts["conversion"] = risk.after_uplift(conversion.shift)
+        if shaken.together is not None:
+            shifts["together"] = risk.shift_of(*shaken.together)
+    rates = _of_quantiles(counted, plan.hazard) if plan.hazard else {}
+    return risk.Evidence(counted, shifts, rates)
+
+
+def _decision(
+    value: float, evidence: risk.Evidence, target: risk.Target, request: Request
+) -> Decision:
+    """What to do by a probability; of one in some years by its rate, of which means are taken."""
+    accepted, values = request.accepted, evidence.drawn(target)
+    if target.is_rate:
+        value, accepted = (
+            -math.log1p(-min(p, 1 - 1e-15)) / request.years for p in (value, accepted)
+        )
+    left = {name: source.left for name, source in MEASUREMENTS.items()}
+    return decide(value, values, evidence.prediction.sources, left, accepted)
+
+
+def _effect(
+    target: risk.Target, evidence: risk.Evidence, change: Moved[ObjectOutcomes]
+) -> Moved[float]:
+    """What is estimated with a property one standard deviation smaller and larger."""
+    values = target.shown(evidence.drawn(target))
+    lower, upper = evidence.prediction.effect(values, change.name)
+    return Moved(change.name, change.spread, lower, upper)
+
+
 def _at_site(shaken: Shaken, plan: Plan, conversion: Conversion | None) -> Shaken:
     """Outcomes under motions with the velocity of the site."""
     if conversion is None or conversion.known is None:
         return shaken
     few = conversion.of(plan.fewer.motions)
     compared = few if plan.compares_few else conversion
+    counted = next(iter(shaken.arrangements.values()))
     return replace(
         shaken,
+        together=conversion.sides(counted),
         arrangements={
             name: conversion.at_site(arrangement)
             for name, arrangement in shaken.arrangements.items()
@@ -434,7 +475,12 @@ def _moved(
     requests: Sequence[Request], plan: Plan
 ) -> list[list[Moved[ObjectOutcomes]]]:
     """Outcomes with every property of body and floor moved by its standard deviation, of each object."""
-    variants = [request.objects.variants() for request in requests]
+    # no restitution enters in space
+    idle = {"restitution"} if plan.shaking.motions.both else set()
+    variants = [
+        [each for each in request.objects.variants() if each.name not in idle]
+        for request in requests
+    ]
     sides = [side for each in variants for variant in each for side in variant.sides]
     shaken = iter(plan.fewer.outcomes_of(sides))
     found = [
@@ -451,11 +497,11 @@ def _moved(
 
 def _of_quantiles(now: ObjectOutcomes, hazard: HazardCurve) -> dict[str, float]:
     """Standard deviation of ln rate that the quantiles of the hazard stand for."""
-    logs = {
-        q: risk.risk_target(curve, 1.0).on_scale(now)
+    rates = {
+        q: risk.toppling_rate(now.intensity_levels.levels, now.fractions(), curve)
         for q, curve in hazard.quantiles.items()
     }
-    finite = {q: value for q, value in logs.items() if math.isfinite(value)}
+    finite = {q: math.log(rate) for q, rate in rates.items() if rate > 0}
     if len(finite) < 2:
         return {}
     low, high = min(finite), max(finite)
@@ -464,15 +510,14 @@ def _of_quantiles(now: ObjectOutcomes, hazard: HazardCurve) -> dict[str, float]:
 
 
 def _mitigations(
-    request: Request, target: risk.Target, shaken: Shaken
+    target: risk.Target, evidence: risk.Evidence, shaken: Shaken
 ) -> tuple[Mitigation, ...]:
     """What each change does, the most helpful first."""
     ways = shaken.arrangements
-    now = next(iter(ways.values()))
     known = {change: ways[way] for change, way in shaken.alike.items()}
     found = [
-        *compare(target, shaken.before, shaken.changed),
-        *compare(target, now, known),
+        *compare(target, evidence, shaken.before, shaken.changed),
+        *compare(target, evidence, evidence.outcomes, known),
     ]
     if shaken.slides_off:
         pads = (Text.PAD, Text.PAD_SLIDES)
@@ -488,9 +533,8 @@ def _mitigations(
             each.value,
         )
     )
-    # an amplitude helps by growing, a probability by shrinking
-    grows = request.level is None and not request.hazard
-    return tuple(reversed(found) if grows else found)
+    # a level helps by growing, a probability by shrinking
+    return tuple(reversed(found) if target.is_level else found)
 
 
 def _shown_safer(shaken: Shaken, helps: Sequence[Mitigation]) -> frozenset[str]:

@@ -3,6 +3,7 @@
 import json
 import math
 from dataclasses import is_dataclass
+from enum import Enum
 from typing import Any
 
 import numpy as np
@@ -23,7 +24,7 @@ from rockfrag.fragility.exports import identifiers, model_text
 from rockfrag.fragility.model_error import MODEL_ERRORS
 from rockfrag.outcomes.limit_states import OVERTURNS, limit_states
 from rockfrag.words.catalogue import catalogue
-from rockfrag.words.findings import Finding, as_data, finding, three
+from rockfrag.words.findings import Finding, as_data, finding, three, two
 
 
 def as_json(found: Assessment) -> str:
@@ -56,7 +57,7 @@ def as_json(found: Assessment) -> str:
         "years": request.years,
         "interval_level": LEVEL,
         "rocks_from": found.rocks_from,
-        "does_not_move": found.rocking is not None and found.rocking.upper == 0,
+        "does_not_move": found.does_not_move,
         "accepted": request.accepted,
         "fraction_rocking": found.rocking,
         "counts": found.counts
@@ -64,6 +65,7 @@ def as_json(found: Assessment) -> str:
         "fraction_toppling_with_sliding": found.sliding_fraction,
         "fraction_toppling": found.fraction,
         "probability": found.probability,
+        "decision": found.decision,
         "amplitude_toppling": {f"{p:g}": e for p, e in found.amplitudes.items()},
         "arrangements": found.by_arrangement,
         "in_space": found.motions.both,
@@ -76,6 +78,10 @@ def as_json(found: Assessment) -> str:
         "fragility": {
             "levels": outcomes.intensity_levels.levels,
             "fraction": outcomes.fractions(),
+            "probability": found.predicted.fractions,
+            "median": found.predicted.median,
+            "beta_of_records": found.predicted.of_records,
+            "beta_of_what_is_unknown": found.predicted.of_unknown,
             "other_states": {
                 name: outcomes.fractions(state=name) for name in outcomes.others
             },
@@ -125,6 +131,8 @@ def _plain(value: Any) -> Any:
     if isinstance(value, Estimate):
         limits = {"value": value.value, "lower": value.lower, "upper": value.upper}
         return _plain({**limits, "standard_deviations": dict(value.sources)})
+    if isinstance(value, Enum):
+        return value.value
     if isinstance(value, Finding):
         return {**_plain(as_data(value)), "words": catalogue().say(value)}
     if is_dataclass(value):
@@ -149,19 +157,34 @@ def as_nrml(found: Assessment) -> str:
         "id": identifiers([name], "_:-")[name],
         "imt": found.measure.imt,
         "levels": outcomes.intensity_levels.levels.tolist(),
-        "chances": {
-            state: outcomes.fractions(state=state).tolist() for state in states
-        },
+        "chances": {state: _chances(found, state) for state in states},
     }
     kind = found.request.objects.measured_as
     error = MODEL_ERRORS[kind]
     about = {"where": found.request.place.where, "motions": found.motions.about_set}
-    said = finding(
-        Text.IN_NRML,
-        name=name,
-        error=three(error.beyond),
-        kind=kind,
-        about=error.words,
-        **about,
-    )
-    return model_text(catalogue().say(said), states, [function])
+    said = [
+        finding(
+            Text.IN_NRML,
+            name=name,
+            error=three(error.beyond),
+            kind=kind,
+            about=error.words,
+            **about,
+        )
+    ]
+    curve = found.predicted
+    if math.isfinite(curve.median + curve.of_records + curve.of_unknown):
+        spreads = {"records": two(curve.of_records), "unknown": two(curve.of_unknown)}
+        median = finding(
+            Text.QUANTITY, value=two(curve.median), unit=found.measure.unit
+        )
+        said.append(finding(Text.IN_NRML_SPREADS, median=median, **spreads))
+    return model_text(" ".join(catalogue().lines(said)), states, [function])
+
+
+def _chances(found: Assessment, state: str) -> list[float]:
+    """Probability of a limit state at each level, that of toppling with all that is not known; none is less."""
+    toppling = found.predicted.fractions
+    if state == OVERTURNS:
+        return list(map(float, toppling))
+    return list(map(float, np.maximum(found.outcomes.fractions(state=state), toppling)))

@@ -8,8 +8,8 @@ from collections.abc import Mapping
 
 from rockfrag.assess.answer import Assessment
 from rockfrag.assess.assumed import Assumption
+from rockfrag.assess.core.decisions import Action
 from rockfrag.assess.core.likelihood import likelihood_of
-from rockfrag.assess.decision import Action, decide
 from rockfrag.assess.mitigations import Mitigation
 from rockfrag.assess.motions import FEWEST_EARTHQUAKES
 from rockfrag.assess.outcomes import LARGEST_FACTOR
@@ -70,9 +70,9 @@ def first_screen(found: Assessment) -> list[Finding]:
     """How likely it topples, how far that is away, how likely in some years, and what to do."""
     if few_earthquakes(found):
         about = finding(Text.GIVE_EARTHQUAKES, least=FEWEST_EARTHQUAKES)
-        return [verdict(found), about]
-    said = [verdict(found)]
-    if not (found.fraction is not None and _at_rest(found)):
+        return [how_likely(found), about]
+    said = [how_likely(found)]
+    if not (found.fraction is not None and found.does_not_move):
         said.append(how_far(found))
     if found.probability is not None:
         said.append(in_years(found, found.probability))
@@ -82,11 +82,6 @@ def first_screen(found: Assessment) -> list[Finding]:
 def few_earthquakes(found: Assessment) -> bool:
     """Whether there are too few earthquakes for a verdict."""
     return len(set(found.counted.earthquakes)) < FEWEST_EARTHQUAKES
-
-
-def _at_rest(found: Assessment) -> bool:
-    """Whether even what is not known leaves the object at rest at the level."""
-    return found.rocking is not None and found.rocking.upper == 0
 
 
 def _who(found: Assessment) -> dict[str, Value]:
@@ -99,21 +94,21 @@ def _amount(found: Assessment, value: float) -> Finding:
     return finding(Text.AMOUNT, value=two(value), **about)
 
 
-def verdict(found: Assessment) -> Finding:
+def how_likely(found: Assessment) -> Finding:
     """How likely the object topples at the level, or where it starts to rock without one."""
     level, rocking, fraction = found.level, found.rocking, found.fraction
     if level is None or rocking is None or fraction is None:
         if not math.isfinite(found.rocks_from):
-            return finding(Text.VERDICT_NEVER_ROCKS, **_who(found))
+            return finding(Text.HOW_LIKELY_NEVER_ROCKS, **_who(found))
         starts = _amount(found, found.rocks_from)
-        return finding(Text.VERDICT_NO_LEVEL, starts=starts, **_who(found))
+        return finding(Text.HOW_LIKELY_NO_LEVEL, starts=starts, **_who(found))
     about = {**_who(found), "level": level.amount}
     if few_earthquakes(found):
         return _few(found, fraction, about)
-    if _at_rest(found):
+    if found.does_not_move:
         about["starts"] = _amount(found, found.rocks_from)
-        return finding(Text.VERDICT_AT_REST, fraction, **about)
-    text = Text.VERDICT_HARDLY_ROCKS if rocking.value <= HARDLY else Text.VERDICT
+        return finding(Text.HOW_LIKELY_AT_REST, fraction, **about)
+    text = Text.HOW_LIKELY_HARDLY_ROCKS if rocking.value <= HARDLY else Text.HOW_LIKELY
     about["likelihood"] = finding(likelihood_of(fraction.value).value)
     return finding(text, fraction, p=_said_chance(fraction), **about)
 
@@ -125,7 +120,7 @@ def _few(found: Assessment, fraction: Estimate, about: dict[str, Value]) -> Find
         total, _, topple = found.counts
     number = len(set(found.counted.earthquakes))
     counts = {"topple": topple, "total": total, "n": number}
-    return finding(Text.VERDICT_FEW_EARTHQUAKES, fraction, **counts, **about)
+    return finding(Text.HOW_LIKELY_FEW_EARTHQUAKES, fraction, **counts, **about)
 
 
 def _said_chance(estimate: Estimate) -> Value:
@@ -174,7 +169,8 @@ def advice(found: Assessment) -> Finding:
     estimate = found.probability or found.fraction
     if estimate is None:
         return finding(Text.GIVE_LEVEL)
-    decision = decide(estimate, found.request.accepted)
+    decision = found.decision
+    assert decision is not None
     if decision.action is Action.MEASURE:
         what = SOURCES[decision.source].measurement
         assert what is not None
@@ -182,7 +178,7 @@ def advice(found: Assessment) -> Finding:
         return finding(Text.MEASURE_FIRST, estimate, what=what, cases=cases)
     secure = decision.action is Action.SECURE
     if found.probability is None:
-        return _by_cost(estimate, secure=secure)
+        return _by_cost(found, estimate, secure=secure)
     if secure:
         return finding(Text.SECURE_IT, estimate)
     accepted = percent(found.request.accepted)
@@ -190,9 +186,9 @@ def advice(found: Assessment) -> Finding:
     return finding(Text.LEAVE_IT, estimate, accepted=accepted, years=years)
 
 
-def _by_cost(fraction: Estimate, *, secure: bool) -> Finding:
+def _by_cost(found: Assessment, fraction: Estimate, *, secure: bool) -> Finding:
     """What to do without a hazard, where costs decide."""
-    if fraction.upper == 0:
+    if found.does_not_move:
         return finding(Text.LEAVE_IT_AT_REST, fraction)
     text = Text.SECURE_UNLESS if secure else Text.LEAVE_UNLESS
     worth = fraction.value or fraction.upper
@@ -219,7 +215,9 @@ def at_level(found: Assessment) -> list[Finding]:
     """What the motions do at the level, and where rocking starts."""
     said = []
     if found.fraction is not None and found.rocking is not None:
-        said += [counted(found), between(found.fraction)]
+        said.append(counted(found))
+        if not found.does_not_move:
+            said.append(between(found.fraction))
     said.append(starts(found))
     if found.level is not None and found.request.level is None:
         said.append(finding(Text.EXCEEDED_IN_475, level=found.level.amount))
@@ -238,8 +236,11 @@ def counted(found: Assessment) -> Finding:
     if found.counts is None:
         rock, topple = percent(found.rocking.value), percent(found.fraction.value)
         return finding(Text.COUNTED_MOVED, rock=rock, topple=topple)
-    total, rocked, fell = found.counts
-    return finding(Text.COUNTED, total=total, rock=rocked, topple=fell)
+    (total, rocked, fell), every = found.counts, len(found.motions.ground)
+    about = {"total": total, "rock": rocked, "topple": fell}
+    if total < every:
+        return finding(Text.COUNTED_SOME, every=every, **about)
+    return finding(Text.COUNTED, **about)
 
 
 def between(fraction: Estimate) -> Finding:
@@ -327,7 +328,8 @@ def helps(found: Assessment) -> list[Finding]:
     """The changes that are shown to help, the best first."""
     if not found.mitigations:
         return [finding(Text.NOTHING_TRIED)]
-    if found.main.value == 0:
+    at_rest = found.does_not_move and found.probability is None
+    if found.main.value == 0 or at_rest:
         return [finding(Text.NO_CHANGE_NEEDED)]
     shown = [change for change in found.mitigations if change.shown][:MOST_CHANGES]
     said = [mitigation(found, change) for change in shown]

@@ -131,7 +131,7 @@ class _Layout:
     def _how_many(self) -> Finding:
         """How probably one or more, and the most that topple together, do."""
         first, last = self.joint.numbers.iloc[0], self.joint.numbers.iloc[-1]
-        one = finding(
+        first_one = finding(
             Text.ONE_OR_MORE,
             years=three(self.years),
             p=percent(first["probability"]),
@@ -140,7 +140,7 @@ class _Layout:
         )
         p = percent(last["probability"])
         most = finding(Text.SO_MANY, n=int(last["at_least"]), p=p)
-        return Finding(self.texts.say(one), self.texts.say(most))
+        return Finding(self.texts.say(first_one), self.texts.say(most))
 
     def _ranking(self) -> Section:
         texts, objects = self.texts, self.joint.objects

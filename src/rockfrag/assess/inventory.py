@@ -19,14 +19,15 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from rockfrag.assess.answer import RECORDS, Assessment, assessed, plan_for, shake_all
+from rockfrag.assess.core.decisions import Action
+from rockfrag.assess.core.draws import FEW_MEMBERS
 from rockfrag.assess.core.likelihood import likelihood_of
-from rockfrag.assess.decision import Action, decide
 from rockfrag.assess.findings import estimate_of, few_earthquakes, mitigation
 from rockfrag.assess.mitigations import Mitigation
 from rockfrag.assess.motions import MotionSet, motion_set
 from rockfrag.assess.outcomes import ObjectOutcomes
 from rockfrag.assess.request import Request, make_request
-from rockfrag.assess.risk import Evidence, probability_in, risk_target, toppling_rate
+from rockfrag.assess.risk import Evidence, after_uplift, risk_target, toppling_rate
 from rockfrag.assess.sources import SPACE
 from rockfrag.assess.texts import Text
 from rockfrag.base.arrays import Flags, Floats
@@ -92,9 +93,7 @@ def joint_risk(found: Sequence[Assessment]) -> JointRisk | None:
     per_level = np.array(
         [toppling_rate(levels, unit, hazard) for unit in np.eye(levels.size)]
     )
-    rates = np.array(
-        [toppling_rate(levels, each.fractions(), hazard) for each in outcomes]
-    )
+    rates = np.array([_annual_rate(assessment) for assessment in found])
     names = [assessment.request.name for assessment in found]
     correlation = _correlation(fell, allowed, per_level)
     # how often losses are exceeded, from the least object to everything
@@ -105,15 +104,35 @@ def joint_risk(found: Sequence[Assessment]) -> JointRisk | None:
         )
     # rounding must not take away what reaches a step exactly
     reached = [
-        replace(together, overturned=lost >= step * (1 - 1e-12)) for step in steps
+        replace(
+            together,
+            overturned=lost >= step * (1 - 1e-12),
+            rocked=np.ones_like(together.rocked),
+            lifting=None,
+        )
+        for step in steps
     ]
-    exceeded = [float(each.fractions() @ per_level) for each in reached]
+    exceeded = [_common(each).mean(risk_target(hazard, 1.0), each) for each in reached]
+    exceeded = [-math.log1p(-chance) for chance in exceeded]
     return JointRisk(
         _by_object(names, rates, worth),
         _numbers(found[0], together, fell.sum(axis=0)),
         pd.DataFrame({"loss": steps, "annual_rate": exceeded}),
         pd.DataFrame(correlation, index=pd.Index(names, name="name"), columns=names),
     )
+
+
+def _annual_rate(found: Assessment) -> float:
+    """Rate of toppling, the mean over what is not known [1/year]."""
+    assert found.probability is not None
+    return -math.log1p(-min(found.probability.value, 1 - 1e-15)) / found.request.years
+
+
+def _common(outcomes: ObjectOutcomes) -> Evidence:
+    """What is not known of all objects: of the others what is not known of one body says nothing."""
+    spreads = {"model": MODEL_ERRORS[CUT].blind, "space": SPACE}
+    shifts = {name: after_uplift(spread) for name, spread in spreads.items()}
+    return Evidence(outcomes, shifts, members=FEW_MEMBERS)
 
 
 def _by_object(names: list[str], rates: Floats, worth: Floats) -> pd.DataFrame:
@@ -134,19 +153,19 @@ def _numbers(
     assert first.hazard is not None and first.level is not None
     years = first.request.years
     target = risk_target(first.hazard, years)
-    # what is not known of one body says nothing about the others; these two are common to all
-    shifts = {"model": MODEL_ERRORS[CUT].blind, "space": SPACE}
     at = together.intensity_levels.place_of(first.level.value)
     rows = []
     for least in [n for n in NUMBERS if n <= count.max()] or [1]:
         many = replace(
-            together, overturned=count >= least, rocked=np.ones_like(together.rocked)
+            together,
+            overturned=count >= least,
+            rocked=np.ones_like(together.rocked),
+            lifting=None,
         )
-        fractions = many.fractions()
-        found = Evidence(many, shifts=shifts).estimate(target)
-        rate = toppling_rate(many.intensity_levels.levels, fractions, first.hazard)
-        chance = probability_in(rate, years)
-        rows.append((least, rate, chance, found.lower, found.upper, fractions[at]))
+        found = _common(many).estimate(target)
+        rate = -math.log1p(-min(found.value, 1 - 1e-15)) / years
+        limits = found.value, found.lower, found.upper
+        rows.append((least, rate, *limits, many.fractions()[at]))
     chances = ("probability", "probability_lower", "probability_upper")
     return pd.DataFrame(
         rows, columns=["at_least", "annual_rate", *chances, "at_the_site"]
@@ -456,13 +475,15 @@ _BRIEFLY = {
 def fares_of(found: Assessment) -> Value:
     """How an object fares, for a line of a list: its estimate, and what to do or how likely that is."""
     if found.probability is not None:
-        action = decide(found.probability, found.request.accepted).action
-        advice = Text.BRIEF_NONE if few_earthquakes(found) else _BRIEFLY[action]
+        assert found.decision is not None
+        advice = _BRIEFLY[found.decision.action]
+        if few_earthquakes(found):
+            advice = Text.BRIEF_NONE
         chance = estimate_of(found.probability)
         return finding(Text.FARES_YEARS, chance=chance, advice=finding(advice))
     if found.fraction is None:
         return ""
-    if found.rocking is not None and found.rocking.upper == 0:
+    if found.does_not_move:
         return finding(Text.DOES_NOT_MOVE)
     likelihood = finding(likelihood_of(found.fraction.value).value)
     chance = estimate_of(found.fraction)

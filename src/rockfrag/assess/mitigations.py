@@ -7,9 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from rockfrag.assess.outcomes import ObjectOutcomes
-from rockfrag.assess.risk import LEVEL, Target, earthquake_weights
+from rockfrag.assess.risk import LEVEL, Evidence, Target
 from rockfrag.base.arrays import Floats
-from rockfrag.fragility.intervals import half_width
 from rockfrag.words.findings import Finding
 
 
@@ -31,37 +30,41 @@ class Mitigation:
 
 
 def compare(
-    target: Target, now: ObjectOutcomes, changed: Mapping[Finding, ObjectOutcomes]
+    target: Target,
+    evidence: Evidence,
+    now: ObjectOutcomes,
+    changed: Mapping[Finding, ObjectOutcomes],
 ) -> list[Mitigation]:
-    """Estimate again with each change of the object."""
-    weights = earthquake_weights(now.earthquakes)
-    before = target.value(now)
-    # without each earthquake
-    left_out = np.array([target.value(now, w) for w in weights])
+    """Estimate again with each change of the object, with the same errors of all that is not known.
+
+    Limits of the factor are over the earthquakes; a change is shown to help if they leave nothing else open.
+    """
+    before, by_weights = _compared(target, evidence, now)
     found = []
     for change, outcomes in changed.items():
-        after, factor, limits = target.value(outcomes), math.nan, (math.nan, math.nan)
+        after, with_it = _compared(target, evidence, outcomes)
+        factor, limits = math.nan, (math.nan, math.nan)
         if math.isfinite(before) and before > 0 and math.isfinite(after):
             factor = after / before
-            limits = _limits(factor, left_out, target, outcomes)
-        grows = math.isinf(target.certain)
-        helps = after > before if grows else after < before
-        shown = limits[0] > 1 if grows else limits[1] < 1
-        if factor == 0:
-            # no motion is left; more than one earthquake must have had one
-            shown = len(weights) > 1 and bool((left_out > 0).all())
-        found.append(Mitigation(change, after, factor, *limits, helps, helps and shown))
+            both = np.isfinite(by_weights) & np.isfinite(with_it) & (by_weights > 0)
+            ratios = with_it[both] / by_weights[both]
+            ends = [(1 - LEVEL) / 2, (1 + LEVEL) / 2]
+            if ratios.size:
+                low, high = np.quantile(ratios, ends).tolist()
+                limits = min(low, factor), max(high, factor)
+        helps = after > before if target.is_level else after < before
+        shown = limits[0] > 1 if target.is_level else limits[1] < 1
+        found.append(Mitigation(change, after, factor, *limits, helps, shown))
     return found
 
 
-def _limits(
-    factor: float, left_out: Floats, target: Target, outcomes: ObjectOutcomes
-) -> tuple[float, float]:
-    """Limits of a factor by a jackknife over earthquakes; NaN where one of them decides alone."""
-    weights = earthquake_weights(outcomes.earthquakes)
-    after = np.array([target.value(outcomes, w) for w in weights])
-    pairs = np.array([after, left_out])
-    if len(weights) < 2 or not np.isfinite(pairs).all() or not (pairs > 0).all():
-        return math.nan, math.nan
-    half = float(half_width(np.log(after / left_out), LEVEL))
-    return factor * math.exp(-half), factor * math.exp(half)
+def _compared(
+    target: Target, evidence: Evidence, outcomes: ObjectOutcomes
+) -> tuple[float, Floats]:
+    """What is estimated, and by each set of weights of the earthquakes, shape (sets,)."""
+    prediction = evidence.of(outcomes)
+    values = target.shown(evidence.drawn(target, prediction))
+    sets = values.reshape(len(prediction.draws.weights), -1)
+    if target.is_level:
+        return float(np.quantile(values, 0.5, method="lower")), np.median(sets, axis=1)
+    return float(values.mean()), sets.mean(axis=1)

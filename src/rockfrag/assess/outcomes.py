@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from rockfrag.assess.motions import MotionSet
 from rockfrag.assess.place import Place
 from rockfrag.assess.standing import Standing
+from rockfrag.assess.statics import lifting_in_plane, lifting_in_space
 from rockfrag.base.arrays import Floats
 from rockfrag.base.plausible import LARGEST_PEAK
 from rockfrag.engines.spatial import run_in_space
@@ -105,6 +106,19 @@ class ObjectOutcomes:
     light: bool = False
     # Which cases reached each other declared limit state, by its name, shape (motions, levels) each
     others: Mapping[str, NDArray[np.bool_]] = field(default_factory=dict)
+    # Level at which each motion lifts the body, by statics, shape (motions,); None if only outcomes say
+    lifting: Floats | None = None
+
+    def lifts_from(self) -> Floats:
+        """Level at which each motion lifts the body; infinite where none of the levels does, shape (motions,)."""
+        moved = (self.rocked | self.overturned) & self.intensity_levels.allowed
+        first = np.where(
+            moved.any(axis=1),
+            self.intensity_levels.levels[moved.argmax(axis=1)],
+            np.inf,
+        )
+        # what rocks was lifted, whatever rounding says
+        return first if self.lifting is None else np.minimum(first, self.lifting)
 
     def fractions(
         self, weights: Floats | None = None, *, state: str = OVERTURNS
@@ -159,6 +173,7 @@ class ObjectOutcomes:
             others={
                 name: cases | other.others[name] for name, cases in self.others.items()
             },
+            lifting=np.minimum(self.lifts_from(), other.lifts_from()),
         )
 
     def outcomes(self) -> Observations:
@@ -231,7 +246,10 @@ class Shaking(IntensityLevels):
         if not systems:
             return []
         base = self.motions.base
-        return self._each_system(*simulated(systems, base, self._factors(base)))
+        lifting = [lifting_in_plane(system, base) for system in systems]
+        return self._each_system(
+            *simulated(systems, base, self._factors(base)), lifting=lifting
+        )
 
     def _from_all_sides(self, systems: Sequence[System]) -> list[ObjectOutcomes]:
         """Outcomes by records, each in its worst direction of half a turn; both components get those."""
@@ -248,7 +266,12 @@ class Shaking(IntensityLevels):
         result, light = simulated(
             systems, shaking, self._factors(shaking, np.take(first, of_row))
         )
-        return self._each_system(result, light, of_row)
+        starts = np.flatnonzero(np.diff(of_row, prepend=-1))
+        lifting = [
+            np.minimum.reduceat(lifting_in_plane(system, shaking), starts)
+            for system in systems
+        ]
+        return self._each_system(result, light, of_row, lifting=lifting)
 
     def in_space(self, body: System, spread: float) -> ObjectOutcomes:
         """Outcomes of a body in space under both components of each record, where it has two.
@@ -264,7 +287,10 @@ class Shaking(IntensityLevels):
         result = run_in_space(
             [body], shaking, scales, spread=spread, threads=checked_threads(None)
         )
-        return self._each_system(result, of_row=np.arange(len(first)))[0]
+        lifting = [lifting_in_space(body, shaking)]
+        return self._each_system(result, of_row=np.arange(len(first)), lifting=lifting)[
+            0
+        ]
 
     def on_pad(
         self, objects: Standing, friction: float
@@ -274,10 +300,11 @@ class Shaking(IntensityLevels):
         *below, pad = system.contacts
         pad = replace(pad, friction=Friction(friction, friction))
         system = replace(system, contacts=(*below, pad))
-        result = overturns(
-            system, self.motions.base, scales=self._factors(self.motions.base)
-        )
-        return self._each_system(result)[0], result.peak_slip[0, ..., -1]
+        base = self.motions.base
+        result = overturns(system, base, scales=self._factors(base))
+        lifting = [lifting_in_plane(system, base)]
+        (found,) = self._each_system(result, lifting=lifting)
+        return found, result.peak_slip[0, ..., -1]
 
     def _factors(self, shaking: Sequence[Motion], rows: Any = slice(None)) -> Floats:
         """Factors on what shakes, by the rows of the levels; at rest what is not counted, shape (rows, levels)."""
@@ -289,12 +316,16 @@ class Shaking(IntensityLevels):
         result: Outcomes,
         light: Sequence[bool] = (False,),
         of_row: NDArray[np.intp] | None = None,
+        *,
+        lifting: Sequence[Floats],
     ) -> list[ObjectOutcomes]:
         """Outcomes of each system, which cannot slide.
 
         ``of_row`` is the record of each motion of the result where several may be of one; what happens to a record
-        from one side happens.
+        from one side happens. ``lifting`` are the factors on motions, or on these records, that lift each system.
         """
+        # level of each motion as recorded
+        recorded = self.levels[0] / self.scales[:, 0]
         states = {
             state.name: state.reached(result)
             for state in limit_states()
@@ -302,6 +333,7 @@ class Shaking(IntensityLevels):
         }
         if of_row is not None:
             place = self.motions.place_of_record()
+            lifting = [factors[place] for factors in lifting]
             starts = np.flatnonzero(np.diff(of_row, prepend=-1))
             states = {
                 name: np.logical_or.reduceat(cases, starts, axis=1)[:, place]
@@ -312,7 +344,17 @@ class Shaking(IntensityLevels):
             own = {name: cases[i] for name, cases in states.items()}
             fell, rocked = own.pop(OVERTURNS), own.pop(ROCKS)
             earthquakes = self.motions.earthquakes
-            found.append(ObjectOutcomes(self, fell, rocked, earthquakes, may_fly, own))
+            found.append(
+                ObjectOutcomes(
+                    self,
+                    fell,
+                    rocked,
+                    earthquakes,
+                    may_fly,
+                    own,
+                    lifting=lifting[i] * recorded,
+                )
+            )
         return found
 
     def flip_rate(self, objects: Standing) -> float:

@@ -20,13 +20,13 @@ from rockfrag.assess.findings import (
     details,
     first_screen,
     helps,
+    how_likely,
     mitigation_cell,
     position,
     quality_flags,
     starts,
     uncertainty,
     value_of,
-    verdict,
 )
 from rockfrag.assess.motions import MotionSet
 from rockfrag.assess.sources import SOURCES, parts_of
@@ -103,7 +103,7 @@ class _Layout:
             motions=found.motions.about_set,
         )
         return Page(
-            title=texts.sentence(verdict(found)).rstrip("."),
+            title=texts.sentence(how_likely(found)).rstrip("."),
             lead=texts.sentence(lead),
             answer=self._answer(),
             sections=sections,

@@ -70,9 +70,11 @@ def check_notes(
     lower, upper = interval.beta
     if interval.method == "jackknife" and math.isfinite(lower) and math.isfinite(upper):
         notes.append(TAILS)
-    if fit.n_motions < FEWEST_MOTIONS and math.isfinite(fit.theta):
-        motions = "1 motion" if fit.n_motions == 1 else f"{fit.n_motions} motions"
-        notes.append(f"The curve is based on only {motions} and describes little else.")
+    known = fit.n_motions if fit.of_motions else fit.n
+    if known < FEWEST_MOTIONS and math.isfinite(fit.theta):
+        noun = "motion" if fit.of_motions else "test"
+        counted = f"1 {noun}" if known == 1 else f"{known} {noun}s"
+        notes.append(f"The curve is based on only {counted} and describes little else.")
     return tuple(notes)
 
 

@@ -164,7 +164,10 @@ def fit_stripes(
     if trials is not None:
         return whole
     values, stripe = np.unique(outcomes.im, return_inverse=True)
-    return replace(whole, fit=fit_lognormal(outcomes.pooled(stripe, values)))
+    fit = fit_lognormal(outcomes.pooled(stripe, values))
+    # levels are pooled, not motions
+    fit = replace(fit, n_motions=outcomes.n_motions, of_motions=outcomes.of_motions)
+    return replace(whole, fit=fit)
 
 
 @named_keywords

@@ -66,6 +66,7 @@ class FragilityFit:
     method, warnings
         How it was fitted, in words, and a sentence for each thing that a reader must know before using the curve.
     im, unit, link : intensity measure and its unit; ``probit`` or ``logit``
+    of_motions : whether the motions are known; else ``n_motions`` is the number of rows
     """
 
     theta: float
@@ -80,6 +81,7 @@ class FragilityFit:
     unit: str = ""
     link: Link = "probit"
     warnings: tuple[str, ...] = ()
+    of_motions: bool = True
 
     __repr__ = short_repr
 
@@ -204,6 +206,7 @@ def fit_lognormal(outcomes: Observations, *, link: Link = "probit") -> Fragility
         unit=outcomes.unit,
         link=link,
         warnings=tuple(notes),
+        of_motions=outcomes.of_motions,
     )
 
 

@@ -62,6 +62,8 @@ class Observations(Grouped):
     earthquake: NDArray[np.object_]
     name: str = "IM"
     unit: str = ""
+    # whether rows are labelled with motions; else they are tests, or counts of tests
+    of_motions: bool = True
 
     __repr__ = short_repr
 
@@ -300,8 +302,9 @@ def observations_from_table(
             )
     motions = labels(table, motion, source)
     earthquakes = motions if earthquake is None else labels(table, earthquake, source)
+    named = motion is not None
     return Observations(
-        values, failed, counts, motions, earthquakes, *name_and_unit(im)
+        values, failed, counts, motions, earthquakes, *name_and_unit(im), named
     )
 
 

@@ -16,6 +16,7 @@ _PATTERNS = tuple(
         rf"^(?P<stem>.+?)[-_. ]?(?P<name>{_DIRECTIONS})(?P<rest>\d?)$",
         r"^(?P<stem>.+)[-_. ](?P<name>HOR(?:IZ\w*)?[-_ ]?[12])(?P<rest>)$",
         r"^(?P<stem>.+)[-_. ](?P<name>[NEZUVHXYLT]|NORTH|EAST|SOUTH|WEST|RADIAL|TRANSV\w*|LONGIT\w*)(?P<rest>)$",
+        r"^(?P<stem>.+\d)(?P<name>[ENZV])(?P<rest>)$",
         # Tabas of PEER: -L1, -T1, -V1
         r"^(?P<stem>.+)[-_. ](?P<name>[LTVH]\d)(?P<rest>)$",
     )

@@ -15,7 +15,12 @@ import pandas as pd
 
 from rockfrag.base.errors import InputError
 from rockfrag.base.text_files import printable
-from rockfrag.records.catalogue import COLUMNS, passed_over, record_files
+from rockfrag.records.catalogue import (
+    COLUMNS,
+    listed_problems,
+    passed_over,
+    record_files,
+)
 from rockfrag.records.component_names import NUMBERS, numbered_records, parts_of
 from rockfrag.records.motion import Motion
 from rockfrag.records.parsing.directions import azimuth_of, is_vertical
@@ -23,7 +28,7 @@ from rockfrag.records.parsing.format import Channel
 from rockfrag.records.parsing.text_file import NotAcceleration
 from rockfrag.records.quality_flags import quality_flags
 from rockfrag.records.read import motion_of, read_untold
-from rockfrag.records.sources.archive import is_archive, unpacked
+from rockfrag.records.sources.archive import is_archive, is_no_record, unpacked
 
 # degrees by which two components may be off a right angle and still be a pair
 _PERPENDICULAR = 5.0
@@ -196,7 +201,11 @@ class CatalogueDraft:
     def look_through(self, path: Path) -> tuple[list[Component], list[PeerRecord]]:
         """Return the components below a path and what PEER says of them."""
         inside, files = path.is_dir(), record_files(path)
-        self.left_out += [(self._named(file), why) for file, why in passed_over(path)]
+        self.left_out += [
+            (self._named(file), why)
+            for file, why in passed_over(path)
+            if file.name != SEARCH_RESULTS
+        ]
         components = [
             component for file in files for component in self._components(file)
         ]
@@ -213,6 +222,9 @@ class CatalogueDraft:
                     for member in members:
                         if PurePosixPath(member.name).name == SEARCH_RESULTS:
                             listed += read_search_results(member.path)
+                        elif is_no_record(member.name):
+                            name = f"{self._named(file)}#{member.name}"
+                            self.left_out.append((name, "no record by its name"))
         except InputError as error:
             self.errors.append(str(error))
         return components, listed
@@ -468,10 +480,11 @@ def make_catalogue(
         rows += draft.rows_of(group)
     if not rows:
         found_instead = [f"{file}: {why}." for file, why in draft.left_out]
-        more = "".join(f": {reason}" for reason in [*draft.errors, *found_instead][:1])
+        reasons = [reason.rstrip(".") for reason in (*draft.errors, *found_instead)]
+        more = f": {listed_problems(reasons)}" if reasons else ""
         where = ", ".join(map(str, paths))
         raise InputError(
-            f"{where}: no horizontal component of acceleration was found{more or '.'}"
+            f"{where}: no horizontal component of acceleration was found{more}."
         )
     _name_uniquely(rows)
     draft.note_names_of_one_day(rows)

@@ -321,13 +321,13 @@ def _settled_unit(
         f"{peak * quantities.to_si(name) / GRAVITY:.3g} g if {name}"
         for name in quantities.ASKED_UNITS
     )
-    doubt = (
+    remark = (
         f" ({channel.code} is a channel of a seismometer: velocity, unless it has been differentiated)"
         if velocity
         else ""
     )
     raise InputError(
-        f"{record.name}: the file does not state its unit{doubt}; give unit= "
+        f"{record.name}: the file does not state its unit{remark}; give unit= "
         f"({', '.join(quantities.ASKED_UNITS)}): the peak about the mean would be {candidates}."
     )
 

@@ -1,6 +1,7 @@
 """The whole assessment as one page, ``rockfrag app``: what it computes with, and what it is made of."""
 
 import math
+from base64 import b64encode
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from importlib.resources import files
@@ -9,11 +10,10 @@ from types import ModuleType
 from typing import Any
 
 import numpy as np
-from scipy import special, stats
+from scipy import special
 
 from rockfrag.assess import (
     conversion,
-    decision,
     findings,
     outcomes,
     place,
@@ -22,6 +22,7 @@ from rockfrag.assess import (
     sources,
 )
 from rockfrag.assess.conversion import VelocityRelation
+from rockfrag.assess.core import decisions, draws, fractions, parts
 from rockfrag.assess.core.likelihood import BELOW, UP_TO, Likelihood
 from rockfrag.assess.hazard import curve
 from rockfrag.assess.hazard.curve import PGA, PGV
@@ -30,6 +31,7 @@ from rockfrag.assess.place import Place
 from rockfrag.assess.request import Records, Request
 from rockfrag.assess.standing import box, changes, contract, rolling
 from rockfrag.base import plausible, units
+from rockfrag.base.arrays import Floats
 from rockfrag.building.model import ModalDamping, ShearBuilding
 from rockfrag.building.response import find_modes
 from rockfrag.fragility import held_out, vector
@@ -39,7 +41,16 @@ from rockfrag.motions.response_spectra import oscillator_matrix
 from rockfrag.web import driver_text
 from rockfrag.words.findings import as_data
 
-SCRIPTS = ("statistics", "risk", "conversion", "building", "space", "objects", "answer")
+SCRIPTS = (
+    "statistics",
+    "core",
+    "risk",
+    "conversion",
+    "building",
+    "space",
+    "objects",
+    "answer",
+)
 """Scripts that compute, in the order in which they need each other."""
 
 # Storeys up to which modes of the usual building stand in the page, to the bit
@@ -91,6 +102,7 @@ def data_of(motions: MotionSet, asked: Request | None = None) -> dict[str, Any]:
             for q, c in each.quantiles.items()
         ],
         "measurements": left,
+        "draws": _draws(motions),
         "constants": _constants(),
         "floors": {n: _with_variants(at, intervals) for n, at in usual.items()},
         "own": asked and _own(asked.place, intervals),
@@ -180,6 +192,26 @@ def _modes(
     return found
 
 
+SOURCES_DRAWN = 10  # Sources of an object of the form at most
+
+
+def _draws(motions: MotionSet) -> dict[str, Any]:
+    """Draws of sources and of the weights of so many earthquakes as there are, and as are compared."""
+    count = len(set(motions.earthquakes))
+    fewer = motions.with_both_components().thinned()
+    counts = {count, len(set(fewer.earthquakes))}
+    return {
+        "columns": SOURCES_DRAWN,
+        "normals": _packed(draws.make_draws(SOURCES_DRAWN, count).sources),
+        "weights": {n: _packed(draws.make_draws(0, n).weights) for n in counts},
+    }
+
+
+def _packed(values: Floats) -> str:
+    """Numbers as bytes in base 64, for the page's typed arrays."""
+    return b64encode(np.ascontiguousarray(values, dtype="<f8").tobytes()).decode()
+
+
 def _of(module: ModuleType, *names: str) -> dict[str, Any]:
     """Constants of a module by their names."""
     return {name: getattr(module, name) for name in names}
@@ -190,8 +222,11 @@ def _constants() -> dict[str, Any]:
         **_of(units, "GRAVITY"),
         **_of(outcomes, "AT_REST", "LARGEST_FACTOR"),
         **_of(plausible, "LARGEST_PEAK"),
-        **_of(risk, "LEVEL", "HALF"),
-        "Z": float(stats.norm.ppf(0.5 + risk.LEVEL / 2)),
+        **_of(risk, "LEVEL", "NONE_BELOW", "LEAST_SPAN"),
+        **_of(fractions, "CLASSES", "ROUNDING", "LEAST_SPREAD"),
+        **_of(draws, "MEMBERS", "FEW_MEMBERS"),
+        "BINS": parts.BINS,
+        "CENTRES": parts.CENTRES.tolist(),
         "FLANK_Z": float(special.ndtri(curve.FLANKS[1])),
         **_of(curve, "EC8_SLOPE", "EC8_SLOPE_SD"),
         "MODEL": MODEL_ERRORS[CUT].beyond,
@@ -207,7 +242,7 @@ def _constants() -> dict[str, Any]:
         ),
         **_of(findings, "HARDLY", "LEAST_PART", "MOST_SOURCES", "MOST_ASSUMPTIONS"),
         **_of(findings, "MOST_CHANGES"),
-        **_of(decision, "LEAST_CHANCE"),
+        **_of(decisions, "LEAST_CHANCE"),
         "FEWEST_EARTHQUAKES": FEWEST_EARTHQUAKES,
         **_of(request, "ACCEPTED_AT_A_LEVEL", "ACCEPTED_IN_FIFTY_YEARS"),
         "BELOW": [[limit, step.value] for limit, step in BELOW],
@@ -288,5 +323,5 @@ def ratios_of(motions: MotionSet, measure: IntensityMeasure) -> dict[str, Any] |
     return {
         "logs": logs.tolist(),
         "median": float(np.median(logs)),
-        "spread": relation.unknown(Records()),
+        "spread": relation.unknown(Records(), of_site=False),
     }

@@ -23,17 +23,18 @@ const findings = (data) => {
     const main = probability ?? fraction, years = three(found.years), few = found.earthquakes < FEWEST_EARTHQUAKES;
     const amount = (value) => finding("amount", { measure, value: two(value), unit });
     const level = finding("amount", { measure, value: three(found.level), unit }), who = { name: called(request), where: where(request) };
-    const atRest = rocking?.upper === 0;
+    // exceptionally unlikely that it rocks, limits included
+    const atRest = rocking?.upper < BELOW[0][0], value = fraction?.value ?? found.value, rocks = rocking?.value ?? found.rockingValue;
 
-    function verdict() {
+    function howLikely() {
       const about = { ...who, level };
       if (few) {
         const topple = counts ? counts[2] : percent(found.value), total = counts ? counts[0] : data.earthquakes.length;
-        return finding("verdict_few_earthquakes", { ...about, topple, total, n: found.earthquakes });
+        return finding("how_likely_few_earthquakes", { ...about, topple, total, n: found.earthquakes });
       }
-      if (atRest) return finding("verdict_at_rest", { ...about, starts: amount(found.rocksFrom) });
-      const id = found.rockingValue <= HARDLY ? "verdict_hardly_rocks" : "verdict";
-      return finding(id, { ...about, likelihood: finding(likelihoodOf(found.value)), p: chance(fraction ?? { value: found.value, lower: 1, upper: 0 }) });
+      if (atRest) return finding("how_likely_at_rest", { ...about, starts: amount(found.rocksFrom) });
+      const id = rocks <= HARDLY ? "how_likely_hardly_rocks" : "how_likely";
+      return finding(id, { ...about, likelihood: finding(likelihoodOf(value)), p: chance(fraction ?? { value: found.value, lower: 1, upper: 0 }) });
     }
     function chance({ value, lower, upper }) {
       if (value === 0 && upper > 0) return finding("at_most", { upper: percent(upper) });
@@ -53,22 +54,23 @@ const findings = (data) => {
       const { action, source, chance: part } = found.decision;
       if (action === "measure") return finding("measure_first", { what: finding(`measurement_${source}`), cases: whole(10 * part) });
       if (probability) return action === "secure" ? finding("secure_it") : finding("leave_it", { accepted: percent(found.accepted), years });
-      if (fraction.upper === 0) return finding("leave_it_at_rest");
+      if (atRest) return finding("leave_it_at_rest");
       return finding(action === "secure" ? "secure_unless" : "leave_unless", { p: percent(fraction.value || fraction.upper) });
     }
     function first() {
-      if (few) return [verdict(), finding("give_earthquakes", { least: FEWEST_EARTHQUAKES })];
-      if (!fraction) return [verdict()];
-      return [verdict(), ...(atRest ? [] : [howFar(found.half)]), ...(probability ? [inYears()] : []), advice()];
+      if (few) return [howLikely(), finding("give_earthquakes", { least: FEWEST_EARTHQUAKES })];
+      if (!fraction) return [howLikely()];
+      return [howLikely(), ...(atRest ? [] : [howFar(found.half)]), ...(probability ? [inYears()] : []), advice()];
     }
 
     // ---- behind it
 
     function atLevel() {
-      const counted = counts ? finding("counted", { total: counts[0], rock: counts[1], topple: counts[2] })
+      const every = data.earthquakes.length, [total, rock, topple] = counts ?? [];
+      const counted = counts ? finding(total < every ? "counted_some" : "counted", { ...(total < every ? { every } : {}), total, rock, topple })
         : finding("counted_moved", { rock: percent(found.rockingValue), topple: percent(found.value) });
       const starts = Number.isFinite(found.rocksFrom) ? finding("starts_at", { starts: amount(found.rocksFrom) }) : finding("starts_beyond");
-      return [counted, ...(fraction ? [between()] : []), starts, ...(request.level === null ? [finding("exceeded_in_475", { level })] : [])];
+      return [counted, ...(fraction && !atRest ? [between()] : []), starts, ...(request.level === null ? [finding("exceeded_in_475", { level })] : [])];
     }
     function between() {
       if (isOpen(fraction)) return finding("fraction_open");
@@ -102,7 +104,7 @@ const findings = (data) => {
     }
     function helps() {
       if (!main) return [];
-      if (main.value === 0) return [finding("no_change_needed")];
+      if (main.value === 0 || (atRest && !probability)) return [finding("no_change_needed")];
       const shown = found.mitigations.filter((each) => each.shown).slice(0, MOST_CHANGES);
       if (!shown.length) return [finding("no_change_shown")];
       return shown.map((each) => (each.factor === 0 ? finding("none_left", { change: changeOf(each) }) : finding("reduces", { change: changeOf(each), ...reduction(each) })));

@@ -248,9 +248,9 @@ function show(answer) {
 }
 // the first screen and what stands behind it in words; of an answer that is not complete what is known of it
 function saidOf(request, found, { last = true, early = false } = {}) {
-  const { first: [verdict, ...others], details } = wording.of(request, found), hidden = [...(last ? [] : ["title_helps"]), ...(early ? ["title_years"] : [])];
+  const { first: [likely, ...others], details } = wording.of(request, found), hidden = [...(last ? [] : ["title_helps"]), ...(early ? ["title_years"] : [])];
   const lines = details.filter(([{ id }]) => !hidden.includes(id)).map(([title, said]) => [speak.sentence(title), speak.paragraph(said)]);
-  return { headline: speak.sentence(verdict).replace(/\.$/, ""), screen: speak.paragraph(others), lines };
+  return { headline: speak.sentence(likely).replace(/\.$/, ""), screen: speak.paragraph(others), lines };
 }
 function linesAs({ lines }) {
   return lines.flatMap(([title, text]) => [make("dt", { textContent: title }), make("dd", { textContent: text })]);

@@ -364,7 +364,7 @@ def asked_unit(unit: str) -> str:
 _NAMED_QUANTITIES = {
     "velocity": re.compile(r"(?i)(?:^|[-_. ])vel(?:o|oc\w*)?(?=[-_. ]|$)|\.vt2\b"),
     "displacement": re.compile(
-        r"(?i)(?:^|[-_. ])(?:disp|displ|displacement)(?=[-_. ]|$)|\.(?:dis|dt2)\b"
+        r"(?i)(?:^|[-_. ])(?:disp|displ|displacement)(?=[-_. ]|$)|\.(?:dis|dsp|dt2)\b"
     ),
 }
 _NAMED_ACCELERATION = re.compile(r"(?i)(?:^|[-_. ])acc(?:el\w*)?(?=[-_. ]|$)")
