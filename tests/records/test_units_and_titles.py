@@ -1,6 +1,7 @@
 """Units, titles and words by one grammar: applied, or refused, and never passed over."""
 
 import random
+from importlib.util import module_from_spec, spec_from_file_location
 from pathlib import Path
 
 import numpy as np
@@ -328,3 +329,12 @@ def test_what_a_text_states_is_true_of_what_is_read_or_it_is_refused(tmp_path):
         except InputError:
             fates["refused"] += 1
     assert fates["used"] > 90
+
+
+def test_the_page_of_formats_shows_what_the_readers_read():
+    root = Path(__file__).resolve().parents[2]
+    spec = spec_from_file_location("tables", root / "maintenance" / "record_tables.py")
+    tables = module_from_spec(spec)
+    spec.loader.exec_module(tables)
+    page = tables.PAGE.read_text(encoding="utf-8")
+    assert tables.page_with_table(page) == page

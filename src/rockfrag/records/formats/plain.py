@@ -9,6 +9,7 @@ stated must agree, with the file and with what the user names; what is not state
 
 import re
 from dataclasses import dataclass, field, replace
+from itertools import combinations
 from pathlib import PurePath
 from typing import Any, NoReturn
 
@@ -48,6 +49,7 @@ _EVENLY = 0.2
 # ratio of steps along columns to steps along rows below which columns are channels
 _SMOOTHER = 0.6
 # part of its peak by which the printed magnitude of components may be off the computed one
+_MOST_COMPONENTS = 8  # columns among which components of a magnitude are looked for
 _LIKE_MAGNITUDE = 1e-3
 _SHOWN = 60
 # significant digits of an interval that stands above samples of more digits
@@ -520,21 +522,24 @@ def _without_magnitude(
             f"column {columns[named[0]].title!r} is the magnitude of components, which has no direction",
             layout.line - 1,
         )
-    if not named and len(chosen) > 2:
+    if not named:
+        every = [i for i, c in enumerate(columns) if c.quantity in ("", "acceleration")]
         off = {
-            i: _off_magnitude(table, i, [k for k in chosen if k != i]) for i in positive
+            i: _off_magnitude(table, i, [k for k in every if k != i]) for i in positive
         }
-        named = [i for i in positive if off[i] == min(off.values()) < _LIKE_MAGNITUDE][
-            -1:
-        ]
+        like = [i for i in positive if off[i] < _LIKE_MAGNITUDE]
+        named = [i for i in like if off[i] == min(off.values())][-1:]
     return [i for i in chosen if i not in named]
 
 
 def _off_magnitude(table: NDArray[np.float64], column: int, others: list[int]) -> float:
-    """Return by what part of its peak a column is off the length of the vector of others."""
-    length = np.sqrt((table[:, others] ** 2).sum(axis=1))
-    off = np.abs(length - table[:, column]).max()
-    return float(off / table[:, column].max())
+    """Return by what part of its peak a column is off the length of the vector of two or three others."""
+    peak = table[:, column].max()
+    few = others if len(others) <= _MOST_COMPONENTS else []
+    vectors = [pair for k in (2, 3) for pair in combinations(few, k)]
+    lengths = (np.sqrt((table[:, list(v)] ** 2).sum(axis=1)) for v in vectors)
+    off = (float(np.abs(length - table[:, column]).max() / peak) for length in lengths)
+    return min(off, default=1.0)
 
 
 def _untitled(layout: _Layout, table: NDArray[np.float64]) -> list[Column]:

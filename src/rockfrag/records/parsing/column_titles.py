@@ -140,19 +140,23 @@ def _is_unit(cell: str) -> bool:
 
 def _by_blanks(words: str, cells: list[str]) -> bool:
     """Tell whether single blanks are all that separates the titles, as it does the words of a sentence."""
-    return " " in words.strip() and not any(" " in cell for cell in cells)
+    apart = re.search(r"\S\s{2,}\S", words) and len(re.split(r"\s{2,}", words)) == len(
+        cells
+    )
+    return not apart and " " in words.strip() and not any(" " in c for c in cells)
 
 
 def _are_titles(columns: list[Column], by_blanks: bool) -> bool:
     """Tell titles from a sentence that happens to have as many words as there are columns."""
     known = [column.quantity for column in columns]
+    if any(_NO_TITLE.search(column.title) for column in columns):
+        return False
     if len(columns) == 1:
         # above one column any words may stand; with a unit they are its title
         stated = bool(columns[0].unit or columns[0].problem)
-        return stated and known == ["acceleration"]
+        doubtful = columns[0].problem and _DOUBTFUL.search(columns[0].title)
+        return bool(doubtful) or (stated and known == ["acceleration"])
     bare_units = [bool(read_unit(column.title).quantity) for column in columns]
-    if any(_NO_TITLE.search(column.title) for column in columns):
-        return False
     if not by_blanks:
         named = (k for k, bare in zip(known, bare_units, strict=True) if not bare)
         return any(named) or all(known) or any(column.problem for column in columns)

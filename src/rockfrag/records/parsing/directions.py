@@ -12,6 +12,7 @@ _SEED = re.compile(r"^(?!CH\d)[A-Z][HNLG](?P<axis>[NEZ123])\d{0,2}$")
 _VERTICAL = re.compile(r"^(?:V|Z|U|UD|DU|A_?Z|G_?F?Z|[+-][VZU]|[VZU][+-])\d?$", re.I)
 _AXIS = re.compile(
     r"(?i)^(?:[NSEWUD]-?[NSEWUD]|[NEZUVLTRXYH][+-]?\d?|[+-][NEZUVLTXY]|[ag]F?_?[xyz]|H[12]|FN|FP"
+    r"|[xyz][ _-]?axis|axis[ _-]?[xyz]"
     r"|[A-Z][NLGH][ENZ123]\d{0,2}|[NS]\d{1,2}(?:\.\d+)?[EW]|\d{1,3}|ch(?:annel)?\W?\d+"
     r"|(?:canal|kanal|канал|通道|チャンネル)\W*\d+)$"
 )
