@@ -18,7 +18,7 @@ import psutil
 ROOT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT))
 
-from rockfrag.cli import main  # noqa: E402
+from rockfrag.cli.main import main  # noqa: E402
 from tests.end_to_end.browsers import BROWSERS, Chromium  # noqa: E402
 
 STAGES = ("first", "interval", "complete")

@@ -11,10 +11,10 @@ import numpy as np
 
 # the column lies with the oracles of the tests
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
-from rockfrag.figure_style import COLUMN_WIDTH, figure_style
-from rockfrag.rocking import overturns
+from rockfrag.base.figure_style import COLUMN_WIDTH, figure_style
+from rockfrag.base.units import GRAVITY as G
+from rockfrag.simulation import overturns
 from rockfrag.system import Column
-from rockfrag.units import GRAVITY as G
 from tests.oracle.cases import drum_column, drum_pulse
 
 FRICTION = 0.6

@@ -4,7 +4,7 @@ import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
 
-from rockfrag.figure_style import (
+from rockfrag.base.figure_style import (
     BLUE,
     OKABE_ITO,
     ORANGE,

@@ -17,8 +17,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from rockfrag.rocking.ensemble import overturns
-from rockfrag.rocking.simulation import simulate
+from rockfrag.simulation.ensemble import overturns
+from rockfrag.simulation.history import simulate
 from rockfrag.system.blocks import Block, Body, Stack
 
 # the random cases lie with the oracles of the tests

@@ -19,7 +19,7 @@ import pandas as pd
 from app import app_seconds
 from gallery import gallery_seconds
 
-from rockfrag.files import write_table
+from rockfrag.base.files import write_table
 from rockfrag.motions.measures import measure_motions
 from rockfrag.records.motion import Motion
 from rockfrag.stages.log import last_seconds

@@ -14,12 +14,17 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from rockfrag.engines.kernels.jit import entry_kernel
-from rockfrag.engines.kernels.lanes import block, scheduler, stack_one, stack_two
-from rockfrag.engines.kernels.lanes.case import LANES
+from rockfrag.engines.compile.jit import entry_kernel
+from rockfrag.engines.pure_rocking.kernels.lanes import (
+    block,
+    scheduler,
+    stack_one,
+    stack_two,
+)
+from rockfrag.engines.pure_rocking.kernels.lanes.case import LANES
 from rockfrag.outcomes.outcomes import Outcomes
-from rockfrag.rocking.ensemble import overturns
-from rockfrag.rocking.simulation import simulate
+from rockfrag.simulation.ensemble import overturns
+from rockfrag.simulation.history import simulate
 from rockfrag.system.blocks import Block, Stack
 from tests.oracle.cases import Cases
 

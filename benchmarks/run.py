@@ -19,12 +19,12 @@ import numpy as np
 import pandas as pd
 import scipy
 
+from rockfrag.base.figure_style import save_figure
+from rockfrag.base.files import write_table, write_text
 from rockfrag.engines.steps import STEP
-from rockfrag.figure_style import save_figure
-from rockfrag.files import write_table, write_text
-from rockfrag.rocking.ensemble import overturns
-from rockfrag.rocking.parquet import stream_overturns
-from rockfrag.rocking.robustness import find_step_size_sensitive
+from rockfrag.simulation.ensemble import overturns
+from rockfrag.simulation.parquet import stream_overturns
+from rockfrag.simulation.robustness import find_step_size_sensitive
 from rockfrag.system.blocks import Block, Body, Stack
 
 # the random cases and MuJoCo lie with the oracles of the tests

@@ -12,7 +12,7 @@ def first_outcome(kind: str) -> float:
     start = time.perf_counter()
     import numpy as np
 
-    from rockfrag.rocking.ensemble import overturns
+    from rockfrag.simulation.ensemble import overturns
     from rockfrag.system.blocks import Block, Stack
 
     block = Block(0.3, 1.2, 200.0)
@@ -26,7 +26,7 @@ def streamed_memory(kind: str, count: int) -> float:
     """Largest resident memory [MiB] of a process that streams ``count`` short histories to a file."""
     import numpy as np
 
-    from rockfrag.rocking.parquet import stream_overturns
+    from rockfrag.simulation.parquet import stream_overturns
     from rockfrag.system.blocks import Block, Body, Stack
 
     blocks = [Block(0.3 + 0.001 * i, 1.2, 200.0) for i in range(100)]

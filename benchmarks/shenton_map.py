@@ -12,8 +12,8 @@ import numpy as np
 from matplotlib.colors import ListedColormap
 
 from rockfrag import Block
-from rockfrag.rocking import simulate
-from rockfrag.units import GRAVITY as G
+from rockfrag.base.units import GRAVITY as G
+from rockfrag.simulation import simulate
 
 MODES = ("stands", "slides left", "rocks left", "rocks left, slides left")
 NAMES = ("rests", "slides", "rocks", "slides\nand rocks")

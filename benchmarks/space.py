@@ -18,7 +18,7 @@ from scipy.signal import butter, sosfilt
 
 from rockfrag.engines.spatial import run_in_space
 from rockfrag.records.motion import GroundMotion, Motion
-from rockfrag.rocking.ensemble import overturns
+from rockfrag.simulation.ensemble import overturns
 from rockfrag.system.blocks import Block
 
 DT = 0.01

@@ -9,8 +9,7 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from rockfrag import Block, simulate
-from rockfrag.engines.spatial.engine import history_table, run_case
-from rockfrag.figure_style import (
+from rockfrag.base.figure_style import (
     BLACK,
     BLUE,
     ORANGE,
@@ -20,6 +19,7 @@ from rockfrag.figure_style import (
     plain_log,
     save_figure,
 )
+from rockfrag.engines.spatial.engine import history_table, run_case
 
 # what the checks measure lies with the tests
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))

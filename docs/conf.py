@@ -72,7 +72,7 @@ SUBPACKAGES = {
         "Objects",
         "what is shaken: blocks, stacks, columns, bodies in space, scans",
     ),
-    "rockfrag.rocking": (
+    "rockfrag.simulation": (
         "Simulation",
         "histories, ensembles, thresholds, rocking spectra, closed forms",
     ),
@@ -90,7 +90,7 @@ SUBPACKAGES = {
         "Fragility",
         "curves with intervals, intensity-measure selection, exports",
     ),
-    "rockfrag.pedestal": ("Paired comparisons", "the effect of a pedestal, tested"),
+    "rockfrag.effects": ("Paired comparisons", "the effect of a pedestal, tested"),
     "rockfrag.shaketable": ("Shaking tables", "limits, protocols and tables of tests"),
     "rockfrag.assess": (
         "One object at one place",
@@ -175,7 +175,7 @@ def _write(path: Path, text: str) -> None:
 
 
 def _command_line() -> str:
-    from rockfrag.cli import make_parser
+    from rockfrag.cli.main import make_parser
 
     parser = make_parser()
     commands = next(
@@ -259,11 +259,11 @@ def _plain(text: str) -> str:
 
 def _schema_tables() -> str:
     """Every key of every file with what it may hold, from the schema itself."""
-    from rockfrag.schema import read_schema
+    from rockfrag.config.schema import read_schema
 
-    kinds = json.loads((ROOT / "src/rockfrag/schema.json").read_text(encoding="utf-8"))[
-        "$defs"
-    ]
+    kinds = json.loads(
+        (ROOT / "src/rockfrag/config/schema.json").read_text(encoding="utf-8")
+    )["$defs"]
     schemas = {kind: read_schema(kind) for kind in kinds}
     parts = ["", "## All keys, from the schema", ""]
     for name, schema in schemas.items():

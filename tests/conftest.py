@@ -13,7 +13,7 @@ import pytest
 from hypothesis import settings
 
 import rockfrag
-from rockfrag.errors import InputError
+from rockfrag.base.errors import InputError
 from rockfrag.motions import scale_to_pga
 from rockfrag.motions.processing import bandpass
 from rockfrag.records.motion import Motion

@@ -6,7 +6,8 @@ from dataclasses import replace
 from pathlib import Path
 
 from rockfrag.report import campaign_page, measured_page, space_page, study_report
-from rockfrag.stages import campaign, fragility, ida, motions, pedestal, space, tests
+from rockfrag.stages import campaign, fragility, ida, motions, pedestal, tests
+from rockfrag.stages import space_study as space
 from rockfrag.stages.job import Job, Results
 from rockfrag.study.campaign import CampaignStudy
 from rockfrag.study.loading import AnyStudy

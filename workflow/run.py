@@ -14,20 +14,26 @@ from contextlib import redirect_stderr, redirect_stdout
 from importlib.util import find_spec
 from itertools import pairwise
 from pathlib import Path
+from tempfile import TemporaryFile
 
-from rockfrag.errors import InputError
-from rockfrag.stages.log import check_folders, check_memory, in_words
-from rockfrag.yaml_file import read_yaml
+from rockfrag.base.errors import InputError
+from rockfrag.base.yaml_file import read_yaml
+from rockfrag.runtime.memory import check_memory
+from rockfrag.runtime.processes import speak_utf8
+from rockfrag.stages.log import check_folders, in_words
 
 SNAKEFILE = Path(os.path.relpath(Path(__file__).resolve().parent / "Snakefile"))
 
 
 def main(study_file: str, arguments: Sequence[str]) -> int:
     """Run a study; return 0, or the exit status if it could not be run to its end."""
+    if study_file.startswith("-"):
+        # neither our command line nor Snakemake's shall take it for an option
+        study_file = os.path.join(os.curdir, study_file)
     try:
         check_memory()
         # what takes much memory is loaded now that there is some
-        from rockfrag.cli import main as rockfrag
+        from rockfrag.cli.main import main as rockfrag
         from rockfrag.stages.running import results_folder, run_lock
         from rockfrag.study.loading import load_any
     except InputError as error:
@@ -81,9 +87,23 @@ def _is_finished(study_file: str, arguments: Sequence[str]) -> bool:
     return status == 0 and "update pending" not in listed.getvalue()
 
 
+def _see_to_cache() -> None:
+    """Let Snakemake keep copies of sources beside the study where it may not keep them in the user's home."""
+    from snakemake.common import get_appdirs
+
+    kept = Path(get_appdirs().user_cache_dir, "snakemake", "source-cache")
+    try:
+        for folder in (kept, kept / "snakemake-runtime-cache"):
+            folder.mkdir(parents=True, exist_ok=True)
+            TemporaryFile(dir=folder).close()
+    except OSError:
+        os.environ["XDG_CACHE_HOME"] = str(Path(".snakemake", "cache").resolve())
+
+
 def _snakemake(study_file: str, arguments: Sequence[str]) -> int:
     from snakemake.cli import main as snakemake
 
+    _see_to_cache()
     # our own lock knows whether its owner lives, Snakemake's does not; for some ten jobs the best
     # schedule takes longer to find than it saves
     ours = (
@@ -111,4 +131,5 @@ def _snakemake(study_file: str, arguments: Sequence[str]) -> int:
 
 
 if __name__ == "__main__":
+    speak_utf8()
     sys.exit(main(sys.argv[1], sys.argv[2:]))

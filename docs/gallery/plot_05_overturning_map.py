@@ -13,7 +13,7 @@ import numpy as np
 
 from rockfrag import Block, overturns
 from rockfrag.motions import one_sine
-from rockfrag.rocking.closed_forms import one_sine_pulse
+from rockfrag.simulation.closed_forms import one_sine_pulse
 
 # %%
 # The closed form holds for a slender block whose equation of motion is linearised.

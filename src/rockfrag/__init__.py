@@ -18,10 +18,10 @@ motions     filter, scale, rotate, measure; spectra, pulses, synthetic motions
 building    motions of the floors of a building
 system      what is shaken: bodies, contacts, blocks, stacks and columns
 outcomes    what comes out: tables of outcomes, limit states
-rocking     single histories, ensembles, thresholds, rocking spectra
+simulation  single histories, ensembles, thresholds, rocking spectra
 shaketable  what a shaking table can do, and protocols of its tests
 fragility   curves and their intervals, choice of the intensity measure, exports
-pedestal    paired comparison of objects with and without a pedestal
+effects     paired comparison of objects with and without a pedestal
 assess      one object at one place: what ``rockfrag assess`` does
 ==========  ======================================================================
 """
@@ -34,17 +34,16 @@ __version__ = "0.2.0"
 
 _find, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)
 _SUBPACKAGES = (
-    *(
-        "records",
-        "motions",
-        "building",
-        "system",
-        "outcomes",
-        "rocking",
-        "shaketable",
-        "fragility",
-    ),
-    *("pedestal", "assess"),
+    "records",
+    "motions",
+    "building",
+    "system",
+    "outcomes",
+    "simulation",
+    "shaketable",
+    "fragility",
+    "effects",
+    "assess",
 )
 
 

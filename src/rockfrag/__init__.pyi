@@ -1,18 +1,18 @@
 from . import (
     assess as assess,
     building as building,
+    effects as effects,
     fragility as fragility,
     motions as motions,
     outcomes as outcomes,
-    pedestal as pedestal,
     records as records,
-    rocking as rocking,
     shaketable as shaketable,
+    simulation as simulation,
     system as system,
 )
 from .assess.request import read_request as read_request
-from .engines.response import Response as Response
-from .errors import InputError as InputError
+from .outcomes.response import Response as Response
+from .base.errors import InputError as InputError
 from .fragility.estimators import (
     fit_cloud as fit_cloud,
     fit_incremental as fit_incremental,
@@ -20,18 +20,18 @@ from .fragility.estimators import (
 )
 from .fragility.lognormal import fit_lognormal as fit_lognormal
 from .motions.measures import measure_motion as measure_motion
-from .motions.spectra import response_spectrum as response_spectrum
+from .motions.response_spectra import response_spectrum as response_spectrum
 from .outcomes.outcomes import Outcomes as Outcomes
 from .records.motion import GroundMotion as GroundMotion, Motion as Motion
 from .records.read import read_motion as read_motion
 from .records.write import write_motion as write_motion
-from .rocking.ensemble import overturns as overturns
-from .rocking.options import MeasuredRestitution as MeasuredRestitution
-from .rocking.simulation import simulate as simulate
-from .rocking.spectra import rocking_spectrum as rocking_spectrum
-from .rocking.robustness import find_step_size_sensitive as find_step_size_sensitive
-from .rocking.robustness import outcome_robustness as outcome_robustness
-from .rocking.thresholds import (
+from .simulation.ensemble import overturns as overturns
+from .simulation.options import MeasuredRestitution as MeasuredRestitution
+from .simulation.history import simulate as simulate
+from .simulation.rocking_spectra import rocking_spectrum as rocking_spectrum
+from .simulation.robustness import find_step_size_sensitive as find_step_size_sensitive
+from .simulation.robustness import outcome_robustness as outcome_robustness
+from .simulation.thresholds import (
     Thresholds as Thresholds,
     find_thresholds as find_thresholds,
     worst_direction as worst_direction,

@@ -64,6 +64,9 @@ class LogHandler(LogHandlerBase):
             self.report = Path(about["report"])
         elif str(record.msg).startswith("Nothing to be done"):
             _say(f"Nothing to do; the report is {self.report}")
+        elif str(record.msg).startswith("Terminating processes on user request"):
+            self.failed = True
+            _say("stopped; the same command takes it up again")
         elif str(record.msg).startswith("RuleException"):
             self.failed = True
         elif record.levelno >= logging.ERROR and not self.failed:

@@ -13,7 +13,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from rockfrag.cli import main
+from rockfrag.cli.main import main
 
 from ..case_tables import case_tables
 

@@ -22,9 +22,9 @@ from rockfrag.assess.request import Records, make_request, read_request
 from rockfrag.assess.risk import Estimate, Evidence, fraction_target, step_of
 from rockfrag.assess.sources import is_wide, narrowed
 from rockfrag.assess.words import estimate_words, five_lines, says
+from rockfrag.base.errors import InputError
 from rockfrag.building.response import find_modes
-from rockfrag.cli import main
-from rockfrag.errors import InputError
+from rockfrag.cli.main import main
 from rockfrag.outcomes.limit_states import _STATES, limit_state
 
 from ..case_tables import case_tables

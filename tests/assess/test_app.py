@@ -13,13 +13,13 @@ import pytest
 from rockfrag.assess.answer import Assessment, assess_with
 from rockfrag.assess.app.contents import computing, script
 from rockfrag.assess.app.writing import page_of, texts
-from rockfrag.assess.commands import form_of
 from rockfrag.assess.motions import MotionSet
 from rockfrag.assess.request import make_request
 from rockfrag.assess.words import five_lines
-from rockfrag.cli import main
-from rockfrag.errors import InputError
-from rockfrag.rocking.browser import driver_text
+from rockfrag.base.errors import InputError
+from rockfrag.cli.assess_commands import form_of
+from rockfrag.cli.main import main
+from rockfrag.web import driver_text
 
 from ..app_forms import settings_of, some_form
 from ..case_tables import case_tables

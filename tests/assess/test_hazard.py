@@ -7,7 +7,7 @@ import pytest
 
 from rockfrag.assess import read_hazard
 from rockfrag.assess.hazard.curve import PGA, PGV, curve_of_one_level, read_measure
-from rockfrag.errors import InputError
+from rockfrag.base.errors import InputError
 from rockfrag.motions.intensity import intensity_measures
 
 from ..case_tables import case_tables

@@ -10,8 +10,8 @@ from rockfrag.assess.answer import assess_with
 from rockfrag.assess.export import as_json
 from rockfrag.assess.request import make_request
 from rockfrag.assess.words import five_lines
+from rockfrag.base.errors import InputError
 from rockfrag.engines.spatial import run_in_space
-from rockfrag.errors import InputError
 from rockfrag.records.motion import GroundMotion
 from rockfrag.system import Block
 from rockfrag.system.mesh import read_shape

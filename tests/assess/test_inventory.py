@@ -11,8 +11,8 @@ from rockfrag.assess.inventory import assess_inventory, inventory_table, joint_l
 from rockfrag.assess.mitigations import mitigations_of, on_plate, with_ballast
 from rockfrag.assess.motions import motion_set
 from rockfrag.assess.outcomes import make_intensity_levels
-from rockfrag.cli import main
-from rockfrag.errors import InputError
+from rockfrag.base.errors import InputError
+from rockfrag.cli.main import main
 from rockfrag.system.blocks import Block
 
 from ..case_tables import case_tables

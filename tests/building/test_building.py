@@ -9,6 +9,7 @@ import yaml
 from scipy.interpolate import CubicSpline
 from scipy.linalg import eigh, expm
 
+from rockfrag.base.errors import InputError
 from rockfrag.building.floors import floor_motions, judge_drift, respond
 from rockfrag.building.inelastic import (
     FORCE,
@@ -20,7 +21,6 @@ from rockfrag.building.inelastic import (
 )
 from rockfrag.building.response import BuildingResponse, find_modes, respond_elastically
 from rockfrag.building.settings import make_building
-from rockfrag.errors import InputError
 
 from ..case_tables import case_tables
 from ..conftest import shaking

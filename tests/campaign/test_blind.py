@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 from scipy import stats
 
+from rockfrag.base.errors import InputError
 from rockfrag.campaign.comparison import MeasuredTests
 from rockfrag.campaign.standing import LEAST_ANGLE_DEG, unknowns_of, ways_to_stand
-from rockfrag.errors import InputError
 from rockfrag.fragility.model_error import CUT, MODEL_ERRORS, SCAN
 from rockfrag.stages.model_error import BlindAnswer, blind_answer, main, model_error
 from rockfrag.system.blocks import Block

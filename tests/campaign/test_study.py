@@ -8,11 +8,11 @@ import pandas as pd
 import pytest
 import yaml
 
+from rockfrag.base.errors import InputError
 from rockfrag.campaign.comparison import MeasuredTests
 from rockfrag.campaign.standing import sample_trials, simulate_tests
-from rockfrag.errors import InputError
 from rockfrag.report.campaign_page import says
-from rockfrag.rocking import overturns
+from rockfrag.simulation import overturns
 from rockfrag.stages.campaign import campaign_with_motions, standing_object
 from rockfrag.study.campaign import CampaignStudy
 from rockfrag.study.loading import load_any

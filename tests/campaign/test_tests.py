@@ -6,14 +6,14 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from rockfrag.base.errors import InputError
+from rockfrag.base.units import GRAVITY
 from rockfrag.campaign.comparison import REPEATS, majority_of_repeats
 from rockfrag.campaign.laboratory import read_campaign, table_motions
-from rockfrag.errors import InputError
 from rockfrag.motions.processing import process
 from rockfrag.motions.pulses import commanded_cosine
 from rockfrag.report.campaign_page import _findings
 from rockfrag.study.loading import load_any
-from rockfrag.units import GRAVITY
 
 COLUMNS = {"test": "test", "motion": "motion", "group": "input", "overturned": "fell"}
 BRACKETED = {"test": "test", "motion": "motion", "lower_g": "low", "upper_g": "high"}

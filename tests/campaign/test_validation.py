@@ -4,6 +4,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from rockfrag.base.errors import InputError
 from rockfrag.campaign.comparison import (
     MeasuredTests,
     best_threshold,
@@ -13,7 +14,6 @@ from rockfrag.campaign.comparison import (
 )
 from rockfrag.campaign.laboratory import check_peaks, measured_peaks
 from rockfrag.campaign.standing import preferred_edges
-from rockfrag.errors import InputError
 from rockfrag.records.motion import Motion
 
 RNG = np.random.default_rng(11)

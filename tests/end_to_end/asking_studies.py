@@ -11,7 +11,7 @@ import numpy as np
 import pandas as pd
 import yaml
 
-from rockfrag.errors import LONGEST_MESSAGE, InputError
+from rockfrag.base.errors import LONGEST_MESSAGE, InputError
 from rockfrag.report.part import Results
 from rockfrag.study.loading import load_any
 

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 from lxml import html
 
-from rockfrag.files import file_name
+from rockfrag.base.files import file_name
 from rockfrag.report.answer import study_answer
 from rockfrag.report.part import Results
 from rockfrag.study.loading import load_any

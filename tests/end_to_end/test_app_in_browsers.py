@@ -11,7 +11,7 @@ from rockfrag.assess.answer import assess_with
 from rockfrag.assess.app.writing import write_app
 from rockfrag.assess.request import make_request, read_request
 from rockfrag.assess.words import five_lines
-from rockfrag.cli import main
+from rockfrag.cli.main import main
 
 from ..app_forms import options_of, settings_of, some_form
 from ..case_tables import case_tables

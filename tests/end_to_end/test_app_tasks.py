@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from rockfrag.cli import main
+from rockfrag.cli.main import main
 
 from .browsers import (
     ANSWERED,

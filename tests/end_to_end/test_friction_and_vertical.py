@@ -7,10 +7,10 @@ import pandas as pd
 import pytest
 
 from rockfrag import Block, overturns, simulate
-from rockfrag.engines.response import Response
+from rockfrag.base.units import GRAVITY
+from rockfrag.outcomes.response import Response
 from rockfrag.records.motion import read_motion_set
-from rockfrag.rocking.ensemble import LIGHT, LightBodies
-from rockfrag.units import GRAVITY
+from rockfrag.simulation.ensemble import LIGHT, LightBodies
 
 from .checked_report import run_and_check
 from .studies import Foreign, alone

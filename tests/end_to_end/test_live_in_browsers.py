@@ -7,7 +7,7 @@ import pytest
 
 from rockfrag import Block
 from rockfrag.records.motion import GroundMotion, Motion
-from rockfrag.report.live.space import AMPLITUDES_G, Standing, live_in_space
+from rockfrag.report.live.live_space import AMPLITUDES_G, Standing, live_in_space
 from rockfrag.report.page import Page
 from rockfrag.report.part import Answer
 from rockfrag.system.system import turned_about_vertical

@@ -21,14 +21,14 @@ from rockfrag import (
     rocking_spectrum,
     simulate,
 )
+from rockfrag.base.errors import InputError
 from rockfrag.engines import contract
 from rockfrag.engines.contract import Request
-from rockfrag.errors import InputError
 from rockfrag.outcomes.limit_states import limit_state, limit_state_named
 from rockfrag.outcomes.outcomes import empty_outcomes
 from rockfrag.records.motion import GroundMotion, Motion
-from rockfrag.rocking.options import system_of
-from rockfrag.rocking.parquet import stream_histories, stream_overturns
+from rockfrag.simulation.options import system_of
+from rockfrag.simulation.parquet import stream_histories, stream_overturns
 
 BLOCK = Block(0.3, 1.0, 50.0)
 STACK = Stack(Block(0.5, 0.3, 50.0), BLOCK)
@@ -107,7 +107,7 @@ CONFLICTS = ("cannot be had together with", "is beyond every engine")
 CASES = [(), *((option,) for option in OPTIONS), *itertools.combinations(OPTIONS, 2)]
 
 
-@pytest.mark.filterwarnings("ignore::rockfrag.rocking.ensemble.LightBodies")
+@pytest.mark.filterwarnings("ignore::rockfrag.simulation.ensemble.LightBodies")
 @pytest.mark.parametrize("kind", list(BODIES))
 @pytest.mark.parametrize("door", DOORS, ids=lambda door: door.__name__)
 def test_every_pair_of_options_works_or_is_refused_in_one_sentence(

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from rockfrag import Block, Stack, overturns, simulate
-from rockfrag.rocking.ensemble import LightBodies
+from rockfrag.simulation.ensemble import LightBodies
 
 T = np.arange(0, 4, 0.01)
 SHAKE = 4 * np.sin(2 * np.pi * 1.5 * T) * np.sin(np.pi * T / 4)

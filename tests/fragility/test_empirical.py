@@ -4,7 +4,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from rockfrag.errors import InputError
+from rockfrag.base.errors import InputError
 from rockfrag.fragility.counted import count_ida
 from rockfrag.fragility.empirical import (
     TableIda,

@@ -5,7 +5,7 @@ import pandas as pd
 import pytest
 from scipy import optimize, stats
 
-from rockfrag.errors import InputError
+from rockfrag.base.errors import InputError
 from rockfrag.fragility.censored import brackets_from_table, fit_brackets
 from rockfrag.fragility.estimators import (
     fit_cloud,

@@ -10,7 +10,7 @@ import pandas as pd
 import pytest
 from scipy import stats
 
-from rockfrag.errors import InputError
+from rockfrag.base.errors import InputError
 from rockfrag.fragility.exports import write_nrml, write_simcenter
 from rockfrag.fragility.ida_curves import (
     fragility_table,

@@ -7,7 +7,7 @@ import pandas as pd
 import pytest
 from scipy import stats
 
-from rockfrag.errors import InputError
+from rockfrag.base.errors import InputError
 from rockfrag.fragility.checks import goodness_of_fit
 from rockfrag.fragility.empirical import TableIda
 from rockfrag.fragility.estimators import fragility_of

@@ -5,7 +5,7 @@ import pandas as pd
 import pytest
 import statsmodels.api as sm
 
-from rockfrag.errors import InputError
+from rockfrag.base.errors import InputError
 from rockfrag.fragility.batch_glm import fit_batch
 from rockfrag.fragility.estimators import fragility_of
 from rockfrag.fragility.lognormal import fit_lognormal

@@ -6,7 +6,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from rockfrag.errors import InputError
+from rockfrag.base.errors import InputError
 from rockfrag.fragility.tests_file import read_tests
 from rockfrag.fragility.user_table import fit_user_table
 

@@ -27,8 +27,8 @@ from dataclasses import dataclass, field
 from functools import cache
 from pathlib import Path
 
-from rockfrag.errors import LONGEST_MESSAGE, InputError
-from rockfrag.processes import in_processes
+from rockfrag.base.errors import LONGEST_MESSAGE, InputError
+from rockfrag.runtime.processes import in_processes
 
 from . import inputs
 from .damage import Attempt

@@ -14,7 +14,7 @@ from rockfrag import Block, Stack, overturns, simulate
 from rockfrag.assess.hazard.curve import read_hazard
 from rockfrag.assess.inventory import read_inventory
 from rockfrag.assess.request import read_request
-from rockfrag.errors import InputError
+from rockfrag.base.errors import InputError
 from rockfrag.fragility.tests_file import read_tests
 from rockfrag.records.catalogue import read_catalogue
 from rockfrag.shaketable.tests_table import read_measured

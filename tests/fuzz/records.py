@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 from obspy import Stream, Trace, UTCDateTime
 
-from rockfrag.errors import InputError
+from rockfrag.base.errors import InputError
 from rockfrag.records.catalogue import load_motions
 from rockfrag.records.make_catalogue import make_catalogue
 from rockfrag.records.read import motion_of, read_record

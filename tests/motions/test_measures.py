@@ -11,11 +11,11 @@ from hypothesis import strategies as st
 from scipy.interpolate import PPoly, make_interp_spline
 
 from rockfrag import motions as m
-from rockfrag.errors import InputError
+from rockfrag.base.errors import InputError
+from rockfrag.base.units import GRAVITY as G
 from rockfrag.motions import intensity, processing
 from rockfrag.motions.intensity import housner_and_average
 from rockfrag.records.motion import Motion, integrate, peak_displacement, peak_velocity
-from rockfrag.units import GRAVITY as G
 
 COLUMNS = [
     *(

@@ -8,10 +8,10 @@ import pytest
 from scipy.signal import butter, sosfilt
 
 from rockfrag import motions as m
-from rockfrag.errors import InputError
+from rockfrag.base.errors import InputError
+from rockfrag.base.units import GRAVITY as G
 from rockfrag.motions import intensity, processing
 from rockfrag.records.motion import Motion, read_motion_set, write_motion_set
-from rockfrag.units import GRAVITY as G
 
 from ..case_tables import case_tables
 

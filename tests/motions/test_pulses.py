@@ -10,9 +10,10 @@ from scipy.optimize import minimize_scalar
 from scipy.signal import correlate
 
 from rockfrag import motions as m
-from rockfrag.errors import InputError
-from rockfrag.motions import processing, spectra
+from rockfrag.base.errors import InputError
+from rockfrag.motions import processing
 from rockfrag.motions import pulse_extraction as searched
+from rockfrag.motions import response_spectra as spectra
 from rockfrag.records.motion import Motion, integrate
 
 DT = 0.002

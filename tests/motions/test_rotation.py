@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from obspy.signal.rotate import rotate_ne_rt
 
-from rockfrag.errors import InputError
+from rockfrag.base.errors import InputError
 from rockfrag.motions import pga, pgv, rotate, rotd
 from rockfrag.motions.directions import turned
 from rockfrag.motions.intensity import spectral_acceleration

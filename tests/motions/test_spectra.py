@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from scipy.signal import StateSpace, lsim
 
 from rockfrag import motions as m
-from rockfrag.errors import InputError
+from rockfrag.base.errors import InputError
 from rockfrag.motions import (
     half_sine,
     intensity,
@@ -25,7 +25,7 @@ from rockfrag.motions.intensity import (
     pgd,
 )
 from rockfrag.motions.processing import interpolate
-from rockfrag.motions.spectra import (
+from rockfrag.motions.response_spectra import (
     fourier_amplitude,
     oscillator_response,
     peak_displacements,

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from rockfrag import motions as m
-from rockfrag.errors import InputError
+from rockfrag.base.errors import InputError
+from rockfrag.base.units import GRAVITY as G
 from rockfrag.motions import intensity
 from rockfrag.records.motion import integrate
-from rockfrag.units import GRAVITY as G
 
 MODEL = {
     "arias_m_s": 1.2,

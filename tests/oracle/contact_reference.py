@@ -15,8 +15,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from rockfrag.base.units import GRAVITY
 from rockfrag.system import System, as_system
-from rockfrag.units import GRAVITY
 
 from .integrator import SLACK, Array, Integrator, Key
 from .standing import standing, turn

@@ -7,7 +7,7 @@ import math
 
 import numpy as np
 
-from rockfrag.units import GRAVITY
+from rockfrag.base.units import GRAVITY
 
 from .integrator import SLACK, Array, Integrator, Key
 from .rocking_model import NEGLIGIBLE_SPEED, LinearModel, Model, State, pivots, rates

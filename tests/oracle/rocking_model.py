@@ -23,7 +23,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import brentq
 
-from rockfrag.rocking.options import MeasuredRestitution
+from rockfrag.simulation.options import MeasuredRestitution
 from rockfrag.system import as_system
 
 from .standing import standing

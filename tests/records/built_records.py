@@ -141,6 +141,11 @@ def numbers(
     return found
 
 
+def largest(samples: Samples) -> float:
+    """The sample of the largest size, as headers state it."""
+    return float(samples[np.abs(samples).argmax()])
+
+
 _TEMPLATES = Environment(
     loader=DictLoader(
         {**PARTS, **{kind: about["text"] for kind, about in RECORDS.items()}}
@@ -154,6 +159,7 @@ _TEMPLATES.globals |= {
     "rows": rows,
     "lines": lines,
     "numbers": numbers,
+    "largest": largest,
     "zip": zip,
 }
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from obspy import Stream, Trace
 
-from rockfrag.errors import InputError
+from rockfrag.base.errors import InputError
 from rockfrag.records.formats import obspy_native
 from rockfrag.records.parsing.text_file import NotAcceleration
 from rockfrag.records.read import read_motion, read_record

@@ -15,7 +15,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from obspy import Stream, Trace
 
-from rockfrag.errors import InputError
+from rockfrag.base.errors import InputError
 from rockfrag.records.parsing.text_file import NotAcceleration
 from rockfrag.records.read import FORMATS, read_motion, read_record
 

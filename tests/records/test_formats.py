@@ -9,7 +9,7 @@ import obspy
 import pytest
 from obspy.core.util.base import ENTRY_POINTS, buffered_load_entry_point
 
-from rockfrag.errors import InputError
+from rockfrag.base.errors import InputError
 from rockfrag.records.parsing.quantities import TO_SI
 from rockfrag.records.read import FORMATS, read_motion, read_record
 

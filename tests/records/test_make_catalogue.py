@@ -6,8 +6,8 @@ import re
 import numpy as np
 import pytest
 
-from rockfrag.cli import main
-from rockfrag.errors import InputError
+from rockfrag.base.errors import InputError
+from rockfrag.cli.main import main
 from rockfrag.records.catalogue import load_motions, read_catalogue, repeated_motions
 from rockfrag.records.make_catalogue import make_catalogue, read_search_results
 from rockfrag.records.parsing.quantities import azimuth_of, is_vertical

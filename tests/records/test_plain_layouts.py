@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 from obspy import Stream, Trace
 
-from rockfrag.errors import InputError
+from rockfrag.base.errors import InputError
+from rockfrag.base.units import GRAVITY
 from rockfrag.records.parsing.quantities import TO_SI
 from rockfrag.records.parsing.text_file import NotAcceleration
 from rockfrag.records.read import read_motion, read_record
-from rockfrag.units import GRAVITY
 
 from ..case_tables import case_tables
 from .built_records import lines

@@ -8,14 +8,14 @@ import pytest
 from obspy import Stream, Trace, UTCDateTime
 from obspy.core.inventory.response import PolesZerosResponseStage
 
-from rockfrag.cli import main
-from rockfrag.errors import InputError
+from rockfrag.base.errors import InputError
+from rockfrag.base.units import GRAVITY
+from rockfrag.cli.main import main
 from rockfrag.records.motion import Motion, write_motion_set
 from rockfrag.records.parsing.quantities import canonical_unit
 from rockfrag.records.quality_flags import quality_flags
 from rockfrag.records.read import read_motion
 from rockfrag.records.write import motions_of_study, write_motion, write_motions
-from rockfrag.units import GRAVITY
 
 from .built_records import CMB, build, inventory_of_cmb
 

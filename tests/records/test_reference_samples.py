@@ -5,7 +5,8 @@ import obspy
 import pytest
 from obspy import UTCDateTime
 
-from rockfrag.errors import InputError
+from rockfrag.base.errors import InputError
+from rockfrag.base.units import GRAVITY
 from rockfrag.records.parsing.text_file import NotAcceleration
 from rockfrag.records.read import (
     FORMATS,
@@ -14,7 +15,6 @@ from rockfrag.records.read import (
     read_motion,
     read_record,
 )
-from rockfrag.units import GRAVITY
 
 from ..case_tables import case_tables
 

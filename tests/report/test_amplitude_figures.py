@@ -8,7 +8,7 @@ import pytest
 from matplotlib.axes import Axes
 from matplotlib.path import Path as Outline
 
-from rockfrag.figure_style import figure_style, new_figure, save_figure
+from rockfrag.base.figure_style import figure_style, new_figure, save_figure
 from rockfrag.report.figures import amplitudes_by, pedestal_scatter
 from rockfrag.report.sections.amplitudes import outcome_map
 from rockfrag.report.sections.curves import fragility_figure

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from rockfrag import Block, Column, Stack, overturns, simulate
-from rockfrag.errors import InputError
+from rockfrag.base.errors import InputError
 from rockfrag.records.motion import GroundMotion, Motion
 from rockfrag.report.live import (
     MOST_SAMPLES,
@@ -20,10 +20,10 @@ from rockfrag.report.live import (
     outlines,
     swept,
 )
-from rockfrag.report.live.space import Standing, live_in_space
+from rockfrag.report.live.live_space import Standing, live_in_space
 from rockfrag.report.play_page import MOST_SAMPLES as MOST_PLAYED
 from rockfrag.report.play_page import write_play_page
-from rockfrag.rocking.options import system_of
+from rockfrag.simulation.options import system_of
 from rockfrag.system.system import turned_about_vertical
 
 from ..conftest import wave as motion

@@ -1,6 +1,7 @@
 """The page: self-contained, escaped, short until it is opened, and with its terms explained."""
 
 import math
+import os
 import re
 import shutil
 from pathlib import Path
@@ -9,8 +10,8 @@ import pandas as pd
 import pytest
 from matplotlib.figure import Figure
 
-from rockfrag.errors import InputError
-from rockfrag.figure_style import figure_style, new_figure
+from rockfrag.base.errors import InputError
+from rockfrag.base.figure_style import figure_style, new_figure
 from rockfrag.report import pdf
 from rockfrag.report.page import (
     MOST_TABLE_ROWS,
@@ -119,3 +120,26 @@ def test_without_a_page_or_a_browser_one_sentence_says_what_to_do(
     monkeypatch.setattr(pdf, "BROWSERS", ())
     with pytest.raises(InputError, match="in any browser and print it"):
         pdf.print_page(file)
+
+
+@pytest.mark.skipif(os.name != "posix", reason="a program that is a script")
+@pytest.mark.parametrize(
+    "does", ["sleep 30", "exit 3", "for last; do :; done; exit 0", "kill -9 $$"]
+)
+def test_a_browser_that_hangs_or_fails_is_one_sentence(tmp_path, monkeypatch, does):
+    (tmp_path / "browser").write_text(f"#!/bin/sh\n{does}\n")
+    (tmp_path / "browser").chmod(0o755)
+    (tmp_path / "report.html").write_text("words")
+    monkeypatch.setattr(pdf, "BROWSERS", ("browser",))
+    monkeypatch.setattr(pdf, "_PATIENCE", 0.2)
+    monkeypatch.setenv("PATH", str(tmp_path), prepend=os.pathsep)
+    with pytest.raises(InputError, match="did not print"):
+        pdf.print_page(tmp_path / "report.html")
+    assert not (tmp_path / "report.pdf").exists()
+
+
+@pytest.mark.parametrize("named", ["base-uri 'none'", "form-action 'none'"])
+def test_a_report_sends_no_form_and_has_no_other_base(named: str):
+    policy = re.search(r'Content-Security-Policy" content="([^"]*)"', page("words"))
+    assert policy is not None
+    assert named in policy[1].split("; ")

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from rockfrag.errors import InputError
+from rockfrag.base.errors import InputError
 from rockfrag.records.motion import Motion
 from rockfrag.report.record_info import (
     COLUMNS,

@@ -8,10 +8,10 @@ from pathlib import Path
 import pandas as pd
 import pytest
 
-from rockfrag import sentences
 from rockfrag.report.page import cell
 from rockfrag.report.part import Finding, Says, Section
 from rockfrag.stages.fragility import best_of
+from rockfrag.words import sentences
 
 from ..case_tables import case_tables
 
@@ -37,7 +37,7 @@ SPEAKING = (
     "report",
     "assess",
     "survival",
-    "pedestal",
+    "effects",
     "fragility",
     "campaign",
     "stages",

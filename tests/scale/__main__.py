@@ -21,7 +21,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from rockfrag.files import write_table
+from rockfrag.base.files import write_table
 from rockfrag.motions.synthetic import evolutionary
 from rockfrag.records.motion import Motion
 from rockfrag.study.study import Amplitudes

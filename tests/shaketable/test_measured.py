@@ -6,7 +6,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from rockfrag.errors import InputError
+from rockfrag.base.errors import InputError
 from rockfrag.shaketable.definitions import tests_from_ida as read_ida
 from rockfrag.shaketable.protocols import GeometricSteps, Protocol
 from rockfrag.shaketable.tests_table import COLUMNS, read_measured

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from rockfrag.errors import InputError
+from rockfrag.base.errors import InputError
 from rockfrag.shaketable.definitions import (
     DEFINITIONS,
     always_overturning,

@@ -4,9 +4,8 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from rockfrag.errors import InputError
+from rockfrag.base.errors import InputError
 from rockfrag.records.motion import Motion, integrate
-from rockfrag.rocking import overturns
 from rockfrag.shaketable.definitions import tests_from_ida as read_ida
 from rockfrag.shaketable.protocols import GeometricSteps, Protocol
 from rockfrag.shaketable.shaker import (
@@ -16,6 +15,7 @@ from rockfrag.shaketable.shaker import (
     required_corner,
     shaker_table,
 )
+from rockfrag.simulation import overturns
 from rockfrag.system.blocks import Block
 
 from .conftest import ida_table

@@ -8,10 +8,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from rockfrag.errors import InputError
+from rockfrag.base.errors import InputError
 from rockfrag.report.space_page import _live
-from rockfrag.stages import space as stage
-from rockfrag.stages.space import PLANAR, median
+from rockfrag.stages import space_study as stage
+from rockfrag.stages.space_study import PLANAR, median
 from rockfrag.study.loading import any_study
 from rockfrag.study.space import SpaceStudy
 

@@ -14,8 +14,8 @@ import pytest
 from scipy import special
 
 from rockfrag.assess.hazard.curve import PGA, PGV, HazardCurve
-from rockfrag.cli import main
-from rockfrag.errors import InputError
+from rockfrag.base.errors import InputError
+from rockfrag.cli.main import main
 from rockfrag.survival.reweight import SAMPLES, Reweighted, constrain, reweight, scaled
 from rockfrag.survival.site import (
     Age,

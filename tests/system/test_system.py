@@ -9,15 +9,15 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from rockfrag import Block, Stack, simulate
+from rockfrag.base.units import GRAVITY as G
 from rockfrag.system import geometry
 from rockfrag.system.blocks import Column
 from rockfrag.system.body import Circle, Interval, Polygon, RigidBody
 from rockfrag.system.contact import Friction, checked_friction
 from rockfrag.system.system import each_contact, uplift_ratios
-from rockfrag.units import GRAVITY as G
 
 from ..oracle.standing import upper_on_contact
-from ..rocking.reference_bodies import T2, P
+from ..simulation.reference_bodies import T2, P
 
 SIZES = st.floats(0.05, 3.0)
 

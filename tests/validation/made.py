@@ -6,8 +6,8 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from rockfrag.files import write_text
-from rockfrag.lock import locked
+from rockfrag.base.files import write_text
+from rockfrag.runtime.lock import locked
 
 
 def drawn(rng, law, size):

@@ -12,18 +12,18 @@ import pandas as pd
 import pytest
 from scipy import stats
 
-from rockfrag.pedestal.cluster_means import (
+from rockfrag.effects.cluster_means import (
     equivalence,
     holm,
     mean_effect,
     t_estimate,
     tied_resolution,
 )
-from rockfrag.pedestal.paired_tests import pair_tests
+from rockfrag.effects.paired_tests import pair_tests
 from rockfrag_thesis.hypotheses.contrasts import contrast, power_of_t, slope_effect
 
 from ..case_tables import case_tables
-from ..pedestal.conftest import SLENDERNESS, synthetic_tests
+from ..effects.conftest import SLENDERNESS, synthetic_tests
 from .made import document, drawn, pairs_of
 
 SEED = 20261121

@@ -12,21 +12,21 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from rockfrag.base.errors import InputError
+from rockfrag.base.files import check_name
+from rockfrag.base.yaml_file import read_yaml
 from rockfrag.building.floors import vertical_motions
 from rockfrag.building.settings import make_building
-from rockfrag.cli import main
-from rockfrag.errors import InputError
-from rockfrag.files import check_name
+from rockfrag.cli.main import main
+from rockfrag.config.schema import registered
 from rockfrag.fragility.ida_curves import scale_power
 from rockfrag.motions.directions import motions_of_row
 from rockfrag.motions.measures import measure_motion
 from rockfrag.records.catalogue import read_catalogue
 from rockfrag.records.motion import Motion
-from rockfrag.schema import registered
 from rockfrag.study.configurations import read_specimens
 from rockfrag.study.loading import any_study, load_any
 from rockfrag.system.contact import BY_MOMENTUM, ImpactLaw
-from rockfrag.yaml_file import read_yaml
 
 from ..case_tables import case_tables
 from .conftest import (

@@ -14,9 +14,9 @@ from pathlib import Path
 import psutil
 import pytest
 
-from rockfrag import lock
-from rockfrag.errors import InputError
-from rockfrag.processes import in_processes
+from rockfrag.base.errors import InputError
+from rockfrag.runtime import lock
+from rockfrag.runtime.processes import in_processes
 from rockfrag.stages.log import check_folders, in_words, last_finding, logged
 from rockfrag.stages.running import RUN, run_lock, same_numbers
 
@@ -96,7 +96,7 @@ def test_a_lock_that_another_process_holds_is_waited_for_no_longer_than_was_said
 
 
 JOB = (
-    "import os, time\nfrom rockfrag.processes import end_with\n"
+    "import os, time\nfrom rockfrag.runtime.processes import end_with\n"
     f"end_with(int(os.environ[{RUN!r}]))\nprint('there', flush=True)\ntime.sleep(60)"
 )
 
@@ -122,7 +122,7 @@ def test_a_job_whose_shell_was_killed_ends():
 
 
 POOL = (
-    "import time\nfrom rockfrag.processes import in_processes\n"
+    "import time\nfrom rockfrag.runtime.processes import in_processes\n"
     "print('there', flush=True)\nin_processes(lambda _: time.sleep(60), range(4), 3)"
 )
 

@@ -6,13 +6,14 @@ import re
 import signal
 import subprocess
 import sys
+import time
 from pathlib import Path
 
 import pandas as pd
 import pytest
 import yaml
 
-from rockfrag.cli import main
+from rockfrag.cli.main import main
 from rockfrag.stages.running import same_numbers
 from rockfrag.study.loading import load_any
 
@@ -209,6 +210,60 @@ def test_a_synthetic_table_runs_from_csv_to_report(tmp_path: Path):
     assert (
         results / "figures" / "two_measures_measured_pga_g_pgv_cm_s.png"
     ).stat().st_size > 1000
+
+
+def test_a_home_that_may_not_be_written_is_none_of_a_study_s_concern(tmp_path: Path):
+    write_synthetic(tmp_path)
+    write_example(tmp_path, "synthetic.csv", replicates=20)
+    run = (*LAUNCHER, "study.yaml", "--cores", "1", "--logger", "rockfrag")
+    # nobody makes folders there, whatever the permissions
+    nowhere = {"HOME": "/proc/nothing", "XDG_CACHE_HOME": "/proc/nothing/cache"}
+    done = finished(called(tmp_path, *run, env=os.environ | nowhere))
+    assert "Traceback" not in done.stderr
+    assert (tmp_path / "results" / "measured-example" / "report.html").is_file()
+
+
+def test_names_are_read_in_whatever_language_the_machine_speaks(tmp_path: Path):
+    folder = tmp_path / "Köln 像"
+    folder.mkdir()
+    write_synthetic(folder)
+    write_example(folder, "synthetic.csv", replicates=20)
+    plain = {"LC_ALL": "C", "PYTHONUTF8": "0"}
+    said = called(
+        tmp_path,
+        *(*LAUNCHER, f"{folder.name}/study.yaml", "--cores", "1"),
+        *("--logger", "rockfrag"),
+        env=os.environ | plain,
+    )
+    finished(said)
+    assert "Traceback" not in said.stderr and "Error" not in said.stderr
+    command = (sys.executable, "-m", "rockfrag.cli.main", "check-config")
+    checked = called(folder, *command, "study.yaml", env=os.environ | plain)
+    assert checked.returncode == 0
+
+
+def test_a_run_that_is_interrupted_says_that_it_can_be_taken_up_again(
+    study_folder: Path,
+):
+    run = subprocess.Popen(
+        (*LAUNCHER, "study.yaml", "--cores", "2", "--logger", "rockfrag"),
+        cwd=study_folder,
+        stderr=subprocess.PIPE,
+        text=True,
+        # as a terminal's key does, the signal goes to the jobs too
+        start_new_session=True,
+    )
+    log = study_folder / "results" / "tiny" / "logs" / "motions.log"
+    try:
+        while not log.exists() and run.poll() is None:
+            time.sleep(0.05)
+        os.killpg(run.pid, signal.SIGINT)
+        _, said = run.communicate(timeout=600)
+    finally:
+        run.kill()
+    assert run.returncode == 1
+    assert "the same command takes it up again" in said
+    assert "Traceback" not in said
 
 
 MODULE = Path(__file__).with_name("module.smk").read_text()

@@ -7,7 +7,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from rockfrag.cli import main
+from rockfrag.cli.main import main
 from rockfrag.stages import motions
 from rockfrag.study.loading import load_any
 

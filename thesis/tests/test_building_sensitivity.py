@@ -8,7 +8,7 @@ import pandas as pd
 import pytest
 import yaml
 
-from rockfrag.errors import InputError
+from rockfrag.base.errors import InputError
 from rockfrag.records.motion import Motion
 from rockfrag.shaketable.protocols import GeometricSteps, Protocol
 from rockfrag.study.configurations import configuration_of, each_alone

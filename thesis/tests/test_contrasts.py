@@ -4,8 +4,8 @@ import math
 
 import pytest
 
-from rockfrag.pedestal.cluster_means import detectable_ratio, mean_effect, t_estimate
-from rockfrag.pedestal.paired_tests import pair_tests
+from rockfrag.effects.cluster_means import detectable_ratio, mean_effect, t_estimate
+from rockfrag.effects.paired_tests import pair_tests
 from rockfrag_thesis.hypotheses.contrasts import (
     contrast,
     power_note,

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from rockfrag.errors import InputError
+from rockfrag.base.errors import InputError
 from rockfrag_thesis.floor_order import HYPOTHESES, floor_margins
 from rockfrag_thesis.hypotheses.floors import FLOORS
 from rockfrag_thesis.sections.building import floor_amplitudes

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from rockfrag.errors import InputError
+from rockfrag.base.errors import InputError
 from rockfrag.study.configurations import read_specimens
 from rockfrag.study.loading import load_any
 from rockfrag.system.blocks import Block, Stack

@@ -9,11 +9,11 @@ import pandas as pd
 import pytest
 
 from rockfrag import overturns
-from rockfrag.errors import InputError
+from rockfrag.base.errors import InputError
 from rockfrag.motions.processing import factors_to_pga
 from rockfrag.records.motion import Motion
-from rockfrag.rocking.options import system_of
 from rockfrag.shaketable.protocols import GeometricSteps, Protocol
+from rockfrag.simulation.options import system_of
 from rockfrag.system.blocks import Block, Stack
 from rockfrag_thesis.sections.sensitivity_analysis import (
     FACTORS,
@@ -46,7 +46,7 @@ from rockfrag_thesis.sensitivity_analysis.simulated import (
     perturbed_cases,
 )
 from rockfrag_thesis.standing import SIZES, standing_definitions
-from tests.rocking.reference_bodies import polyline
+from tests.simulation.reference_bodies import polyline
 
 TOWER = Block(0.124, 0.496, 2.79)
 STACK = Stack(Block(0.184, 0.208, 2.3), TOWER)

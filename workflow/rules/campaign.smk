@@ -8,8 +8,6 @@ TABLES = (
 
 rule campaign:
     """Simulate every test with many guesses of what was not measured, and compare the outcomes."""
-    input:
-        STUDY.files,
     output:
         table(*TABLES),
     log:
@@ -22,11 +20,12 @@ rule campaign:
         runtime=120,
     params:
         stage="rockfrag.stages.campaign:run",
-        study=STUDY_FILE,
+        study=study_file,
         settings=settings(
             *("seed", "fetch", "campaign", "object", "conditioning"),
             *("varied_conditioning", "unknowns", "trials", "folds", "repeats"),
             "confidence",
+            files=STUDY.files,
         ),
     script:
         "../scripts/run_stage.py"
@@ -48,7 +47,7 @@ rule campaign_report:
         runtime=120,
     params:
         stage="rockfrag.report.campaign_page:run",
-        study=STUDY_FILE,
+        study=study_file,
         settings=settings("title", "conditioning", "confidence"),
     script:
         "../scripts/run_stage.py"

@@ -7,11 +7,11 @@ import sys
 from snakemake.logging import logger
 from snakemake.utils import update_config
 
-from rockfrag.errors import InputError
-from rockfrag.plugins import plugins_of
-from rockfrag.stages.job import memory_mb, package_digest
+from rockfrag.base.errors import InputError
+from rockfrag.config.plugins import plugins_of
+from rockfrag.stages.job import files_digest, memory_mb, package_digest
 from rockfrag.stages.running import RUN, prepared, same_numbers
-from rockfrag.yaml_file import read_yaml
+from rockfrag.base.yaml_file import read_yaml
 
 # jobs inherit it: no number depends on what the processor at hand could do beyond others of its kind
 os.environ |= same_numbers(os.environ)
@@ -63,9 +63,19 @@ def read(*names):
     return [f"{RESULTS}/{name}.parquet" for name in names]
 
 
-def settings(*keys):
-    """What a stage depends on beside its files, these keys of the configuration and the package itself."""
-    return {key: config.get(key) for key in keys} | {"package": PACKAGE}
+def settings(*keys, files=()):
+    """What a stage depends on beside tables of others: keys of the configuration, the user's files, the package.
+
+    The user's files are no inputs: of those Snakemake looks at the times alone, so it would miss one that was
+    replaced by an older file, and end with an error where the time of one lies in the future.
+    """
+    asked = {key: config.get(key) for key in keys}
+    return asked | {"files": files_digest(files), "package": PACKAGE}
+
+
+def study_file(wildcards):
+    """Path of the configuration; as a function, for it may hold what Snakemake takes for a wildcard."""
+    return STUDY_FILE
 
 
 def captions(figure):

@@ -1,7 +1,10 @@
 # Every configuration under every motion at every amplitude: what all statistics start from.
 SHAKING = read("motions/floors", *VERTICAL)
 IDA_CURVES = [f"{RESULTS}/{path}" for path in STUDY.ida_files]
-SWEPT_BY = settings("bodies", "amplitudes", "friction", "vertical")
+SWEPT_BY = settings(
+    *("bodies", "amplitudes", "friction", "vertical"),
+    files=STUDY.body_files,
+)
 LONG_JOB = 2_000_000  # response histories
 
 
@@ -10,8 +13,7 @@ if STUDY.ida_jobs == 1:
     rule ida:
         """Simulate all response histories, and those under the motions as strong as they were recorded."""
         input:
-            motions=SHAKING,
-            bodies=STUDY.body_files,
+            SHAKING,
         output:
             ida_curves=IDA_CURVES,
             as_recorded=table("as_recorded"),
@@ -26,7 +28,7 @@ if STUDY.ida_jobs == 1:
             runtime=120,
         params:
             stage="rockfrag.stages.ida:run",
-            study=STUDY_FILE,
+            study=study_file,
             settings=SWEPT_BY,
         script:
             "../scripts/run_stage.py"
@@ -36,8 +38,7 @@ else:
     rule ida:
         """Simulate the response histories of a part of the motions; parts share the motions of a large study."""
         input:
-            motions=SHAKING,
-            bodies=STUDY.body_files,
+            SHAKING,
         output:
             ida_curves=[
                 f"{RESULTS}/{STUDY.ida_file(configuration)}"
@@ -57,7 +58,7 @@ else:
             runtime=120,
         params:
             stage="rockfrag.stages.ida:run_part",
-            study=STUDY_FILE,
+            study=study_file,
             settings=SWEPT_BY,
         script:
             "../scripts/run_stage.py"
@@ -65,8 +66,7 @@ else:
     rule as_recorded:
         """Simulate the responses to the motions as strong as they were recorded, and a little weaker and stronger."""
         input:
-            motions=SHAKING,
-            bodies=STUDY.body_files,
+            SHAKING,
         output:
             as_recorded=table("as_recorded"),
         log:
@@ -79,7 +79,7 @@ else:
             runtime=120,
         params:
             stage="rockfrag.stages.ida:run_as_recorded",
-            study=STUDY_FILE,
+            study=study_file,
             settings=SWEPT_BY,
         script:
             "../scripts/run_stage.py"

@@ -3,8 +3,6 @@
 
 rule measured_table:
     """Fit fragility curves in every intensity measure, compare the measures, and write the page."""
-    input:
-        STUDY.table,
     output:
         table("tests", "fragility", "recommendation", "bins", "goodness"),
         figures=report(directory(f"{RESULTS}/figures"), patterns=["{figure}.svg"]),
@@ -18,10 +16,11 @@ rule measured_table:
         runtime=120,
     params:
         stage="rockfrag.report.measured_page:run",
-        study=STUDY_FILE,
+        study=study_file,
         settings=settings(
             *("title", "seed", "table", "columns", "measures"),
             *("confidence", "replicates"),
+            files=[STUDY.table],
         ),
     script:
         "../scripts/run_stage.py"

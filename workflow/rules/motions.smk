@@ -20,9 +20,7 @@ rule fetch_records:
 rule motions:
     """Read and process the records, let the building respond, and measure the motion of every floor."""
     input:
-        catalogue=STUDY.catalogue_file,
-        records=STUDY.record_files("resources/records"),
-        building=STUDY.building_file or [],
+        STUDY.fetched_records("resources/records"),
     output:
         motions=read("motions/records", "motions/ground", "motions/floors", *VERTICAL),
         measures=table("measures"),
@@ -41,9 +39,10 @@ rule motions:
         runtime=120,
     params:
         stage="rockfrag.stages.motions:run",
-        study=STUDY_FILE,
+        study=study_file,
         settings=settings(
-            "motions", "building", "write_motions", "keep_going", "vertical"
+            *("motions", "building", "write_motions", "keep_going", "vertical"),
+            files=STUDY.motion_files,
         ),
     script:
         "../scripts/run_stage.py"

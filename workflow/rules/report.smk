@@ -12,7 +12,6 @@ rule report:
         rules.pedestal.output if STUDY.has_pairs else [],
         rules.measured_tests.output if STUDY.measured_tests else [],
         ADDED,
-        bodies=STUDY.body_files,
     output:
         figures=report(
             directory(f"{RESULTS}/figures"),
@@ -40,11 +39,12 @@ rule report:
         runtime=120,
     params:
         stage="rockfrag.report.study_report:run",
-        study=STUDY_FILE,
+        study=study_file,
         settings=settings(
             *("title", "bodies", "amplitudes", "protocol", "fragility", "seed"),
             *("friction", "vertical"),
             *(key for plugin in PLUGINS for key in plugin.schema),
+            files=STUDY.body_files,
         ),
     script:
         "../scripts/run_stage.py"

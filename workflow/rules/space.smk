@@ -3,8 +3,6 @@
 
 rule space:
     """Shake every body in space and in the plane, and compare the medians of overturning."""
-    input:
-        STUDY.files,
     output:
         table("medians", "fractions"),
         motions=read("motions/ground"),
@@ -17,9 +15,9 @@ rule space:
         mem_mb=MEMORY_MB,
         runtime=120,
     params:
-        stage="rockfrag.stages.space:run",
-        study=STUDY_FILE,
-        settings=settings("seed", "space"),
+        stage="rockfrag.stages.space_study:run",
+        study=study_file,
+        settings=settings("seed", "space", files=STUDY.files),
     script:
         "../scripts/run_stage.py"
 
@@ -40,7 +38,7 @@ rule space_report:
         runtime=120,
     params:
         stage="rockfrag.report.space_page:run",
-        study=STUDY_FILE,
+        study=study_file,
         settings=settings("title"),
     script:
         "../scripts/run_stage.py"

@@ -4,10 +4,8 @@
 rule tests:
     """Read the IDA curves as a laboratory would, within the limits of its shaker, and look at the contact forces."""
     input:
-        motions=SHAKING,
-        ida_curves=IDA_CURVES,
-        bodies=STUDY.body_files,
-        shaker=STUDY.shaker_file or [],
+        SHAKING,
+        IDA_CURVES,
     output:
         table("tests", "mean_amplitudes", "bodies", "validity"),
         sliding=table("sliding") if STUDY.slides else [],
@@ -22,9 +20,10 @@ rule tests:
         runtime=120,
     params:
         stage="rockfrag.stages.tests:run",
-        study=STUDY_FILE,
+        study=study_file,
         settings=settings(
-            "bodies", "amplitudes", "protocol", "shaker", "friction", "vertical"
+            *("bodies", "amplitudes", "protocol", "shaker", "friction", "vertical"),
+            files=[*STUDY.body_files, STUDY.shaker_file],
         ),
     script:
         "../scripts/run_stage.py"
@@ -34,7 +33,7 @@ rule fragility:
     """Fit fragility curves, compare intensity measures, and write curves for OpenQuake and SimCenter."""
     input:
         read("measures", "motions/records"),
-        ida_curves=IDA_CURVES,
+        IDA_CURVES,
     output:
         table("fragility", "fragility_bands", "fragility_bins", "fragility_fractions"),
         table("fragility_floors", "fragility_floors_fractions"),
@@ -51,7 +50,7 @@ rule fragility:
         runtime=120,
     params:
         stage="rockfrag.stages.fragility:run",
-        study=STUDY_FILE,
+        study=study_file,
         settings=settings(
             "fragility", "seed", "bodies", "building", "friction", "vertical"
         ),
@@ -63,7 +62,6 @@ rule pedestal:
     """Estimate the effect of a pedestal from pairs of tests with and without it."""
     input:
         read("tests"),
-        bodies=STUDY.body_files,
     output:
         table("pedestal/pairs", "pedestal/effects", "pedestal/whole"),
         table("pedestal/without_earthquake", "pedestal/ranks", "pedestal/notes"),
@@ -75,8 +73,8 @@ rule pedestal:
         "../envs/rockfrag.yaml"
     params:
         stage="rockfrag.stages.pedestal:run",
-        study=STUDY_FILE,
-        settings=settings("bodies", "seed"),
+        study=study_file,
+        settings=settings("bodies", "seed", files=STUDY.body_files),
     script:
         "../scripts/run_stage.py"
 
@@ -85,8 +83,6 @@ rule measured_tests:
     """Put the tests of a laboratory through the same statistics, and beside the simulated ones."""
     input:
         read("tests"),
-        bodies=STUDY.body_files,
-        measured=STUDY.measured_tests or [],
     output:
         table("measured/tests", "measured/beside", "measured/notes"),
         table("measured/fragility", "measured/effects"),
@@ -97,7 +93,10 @@ rule measured_tests:
         "../envs/rockfrag.yaml"
     params:
         stage="rockfrag.stages.pedestal:run_measured",
-        study=STUDY_FILE,
-        settings=settings("measured_tests", "fragility", "seed", "bodies"),
+        study=study_file,
+        settings=settings(
+            *("measured_tests", "fragility", "seed", "bodies"),
+            files=[*STUDY.body_files, STUDY.measured_tests],
+        ),
     script:
         "../scripts/run_stage.py"

@@ -13,7 +13,10 @@ rule study:
     threads: workflow.cores or 1
     params:
         snakefile=workflow.main_snakefile,
-        configfile=(workflow.configfiles or ["config/config.yaml"])[-1],
+        # a function, for the path may hold what Snakemake takes for a wildcard
+        configfile=lambda wildcards: (workflow.configfiles or ["config/config.yaml"])[
+            -1
+        ],
         missing="rockfrag is not installed beside Snakemake: install it there (make run does), or let Snakemake"
         " make an environment with --software-deployment-method conda.",
     shell:

@@ -3,8 +3,8 @@
 import json
 from pathlib import Path
 
-from rockfrag.errors import InputError
-from rockfrag.files import write_text
+from rockfrag.base.errors import InputError
+from rockfrag.base.files import write_text
 from rockfrag.records.sources.wheel import fetch_wheel
 from rockfrag.stages.log import logged
 from rockfrag.stages.running import end_with_run

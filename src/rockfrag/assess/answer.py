@@ -20,12 +20,12 @@ from rockfrag.assess.request import Level, Request
 from rockfrag.assess.risk import Estimate
 from rockfrag.assess.rules import RuleCheck, check_rules
 from rockfrag.assess.sources import SPACE
-from rockfrag.errors import InputError
+from rockfrag.base.errors import InputError
+from rockfrag.base.short_repr import short_repr
 from rockfrag.fragility.estimators import Fragility, fragility_of
 from rockfrag.fragility.model_error import MODEL_ERRORS
 from rockfrag.motions.intensity import IntensityMeasure
 from rockfrag.outcomes.limit_states import ROCKS
-from rockfrag.short_repr import short_repr
 
 RECORDS = "resources/records"  # Folder of fetched records
 

@@ -4,7 +4,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any, Generic, TypeVar
 
-from rockfrag.sentences import Macros
+from rockfrag.words.sentences import Macros
 
 
 @dataclass(frozen=True)

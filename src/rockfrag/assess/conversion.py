@@ -14,12 +14,12 @@ import numpy as np
 import pandas as pd
 from scipy import special
 
-from rockfrag.arrays import Floats
 from rockfrag.assess.hazard.curve import PGV, VELOCITY_PER_G, HazardCurve
 from rockfrag.assess.motions import MotionSet
 from rockfrag.assess.outcomes import ObjectOutcomes
 from rockfrag.assess.request import Level, Records
-from rockfrag.errors import InputError
+from rockfrag.base.arrays import Floats
+from rockfrag.base.errors import InputError
 from rockfrag.fragility.intervals import jackknife_error
 from rockfrag.fragility.vector import VectorFragility, fit_vector
 from rockfrag.motions.intensity import IntensityMeasure

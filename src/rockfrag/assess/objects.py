@@ -16,9 +16,10 @@ from rockfrag.assess.assumed import (
     tolerances_in,
 )
 from rockfrag.assess.scan import Scan, make_scan
-from rockfrag.errors import InputError, errors_of
+from rockfrag.base.errors import InputError, errors_of
+from rockfrag.base.plausible import DENSITIES, STONE, check_density, size_warning
 from rockfrag.fragility.model_error import CUT, SCAN
-from rockfrag.rocking.options import system_of
+from rockfrag.simulation.options import system_of
 from rockfrag.system import geometry
 from rockfrag.system.blocks import Block, Body, stacked
 from rockfrag.system.body import Polygon, RigidBody, checked_tensor
@@ -30,7 +31,6 @@ from rockfrag.system.system import (
     turned_about_vertical,
     uplift_ratios,
 )
-from rockfrag.units import DENSITIES, STONE, check_density, size_warning
 
 # Usual densities of the box around an object, from wood to bronze [kg/m³]
 COMMON = (150.0, 9000.0)

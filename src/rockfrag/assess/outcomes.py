@@ -9,10 +9,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from rockfrag.arrays import Floats
 from rockfrag.assess.motions import MotionSet
 from rockfrag.assess.objects import Objects
 from rockfrag.assess.place import Place
+from rockfrag.base.arrays import Floats
+from rockfrag.base.plausible import LARGEST_PEAK
 from rockfrag.engines.spatial import run_in_space
 from rockfrag.engines.spatial.body import PERTURBATION
 from rockfrag.fragility.empirical import wilson_interval
@@ -21,12 +22,11 @@ from rockfrag.motions.intensity import IntensityMeasure
 from rockfrag.outcomes.limit_states import OVERTURNS, ROCKS, limit_states
 from rockfrag.outcomes.outcomes import Outcomes
 from rockfrag.records.motion import GroundMotion, Motion
-from rockfrag.rocking.ensemble import LightBodies, overturns
-from rockfrag.rocking.inputs import checked_threads
+from rockfrag.simulation.ensemble import LightBodies, overturns
+from rockfrag.simulation.inputs import checked_threads
 from rockfrag.system.blocks import Body
 from rockfrag.system.contact import Friction
 from rockfrag.system.system import System
-from rockfrag.units import LARGEST_PEAK
 
 LEVELS = 80  # Levels of shaking that are tried, a constant factor apart
 FEW_LEVELS = 28  # Levels for what is only compared, and for many objects

@@ -15,15 +15,15 @@ from rockfrag.assess.export import as_json, as_nrml
 from rockfrag.assess.motions import MotionSet
 from rockfrag.assess.objects import Objects
 from rockfrag.assess.words import NAMES, page_says, says
-from rockfrag.figure_style import BLUE, COLUMN_WIDTH, OKABE_ITO, panels, plain_log
-from rockfrag.files import file_name, write_text
+from rockfrag.base.figure_style import BLUE, COLUMN_WIDTH, OKABE_ITO, panels, plain_log
+from rockfrag.base.files import file_name, write_text
 from rockfrag.outcomes.limit_states import ROCKS, limit_states
 from rockfrag.records.motion import GroundMotion, Motion
 from rockfrag.report.live import carried, live_kernel
-from rockfrag.report.live.space import Standing, live_in_space
+from rockfrag.report.live.live_space import Standing, live_in_space
 from rockfrag.report.page import Page, text_table
 from rockfrag.report.part import Answer, Finding, Section
-from rockfrag.sentences import PART, number
+from rockfrag.words.sentences import PART, number
 
 MOTIONS_SHOWN = 15  # Rows of the table of motions that topple the object first
 

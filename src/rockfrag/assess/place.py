@@ -13,12 +13,12 @@ from rockfrag.assess.assumed import (
     moved_to_both_sides,
     tolerances_in,
 )
+from rockfrag.base.errors import InputError
 from rockfrag.building.floors import floor_motions
 from rockfrag.building.model import ModalDamping, ShearBuilding, stiffnesses_for_period
 from rockfrag.building.settings import make_building, read_building
-from rockfrag.errors import InputError
+from rockfrag.config.schema import checked
 from rockfrag.records.motion import Motion
-from rockfrag.schema import checked
 
 STOREY_HEIGHT = 3.5  # Height of a storey of a building of which nothing is known [m]
 # Mass of its floors [kg]; equal floors respond alike whatever they weigh

@@ -20,11 +20,11 @@ from rockfrag.assess.hazard.curve import (
 )
 from rockfrag.assess.objects import Objects, make_objects
 from rockfrag.assess.place import Place, make_place
-from rockfrag.errors import InputError, errors_of
+from rockfrag.base.errors import InputError, errors_of
+from rockfrag.base.units import quantity
+from rockfrag.base.yaml_file import read_yaml
+from rockfrag.config.schema import checked
 from rockfrag.motions.intensity import IntensityMeasure
-from rockfrag.schema import checked
-from rockfrag.units import quantity
-from rockfrag.yaml_file import read_yaml
 
 LONGEST_PERIOD = 1e6  # Longest return period of a level [year]
 # Time for which the probability is given unless another is asked for [year]

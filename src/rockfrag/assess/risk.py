@@ -16,9 +16,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import special, stats
 
-from rockfrag.arrays import Floats
 from rockfrag.assess.hazard.curve import HazardCurve, rate_weights
 from rockfrag.assess.outcomes import ObjectOutcomes, fraction_at
+from rockfrag.base.arrays import Floats
 from rockfrag.fragility.intervals import jackknife_error
 from rockfrag.outcomes.limit_states import OVERTURNS, ROCKS
 

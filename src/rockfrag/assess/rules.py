@@ -19,14 +19,14 @@ from rockfrag.assess.objects import Objects
 from rockfrag.assess.outcomes import ObjectOutcomes, make_intensity_levels
 from rockfrag.assess.place import Place
 from rockfrag.assess.request import Records, make_request
+from rockfrag.base.units import GRAVITY
+from rockfrag.base.yaml_file import read_yaml
+from rockfrag.config.schema import checked
 from rockfrag.motions.intensity import pgv
-from rockfrag.motions.spectra import response_spectrum
+from rockfrag.motions.response_spectra import response_spectrum
 from rockfrag.records.motion import Motion
-from rockfrag.rocking.closed_forms import housner_velocity
-from rockfrag.schema import checked
+from rockfrag.simulation.closed_forms import housner_velocity
 from rockfrag.system.blocks import Block
-from rockfrag.units import GRAVITY
-from rockfrag.yaml_file import read_yaml
 
 HOUSNER_PERIODS = np.linspace(0.1, 2.5, 25)
 """Periods of the velocity spectrum over which Housner's rule takes a mean, those of his intensity [s]."""

@@ -12,7 +12,7 @@ from scipy import special
 
 from rockfrag.assess.risk import Estimate
 from rockfrag.fragility.model_error import MODEL_ERRORS
-from rockfrag.sentences import PART, Macros
+from rockfrag.words.sentences import PART, Macros
 
 SPACE = 0.13
 """Standard deviation of ln level of the second horizontal component, |ln(0.47 g / 0.54 g)|: the median level of

@@ -9,7 +9,7 @@ from rockfrag.building.inelastic import respond_hysteretically, shear_strengths
 from rockfrag.building.model import ShearBuilding
 from rockfrag.building.response import BuildingResponse, respond_elastically
 from rockfrag.records.motion import Motion
-from rockfrag.sentences import Macros
+from rockfrag.words.sentences import Macros
 
 
 def floor_motions(

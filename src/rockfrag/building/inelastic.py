@@ -19,7 +19,9 @@ from typing import Any
 
 import numpy as np
 
-from rockfrag.arrays import Floats
+from rockfrag.base.arrays import Floats
+from rockfrag.base.errors import InputError
+from rockfrag.base.units import GRAVITY
 from rockfrag.building.model import MasonryLaw, ShearBuilding
 from rockfrag.building.response import (
     BuildingResponse,
@@ -27,10 +29,8 @@ from rockfrag.building.response import (
     damping_matrix,
     find_modes,
 )
-from rockfrag.errors import InputError
-from rockfrag.machine_code import cached_njit
 from rockfrag.records.motion import Motion
-from rockfrag.units import GRAVITY
+from rockfrag.runtime.machine_code import cached_njit
 
 # the memory of a storey: present displacement and force, aim on either side (as magnitudes), where
 # the force was zero after unloading from the other side, direction of motion, and work done on it

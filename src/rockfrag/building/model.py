@@ -7,8 +7,8 @@ from typing import Literal
 
 import numpy as np
 
-from rockfrag.arrays import Floats
-from rockfrag.errors import InputError
+from rockfrag.base.arrays import Floats
+from rockfrag.base.errors import InputError
 
 
 @dataclass(frozen=True)

@@ -4,10 +4,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rockfrag.arrays import Floats
+from rockfrag.base.arrays import Floats
+from rockfrag.base.short_repr import short_repr
 from rockfrag.building.model import RayleighDamping, ShearBuilding
 from rockfrag.records.motion import Motion
-from rockfrag.short_repr import short_repr
 
 
 @dataclass(frozen=True)
@@ -112,7 +112,7 @@ class BuildingResponse:
 def respond_elastically(building: ShearBuilding, motion: Motion) -> BuildingResponse:
     """Superpose the modes, each exact for a ground acceleration linear between samples."""
     # compiled, which the checks of a building need not wait for
-    from rockfrag.motions.spectra import oscillator_response
+    from rockfrag.motions.response_spectra import oscillator_response
 
     modes = find_modes(building)
     displacement = np.zeros((building.storeys, motion.acceleration.size))

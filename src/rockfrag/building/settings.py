@@ -4,14 +4,14 @@ import os
 from collections.abc import Mapping
 from typing import Any
 
+from rockfrag.base.errors import InputError, errors_of
+from rockfrag.base.files import distinct_file_names
+from rockfrag.base.plausible import FIRST_PERIODS, FLOOR_MASSES, STOREY_HEIGHTS
+from rockfrag.base.yaml_file import read_yaml
 from rockfrag.building import model
 from rockfrag.building.model import MasonryLaw
 from rockfrag.building.response import find_modes
-from rockfrag.errors import InputError, errors_of
-from rockfrag.files import distinct_file_names
-from rockfrag.schema import checked
-from rockfrag.units import FIRST_PERIODS, FLOOR_MASSES, STOREY_HEIGHTS
-from rockfrag.yaml_file import read_yaml
+from rockfrag.config.schema import checked
 
 
 def read_building(path: str | os.PathLike[str]) -> model.ShearBuilding:

@@ -13,9 +13,9 @@ import pandas as pd
 from numpy.typing import NDArray
 from scipy import stats
 
-from rockfrag.arrays import Flags, Floats
+from rockfrag.base.arrays import Flags, Floats
+from rockfrag.base.short_repr import short_repr
 from rockfrag.fragility.batch_glm import fit_batch
-from rockfrag.short_repr import short_repr
 
 STANDARD_ERRORS = 2.0
 """A trial is plausible if its fraction of right outcomes is within this many standard errors of the best."""

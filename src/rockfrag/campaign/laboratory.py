@@ -10,16 +10,16 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from rockfrag.errors import InputError
-from rockfrag.files import is_file
+from rockfrag.base.errors import InputError
+from rockfrag.base.files import is_file
+from rockfrag.base.short_repr import short_repr
+from rockfrag.base.units import GRAVITY
 from rockfrag.fragility.tests_file import product_of, read_columns, read_titles
 from rockfrag.motions.intensity import pgv
 from rockfrag.motions.processing import highpass
 from rockfrag.records.motion import Motion
 from rockfrag.records.parsing.quantities import TO_SI, asked_unit
 from rockfrag.records.read import read_motion
-from rockfrag.short_repr import short_repr
-from rockfrag.units import GRAVITY
 
 MEASURED = "overturned"  # column of what the laboratory saw
 

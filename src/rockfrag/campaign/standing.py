@@ -16,12 +16,12 @@ import pandas as pd
 from numpy.typing import NDArray
 from scipy.stats import norm, qmc
 
-from rockfrag.errors import InputError
+from rockfrag.base.errors import InputError
+from rockfrag.base.short_repr import short_repr
 from rockfrag.fragility.model_error import CUT, SCAN
 from rockfrag.records.motion import GroundMotion, Motion
-from rockfrag.rocking.ensemble import LightBodies, overturns
-from rockfrag.rocking.options import system_of
-from rockfrag.short_repr import short_repr
+from rockfrag.simulation.ensemble import LightBodies, overturns
+from rockfrag.simulation.options import system_of
 from rockfrag.system import geometry
 from rockfrag.system.blocks import Block, Column
 from rockfrag.system.contact import Contact, Friction

@@ -80,22 +80,24 @@ class SpatialEngine(BuiltIn):
 _STANDING = frozenset({Wish.VERTICAL, Wish.RESTITUTION})
 
 LONE_BLOCKS = PureRocking(
-    "lanes of lone blocks", _STANDING, "rockfrag.engines.lanes:run_blocks"
+    "lanes of lone blocks",
+    _STANDING,
+    "rockfrag.engines.pure_rocking.ensembles:run_blocks",
 )
 """Lone bodies, from rest: 64 lanes side by side (``kernels.lanes.block``)."""
 
 TWO_BLOCKS = PureRocking(
     "lanes of two blocks",
     _STANDING | {Wish.TWO_BODIES},
-    "rockfrag.engines.lanes:run_stacks",
+    "rockfrag.engines.pure_rocking.ensembles:run_stacks",
 )
 """Two bodies on each other, from rest: lanes of stacks side by side (``kernels.lanes.stack_case``)."""
 
 SINGLE = PureRocking(
     "single histories",
     _STANDING | {Wish.TWO_BODIES, Wish.START, Wish.LINEAR, Wish.FORCES, Wish.HISTORY},
-    "rockfrag.engines.single:run",
-    "rockfrag.engines.single:history",
+    "rockfrag.engines.pure_rocking.histories:run",
+    "rockfrag.engines.pure_rocking.histories:history",
 )
 """One or two bodies, case by case (``kernels.single``)."""
 

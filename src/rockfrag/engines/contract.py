@@ -19,7 +19,7 @@
    energy cannot overturn them.
 7. **Equal to the bit.**  Outcomes do not depend on the number of threads, on the order of systems, motions or
    scales, on what else is in the grid, or on the machine.
-8. **Refusals** are made before the first case is integrated, as :class:`rockfrag.errors.InputError` with one
+8. **Refusals** are made before the first case is integrated, as :class:`rockfrag.base.errors.InputError` with one
    sentence.  A case that cannot be finished (no consistent mode of contact) is finished nevertheless by a stated
    rule and counted (``paradoxes``); an engine does not raise in the middle of a grid.
 9. **What is not told** is NaN, never zero.  What cannot happen (a slip where nothing slides) is zero.
@@ -33,13 +33,13 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from rockfrag.arrays import Floats
+from rockfrag.base.arrays import Floats
+from rockfrag.base.errors import InputError
+from rockfrag.base.units import GRAVITY
 from rockfrag.engines.steps import STEP
-from rockfrag.errors import InputError
 from rockfrag.outcomes.outcomes import Outcomes, empty_outcomes, merge_outcomes
 from rockfrag.records.motion import GroundMotion
 from rockfrag.system.system import System
-from rockfrag.units import GRAVITY
 
 
 class Wish(Enum):
@@ -136,7 +136,7 @@ class Engine(Protocol):
         """Return the outcomes of cases whose systems and motions it supports."""
 
     def history(self, case: Case) -> Any:
-        """Return the :class:`rockfrag.engines.response.Response` of a case that it supports."""
+        """Return the :class:`rockfrag.outcomes.response.Response` of a case that it supports."""
 
 
 def wishes(system: System, motion: GroundMotion, request: Request) -> frozenset[Wish]:

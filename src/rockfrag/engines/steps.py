@@ -3,10 +3,10 @@
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from rockfrag.errors import InputError
+from rockfrag.base.errors import InputError
 from rockfrag.system import geometry
 from rockfrag.system.blocks import Body, as_system
-from rockfrag.system.system import System
+from rockfrag.system.system import System, rocking_shapes
 
 STEP = 0.1  # largest p h of a step: frequency parameter of the fastest body times step
 STACK_STEP = 0.35
@@ -26,14 +26,6 @@ def fastest_frequency(system: System | Body, g: float) -> float:
         for shape in as_system(system).carried
         for pivot in (+1, -1)
     )
-
-
-def rocking_shapes(system: System) -> list[geometry.Shape]:
-    """Shapes that rock: those of the bodies, the lower of two joined with what it carries."""
-    shapes = list(system.carried)
-    if system.count == 2:
-        shapes[0] = geometry.joined(system.pile)
-    return shapes
 
 
 def free_samples(system: System | Body, dt: ArrayLike, g: float) -> NDArray[np.int64]:

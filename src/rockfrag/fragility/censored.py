@@ -12,7 +12,8 @@ import pandas as pd
 from numpy.typing import NDArray
 from scipy import special
 
-from rockfrag.errors import InputError
+from rockfrag.base.errors import InputError
+from rockfrag.base.short_repr import short_repr
 from rockfrag.fragility import intervals, lognormal
 from rockfrag.fragility.intervals import MOST_BLOCKS, Interval
 from rockfrag.fragility.observations import (
@@ -23,7 +24,6 @@ from rockfrag.fragility.observations import (
     name_and_unit,
     numbers,
 )
-from rockfrag.short_repr import short_repr
 
 _LOG_ROOT_TWO_PI = 0.5 * np.log(2.0 * np.pi)
 

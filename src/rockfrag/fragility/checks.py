@@ -10,7 +10,8 @@ from numpy.typing import NDArray
 from scipy import special
 from statsmodels.stats.diagnostic import lilliefors
 
-from rockfrag.errors import InputError
+from rockfrag.base.errors import InputError
+from rockfrag.base.short_repr import short_repr
 from rockfrag.fragility.batch_glm import Link, fit_batch
 from rockfrag.fragility.censored import Brackets
 from rockfrag.fragility.curve_facts import REJECTED
@@ -23,8 +24,7 @@ from rockfrag.fragility.fractions import (
 from rockfrag.fragility.intervals import Interval
 from rockfrag.fragility.lognormal import FragilityFit
 from rockfrag.fragility.observations import Floats, Observations, cells
-from rockfrag.sentences import Macros
-from rockfrag.short_repr import short_repr
+from rockfrag.words.sentences import Macros
 
 # bins of about equal numbers of tests in which observed and fitted numbers are compared
 BINS = 10

@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 import pandas as pd
 
 from rockfrag.fragility.model_error import CUT, MODEL_ERRORS
-from rockfrag.sentences import Macros
+from rockfrag.words.sentences import Macros
 
 REJECTED = 0.05  # a curve is said not to describe its data below this p value [-]
 OF_THE_MODEL = MODEL_ERRORS[CUT]

@@ -9,7 +9,7 @@ import numpy as np
 import pandas as pd
 from numpy.typing import ArrayLike, NDArray
 
-from rockfrag.errors import InputError
+from rockfrag.base.errors import InputError
 from rockfrag.fragility import observations
 from rockfrag.fragility.censored import Brackets, brackets_from_table
 from rockfrag.fragility.observations import Floats, Observations

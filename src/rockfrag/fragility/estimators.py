@@ -7,13 +7,13 @@ import numpy as np
 import pandas as pd
 from scipy import stats
 
+from rockfrag.base.keywords import named_keywords
+from rockfrag.base.short_repr import short_repr
 from rockfrag.fragility import censored, observations
 from rockfrag.fragility.checks import Checks, checks_of_brackets, checks_of_outcomes
 from rockfrag.fragility.empirical import TableIda
 from rockfrag.fragility.intervals import Interval, interval_over_motions
 from rockfrag.fragility.lognormal import FragilityFit, fit_lognormal
-from rockfrag.keywords import named_keywords
-from rockfrag.short_repr import short_repr
 
 
 @dataclass(frozen=True)

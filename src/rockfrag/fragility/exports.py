@@ -15,14 +15,14 @@ import numpy as np
 import pandas as pd
 from scipy import constants, special
 
-from rockfrag.errors import InputError
-from rockfrag.files import write_table, write_text
+from rockfrag.base.errors import InputError
+from rockfrag.base.files import write_table, write_text
 from rockfrag.fragility.checks import REJECTION
 from rockfrag.fragility.curve_facts import curve_facts
 from rockfrag.fragility.observations import Floats
 from rockfrag.motions.intensity import declared, measure_labelled
 from rockfrag.outcomes.limit_states import OVERTURNS, limit_state_named, limit_states
-from rockfrag.sentences import environment
+from rockfrag.words.sentences import environment
 
 LONGEST = 75  # characters of an identifier that OpenQuake takes
 # β with which an exact threshold, a step, is written [-]; the formats take no step

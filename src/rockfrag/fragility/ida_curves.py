@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from rockfrag.errors import InputError
+from rockfrag.base.errors import InputError
 from rockfrag.fragility.curve_facts import total_beta
 from rockfrag.fragility.empirical import TableIda, fraction_in_bins, local_fraction
 from rockfrag.fragility.estimators import Fragility, fit_incremental, fragility_of

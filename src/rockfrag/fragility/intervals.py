@@ -13,7 +13,8 @@ import pandas as pd
 from numpy.typing import ArrayLike, NDArray
 from scipy import special, stats
 
-from rockfrag.errors import InputError
+from rockfrag.base.errors import InputError
+from rockfrag.base.short_repr import short_repr
 from rockfrag.fragility.batch_glm import fit_batch, separated
 from rockfrag.fragility.lognormal import LEAST_SLOPE, ROUNDING
 from rockfrag.fragility.observations import (
@@ -24,7 +25,6 @@ from rockfrag.fragility.observations import (
     cells,
     counts,
 )
-from rockfrag.short_repr import short_repr
 
 FEWEST_GROUPS = 4  # fewest groups for which the jackknife's coverage was validated
 MOST_BLOCKS = 100

@@ -14,11 +14,11 @@ from statsmodels.tools.sm_exceptions import (
     PerfectSeparationWarning,
 )
 
+from rockfrag.base.keywords import named_keywords
+from rockfrag.base.short_repr import short_repr
 from rockfrag.fragility.batch_glm import Link, fit_batch, log_terms, separated
 from rockfrag.fragility.observations import Floats, Observations, cells
-from rockfrag.keywords import named_keywords
-from rockfrag.sentences import Macros
-from rockfrag.short_repr import short_repr
+from rockfrag.words.sentences import Macros
 
 ROUNDING = 1e-9  # levels whose logarithms differ by less are the same
 LEAST_SLOPE = 1e-3

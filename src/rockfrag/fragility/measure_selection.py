@@ -10,15 +10,15 @@ from scipy import stats
 from statsmodels.regression.linear_model import OLS
 from statsmodels.tools.tools import add_constant
 
-from rockfrag.errors import InputError
+from rockfrag.base.errors import InputError
+from rockfrag.base.short_repr import short_repr
 from rockfrag.fragility import censored, held_out, observations
 from rockfrag.fragility.empirical import TableIda
 from rockfrag.fragility.ida_curves import scale_power
 from rockfrag.fragility.intervals import Interval, interval_over_motions
 from rockfrag.fragility.lognormal import FragilityFit, fit_lognormal
 from rockfrag.fragility.observations import Floats, Observations, numbers
-from rockfrag.sentences import Macros
-from rockfrag.short_repr import short_repr
+from rockfrag.words.sentences import Macros
 
 DIFFERENCE_P = 0.05  # two measures differ below this p value of their held-out scores
 FEWEST_GROUPS_TO_CHOOSE = 10

@@ -8,10 +8,10 @@ import pandas as pd
 from numpy.typing import NDArray
 from scipy import special
 
-from rockfrag.errors import InputError
-from rockfrag.keywords import check_names
+from rockfrag.base.errors import InputError
+from rockfrag.base.keywords import check_names
+from rockfrag.base.short_repr import short_repr
 from rockfrag.motions.intensity import measure_of, split_column
-from rockfrag.short_repr import short_repr
 
 Floats = NDArray[np.float64]  # an array of floating-point numbers
 Over = Literal["motion", "earthquake"]

@@ -15,11 +15,12 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from rockfrag.errors import InputError
+from rockfrag.base.errors import InputError
+from rockfrag.base.plausible import LARGEST_PEAK
+from rockfrag.base.text_files import table_encoding
+from rockfrag.base.units import DIMENSIONS, convert
 from rockfrag.fragility import observations
 from rockfrag.fragility.observations import Floats, name_and_unit
-from rockfrag.tabular import table_encoding
-from rockfrag.units import DIMENSIONS, LARGEST_PEAK, convert
 
 Measures = Mapping[str, Sequence[str | float]] | Sequence[str]
 """Columns with measures, or for each new column the columns and numbers whose product it is."""

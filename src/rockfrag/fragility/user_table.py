@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pandas as pd
 
+from rockfrag.base.short_repr import short_repr
 from rockfrag.fragility.checks import GoodnessOfFit
 from rockfrag.fragility.empirical import fraction_in_bins
 from rockfrag.fragility.estimators import Fragility, fragility_of
@@ -15,7 +16,6 @@ from rockfrag.fragility.measure_selection import MeasureSelection, recommend_mea
 from rockfrag.fragility.observations import Observations, observations_from_table
 from rockfrag.fragility.tests_file import Measures, read_tests
 from rockfrag.fragility.vector import VectorTables, vector_tables
-from rockfrag.short_repr import short_repr
 
 
 @dataclass(frozen=True)

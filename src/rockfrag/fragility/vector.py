@@ -13,7 +13,7 @@ import pandas as pd
 from numpy.typing import ArrayLike, NDArray
 from scipy import optimize, special, stats
 
-from rockfrag.errors import InputError
+from rockfrag.base.errors import InputError
 from rockfrag.fragility import observations
 from rockfrag.fragility.batch_glm import fit_batch
 from rockfrag.fragility.checks import binned_deviance, refitted_deviance
@@ -21,7 +21,7 @@ from rockfrag.fragility.curve_facts import REJECTED
 from rockfrag.fragility.held_out import outcome_scores
 from rockfrag.fragility.intervals import FEWEST_GROUPS, all_but_one, half_width
 from rockfrag.fragility.observations import Floats
-from rockfrag.sentences import Macros
+from rockfrag.words.sentences import Macros
 
 MOST_FOR_THE_PLANE = 20_000
 """Tests up to which separation is found exactly; a linear programme of more takes too long."""

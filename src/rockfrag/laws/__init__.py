@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from importlib import import_module
 from operator import attrgetter
 
-from rockfrag.errors import InputError
+from rockfrag.base.errors import InputError
 from rockfrag.system.geometry import Shape
 
 BUILT_IN = ("momentum", "position", "couple", "ratio")

@@ -35,7 +35,7 @@ from .processing import (
     scale_to_pga as scale_to_pga,
     scale_to_pgv as scale_to_pgv,
 )
-from .spectra import (
+from .response_spectra import (
     ResponseSpectrum as ResponseSpectrum,
     response_spectrum as response_spectrum,
 )

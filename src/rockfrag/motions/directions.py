@@ -8,7 +8,7 @@ from typing import Any
 
 import pandas as pd
 
-from rockfrag.errors import InputError
+from rockfrag.base.errors import InputError
 from rockfrag.motions.processing import process
 from rockfrag.motions.rotation import common_time, rotate_to_azimuth, stronger_direction
 from rockfrag.records.catalogue import load_component, load_motion, scaled

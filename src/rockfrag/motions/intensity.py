@@ -22,11 +22,11 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 
-from rockfrag.arrays import Floats
-from rockfrag.errors import InputError
-from rockfrag.input_checks import number_from_zero, positive_number
+from rockfrag.base.arrays import Floats
+from rockfrag.base.errors import InputError
+from rockfrag.base.input_checks import number_from_zero, positive_number
+from rockfrag.base.units import CENTIMETRES_PER_METRE, GRAVITY
 from rockfrag.records.motion import Motion, peak_displacement, peak_velocity
-from rockfrag.units import CENTIMETRES_PER_METRE, GRAVITY
 
 if TYPE_CHECKING:
     from rockfrag.motions.pulse_extraction import StrongestPulse
@@ -117,7 +117,7 @@ class IntensityMeasure:
 @cache
 def _spectrum_at(period: float) -> Shared:
     def spectrum(motion: Motion, damping: float) -> Any:
-        from rockfrag.motions.spectra import response_spectrum
+        from rockfrag.motions.response_spectra import response_spectrum
 
         return response_spectrum(motion, [period], damping)
 
@@ -329,7 +329,7 @@ def mean_period(motion: Motion) -> float:
     150-159).  Zeros are added so that frequencies are at most 0.05 Hz apart, as Rathje et al.
     (2004, Earthquake Spectra 20(1), 119-144) require.
     """
-    from rockfrag.motions.spectra import fourier_amplitude
+    from rockfrag.motions.response_spectra import fourier_amplitude
 
     frequency, amplitude = fourier_amplitude(motion, math.ceil(1 / (0.05 * motion.dt)))
     band = (frequency >= 0.25) & (frequency <= 20.0)
@@ -347,7 +347,7 @@ def predominant_period(motion: Motion) -> float:
 
     Rathje, Abrahamson & Bray (1998); searched from 0.02 to 10 s, periods 1.2 % apart.
     """
-    from rockfrag.motions.spectra import peak_displacements
+    from rockfrag.motions.response_spectra import peak_displacements
 
     if motion.pga == 0:
         return math.nan
@@ -362,7 +362,7 @@ def spectral_acceleration(
     motion: Motion, period: float, damping: float = 0.05
 ) -> float:
     """Pseudo-spectral acceleration Sa(T) = ω² Sd [m/s²], the one that hazard maps are made for."""
-    from rockfrag.motions.spectra import response_spectrum
+    from rockfrag.motions.response_spectra import response_spectrum
 
     return float(response_spectrum(motion, [period], damping).pseudo_acceleration[0])
 
@@ -382,7 +382,7 @@ def housner_and_average(motion: Motion, damping: float = 0.05) -> tuple[float, f
     Lignos, 2015, Earthquake Eng. Struct. Dyn. 44: 2057-2073); a rocking body has no period of its own, so the
     periods are those from which its overturning threshold feels the motion.
     """
-    from rockfrag.motions.spectra import peak_displacements
+    from rockfrag.motions.response_spectra import peak_displacements
 
     periods = np.concatenate([HOUSNER_PERIODS, AVERAGE_PERIODS])
     peaks = np.split(

@@ -6,14 +6,14 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from rockfrag.errors import InputError
-from rockfrag.keywords import named_keywords
+from rockfrag.base.errors import InputError
+from rockfrag.base.keywords import named_keywords
 from rockfrag.motions import intensity
 from rockfrag.motions.intensity import SPECTRAL_PERIODS, intensity_measures
 from rockfrag.motions.pulse_extraction import strongest_pulse
 from rockfrag.motions.rotation import DIRECTIONS_DEG, rotate
-from rockfrag.processes import in_processes
 from rockfrag.records.motion import Motion
+from rockfrag.runtime.processes import in_processes
 
 
 @named_keywords

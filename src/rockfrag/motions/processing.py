@@ -25,17 +25,17 @@ from typing import Any
 import numpy as np
 from numpy.polynomial import Polynomial
 
-from rockfrag.arrays import Floats
-from rockfrag.errors import InputError
-from rockfrag.input_checks import (
+from rockfrag.base.arrays import Floats
+from rockfrag.base.errors import InputError
+from rockfrag.base.input_checks import (
     number_from_zero,
     positive_number,
     real_number,
     whole_within,
 )
+from rockfrag.base.units import CENTIMETRES_PER_METRE, GRAVITY
 from rockfrag.motions import intensity
 from rockfrag.records.motion import MOST_SAMPLES, Motion, integrate
-from rockfrag.units import CENTIMETRES_PER_METRE, GRAVITY
 
 
 def demean(motion: Motion) -> Motion:

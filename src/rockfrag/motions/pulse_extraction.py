@@ -12,10 +12,10 @@ from itertools import groupby, product
 import numpy as np
 from scipy.optimize import minimize_scalar
 
-from rockfrag.arrays import Floats
-from rockfrag.machine_code import cached_njit
+from rockfrag.base.arrays import Floats
+from rockfrag.base.short_repr import short_repr
 from rockfrag.records.motion import Motion, integrate
-from rockfrag.short_repr import short_repr
+from rockfrag.runtime.machine_code import cached_njit
 
 CYCLES = (1.0, 1.5, 2.0, 2.5, 3.0)
 """Oscillatory characters γ that are tried; recorded near-fault pulses have 1 to 3 (Mavroeidis &

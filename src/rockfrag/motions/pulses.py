@@ -12,9 +12,9 @@ from typing import Any
 
 import numpy as np
 
-from rockfrag.arrays import Floats
-from rockfrag.errors import InputError
-from rockfrag.input_checks import positive_number, real_number, whole_within
+from rockfrag.base.arrays import Floats
+from rockfrag.base.errors import InputError
+from rockfrag.base.input_checks import positive_number, real_number, whole_within
 from rockfrag.records.motion import MOST_SAMPLES, Motion
 
 DT = 0.005  # sampling interval that pulses have unless another is asked for [s]

@@ -7,8 +7,8 @@ from dataclasses import replace
 import numpy as np
 from obspy import UTCDateTime
 
-from rockfrag.errors import InputError
-from rockfrag.input_checks import real_number
+from rockfrag.base.errors import InputError
+from rockfrag.base.input_checks import real_number
 from rockfrag.motions.processing import starting_later
 from rockfrag.records.motion import Motion
 from rockfrag.records.parsing.quantities import azimuth_of, is_vertical

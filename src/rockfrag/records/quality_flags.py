@@ -5,8 +5,9 @@ import re
 import numpy as np
 from numpy.typing import NDArray
 
+from rockfrag.base.units import GRAVITY
 from rockfrag.records.motion import Motion
-from rockfrag.units import GRAVITY
+from rockfrag.records.parsing.format import SAID
 
 _GSE = "a GSE file, which is not read here; convert it with ObsPy: obspy.read(file).write('record.mseed', 'MSEED')"
 _KINDS: dict[tuple[bytes, ...], str] = {
@@ -75,7 +76,8 @@ def quality_flags(motion: Motion) -> list[str]:
     a, peak = motion.acceleration, motion.pga
     if peak == 0:
         return ["all samples are zero"]
-    found = []
+    # what its reader had to allow
+    found = [str(step[SAID]) for step in motion.provenance if SAID in step]
     if peak > STRONGEST_G * GRAVITY:
         found.append(
             f"a peak of {peak / GRAVITY:.3g} g, above {STRONGEST_G:g} g (is the unit right?)"

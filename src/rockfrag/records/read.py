@@ -9,9 +9,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from rockfrag.errors import InputError
-from rockfrag.files import sha256_of
-from rockfrag.keywords import named_keywords
+from rockfrag.base.errors import InputError
+from rockfrag.base.files import sha256_of
+from rockfrag.base.keywords import named_keywords
+from rockfrag.base.short_repr import short_repr
+from rockfrag.base.text_files import printable
+from rockfrag.base.units import GRAVITY
 from rockfrag.records.formats import HEADED, plain
 from rockfrag.records.formats.obspy_native import obspy_channels
 from rockfrag.records.motion import Motion
@@ -20,9 +23,6 @@ from rockfrag.records.parsing.format import Channel
 from rockfrag.records.parsing.text_file import NotAcceleration, check_file
 from rockfrag.records.quality_flags import STRONGEST_G
 from rockfrag.records.sources.archive import is_archive, is_no_record, unpacked
-from rockfrag.short_repr import short_repr
-from rockfrag.tabular import printable
-from rockfrag.units import GRAVITY
 
 FORMATS = (*HEADED, plain.FORMAT)  # those read here; ObsPy reads some others
 # a mean within this fraction of g is the weight of the sensor's mass

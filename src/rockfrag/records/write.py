@@ -10,9 +10,9 @@ from obspy import Inventory, Stream, Trace, UTCDateTime
 from obspy.core.inventory import Channel, Network, Response, Station
 from obspy.core.inventory.response import InstrumentSensitivity
 
-from rockfrag.errors import InputError
-from rockfrag.files import file_name, whole_file
-from rockfrag.keywords import named_keywords
+from rockfrag.base.errors import InputError
+from rockfrag.base.files import file_name, whole_file
+from rockfrag.base.keywords import named_keywords
 from rockfrag.records.formats import at2, opensees, plain, seismosoft
 from rockfrag.records.motion import Motion, read_motion_set
 from rockfrag.records.parsing.quantities import TO_SI, asked_unit

@@ -8,12 +8,12 @@ import pandas as pd
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from rockfrag.figure_style import BLACK, COLUMN_WIDTH, panels, plain_log
+from rockfrag.base.figure_style import BLACK, COLUMN_WIDTH, panels, plain_log
 from rockfrag.report import findings
 from rockfrag.report.figures import GREY, SIDE_COLOUR, SIDE_NAME, drawn_tests
 from rockfrag.report.part import Answer, Finding, Results, Says
-from rockfrag.rocking.ensemble import LIGHT
-from rockfrag.sentences import sentence, shortened
+from rockfrag.simulation.ensemble import LIGHT
+from rockfrag.words.sentences import sentence, shortened
 
 FEW = 10  # intervals over fewer earthquakes than this rest on little
 MOST_NAMED = 4  # so many objects are named in the question

@@ -9,7 +9,7 @@ from markupsafe import Markup
 from matplotlib.figure import Figure
 from scipy.stats import norm
 
-from rockfrag import figure_style as style
+from rockfrag.base import figure_style as style
 from rockfrag.campaign.comparison import FEWEST_VOTERS, REPEATS
 from rockfrag.campaign.standing import preferred_edges
 from rockfrag.fragility.observations import name_and_unit
@@ -18,10 +18,10 @@ from rockfrag.report.page import Row
 from rockfrag.report.part import Answer, FigureSpec, Finding, Says, Section
 from rockfrag.report.sections.curves import two_measures_section
 from rockfrag.report.study_report import write_page
-from rockfrag.sentences import estimate, estimates, label, number, probability
 from rockfrag.stages.campaign import IN_PLANE, OURS, TABLES, VOTES
 from rockfrag.stages.job import Job, Results
 from rockfrag.study.campaign import CampaignStudy
+from rockfrag.words.sentences import estimate, estimates, label, number, probability
 
 
 def run(job: Job[CampaignStudy]) -> Results:

@@ -16,10 +16,10 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.path import Path
 
-from rockfrag import figure_style as style
-from rockfrag.arrays import Floats
+from rockfrag.base import figure_style as style
+from rockfrag.base.arrays import Floats
 from rockfrag.report.findings import WITH_PEDESTAL, Sides
-from rockfrag.sentences import shortened
+from rockfrag.words.sentences import shortened
 
 GREY = "#777777"
 BAND = "#e9e9e9"

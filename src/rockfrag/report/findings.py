@@ -6,11 +6,11 @@ from typing import Any, NamedTuple
 import numpy as np
 import pandas as pd
 
-from rockfrag import sentences as wording
 from rockfrag.fragility.curve_facts import Compared, compared_curves
 from rockfrag.report.part import Finding, Says
 from rockfrag.shaketable.definitions import DEFINITION
 from rockfrag.study.study import Study
+from rockfrag.words import sentences as wording
 
 # coefficient of friction of dry stone on stone, with which demands are compared [-]
 FRICTION = 0.6

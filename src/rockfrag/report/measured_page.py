@@ -10,7 +10,7 @@ import pandas as pd
 from matplotlib.figure import Figure
 from matplotlib.ticker import PercentFormatter
 
-from rockfrag import figure_style as style
+from rockfrag.base import figure_style as style
 from rockfrag.fragility.checks import GoodnessOfFit
 from rockfrag.fragility.empirical import fraction_in_bins, local_fraction
 from rockfrag.fragility.estimators import Fragility
@@ -27,9 +27,9 @@ from rockfrag.report.sections.curves import (
     two_measures_section,
 )
 from rockfrag.report.study_report import write_page
-from rockfrag.sentences import estimates
 from rockfrag.stages.job import Job, Results
 from rockfrag.study.campaign import MeasuredTable
+from rockfrag.words.sentences import estimates
 
 says = Says("rockfrag.report", "measured_page.j2")
 

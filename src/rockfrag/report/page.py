@@ -15,11 +15,11 @@ import pandas as pd
 from jinja2 import Environment, PackageLoader, StrictUndefined, select_autoescape
 from markupsafe import Markup
 
-from rockfrag.figure_style import BLUE, GREEN, PURPLE, RED, save_figure
-from rockfrag.processes import in_processes
+from rockfrag.base.figure_style import BLUE, GREEN, PURPLE, RED, save_figure
 from rockfrag.report.figures import BAND, GREY
 from rockfrag.report.part import Answer, FigureSpec, Section
-from rockfrag.sentences import Macros, estimates, number, probability, sentence
+from rockfrag.runtime.processes import in_processes
+from rockfrag.words.sentences import Macros, estimates, number, probability, sentence
 
 TEMPLATES = Environment(
     loader=PackageLoader("rockfrag.report"),
@@ -110,7 +110,7 @@ def estimated(
     decimals: int | None = None,
     limits: tuple[str, str] | None = None,
 ) -> Column:
-    """Return a column of estimates with their limits, see :func:`rockfrag.sentences.estimates`."""
+    """Return a column of estimates with their limits, see :func:`rockfrag.words.sentences.estimates`."""
     return Column(name, title, lambda table: estimates(table, name, decimals, limits))
 
 

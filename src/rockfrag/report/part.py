@@ -13,9 +13,9 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from rockfrag.records.motion import Motion, read_motion_metadata, read_motion_set
-from rockfrag.sentences import Macros
 from rockfrag.shaketable.definitions import DEFINITION, read_swept
 from rockfrag.study.study import Study
+from rockfrag.words.sentences import Macros
 
 MOST_MOTIONS = 50
 """Motions of which a report shows every outcome; of a larger study it shows the first."""

@@ -10,8 +10,8 @@ import sys
 import tempfile
 from pathlib import Path
 
-from rockfrag.errors import InputError
-from rockfrag.files import whole_file
+from rockfrag.base.errors import InputError
+from rockfrag.base.files import whole_file
 from rockfrag.stages.running import results_folder
 from rockfrag.study.loading import load_any
 
@@ -23,6 +23,8 @@ BROWSERS = (
     "msedge",
 )
 """Programs that print without a window, the first one found is taken."""
+
+_PATIENCE = 300.0  # seconds that a browser may take
 
 
 def print_page(page: Path) -> Path:
@@ -44,8 +46,12 @@ def print_page(page: Path) -> Path:
             *(["--no-sandbox"] if hasattr(os, "geteuid") and os.geteuid() == 0 else []),
             page.resolve().as_uri(),
         ]
-        done = subprocess.run(command, capture_output=True, check=False, timeout=300)
-        if done.returncode != 0 or not part.read_bytes().startswith(b"%PDF"):
+        try:
+            subprocess.run(command, capture_output=True, check=True, timeout=_PATIENCE)
+        except (OSError, subprocess.SubprocessError):
+            # what it left is no page
+            part.write_bytes(b"")
+        if not part.read_bytes().startswith(b"%PDF"):
             raise InputError(
                 f"{browser} did not print {page}; open it in any browser and print it from there."
             )

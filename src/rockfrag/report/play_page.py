@@ -6,17 +6,18 @@ from importlib.metadata import version
 
 import numpy as np
 
-from rockfrag.errors import InputError
-from rockfrag.files import write_text
+from rockfrag.base.errors import InputError
+from rockfrag.base.files import write_text
+from rockfrag.base.units import GRAVITY
 from rockfrag.records.motion import GroundMotion, Motion
-from rockfrag.report.live import AMPLITUDES_G, live_kernel, space
+from rockfrag.report.live import AMPLITUDES_G, live_kernel
+from rockfrag.report.live import live_space as space
 from rockfrag.report.page import Page
 from rockfrag.report.part import Answer, Finding, Says
-from rockfrag.rocking import overturns
-from rockfrag.rocking.browser import in_page
+from rockfrag.simulation import overturns
 from rockfrag.system.blocks import SystemLike, as_system
 from rockfrag.system.body import Circle, RigidBody
-from rockfrag.units import GRAVITY
+from rockfrag.web import in_page
 
 MOST_SAMPLES = 20_000
 """Times of a record for which the page stays below 400 kB, and below 700 kB with two components."""

@@ -13,19 +13,19 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from rockfrag import figure_style as style
-from rockfrag.errors import InputError
-from rockfrag.files import file_name
+from rockfrag.base import figure_style as style
+from rockfrag.base.errors import InputError
+from rockfrag.base.files import file_name
+from rockfrag.base.text_files import printable
+from rockfrag.base.units import CENTIMETRES_PER_METRE, GRAVITY
 from rockfrag.motions.intensity import pgd, pgv, predominant_period
-from rockfrag.motions.spectra import fourier_amplitude, response_spectrum
+from rockfrag.motions.response_spectra import fourier_amplitude, response_spectrum
 from rockfrag.records.catalogue import record_files
 from rockfrag.records.motion import Motion, integrate
 from rockfrag.records.parsing.format import Channel
 from rockfrag.records.parsing.text_file import NotAcceleration
 from rockfrag.records.quality_flags import quality_flags
 from rockfrag.records.read import Record, motion_of, read_untold
-from rockfrag.tabular import printable
-from rockfrag.units import CENTIMETRES_PER_METRE, GRAVITY
 
 COLUMNS = (
     *("file", "format", "station", "channel", "start_time", "npts", "dt_s", "unit"),

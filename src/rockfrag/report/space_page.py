@@ -7,13 +7,13 @@ import pandas as pd
 from markupsafe import Markup
 from matplotlib.figure import Figure
 
-from rockfrag import figure_style as style
+from rockfrag.base import figure_style as style
 from rockfrag.records.motion import GroundMotion, Motion
-from rockfrag.report.live.space import Standing, live_in_space
+from rockfrag.report.live.live_space import Standing, live_in_space
 from rockfrag.report.part import Answer, Says, Section
 from rockfrag.report.study_report import write_page
 from rockfrag.stages.job import Job, Results
-from rockfrag.stages.space import LOSS, NO_LOSS, PLANAR, body_of
+from rockfrag.stages.space_study import LOSS, NO_LOSS, PLANAR, body_of
 from rockfrag.study.space import SpaceStudy
 
 says = Says("rockfrag.report", "space_page.j2")

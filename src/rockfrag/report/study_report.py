@@ -7,8 +7,8 @@ from typing import Any
 
 from markupsafe import Markup
 
-from rockfrag.files import write_text
-from rockfrag.plugins import plugins_of
+from rockfrag.base.files import write_text
+from rockfrag.config.plugins import plugins_of
 from rockfrag.report.answer import study_answer
 from rockfrag.report.live import live_kernel
 from rockfrag.report.page import MOST_TABLE_ROWS, Page

@@ -17,8 +17,8 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 from numpy.typing import NDArray
 
-from rockfrag.arrays import Flags, Floats
-from rockfrag.errors import InputError
+from rockfrag.base.arrays import Flags, Floats
+from rockfrag.base.errors import InputError
 from rockfrag.outcomes.limit_states import OVERTURNS, limit_state_named
 from rockfrag.shaketable.protocols import Outcome, Protocol
 from rockfrag.shaketable.tests_table import as_tests_table

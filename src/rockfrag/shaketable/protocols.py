@@ -7,9 +7,9 @@ from typing import Literal
 
 import numpy as np
 
-from rockfrag.arrays import Floats
-from rockfrag.errors import InputError
-from rockfrag.input_checks import positive_number
+from rockfrag.base.arrays import Floats
+from rockfrag.base.errors import InputError
+from rockfrag.base.input_checks import positive_number
 
 MOST_STEPS = 100_000  # more than this are a slip: nobody shakes a block that often
 

@@ -12,13 +12,13 @@ from typing import Literal, NamedTuple
 import numpy as np
 import pandas as pd
 
-from rockfrag.errors import InputError, errors_of
-from rockfrag.input_checks import number_from_zero, positive_number
+from rockfrag.base.errors import InputError, errors_of
+from rockfrag.base.input_checks import number_from_zero, positive_number
+from rockfrag.base.units import CENTIMETRES_PER_METRE, GRAVITY
+from rockfrag.base.yaml_file import read_yaml
+from rockfrag.config.schema import checked
 from rockfrag.motions.processing import highpass, pad, scale_to_pga
 from rockfrag.records.motion import Motion, integrate
-from rockfrag.schema import checked
-from rockfrag.units import CENTIMETRES_PER_METRE, GRAVITY
-from rockfrag.yaml_file import read_yaml
 
 # order of the zero-phase Butterworth high-pass that makes room for a motion
 FILTER_ORDER = 4

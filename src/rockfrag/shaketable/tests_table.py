@@ -25,9 +25,9 @@ import os
 
 import pandas as pd
 
-from rockfrag.errors import InputError
-from rockfrag.tabular import Row, read_rows, read_table
-from rockfrag.units import GRAVITY
+from rockfrag.base.errors import InputError
+from rockfrag.base.tabular import Row, read_rows, read_table
+from rockfrag.base.units import GRAVITY
 
 COLUMNS = (
     *("test", "configuration", "object", "pedestal", "earthquake", "floor", "motion"),

@@ -8,22 +8,22 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from rockfrag.arrays import Flags
+from rockfrag.base.arrays import Flags
+from rockfrag.base.errors import InputError
+from rockfrag.base.units import GRAVITY
 from rockfrag.campaign import comparison, laboratory
 from rockfrag.campaign.comparison import HALF, NEAR_CRITICAL, MeasuredTests
 from rockfrag.campaign.laboratory import MEASURED, Campaign, read_campaign
 from rockfrag.campaign.standing import sample_trials, simulate_tests
-from rockfrag.errors import InputError
 from rockfrag.fragility.vector import vector_tables
 from rockfrag.motions.processing import process, scale_to_pga
 from rockfrag.motions.pulses import commanded_cosine
 from rockfrag.records.motion import Motion
-from rockfrag.records.sources.wheel import fetch_url
+from rockfrag.records.sources.download import fetch_url
 from rockfrag.stages.job import Job, Results
 from rockfrag.study.campaign import PULSE_MEASURES, CampaignStudy
 from rockfrag.system.blocks import Block, Column
 from rockfrag.system.mesh import Shape, read_shape
-from rockfrag.units import GRAVITY
 
 OURS, VOTES, IN_PLANE = "rockfrag", "rockfrag by votes", "rockfrag in one plane"
 """Who gave the simulated outcomes, the votes behind them, and planar ones beside those in space, in the tables."""

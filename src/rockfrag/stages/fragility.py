@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from rockfrag.files import file_name
+from rockfrag.base.files import file_name
 from rockfrag.fragility import write_nrml, write_simcenter
 from rockfrag.fragility.counted import count_ida
 from rockfrag.fragility.empirical import TableIda, resurrections_of

@@ -12,7 +12,8 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 from numpy.typing import NDArray
 
-from rockfrag.files import whole_file
+from rockfrag.base.files import whole_file
+from rockfrag.base.units import GRAVITY
 from rockfrag.motions.processing import factors_to_pga
 from rockfrag.outcomes.limit_states import (
     OVERTURNS,
@@ -22,12 +23,11 @@ from rockfrag.outcomes.limit_states import (
 )
 from rockfrag.outcomes.outcomes import Outcomes
 from rockfrag.records.motion import Motion
-from rockfrag.rocking.ensemble import LIGHT, LightBodies, overturns
 from rockfrag.shaketable.definitions import Swept, fallen_names, labels_of, read_swept
+from rockfrag.simulation.ensemble import LIGHT, LightBodies, overturns
 from rockfrag.stages.job import Job, Results
 from rockfrag.study.study import Study
 from rockfrag.system.system import System
-from rockfrag.units import GRAVITY
 
 NEAR = 1 + 0.01 * np.arange(-10, 11)
 """Factors on a motion as recorded: itself, and up to a tenth weaker and stronger."""

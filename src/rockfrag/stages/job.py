@@ -2,7 +2,7 @@
 
 import hashlib
 import logging
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 import pandas as pd
 
-from rockfrag.files import write_table
+from rockfrag.base.files import is_file, sha256_of, write_table
 
 if TYPE_CHECKING:
     from rockfrag.records.motion import Motion
@@ -104,3 +104,15 @@ def package_digest(*plugins: Path) -> str:
                 digest.update(b"\0")
                 digest.update(path.read_bytes())
     return digest.hexdigest()[:16]
+
+
+def files_digest(paths: Iterable[str | Path | None]) -> str:
+    """Digest of the bytes of a user's files, in their order, whatever their times; empty if no path is given.
+
+    Snakemake looks at times, which a copy, an archive, a backup or a clock set anew may bring from anywhere.
+    """
+    files = [Path(path) for path in paths if path]
+    if not files:
+        return ""
+    each = (sha256_of(file) if is_file(file) else "absent" for file in files)
+    return hashlib.sha256(" ".join(each).encode()).hexdigest()[:16]

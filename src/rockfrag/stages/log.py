@@ -1,4 +1,4 @@
-"""Logs of the workflow's jobs: what each found, how long it took, one sentence if it failed; what they need."""
+"""Logs of the workflow's jobs: what each found, how long it took, one sentence if it failed."""
 
 import errno
 import logging
@@ -12,7 +12,7 @@ from concurrent.futures import BrokenExecutor
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
-from rockfrag.errors import InputError
+from rockfrag.base.errors import InputError
 
 _LINE = re.compile(r"\S+ \S+ INFO (.*)")
 _TOOK = re.compile(r"took ([0-9.]+) s, ([0-9.]+) s of processors, (\d+|nan) MiB")
@@ -37,7 +37,7 @@ def logged(path: str, name: str) -> Iterator[logging.Logger]:
         _fail(name, str(error), path)
     except KeyboardInterrupt:
         log.error("stopped")
-        sys.exit(1)
+        _fail(name, "it was stopped; the same command takes it up again", path)
     except Exception as error:
         log.exception("failed")
         _fail(name, in_words(error), path)
@@ -135,27 +135,6 @@ def _lines(path: Path) -> list[str]:
     except FileNotFoundError:
         # Snakemake takes away the log of a job whose shell was killed, at any instant
         return []
-
-
-LEAST_MEMORY = 4 * 2**30
-"""Bytes of addresses that a process of a run may have to reserve; a small study's take half of them."""
-
-
-def check_memory() -> None:
-    """Refuse a limit of memory (``ulimit -v``) under which no process of a run could work.
-
-    Libraries of linear algebra wait for ever where they are refused memory while they are loaded.
-    """
-    if os.name != "posix":
-        return
-    import resource
-
-    limit = resource.getrlimit(resource.RLIMIT_AS)[0]
-    if limit != resource.RLIM_INFINITY and limit < LEAST_MEMORY:
-        raise InputError(
-            f"a process may reserve {limit / 2**20:.0f} MiB of memory here, and a run needs "
-            f"{LEAST_MEMORY / 2**20:.0f}; raise the limit with 'ulimit -v {LEAST_MEMORY // 2**10}'."
-        )
 
 
 def check_folders(*folders: Path) -> None:

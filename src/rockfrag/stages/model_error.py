@@ -17,7 +17,8 @@ from datetime import UTC, datetime
 import numpy as np
 from scipy import stats
 
-from rockfrag.arrays import Flags, Floats
+from rockfrag.base.arrays import Flags, Floats
+from rockfrag.base.errors import InputError
 from rockfrag.campaign.comparison import MeasuredTests, curves_of
 from rockfrag.campaign.laboratory import Campaign
 from rockfrag.campaign.standing import (
@@ -26,7 +27,6 @@ from rockfrag.campaign.standing import (
     unknowns_of,
     ways_to_stand,
 )
-from rockfrag.errors import InputError
 from rockfrag.records.motion import Motion
 from rockfrag.stages.campaign import campaign_with_motions, measured_tests, object_of
 from rockfrag.study.campaign import CampaignStudy

@@ -7,8 +7,8 @@ from typing import Any, cast
 
 import pandas as pd
 
+from rockfrag.base.errors import InputError
 from rockfrag.building.floors import floor_motions, vertical_motions
-from rockfrag.errors import InputError
 from rockfrag.motions.directions import measure_records, motions_of_row
 from rockfrag.motions.measures import measure_motions
 from rockfrag.motions.processing import process

@@ -4,16 +4,16 @@ from collections.abc import Mapping
 
 import pandas as pd
 
-from rockfrag.errors import InputError
+from rockfrag.base.errors import InputError
+from rockfrag.base.tabular import join_rows
+from rockfrag.effects import study_pedestal
+from rockfrag.effects.paired_tests import with_counterparts
 from rockfrag.fragility import fit_step_tests
 from rockfrag.fragility.ida_curves import fragility_row, table_hash
-from rockfrag.pedestal import study_pedestal
-from rockfrag.pedestal.paired_tests import with_counterparts
 from rockfrag.shaketable.definitions import DEFINITION
 from rockfrag.shaketable.tests_table import read_measured
 from rockfrag.stages.job import Job, Results
 from rockfrag.study.study import Study
-from rockfrag.tabular import join_rows
 
 PEDESTAL_TABLES = ("pairs", "effects", "whole", "without_earthquake", "ranks", "notes")
 """Tables of :func:`pedestal_tables`, each written under ``pedestal/``."""
@@ -38,7 +38,7 @@ def pedestal_tables(
 ) -> dict[str, pd.DataFrame]:
     """Estimate the pedestal's effect once per reading of the tests.
 
-    Returns the tables named in ``PEDESTAL_TABLES``, see :class:`rockfrag.pedestal.PedestalStudy`, each with the
+    Returns the tables named in ``PEDESTAL_TABLES``, see :class:`rockfrag.effects.PedestalStudy`, each with the
     column ``definition`` first.
     """
     if tests.empty:

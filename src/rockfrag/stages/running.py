@@ -11,14 +11,14 @@ from typing import Any
 
 import numpy as np
 
-from rockfrag.errors import InputError
-from rockfrag.files import write_text
-from rockfrag.lock import locked
-from rockfrag.processes import end_with
+from rockfrag.base.errors import InputError
+from rockfrag.base.files import write_text
+from rockfrag.runtime.lock import locked
+from rockfrag.runtime.processes import end_with
 from rockfrag.stages.job import Job
 from rockfrag.stages.log import logged
 from rockfrag.study.loading import AnyStudy, any_study, check_records
-from rockfrag.study.study import Study
+from rockfrag.study.study import RECORDS_FOLDER, Study
 
 RESULTS = Path("results")
 """Folder of all studies' results, from the folder in which the workflow runs."""
@@ -76,9 +76,24 @@ def run_lock(results: Path) -> Iterator[None]:
             )
         for part in results.rglob(".*.part"):
             part.unlink(missing_ok=True)
+        bring_to_now([*results.rglob("*"), *Path(RECORDS_FOLDER).glob("*/*.json")])
         results.mkdir(parents=True, exist_ok=True)
         file.write_text(f"{os.getpid()} since {time.strftime('%H:%M:%S on %Y-%m-%d')}")
         yield
+
+
+def bring_to_now(files: Iterable[Path]) -> None:
+    """Give files whose time lies in the future, as after a clock was set back, times up to now in the same order.
+
+    Results that are written now would seem to be older than those that they are made of.
+    """
+    now = time.time_ns()
+    times = {file: file.stat().st_mtime_ns for file in files if file.is_file()}
+    ahead = sorted({moment for moment in times.values() if moment > now})
+    earlier = {moment: now - rank for rank, moment in enumerate(reversed(ahead))}
+    for file, moment in times.items():
+        if moment in earlier:
+            os.utime(file, ns=(earlier[moment], earlier[moment]))
 
 
 def run_job(

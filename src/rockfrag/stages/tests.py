@@ -8,9 +8,9 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
+from rockfrag.base.units import GRAVITY
 from rockfrag.motions.processing import scale_to_pga
 from rockfrag.records.motion import Motion
-from rockfrag.rocking import overturns, simulate
 from rockfrag.shaketable.definitions import (
     DEFINITION,
     Swept,
@@ -19,12 +19,12 @@ from rockfrag.shaketable.definitions import (
 )
 from rockfrag.shaketable.protocols import GeometricSteps, Protocol
 from rockfrag.shaketable.shaker import shaker_table
+from rockfrag.simulation import overturns, simulate
 from rockfrag.stages.ida import ida_curves_of
 from rockfrag.stages.job import Job, Results
 from rockfrag.study.study import Study
 from rockfrag.system import geometry
 from rockfrag.system.system import System, uplift_ratios
-from rockfrag.units import GRAVITY
 
 LIMITED = "step_protocol_shaker"  # the step protocol that stops at the shaker's limit
 

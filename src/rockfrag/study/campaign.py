@@ -3,13 +3,14 @@
 import os
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from glob import escape, glob
 from pathlib import Path
 from typing import Any
 
-from rockfrag.errors import InputError
-from rockfrag.files import is_file
+from rockfrag.base.errors import InputError
+from rockfrag.base.files import is_file
+from rockfrag.base.tabular import read_table
 from rockfrag.study.heading import Heading, Steps, beside, checked_steps, heading_of
-from rockfrag.tabular import read_table
 
 PULSE_MEASURES = ("pga_g", "pgv_over_pga_s")
 """Measures from which the motion of a commanded pulse follows."""
@@ -59,11 +60,23 @@ class CampaignStudy(Heading):
 
     @property
     def files(self) -> list[str]:
-        """Files that must be there before anything runs; those to be fetched are not among them."""
-        motions = Path(self.motions) if self.motions.endswith(".npz") else None
-        fetched = {None, *(path for _, _, path in self.fetch)}
-        named = (self.tests, self.other_codes, self.mesh, motions)
+        """The user's files that it depends on, but for those to be fetched, whose digests it states."""
+        from rockfrag.system.mesh_file import files_of_mesh
+
+        fetched = {path for _, _, path in self.fetch}
+        named = [self.tests, *self._motion_files()]
+        named += [self.other_codes] if self.other_codes else []
+        named += files_of_mesh(self.mesh) if self.mesh else []
         return [str(path) for path in named if path not in fetched]
+
+    def _motion_files(self) -> list[Path]:
+        """The archive of the table's motions, or all files whose names are of their pattern."""
+        from rockfrag.campaign.laboratory import KEY
+
+        if not self.motions or self.motions.endswith(".npz"):
+            return [Path(self.motions)] if self.motions else []
+        pattern = "*".join(map(escape, self.motions.split(KEY)))
+        return [Path(name) for name in sorted(glob(pattern))]
 
 
 def campaign_from(content: Mapping[str, Any], source: Path) -> CampaignStudy:

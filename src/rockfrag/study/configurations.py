@@ -5,14 +5,14 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
-from rockfrag.errors import InputError, errors_of
-from rockfrag.files import distinct_file_names
+from rockfrag.base.errors import InputError, errors_of
+from rockfrag.base.files import distinct_file_names
+from rockfrag.base.plausible import check_density
+from rockfrag.base.tabular import Row, read_rows
 from rockfrag.laws import law_names
-from rockfrag.rocking.options import MeasuredRestitution, system_of
+from rockfrag.simulation.options import MeasuredRestitution, system_of
 from rockfrag.system.blocks import Block, stacked
 from rockfrag.system.system import System
-from rockfrag.tabular import Row, read_rows
-from rockfrag.units import check_density
 
 
 def read_specimens(path: str | os.PathLike[str]) -> dict[str, Block]:

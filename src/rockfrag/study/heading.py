@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from rockfrag.errors import InputError, errors_of
-from rockfrag.files import is_file
+from rockfrag.base.errors import InputError, errors_of
+from rockfrag.base.files import is_file
 
 Steps = tuple[Mapping[str, Any], ...]
 
@@ -45,13 +45,9 @@ def existing_file(source: Path, key: str, name: str) -> Path:
 
 
 def check_file(path: Path, where: str) -> None:
-    """Check that a file exists and has a name that the workflow can use; messages begin with ``where``."""
+    """Check that a file exists; messages begin with ``where``."""
     if not is_file(path):
         raise InputError(f"{where}: expected an existing file, found no {path}.")
-    if set("{}") & set(str(path)):
-        raise InputError(
-            f"{where}: {path} has curly brackets in its name, which the workflow takes for wildcards; rename it."
-        )
 
 
 def checked_steps(source: Path, key: str, steps: Sequence[Mapping[str, Any]]) -> Steps:

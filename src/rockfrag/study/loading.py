@@ -6,12 +6,14 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any, cast
 
+from rockfrag.base.errors import InputError, errors_of
+from rockfrag.base.files import distinct_file_names, file_name, is_file
+from rockfrag.base.plausible import peak_warning
+from rockfrag.base.yaml_file import read_yaml
 from rockfrag.building.settings import read_building
-from rockfrag.errors import InputError, errors_of
-from rockfrag.files import distinct_file_names, file_name, is_file
-from rockfrag.plugins import plugins_asked
+from rockfrag.config.plugins import plugins_asked
+from rockfrag.config.schema import checked
 from rockfrag.records.catalogue import own_records, read_catalogue, repeated_motions
-from rockfrag.schema import checked
 from rockfrag.shaketable.shaker import read_shaker
 from rockfrag.study import configurations as arrangements
 from rockfrag.study.campaign import (
@@ -25,8 +27,6 @@ from rockfrag.study.campaign import (
 from rockfrag.study.heading import check_file, checked_steps, existing_file, heading_of
 from rockfrag.study.space import SPACE_KEY, SpaceStudy, space_study_from
 from rockfrag.study.study import RECORDS_FOLDER, Amplitudes, FragilitySettings, Study
-from rockfrag.units import peak_warning
-from rockfrag.yaml_file import read_yaml
 
 AnyStudy = Study | MeasuredTable | CampaignStudy | SpaceStudy
 

@@ -8,7 +8,7 @@ from typing import Any
 
 import pandas as pd
 
-from rockfrag.errors import InputError
+from rockfrag.base.errors import InputError
 from rockfrag.records.catalogue import own_records, read_catalogue
 from rockfrag.study.heading import Heading, existing_file, heading_of
 

@@ -10,16 +10,16 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
+from rockfrag.base.errors import InputError
+from rockfrag.base.files import file_name
+from rockfrag.base.plausible import size_warning
 from rockfrag.building.model import ShearBuilding
-from rockfrag.errors import InputError
-from rockfrag.files import file_name, is_file
 from rockfrag.records.catalogue import own_records
 from rockfrag.records.sources.wheel import PROVENANCE, WHEELS
 from rockfrag.shaketable.shaker import Shaker
 from rockfrag.study.heading import Heading
 from rockfrag.system.blocks import Block
 from rockfrag.system.system import System
-from rockfrag.units import size_warning
 
 GROUND = "ground"  # label of the only floor of a study without a building
 MOST_ROWS = 100_000
@@ -103,7 +103,7 @@ class Study(Heading):
     measured_tests: Path | None
     # Name of the configuration with which one is compared, where that is not its object alone on the floor
     counterparts: Mapping[str, str] = field(default_factory=dict)
-    # Settings of the plugins that it asks for, by name; see :mod:`rockfrag.plugins`
+    # Settings of the plugins that it asks for, by name; see :mod:`rockfrag.config.plugins`
     added: Mapping[str, Any] = field(default_factory=dict)
 
     @property
@@ -157,7 +157,7 @@ class Study(Heading):
     @property
     def simulated_in_page(self) -> bool:
         """Whether the simulation in a page has the outcomes of any of its configurations."""
-        from rockfrag.rocking.browser import in_page
+        from rockfrag.web import in_page
 
         return not self.vertical and any(map(in_page, self.configurations))
 
@@ -208,14 +208,18 @@ class Study(Heading):
         """Files of the user's own records."""
         return own_records(self.catalogue, self.catalogue_file.parent)
 
-    def record_files(self, records: str) -> list[str]:
-        """Files that must exist before the records can be read, fetched ones under ``records``."""
+    @property
+    def motion_files(self) -> list[str]:
+        """Paths of the user's files that the motions depend on: catalogue, records of each component, building."""
+        folder, turned = self.catalogue_file.parent, self.catalogue["direction"] != ""
+        files = [self.catalogue_file, *self.own_records]
+        files += own_records(self.catalogue[turned], folder, ("second",))
+        files += own_records(self.catalogue, folder, ("vertical",) * self.vertical)
+        files += [self.building_file] if self.building_file else []
+        return [str(path) for path in files]
+
+    def fetched_records(self, records: str) -> list[str]:
+        """Files under ``records`` that are there as soon as the records of pinned packages are."""
         wheels = self.catalogue["source"].isin(list(WHEELS))
-        fetched = [
-            f"{records}/{name}/{PROVENANCE}"
-            for name in self.catalogue["source"][wheels]
-        ]
-        own = (
-            path for path in self.own_records if is_file(path) or not self.keep_going
-        )
-        return [*dict.fromkeys(fetched), *(str(path) for path in own)]
+        names = dict.fromkeys(self.catalogue["source"][wheels])
+        return [f"{records}/{name}/{PROVENANCE}" for name in names]

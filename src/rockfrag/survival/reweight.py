@@ -16,8 +16,8 @@ import numpy as np
 import pandas as pd
 from scipy import special
 
-from rockfrag.arrays import Floats
-from rockfrag.errors import InputError
+from rockfrag.base.arrays import Floats
+from rockfrag.base.errors import InputError
 from rockfrag.survival.site import (
     Site,
     StandingObject,

@@ -15,7 +15,6 @@ from typing import Any
 import numpy as np
 from scipy import special, stats
 
-from rockfrag.arrays import Floats
 from rockfrag.assess.hazard.curve import (
     LARGEST_FILE,
     PGA,
@@ -28,11 +27,13 @@ from rockfrag.assess.hazard.curve import (
     read_measure,
     read_openquake,
 )
-from rockfrag.errors import InputError, errors_of
+from rockfrag.base.arrays import Floats
+from rockfrag.base.errors import InputError, errors_of
+from rockfrag.base.tabular import Row, read_table
+from rockfrag.base.text_files import read_text
+from rockfrag.base.yaml_file import read_yaml
+from rockfrag.config.schema import checked
 from rockfrag.motions.intensity import IntensityMeasure
-from rockfrag.schema import checked
-from rockfrag.tabular import Row, read_table, read_text
-from rockfrag.yaml_file import read_yaml
 
 MOST_BRANCHES = 10_000  # Branches of one site
 

@@ -12,15 +12,16 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any, TypeGuard
 
-from rockfrag.errors import InputError
-from rockfrag.input_checks import positive_number, real_number, shown
-from rockfrag.keywords import named_fields
+from rockfrag.base.errors import InputError
+from rockfrag.base.input_checks import positive_number, real_number, shown
+from rockfrag.base.keywords import named_fields
+from rockfrag.base.plausible import block_warning
+from rockfrag.base.units import GRAVITY
 from rockfrag.system import geometry
 from rockfrag.system import system as systems
 from rockfrag.system.body import Interval, RigidBody, Tensor, checked_tensor
 from rockfrag.system.contact import Contact
 from rockfrag.system.system import System
-from rockfrag.units import GRAVITY, block_warning
 
 LARGEST = 1e6
 """Width and height of a block are no larger: one of 1e12 m falls for days, which takes minutes to compute [m]."""

@@ -11,8 +11,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from rockfrag.errors import InputError
-from rockfrag.input_checks import positive_number, real_array, real_number, shown
+from rockfrag.base.errors import InputError
+from rockfrag.base.input_checks import positive_number, real_array, real_number, shown
 
 Vector3 = tuple[float, float, float]
 Tensor = tuple[Vector3, Vector3, Vector3]

@@ -7,8 +7,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from rockfrag.errors import InputError
-from rockfrag.input_checks import real_number, shown
+from rockfrag.base.errors import InputError
+from rockfrag.base.input_checks import real_number, shown
 
 ROUGHEST = 1e6
 """Larger coefficients, infinite ones too, are taken as this one: a contact that is about to lift off while it

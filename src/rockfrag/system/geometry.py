@@ -7,7 +7,7 @@ described.  Lengths [m] are from the middle of a base, x to the right and y up; 
 import math
 from typing import Any, NamedTuple
 
-from rockfrag.elementary import atan2, hypot, sin_cos
+from rockfrag.base.elementary import atan2, hypot, sin_cos
 
 
 class Shape(NamedTuple):

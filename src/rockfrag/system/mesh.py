@@ -16,16 +16,15 @@ from typing import Any
 import numpy as np
 from scipy.spatial import ConvexHull, QhullError
 
-from rockfrag.arrays import Floats
-from rockfrag.errors import InputError
-from rockfrag.input_checks import positive_number
-from rockfrag.short_repr import short_repr
+from rockfrag.base.arrays import Floats
+from rockfrag.base.errors import InputError
+from rockfrag.base.input_checks import positive_number
+from rockfrag.base.plausible import LARGEST_SIZE, MEAN_DENSITIES
+from rockfrag.base.short_repr import short_repr
 from rockfrag.system.blocks import Block
 from rockfrag.system.body import Polygon, RigidBody
-from rockfrag.units import LARGEST_SIZE, MEAN_DENSITIES
+from rockfrag.system.mesh_file import Y_UP, load_mesh
 
-MESH_ENDINGS = (".obj", ".ply", ".stl", ".glb", ".gltf")
-Y_UP = (".glb", ".gltf")  # formats whose specification says so (glTF 2.0, section 3.4)
 FEWEST_CARRY = 3  # points that make a polygon to stand on
 MOST_CORNERS = 48  # of a polygon to stand on in space
 FLAT = 1e-3  # distance over the polygon's size at which a corner hardly turns it [-]
@@ -283,22 +282,9 @@ def _closed_mesh(path: Path, hull: bool) -> Any:
     """Read a mesh with trimesh and turn it outside out; refuse one with holes."""
     import trimesh
 
-    if path.suffix.lower() not in MESH_ENDINGS:
-        raise InputError(
-            f"{path}: a mesh is read from {', '.join(MESH_ENDINGS)} files."
-        )
-    if not path.is_file():
-        raise InputError(f"{path}: there is no such file; correct the path.")
-    try:
-        mesh: Any = trimesh.load(path, process=False)
-        if not isinstance(mesh, trimesh.PointCloud):
-            mesh = trimesh.load(path, process=False, force="mesh")
-        vertices = np.asarray(mesh.vertices, dtype=np.float64)
-        faces = np.asarray(getattr(mesh, "faces", ()))
-    except Exception as error:
-        raise InputError(
-            f"{path}: cannot be read as a mesh ({type(error).__name__})."
-        ) from error
+    mesh = load_mesh(path)
+    vertices = np.asarray(mesh.vertices, dtype=np.float64)
+    faces = np.asarray(getattr(mesh, "faces", ()))
     if not np.isfinite(vertices).all():
         raise InputError(f"{path}: the mesh has a vertex that is not finite.")
     if hull:

@@ -7,9 +7,9 @@ from typing import Any
 
 import numpy as np
 
-from rockfrag.elementary import sin_cos
-from rockfrag.errors import InputError
-from rockfrag.input_checks import shown
+from rockfrag.base.elementary import sin_cos
+from rockfrag.base.errors import InputError
+from rockfrag.base.input_checks import shown
 from rockfrag.system import geometry
 from rockfrag.system.body import Circle, Polygon, RigidBody, Vector3
 from rockfrag.system.contact import Contact
@@ -304,6 +304,14 @@ def common_centre(system: System, lowest: int = 0) -> tuple[float, float]:
         for axis in zip(*standing_centres(system)[lowest:], strict=True)
     )
     return x, z
+
+
+def rocking_shapes(system: System) -> list[geometry.Shape]:
+    """Shapes that rock: those of the bodies, the lower of two joined with what it carries."""
+    shapes = list(system.carried)
+    if system.count == 2:
+        shapes[0] = geometry.joined(system.pile)
+    return shapes
 
 
 def standing_centres(system: System) -> list[tuple[float, float]]:

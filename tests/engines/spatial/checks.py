@@ -5,10 +5,10 @@ import math
 import numpy as np
 from scipy.spatial.transform import Rotation
 
+from rockfrag.base.units import GRAVITY
 from rockfrag.engines.spatial._body import SIZE
 from rockfrag.engines.spatial.engine import history_table, run_case
 from rockfrag.system.body import Circle
-from rockfrag.units import GRAVITY
 
 from ...oracle.space_stepping import falls
 from .samples import DT, box, cylinder, solid, synthetic_motion

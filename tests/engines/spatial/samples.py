@@ -5,11 +5,11 @@ import math
 import numpy as np
 from scipy.signal import butter, sosfilt
 
+from rockfrag.base.units import GRAVITY
 from rockfrag.engines.spatial.body import kernel_body
 from rockfrag.system.body import Circle, Polygon, RigidBody
 from rockfrag.system.contact import Contact
 from rockfrag.system.system import System
-from rockfrag.units import GRAVITY
 
 DT = 0.01
 

@@ -5,20 +5,20 @@ import pandas as pd
 import pytest
 
 from rockfrag import find_thresholds, overturns, simulate
-from rockfrag.cli import main
+from rockfrag.base.errors import InputError
+from rockfrag.base.units import GRAVITY
+from rockfrag.cli.main import main
 from rockfrag.engines.contract import Case
 from rockfrag.engines.spatial import body as bodies
 from rockfrag.engines.spatial import run_in_space
 from rockfrag.engines.spatial.body import kernel_body
 from rockfrag.engines.spatial.engine import ENGINE, run_case
-from rockfrag.errors import InputError
 from rockfrag.records.motion import GroundMotion, Motion
-from rockfrag.report.live.space import AMPLITUDES_G
-from rockfrag.rocking.parquet import stream_histories, stream_overturns
-from rockfrag.sentences import number
+from rockfrag.report.live.live_space import AMPLITUDES_G
+from rockfrag.simulation.parquet import stream_histories, stream_overturns
 from rockfrag.system import Block, Contact, Stack, System, as_system
 from rockfrag.system.system import box, cylinder
-from rockfrag.units import GRAVITY
+from rockfrag.words.sentences import number
 
 from .samples import DT, synthetic_motion
 

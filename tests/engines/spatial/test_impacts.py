@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from rockfrag import Block, simulate
+from rockfrag.base.units import GRAVITY
 from rockfrag.engines.spatial.engine import run_case
 from rockfrag.records.motion import GroundMotion, Motion
-from rockfrag.rocking.options import Friction
-from rockfrag.units import GRAVITY
+from rockfrag.simulation.options import Friction
 
 from .checks import turned_by
 from .samples import box

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 import trimesh
 
+from rockfrag.base.errors import InputError
 from rockfrag.campaign.standing import sample_trials, simulate_tests
 from rockfrag.engines.spatial import run_in_space
-from rockfrag.errors import InputError
 from rockfrag.records.motion import GroundMotion, Motion
 from rockfrag.system import Block, Contact, System
 from rockfrag.system.mesh import read_shape

@@ -5,9 +5,9 @@ import math
 import numpy as np
 import pytest
 
+from rockfrag.base.units import GRAVITY
 from rockfrag.engines.spatial.body import standing
 from rockfrag.engines.spatial.engine import run_case
-from rockfrag.units import GRAVITY
 
 from .samples import DT, box, cylinder
 

@@ -9,11 +9,12 @@ from typing import Any
 
 import pandas as pd
 
-from rockfrag.arrays import Floats
+from rockfrag.base.arrays import Floats
+from rockfrag.base.errors import InputError
+from rockfrag.base.yaml_file import read_yaml
 from rockfrag.building.floors import judge_drift, respond, response_motions
 from rockfrag.building.model import ShearBuilding
 from rockfrag.building.settings import make_building
-from rockfrag.errors import InputError
 from rockfrag.motions.processing import scale
 from rockfrag.records.motion import Motion
 from rockfrag.shaketable.definitions import DEFINITION, mean_amplitudes, tests_from_ida
@@ -23,7 +24,6 @@ from rockfrag.stages.job import Job, Results
 from rockfrag.stages.tests import protocol_of
 from rockfrag.study.study import Study
 from rockfrag.system.system import System
-from rockfrag.yaml_file import read_yaml
 from rockfrag_thesis.settings import settings_of
 
 AXES = ("first_period_s", "damping_ratio", "base_shear", "ground_scale", "floors")

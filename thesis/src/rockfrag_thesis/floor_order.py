@@ -11,8 +11,8 @@ from collections.abc import Mapping
 
 import pandas as pd
 
-from rockfrag.errors import InputError
-from rockfrag.pedestal.cluster_means import TooFewUnitsError
+from rockfrag.base.errors import InputError
+from rockfrag.effects.cluster_means import TooFewUnitsError
 from rockfrag.system.blocks import Block
 from rockfrag_thesis.hypotheses import HYPOTHESES as ALL_HYPOTHESES
 from rockfrag_thesis.hypotheses import Evidence, Undecidable

@@ -4,11 +4,11 @@ import json
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from rockfrag.plugins import Plugin
+from rockfrag.config.plugins import Plugin
 from rockfrag_thesis.settings import read_settings, settings_of
 
 if TYPE_CHECKING:
-    from rockfrag.plugins import FirstPage, Parts
+    from rockfrag.config.plugins import FirstPage, Parts
     from rockfrag.study.study import Study
 
 FOLDER = Path(__file__).parent

@@ -8,11 +8,11 @@ from typing import Any, NamedTuple
 
 import pandas as pd
 
+from rockfrag.base.tabular import read_rows
+from rockfrag.base.units import CENTIMETRES_PER_METRE, GRAVITY
 from rockfrag.motions.intensity import pga, pgd, pgv
 from rockfrag.system.blocks import SystemLike, as_system
 from rockfrag.system.system import uplift_ratios
-from rockfrag.tabular import read_rows
-from rockfrag.units import CENTIMETRES_PER_METRE, GRAVITY
 
 FOLDER = Path(__file__).parent / "printed"
 """The tables as printed: ``table_3_1.csv``, ``table_3_3.csv`` and ``table_4_1.csv``."""

@@ -12,8 +12,6 @@ if ASKED.sensitivity:
         """Repeat the tests on the floors of other buildings, one assumption changed at a time."""
         input:
             read("motions/ground"),
-            bodies=STUDY.body_files,
-            building=STUDY.building_file or [],
         output:
             table("building_sensitivity/tests", "building_sensitivity/means"),
         log:
@@ -26,10 +24,11 @@ if ASKED.sensitivity:
             runtime=120,
         params:
             stage="rockfrag_thesis.building_sensitivity:run",
-            study=STUDY_FILE,
+            study=study_file,
             settings=settings(
                 *("building_sensitivity", "building", "bodies", "amplitudes"),
                 *("protocol", "friction"),
+                files=[*STUDY.body_files, STUDY.building_file],
             ),
         script:
             RUN_STAGE
@@ -43,7 +42,6 @@ if ASKED.sensitivity_analysis:
         """Simulate what could produce an effect of the pedestal, one perturbed parameter of the ideal model at a time."""
         input:
             read("motions/floors"),
-            bodies=STUDY.body_files,
         output:
             table("sensitivity_analysis/ratios", "sensitivity_analysis/effects"),
             friction=(
@@ -71,9 +69,10 @@ if ASKED.sensitivity_analysis:
             runtime=120,
         params:
             stage="rockfrag_thesis.stages.sensitivity_analysis:run",
-            study=STUDY_FILE,
+            study=study_file,
             settings=settings(
-                "sensitivity_analysis", "bodies", "amplitudes", "protocol", "seed"
+                *("sensitivity_analysis", "bodies", "amplitudes", "protocol", "seed"),
+                files=STUDY.body_files,
             ),
         script:
             RUN_STAGE
@@ -88,7 +87,6 @@ if ASKED.compares:
         input:
             read("motions/ground", "motions/floors", "tests", "validity", "measures"),
             read(*[f"{folder}/tests" for folder in MEASURED + BUILDINGS]),
-            bodies=STUDY.body_files,
         output:
             table(
                 "table_3_1", "table_3_3", "table_4_1", "hypotheses_theory", "standing"
@@ -106,10 +104,11 @@ if ASKED.compares:
             runtime=120,
         params:
             stage="rockfrag_thesis.stages.hypotheses:run",
-            study=STUDY_FILE,
+            study=study_file,
             settings=settings(
                 *("bodies", "seed", "amplitudes", "protocol"),
                 *("measured_tests", "building_sensitivity"),
+                files=STUDY.body_files,
             ),
         script:
             RUN_STAGE

@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
-from rockfrag.errors import InputError
+from rockfrag.base.errors import InputError
 from rockfrag.study.study import Study
 from rockfrag.system.blocks import Block, Stack
 

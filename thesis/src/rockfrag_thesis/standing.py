@@ -6,18 +6,18 @@ from collections.abc import Sequence
 import numpy as np
 import pandas as pd
 
-from rockfrag.arrays import Flags, Floats
+from rockfrag.base.arrays import Flags, Floats
 from rockfrag.motions.processing import factors_to_pga
 from rockfrag.records.motion import Motion
-from rockfrag.rocking import overturns
-from rockfrag.rocking.ensemble import LightBodies
-from rockfrag.rocking.robustness import perturbed
 from rockfrag.shaketable.definitions import (
     always_overturning,
     first_overturning,
     step_protocol,
 )
 from rockfrag.shaketable.protocols import Protocol
+from rockfrag.simulation import overturns
+from rockfrag.simulation.ensemble import LightBodies
+from rockfrag.simulation.robustness import perturbed
 from rockfrag.system.system import System
 
 SIZES = (1e-9, 1e-6, 1e-4)

@@ -11,7 +11,6 @@ from typing import Any
 import numpy as np
 from scipy import special, stats
 
-from rockfrag import units
 from rockfrag.assess import (
     conversion,
     mitigations,
@@ -29,13 +28,14 @@ from rockfrag.assess.hazard.curve import PGA, PGV
 from rockfrag.assess.motions import MotionSet
 from rockfrag.assess.place import Place
 from rockfrag.assess.request import Records, Request
+from rockfrag.base import plausible, units
 from rockfrag.building.model import ModalDamping, ShearBuilding
 from rockfrag.building.response import find_modes
 from rockfrag.fragility import held_out, vector
 from rockfrag.fragility.model_error import CUT, MODEL_ERRORS
 from rockfrag.motions.intensity import IntensityMeasure
-from rockfrag.motions.spectra import oscillator_matrix
-from rockfrag.rocking.browser import driver_text
+from rockfrag.motions.response_spectra import oscillator_matrix
+from rockfrag.web import driver_text
 
 SCRIPTS = ("statistics", "risk", "conversion", "building", "space", "objects", "answer")
 """Scripts that compute, in the order in which they need each other."""
@@ -98,7 +98,10 @@ def data_of(motions: MotionSet, asked: Request | None = None) -> dict[str, Any]:
             }
             for step in risk.STEPS
         ],
-        "limits": {"storey": units.STOREY_HEIGHTS, "period": units.FIRST_PERIODS},
+        "limits": {
+            "storey": plausible.STOREY_HEIGHTS,
+            "period": plausible.FIRST_PERIODS,
+        },
         "units": {
             "dimensions": units.DIMENSIONS,
             "examples": units.EXAMPLES,
@@ -190,7 +193,7 @@ def _constants() -> dict[str, Any]:
     return {
         **_of(units, "GRAVITY"),
         **_of(outcomes, "AT_REST", "LARGEST_FACTOR"),
-        **_of(units, "LARGEST_PEAK"),
+        **_of(plausible, "LARGEST_PEAK"),
         **_of(risk, "LEVEL", "HALF"),
         "Z": float(stats.norm.ppf(0.5 + risk.LEVEL / 2)),
         "FLANK_Z": float(special.ndtri(curve.FLANKS[1])),
@@ -201,7 +204,7 @@ def _constants() -> dict[str, Any]:
         **_of(conversion, "MOST_LEVELS", "OF_DISPLACEMENT"),
         **_of(vector, "INTERACTION_LEVEL"),
         **_of(held_out, "FOLDS", "WORST_SCORE"),
-        **_of(units, "STONE", "DENSITIES", "DEPTHS"),
+        **_of(plausible, "STONE", "DENSITIES", "DEPTHS"),
         **_of(mitigations, "WIDER", "PLATE", "STEEL", "LOWER", "BALLAST", "BALLAST_AT"),
         **_of(mitigations, "PEDESTAL_HEIGHT"),
         **_of(

@@ -15,8 +15,9 @@ from rockfrag.assess.request import Request
 from rockfrag.assess.risk import STEPS
 from rockfrag.assess.sources import MEASUREMENTS, SOURCES
 from rockfrag.assess.words import says
-from rockfrag.errors import InputError
-from rockfrag.files import write_text
+from rockfrag.base.errors import InputError
+from rockfrag.base.files import write_text
+from rockfrag.base.units import GRAVITY
 from rockfrag.records.motion import Motion
 from rockfrag.report.page import (
     TEMPLATES,
@@ -25,8 +26,7 @@ from rockfrag.report.page import (
     scripts_of,
     zipped_text,
 )
-from rockfrag.rocking.browser import driver_text, module_bytes
-from rockfrag.units import GRAVITY
+from rockfrag.web import driver_text, module_bytes
 
 MOST_BYTES = 6_000_000  # Largest page [bytes], which a memory stick and a mail take
 

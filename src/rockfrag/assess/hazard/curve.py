@@ -17,12 +17,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from rockfrag.arrays import Floats
-from rockfrag.errors import InputError
+from rockfrag.base.arrays import Floats
+from rockfrag.base.errors import InputError
+from rockfrag.base.short_repr import short_repr
+from rockfrag.base.tabular import Row, read_table
+from rockfrag.base.text_files import read_text
+from rockfrag.base.units import CENTIMETRES_PER_METRE, GRAVITY, quantity
 from rockfrag.motions.intensity import IntensityMeasure, declared
-from rockfrag.short_repr import short_repr
-from rockfrag.tabular import Row, read_table, read_text
-from rockfrag.units import CENTIMETRES_PER_METRE, GRAVITY, quantity
 
 # Beyond, a curve is in another unit: g, g, cm/s
 HIGHEST = {"PGA": 10.0, "SA": 30.0, "PGV": 2000.0}
@@ -537,7 +538,7 @@ def read_levels(
     def curve(rows: Sequence[Row], where: str) -> HazardCurve:
         points = sorted((row.number(level) * factor, row.number(often)) for row in rows)
         rates = _annual_rates(often, [value for _, value in points], where)
-        return make_curve(measure, [level for level, _ in points], rates, where)
+        return make_curve(measure, [intensity for intensity, _ in points], rates, where)
 
     return table.rows(titles), curve
 

@@ -13,16 +13,16 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from rockfrag.engines import response as responses
 from rockfrag.engines.built_in import PLANAR
 from rockfrag.engines.contract import Case, Cases, Engine, Request, engines, run_cases
-from rockfrag.engines.kernels.single import GRAZING_SPEED
 from rockfrag.engines.planar import integrate as contact
 from rockfrag.engines.planar import records
-from rockfrag.engines.response import FLIGHT, ROCKING_MODES, Response
-from rockfrag.engines.single import shaking_of
+from rockfrag.engines.pure_rocking.histories import shaking_of
+from rockfrag.engines.pure_rocking.kernels.single import GRAZING_SPEED
 from rockfrag.engines.steps import free_samples, step_count
+from rockfrag.outcomes import response as responses
 from rockfrag.outcomes.outcomes import Outcomes, empty_outcomes, merge_outcomes
+from rockfrag.outcomes.response import FLIGHT, ROCKING_MODES, Response
 from rockfrag.records.motion import GroundMotion
 from rockfrag.system.system import System
 
@@ -276,9 +276,9 @@ def _contact_events(found: NDArray[Any], blocks: int) -> pd.DataFrame:
     """Make the table of contact events of a response."""
     before, slid = _modes(found["before"], blocks)
     after, slides = _modes(found["after"], blocks)
-    slip, theta, old, new = (
-        found[name][:, :blocks]
-        for name in ("slip", "theta", "omega_before", "omega_after")
+    slip = found["slip"][:, :blocks]
+    theta, old, new = (
+        found[name][:, 2 : 3 * blocks : 3] for name in ("q", "v_before", "v_after")
     )
     kinds = [
         _KINDS.get(kind) or _kind_of_change(*change)

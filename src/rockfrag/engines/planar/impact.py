@@ -3,10 +3,9 @@
 An impact has impulses at touching ends, Coulomb's law on them, and each contact's own law.
 """
 
-from rockfrag.elementary import sin_cos
-from rockfrag.engines.kernels.jit import kernel
-from rockfrag.engines.kernels.laws import moves_impulse, scales_momentum
-from rockfrag.engines.kernels.laws import rate as lawful_rate
+from rockfrag.base.elementary import sin_cos
+from rockfrag.engines.compile.jit import kernel
+from rockfrag.engines.planar.routh import contact_alone, strike_alone
 from rockfrag.engines.planar.search import (
     Trial,
     mode_number,
@@ -23,6 +22,8 @@ from rockfrag.engines.planar.solve import (
     solve,
     standing_bodies,
 )
+from rockfrag.engines.pure_rocking.kernels.laws import moves_impulse, scales_momentum
+from rockfrag.engines.pure_rocking.kernels.laws import rate as lawful_rate
 from rockfrag.laws.momentum import NUMBER as MOMENTUM
 
 NO_GAIN = 1e-12  # fraction of the kinetic energy below which a gain is rounding
@@ -89,7 +90,7 @@ def settle(p, w, ah, av, exclude):
     """Find the mode in which touching ends go on, not the old one on ``exclude``; False if there is none."""
     all_touch = True
     for k in range(p.count):
-        w.limit[k] = p.static[k]
+        w.against[k] = w.along[k] = p.static[k]
         for end in range(2):
             if w.touching[k, end] == 1 and approach(p, w, k, end) >= STILL * p.speed:
                 w.touching[k, end] = 0
@@ -140,10 +141,10 @@ def strike(p, w, ah, av, closing, push):
     before = kinetic_energy(p, w.v)
     lawful = _read_laws(p, w, push)
     for k in range(p.count):
-        w.moves[k] = 0
-        w.limit[k] = (
-            p.static[k] if slip_speed(p, w, w.v, k, True) == 0.0 else p.kinetic[k]
-        )
+        slip = slip_speed(p, w, w.v, k, True)
+        w.moves[k], w.slid[k] = 0, 1 if slip > 0.0 else (-1 if slip < 0.0 else 0)
+        w.along[k] = p.static[k]
+        w.against[k] = p.static[k] if slip == 0.0 else p.kinetic[k]
         if push:
             w.v[3 * k + 1] -= 1e-7 * p.speed
     scale = 1e-300
@@ -158,9 +159,15 @@ def strike(p, w, ah, av, closing, push):
     solve(p, w, w.q, w.v, ah, av, True)
     if lawful:
         _obey(p, w, trial)
+    else:
+        k, end = contact_alone(p, w)
+        if k >= 0:
+            strike_alone(p, w, k, end)
     lift_laws(p, w)
     remember_slides(p, w)
     copy(p, w.out, w.v)
+    for k in range(p.count):
+        read_slip(p, w, k, 0.0)
     while _shut_weak(p, w, ah, av, closing):
         solve(p, w, w.q, w.v, ah, av, True, False)
         copy(p, w.out, w.v)
@@ -254,12 +261,24 @@ def _outcome(p, w, trial, part, before):
 
 
 @kernel
+def read_slip(p, w, k, still):
+    """Let closed contact k slide as it moves, and stick only if it slips no faster than ``still`` [m/s].
+
+    After an impact nothing else decides between the two: what sticks is held by shear without a bound where ends
+    are shut, so what slips may never be called stuck.
+    """
+    speed = slip_speed(p, w, w.v, k, False)
+    w.slides[k] = 0 if abs(speed) <= still else (1 if speed > 0.0 else -1)
+
+
+@kernel
 def _shut_weak(p, w, ah, av, closing):
     """Close the ends that part too slowly after an impact, in a crowd whatever pulls; whether there are any."""
     crowd = w.met > CROWD
     found = False
     solve(p, w, w.q, w.v, ah, av, False)
     for k in range(p.count):
+        was_open = not w.closed[k].any()
         for end in range(2):
             if w.touching[k, end] == 1 and w.closed[k, end] == 0:
                 x, y, tx, ty, _, _, kind = end_of(p, w, w.q, k, end, w.kind[k, end])
@@ -268,11 +287,8 @@ def _shut_weak(p, w, ah, av, closing):
                 if (pull < 0.0 or crowd) and approach(p, w, k, end) < closing:
                     w.closed[k, end] = 1
                     found = True
-        if (
-            crowd
-            and w.slides[k] != 0
-            and abs(slip_speed(p, w, w.v, k, False)) < closing
-        ):
-            w.slides[k] = 0
-            found = True
+        if was_open or (crowd and w.slides[k] != 0):
+            slid = w.slides[k] != 0
+            read_slip(p, w, k, closing if crowd else 0.0)
+            found = found or (slid and w.slides[k] == 0)
     return found

@@ -6,14 +6,14 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from rockfrag.arrays import fields, whole
-from rockfrag.engines.kernels.jit import entry_kernel, kernel
-from rockfrag.engines.kernels.single import Shaking
+from rockfrag.base.arrays import fields, whole
+from rockfrag.engines.compile.jit import entry_kernel, kernel
 from rockfrag.engines.planar import impact
 from rockfrag.engines.planar import step as stepping
 from rockfrag.engines.planar.records import MOST
 from rockfrag.engines.planar.search import mode_number
 from rockfrag.engines.planar.solve import copy, end_of, look_at, solve
+from rockfrag.engines.pure_rocking.kernels.single import Shaking
 
 # contact events within a sample after which accumulating ones are ended ten times as coarsely, and again
 MOST_CONTACT_EVENTS = 300
@@ -44,7 +44,9 @@ CONTACT_EVENT = np.dtype(
         *fields("time"),
         *whole("kind before after"),  # its kind, and the modes before and after
         *fields("energy_before energy_after"),
-        *fields("slip theta omega_before omega_after", MOST),
+        *fields("slip", MOST),
+        # coordinates of the bodies, and their rates before and after
+        *fields("q v_before v_after", 3 * MOST),
     ]
 )
 """What is kept of a contact event."""
@@ -465,12 +467,11 @@ def _note(p, w, time, kind, kept):
         found.time, found.kind, found.before, found.after = time, kind, before, after
         found.energy_before = impact.kinetic_energy(p, w.old_v)
         found.energy_after = impact.kinetic_energy(p, w.v)
+        copy(p, w.q, found.q)
+        copy(p, w.old_v, found.v_before)
+        copy(p, w.v, found.v_after)
         for k in range(p.count):
-            found.slip[k], found.theta[k] = slip(p, w, k), w.q[3 * k + 2]
-            found.omega_before[k], found.omega_after[k] = (
-                w.old_v[3 * k + 2],
-                w.v[3 * k + 2],
-            )
+            found.slip[k] = slip(p, w, k)
     w.noted += 1
 
 

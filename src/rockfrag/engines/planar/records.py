@@ -9,9 +9,9 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from rockfrag.arrays import fields, whole
-from rockfrag.elementary import atan2, sin_cos
-from rockfrag.engines.lanes import after_impact
+from rockfrag.base.arrays import fields, whole
+from rockfrag.base.elementary import atan2, sin_cos
+from rockfrag.engines.pure_rocking.ensembles import after_impact
 from rockfrag.system import geometry
 from rockfrag.system.contact import ROUGHEST
 from rockfrag.system.system import System
@@ -95,7 +95,10 @@ WORK = np.dtype(
         # search for a mode
         *whole("touching", MOST, 2),
         *whole("moves", MOST),
-        *fields("limit", MOST),
+        # of a contact that sticks: coefficients for a shear against its slip before an impact and for one
+        # along it, and the sign of that slip
+        *fields("against along", MOST),
+        *whole("slid", MOST),
         *fields("old_v", 3 * MOST),
         *whole("old_closed", MOST, 2),
         *whole("old_slides", MOST),

@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from rockfrag.engines.kernels.jit import kernel
+from rockfrag.engines.compile.jit import kernel
 from rockfrag.engines.planar.solve import bias, end_of, rate, solve_generally
 
 # violation below which a mode is consistent: forces over the weight, accelerations over g [-].  Less than the
@@ -92,7 +92,8 @@ def try_mode(p, w, trial):
         if closed < 0:
             continue
         if slides == 0:
-            margin = (w.limit[k] * pressed - abs(shear)) / max(w.limit[k], 1.0)
+            limit = w.along[k] if w.slid[k] * shear >= 0.0 else w.against[k]
+            margin = (limit * pressed - abs(shear)) / max(limit, 1.0)
             worst = _note_worst(
                 w, worst, margin / trial.force, k, SLIP, -1 if shear > 0.0 else 1
             )

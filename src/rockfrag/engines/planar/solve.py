@@ -2,8 +2,8 @@
 
 import math
 
-from rockfrag.elementary import sin_cos
-from rockfrag.engines.kernels.jit import inlined_kernel, kernel
+from rockfrag.base.elementary import sin_cos
+from rockfrag.engines.compile.jit import inlined_kernel, kernel
 
 SHEAR, COUPLE = (
     2,

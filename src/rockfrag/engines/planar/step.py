@@ -3,9 +3,9 @@
 import math
 from typing import NamedTuple
 
-from rockfrag.engines.kernels.dormand_prince import INSTANTS, WEIGHTS
-from rockfrag.engines.kernels.jit import kernel
+from rockfrag.engines.compile.jit import kernel
 from rockfrag.engines.planar.solve import AT_EDGE, copy, end_of, look_at, rate, solve
+from rockfrag.engines.pure_rocking.kernels.dormand_prince import INSTANTS, WEIGHTS
 
 # slack before a contact event is seen, so that what has just begun is not taken for its end [-]: forces over
 # weight; speeds over √(g b) and lengths over b

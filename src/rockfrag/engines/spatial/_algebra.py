@@ -2,7 +2,7 @@
 
 import math
 
-from rockfrag.engines.kernels.jit import kernel
+from rockfrag.engines.compile.jit import kernel
 
 
 @kernel

@@ -7,8 +7,8 @@ the energy lost by friction (14).  Everything is for a unit of mass: energies in
 
 import numpy as np
 
-from rockfrag.arrays import fields, whole
-from rockfrag.engines.kernels.jit import kernel
+from rockfrag.base.arrays import fields, whole
+from rockfrag.engines.compile.jit import kernel
 from rockfrag.engines.spatial._algebra import cross, dot, norm, plus, times, to_world
 
 SIZE = 15

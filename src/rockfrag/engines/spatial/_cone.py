@@ -11,8 +11,8 @@ import math
 
 import numpy as np
 
-from rockfrag.elementary import sin_cos
-from rockfrag.engines.kernels.jit import kernel
+from rockfrag.base.elementary import sin_cos
+from rockfrag.engines.compile.jit import kernel
 from rockfrag.engines.spatial._algebra import factor, norm, solve_symmetric, substitute
 from rockfrag.engines.spatial._forces import (
     MOST,

@@ -6,7 +6,7 @@ So a body has the same bits on every processor, and in a page.
 import math
 from typing import Any
 
-from rockfrag.elementary import hypot, sin_cos
+from rockfrag.base.elementary import hypot, sin_cos
 
 FEET = 32  # points of a rim of which four carry a round body that slides flat
 

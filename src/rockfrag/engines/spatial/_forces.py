@@ -4,8 +4,8 @@ import math
 
 import numpy as np
 
-from rockfrag.arrays import fields, whole
-from rockfrag.engines.kernels.jit import kernel
+from rockfrag.base.arrays import fields, whole
+from rockfrag.engines.compile.jit import kernel
 from rockfrag.engines.spatial import _body as solid
 from rockfrag.engines.spatial._algebra import (
     cross,

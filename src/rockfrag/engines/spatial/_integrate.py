@@ -2,9 +2,9 @@
 
 import math
 
-from rockfrag.elementary import atan2, sin_cos
-from rockfrag.engines.kernels.jit import entry_kernel, kernel
-from rockfrag.engines.kernels.roots import narrowed
+from rockfrag.base.elementary import atan2, sin_cos
+from rockfrag.engines.compile.jit import entry_kernel, kernel
+from rockfrag.engines.pure_rocking.kernels.roots import narrowed
 from rockfrag.engines.spatial import _algebra as algebra
 from rockfrag.engines.spatial import _body as solid
 from rockfrag.engines.spatial import _forces as forces

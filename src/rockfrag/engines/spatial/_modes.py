@@ -2,8 +2,8 @@
 
 import math
 
-from rockfrag.elementary import atan2
-from rockfrag.engines.kernels.jit import kernel
+from rockfrag.base.elementary import atan2
+from rockfrag.engines.compile.jit import kernel
 from rockfrag.engines.spatial import _algebra as algebra
 from rockfrag.engines.spatial import _body as solid
 from rockfrag.engines.spatial import _forces as forces

@@ -1,7 +1,7 @@
 """One step of Dormand and Prince's pair of order 5 (1980), and what must not become negative in it."""
 
-from rockfrag.engines.kernels.dormand_prince import INSTANTS, WEIGHTS
-from rockfrag.engines.kernels.jit import kernel
+from rockfrag.engines.compile.jit import kernel
+from rockfrag.engines.pure_rocking.kernels.dormand_prince import INSTANTS, WEIGHTS
 from rockfrag.engines.spatial import _body as solid
 from rockfrag.engines.spatial import _modes as modes
 from rockfrag.engines.spatial._algebra import norm, normalise, rotation

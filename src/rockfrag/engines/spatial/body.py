@@ -5,13 +5,13 @@ from dataclasses import replace
 
 import numpy as np
 
-from rockfrag.arrays import Floats
+from rockfrag.base.arrays import Floats
+from rockfrag.base.errors import InputError
+from rockfrag.base.units import GRAVITY
 from rockfrag.engines.spatial._body import BODY, MOST_VERTICES, SIZE
 from rockfrag.engines.spatial._describe import fill_body
-from rockfrag.errors import InputError
 from rockfrag.system.body import Circle, Polygon
 from rockfrag.system.system import System
-from rockfrag.units import GRAVITY
 
 # size of the perturbation that tells how robust an outcome is: of vertices over the width of the base, of the
 # direction in radians [-].  Two vertices that land at once and two that land one after the other go on

@@ -10,20 +10,20 @@ import numpy as np
 import pandas as pd
 from numpy.typing import ArrayLike, NDArray
 
-from rockfrag.arrays import Floats
+from rockfrag.base.arrays import Floats
+from rockfrag.base.errors import InputError
+from rockfrag.base.units import GRAVITY
 from rockfrag.engines.built_in import SPATIAL as ENGINE
+from rockfrag.engines.compile.jit import compiling_alone
 from rockfrag.engines.contract import Case, Cases, Request
-from rockfrag.engines.kernels.jit import compiling_alone
 from rockfrag.engines.spatial import _integrate as kernel
 from rockfrag.engines.spatial import _modes as modes
 from rockfrag.engines.spatial._forces import CASE
 from rockfrag.engines.spatial.body import kernel_body, later_peaks, perturbed, standing
-from rockfrag.errors import InputError
 from rockfrag.outcomes.outcomes import Outcomes, empty_outcomes
 from rockfrag.records.motion import GroundMotion
 from rockfrag.system.blocks import Block, as_system
 from rockfrag.system.system import System
-from rockfrag.units import GRAVITY
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -85,7 +85,7 @@ class SpatialResponse:
 
     def plot(self, title: str = "") -> "Figure":
         """Draw the path of the axis, and the base in the plan."""
-        from rockfrag.engines.response_figure import spatial_figure
+        from rockfrag.engines.spatial.response_figure import spatial_figure
 
         return spatial_figure(self.outcome, self.history, self.outline, title)
 

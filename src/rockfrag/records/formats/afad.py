@@ -8,12 +8,15 @@ U-D``) stands above the samples. Files are in UTF-8 or in the Turkish ISO 8859-9
 import re
 
 from rockfrag.records.parsing import format as form
+from rockfrag.records.parsing.stated_peak import StatedPeak, with_checked_peak
 from rockfrag.records.parsing.text_file import TextFile
 from rockfrag.records.parsing.timestamps import time_of
 
 _FIRST = re.compile(r"^\s*STRONG\s+GROUND\s+MOTION\s+RECORDS?\s+OF\s+TURK", re.I)
 _TITLES = re.compile(r"^\s*(?:[NSEWUD]\s*-?\s*[NSEWUD]\b\s*){1,3}$")
 _UNIT = r"\bPGA\b[^()]*\(([^()]+)\)"
+_PEAKS = r"\bPGA\b[^()]*\([^()]+\)\s*:\s*(.*)$"
+_PEAK = re.compile(r"\(\s*([NSEWUD]\s*-?\s*[NSEWUD])\s*\)\s*([-+\d.]+)")
 _PLACE = {
     "latitude": r"(-?\d+\.\d+)\s*N\s*-?\s*-?\d+\.\d+\s*E",
     "longitude": r"-?\d+\.\d+\s*N\s*-?\s*(-?\d+\.\d+)\s*E",
@@ -48,9 +51,18 @@ def _parse(text: TextFile) -> list[form.Channel]:
     in_utc = re.search(r"\((?:GMT|UTC)\)", time, re.I)
     start = time_of(time.split("(")[0]) if in_utc else None
     shared = form.Channel(count, dt, table, start_time=start).saying(known)
-    return form.in_columns(
-        shared, table, [name.replace(" ", "") for name in components]
-    )
+    names = [name.replace(" ", "") for name in components]
+    stated = _PEAK.findall(form.stated(_PEAKS, header))
+    numbers = {name.replace(" ", ""): number for name, number in stated}
+    return [
+        with_checked_peak(
+            channel,
+            StatedPeak(numbers.get(channel.component, ""), channel.unit),
+            text.name,
+            text.cut_short,
+        )
+        for channel in form.in_columns(shared, table, names)
+    ]
 
 
 def _number_of(text: TextFile, facts: dict[str, str], key: str) -> float:

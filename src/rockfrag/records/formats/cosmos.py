@@ -11,6 +11,7 @@ from typing import Any, TypeVar
 
 from rockfrag.records.parsing import format as form
 from rockfrag.records.parsing.quantities import canonical_unit
+from rockfrag.records.parsing.stated_peak import StatedPeak, with_checked_peak
 from rockfrag.records.parsing.text_file import TextFile
 from rockfrag.records.parsing.timestamps import time_at
 
@@ -28,6 +29,11 @@ _VALUES_LINE = re.compile(
 _END = re.compile(rf"^\s*(?:/&|End-of-data)|\(Format\s+v|{_VALUES.pattern}", re.I)
 Number = TypeVar("Number", int, float)
 _HEAD = re.compile(r"\(\s*Format\s+v", re.I)
+
+_PEAK = re.compile(
+    r"(?<!uncor)\s+max\s*=\s*(?P<value>[-+]?[\d.]+)\s*(?P<unit>[a-z]+(?:/[a-z/^*\d]+)?)",
+    re.I,
+)
 
 _UNITS_BY_CODE = {
     2: "g",
@@ -75,9 +81,19 @@ def _parse(text: TextFile) -> Iterator[form.Channel]:
         at_values, dt, facts = _header(text, line)
         while at_values >= 0:
             stop = text.until(_END, at_values + 1)
-            yield _section(text, at_values, stop, dt).saying(facts)
+            found = _section(text, at_values, stop, dt).saying(facts)
+            if found.quantity == "acceleration":
+                peak = _peak(text.lines(line, at_values))
+                found = with_checked_peak(found, peak, text.name, text.cut_short)
+            yield found
             line = text.find(_HEAD, stop)
             at_values = text.find(_VALUES, stop, None if line < 0 else line)
+
+
+def _peak(words: list[str]) -> StatedPeak:
+    """Return the peak of the samples as they are, not that of the raw record."""
+    match = form.first_match(_PEAK, words)
+    return StatedPeak(match["value"], match["unit"]) if match else StatedPeak("", "")
 
 
 def _header(text: TextFile, first: int) -> tuple[int, float, dict[str, Any]]:

@@ -10,6 +10,7 @@ import re
 from collections.abc import Iterator
 
 from rockfrag.records.parsing import format as form
+from rockfrag.records.parsing.stated_peak import StatedPeak, with_checked_peak
 from rockfrag.records.parsing.text_file import TextFile
 from rockfrag.records.parsing.timestamps import (
     american_time,
@@ -39,6 +40,11 @@ _UNIT = re.compile(
 _STATION = re.compile(r"^\s*station\s+(?:no|id)\.?\s*(\w+)?(?=\s|$)", re.I)
 _START = re.compile(r"(?:start|trigger)\s+time\s*:(.*)$", re.I)
 _DEFAULT_UNITS = {"acceleration": "cm/s2", "velocity": "cm/s", "displacement": "cm"}
+_PEAK_OF_VOLUME_2 = re.compile(
+    r"PEAK\s+ACCELERATION\s*=\s*(?P<value>[-+]?[\d.]+)\s+(?P<unit>[A-Z]+(?:/[A-Z/*\d]+)?)",
+    re.I,
+)
+_PEAK = re.compile(r"\bMAX\s*=\s*(?P<value>[-+]?[\d.]+)\s*(?P<unit>G)\b", re.I)
 _MAX_HEADER = 60
 
 
@@ -64,14 +70,29 @@ def _parse(text: TextFile) -> Iterator[form.Channel]:
         words = text.lines(first, min(stop, first + _MAX_HEADER))
         sections = list(text.parts(_VALUES, _END, first, stop))
         for line, end in sections:
-            yield _described(_section(text, line, end), words)
+            found = _described(_section(text, line, end), words)
+            peak = _peak(words, in_volume_2=bool(_VOLUME_2.match(text.line(line))))
+            if found.quantity == "acceleration":
+                found = with_checked_peak(found, peak, text.name, text.cut_short)
+            yield found
         if not sections:
             if not is_pairs_header(text, first):
                 text.fail(
                     "no line with the number of samples below; the file is cut short",
                     first,
                 )
-            yield _described(read_pairs(text, first, stop), words)
+            found = _described(read_pairs(text, first, stop), words)
+            peak = _peak(words, in_volume_2=False)
+            yield with_checked_peak(found, peak, text.name, text.cut_short)
+
+
+def _peak(words: list[str], in_volume_2: bool) -> StatedPeak:
+    """Return the peak that the words above one channel state; volume 2 has that of volume 1 as well."""
+    match = form.first_match(_PEAK_OF_VOLUME_2 if in_volume_2 else _PEAK, words)
+    if match is None:
+        return StatedPeak("", "")
+    unit = match["unit"].upper().replace("CMS/", "CM/")
+    return StatedPeak(match["value"], unit)
 
 
 def _section(text: TextFile, line: int, stop: int) -> form.Channel:

@@ -10,6 +10,7 @@ from collections.abc import Iterator
 
 from rockfrag.records.parsing import format as form
 from rockfrag.records.parsing.quantities import canonical_unit, quantity_of
+from rockfrag.records.parsing.stated_peak import StatedPeak, with_checked_peak
 from rockfrag.records.parsing.text_file import TextFile
 
 _SIZE = re.compile(
@@ -27,6 +28,7 @@ _FACTS = {
     "longitude": r"^\s*STATION\s*:\s*\S+\s+[\d.]+N\s+([\d.]+)E",
     "component": r"^\s*COMP\.?\s*:?\s*(\S+)",
     "magnitude": r"^\s*MAGNITUDE\s+([\d.]+)",
+    "peak": r"^\s*PEAK\s+VALUE\s*:\s*([-+\d.]+)",
     "recorder_time": r"RECORDER\s+TIME\s*:\s*(.*)$",
 }
 _HEADER = 16
@@ -48,7 +50,9 @@ def _parse(text: TextFile) -> Iterator[form.Channel]:
         text.refuse(f"this file holds {held.lower()} in {unit}, not acceleration")
     count, dt = int(size["count"]), text.interval(float(size["dt"]), at_size)
     found = form.Channel(count, dt, text.numbers(_HEADER, count=count), unit)
-    yield found.saying({"earthquake": " ".join(header[2].split()), **facts})
+    peak = StatedPeak(facts.pop("peak"), unit)
+    found = found.saying({"earthquake": " ".join(header[2].split()), **facts})
+    yield with_checked_peak(found, peak, text.name, text.cut_short)
 
 
 FORMAT = form.Format(

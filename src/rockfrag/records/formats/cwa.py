@@ -8,13 +8,17 @@ local (UTC+8) where the key says ``GMT+08``.
 import re
 
 from rockfrag.records.parsing import format as form
+from rockfrag.records.parsing.stated_peak import StatedPeak, with_checked_peak
 from rockfrag.records.parsing.text_file import TextFile
-from rockfrag.records.parsing.timestamps import step_of_times, time_of
+from rockfrag.records.parsing.time_column import Notes, TimeColumn
+from rockfrag.records.parsing.timestamps import time_of
 
 _FIRST = re.compile(r"^\s*#\s*(?:Earthquake Information|StationCode)", re.I)
 _NEEDED = [
     re.compile(rf"^\s*#\s*{key}\s*[:(]", re.I) for key in ("stationcode", "samplerate")
 ]
+_PEAKS = re.compile(r"^\s*#\s*amplitude\s*max\w*\b", re.I)
+_EXTREMES = re.compile(r"\b([UNEZ])\s*(?:\([^)]*\))?\s*[:=]([^:=A-Z]*)")
 _MAX_HEADER = 60
 _ORDER = ("U", "N", "E")
 
@@ -31,12 +35,9 @@ def _parse(text: TextFile) -> list[form.Channel]:
     table = text.in_rows(values, len(order) + 1, start)
     rate = text.number(facts["samplerate"], "#SampleRate is not a number")
     dt = text.interval(1 / rate if rate > 0 else 0.0, 0)
+    notes: Notes = ()
     if table.shape[0] > 1:
-        measured = step_of_times(table[:, 0], text, start)
-        if abs(measured - dt) > 1e-6:
-            text.fail(
-                f"times step by {measured:g} s, but #SampleRate gives {dt:g} s", start
-            )
+        notes = TimeColumn(table[:, 0], text, start).check(dt, "#SampleRate gives")
     _check_length(text, facts["recordlength"], table.shape[0] * dt, start)
     began = time_of(facts["starttime"])
     zone = form.stated(
@@ -51,8 +52,28 @@ def _parse(text: TextFile) -> list[form.Channel]:
         "earthquake": f"{facts['origin time']} M {facts['magnitude']}".strip(" M"),
         "instrument": facts["instrumentkind"],
     }
-    shared = form.Channel(table.shape[0], dt, table).saying(known)
-    return form.in_columns(shared, table[:, 1:], order)
+    shared = form.Channel(table.shape[0], dt, table, steps=notes).saying(known)
+    numbers = _peaks(header[:start])
+    return [
+        with_checked_peak(
+            channel,
+            StatedPeak(numbers.get(channel.component, ""), channel.unit),
+            text.name,
+            text.cut_short,
+        )
+        for channel in form.in_columns(shared, table[:, 1:], order)
+    ]
+
+
+def _peaks(header: list[str]) -> dict[str, str]:
+    """Return the larger of the extremes of each component, ``#AmplitudeMAX. U: 16.2~-11.5``, without sign."""
+    found = {}
+    for line in header:
+        if _PEAKS.match(line):
+            for axis, extremes in _EXTREMES.findall(line):
+                numbers = re.findall(r"\d+\.?\d*", extremes)
+                found[axis] = max(numbers, key=float, default="")
+    return found
 
 
 def _check_length(text: TextFile, stated: str, length: float, line: int) -> None:

@@ -9,6 +9,7 @@ from collections.abc import Iterator
 
 from rockfrag.records.parsing.format import Channel, Format
 from rockfrag.records.parsing.quantities import canonical_unit, quantity_of
+from rockfrag.records.parsing.stated_peak import StatedPeak, with_checked_peak
 from rockfrag.records.parsing.text_file import TextFile
 from rockfrag.records.parsing.timestamps import time_of
 
@@ -70,7 +71,9 @@ def _parse(text: TextFile) -> Iterator[Channel]:
     known["magnitude"] = facts.get("MAGNITUDE_W") or facts.get("MAGNITUDE_L", "")
     known["earthquake"] = " ".join(facts[key] for key in _EARTHQUAKE if facts.get(key))
     start_time = time_of(facts.get(_SAMPLE_TIME, ""))
-    yield Channel(count, *samples, unit, start_time=start_time).saying(known)
+    channel = Channel(count, *samples, unit, start_time=start_time).saying(known)
+    peak = StatedPeak(facts.get("PGA_CM/S^2", ""), "cm/s2")
+    yield with_checked_peak(channel, peak, text.name, text.cut_short)
 
 
 FORMAT = Format("ESM", _recognise, _parse)

@@ -9,10 +9,12 @@ import re
 from collections.abc import Generator, Iterator
 
 from rockfrag.records.parsing.format import Channel, Format, headed, stated
+from rockfrag.records.parsing.stated_peak import StatedPeak, with_checked_peak
 from rockfrag.records.parsing.text_file import TextFile
 from rockfrag.records.parsing.timestamps import time_at
 
 _FIRST = re.compile(r"^\s*(?:un)?corrected accelerogram\s+\S+", re.I)
+_PEAK = r"^\s*acceleration\s*:\s*peak\s+([-+\d.]+)\s*mm/s/s"
 _TEXT_LINES, _INTEGER_LINES, _REAL_LINES, _A_LINE, _WIDTH = 16, 4, 6, 10, 8
 
 
@@ -72,7 +74,9 @@ def _component(text: TextFile, first: int) -> Generator[Channel, None, int]:
         "longitude": numbers[11],
     }
     dt = text.interval(dt, at_reals + 2)
-    yield Channel(counts[0], dt, values, "mm/s2").saying(facts)
+    channel = Channel(counts[0], dt, values, "mm/s2").saying(facts)
+    peak = StatedPeak(stated(_PEAK, words), "mm/s2")
+    yield with_checked_peak(channel, peak, text.name, text.cut_short)
     return line
 
 

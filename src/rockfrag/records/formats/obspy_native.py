@@ -19,11 +19,12 @@ from obspy import Inventory, Stream, Trace, read_inventory
 from obspy.core.inventory import Response
 from obspy.core.util.base import ENTRY_POINTS, buffered_load_entry_point
 
-from rockfrag.errors import InputError
+from rockfrag.base.errors import InputError
 from rockfrag.records.parsing import text_file
 from rockfrag.records.parsing.format import Channel, cut_short_step, head_lines
 from rockfrag.records.parsing.number_fields import first_odd_row
 from rockfrag.records.parsing.quantities import canonical_unit
+from rockfrag.records.parsing.stated_peak import StatedPeak, with_checked_peak
 from rockfrag.records.parsing.text_file import MAX_BYTES, MAX_LINE, NotAcceleration
 from rockfrag.records.quality_flags import foreign_kind
 
@@ -205,7 +206,8 @@ def _channel(trace: Trace, format_name: str, path: Path, cut_short: bool) -> Cha
         steps=tuple(steps),
     )
     channel.check(str(path))
-    return channel
+    peak = StatedPeak(str(knet.get("accmax", "")), "gal")
+    return with_checked_peak(channel, peak, str(path), cut_short)
 
 
 def _shortness(

@@ -14,15 +14,15 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from rockfrag.errors import InputError
+from rockfrag.base.errors import InputError
+from rockfrag.base.plausible import LONGEST_STEP, SHORTEST_STEP
 from rockfrag.records.formats import HEADED
 from rockfrag.records.parsing import number_fields
 from rockfrag.records.parsing.column_titles import Column, column_titles
 from rockfrag.records.parsing.format import Channel, Format, text_writer
 from rockfrag.records.parsing.stated_facts import StatedFacts, stated_facts
 from rockfrag.records.parsing.text_file import TextFile, is_remark, last_row
-from rockfrag.records.parsing.timestamps import check_rising, step_of_times
-from rockfrag.units import LONGEST_STEP, SHORTEST_STEP
+from rockfrag.records.parsing.time_column import TimeColumn
 
 _OF_OBSPY = re.compile(
     r"\s*(?:Origin Time|TIMESERIES |WID[12]\b|BEGIN (?:GSE|IMS)|XW01|DELTA\s*:)", re.I
@@ -460,11 +460,8 @@ def _untitled(layout: _Layout, table: NDArray[np.float64]) -> list[Column]:
 def _interval(
     layout: _Layout, columns: list[Column], table: NDArray[np.float64], column: int
 ) -> tuple[float, tuple[dict[str, Any], ...]]:
-    """Return the interval [s] of a column: that of the times left of it, which what is stated must fit.
-
-    The user's replaces a column of times that was printed wrongly; a note says so.
-    """
-    text, dt = layout.text, layout.text.asked_dt
+    """Return the interval [s] of a column: that of the times left of it, which what is stated must fit."""
+    text = layout.text
     timed = [i for i, column in enumerate(columns) if column.quantity == "time"]
     left = [i for i in timed if i < column] or timed[:1]
     if not left:
@@ -480,28 +477,17 @@ def _interval(
             f"{title.unit!r} of column {title.title!r} is no unit of time known here; write s or ms",
             layout.line - 1,
         )
-    if dt is not None:
-        times = times * seconds
-        check_rising(times, text, layout.line)
-        mean = float((times[-1] - times[0]) / max(times.size - 1, 1))
-        replaced = {
-            "step": "replace time column",
-            "dt_s": dt,
-            "mean_step_in_file_s": mean,
-        }
-        return dt, (() if abs(mean - dt) <= 1e-6 * dt else (replaced,))
     if not title.title and (np.diff(times) == 1).all():
+        if layout.interval is not None:
+            return layout.interval, ()
         text.fail(
             "the first column counts by ones, as numbers of samples do; give the sampling interval with dt= "
             "(in seconds)",
             layout.line,
         )
-    measured = step_of_times(times, text, layout.line, seconds)
-    if layout.dt is not None and abs(measured - layout.dt) > 1e-6 * layout.dt:
-        text.fail(
-            f"the header gives dt = {layout.dt:g} s, but times step by {measured:g} s"
-        )
-    return measured, ()
+    whose = "the header gives dt =" if layout.dt is not None else "dt= gives"
+    stated_times = TimeColumn(times, text, layout.line, seconds)
+    return stated_times.interval_beside(layout.interval, whose)
 
 
 FORMAT = Format("PLAINTEXT", _recognise, _parse, encoding="latin-1")

@@ -8,6 +8,7 @@ from collections.abc import Iterator
 from pathlib import PurePath
 
 from rockfrag.records.parsing.format import CHANNEL_END, Channel, Format, headed, stated
+from rockfrag.records.parsing.stated_peak import StatedPeak, with_checked_peak
 from rockfrag.records.parsing.text_file import TextFile
 from rockfrag.records.parsing.timestamps import american_time, read_pairs
 
@@ -31,7 +32,9 @@ def _parse(text: TextFile) -> Iterator[Channel]:
             "earthquake": re.split(r"\s*\(ORIGIN", " ".join(header[2].split()))[0],
             "record": number,
         }
-        yield values.saying(facts)
+        peak = StatedPeak(stated(r"\bMAX\s*=\s*([-+\d.]+)\s*G\b", header), "g")
+        found = values.saying(facts)
+        yield with_checked_peak(found, peak, text.name, text.cut_short)
 
 
 FORMAT = Format(

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from rockfrag.records.parsing.format import Channel, Format, header_keys, text_writer
 from rockfrag.records.parsing.quantities import canonical_unit, quantity_of
 from rockfrag.records.parsing.text_file import TextFile
-from rockfrag.records.parsing.timestamps import step_of_times
+from rockfrag.records.parsing.time_column import TimeColumn
 
 _COLUMNS = re.compile(
     r"(?i)^\s*time\s*[\[(]\s*(?:s|sec|seconds)\s*[\])][\s,;]+"
@@ -55,8 +55,11 @@ def _parse(text: TextFile) -> Iterator[Channel]:
         "frequency_range": header["frequency range"],
         "recording_station": place,
     }
-    dt = step_of_times(table[:, 0], text, columns + 1)
-    yield Channel(table.shape[0], dt, table[:, 1].copy()).saying(facts)
+    dt, steps = TimeColumn(table[:, 0], text, columns + 1).interval_beside(
+        text.asked_dt, "dt= gives"
+    )
+    samples = table[:, 1].copy()
+    yield Channel(table.shape[0], dt, samples, steps=steps).saying(facts)
 
 
 FORMAT = Format("SEISMOSOFT", _recognise, _parse)

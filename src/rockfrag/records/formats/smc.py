@@ -15,7 +15,8 @@ import numpy as np
 from numpy.typing import NDArray
 from obspy import UTCDateTime
 
-from rockfrag.records.parsing.format import Channel, Format
+from rockfrag.records.parsing.format import Channel, Format, stated
+from rockfrag.records.parsing.stated_peak import StatedPeak, with_checked_peak
 from rockfrag.records.parsing.text_file import TextFile
 from rockfrag.records.parsing.timestamps import pairs_of, time_at
 
@@ -26,6 +27,7 @@ _KINDS = re.compile(
     r"DISPLACEMENT|RESPONSE SPECTRA|FOURIER)\b|^\s*\*"
 )
 _FIRST_FIELD = re.compile(r"^\s*[+-]?\d*\.\d*(?:[EeDd][+-]?\d+)?")
+_PEAK = r"\bpk\s*(?:acc)?\s*=\s*([-+\d.]+(?:E[+-]?\d+)?)"
 _HIGH_PRECISION = 8
 _PER_LINE, _SURPLUS_LINES = 8, 2
 
@@ -94,7 +96,8 @@ def _parse(text: TextFile) -> Iterator[Channel]:
             if value != numbers[_MISSING_REAL]
         },
     }
-    yield values.saying(facts)
+    peak = StatedPeak(stated(_PEAK, words), "cm/s2")
+    yield with_checked_peak(values.saying(facts), peak, text.name, text.cut_short)
 
 
 def _without_surplus_lines(

@@ -1,8 +1,9 @@
 """UNAM "archivo estándar de aceleración" (Mexico), version 2: ``KEY : value`` lines, a column a channel.
 
 Lists of channels are written ``/first/second/…``. Below ``DATOS DE ACELERACION`` stand the names and the
-orientations of the channels between two rulers, then one row a sample in the Fortran format that the header gives
-(``3F10.3``). The total of samples is that of the nominal duration: up to a second of samples more may follow.
+orientations of the channels between two rulers, which some files do not have, then one row a sample in the Fortran
+format that the header gives (``3F10.3``). The total of samples is that of the nominal duration: up to a second of
+samples more may follow.
 """
 
 import re
@@ -10,6 +11,8 @@ import re
 from obspy import UTCDateTime
 
 from rockfrag.records.parsing import format as form
+from rockfrag.records.parsing.number_fields import are_numbers, numbers_of
+from rockfrag.records.parsing.stated_peak import StatedPeak, with_checked_peak
 from rockfrag.records.parsing.text_file import TextFile
 from rockfrag.records.parsing.timestamps import time_of
 
@@ -17,6 +20,7 @@ _TITLE = re.compile(r"^\s*ARCHIVO\s+EST.NDAR\s+DE\s+ACELERACI.N", re.I)
 _DATA = re.compile(r"^\s*DATOS DE ACELERACI", re.I)
 _RULER = re.compile(r"^-+\+-+\+[-+]*$")
 _MAX_HEADER = 200
+_MAX_TITLES = 10
 _HALF_A_DAY = 12 * 3600
 
 
@@ -25,9 +29,6 @@ def _parse(text: TextFile) -> list[form.Channel]:
     if at_data < 0:
         text.fail("no line DATOS DE ACELERACION; the file is cut short")
     facts = form.header_keys(text.lines(0, at_data))
-    rulers = [i for i in range(at_data, at_data + 10) if _RULER.match(text.line(i))]
-    if len(rulers) < 2:
-        text.fail("the two rulers above the samples are missing", at_data)
     intervals, counts = (
         _list(facts, "intervalo de muestreo"),
         _list(facts, "num. total de muestras"),
@@ -44,13 +45,14 @@ def _parse(text: TextFile) -> list[form.Channel]:
     width = next(
         (value for key, value in facts.items() if key.startswith("formato datos")), ""
     )
-    values = text.numbers(rulers[1] + 1, None, form.field_width(f"({width})"))
+    start = _first_row(text, at_data + 1)
+    values = text.numbers(start, None, form.field_width(f"({width})"))
     if text.cut_short:
         values = values[: values.size // len(intervals) * len(intervals)]
-    table = text.in_rows(values, len(intervals), rulers[1] + 1)
+    table = text.in_rows(values, len(intervals), start)
     extra = table.shape[0] - promised
     if not 0 <= extra < 1 / dt:
-        text.check_count(promised, table.shape[0], rulers[1] + 1)
+        text.check_count(promised, table.shape[0], start)
     step = {"step": "read samples beyond the nominal duration", "samples": extra}
     sides = [orientation.partition(";") for orientation in orientations]
     steps = (step,) if extra > 0 else ()
@@ -59,26 +61,46 @@ def _parse(text: TextFile) -> list[form.Channel]:
     )
     # "rumbo;orientacion": the sense of a vertical stands behind it
     found = form.in_columns(shared, table, [side[0].strip() for side in sides])
+    peaks = _list(facts, r"acel\. max\.(?!.*muestra)")
+    peaks += [""] * (len(sides) - len(peaks))
     return [
-        channel.saying({"sense": side[2].strip()})
-        for channel, side in zip(found, sides, strict=True)
+        with_checked_peak(
+            channel.saying({"sense": side[2].strip()}),
+            StatedPeak(peak, "gal"),
+            text.name,
+            text.cut_short,
+        )
+        for channel, side, peak in zip(found, sides, peaks, strict=False)
     ]
 
 
+def _first_row(text: TextFile, start: int) -> int:
+    """Return the first line of numbers, below rulers and titles if there are any."""
+    titles = text.lines(start, start + _MAX_TITLES)
+    rulers = [start + i for i, line in enumerate(titles) if _RULER.match(line)]
+    for line in range(max(rulers, default=start - 1) + 1, start + _MAX_TITLES):
+        if are_numbers(numbers_of(text.line(line))):
+            return line
+    text.fail("no row of samples below this line; the file is cut short", start - 1)
+
+
 def _list(facts: dict[str, str], key: str) -> list[str]:
-    """Return the values ``/a/b/c`` of the first six channels, then those of the others."""
-    values = [value for name, value in facts.items() if name.startswith(key)]
+    """Return the values ``/a/b/c`` of the first six channels, then those of the others; ``key`` is a pattern."""
+    values = [value for name, value in facts.items() if re.match(key, name)]
     return [
         part.strip() for value in values for part in value.split("/") if part.strip()
     ]
 
 
 def _start(facts: dict[str, str]) -> UTCDateTime | None:
-    """Return the time of the first sample, on the day of the earthquake or the one beside it."""
+    """Return the time of the first sample, on the day of the earthquake or the one beside it.
+
+    Where the time of the earthquake is not known it is taken to be of that day.
+    """
     clocks = (facts["hora de la primera muestra"], facts["hora epicentro"])
     start, origin = (time_of(f"{facts['fecha del sismo']} {clock}") for clock in clocks)
     if start is None or origin is None:
-        return None
+        return start
     late = start - origin
     return start + (
         86400 if late < -_HALF_A_DAY else -86400 if late > _HALF_A_DAY else 0

@@ -13,14 +13,18 @@ from numpy.typing import NDArray
 from obspy import Stream, Trace, UTCDateTime
 from obspy.core import AttribDict
 
-from rockfrag.errors import InputError
-from rockfrag.files import write_text
+from rockfrag.base.errors import InputError
+from rockfrag.base.files import write_text
+from rockfrag.base.plausible import LONGEST_STEP, SHORTEST_STEP
+from rockfrag.base.text_files import printable
 from rockfrag.records.parsing import text_file
 from rockfrag.records.parsing.quantities import TO_SI, canonical_unit
-from rockfrag.tabular import printable
-from rockfrag.units import LONGEST_STEP, SHORTEST_STEP
 
 _FIRST, _LAST = UTCDateTime(1900, 1, 1), UTCDateTime(2100, 1, 1)
+
+
+SAID = "said"
+"""Key of a step of the provenance: words that everybody who uses the motion should read."""
 
 
 def cut_short_step(promised: int, found: int) -> dict[str, Any]:

@@ -2,8 +2,8 @@
 
 import re
 
-from rockfrag.errors import InputError
-from rockfrag.units import GRAVITY
+from rockfrag.base.errors import InputError
+from rockfrag.base.units import GRAVITY
 
 TO_SI = {"g": GRAVITY, "g/10": GRAVITY / 10, "%g": GRAVITY / 100, "mg": GRAVITY / 1e3}
 TO_SI |= {

@@ -4,10 +4,10 @@ import re
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
+from rockfrag.base.plausible import LONGEST_STEP, SHORTEST_STEP
 from rockfrag.records.parsing.format import stated
 from rockfrag.records.parsing.number_fields import number_in
 from rockfrag.records.parsing.quantities import TO_SI, canonical_unit, quantity_of
-from rockfrag.units import LONGEST_STEP, SHORTEST_STEP
 
 _VALUE = r"(?:\d+[.,]\d+|\d+\.?|[.,]\d+)(?:[EeDd][+-]?\d+)?"
 _IS = r"[\s\"']*(?:\((?P<note>[^)]*)\)|\[(?P<note2>[^\]]*)\])?[\s\"',]*(?P<sign>[=:]|\bis\b)?[\s\"',]*"

@@ -14,13 +14,13 @@ from typing import IO, Any, NoReturn
 import numpy as np
 from numpy.typing import NDArray
 
-from rockfrag.errors import InputError
+from rockfrag.base.errors import InputError
+from rockfrag.base.plausible import LONGEST_STEP, SHORTEST_STEP
 from rockfrag.records.parsing.number_fields import (
     NumberError,
     parse_columns,
     parse_separated,
 )
-from rockfrag.units import LONGEST_STEP, SHORTEST_STEP
 
 HEAD_BYTES = 16_384  # how much of a file is looked at to recognise its format
 MAX_BYTES = 256 * 2**20  # three components of a day at 200 Hz are a third of it

@@ -1,4 +1,4 @@
-"""Time columns, pairs of time and value, dates: what they say about the sampling interval and the first sample."""
+"""Clock times and dates, and pairs of time and value: the first sample and the sampling interval."""
 
 import re
 
@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 from obspy import UTCDateTime
 
-from rockfrag.errors import InputError
+from rockfrag.base.plausible import LONGEST_STEP
 from rockfrag.records.parsing.format import Channel, cut_short_step, first_match
 from rockfrag.records.parsing.number_fields import (
     NumberError,
@@ -15,10 +15,7 @@ from rockfrag.records.parsing.number_fields import (
 )
 from rockfrag.records.parsing.quantities import canonical_unit
 from rockfrag.records.parsing.text_file import TextFile
-from rockfrag.units import LONGEST_STEP
-
-_FRACTION_OF_STEP = 1e-4  # of which a time may be off beyond the rounding of its print
-_FINEST_DIGITS = 9
+from rockfrag.records.parsing.time_column import TimeColumn
 
 # [s], to which unevenly digitised film is interpolated
 _EVEN_STEPS = (0.005, 0.002, 0.001, 0.0005)
@@ -48,78 +45,6 @@ _HOURS_BEHIND |= {
 """Hours that the time zones of American networks are behind UTC (AST is Alaska's, as they use it)."""
 
 _LAST_YEAR_OF_2000S = 30
-
-
-def step_of_times(
-    times: NDArray[np.float64], text: TextFile, first_line: int, seconds: float = 1.0
-) -> float:
-    """Return the sampling interval [s] of a column of equally spaced times, in units of ``seconds`` [s].
-
-    The times may be rounded to the digits they are printed with, be that decimals or significant digits: each must
-    be within half a unit of its last digit (and a ten-thousandth of a step) of ``t0 + i dt``.
-    """
-    if times.size < 2:
-        text.fail("one time alone says nothing about the sampling interval", first_line)
-    check_rising(times, text, first_line)
-    resolution, printed = resolution_of(times), _printed_resolution(times)
-    mean = float((times[-1] - times[0]) / (times.size - 1))
-    tolerance = max(float(printed[-1]) / (times.size - 1), 1e-12 * mean)
-    # the decimal of fewest digits that it can be
-    decimals = (float(f"{mean:.{digits}g}") for digits in range(1, 16))
-    dt = next((each for each in decimals if abs(each - mean) <= tolerance), mean)
-    off = np.abs(times - times[0] - np.arange(times.size) * dt)
-    wrong = np.flatnonzero(off > 0.5 * printed * (1 + 1e-9) + _FRACTION_OF_STEP * dt)
-    if wrong.size:
-        bad, steps = int(wrong[0]), np.diff(times)
-        text.fail(
-            f"times are not equally spaced: {times[bad] * seconds:g} s stands where "
-            f"{(times[0] + bad * dt) * seconds:g} s is expected (steps of {steps.min() * seconds:g} to "
-            f"{steps.max() * seconds:g} s)",
-            first_line + bad,
-        )
-    rate = 1 / (dt * seconds)
-    whole = any(abs(r - round(r)) <= 1e-6 * r for r in (rate, 1 / dt))
-    if dt < 9.5 * resolution and not whole:
-        text.fail(
-            f"the time column steps by {dt * seconds:g} s, which is {rate:.2f} samples a second and looks "
-            f"like a step rounded to {resolution * seconds:g} s (from anything between "
-            f"{(dt - resolution / 2) * seconds:g} and {(dt + resolution / 2) * seconds:g} s); "
-            "give the true interval with dt=",
-            first_line,
-        )
-    return dt if seconds == 1 else float(f"{dt * seconds:.12g}")
-
-
-def check_rising(times: NDArray[np.float64], text: TextFile, first_line: int) -> None:
-    """Check that each time is later than the one before."""
-    falls = np.flatnonzero(np.diff(times) <= 0)
-    if falls.size:
-        bad = int(falls[0])
-        text.fail(
-            f"time falls or stands still from {times[bad]:g} s to {times[bad + 1]:g} s",
-            first_line + bad + 1,
-        )
-
-
-def resolution_of(times: NDArray[np.float64]) -> float:
-    """Return the coarsest decimal unit [s] that all times are multiples of, from 1 to 1e-9."""
-    for digits in range(_FINEST_DIGITS):
-        scaled = times * 10.0**digits
-        if bool(
-            (np.abs(scaled - np.round(scaled)) <= 1e-6 + 1e-12 * np.abs(scaled)).all()
-        ):
-            return float(10.0**-digits)
-    return float(10.0**-_FINEST_DIGITS)
-
-
-def _printed_resolution(times: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return the decimal unit [s] that each time is printed to, shape (n,)."""
-    decades = np.floor(np.log10(np.maximum(np.abs(times), 1.0)))
-    resolution = np.empty_like(times)
-    for decade in np.unique(decades):
-        inside = decades == decade
-        resolution[inside] = resolution_of(times[inside])
-    return resolution
 
 
 def clock_time(
@@ -169,20 +94,50 @@ def american_time(words: str) -> UTCDateTime | None:
     return None if match is None else clock_time(**match.groupdict(default=""))
 
 
-_CLOCK = r"[ T_-]+(?P<h>\d{1,2}):(?P<min>\d\d):(?P<s>\d\d(?:\.\d*)?)$"
+_MONTHS = (
+    ("jan", "ene", "gen"),
+    ("feb", "fev", "fév"),
+    ("mar", "mär", "mrz"),
+    ("apr", "abr", "avr"),
+    ("may", "mai", "mag"),
+    ("jun", "giu", "juin"),
+    ("jul", "lug", "juil"),
+    ("aug", "ago", "aou", "aoû"),
+    ("sep", "set"),
+    ("oct", "okt", "ott", "out"),
+    ("nov",),
+    ("dec", "dez", "dic", "déc"),
+)
+"""How the names of months begin in English, Spanish, Italian, Portuguese, French and German."""
+
+_CLOCK = r"[ T_-]+(?P<h>\d{1,2}):(?P<min>\d{1,2})(?::(?P<s>\d{1,2}(?:\.\d*)?))?$"
 _NOTATIONS = (
     r"^(?P<y>\d{4})(?P<m>\d\d)(?P<d>\d\d)[_ T](?P<h>\d\d)(?P<min>\d\d)(?P<s>\d\d(?:\.\d*)?)$",
     r"^(?P<d>\d{1,2})[/.-](?P<m>\d{1,2})[/.-](?P<y>\d{4})" + _CLOCK,
     r"^(?P<y>\d{4})[/.-](?P<m>\d{1,2})[/.-](?P<d>\d{1,2})" + _CLOCK,
+    r"^(?P<d>\d{1,2})[/. -](?P<m>[^\W\d_]{3,12})\.?[/. ,-]+(?P<y>\d{4}|\d\d)" + _CLOCK,
 )
 
 
 def time_of(words: str) -> UTCDateTime | None:
-    """Return the time in words such as ``20190728_160905.700`` or ``14/11/2010 23:09:19.3``."""
+    """Return the time in words as ``20190728_160905.700``, ``14/11/2010 23:09:19.3``, ``10/DIC/94 15:2:18``."""
     match = next(
         filter(None, (re.match(pattern, words.strip()) for pattern in _NOTATIONS)), None
     )
-    return clock_time(*match.group("y", "m", "d", "h", "min", "s")) if match else None
+    if match is None:
+        return None
+    year, month, day, hour, minute = match.group("y", "m", "d", "h", "min")
+    if not month.isdigit():
+        month = _number_of_month(month)
+    second = match["s"] or "0"
+    return clock_time(year, month, day, hour, minute, second) if month else None
+
+
+def _number_of_month(name: str) -> str:
+    """Return the number of the month that a name begins like, or an empty string."""
+    beginnings = enumerate(_MONTHS, start=1)
+    known = (number for number, words in beginnings if name.lower().startswith(words))
+    return str(next(known, ""))
 
 
 _POINTS = re.compile(r"\bno\.?\s+of\s+points\s*=?\s*(?P<count>\d+)", re.I)
@@ -229,13 +184,13 @@ def pairs_of(
     times, accelerations = values[0::2], values[1::2]
     if times.size < 2 or times.size != accelerations.size:
         text.fail("a record needs at least two pairs of time and acceleration", line)
+    column = TimeColumn(times, text, line)
     if (np.diff(times) < 0).any():
         # rounding may make neighbours equal, never reverse them
-        check_rising(times, text, line)
+        column.check_rising()
     steps = [cut_short_step(promised, times.size)] if promised > times.size else []
-    try:
-        dt = step_of_times(times, text, line)
-    except InputError:
+    dt = column.even_interval()
+    if dt is None:
         mean = float(times[-1] - times[0]) / (times.size - 1)
         if mean > LONGEST_STEP:
             text.fail(

@@ -11,9 +11,9 @@ from pathlib import Path, PurePath, PurePosixPath
 from tempfile import TemporaryDirectory
 from typing import IO
 
-from rockfrag.errors import InputError, errors_of
+from rockfrag.base.errors import InputError, errors_of
+from rockfrag.base.text_files import printable
 from rockfrag.records.parsing.text_file import MAX_BYTES, copy_within, read_head
-from rockfrag.tabular import printable
 
 MAX_MEMBERS = 5_000  # files of an archive; a download of a data centre has some hundred
 MAX_TOTAL = 2 * MAX_BYTES  # bytes that an archive may unpack to

@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING
 
 from obspy import UTCDateTime
 
-from rockfrag.errors import InputError
-from rockfrag.files import sha256_of, whole_file, write_text
+from rockfrag.base.errors import InputError
+from rockfrag.base.files import sha256_of, whole_file, write_text
 
 if TYPE_CHECKING:
     from obspy.clients.fdsn import Client

@@ -11,10 +11,10 @@ import h5py
 import hdf5plugin  # noqa: F401 (its import registers the Blosc filter)
 import numpy as np
 
-from rockfrag.errors import InputError
-from rockfrag.files import sha256_of
+from rockfrag.base.errors import InputError
+from rockfrag.base.files import sha256_of
+from rockfrag.base.units import GRAVITY
 from rockfrag.records.motion import Motion
-from rockfrag.units import GRAVITY
 
 _EQUAL = 1e-9  # largest difference [s] between the time steps of one record
 SETS = ("farfield", "nearfield_pulse", "nearfield_no_pulse")

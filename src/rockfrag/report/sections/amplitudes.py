@@ -12,13 +12,13 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 from numpy.typing import NDArray
 
-from rockfrag import figure_style as style
-from rockfrag.files import file_name
-from rockfrag.pedestal.paired_tests import with_counterparts
+from rockfrag.base import figure_style as style
+from rockfrag.base.files import file_name
+from rockfrag.effects.paired_tests import with_counterparts
 from rockfrag.report import figures, findings
 from rockfrag.report.page import Column
 from rockfrag.report.part import Results, Section, says
-from rockfrag.sentences import amplitude, label, shortened
+from rockfrag.words.sentences import amplitude, label, shortened
 
 
 def _wide(

@@ -11,8 +11,8 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import PercentFormatter
 
-from rockfrag import figure_style as style
-from rockfrag.files import file_name
+from rockfrag.base import figure_style as style
+from rockfrag.base.files import file_name
 from rockfrag.fragility.checks import REJECTION, TAILS
 from rockfrag.fragility.curve_facts import REJECTED, compared_curves
 from rockfrag.fragility.observations import Floats, name_and_unit
@@ -23,8 +23,8 @@ from rockfrag.report.figures import GREY
 from rockfrag.report.findings import ONE_MOTION, strength_found
 from rockfrag.report.page import Row
 from rockfrag.report.part import FigureSpec, Results, Section, says
-from rockfrag.sentences import decimals_of, estimates, number, shortened
 from rockfrag.stages.fragility import best_of
+from rockfrag.words.sentences import decimals_of, estimates, number, shortened
 
 
 def fragility(results: Results) -> Section:

@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from numpy.typing import NDArray
 
-from rockfrag import figure_style as style
+from rockfrag.base import figure_style as style
 from rockfrag.report import figures, page
 from rockfrag.report.figures import BAND, GREY
 from rockfrag.report.findings import (
@@ -24,8 +24,14 @@ from rockfrag.report.findings import (
 )
 from rockfrag.report.page import Columns, estimated, table_html
 from rockfrag.report.part import FigureSpec, Results, Section, says
-from rockfrag.sentences import amplitude, counted, has_interval, sentence, shortened
 from rockfrag.shaketable.definitions import DEFINITION
+from rockfrag.words.sentences import (
+    amplitude,
+    counted,
+    has_interval,
+    sentence,
+    shortened,
+)
 
 MOST_ROWS = 45
 """More rows than this are not legible in one figure; the finest scopes are then left to the table."""
@@ -34,7 +40,7 @@ _SCOPES = {"whole": "all pairs", "cell": "floor and object"}
 
 
 def effect_columns(ratio: str = "With/without pedestal") -> Columns:
-    """What is shown of :func:`rockfrag.pedestal.study.effects_table` after :func:`shown_effects`."""
+    """What is shown of :func:`rockfrag.effects.study.effects_table` after :func:`shown_effects`."""
     return (
         "scope; level = Of; pairs .0; at_bound = of which bounds .0",
         estimated("ratio", f"{ratio} [95 % interval]", 3, limits=("lower", "upper")),

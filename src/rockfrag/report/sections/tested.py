@@ -10,7 +10,8 @@ from matplotlib.artist import Artist
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
-from rockfrag import figure_style as style
+from rockfrag.base import figure_style as style
+from rockfrag.base.units import CENTIMETRES_PER_METRE, GRAVITY
 from rockfrag.motions.intensity import intensity_measures
 from rockfrag.records.motion import Motion
 from rockfrag.report.figures import GREY, MARKERS, drawn_tests
@@ -18,9 +19,8 @@ from rockfrag.report.findings import model_allowed, sliding_found
 from rockfrag.report.page import Column
 from rockfrag.report.part import Results, Section, says
 from rockfrag.report.sections.amplitudes import MOST_ROWS
-from rockfrag.sentences import label, number, shortened
 from rockfrag.stages.tests import LIMITED, MOST_TESTED
-from rockfrag.units import CENTIMETRES_PER_METRE, GRAVITY
+from rockfrag.words.sentences import label, number, shortened
 
 
 def left_out(results: Results) -> Section | None:

@@ -5,14 +5,14 @@ import math
 
 import numpy as np
 
-from rockfrag.arrays import Floats
+from rockfrag.base.arrays import Floats
+from rockfrag.base.units import GRAVITY
 from rockfrag.motions.processing import factors_to_pga
 from rockfrag.records.motion import Motion
-from rockfrag.rocking import overturns, simulate
-from rockfrag.rocking.restitution import quarter_period
-from rockfrag.rocking.spectra import uniform_block
+from rockfrag.simulation import overturns, simulate
+from rockfrag.simulation.restitution import quarter_period
+from rockfrag.simulation.rocking_spectra import uniform_block
 from rockfrag.system.blocks import Block
-from rockfrag.units import GRAVITY
 from rockfrag_thesis.hypotheses.hypothesis import (
     Finding,
     Result,

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pandas as pd
 
-from rockfrag.pedestal.cluster_means import mean_effect
+from rockfrag.effects.cluster_means import mean_effect
 from rockfrag_thesis.hypotheses.evidence import Evidence
 from rockfrag_thesis.hypotheses.floors import FIFTH, GROUND, THIRD, TOWERS, floor_means
 from rockfrag_thesis.hypotheses.hypothesis import Undecidable

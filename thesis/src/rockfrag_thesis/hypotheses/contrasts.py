@@ -4,7 +4,7 @@ import math
 
 import pandas as pd
 
-from rockfrag.pedestal.cluster_means import (
+from rockfrag.effects.cluster_means import (
     LEVEL,
     POWER,
     Estimate,

@@ -6,8 +6,8 @@ from collections.abc import Mapping
 import pandas as pd
 from scipy import stats
 
-from rockfrag.pedestal.cluster_means import LEVEL as POWER_LEVEL
-from rockfrag.pedestal.cluster_means import POWER, Estimate
+from rockfrag.effects.cluster_means import LEVEL as POWER_LEVEL
+from rockfrag.effects.cluster_means import POWER, Estimate
 from rockfrag_thesis.hypotheses.evidence import Evidence
 from rockfrag_thesis.hypotheses.hypothesis import Result, Undecidable, hypothesis
 from rockfrag_thesis.hypotheses.orders import Part, Parts, Size, order_hypothesis

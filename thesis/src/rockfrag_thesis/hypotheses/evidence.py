@@ -7,9 +7,9 @@ from functools import cached_property
 import numpy as np
 import pandas as pd
 
-from rockfrag.errors import InputError
-from rockfrag.pedestal.cluster_means import Estimate, mean_effect
-from rockfrag.pedestal.paired_tests import (
+from rockfrag.base.errors import InputError
+from rockfrag.effects.cluster_means import Estimate, mean_effect
+from rockfrag.effects.paired_tests import (
     Pairs,
     check_tests,
     pair_tests,
@@ -34,7 +34,7 @@ THESIS_BODIES: Mapping[str, Block] = {
 class Evidence:
     """One table of tests and what may accompany it."""
 
-    # See `rockfrag.pedestal.paired_tests.check_tests`; columns friction_demand [-] and
+    # See `rockfrag.effects.paired_tests.check_tests`; columns friction_demand [-] and
     # least_normal_force_n [N] are used for C57, force_n [N] and moved_mass_kg [kg] for C56
     tests: pd.DataFrame
     basis: str  # ``simulated`` or ``measured``

@@ -8,7 +8,7 @@ from dataclasses import replace
 
 import pandas as pd
 
-from rockfrag.pedestal.cluster_means import (
+from rockfrag.effects.cluster_means import (
     earthquake_means,
     mean_effect,
     sign_flip_test,

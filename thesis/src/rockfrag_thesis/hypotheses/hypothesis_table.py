@@ -5,9 +5,9 @@ from collections.abc import Iterable, Mapping, Sequence
 
 import pandas as pd
 
-from rockfrag.pedestal.cluster_means import TooFewUnitsError, holm
+from rockfrag.effects.cluster_means import TooFewUnitsError, holm
 from rockfrag.records.motion import Motion
-from rockfrag.rocking.ensemble import LightBodies
+from rockfrag.simulation.ensemble import LightBodies
 from rockfrag.system.blocks import Block, Stack
 from rockfrag_thesis.hypotheses import (  # noqa: F401  (each enters its hypotheses when it is loaded)
     blocks,

@@ -9,7 +9,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from enum import Enum
 
-from rockfrag.pedestal.cluster_means import Estimate
+from rockfrag.effects.cluster_means import Estimate
 from rockfrag_thesis.hypotheses.contrasts import power_note
 from rockfrag_thesis.hypotheses.evidence import Evidence
 from rockfrag_thesis.hypotheses.hypothesis import Finding, Result, hypothesis

@@ -9,7 +9,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import replace
 
-from rockfrag.pedestal.cluster_means import Estimate, t_estimate
+from rockfrag.effects.cluster_means import Estimate, t_estimate
 from rockfrag_thesis.hypotheses.contrasts import power_note
 from rockfrag_thesis.hypotheses.hypothesis import Finding, Result
 

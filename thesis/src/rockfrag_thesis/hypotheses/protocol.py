@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from rockfrag.pedestal.cluster_means import t_estimate
-from rockfrag.units import GRAVITY
+from rockfrag.base.units import GRAVITY
+from rockfrag.effects.cluster_means import t_estimate
 from rockfrag_thesis.hypotheses.evidence import PEDESTAL, Evidence
 from rockfrag_thesis.hypotheses.hypothesis import (
     Finding,

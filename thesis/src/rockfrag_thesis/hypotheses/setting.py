@@ -8,15 +8,15 @@ from functools import cached_property
 import numpy as np
 import pandas as pd
 
-from rockfrag.arrays import Floats
-from rockfrag.engines.response import Response
+from rockfrag.base.arrays import Floats
+from rockfrag.base.plausible import LARGEST_PEAK
 from rockfrag.motions.processing import scale_to_pga
-from rockfrag.motions.spectra import ResponseSpectrum, response_spectrum
+from rockfrag.motions.response_spectra import ResponseSpectrum, response_spectrum
+from rockfrag.outcomes.response import Response
 from rockfrag.records.motion import Motion
-from rockfrag.rocking import overturns, simulate
-from rockfrag.rocking.spectra import uniform_block
+from rockfrag.simulation import overturns, simulate
+from rockfrag.simulation.rocking_spectra import uniform_block
 from rockfrag.system.blocks import Block, Body, Stack
-from rockfrag.units import LARGEST_PEAK
 from rockfrag_thesis.hypotheses.evidence import PEDESTAL, THESIS_BODIES
 from rockfrag_thesis.hypotheses.hypothesis import Undecidable
 from rockfrag_thesis.printed_tables import uplift_accelerations
@@ -139,7 +139,7 @@ class Setting:
 
     @cached_property
     def impacts(self) -> pd.DataFrame:
-        """Impacts of all histories, a row each, as in `rockfrag.engines.response.Response.contact_events`."""
+        """Impacts of all histories, a row each, as in `rockfrag.outcomes.response.Response.contact_events`."""
         found = pd.concat(
             [each.contact_events for each in self.histories], ignore_index=True
         )

@@ -6,7 +6,7 @@ import math
 import numpy as np
 import pandas as pd
 
-from rockfrag.pedestal.cluster_means import Estimate, t_estimate
+from rockfrag.effects.cluster_means import Estimate, t_estimate
 from rockfrag.system import geometry
 from rockfrag.system.blocks import Stack
 from rockfrag_thesis.hypotheses.contrasts import contrast, power_note, slope_effect

@@ -7,12 +7,12 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import stats
 
-from rockfrag.arrays import Floats
+from rockfrag.base.arrays import Floats
+from rockfrag.base.units import GRAVITY
+from rockfrag.effects.cluster_means import Estimate
 from rockfrag.motions.intensity import pgd, pgv
-from rockfrag.motions.spectra import oscillator_response
-from rockfrag.pedestal.cluster_means import Estimate
-from rockfrag.rocking import overturns
-from rockfrag.units import GRAVITY
+from rockfrag.motions.response_spectra import oscillator_response
+from rockfrag.simulation import overturns
 from rockfrag_thesis.hypotheses.hypothesis import (
     Finding,
     Result,

@@ -7,10 +7,10 @@ from functools import lru_cache
 import numpy as np
 import pandas as pd
 
-from rockfrag.engines.response import ROCKING_MODES
-from rockfrag.rocking import simulate
+from rockfrag.base.units import GRAVITY
+from rockfrag.outcomes.response import ROCKING_MODES
+from rockfrag.simulation import simulate
 from rockfrag.system.blocks import Block, Stack
-from rockfrag.units import GRAVITY
 from rockfrag_thesis.hypotheses.hypothesis import (
     Finding,
     Result,

@@ -5,11 +5,11 @@ from functools import partial
 import pandas as pd
 from matplotlib.figure import Figure
 
-from rockfrag.figure_style import COLUMN_WIDTH, OKABE_ITO, panels
+from rockfrag.base.figure_style import COLUMN_WIDTH, OKABE_ITO, panels
 from rockfrag.report.figures import GREY, MARKERS
 from rockfrag.report.page import Column, table_html
 from rockfrag.report.part import Results, Section
-from rockfrag.sentences import shortened
+from rockfrag.words.sentences import shortened
 from rockfrag_thesis.sections import says
 from rockfrag_thesis.settings import settings_of
 

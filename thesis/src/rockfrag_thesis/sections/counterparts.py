@@ -8,7 +8,7 @@ import pandas as pd
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from rockfrag import figure_style as style
+from rockfrag.base import figure_style as style
 from rockfrag.report import figures as amplitudes
 from rockfrag.report.findings import (
     WITH_PEDESTAL,

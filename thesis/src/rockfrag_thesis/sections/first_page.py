@@ -11,14 +11,14 @@ import pandas as pd
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from rockfrag.figure_style import BLUE, COLUMN_WIDTH, ORANGE, panels
+from rockfrag.base.figure_style import BLUE, COLUMN_WIDTH, ORANGE, panels
 from rockfrag.report.answer import study_answer
 from rockfrag.report.figures import BAND, GREY
 from rockfrag.report.findings import FRICTION, ratio_text
 from rockfrag.report.part import Answer, Finding, Results
 from rockfrag.report.sections.pedestal import NONE, ratio_axis
-from rockfrag.sentences import counted, listed
 from rockfrag.shaketable.definitions import DEFINITION
+from rockfrag.words.sentences import counted, listed
 from rockfrag_thesis.hypotheses.floors import FIFTH, FLOORS, GROUND, THIRD
 from rockfrag_thesis.hypotheses.hypothesis import Finding as Evidence
 from rockfrag_thesis.sections import says

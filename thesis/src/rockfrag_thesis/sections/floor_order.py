@@ -12,7 +12,7 @@ from matplotlib.colors import SymLogNorm
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
-from rockfrag.figure_style import BLUE, COLUMN_WIDTH, GREEN, ORANGE, WIDEST, panels
+from rockfrag.base.figure_style import BLUE, COLUMN_WIDTH, GREEN, ORANGE, WIDEST, panels
 from rockfrag.report.page import Column, table_html
 from rockfrag.report.part import FigureSpec, Results, Section
 from rockfrag.shaketable.definitions import DEFINITION

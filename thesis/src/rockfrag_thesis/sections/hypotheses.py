@@ -9,7 +9,7 @@ from markupsafe import Markup
 
 from rockfrag.report.page import Column, Row, table_html
 from rockfrag.report.part import Results, Section
-from rockfrag.sentences import probability
+from rockfrag.words.sentences import probability
 from rockfrag_thesis.hypotheses.hypothesis import EXCLUDED
 from rockfrag_thesis.sections import says
 

@@ -7,8 +7,8 @@ import pandas as pd
 
 from rockfrag.report.page import Column, Row, by_row, table_html
 from rockfrag.report.part import Results, Section
-from rockfrag.sentences import sentence
 from rockfrag.study.study import Study
+from rockfrag.words.sentences import sentence
 from rockfrag_thesis.sections import says
 from rockfrag_thesis.sections.sensitivity_analysis import (
     FACTORS,

@@ -8,7 +8,7 @@ from markupsafe import Markup
 
 from rockfrag.report.page import framed
 from rockfrag.report.part import Results, Section
-from rockfrag.sentences import number
+from rockfrag.words.sentences import number
 from rockfrag_thesis.sections import says
 
 _CAPTIONS = {

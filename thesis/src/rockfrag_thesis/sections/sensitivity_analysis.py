@@ -11,15 +11,15 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from rockfrag.figure_style import BLACK, OKABE_ITO, WIDEST, panels
-from rockfrag.pedestal.cluster_means import benjamini_hochberg
+from rockfrag.base.figure_style import BLACK, OKABE_ITO, WIDEST, panels
+from rockfrag.effects.cluster_means import benjamini_hochberg
 from rockfrag.report.figures import BAND, GREY, MARKERS
 from rockfrag.report.findings import ratio_text
 from rockfrag.report.page import Column, Row, by_row, estimated, table_html
 from rockfrag.report.part import Results, Section
 from rockfrag.report.sections.pedestal import NONE, ratio_axis
-from rockfrag.sentences import has_interval, probability, sentence, shortened
 from rockfrag.study.study import Study
+from rockfrag.words.sentences import has_interval, probability, sentence, shortened
 from rockfrag_thesis.sections import says
 from rockfrag_thesis.sensitivity_analysis.simulated import LAW_OF, REFERENCE
 from rockfrag_thesis.settings import settings_of

@@ -4,7 +4,7 @@ import pandas as pd
 
 from rockfrag.report.page import Column, table_html
 from rockfrag.report.part import Results, Section
-from rockfrag.sentences import sentence
+from rockfrag.words.sentences import sentence
 from rockfrag_thesis.hypotheses.floors import FLOORS, GROUND
 from rockfrag_thesis.sections import says
 from rockfrag_thesis.sections.sensitivity_analysis import (

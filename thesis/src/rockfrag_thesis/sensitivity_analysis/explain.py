@@ -11,14 +11,14 @@ from collections.abc import Mapping
 import numpy as np
 import pandas as pd
 
-from rockfrag.errors import InputError
-from rockfrag.pedestal.cluster_means import (
+from rockfrag.base.errors import InputError
+from rockfrag.base.tabular import join_rows
+from rockfrag.effects.cluster_means import (
     benjamini_hochberg,
     equivalence,
     holm,
     mean_effects,
 )
-from rockfrag.tabular import join_rows
 
 COLUMNS = ("factor", "level", "reference", "object", "earthquake", "floor", "ratio")
 ALL = "all"  # what stands in the column of the floor for all floors together

@@ -11,13 +11,13 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from rockfrag.arrays import Flags, Floats
+from rockfrag.base.arrays import Flags, Floats
+from rockfrag.effects.cluster_means import mean_effects
 from rockfrag.engines.contract import Cases, Request
 from rockfrag.engines.planar.engine import contact_outcomes
 from rockfrag.motions.processing import factors_to_pga
-from rockfrag.pedestal.cluster_means import mean_effects
 from rockfrag.records.motion import GroundMotion, Motion
-from rockfrag.rocking.options import system_of
+from rockfrag.simulation.options import system_of
 from rockfrag.system.blocks import Body, Stack
 from rockfrag.system.system import uplift_ratios
 from rockfrag_thesis.sensitivity_analysis.simulated import motion_columns

@@ -16,7 +16,7 @@ import numpy as np
 import pandas as pd
 from scipy import special
 
-from rockfrag.pedestal.cluster_means import Array
+from rockfrag.effects.cluster_means import Array
 
 PLAUSIBLE = 0.05
 """Levels whose T² has a smaller p value, times the number of mechanisms tried, are excluded [-]."""

@@ -12,13 +12,13 @@ from math import radians
 import numpy as np
 import pandas as pd
 
-from rockfrag.arrays import Floats
-from rockfrag.errors import InputError
+from rockfrag.base.arrays import Floats
+from rockfrag.base.errors import InputError
 from rockfrag.laws import BUILT_IN
 from rockfrag.motions.processing import factors_to_pga
 from rockfrag.records.motion import Motion
-from rockfrag.rocking import overturns
-from rockfrag.rocking.options import MeasuredRestitution, system_of
+from rockfrag.simulation import overturns
+from rockfrag.simulation.options import MeasuredRestitution, system_of
 from rockfrag.system.blocks import Block, Stack
 from rockfrag.system.system import System
 

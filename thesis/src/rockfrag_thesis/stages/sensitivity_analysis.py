@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from rockfrag.errors import InputError
+from rockfrag.base.errors import InputError
 from rockfrag.records.motion import Motion
 from rockfrag.stages.job import Job, Results
 from rockfrag.stages.tests import protocol_of

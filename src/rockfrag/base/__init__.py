@@ -1,0 +1,1 @@
+"""What every room stands on: errors, files, units, tables that people write, arithmetic, the look of figures."""

@@ -1,0 +1,108 @@
+"""Keywords, keys and columns that are not there are answered with those that are, or with their new names."""
+
+import difflib
+import functools
+import inspect
+import re
+from collections.abc import Callable, Iterable
+from typing import Any, TypeVar, cast, get_args, get_type_hints
+
+from rockfrag.base.errors import InputError
+
+Called = TypeVar("Called", bound=Callable[..., Any])
+Made = TypeVar("Made")
+
+
+class UnknownKeyword(InputError, TypeError):
+    """A keyword that the function does not have."""
+
+
+def named_keywords(function: Called) -> Called:
+    """Let a function answer a wrong keyword with the right one, or with all there are (a decorator)."""
+    known = _names_of(function)
+    names = frozenset(known)
+
+    @functools.wraps(function)
+    def checked(*arguments: Any, **keywords: Any) -> Any:
+        for name in keywords:
+            if name not in names:
+                near = difflib.get_close_matches(name, known, n=1)
+                meant = (
+                    f"did you mean {near[0]}?"
+                    if near
+                    else f"it has {', '.join(known)}."
+                )
+                called = function.__qualname__.removesuffix(".__init__")
+                raise UnknownKeyword(f"{called}: no argument is called {name}; {meant}")
+        return function(*arguments, **keywords)
+
+    return cast(Called, checked)
+
+
+def named_fields(of: type[Made]) -> type[Made]:
+    """Let a class answer a wrong keyword likewise (a decorator)."""
+    of.__init__ = named_keywords(of.__init__)  # type: ignore[method-assign]
+    return of
+
+
+def _names_of(function: Callable[..., Any]) -> tuple[str, ...]:
+    """Names of the arguments of a function, those of a typed ``**`` among them."""
+    names: list[str] = []
+    for name, parameter in inspect.signature(function).parameters.items():
+        if parameter.kind is parameter.VAR_KEYWORD:
+            names += get_args(get_type_hints(function)[name])[0].__annotations__
+        elif name != "self":
+            names.append(name)
+    return tuple(names)
+
+
+RENAMED = {
+    "claims": "hypotheses",
+    "doubts": "quality_flags",
+    "event": "earthquake",
+    "events": "contact_events",
+    "explanation": "sensitivity_analysis",
+    "inversion": "inverse_problem",
+    "n_events": "n_earthquakes",
+    "pattern": "rocking_mode",
+    "reading": "definition",
+    "remedies": "mitigations",
+    "share": "fraction",
+    "statement": "hypothesis",
+    "survival_windows": "resurrections",
+    "verdict": "outcome",
+    "verdicts": "outcomes",
+    "windows": "resurrections",
+}
+"""Old name of a key or a column, and its new one."""
+
+
+def renamed(names: Iterable[object], known: Iterable[object]) -> str:
+    """Sentence on the first name of old whose new one is among those known here, empty without one."""
+    expected, given = set(known), set(names)
+    for old, new in RENAMED.items():
+        if old in given - expected and new in expected - given:
+            return f"{old} is now called {new}; rename it."
+    return ""
+
+
+def check_names(where: str, names: Iterable[object], known: Iterable[object]) -> None:
+    """Refuse a name of old whose new one is among those known here: where, the name, and what it is called now."""
+    if said := renamed(names, known):
+        raise InputError(f"{where}: {said}")
+
+
+_OPTION = re.compile(r"\b(unit|dt|channel|force|cut_short)=(?:True\b)?")
+_FORCED = " with force=True or in the file"
+
+
+def for_command_line(message: object, force: bool = True) -> str:
+    """Return a message that names arguments of functions with the options of ``rockfrag`` instead."""
+    words = str(message) if force else str(message).replace(_FORCED, " in the file")
+    return _OPTION.sub(lambda found: f"--{found[1].replace('_', '-')}", words)
+
+
+def for_catalogue(message: object) -> str:
+    """Return a message that names arguments of functions with the columns of a catalogue instead."""
+    words = str(message).replace(_FORCED, " in the file")
+    return _OPTION.sub(lambda found: f"the column {found[1]}", words)

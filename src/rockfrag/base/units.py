@@ -1,0 +1,136 @@
+"""Units that data enter or leave with; everything inside is SI.
+
+A unit stands in the name of a key or column (``width_cm``), or beside the number (``35 cm``).
+"""
+
+import math
+import re
+import sys
+from collections.abc import Mapping
+
+from rockfrag.base.errors import InputError
+
+GRAVITY = 9.81
+"""Acceleration of gravity [m/s²] used throughout, as printed tables of ground motions use it.
+
+Standard gravity, which other programs mean by g, is 9.80665 m/s².
+"""
+
+CENTIMETRES_PER_METRE = 100.0
+
+DIMENSIONS: Mapping[str, Mapping[str, tuple[float, float]]] = {
+    "length": {
+        **{"m": (1.0, 1.0), "cm": (1.0, 100.0), "mm": (1.0, 1000.0)},
+        **{"in": (0.0254, 1.0), "ft": (0.3048, 1.0)},
+    },
+    "mass": {
+        "kg": (1.0, 1.0),
+        "g": (1.0, 1000.0),
+        "t": (1000.0, 1.0),
+        "lb": (0.45359237, 1.0),
+    },
+    "moment of inertia": {
+        **{"kg_m2": (1.0, 1.0), "kg_cm2": (1.0, 1e4), "g_cm2": (1.0, 1e7)},
+        **{"t_m2": (1000.0, 1.0), "lb_ft2": (0.45359237 * 0.3048**2, 1.0)},
+    },
+    "acceleration": {
+        **{"m_s2": (1.0, 1.0), "cm_s2": (1.0, 100.0), "gal": (1.0, 100.0)},
+        "g": (GRAVITY, 1.0),
+    },
+    "velocity": {"m_s": (1.0, 1.0), "cm_s": (1.0, 100.0), "mm_s": (1.0, 1000.0)},
+    "time": {"s": (1.0, 1.0), "ms": (1.0, 1000.0)},
+}
+"""Of each dimension its units, and of each unit the factor and the divisor that lead to SI.
+
+A g beside an acceleration is that of gravity; as a unit to convert to it is the gram.
+"""
+
+EXAMPLES: Mapping[str, str] = {
+    "length": "a length such as 1.2 m",
+    "mass": "a mass such as 180 kg",
+    "moment of inertia": "a moment of inertia such as 25 kg m2",
+    "acceleration": "an acceleration such as 0.25 g",
+    "velocity": "a velocity such as 20 cm/s",
+    "time": "a time such as 0.3 s",
+}
+"""What a message names as an example of each dimension: a size that people meet."""
+
+_DECIMAL_COMMA = re.compile(r"\s*[-+]?\d+,\d+(?!\d*,)")
+_NUMBER = re.compile(
+    r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(.*?)\s*", re.DOTALL
+)
+
+
+def dimension_of(unit: str) -> str:
+    """Dimension of a unit as it stands in names, such as ``cm`` or ``kg_m2``."""
+    return next(name for name, units in DIMENSIONS.items() if unit in units)
+
+
+def convert(value: float, unit: str, to: str) -> float:
+    """Express a value in another unit of the same dimension."""
+    if unit == to:
+        return value
+    units = DIMENSIONS[dimension_of(to)]
+    (factor, divisor), (to_factor, to_divisor) = units[unit], units[to]
+    return value * factor / divisor * to_divisor / to_factor
+
+
+def quantity(given: object, to: str, unit: str | None) -> float:
+    """Read a number, or a text with a number and a unit such as ``35 cm``, in another unit.
+
+    ``unit`` is that of a number without one, or None where it must stand beside the number. A message is to be
+    put behind the place where the number was found.
+    """
+    dimension = dimension_of(to)
+    units = DIMENSIONS[dimension]
+    expected = f"expected {EXAMPLES[dimension]}"
+    if isinstance(given, str) and _DECIMAL_COMMA.match(given):
+        raise InputError(
+            f"{expected}, found {given!r:.60}; write decimals with a point, as "
+            f"{given.strip().replace(',', '.', 1)!r:.60}."
+        )
+    number = _NUMBER.fullmatch(given) if isinstance(given, str) else None
+    if isinstance(given, int | float) and not isinstance(given, bool):
+        # a whole number may be larger than any float
+        value, written = (
+            math.inf if abs(given) > sys.float_info.max else float(given),
+            "",
+        )
+    elif number:
+        value, written = float(number[1]), number[2]
+    else:
+        raise InputError(f"{expected}, found {given!r:.60}.")
+    if not math.isfinite(value):
+        raise InputError(f"{expected}, found {given!r:.60}.")
+    # kg m², kg·m^2 and kg*m2 are kg_m2, cm/s² is cm_s2
+    plain = written.replace("²", "2").replace("^", "").strip()
+    found = "_".join(re.split(r"[\s·*_/]+", plain)) if written else unit
+    if found is None:
+        raise InputError(f"{expected}, found {given!r:.60} without a unit.")
+    if found not in units:
+        # m_s2 is written m/s²
+        known = ", ".join(re.sub(r"_s(2?)$", r"/s\1", unit) for unit in units)
+        known = known.replace("_", " ").replace("2", "²")
+        raise InputError(
+            f"{expected} in one of the units {known}, found {given!r:.60}."
+        )
+    return convert(value, found, to)
+
+
+def other_names(name: str) -> dict[str, str | None]:
+    """Names under which a quantity such as ``width_cm`` may be given, and the unit that each states.
+
+    ``{"width": None, "width_m": "m", "width_cm": "cm", …}``; None where the unit stands beside the number.
+    """
+    stem, unit = split_name(name)
+    units = DIMENSIONS[dimension_of(unit)]
+    return {stem: None, **{f"{stem}_{unit}": unit for unit in units}}
+
+
+def split_name(name: str) -> tuple[str, str]:
+    """Split a name such as ``inertia_kg_m2`` into what it names and its unit."""
+    for dimension in ("moment of inertia", "mass", "length"):
+        for unit in DIMENSIONS[dimension]:
+            if name.endswith(f"_{unit}"):
+                return name.removesuffix(f"_{unit}"), unit
+    raise ValueError(f"{name} names no unit")

@@ -1,0 +1,1 @@
+"""The command line: ``rockfrag`` and its commands, one file a group of them."""

@@ -1,0 +1,364 @@
+"""The command line: whether an object topples, what is in a record, how a body rocks, whether a study is right."""
+
+import argparse
+import math
+import os
+import sys
+import warnings
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+from rockfrag import __version__
+from rockfrag.base.errors import InputError, errors_of
+from rockfrag.base.plausible import STONE, check_density, peak_warning, size_warning
+from rockfrag.base.units import GRAVITY, quantity
+from rockfrag.cli.assess_commands import (
+    add_app_command,
+    add_assess_commands,
+    add_records_option,
+)
+from rockfrag.cli.record_commands import add_record_commands, read_told
+from rockfrag.runtime.processes import speak_utf8
+
+if TYPE_CHECKING:
+    from rockfrag.records.motion import Motion
+    from rockfrag.simulation.options import FrictionInput
+    from rockfrag.system.blocks import Block, Body
+
+# lines of the pattern history that are printed unless all are asked for
+MOST_CONTACT_EVENTS = 30
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run the command line; return 0, 1 if a file could not be read, 2 if an input is not usable."""
+    with warnings.catch_warnings():
+        # a warning is a sentence, without the line of code that gave it
+        warnings.showwarning = lambda said, *_: print(
+            f"warning: {said}", file=sys.stderr
+        )
+        try:
+            if arguments is None:
+                speak_utf8()
+            options = make_parser().parse_args(arguments)
+            status = int(options.run(options))
+            sys.stdout.flush()
+        except InputError as error:
+            print(error, file=sys.stderr)
+            return 2
+        except BrokenPipeError:
+            # whoever reads the output, such as `head`, has had enough; Python must not try again
+            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+            return 0
+    return status
+
+
+def make_parser() -> argparse.ArgumentParser:
+    """Return the parser of the whole command line."""
+    parser = argparse.ArgumentParser(
+        prog="rockfrag", description="Rocking and overturning of free-standing objects."
+    )
+    parser.add_argument(
+        "--version", action="version", version=f"rockfrag {__version__}"
+    )
+    commands = parser.add_subparsers(required=True, metavar="COMMAND")
+
+    add_assess_commands(commands)
+    add_app_command(commands)
+    _add_constrain(commands)
+    add_record_commands(commands)
+
+    command = commands.add_parser("simulate", help="shake one body by one record")
+    _add_case(command)
+    command.add_argument(
+        "--pga", type=float, metavar="G", help="scale the record to this peak [g]"
+    )
+    command.add_argument(
+        "--restitution", type=float, help="measured ratio of angular velocities"
+    )
+    command.add_argument(
+        "--friction", nargs="+", type=float, metavar="MU",
+        help="coefficient of friction of all contacts, or of each from the ground up",
+    )  # fmt: skip
+    words = "file with the vertical component of the record"
+    command.add_argument("--vertical", metavar="RECORD", help=words)
+    command.add_argument(
+        "--plot", metavar="IMAGE", help="draw the response, as .png or .svg"
+    )
+    words = "print the whole history of rocking modes"
+    command.add_argument("--all-contact-events", action="store_true", help=words)
+    command.set_defaults(run=_simulate)
+
+    words = (
+        "write a page in which one body rocks under one record, live, in any browser"
+    )
+    play = commands.add_parser("play", help=words)
+    _add_case(play)
+    words = "where to write it, as .html"
+    play.add_argument("--output", metavar="PAGE", default="rocking.html", help=words)
+    play.set_defaults(run=_play)
+
+    check = commands.add_parser(
+        "check-config", help="check the configuration of a study"
+    )
+    check.add_argument(
+        "file", metavar="FILE", help="configuration, such as config/config.yaml"
+    )
+    check.add_argument(
+        "--quiet", action="store_true", help="say only what is wrong or doubtful"
+    )
+    check.set_defaults(run=_check_config)
+    return parser
+
+
+def _add_case(parser: argparse.ArgumentParser) -> None:
+    """Add what tells one body and one record."""
+    parser.add_argument("record", help="file with the record")
+    parser.add_argument(
+        "--body", nargs="+", required=True, metavar="SIZE",
+        help="the statue, or the lone block: width, height and mass, as 35cm 120cm 180kg or numbers of m, m and "
+        "kg; without a mass a square block of stone",
+    )  # fmt: skip
+    parser.add_argument(
+        "--pedestal", nargs="+", action="append", metavar="SIZE",
+        help="the block it stands on, in the same way; again for what that stands on",
+    )  # fmt: skip
+    parser.add_argument(
+        "--second", metavar="RECORD",
+        help="file with the second horizontal component: the body then moves in space, with --depth or --round",
+    )  # fmt: skip
+    parser.add_argument(
+        "--depth", metavar="SIZE", help="side of the base across its width"
+    )
+    parser.add_argument("--round", action="store_true", help="the base is round")
+    parser.add_argument("--unit", help="unit of a record that does not state its own")
+    parser.add_argument(
+        "--dt", type=float, help="sampling interval [s] of a record without one"
+    )
+    parser.add_argument("--channel", help="channel, where the record has several")
+
+
+def _add_constrain(commands: Any) -> None:
+    parser = commands.add_parser(
+        "constrain",
+        help="reweight hazard branches by objects that still stand",
+        description="A site with the branches of its hazard, and objects that have stood there for "
+        "known times.",
+    )
+    parser.add_argument("file", help="the site, such as site.yaml")
+    words = "where page, JSON and tables are written"
+    parser.add_argument("--output", metavar="FOLDER", default="constrained", help=words)
+    add_records_option(
+        parser, "folder of fetched records, for objects that are simulated"
+    )
+    parser.add_argument("--json", action="store_true", help="print the answer as JSON")
+    parser.set_defaults(run=_constrain)
+
+
+# each command imports what it needs when it runs: `rockfrag --help` should not wait for numba
+def _simulate(options: argparse.Namespace) -> int:
+    from rockfrag.motions.processing import scale
+    from rockfrag.records.motion import GroundMotion
+    from rockfrag.simulation import simulate
+    from rockfrag.words.sentences import environment
+
+    if options.plot is not None and not options.plot.endswith((".png", ".svg")):
+        raise InputError(
+            f"--plot: expected a name that ends in .png or .svg, got {options.plot}."
+        )
+    body, motion = _case(options)
+    factor = _factor(options, motion)
+    scaled = scale(motion, factor)
+    _warn_of_unit(options.record, scaled.pga, body)
+    restitution: Any = options.restitution
+    if restitution is not None and options.pedestal:
+        restitution = (restitution,) * len(body.blocks)
+    told = {"restitution": restitution, "friction": _friction(options)}
+    says: Any = (
+        environment("rockfrag.cli")
+        .get_template("simulate.j2", globals={"math": math})
+        .module
+    )
+    response: Any
+    if options.second is not None:
+        block, components = _case_in_space(options, body, motion, options.vertical)
+        components = [scale(component, factor) for component in components]
+        response = simulate(block, GroundMotion(*components), **told)
+        peaks = [component.pga / GRAVITY for component in components]
+        title, words = (
+            motion.name,
+            says.in_space(options.record, peaks, response.outcome),
+        )
+    else:
+        up = None
+        if options.vertical is not None:
+            up = scale(read_told(options.vertical, options, None), factor)
+        with warnings.catch_warnings():
+            # what `simulate` doubts of the acceleration has been said
+            warnings.simplefilter("ignore", UserWarning)
+            response = simulate(
+                body, scaled.acceleration, motion.dt, vertical=up, **told
+            )
+        peak = scaled.pga / GRAVITY
+        most = sys.maxsize if options.all_contact_events else MOST_CONTACT_EVENTS
+        title, loose = f"{motion.name}, peak {peak:.3f} g", options.friction is not None
+        words = says.in_plane(options.record, motion, peak, response, loose, most)
+    print(words, end="")
+    if options.plot:
+        from rockfrag.base.figure_style import save_figure
+
+        save_figure(response.plot(title), options.plot)
+        print(f"drawn in {options.plot}")
+    return 0
+
+
+def _factor(options: argparse.Namespace, motion: "Motion") -> float:
+    """Return the factor that scales a record to the peak that the options tell [-]."""
+    from rockfrag.motions.processing import scale_to_pga
+
+    if options.pga is None:
+        return 1.0
+    if options.pga <= 0:
+        raise InputError(f"--pga: expected a number of g above 0, got {options.pga}.")
+    return float(scale_to_pga(motion, options.pga).provenance[-1]["factor"])
+
+
+def _friction(options: argparse.Namespace) -> "FrictionInput | None":
+    """Return the friction that the options tell, of each contact by its name."""
+    given = options.friction
+    if given is None or len(given) == 1:
+        return None if given is None else float(given[0])
+    if len(given) != 1 + len(options.pedestal or []):
+        raise InputError(
+            f"--friction: expected one coefficient, or one for the ground and for the interface under each block "
+            f"above a --pedestal, from below, got {len(given)}."
+        )
+    return {"ground": given[0], "interface": list(given[1:])}
+
+
+def _case(options: argparse.Namespace) -> "tuple[Body, Motion]":
+    """Return the body and the motion that the options tell."""
+    from rockfrag.system.blocks import stacked
+
+    based = options.depth is not None or options.round
+    if based and options.second is None:
+        raise InputError(
+            "--depth and --round are of a body in space; give --second as well."
+        )
+    if not based and options.second is not None:
+        raise InputError(
+            "--second: a body in space has --depth or is --round; give either."
+        )
+    if based and options.pedestal:
+        raise InputError(
+            "--second: a body in space stands on the ground; leave out --pedestal."
+        )
+    below = [_block("--pedestal", size) for size in reversed(options.pedestal or [])]
+    body = stacked([*below, _block("--body", options.body)])
+    return body, read_told(options.record, options, options.channel)
+
+
+def _case_in_space(
+    options: argparse.Namespace,
+    body: "Body",
+    first: "Motion",
+    vertical: str | None = None,
+) -> "tuple[Block, list[Motion]]":
+    """Return the body in space and the components of its motion, at the same times, that the options tell."""
+    from rockfrag.motions.rotation import common_time
+
+    others = [name for name in (options.second, vertical) if name is not None]
+    told = [first, *(read_told(name, options, None) for name in others)]
+    with errors_of("--depth"):
+        depth = None if options.depth is None else quantity(options.depth, "m", "m")
+    block = replace(body.blocks[0], depth=depth, round=options.round)
+    return block, common_time(told, verticals=(2,))
+
+
+def _play(options: argparse.Namespace) -> int:
+    from rockfrag.records.motion import GroundMotion
+    from rockfrag.report.play_page import write_play_page
+
+    if not options.output.endswith(".html"):
+        raise InputError(
+            f"--output: expected a name that ends in .html, got {options.output}."
+        )
+    body, motion = _case(options)
+    _warn_of_unit(options.record, motion.pga, body)
+    if options.second is None:
+        write_play_page(body, motion, options.output)
+    else:
+        block, components = _case_in_space(options, body, motion)
+        write_play_page(block, GroundMotion(*components), options.output)
+    print(f"open {options.output} in a browser; it needs no network")
+    return 0
+
+
+def _block(option: str, given: Sequence[str]) -> "Block":
+    """Make a block of width, height and mass as people write them."""
+    from rockfrag.base.input_checks import positive_number
+    from rockfrag.system.blocks import Block
+
+    with errors_of(option):
+        if len(given) not in (2, 3):
+            raise InputError(
+                f"expected width, height and, if known, mass, such as 35cm 120cm 180kg; got {' '.join(given)}."
+            )
+        width, height = (quantity(text, "m", "m") for text in given[:2])
+        mass = (
+            quantity(given[2], "kg", "kg")
+            if len(given) == 3
+            else STONE * width**2 * height
+        )
+        for name, value in (("width", width), ("height", height), ("mass", mass)):
+            positive_number(name, value)
+        check_density(width, height, mass)
+        block = Block(width, height, mass)
+    if quality_flag := size_warning(width, height):
+        print(f"warning: {option}: {quality_flag}", file=sys.stderr)
+    return block
+
+
+def _warn_of_unit(record: str, peak: float, body: "Body") -> None:
+    """Say that a motion looks as if it were in another unit, if it does."""
+    from rockfrag.system.system import uplift_ratios
+
+    if quality_flag := peak_warning(peak, GRAVITY * min(uplift_ratios(body.system()))):
+        print(f"warning: {record}: {quality_flag}", file=sys.stderr)
+
+
+def _constrain(options: argparse.Namespace) -> int:
+    from rockfrag.survival.constrained_page import json_of, lines_of, write_constrained
+    from rockfrag.survival.reweight import constrain
+    from rockfrag.survival.site import read_site
+
+    found = constrain(read_site(options.file, options.records))
+    place = write_constrained(found, options.output)
+    if options.json:
+        print(json_of(found), end="")
+    else:
+        print("\n".join(lines_of(found)))
+    print(place, file=sys.stderr)
+    return 0
+
+
+def _check_config(options: argparse.Namespace) -> int:
+    from rockfrag.stages.running import results_folder
+    from rockfrag.study.loading import check_records, load_any
+    from rockfrag.study.study import Study
+
+    study = load_any(options.file)
+    folder = results_folder(study)
+    if isinstance(study, Study):
+        for quality_flag in (*study.quality_flags(), *check_records(study)):
+            print(f"warning: {quality_flag}", file=sys.stderr)
+    if not options.quiet:
+        print(
+            f"{options.file} is right: study {study.name}, {study.summary}; its report will be "
+            f"{folder}/report.html."
+        )
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

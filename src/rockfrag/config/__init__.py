@@ -1,0 +1,1 @@
+"""What a file of settings may hold: the schema of each kind, and what plugins add to it."""

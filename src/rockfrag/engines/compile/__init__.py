@@ -1,0 +1,1 @@
+"""How kernels become machine code, in a process and in a page (``docs/kernels.md``)."""

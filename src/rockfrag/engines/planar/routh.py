@@ -1,0 +1,77 @@
+"""An impact of one contact and no other, in which slip may stop and turn round (``docs/contact.md``).
+
+Slip and approach change with the normal impulse at constant rates until the slip stops (E. J. Routh, Dynamics of a
+System of Rigid Bodies, 1905; J. B. Keller, Journal of Applied Mechanics 53, 1986, 1-4).
+"""
+
+import math
+
+from rockfrag.engines.compile.jit import kernel
+from rockfrag.engines.planar.solve import copy, end_of, fill_row, rate
+
+
+@kernel
+def contact_alone(p, w):
+    """Interface and end of the only closed end of the mode in ``w``; -1 if there are none or more."""
+    at = -1
+    for k in range(p.count):
+        for end in range(2):
+            if w.closed[k, end] == 1:
+                if at >= 0:
+                    return -1, -1
+                at, last = k, end
+    return (at, last) if at >= 0 else (-1, -1)
+
+
+@kernel
+def _felt(p, k, one, two):
+    """Velocity along the row ``two`` for a unit impulse along ``one``."""
+    total = 0.0
+    for d in range(3 if k == 0 else 0, 6):
+        total += one[d] * p.inverse[3 * k - 3 + d] * two[d]
+    return total
+
+
+@kernel
+def strike_alone(p, w, k, end):
+    """Velocities into ``w.out`` after an impact of end ``end`` of interface k, and how it slides then.
+
+    Friction is kinetic while it slides; once the slip has stopped, static friction holds it or it slides as the
+    impulse drives it.
+    """
+    x, y, tx, ty, _, _, _ = end_of(p, w, w.q, k, end, w.kind[k, end])
+    across, along = w.row[0], w.row[1]
+    fill_row(w.q, k, x, y, -ty, tx, across)
+    fill_row(w.q, k, x, y, tx, ty, along)
+    own, both, shear = (
+        _felt(p, k, across, across),
+        _felt(p, k, across, along),
+        _felt(p, k, along, along),
+    )
+    approach = rate(p, w.q, w.v, k, x, y, -ty, tx)
+    slip = w.slid[k] * abs(rate(p, w.q, w.v, k, x, y, tx, ty))
+    normal = tangential = 0.0
+    way = w.slid[k]
+    if way != 0:
+        # until the slip stops, or the approach does
+        gain, drive = own - way * p.kinetic[k] * both, both - way * p.kinetic[k] * shear
+        to_end = -approach / gain if gain > 0.0 else math.inf
+        to_stop = -slip / drive if way * drive < 0.0 else math.inf
+        normal = min(to_end, to_stop)
+        tangential = -way * p.kinetic[k] * normal
+        approach += gain * normal
+        way = way if to_end <= to_stop else 0
+        slip = 0.0
+    if way == 0:
+        hold = both / shear
+        if abs(hold) > p.static[k]:
+            way = 1 if both > 0.0 else -1
+            hold = way * p.kinetic[k]
+        more = -approach / (own - hold * both)
+        normal += more
+        tangential -= hold * more
+    w.slides[k] = way
+    copy(p, w.v, w.out)
+    for d in range(3 if k == 0 else 0, 6):
+        push = across[d] * normal + along[d] * tangential
+        w.out[3 * k - 3 + d] += p.inverse[3 * k - 3 + d] * push

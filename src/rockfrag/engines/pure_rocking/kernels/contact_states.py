@@ -1,0 +1,131 @@
+"""The contact states of a body, and what leads from one to the next (tables in ``docs/kernels.md``).
+
+A full contact pushes and never pulls.  States are tried from all contacts closed to all open, and the first
+consistent one is taken, so that every transition that the mechanics allows occurs.
+"""
+
+import math
+
+from rockfrag.engines.compile.jit import kernel
+from rockfrag.engines.pure_rocking.kernels import equations as model
+from rockfrag.engines.pure_rocking.kernels.equations import GROUND, INTERFACE
+
+HALF_TURN = 0.5 * math.pi  # a block that has turned so far lies down [rad]
+
+
+@kernel
+def side_of(value):
+    """Return +1, -1 or 0: the pivot on which a contact with this opening rocks."""
+    return (1 if value > 0.0 else 0) - (1 if value < 0.0 else 0)
+
+
+@kernel
+def first_contacts(state):
+    """Contacts at the start: those with an angle, or opening, are open."""
+    c1 = side_of(state.theta1) or side_of(state.omega1)
+    return c1, side_of(state.theta2 - state.theta1) or side_of(
+        state.omega2 - state.omega1
+    )
+
+
+@kernel
+def at_rest(state, ground, gravity):
+    """Put a state at rest under an acceleration of the ground and a gravity."""
+    state.c1, state.c2, state.ground, state.gravity = 0, 0, ground, gravity
+    state.theta1, state.omega1, state.theta2, state.omega2 = 0.0, 0.0, 0.0, 0.0
+
+
+@kernel
+def rest_interval(body, scratch):
+    """Ground accelerations between which a body rests (Psycharis, 1990) [m/s²]; they grow as gravity does."""
+    low = -math.inf
+    high = math.inf
+    for contact in (GROUND, INTERFACE):
+        if contact == GROUND and body.fixed:
+            continue
+        for c in (1, -1):
+            still = _rest_moment(body, contact, c, 0.0, scratch)
+            pushed = _rest_moment(body, contact, c, 1.0, scratch)
+            limit = still / (still - pushed)
+            if still > pushed:
+                high = min(high, limit)
+            else:
+                low = max(low, limit)
+    return low, high
+
+
+@kernel
+def _rest_moment(body, contact, c, ground, scratch):
+    """Contact moment s τ(s) of a contact at rest at its corner ``c``."""
+    at_rest(scratch, ground, body.gravity)
+    c1, c2 = (c, 1) if contact == GROUND else (1, c)
+    _, _, _, f1, f2 = model.equations(body, model.pivot(c1), model.pivot(c2), scratch)
+    return c * (f1 + f2) if contact == GROUND else c * f2
+
+
+@kernel
+def settle(body, state):
+    """Contact state into which forces take closed contacts: they open, or are pushed at both corners."""
+    c1, c2 = state.c1, state.c2
+    if c1 != 0 and c2 != 0:
+        return c1, c2
+    fallback1 = c1
+    fallback2 = c2
+    for opened in range(3):
+        for n1 in (0, 1, -1):
+            if n1 != 0 and (c1 != 0 or body.fixed):
+                continue
+            for n2 in (0, 1, -1):
+                if (n2 != 0 and c2 != 0) or abs(n1) + abs(n2) != opened:
+                    continue
+                t1 = c1 if c1 != 0 else n1
+                t2 = c2 if c2 != 0 else n2
+                alpha1, alpha2 = model.accelerations(body, t1, t2, state)
+                there, alpha = (t1, t2), (alpha1, alpha2)
+                good = True
+                if c1 == 0:
+                    if n1 != 0:
+                        good = n1 * alpha1 > 0.0
+                    else:
+                        hold, corner = model.hold(body, GROUND, there, state, alpha)
+                        good = hold >= 0.0
+                        if opened == 0 and not good:
+                            fallback1 = corner
+                if c2 == 0:
+                    if n2 != 0:
+                        good = good and n2 * (alpha2 - alpha1) > 0.0
+                    else:
+                        hold, corner = model.hold(body, INTERFACE, there, state, alpha)
+                        good = good and hold >= 0.0
+                        if opened == 0 and hold < 0.0:
+                            fallback2 = corner
+                if good:
+                    return t1, t2
+    # within rounding of a threshold: open what its own criterion opens
+    return 0 if body.fixed else fallback1, fallback2
+
+
+@kernel
+def release(body, state, fails, stuck):
+    """Contact state after a closed contact fails; ``stuck``: no time has passed since the last event."""
+    c1, c2 = settle(body, state)
+    if stuck and c1 == state.c1 and c2 == state.c2:
+        # rounding at a threshold: open the contact that fails
+        alpha = model.accelerations(body, c1, c2, state)
+        _, corner = model.hold(body, fails, (c1, c2), state, alpha)
+        return (corner, c2) if fails == GROUND else (c1, corner)
+    return c1, c2
+
+
+@kernel
+def uplift(body, state):
+    """Contact state that a body at rest takes at or beyond the ground acceleration that lifts it."""
+    c1, c2 = settle(body, state)
+    if c1 == 0 and c2 == 0:
+        # rounding at the threshold: open the contact with the least hold
+        hold1, corner1 = model.hold(body, GROUND, (0, 0), state, (0.0, 0.0))
+        hold2, corner2 = model.hold(body, INTERFACE, (0, 0), state, (0.0, 0.0))
+        if hold1 <= hold2:
+            return corner1, 0
+        return 0, corner2
+    return c1, c2

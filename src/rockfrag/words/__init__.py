@@ -1,0 +1,1 @@
+"""Words of answers and reports: numbers as people write them, lists, sentences."""

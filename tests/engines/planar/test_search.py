@@ -1,0 +1,189 @@
+"""The search for a mode beside the trial of all modes, and formulas of modes beside the elimination."""
+
+import itertools
+from collections import Counter
+
+import numpy as np
+import pytest
+
+from rockfrag.engines.compile.jit import entry_kernel
+from rockfrag.engines.planar.records import MOST, posed, system_record, working_memory
+from rockfrag.engines.planar.search import (
+    CONSISTENT,
+    Trial,
+    mode_number,
+    search,
+    take_number,
+    try_mode,
+)
+from rockfrag.engines.planar.solve import look_at, solve, solve_generally
+from rockfrag.simulation.options import system_of
+
+from .cases import G, random_block, random_column, random_stack, with_contacts
+
+
+def situation(
+    rng: np.random.Generator, bodies: int, impact: bool
+) -> tuple[np.void, np.void]:
+    """Draw a column some of whose ends touch, how it moves, and the mode that the search starts from."""
+    mus = list(rng.uniform(0.1, 1.5, bodies)) if rng.uniform() < 0.8 else [1e6] * bodies
+    p = system_record(with_contacts(random_column(rng, bodies), mus), G)
+    theta, touching = np.zeros(bodies), np.zeros((bodies, 2), int)
+    for k in range(bodies):
+        below = theta[k - 1] if k else 0.0
+        ends = rng.choice(4, p=[0.1, 0.25, 0.25, 0.4])
+        theta[k] = below + (
+            0.0 if ends == 3 else rng.choice([-1, 1]) * rng.uniform(0.001, 0.2)
+        )
+        if ends == 3:
+            touching[k] = 1
+        elif ends:
+            touching[k, int(theta[k] > below)] = 1
+    w = working_memory()
+    w["drive"][:], w["kind"][:] = -1, 1
+    w["q"], _ = posed(p, theta.tolist(), [0.0] * bodies)
+    w["touching"][:bodies] = touching
+    w["along"][:bodies] = w["against"][:bodies] = mus
+    v = np.zeros(3 * MOST)
+    if impact:
+        v[: 3 * bodies] = rng.normal(0, 1, 3 * bodies) * np.tile(
+            [0.3, 0.3, 1.0], bodies
+        )
+    else:
+        w["moves"][:bodies] = rng.choice([0, 1, -1], bodies, p=[0.5, 0.25, 0.25])
+        w["moves"][:bodies] *= touching.any(axis=1)
+        v[2 : 3 * bodies : 3] = rng.normal(0, 0.5)
+    w["v"] = v
+    w["closed"][:bodies] = touching * (rng.uniform(size=(bodies, 2)) < 0.7)
+    closed = w["closed"][:bodies].any(axis=1)
+    w["slides"][:bodies] = np.where(closed, rng.choice([0, 1, -1], bodies), 0)
+    return p, w
+
+
+def closed_ends(mode: int) -> int:
+    """Number of closed ends of a numbered mode."""
+    return sum(bin((mode >> (4 * k)) & 3).count("1") for k in range(MOST))
+
+
+def compare_searches(number: int, seed: int) -> Counter:
+    """Count how the mode found differs from the first consistent one."""
+    rng, counts = np.random.default_rng(seed), Counter()
+    while counts.total() < number:
+        bodies, impact = int(rng.integers(1, 4)), bool(rng.integers(2))
+        p, w = situation(rng, bodies, impact)
+        if not w["touching"].any():
+            continue
+        loads, speed = rng.normal(0, [4.0, 2.0]), float(np.abs(w["v"]).max())
+        units = (
+            (float(p["mass"].sum()) * speed, speed)
+            if impact
+            else (float(p["weight"]), G)
+        )
+        trial = Trial(*loads.tolist(), impact, *units)
+        start = w["closed"].copy(), w["slides"].copy()
+        modes = modes_of(w["touching"][:bodies], w["moves"], impact)
+        margins = np.zeros(modes.size)
+        try_all(p, w, trial, modes, margins)
+        w["closed"], w["slides"] = start
+        found = search_quickly(p, w, trial)
+        good = margins >= -CONSISTENT
+        if not good.any():
+            # the one that violates least is taken, or another
+            counts["none"] += 1
+        elif found == modes[good][0]:
+            counts["same"] += 1
+        elif not good[modes == found].any():
+            counts["not consistent"] += 1
+        else:
+            more = closed_ends(found) > closed_ends(int(modes[good][0]))
+            counts["more closed" if more else "as many closed"] += 1
+    return counts
+
+
+@pytest.mark.parametrize(
+    ("number", "seed"), [(3000, 1), pytest.param(100_000, 2, marks=pytest.mark.slow)]
+)
+def test_the_search_finds_a_consistent_mode_wherever_there_is_one(
+    number: int, seed: int
+) -> None:
+    """And the first one nearly always."""
+    counts = compare_searches(number, seed)
+    assert counts["not consistent"] == 0
+    assert counts["same"] > 0.85 * number
+    assert counts["as many closed"] < 0.015 * number
+    assert counts["more closed"] < 0.004 * number
+
+
+def modes_of(touching: np.ndarray, moves: np.ndarray, impact: bool) -> np.ndarray:
+    """Numbers of all modes of touching ends, fewer closed ends first."""
+    choices = []
+    for k, (left, right) in enumerate(touching.tolist()):
+        ways = [int(moves[k])] if moves[k] and not impact else [0, 1, -1]
+        closed = [code for code in (1, 2, 3) if code & ~(left + 2 * right) == 0]
+        own = [(0, 0), *itertools.product(closed, ways)]
+        choices.append([(code + 4 * (way + 1)) << (4 * k) for code, way in own])
+    return np.array(sorted(map(sum, itertools.product(*choices)), key=closed_ends))
+
+
+@entry_kernel
+def try_all(p, w, trial, numbers, margins):
+    """Least margin of every mode."""
+    look_at(p, w, w.q)
+    for i in range(numbers.size):
+        take_number(p, w, numbers[i])
+        margins[i] = try_mode(p, w, trial)
+
+
+@entry_kernel
+def search_quickly(p, w, trial):
+    """Number of the mode that the package takes."""
+    look_at(p, w, w.q)
+    search(p, w, trial, -1)
+    return mode_number(p, w.closed, w.slides)
+
+
+@entry_kernel
+def by_formulas(p, w, ah, av):
+    look_at(p, w, w.q)
+    solve(p, w, w.q, w.v, ah, av, False)
+
+
+@entry_kernel
+def by_elimination(p, w, ah, av):
+    look_at(p, w, w.q)
+    solve_generally(p, w, w.q, w.v, ah, av, False, True, 0)
+
+
+@pytest.mark.parametrize("stacks", [False, True], ids=["blocks", "stacks"])
+@pytest.mark.parametrize("flat", [False, True], ids=["rocks", "flat"])
+def test_formulas_give_what_elimination_gives(stacks: bool, flat: bool) -> None:
+    rng = np.random.default_rng(3)
+    for _ in range(75):
+        body = random_stack(rng) if stacks else random_block(rng)
+        p = system_record(system_of(body, 0.5), 9.81)
+        top = int(p["count"]) - 1
+        theta, omega = np.zeros(top + 1), np.zeros(top + 1)
+        if not flat:
+            theta[top] = rng.uniform(-0.3, 0.3)
+            omega[top] = np.sign(theta[top]) * rng.uniform(0, 1)
+        w = working_memory()
+        w["drive"][:] = -1
+        w["q"], w["v"] = posed(p, theta.tolist(), omega.tolist())
+        if stacks:
+            w["closed"][0] = 1
+        w["closed"][top] = 1 if flat else ((0, 1) if theta[top] > 0 else (1, 0))
+        w["kind"][:] = 1
+        w["slides"][top] = way = rng.integers(-1, 2)
+        along = np.array([p["tilt_cos"][top], -p["tilt_sin"][top]])
+        w["v"][3 * top : 3 * top + 2] += 0.3 * way * along
+        loads = rng.normal(0, 3, 2)
+        found = []
+        for kernel in (by_formulas, by_elimination):
+            kernel(p, w, *loads)
+            forces = np.concatenate(
+                [w["normal"][: top + 1].ravel(), w["shear"][: top + 1]]
+            )
+            found.append(
+                np.concatenate([w["out"][: 3 * top + 3], forces / p["weight"]])
+            )
+        np.testing.assert_allclose(found[0], found[1], rtol=1e-9, atol=1e-10)

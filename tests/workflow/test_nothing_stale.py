@@ -1,0 +1,191 @@
+"""Results follow the bytes of the user's files, whatever the times of these are."""
+
+import os
+import re
+import shutil
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+import yaml
+
+from rockfrag.stages.running import bring_to_now
+
+from .conftest import (
+    CATALOGUE,
+    STUDY,
+    study_content,
+    write_example,
+    write_record,
+    write_study,
+    write_synthetic,
+)
+from .running import LAUNCHER, ROOT, called, finished, snakemake
+
+DAY_S = 86400.0
+AFTER_IDA = {"tests", "fragility", "pedestal", "measured_tests", "report"}
+EVERYTHING = {"motions", "ida"} | AFTER_IDA
+BODIES = EVERYTHING - {"motions"}
+
+FOLLOWS: dict[str, set[str]] = {
+    "motions.csv": EVERYTHING,
+    "record {0}.txt": EVERYTHING,
+    "second0.txt": EVERYTHING,
+    "up0.txt": EVERYTHING,
+    "house.yaml": EVERYTHING,
+    "specimens.csv": BODIES,
+    "configurations.csv": BODIES,
+    "shaker.yaml": {"tests", "pedestal", "measured_tests", "report"},
+    "tests.csv": {"measured_tests", "report"},
+}
+"""Each kind of file that a study is given, and the rules whose results depend on its bytes."""
+
+MEASURED = (
+    "test,object,pedestal,earthquake,floor,lower_g,upper_g,amplitude_g,censored,overturned_body,repetition\n"
+    "1,T1,P,First,ground,0.3,0.34,0.34,none,statue,1\n"
+    "2,T1,NP,First,ground,0.3,0.36,0.36,none,statue,1\n"
+)
+
+
+@pytest.fixture(scope="module")
+def ran(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The folder of a study with a file of each kind, some with a wildcard's name, that has run to its end."""
+    folder = tmp_path_factory.mktemp("nothing stale") / "a study"
+    shutil.copytree(STUDY, folder)
+    (folder / "configurations.csv").write_text(
+        "name,object,pedestal\nT1,T1,\nP&T1,T1,P\n"
+    )
+    rows = [CATALOGUE.replace(",file,", ",file,second,vertical,direction,")]
+    for number, earthquake in enumerate(("First", "Second")):
+        names = (f"record {{{number}}}.txt", f"second{number}.txt", f"up{number}.txt")
+        for seed, name in enumerate(names):
+            write_record(folder / name, 10 * number + seed, samples=300)
+        files = ",".join((*names, "stronger"))
+        rows.append(f"m{number},{earthquake},,,,,,folder,{files},,g,made up\n")
+    (folder / "motions.csv").write_text("".join(rows))
+    (folder / "house.yaml").write_text(
+        "name: house\nstorey_heights_m: [3, 3]\nmasses_kg: [90000, 90000]\nfirst_period_s: 0.3\n"
+        "floors: {ground: 0, top: 2}\n"
+    )
+    (folder / "shaker.yaml").write_text(
+        "stroke_m: 0.29\nforce_n: 500\nlowest_hz: 0.5\nhighest_hz: 200\n"
+        "start: off-centre\narmature_mass_kg: 5\ntable_mass_kg: 5\n"
+    )
+    (folder / "tests.csv").write_text(MEASURED)
+    content = study_content() | {
+        "vertical": True,
+        "building": "house.yaml",
+        "shaker": "shaker.yaml",
+        "measured_tests": "tests.csv",
+        "amplitudes": {"lowest_g": 0.2, "highest_g": 1.6, "step_percent": 30},
+        "protocol": {"step_percent": 30},
+    }
+    write_study(folder, content)
+    finished(snakemake(folder, "--cores", "2"))
+    return folder
+
+
+def reruns(folder: Path) -> set[str]:
+    """Rules that a run would compute again."""
+    planned = finished(snakemake(folder, "--dry-run")).stdout
+    return {
+        name
+        for name, _ in re.findall(r"^(\w+) +(\d+)$", planned, re.MULTILINE)
+        if name not in ("all", "total")
+    }
+
+
+TIMES: dict[str, Callable[[float], float]] = {
+    "long ago": lambda now: now - 1000 * DAY_S,
+    "now": lambda now: now,
+    "ahead": lambda now: now + DAY_S,
+}
+
+
+def test_bytes_make_rules_run_again_and_times_do_not(ran: Path):
+    for name in FOLLOWS:
+        ahead = time.time() + DAY_S
+        os.utime(ran / name, (ahead, ahead))
+    # with an older file in the place of another
+    check(ran, "record {0}.txt", "long ago")
+    check(ran, "shaker.yaml", "ahead")
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("when", TIMES)
+@pytest.mark.parametrize("name", FOLLOWS)
+def test_each_kind_of_file_makes_what_depends_on_it_run_again(
+    ran: Path, name: str, when: str
+):
+    check(ran, name, when)
+
+
+def check(folder: Path, name: str, when: str) -> None:
+    file = folder / name
+    kept = file.read_bytes()
+    try:
+        file.write_bytes(kept + b"\n")
+        os.utime(file, (TIMES[when](time.time()),) * 2)
+        assert reruns(folder) == FOLLOWS[name]
+    finally:
+        file.write_bytes(kept)
+        os.utime(file, (TIMES[when](time.time()),) * 2)
+    assert reruns(folder) == set()
+
+
+def test_every_file_that_a_study_names_is_of_a_kind_that_is_tried(ran: Path):
+    content = yaml.safe_load((ran / "study.yaml").read_text())
+    named = {content[key] for key in ("building", "shaker", "measured_tests")}
+    named |= {content["motions"]["catalogue"], *content["bodies"].values()}
+    assert named <= set(FOLLOWS)
+
+
+def test_a_table_in_the_place_of_another_is_read_and_one_from_the_future_too(
+    tmp_path: Path,
+):
+    table = write_synthetic(tmp_path)
+    study = write_example(tmp_path, table.name, replicates=20)
+    # a name that is data, and neither an option nor a wildcard
+    study.rename(tmp_path / "-{c}.yaml")
+    run = (*LAUNCHER, "-{c}.yaml", "--cores", "1", "--logger", "rockfrag")
+    ahead = time.time() + DAY_S
+    os.utime(table, (ahead, ahead))
+    finished(called(tmp_path, *run))
+    curves = tmp_path / "results" / "measured-example" / "fragility.csv"
+    first = curves.read_bytes()
+    lines = table.read_text().splitlines(keepends=True)
+    table.write_text("".join(lines[:120]))
+    os.utime(table, (0, 0))
+    finished(called(tmp_path, *run))
+    second = curves.read_bytes()
+    assert second != first
+    # the clock is set back: what was written seems to be of tomorrow
+    for path in (tmp_path / "results").rglob("*"):
+        os.utime(path, (ahead, ahead))
+    table.write_text("".join(lines))
+    finished(called(tmp_path, *run))
+    assert curves.read_bytes() == first
+
+
+def test_times_ahead_come_back_in_their_order(tmp_path: Path):
+    now = time.time_ns()
+    moments = {"a": now - 5, "b": now + 10**12, "c": now + 10**13, "d": now + 10**12}
+    for name, moment in moments.items():
+        (tmp_path / name).touch()
+        os.utime(tmp_path / name, ns=(moment, moment))
+    bring_to_now(tmp_path.iterdir())
+    found = {name: (tmp_path / name).stat().st_mtime_ns for name in moments}
+    assert found["a"] == moments["a"] < found["b"] == found["d"] < found["c"]
+    assert found["c"] <= time.time_ns()
+
+
+def test_the_studies_of_the_project_name_no_file_as_an_input_of_a_rule():
+    """Of an input Snakemake looks at the time; what the user gives goes in among the settings."""
+    for path in (ROOT / "workflow" / "rules").glob("*.smk"):
+        for block in re.findall(
+            r"^    +input:\n((?:^     +.*\n|\n)+?)(?=^    +output:)",
+            path.read_text(),
+            re.MULTILINE,
+        ):
+            assert "_file" not in block and ".files" not in block, path
