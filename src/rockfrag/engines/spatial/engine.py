@@ -118,7 +118,8 @@ def run(cases: Cases, spread: float = 0.0, seed: int = 0) -> Outcomes:
             body = kernel_body(system, g)
         ground, start = motion.accelerations, standing(body, turned)
         later = later_peaks(ground)
-        scales = np.ascontiguousarray(cases.scales[j])
+        # a copy: an array that may not be written would be a type of its own to the kernel
+        scales = np.array(cases.scales[j])
         found = run_scales(
             body, ground, motion.dt, scales, g=g, peaks=later, start=start
         )
