@@ -99,10 +99,10 @@ def test_an_unknown_numba_gives_the_same_bits(tmp_path):
 
 def test_kernels_that_may_not_be_compiled_are_one_sentence(tmp_path):
     record = tmp_path / "record.txt"
-    record.write_text("".join(f"{0.01 * i:.2f} {i % 7}\n" for i in range(100)))
-    asked = ("simulate", str(record), "--unit", "g", "--width", "30cm")
+    record.write_text("".join(f"{0.01 * i:.2f} {i % 7 / 10}\n" for i in range(100)))
+    asked = ("simulate", str(record), "--unit", "g", "--body", "30cm", "90cm")
     done = subprocess.run(
-        [sys.executable, "-m", "rockfrag.cli.main", *asked, "--height", "90cm"],
+        [sys.executable, "-m", "rockfrag.cli.main", *asked],
         env={**os.environ, "NUMBA_DISABLE_JIT": "1"},
         capture_output=True,
         text=True,
