@@ -18,6 +18,7 @@ COLOURS = {
     "single block": BLUE,
     "two blocks": ORANGE,
     "three blocks": OKABE_ITO[2],
+    "five blocks": OKABE_ITO[4],
     "eight blocks": OKABE_ITO[3],
 }
 

@@ -28,7 +28,7 @@ ROOT = Path(__file__).resolve().parents[1]
 COPIED = (
     "Makefile",
     "pyproject.toml",
-    "constraints.txt",
+    "requirements",
     "workflow",
     "profiles",
     "config",

@@ -2,8 +2,8 @@
 
     .venv/bin/python maintenance/pins.py
 
-Asks the package index which files pip would install here for the versions in ``constraints.txt``, and writes
-``hashes/<platform>.txt``, which pip checks with ``--require-hashes``, and ``docs/licences.md``.
+Asks the package index which files pip would install here for the versions in ``requirements/constraints.txt``, and
+writes ``requirements/<platform>.txt``, which pip checks with ``--require-hashes``, and ``docs/licences.md``.
 """
 
 import json
@@ -25,7 +25,7 @@ BUILDING = ("setuptools", "wheel")
 def main() -> int:
     """Write both files; return 0."""
     packages = sorted(_packages(), key=lambda item: item["metadata"]["name"].lower())
-    hashes = ROOT / "hashes" / f"{platform_name()}.txt"
+    hashes = ROOT / "requirements" / f"{platform_name()}.txt"
     hashes.parent.mkdir(exist_ok=True)
     hashes.write_text("".join(_pins(packages)), encoding="utf-8")
     (ROOT / "docs" / "licences.md").write_text(
@@ -56,7 +56,12 @@ def _packages() -> list[dict[str, Any]]:
                 "--ignore-installed",
                 "--quiet",
             ),
-            *("--report", str(report), "--constraint", str(ROOT / "constraints.txt")),
+            *(
+                "--report",
+                str(report),
+                "--constraint",
+                str(ROOT / "requirements/constraints.txt"),
+            ),
             *(*BUILDING, f"{ROOT}[{EXTRAS}]"),
         ]
         subprocess.run(command, check=True)

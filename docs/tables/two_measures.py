@@ -11,12 +11,13 @@ import numpy as np
 import yaml
 
 from rockfrag.assess.answer import assess_with
+from rockfrag.assess.findings import estimate_of
 from rockfrag.assess.hazard.curve import PGA, PGV, HazardCurve, make_curve
 from rockfrag.assess.motions import motion_set
 from rockfrag.assess.request import make_request
 from rockfrag.assess.risk import Estimate
-from rockfrag.assess.words import estimate_words
 from rockfrag.motions.intensity import IntensityMeasure
+from rockfrag.words.catalogue import catalogue
 
 ROOT = Path(__file__).parents[2]
 PAGE = ROOT / "docs" / "assess.md"
@@ -70,7 +71,8 @@ def narrowing(pairs: list[tuple[Estimate, Estimate]]) -> float:
 
 def line_of(name: str, pairs: list[tuple[Estimate, Estimate]]) -> str:
     """A row of the table."""
-    cells = [estimate_words(item) for pair in pairs for item in pair]
+    texts = catalogue()
+    cells = [texts.say(estimate_of(item)) for pair in pairs for item in pair]
     return f"| {' | '.join([name, *cells])} |"
 
 

@@ -12,18 +12,19 @@ True
 
 What is most used stands here; the rest is in the subpackages, and ``dir()`` of each lists it:
 
-==========  ======================================================================
-records     read, write and list strong-motion records
-motions     filter, scale, rotate, measure; spectra, pulses, synthetic motions
-building    motions of the floors of a building
-system      what is shaken: bodies, contacts, blocks, stacks and columns
-outcomes    what comes out: tables of outcomes, limit states
-simulation  single histories, ensembles, thresholds, rocking spectra
-shaketable  what a shaking table can do, and protocols of its tests
-fragility   curves and their intervals, choice of the intensity measure, exports
-effects     paired comparison of objects with and without a pedestal
-assess      one object at one place: what ``rockfrag assess`` does
-==========  ======================================================================
+===========  ======================================================================
+records      read, write and list strong-motion records
+motions      filter, scale, rotate, measure; spectra, pulses, synthetic motions
+building     motions of the floors of a building
+system       what is shaken: bodies, contacts, blocks, stacks and columns
+outcomes     what comes out: tables of outcomes, limit states
+simulation   single histories, ensembles, thresholds, rocking spectra
+shaketable   what a shaking table can do, and protocols of its tests
+fragility    curves and their intervals, choice of the intensity measure, exports
+effects      paired comparison of objects with and without a pedestal
+collections  dimensions that museums write in words, made inventories
+assess       one object at one place: what ``rockfrag assess`` does
+===========  ======================================================================
 """
 
 from typing import Any
@@ -43,6 +44,7 @@ _SUBPACKAGES = (
     "shaketable",
     "fragility",
     "effects",
+    "collections",
     "assess",
 )
 

@@ -1,6 +1,7 @@
 from . import (
     assess as assess,
     building as building,
+    collections as collections,
     effects as effects,
     fragility as fragility,
     motions as motions,
@@ -19,6 +20,7 @@ from .fragility.estimators import (
     fit_stripes as fit_stripes,
 )
 from .fragility.lognormal import fit_lognormal as fit_lognormal
+from .motions.catalogued import read_motions as read_motions
 from .motions.measures import measure_motion as measure_motion
 from .motions.response_spectra import response_spectrum as response_spectrum
 from .outcomes.outcomes import Outcomes as Outcomes

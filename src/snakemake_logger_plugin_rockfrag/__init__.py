@@ -7,6 +7,7 @@ import logging
 import sys
 import time
 from collections import Counter
+from collections.abc import Mapping
 from pathlib import Path
 
 from snakemake_interface_logger_plugins.base import LogHandlerBase
@@ -96,15 +97,17 @@ class LogHandler(LogHandlerBase):
         """Count a rule's job as done, and say what the rest takes if it goes as in an earlier run."""
         self.waiting[rule] -= 1
         self.done[rule] += 1
-        done, rest = (
-            sum(
-                n * (last_seconds(self.report.parent / "logs" / f"{name}.log") or 1.0)
-                for name, n in rules.items()
-            )
-            for rules in (self.done, self.waiting)
-        )
+        done, rest = self._seconds_of(self.done), self._seconds_of(self.waiting)
         seconds = rest / done * (time.monotonic() - self.start)
         return f", about {_duration(seconds)} left" if seconds else ""
+
+    def _seconds_of(self, rules: Mapping[str, int]) -> float:
+        """Seconds that jobs of some rules took in an earlier run; 1 s for one that is not known."""
+        logs = self.report.parent / "logs"
+        total = 0.0
+        for name, count in rules.items():
+            total += count * (last_seconds(logs / f"{name}.log") or 1.0)
+        return total
 
 
 def _duration(seconds: float) -> str:

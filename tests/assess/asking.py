@@ -19,7 +19,9 @@ from ..case_tables import case_tables
 
 CASES = case_tables(__file__)
 
-_EMPTY = re.compile(r"\bnan\b|\binf\b|\bNone\b(?! of)|less than 0 %|\b0 to 100 %")
+_EMPTY = re.compile(
+    r"\bnan\b|\binf\b|\bNone\b(?! of)|less than 0 %|\b0 to 100 %|\{\w+\}"
+)
 """Words of an answer that say nothing."""
 
 
@@ -104,6 +106,7 @@ def _within(answer: dict[str, Any]) -> list[str]:
         "a tenth topples at more than half": _of(amplitudes["0.1"])
         <= _of(amplitudes["0.5"]),
         "counts": _counts_agree(answer),
+        "decision": _decided(answer),
         "below uplift": _at_rest(answer),
         "lines": _lines_agree(answer),
         "what helps": _helps(answer),
@@ -124,18 +127,27 @@ def _ordered(item: dict[str, Any]) -> bool:
 
 
 def _counts_agree(answer: dict[str, Any]) -> bool:
+    """No more motions topple it than rock it, and none where it does not move."""
     counts = answer["counts"]
     if counts is None:
         return True
-    fractions = (
-        answer["fraction_toppling"]["value"],
-        answer["fraction_rocking"]["value"],
-    )
-    expected = (counts[key] / counts["motions"] for key in ("topple", "rock"))
     ordered = counts["topple"] <= counts["rock"] <= counts["motions"]
-    return ordered and all(
-        abs(a - b) < 1e-9 for a, b in zip(fractions, expected, strict=True)
-    )
+    return ordered and not (answer["does_not_move"] and counts["topple"])
+
+
+def _decided(answer: dict[str, Any]) -> bool:
+    """What is done without a measurement follows from the probability and the one that is accepted."""
+    decision, main = answer["decision"], answer["probability"]
+    main = main or answer["fraction_toppling"]
+    if decision is None:
+        return main is None
+    secure = main["value"] > answer["accepted"]
+    chance = decision["chance"]
+    named = decision["action"] == "measure"
+    # on the mean of a rate and of its probability alike, but for what lies between them
+    near = abs(main["value"] - answer["accepted"]) < 0.2 * answer["accepted"]
+    right = near or decision["otherwise"] == ("secure" if secure else "leave")
+    return right and named == bool(decision["source"]) and 0 <= chance <= 1
 
 
 def _at_rest(answer: dict[str, Any]) -> bool:
@@ -145,41 +157,42 @@ def _at_rest(answer: dict[str, Any]) -> bool:
         return True
     if starts is not None and level >= starts:
         return not answer["does_not_move"]
-    still = (
-        answer["fraction_rocking"]["value"] == 0 == answer["fraction_toppling"]["value"]
-    )
     words = answer["lines"][0]
-    return still and ("does not move" in words or "is not expected to move" in words)
+    unlikely = re.search("does not move|unlikely|too few|hardly rocks", words)
+    counts = answer["counts"]
+    still = counts is None or counts["rock"] == 0
+    return still and (not answer["does_not_move"] or unlikely is not None)
 
 
 def _lines_agree(answer: dict[str, Any]) -> bool:
-    """Five lines; a bound is called one, none of n is said as that, and no interval says nothing."""
-    lines = answer["lines"]
-    text = "\n".join(lines)
-    if len(lines) != 5 or _EMPTY.search(text):
+    """At most sixty words; each says how likely, how far away, what to do, and they agree with the numbers."""
+    lines, details = answer["lines"], answer["details"]
+    if len(" ".join(lines).split()) > 60 or _EMPTY.search("\n".join(lines + details)):
         return False
-    toppling = answer["fraction_toppling"]
-    if toppling and toppling["value"] == 0 and answer["fraction_rocking"]["value"] > 0:
-        return "none of" in lines[0] and "upper limit" in lines[0]
-    if (
-        toppling
-        and toppling["lower"] < 0.01
-        and toppling["upper"] > 0.5
-        and toppling["value"] > 0
-    ):
-        return "not decidable" in lines[0]
-    return True
+    ids = [each["id"] for each in answer["findings"]]
+    if ids[0] == "how_likely_few_earthquakes":
+        return ids[1:] == ["give_earthquakes"]
+    toppling, likely = answer["fraction_toppling"], answer["probability"]
+    estimate = likely or toppling
+    if estimate is None:
+        return ids[-1] == "give_level"
+    # what is above the accepted risk is never left, what is below never secured
+    above = estimate["value"] > answer["accepted"]
+    wrong = ("leave_it", "leave_unless") if above else ("secure_it", "secure_unless")
+    return ids[-1] not in wrong
 
 
 def _helps(answer: dict[str, Any]) -> bool:
-    """What is printed as help makes nothing worse, and only that which helps is printed."""
-    line = answer["lines"][3].lower()
+    """What is said to help makes nothing worse in its limits, and only what is shown to help is said."""
+    line = " ".join(line for line in answer["details"] if line.startswith("What helps"))
     amplitude = answer["fraction_toppling"] is None and answer["probability"] is None
-    for mitigation in answer["mitigations"]:
-        factor = mitigation["factor"]
+    for change in answer["mitigations"]:
+        factor, upper = change["factor"], change["upper"]
         better = factor is None or (factor > 1 if amplitude else factor < 1)
-        if mitigation["helps"] and not better:
+        if change["helps"] and not better:
             return False
-        if mitigation["name"].lower() in line and not mitigation["helps"]:
+        if change["shown"] and not amplitude and upper is not None and upper >= 1:
+            return False
+        if change["change"]["words"].lower() in line.lower() and not change["shown"]:
             return False
     return True

@@ -6,7 +6,7 @@ const finite = (key, v) => (typeof v === "number" && !Number.isFinite(v) ? null 
 const plain = (value) => JSON.parse(JSON.stringify(value, finite));
 const modules = Object.fromEntries(Object.entries(data.modules).map(([name, text]) => [name, bytes(text)]));
 begin({ data, modules, samples: bytes(data.packed) }).then(() => {
-  const lines = words(data, data.texts.en);
+  const wording = findings(data), speak = catalogue(data.texts.en);
   const found = forms.map((form, id) => {
     try {
       const request = tools.bodies.requestOf(form), count = data.earthquakes.length;
@@ -20,7 +20,8 @@ begin({ data, modules, samples: bytes(data.packed) }).then(() => {
       const { place } = request, computed = Boolean(place.computed);
       const shaken = (motion) => [...building.floorMotion(place.floors[""], motion).samples];
       const floor = computed ? tools.motions.map(shaken) : [];
-      return { answer: plain(answer), early, lines: lines(request, answer), computed, floor };
+      const { first, details } = wording.of(request, answer);
+      return { answer: plain(answer), early, first: plain(first), details: plain(details), lines: first.map(speak.sentence), computed, floor };
     } catch (error) {
       if (!error.field) return { failed: error.stack };
       const { en } = data.texts;

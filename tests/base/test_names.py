@@ -14,13 +14,7 @@ from hypothesis import strategies as st
 from rockfrag.base.errors import LONGEST_MESSAGE, InputError
 from rockfrag.base.figure_style import figure_style, new_figure, save_figure
 from rockfrag.base.files import FORMULA, check_name, csv_text, file_name, write_table
-from rockfrag.base.keywords import RENAMED, check_names
-from rockfrag.base.tabular import read_rows
-from rockfrag.config.schema import checked
-from rockfrag.effects.paired_tests import check_tests
 from rockfrag.fragility.exports import identifiers
-from rockfrag.fragility.observations import observations_from_table
-from rockfrag.records.catalogue import read_catalogue
 from rockfrag.report.page import Column, inline_svg, table_html
 
 HOSTILE = st.one_of(
@@ -134,42 +128,3 @@ def test_other_programs_tell_configurations_apart(names: list[str]):
     for item in made.values():
         assert len(item) <= 75
         assert all(c.isascii() and (c.isalnum() or c in "_-:") for c in item)
-
-
-def test_a_name_that_is_known_here_is_no_old_one():
-    assert not set(RENAMED.values()) & set(RENAMED)
-    check_names("table", ["event"], ["event", "earthquake"])
-    check_names("table", ["event"], ["motion"])
-
-
-def table(folder: Path, text: str) -> Path:
-    (folder / "motions.csv").write_text(text, encoding="utf-8")
-    return folder / "motions.csv"
-
-
-TESTS = pd.DataFrame({"pga_g": [0.1, 0.2], "overturned": [0, 1], "event": ["a", "b"]})
-
-
-@pytest.mark.parametrize(
-    "read",
-    [
-        lambda folder: read_catalogue(
-            table(folder, "name,event,file\nA,Friuli,a.txt\n")
-        ),
-        lambda folder: read_rows(
-            table(folder, "event,value\nA,1\n"), ["earthquake", "value"]
-        ),
-        lambda _: checked(
-            {"table": "t.csv", "columns": {"event": "x"}}, "measured_table", "a.yaml"
-        ),
-        lambda _: observations_from_table(
-            TESTS, "pga_g", motion=None, earthquake="earthquake"
-        ),
-        lambda _: check_tests(pd.DataFrame({"event": ["a"], "object": ["b"]})),
-    ],
-)
-def test_what_has_an_old_name_is_told_the_new_one(tmp_path, read):
-    with pytest.raises(
-        InputError, match=r"event is now called earthquake; rename it\.$"
-    ):
-        read(tmp_path)

@@ -11,7 +11,7 @@ import yaml
 from rockfrag.base.errors import InputError
 from rockfrag.campaign.comparison import MeasuredTests
 from rockfrag.campaign.standing import sample_trials, simulate_tests
-from rockfrag.report.campaign_page import says
+from rockfrag.report.campaign_findings import beside_plane
 from rockfrag.simulation import overturns
 from rockfrag.stages.campaign import campaign_with_motions, standing_object
 from rockfrag.study.campaign import CampaignStudy
@@ -212,7 +212,7 @@ def test_space_is_called_better_or_worse_only_where_the_numbers_say_so(better, p
         "p": p,
     }
     row |= dict(zip(("better", "better_lower", "better_upper"), better, strict=True))
-    assert said in says.line("beside_plane", row, row)
+    assert said in beside_plane(row, row).headline
 
 
 @pytest.mark.slow

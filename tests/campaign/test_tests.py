@@ -12,7 +12,7 @@ from rockfrag.campaign.comparison import REPEATS, majority_of_repeats
 from rockfrag.campaign.laboratory import read_campaign, table_motions
 from rockfrag.motions.processing import process
 from rockfrag.motions.pulses import commanded_cosine
-from rockfrag.report.campaign_page import _findings
+from rockfrag.report.campaign_findings import campaign_findings
 from rockfrag.study.loading import load_any
 
 COLUMNS = {"test": "test", "motion": "motion", "group": "input", "overturned": "fell"}
@@ -278,7 +278,7 @@ def test_the_ceiling_is_no_rival():
         ([rival, ceiling], ["threshold on PGV, the best of 1 alternative"]),
     ):
         agreement = pd.DataFrame([row | {"who": "rockfrag"}, *others])
-        found = _findings(tables | {"agreement": agreement})[1:]
+        found = campaign_findings(tables | {"agreement": agreement})[1:]
         assert len(found) == len(said)
         assert all(
             words in finding.headline

@@ -9,8 +9,8 @@ import pytest
 
 from rockfrag.assess.answer import assess_with
 from rockfrag.assess.app.writing import write_app
+from rockfrag.assess.findings import details_of, lines_of
 from rockfrag.assess.request import make_request, read_request
-from rockfrag.assess.words import five_lines
 from rockfrag.cli.main import main
 
 from ..app_forms import options_of, settings_of, some_form
@@ -45,7 +45,8 @@ def app_page(motions, tmp_path_factory) -> Path:
     return path
 
 
-def lines_of(browser: Browser) -> list[str]:
+def shown_in(browser: Browser) -> list[str]:
+    """The lines behind the first screen."""
     return browser.run(
         "[...document.querySelectorAll('#lines dd')].map(line => line.textContent)"
     )
@@ -56,8 +57,15 @@ def test_it_answers_in_the_words_of_assess(browser, app_page, motions, width, da
     opened(browser, app_page, width, 900, ready=ANSWERED, dark=dark)
     request = make_request(SETTINGS, "form")
     found = assess_with(request, motions.at(request.place))
-    said = [line.partition(": ")[2] for line in five_lines(found)]
-    lines = lines_of(browser)
+    verdict, *others = lines_of(found)
+    assert (
+        browser.run("document.getElementById('headline').textContent") + "." == verdict
+    )
+    assert browser.run("document.getElementById('screen').textContent") == " ".join(
+        others
+    )
+    said = [line.partition(": ")[2] for line in details_of(found)]
+    lines = shown_in(browser)
     assert [lines[i] for i in (0, 1, 3)] == [said[i] for i in (0, 1, 3)]
     assert browser.run(FITS)
     assert browser.console == []
@@ -134,7 +142,7 @@ def test_the_last_key_stroke_is_answered(browser, app_page):
         time.sleep(0.15)
     waited(browser, "document.getElementById('lines').textContent.includes('45.5 cm')")
     waited(browser, ANSWERED)
-    assert "45.5 cm" in " ".join(lines_of(browser))
+    assert "45.5 cm" in " ".join(shown_in(browser))
     assert browser.console == []
 
 
@@ -183,7 +191,8 @@ def test_objects_are_kept_and_opened_again(browser, app_page, tmp_path):
     press = "[...document.querySelectorAll('#tools button')][{}].click()"
     put(browser, "#field-name", "=HYPERLINK(1)")
     waited(
-        browser, "document.getElementById('lines').textContent.includes('=HYPERLINK')"
+        browser,
+        "document.getElementById('headline').textContent.includes('=HYPERLINK')",
     )
     waited(browser, ANSWERED)
     browser.run(press.format(0))
@@ -242,11 +251,9 @@ def test_the_page_says_and_shows_what_moves_in_space(
     )
     opened(browser, path, width, 1200, ready=ANSWERED)
     found = assess_with(make_request(settings_of(form), "form"), motions)
-    said = browser.run("document.getElementById('lines').innerText")
-    for line in five_lines(found)[:4]:
-        title, _, words = line.partition(": ")
-        if title in ("Result", "Position"):
-            assert words in said
+    said = browser.run("document.getElementById('lines').textContent")
+    behind = dict(line.split(": ", 1) for line in details_of(found))
+    assert behind["Position"] in said and behind["At this level"] in said
     waited(browser, "document.getElementById('scene').tabIndex === 0")
     waited(browser, "document.getElementById('scene-words').textContent !== ''")
     before = browser.run(PICTURE)

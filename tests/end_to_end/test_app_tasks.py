@@ -48,11 +48,13 @@ def type_into(browser: Browser, **fields: str) -> None:
 
 
 def answered(browser: Browser, *, of: str) -> list[str]:
-    """The lines of the answer about an object of this name."""
-    waited(browser, f"{ANSWERED} && {LINES}[0].includes({json.dumps(of)})")
+    """The headline of the answer about an object, its first screen, and the lines behind it."""
+    text = "document.getElementById('{}').textContent"
+    waited(browser, f"{ANSWERED} && {text.format('answer')}.includes({json.dumps(of)})")
     time.sleep(0.3)
     waited(browser, ANSWERED)
-    return browser.run(LINES)
+    shown = [browser.run(text.format(id)) for id in ("headline", "screen")]
+    return [*shown, *browser.run(LINES)]
 
 
 def printed(browser: Browser) -> str:
@@ -74,8 +76,8 @@ def test_a_bust_on_a_plinth_on_the_first_floor_of_a_masonry_house(browser, page)
     browser.press("Enter")
     type_into(browser, floor="1/3")
     type_into(browser, level="0,15 g", years="475")
-    result, risk, position, *_ = answered(browser, of="level 1 of 3")
-    assert "Marble bust" in result
+    result, screen, _, risk, position, *_ = answered(browser, of="level 1 of 3")
+    assert "Marble bust" in result and "In 50 years" in screen
     assert "in 50 years" in risk and "its pedestal" in position
     sheet = printed(browser)
     assert (
@@ -109,7 +111,7 @@ def test_a_vase_in_a_gallery_on_a_phone_in_italian(browser, page):
         word in said for word in ("topple", "height", "motions that", "interval ")
     )
     text = browser.run("document.body.innerText")
-    assert all(word in text for word in ("Si ribalta?", "Larghezza", "Rischio"))
+    assert all(word in text for word in ("Si ribalta?", "Larghezza", "I numeri"))
     put(browser, "#slide-width", 30)
     cells = "[...document.querySelectorAll('#compared tr')[1].cells].map(cell => cell.textContent)"
     waited(browser, f"{cells}[2] !== '–'")
@@ -141,15 +143,16 @@ def test_cabinets_of_a_hospital_with_a_hazard_curve(browser, page):
     reach(browser, "#field-hazard")
     # pasted, not typed: a line's end is no key
     put(browser, "#field-hazard", CURVE)
-    _, risk, *_ = answered(browser, of="once in 475 years")
-    assert "probability" in risk
+    _, screen, *_ = answered(browser, of="once in 475 years")
+    assert "In 50 years" in screen
     reach(browser, "#keep")
     browser.press("Enter")
     waited(browser, "document.querySelectorAll('#objects tr').length === 1")
     put_file(browser, "list.csv", LIST)
     waited(browser, "document.querySelectorAll('#objects tr').length === 4")
     waited(
-        browser, "document.getElementById('file-error').textContent.includes('rows 4')"
+        browser,
+        "document.getElementById('file-error').textContent.includes('Row 4, Width')",
     )
     rows = "[...document.querySelectorAll('#objects tr')]"
     risks = browser.run(f"{rows}.map(row => parseFloat(row.cells[3].textContent))")

@@ -133,7 +133,9 @@ class Study:
                 path.read_bytes()
             ).hexdigest()
             for path in sorted(results.rglob("*"))
-            if path.is_file() and "logs" not in path.parts and path.name != ".run"
+            if path.is_file()
+            and "logs" not in path.parts
+            and path.name not in (".run", ".lock")
         }
 
     def others(self) -> set[str]:

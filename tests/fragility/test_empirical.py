@@ -12,6 +12,7 @@ from rockfrag.fragility.empirical import (
     fraction_in_bins,
     local_fraction,
     resurrections_of,
+    wilson_interval,
 )
 from rockfrag.fragility.estimators import fragility_of
 from rockfrag.fragility.fractions import (
@@ -246,3 +247,26 @@ def test_parts_change_nothing_and_windows_are_those_of_the_table(counted):
         pd.testing.assert_frame_equal(windows, known, check_dtype=False)
     outcomes = [found.outcomes("pga_g").overturned for found in (whole, parts)]
     assert np.array_equal(*outcomes)
+
+
+def test_binomial_limits_are_those_of_wilson():
+    """Where the fraction lies as many standard errors of itself away as belong to the level (Wilson, 1927)."""
+    fell, trials = np.array([0.0, 3.0, 10.0]), np.array([10.0, 12.0, 10.0])
+    for level, z in ((0.90, 1.6448536), (0.95, 1.9599640)):
+        limits = np.array(wilson_interval(fell, trials, level))
+        away = np.abs(fell / trials - limits)
+        expected = z * np.sqrt(limits * (1 - limits) / trials)
+        np.testing.assert_allclose(away, expected, rtol=1e-6, atol=1e-7)
+        # the limit of "none of n": z² / (n + z²)
+        assert limits[1, 0] == pytest.approx(z**2 / (10 + z**2), rel=1e-6)
+
+
+def test_each_value_counts_where_a_single_motion_tried_it():
+    outcomes = observations_from_table(
+        pd.DataFrame({"pga_g": [0.1, 0.2, 0.3, 0.4], "overturned": [0, 0, 1, 1]}),
+        "pga_g",
+        motion=None,
+    )
+    found = fractions_of_outcomes(outcomes, np.array(list("abcd"), object), 0.9)
+    np.testing.assert_array_equal(found.fraction, [0.0, 0.0, 1.0, 1.0])
+    assert 0.2 <= found.theta <= 0.3

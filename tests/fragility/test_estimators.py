@@ -74,6 +74,23 @@ def test_stripes_recover_the_parameters_as_counts_and_as_single_tests():
     assert tests.interval.groups == 3000
 
 
+def test_stripes_without_motions_speak_of_tests():
+    """Eight stripes of 40 tests (as Baker's, 2015) are no 8 motions; two of three tests are few tests."""
+    levels = np.linspace(0.2, 1.6, 8)
+    counts = np.round(40 * stats.norm.cdf(np.log(levels / THETA) / BETA))
+    table = pd.DataFrame({"pga_g": levels, "overturned": counts, "trials": 40})
+    many = fit_stripes(table, "pga_g", trials="trials", motion=None)
+    assert not any("based on only" in words for words in many.warnings)
+    few = pd.DataFrame(
+        {"pga_g": [0.2, 0.5, 0.9], "overturned": [0, 1, 2], "trials": [2, 2, 3]}
+    )
+    said = fit_stripes(few, "pga_g", trials="trials", motion=None).warnings
+    assert any("based on only 7 tests" in words for words in said)
+    named = few.assign(motion=["a", "b", "c"])
+    said = fit_stripes(named, "pga_g", trials="trials").warnings
+    assert any("based on only 3 motions" in words for words in said)
+
+
 @pytest.mark.parametrize("limit", [np.inf, 0.4])
 def test_step_protocols_recover_the_parameters_also_when_a_third_is_censored(limit):
     tests = step_tests(capacities(800, 4), 0.10, limit)

@@ -33,6 +33,7 @@ from rockfrag.runtime.processes import in_processes
 from . import inputs
 from .damage import Attempt
 from .records import records
+from .texts import texts
 
 LONGEST_WAIT_S = 120.0
 """By the clock, for what hangs without using the processor; long, as the machine may do other things."""
@@ -58,7 +59,8 @@ KINDS: Mapping[str, Kind] = {
     "tables": Kind(inputs.tables, 0.2),
     "hazard files": Kind(inputs.hazard_files, 0.15),
     "statues and inventories": Kind(inputs.objects, 0.1),
-    "numbers": Kind(inputs.numbers, 0.1),
+    "numbers": Kind(inputs.numbers, 0.08),
+    "texts that state what they hold": Kind(texts, 0.02, least_used=0.3),
     "requests": Kind(
         inputs.requests, most_seconds=60, most_bytes=2**33, chunk=50, least_used=0.25
     ),

@@ -11,7 +11,7 @@ import numpy as np
 from obspy import Stream, Trace, UTCDateTime
 
 from rockfrag.base.errors import InputError
-from rockfrag.records.catalogue import load_motions
+from rockfrag.motions.catalogued import read_motions
 from rockfrag.records.make_catalogue import make_catalogue
 from rockfrag.records.read import motion_of, read_record
 
@@ -51,7 +51,7 @@ def _catalogue_of(path: Path) -> None:
 
 
 def _load_all(path: Path) -> None:
-    load_motions(path)
+    read_motions(path)
 
 
 def _seeds(folder: Path) -> Iterable[Seed]:

@@ -274,14 +274,17 @@ class Model:
             given = {i: p + fraction * (wanted[i] - p) for i, p in by_momentum.items()}
             return self._coming_off(old, closing, theta, before, given)
 
-        energy = self.kinetic_energy(old, theta, before) * (1 + 1e-9)
+        energy = self.kinetic_energy(old, theta, before)
 
         def spare(fraction: float) -> float:
             new, after = shared(fraction)
             return energy - self.kinetic_energy(new, theta, after)
 
-        if spare(1.0) >= 0:
+        # less than rounding is no gain
+        if spare(1.0) >= -1e-12 * energy:
             return *shared(1.0), moves and moved is None
+        if spare(0.0) <= 0:
+            return *shared(0.0), True
         return *shared(float(brentq(spare, 0.0, 1.0, xtol=1e-15))), True
 
     def _coming_off(self, old, closing, theta, before, given):

@@ -183,7 +183,7 @@ def test_the_notebook_of_the_tutorial_runs(at_home):
 
 
 README = (ROOT / "README.md").read_text(encoding="utf-8")
-PROJECT = ("Makefile", "pyproject.toml", "constraints.txt", "workflow", "profiles")
+PROJECT = ("Makefile", "pyproject.toml", "requirements", "workflow", "profiles")
 
 
 def fences(language: str) -> list[str]:

@@ -20,7 +20,9 @@ ROOT = Path(__file__).resolve().parents[2]
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
 PINNED = dict(
     line.lower().split("==")
-    for line in (ROOT / "constraints.txt").read_text(encoding="utf-8").splitlines()
+    for line in (ROOT / "requirements/constraints.txt")
+    .read_text(encoding="utf-8")
+    .splitlines()
     if "==" in line
 )
 
@@ -174,7 +176,7 @@ def test_long_checks_run_every_week_and_a_tag_publishes_what_was_tested():
 def test_the_changelog_dates_every_version():
     text = (ROOT / "CHANGELOG.md").read_text(encoding="utf-8")
     found = re.findall(r"^## (\S+) - (\d{4}-\d{2}-\d{2})$", text, re.MULTILINE)
-    assert len(found) == text.count("\n## ")
+    assert len(found) == text.count("\n## ") - text.count("\n## Unreleased\n")
     assert found[0][0] == rockfrag.__version__
     assert [date for _, date in found] == sorted(
         (date for _, date in found), reverse=True

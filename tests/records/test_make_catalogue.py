@@ -8,9 +8,10 @@ import pytest
 
 from rockfrag.base.errors import InputError
 from rockfrag.cli.main import main
-from rockfrag.records.catalogue import load_motions, read_catalogue, repeated_motions
+from rockfrag.motions.catalogued import read_motions
+from rockfrag.records.catalogue import read_catalogue, repeated_motions
 from rockfrag.records.make_catalogue import make_catalogue, read_search_results
-from rockfrag.records.parsing.quantities import azimuth_of, is_vertical
+from rockfrag.records.parsing.directions import azimuth_of, is_vertical
 
 from .built_records import build, pack, peer_download, wave
 
@@ -106,7 +107,7 @@ def test_a_packed_download_of_peer_is_read(tmp_path):
     assert first["vertical"].endswith("PEER/RSN701_LOMAP_S01-UP.AT2")
     assert (first["earthquake"], first["distance_km"]) == ("Loma Prieta 1989", 5.0)
     assert (table["vertical"] == "").sum() == 4
-    motions = load_motions(catalogue)
+    motions = read_motions(catalogue)
     np.testing.assert_allclose(
         motions[3].acceleration, 1.1 * wave(101) * 9.81, atol=1e-6
     )
@@ -225,7 +226,7 @@ def test_messages_name_the_options_of_the_command_line(tmp_path, capsys):
     assert "give --unit" in capsys.readouterr().err
     (tmp_path / "motions.csv").write_text("name,earthquake,file\nA,E,a.txt\n")
     with pytest.raises(InputError, match=r"give the column unit \(g, m/s2"):
-        load_motions(tmp_path / "motions.csv")
+        read_motions(tmp_path / "motions.csv")
 
 
 def test_names_that_no_table_shows_are_replaced_or_refused(tmp_path, capsys):
@@ -243,7 +244,7 @@ def test_names_that_no_table_shows_are_replaced_or_refused(tmp_path, capsys):
     told = capsys.readouterr()
     assert "\x1b" not in told.out + told.err + output.read_text(encoding="utf-8")
     assert len(read_catalogue(output)) == 1
-    assert load_motions(output)[0].acceleration.size == 43
+    assert read_motions(output)[0].acceleration.size == 43
     strange = os.fsencode(tmp_path) + b"/r\xff.txt"
     with open(strange, "wb") as file:
         file.write(b"0 0.1\n0.01 0.2\n0.02 0.1\n0.03 0\n")
@@ -260,7 +261,7 @@ def test_rows_of_a_catalogue_are_numbered_as_lines_and_repeats_are_named(tmp_pat
         "name,earthquake,file,unit\n\nA,E,a.txt,g\n\nB,E,none.txt,g\nC,E,a.txt,g\n"
     )
     with pytest.raises(InputError, match=r"line 5: .*none\.txt"):
-        load_motions(path)
+        read_motions(path)
     assert repeated_motions(read_catalogue(path)) == [
         "motion C is the same as A: a.txt"
     ]

@@ -2,14 +2,14 @@
 
 import ast
 import re
-from functools import cache, partial
+from functools import cache
 from pathlib import Path
 
 import pandas as pd
 import pytest
 
 from rockfrag.report.page import cell
-from rockfrag.report.part import Finding, Says, Section
+from rockfrag.report.part import Finding, Section, chapter
 from rockfrag.stages.fragility import best_of
 from rockfrag.words import sentences
 
@@ -75,13 +75,9 @@ def test_no_report_speaks_in_riddles(riddle, instead):
 
 
 def test_an_open_chapter_says_what_its_headline_rests_on():
-    section = partial(
-        Says("rockfrag.report", "opening.j2").section, "opening", [], "Title"
-    )
-    assert section(Finding("A", "b", "c")) == Section(
-        "opening", "Title", "A.", ["b", "c"], []
-    )
-    assert section(Finding("A")).paragraphs == []
+    found = chapter("opening", "Title", Finding("A", "b", "c"), ["d"])
+    assert found == Section("opening", "Title", "A.", ["b", "c", "d"])
+    assert chapter("opening", "Title", Finding("A")).paragraphs == []
 
 
 def test_best_measures_are_among_those_asked_for():

@@ -10,7 +10,7 @@ import pytest
 
 from rockfrag.fragility.empirical import TableIda
 from rockfrag.fragility.ida_curves import with_measures
-from rockfrag.records.motion import Motion
+from rockfrag.records.motion import GroundMotion, Motion
 from rockfrag.shaketable.tests_table import read_measured
 from rockfrag.stages import tests as tests_stage
 from rockfrag.stages.fragility import export_curves, floor_curves
@@ -90,7 +90,9 @@ def test_floors_never_share_a_curve_and_measures_are_named_after_them(
 
 def test_of_many_tests_some_evenly_among_them_are_looked_at(monkeypatch, noise):
     monkeypatch.setattr(tests_stage, "MOST_TESTED", 4)
-    known = {f"m{k}": noise(k, 300, 0.02, tapered=True) for k in range(10)}
+    known = {
+        f"m{k}": GroundMotion(noise(k, 300, 0.02, tapered=True)) for k in range(10)
+    }
     about = {
         "configuration": "T",
         "object": "T",
@@ -114,7 +116,11 @@ def test_amplitudes_grow_by_the_step_up_to_the_highest():
 def test_a_statue_that_its_pedestal_carries_along_rocks_and_does_not_stay():
     time, about = np.arange(300) * 0.01, {"earthquake": "E", "floor": "ground"}
     waves = [
-        Motion(6 * np.sin(2 * np.pi * f * time) * (time < 1.5), 0.01, f"{f} Hz", about)
+        GroundMotion(
+            Motion(
+                6 * np.sin(2 * np.pi * f * time) * (time < 1.5), 0.01, f"{f} Hz", about
+            )
+        )
         for f in (1.0, 2.0)
     ]
     stack = Stack(Block(0.2725, 0.9899, 62.6), Block(0.6, 1.2, 372.0))

@@ -115,7 +115,14 @@ def test_mass_that_is_not_counted_scales_every_ratio_by_the_masses(motions):
 
 def test_perturbed_copies_follow_from_the_seed_and_differ_on_the_two_sides():
     first, again = (
-        perturbed_cases("T2", STACK, 0.01, 0.02, 3, np.random.default_rng(5))
+        perturbed_cases(
+            "T2",
+            STACK,
+            tolerance=0.01,
+            restitution=0.02,
+            replicates=3,
+            rng=np.random.default_rng(5),
+        )
         for _ in range(2)
     )
     assert first == again

@@ -6,26 +6,33 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy import special
 
 from rockfrag.assess import outcomes, risk
 from rockfrag.assess.assumed import Moved
 from rockfrag.assess.conversion import Conversion, find_conversion
+from rockfrag.assess.core.decisions import Decision, decide
+from rockfrag.assess.core.draws import FEW_MEMBERS
+from rockfrag.assess.core.likelihood import Likelihood, likelihood_of
 from rockfrag.assess.hazard.curve import PGA, PGV, HazardCurve
-from rockfrag.assess.mitigations import Mitigation, compare, mitigations_of
+from rockfrag.assess.mitigations import Mitigation, compare
 from rockfrag.assess.motions import MotionSet, motion_set
 from rockfrag.assess.outcomes import Directions, ObjectOutcomes, Shaking
 from rockfrag.assess.request import Level, Request
-from rockfrag.assess.risk import Estimate
+from rockfrag.assess.risk import Estimate, PredictedCurve
 from rockfrag.assess.rules import RuleCheck, check_rules
-from rockfrag.assess.sources import SPACE
+from rockfrag.assess.sources import MEASUREMENTS, SPACE
+from rockfrag.assess.standing import Standing
+from rockfrag.assess.texts import Text
+from rockfrag.base.arrays import Floats
 from rockfrag.base.errors import InputError
 from rockfrag.base.short_repr import short_repr
 from rockfrag.fragility.estimators import Fragility, fragility_of
 from rockfrag.fragility.model_error import MODEL_ERRORS
 from rockfrag.motions.intensity import IntensityMeasure
 from rockfrag.outcomes.limit_states import ROCKS
+from rockfrag.system.blocks import Body
+from rockfrag.words.findings import Finding, finding, two
 
 RECORDS = "resources/records"  # Folder of fetched records
 
@@ -49,7 +56,10 @@ class Assessment:
     counts : motions that can be scaled to the level, that rock and that topple it there; None without any
     amplitudes : levels at which a tenth and half of the motions topple it, by fraction
     by_arrangement : what is estimated of each arrangement
+    shown_safer : arrangements that the motions show to be safer than the others
     curve : lognormal curve of the motions as recorded, NaN where there is none; None with the site's velocity
+    predicted : fraction at each level, the mean over what is not known, with its median and its two spreads
+    decision : what to do by an accepted risk; None without a level
     conversion : what hazard in another measure than PGV leaves open; None in PGV
     planar : what is estimated in one plane, beside the answer in space, which counts; None where there is none
     directions : the worst direction; None where no record has two components
@@ -73,7 +83,10 @@ class Assessment:
     counts: tuple[int, int, int] | None
     amplitudes: Mapping[float, Estimate]
     by_arrangement: Mapping[str, float]
+    shown_safer: frozenset[str]
     curve: Fragility | None
+    predicted: PredictedCurve
+    decision: Decision | None
     conversion: Conversion | None
     planar: float | None
     directions: Directions | None
@@ -94,6 +107,12 @@ class Assessment:
     def outcomes(self) -> ObjectOutcomes:
         """Outcomes of the object as it stands."""
         return next(iter(self.arrangements.values()))
+
+    @property
+    def does_not_move(self) -> bool:
+        """Whether it is exceptionally unlikely that it rocks at the level, limits included."""
+        limit = self.rocking.upper if self.rocking else 1.0
+        return likelihood_of(limit) is Likelihood.EXCEPTIONALLY_UNLIKELY
 
     @property
     def main(self) -> Estimate:
@@ -135,9 +154,13 @@ class Shaken:
     # Outcomes in one plane; None where those are the answer
     planar: ObjectOutcomes | None
     # Outcomes with each mitigation under the same motions
-    changed: Mapping[str, ObjectOutcomes]
+    changed: Mapping[Finding, ObjectOutcomes]
     # Mitigations that give one of the arrangements, and its name
-    alike: Mapping[str, str]
+    alike: Mapping[Finding, str]
+    # Whether the object slides off what it stands on, on the pad that is tried
+    slides_off: bool = False
+    # Outcomes with less and more spread of velocities at a given level; None where that is not open
+    together: tuple[ObjectOutcomes, ObjectOutcomes] | None = None
 
 
 def assess(
@@ -170,7 +193,7 @@ def assess_with(
 def plan_for(request: Request, motions: MotionSet, *, brief: bool) -> Plan:
     """Return under which levels of which motions an object is shaken; ``brief`` takes few motions and levels."""
     objects = request.objects
-    if objects.round or (objects.in_space and motions.pairs):
+    if objects.from_all_sides or (objects.in_space and motions.pairs):
         motions = motions.with_both_components()
     curves = _governing(request, motions)
     hazard = curves[0] if curves else None
@@ -192,19 +215,22 @@ def shake_all(requests: Sequence[Request], plan: Plan) -> list[Shaken]:
     """Shake objects in one place at once; of each the same results as alone, to the bit."""
     objects = [request.objects for request in requests]
     ways = [
-        dict(list(object_.arrangements.items())[: 1 if plan.brief else None])
+        dict(list(object_.arrangements().items())[: 1 if plan.brief else None])
         for object_ in objects
     ]
     arrangements = plan.shaking.outcomes_of_each(objects, ways)
     under = plan.fewer if plan.compares_few else plan.shaking
-    changes, alike = [], []
+    changes: list[dict[Finding, Body]] = []
+    alike: list[dict[Finding, str]] = []
     for object_, bodies in zip(objects, ways, strict=True):
-        tried = mitigations_of(object_)
+        tried = object_.changes()
         known = {
             name: way for name in tried for way in bodies if bodies[way] == tried[name]
         }
         # of few motions the object as it stands comes first, then with each mitigation
-        first = {"": object_.body} if plan.compares_few else {}
+        first: dict[Finding, Body] = {}
+        if plan.compares_few:
+            first[_AS_IT_STANDS] = object_.body
         changes.append(
             first | {name: tried[name] for name in tried if name not in known}
         )
@@ -214,31 +240,41 @@ def shake_all(requests: Sequence[Request], plan: Plan) -> list[Shaken]:
     found = []
     each = zip(objects, arrangements, compared, moved, alike, strict=True)
     for object_, way, change, sides, known in each:
-        before = change.pop("") if plan.compares_few else next(iter(way.values()))
-        if object_.pad_friction is not None:
-            on_it, slip = under.on_pad(object_, object_.pad_friction)
-            change[_pad_words(object_.pad_friction, slip, plan.level, under)] = on_it
+        before = next(iter(way.values()))
+        if plan.compares_few:
+            before = change.pop(_AS_IT_STANDS)
+        slides_off = False
+        if object_.under.pad_friction is not None:
+            on_it, slip = under.on_pad(object_, object_.under.pad_friction)
+            far = _slip_at(slip, plan.level, under)
+            change[_pad(object_.under.pad_friction, far, plan.level)] = on_it
+            slides_off = far > object_.block.width / 2
         planar = None
         if plan.shaking.motions.both and not plan.brief:
             (planar,) = plan.shaking.outcomes_of([object_.in_plane()])
-        found.append(Shaken(way, sides, before, planar, change, known))
+        found.append(Shaken(way, sides, before, planar, change, known, slides_off))
     return found
 
 
-def _pad_words(
-    friction: float, slip: NDArray[np.float64], level: Level | None, shaking: Shaking
-) -> str:
-    """The pad, and how far the object slides on it at the site's level."""
-    words = f"a pad of friction {friction:g}"
+_AS_IT_STANDS = finding("as_it_stands")
+"""The object without a change, among its changes."""
+
+
+def _slip_at(slip: Floats, level: Level | None, shaking: Shaking) -> float:
+    """How far the object slides at the site's level at most [m], NaN without one."""
     if level is None:
-        return words
+        return math.nan
     at = shaking.place_of(level.value)
     here = slip[shaking.allowed[:, at], at]
-    if not here.size:
-        return words
-    return (
-        f"{words}, on which it slides up to {100 * here.max():.3g} cm at {level.words},"
-    )
+    return float(here.max()) if here.size else math.nan
+
+
+def _pad(friction: float, slip: float, level: Level | None) -> Finding:
+    """The pad, and how far the object slides on it at the site's level [m]."""
+    if level is None or math.isnan(slip):
+        return finding(Text.PAD, friction=two(friction))
+    about = {"friction": two(friction), "slip": two(100 * slip)}
+    return finding(Text.PAD_SLIDES, level=level.amount, **about)
 
 
 def assessed(request: Request, plan: Plan, shaken: Shaken) -> Assessment:
@@ -260,47 +296,32 @@ def assessed(request: Request, plan: Plan, shaken: Shaken) -> Assessment:
             counted, motions, *about, by_statics=exact, brief=plan.brief
         )
     shaken = _at_site(shaken, plan, conversion)
-    arrangements, moved = shaken.arrangements, shaken.moved
-    both_sides = {change.name: change.sides for change in moved}
-    shifts = {"model": MODEL_ERRORS[objects.kind].beyond}
-    if not motions.both:
-        shifts["space"] = SPACE
-    if conversion:
-        shifts["conversion"] = conversion.shift
-        if together := conversion.sides(counted):
-            both_sides["together"] = together
+    arrangements = shaken.arrangements
     now = next(iter(arrangements.values()))
-
-    evidence = risk.Evidence(now, both_sides, shifts)
-    probability = None
-    if hazard:
-        fixed = _of_quantiles(now, hazard)
-        probability = evidence.estimate(risk.risk_target(hazard, request.years), fixed)
-    rocking, fraction = None, None
-    rocks_from = objects.least_uplift
-    if not exact:
-        # the least level that was tried
-        rocked = np.flatnonzero(counted.fractions(state=ROCKS) > 0)
-        rocks_from = plan.shaking.levels[rocked[0]] if rocked.size else math.inf
+    evidence = _evidence(objects, shaken, plan, conversion)
+    compared = replace(evidence, members=FEW_MEMBERS)
+    probability, rocking, fraction, decision = None, None, None, None
     if level:
-        rocking = evidence.rocking(level.value, exact=exact)
+        rocking = evidence.estimate(risk.fraction_target(level.value, state=ROCKS))
         fraction = evidence.estimate(risk.fraction_target(level.value))
-        if rocking.value == 0:
-            # what does not rock cannot topple
-            fraction = replace(fraction, upper=min(fraction.upper, rocking.upper))
-        # what topples rocks: limits of rocking are at least those of toppling
-        limits = (
-            max(rocking.lower, fraction.lower),
-            max(rocking.upper, fraction.upper),
-        )
-        rocking = replace(rocking, lower=limits[0], upper=limits[1])
+    if hazard:
+        probability = evidence.estimate(risk.risk_target(hazard, request.years))
+    main = probability or fraction
+    if main:
+        decision = _decision(main.value, evidence, target, request)
+    values = {
+        name: evidence.mean(target, arrangement)
+        for name, arrangement in arrangements.items()
+    }
     at = level.value if level else None
     brief = plan.brief
+    helps = _mitigations(target, compared, shaken)
     here = (
         None
         if brief or at is None
         else outcomes.scaled_to(np.array([at]), motions, measure)
     )
+    lifts_from = objects.least_uplift if exact else counted.lifts_from().min()
     return Assessment(
         request=request,
         motions=motions,
@@ -309,23 +330,23 @@ def assessed(request: Request, plan: Plan, shaken: Shaken) -> Assessment:
         counted=counted,
         arrangements=arrangements,
         rocking=rocking,
-        rocks_from=float(rocks_from),
+        rocks_from=float(lifts_from),
         fraction=fraction,
         probability=probability,
         counts=_counts(counted, level) if now is counted else None,
         amplitudes={p: evidence.estimate(risk.amplitude_target(p)) for p in (0.1, 0.5)},
-        by_arrangement={
-            name: target.value(arrangement)
-            for name, arrangement in arrangements.items()
-        },
+        by_arrangement=values,
+        shown_safer=_shown_safer(shaken, helps),
         curve=None if brief or now is not counted else fragility_of(now.outcomes()),
+        predicted=evidence.curve(),
+        decision=decision,
         conversion=conversion,
         directions=None
         if brief or motions.both or objects.many
         else outcomes.find_directions(objects, motions, measure, at),
-        planar=None if shaken.planar is None else target.value(shaken.planar),
-        mitigations=_mitigations(request, target, shaken),
-        effects=tuple(change.turned(target.value) for change in moved),
+        planar=None if shaken.planar is None else evidence.mean(target, shaken.planar),
+        mitigations=helps,
+        effects=tuple(_effect(target, evidence, change) for change in shaken.moved),
         rules=()
         if brief or motions.both
         else tuple(check_rules(objects, motions, counted)),
@@ -338,14 +359,56 @@ def assessed(request: Request, plan: Plan, shaken: Shaken) -> Assessment:
     )
 
 
+def _evidence(
+    objects: Standing, shaken: Shaken, plan: Plan, conversion: Conversion | None
+) -> risk.Evidence:
+    """What estimates rest on: outcomes, and all that is not known."""
+    counted = next(iter(shaken.arrangements.values()))
+    error = MODEL_ERRORS[objects.measured_as].beyond
+    shifts = {change.name: risk.shift_of(*change.sides) for change in shaken.moved}
+    shifts["model"] = risk.after_uplift(error)
+    if not plan.shaking.motions.both:
+        shifts["space"] = risk.after_uplift(SPACE)
+    if conversion:
+        shifts["conversion"] = risk.after_uplift(conversion.shift)
+        if shaken.together is not None:
+            shifts["together"] = risk.shift_of(*shaken.together)
+    rates = _of_quantiles(counted, plan.hazard) if plan.hazard else {}
+    return risk.Evidence(counted, shifts, rates)
+
+
+def _decision(
+    value: float, evidence: risk.Evidence, target: risk.Target, request: Request
+) -> Decision:
+    """What to do by a probability; of one in some years by its rate, of which means are taken."""
+    accepted, values = request.accepted, evidence.drawn(target)
+    if target.is_rate:
+        value, accepted = (
+            -math.log1p(-min(p, 1 - 1e-15)) / request.years for p in (value, accepted)
+        )
+    left = {name: source.left for name, source in MEASUREMENTS.items()}
+    return decide(value, values, evidence.prediction.sources, left, accepted)
+
+
+def _effect(
+    target: risk.Target, evidence: risk.Evidence, change: Moved[ObjectOutcomes]
+) -> Moved[float]:
+    """What is estimated with a property one standard deviation smaller and larger."""
+    values = target.shown(evidence.drawn(target))
+    lower, upper = evidence.prediction.effect(values, change.name)
+    return Moved(change.name, change.spread, lower, upper)
+
+
 def _at_site(shaken: Shaken, plan: Plan, conversion: Conversion | None) -> Shaken:
     """Outcomes under motions with the velocity of the site."""
     if conversion is None or conversion.known is None:
         return shaken
     few = conversion.of(plan.fewer.motions)
     compared = few if plan.compares_few else conversion
+    counted = next(iter(shaken.arrangements.values()))
     return replace(
         shaken,
+        together=conversion.sides(counted),
         arrangements={
             name: conversion.at_site(arrangement)
             for name, arrangement in shaken.arrangements.items()
@@ -412,7 +475,12 @@ def _moved(
     requests: Sequence[Request], plan: Plan
 ) -> list[list[Moved[ObjectOutcomes]]]:
     """Outcomes with every property of body and floor moved by its standard deviation, of each object."""
-    variants = [request.objects.variants() for request in requests]
+    # no restitution enters in space
+    idle = {"restitution"} if plan.shaking.motions.both else set()
+    variants = [
+        [each for each in request.objects.variants() if each.name not in idle]
+        for request in requests
+    ]
     sides = [side for each in variants for variant in each for side in variant.sides]
     shaken = iter(plan.fewer.outcomes_of(sides))
     found = [
@@ -429,11 +497,11 @@ def _moved(
 
 def _of_quantiles(now: ObjectOutcomes, hazard: HazardCurve) -> dict[str, float]:
     """Standard deviation of ln rate that the quantiles of the hazard stand for."""
-    logs = {
-        q: risk.risk_target(curve, 1.0).on_scale(now)
+    rates = {
+        q: risk.toppling_rate(now.intensity_levels.levels, now.fractions(), curve)
         for q, curve in hazard.quantiles.items()
     }
-    finite = {q: value for q, value in logs.items() if math.isfinite(value)}
+    finite = {q: math.log(rate) for q, rate in rates.items() if rate > 0}
     if len(finite) < 2:
         return {}
     low, high = min(finite), max(finite)
@@ -442,15 +510,21 @@ def _of_quantiles(now: ObjectOutcomes, hazard: HazardCurve) -> dict[str, float]:
 
 
 def _mitigations(
-    request: Request, target: risk.Target, shaken: Shaken
+    target: risk.Target, evidence: risk.Evidence, shaken: Shaken
 ) -> tuple[Mitigation, ...]:
+    """What each change does, the most helpful first."""
     ways = shaken.arrangements
-    now = next(iter(ways.values()))
-    known = {name: ways[way] for name, way in shaken.alike.items()}
+    known = {change: ways[way] for change, way in shaken.alike.items()}
     found = [
-        *compare(target, shaken.before, shaken.changed),
-        *compare(target, now, known),
+        *compare(target, evidence, shaken.before, shaken.changed),
+        *compare(target, evidence, evidence.outcomes, known),
     ]
+    if shaken.slides_off:
+        pads = (Text.PAD, Text.PAD_SLIDES)
+        found = [
+            replace(each, shown=False) if each.change.id in pads else each
+            for each in found
+        ]
     # changes are ranked by what they do to the same motions, and by what is left where none topples the object
     found.sort(
         key=lambda each: (
@@ -459,6 +533,17 @@ def _mitigations(
             each.value,
         )
     )
-    # an amplitude helps by growing, a probability by shrinking
-    grows = request.level is None and not request.hazard
-    return tuple(reversed(found) if grows else found)
+    # a level helps by growing, a probability by shrinking
+    return tuple(reversed(found) if target.is_level else found)
+
+
+def _shown_safer(shaken: Shaken, helps: Sequence[Mitigation]) -> frozenset[str]:
+    """Arrangements that the motions show to be safer than its own, or its own if safer than all others."""
+    known = {
+        shaken.alike[each.change]: each for each in helps if each.change in shaken.alike
+    }
+    better = {way for way, each in known.items() if each.shown}
+    own = next(iter(shaken.arrangements))
+    if known and all(each.lower > 1 and not each.helps for each in known.values()):
+        better.add(own)
+    return frozenset(better)

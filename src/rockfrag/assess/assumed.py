@@ -1,29 +1,27 @@
-"""What was not given and had to be assumed, with what depends on it; the words stand in ``assumed.j2``."""
+"""What was not given and had to be assumed, with what depends on it."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any, Generic, TypeVar
 
-from rockfrag.words.sentences import Macros
+from rockfrag.words.findings import Finding, Value, finding
 
 
 @dataclass(frozen=True)
 class Assumption:
     """Something that was not given."""
 
-    short: str  # In a few words that go into a list, such as ``its mass is 368 kg``
-    words: str  # The same in a sentence, with its reason
+    # In a few words that go into a list, such as ``its mass is 368 kg``; None if it goes into none
+    short: Finding | None
+    why: Finding  # The same in a sentence, with its reason
     # Names of its sources of uncertainty; empty where it has none
     sources: tuple[str, ...] = ()
 
 
-_says = Macros("rockfrag.assess", "assumed.j2")
-
-
-def assume(what: str, *sources: str, **about: object) -> Assumption:
-    """Return an assumption as a macro says it, shortly and in a sentence; see :class:`Assumption`."""
-    short, words = map(" ".join, _says.parts(what, **about))
-    return Assumption(short, words, sources)
+def assume(what: str, *sources: str, **about: Value) -> Assumption:
+    """Return an assumption with the values that its two texts hold; see :class:`Assumption`."""
+    short, why = (finding(f"{text}_{what}", **about) for text in ("assumed", "why"))
+    return Assumption(short, why, sources)
 
 
 T = TypeVar("T")

@@ -22,11 +22,15 @@ from rockfrag.base.arrays import Floats
 from rockfrag.base.errors import InputError
 from rockfrag.fragility.intervals import jackknife_error
 from rockfrag.fragility.vector import VectorFragility, fit_vector
+from rockfrag.motions.conditional_velocity import MODELS, ConditionalModel
 from rockfrag.motions.intensity import IntensityMeasure
 
 UNKNOWN = {"magnitude": 0.5, "ln_distance": 0.7, "ln_vs30": 0.45}
 """Standard deviations of what is not known of the earthquakes and the ground of a site: estimates of ours, half a
 magnitude, a factor of two in distance, and a class of ground (EN 1998-1: 180, 360, 800 m/s)."""
+
+PRIOR = {"magnitude": 6.5, "ln_distance": math.log(15.0), "ln_vs30": math.log(400.0)}
+"""What is taken where only a part is given of the earthquakes and the ground of a site: estimates of ours."""
 
 OF_THE_SITE = 0.5
 """Part of the variance about the relation that all motions of a site share [-]: an estimate of ours."""
@@ -49,6 +53,58 @@ MOST_LEVELS = 8
 
 
 @dataclass(frozen=True)
+class PublishedVelocity:
+    """PGV that comes with levels of PGA or SA(1 s) by Abrahamson and Bhasin (2020), for earthquakes of a site."""
+
+    model: ConditionalModel
+    magnitude: float
+    distance_km: float
+    vs30: float
+
+    @classmethod
+    def of(
+        cls, measure: IntensityMeasure, given: Records
+    ) -> "PublishedVelocity | None":
+        """Return it for what is given of the earthquakes, the rest as in ``PRIOR``; None for other measures."""
+        model = MODELS.get(measure.imt)
+        facts = zip(_facts(given), PRIOR.values(), strict=True)
+        magnitude, ln_distance, ln_vs30 = (
+            prior if math.isnan(fact) else fact for fact, prior in facts
+        )
+        if model is None:
+            return None
+        return cls(model, magnitude, math.exp(ln_distance), math.exp(ln_vs30))
+
+    @property
+    def scatter(self) -> float:
+        """Standard deviation of ln PGV about the median [-]."""
+        return math.hypot(*self.model.spreads(self.magnitude))
+
+    def log_ratio(self, levels: Floats) -> Floats:
+        """Median of ln (PGV over the measure [s]) at levels of the measure [g], of their shape."""
+        about = self.magnitude, self.distance_km, self.vs30
+        return self.model.log_velocity(levels, *about) - np.log(levels * VELOCITY_PER_G)
+
+    def unknown(self, given: Records, level: float) -> float:
+        """Standard deviation of that median at a level, for what is not known of the site and its earthquakes."""
+        moved = {
+            "magnitude": lambda by: replace(self, magnitude=self.magnitude + by),
+            "ln_distance": lambda by: replace(
+                self, distance_km=self.distance_km * math.exp(by)
+            ),
+            "ln_vs30": lambda by: replace(self, vs30=self.vs30 * math.exp(by)),
+        }
+        at, parts = np.array(level), [OF_THE_SITE * self.scatter**2]
+        for (name, move), fact in zip(moved.items(), _facts(given), strict=True):
+            if math.isnan(fact):
+                low, high = (
+                    float(move(sign * UNKNOWN[name]).log_ratio(at)) for sign in (-1, 1)
+                )
+                parts.append(((high - low) / 2) ** 2)
+        return math.sqrt(sum(parts))
+
+
+@dataclass(frozen=True)
 class SiteVelocity:
     """PGV that comes with levels of another measure at a site: ln of their ratio [s] is normal."""
 
@@ -57,6 +113,8 @@ class SiteVelocity:
     constant: float = math.nan
     # Hazard curves of the measure and of PGV, with which it agrees; the spread at a given level is then not known
     curves: tuple[HazardCurve, ...] = ()
+    # Published relation for the earthquakes of the site, at levels of the measure
+    published: "PublishedVelocity | None" = None
 
     def log_ratio(self, levels: Floats) -> Floats:
         """Mean of ln ratio at levels of the measure, of their shape.
@@ -65,6 +123,8 @@ class SiteVelocity:
         with the exponent k, the level of PGV at a rate lies k s²/2 above the mean of ln PGV at the measure's level
         of that rate.
         """
+        if self.published is not None:
+            return self.published.log_ratio(levels)
         if not self.curves:
             return np.full(levels.shape, self.constant)
         first, velocity = self.curves
@@ -169,6 +229,7 @@ class Conversion:
             rocked=rocked | overturned,
             others={name: cases[row, place] for name, cases in outcomes.others.items()},
             earthquakes=np.repeat(outcomes.earthquakes, count),
+            lifting=np.repeat(outcomes.lifts_from(), count),
         )
 
 
@@ -209,10 +270,16 @@ def find_conversion(
         # of a hazard curve other levels count too, with velocities of their own
         ratio = math.log(level.pgv / level.value / VELOCITY_PER_G)
         known = SiteVelocity(own if curves else 0.0, ratio)
+    elif math.isnan(given.magnitude) and math.isnan(given.distance_km):
+        # what differs about the relation is in the motions, once
+        spread = relation.unknown(given, of_site=False)
+    elif (published := PublishedVelocity.of(measure, given)) is not None:
+        spread = published.unknown(given, level.value)
+        within = math.sqrt(1 - OF_THE_SITE) * published.scatter
+        known = SiteVelocity(within, published=published)
     else:
         spread = relation.unknown(given)
-        if not (math.isnan(given.magnitude) and math.isnan(given.distance_km)):
-            known = SiteVelocity(own, relation.mean(given))
+        known = SiteVelocity(own, relation.mean(given))
     if known is not None:
         away = float(
             np.abs(known.log_ratio(outcomes.intensity_levels.levels) - middle).mean()
@@ -304,15 +371,21 @@ class VelocityRelation:
             for slope, middle, fact in slopes
         )
 
-    def unknown(self, given: Records) -> float:
-        """Standard deviation of the mean at a site, for what is not known of its earthquakes and ground."""
+    def unknown(self, given: Records, *, of_site: bool = True) -> float:
+        """Standard deviation of the mean at a site, for what is not known of its earthquakes and ground.
+
+        ``of_site`` counts what all motions of a site share beyond that; it always counts where facts of too few
+        records are known to say how the mean follows them.
+        """
         slopes = zip(
             self.coefficients[1:], UNKNOWN.values(), _facts(given), strict=False
         )
         parts = [
             (slope * spread) ** 2 for slope, spread, fact in slopes if math.isnan(fact)
         ]
-        return math.sqrt(OF_THE_SITE * self.scatter**2 + sum(parts))
+        if of_site or not self.middle:
+            parts.append(OF_THE_SITE * self.scatter**2)
+        return math.sqrt(sum(parts))
 
 
 def _facts(given: Records) -> tuple[float, float, float]:

@@ -3,21 +3,33 @@
 import json
 import math
 from dataclasses import is_dataclass
+from enum import Enum
 from typing import Any
 
 import numpy as np
 
 from rockfrag import __version__
 from rockfrag.assess.answer import Assessment
+from rockfrag.assess.findings import (
+    assumptions,
+    details,
+    details_of,
+    first_screen,
+    lines_of,
+    quality_flags,
+)
 from rockfrag.assess.risk import LEVEL, Estimate
-from rockfrag.assess.words import does_not_move, five_lines, says
+from rockfrag.assess.texts import Text
 from rockfrag.fragility.exports import identifiers, model_text
 from rockfrag.fragility.model_error import MODEL_ERRORS
 from rockfrag.outcomes.limit_states import OVERTURNS, limit_states
+from rockfrag.words.catalogue import catalogue
+from rockfrag.words.findings import Finding, as_data, finding, three, two
 
 
 def as_json(found: Assessment) -> str:
-    """Return the answer as JSON; infinite and unknown numbers are null."""
+    """Return the answer as JSON, its sentences in English; infinite and unknown numbers are null."""
+    texts = catalogue()
     outcomes = found.outcomes
     request = found.request
     curve: dict[str, Any] = {}
@@ -30,22 +42,30 @@ def as_json(found: Assessment) -> str:
     answer = {
         "rockfrag": __version__,
         "name": request.name,
-        "place": request.place.words,
-        "floor": says.line("floor_name", request.place),
-        "lines": five_lines(found),
+        "place": texts.say(request.place.where),
+        "floor": texts.say(request.place.floor_name or ""),
+        "lines": lines_of(found),
+        "details": details_of(found),
+        "findings": [as_data(each) for each in first_screen(found)],
+        "findings_behind": [
+            {"title": as_data(title), "findings": [as_data(each) for each in said]}
+            for title, said in details(found).items()
+        ],
         "measure": found.measure.imt,
         "unit": found.measure.unit,
         "level": None if found.level is None else found.level.value,
         "years": request.years,
         "interval_level": LEVEL,
         "rocks_from": found.rocks_from,
-        "does_not_move": does_not_move(found),
+        "does_not_move": found.does_not_move,
+        "accepted": request.accepted,
         "fraction_rocking": found.rocking,
         "counts": found.counts
         and dict(zip(("motions", "rock", "topple"), found.counts, strict=True)),
         "fraction_toppling_with_sliding": found.sliding_fraction,
         "fraction_toppling": found.fraction,
         "probability": found.probability,
+        "decision": found.decision,
         "amplitude_toppling": {f"{p:g}": e for p, e in found.amplitudes.items()},
         "arrangements": found.by_arrangement,
         "in_space": found.motions.both,
@@ -58,6 +78,10 @@ def as_json(found: Assessment) -> str:
         "fragility": {
             "levels": outcomes.intensity_levels.levels,
             "fraction": outcomes.fractions(),
+            "probability": found.predicted.fractions,
+            "median": found.predicted.median,
+            "beta_of_records": found.predicted.of_records,
+            "beta_of_what_is_unknown": found.predicted.of_unknown,
             "other_states": {
                 name: outcomes.fractions(state=name) for name in outcomes.others
             },
@@ -74,8 +98,8 @@ def as_json(found: Assessment) -> str:
             {"name": motion.name, "earthquake": earthquake, "value": value}
             for motion, earthquake, value in motions
         ],
-        "assumed": says("assumptions", found),
-        "quality_flags": says("quality_flags", found),
+        "assumed": texts.lines(assumptions(found)),
+        "quality_flags": texts.lines(quality_flags(found)),
     }
     return (
         json.dumps(_plain(answer), indent=2, ensure_ascii=False, allow_nan=False) + "\n"
@@ -107,6 +131,10 @@ def _plain(value: Any) -> Any:
     if isinstance(value, Estimate):
         limits = {"value": value.value, "lower": value.lower, "upper": value.upper}
         return _plain({**limits, "standard_deviations": dict(value.sources)})
+    if isinstance(value, Enum):
+        return value.value
+    if isinstance(value, Finding):
+        return {**_plain(as_data(value)), "words": catalogue().say(value)}
     if is_dataclass(value):
         return _plain(vars(value))
     if isinstance(value, np.ndarray):
@@ -129,11 +157,34 @@ def as_nrml(found: Assessment) -> str:
         "id": identifiers([name], "_:-")[name],
         "imt": found.measure.imt,
         "levels": outcomes.intensity_levels.levels.tolist(),
-        "chances": {
-            state: outcomes.fractions(state=state).tolist() for state in states
-        },
+        "chances": {state: _chances(found, state) for state in states},
     }
-    kind = found.request.objects.kind
-    return model_text(
-        says.line("in_nrml", found, kind, MODEL_ERRORS[kind]), states, [function]
-    )
+    kind = found.request.objects.measured_as
+    error = MODEL_ERRORS[kind]
+    about = {"where": found.request.place.where, "motions": found.motions.about_set}
+    said = [
+        finding(
+            Text.IN_NRML,
+            name=name,
+            error=three(error.beyond),
+            kind=kind,
+            about=error.words,
+            **about,
+        )
+    ]
+    curve = found.predicted
+    if math.isfinite(curve.median + curve.of_records + curve.of_unknown):
+        spreads = {"records": two(curve.of_records), "unknown": two(curve.of_unknown)}
+        median = finding(
+            Text.QUANTITY, value=two(curve.median), unit=found.measure.unit
+        )
+        said.append(finding(Text.IN_NRML_SPREADS, median=median, **spreads))
+    return model_text(" ".join(catalogue().lines(said)), states, [function])
+
+
+def _chances(found: Assessment, state: str) -> list[float]:
+    """Probability of a limit state at each level, that of toppling with all that is not known; none is less."""
+    toppling = found.predicted.fractions
+    if state == OVERTURNS:
+        return list(map(float, toppling))
+    return list(map(float, np.maximum(found.outcomes.fractions(state=state), toppling)))

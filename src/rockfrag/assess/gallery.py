@@ -2,7 +2,8 @@
 
 import math
 import os
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from importlib.metadata import version
 from pathlib import Path
 
@@ -13,36 +14,33 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import EngFormatter, NullFormatter
 
 from rockfrag.assess.answer import assess_with
+from rockfrag.assess.findings import estimate_of, mitigation
 from rockfrag.assess.inventory import (
     Inventory,
     JointRisk,
     best_change,
     inventory_table,
-    joint_lines,
+    joint_findings,
 )
 from rockfrag.assess.page import write_answer
 from rockfrag.assess.risk import probability_in
-from rockfrag.assess.words import estimate_words, gallery_says, says
+from rockfrag.assess.texts import Text
 from rockfrag.base.figure_style import BLUE, COLUMN_WIDTH, PAGE_WIDTH, panels, plain_log
 from rockfrag.base.files import write_table, write_text
-from rockfrag.report.page import Page, table_html
+from rockfrag.report.page import Column, Page, table_html
 from rockfrag.report.part import Answer, FigureSpec, Finding, Section
+from rockfrag.words.catalogue import FIRST, Catalogue, catalogue
+from rockfrag.words.findings import finding, limit, percent, three, two
 
 MOST_DRAWN = 40  # Objects of which the correlation is drawn: those that add most
 
-RANKING = (
-    "name = Object; place = Stands; probability = Topples (90 % interval) #",
-    "contribution = Part of the mean [%] .1; change = What helps most",
-)
-NUMBERS = (
-    "at_least = At least so many .0; rate = Earthquakes that topple so many [1/year] #",
-    "probability = Probability [%] .2; probability_lower = Lower limit [%] .2",
-    "probability_upper = Upper limit [%] .2",
-)
-
 
 def write_inventory(
-    inventory: Inventory, folder: str | os.PathLike[str], *, pages: bool = False
+    inventory: Inventory,
+    folder: str | os.PathLike[str],
+    *,
+    pages: bool = False,
+    language: str = FIRST,
 ) -> Path:
     """Write tables, a page, and with ``pages`` a full one of each object; return the path of the ranking."""
     place, joint = Path(folder) / "inventory.csv", inventory.joint
@@ -51,83 +49,180 @@ def write_inventory(
         write_table(joint.numbers, place.with_name("together.csv"))
         write_table(joint.losses, place.with_name("losses.csv"))
         write_table(joint.correlation.reset_index(), place.with_name("correlation.csv"))
-        write_text(gallery_page(inventory, joint), place.with_suffix(".html"))
+        page = gallery_page(inventory, joint, language)
+        write_text(page, place.with_suffix(".html"))
     for found in inventory.found if pages else ():
         motions = inventory.motions.at(found.request.place)
-        write_answer(assess_with(found.request, motions), folder)
+        write_answer(assess_with(found.request, motions), folder, language)
     return place
 
 
-def gallery_page(inventory: Inventory, joint: JointRisk) -> str:
-    """Return the page as HTML, which loads nothing from outside."""
-    first = inventory.found[0].request
-    years, valued = first.years, math.isfinite(first.value)
-    fewest, most = joint.numbers.iloc[0], joint.numbers.iloc[-1]
-    numbers = gallery_says.figure(
-        "numbers", lambda: numbers_figure(joint, years), years
-    )
-    losses = gallery_says.figure("losses", lambda: losses_figure(joint, years), years)
-    drawn = gallery_says.figure("correlation", lambda: correlation_figure(joint))
-    apart = joint.correlation.to_numpy()[np.triu_indices(len(joint.correlation), 1)]
-    known, count = apart[np.isfinite(apart)], len(inventory.found)
-    return Page(
-        title=f"What {count} objects risk together",
-        lead=f"{count} objects, shaken by the same {len(inventory.motions.ground)} motions.",
-        answer=Answer(
-            "How many topple in one earthquake, what is lost, and what helps?",
-            [
-                gallery_says.finding("how_many", fewest, most, years),
-                *(Finding(words.rstrip(".")) for words in joint_lines(inventory)[1:]),
-            ],
-            numbers,
-        ),
-        sections=[
-            _ranking(inventory, joint, "loss" if valued else "number"),
-            _numbers(joint, [losses] if valued and len(joint.losses) > 1 else []),
-            gallery_says.section(
-                "correlation", [drawn], np.median(known) if known.size else None
-            ),
-        ],
-        provenance={"Program": f"rockfrag {version('rockfrag')}"},
-    ).html()
+def gallery_page(inventory: Inventory, joint: JointRisk, language: str = FIRST) -> str:
+    """Return the page as HTML in a language, which loads nothing from outside."""
+    return _Layout(inventory, joint, catalogue(language)).page()
 
 
-def _ranking(inventory: Inventory, joint: JointRisk, mean: str) -> Section:
-    parts = joint.objects.set_index("name")["contribution"]
-    rows = []
-    for found in inventory.found:
-        best, request = best_change(found), found.request
-        change = says.line("mitigation", found, best) if best else "–"
-        part = 100 * float(parts[request.name])
-        rows.append(
-            (
-                request.name,
-                request.place.words,
-                estimate_words(found.main),
-                part,
-                change,
-            )
+@dataclass(frozen=True)
+class _Layout:
+    """Lays out the page of a gallery in a language."""
+
+    inventory: Inventory
+    joint: JointRisk
+    texts: Catalogue
+
+    @property
+    def years(self) -> float:
+        """Time for which probabilities are given [year]."""
+        return self.inventory.found[0].request.years
+
+    @property
+    def valued(self) -> bool:
+        """Whether the objects have values."""
+        return math.isfinite(self.inventory.found[0].request.value)
+
+    def page(self) -> str:
+        inventory, joint, texts, years = (
+            self.inventory,
+            self.joint,
+            self.texts,
+            self.years,
         )
-    names = ["name", "place", "probability", "contribution", "change"]
-    ranked = pd.DataFrame(rows, columns=names)
-    caption = "The objects, the one that adds most first; each change is simulated as a body of its own."
-    table = table_html(ranked, RANKING, caption, "inventory.csv")
-    return gallery_says.section("ranking", [table], joint.objects.iloc[0], mean)
+        numbers = self._figure(
+            "numbers",
+            (Text.NUMBERS_ALT, Text.NUMBERS_CAPTION),
+            lambda: numbers_figure(joint, years, texts),
+        )
+        losses = self._figure(
+            "losses",
+            (Text.LOSSES_ALT, Text.LOSSES_CAPTION),
+            lambda: losses_figure(joint, years, texts),
+        )
+        drawn = self._figure(
+            "correlation",
+            (Text.CORRELATION_ALT, Text.CORRELATION_CAPTION),
+            lambda: correlation_figure(joint, texts),
+        )
+        count, motions = len(inventory.found), len(inventory.motions.ground)
+        others = texts.lines(joint_findings(inventory)[1:])
+        lead = finding(Text.GALLERY_LEAD, n=count, motions=motions)
+        lost = [losses] if self.valued and len(joint.losses) > 1 else []
+        return Page(
+            title=texts.say(finding(Text.GALLERY_TITLE, n=count)),
+            lead=texts.say(lead),
+            answer=Answer(
+                texts.text(Text.GALLERY_ASKED),
+                [self._how_many(), *(Finding(words.rstrip(".")) for words in others)],
+                numbers,
+            ),
+            sections=[self._ranking(), self._numbers(lost), self._correlation(drawn)],
+            provenance={
+                texts.text(Text.PROVENANCE_PROGRAM): f"rockfrag {version('rockfrag')}"
+            },
+            language=texts.language,
+        ).html()
+
+    def _figure(
+        self, name: str, words: tuple[Text, Text], draw: Callable[[], Figure]
+    ) -> FigureSpec:
+        alt, caption = words
+        below = self.texts.say(finding(caption, years=three(self.years)))
+        return FigureSpec(name, self.texts.text(alt), below, draw)
+
+    def _how_many(self) -> Finding:
+        """How probably one or more, and the most that topple together, do."""
+        first, last = self.joint.numbers.iloc[0], self.joint.numbers.iloc[-1]
+        first_one = finding(
+            Text.ONE_OR_MORE,
+            years=three(self.years),
+            p=percent(first["probability"]),
+            lower=limit(first["probability_lower"]),
+            upper=limit(first["probability_upper"]),
+        )
+        p = percent(last["probability"])
+        most = finding(Text.SO_MANY, n=int(last["at_least"]), p=p)
+        return Finding(self.texts.say(first_one), self.texts.say(most))
+
+    def _ranking(self) -> Section:
+        texts, objects = self.texts, self.joint.objects
+        parts = objects.set_index("name")["contribution"]
+        rows = []
+        for found in self.inventory.found:
+            best, request = best_change(found), found.request
+            row = {
+                "name": request.name,
+                "place": texts.say(request.place.where),
+                "probability": texts.say(estimate_of(found.main)),
+                "contribution": 100 * float(parts[request.name]),
+                "change": texts.sentence(mitigation(found, best)) if best else "–",
+            }
+            rows.append(row)
+        titles = {
+            "name": Text.COLUMN_OBJECT,
+            "place": Text.COLUMN_STANDS,
+            "probability": Text.COLUMN_TOPPLES,
+            "contribution": Text.COLUMN_OF_MEAN,
+            "change": Text.COLUMN_HELPS,
+        }
+        columns = [
+            Column(
+                name,
+                texts.text(title),
+                1 if name == "contribution" else None,
+                name == "probability",
+            )
+            for name, title in titles.items()
+        ]
+        caption = texts.text(Text.RANKING_CAPTION)
+        table = table_html(pd.DataFrame(rows), columns, caption, "inventory.csv")
+        top = objects.iloc[0]
+        told = finding(Text.ADDS_MOST, name=str(top["name"]))
+        if math.isfinite(top["contribution"]):
+            text = Text.ADDS_MOST_LOSS if self.valued else Text.ADDS_MOST_NUMBER
+            part = percent(top["contribution"])
+            told = finding(text, name=str(top["name"]), part=part)
+        title = texts.text(Text.RANKING_TITLE)
+        return Section("ranking", title, texts.say(told), (), [table])
+
+    def _numbers(self, figures: Sequence[FigureSpec]) -> Section:
+        texts, numbers = self.texts, self.joint.numbers
+        most, rate = int(numbers["at_least"].max()), numbers["annual_rate"].iloc[-1]
+        told = finding(Text.NONE_TOPPLES)
+        if rate:
+            told = finding(Text.NUMBERS_TOGETHER, count=most, years=two(1 / rate))
+        chances = [f"probability{end}" for end in ("", "_lower", "_upper")]
+        shown = numbers.assign(
+            rate=numbers["annual_rate"].map("{:.2g}".format), **100 * numbers[chances]
+        )
+        titles = (Text.COLUMN_PROBABILITY, Text.COLUMN_LOWER, Text.COLUMN_UPPER)
+        columns = [
+            Column("at_least", texts.text(Text.COLUMN_AT_LEAST), 0),
+            Column("rate", texts.text(Text.COLUMN_RATE), numeric=True),
+            *(
+                Column(name, texts.text(title), 2)
+                for name, title in zip(chances, titles, strict=True)
+            ),
+        ]
+        table = table_html(shown, columns, texts.text(Text.NUMBERS_TABLE))
+        return Section(
+            "numbers",
+            texts.text(Text.NUMBERS_TITLE),
+            texts.say(told),
+            [texts.text(Text.NUMBERS_WITHOUT)],
+            [table, *figures],
+        )
+
+    def _correlation(self, drawn: FigureSpec) -> Section:
+        table = self.joint.correlation
+        apart = table.to_numpy()[np.triu_indices(len(table), 1)]
+        known = apart[np.isfinite(apart)]
+        told = finding(Text.NO_PAIR)
+        if known.size:
+            told = finding(Text.PAIR_MEDIAN, median=two(float(np.median(known))))
+        title = self.texts.text(Text.CORRELATION_TITLE)
+        return Section("correlation", title, self.texts.say(told), (), [drawn])
 
 
-def _numbers(joint: JointRisk, figures: Sequence[FigureSpec]) -> Section:
-    numbers = joint.numbers
-    most, rate = int(numbers["at_least"].max()), numbers["annual_rate"].iloc[-1]
-    years = float(f"{1 / rate:.2g}") if rate else 0.0
-    chances = [f"probability{end}" for end in ("", "_lower", "_upper")]
-    shown = numbers.assign(
-        rate=numbers["annual_rate"].map("{:.2g}".format), **100 * numbers[chances]
-    )
-    table = table_html(shown, NUMBERS, "How many objects topple in one earthquake.")
-    return gallery_says.section("numbers", [table, *figures], most, years)
-
-
-def numbers_figure(joint: JointRisk, years: float) -> Figure:
+def numbers_figure(joint: JointRisk, years: float, texts: Catalogue) -> Figure:
     """How probably at least so many topple in one earthquake."""
     numbers = joint.numbers
     at = numbers["at_least"].to_numpy()
@@ -138,32 +233,32 @@ def numbers_figure(joint: JointRisk, years: float) -> Figure:
     bars = [np.maximum(middle - low, 0), np.maximum(high - middle, 0)]
     with panels(COLUMN_WIDTH, 2.5) as (figure, axes):
         axes.errorbar(at, middle, yerr=bars, fmt="o", color=BLUE, capsize=2)
-        _set_logarithmic(axes, "Objects that topple in one earthquake, at least", years)
+        _set_logarithmic(axes, texts, Text.AXIS_NUMBERS, years)
         axes.set_xticks(at, [f"{n:g}" for n in at])
         axes.tick_params(axis="x", which="minor", bottom=False, labelbottom=False)
     return figure
 
 
-def losses_figure(joint: JointRisk, years: float) -> Figure:
+def losses_figure(joint: JointRisk, years: float, texts: Catalogue) -> Figure:
     """How probably a loss is exceeded in one earthquake."""
     losses = joint.losses
     chance = [100 * probability_in(rate, years) for rate in losses["annual_rate"]]
     with panels(COLUMN_WIDTH, 2.5) as (figure, axes):
         axes.step(losses["loss"], chance, where="pre", color=BLUE)
-        _set_logarithmic(axes, "Loss in one earthquake [unit of the values]", years)
+        _set_logarithmic(axes, texts, Text.AXIS_LOSSES, years)
         axes.xaxis.set_major_formatter(EngFormatter(sep=""))
         axes.xaxis.set_minor_formatter(NullFormatter())
     return figure
 
 
-def _set_logarithmic(axes: Axes, words: str, years: float) -> None:
-    """Both axes by the logarithm: across what the words say, upwards the probability in some years."""
-    label = f"Probability in {years:g} years [%]"
-    axes.set(xscale="log", yscale="log", xlabel=words, ylabel=label)
+def _set_logarithmic(axes: Axes, texts: Catalogue, across: Text, years: float) -> None:
+    """Both axes by the logarithm: across what the text says, upwards the probability in some years."""
+    label = texts.say(finding(Text.AXIS_PROBABILITY, years=three(years)))
+    axes.set(xscale="log", yscale="log", xlabel=texts.text(across), ylabel=label)
     plain_log(axes, "y")
 
 
-def correlation_figure(joint: JointRisk) -> Figure:
+def correlation_figure(joint: JointRisk, texts: Catalogue) -> Figure:
     """Correlation of the toppling of each two of the objects that add most."""
     names = list(joint.objects["name"][:MOST_DRAWN])
     table = joint.correlation.loc[names, names].to_numpy()
@@ -173,5 +268,5 @@ def correlation_figure(joint: JointRisk) -> Figure:
         short = [name if len(name) <= 18 else f"{name[:17]}…" for name in names]
         axes.set_xticks(range(len(names)), short, rotation=90, fontsize=6)
         axes.set_yticks(range(len(names)), short, fontsize=6)
-        figure.colorbar(image, ax=axes, label="Correlation [-]")
+        figure.colorbar(image, ax=axes, label=texts.text(Text.AXIS_CORRELATION))
     return figure

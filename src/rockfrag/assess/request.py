@@ -18,17 +18,28 @@ from rockfrag.assess.hazard.curve import (
     read_level,
     read_measure,
 )
-from rockfrag.assess.objects import Objects, make_objects
 from rockfrag.assess.place import Place, make_place
+from rockfrag.assess.standing import Standing, make_standing
+from rockfrag.assess.texts import Text
 from rockfrag.base.errors import InputError, errors_of
 from rockfrag.base.units import quantity
 from rockfrag.base.yaml_file import read_yaml
 from rockfrag.config.schema import checked
 from rockfrag.motions.intensity import IntensityMeasure
+from rockfrag.words.findings import Finding, finding, three
 
 LONGEST_PERIOD = 1e6  # Longest return period of a level [year]
 # Time for which the probability is given unless another is asked for [year]
 YEARS = 50.0
+
+ACCEPTED_IN_FIFTY_YEARS = 0.01
+"""Probability in 50 years that is accepted unless another is stated [-]: that of the collapse of a new building at
+which ASCE/SEI 7-16 (21.2.1) aims."""
+
+ACCEPTED_AT_A_LEVEL = 0.1
+"""The same at a level without a hazard [-]: securing pays if it costs less than that part of what a fall costs."""
+
+UNNAMED = "the object"  # Name of an object that was given none
 
 
 @dataclass(frozen=True)
@@ -41,10 +52,13 @@ class Level:
     pgv: float = math.nan
 
     @property
-    def words(self) -> str:
+    def amount(self) -> Finding:
         """Such as ``PGA 0.25 g``, or ``PGA 0.25 g and PGV 20 cm/s``."""
-        more = "" if math.isnan(self.pgv) else f" and PGV {self.pgv:.3g} cm/s"
-        return f"{self.measure.imt} {self.value:.3g} {self.measure.unit}{more}"
+        measure, unit, value = self.measure.imt, self.measure.unit, three(self.value)
+        if math.isnan(self.pgv):
+            return finding(Text.AMOUNT, measure=measure, value=value, unit=unit)
+        about = {"measure": measure, "unit": unit}
+        return finding(Text.AMOUNT_WITH_PGV, value=value, pgv=three(self.pgv), **about)
 
 
 @dataclass(frozen=True)
@@ -66,13 +80,30 @@ class Request:
     """An object at a place, ready to be assessed."""
 
     name: str  # What the object is called
-    objects: Objects  # The object, its pedestal, and what is not known of them
+    objects: Standing  # The object, its pedestal, and what is not known of them
     place: Place  # The floor on which it stands
     level: Level | None = None  # The level of shaking asked about
     hazard: tuple[HazardCurve, ...] = ()  # Hazard curves of the site, one a measure
     years: float = YEARS  # Time for the probability [year]
     records: Records = field(default_factory=Records)  # Where the motions come from
     value: float = math.nan  # What the object is worth, in any unit; NaN if not given
+    # Probability of toppling that is accepted; None for the usual one
+    accept: float | None = None
+
+    @property
+    def accepted(self) -> float:
+        """Probability of toppling that is accepted in the years, or at the level without a hazard [-]."""
+        if self.accept is not None:
+            return self.accept
+        if not self.hazard:
+            return ACCEPTED_AT_A_LEVEL
+        rate = -math.log1p(-ACCEPTED_IN_FIFTY_YEARS) / YEARS
+        return -math.expm1(-rate * self.years)
+
+    @property
+    def called(self) -> str | Finding:
+        """What the object is called, in words where it has no name."""
+        return finding("the_object") if self.name == UNNAMED else self.name
 
 
 def read_request(path: str | os.PathLike[str]) -> Request:
@@ -100,12 +131,13 @@ def make_request(
     where = folder or Path()
     with errors_of(source):
         return Request(
-            name=known.get("name", "the object"),
-            objects=make_objects(known, where),
+            name=known.get("name", UNNAMED),
+            objects=make_standing(known, where),
             place=make_place(known, where),
             level=_level(known),
             hazard=_hazard(known, where),
             years=float(known.get("years", YEARS)),
+            accept=known.get("accept"),
             records=_records(known, where),
         )
 
@@ -129,8 +161,8 @@ def _level_of(key: str, given: Any) -> Level:
         level = Level(measure, read_level(given, measure))
         if not 0 < level.value <= HIGHEST[measure.openquake]:
             raise InputError(
-                f"{level.words} is no shaking of an earthquake; expected more than 0 and at most "
-                f"{HIGHEST[measure.openquake]:g} {measure.unit}."
+                f"{measure.imt} {level.value:.3g} {measure.unit} is no shaking of an earthquake; "
+                f"expected more than 0 and at most {HIGHEST[measure.openquake]:g} {measure.unit}."
             )
     return level
 

@@ -3,31 +3,28 @@
 The rate of toppling is λ = ∫ P(x) |dH(x)|, with P the fraction of motions that topple the object at level x,
 linear in ln x between levels, and H the annual rate at which x is exceeded, a power law: all in closed form.
 
-An interval is taken on ln λ, or on the logit of a fraction: the variances of its sources are added, and
-Student's t has the degrees of freedom of Welch and Satterthwaite. ``docs/assess.md`` has the sources.
+All that is not known is drawn at once (:mod:`rockfrag.assess.core`). A fraction, or a probability, is the mean
+over the draws; its interval holds the middle 90 % of them and the mean. ``docs/assess.md`` has the sources.
 """
 
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field, replace
-from functools import lru_cache, partial
+from dataclasses import dataclass, field
+from functools import cached_property, lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy import special, stats
 
+from rockfrag.assess.core.draws import MEMBERS
+from rockfrag.assess.core.fractions import count_motions
+from rockfrag.assess.core.prediction import Prediction, Shift, predict
 from rockfrag.assess.hazard.curve import HazardCurve, rate_weights
-from rockfrag.assess.outcomes import ObjectOutcomes, fraction_at
+from rockfrag.assess.outcomes import ObjectOutcomes
 from rockfrag.base.arrays import Floats
-from rockfrag.fragility.intervals import jackknife_error
 from rockfrag.outcomes.limit_states import OVERTURNS, ROCKS
 
 LEVEL = 0.90  # Confidence of the intervals
-
-# Part of an earthquake added on either side of fractions (Haldane, Anscombe 1956)
-HALF = 0.5
-
-_Z = float(stats.norm.ppf(0.5 + LEVEL / 2))
+NONE_BELOW = 1e-3  # Fraction of motions that is none where it is a limit
 
 
 def toppling_rate(
@@ -60,119 +57,115 @@ def probability_in(rate: float, years: float) -> float:
 
 @dataclass(frozen=True)
 class Estimate:
-    """A probability with its interval, or a bound where no motion toppled the object."""
+    """A number with its interval."""
 
-    value: float  # Probability [-]
-    # Limits of the interval [-]
+    value: float  # Mean over what is not known; of a level the median
+    # Limits of the interval
     lower: float
     upper: float
-    # Standard deviation on the scale of the interval by source [-]
+    # Standard deviation that each source alone gives it, on the scale of :attr:`Target.scale`
     sources: Mapping[str, float]
+    # The number in each draw, shape (draws,); empty where there are none
+    draws: Floats = field(
+        default_factory=lambda: np.zeros(0), repr=False, compare=False
+    )
 
 
 @dataclass(frozen=True)
 class Target:
-    """What is estimated from fractions of motions: the probability in some years, or the fraction at a level."""
+    """What is estimated from fractions of motions: a probability in some years, a fraction at a level, a level."""
 
-    # Turns levels, fractions and a shift of the levels into the number that is estimated
-    of: Callable[[Floats, Floats, float], float]
-    # To the scale on which intervals are symmetric and back
-    forward: Callable[[float], float]
-    back: Callable[[float], float]
+    # Turns levels and fractions, shape (..., levels), into numbers, shape (...,)
+    of: Callable[[Floats, Floats], Floats]
     state: str = OVERTURNS  # Name of the limit state whose fractions they are
-    # Earthquakes added for the widths of sources, see :meth:`on_scale`
-    added: float = 0.0
-    # The number where it always happens; infinite for a level never reached
-    certain: float = 1.0
-
-    def on_scale(
-        self,
-        outcomes: ObjectOutcomes,
-        weights: Floats | None = None,
-        shift: float = 0.0,
-        *,
-        added: float = 0.0,
-    ) -> float:
-        """Value on the scale of the interval; -∞ where nothing topples.
-
-        Weights of the motions have the shape (motions,); ``shift`` is the logarithm of a factor on all levels. Of
-        earthquakes that are added, a part ``added`` of one topples the object wherever it rocks, and as much does
-        not.
-        """
-        fractions = outcomes.fractions(weights, state=self.state)
-        if added:
-            count = len(set(outcomes.earthquakes)) - (weights is not None)
-            could = outcomes.fractions(weights, state=ROCKS) > 0
-            fractions = (count * fractions + added * could) / (count + 2 * added)
-        return self.forward(self.of(outcomes.intensity_levels.levels, fractions, shift))
+    # Number that is shown, such as a probability of a rate
+    shown: Callable[[Floats], Floats] = np.asarray
+    # Scale on which sources have their parts
+    scale: Callable[[Floats], Floats] = np.asarray
+    is_level: bool = False  # Whether it is a level, of which more is better
+    is_rate: bool = False  # Whether errors of the hazard are in it
+    none_below: float = -math.inf  # Limit that is taken for 0, and 1 less it for 1
 
     def value(self, outcomes: ObjectOutcomes, weights: Floats | None = None) -> float:
-        """What is estimated."""
-        return self.back(self.on_scale(outcomes, weights))
-
-    def without_each(self, outcomes: ObjectOutcomes) -> Floats:
-        """Values on the scale without one earthquake each; ``HALF`` is added to all where one decides alone."""
-        weights = earthquake_weights(outcomes.earthquakes)
-        found = np.array(
-            [self.on_scale(outcomes, w, added=self.added) for w in weights]
-        )
-        if np.isfinite(found).all():
-            return found
-        return np.array([self.on_scale(outcomes, w, added=HALF) for w in weights])
-
-
-def _log(value: float) -> float:
-    return math.log(value) if value > 0 else -math.inf
-
-
-def _exp(value: float) -> float:
-    with np.errstate(over="ignore"):
-        return float(np.exp(value))
+        """The number, of fractions as counted; weights of the motions have the shape (motions,)."""
+        fractions = outcomes.fractions(weights, state=self.state)
+        return float(self.shown(self.of(outcomes.intensity_levels.levels, fractions)))
 
 
 def risk_target(hazard: HazardCurve, years: float) -> Target:
     """The probability of toppling in some years."""
+
+    def rate(levels: Floats, fractions: Floats) -> Floats:
+        return np.asarray(fractions @ _rate_weights(levels.tobytes(), hazard, 0.0))
+
     return Target(
-        of=lambda levels, fractions, shift: toppling_rate(
-            levels, fractions, hazard, shift
-        ),
-        forward=_log,
-        back=lambda value: probability_in(_exp(value), years),
+        of=rate,
+        shown=lambda rates: np.asarray(-np.expm1(-years * rates)),
+        scale=_log_of_rates,
+        is_rate=True,
     )
+
+
+def _log_of_rates(rates: Floats) -> Floats:
+    """Logarithms, of no less than a thousandth of the mean: what hardly adds to it counts alike."""
+    return np.log(np.maximum(rates, max(1e-3 * float(rates.mean()), 1e-300)))
 
 
 def fraction_target(level: float, *, state: str = OVERTURNS) -> Target:
     """The fraction of motions that bring the object into a limit state at a level."""
-    return Target(
-        of=partial(fraction_at, level),
-        forward=lambda fraction: float(special.logit(fraction)),
-        back=lambda value: float(special.expit(value)),
-        state=state,
-        added=HALF,
-    )
+
+    def fraction(levels: Floats, fractions: Floats) -> Floats:
+        # relative to the level: where it is one of the series its logarithm is 0 to the bit
+        x = np.log(levels / level)
+        at = min(max(int(np.searchsorted(x, 0.0, side="right")) - 1, 0), x.size - 2)
+        along = min(max(-x[at] / (x[at + 1] - x[at]), 0.0), 1.0)
+        low, high = fractions[..., at], fractions[..., at + 1]
+        return np.asarray(np.where(along == 0, low, low + along * (high - low)))
+
+    return Target(of=fraction, state=state, none_below=NONE_BELOW)
 
 
 def amplitude_target(fraction: float) -> Target:
-    """The level at which a fraction of the motions topples the object."""
+    """The level at which a fraction of the motions topples the object; infinite where none does."""
 
-    def level(levels: Floats, fractions: Floats, shift: float) -> float:
-        reached = np.flatnonzero(fractions >= fraction)
-        if not reached.size:
-            return math.inf
-        i = int(reached[0])
-        if i == 0:
-            return float(levels[0])
-        part = (fraction - fractions[i - 1]) / (fractions[i] - fractions[i - 1])
+    def level(levels: Floats, fractions: Floats) -> Floats:
+        reached = fractions >= fraction
+        first = reached.argmax(axis=-1)
+        before = np.maximum(first - 1, 0)
+        low, high = (
+            np.take_along_axis(fractions, at[..., np.newaxis], -1)[..., 0]
+            for at in (before, first)
+        )
         x = np.log(levels)
-        return float(np.exp(x[i - 1] + part * (x[i] - x[i - 1]) + shift))
+        with np.errstate(divide="ignore", invalid="ignore"):
+            part = np.where(first > 0, (fraction - low) / (high - low), 0.0)
+        found = np.exp(x[before] + part * (x[first] - x[before]))
+        return np.where(reached.any(axis=-1), found, np.inf)
 
-    return Target(of=level, forward=_log, back=_exp, certain=math.inf)
+    return Target(of=level, scale=np.log, is_level=True)
 
 
-def earthquake_weights(earthquakes: NDArray[np.object_]) -> Floats:
-    """Weights that leave out one earthquake at a time, shape (earthquakes, motions)."""
+def earthquake_numbers(earthquakes: NDArray[np.object_]) -> NDArray[np.intp]:
+    """Number of the earthquake of each motion, in the order in which they come, shape (motions,)."""
     names = list(dict.fromkeys(earthquakes))
-    return np.array([(earthquakes != name).astype(np.float64) for name in names])
+    place = {name: number for number, name in enumerate(names)}
+    return np.array([place[name] for name in earthquakes], dtype=np.intp)
+
+
+_ONE_SPREAD = (0.16, 0.84)  # Fractions one standard deviation from the median
+
+
+@dataclass(frozen=True, eq=False)
+class PredictedCurve:
+    """A fragility in which all that is not known is."""
+
+    levels: Floats  # Levels, rising, shape (levels,)
+    fractions: Floats  # Probability of toppling, shape (levels,)
+    median: float  # Level that topples half of the motions; infinite where none does
+    # Standard deviations of ln capacity from record to record, and of ln median for what is not known; NaN where
+    # levels do not reach so far
+    of_records: float
+    of_unknown: float
 
 
 @dataclass(frozen=True)
@@ -180,152 +173,125 @@ class Evidence:
     """What estimates rest on."""
 
     outcomes: ObjectOutcomes  # Outcomes of the object
-    # Outcomes with each property moved to both sides by its standard deviation
-    moved: Mapping[str, tuple[ObjectOutcomes, ObjectOutcomes]] = field(
-        default_factory=dict
-    )
-    # Standard deviations of ln level by source, such as of the model
-    shifts: Mapping[str, float] = field(default_factory=dict)
+    # What each source moves at its standard deviation
+    shifts: Mapping[str, Shift] = field(default_factory=dict)
+    # Standard deviations of ln rate by source, such as of the hazard
+    rates: Mapping[str, float] = field(default_factory=dict)
+    members: int = MEMBERS  # Draws under each set of weights of the earthquakes
 
-    def estimate(
-        self, target: Target, fixed: Mapping[str, float] | None = None
-    ) -> Estimate:
-        """Estimate with an interval; ``fixed`` are further standard deviations on its scale, as of the hazard."""
-        middle = target.on_scale(self.outcomes)
-        if not math.isfinite(middle):
-            return self._bounded(target, middle)
+    @cached_property
+    def prediction(self) -> Prediction:
+        """Fractions of motions under each draw."""
+        return self.of(self.outcomes)
 
-        def near(changed: ObjectOutcomes, shift: float = 0.0) -> float:
-            return target.on_scale(changed, shift=shift, added=target.added)
-
-        here, left_out = near(self.outcomes), target.without_each(self.outcomes)
-        # where nothing rocks without one of them, what others would say is open
-        known = len(left_out) > 1 and np.isfinite(left_out).all()
-        sources = {"motions": float(jackknife_error(left_out)) if known else math.inf}
-        for name, (lower, upper) in self.moved.items():
-            sources[name] = _half_width(near(lower), near(upper), here)
-        for name, spread in self.shifts.items():
-            low, high = (near(self.outcomes, sign * spread) for sign in (-1, 1))
-            sources[name] = _half_width(low, high, here)
-        sources |= fixed or {}
-        total = math.sqrt(sum(value**2 for value in sources.values()))
-        quantile = _Z
-        if math.isfinite(total) and sources["motions"] != 0:
-            # Student's t for the sum of one estimated and several known variances
-            freedom = (len(left_out) - 1) * (total / sources["motions"]) ** 4
-            quantile = float(stats.t.ppf(0.5 + LEVEL / 2, freedom))
-        # what was added must not make an interval narrower than that of motions which all agree
-        low, high = sorted((middle, here))
-        # with all levels shifted to the ends of the interval the fraction that topples may fall to nothing, which
-        # no multiple of its slope says
-        shift = quantile * math.hypot(*self.shifts.values())
-        ends = sorted(
-            target.on_scale(self.outcomes, shift=sign * shift) for sign in (-1, 1)
+    def of(self, outcomes: ObjectOutcomes) -> Prediction:
+        """The same of other outcomes, of which as much is not known."""
+        levels = outcomes.intensity_levels
+        counts = count_motions(
+            levels.levels,
+            outcomes.overturned,
+            levels.allowed,
+            outcomes.lifts_from(),
+            earthquake_numbers(outcomes.earthquakes),
         )
-        down, up = max(0.0, middle - ends[0]), max(0.0, ends[1] - middle)
-        others = [sources[name] for name in sources if name not in self.shifts]
-        half = quantile * math.hypot(*others)
-        return Estimate(
-            target.back(middle),
-            target.back(low - math.hypot(half, down)),
-            target.back(high + math.hypot(half, up)),
-            sources,
+        unknown = {**self.shifts, **{name: Shift(0.0, 0.0) for name in self.rates}}
+        return predict(levels.levels, counts, unknown, members=self.members)
+
+    def drawn(self, target: Target, prediction: Prediction | None = None) -> Floats:
+        """What is estimated, in each draw, before it is shown, shape (draws,)."""
+        found = self.prediction if prediction is None else prediction
+        fractions = found.rocking if target.state == ROCKS else found.toppling
+        values = target.of(found.levels, fractions)
+        if target.is_rate:
+            for name, spread in self.rates.items():
+                # a curve is a mean, and stays it
+                values = values * np.exp(spread * found.sources[name] - spread**2 / 2)
+        return values
+
+    def mean(self, target: Target, outcomes: ObjectOutcomes) -> float:
+        """The number for other outcomes, the mean over what is not known; of a level the median."""
+        return _middle(target, self.of(outcomes))
+
+    def curve(self) -> "PredictedCurve":
+        """The fraction at each level, the mean over what is not known, with its median and spreads."""
+        levels = self.prediction.levels
+        half = self.estimate(amplitude_target(0.5))
+        known = np.log(half.draws[np.isfinite(half.draws)])
+        ends = [amplitude_target(part).value(self.outcomes) for part in _ONE_SPREAD]
+        return PredictedCurve(
+            levels=levels,
+            fractions=self.prediction.toppling.mean(axis=0),
+            median=half.value,
+            of_records=math.log(ends[1] / ends[0]) / 2
+            if math.isfinite(ends[1])
+            else math.nan,
+            of_unknown=float(known.std())
+            if known.size > half.draws.size / 2
+            else math.nan,
         )
 
-    def _bounded(self, target: Target, middle: float) -> Estimate:
-        """Where every motion agrees: as many others could disagree as these earthquakes cannot exclude."""
-        hidden = _hidden(self.outcomes)
-        shift = _Z * math.sqrt(sum(spread**2 for spread in self.shifts.values()))
-        happens = middle > 0 and not math.isinf(target.certain)
-        sign = -1 if happens else 1
+    def estimate(self, target: Target) -> Estimate:
+        """Estimate with an interval, which holds the middle of the draws and the number itself."""
+        values = self.drawn(target)
+        shown = target.shown(values)
+        value = _middle(target, self.prediction)
+        ordered = np.sort(shown)
+        aside = int((1 - LEVEL) / 2 * ordered.size)
+        lower, upper = float(ordered[aside]), float(ordered[-1 - aside])
+        if self.prediction.draws.weights.shape[1] < 3 and not target.is_level:
+            # one earthquake says nothing of others
+            lower, upper = 0.0, 1.0
+        # of fractions less than one in a thousand is none
+        lower = 0.0 if lower < target.none_below else lower
+        upper = 1.0 if upper > 1 - target.none_below else upper
+        limits = min(lower, value), max(upper, value)
+        return Estimate(value, *limits, self._sources(target, values), shown)
 
-        def bound(changed: ObjectOutcomes, shift: float = 0.0) -> float:
-            fractions = changed.fractions(state=target.state)
-            if happens:
-                fractions = np.minimum(fractions, 1 - hidden)
-            else:
-                could = changed.fractions(state=ROCKS) > 0
-                fractions = np.where(could, np.maximum(fractions, hidden), 0.0)
-            return target.of(changed.intensity_levels.levels, fractions, -sign * shift)
-
-        if math.isinf(target.certain):
-            # never reached: hidden motions could be enough at some level, or it lies above the last one
-            last = float(self.outcomes.intensity_levels.levels[-1])
-            return Estimate(
-                math.inf, min(bound(self.outcomes, shift), last), math.inf, {}
-            )
-        limit, plain = (target.forward(bound(self.outcomes, by)) for by in (shift, 0.0))
-        both_sides = self.moved.values()
-        ends = [
-            max(sign * target.forward(bound(side)) for side in both)
-            for both in both_sides
-        ]
-        if math.isfinite(plain):
-            further = [max(0.0, end - sign * plain) for end in ends]
-            limit += sign * _Z * math.sqrt(sum(term**2 for term in further))
-        else:
-            # at rest as it is: what could move it decides
-            limit = sign * max([sign * limit, *ends])
-        if happens:
-            return Estimate(1.0, target.back(limit), 1.0, {})
-        return Estimate(0.0, 0.0, target.back(limit), {})
-
-    def rocking(self, level: float, *, exact: bool) -> Estimate:
-        """Estimate the fraction of motions at a level that make the object rock, which is statics and no model.
-
-        Where the level alone decides (``exact``), as peak acceleration does, other earthquakes say the same.
-        """
-        target = fraction_target(level, state=ROCKS)
-        found = replace(self, shifts={}).estimate(target)
-        if 0 < found.value < 1:
-            return found
-        sides = [target.value(side) for both in self.moved.values() for side in both]
-        hidden = 0.0 if exact else _hidden(self.outcomes)
-        if found.value == 0:
-            return Estimate(0.0, 0.0, max([hidden, *sides]), {})
-        return Estimate(1.0, min([1 - hidden, *sides]), 1.0, {})
+    def _sources(self, target: Target, values: Floats) -> dict[str, float]:
+        last = float(self.prediction.levels[-1])
+        scaled = target.scale(np.minimum(values, last) if target.is_level else values)
+        spread = float(scaled.std())
+        parts = self.prediction.parts(scaled)
+        return {name: spread * math.sqrt(part) for name, part in parts.items()}
 
 
-def _hidden(outcomes: ObjectOutcomes) -> float:
-    """Fraction of earthquakes that could disagree where all of so many agree, which they cannot exclude."""
-    return float(1 - (1 - LEVEL) ** (1 / len(set(outcomes.earthquakes))))
+def _middle(target: Target, prediction: Prediction) -> float:
+    """Mean over the draws; of a level the median."""
+    fractions = prediction.rocking if target.state == ROCKS else prediction.toppling
+    if target.is_level:
+        values = target.of(prediction.levels, fractions)
+        return float(np.quantile(values, 0.5, method="lower"))
+    # fractions and rates are linear in fractions
+    return float(target.shown(target.of(prediction.levels, fractions.mean(axis=0))))
 
 
-def _half_width(low: float, high: float, middle: float) -> float:
-    """Half the distance of two values; the distance to the middle where one is no number."""
-    ends = [value for value in (low, high) if math.isfinite(value)]
-    if len(ends) == 2:
-        return abs(high - low) / 2
-    return abs(ends[0] - middle) if ends else 0.0
+def after_uplift(spread: float) -> Shift:
+    """What a source moves that acts on what was lifted, by its standard deviation of ln level [-]."""
+    return Shift(0.0, spread)
 
 
-REFERENCE_YEARS = 50.0  # Time for which the steps hold [year]
-
-
-@dataclass(frozen=True)
-class Step:
-    """A step of the scale."""
-
-    name: str  # What it is called
-    below: float  # Probability in 50 years below which it holds [-]
-    advice: str  # What to do, in a sentence
-
-
-STEPS = (
-    Step("low", 1e-3, "Nothing is urgent; keep it as it is."),
-    Step(
-        "moderate",
-        1e-2,
-        "Have it looked at when it is next moved, and plan what helps.",
-    ),
-    Step("high", 1e-1, "Have it measured, and secure it."),
-    Step("very high", math.inf, "Secure it now."),
+LEAST_SPAN = (
+    0.05  # Of fractions of motions over all levels, below which they say nothing
 )
-"""Steps of the scale, rising."""
 
 
-def step_of(probability: float, years: float) -> Step:
-    """Step of a probability in some years, by the rate that it stands for."""
-    rate = -math.log1p(-min(probability, 1 - 1e-15)) / years
-    in_fifty = probability_in(rate, REFERENCE_YEARS)
-    return next(step for step in STEPS if in_fifty < step.below)
+def shift_of(lower: ObjectOutcomes, upper: ObjectOutcomes) -> Shift:
+    """What a property moves at its standard deviation, by outcomes with it on both sides.
+
+    Levels of uplift move by the mean over the motions; those of toppling by the area between both fractions over
+    ln level, which of a curve that is moved is the move times its height.
+    """
+    sides = lower, upper
+    lifts = (_mean_log(upper.lifts_from()) - _mean_log(lower.lifts_from())) / 2
+    low, high = (side.fractions() for side in sides)
+    middle = (low + high) / 2
+    span = float(middle.max() - middle[0])
+    if span < LEAST_SPAN:
+        return Shift(lifts, lifts)
+    x = np.log(lower.intensity_levels.levels)
+    return Shift(lifts, float(np.trapezoid(low - high, x)) / 2 / span)
+
+
+def _mean_log(levels: Floats) -> float:
+    known = levels[np.isfinite(levels)]
+    return float(np.log(known).mean()) if known.size else 0.0

@@ -15,10 +15,10 @@ import pandas as pd
 
 from rockfrag.assess.hazard.curve import PGA
 from rockfrag.assess.motions import MotionSet, motion_set
-from rockfrag.assess.objects import Objects
 from rockfrag.assess.outcomes import ObjectOutcomes, make_intensity_levels
 from rockfrag.assess.place import Place
 from rockfrag.assess.request import Records, make_request
+from rockfrag.assess.standing import Standing
 from rockfrag.base.units import GRAVITY
 from rockfrag.base.yaml_file import read_yaml
 from rockfrag.config.schema import checked
@@ -102,7 +102,7 @@ class RuleCheck:
 
 
 def check_rules(
-    objects: Objects, motions: MotionSet, outcomes: ObjectOutcomes
+    objects: Standing, motions: MotionSet, outcomes: ObjectOutcomes
 ) -> list[RuleCheck]:
     """Hold every rule that applies to an object against its outcomes under the motions that shake it."""
     # least factor on each motion that topples the object; NaN where none does

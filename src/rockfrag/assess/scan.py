@@ -19,14 +19,15 @@ from rockfrag.assess.assumed import Assumption, assume
 from rockfrag.campaign.standing import (
     LEAST_ANGLE_DEG,
     body_of,
+    draw_arrangements,
     lognormal,
     unknowns_of,
-    ways_to_stand,
 )
 from rockfrag.fragility.model_error import SCAN
 from rockfrag.system.blocks import Block
 from rockfrag.system.body import RigidBody
 from rockfrag.system.mesh import Shape, edge_distances
+from rockfrag.words.findings import two
 
 SOURCE_OF = {
     "contact_tolerance_mm": "contact",
@@ -112,12 +113,13 @@ def make_scan(
     open_ones = {
         name: unknown for name, unknown in unknowns.items() if name not in exact
     }
-    ways = ways_to_stand(shape, open_ones, WAYS, 1, exact).table
+    ways = draw_arrangements(shape, open_ones, WAYS, 1, exact).table
     ways["least_deg"] = [
         _least_angle_deg(shape, way) for way in ways.to_dict("records")
     ]
+    contact = {"median": two(median), "spread": 50 if accuracy is None else 30}
     assumed = [
-        assume("unmeasured", source, unknown=source, median=median, accuracy=accuracy)
+        assume(source, source, **(contact if source == "contact" else {}))
         for source in map(SOURCE_OF.__getitem__, open_ones)
         if source != "contact" or given is None
     ]

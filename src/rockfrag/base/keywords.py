@@ -1,10 +1,10 @@
-"""Keywords, keys and columns that are not there are answered with those that are, or with their new names."""
+"""Keywords that are not there are answered with those that are, and messages speak of what the user has."""
 
 import difflib
 import functools
 import inspect
 import re
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from typing import Any, TypeVar, cast, get_args, get_type_hints
 
 from rockfrag.base.errors import InputError
@@ -54,42 +54,6 @@ def _names_of(function: Callable[..., Any]) -> tuple[str, ...]:
         elif name != "self":
             names.append(name)
     return tuple(names)
-
-
-RENAMED = {
-    "claims": "hypotheses",
-    "doubts": "quality_flags",
-    "event": "earthquake",
-    "events": "contact_events",
-    "explanation": "sensitivity_analysis",
-    "inversion": "inverse_problem",
-    "n_events": "n_earthquakes",
-    "pattern": "rocking_mode",
-    "reading": "definition",
-    "remedies": "mitigations",
-    "share": "fraction",
-    "statement": "hypothesis",
-    "survival_windows": "resurrections",
-    "verdict": "outcome",
-    "verdicts": "outcomes",
-    "windows": "resurrections",
-}
-"""Old name of a key or a column, and its new one."""
-
-
-def renamed(names: Iterable[object], known: Iterable[object]) -> str:
-    """Sentence on the first name of old whose new one is among those known here, empty without one."""
-    expected, given = set(known), set(names)
-    for old, new in RENAMED.items():
-        if old in given - expected and new in expected - given:
-            return f"{old} is now called {new}; rename it."
-    return ""
-
-
-def check_names(where: str, names: Iterable[object], known: Iterable[object]) -> None:
-    """Refuse a name of old whose new one is among those known here: where, the name, and what it is called now."""
-    if said := renamed(names, known):
-        raise InputError(f"{where}: {said}")
 
 
 _OPTION = re.compile(r"\b(unit|dt|channel|force|cut_short)=(?:True\b)?")

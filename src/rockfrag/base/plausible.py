@@ -42,9 +42,13 @@ LEAST_PEAK = 0.05  # a motion whose peak is below this [m/s²] moves nothing tha
 def check_density(width: float, height: float, mass: float) -> None:
     """Refuse a block [m, m, kg] that no solid can have at any depth within ``DEPTHS``, which is not known."""
     thin, thick = DEPTHS[0] * width, DEPTHS[1] * max(width, height)
-    # the volume of a size of 1e-300 m is 0 in numbers
-    volumes = (width * height * depth for depth in (thin, thick))
-    most, least = (mass / volume if volume else math.inf for volume in volumes)
+
+    def density(depth: float) -> float:
+        # the volume of a size of 1e-300 m is 0 in numbers
+        volume = width * height * depth
+        return mass / volume if volume else math.inf
+
+    most, least = density(thin), density(thick)
     if most < DENSITIES[0]:
         wrong = (
             f"at most {most:.3g} kg/m³ at a depth of {thin:.3g} m, less than any solid"

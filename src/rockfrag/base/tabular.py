@@ -10,7 +10,6 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from rockfrag.base.errors import InputError
-from rockfrag.base.keywords import check_names
 from rockfrag.base.text_files import read_text
 from rockfrag.base.units import other_names, quantity, split_name
 
@@ -139,7 +138,6 @@ def read_rows(
         )
     usual = {other: name for name in quantities for other in other_names(name)}
     names = [usual.get(title, title) for title in table.titles]
-    check_names(str(path), names, known)
     for name, title in zip(names, table.titles, strict=True):
         if name not in known:
             raise InputError(

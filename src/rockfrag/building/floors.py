@@ -1,15 +1,25 @@
-"""Motions of the floors of a building, how far it is driven, and whether its model can be believed there."""
+"""Motions of the floors of a building, the drift of its storeys, and whether its model is credible there.
+
+In: a :class:`rockfrag.building.model.ShearBuilding` and a ground motion of n samples. Out: absolute
+accelerations of its floors [m/s²] as motions, and the :class:`DriftOutcome` of the storey that is worst off.
+
+Theory: ``docs/building.md``, "Elastic model", "Masonry model" and "How far a model may be believed".
+"""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
+from rockfrag.building.drift_words import (
+    StoreyState,
+    elastic_statement,
+    hysteretic_statement,
+)
 from rockfrag.building.inelastic import respond_hysteretically, shear_strengths
-from rockfrag.building.model import ShearBuilding
+from rockfrag.building.model import MasonryLaw, ShearBuilding
 from rockfrag.building.response import BuildingResponse, respond_elastically
 from rockfrag.records.motion import Motion
-from rockfrag.words.sentences import Macros
 
 
 def floor_motions(
@@ -35,7 +45,16 @@ def floor_motions(
 
 
 def vertical_motions(building: ShearBuilding, vertical: Motion) -> list[Motion]:
-    """Vertical accelerations of all labelled floors: that of the ground times the building's factors."""
+    """Vertical accelerations of all labelled floors: that of the ground times the building's factors.
+
+    Parameters
+    ----------
+    building, vertical : the building, and the vertical ground acceleration, of n samples
+
+    Returns
+    -------
+    One motion a floor, of n samples.
+    """
     moved = []
     for label in building.floors:
         factor = float(building.vertical_factors.get(label, 1.0))
@@ -57,7 +76,17 @@ def response_motions(
     response: BuildingResponse,
     floors: Sequence[str],
 ) -> list[Motion]:
-    """Motions of labelled floors in a response that is known; see :func:`floor_motions`."""
+    """Motions of labelled floors in a response that is known; see :func:`floor_motions`.
+
+    Parameters
+    ----------
+    building, motion : the building and the ground motion, of n samples
+    response, floors : its response, and the labels of the floors
+
+    Returns
+    -------
+    One motion a floor, of n samples.
+    """
     moved = []
     for label in floors:
         level = building.level(label)
@@ -98,16 +127,6 @@ def _named(moved: Motion, label: str, level: int, **more: str) -> Motion:
     return replace(moved, name=f"{moved.name}_{label}", metadata=metadata)
 
 
-_ELASTIC = ("uncracked", "cracked", "beyond strength")
-_HYSTERETIC = (
-    *("uncracked", "cracked", "beyond yield", "beyond the shear limit"),
-    "beyond the rocking limit",
-)
-"""States of a storey, the milder first."""
-
-_says = Macros("rockfrag.building", "drift.j2")
-
-
 @dataclass(frozen=True)
 class DriftOutcome:
     """State of the storey that is worst off."""
@@ -116,7 +135,7 @@ class DriftOutcome:
     drift: float  # Its largest drift over height [-]
     # Largest shear over strength [-]; above 1 of elastic models only
     strength_fraction: float
-    state: str  # One of the states of ``_ELASTIC`` and ``_HYSTERETIC``
+    state: str  # words of its :class:`rockfrag.building.drift_words.StoreyState`
     # Whether the model may be used there: up to the strength, or the rocking limit
     credible: bool
     statement: str  # One sentence for a report
@@ -134,27 +153,43 @@ def judge_drift(building: ShearBuilding, response: BuildingResponse) -> DriftOut
     The ``storey`` that is worst off, its ``drift`` over height [-], ``strength_fraction`` (largest shear over the
     shear strength [-]) and ``state``, whether the model is ``credible`` there, and a sentence (``statement``).
     """
-    law, elastic = building.masonry, building.model == "elastic"
+    is_elastic = building.model == "elastic"
     shear = (
         np.asarray(building.stiffnesses)
         * np.asarray(building.heights)
         * response.peak_drift
     )
     fractions = shear / shear_strengths(building)
-    worst = int(np.argmax(fractions if elastic else response.peak_drift))
+    worst = int(np.argmax(fractions if is_elastic else response.peak_drift))
     fraction, drift = float(fractions[worst]), float(response.peak_drift[worst])
-    limits = law.yield_drift, law.shear_drift, law.rocking_drift
-    cracks = fraction > law.cracking
-    if elastic:
-        state = _ELASTIC[cracks + (fraction > 1)]
+    if is_elastic:
+        state = _elastic_state(building.masonry, fraction)
+        statement = elastic_statement(building, worst + 1, drift, fraction, state)
+        is_credible = fraction <= 1
     else:
-        state = _HYSTERETIC[cracks * (1 + sum(drift > limit for limit in limits))]
-    statement = _says.line("statement", building, worst + 1, drift, fraction, state)
+        state = _hysteretic_state(building.masonry, fraction, drift)
+        statement = hysteretic_statement(building, worst + 1, drift, state)
+        is_credible = drift <= building.masonry.rocking_drift
     return DriftOutcome(
         storey=worst + 1,
         drift=drift,
-        strength_fraction=fraction if elastic else min(1.0, fraction),
-        state=state,
-        credible=fraction <= 1 if elastic else drift <= law.rocking_drift,
+        strength_fraction=fraction if is_elastic else min(1.0, fraction),
+        state=state.words,
+        credible=is_credible,
         statement=statement,
     )
+
+
+def _elastic_state(law: MasonryLaw, fraction: float) -> StoreyState:
+    """State of a storey of an elastic model, by its shear over its strength [-]."""
+    if fraction > 1:
+        return StoreyState.BEYOND_STRENGTH
+    return StoreyState.CRACKED if fraction > law.cracking else StoreyState.UNCRACKED
+
+
+def _hysteretic_state(law: MasonryLaw, fraction: float, drift: float) -> StoreyState:
+    """State of a storey of a hysteretic model, by its shear over its strength and its drift over height [-]."""
+    if not fraction > law.cracking:
+        return StoreyState.UNCRACKED
+    limits = (law.yield_drift, law.shear_drift, law.rocking_drift)
+    return StoreyState(StoreyState.CRACKED + sum(drift > limit for limit in limits))

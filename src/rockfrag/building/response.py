@@ -31,7 +31,16 @@ class Modes:
 
 
 def find_modes(building: ShearBuilding) -> Modes:
-    """Solve the undamped eigenproblem of the elastic building (Chopra, ch. 10)."""
+    """Solve the undamped eigenproblem of the elastic building (Chopra, ch. 10).
+
+    Parameters
+    ----------
+    building : the storeys, from below
+
+    Returns
+    -------
+    The :class:`Modes`: frequencies [rad/s], shape (storeys,), and mode shapes, shape (storeys, storeys).
+    """
     mass = np.asarray(building.masses)
     root = 1 / np.sqrt(mass)
     # the symmetric form M^-1/2 K M^-1/2 keeps the shapes orthogonal to machine precision
@@ -49,7 +58,8 @@ def find_modes(building: ShearBuilding) -> Modes:
         # factors of mass [1/s] and stiffness [s] in C = α M + β K (Chopra, eq. 11.4.11)
         alpha, beta = 2 * damping.ratio * float(frequency[0]), 0.0
         if building.storeys > 1:
-            first, second = (float(frequency[number - 1]) for number in damping.modes)
+            lower, higher = damping.modes
+            first, second = float(frequency[lower - 1]), float(frequency[higher - 1])
             beta = 2 * damping.ratio / (first + second)
             alpha = beta * first * second
         ratios = alpha / (2 * frequency) + beta * frequency / 2

@@ -29,7 +29,16 @@ def read_building(path: str | os.PathLike[str]) -> model.ShearBuilding:
 
 
 def make_building(settings: Any, source: str = "building") -> model.ShearBuilding:
-    """Make a building from a mapping such as ``config/building.yaml`` holds."""
+    """Make a building from a mapping such as ``config/building.yaml`` holds.
+
+    Parameters
+    ----------
+    settings, source : the mapping, and its name in messages
+
+    Returns
+    -------
+    The building.
+    """
     known = checked(settings, "building", source)
     with errors_of(source):
         return _building(known)

@@ -87,16 +87,13 @@ class MeasuredTests:
         """
         outcomes = np.empty((self.repeats, len(self.overturned)), dtype=bool)
         for repeat, chosen_by in self.divisions():
-            known, fell, asked = (
-                measures[chosen_by],
-                self.overturned[chosen_by],
-                ~chosen_by,
-            )
+            known, fell = measures[chosen_by], self.overturned[chosen_by]
+            asked = ~chosen_by
             if measures.ndim == 1:
                 outcomes[repeat, asked] = measures[asked] >= best_threshold(known, fell)
                 continue
-            counts = fell[None].astype(np.float64), np.ones((1, len(fell)))
-            fit = fit_batch(_design(known), *counts, penalised=True)
+            failures, trials = fell[None].astype(np.float64), np.ones((1, len(fell)))
+            fit = fit_batch(_design(known), failures, trials, penalised=True)
             outcomes[repeat, asked] = (
                 _design(measures[asked]) @ fit.coefficients[0] >= 0
             )
@@ -124,15 +121,11 @@ class MeasuredTests:
         ``better_upper`` and ``p``: two-sided, by changing the sign of whole groups at random (McNemar's test for
         tests that are not independent).
         """
-        right, others = (
-            (np.atleast_2d(outcomes) == self.overturned).mean(axis=0)
-            for outcomes in (ours, theirs)
-        )
+        right = (np.atleast_2d(ours) == self.overturned).mean(axis=0)
+        others = (np.atleast_2d(theirs) == self.overturned).mean(axis=0)
         difference = right - others
-        sums, rng = (
-            np.bincount(self.groups, difference),
-            np.random.default_rng(self.seed),
-        )
+        sums = np.bincount(self.groups, difference)
+        rng = np.random.default_rng(self.seed)
         found = stats.permutation_test(
             (sums,), np.sum, permutation_type="samples", n_resamples=9999, rng=rng
         )
@@ -191,7 +184,16 @@ def clustered_error(values: Floats, groups: NDArray[np.int64]) -> float:
 
 
 def plausible_trials(right: Flags, groups: NDArray[np.int64]) -> Flags:
-    """Say which trials agree with tests about as well as the best; ``right`` has the shape (trials, tests)."""
+    """Trials that agree with tests about as well as the best.
+
+    Parameters
+    ----------
+    right, groups : whether each prediction is right, shape (trials, tests), and group of each test, shape (tests,)
+
+    Returns
+    -------
+    Whether each trial is plausible, shape (trials,).
+    """
     fraction = right.mean(axis=1)
     best = int(fraction.argmax())
     error = clustered_error(right[best].astype(np.float64), groups)
@@ -216,14 +218,34 @@ def _design(measures: Floats) -> Floats:
 
 
 def curves_of(measure: Floats, outcomes: Flags | Floats, weights: Floats) -> Floats:
-    """Fit a lognormal curve for each row of weights, (rows, tests): θ and β, (rows, 2); NaN where none rises."""
+    """Fit a lognormal curve for each row of weights, (rows, tests): θ and β, (rows, 2); NaN where none rises.
+
+    Parameters
+    ----------
+    measure, outcomes : values of the measure and outcomes or fractions, shape (tests,)
+    weights : of each test, shape (rows, tests)
+
+    Returns
+    -------
+    θ in the unit of the measure and β [-], shape (rows, 2).
+    """
     coefficients = fit_batch(_design(measure), weights * outcomes, weights).coefficients
     slope = np.where(coefficients[:, 1] > 0, coefficients[:, 1], np.nan)
     return np.column_stack([np.exp(-coefficients[:, 0] / slope), 1 / slope])
 
 
 def by_region(judged: pd.DataFrame, first: str, second: str) -> pd.DataFrame:
-    """Thirds of two measures, a row each: limits, ``tests``, ``overturned``, ``simulated``, ``right``."""
+    """Thirds of two measures, a row each: limits, ``tests``, ``overturned``, ``simulated``, ``right``.
+
+    Parameters
+    ----------
+    judged : a row a test, with ``overturned``, ``simulated`` and the measures
+    first, second : columns of two measures
+
+    Returns
+    -------
+    pandas.DataFrame, nine rows at most.
+    """
     ends = {
         name: np.quantile(judged[name], [0, 1 / 3, 2 / 3, 1])
         for name in (first, second)
@@ -243,7 +265,16 @@ def by_region(judged: pd.DataFrame, first: str, second: str) -> pd.DataFrame:
 
 
 def majority_of_repeats(settings: NDArray[np.object_], measured: Flags) -> Flags | None:
-    """Outcome that most tests at the same setting had, the best that a model can say; None without repeats."""
+    """Outcome that most tests at the same setting had, the best that a model can say; None without repeats.
+
+    Parameters
+    ----------
+    settings, measured : label of the setting and outcome of each test, shape (tests,)
+
+    Returns
+    -------
+    The outcomes, shape (tests,), or None.
+    """
     code = pd.factorize(settings)[0]
     tests = np.bincount(code)
     if tests.max() < 2:

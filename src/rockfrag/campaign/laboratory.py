@@ -55,6 +55,15 @@ def read_campaign(
     ``amplitude_g`` where motions are scaled to a peak; ``rocked``, ``slid`` (yes or no) and ``which_way`` (text)
     where the laboratory noted them. ``measures`` has for each intensity measure the columns and numbers whose
     product it is.
+
+    Parameters
+    ----------
+    path, columns : CSV file, and its columns by their meaning
+    measures, other_codes : recipes of the measures, and a file of other programs’ outcomes
+
+    Returns
+    -------
+    The :class:`Campaign`.
     """
     source = Path(path).name
     factors = [
@@ -174,6 +183,15 @@ def table_motions(
     ``source`` is an ``.npz`` archive with one array per motion, or a pattern of file names such as
     ``motions/Test{motion}.txt``; ``names`` are keys of the archive, or what to put for ``{motion}``. ``unit``,
     ``dt`` [s] and ``channel`` are for files that do not state them.
+
+    Parameters
+    ----------
+    source, names : archive or pattern of files, and names of motions
+    unit, dt, channel : of files that do not state theirs; dt [s]
+
+    Returns
+    -------
+    One motion a test [m/s²].
     """
     absent = missing_motions(source, names)
     if absent:
@@ -198,7 +216,16 @@ def table_motions(
 
 
 def missing_motions(source: str, names: Sequence[str]) -> list[str]:
-    """Return the names of which there is no motion."""
+    """Names of which there is no motion.
+
+    Parameters
+    ----------
+    source, names : archive or pattern of files, and names of motions
+
+    Returns
+    -------
+    The names.
+    """
     if not source.endswith(".npz"):
         return [name for name in names if not is_file(Path(_path(source, name)))]
     with _archive(source) as content:
@@ -249,7 +276,16 @@ def _of_archive(
 
 
 def measured_peaks(motions: Sequence[Motion]) -> pd.DataFrame:
-    """Peak acceleration and velocity of motions, ``pga_g`` and ``pgv_cm_s``."""
+    """Peak acceleration and velocity of motions, ``pga_g`` and ``pgv_cm_s``.
+
+    Parameters
+    ----------
+    motions : of the table, n of them
+
+    Returns
+    -------
+    pandas.DataFrame, n rows: ``pga_g`` [g], ``pgv_cm_s`` [cm/s].
+    """
     velocities = [100 * pgv(highpass(motion, DRIFT_CORNER_HZ)) for motion in motions]
     return pd.DataFrame(
         {"pga_g": [m.pga / GRAVITY for m in motions], "pgv_cm_s": velocities}
@@ -257,7 +293,12 @@ def measured_peaks(motions: Sequence[Motion]) -> pd.DataFrame:
 
 
 def check_peaks(tests: pd.DataFrame, motions: Sequence[Motion], source: str) -> None:
-    """Refuse motions whose peaks are not those that the tests list, if they do; say the factor between."""
+    """Refuse motions whose peaks differ from those in the table of tests; the message has the factor between.
+
+    Parameters
+    ----------
+    tests, motions, source : a row a test, the motion of each, and the name of the motions in messages
+    """
     listed = tests.filter(items=list(_CAUSES))
     if "pgv_cm_s" not in listed and {"pga_g", "pgv_over_pga_s"} <= set(tests):
         listed = listed.assign(

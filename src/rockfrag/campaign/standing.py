@@ -66,7 +66,16 @@ def uniform(low: float, high: float) -> Quantile:
 
 
 def lognormal(median: float, spread: float) -> Quantile:
-    """Quantile function by the median and the standard deviation of the logarithm."""
+    """Quantile function by the median and the standard deviation of the logarithm.
+
+    Parameters
+    ----------
+    median, spread : the median, and the standard deviation of the logarithm [-]
+
+    Returns
+    -------
+    A function of probabilities [-].
+    """
     return lambda fraction: median * math.exp(spread * float(norm.ppf(fraction)))
 
 
@@ -92,6 +101,15 @@ def sample_trials(
 
     A shape with ``friction`` is a body in space, beside the planar block if it has ``restitution`` as well; a
     block whose edges were measured has no direction and tolerance; blocks on each other have ``friction`` too.
+
+    Parameters
+    ----------
+    thing, ranges : the object, and lower and upper end by unknown
+    count, seed : number of trials, and where the points start
+
+    Returns
+    -------
+    The :class:`Trials`.
     """
     quantiles: dict[str, Quantile] = {
         name: uniform(*ranges[name]) for name in UNKNOWNS if name in ranges
@@ -125,7 +143,17 @@ def sample_trials(
 def simulate_tests(
     systems: Sequence[System], motions: Sequence[Motion], threads: int | None = None
 ) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
-    """Whether a body overturns, and whether any rocks, shape (trials, tests)."""
+    """Whether a body overturns, and whether any rocks, shape (trials, tests).
+
+    Parameters
+    ----------
+    systems, motions : a system a trial, and a motion a test
+    threads : threads to use; outcomes do not depend on it
+
+    Returns
+    -------
+    Whether the body overturns, and whether any rocks, shape (trials, tests) each.
+    """
     overturned, rocked = [], []
     for first in range(0, len(motions), BATCH):
         batch = motions[first : first + BATCH]
@@ -163,7 +191,7 @@ def _standing(
     return system_of(planar, friction=guess["friction"])
 
 
-OUTER, CROWDED = 0.1, 0.25
+OUTER, GATHERED = 0.1, 0.25
 """An end of a range is preferred if its outer tenth holds more than a quarter of the plausible trials: ours."""
 
 
@@ -173,7 +201,17 @@ _NOTHING_BEYOND = (("edge_retreat_mm", 0.0), ("restitution", 1.0))
 def preferred_edges(
     trials: pd.DataFrame, plausible: Any, ranges: Mapping[str, tuple[float, float]]
 ) -> dict[str, str]:
-    """Say at which ends of their ranges plausible trials crowd: ``low end`` or ``high end`` by unknown."""
+    """Ends of the ranges at which plausible trials gather: ``low end`` or ``high end`` by unknown.
+
+    Parameters
+    ----------
+    trials, plausible : a row a trial, and labels of the plausible rows
+    ranges : lower and upper end by unknown
+
+    Returns
+    -------
+    The end by unknown, of those that have one.
+    """
     found = {}
     for name, (low, high) in ranges.items():
         if name == "direction_deg" and high - low >= 360:
@@ -184,7 +222,7 @@ def preferred_edges(
             (low, "low", rank <= OUTER),
             (high, "high", rank > 1 - OUTER),
         ):
-            if at.mean() > CROWDED and (name, limit) not in _NOTHING_BEYOND:
+            if at.mean() > GATHERED and (name, limit) not in _NOTHING_BEYOND:
                 found[name] = f"{edge} end"
     return found
 
@@ -192,7 +230,16 @@ def preferred_edges(
 def body_of(
     thing: Shape | Block | Column, guess: Mapping[str, float]
 ) -> Block | Column:
-    """The planar block of a guess at the unknowns of a shape or block, or blocks on each other."""
+    """Planar block of a guess at the unknowns of a shape or block, or blocks on each other.
+
+    Parameters
+    ----------
+    thing, guess : the object, and a value for each unknown by its name
+
+    Returns
+    -------
+    The block or column.
+    """
     retreat = guess["edge_retreat_mm"] / 1e3
     if isinstance(thing, Shape):
         return thing.block(
@@ -220,7 +267,16 @@ floor out of level and a push reach."""
 def unknowns_of(
     kind: str, scan_accuracy_mm: float | None = None
 ) -> dict[str, Quantile]:
-    """Distributions, of ours, of what nobody measured of a ``cut block`` or a ``scan`` of this accuracy [mm]."""
+    """Assumed distributions of the unmeasured properties of a ``cut block`` or a ``scan``.
+
+    Parameters
+    ----------
+    kind, scan_accuracy_mm : kind of the body, and accuracy of its scan [mm]
+
+    Returns
+    -------
+    Quantile functions by unknown.
+    """
     if kind == CUT:
         return {
             # edges of cut stone are broken by a millimetre or two
@@ -241,18 +297,28 @@ def unknowns_of(
     }
 
 
-def ways_to_stand(
+def draw_arrangements(
     thing: Shape | Block,
     unknowns: Mapping[str, Quantile],
     count: int,
     seed: int,
     known: Mapping[str, float] | None = None,
 ) -> Trials:
-    """Draw ways in which an object may stand, evenly over the distributions (scrambled Sobol points).
+    """Arrangements in which an object may stand, drawn evenly over the distributions (scrambled Sobol points).
 
     Ways in which it would not have been set up (:data:`LEAST_ANGLE_DEG`) are left out. ``thing`` is a shape, or
     the planar block of a cut one; a power of two fills the distributions most evenly. ``known`` is what was
     measured, by the name of the unknown; restitution conserves momentum if it is in neither.
+
+    Parameters
+    ----------
+    thing, unknowns : the object, and quantile functions by unknown
+    count, seed : number of arrangements, and where the points start
+    known : measured values by unknown
+
+    Returns
+    -------
+    The :class:`Trials`.
     """
     rows, systems = [], []
     for guess in even_guesses(unknowns, count, seed):
@@ -279,5 +345,14 @@ def ways_to_stand(
 
 
 def kind_of(thing: Shape | Block) -> str:
-    """Kind of a body: scanned, or cut to measured edges."""
+    """Kind of a body: scanned, or cut to measured edges.
+
+    Parameters
+    ----------
+    thing : the object
+
+    Returns
+    -------
+    ``scan`` or ``cut block`` (:mod:`rockfrag.fragility.model_error`).
+    """
     return SCAN if isinstance(thing, Shape) else CUT

@@ -56,6 +56,12 @@ def add_assess_commands(commands: Any) -> None:
     )
     out.add_argument("--json", action="store_true", help="print the answer as JSON")
     out.add_argument(
+        "--details", action="store_true", help="print what stands behind it too"
+    )
+    out.add_argument(
+        "--language", default="en", help="of the answer and its page, such as it"
+    )
+    out.add_argument(
         "--pages", action="store_true", help="of an inventory: write a page for each"
     )
     words = "of an inventory: rank the rows that are right, and list what is wrong with the others"
@@ -165,7 +171,7 @@ def _is_inventory(options: argparse.Namespace) -> bool:
 def _refuse_unused(options: argparse.Namespace) -> None:
     """Refuse options that would have no effect."""
     listed = _is_inventory(options)
-    for name in ("pages", "keep_going") if not listed else ("pdf", "json"):
+    for name in ("pages", "keep_going") if not listed else ("pdf", "json", "details"):
         if getattr(options, name):
             needed = (
                 "one object, not an inventory"
@@ -180,13 +186,15 @@ def _refuse_unused(options: argparse.Namespace) -> None:
 def _one(options: argparse.Namespace, given: dict[str, Any]) -> int:
     from rockfrag.assess.answer import assess
     from rockfrag.assess.export import as_json
+    from rockfrag.assess.findings import details_of, lines_of, quality_flags
     from rockfrag.assess.page import write_answer
-    from rockfrag.assess.words import five_lines, says
+    from rockfrag.words.catalogue import catalogue
 
+    texts = catalogue(options.language)
     found = assess(_request(options, given), options.records)
-    for quality_flag in says("quality_flags", found):
+    for quality_flag in texts.lines(quality_flags(found)):
         print(f"warning: {quality_flag}", file=sys.stderr)
-    place = write_answer(found, options.output)
+    place = write_answer(found, options.output, options.language)
     if options.pdf:
         from rockfrag.report.pdf import print_page
 
@@ -194,7 +202,9 @@ def _one(options: argparse.Namespace, given: dict[str, Any]) -> int:
     if options.json:
         print(as_json(found), end="")
     else:
-        lines = five_lines(found)
+        lines = lines_of(found, options.language)
+        if options.details:
+            lines += ["", *details_of(found, options.language)]
         if sys.stdout.isatty():
             # broken where a terminal ends; what goes into a file or a pipe stays whole
             width = max(shutil.get_terminal_size().columns, 40)
@@ -290,8 +300,11 @@ def _inventory(options: argparse.Namespace, shared: dict[str, Any]) -> int:
     )
     for fault in found.faults:
         print(f"warning: left out: {fault}", file=sys.stderr)
-    print("\n".join([*inventory_lines(found), *joint_lines(found)]))
-    place = write_inventory(found, options.output, pages=options.pages)
+    language = options.language
+    print("\n".join([*inventory_lines(found, language), *joint_lines(found, language)]))
+    place = write_inventory(
+        found, options.output, pages=options.pages, language=language
+    )
     print(f"{place}", file=sys.stderr)
     return 0
 

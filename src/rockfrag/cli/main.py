@@ -1,7 +1,6 @@
 """The command line: whether an object topples, what is in a record, how a body rocks, whether a study is right."""
 
 import argparse
-import math
 import os
 import sys
 import warnings
@@ -18,7 +17,8 @@ from rockfrag.cli.assess_commands import (
     add_assess_commands,
     add_records_option,
 )
-from rockfrag.cli.record_commands import add_record_commands, read_told
+from rockfrag.cli.collection_commands import add_collection_command
+from rockfrag.cli.record_commands import add_record_commands, read_as_asked
 from rockfrag.runtime.processes import speak_utf8
 
 if TYPE_CHECKING:
@@ -67,6 +67,7 @@ def make_parser() -> argparse.ArgumentParser:
     add_app_command(commands)
     _add_constrain(commands)
     add_record_commands(commands)
+    add_collection_command(commands)
 
     command = commands.add_parser("simulate", help="shake one body by one record")
     _add_case(command)
@@ -157,10 +158,14 @@ def _add_constrain(commands: Any) -> None:
 
 # each command imports what it needs when it runs: `rockfrag --help` should not wait for numba
 def _simulate(options: argparse.Namespace) -> int:
+    from rockfrag.cli.simulated import (
+        contact_event_lines,
+        lines_in_plane,
+        lines_in_space,
+    )
     from rockfrag.motions.processing import scale
     from rockfrag.records.motion import GroundMotion
     from rockfrag.simulation import simulate
-    from rockfrag.words.sentences import environment
 
     if options.plot is not None and not options.plot.endswith((".png", ".svg")):
         raise InputError(
@@ -173,37 +178,35 @@ def _simulate(options: argparse.Namespace) -> int:
     restitution: Any = options.restitution
     if restitution is not None and options.pedestal:
         restitution = (restitution,) * len(body.blocks)
-    told = {"restitution": restitution, "friction": _friction(options)}
-    says: Any = (
-        environment("rockfrag.cli")
-        .get_template("simulate.j2", globals={"math": math})
-        .module
-    )
+    given = {"restitution": restitution, "friction": _friction(options)}
     response: Any
     if options.second is not None:
         block, components = _case_in_space(options, body, motion, options.vertical)
         components = [scale(component, factor) for component in components]
-        response = simulate(block, GroundMotion(*components), **told)
+        response = simulate(block, GroundMotion(*components), **given)
         peaks = [component.pga / GRAVITY for component in components]
-        title, words = (
-            motion.name,
-            says.in_space(options.record, peaks, response.outcome),
-        )
+        title = motion.name
+        lines = lines_in_space(options.record, peaks, response.outcome)
     else:
         up = None
         if options.vertical is not None:
-            up = scale(read_told(options.vertical, options, None), factor)
+            up = scale(read_as_asked(options.vertical, options, None), factor)
         with warnings.catch_warnings():
             # what `simulate` doubts of the acceleration has been said
             warnings.simplefilter("ignore", UserWarning)
             response = simulate(
-                body, scaled.acceleration, motion.dt, vertical=up, **told
+                body, scaled.acceleration, motion.dt, vertical=up, **given
             )
         peak = scaled.pga / GRAVITY
         most = sys.maxsize if options.all_contact_events else MOST_CONTACT_EVENTS
-        title, loose = f"{motion.name}, peak {peak:.3f} g", options.friction is not None
-        words = says.in_plane(options.record, motion, peak, response, loose, most)
-    print(words, end="")
+        title = f"{motion.name}, peak {peak:.3f} g"
+        is_loose = options.friction is not None
+        lines = lines_in_plane(
+            options.record, motion, peak, response, is_loose=is_loose
+        )
+        contact_events = response.contact_events.to_dict("records")
+        lines += contact_event_lines(contact_events, most)
+    print("\n".join(lines))
     if options.plot:
         from rockfrag.base.figure_style import save_figure
 
@@ -255,7 +258,7 @@ def _case(options: argparse.Namespace) -> "tuple[Body, Motion]":
         )
     below = [_block("--pedestal", size) for size in reversed(options.pedestal or [])]
     body = stacked([*below, _block("--body", options.body)])
-    return body, read_told(options.record, options, options.channel)
+    return body, read_as_asked(options.record, options, options.channel)
 
 
 def _case_in_space(
@@ -268,11 +271,11 @@ def _case_in_space(
     from rockfrag.motions.rotation import common_time
 
     others = [name for name in (options.second, vertical) if name is not None]
-    told = [first, *(read_told(name, options, None) for name in others)]
+    components = [first, *(read_as_asked(name, options, None) for name in others)]
     with errors_of("--depth"):
         depth = None if options.depth is None else quantity(options.depth, "m", "m")
     block = replace(body.blocks[0], depth=depth, round=options.round)
-    return block, common_time(told, verticals=(2,))
+    return block, common_time(components, verticals=(2,))
 
 
 def _play(options: argparse.Namespace) -> int:
@@ -304,7 +307,7 @@ def _block(option: str, given: Sequence[str]) -> "Block":
             raise InputError(
                 f"expected width, height and, if known, mass, such as 35cm 120cm 180kg; got {' '.join(given)}."
             )
-        width, height = (quantity(text, "m", "m") for text in given[:2])
+        width, height = quantity(given[0], "m", "m"), quantity(given[1], "m", "m")
         mass = (
             quantity(given[2], "kg", "kg")
             if len(given) == 3

@@ -90,7 +90,9 @@ def _add_write(commands: Any) -> None:
     write.set_defaults(run=_write)
 
 
-def read_told(file: str, options: argparse.Namespace, channel: str | None) -> "Motion":
+def read_as_asked(
+    file: str, options: argparse.Namespace, channel: str | None
+) -> "Motion":
     """Read a record as the options of a command say, with errors that name those that it has."""
     from rockfrag.records.read import read_motion
 
@@ -106,8 +108,9 @@ def _info(options: argparse.Namespace) -> int:
     from rockfrag.base.files import csv_text
     from rockfrag.report import record_info
 
-    told = options.files, options.unit, options.dt, options.force
-    table = record_info.describe_files(*told)
+    table = record_info.describe_files(
+        options.files, options.unit, options.dt, options.force
+    )
     if options.format == "csv":
         print(csv_text(table), end="")
     elif options.format == "json":
@@ -120,11 +123,13 @@ def _info(options: argparse.Namespace) -> int:
     if options.picture:
         if len(options.files) != 1:
             raise InputError("--picture draws one record; name one FILE.")
-        motion = read_told(options.files[0], options, options.channel)
+        motion = read_as_asked(options.files[0], options, options.channel)
         record_info.draw_record(motion, options.picture)
         print(f"drawn in {options.picture}", file=sys.stderr)
     if options.pictures:
-        drawn = record_info.draw_files(told[0], options.pictures, *told[1:])
+        drawn = record_info.draw_files(
+            options.files, options.pictures, options.unit, options.dt, options.force
+        )
         print(f"{len(drawn)} pictures drawn in {options.pictures}", file=sys.stderr)
     named = table["file"].isin([printable(str(Path(file))) for file in options.files])
     status = table["status"]
@@ -188,6 +193,6 @@ def _write(options: argparse.Namespace) -> int:
         for path in write_motions(motions, options.target, form, options.in_unit):
             print(path)
         return 0
-    motion = read_told(options.source, options, options.channel)
+    motion = read_as_asked(options.source, options, options.channel)
     print(write_motion(motion, options.target, options.format, options.in_unit))
     return 0

@@ -15,7 +15,6 @@ from importlib.resources import files
 from typing import TYPE_CHECKING, Any
 
 from rockfrag.base.errors import InputError, errors_of
-from rockfrag.base.keywords import renamed
 from rockfrag.base.text_files import unfit_character
 from rockfrag.base.units import other_names, quantity, split_name
 
@@ -237,8 +236,6 @@ def _sentence(error: "ValidationError") -> str:
     instance: Any = error.instance
     if error.validator == "additionalProperties" and "properties" in schema:
         known = sorted(schema["properties"])
-        if said := renamed(instance, known):
-            return f"key {_key(error)}: {said}"
         wrong = sorted(name for name in instance if name not in known)[0]
         close = difflib.get_close_matches(wrong, known, n=1)
         hint = (

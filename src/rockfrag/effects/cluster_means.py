@@ -1,8 +1,11 @@
-"""The test that holds its level: t on the means of the units that were sampled, see ``docs/pedestal.md``.
+"""Tests on the means of the units that were sampled: Student's t, which keeps its level, and sign flips, exact.
 
-Pairs share motion and earthquake, so the mean of d over one earthquake is one observation. Where pairs agree to
-the step of the series of levels a shift may hide in all of them: the resolution of a mean is that of the pairs
-that share the most frequent value, times their fraction. Beside it stand sign flips, the exact test.
+In: pairs with d = ln a_P - ln a_NP [-] and its resolution. Out: :class:`Estimate`, the mean with interval and p
+value. Theory: ``docs/pedestal.md``, "Which test, and about what"; ``docs/validation-pedestal.md``.
+
+Pairs of one motion and earthquake are dependent, so the mean of d over one earthquake is one observation. Where
+pairs agree to the step of the series of levels a shift may hide in all of them: the resolution of a mean is that
+of the pairs that have the most frequent value, times their fraction.
 """
 
 import math
@@ -116,6 +119,15 @@ def t_estimate(
     The half-width is that of t, and at least the resolution (see `tied_resolution`); the standard error is at
     least that of the mean of k values uniform within ± the resolution, resolution/√(3 k). Units that all
     agree, with no resolution known, have neither interval nor p value (NaN).
+
+    Parameters
+    ----------
+    values, confidence : of k units [-], shape (k,), and level of the interval [-]
+    resolution : half-width to which the mean is known [-]
+
+    Returns
+    -------
+    The :class:`Estimate`.
     """
     x = np.asarray(values, dtype=float)
     if x.size == 0 or not np.all(np.isfinite(x)):
@@ -140,7 +152,16 @@ def t_estimate(
 
 
 def tied_resolution(values: npt.ArrayLike, resolution: npt.ArrayLike) -> Array:
-    """Resolution of the values that equal the most frequent one (to 9 decimals), 0 for the others, (n,) [-]."""
+    """Resolution of the values that equal the most frequent one (to 9 decimals), 0 for the others, (n,) [-].
+
+    Parameters
+    ----------
+    values, resolution : logarithms of ratios [-] and the half-width of each [-], shape (n,)
+
+    Returns
+    -------
+    The resolutions [-], shape (n,).
+    """
     rounded = np.round(np.asarray(values, dtype=float), 9) + 0.0
     different, place, count = np.unique(
         rounded, return_inverse=True, return_counts=True
@@ -150,12 +171,30 @@ def tied_resolution(values: npt.ArrayLike, resolution: npt.ArrayLike) -> Array:
 
 
 def resolution_of(table: pd.DataFrame) -> Array:
-    """Half-width to which each row's value is known; 0 where the table does not tell."""
+    """Half-width to which each row's value is known; 0 where the table does not tell.
+
+    Parameters
+    ----------
+    table : pairs, n of them
+
+    Returns
+    -------
+    The half-widths [-], shape (n,).
+    """
     return np.asarray(table.get("resolution", np.zeros(len(table))), dtype=float)
 
 
 def earthquake_means(table: pd.DataFrame) -> pd.Series:
-    """Means of d by earthquake: over the pairs of a motion, then over motions."""
+    """Means of d by earthquake: over the pairs of a motion, then over motions.
+
+    Parameters
+    ----------
+    table : pairs with ``earthquake``, ``motion`` and ``d`` [-]
+
+    Returns
+    -------
+    The means [-] by earthquake.
+    """
     return (
         table.groupby(["earthquake", "motion"])["d"]
         .mean()
@@ -169,21 +208,38 @@ def mean_effect(table: pd.DataFrame) -> Estimate:
 
     The units are the earthquakes; within a single earthquake they are its motions. A column ``resolution``,
     the half-width to which each d is known, widens the interval where pairs agree.
+
+    Parameters
+    ----------
+    table : pairs with ``earthquake``, ``motion``, ``d`` [-] and, if known, ``resolution`` [-]
+
+    Returns
+    -------
+    The :class:`Estimate` in logarithms [-].
     """
     return next(iter(mean_effects(table.assign(whole=""), "whole").values()))
 
 
 def mean_effects(table: pd.DataFrame, by: str) -> dict[Hashable, Estimate]:
-    """`mean_effect` of every group of rows with the same value of a column, all at once."""
+    """`mean_effect` of every group of rows with the same value of a column, all at once.
+
+    Parameters
+    ----------
+    table, by : pairs, and the column of the groups
+
+    Returns
+    -------
+    The :class:`Estimate` of each group.
+    """
     units = sampled_units(table, by)
     return {name: some.effect() for name, some in units.items()}
 
 
 class Units(NamedTuple):
-    """What was sampled: the earthquakes of some pairs, or the motions of their single earthquake."""
+    """Sampled units: the earthquakes of some pairs, or the motions of their single earthquake."""
 
-    d: Array  # mean of d over each one's pairs [-], shape (k,)
-    hidden: Array  # what the steps of these pairs hide of it [-], shape (k,)
+    d: Array  # mean of d over the pairs of each [-], shape (k,)
+    hidden: Array  # half-width that the steps of these pairs leave open [-], shape (k,)
 
     def effect(self) -> Estimate:
         """Mean with interval and p value."""
@@ -191,7 +247,7 @@ class Units(NamedTuple):
 
 
 def sampled_units(table: pd.DataFrame, by: str) -> dict[Hashable, Units]:
-    """What was sampled of every group of rows with the same value of a column."""
+    """Units of every group of rows with the same value of a column."""
     d, known = table["d"].to_numpy(dtype=float), resolution_of(table)
     hidden = np.zeros(len(table))
     groups = table.groupby(by, sort=True).indices
@@ -200,7 +256,7 @@ def sampled_units(table: pd.DataFrame, by: str) -> dict[Hashable, Units]:
     work = table[[by, "earthquake", "motion", "d"]].assign(hidden=hidden)
     motions = work.groupby([by, "earthquake", "motion"])[["d", "hidden"]].mean()
     earthquakes = motions.groupby(level=[by, "earthquake"]).mean().reset_index()
-    # what was sampled of a single earthquake are its motions
+    # the units of a single earthquake are its motions
     several = earthquakes[earthquakes.duplicated(by, keep=False)]
     motions = motions.reset_index()
     units = pd.concat([several, motions[~motions[by].isin(several[by])]])
@@ -216,6 +272,14 @@ def equivalence(effect: Estimate, margin: float = MARGIN) -> float:
 
     It is never shown where the estimate's resolution reaches beyond a bound: a series of 5 % cannot
     show equivalence to ±1 %. Returned is the larger of the two one-sided p values [-], NaN for a single unit.
+
+    Parameters
+    ----------
+    effect, margin : a mean log ratio, and the relative change that counts as none [-]
+
+    Returns
+    -------
+    The p value [-].
     """
     bound = math.log1p(margin)
     return max(effect.p_above(-bound), effect.p_below(bound))
@@ -227,6 +291,14 @@ def detectable_ratio(effect: Estimate) -> float:
     The test is t over the units, and a difference within the estimate's resolution is none; so what
     can be seen exceeds the resolution by what normal scatter takes away with this power. Infinite for
     one unit; NaN where neither scatter nor resolution are known.
+
+    Parameters
+    ----------
+    effect : a mean with its scatter
+
+    Returns
+    -------
+    The ratio [-].
     """
     if effect.units < 2:
         return math.inf
@@ -253,6 +325,14 @@ def holm(p: npt.ArrayLike) -> Array:
     """Adjust p values so that the chance of any false rejection is held (Holm 1979).
 
     NaN stays NaN and does not count. Holm's adjustment in statsmodels collects all garbage, 0.1 to 1 s a call.
+
+    Parameters
+    ----------
+    p : p values [-], shape (n,)
+
+    Returns
+    -------
+    The adjusted p values [-], shape (n,).
     """
     result, known = _p_values(p)
     order = np.flatnonzero(known)[np.argsort(result[known])]
@@ -264,7 +344,13 @@ def holm(p: npt.ArrayLike) -> Array:
 def benjamini_hochberg(p: npt.ArrayLike) -> Array:
     """Adjust p values so that the fraction of false rejections is held (Benjamini, Hochberg 1995).
 
-    NaN stays NaN and does not count.
+    Parameters
+    ----------
+    p : p values [-], shape (n,); NaN stays NaN and does not count
+
+    Returns
+    -------
+    The adjusted p values [-], shape (n,).
     """
     from statsmodels.stats.multitest import fdrcorrection
 
@@ -303,6 +389,14 @@ def sign_flip_test(values: npt.ArrayLike, seed: int = 0) -> SignFlips:
 
     Valid when each unit's distribution is symmetric about zero under the hypothesis. ``seed`` is of the patterns
     drawn when there are more than `DRAWS` of them.
+
+    Parameters
+    ----------
+    values, seed : means of d of k units [-], shape (k,), and the seed
+
+    Returns
+    -------
+    The :class:`SignFlips`.
     """
     x = np.asarray(values, dtype=float)
     k = x.size
@@ -337,8 +431,16 @@ def leave_one_earthquake_out(table: pd.DataFrame) -> pd.DataFrame:
     whole, rows = mean_effect(table).mean, []
     for name in earthquakes:
         effect = mean_effect(table[table["earthquake"] != name])
-        limits = (effect.ratio, effect.ratio_lower, effect.ratio_upper)
-        rows.append([name, *limits, effect.p, abs(effect.mean - whole)])
+        rows.append(
+            {
+                "without": name,
+                "ratio": effect.ratio,
+                "lower": effect.ratio_lower,
+                "upper": effect.ratio_upper,
+                "p": effect.p,
+                "largest_change": abs(effect.mean - whole),
+            }
+        )
     result = pd.DataFrame(rows, columns=WITHOUT_COLUMNS)
     shift = result["largest_change"]
     return result.assign(largest_change=shift == shift.max())

@@ -1,5 +1,8 @@
 """Pairing of tests: the same object and motion, with (P) and without (NP) the pedestal.
 
+In: a table of tests with amplitudes [g]. Out: :class:`Pairs`, with d [-] and its resolution. Theory:
+``docs/pedestal.md``, "What a series of steps can know".
+
 The unit of everything that follows is d = ln a_P - ln a_NP of one pair.  An amplitude from a series of steps lies
 anywhere in its step, so d is known to its ``resolution``: half the two steps' widths together, ln(1 + step) where
 both sides climbed the same series of levels.  A test that never overturned bounds d on one side.
@@ -14,14 +17,8 @@ import numpy as np
 import pandas as pd
 
 from rockfrag.base.errors import InputError
-from rockfrag.base.keywords import check_names
 from rockfrag.base.short_repr import short_repr
-from rockfrag.words.sentences import Macros
-
-MOST_NAMED = 100  # pairs and tests that notes call by their names; of more the number
-_words = {"MOST_NAMED": MOST_NAMED, "exp": math.exp, "expm1": math.expm1}
-SAY = Macros("rockfrag.effects", "words.j2", **_words)
-"""What the pairs can say and what not, in notes."""
+from rockfrag.effects.notes import notes_on_left_out
 
 KEY = ["object", "earthquake", "floor", "motion"]
 _NEEDED = ("object", "pedestal", "earthquake", "floor", "amplitude_g")
@@ -50,12 +47,11 @@ class Pairs:
     __repr__ = short_repr
 
     def notes(self) -> list[str]:
-        """Say in words what is not among the complete pairs."""
+        """Notes on what is not among the complete pairs."""
         bounded = self.table[self.table["bound"] != ""]
         below, above = self.censored["d_lower"], self.censored["d_upper"]
         lost = self.censored[np.isneginf(below) & np.isposinf(above)]
-        return SAY(
-            "left_out",
+        return notes_on_left_out(
             bounded.to_dict("records"),
             lost.to_dict("records"),
             self.unpaired.to_dict("records"),
@@ -63,14 +59,19 @@ class Pairs:
 
 
 def check_tests(tests: pd.DataFrame) -> pd.DataFrame:
-    """Return a clean copy of a table of tests, or say which row cannot be used.
+    """Check a table of tests, or say which row cannot be used.
 
-    Tests have object, pedestal ("P" or "NP"), earthquake, floor, amplitude_g [g] and, where present, motion,
-    lower_g, upper_g [g], censored ("none", "right"; "left" for a test that overturned at its first step, lower_g
-    0), repetition, definition. What is absent is filled in, and rows are sorted so that results do not depend on
-    their order.
+    Parameters
+    ----------
+    tests : a row a test
+
+    Returns
+    -------
+    A clean copy. Tests have object, pedestal ("P" or "NP"), earthquake, floor, amplitude_g [g] and, where
+    present, motion, lower_g, upper_g [g], censored ("none", "right"; "left" for a test that overturned at its
+    first step, lower_g 0), repetition, definition. Absent columns are filled in, and rows are sorted so that
+    results do not depend on their order.
     """
-    check_names("Table of tests", tests.columns, _NEEDED)
     missing = [name for name in _NEEDED if name not in tests.columns]
     if missing:
         raise InputError(
@@ -125,7 +126,8 @@ def _refuse(
     tests: pd.DataFrame, bad: "pd.Series[bool]", column: str, what: str
 ) -> None:
     """Refuse the first bad row of a table of tests; the text may name the value in the column."""
-    for row in np.flatnonzero(bad):
+    if bad.any():
+        row = int(bad.to_numpy().argmax())
         value = tests[column].iloc[row]
         raise InputError(
             f"Table of tests, row {row + 1}: {column} {what.format(value)}"
@@ -160,7 +162,9 @@ def _check_amplitudes(clean: pd.DataFrame) -> None:
             "largest amplitude survived as lower_g."
         )
         _refuse(clean, here & ~known, name, words)
-    for row in np.flatnonzero(~right & ~(clean["lower_g"] <= clean["upper_g"])):
+    crossed = (~right & ~(clean["lower_g"] <= clean["upper_g"])).to_numpy()
+    if crossed.any():
+        row = int(crossed.argmax())
         lower, upper = clean[["lower_g", "upper_g"]].iloc[row]
         raise InputError(
             f"Table of tests, row {row + 1}: lower_g {lower} exceeds upper_g {upper}; exchange them."
@@ -170,8 +174,15 @@ def _check_amplitudes(clean: pd.DataFrame) -> None:
 def pedestals_apart(tests: pd.DataFrame) -> tuple[pd.DataFrame, dict[str, str]]:
     """Give each pedestal of an object that has several its own pairs with the lone object.
 
-    Such an object is named after the ``configuration`` instead, and its tests without pedestal stand beside each;
-    the mapping has the object by each such name.
+    Such an object is named after the ``configuration`` instead, and its tests without pedestal stand beside each.
+
+    Parameters
+    ----------
+    tests : a row a test
+
+    Returns
+    -------
+    The tests, and the object by each such name.
     """
     if not {"configuration", "object", "pedestal"} <= set(tests.columns):
         return tests, {}
@@ -195,13 +206,22 @@ def with_counterparts(
     """Let arrangements that name their counterpart be compared with it instead of with the object alone.
 
     The rows of each such comparison stand for an object of their own, with the arrangement as P and its
-    counterpart as NP; the mapping has the object by the name of each comparison.
+    counterpart as NP.
+
+    Parameters
+    ----------
+    tests, counterparts : a row a test, and the counterpart by the name of the arrangement
+
+    Returns
+    -------
+    The tests, and the object by the name of each comparison.
     """
     parts = [tests[~tests["configuration"].isin(list(counterparts))]]
     origin: dict[str, str] = {}
     for name, other in counterparts.items():
         label = f"{name} against {other}"
-        own, others = (tests[tests["configuration"] == each] for each in (name, other))
+        own = tests[tests["configuration"] == name]
+        others = tests[tests["configuration"] == other]
         parts += [
             own.assign(object=label, pedestal="P"),
             others.assign(object=label, pedestal="NP"),
@@ -256,7 +276,14 @@ def pair_tests(
 ) -> Pairs:
     """Pair tests with and without pedestal by object and motion.
 
-    ``slenderness`` is height over width by object [-], needed only for slopes on it.
+    Parameters
+    ----------
+    tests : a row a test, see :func:`check_tests`
+    slenderness : height over width by object [-], needed only for slopes on it
+
+    Returns
+    -------
+    The :class:`Pairs`.
     """
     tests, origin = pedestals_apart(tests)
     clean = check_tests(tests)
@@ -270,12 +297,10 @@ def pair_tests(
     slenderness = {**slenderness, **given}
     slenderness_of(clean, slenderness)
     sides = _sides(clean)
-    ln_a, width = (
-        pd.DataFrame(sides[name]).astype(float) for name in ("ln_a", "width")
-    )
-    above, below = (
-        pd.DataFrame(sides[name]).eq(True).to_numpy().T for name in ("right", "left")
-    )
+    ln_a = pd.DataFrame(sides["ln_a"]).astype(float)
+    width = pd.DataFrame(sides["width"]).astype(float)
+    above = pd.DataFrame(sides["right"]).eq(True).to_numpy().T
+    below = pd.DataFrame(sides["left"]).eq(True).to_numpy().T
     # d is open upwards where P (the first side) lies above its figure or NP below, and downwards likewise
     upward, downward = above[0] | below[1], above[1] | below[0]
     both = ln_a.notna().all(axis=1).to_numpy()

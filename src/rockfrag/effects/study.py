@@ -1,4 +1,9 @@
-"""The pedestal effect as tables: every scope with interval, equivalence, multiplicity and power."""
+"""Effect of a pedestal as tables: every scope with interval, equivalence, multiplicity and power.
+
+In: a table of tests, or its pairs (:mod:`rockfrag.effects.paired_tests`). Out: :class:`PedestalStudy`, ratios
+with over without pedestal [-] with 95 % limits and p values [-]. Theory: ``docs/pedestal.md``, "Which test, and
+about what".
+"""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -6,11 +11,13 @@ from dataclasses import dataclass
 
 import numpy as np
 import pandas as pd
+from numpy.typing import NDArray
 
 from rockfrag.base.short_repr import short_repr
 from rockfrag.effects import cluster_means
 from rockfrag.effects.cluster_means import Array
-from rockfrag.effects.paired_tests import SAY, Pairs, pair_tests
+from rockfrag.effects.notes import NO_RATIO, note_on_population, notes_on_ties
+from rockfrag.effects.paired_tests import Pairs, pair_tests
 
 SCOPES: Mapping[str, tuple[str, ...]] = {
     "whole": (),
@@ -25,17 +32,25 @@ MOST_RANKED = 100
 """Levels of a factor, such as earthquakes, that are ranked; of more, which one is largest says little."""
 
 EFFECT_COLUMNS = [
-    *("scope", "level", "pairs", "unit", "units", "ratio", "lower", "upper"),
-    *(
-        "p",
-        "p_holm",
-        "p_bh",
-        "p_sign_flip",
-        "smallest_p",
-        "p_equivalence",
-        "equivalent",
-    ),
-    *("detectable_ratio", "resolution_ratio", "tied", "at_bound"),
+    "scope",
+    "level",
+    "pairs",
+    "unit",
+    "units",
+    "ratio",
+    "lower",
+    "upper",
+    "p",
+    "p_holm",
+    "p_bh",
+    "p_sign_flip",
+    "smallest_p",
+    "p_equivalence",
+    "equivalent",
+    "detectable_ratio",
+    "resolution_ratio",
+    "tied",
+    "at_bound",
 ]
 WHOLE_COLUMNS = [
     "method",
@@ -56,7 +71,7 @@ DRAWN_AT_ONCE = 2_000_000
 
 @dataclass(frozen=True)
 class PedestalStudy:
-    """Everything about P against NP for one table of tests.
+    """Effect of the pedestal in one table of tests.
 
     Parameters
     ----------
@@ -65,7 +80,7 @@ class PedestalStudy:
         Tests of the whole: method, estimate, lower, upper (as ratios), p, smallest_p, units, remark; see
         `leave_one_earthquake_out`.
     ranks : factor, level, mean ratio, p_largest, p_smallest
-    notes : in words: population, what was left out, what the steps cannot tell
+    notes : on the population, on pairs left out, and on the steps, in words
     """
 
     pairs: Pairs
@@ -81,11 +96,18 @@ class PedestalStudy:
 def effects_table(table: pd.DataFrame, floors: Sequence[str] = ()) -> pd.DataFrame:
     """Ratio P/NP for every scope of pairs (`Pairs.table`), with floors in the given order.
 
-    Limits are of 95 %; p_holm adjusts within the scope, p_bh over all rows; p_equivalence is of ±10 %;
-    detectable_ratio has 80 % power; up to resolution_ratio the steps of the amplitudes leave the mean open; tied
-    pairs have equal amplitudes on both sides; of those at_bound one test never overturned.
+    Parameters
+    ----------
+    table, floors : pairs, and the order of their floors
+
+    Returns
+    -------
+    A row a level of a scope. Limits are of 95 %; p_holm adjusts within the scope, p_bh over all rows;
+    p_equivalence is of ±10 %; detectable_ratio has 80 % power; up to resolution_ratio the steps of the
+    amplitudes leave the mean open; tied pairs have equal amplitudes on both sides; of those at_bound one test
+    never overturned.
     """
-    rows: list[list[object]] = []
+    rows: list[dict[str, object]] = []
     known = [name for name in floors if name in set(table["floor"])]
     floor = pd.Categorical(
         table["floor"], [*known, *sorted(set(table["floor"]) - set(known))]
@@ -98,30 +120,39 @@ def effects_table(table: pd.DataFrame, floors: Sequence[str] = ()) -> pd.DataFra
             table.assign(group=groups.ngroup()), "group"
         )
         for place, (key, pairs) in enumerate(groups):
-            effect = sampled[place].effect()
-            flips = cluster_means.sign_flip_test(sampled[place].d)
-            same = cluster_means.equivalence(effect)
             level = "/".join(map(str, key)) if isinstance(key, tuple) else "all"
-            unit = "earthquake" if len(set(pairs["earthquake"])) > 1 else "motion"
-            estimate = (effect.ratio, effect.ratio_lower, effect.ratio_upper, effect.p)
-            open_to = (
-                cluster_means.detectable_ratio(effect),
-                math.exp(effect.resolution),
-            )
-            rows.append(
-                [
-                    *(scope, level, len(pairs), unit, effect.units, *estimate, flips.p),
-                    *(flips.smallest_p, same, same < EQUIVALENCE_LEVEL, *open_to),
-                    *pairs[["tied", "at_bound"]].sum(),
-                ]
-            )
-    given = [name for name in EFFECT_COLUMNS if name not in ("p_holm", "p_bh")]
-    result = pd.DataFrame(rows, columns=given)
+            row = _effect_row(pairs, sampled[place])
+            rows.append({"scope": scope, "level": level, **row})
+    result = pd.DataFrame(rows)
     holm = result.groupby("scope")["p"].transform(cluster_means.holm)
     result = result.assign(
         p_holm=holm, p_bh=cluster_means.benjamini_hochberg(result["p"])
     )
     return result[EFFECT_COLUMNS]
+
+
+def _effect_row(pairs: pd.DataFrame, sampled: cluster_means.Units) -> dict[str, object]:
+    """Columns of `effects_table` of one group of pairs, but for its scope and adjusted p values."""
+    effect = sampled.effect()
+    flips = cluster_means.sign_flip_test(sampled.d)
+    equivalence = cluster_means.equivalence(effect)
+    return {
+        "pairs": len(pairs),
+        "unit": "earthquake" if len(set(pairs["earthquake"])) > 1 else "motion",
+        "units": effect.units,
+        "ratio": effect.ratio,
+        "lower": effect.ratio_lower,
+        "upper": effect.ratio_upper,
+        "p": effect.p,
+        "p_sign_flip": flips.p,
+        "smallest_p": flips.smallest_p,
+        "p_equivalence": equivalence,
+        "equivalent": equivalence < EQUIVALENCE_LEVEL,
+        "detectable_ratio": cluster_means.detectable_ratio(effect),
+        "resolution_ratio": math.exp(effect.resolution),
+        "tied": pairs["tied"].sum(),
+        "at_bound": pairs["at_bound"].sum(),
+    }
 
 
 def _whole_tests(table: pd.DataFrame, seed: int) -> pd.DataFrame:
@@ -131,15 +162,27 @@ def _whole_tests(table: pd.DataFrame, seed: int) -> pd.DataFrame:
     remark = "keeps its level in the crossed design; the conclusions rest on it"
     if effect.upper <= effect.mean + effect.resolution:
         remark += "; the limits are the width of the steps, not of the scatter"
-    estimate, nan = (
-        (effect.ratio, effect.ratio_lower, effect.ratio_upper, effect.p),
-        math.nan,
-    )
-    drawn = "exact" if flips.exact else f"drawn with seed {seed}"
-    of_t = (f"t on the means of {unit}s", *estimate, nan, effect.units, remark)
-    flipped = (effect.ratio, nan, nan, flips.p, flips.smallest_p, flips.units, drawn)
-    rows = [of_t, ("sign flips over earthquakes", *flipped)]
-    return pd.DataFrame(rows, columns=WHOLE_COLUMNS)
+    by_t = {
+        "method": f"t on the means of {unit}s",
+        "estimate": effect.ratio,
+        "lower": effect.ratio_lower,
+        "upper": effect.ratio_upper,
+        "p": effect.p,
+        "smallest_p": math.nan,
+        "units": effect.units,
+        "remark": remark,
+    }
+    by_flips = {
+        "method": "sign flips over earthquakes",
+        "estimate": effect.ratio,
+        "lower": math.nan,
+        "upper": math.nan,
+        "p": flips.p,
+        "smallest_p": flips.smallest_p,
+        "units": flips.units,
+        "remark": "exact" if flips.exact else f"drawn with seed {seed}",
+    }
+    return pd.DataFrame([by_t, by_flips], columns=WHOLE_COLUMNS)
 
 
 def _ranks(table: pd.DataFrame, seed: int) -> pd.DataFrame:
@@ -162,7 +205,7 @@ def _ranks(table: pd.DataFrame, seed: int) -> pd.DataFrame:
 def study_pedestal(
     tests: pd.DataFrame, *, seed: int, slenderness: Mapping[str, float] | None = None
 ) -> PedestalStudy:
-    """Do everything for one table of tests, simulated or measured alike.
+    """Study the effect of the pedestal in one table of tests, simulated or measured alike.
 
     Parameters
     ----------
@@ -177,39 +220,47 @@ def study_pedestal(
     pairs = pair_tests(tests, slenderness)
     table = pairs.table
     if table.empty:
-        columns = (
-            EFFECT_COLUMNS,
-            WHOLE_COLUMNS,
-            cluster_means.WITHOUT_COLUMNS,
-            RANK_COLUMNS,
+        return PedestalStudy(
+            pairs,
+            effects=pd.DataFrame(columns=EFFECT_COLUMNS),
+            whole=pd.DataFrame(columns=WHOLE_COLUMNS),
+            without_earthquake=pd.DataFrame(columns=cluster_means.WITHOUT_COLUMNS),
+            ranks=pd.DataFrame(columns=RANK_COLUMNS),
+            notes=(*pairs.notes(), NO_RATIO),
         )
-        effects, whole, without, ranks = (
-            pd.DataFrame(columns=names) for names in columns
-        )
-        notes = (*pairs.notes(), *SAY("no_ratio"))
-        return PedestalStudy(pairs, effects, whole, without, ranks, notes)
     tied = table["d"].abs() < cluster_means.ROUNDING
     widest = float(table.loc[tied, "resolution"].max())
-    population = SAY("population", table["earthquake"].nunique())
-    notes = (
-        *population,
-        *pairs.notes(),
-        *SAY("ties", int(tied.sum()), len(table), widest),
+    return PedestalStudy(
+        pairs,
+        effects=effects_table(table, list(tests["floor"].astype(str).unique())),
+        whole=_whole_tests(table, seed),
+        without_earthquake=cluster_means.leave_one_earthquake_out(table),
+        ranks=_ranks(table, seed),
+        notes=(
+            note_on_population(table["earthquake"].nunique()),
+            *pairs.notes(),
+            *notes_on_ties(int(tied.sum()), len(table), widest),
+        ),
     )
-    effects = effects_table(table, list(tests["floor"].astype(str).unique()))
-    without = cluster_means.leave_one_earthquake_out(table)
-    whole, ranks = _whole_tests(table, seed), _ranks(table, seed)
-    return PedestalStudy(pairs, effects, whole, without, ranks, notes)
 
 
 def rank_probabilities(
     table: pd.DataFrame, factor: str, cluster: str, seed: int, *, within: bool = False
 ) -> pd.DataFrame:
-    """How often each level of a factor has the largest and the smallest mean of ``d`` in resampled data.
+    """Fraction of resampled data in which each level of a factor has the largest and the smallest mean of ``d``.
 
-    All rows of a drawn ``cluster`` (earthquake or motion) come. ``within`` draws clusters separately inside each
-    level (the motions of each earthquake); otherwise the same ones for all levels, which keeps what the levels
-    share. Columns: level, mean, p_largest, p_smallest; ties share their draw.
+    Parameters
+    ----------
+    table, factor : pairs, and the column whose levels are ranked
+    cluster : column of what is drawn, all rows of it together: earthquake or motion
+    seed : of the random numbers
+    within
+        Draws clusters separately inside each level (the motions of each earthquake); otherwise the same ones for
+        all levels, which keeps the dependence between levels.
+
+    Returns
+    -------
+    A row a level: level, mean [-], p_largest, p_smallest [-]; tied levels divide their draw.
     """
     rng = np.random.default_rng(seed)
     levels = sorted(table[factor].unique())
@@ -227,19 +278,21 @@ def rank_probabilities(
         )
         drawn = _resampled(cells[levels].dropna().to_numpy(), rng)
     mean = table.groupby(factor)["d"].mean()[levels].to_numpy()
-    ends = (
-        drawn == extreme(drawn, axis=1, keepdims=True) for extreme in (np.max, np.min)
+    largest = drawn == drawn.max(axis=1, keepdims=True)
+    smallest = drawn == drawn.min(axis=1, keepdims=True)
+    return pd.DataFrame(
+        {
+            "level": levels,
+            "mean": mean,
+            "p_largest": _mean_part(largest),
+            "p_smallest": _mean_part(smallest),
+        }
     )
-    largest, smallest = (
-        (at / at.sum(axis=1, keepdims=True)).mean(axis=0) for at in ends
-    )
-    found = {
-        "level": levels,
-        "mean": mean,
-        "p_largest": largest,
-        "p_smallest": smallest,
-    }
-    return pd.DataFrame(found)
+
+
+def _mean_part(at_end: NDArray[np.bool_]) -> Array:
+    """Mean over draws, (draws, levels), of the part of a draw that each level has; tied levels divide it."""
+    return np.asarray((at_end / at_end.sum(axis=1, keepdims=True)).mean(axis=0))
 
 
 def _resampled(means: Array, rng: np.random.Generator) -> Array:

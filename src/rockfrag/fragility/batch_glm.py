@@ -1,6 +1,9 @@
 """Many small binary regressions at once, maximum likelihood or penalised, by Fisher scoring.
 
-A test holds them against statsmodels, which fits one in milliseconds.
+In: predictors that all share, (rows, k), and counts of each replicate, (batch, rows). Out: :class:`BatchFit`.
+A test compares them with statsmodels, which fits one in milliseconds.
+
+Theory: ``docs/fragility.md``, "Estimators"; Firth (1993) for the penalty.
 """
 
 from dataclasses import dataclass
@@ -52,12 +55,22 @@ def fit_batch(
     start: Floats | None = None,
     tolerance: float = 1e-9,
 ) -> BatchFit:
-    """Fit ``batch`` binomial regressions that share their predictors, the ``design`` of shape (rows, k) with ones.
+    """Fit binomial regressions that have their predictors in common.
 
-    ``failures`` and ``trials`` are counts, shape (batch, rows); a row with 0 trials takes no part.  ``penalised``
-    adds half the logarithm of the determinant of the information to the log-likelihood (Firth, 1993, Biometrika
-    80: 27-38), whose maximum is finite under separation also (Kosmidis and Firth, 2021, Biometrika 108: 71-82).
-    ``start`` are coefficients to start from, shape (k,).
+    Parameters
+    ----------
+    design : predictors with ones, shape (rows, k)
+    failures, trials : counts, shape (batch, rows); a row with 0 trials takes no part
+    link : of the regression
+    penalised
+        Adds half the logarithm of the determinant of the information to the log-likelihood (Firth, 1993,
+        Biometrika 80: 27-38), whose maximum is finite under separation also (Kosmidis and Firth, 2021,
+        Biometrika 108: 71-82).
+    start, tolerance : coefficients to start from, shape (k,), and the step at which a regression has converged
+
+    Returns
+    -------
+    The :class:`BatchFit`.
     """
     batch, columns = failures.shape[0], design.shape[1]
     mixed = (failures.sum(axis=1) > 0) & (failures.sum(axis=1) < trials.sum(axis=1))
@@ -111,9 +124,17 @@ def fit_batch(
 
 
 def separated(log_im: Floats, failures: Floats, trials: Floats) -> NDArray[np.bool_]:
-    """Tell for each replicate, a row of counts, whether one value parts survived from overturned.
+    """Replicates in which one value separates survived from overturned tests.
 
     Then the likelihood has no finite maximum. Replicates in which all tests agree count as separated.
+
+    Parameters
+    ----------
+    log_im, failures, trials : ln IM, shape (rows,), and counts, shape (batch, rows)
+
+    Returns
+    -------
+    Whether each is separated, shape (batch,).
     """
     fell, stood = failures > 0, trials - failures > 0
 

@@ -3,9 +3,14 @@
 A step protocol brackets the overturning amplitude of a test between the last step survived and the first that
 overturned; at the shaker's limit it is only known to be larger. The likelihood is concave in (-ln θ/β, 1/β)
 (Burridge, 1981, J. R. Stat. Soc. B 43: 41-45), which Newton's method uses here.
+
+In: :class:`Brackets`, bounds in the unit of the measure. Out: a
+:class:`rockfrag.fragility.lognormal.FragilityFit`, its limits, and log scores of brackets.
+Theory: ``docs/fragility.md``, "Estimators" and "When the data do not allow a curve".
 """
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 import pandas as pd
@@ -15,6 +20,7 @@ from scipy import special
 from rockfrag.base.errors import InputError
 from rockfrag.base.short_repr import short_repr
 from rockfrag.fragility import intervals, lognormal
+from rockfrag.fragility.fit_notes import BracketCase, notes_of_brackets
 from rockfrag.fragility.intervals import MOST_BLOCKS, Interval
 from rockfrag.fragility.observations import (
     Floats,
@@ -62,7 +68,16 @@ def brackets_from_table(
 ) -> Brackets:
     """Read the bounds of the overturning amplitude out of a table of tests, one row per test.
 
-    A missing upper bound means right-censored. ``measure`` is a column name that tells the measure and its unit.
+    Parameters
+    ----------
+    table : n rows
+    lower, upper : columns of the bounds, in the unit of ``measure``; a missing upper bound means right-censored
+    motion, earthquake : columns of labels; None where each row is a motion (earthquake) of its own
+    measure : column name that tells the measure and its unit
+
+    Returns
+    -------
+    The :class:`Brackets`, of n tests.
     """
     if len(table) == 0:
         raise InputError("table: there is no row; give at least one test.")
@@ -74,7 +89,8 @@ def brackets_from_table(
     high = pd.to_numeric(table[upper], errors="coerce").to_numpy(dtype=np.float64)
     high = np.where(np.isnan(high), np.inf, high)
     bad = (low < 0) | (high <= 0) | (high < low) | ((low == 0) & np.isinf(high))
-    for row in np.flatnonzero(bad):
+    if bad.any():
+        row = int(bad.argmax())
         raise InputError(
             f"table, row {row + 1}, columns {lower!r} and {upper!r}: {low[row]:g} to {high[row]:g} is no "
             "bracket of an amplitude; give 0 ≤ lower ≤ upper and leave upper empty if it never overturned."
@@ -90,51 +106,73 @@ def fit_brackets(brackets: Brackets) -> lognormal.FragilityFit:
     Where one amplitude lies inside every bracket the likelihood grows without end as β tends to zero; then θ is
     the middle of the common bracket and β its logarithmic width / √12, and the fit says so. There is no curve,
     only a bound, where no test overturned; nor is there one where all brackets are open and end at one amplitude.
+
+    Parameters
+    ----------
+    brackets : n amplitudes known to lie between two bounds
+
+    Returns
+    -------
+    The :class:`rockfrag.fragility.lognormal.FragilityFit`, θ in the unit of the brackets.
     """
     low, high = _logs(brackets)
-    curve, log_likelihood, case = lognormal.NO_CURVE, 0.0, ""
+    curve, log_likelihood = lognormal.NO_CURVE, 0.0
     if brackets.n_overturned == 0:
-        method, case = "none: all tests survived", "survived"
+        case = BracketCase.ALL_SURVIVED
     elif brackets.lower.max() == 0:
-        method, case = "none: all tests overturned at once", "at once"
+        case = BracketCase.ALL_AT_ONCE
     else:
         found = _fit_weighted(low, high, np.ones((1, low.size)))
-        coefficients, information, log_likelihood = (
-            found[0][0],
-            found[1][0],
-            float(found[2][0]),
-        )
-        # where all brackets share an amplitude there is no information
-        overlap = not np.isfinite(information).all()
-        if not np.isfinite(coefficients).all():
-            method, case = "none: one level of the measure", "one level"
-        elif coefficients[1] < lognormal.LEAST_SLOPE:
-            method, case = "none: no curve in the brackets", "flat"
-        elif overlap:
-            method, case = "interval estimate (brackets overlap)", "overlap"
+        coefficients, information = found.coefficients[0], found.information[0]
+        log_likelihood = float(found.log_likelihood[0])
+        case = _case_of(coefficients, information)
+        if case is BracketCase.OVERLAP:
             curve = lognormal.curve_parameters(coefficients, information)
-        else:
-            method = "lognormal, interval- and right-censored maximum likelihood"
+        elif case is BracketCase.REGULAR:
             covariance = np.linalg.pinv(information, hermitian=True)
             curve = lognormal.curve_parameters(coefficients, covariance)
-    counted = (low.size, brackets.n_overturned, brackets.n_motions)
-    notes = tuple(lognormal.SAY("brackets", brackets, case))
     return lognormal.FragilityFit(
-        *curve,
-        log_likelihood,
-        *counted,
-        method,
-        brackets.name,
-        brackets.unit,
-        "probit",
-        notes,
+        theta=curve.theta,
+        beta=curve.beta,
+        covariance=curve.covariance,
+        log_likelihood=log_likelihood,
+        n=low.size,
+        n_overturned=brackets.n_overturned,
+        n_motions=brackets.n_motions,
+        method=case.value,
+        im=brackets.name,
+        unit=brackets.unit,
+        warnings=notes_of_brackets(brackets, case),
     )
+
+
+def _case_of(coefficients: Floats, information: Floats) -> BracketCase:
+    """Case of brackets that were fitted: intercept and slope, (2,), and their information, (2, 2)."""
+    if not np.isfinite(coefficients).all():
+        return BracketCase.ONE_LEVEL
+    if coefficients[1] < lognormal.LEAST_SLOPE:
+        return BracketCase.FLAT
+    # where all brackets share an amplitude there is no information
+    if not np.isfinite(information).all():
+        return BracketCase.OVERLAP
+    return BracketCase.REGULAR
 
 
 def bracket_interval(
     brackets: Brackets, *, over: Over | None = None, level: float = 0.90
 ) -> Interval:
-    """Confidence limits of a curve fitted to brackets, by leaving out whole motions or earthquakes."""
+    """Confidence limits of a curve fitted to brackets, by leaving out whole motions or earthquakes.
+
+    Parameters
+    ----------
+    brackets : n amplitudes known to lie between two bounds
+    over : the groups to leave out; None takes earthquakes where some have several motions
+    level : two-sided confidence level [-]
+
+    Returns
+    -------
+    The :class:`rockfrag.fragility.intervals.Interval`.
+    """
     over, notes = intervals.population(brackets, over)
     codes, names = pd.factorize(pd.Series(brackets.groups(over)))
     low, high = _logs(brackets)
@@ -148,7 +186,7 @@ def bracket_interval(
             and (each.max(), each.min()) == (1, 0)
         ):
             return _without_a_block(low, high, each)
-        return _fit_weighted(low, high, each)[0]
+        return _fit_weighted(low, high, each).coefficients
 
     found = intervals.resampled_interval(
         refit, groups, over=over, notes=notes, level=level
@@ -161,13 +199,22 @@ def bracket_interval(
 
 
 def bracket_log_scores(brackets: Brackets, weights: Floats) -> Floats:
-    """Log probability of each bracket under the fit to each row of weights, (batch, n); -∞ where there is no fit.
+    """Log probability of each bracket under the fit to each row of weights; -∞ where there is no fit.
 
     Equal bounds, which have no probability, score by their density in the logarithm.
+
+    Parameters
+    ----------
+    brackets, weights : n amplitudes, and weights of each, shape (batch, n)
+
+    Returns
+    -------
+    The log scores [-], shape (batch, n).
     """
     low, high = _logs(brackets)
     with np.errstate(all="ignore"):
-        scores = _pulls(low, high, _fit_weighted(low, high, weights)[0])[0]
+        fit = _fit_weighted(low, high, weights)
+        scores = _terms(low, high, fit.coefficients).value
     return np.asarray(np.where(np.isnan(scores), -np.inf, scores))
 
 
@@ -183,30 +230,40 @@ def _without_a_block(low: Floats, high: Floats, weights: Floats) -> Floats:
     """
     left, right = _shared(low, high, weights)
     if (left <= right).any():
-        return _fit_weighted(low, high, weights)[0]
-    coefficients, _, value = _newton(low, high, np.ones((1, low.size)))
-    if not (np.isfinite(value).all() and coefficients[0, 1] >= lognormal.LEAST_SLOPE):
-        return _fit_weighted(low, high, weights)[0]
-    pulls = np.concatenate(_pulls(low, high, coefficients))
-    _, score0, score1, h00, h01, h11 = (weights @ pulls.T).T
+        return _fit_weighted(low, high, weights).coefficients
+    whole = _newton(low, high, np.ones((1, low.size)))
+    is_curve = whole.coefficients[0, 1] >= lognormal.LEAST_SLOPE
+    if not (np.isfinite(whole.log_likelihood).all() and is_curve):
+        return _fit_weighted(low, high, weights).coefficients
+    terms = _terms(low, high, whole.coefficients)
+    _, score0, score1, h00, h01, h11 = (weights @ np.concatenate(terms).T).T
     step = np.column_stack([h11 * score0 - h01 * score1, h00 * score1 - h01 * score0])
-    return np.asarray(coefficients - step / (h00 * h11 - h01**2)[:, None])
+    return np.asarray(whole.coefficients - step / (h00 * h11 - h01**2)[:, None])
 
 
 def _shared(low: Floats, high: Floats, weights: Floats) -> tuple[Floats, Floats]:
-    """Ends of what all brackets with a weight share, for each row of weights; the wrong way round for nothing."""
+    """Ends of the range that all brackets with a weight share, shape (batch,) each; crossed if there is none."""
     used = weights > 0
-    return np.where(used, low, -np.inf).max(axis=1), np.where(used, high, np.inf).min(
-        axis=1
-    )
+    left = np.where(used, low, -np.inf).max(axis=1)
+    return left, np.where(used, high, np.inf).min(axis=1)
 
 
-def _fit_weighted(
-    low: Floats, high: Floats, weights: Floats
-) -> tuple[Floats, Floats, Floats]:
+class _Fits(NamedTuple):
+    """Fits to each row of weights."""
+
+    coefficients: Floats  # intercept and slope, shape (batch, 2); NaN without a fit
+    # observed information, shape (batch, 2, 2), and log-likelihood, shape (batch,); NaN without a maximum
+    information: Floats
+    log_likelihood: Floats
+
+
+def _fit_weighted(low: Floats, high: Floats, weights: Floats) -> _Fits:
     """Fit (intercept, slope) for each row of weights, shape (batch, n)."""
-    coefficients, information, log_likelihood = (
-        np.full((len(weights), *shape), np.nan) for shape in ((2,), (2, 2), ())
+    batch = len(weights)
+    fits = _Fits(
+        np.full((batch, 2), np.nan),
+        np.full((batch, 2, 2), np.nan),
+        np.full(batch, np.nan),
     )
     left, right = _shared(low, high, weights)
     overlap = left <= right
@@ -214,17 +271,21 @@ def _fit_weighted(
         closed = np.asarray(
             ((weights[overlap] > 0) & np.isfinite(high - low)).any(axis=1)
         )
-        coefficients[overlap] = _common_bracket(left[overlap], right[overlap], closed)
+        fits.coefficients[overlap] = _common_bracket(
+            left[overlap], right[overlap], closed
+        )
     if not overlap.all():
         found = _newton(low, high, weights[~overlap])
-        coefficients[~overlap], information[~overlap], log_likelihood[~overlap] = found
-    return coefficients, information, log_likelihood
+        fits.coefficients[~overlap] = found.coefficients
+        fits.information[~overlap] = found.information
+        fits.log_likelihood[~overlap] = found.log_likelihood
+    return fits
 
 
 def _common_bracket(
     left: Floats, right: Floats, any_closed: NDArray[np.bool_]
 ) -> Floats:
-    """Return middle and width / √12 of the amplitudes that all brackets share, as intercept and slope.
+    """Middle and width / √12 of the amplitudes that all brackets share, as intercept and slope, (batch, 2).
 
     There is no curve where all are open and end at one amplitude: some are below, some above, and any β will do.
     """
@@ -240,9 +301,56 @@ def _common_bracket(
     return np.asarray(result)
 
 
-def _newton(
-    low: Floats, high: Floats, weights: Floats
-) -> tuple[Floats, Floats, Floats]:
+_MOST_STEPS = 200
+_MOST_HALVINGS = 40
+_SETTLED = 1e-10  # change of the coefficients, over the largest of them, at which Newton's method ends
+_FLAT = 0.1 * lognormal.LEAST_SLOPE
+"""A slope that sinks below what counts as a curve would sink for ever."""
+
+
+def _newton(low: Floats, high: Floats, weights: Floats) -> _Fits:
+    """Maximise the likelihood of each row of weights by Newton's method with halved steps.
+
+    Parameters
+    ----------
+    low, high : logarithms of the bounds, shape (n,)
+    weights : shape (batch, n)
+    """
+    coefficients = _moments(low, high, weights)
+    at = _likelihood(low, high, weights, coefficients)
+    active = np.arange(len(weights))
+    for _ in range(_MOST_STEPS):
+        step = np.einsum(
+            "bij,bj->bi", np.linalg.pinv(-at.hessian[active]), at.score[active]
+        )
+        size = np.ones(active.size)
+        waiting = np.arange(active.size)
+        for _ in range(_MOST_HALVINGS):
+            trial = coefficients[active[waiting]] + size[waiting, None] * step[waiting]
+            positive = trial[:, 1] > 0
+            trial[:, 1] = np.where(positive, trial[:, 1], 1e-3)
+            new = _likelihood(low, high, weights[active[waiting]], trial)
+            better = positive & (new.value >= at.value[active[waiting]] - 1e-12)
+            done = active[waiting[better]]
+            coefficients[done] = trial[better]
+            at.value[done] = new.value[better]
+            at.score[done] = new.score[better]
+            at.hessian[done] = new.hessian[better]
+            waiting = waiting[~better]
+            size[waiting] *= 0.5
+            if waiting.size == 0:
+                break
+        largest = np.abs(coefficients[active]).max(axis=1)
+        moved = np.abs(size[:, None] * step).max(axis=1) / largest
+        flat = coefficients[active, 1] < _FLAT
+        active = active[(moved > _SETTLED) & ~flat]
+        if active.size == 0:
+            break
+    return _Fits(coefficients, -at.hessian, at.value)
+
+
+def _moments(low: Floats, high: Floats, weights: Floats) -> Floats:
+    """Start of Newton's method, (batch, 2): mean and spread of the middles, or of the finite ends."""
     finite_low, finite_high = np.isfinite(low), np.isfinite(high)
     middle = np.where(
         finite_low & finite_high, 0.5 * (low + high), np.where(finite_low, low, high)
@@ -251,65 +359,76 @@ def _newton(
     mean = weights @ middle / total
     spread = np.sqrt((weights * (middle - mean[:, None]) ** 2).sum(axis=1) / total)
     slope = 1.0 / np.maximum(spread, 0.05)
-    coefficients = np.column_stack([-mean * slope, slope])
-    value, score, hessian = _likelihood(low, high, weights, coefficients)
-    active = np.arange(len(weights))
-    for _ in range(200):
-        step = np.einsum("bij,bj->bi", np.linalg.pinv(-hessian[active]), score[active])
-        size = np.ones(active.size)
-        waiting = np.arange(active.size)
-        for _ in range(40):
-            trial = coefficients[active[waiting]] + size[waiting, None] * step[waiting]
-            positive = trial[:, 1] > 0
-            trial[:, 1] = np.where(positive, trial[:, 1], 1e-3)
-            new = _likelihood(low, high, weights[active[waiting]], trial)
-            better = positive & (new[0] >= value[active[waiting]] - 1e-12)
-            done = active[waiting[better]]
-            coefficients[done] = trial[better]
-            value[done], score[done], hessian[done] = (part[better] for part in new)
-            waiting = waiting[~better]
-            size[waiting] *= 0.5
-            if waiting.size == 0:
-                break
-        moved = np.abs(size[:, None] * step).max(axis=1) / np.abs(
-            coefficients[active]
-        ).max(axis=1)
-        # a slope that sinks below what counts as a curve would sink for ever
-        flat = coefficients[active, 1] < 0.1 * lognormal.LEAST_SLOPE
-        active = active[(moved > 1e-10) & ~flat]
-        if active.size == 0:
-            break
-    return coefficients, -hessian, value
+    return np.column_stack([-mean * slope, slope])
+
+
+class _Likelihood(NamedTuple):
+    """Log-likelihood, (batch,), its score, (batch, 2), and its Hessian, (batch, 2, 2)."""
+
+    value: Floats
+    score: Floats
+    hessian: Floats
 
 
 def _likelihood(
     low: Floats, high: Floats, weights: Floats, coefficients: Floats
-) -> tuple[Floats, Floats, Floats]:
-    """Return log-likelihood, score and Hessian in (intercept, slope), for each row of weights."""
-    pulls = _pulls(low, high, coefficients)
-    value, score0, score1, h00, h01, h11 = (
-        (weights * pull).sum(axis=1) for pull in pulls
+) -> _Likelihood:
+    """Log-likelihood and derivatives in (intercept, slope), for each row of weights."""
+    terms = _terms(low, high, coefficients)
+    sums = _Terms._make((weights * term).sum(axis=1) for term in terms)
+    hessian = np.stack([sums.h00, sums.h01, sums.h01, sums.h11], axis=1)
+    return _Likelihood(
+        sums.value,
+        np.stack([sums.score0, sums.score1], axis=1),
+        hessian.reshape(-1, 2, 2),
     )
-    hessian = np.stack([h00, h01, h01, h11], axis=1).reshape(-1, 2, 2)
-    return value, np.stack([score0, score1], axis=1), hessian
 
 
-def _pulls(low: Floats, high: Floats, coefficients: Floats) -> tuple[Floats, ...]:
+class _Terms(NamedTuple):
     """Log-likelihood of each bracket and its derivatives in (intercept, slope), each of shape (batch, n)."""
-    c0, c1 = coefficients[:, :1], coefficients[:, 1:]
-    x_low, x_high = (
-        np.where(np.isfinite(low), low, 0.0),
-        np.where(np.isfinite(high), high, 0.0),
-    )
+
+    value: Floats
+    score0: Floats
+    score1: Floats
+    h00: Floats
+    h01: Floats
+    h11: Floats
+
+
+def _terms(low: Floats, high: Floats, coefficients: Floats) -> _Terms:
+    """Terms of the likelihood: of the density for equal bounds, else of the probability between them."""
     exact = low == high
-    # the density of ln IM, so that equal bounds and narrow brackets rank models alike
-    at = c0 + c1 * x_low
-    ones = np.ones(at.shape)
-    value = np.log(c1) - 0.5 * at**2 - _LOG_ROOT_TWO_PI
-    bends = (-ones, -x_low * ones, -(x_low**2) - 1.0 / c1**2)
-    of_density = (value, -at, -at * x_low + 1.0 / c1, *bends)
+    of_density = _density_terms(low, coefficients)
     if exact.all():
         return of_density
+    of_fraction = _fraction_terms(low, high, coefficients)
+    both = zip(of_density, of_fraction, strict=True)
+    return _Terms._make(
+        np.where(exact, density, fraction) for density, fraction in both
+    )
+
+
+def _density_terms(low: Floats, coefficients: Floats) -> _Terms:
+    """Terms of amplitudes known exactly: of the density of ln IM, so that narrow brackets rank models alike."""
+    c0, c1 = coefficients[:, :1], coefficients[:, 1:]
+    x = np.where(np.isfinite(low), low, 0.0)
+    at = c0 + c1 * x
+    ones = np.ones(at.shape)
+    return _Terms(
+        value=np.log(c1) - 0.5 * at**2 - _LOG_ROOT_TWO_PI,
+        score0=-at,
+        score1=-at * x + 1.0 / c1,
+        h00=-ones,
+        h01=-x * ones,
+        h11=-(x**2) - 1.0 / c1**2,
+    )
+
+
+def _fraction_terms(low: Floats, high: Floats, coefficients: Floats) -> _Terms:
+    """Terms of amplitudes between two bounds, either of which may be infinite."""
+    c0, c1 = coefficients[:, :1], coefficients[:, 1:]
+    x_low = np.where(np.isfinite(low), low, 0.0)
+    x_high = np.where(np.isfinite(high), high, 0.0)
     z_low = np.where(np.isneginf(low), -np.inf, c0 + c1 * x_low)
     z_high = np.where(np.isposinf(high), np.inf, c0 + c1 * x_high)
     log_fraction = _log_difference(z_low, z_high)
@@ -319,14 +438,13 @@ def _pulls(low: Floats, high: Floats, coefficients: Floats) -> tuple[Floats, ...
     bend_high = np.where(np.isinf(z_high), 0.0, z_high) * ratio_high
     g0 = ratio_high - ratio_low
     g1 = ratio_high * x_high - ratio_low * x_low
-    bends = (
-        bend_low - bend_high - g0**2,
-        bend_low * x_low - bend_high * x_high - g0 * g1,
-        bend_low * x_low**2 - bend_high * x_high**2 - g1**2,
-    )
-    of_fraction = (log_fraction, g0, g1, *bends)
-    return tuple(
-        np.where(exact, *pair) for pair in zip(of_density, of_fraction, strict=True)
+    return _Terms(
+        value=log_fraction,
+        score0=g0,
+        score1=g1,
+        h00=bend_low - bend_high - g0**2,
+        h01=bend_low * x_low - bend_high * x_high - g0 * g1,
+        h11=bend_low * x_low**2 - bend_high * x_high**2 - g1**2,
     )
 
 

@@ -1,6 +1,12 @@
-"""What is said beside every fitted curve: whether it describes the data, and which motion moves it most."""
+"""Checks of every fitted curve: whether it describes its data, and which motion moves it most.
 
-import re
+In: the observations or brackets, the curve fitted to them, and its interval. Out: :class:`Checks`, with the p
+value of the goodness of fit [-], the most influential group and the non-parametric fragility function.
+
+Theory: ``docs/fragility.md``, "Does the curve describe the data?": the parametric bootstrap of the binomial
+deviance in bins for outcomes, Lilliefors (1967, J. Am. Stat. Assoc. 62: 399-402) for brackets.
+"""
+
 from dataclasses import dataclass
 from typing import Literal
 
@@ -14,6 +20,7 @@ from rockfrag.base.errors import InputError
 from rockfrag.base.short_repr import short_repr
 from rockfrag.fragility.batch_glm import Link, fit_batch
 from rockfrag.fragility.censored import Brackets
+from rockfrag.fragility.check_notes import check_notes, goodness_text
 from rockfrag.fragility.curve_facts import REJECTED
 from rockfrag.fragility.empirical import wilson_interval
 from rockfrag.fragility.fractions import (
@@ -24,7 +31,6 @@ from rockfrag.fragility.fractions import (
 from rockfrag.fragility.intervals import Interval
 from rockfrag.fragility.lognormal import FragilityFit
 from rockfrag.fragility.observations import Floats, Observations, cells
-from rockfrag.words.sentences import Macros
 
 # bins of about equal numbers of tests in which observed and fitted numbers are compared
 BINS = 10
@@ -44,7 +50,7 @@ class GoodnessOfFit:
     # one row per bin: ``im``, ``tests``, ``predicted`` (mean fitted probability), ``observed``,
     # ``observed_lower``, ``observed_upper`` (90 % binomial limits)
     calibration: pd.DataFrame
-    words: str  # the finding in one sentence
+    words: str  # the finding, a sentence
 
     __repr__ = short_repr
 
@@ -59,9 +65,18 @@ def goodness_of_fit(
 ) -> GoodnessOfFit:
     """Compare the deviance with that of data simulated from the curve (parametric bootstrap).
 
-    ``dependence``: ``tests`` simulates each outcome by itself; ``motions`` gives each motion one capacity from the
-    curve, so that its outcomes hang together as in an incremental dynamic analysis. None takes ``motions`` where
-    motions have more than one row.
+    Parameters
+    ----------
+    outcomes, fit : the tests, and the curve fitted to them
+    dependence
+        ``tests`` simulates each outcome by itself; ``motions`` gives each motion one capacity from the curve, so
+        that its outcomes hang together as in an incremental dynamic analysis. None takes ``motions`` where motions
+        have more than one row.
+    replicates, seed : number of simulated data sets, and where their random numbers start
+
+    Returns
+    -------
+    The :class:`GoodnessOfFit`.
     """
     if not np.isfinite(fit.theta):
         raise InputError(f"goodness of fit: there is no curve to judge ({fit.method}).")
@@ -121,12 +136,22 @@ def goodness_of_fit(
     miss = outcomes.overturned * (1 - probability) ** 2
     miss += (outcomes.trials - outcomes.overturned) * probability**2
     brier = float(miss.sum() / outcomes.n)
-    (words,) = _say("goodness", deviance, len(calibration), p_value, dependence)
+    words = goodness_text(deviance, len(calibration), p_value, dependence)
     return GoodnessOfFit(deviance, p_value, dependence, brier, calibration, words)
 
 
 def binned_deviance(observed: Floats, expected: Floats, trials: Floats) -> Floats:
-    """Binomial deviance of numbers of overturned tests in bins against expected ones, over the last axis [-]."""
+    """Binomial deviance of numbers of overturned tests in bins against expected ones.
+
+    Parameters
+    ----------
+    observed, expected : numbers of overturned tests, observed and by the curve, shape (…, bins)
+    trials : numbers of tests, shape (bins,)
+
+    Returns
+    -------
+    The deviance [-], shape (…).
+    """
     survived = trials - observed
     # a bin that the curve calls impossible may not lie there by rounding alone
     expected = np.clip(expected, 1e-12 * trials, (1 - 1e-12) * trials)
@@ -144,9 +169,18 @@ def refitted_deviance(
     link: Link = "probit",
     start: Floats | None = None,
 ) -> Floats:
-    """Deviance in bins of numbers of overturned tests, (replicates, rows), from curves fitted to them anew.
+    """Deviance in bins of simulated numbers of overturned tests, from curves fitted to them anew.
 
-    ``trials`` and ``bins`` are those of each row of the ``design``; replicates without a curve are left out.
+    Parameters
+    ----------
+    design : predictors with ones, shape (rows, k)
+    drawn : numbers of overturned tests, shape (replicates, rows)
+    trials, bins : number of tests and bin of each row, shape (rows,)
+    link, start : of the regression, and coefficients to start from, shape (k,)
+
+    Returns
+    -------
+    The deviance of each replicate that has a curve [-], shape (replicates,) or shorter.
     """
     # the penalty keeps separated data sets finite and hardly moves the others
     batch = fit_batch(
@@ -165,22 +199,6 @@ def refitted_deviance(
     return binned_deviance(
         drawn[usable] @ member, (trials * probability) @ member, trials @ member
     )
-
-
-TAILS = (
-    "The limits of β assume lognormal capacities: under heavier tails (t, 3 degrees of freedom), which the "
-    "goodness of fit seldom shows, nominal 90 % limits contained the truth in 82 %."
-)
-"""Said of every curve with limits of β, whether or not its fit is rejected; see the validation."""
-
-REJECTION = re.compile(r"The lognormal curve is rejected \(p = .*?\.(?= [A-Z]|$)")
-"""Finds the sentence about a rejected curve among its warnings."""
-
-# below so many motions every table and export says how few they are
-FEWEST_MOTIONS = 10
-
-_words = {"REJECTED": REJECTED, "TAILS": TAILS, "FEWEST_MOTIONS": FEWEST_MOTIONS}
-_say = Macros("rockfrag.fragility", "checks.j2", **_words)
 
 
 @dataclass(frozen=True)
@@ -214,24 +232,30 @@ def checks_of_outcomes(
     dependence: Literal["tests", "motions"] | None = None,
     seed: int = 0,
 ) -> Checks:
-    """Judge a curve fitted to outcomes; ``dependence`` and ``seed`` are of :func:`goodness_of_fit`."""
-    p_fit, test, residual, found = float("nan"), "none", float("nan"), None
+    """Judge a curve fitted to outcomes.
+
+    Parameters
+    ----------
+    outcomes, fit, interval : the tests, the curve fitted to them, and its limits
+    dependence, seed : of :func:`goodness_of_fit`
+
+    Returns
+    -------
+    The :class:`Checks`.
+    """
+    p_fit, residual = float("nan"), float("nan")
+    test, goodness = "none", None
     if np.isfinite(fit.theta):
-        found = goodness_of_fit(outcomes, fit, dependence=dependence, seed=seed)
-        p_fit, test = (
-            found.p_value,
-            f"deviance, parametric bootstrap of {found.dependence}",
-        )
-        apart = (
-            found.calibration["observed"] - found.calibration["predicted"]
-        ).to_numpy()
-        residual = float(apart[np.abs(apart).argmax()])
+        goodness = goodness_of_fit(outcomes, fit, dependence=dependence, seed=seed)
+        p_fit = goodness.p_value
+        test = f"deviance, parametric bootstrap of {goodness.dependence}"
+        bins = goodness.calibration
+        residual = _largest((bins["observed"] - bins["predicted"]).to_numpy())
     groups = outcomes.groups(interval.over)
     fractions = fractions_of_outcomes(outcomes, groups, interval.level)
-    notes = tuple(_say("notes", fit, interval, p_fit, fractions))
-    return Checks(
-        p_fit, test, residual, *_influence(interval, groups), fractions, notes, found
-    )
+    notes = check_notes(fit, interval, p_fit, fractions)
+    name, factor = most_influential(interval, groups)
+    return Checks(p_fit, test, residual, name, factor, fractions, notes, goodness)
 
 
 def checks_of_brackets(
@@ -241,35 +265,33 @@ def checks_of_brackets(
     lower, upper = brackets.lower, brackets.upper
     closed = np.isfinite(upper) & (lower > 0)
     middle = 0.5 * np.log(lower[closed] * upper[closed])
-    p_fit, test, residual = (
-        float("nan"),
-        "none: too few, or open brackets",
-        float("nan"),
-    )
-    if (
-        closed.all()
-        and middle.size > 3
-        and np.ptp(middle) > 0
-        and np.isfinite(fit.theta)
-    ):
+    p_fit, residual = float("nan"), float("nan")
+    test = "none: too few, or open brackets"
+    testable = closed.all() and middle.size > 3 and np.ptp(middle) > 0
+    if testable and np.isfinite(fit.theta):
         p_fit = float(lilliefors(middle, dist="norm")[1])
         test = "Lilliefors, middles of the brackets"
         fraction = (np.arange(middle.size) + 0.5) / middle.size
-        apart = fraction - fit.probability(np.exp(np.sort(middle)))
-        residual = float(apart[np.abs(apart).argmax()])
+        residual = _largest(fraction - fit.probability(np.exp(np.sort(middle))))
     # a motion that never overturned counts above all others, one that did at once below
     capacity = np.where(np.isfinite(upper), -np.inf, np.inf)
     capacity[closed] = middle
     groups = brackets.groups(interval.over)
     fractions = fractions_of_capacities(capacity, groups, interval.level)
-    notes = tuple(_say("notes", fit, interval, p_fit, fractions))
-    return Checks(
-        p_fit, test, residual, *_influence(interval, groups), fractions, notes
-    )
+    notes = check_notes(fit, interval, p_fit, fractions)
+    name, factor = most_influential(interval, groups)
+    return Checks(p_fit, test, residual, name, factor, fractions, notes)
 
 
-def _influence(interval: Interval, groups: NDArray[np.object_]) -> tuple[str, float]:
-    """Group without which θ changes most, from the jackknife's refits, and by what factor."""
+def _largest(residuals: Floats) -> float:
+    """Residual of the largest size, with its sign."""
+    return float(residuals[np.abs(residuals).argmax()])
+
+
+def most_influential(
+    interval: Interval, groups: NDArray[np.object_]
+) -> tuple[str, float]:
+    """Group without which θ changes most, and θ without it over θ; empty and NaN without a jackknife."""
     names = pd.factorize(pd.Series(groups))[1]
     refits = interval.replicates
     if (

@@ -2,6 +2,9 @@
 
 Estimates and their limits need only how many outcomes lie in each narrow cell of the measure and how many of those
 overturned, by what is resampled together; the goodness of fit needs the motions' own scales as well.
+
+In: parts of IDA curves (:class:`rockfrag.shaketable.definitions.Swept`), one after the other. Out:
+:class:`CountedIda`, which the estimators take as they take a table. Theory: ``docs/fragility.md``, "Estimators".
 """
 
 from collections.abc import Iterable, Mapping, Sequence
@@ -46,8 +49,8 @@ class CountedObservations(Observations):
         """Every motion has several rows."""
         return True
 
-    def ways(self) -> Floats:
-        """Nothing: each test is told from the others."""
+    def log_arrangements(self) -> Floats:
+        """Zero: which of a cell's tests overturned is known."""
         return np.zeros(1)
 
     def by_value(self) -> Observations:
@@ -73,7 +76,8 @@ class CountedObservations(Observations):
         high = edges[
             np.searchsorted(edges, np.log(self.im[inside].max()), side="right")
         ]
-        first, after = (np.searchsorted(rise, end - scale) for end in (low, high))
+        first = np.searchsorted(rise, low - scale)
+        after = np.searchsorted(rise, high - scale)
         count = int((after > first).sum())
         return count, float(count)
 
@@ -121,26 +125,31 @@ def count_ida(
 ) -> dict[str, CountedIda]:
     """Count IDA curves of one configuration part by part, by floor.
 
-    ``windows`` are the resurrections of the motions of all ``parts``; ``measures`` has one row per motion as
-    recorded, with ``name`` and ``pga_g``; ``columns`` are the measures that will be asked for, by floor, those
-    under the empty name of all floors together.
+    Parameters
+    ----------
+    windows, parts : resurrections of the motions of all parts, a row a motion, and the parts
+    measures : a row per motion as recorded, with ``name`` and ``pga_g``
+    columns : measures that will be asked for, by floor; the empty name stands for all floors together
+
+    Returns
+    -------
+    The :class:`CountedIda` of each floor.
     """
     motions = pd.Index(windows["motion"])
     known = measures.set_index("name").loc[motions].reset_index()
     counts: dict[str, dict[str, _Counts]] = {}
     for part in parts:
-        counts = counts or {
-            floor: {
-                name: _Counts(known, windows, floor, name, part.amplitude_g)
-                for name in some
-            }
-            for floor, some in columns.items()
-        }
+        for floor, names in columns.items():
+            of_floor = counts.setdefault(floor, {})
+            for name in names:
+                if name not in of_floor:
+                    of_floor[name] = _Counts(
+                        known, windows, floor, name, part.amplitude_g
+                    )
         rows = motions.get_indexer(pd.Index(part.about["motion"]))
-        for count in (
-            count for of_floor in counts.values() for count in of_floor.values()
-        ):
-            count.add(rows, part.overturned)
+        for of_floor in counts.values():
+            for count in of_floor.values():
+                count.add(rows, part.overturned)
     return {
         floor: CountedIda(
             windows[windows["floor"] == floor] if floor else windows, counts=of_floor
@@ -166,11 +175,9 @@ class _Counts:
         amplitude_g: Floats,
     ) -> None:
         power = scale_power(column)
-        here = (
-            np.flatnonzero(motions["floor"] == floor)
-            if floor
-            else np.arange(len(motions))
-        )
+        here = np.arange(len(motions))
+        if floor:
+            here = np.flatnonzero(motions["floor"] == floor)
         value = positive(known.iloc[here], column, "measures")
         pga = positive(known.iloc[here], "pga_g", "measures")
         self.column, self.here = column, here
@@ -189,39 +196,43 @@ class _Counts:
         # a hair more on either side, so that rounding puts no test outside
         self.edges = np.linspace(low - 1e-9, high + 1e-9, CELLS + 1)
         shape = int(self.block.max()) + 1, CELLS
-        self.trials, self.fell, self.total = (
-            np.zeros(shape),
-            np.zeros(shape),
-            np.zeros(CELLS),
-        )
+        self.trials, self.fell = np.zeros(shape), np.zeros(shape)
+        self.total = np.zeros(CELLS)
 
     def add(self, rows: NDArray[np.intp], overturned: NDArray[np.bool_]) -> None:
+        """Count outcomes, (n, amplitudes), of the motions in ``rows``, (n,)."""
         used = self.of_motion[rows] >= 0
         own = self.of_motion[rows][used]
         log_im = self.scale[own, np.newaxis] + self.rise
         width = (self.edges[-1] - self.edges[0]) / CELLS
         cell = np.clip(((log_im - self.edges[0]) / width).astype(np.intp), 0, CELLS - 1)
         flat = self.row[own, np.newaxis] * CELLS + cell
-        for counts, some in (
-            (self.trials, flat.ravel()),
-            (self.fell, flat[overturned[used]]),
-        ):
-            counts += np.bincount(some, minlength=counts.size).reshape(counts.shape)
+        self.trials += self._by_cell(flat.ravel())
+        self.fell += self._by_cell(flat[overturned[used]])
         # one after the other, so that parts give the sum of the whole
         terms = np.append(self.total, log_im)
         self.total[:] = np.bincount(np.append(np.arange(CELLS), cell), terms)
 
+    def _by_cell(self, flat: NDArray[np.intp]) -> Floats:
+        """Numbers of tests by block and cell from their flat places."""
+        counts = np.bincount(flat, minlength=self.trials.size)
+        return np.asarray(counts.reshape(self.trials.shape), dtype=np.float64)
+
     def outcomes(self) -> CountedObservations:
+        """Cells of each block as outcomes."""
         block, cell = np.nonzero(self.trials)
         with np.errstate(invalid="ignore", divide="ignore"):
             middle = np.exp(self.total / self.trials.sum(axis=0))
         names = [f"block {number + 1}" for number in range(len(self.trials))]
         labels = np.array(names, dtype=object)[block]
-        tests = (
-            middle[cell],
-            self.fell[block, cell],
-            self.trials[block, cell],
-            labels,
-            labels,
+        name, unit = name_and_unit(self.column)
+        return CountedObservations(
+            im=middle[cell],
+            overturned=self.fell[block, cell],
+            trials=self.trials[block, cell],
+            motion=labels,
+            earthquake=labels,
+            name=name,
+            unit=unit,
+            of=self,
         )
-        return CountedObservations(*tests, *name_and_unit(self.column), of=self)

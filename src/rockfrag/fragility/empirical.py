@@ -1,4 +1,10 @@
-"""What the outcomes say without a curve: fractions in bins and near a value, structural resurrections."""
+"""Outcomes without a curve: fractions in bins and near a value, structural resurrections, brackets of IDA curves.
+
+In: observations or tables of incremental dynamic analyses (IDA), a row per motion and amplitude. Out: tables of
+fractions with binomial limits [-], of resurrections, and the brackets of overturning amplitudes.
+
+Theory: ``docs/fragility.md``, "Estimators" (first and always overturning); Wilson (1927) for the limits.
+"""
 
 from __future__ import annotations
 
@@ -19,7 +25,17 @@ from rockfrag.shaketable.definitions import Swept
 def wilson_interval(
     overturned: ArrayLike, trials: ArrayLike, level: float = 0.90
 ) -> tuple[Floats, Floats]:
-    """Confidence limits of binomial fractions [-] (Wilson, 1927, J. Am. Stat. Assoc. 22: 209-212)."""
+    """Confidence limits of binomial fractions (Wilson, 1927, J. Am. Stat. Assoc. 22: 209-212).
+
+    Parameters
+    ----------
+    overturned, trials : numbers of tests that overturned and of all, shape (n,)
+    level : two-sided confidence level [-]
+
+    Returns
+    -------
+    Lower and upper limits [-], shape (n,) each.
+    """
     from statsmodels.stats.proportion import proportion_confint
 
     lower, upper = proportion_confint(
@@ -31,28 +47,37 @@ def wilson_interval(
 def fraction_in_bins(outcomes: Observations, level: float = 0.90) -> pd.DataFrame:
     """Fraction of overturned tests in ten bins of about equal numbers of tests; up to ten levels keep a bin each.
 
-    ``im`` is the geometric mean of a bin. In the binomial limits several rows of one motion in a bin count once.
+    Parameters
+    ----------
+    outcomes, level : the tests, and the level of the binomial limits [-], in which a motion counts once in a bin
+
+    Returns
+    -------
+    pandas.DataFrame
+        A row a bin: ``im`` (geometric mean), ``im_lower``, ``im_upper`` in the unit of the measure; ``tests``,
+        ``motions``, ``overturned``; ``fraction``, ``fraction_lower``, ``fraction_upper`` [-].
     """
     code = observations.cells(outcomes.im, 10, outcomes.trials)[0]
     rows, once = [], []
     for k in np.unique(code):
         inside = code == k
-        im, trials, fell = (
-            values[inside]
-            for values in (outcomes.im, outcomes.trials, outcomes.overturned)
-        )
+        im, trials = outcomes.im[inside], outcomes.trials[inside]
+        fell = outcomes.overturned[inside]
         motions, counted_once = outcomes.independent(inside)
         middle = np.exp(np.average(outcomes.log_im[inside], weights=trials))
-        numbers = (
-            int(trials.sum()),
-            motions,
-            int(fell.sum()),
-            fell.sum() / trials.sum(),
+        rows.append(
+            {
+                "im": middle,
+                "im_lower": im.min(),
+                "im_upper": im.max(),
+                "tests": int(trials.sum()),
+                "motions": motions,
+                "overturned": int(fell.sum()),
+                "fraction": fell.sum() / trials.sum(),
+            }
         )
-        rows.append([middle, im.min(), im.max(), *numbers])
         once.append(counted_once)
-    names = ["im", "im_lower", "im_upper", "tests", "motions", "overturned", "fraction"]
-    table, alone = pd.DataFrame(rows, columns=names), np.array(once)
+    table, alone = pd.DataFrame(rows), np.array(once)
     lower, upper = wilson_interval(table["fraction"].to_numpy() * alone, alone, level)
     return table.assign(fraction_lower=lower, fraction_upper=upper)
 
@@ -62,6 +87,14 @@ def local_fraction(outcomes: Observations, im: ArrayLike) -> Floats:
 
     The kernel's standard deviation in ln IM is 0.53 s n^(-1/5), half of Silverman's, which would flatten a steep
     rise; the tests have different values, so that it is above zero.
+
+    Parameters
+    ----------
+    outcomes, im : the tests, and values of their measure, in its unit, shape (n,)
+
+    Returns
+    -------
+    The fractions [-], shape (n,).
     """
     mean = np.average(outcomes.log_im, weights=outcomes.trials)
     variance = np.average((outcomes.log_im - mean) ** 2, weights=outcomes.trials)
@@ -84,18 +117,27 @@ def find_resurrections(
 ) -> pd.DataFrame:
     """Find where each motion first overturns, where it always does, and the windows between, a row an IDA curve.
 
-    ``ida`` has a row per motion and amplitude, with ``overturned``; ``by`` are the columns that tell IDA curves
-    apart. Columns: ``by``; ``first_lower``, ``first_upper``: the largest amplitude below the first overturning
-    and that overturning; ``always_lower``, ``always_upper``: the largest amplitude survived and the next one;
-    ``resurrections``: number of ranges survived above the first overturning; ``window_width``: sum of their
-    widths in ln amplitude, each counted between the middles of its bounding steps. Lower bounds are 0 where
-    nothing lower was tried, upper ones NaN where nothing overturned.
+    Parameters
+    ----------
+    ida : a row per motion and amplitude, with ``overturned``
+    amplitude, by : column of the amplitude, and the columns by which IDA curves differ
+
+    Returns
+    -------
+    pandas.DataFrame
+        Columns: ``by``; ``first_lower``, ``first_upper``: the largest amplitude below the first overturning and
+        that overturning; ``always_lower``, ``always_upper``: the largest amplitude survived and the next one;
+        ``resurrections``: number of ranges survived above the first overturning; ``window_width``: sum of their
+        widths in ln amplitude, each counted between the middles of its bounding steps. Lower bounds are 0 where
+        nothing lower was tried, upper ones NaN where nothing overturned.
     """
     keys = [by] if isinstance(by, str) else by
     values = observations.positive(ida, amplitude)
     fell = observations.read_observations(ida, "overturned") == 1
     table = ida[keys].assign(amplitude=values, overturned=fell)
-    for row in np.flatnonzero(table.duplicated([*keys, "amplitude"])):
+    repeated = table.duplicated([*keys, "amplitude"]).to_numpy()
+    if repeated.any():
+        row = int(repeated.argmax())
         curve = ", ".join(table[keys].iloc[row].astype(str))
         raise InputError(
             f"table, row {row + 1}, column {amplitude!r}: the IDA curve of {curve} already has the amplitude "
@@ -112,7 +154,17 @@ def find_resurrections(
 
 
 def resurrections_of(parts: Iterable[Swept]) -> pd.DataFrame:
-    """Structural resurrections of parts of IDA curves, as :func:`find_resurrections` has those of a table."""
+    """Structural resurrections of parts of IDA curves, as :func:`find_resurrections` has those of a table.
+
+    Parameters
+    ----------
+    parts : IDA curves of some motions each, see :class:`rockfrag.shaketable.definitions.Swept`
+
+    Returns
+    -------
+    A row an IDA curve, with ``configuration``, ``earthquake``, ``floor``, ``motion`` and the columns of
+    :func:`find_resurrections`.
+    """
     keys = ["configuration", "earthquake", "floor", "motion"]
     rows: list[dict[Hashable, object]] = []
     for part in parts:

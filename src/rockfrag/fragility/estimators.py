@@ -1,4 +1,10 @@
-"""Fragility from the data that the field knows: clouds, stripes, IDA curves, step protocols."""
+"""Fragility from the data that the field knows: clouds, stripes, IDA curves, step protocols.
+
+In: tables of tests or of incremental dynamic analyses (IDA), a row a test. Out: :class:`Fragility`, a fitted curve
+with its confidence limits and checks; of IDA curves one for each definition of overturning intensity.
+
+Theory: ``docs/fragility.md``, "Estimators" and "Confidence limits".
+"""
 
 from dataclasses import dataclass, replace
 from typing import Literal
@@ -18,7 +24,7 @@ from rockfrag.fragility.lognormal import FragilityFit, fit_lognormal
 
 @dataclass(frozen=True)
 class Fragility:
-    """A fitted curve with its confidence limits and what speaks for and against it.
+    """A fitted curve with its confidence limits and checks.
 
     Attributes
     ----------
@@ -33,7 +39,7 @@ class Fragility:
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """All that a reader must know, of the fit, of the limits and of the checks."""
+        """Sentences of the fit, of the limits and of the checks."""
         return (*self.fit.warnings, *self.interval.warnings, *self.checks.warnings)
 
     @property
@@ -77,7 +83,14 @@ def fragility_of(
 ) -> Fragility:
     """Fit a curve to outcomes and give it limits over motions, or earthquakes where they are known.
 
-    ``seed`` and ``dependence`` say how the goodness of fit is simulated, see :func:`goodness_of_fit`.
+    Parameters
+    ----------
+    outcomes, level : the tests, and the level of the limits [-]
+    seed, dependence : of the simulated goodness of fit, see :func:`rockfrag.fragility.checks.goodness_of_fit`
+
+    Returns
+    -------
+    The :class:`Fragility`.
     """
     fit = fit_lognormal(outcomes)
     limits = interval_over_motions(outcomes, level=level)
@@ -151,7 +164,10 @@ def fit_stripes(
     if trials is not None:
         return whole
     values, stripe = np.unique(outcomes.im, return_inverse=True)
-    return replace(whole, fit=fit_lognormal(outcomes.pooled(stripe, values)))
+    fit = fit_lognormal(outcomes.pooled(stripe, values))
+    # levels are pooled, not motions
+    fit = replace(fit, n_motions=outcomes.n_motions, of_motions=outcomes.of_motions)
+    return replace(whole, fit=fit)
 
 
 @named_keywords
@@ -176,18 +192,16 @@ def fit_incremental(
     """
     data = TableIda(ida, earthquake, motion) if isinstance(ida, pd.DataFrame) else ida
     resurrections = data.resurrections(amplitude)
-    first, always = (
-        fragility_of_brackets(
-            data.brackets(resurrections, definition, amplitude), level
-        )
-        for definition in ("first", "always")
+    first = fragility_of_brackets(
+        data.brackets(resurrections, "first", amplitude), level
+    )
+    always = fragility_of_brackets(
+        data.brackets(resurrections, "always", amplitude), level
     )
     fell = resurrections["first_upper"].notna()
-    fraction = (
-        float((resurrections.loc[fell, "resurrections"] > 0).mean())
-        if fell.any()
-        else float("nan")
-    )
+    fraction = float("nan")
+    if fell.any():
+        fraction = float((resurrections.loc[fell, "resurrections"] > 0).mean())
     probability = fragility_of(data.outcomes(amplitude), level=level)
     return IncrementalFragility(first, always, probability, resurrections, fraction)
 
@@ -220,7 +234,16 @@ def fit_step_tests(
 
 
 def fragility_of_brackets(brackets: censored.Brackets, level: float) -> Fragility:
-    """Fit a curve to bracketed amplitudes and give it limits over motions, or earthquakes where known."""
+    """Fit a curve to bracketed amplitudes and give it limits over motions, or earthquakes where known.
+
+    Parameters
+    ----------
+    brackets, level : bounds of n amplitudes, and the level of the limits [-]
+
+    Returns
+    -------
+    The :class:`Fragility`.
+    """
     fit = censored.fit_brackets(brackets)
     interval = censored.bracket_interval(brackets, level=level)
     return Fragility(fit, interval, checks_of_brackets(brackets, fit, interval))
@@ -229,9 +252,17 @@ def fragility_of_brackets(brackets: censored.Brackets, level: float) -> Fragilit
 def fit_uplift(motions: pd.DataFrame, im: str, *, level: float = 0.90) -> Fragility:
     """Curve of P(rock | IM) from motions scaled to the peak acceleration at which rocking starts.
 
-    That peak is exact, so each motion (a row with ``motion``, ``earthquake`` and the measure ``im`` at that scale)
-    gives its measure at uplift exactly; in the peak acceleration itself the curve is a step, given as a β of
-    next to nothing.
+    That peak is exact, so each motion gives its measure at uplift exactly; in the peak acceleration itself the
+    curve is a step, given as a β of next to nothing.
+
+    Parameters
+    ----------
+    motions : a row a motion, with ``motion``, ``earthquake`` and the measure at that scale
+    im, level : column of the measure, and the level of the limits [-]
+
+    Returns
+    -------
+    The :class:`Fragility`, θ in the unit of the measure.
     """
     at = motions.assign(upper=motions[im])
     brackets = censored.brackets_from_table(

@@ -1,4 +1,10 @@
-"""Fragility curves for other programs: NRML 0.5 of OpenQuake, and SimCenter's damage model (pelicun)."""
+"""Exports of fragility curves: NRML 0.5 of OpenQuake, and SimCenter's damage model (pelicun).
+
+In: rows of :func:`rockfrag.fragility.ida_curves.fragility_table`, one per configuration and limit state, and
+points of the non-parametric fragility function. Out: files; units are those of the format (g, cm/s).
+
+Docs: ``docs/fragility.md``, "The table and its exports".
+"""
 
 import hashlib
 import json
@@ -17,12 +23,11 @@ from scipy import constants, special
 
 from rockfrag.base.errors import InputError
 from rockfrag.base.files import write_table, write_text
-from rockfrag.fragility.checks import REJECTION
+from rockfrag.fragility.check_notes import REJECTION
 from rockfrag.fragility.curve_facts import curve_facts
 from rockfrag.fragility.observations import Floats
 from rockfrag.motions.intensity import declared, measure_labelled
 from rockfrag.outcomes.limit_states import OVERTURNS, limit_state_named, limit_states
-from rockfrag.words.sentences import environment
 
 LONGEST = 75  # characters of an identifier that OpenQuake takes
 # β with which an exact threshold, a step, is written [-]; the formats take no step
@@ -30,9 +35,17 @@ STEP = 0.01
 
 
 def identifiers(names: Iterable[str], others: str = "") -> dict[str, str]:
-    """Return an identifier for each name: ASCII letters, digits and ``others``; all else becomes ``_``.
+    """Identifier for each name: ASCII letters, digits and ``others``; all else becomes ``_``.
 
     Where two would be equal, or one would be too long, a digest of the name follows.
+
+    Parameters
+    ----------
+    names, others : the names, and further characters that are allowed
+
+    Returns
+    -------
+    The identifiers by name.
     """
     plain = {
         name: "".join(
@@ -60,23 +73,28 @@ class StateCurve:
     fraction: Floats
 
 
+@dataclass(frozen=True)
+class Naming:
+    """Names of functions in a file of another program."""
+
+    export: str  # the format, as messages call it
+    others: str  # characters that a name may have beside letters and digits
+    prefix: str = ""  # beginning of every name
+
+
 def curves_by_name(
-    export: str,
-    table: pd.DataFrame,
-    by: str,
-    others: str,
-    fractions: pd.DataFrame | None,
-    prefix: str = "",
+    table: pd.DataFrame, by: str, fractions: pd.DataFrame | None, naming: Naming
 ) -> dict[str, dict[str, StateCurve]]:
-    """Return the curves of a fragility table by the identifier of ``by`` and by limit state, the milder first."""
+    """Curves of a fragility table by the identifier of column ``by`` and by limit state, the milder first."""
+    export = naming.export
     if table.empty:
         raise InputError(
             f"{export}: there is no curve to write; give at least one row."
         )
-    known = identifiers(map(str, table[by]), others)
+    known = identifiers(map(str, table[by]), naming.others)
     curves: dict[str, dict[str, StateCurve]] = {}
     for row in table.to_dict("records"):
-        name = prefix + known[str(row[by])]
+        name = naming.prefix + known[str(row[by])]
         states = curves.setdefault(name, {})
         state = limit_state_named(str(row.get("state", OVERTURNS))).name
         if state in states:
@@ -162,7 +180,7 @@ def write_nrml(
         one whose lognormal curves would make a state more probable than the one that comes before it.
     """
     # OpenQuake takes letters, digits, "_", "-" and ":" in a name
-    curves = curves_by_name("NRML", table, by, "_:-", fractions)
+    curves = curves_by_name(table, by, fractions, Naming("NRML", "_:-"))
     used = {state for states in curves.values() for state in states}
     known = [state.name for state in limit_states() if state.name in used]
     functions: list[dict[str, object]] = []
@@ -199,17 +217,37 @@ def model_text(
     functions: Sequence[Mapping[str, object]],
     identifier: str = "rockfrag",
 ) -> str:
-    """NRML 0.5 of a fragility model with some limit states and functions.
+    """NRML 0.5 of a fragility model.
 
-    A function has an ``id``, its ``imt`` and, by state, ``chances`` at its ``levels``, or the ``moments`` of
-    lognormal curves, mean and standard deviation, with the range of levels from ``low`` to ``high``.
+    Parameters
+    ----------
+    description, states : words about the model, and names of its limit states, the milder first
+    functions
+        Each has an ``id``, its ``imt`` and, by state, ``chances`` [-] at its ``levels``, or the ``moments`` of
+        lognormal curves, mean and standard deviation, with the range of levels from ``low`` to ``high`` [g or
+        cm/s].
+    identifier : name of the model
+
+    Returns
+    -------
+    The text of the file.
     """
-    loaded = environment("rockfrag.fragility")
-    loaded.filters["escaped"] = escape
-    about = {"description": description, "states": states, "identifier": identifier}
-    return (
-        str(loaded.get_template("nrml.j2").render(functions=functions, **about)) + "\n"
+    # imported when a file is written, which most commands never do
+    from jinja2 import Environment, PackageLoader, StrictUndefined
+
+    templates = Environment(
+        loader=PackageLoader("rockfrag.fragility", ""),
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
     )
+    text = templates.get_template("nrml.j2").render(
+        functions=functions,
+        description=escape(description),
+        states=states,
+        identifier=identifier,
+    )
+    return f"{text}\n"
 
 
 def _function(
@@ -319,9 +357,8 @@ def write_simcenter(
     }
     notes: dict[str, object] = {"_GeneralInformation": about}
     rows = []
-    for name, states in curves_by_name(
-        "SimCenter", table, by, "_", fractions, "ROCKFRAG."
-    ).items():
+    naming = Naming("SimCenter", "_", prefix="ROCKFRAG.")
+    for name, states in curves_by_name(table, by, fractions, naming).items():
         line, notes[name] = _component(name, states, by)
         rows.append(line)
     write_table(pd.DataFrame(rows).sort_values("ID", ignore_index=True), csv_path)
@@ -388,12 +425,10 @@ def _component(
 def _multilinear(levels: Floats, fraction: Floats) -> str:
     """Points of a distribution from 0 to 1, as pelicun's ``multilinear_CDF`` takes them."""
     if fraction[-1] < 1.0:
-        levels, fraction = (
-            np.append(levels, BEYOND * levels[-1]),
-            np.append(fraction, 1.0),
-        )
-    texts = (
-        ",".join(repr(float(value)) for value in values)
-        for values in (levels, fraction)
-    )
-    return "|".join(texts)
+        levels = np.append(levels, BEYOND * levels[-1])
+        fraction = np.append(fraction, 1.0)
+
+    def listed(values: Floats) -> str:
+        return ",".join(repr(float(value)) for value in values)
+
+    return f"{listed(levels)}|{listed(fraction)}"

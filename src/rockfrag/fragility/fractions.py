@@ -1,4 +1,7 @@
-"""The curve that assumes no form: the never-falling fraction closest to the data, with limits over groups.
+"""Non-parametric fragility function: the never-falling fraction closest to the data, with limits over groups.
+
+In: outcomes, or logarithms of capacities, with labels of the groups. Out: :class:`Fractions`, with θ in the unit
+of the measure, β [-] and pointwise limits. Theory: ``docs/fragility.md``, "Does the curve describe the data?".
 
 Its limits at a value of the measure are those of Korn and Graubard (1998, Survey Methodology 24: 193-201) for
 fractions of dependent tests: of a binomial fraction whose number of trials gives the variance that leaving out
@@ -9,6 +12,7 @@ over the same groups.
 """
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 import pandas as pd
@@ -19,7 +23,7 @@ from rockfrag.fragility import intervals
 from rockfrag.fragility.observations import Floats, Observations, cells, counts
 
 ENDS = (0.1587, 0.8413)
-"""Shares one standard deviation below and above the median of a lognormal curve [-]."""
+"""Fractions one standard deviation below and above the median of a lognormal curve [-]."""
 
 # values and fractions that differ by less are one point of the curve [-]
 ROUNDING = 1e-6
@@ -47,7 +51,7 @@ class Fractions:
     beta_limits: Limits
 
     def at(self, im: ArrayLike) -> tuple[Floats, Floats, Floats]:
-        """Share and its limits at any values > 0, three arrays of shape (n,)."""
+        """Fraction and its limits at any values > 0, three arrays of shape (n,)."""
         x = np.atleast_1d(np.asarray(im, dtype=np.float64))
         knots, fraction = knots_of(self.im, self.fraction)
         value = np.interp(np.log(x), np.log(knots), fraction)
@@ -67,6 +71,14 @@ def knots_of(im: Floats, fraction: Floats) -> tuple[Floats, Floats]:
 
     Values of equal fraction become one point in their middle, at 0 and 1 the one nearest to the others. Where
     the lowest value already has a fraction above 0, half that value is given none.
+
+    Parameters
+    ----------
+    im, fraction : values of the measure, rising, and never-falling fractions [-], shape (n,)
+
+    Returns
+    -------
+    Values and fractions of the points, shape (points,) each.
     """
     first = np.flatnonzero(np.diff(fraction, prepend=-1.0) > ROUNDING)
     last = np.append(first[1:], im.size) - 1
@@ -84,29 +96,56 @@ def knots_of(im: Floats, fraction: Floats) -> tuple[Floats, Floats]:
 def fractions_of_outcomes(
     outcomes: Observations, groups: NDArray[np.object_], level: float
 ) -> Fractions:
-    """Fractions of tests with outcomes, with limits over groups: labels of motion or earthquake, shape (n,)."""
+    """Non-parametric fragility function of tests with outcomes.
+
+    Parameters
+    ----------
+    outcomes, groups : n tests, and their labels of motion or earthquake, shape (n,), over which limits are
+    level : two-sided confidence level [-]
+
+    Returns
+    -------
+    The :class:`Fractions`.
+    """
     codes = pd.factorize(pd.Series(groups))[0]
     column, values = cells(outcomes.log_im)
     fell = counts(codes, column, outcomes.overturned)
     total = counts(codes, column, outcomes.trials)
     middle = values.copy()
     middle[1:] -= 0.5 * np.diff(values)
-    return _fractions(values, middle, fell, total, outcomes.n_motions, level)
+    return _fractions(
+        _Counted(values, middle, fell, total), motions=outcomes.n_motions, level=level
+    )
 
 
 def fractions_of_capacities(
     log_capacity: Floats, groups: NDArray[np.object_], level: float
 ) -> Fractions:
-    """Fractions of logarithms of capacities, one a motion, with limits over groups.
+    """Non-parametric fragility function of capacities, one a motion.
 
-    They are -∞ and ∞ where a capacity lies below or above all that was tried, shape (n,).
+    Parameters
+    ----------
+    log_capacity : logarithms, shape (n,); -∞ and ∞ where a capacity lies below or above all that was tried
+    groups : labels of motion or earthquake, shape (n,), over which limits are
+    level : two-sided confidence level [-]
+
+    Returns
+    -------
+    The :class:`Fractions`.
     """
     codes, names = pd.factorize(pd.Series(groups))
     finite = np.isfinite(log_capacity)
     if not finite.any():
         nothing = np.empty(0)
         return Fractions(
-            *(nothing, nothing, nothing, nothing), np.nan, UNKNOWN, np.nan, UNKNOWN
+            im=nothing,
+            fraction=nothing,
+            lower=nothing,
+            upper=nothing,
+            theta=np.nan,
+            theta_limits=UNKNOWN,
+            beta=np.nan,
+            beta_limits=UNKNOWN,
         )
     # many neighbouring capacities are one
     cell, values = cells(log_capacity[finite])
@@ -125,22 +164,34 @@ def fractions_of_capacities(
     total = np.repeat(np.bincount(block)[:, None], values.size, axis=1).astype(
         np.float64
     )
-    return _fractions(values, values, fell, total, log_capacity.size, level, len(names))
+    return _fractions(
+        _Counted(values, values, fell, total),
+        motions=log_capacity.size,
+        level=level,
+        witnesses=len(names),
+    )
+
+
+class _Counted(NamedTuple):
+    """Tests by group and value of the measure."""
+
+    log_im: Floats  # ln IM of each value, rising, shape (values,)
+    middle: (
+        Floats  # where the capacities between two values lie [ln IM], shape (values,)
+    )
+    # numbers of tests that overturned, and of all, shape (groups, values)
+    fell: Floats
+    total: Floats
 
 
 def _fractions(
-    log_im: Floats,
-    middle: Floats,
-    fell: Floats,
-    total: Floats,
-    motions: int,
-    level: float,
-    witnesses: int | None = None,
+    counted: _Counted, *, motions: int, level: float, witnesses: int | None = None
 ) -> Fractions:
-    """Shares from counts by group and value, shape (groups, values); ``middle`` is where capacities lie.
+    """Fractions of tests counted by group and value.
 
     Every group bears witness to fractions of 0 and 1 where ``witnesses`` says how many groups there are.
     """
+    log_im, middle, fell, total = counted
     groups = len(fell)
     fraction = _rising(fell.sum(axis=0), total.sum(axis=0))
     im, theta = np.exp(log_im), float("nan")
@@ -152,8 +203,8 @@ def _fractions(
         nothing = np.full(fraction.shape, np.nan)
         return Fractions(im, fraction, nothing, nothing, theta, UNKNOWN, beta, UNKNOWN)
     weights = intervals.all_but_one(groups)
-    pairs = zip(weights @ fell, weights @ total, strict=True)
-    left_out = np.array([_rising(*pair) for pair in pairs])
+    replicates = zip(weights @ fell, weights @ total, strict=True)
+    left_out = np.array([_rising(some, of) for some, of in replicates])
     seen = _witnesses(fraction, total) if witnesses is None else np.float64(witnesses)
     lower, upper = _limits(
         fraction, intervals.jackknife_error(left_out), seen, motions, level
@@ -161,14 +212,15 @@ def _fractions(
     theta_limits = UNKNOWN
     if np.isfinite(theta):
         # values between which the limits of the curve hold one half
-        low, high = (
-            im[upper < 0.5].max(initial=0.0),
-            im[lower > 0.5].min(initial=np.inf),
-        )
+        low = im[upper < 0.5].max(initial=0.0)
+        high = im[lower > 0.5].min(initial=np.inf)
         theta_limits = min(float(low), theta), max(float(high), theta)
     fewer = motions * weights.mean(axis=1)
     betas = np.array(
-        [_dispersion(middle, *pair) for pair in zip(left_out, fewer, strict=True)]
+        [
+            _dispersion(middle, rising, count)
+            for rising, count in zip(left_out, fewer, strict=True)
+        ]
     )
     beta_limits = (
         intervals.beta_limits(beta, betas, level) if np.isfinite(beta) else UNKNOWN
@@ -205,7 +257,7 @@ def _limits(
     motions: int,
     level: float,
 ) -> tuple[Floats, Floats]:
-    """Pointwise limits of shares with a standard error over groups."""
+    """Pointwise limits of fractions with a standard error over groups."""
     with np.errstate(divide="ignore", invalid="ignore"):
         trials = np.where(error > 0, fraction * (1.0 - fraction) / error**2, np.inf)
     certain = (fraction <= 0.0) | (fraction >= 1.0)

@@ -1,4 +1,7 @@
-"""How well a curve predicts what it was not fitted to: motions (earthquakes) held out in turn.
+"""Log scores of motions (earthquakes) that a curve was not fitted to: they are held out in turn.
+
+In: outcomes or brackets with the number of their group, (n,). Out: a log score a group [-], p values of equal
+scores, and fractions of bootstrap samples. Theory: ``docs/fragility.md``, "Which intensity measure?".
 
 Tests under one motion, and motions of one earthquake, hang together; criteria such as AIC count them as
 independent and become too sure.  Here whole groups are held out, each group's log score under the curve
@@ -26,8 +29,17 @@ def outcome_scores(
 ) -> Floats:
     """Log score of each group's outcomes under the probit fitted to the other folds, (groups,); NaN for one fold.
 
-    ``logs`` are logarithms of one or more measures, shape (n, k), of which the curve knows the first ``fitted``;
-    the others only share in putting tests into cells, so that scores with and without them compare.
+    Parameters
+    ----------
+    logs
+        Logarithms of one or more measures, shape (n, k), of which the curve knows the first ``fitted``; the others
+        only take part in putting tests into cells, so that scores with and without them compare.
+    overturned, trials, group : numbers of tests of each row, and its group, shape (n,)
+    fitted : number of measures that the curve knows; None for all
+
+    Returns
+    -------
+    The log scores [-], shape (groups,); NaN for one fold.
     """
     # cells of rows that are near each other in every measure, and their means
     most = (
@@ -60,7 +72,16 @@ def outcome_scores(
 
 
 def capacity_scores(brackets: Brackets, group: NDArray[np.intp]) -> Floats:
-    """Log probability of each group's brackets under the lognormal fitted to the other folds, (groups,)."""
+    """Log probability of each group's brackets under the lognormal fitted to the other folds.
+
+    Parameters
+    ----------
+    brackets, group : bounds of n amplitudes, and the group of each, shape (n,)
+
+    Returns
+    -------
+    The log scores [-], shape (groups,).
+    """
     groups = int(group.max()) + 1
     fold = np.arange(groups) % FOLDS
     if fold.max() == 0:

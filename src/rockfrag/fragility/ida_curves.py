@@ -1,4 +1,9 @@
-"""Fragility of every configuration of an IDA curve in every intensity measure, as one tidy table."""
+"""Fragility of every configuration in every intensity measure, as one tidy table: the source of all exports.
+
+In: incremental dynamic analyses (IDA), a row per configuration, motion and amplitude [g], with the measures of the
+motions. Out: :func:`fragility_table`, a row a curve with θ in the unit of its measure, β [-] and limits; and what
+figures draw (:class:`FragilityTables`). Theory: ``docs/fragility.md``, "The table and its exports".
+"""
 
 import hashlib
 from collections.abc import Iterable, Mapping, Sequence
@@ -19,7 +24,16 @@ from rockfrag.records.motion import Motion
 
 
 def scale_power(measure: str) -> int:
-    """Power of the amplitude with which a measure grows: 1 for peaks, 2 for Arias, 0 for periods."""
+    """Power of the amplitude with which a measure grows: 1 for peaks, 2 for Arias, 0 for periods.
+
+    Parameters
+    ----------
+    measure : column of the measure, such as ``pga_g``
+
+    Returns
+    -------
+    The power.
+    """
     found = measure_of(measure)
     if found is None:
         known = ", ".join(dict.fromkeys(measure.name for measure in declared()))
@@ -35,8 +49,14 @@ def with_measures(
 ) -> pd.DataFrame:
     """Add intensity measures of the scaled motions to the rows of an IDA curve, which have ``amplitude_g``.
 
-    ``measures`` has one row per motion as recorded, with ``name`` and ``pga_g``; ``pga_g`` of the result is the
-    amplitude itself.
+    Parameters
+    ----------
+    ida : a row per motion and amplitude, with ``motion`` and ``amplitude_g`` [g]
+    measures, columns : a row per motion as recorded, with ``name`` and ``pga_g``, and the columns to add
+
+    Returns
+    -------
+    The rows with the measures; ``pga_g`` is the amplitude itself.
     """
     if measures["name"].duplicated().any():
         twice = measures.loc[measures["name"].duplicated(), "name"].iloc[0]
@@ -60,7 +80,16 @@ def with_measures(
 
 
 def record_set_hash(motions: Iterable[Motion]) -> str:
-    """SHA-256 of names, intervals and samples of a set of motions, whatever their order, in hexadecimal digits."""
+    """SHA-256 of names, intervals and samples of a set of motions, whatever their order.
+
+    Parameters
+    ----------
+    motions : the set
+
+    Returns
+    -------
+    The digest, 64 hexadecimal digits.
+    """
     digest = hashlib.sha256()
     for motion in sorted(motions, key=lambda motion: motion.name):
         samples = np.ascontiguousarray(motion.acceleration, dtype="<f8")
@@ -71,7 +100,16 @@ def record_set_hash(motions: Iterable[Motion]) -> str:
 
 
 def table_hash(table: pd.DataFrame) -> str:
-    """SHA-256 of a table's text, for data that are no records; the order of the rows counts."""
+    """SHA-256 of a table's text, for data that are no records; the order of the rows counts.
+
+    Parameters
+    ----------
+    table : any table
+
+    Returns
+    -------
+    The digest, 64 hexadecimal digits.
+    """
     text = table.to_csv(index=False, lineterminator="\n")
     return hashlib.sha256(text.encode("utf-8")).hexdigest()
 
@@ -79,7 +117,17 @@ def table_hash(table: pd.DataFrame) -> str:
 def fragility_row(
     fragility: Fragility, labels: Mapping[str, Any], estimator: str, record_set: str
 ) -> dict[str, Any]:
-    """Return one row of the fragility table, see :func:`fragility_table`."""
+    """Row of the fragility table, see :func:`fragility_table`.
+
+    Parameters
+    ----------
+    fragility, labels : the curve, and the columns by which it differs from others
+    estimator, record_set : definition of the curve, and digest of its motions
+
+    Returns
+    -------
+    The values by column.
+    """
     fit, interval, checks = fragility.fit, fragility.interval, fragility.checks
     fractions = checks.fractions
     of_fit = ("se_log_theta", "se_beta", "log_likelihood", "aic", "link", "method")
@@ -179,7 +227,17 @@ def tables_of_ida_curves(
     record_set: str = "",
     level: float = 0.90,
 ) -> FragilityTables:
-    """Fit as :func:`fragility_table` does, to labelled IDA curves in any form, and keep what figures draw too."""
+    """Fit as :func:`fragility_table` does, to labelled IDA curves in any form, and keep what figures draw too.
+
+    Parameters
+    ----------
+    ida_curves, columns : labels and IDA curves of each configuration, and the columns of the measures
+    record_set, level : as of :func:`fragility_table`
+
+    Returns
+    -------
+    The :class:`FragilityTables`.
+    """
     rows: list[dict[str, Any]] = []
     bands, bins, fractions = [], [], []
     for labels, ida in ida_curves:
@@ -203,8 +261,12 @@ def tables_of_ida_curves(
                 fractions.append(
                     fraction_points({**labels, "estimator": name}, fragility)
                 )
-    points = (pd.concat(parts, ignore_index=True) for parts in (bands, bins, fractions))
-    return FragilityTables(pd.DataFrame(rows), *points)
+    return FragilityTables(
+        curves=pd.DataFrame(rows),
+        bands=pd.concat(bands, ignore_index=True),
+        bins=pd.concat(bins, ignore_index=True),
+        fractions=pd.concat(fractions, ignore_index=True),
+    )
 
 
 POINTS = 120  # points of a curve, in equal ratios
@@ -213,14 +275,27 @@ _TAIL = 2.6
 
 
 def levels_drawn(curve: Fragility, outcomes: Observations, points: int) -> Floats:
-    """Levels of a measure, (points,), in equal ratios from where a curve leaves zero to where it reaches one."""
+    """Levels of a measure in equal ratios from where a curve leaves zero to where it reaches one.
+
+    Parameters
+    ----------
+    curve, outcomes : the curve, and the tests that it was fitted to
+    points : number of levels
+
+    Returns
+    -------
+    The levels in the unit of the measure, shape (points,).
+    """
     fit = curve.fit
-    low, high = widest = 0.8 * float(outcomes.im.min()), 1.25 * float(outcomes.im.max())
+    lowest, highest = 0.8 * float(outcomes.im.min()), 1.25 * float(outcomes.im.max())
+    low, high = lowest, highest
     if np.isfinite(fit.theta):
         # a nearly flat curve may not stretch the range, nor amplitudes far above it
         low = max(low, fit.theta * np.exp(-_TAIL * fit.beta))
         high = min(high, fit.theta * np.exp(_TAIL * fit.beta))
-    return np.asarray(np.geomspace(*((low, high) if low < high else widest), points))
+    if low >= high:
+        low, high = lowest, highest
+    return np.asarray(np.geomspace(low, high, points))
 
 
 def curve_points(
@@ -234,9 +309,10 @@ def curve_points(
     """
     fit, x = curve.fit, levels_drawn(curve, outcomes, POINTS)
     nothing = np.full(POINTS, np.nan)
-    probability = lower = upper = nothing
+    probability, lower, upper = nothing, nothing, nothing
     if np.isfinite(fit.theta):
-        probability, (lower, upper) = fit.probability(x), curve.interval.band(x)
+        probability = fit.probability(x)
+        lower, upper = curve.interval.band(x)
     inside = (
         (x >= outcomes.im.min())
         & (x <= outcomes.im.max())
@@ -255,6 +331,14 @@ def fraction_points(labels: Mapping[str, Any], curve: Fragility) -> pd.DataFrame
     """Points of the non-parametric fragility function, if the fitted one is rejected; no row otherwise.
 
     ``fraction`` of overturned tests never falls, and is straight over ln ``x`` between the points.
+
+    Parameters
+    ----------
+    labels, curve : columns by which the curve differs from others, and the curve
+
+    Returns
+    -------
+    pandas.DataFrame: the labels, ``im``, ``unit``, ``x`` in that unit, ``fraction``, ``lower``, ``upper`` [-].
     """
     fractions = curve.checks.fractions
     x = (

@@ -1,5 +1,8 @@
 """Confidence intervals by resampling whole motions or earthquakes, never amplitudes of a motion.
 
+In: observations, or a function that refits reweighted groups. Out: :class:`Interval`, limits of θ, β and the
+curve. Theory: ``docs/fragility.md``, "Confidence limits".
+
 The method is the delete-one-group jackknife with Student's t (Tukey, 1958, Ann. Math. Stat. 29: 614).
 ``docs/validation-fragility.md`` shows how often it covers the truth for few and many groups, and that a
 bootstrap covers less often.
@@ -50,7 +53,7 @@ class Interval:
     estimate, replicates
         Intercept and slope of the fit that the interval belongs to, and without each group (or block of groups),
         shape (replicates, 2).
-    warnings : what a reader must know before trusting the limits
+    warnings : sentences about the limits
     """
 
     theta: tuple[float, float]
@@ -147,7 +150,7 @@ def interval_over_motions(
     fit, groups = outcome_fitter(outcomes, over)
     found = resampled_interval(fit, groups, over=over, notes=notes, level=level)
     apart = separated(
-        outcomes.log_im, outcomes.overturned[None], outcomes.trials[None] + 0.0
+        outcomes.log_im, outcomes.overturned[None], outcomes.trials[None]
     )[0]
     if not apart:
         return found
@@ -195,7 +198,17 @@ def resampled_interval(
     notes: tuple[str, ...] = (),
     level: float = 0.90,
 ) -> Interval:
-    """Confidence limits of θ and β from a function that refits reweighted groups, see :func:`outcome_fitter`."""
+    """Confidence limits of θ and β from a function that refits reweighted groups.
+
+    Parameters
+    ----------
+    fit, groups : the function, see :func:`outcome_fitter`, and the number of groups
+    over, notes, level : kind of a group, warnings to begin with, and the two-sided level [-]
+
+    Returns
+    -------
+    The :class:`Interval`.
+    """
     if not 0.0 < level < 1.0:
         raise InputError(
             f"level: a confidence level lies between 0 and 1, got {level:g}."
@@ -241,7 +254,16 @@ def resampled_interval(
 
 
 def all_but_one(groups: int) -> Floats:
-    """Weights that leave one group out in turn, or one of ``MOST_BLOCKS`` blocks of many groups."""
+    """Weights that leave one group out in turn, or one of ``MOST_BLOCKS`` blocks of many groups.
+
+    Parameters
+    ----------
+    groups : number of groups
+
+    Returns
+    -------
+    Weights of 0 and 1, shape (replicates, groups).
+    """
     block = blocks_of(groups)
     return np.asarray(
         block != np.arange(min(groups, MOST_BLOCKS))[:, None], dtype=np.float64
@@ -256,7 +278,16 @@ def blocks_of(groups: int) -> NDArray[np.intp]:
 
 
 def jackknife_error(left_out: Floats) -> Floats:
-    """Return the standard error from delete-one-group values along the first axis (Tukey)."""
+    """Standard error from delete-one-group values along the first axis (Tukey 1958).
+
+    Parameters
+    ----------
+    left_out : values without each group, shape (groups, …)
+
+    Returns
+    -------
+    The standard error in the unit of the values, shape (…).
+    """
     groups = len(left_out)
     # an infinite value makes the error NaN, which the caller turns into limits without an end
     with np.errstate(invalid="ignore"):
@@ -265,7 +296,16 @@ def jackknife_error(left_out: Floats) -> Floats:
 
 
 def half_width(left_out: Floats, level: float) -> Floats:
-    """Half the interval of Student's t from delete-one-group values along the first axis; infinite without end."""
+    """Half the interval of Student's t from delete-one-group values; infinite without end.
+
+    Parameters
+    ----------
+    left_out, level : values without each group, shape (groups, …), and the two-sided level [-]
+
+    Returns
+    -------
+    Half the width, in the unit of the values, shape (…).
+    """
     half = stats.t.ppf(0.5 + 0.5 * level, len(left_out) - 1) * jackknife_error(left_out)
     return np.where(np.isfinite(half), half, np.inf)
 

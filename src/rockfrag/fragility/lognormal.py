@@ -1,7 +1,16 @@
-"""The fitted fragility curve, lognormal (probit) or log-logistic (logit), in one measure."""
+"""A fragility curve of one intensity measure, fitted to outcomes: lognormal (probit) or log-logistic (logit).
+
+P(overturn | IM) = F((ln IM - ln θ) / β), by maximum likelihood of a binomial generalised linear model in ln IM.
+In: :class:`rockfrag.fragility.observations.Observations`. Out: :class:`FragilityFit`, with θ in the unit of the
+measure, β [-], their covariance, and warnings in sentences.
+
+Theory: ``docs/fragility.md``, first equation and "Estimators"; Firth (1993, Biometrika 80: 27-38) under
+separation.
+"""
 
 import warnings as python_warnings
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -16,9 +25,9 @@ from statsmodels.tools.sm_exceptions import (
 
 from rockfrag.base.keywords import named_keywords
 from rockfrag.base.short_repr import short_repr
+from rockfrag.fragility import fit_notes
 from rockfrag.fragility.batch_glm import Link, fit_batch, log_terms, separated
 from rockfrag.fragility.observations import Floats, Observations, cells
-from rockfrag.words.sentences import Macros
 
 ROUNDING = 1e-9  # levels whose logarithms differ by less are the same
 LEAST_SLOPE = 1e-3
@@ -28,11 +37,17 @@ MOST_ROWS = 100_000
 """Rows beyond which tests are fitted in 10 000 cells of nearly equal values, which moves θ by less than 1e-6."""
 
 Covariance = tuple[tuple[float, float], tuple[float, float]]
-Curve = tuple[float, float, Covariance]  # θ, β and the covariance of (ln θ, β)
-NO_CURVE: Curve = (np.nan, np.nan, ((np.nan, np.nan), (np.nan, np.nan)))
 
-# what a reader must know of a fit, in sentences
-SAY = Macros("rockfrag.fragility", "fits.j2")
+
+class Curve(NamedTuple):
+    """Parameters of a curve: θ in the unit of its measure, β [-], and the covariance of (ln θ, β)."""
+
+    theta: float
+    beta: float
+    covariance: Covariance
+
+
+NO_CURVE = Curve(np.nan, np.nan, ((np.nan, np.nan), (np.nan, np.nan)))
 
 
 @dataclass(frozen=True)
@@ -51,6 +66,7 @@ class FragilityFit:
     method, warnings
         How it was fitted, in words, and a sentence for each thing that a reader must know before using the curve.
     im, unit, link : intensity measure and its unit; ``probit`` or ``logit``
+    of_motions : whether the motions are known; else ``n_motions`` is the number of rows
     """
 
     theta: float
@@ -65,6 +81,7 @@ class FragilityFit:
     unit: str = ""
     link: Link = "probit"
     warnings: tuple[str, ...] = ()
+    of_motions: bool = True
 
     __repr__ = short_repr
 
@@ -99,11 +116,20 @@ class FragilityFit:
 
 
 def curve_parameters(coefficients: Floats, covariance: Floats) -> Curve:
-    """Turn intercept and slope into θ = exp(-c0/c1), β = 1/c1 and the covariance of (ln θ, β)."""
+    """θ = exp(-c0/c1), β = 1/c1 and the covariance of (ln θ, β), from intercept c0 and slope c1.
+
+    Parameters
+    ----------
+    coefficients, covariance : intercept and slope in ln IM, shape (2,), and their covariance, shape (2, 2)
+
+    Returns
+    -------
+    The :class:`Curve`, θ in the unit of IM.
+    """
     c0, c1 = float(coefficients[0]), float(coefficients[1])
     jacobian = np.array([[-1.0 / c1, c0 / c1**2], [0.0, -1.0 / c1**2]])
     (a, b), (c, d) = (jacobian @ covariance @ jacobian.T).tolist()
-    return float(np.exp(-c0 / c1)), 1.0 / c1, ((a, b), (c, d))
+    return Curve(float(np.exp(-c0 / c1)), 1.0 / c1, ((a, b), (c, d)))
 
 
 @named_keywords
@@ -122,28 +148,36 @@ def fit_lognormal(outcomes: Observations, *, link: Link = "probit") -> Fragility
     -------
     The :class:`FragilityFit`.
     """
-    notes = SAY("outcomes", outcomes)
+    notes = fit_notes.notes_of_outcomes(outcomes)
     if outcomes.im.size > MOST_ROWS:
         cell, values = cells(outcomes.log_im, 10_000)
         whole, outcomes = outcomes, outcomes.pooled(cell, np.exp(values))
-        found = fit_lognormal(outcomes, link=link)
+        pooled = fit_lognormal(outcomes, link=link)
         # cells are not tests: which of a cell's tests overturned is known
-        likelihood = found.log_likelihood + float(
-            whole.ways().sum() - outcomes.ways().sum()
+        likelihood = pooled.log_likelihood + float(
+            whole.log_arrangements().sum() - outcomes.log_arrangements().sum()
         )
-        said = (*notes, *found.warnings)
         return replace(
-            found, n_motions=whole.n_motions, log_likelihood=likelihood, warnings=said
+            pooled,
+            n_motions=whole.n_motions,
+            log_likelihood=likelihood,
+            warnings=(*notes, *pooled.warnings),
         )
     curve, log_likelihood = NO_CURVE, 0.0
     if outcomes.n_overturned in (0, outcomes.n):
         method = "none: all tests agree"
-        notes += SAY("agreeing", outcomes)
+        notes.append(fit_notes.note_of_agreement(outcomes))
     elif np.ptp(outcomes.log_im) < ROUNDING:
         method = "none: one level of the measure"
-        notes += SAY("one_level", outcomes, outcomes.n, outcomes.name, outcomes.im[0])
+        notes.append(
+            fit_notes.note_of_one_level(
+                outcomes, outcomes.n, outcomes.name, outcomes.im[0]
+            )
+        )
     else:
-        method, coefficients, information = _estimated(outcomes, link, notes)
+        found = _estimate(outcomes, link)
+        method, coefficients = found.method, found.coefficients
+        notes += found.notes
         log_p, log_q, *_ = log_terms(
             coefficients[0] + coefficients[1] * outcomes.log_im, link
         )
@@ -151,56 +185,74 @@ def fit_lognormal(outcomes: Observations, *, link: Link = "probit") -> Fragility
             outcomes.overturned * log_p
             + (outcomes.trials - outcomes.overturned) * log_q
         )
-        log_likelihood = float((terms + outcomes.ways()).sum())
+        log_likelihood = float((terms + outcomes.log_arrangements()).sum())
         if coefficients[1] < LEAST_SLOPE:
             method = "none: probability does not rise"
-            notes += SAY("falling", outcomes)
+            notes.append(fit_notes.note_of_falling(outcomes))
         else:
             curve = curve_parameters(
-                coefficients, np.asarray(np.linalg.inv(information))
+                coefficients, np.asarray(np.linalg.inv(found.information))
             )
-    counted = (outcomes.n, outcomes.n_overturned, outcomes.n_motions)
     return FragilityFit(
-        *curve,
-        log_likelihood,
-        *counted,
-        method,
-        outcomes.name,
-        outcomes.unit,
-        link,
-        tuple(notes),
+        theta=curve.theta,
+        beta=curve.beta,
+        covariance=curve.covariance,
+        log_likelihood=log_likelihood,
+        n=outcomes.n,
+        n_overturned=outcomes.n_overturned,
+        n_motions=outcomes.n_motions,
+        method=method,
+        im=outcomes.name,
+        unit=outcomes.unit,
+        link=link,
+        warnings=tuple(notes),
+        of_motions=outcomes.of_motions,
     )
 
 
-def _estimated(
-    outcomes: Observations, link: Link, notes: list[str]
-) -> tuple[str, Floats, Floats]:
-    """How the coefficients were found, these and their information; ``notes`` grow by what is to be known."""
+class _Estimate(NamedTuple):
+    """Coefficients, (2,), with their information, (2, 2), how they were found, and what to warn of."""
+
+    method: str
+    coefficients: Floats
+    information: Floats
+    notes: list[str]
+
+
+def _estimate(outcomes: Observations, link: Link) -> _Estimate:
+    """Coefficients by maximum likelihood, penalised where that has no finite maximum."""
     apart = separated(
         outcomes.log_im, outcomes.overturned[None], outcomes.trials[None]
     )[0]
+    notes = []
     if not apart:
         try:
-            return f"{link}, maximum likelihood (GLM)", *_statsmodels(outcomes, link)
+            coefficients, information = _statsmodels(outcomes, link)
         except (PerfectSeparationError, PerfectSeparationWarning, ConvergenceWarning):
-            notes += SAY("not_finite")
+            notes.append(fit_notes.NOT_FINITE)
+        else:
+            method = f"{link}, maximum likelihood (GLM)"
+            return _Estimate(method, coefficients, information, notes)
     design = np.column_stack([np.ones(outcomes.im.size), outcomes.log_im])
-    counts = (outcomes.overturned[None], outcomes.trials[None])
-    fit = fit_batch(design, *counts, link=link, penalised=True)
+    fit = fit_batch(
+        design,
+        outcomes.overturned[None],
+        outcomes.trials[None],
+        link=link,
+        penalised=True,
+    )
     if apart and fit.coefficients[0, 1] >= LEAST_SLOPE:
-        notes += SAY("separated", outcomes)
+        notes.append(fit_notes.note_of_separation(outcomes))
     method = f"{link}, penalised likelihood (Firth)"
-    return method, fit.coefficients[0], fit.information[0]
+    return _Estimate(method, fit.coefficients[0], fit.information[0], notes)
 
 
 def _statsmodels(outcomes: Observations, link: Link) -> tuple[Floats, Floats]:
     links = {"probit": families.links.Probit, "logit": families.links.Logit}
     # tests at one value are one row of counts: the same likelihood, and a tenth of the time
     values, level = np.unique(outcomes.log_im, return_inverse=True)
-    fell, trials = (
-        np.bincount(level, outcomes.overturned),
-        np.bincount(level, outcomes.trials),
-    )
+    fell = np.bincount(level, outcomes.overturned)
+    trials = np.bincount(level, outcomes.trials)
     design = np.column_stack([np.ones(values.size), values])
     counts = np.column_stack([fell, trials - fell])
     model = GLM(counts, design, family=families.Binomial(links[link]()))

@@ -1,7 +1,16 @@
-"""Which intensity measure predicts overturning best, and how sure is that choice?"""
+"""Selection of the intensity measure that predicts overturning best, and how sure the choice is.
+
+In: a table of tests with columns of measures, or the IDA curves of one body. Out: :class:`MeasureSelection`, a
+row a measure with efficiency β, log score of what was held out [-], sufficiency, and the recommendation in
+sentences.
+
+Theory: ``docs/fragility.md``, "Which intensity measure?"; sufficiency after Luco and Cornell (2007, Earthquake
+Spectra 23: 357-392).
+"""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 import pandas as pd
@@ -18,12 +27,14 @@ from rockfrag.fragility.ida_curves import scale_power
 from rockfrag.fragility.intervals import Interval, interval_over_motions
 from rockfrag.fragility.lognormal import FragilityFit, fit_lognormal
 from rockfrag.fragility.observations import Floats, Observations, numbers
-from rockfrag.words.sentences import Macros
-
-DIFFERENCE_P = 0.05  # two measures differ below this p value of their held-out scores
-FEWEST_GROUPS_TO_CHOOSE = 10
-"""Below so many motions or earthquakes the words say that the choice is weak."""
-SUFFICIENT_P = 0.05  # a residual's dependence on a column is named below this p value
+from rockfrag.fragility.recommendation import (
+    CANNOT_COMPARE,
+    DIFFERENCE_P,
+    NONE_RISES,
+    Choice,
+    choice_text,
+    pair_text,
+)
 
 
 @dataclass(frozen=True)
@@ -77,8 +88,15 @@ def dependence_p_value(
     """Return the p value of a linear dependence of residuals on a column, robust to dependence within groups.
 
     A measure is sufficient for a property, such as magnitude or distance, on which nothing of its residual depends
-    (Luco and Cornell, 2007, Earthquake Spectra 23: 357-392). NaN without a curve, with fewer than three groups or
-    a constant column.
+    (Luco and Cornell, 2007, Earthquake Spectra 23: 357-392).
+
+    Parameters
+    ----------
+    residual, column, groups : residuals, the property and the labels of dependent tests, shape (n,)
+
+    Returns
+    -------
+    The p value [-]; NaN without a curve, with fewer than three groups or a constant column.
     """
     codes, names = pd.factorize(pd.Series(groups))
     if len(names) < 3 or np.ptp(column) == 0 or not np.isfinite(residual).all():
@@ -138,10 +156,8 @@ def recommend_measure(
             earthquake=earthquake,
             source=source,
         )
-        fit, interval = (
-            fit_lognormal(outcomes),
-            interval_over_motions(outcomes, level=level),
-        )
+        fit = fit_lognormal(outcomes)
+        interval = interval_over_motions(outcomes, level=level)
         residual = outcomes.overturned / outcomes.trials - fit.probability(outcomes.im)
         p = {
             name: dependence_p_value(residual, values, outcomes.earthquake)
@@ -149,19 +165,24 @@ def recommend_measure(
         }
         rows.append(_row(column, fit, interval, outcomes, p))
         group = pd.factorize(pd.Series(outcomes.earthquake))[0]
-        logs, fell, trials = (
-            outcomes.log_im[:, None],
-            outcomes.overturned,
-            outcomes.trials,
+        logs = outcomes.log_im[:, None]
+        scores.append(
+            held_out.outcome_scores(logs, outcomes.overturned, outcomes.trials, group)
         )
-        scores.append(held_out.outcome_scores(logs, fell, trials, group))
         data[column] = outcomes
-    found = _selection(rows, np.array(scores), outcomes.n, given, (replicates, seed))
+    found = _select(
+        rows,
+        np.array(scores),
+        tests=outcomes.n,
+        given=given,
+        replicates=replicates,
+        seed=seed,
+    )
     pair, p_pair, gain = _best_pair(data, found.recommended, group)
     if not pair:
         return found
-    words = [found.words, *_say("pair", data[pair].name, p_pair, gain)]
-    return replace(found, words=" ".join(words))
+    added = pair_text(data[pair].name, p_pair, gain)
+    return replace(found, words=f"{found.words} {added}")
 
 
 def _row(
@@ -172,37 +193,37 @@ def _row(
     p: Mapping[str, float],
     **more: float,
 ) -> dict[str, float | str]:
-    """What the table says of one measure before its scores; ``p`` of sufficiency by what is given."""
-    about = {"measure": column, "im": fit.im, "unit": fit.unit}
-    beta = {
+    """Row of one measure before its scores; ``p`` of sufficiency by the columns given."""
+    return {
+        "measure": column,
+        "im": fit.im,
+        "unit": fit.unit,
         "theta": fit.theta,
         "beta": fit.beta,
         "beta_lower": interval.beta[0],
         "beta_upper": interval.beta[1],
-    }
-    fitted = {"aic": fit.aic, "auc": area_under_curve(outcomes)}
-    return {
-        **about,
-        **beta,
         **more,
-        **fitted,
+        "aic": fit.aic,
+        "auc": area_under_curve(outcomes),
         **{f"p_{name}": value for name, value in p.items()},
     }
 
 
-def _selection(
+def _select(
     rows: Sequence[Mapping[str, float | str]],
     scores: Floats,
+    *,
     tests: int,
     given: Sequence[str],
-    drawn: tuple[int, int],
+    replicates: int,
+    seed: int,
     efficiency: str = "beta",
     needed: str = "theta",
 ) -> MeasureSelection:
     """Sort measures: best held-out score first, equals by efficiency, those without a curve last; and recommend.
 
     ``scores`` are log scores by group (:mod:`rockfrag.fragility.held_out`), shape (measures, groups), of so many
-    ``tests``; ``drawn`` are replicates and seed of the bootstrap. Where all lack the column ``needed`` none is
+    ``tests``; ``replicates`` and ``seed`` are of the bootstrap. Where all lack the column ``needed`` none is
     recommended.
     """
     compared = pd.DataFrame(rows)
@@ -213,7 +234,7 @@ def _selection(
     if known.any():
         best = scores[total.argmax()]
         p_worse[:] = [held_out.paired_p(best, score) for score in scores]
-        fraction[known] = held_out.fraction_best(scores[known], *drawn)
+        fraction[known] = held_out.fraction_best(scores[known], replicates, seed)
     near = known & ~(p_worse < DIFFERENCE_P)
     table = compared.assign(
         score=np.where(known, total / tests, np.nan),
@@ -227,17 +248,27 @@ def _selection(
     )
     table = table.drop(columns=["late", "rank", "total"])
     if known.any():
-        scored = table[table["score"].notna()]
-        differs = scored["p_worse"] < DIFFERENCE_P
-        equal = scored[~differs].iloc[1:].to_dict("records")
-        worse = scored[differs].sort_values("score", ascending=False).to_dict("records")
-        about = (len(table) > 1, equal, worse, scores.shape[1], given)
-        words = _say("choice", table.to_dict("records")[0], *about)
+        words = choice_text(_choice_of(table, scores.shape[1], given))
+    elif rising.any():
+        words = CANNOT_COMPARE
     else:
-        words = _say("no_choice", rising.any())
+        words = NONE_RISES
     first = table.iloc[0] if table[needed].notna().any() else {"measure": "", "im": ""}
-    return MeasureSelection(
-        str(first["measure"]), str(first["im"]), table, " ".join(words)
+    return MeasureSelection(str(first["measure"]), str(first["im"]), table, words)
+
+
+def _choice_of(table: pd.DataFrame, groups: int, given: Sequence[str]) -> Choice:
+    """Best measure of a sorted table, its equals and those that score worse."""
+    scored = table[table["score"].notna()]
+    differs = scored["p_worse"] < DIFFERENCE_P
+    worse = scored[differs].sort_values("score", ascending=False)
+    return Choice(
+        best=table.to_dict("records")[0],
+        several=len(table) > 1,
+        equal=scored[~differs].iloc[1:].to_dict("records"),
+        worse=worse.to_dict("records"),
+        groups=groups,
+        given=given,
     )
 
 
@@ -254,23 +285,14 @@ def _best_pair(
         # proportional measures (PGA and a/(g tan α) of one block) tell nothing together
         if name == best or proportional:
             continue
-        outcomes = (other.overturned, other.trials, group)
-        both = held_out.outcome_scores(logs, *outcomes)
-        alone = held_out.outcome_scores(logs, *outcomes, fitted=1)
+        scores_of = partial(
+            held_out.outcome_scores, logs, other.overturned, other.trials, group
+        )
+        both, alone = scores_of(), scores_of(fitted=1)
         gain = float((both - alone).sum() / other.n)
         if gain > found[2]:
             found = (name, held_out.paired_p(both, alone), gain)
     return found
-
-
-_say = Macros(
-    "rockfrag.fragility",
-    "measure_selection.j2",
-    DIFFERENCE_P=DIFFERENCE_P,
-    SUFFICIENT_P=SUFFICIENT_P,
-    FEWEST_GROUPS_TO_CHOOSE=FEWEST_GROUPS_TO_CHOOSE,
-    COLUMNS={"mean_period_s": "mean period", "d5_95_s": "significant duration"},
-)
 
 
 def recommend_ida_measure(
@@ -286,10 +308,18 @@ def recommend_ida_measure(
 
     A motion scaled up and down gives many outcomes but one capacity, so the measures are compared by how well
     they predict the bracket of the first overturning of earthquakes that were held out: one observation a motion.
-    ``ida`` knows the ``columns`` that are compared, which must grow with the amplitude; ``measures`` has one row
-    per motion as recorded, with ``name`` and ``pga_g``. Sufficiency is tested against ``given`` columns, such as
-    ``d5_95_s`` or magnitude. The table has also ``beta_amplitude``: β over the power with which the measure grows
-    with the amplitude, which compares Arias intensity fairly with peaks.
+
+    Parameters
+    ----------
+    ida, columns : IDA curves, and the columns that are compared, which must grow with the amplitude
+    measures : one row per motion as recorded, with ``name``, ``pga_g`` and the ``columns``
+    given : columns of ``measures`` against which sufficiency is tested, such as ``d5_95_s`` or magnitude
+    level, seed : of the limits of β [-], and of the bootstrap
+
+    Returns
+    -------
+    The :class:`MeasureSelection`. Its table has also ``beta_amplitude``: β over the power with which the measure
+    grows with the amplitude, which compares Arias intensity fairly with peaks.
     """
     powers = {column: scale_power(column) for column in columns}
     fixed = [column for column, power in powers.items() if power == 0]
@@ -329,5 +359,13 @@ def recommend_ida_measure(
             _row(column, fit, interval, outcomes, p, beta_amplitude=fit.beta / power)
         )
         scores.append(held_out.capacity_scores(scaled, group))
-    about = (rows, np.array(scores), group.size, given, (200, seed))
-    return _selection(*about, "beta_amplitude", needed="score")
+    return _select(
+        rows,
+        np.array(scores),
+        tests=group.size,
+        given=given,
+        replicates=200,
+        seed=seed,
+        efficiency="beta_amplitude",
+        needed="score",
+    )

@@ -1,4 +1,9 @@
-"""The observations that every fragility estimator starts from, checked once at the door, and their pooling."""
+"""Observations that every fragility estimator starts from, checked once at the door, and their pooling.
+
+In: tables of tests, a row a test, or of counts. Out: :class:`Observations`, arrays of shape (n,) with the
+measure in its unit; messages about bad rows name table, row and column. Theory: ``docs/fragility.md``, "When the
+data do not allow a curve".
+"""
 
 from dataclasses import dataclass
 from typing import Literal
@@ -9,7 +14,6 @@ from numpy.typing import NDArray
 from scipy import special
 
 from rockfrag.base.errors import InputError
-from rockfrag.base.keywords import check_names
 from rockfrag.base.short_repr import short_repr
 from rockfrag.motions.intensity import measure_of, split_column
 
@@ -58,6 +62,8 @@ class Observations(Grouped):
     earthquake: NDArray[np.object_]
     name: str = "IM"
     unit: str = ""
+    # whether rows are labelled with motions; else they are tests, or counts of tests
+    of_motions: bool = True
 
     __repr__ = short_repr
 
@@ -89,18 +95,16 @@ class Observations(Grouped):
         """Whether motions have more than one row."""
         return self.n_motions < self.im.size
 
-    def ways(self) -> Floats:
-        """Logarithm of the number of ways in which so many of a row's tests can overturn, shape (n,)."""
+    def log_arrangements(self) -> Floats:
+        """Logarithm of the binomial coefficient of each row, trials over overturned, shape (n,)."""
         stood = self.trials - self.overturned
-        ways = special.gammaln(self.trials + 1) - special.gammaln(self.overturned + 1)
-        return np.asarray(ways - special.gammaln(stood + 1))
+        logs = special.gammaln(self.trials + 1) - special.gammaln(self.overturned + 1)
+        return np.asarray(logs - special.gammaln(stood + 1))
 
     def pooled(self, cell: NDArray[np.intp], im: Floats) -> "Observations":
         """Tests of each cell as one row at a value of the measure, and one motion of its own."""
-        fell, trials = (
-            np.bincount(cell, part).astype(np.float64)
-            for part in (self.overturned, self.trials)
-        )
+        fell = np.bincount(cell, self.overturned).astype(np.float64)
+        trials = np.bincount(cell, self.trials).astype(np.float64)
         labels = np.arange(im.size).astype(object)
         return Observations(im, fell, trials, labels, labels, self.name, self.unit)
 
@@ -130,7 +134,13 @@ class Observations(Grouped):
 def name_and_unit(column: str) -> tuple[str, str]:
     """Split a column name: ``pga_g`` gives ``("PGA", "g")``, ``sa_0_3s_g`` ``("SA(0.3s)", "g")``.
 
-    A name without a known unit is returned whole, with an empty unit.
+    Parameters
+    ----------
+    column : name of a column of a table
+
+    Returns
+    -------
+    Name and unit of the measure; a name without a known unit is whole, with an empty unit.
     """
     found = measure_of(column)
     if found is not None:
@@ -142,15 +152,26 @@ def name_and_unit(column: str) -> tuple[str, str]:
 def numbers(
     table: pd.DataFrame, column: str, source: str = "table", first: int = 1
 ) -> Floats:
-    """Return a column as finite numbers, shape (n,); messages count rows from ``first``."""
+    """Column of a table as finite numbers.
+
+    Parameters
+    ----------
+    table, column : n rows, and the name of the column
+    source, first : name of the table in messages, and the number of its first row there
+
+    Returns
+    -------
+    The numbers in the unit of the column, shape (n,).
+    """
     if column not in table:
-        check_names(source, table.columns, [column])
         known = ", ".join(map(str, table.columns))
         raise InputError(
             f"{source}: there is no column {column!r}; name one of the columns {known}."
         )
     values = pd.to_numeric(table[column], errors="coerce").to_numpy(dtype=np.float64)
-    for row in np.flatnonzero(~np.isfinite(values)):
+    wrong = ~np.isfinite(values)
+    if wrong.any():
+        row = int(wrong.argmax())
         found = table[column].iloc[row]
         raise InputError(
             f"{source}, row {row + first}, column {column!r}: {'nothing' if pd.isna(found) else repr(found)} "
@@ -162,9 +183,20 @@ def numbers(
 def positive(
     table: pd.DataFrame, column: str, source: str = "table", first: int = 1
 ) -> Floats:
-    """Return a column as numbers above zero, shape (n,), because they enter by their logarithm."""
+    """Column of a table as numbers above zero, because they enter by their logarithm.
+
+    Parameters
+    ----------
+    table, column, source, first : as of :func:`numbers`
+
+    Returns
+    -------
+    The numbers in the unit of the column, shape (n,).
+    """
     values = numbers(table, column, source, first)
-    for row in np.flatnonzero(values <= 0):
+    wrong = values <= 0
+    if wrong.any():
+        row = int(wrong.argmax())
         raise InputError(
             f"{source}, row {row + first}, column {column!r}: an intensity measure must be above "
             f"zero to have a logarithm, got {values[row]:g}; correct it or leave the row out."
@@ -175,9 +207,20 @@ def positive(
 def read_observations(
     table: pd.DataFrame, column: str, source: str = "table"
 ) -> Floats:
-    """Return a column of yes/no outcomes as 0 and 1, shape (n,)."""
+    """Column of outcomes, 0 or 1.
+
+    Parameters
+    ----------
+    table, column, source : as of :func:`numbers`
+
+    Returns
+    -------
+    The outcomes, shape (n,).
+    """
     values = numbers(table, column, source)
-    for row in np.flatnonzero((values != 0) & (values != 1)):
+    wrong = (values != 0) & (values != 1)
+    if wrong.any():
+        row = int(wrong.argmax())
         raise InputError(
             f"{source}, row {row + 1}, column {column!r}: overturned must be 0 or 1, got "
             f"{values[row]:g}; give counts of several tests with a column of trials."
@@ -188,17 +231,27 @@ def read_observations(
 def labels(
     table: pd.DataFrame, column: str | None, source: str = "table", first: int = 1
 ) -> NDArray[np.object_]:
-    """Return a column of labels, shape (n,); one label per row where ``column`` is None."""
+    """Column of labels.
+
+    Parameters
+    ----------
+    table, column, source, first : as of :func:`numbers`; a label per row where ``column`` is None
+
+    Returns
+    -------
+    The labels, shape (n,).
+    """
     if column is None:
         return np.array(
             [f"row {row + first}" for row in range(len(table))], dtype=object
         )
     if column not in table:
-        check_names(source, table.columns, [column])
         raise InputError(
             f"{source}: there is no column {column!r}; correct the name of the column."
         )
-    for row in np.flatnonzero(table[column].isna()):
+    missing = table[column].isna().to_numpy()
+    if missing.any():
+        row = int(missing.argmax())
         raise InputError(
             f"{source}, row {row + first}, column {column!r}: the label is missing; fill it in."
         )
@@ -240,15 +293,18 @@ def observations_from_table(
     else:
         counts = numbers(table, trials, source)
         failed = numbers(table, overturned, source)
-        for row in np.flatnonzero((failed < 0) | (failed > counts) | (counts <= 0)):
+        wrong = (failed < 0) | (failed > counts) | (counts <= 0)
+        if wrong.any():
+            row = int(wrong.argmax())
             raise InputError(
                 f"{source}, row {row + 1}, column {overturned!r}: {failed[row]:g} overturned of "
                 f"{counts[row]:g} tests is not a fraction between 0 and 1; correct the counts."
             )
     motions = labels(table, motion, source)
     earthquakes = motions if earthquake is None else labels(table, earthquake, source)
+    named = motion is not None
     return Observations(
-        values, failed, counts, motions, earthquakes, *name_and_unit(im)
+        values, failed, counts, motions, earthquakes, *name_and_unit(im), named
     )
 
 
@@ -259,10 +315,19 @@ MOST_VALUES = 1000
 def cells(
     measure: Floats, most: int = MOST_VALUES, tests: Floats | None = None
 ) -> tuple[NDArray[np.intp], Floats]:
-    """Put each row into a cell of equal or neighbouring values; its number, (n,), and the mean of each cell.
+    """Put each row into a cell of equal or neighbouring values.
 
-    Means rise.  Up to ``most`` different values have a cell each; of more, cells have about equally many rows, or
-    ``tests`` where their number in each row is given.
+    Up to ``most`` different values have a cell each; of more, cells have about equally many rows, or tests.
+
+    Parameters
+    ----------
+    measure : values, shape (n,)
+    most : number of cells at most
+    tests : number of tests in each row, shape (n,); None for one
+
+    Returns
+    -------
+    Number of the cell of each row, shape (n,), and mean of each cell, rising, shape (cells,).
     """
     values, cell = np.unique(measure, return_inverse=True)
     if values.size <= most:
@@ -277,7 +342,16 @@ def cells(
 
 
 def counts(group: NDArray[np.intp], cell: NDArray[np.intp], weight: Floats) -> Floats:
-    """Sum weights by group and cell, shape (groups, cells)."""
+    """Sum weights by group and cell.
+
+    Parameters
+    ----------
+    group, cell, weight : of each row, shape (n,)
+
+    Returns
+    -------
+    The sums, shape (groups, cells).
+    """
     groups, columns = int(group.max()) + 1, int(cell.max()) + 1
     flat = np.bincount(group * columns + cell, weight, minlength=groups * columns)
     return np.asarray(flat.reshape(groups, columns))

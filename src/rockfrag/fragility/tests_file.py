@@ -1,5 +1,9 @@
 """Somebody's own table of tests as a text file.
 
+In: a CSV file, a row a test, and the columns that are wanted. Out: a table with ``motion``, ``earthquake``,
+``overturned`` (0 or 1) and the measures in the units of their names. Docs: ``docs/fragility.md``, "A user's
+table".
+
 Commas, semicolons and tabs, decimal commas, comments above the header (lines that start with ``#``), UTF-8,
 UTF-16 and Western European text are understood; messages name file, row (the header is row 1) and column.
 """
@@ -46,8 +50,17 @@ def read_tests(
 ) -> pd.DataFrame:
     """Read a table of tests, one row per test.
 
-    The result has ``motion``, ``earthquake`` (text), ``overturned`` (0 or 1), the measures (above zero) and the
-    numbers ``given``. Without columns of motion and earthquake every row is a motion of its own.
+    Parameters
+    ----------
+    path, measures : text file, and its columns of measures, or recipes of them
+    overturned, motion, earthquake
+        Columns of outcome and labels; without motion and earthquake every row is a motion of its own.
+    given : further columns of numbers
+
+    Returns
+    -------
+    A table with ``motion``, ``earthquake`` (text), ``overturned`` (0 or 1), the measures (above zero) and the
+    numbers ``given``.
     """
     recipes: dict[str, Sequence[str | float]] = (
         dict(measures)
@@ -120,7 +133,16 @@ overturn nothing taller than a centimetre."""
 def read_columns(
     path: str | os.PathLike[str], kinds: Mapping[str, str]
 ) -> pd.DataFrame:
-    """Read columns of a table of tests, each as what it is: label, number, positive or outcome (0 and 1)."""
+    """Read columns of a table of tests.
+
+    Parameters
+    ----------
+    path, kinds : text file, and the kind of each column: ``label``, ``number``, ``positive`` or ``outcome``
+
+    Returns
+    -------
+    The columns, outcomes as 0 and 1, shape (tests, columns).
+    """
     source = Path(path).name
     encoding, comments, separator, titles = _head(path)
     for name in kinds:
@@ -172,7 +194,16 @@ def read_columns(
 
 
 def product_of(raw: pd.DataFrame, recipe: Sequence[str | float]) -> Floats:
-    """Return the product of columns and numbers, shape (rows,)."""
+    """Product of columns and numbers.
+
+    Parameters
+    ----------
+    raw, recipe : a table, and its columns and the numbers to multiply
+
+    Returns
+    -------
+    The products, shape (rows,).
+    """
     result = np.ones(len(raw))
     for factor in recipe:
         result = result * (
@@ -184,7 +215,9 @@ def product_of(raw: pd.DataFrame, recipe: Sequence[str | float]) -> Floats:
 def _outcomes(piece: pd.DataFrame, column: str, source: str, first: int) -> Floats:
     text = piece[column].fillna("").str.strip().str.lower()
     text = text.str.replace(r"^([01])[.,]0*$", r"\1", regex=True)
-    for row in np.flatnonzero(~text.isin(_YES | _NO)):
+    wrong = ~text.isin(_YES | _NO).to_numpy()
+    if wrong.any():
+        row = int(wrong.argmax())
         raise InputError(
             f"{source}, row {first + row}, column {column!r}: {piece[column].iloc[row]!r} is no outcome; "
             "write 1 or yes for overturned, 0 or no for survived."
@@ -202,7 +235,16 @@ _READERS: Mapping[str, Callable[[pd.DataFrame, str, str, int], NDArray[Any]]] = 
 
 
 def read_titles(path: str | os.PathLike[str]) -> list[str]:
-    """Return the titles of the columns of a table of tests."""
+    """Titles of the columns of a table of tests.
+
+    Parameters
+    ----------
+    path : text file
+
+    Returns
+    -------
+    The titles, in order.
+    """
     return _head(path)[-1]
 
 

@@ -1,4 +1,8 @@
-"""Fragility from anybody's table of tests: overturned yes or no, with intensity measures."""
+"""Fragility from anybody's table of tests: overturned yes or no, with intensity measures.
+
+In: a text file, a row a test. Out: :class:`UserFragility`, a curve by measure with limits and checks, the
+recommended measure, and the fragility in the first two. Docs: ``docs/fragility.md``, "A user's table".
+"""
 
 import os
 from collections.abc import Mapping, Sequence
@@ -20,7 +24,7 @@ from rockfrag.fragility.vector import VectorTables, vector_tables
 
 @dataclass(frozen=True)
 class UserFragility:
-    """All that a table of tests says about fragility.
+    """Fragility from a table of tests.
 
     Attributes
     ----------
@@ -124,5 +128,12 @@ def fit_user_table(
             level=level,
             seed=seed,
         )
-    tables = pd.DataFrame(rows), pd.concat(bins, ignore_index=True)
-    return UserFragility(tests, outcomes, fits, choice, both, *tables)
+    return UserFragility(
+        tests=tests,
+        outcomes=outcomes,
+        fits=fits,
+        choice=choice,
+        two_measures=both,
+        table=pd.DataFrame(rows),
+        bins=pd.concat(bins, ignore_index=True),
+    )

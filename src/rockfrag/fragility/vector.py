@@ -1,11 +1,16 @@
-"""Fragility in two intensity measures with what is known of it: interval, interaction, contours, fit, tables.
+"""Fragility in two intensity measures: fit, limits, interaction, contours, goodness of fit, tables.
 
-Every statement takes the earthquake as the unit: limits by a jackknife that leaves out an earthquake at a time
-(Tukey 1958), and a score test of the interaction summed by earthquake (Cameron and Miller 2015, sec. VI).
+P(overturn | IM1, IM2) = Φ(c0 + c1 ln IM1 + c2 ln IM2 + c12 ln IM1 ln IM2). Every statement takes the earthquake as
+the unit: limits by a jackknife that leaves out an earthquake at a time (Tukey 1958), and a score test of the
+interaction summed by earthquake (Cameron and Miller 2015, sec. VI).
+
+In: a table of tests, a row a test, with two columns of measures. Out: :class:`VectorFragility` and its
+:class:`VectorChecks`, or the tidy :class:`VectorTables`. Theory: ``docs/fragility.md``, "Two intensity measures".
 """
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
@@ -21,7 +26,6 @@ from rockfrag.fragility.curve_facts import REJECTED
 from rockfrag.fragility.held_out import outcome_scores
 from rockfrag.fragility.intervals import FEWEST_GROUPS, all_but_one, half_width
 from rockfrag.fragility.observations import Floats
-from rockfrag.words.sentences import Macros
 
 MOST_FOR_THE_PLANE = 20_000
 """Tests up to which separation is found exactly; a linear programme of more takes too long."""
@@ -31,8 +35,6 @@ INTERACTION_LEVEL = 0.05
 
 LARGEST_COEFFICIENT = 60.0
 """A replicate with a larger coefficient is separated; it is fitted with the penalised likelihood."""
-
-_say = Macros("rockfrag.fragility", "vector.j2", FEWEST_GROUPS=FEWEST_GROUPS)
 
 
 @dataclass(frozen=True)
@@ -87,10 +89,8 @@ class VectorFragility:
 
     def probability(self, first: ArrayLike, second: ArrayLike) -> Floats:
         """Probability of overturning at values of the two measures, which broadcast [-]."""
-        x, y = (
-            np.log(np.asarray(first, np.float64)),
-            np.log(np.asarray(second, np.float64)),
-        )
+        x = np.log(np.asarray(first, np.float64))
+        y = np.log(np.asarray(second, np.float64))
         slopes = zip(self.coefficients[1:], (x, y, x * y), strict=False)
         return np.asarray(
             special.ndtr(sum((c * v for c, v in slopes), self.coefficients[0]))
@@ -183,18 +183,49 @@ def fit_vector(
     groups = int(group.max()) + 1
     replicates = _replicates(design, outcome, group, fit.coefficients)
     names = [observations.name_and_unit(column)[0] for column in measures]
-    notes = tuple(_say("notes", names, fit, replicates, groups))
-    covariance = tuple(tuple(row) for row in np.linalg.inv(fit.information).tolist())
-    found = (
-        tuple(fit.coefficients.tolist()),
-        covariance,
-        fit.log_likelihood,
-        fit.method,
-    )
-    counted = (int(outcome.size), int(outcome.sum()), groups)
+    covariance = np.linalg.inv(fit.information).tolist()
     return VectorFragility(
-        measures, *found, replicates, interaction, *counted, level, notes
+        measures,
+        coefficients=tuple(fit.coefficients.tolist()),
+        covariance=tuple(tuple(row) for row in covariance),
+        log_likelihood=fit.log_likelihood,
+        method=fit.method,
+        replicates=replicates,
+        interaction=interaction,
+        n=int(outcome.size),
+        n_overturned=int(outcome.sum()),
+        n_earthquakes=groups,
+        level=level,
+        warnings=tuple(_notes(names, fit, replicates, groups)),
     )
+
+
+def _notes(names: list[str], fit: "_Fit", replicates: Floats, groups: int) -> list[str]:
+    """Warnings about a fit in two measures, a sentence each."""
+    notes = []
+    if "penalised" in fit.method:
+        notes.append(
+            "A line in the two measures separates all tests that overturned from those that survived: the fit is "
+            "penalised, and how steep it is remains open."
+        )
+    if groups < 2:
+        notes.append(
+            "All tests come from one earthquake: there are no limits for others."
+        )
+    elif groups < FEWEST_GROUPS:
+        notes.append(
+            f"Limits from {groups} earthquakes were not validated ({FEWEST_GROUPS} are the fewest that were)."
+        )
+    for k, name in enumerate(names, start=1):
+        if fit.coefficients[k] <= 0:
+            notes.append(
+                f"The probability does not rise with {name} at given other measure; there is no contour in it."
+            )
+        elif (replicates[:, k] <= 0).any():
+            notes.append(
+                f"Whether the probability rises with {name} hangs on single earthquakes."
+            )
+    return notes
 
 
 class _Fit(NamedTuple):
@@ -208,13 +239,14 @@ class _Fit(NamedTuple):
 
 def _fitted(design: Floats, outcome: Floats) -> _Fit:
     """Fit a probit; under separation (found exactly, by linear programming) the likelihood is penalised."""
-    counts = (outcome[None, :], np.ones((1, outcome.size)))
+    fell, trials = outcome[None, :], np.ones((1, outcome.size))
     # among so many tests no plane parts what a fit does not find parted
     apart = outcome.size <= MOST_FOR_THE_PLANE and linearly_separable(design, outcome)
-    fit = fit_batch(design, *counts, penalised=apart, tolerance=1e-11)
+    fit = fit_batch(design, fell, trials, penalised=apart, tolerance=1e-11)
     method = "probit, maximum likelihood"
     if not apart and not fit.converged[0]:
-        apart, fit = True, fit_batch(design, *counts, penalised=True, tolerance=1e-11)
+        apart = True
+        fit = fit_batch(design, fell, trials, penalised=True, tolerance=1e-11)
     if apart:
         method = "probit, penalised likelihood (Firth)"
     eta = design @ fit.coefficients[0]
@@ -287,8 +319,10 @@ def _interaction(
         if spread != 0:
             p = float(2.0 * stats.t.sf(abs(score.sum()) / spread, groups - 1))
     ratio = 2.0 * (full.log_likelihood - plain.log_likelihood)
-    tests = (design[:, 1:], outcome, np.ones(outcome.size), group)
-    gain = (outcome_scores(*tests) - outcome_scores(*tests, fitted=2)).sum()
+    scores_of = partial(
+        outcome_scores, design[:, 1:], outcome, np.ones(outcome.size), group
+    )
+    gain = (scores_of() - scores_of(fitted=2)).sum()
     kept = bool(p < INTERACTION_LEVEL and gain > 0 and "penalised" not in full.method)
     return Interaction(p, ratio, kept)
 
@@ -358,11 +392,11 @@ def check_vector(
         size=(replicates, int(motions.max()) + 1)
     )
     ones = np.ones(eta.size)
-    fell, expected, trials = (
-        np.asarray(np.bincount(bins, values), dtype=np.float64)
-        for values in (outcome, special.ndtr(eta), ones)
-    )
-    own = binned_deviance(fell, expected, trials)
+
+    def by_bin(values: Floats) -> Floats:
+        return np.asarray(np.bincount(bins, values), dtype=np.float64)
+
+    own = binned_deviance(by_bin(outcome), by_bin(special.ndtr(eta)), by_bin(ones))
     at_once = max(MOST_DRAWN // eta.size, 1)
     parts = np.split(capacity, range(at_once, replicates, at_once))
     simulated = np.concatenate(
@@ -378,13 +412,10 @@ def check_vector(
 def _surface_table(
     fit: VectorFragility, logs: list[Floats], outcome: Floats
 ) -> pd.DataFrame:
-    (row, first), (column, second) = (
-        observations.cells(values, MOST_CELLS) for values in logs
-    )
-    tests, fell = (
-        observations.counts(row, column, each)
-        for each in (np.ones(outcome.size), outcome)
-    )
+    row, first = observations.cells(logs[0], MOST_CELLS)
+    column, second = observations.cells(logs[1], MOST_CELLS)
+    tests = observations.counts(row, column, np.ones(outcome.size))
+    fell = observations.counts(row, column, outcome)
     probability = monotone_probability(fell, tests)
     i, j = np.nonzero(tests)
     x, y = np.exp(first[i]), np.exp(second[j])
@@ -404,7 +435,16 @@ def monotone_probability(overturned: Floats, tests: Floats) -> Floats:
     """Probability of overturning by cell that rises along rows and columns and is closest to what was observed.
 
     Weighted least squares under both orders, by alternating projections (Dykstra and Robertson 1982, Annals of
-    Statistics 10: 708-716). Arrays have the shape (rows, columns); cells without tests follow their neighbours.
+    Statistics 10: 708-716).
+
+    Parameters
+    ----------
+    overturned, tests : numbers of tests by cell, shape (rows, columns); cells without tests follow their
+        neighbours
+
+    Returns
+    -------
+    The probability [-], shape (rows, columns).
     """
     weight = np.maximum(tests, 1e-9)
     value = np.where(tests > 0, overturned / weight, overturned.sum() / tests.sum())
@@ -434,19 +474,21 @@ MOST_TESTS = 100_000
 """Tests of one fit; of more every so many-th is taken, which changes limits over earthquakes little."""
 
 FITS = (
-    *(
-        "first",
-        "second",
-        "c0",
-        "c1",
-        "c2",
-        "c12",
-        "aic",
-        "tests",
-        "overturned",
-        "earthquakes",
-    ),
-    *("p_interaction", "likelihood_ratio", "p_fit", "method", "warnings"),
+    "first",
+    "second",
+    "c0",
+    "c1",
+    "c2",
+    "c12",
+    "aic",
+    "tests",
+    "overturned",
+    "earthquakes",
+    "p_interaction",
+    "likelihood_ratio",
+    "p_fit",
+    "method",
+    "warnings",
 )
 CONTOURS = ("first", "second", "probability", "of", "at", "value", "lower", "upper")
 CELLS = (
@@ -487,10 +529,18 @@ def vector_tables(
     level: float = 0.90,
     seed: int = 0,
 ) -> VectorTables:
-    """Fit every pair of measures to every table of tests, by name; ``warnings`` say which fits are not possible.
+    """Fit every pair of measures to every table of tests; ``warnings`` say which fits are not possible.
 
-    ``label`` is the column in which names of the tables stand; ``earthquake`` and ``motion`` are None where each
-    test is one of its own; ``seed`` is of the test of fit.
+    Parameters
+    ----------
+    tests, pairs : tables of tests by name, a row a test, and the pairs of their columns of measures
+    label : column of the result that has the names of the tables
+    earthquake, motion : columns of labels; None where each test is one of its own
+    level, seed : of limits [-], and of the test of fit
+
+    Returns
+    -------
+    The :class:`VectorTables`.
     """
     fits: list[dict[str, object]] = []
     contours, cells = [], []
@@ -506,19 +556,7 @@ def vector_tables(
                 fits.append({**about, "method": "none", "warnings": str(error)})
                 continue
             checks = check_vector(fit, used, motion=motion, seed=seed)
-            values = (
-                *(*fit.coefficients, 0.0)[:4],
-                *(
-                    fit.aic,
-                    fit.n,
-                    fit.n_overturned,
-                    fit.n_earthquakes,
-                    fit.interaction.p,
-                ),
-                *(fit.interaction.likelihood_ratio, checks.p_fit, fit.method),
-                " ".join(fit.warnings),
-            )
-            fits.append({**about, **dict(zip(FITS[2:], values, strict=True))})
+            fits.append({**about, **_fit_row(fit, checks)})
             contours.append(_contours(fit, used).assign(**about))
             # measures are named alike for every pair, whose tables are joined
             surface = checks.surface.rename(
@@ -530,6 +568,26 @@ def vector_tables(
         _joined(contours, [label, *CONTOURS]),
         _joined(cells, [label, *CELLS]),
     )
+
+
+def _fit_row(fit: VectorFragility, checks: VectorChecks) -> dict[str, object]:
+    """Columns of ``FITS`` behind the two measures; a product that earned no place has the coefficient 0."""
+    c0, c1, c2, c12 = (*fit.coefficients, 0.0)[:4]
+    return {
+        "c0": c0,
+        "c1": c1,
+        "c2": c2,
+        "c12": c12,
+        "aic": fit.aic,
+        "tests": fit.n,
+        "overturned": fit.n_overturned,
+        "earthquakes": fit.n_earthquakes,
+        "p_interaction": fit.interaction.p,
+        "likelihood_ratio": fit.interaction.likelihood_ratio,
+        "p_fit": checks.p_fit,
+        "method": fit.method,
+        "warnings": " ".join(fit.warnings),
+    }
 
 
 def _joined(parts: list[pd.DataFrame], columns: list[str]) -> pd.DataFrame:

@@ -30,6 +30,15 @@ def motions_of_row(
     the strike, ``radial`` or ``transverse`` with the azimuth from the station to the source, or
     ``stronger``: the direction of the largest acceleration. Where it is empty the motion is the
     component of ``file`` itself. A motion and its vertical one are over the time that they have in common.
+
+    Parameters
+    ----------
+    row, folder, records : row of a catalogue, its folder, and that of fetched records
+    vertical : whether the vertical component is wanted
+
+    Returns
+    -------
+    The motion, and behind it the vertical one [m/s²].
     """
     if vertical and not row.get("vertical"):
         raise InputError(
@@ -69,7 +78,16 @@ def turned(first: Motion, second: Motion, direction: str) -> Motion:
 def pair_of_row(
     row: dict[str, Any], folder: Path, records: Path
 ) -> tuple[Motion, Motion]:
-    """Read both horizontal components that a row names, with its factor, at common times."""
+    """Read both horizontal components that a row names, with its factor, at common times.
+
+    Parameters
+    ----------
+    row, folder, records : row of a catalogue, its folder, and that of fetched records
+
+    Returns
+    -------
+    Both components [m/s²].
+    """
     if not row.get("second"):
         raise InputError(
             f"{row['name']}: the catalogue names no second component of it."
@@ -90,6 +108,15 @@ def measure_records(
 
     Both are processed first. The columns are ``name`` of the row, then those of
     :func:`rockfrag.motions.measure_pair`; there is none where no row names a second component.
+
+    Parameters
+    ----------
+    rows, folder, records : rows of a catalogue, its folder, and that of fetched records
+    processing : steps, as of :func:`rockfrag.motions.processing.process`
+
+    Returns
+    -------
+    pandas.DataFrame, a row a record.
     """
     # the measures are compiled, which the checks of a study need not wait for
     from rockfrag.motions.measures import measure_pair

@@ -152,14 +152,28 @@ def intensity_measure(
 
 
 def declared() -> tuple[IntensityMeasure, ...]:
-    """Return all measures in the order in which they were declared, a spectral one once for all periods."""
+    """Measures in the order in which they were declared, a spectral one once for all periods.
+
+    Returns
+    -------
+    The measures.
+    """
     return tuple(_MEASURES.values())
 
 
 def intensity_measures(
     periods: Sequence[float] = SPECTRAL_PERIODS,
 ) -> tuple[IntensityMeasure, ...]:
-    """Return the measures that a table of motions has, in its order, spectral ones at these periods [s]."""
+    """Measures that a table of motions has, in its order.
+
+    Parameters
+    ----------
+    periods : of the spectral ones [s]
+
+    Returns
+    -------
+    The measures.
+    """
     found: list[IntensityMeasure] = []
     spectral = [measure for measure in declared() if measure.spectral]
     for measure in declared():
@@ -171,7 +185,16 @@ def intensity_measures(
 
 
 def measure_columns(growing: bool = False) -> tuple[str, ...]:
-    """Return the columns of the measures of motions; only of those that grow with the amplitude if asked."""
+    """Columns of the measures of motions.
+
+    Parameters
+    ----------
+    growing : whether only those that grow with the amplitude
+
+    Returns
+    -------
+    The columns.
+    """
     found = (
         measure for measure in intensity_measures() if measure.power > 0 or not growing
     )
@@ -179,13 +202,31 @@ def measure_columns(growing: bool = False) -> tuple[str, ...]:
 
 
 def split_column(column: str) -> tuple[str, str]:
-    """Split the name of a column into name and unit, which is empty where the name has none that is known."""
+    """Name and unit of a column.
+
+    Parameters
+    ----------
+    column : name of a column
+
+    Returns
+    -------
+    Name and unit, which is empty where none is known.
+    """
     found = _COLUMN.fullmatch(column)
     return (found["name"], _UNITS[found["unit"]]) if found else (column, "")
 
 
 def measure_of(column: str) -> IntensityMeasure | None:
-    """Return the measure of a column such as ``pga_g`` or ``sa_0_3s_g``, in the unit of its name; None if none."""
+    """Measure of a column such as ``pga_g`` or ``sa_0_3s_g``, in the unit of its name.
+
+    Parameters
+    ----------
+    column : name of a column
+
+    Returns
+    -------
+    The measure; None if there is none.
+    """
     name, unit = split_column(column)
     if name in _PEAKS:
         return replace(_MEASURES["pga"], unit=unit)
@@ -202,7 +243,16 @@ def measure_of(column: str) -> IntensityMeasure | None:
 
 
 def measure_labelled(label: str) -> IntensityMeasure | None:
-    """Return the measure of a label: ``PGA`` or ``SA(0.3s)``; None if there is none."""
+    """Measure of a label, such as ``PGA`` or ``SA(0.3s)``.
+
+    Parameters
+    ----------
+    label : name as the field writes it
+
+    Returns
+    -------
+    The measure; None if there is none.
+    """
     kind, _, rest = label.partition("(")
     for measure in declared():
         if label == measure.label:
@@ -248,7 +298,16 @@ def pgv(motion: Motion) -> float:
 
 @intensity_measure("cm", power=1, label="PGD", compared=True, decimals=2)
 def pgd(motion: Motion) -> float:
-    """Peak absolute displacement from rest [m], between samples too."""
+    """Peak absolute displacement from rest [m], between samples too.
+
+    Parameters
+    ----------
+    motion : acceleration of n samples [m/s²]
+
+    Returns
+    -------
+    The displacement [m].
+    """
     return peak_displacement(motion.acceleration, motion.dt)
 
 
@@ -346,6 +405,14 @@ def predominant_period(motion: Motion) -> float:
     """Period Tp of the largest 5 % damped PSA [s]; NaN for a motion of zeros.
 
     Rathje, Abrahamson & Bray (1998); searched from 0.02 to 10 s, periods 1.2 % apart.
+
+    Parameters
+    ----------
+    motion : acceleration of n samples [m/s²]
+
+    Returns
+    -------
+    The period [s].
     """
     from rockfrag.motions.response_spectra import peak_displacements
 

@@ -126,6 +126,15 @@ def pad(motion: Motion, before_s: float = 0.0, after_s: float = 0.0) -> Motion:
     An acausal filter needs room for its transients: 1.5 × order / corner seconds in all (Converse &
     Brady 1992, USGS Open-File Report 92-296A), and displacements stay right only while that room is
     kept (Boore 2005, Bull. Seism. Soc. Am. 95(2), 745-750).
+
+    Parameters
+    ----------
+    motion : acceleration of n samples
+    before_s, after_s : lengths of the zeros [s]
+
+    Returns
+    -------
+    The longer motion.
     """
     before_s = number_from_zero("step pad: before_s", before_s, "seconds")
     after_s = number_from_zero("step pad: after_s", after_s, "seconds")
@@ -189,7 +198,7 @@ def bracketed_part(motion: Motion, threshold_g: float = 0.05) -> Motion:
             f"step bracketed_part: motion {motion.name!r} never reaches {threshold_g} g "
             f"(its peak is {motion.pga / GRAVITY:.3g} g); lower threshold_g."
         )
-    start, end = (float(place * motion.dt) for place in above[[0, -1]])
+    start, end = float(above[0] * motion.dt), float(above[-1] * motion.dt)
     return _between(motion, "bracketed_part", start, end, threshold_g=threshold_g)
 
 
@@ -225,7 +234,17 @@ def _between(
 def highpass(
     motion: Motion, corner_hz: float, order: int = 4, causal: bool = False
 ) -> Motion:
-    """Butterworth high-pass filter of an order from 1 to 10, acausal unless a causal one is asked for."""
+    """Butterworth high-pass filter of an order from 1 to 10, acausal unless a causal one is asked for.
+
+    Parameters
+    ----------
+    motion, corner_hz : the motion, and the corner frequency [Hz]
+    order, causal : of the filter, 1 to 10
+
+    Returns
+    -------
+    The filtered motion [m/s²].
+    """
     return _filtered("highpass", motion, order, causal, corner_hz=corner_hz)
 
 
@@ -248,7 +267,8 @@ def _filtered(
 ) -> Motion:
     corners, nyquist = {}, 0.5 / motion.dt
     for name, value in corners_hz.items():
-        corner = corners[name] = positive_number(f"step {kind}: {name}", value, "hertz")
+        corner = positive_number(f"step {kind}: {name}", value, "hertz")
+        corners[name] = corner
         # ObsPy takes what is within a millionth of Nyquist for Nyquist and changes the filter
         if corner >= nyquist * (1 - 2e-6):
             raise InputError(
@@ -341,7 +361,16 @@ def scale(motion: Motion, factor: float) -> Motion:
 
 
 def factors_to_pga(motion: Motion, pga_g: Floats) -> Floats:
-    """Factors [-] that scale a motion to peak accelerations [g], in the shape in which these come."""
+    """Factors [-] that scale a motion to peak accelerations [g], in the shape in which these come.
+
+    Parameters
+    ----------
+    motion, pga_g : the motion, and peak accelerations [g], any shape
+
+    Returns
+    -------
+    The factors [-], same shape.
+    """
     _check_not_zero("factors_to_pga", motion, motion.pga)
     return pga_g * GRAVITY / motion.pga
 
@@ -502,7 +531,16 @@ def process(motion: Motion, steps: Sequence[Mapping[str, Any]] = ()) -> Motion:
 def check_steps(
     steps: Sequence[Mapping[str, Any]],
 ) -> list[tuple[Callable[..., Motion], dict[str, Any]]]:
-    """Return the functions and parameters of steps; InputError if :func:`process` does not know one."""
+    """Functions and parameters of processing steps; InputError for an unknown one.
+
+    Parameters
+    ----------
+    steps : each with ``step`` and its parameters
+
+    Returns
+    -------
+    A function and its parameters for each step.
+    """
     if isinstance(steps, str | Mapping) or not isinstance(steps, Sequence):
         raise InputError(f"processing: a list of steps is needed, got {steps!r}.")
     return [_checked(number, entry) for number, entry in enumerate(steps, start=1)]

@@ -185,8 +185,10 @@ def best_place(
     )
 
     # norms of both pulses, and the products of the first window
-    wave0 = wave1 = wave2 = complex(1.0, 0.0)
-    sum0 = sum1 = sum2 = complex(velocity[first], 0.0)
+    unit = complex(1.0, 0.0)
+    wave0, wave1, wave2 = unit, unit, unit
+    start = complex(velocity[first], 0.0)
+    sum0, sum1, sum2 = start, start, start
     even_norm, odd_norm = 1.0, 0.0
     for j in range(1, half + 1):
         wave0, wave1, wave2 = wave0 * turn0, wave1 * turn1, wave2 * turn2

@@ -39,7 +39,12 @@ def sine(amplitude: float, period: float, cycles: int, dt: float = DT) -> Motion
     given = {"amplitude": amplitude, "period": period, "cycles": cycles}
     source = "steady harmonic motion from rest"
     return _pulse(
-        "sine", source, lambda t: np.sin(2 * np.pi * t / period), length, dt, given
+        "sine",
+        source,
+        lambda t: np.sin(2 * np.pi * t / period),
+        length=length,
+        dt=dt,
+        given=given,
     )
 
 
@@ -62,7 +67,12 @@ def one_sine(amplitude: float, period: float, dt: float = DT) -> Motion:
     )
     source = "Makris & Roussos (2000)"
     return _pulse(
-        "one_sine", source, lambda t: np.sin(2 * np.pi * t / period), length, dt, given
+        "one_sine",
+        source,
+        lambda t: np.sin(2 * np.pi * t / period),
+        length=length,
+        dt=dt,
+        given=given,
     )
 
 
@@ -86,15 +96,30 @@ def one_cosine(amplitude: float, period: float, dt: float = DT) -> Motion:
         {"amplitude": amplitude, "period": period},
     )
     return _pulse(
-        name, source, lambda t: np.cos(2 * np.pi * t / period), length, dt, given, True
+        name,
+        source,
+        lambda t: np.cos(2 * np.pi * t / period),
+        length=length,
+        dt=dt,
+        given=given,
+        jumps=True,
     )
 
 
 def commanded_cosine(pga: float, pgv_over_pga: float, cycles: int = 1) -> Motion:
-    """Whole cosines of acceleration, as a table is told to make by PGA and PGV/PGA.
+    """Whole cosines of acceleration, as commanded of a table by PGA and PGV/PGA.
 
     The displacement A - A cos 2πFt has the acceleration PGA cos 2πFt with F = PGA / (2π PGV) and A = PGA / (2πF)²:
     the table starts and ends at rest, and its acceleration jumps to PGA at the start and from it at the end.
+
+    Parameters
+    ----------
+    pga, pgv_over_pga : peak acceleration [m/s²], and peak velocity over it [s]
+    cycles : whole number of cosines
+
+    Returns
+    -------
+    The motion [m/s²].
     """
     name = "commanded_cosine"
     positive_number(f"{name}: pga", pga, "m/s²")
@@ -107,10 +132,10 @@ def commanded_cosine(pga: float, pgv_over_pga: float, cycles: int = 1) -> Motion
         name,
         source,
         lambda t: np.cos(2 * np.pi * t / period),
-        length,
-        step,
-        given,
-        True,
+        length=length,
+        dt=step,
+        given=given,
+        jumps=True,
     )
 
 
@@ -133,9 +158,9 @@ def half_sine(amplitude: float, duration: float, dt: float = DT) -> Motion:
         "half_sine",
         "Housner (1963)",
         lambda t: np.sin(np.pi * t / duration),
-        length,
-        dt,
-        given,
+        length=length,
+        dt=dt,
+        given=given,
     )
 
 
@@ -155,7 +180,13 @@ def rectangular(amplitude: float, duration: float, dt: float = DT) -> Motion:
     length = _seconds("rectangular: duration", duration)
     given = {"amplitude": amplitude, "duration": duration}
     return _pulse(
-        "rectangular", "Housner (1963)", np.ones_like, length, dt, given, True
+        "rectangular",
+        "Housner (1963)",
+        np.ones_like,
+        length=length,
+        dt=dt,
+        given=given,
+        jumps=True,
     )
 
 
@@ -181,7 +212,14 @@ def ricker_symmetric(amplitude: float, period: float, dt: float = DT) -> Motion:
         return (1 - x2) * np.exp(-x2 / 2)
 
     given = {"amplitude": amplitude, "period": period}
-    return _pulse("ricker_symmetric", "Ricker (1943)", shape, 2 * centre, dt, given)
+    return _pulse(
+        "ricker_symmetric",
+        "Ricker (1943)",
+        shape,
+        length=2 * centre,
+        dt=dt,
+        given=given,
+    )
 
 
 def ricker_antisymmetric(amplitude: float, period: float, dt: float = DT) -> Motion:
@@ -214,9 +252,9 @@ def ricker_antisymmetric(amplitude: float, period: float, dt: float = DT) -> Mot
         "ricker_antisymmetric",
         "Vassiliou & Makris (2011)",
         shape,
-        2 * centre,
-        dt,
-        given,
+        length=2 * centre,
+        dt=dt,
+        given=given,
     )
 
 
@@ -266,7 +304,14 @@ def mavroeidis_papageorgiou(
         "cycles": cycles,
         "phase_deg": phase_deg,
     }
-    return _pulse(who, "Mavroeidis & Papageorgiou (2003)", shape, length, dt, given)
+    return _pulse(
+        who,
+        "Mavroeidis & Papageorgiou (2003)",
+        shape,
+        length=length,
+        dt=dt,
+        given=given,
+    )
 
 
 def sine_sweep(
@@ -315,7 +360,12 @@ def sine_sweep(
     given = {"amplitude": amplitude, "start_hz": start_hz, "end_hz": end_hz}
     given["octaves_per_minute"] = octaves_per_minute
     return _pulse(
-        who, "IEC 60068-2-6, logarithmic sweep", shape, abs(octaves) / rate, dt, given
+        who,
+        "IEC 60068-2-6, logarithmic sweep",
+        shape,
+        length=abs(octaves) / rate,
+        dt=dt,
+        given=given,
     )
 
 
@@ -327,6 +377,7 @@ def _pulse(
     name: str,
     source: str,
     shape: Callable[[Floats], Floats],
+    *,
     length: float,
     dt: float,
     given: Mapping[str, float],

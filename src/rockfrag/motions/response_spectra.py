@@ -76,6 +76,14 @@ def oscillator_matrix(omega: float, damping: float, step: float) -> Floats:
     The state is (u, u', a, s): relative displacement and velocity, ground acceleration and its slope; u'' + 2 ζ ω
     u' + ω² u = -a, a' = s.  Nigam & Jennings (1969, Bull. Seism. Soc. Am. 59(2), 909-922), for any damping, at and
     above critical too.  The matrix, of shape (2, 4), maps (u, u', a, s) to (u, u') one step [s] later.
+
+    Parameters
+    ----------
+    omega, damping, step : circular frequency [rad/s], fraction of critical damping [-] and step [s]
+
+    Returns
+    -------
+    The propagator, shape (4, 4).
     """
     rate = damping * omega
     turn = omega * math.sqrt(abs(1 - damping**2))
@@ -278,7 +286,17 @@ def _peaks(
 def oscillator_response(
     motion: Motion, period: float, damping: float = 0.05
 ) -> tuple[Floats, Floats, Floats]:
-    """Response history of a linear oscillator at rest at first; exact at the samples."""
+    """Response history of a linear oscillator at rest at first; exact at the samples.
+
+    Parameters
+    ----------
+    motion : acceleration of n samples [m/s²]
+    period, damping : of the oscillator [s], and fraction of critical damping [-]
+
+    Returns
+    -------
+    Relative displacement [m], relative velocity [m/s] and absolute acceleration [m/s²], shape (n,) each.
+    """
     (period,) = _checked_periods([period])
     damping = checked_damping(damping)
     omega = 2 * math.pi / period
@@ -334,7 +352,16 @@ def steps_within(dt: float, period: float, damping: float) -> int:
 
 
 def fourier_amplitude(motion: Motion, least_length: int = 0) -> tuple[Floats, Floats]:
-    """Fourier amplitude spectrum |∫ a e^(-iωt) dt| as dt times the discrete transform."""
+    """Fourier amplitude spectrum |∫ a e^(-iωt) dt| as dt times the discrete transform.
+
+    Parameters
+    ----------
+    motion, least_length : acceleration of n samples [m/s²], and length to which zeros extend it
+
+    Returns
+    -------
+    Frequencies [Hz] and amplitudes [m/s], shape (frequencies,) each.
+    """
     length = max(motion.acceleration.size, least_length)
     amplitude = motion.dt * np.abs(np.fft.rfft(motion.acceleration, length))
     return np.asarray(np.fft.rfftfreq(length, motion.dt), dtype=np.float64), amplitude

@@ -11,7 +11,7 @@ from rockfrag.base.errors import InputError
 from rockfrag.base.input_checks import real_number
 from rockfrag.motions.processing import starting_later
 from rockfrag.records.motion import Motion
-from rockfrag.records.parsing.quantities import azimuth_of, is_vertical
+from rockfrag.records.parsing.directions import azimuth_of, is_vertical
 
 _RIGHT_ANGLE = 5.0  # degrees by which two components may be off a right angle
 # directions looked in; the other half of the circle sees the same
@@ -146,11 +146,19 @@ _WHOLE = 1e-3
 def common_time(
     motions: Sequence[Motion], verticals: Collection[int] | None = None
 ) -> list[Motion]:
-    """Return motions at the same times: those that all of them have, at samples of a horizontal one.
+    """Components at the same times: those that all of them have, at samples of a horizontal one.
 
     Where all state the time of their first sample they are shifted by it, else they are taken to begin
     together. The times are those of the horizontal component of the shortest interval, which is not moved
     for a vertical. Samples between those of a motion are on the straight line between its neighbours.
+
+    Parameters
+    ----------
+    motions, verticals : the components, and the places of vertical ones among them
+
+    Returns
+    -------
+    The components, of equal length and interval.
     """
     # of the first samples after the earliest [s]
     starts = [0.0] * len(motions)

@@ -111,7 +111,9 @@ def evolutionary(
         },
     }
     source = "Rezaeian & Der Kiureghian (2008, 2010)"
-    return _synthetic(padded.acceleration - drift, dt, who, source, seed, given)
+    return _synthetic(
+        padded.acceleration - drift, dt, who, source, seed=seed, given=given
+    )
 
 
 def spectrum_compatible(
@@ -190,9 +192,15 @@ def spectrum_compatible(
         **{"periods_s": given.tolist(), "target_g": (wanted / GRAVITY).tolist()},
         **{"damping": damping, "d5_95_s": d5_95_s, "mid_s": mid_s},
     }
-    misfit = {"misfit_rms": best_rms, "misfit_max": best_max}
     return _synthetic(
-        best, dt, who, "Gasparini & Vanmarcke (1976)", seed, parameters, **misfit
+        best,
+        dt,
+        who,
+        "Gasparini & Vanmarcke (1976)",
+        seed=seed,
+        given=parameters,
+        misfit_rms=best_rms,
+        misfit_max=best_max,
     )
 
 
@@ -277,6 +285,7 @@ def _synthetic(
     dt: float,
     model: str,
     source: str,
+    *,
     seed: int,
     given: Mapping[str, Any],
     **found: float,

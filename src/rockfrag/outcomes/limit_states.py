@@ -100,7 +100,16 @@ def limit_states() -> tuple[LimitState, ...]:
 
 
 def limit_state_named(name: str) -> LimitState:
-    """Return the limit state of a name."""
+    """Limit state of a name.
+
+    Parameters
+    ----------
+    name : of a declared limit state
+
+    Returns
+    -------
+    The limit state.
+    """
     if name not in _STATES:
         known = ", ".join(state.name for state in limit_states())
         raise InputError(f"limit state {name!r} is not known; choose one of {known}.")

@@ -219,7 +219,16 @@ class Outcomes:
 
 @cache
 def columns(table: Table | None = None) -> tuple[Column, ...]:
-    """Return the columns of a table of outcomes, or of all three, in their order."""
+    """Columns of a table of outcomes, or of all three, in their order.
+
+    Parameters
+    ----------
+    table : which table; None for all
+
+    Returns
+    -------
+    The columns.
+    """
     return tuple(
         Column(each.name, **each.metadata)
         for each in fields(Outcomes)
@@ -230,7 +239,17 @@ def columns(table: Table | None = None) -> tuple[Column, ...]:
 def empty_outcomes(
     names: Sequence[Sequence[str]], scales: Floats, engines: Sequence[str] = ()
 ) -> Outcomes:
-    """Return outcomes for an engine to write into, of systems with bodies so named and (motions, scales)."""
+    """Outcomes for an engine to write into.
+
+    Parameters
+    ----------
+    names, scales : names of the bodies of each system, and factors, shape (motions, scales)
+    engines : names of the engines
+
+    Returns
+    -------
+    The :class:`Outcomes`, of shape (systems, motions, scales).
+    """
     shape = (len(names), *scales.shape)
     most = max((len(each) for each in names), default=0)
     arrays = {
@@ -251,7 +270,13 @@ def empty_outcomes(
 
 
 def merge_outcomes(into: Outcomes, rows: Sequence[int], found: Outcomes) -> None:
-    """Write the outcomes of some systems, answered by one engine, into the rows of those of all."""
+    """Write the outcomes of some systems, answered by one engine, into the rows of those of all.
+
+    Parameters
+    ----------
+    into, rows : outcomes of all systems, and places of some of them
+    found : outcomes of these
+    """
     place = np.asarray(rows, dtype=np.intp)
     numbers = np.array(
         [into.engines.index(name) for name in found.engines], dtype=np.int8

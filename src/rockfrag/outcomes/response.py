@@ -179,7 +179,16 @@ class Response:
 
 
 def sampled_demand(normal: Floats, friction: Floats) -> Floats:
-    """Return the largest |T| / N of each interface over the samples, infinite where N is not positive."""
+    """Largest |T| / N of each interface over the samples, infinite where N is not positive.
+
+    Parameters
+    ----------
+    normal, friction : forces [N], shape (n, contacts)
+
+    Returns
+    -------
+    The ratios [-], shape (contacts,).
+    """
     with np.errstate(divide="ignore", invalid="ignore"):
         ratio = np.abs(friction) / normal
     return np.asarray(np.where(normal > 0, ratio, np.inf).max(axis=0))
@@ -193,10 +202,20 @@ def contact_event_table(
     theta: Floats,
     kinetic: tuple[Floats, Floats],
 ) -> pd.DataFrame:
-    """Make the columns of ``Response.contact_events`` that a response without friction has.
+    """Columns of ``Response.contact_events`` of a response without friction.
 
     ``states`` and ``omega`` [rad/s] are those before and after, each of shape (n, contacts), ``kinetic`` energies
     before and after [J], each of shape (n,).
+
+    Parameters
+    ----------
+    time, kind : instants [s], shape (n,), and kinds
+    states, omega : contact states, and angular velocities [rad/s], before and after, shape (n, contacts) each
+    theta, kinetic : rotations [rad], shape (n, contacts), and energies before and after [J], shape (n,) each
+
+    Returns
+    -------
+    pandas.DataFrame, n rows.
     """
     return pd.DataFrame(
         {
@@ -225,7 +244,17 @@ def _rocking_modes(states: Ints) -> list[str]:
 def with_slips(
     table: pd.DataFrame, states: Ints, slides: Ints, slip: Floats
 ) -> pd.DataFrame:
-    """Return a table of contact events with what each interface does from then on, and its slip [m]."""
+    """Table of contact events with the mode of each interface from then on, and its slip.
+
+    Parameters
+    ----------
+    table : n contact events
+    states, slides, slip : contact states, directions of sliding and slips [m], shape (n, contacts)
+
+    Returns
+    -------
+    pandas.DataFrame, n rows.
+    """
     pairs = np.stack([states, slides], axis=-1).tolist()
     modes = [tuple(mode_name(*pair) for pair in each) for each in pairs]
     return table.assign(
@@ -244,10 +273,20 @@ def energy_table(
     *,
     contacts: int,
 ) -> pd.DataFrame:
-    """Make the balance of energy by cause over time [J], with the columns of ``Response.energy``.
+    """Balance of energy by cause over time [J], with the columns of ``Response.energy``.
 
     ``losses`` are of each impact its time [s], its contact from 0 and what it lost [J]; ``friction`` is what
     friction has taken so far [J], shape (n,), None where nothing slides.
+
+    Parameters
+    ----------
+    time, kinetic, potential, work : instants [s] and energies [J], shape (n,) each
+    losses : instants [s], contacts from 0 and losses [J] of the impacts
+    friction, contacts : work against friction so far [J], shape (n,), and number of contacts
+
+    Returns
+    -------
+    pandas.DataFrame, n rows.
     """
     when, contact, lost = losses
     at = np.searchsorted(time, when - 1e-12 * max(1.0, time[-1]))

@@ -85,7 +85,7 @@ def _checked(path: str | os.PathLike[str]) -> tuple[pd.DataFrame, list[int]]:
     optional = [column for column in COLUMNS if column not in NEEDED]
     lines = read_rows(path, NEEDED, optional, least=0, faults=faults)
     if faults:
-        raise InputError(_listed([fault.rstrip(".") for fault in faults]) + ".")
+        raise InputError(listed_problems([fault.rstrip(".") for fault in faults]) + ".")
     if not lines:
         raise InputError(f"{path}: the catalogue names no motion.")
     empty = dict.fromkeys(COLUMNS, "") | _DEFAULTS
@@ -102,7 +102,7 @@ def _checked(path: str | os.PathLike[str]) -> tuple[pd.DataFrame, list[int]]:
             f"line {line.line}, column {column!r}: {what}" for column, what in wrong
         ]
     if problems:
-        raise InputError(f"{path}, {_listed(problems)}.")
+        raise InputError(f"{path}, {listed_problems(problems)}.")
     table = pd.DataFrame(list(rows.values()), columns=list(COLUMNS))
     return with_numbers(table), [line.line for line in lines]
 
@@ -165,24 +165,13 @@ def _wrong_cells(row: dict[str, str]) -> list[tuple[str, str]]:
     return wrong
 
 
-def load_motions(
-    path: str | os.PathLike[str], records: str | os.PathLike[str] = "resources/records"
-) -> list[Motion]:
-    """Read every motion [m/s²] of a catalogue, in its order, fetching what is not there yet below ``records``.
-
-    The facts of the catalogue go over those of the file. All that is wrong is refused at once.
-    """
+def numbered_rows(path: str | os.PathLike[str]) -> list[tuple[int, dict[str, Any]]]:
+    """Return the checked rows of a catalogue by column, each behind the number of its line."""
     table, lines = _checked(path)
-    motions, problems = [], []
-    for number, row in zip(lines, table.to_dict("records"), strict=True):
-        try:
-            named = {str(column): value for column, value in row.items()}
-            motions.append(load_motion(named, Path(path).parent, Path(records)))
-        except InputError as error:
-            problems.append(f"line {number}: {str(error).rstrip('.')}")
-    if problems:
-        raise InputError(f"{path}, {_listed(problems)}.")
-    return motions
+    rows = (
+        {str(c): cell for c, cell in row.items()} for row in table.to_dict("records")
+    )
+    return list(zip(lines, rows, strict=True))
 
 
 def load_motion(row: dict[str, Any], folder: Path, records: Path) -> Motion:
@@ -270,14 +259,28 @@ def record_files(*paths: str | os.PathLike[str]) -> list[Path]:
     """Return the files that may be records: those below each folder, in order of name, or the path itself."""
     found: list[Path] = []
     for path in map(Path, paths):
-        files = sorted(file for file in path.rglob("*") if not file.is_dir())
-        shown = (f for f in files if not is_hidden(f.relative_to(path).as_posix()))
-        inside = (f for f in shown if not (is_no_record(f.name) or is_catalogue(f)))
+        left_out = {file for file, _ in passed_over(path)}
+        inside = (file for file in _shown_files(path) if file not in left_out)
         found += inside if path.is_dir() else [path]
     return found
 
 
-def _listed(problems: list[str]) -> str:
+def passed_over(folder: Path) -> list[tuple[Path, str]]:
+    """Return the files below a folder that are no records by their name or first line, and what they are."""
+    return [
+        (file, "a catalogue" if is_catalogue(file) else "no record by its name")
+        for file in _shown_files(folder)
+        if is_no_record(file.name) or is_catalogue(file)
+    ]
+
+
+def _shown_files(folder: Path) -> list[Path]:
+    """Return the files below a folder that are not hidden, in order of name."""
+    files = sorted(file for file in folder.rglob("*") if not file.is_dir())
+    return [f for f in files if not is_hidden(f.relative_to(folder).as_posix())]
+
+
+def listed_problems(problems: list[str]) -> str:
     """Join what is wrong, as much of it as a message holds, and count the rest."""
     sizes = itertools.accumulate(map(len, problems))
     shown = max(1, sum(size <= _MOST_SHOWN for size in sizes))

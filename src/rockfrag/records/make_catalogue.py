@@ -15,32 +15,25 @@ import pandas as pd
 
 from rockfrag.base.errors import InputError
 from rockfrag.base.text_files import printable
-from rockfrag.records.catalogue import COLUMNS, record_files
+from rockfrag.records.catalogue import (
+    COLUMNS,
+    listed_problems,
+    passed_over,
+    record_files,
+)
+from rockfrag.records.component_names import NUMBERS, numbered_records, parts_of
 from rockfrag.records.motion import Motion
+from rockfrag.records.parsing.directions import azimuth_of, is_vertical
 from rockfrag.records.parsing.format import Channel
-from rockfrag.records.parsing.quantities import azimuth_of, is_vertical
 from rockfrag.records.parsing.text_file import NotAcceleration
 from rockfrag.records.quality_flags import quality_flags
 from rockfrag.records.read import motion_of, read_untold
-from rockfrag.records.sources.archive import is_archive, unpacked
+from rockfrag.records.sources.archive import is_archive, is_no_record, unpacked
 
 # degrees by which two components may be off a right angle and still be a pair
 _PERPENDICULAR = 5.0
 
-_SUFFIXES = tuple(
-    re.compile(pattern, re.I)
-    for pattern in (
-        # the number of a station of an array may stand before the azimuth: H-E10050
-        r"^(?P<stem>.*[A-Z_.\- ]\d{0,2}?)(?P<name>[0-3]\d\d)(?P<rest>)$",
-        r"^(?P<stem>.+?)[-_. ]?(?P<name>E-?W|W-?E|N-?S|S-?N|U-?D|[BEH][NLGH][ENZ123]|UP|DWN|DOWN|DN|VERT?|VRT"
-        r"|FN|FP|LN|TR|LONG|TRAN)"
-        r"(?P<rest>\d?)$",
-        r"^(?P<stem>.+)[-_. ](?P<name>[NEZUVHXYLT])(?P<rest>)$",
-        r"^(?P<stem>.+)(?P<name>[123])(?P<rest>)$",
-    )
-)
-"""How names of files end that name the component: ``CLS000``, ``E10050``, ``ISE-WE``, ``_N``, ``120111``."""
-
+_THIRD = re.compile(r"^[A-Z]{2}3")
 _OF_KNET = re.compile(r"\.(?:EW|NS|UD)\d?$")
 _AMERICAN_DATE = re.compile(r"\b(?P<m>\d{1,2})/(?P<d>\d{1,2})/(?P<y>\d{4}|\d{2})\b")
 _ISO_DATE = re.compile(r"\b(\d{4})[-/](\d{2})[-/](\d{2})(?!\d)")
@@ -150,13 +143,15 @@ class Component:
     suffix: str
     path: str
     packed: bool
+    plain_name: str  # of its file, without folder and ending
     npts: int
     dt: float
     digest: str
     quality_flags: tuple[str, ...]
     azimuth: float | None
     is_vertical: bool
-    # what the components of one record share: file, name, or station and time; None where it has none
+    # what the components of one record share: file, earthquake and station, name, or station and time; None where
+    # it has none
     shared_by_a_record: tuple[tuple[object, ...] | None, ...]
 
 
@@ -170,6 +165,8 @@ class CatalogueDraft:
     table: pd.DataFrame = field(default_factory=pd.DataFrame)
     notes: list[tuple[str, str]] = field(default_factory=list)
     errors: list[str] = field(default_factory=list)
+    # files that are in order but no records of acceleration, and why
+    left_out: list[tuple[str, str]] = field(default_factory=list)
 
     @property
     def warnings(self) -> list[str]:
@@ -189,6 +186,12 @@ class CatalogueDraft:
                 lines += [f"{file}: {what}" for file, what in notes]
             else:
                 lines.append(f"{len(notes)} times: {kind}; the first is {notes[0][0]}")
+        reasons: dict[str, list[str]] = {}
+        for file, why in self.left_out:
+            reasons.setdefault(why, []).append(file)
+        lines += [
+            f"left out, {why}: {', '.join(files)}" for why, files in reasons.items()
+        ]
         return lines
 
     def note(self, file: str, what: str) -> None:
@@ -198,6 +201,11 @@ class CatalogueDraft:
     def look_through(self, path: Path) -> tuple[list[Component], list[PeerRecord]]:
         """Return the components below a path and what PEER says of them."""
         inside, files = path.is_dir(), record_files(path)
+        self.left_out += [
+            (self._named(file), why)
+            for file, why in passed_over(path)
+            if file.name != SEARCH_RESULTS
+        ]
         components = [
             component for file in files for component in self._components(file)
         ]
@@ -214,21 +222,34 @@ class CatalogueDraft:
                     for member in members:
                         if PurePosixPath(member.name).name == SEARCH_RESULTS:
                             listed += read_search_results(member.path)
+                        elif is_no_record(member.name):
+                            name = f"{self._named(file)}#{member.name}"
+                            self.left_out.append((name, "no record by its name"))
         except InputError as error:
             self.errors.append(str(error))
         return components, listed
+
+    def _named(self, file: Path) -> str:
+        return Path(os.path.relpath(file, self.folder)).as_posix()
+
+    def _leave_out(self, name: str, path: str, error: InputError) -> None:
+        """Note a file that is no record, by the name that a catalogue has for it, or what is wrong with it."""
+        if isinstance(error, NotAcceleration):
+            why = str(error).removeprefix(path).lstrip(":, ").rstrip(".")
+            self.left_out.append((printable(name), why))
+        else:
+            self.errors.append(str(error))
 
     def _components(self, file: Path) -> list[Component]:
         """Read every component of a file; what is wrong with it goes into the errors."""
         try:
             record, dt_given = read_untold(file, self.dt)
         except InputError as error:
-            self.errors += [] if isinstance(error, NotAcceleration) else [str(error)]
+            self._leave_out(self._named(file), str(file), error)
             return []
-        self.errors += [
-            str(e) for _, e in record.left_out if not isinstance(e, NotAcceleration)
-        ]
-        relative = Path(os.path.relpath(file, self.folder)).as_posix()
+        relative = self._named(file)
+        for member, why in record.left_out:
+            self._leave_out(f"{relative}#{member}", f"{file}#{member}", why)
         if not relative.isprintable():
             self.errors.append(
                 f"{printable(relative)}: its name has characters that no table shows; rename the file"
@@ -294,6 +315,19 @@ class CatalogueDraft:
             self.note(upright.file, "a vertical component of no record here; left out")
         if len(flat) == 1:
             self.note(flat[0].file, "its other horizontal component was not found")
+        if upright is not None and _THIRD.search(str(upright.row["component"])):
+            self.note(
+                upright.file,
+                f"{upright.row['component']} is taken for the vertical, as FDSN numbers components; if it is not, "
+                "give it a row",
+            )
+        if {component.suffix for component in flat} == {"1", "2"}:
+            first, other = (component.file for component in flat)
+            self.note(
+                first,
+                f"taken for a component of one record with {other} by the numbers in their names alone; if they "
+                "are two records, empty the column second",
+            )
         return [self._row(component, flat, upright) for component in flat]
 
     def _row(
@@ -379,12 +413,13 @@ def _component(
     )
     # K-NET's endings name the component
     name = plain if _OF_KNET.search(plain) else plain.rsplit(".", 1)[0] or plain
-    stem, suffix = (name, "") if several else _parts(name)
-    orientation = str(
-        facts.get("component") or ("" if suffix in {"1", "2", "3"} else suffix)
-    )
+    stem, suffix = (name, "") if several else parts_of(name)
+    orientation = str(facts.get("component") or ("" if suffix in NUMBERS else suffix))
     azimuth, container = facts.get("azimuth_deg"), str(file) if channel.member else ""
-    time = facts.get("network"), facts.get("station"), facts.get("start_time")
+    place = facts.get("network"), facts.get("station"), facts.get("location")
+    # the channel of a MiniSEED file is its code; others state the component in words
+    stated = bool(facts.get("component") and facts.get("earthquake")) and not several
+    folder = container, str(Path(path).parent)
     row = {
         **own_row,
         "name": f"{name} {facts.get('channel', '')}".strip() if several else name,
@@ -397,15 +432,16 @@ def _component(
     }
     samples = motion.acceleration.tobytes() + repr(motion.dt).encode()
     return Component(
-        row["file"], row, stem, suffix, path, bool(container), motion.acceleration.size, motion.dt,
+        row["file"], row, stem, suffix, path, bool(container), name, motion.acceleration.size, motion.dt,
         digest=hashlib.sha256(samples).hexdigest(),
         quality_flags=tuple(quality_flags(motion)),
         azimuth=azimuth_of(orientation) if azimuth is None else float(azimuth),
         is_vertical=is_vertical(orientation),
         shared_by_a_record=(
             (container, path) if several else None,
-            (container, str(Path(path).parent), stem) if suffix else None,
-            time if all(time[1:]) else None,
+            (*folder, facts.get("earthquake"), *place) if stated and place[1] else None,
+            (*folder, stem) if suffix else None,
+            (*place, facts.get("start_time")) if place[1] and facts.get("start_time") else None,
         ),
     )  # fmt: skip
 
@@ -443,10 +479,12 @@ def make_catalogue(
     for group in draft.without_copies(groups, seen):
         rows += draft.rows_of(group)
     if not rows:
-        more = f": {draft.errors[0]}" if draft.errors else "."
+        found_instead = [f"{file}: {why}." for file, why in draft.left_out]
+        reasons = [reason.rstrip(".") for reason in (*draft.errors, *found_instead)]
+        more = f": {listed_problems(reasons)}" if reasons else ""
         where = ", ".join(map(str, paths))
         raise InputError(
-            f"{where}: no horizontal component of acceleration was found{more}"
+            f"{where}: no horizontal component of acceleration was found{more}."
         )
     _name_uniquely(rows)
     draft.note_names_of_one_day(rows)
@@ -458,21 +496,18 @@ def _horizontal(group: Sequence[Component]) -> list[Component]:
     return [component for component in group if not component.is_vertical]
 
 
-def _parts(name: str) -> tuple[str, str]:
-    """Return the name of a file without the component that ends it, and that component."""
-    found = next(filter(None, (pattern.match(name) for pattern in _SUFFIXES)), None)
-    return (found["stem"] + found["rest"], found["name"]) if found else (name, "")
-
-
 def _records_of(components: Sequence[Component]) -> list[list[Component]]:
-    """Group components of one record: in one file, of like names, of one station and time."""
+    """Group components of one record, in the ways of :data:`_WAYS`."""
     groups: list[list[Component]] = []
     left = list(components)
-    for way in range(3):
+    numbered = _numbered(components)
+    for way in range(len(_WAYS)):
         by_key: dict[object, list[Component]] = {}
         for component in left:
             key = component.shared_by_a_record[way]
-            if key is not None:
+            if key is not None and not (
+                _WAYS[way] == "names" and component.file in numbered
+            ):
                 by_key.setdefault(key, []).append(component)
         for several in by_key.values():
             # of copies the first
@@ -481,9 +516,42 @@ def _records_of(components: Sequence[Component]) -> list[list[Component]]:
             if _is_record(group):
                 groups.append(group)
                 left = [component for component in left if component not in group]
-    groups += [[component] for component in left]
+    for component in left:
+        record = _record_without_vertical(component, groups)
+        if record is None:
+            groups.append([component])
+        else:
+            record.append(component)
     order = {component.file: number for number, component in enumerate(components)}
     return sorted(groups, key=lambda group: order[group[0].file])
+
+
+_WAYS = ("file", "headers", "names", "station and time")
+"""How components of one record are found, in this order."""
+
+
+def _numbered(components: Sequence[Component]) -> set[str]:
+    """Return the files of components whose names count records, and not the components of one."""
+    folders: dict[object, dict[str, str]] = {}
+    for component in components:
+        folder = component.packed, str(Path(component.path).parent)
+        folders.setdefault(folder, {})[component.plain_name] = component.file
+    counted = {
+        files[name] for files in folders.values() for name in numbered_records(files)
+    }
+    return {c.file for c in components if c.suffix in NUMBERS and c.file in counted}
+
+
+def _record_without_vertical(
+    component: Component, groups: Sequence[list[Component]]
+) -> list[Component] | None:
+    """Return the record that a lone vertical component is of, if there is one that has none."""
+    keys = {key for key in component.shared_by_a_record if key is not None}
+    for group in groups if component.is_vertical else ():
+        complete = len(group) != 2 or any(each.is_vertical for each in group)
+        if not complete and keys & {k for c in group for k in c.shared_by_a_record}:
+            return group
+    return None
 
 
 def _is_record(group: Sequence[Component]) -> bool:

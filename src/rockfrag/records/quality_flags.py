@@ -60,6 +60,9 @@ STRONGEST_G = 3.0  # peak [g] that hardly any record of an earthquake exceeds
 _COARSEST = 0.025
 # fraction of the peak velocity that is left at the end of a record with a drift
 _DRIFT = 0.5
+# fraction of the peak velocity above which the mean of the last fifth of a record is a drift
+_STILL = 0.1
+_FEWEST_AT_END = 100  # samples of that fifth, fewer of which say nothing
 # samples in a row at the largest value of a record cut off at its sensor's range
 _CLIPPED_RUN = 4
 # fraction of the peak in the first tenth of a second of a record begun too late
@@ -95,6 +98,8 @@ def quality_flags(motion: Motion) -> list[str]:
         found.append(
             f"a drift: {100 * left:.0f} % of the peak velocity is left at the end"
         )
+    elif _drifts_on(velocity):
+        found.append("a drift: its displacement still goes on at the end")
     edges = np.flatnonzero(
         np.diff(np.abs(a) >= peak * (1 - 1e-9), prepend=False, append=False)
     )
@@ -109,6 +114,13 @@ def quality_flags(motion: Motion) -> list[str]:
     if _is_doubled(a):
         found.append("every second sample repeats the one before it")
     return found
+
+
+def _drifts_on(velocity: NDArray[np.float64]) -> bool:
+    """Tell whether the mean velocity of the last fifth of a record is no longer that of shaking about a place."""
+    last = velocity[-max(1, velocity.size // 5) :]
+    fastest = float(np.abs(velocity).max())
+    return last.size >= _FEWEST_AT_END and abs(float(last.mean())) > _STILL * fastest
 
 
 def _is_doubled(a: NDArray[np.float64]) -> bool:

@@ -18,7 +18,7 @@ from rockfrag.base.units import GRAVITY
 from rockfrag.records.formats import HEADED, plain
 from rockfrag.records.formats.obspy_native import obspy_channels
 from rockfrag.records.motion import Motion
-from rockfrag.records.parsing import quantities
+from rockfrag.records.parsing import directions, quantities
 from rockfrag.records.parsing.format import Channel
 from rockfrag.records.parsing.text_file import NotAcceleration, check_file
 from rockfrag.records.quality_flags import STRONGEST_G
@@ -136,7 +136,7 @@ def _archived(file: str, wanted: str, dt: float | None, cut_short: bool) -> Reco
 def read_motion(
     path: str | os.PathLike[str],
     unit: str | None = None,
-    channel: str | None = None,
+    channel: str | int | None = None,
     dt: float | None = None,
     cut_short: bool = False,
     force: bool = False,
@@ -165,9 +165,16 @@ def read_motion(
     return motion_of(record, choose_channel(record, channel), unit, force)
 
 
-def choose_channel(record: Record, wanted: str | None) -> Channel:
-    """Return the channel of a record with a name, orientation or number."""
+def choose_channel(record: Record, wanted: str | int | None) -> Channel:
+    """Return the channel of a record with a name, orientation or number from 1."""
     channels = record.channels
+    if isinstance(wanted, int) and not isinstance(wanted, bool):
+        if not 1 <= wanted <= len(channels):
+            raise InputError(
+                f"{record.name}: there is no channel {wanted}; there are {_listed(record)}."
+            )
+        return channels[wanted - 1]
+    wanted = None if wanted is None else str(wanted)
     if wanted is None:
         if len(channels) == 1:
             return channels[0]
@@ -175,15 +182,15 @@ def choose_channel(record: Record, wanted: str | None) -> Channel:
             f"{record.name}: the file has several channels, {_listed(record)}; choose one with channel=."
         )
     azimuth, letter = (
-        quantities.azimuth_of(wanted),
+        directions.azimuth_of(wanted),
         len(wanted) == 1 and wanted.isalpha(),
     )
-    names, ending = quantities.plain_name(wanted), wanted.upper()
+    names, ending = directions.plain_name(wanted), wanted.upper()
     # a SEED code names its sensor, not always its direction
     turned = [c for c in channels if azimuth is not None and c.component != c.code]
     ways = (
         [c for c in channels if names in _names_of(c)],
-        [c for c in turned if quantities.azimuth_of(c.component) == azimuth],
+        [c for c in turned if directions.azimuth_of(c.component) == azimuth],
         [c for c in channels if letter and c.code.upper().endswith(ending)],
     )
     found = next(filter(None, ways), [])
@@ -201,10 +208,15 @@ def motion_of(
     record: Record, channel: Channel, unit: str | None = None, force: bool = False
 ) -> Motion:
     """Return one channel of a record as a motion in m/s²; ``unit`` and ``force`` as of :func:`read_motion`."""
+    if channel.fault:
+        raise InputError(f"{record.name}: {channel.fault}.")
     samples = channel.samples
-    stored = _settled_unit(record, channel, samples, unit)
-    factor = quantities.TO_SI[stored]
-    acceleration = _in_si(record, samples, factor)
+    number = next((n for n, c in enumerate(record.channels, 1) if c is channel), 1)
+    where = f", channel {channel.label or number}" if len(record.channels) > 1 else ""
+    told = replace(record, name=f"{record.name}{where}")
+    stored = _settled_unit(told, channel, samples, unit)
+    factor = quantities.to_si(stored)
+    acceleration = _in_si(told, samples, factor)
     read = {
         "step": "read",
         "file": printable(Path(record.name).name),
@@ -228,7 +240,7 @@ def motion_of(
         acceleration = acceleration - mean
         steps.append({"step": "remove zero level", "offset_m_s2": mean})
     if not channel.unit and not force:
-        _check_peak(record, acceleration, stored)
+        _check_peak(told, acceleration, stored)
     own = channel.member or record.name.rpartition("#")[2]
     name = printable(Path(own).name.removesuffix(".gz").rsplit(".", 1)[0])
     if len(record.channels) > 1:
@@ -281,8 +293,19 @@ def _settled_unit(
     record: Record, channel: Channel, samples: NDArray[np.float64], unit: str | None
 ) -> str:
     asked = None if unit is None else quantities.asked_unit(unit)
+    velocity = directions.is_seismometer(channel.code)
+    if channel.counts and (velocity or asked is None):
+        of_what = (
+            f"counts of a seismometer ({channel.code}), which records velocity"
+            if velocity
+            else "counts of a recorder"
+        )
+        raise InputError(
+            f"{record.name}: the file does not state its unit: whole numbers without StationXML are {of_what}; "
+            "put the StationXML of the station beside the file, which turns them into acceleration."
+        )
     if channel.unit:
-        if channel.unit not in quantities.TO_SI:
+        if quantities.quantity_of(channel.unit) != "acceleration":
             raise InputError(
                 f"{record.name}: samples in {channel.unit!r} are no acceleration known here."
             )
@@ -295,11 +318,16 @@ def _settled_unit(
         return asked
     peak = float(np.abs(samples - samples.mean()).max())
     candidates = ", ".join(
-        f"{peak * quantities.TO_SI[quantities.asked_unit(name)] / GRAVITY:.3g} g if {name}"
+        f"{peak * quantities.to_si(name) / GRAVITY:.3g} g if {name}"
         for name in quantities.ASKED_UNITS
     )
+    remark = (
+        f" ({channel.code} is a channel of a seismometer: velocity, unless it has been differentiated)"
+        if velocity
+        else ""
+    )
     raise InputError(
-        f"{record.name}: the file does not state its unit; give unit= "
+        f"{record.name}: the file does not state its unit{remark}; give unit= "
         f"({', '.join(quantities.ASKED_UNITS)}): the peak about the mean would be {candidates}."
     )
 
@@ -321,4 +349,4 @@ def _names_of(channel: Channel) -> set[str]:
         files = {channel.member, Path(channel.member).name}
         names |= files | {f"{file} {name}" for file in files for name in names}
         names |= {f"{file}#{name}" for file in files for name in names}
-    return {quantities.plain_name(name) for name in names if name}
+    return {directions.plain_name(name) for name in names if name}

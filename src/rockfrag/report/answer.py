@@ -1,4 +1,10 @@
-"""What stands first on the page of any study: the question, what was found, what to do, and what it rests on."""
+"""Answer on the first screen of a study's page: the question, findings, advice, grounds and doubts.
+
+In: the results of a study. Out: :class:`rockfrag.report.part.Answer`, made of tables alone, so that every number
+in it can be looked up there; its figure shows overturning amplitudes and medians as peaks [g].
+
+Docs: ``docs/report.md``, "How it is told" and "Five questions of a keeper".
+"""
 
 from collections.abc import Sequence
 from functools import partial
@@ -9,45 +15,120 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from rockfrag.base.figure_style import BLACK, COLUMN_WIDTH, panels, plain_log
+from rockfrag.fragility.curve_facts import REJECTED
 from rockfrag.report import findings
 from rockfrag.report.figures import GREY, SIDE_COLOUR, SIDE_NAME, drawn_tests
-from rockfrag.report.part import Answer, Finding, Results, Says
+from rockfrag.report.part import Answer, FigureSpec, Finding, Results, joined
 from rockfrag.simulation.ensemble import LIGHT
-from rockfrag.words.sentences import sentence, shortened
+from rockfrag.study.study import Study
+from rockfrag.words.sentences import counted, listed, of_all, shortened
 
 FEW = 10  # intervals over fewer earthquakes than this rest on little
 MOST_NAMED = 4  # so many objects are named in the question
 
 
-says = Says("rockfrag.report", "answer.j2", FEW=FEW, FRICTION=findings.FRICTION)
-
-
 def study_answer(results: Results) -> Answer:
-    """Return what stands first on the page of a study, made of its tables alone."""
+    """Answer on the first screen of a study's page.
+
+    Parameters
+    ----------
+    results : tables of the study
+
+    Returns
+    -------
+    The :class:`rockfrag.report.part.Answer`.
+    """
     curves, found = _headline_curves(results), sentences(results)
     # amplitudes are peaks of acceleration; a median in another measure has no place beside them
     curves = curves[curves["unit"] == "g"]
     names = [configuration.name for configuration in results.study.configurations]
-    draw, level = partial(strength_figure, results.tests, curves, names), results.level
+    medians = ""
+    if len(curves):
+        medians = f"Diamonds are medians with {results.level} intervals."
+    figure = FigureSpec(
+        name="answer",
+        alt=f"Overturning amplitude of each configuration. {found[0].said}",
+        caption=joined(
+            "Peak acceleration that overturns, one mark per test; arrows are bounds.",
+            medians,
+        ),
+        draw=partial(strength_figure, results.tests, curves, names),
+    )
     return Answer(
-        asked=says("asked", results.objects, results.study, MOST_NAMED)[0],
+        asked=_question(results.objects, results.study),
         sentences=found,
-        figure=says.figure("answer", draw, found[0], level if len(curves) else ""),
+        figure=figure,
         advice=advice(results),
-        rests_on=says("rests_on", results.study, _earthquakes(results)),
+        rests_on=_rests_on(results.study, _earthquakes(results)),
         could_change=could_change(results),
-        questions=list(says.pairs("questions", results.study).items()),
+        questions=_questions(results.study),
     )
 
 
+def _question(names: Sequence[str], study: Study) -> str:
+    objects = listed(names)
+    if len(names) > MOST_NAMED:
+        objects = f"the {len(names)} objects"
+    sides = ""
+    if study.counterparts:
+        sides = ", in each arrangement and in the one it is compared with"
+    elif study.has_pairs:
+        sides = f", with and without {'its' if len(names) == 1 else 'their'} pedestal"
+    return f"How strong must shaking be to overturn {objects}{sides}?"
+
+
+def _rests_on(study: Study, earthquakes: int) -> list[str]:
+    """Model and motions on which the results of a study rest, a sentence or two each."""
+    if study.slides:
+        model = "Rigid blocks that rock, slide and fly in the plane of the motion; impacts follow Coulomb's law."
+    else:
+        model = (
+            "Rigid blocks that rock in the plane of the motion and neither slide nor jump. Energy loss at impact "
+            "follows Housner (conservation of angular momentum)."
+        )
+    if study.vertical:
+        model += " The vertical components of the records act too."
+    amplitudes = study.amplitudes
+    motions = (
+        f"{counted(len(study.catalogue), 'record')} of {counted(earthquakes, 'earthquake')}, each scaled to "
+        f"{counted(len(amplitudes.values_g), 'amplitude')} from {amplitudes.lowest_g:g} to "
+        f"{amplitudes.highest_g:g} g."
+    )
+    if study.building is None:
+        return [model, motions]
+    floors = f"The floor motions are those of a building model ({study.building.name}), not measured."
+    return [model, motions, floors]
+
+
+def _questions(study: Study) -> list[tuple[str, str]]:
+    """Questions of a keeper of the objects, each with the anchor of the chapter that answers it."""
+    questions = [("As recorded?", "as_recorded")]
+    if study.has_pairs:
+        compared = "Compared?" if study.counterparts else "With pedestal?"
+        questions.append((compared, "pedestal"))
+    questions += [("How strong?", "fragility"), ("How sure?", "grounds")]
+    if study.simulated_in_page:
+        questions.append(("Try it", "live"))
+    return questions
+
+
 def has_one_record(results: Results) -> bool:
-    """Whether a study has a single record, of which no fragility can be made."""
+    """Whether a study has a single record, of which no fragility can be made.
+
+    Parameters
+    ----------
+    results : tables of the study
+
+    Returns
+    -------
+    Whether it has.
+    """
     return len(results.records) == 1
 
 
 def sentences(results: Results) -> list[Finding]:
     """How strong the shaking must be, what the motions do as recorded, and what the pedestal changes."""
-    table, about = results.table, findings.sides_of(results.study)
+    table, sides = results.table, findings.sides_of(results.study)
     amplitudes = findings.amplitudes_found(results.tests)
     recorded = findings.recorded_found(table("as_recorded"))
     if has_one_record(results):
@@ -55,7 +136,7 @@ def sentences(results: Results) -> list[Finding]:
     curves = table("fragility").dropna(subset=["theta"])
     found = [findings.strength_found(curves, results.level) or amplitudes, recorded]
     if results.study.has_pairs:
-        return [*found, findings.pedestal_effect(table("pedestal/effects"), about)[0]]
+        return [*found, findings.pedestal_effect(table("pedestal/effects"), sides)[0]]
     compared = findings.objects_compared(
         table("mean_amplitudes"), results.study.slenderness
     )
@@ -71,7 +152,18 @@ def advice(results: Results) -> list[str]:
         # within what three digits tell
         weakest = list(curves.loc[theta < 1.005 * theta.min(), "configuration"])
     may_slide = not results.study.slides and _needs_friction(results)
-    return says("advice", weakest, may_slide, _earthquakes(results))
+    earthquakes = _earthquakes(results)
+    words = []
+    if weakest:
+        words.append(f"Secure {listed(weakest)} first.")
+    if may_slide:
+        words.append(
+            "Measure the friction of the contact surfaces: the objects may slide instead of rock."
+        )
+    if earthquakes < FEW and not (weakest and may_slide):
+        number = "one is" if earthquakes == 1 else f"{earthquakes} are"
+        words.append(f"Add records of other earthquakes; {number} too few.")
+    return words
 
 
 def _headline_curves(results: Results) -> pd.DataFrame:
@@ -157,21 +249,61 @@ def strength_figure(
 
 
 def could_change(results: Results) -> list[str]:
-    """What could change the answer, each with the numbers that say how likely that is."""
+    """Conditions that could change the answer, each with the numbers that say how likely that is."""
     study, curves = results.study, results.table("fragility")
-    friction = results.table("sliding" if study.slides else "validity")
-    needed = ""
-    if not study.slides and _needs_friction(results):
-        needed = findings.friction_sentence(friction)
-    lifts = study.vertical and not study.slides
-    ratios = results.least_gravity_ratio if lifts else np.ones(0)
+    ratios = np.ones(0)
+    if study.vertical and not study.slides:
+        ratios = results.least_gravity_ratio
     fallen = results.table("resurrections").dropna(subset=["first_upper"])
-    rejected = curves.loc[curves["p_fit"] < 0.05, "configuration"]
+    survived = int((fallen["resurrections"] > 0).sum())
+    rejected = curves.loc[curves["p_fit"] < REJECTED, "configuration"].nunique()
     words = [
-        *says("sliding", study.slides, friction, needed),
-        *says("flight", int((ratios < LIGHT).sum()), ratios.size),
-        *says("few", _earthquakes(results)),
-        *says("resurrections", int((fallen["resurrections"] > 0).sum()), len(fallen)),
-        *says("shape", rejected.nunique(), curves["configuration"].nunique()),
+        _sliding(results),
+        _flight(int((ratios < LIGHT).sum()), ratios.size),
+        _few(_earthquakes(results)),
     ]
-    return [sentence(word) for word in words]
+    if survived:
+        counts = of_all(survived, len(fallen), "analysis", "analyses")
+        words.append(
+            f"Non-monotone response: a stronger motion was survived in {counts}."
+        )
+    if rejected:
+        counts = of_all(rejected, curves["configuration"].nunique(), "configuration")
+        words.append(
+            f"The lognormal shape: it is rejected for {counts} in at least one definition."
+        )
+    return [word for word in words if word]
+
+
+def _sliding(results: Results) -> str:
+    if results.study.slides:
+        sliding = results.table("sliding")
+        decided = int(sliding["saved"].sum() + sliding["felled"].sum())
+        outcomes = of_all(decided, int(sliding["cases"].sum()), "outcome")
+        return f"Another friction: the assumed one decides {outcomes}, and nobody measured it on these surfaces."
+    validity = results.table("validity")
+    if validity.empty:
+        return ""
+    if _needs_friction(results):
+        return f"Sliding: {findings.friction_sentence(validity)}."
+    return f"Sliding, on surfaces with a friction coefficient below {findings.FRICTION:g} (dry stone)."
+
+
+def _flight(light: int, analyses: int) -> str:
+    """Sentence on the analyses in which the ground takes more than half of all weight away."""
+    if not light:
+        return ""
+    return (
+        f"Flight: in {of_all(light, analyses, 'analysis', 'analyses')} the ground takes away more than half of "
+        "all weight, so that bodies may leave it; the key friction lets them fly."
+    )
+
+
+def _few(earthquakes: int) -> str:
+    if earthquakes == 1:
+        return (
+            "Other earthquakes: a single one does not show how much earthquakes differ."
+        )
+    if earthquakes < FEW:
+        return f"Other earthquakes: these {earthquakes} are few, and the intervals describe only what they share."
+    return ""

@@ -1,6 +1,10 @@
-"""The report of a campaign on a shake table: how often the simulation is right, and where it is not."""
+"""Report of a campaign on a shake table: how often the simulation is right, and where it is not.
 
-import math
+In: the tables of the stages of a campaign (``rockfrag.stages.campaign.TABLES``). Out: the page ``report.html``
+with its figures. Docs: ``docs/campaigns.md``.
+"""
+
+from collections.abc import Mapping
 from functools import partial
 
 import numpy as np
@@ -10,18 +14,35 @@ from matplotlib.figure import Figure
 from scipy.stats import norm
 
 from rockfrag.base import figure_style as style
-from rockfrag.campaign.comparison import FEWEST_VOTERS, REPEATS
+from rockfrag.campaign.comparison import FEWEST_VOTERS
 from rockfrag.campaign.standing import preferred_edges
 from rockfrag.fragility.observations import name_and_unit
 from rockfrag.fragility.vector import VectorTables
-from rockfrag.report.page import Row
-from rockfrag.report.part import Answer, FigureSpec, Finding, Says, Section
+from rockfrag.report.campaign_findings import (
+    better_text,
+    campaign_findings,
+    fragility_found,
+    least_dispersed,
+    percent_text,
+    who_text,
+)
+from rockfrag.report.page import column, estimated, p_values, table_html
+from rockfrag.report.part import Answer, FigureSpec, Finding, Section, chapter
 from rockfrag.report.sections.curves import two_measures_section
 from rockfrag.report.study_report import write_page
-from rockfrag.stages.campaign import IN_PLANE, OURS, TABLES, VOTES
+from rockfrag.stages.campaign import OURS, TABLES, VOTES
 from rockfrag.stages.job import Job, Results
 from rockfrag.study.campaign import CampaignStudy
-from rockfrag.words.sentences import estimate, estimates, label, number, probability
+from rockfrag.words.sentences import (
+    agree,
+    counted,
+    label,
+    listed,
+    of_all,
+    sentence,
+)
+
+Tables = Mapping[str, pd.DataFrame]  # of the stages of a campaign, by name
 
 
 def run(job: Job[CampaignStudy]) -> Results:
@@ -29,238 +50,315 @@ def run(job: Job[CampaignStudy]) -> Results:
     study, tables = job.study, {name: job.table(name) for name in TABLES}
     pair = VectorTables(tables["two_measures"], tables["contours"], tables["cells"])
     both = two_measures_section(pair, study.confidence)
-    # whether the motions were measured on the table, or follow from what it was told
+    # whether the motions were measured on the table, or follow from its command
     motion = "commanded of" if study.pulse_cycles else "measured on"
-    found, level = _findings(tables), f"{100 * study.confidence:g} %"
+    found, level = campaign_findings(tables), f"{100 * study.confidence:g} %"
     sections = [_agreement(tables, found[0], level), _fragility(tables, level)]
     sections += [both] if both else []
     sections += [_tests(study, tables), _object(study, tables)]
-    steps = [" ".join(map(str, step.values())) for step in study.conditioning]
-    table = says.table("conditioning", _with_percents(tables["conditioning"]))
-    sections.append(says.section("conditioning", [table], steps))
+    sections.append(_conditioning(study, tables))
     tests = tables["tests"]
-    near = says("near_critical", int(tests["near_critical"].sum()), len(tests))
     specs = [
         part
         for section in sections
         for part in section.parts
         if isinstance(part, FigureSpec)
     ]
+    motions = counted(tests["group"].nunique(), "input motion")
+    under = f"{counted(len(tests), 'test')} under {motions}"
     answer = Answer(
         asked="How often does the simulation predict what happened on the shaking table?",
         sentences=found[:3],
         figure=next((spec for spec in specs if spec.name == "tests"), specs[0]),
-        rests_on=says("rests_on", tests, motion),
-        could_change=[*near, *(finding.headline + "." for finding in found[3:])],
+        rests_on=[
+            f"{under}, each simulated with the motion {motion} the table; intervals resample input motions.",
+            "Unmeasured properties of the object are fitted on some motions and judged on the others.",
+        ],
+        could_change=[
+            _near_critical(tests),
+            *(f"{finding.headline}." for finding in found[3:]),
+        ],
     )
-    lead, about = says.line("lead", tests, motion), {"Tests": study.tests.name}
-    write_page(job, answer, sections, about, lead=lead, basis="measured")
+    fell = int(tests["overturned"].sum())
+    write_page(
+        job,
+        answer,
+        sections,
+        about={"Tests": study.tests.name},
+        lead=f"{under}, {fell} of them overturned; each is simulated with the motion {motion} the table.",
+        basis="measured",
+    )
     yield from ()
 
 
-def _percent(row: Row) -> str:
+def _near_critical(tests: pd.DataFrame) -> str:
+    near, total = int(tests["near_critical"].sum()), len(tests)
     return (
-        estimate(100 * row["right"], 100 * row["lower"], 100 * row["upper"], 1) + " %"
+        f"{sentence(of_all(near, total, 'test'))} {agree(near, total, 'is', 'are')} near-critical: plausible "
+        "ways to set up the object disagree about the outcome in more than one of ten."
     )
-
-
-def _better(row: Row) -> str:
-    """By how many percentage points the simulation is better, with limits; a dash for itself."""
-    limits = (number(100 * row[f"better{end}"], 1) for end in ("", "_lower", "_upper"))
-    return "–" if math.isnan(row["better"]) else "{} [{}, {}]".format(*limits)
-
-
-LEVEL = 0.05  # a difference between programs is stated below this adjusted p value [-]
-
-
-def _p(value: float) -> str:
-    text = probability(value)
-    return text if text.startswith("<") else f"= {text}"
-
-
-says = Says(
-    "rockfrag.report",
-    "campaign_page.j2",
-    **{"better": _better, "estimate": estimate, "p": _p, "percent": _percent},
-    **{"FEWEST_VOTERS": FEWEST_VOTERS, "LEVEL": LEVEL},
-)
-
-
-def _who(name: str) -> str:
-    """Who predicted the outcomes, in words: thresholds by their measure, codes by their name."""
-    if name in (OURS, IN_PLANE):
-        return "simulation" + name.removeprefix(OURS)
-    for start in ("threshold on ", "probit on "):
-        if name.startswith(start):
-            measures = name.removeprefix(start).split(" and ")
-            return start + " and ".join(
-                name_and_unit(measure)[0] for measure in measures
-            )
-    return name
-
-
-def _findings(tables: dict[str, pd.DataFrame]) -> list[Finding]:
-    ours, *others = tables["agreement"].to_dict("records")
-    found = [says.finding("predicted", ours)]
-    # whether three dimensions predict better than one plane
-    found += [
-        says.finding("beside_plane", ours, row)
-        for row in others
-        if row["who"] == IN_PLANE
-    ]
-    # what is read off the tests themselves is the ceiling of all models, not one of them
-    rivals = [row for row in others if row["who"] not in (REPEATS, IN_PLANE)]
-    if rivals:
-        best = max(rivals, key=lambda row: float(row["right"]))
-        found.append(
-            says.finding("beside_rivals", best, _who(best["who"]), len(rivals))
-        )
-    found += _fragility_found(tables["fragility"])
-    tests = tables["tests"]
-    near, wrong = tests["near_critical"], ~tests["right"]
-    if wrong.any():
-        counts = (
-            int((wrong & near).sum()),
-            int(wrong.sum()),
-            int(near.sum()),
-            len(tests),
-        )
-        found.append(says.finding("wrong", *counts))
-    return found
-
-
-def _fragility_found(fragility: pd.DataFrame) -> list[Finding]:
-    measure = _ordering(fragility)
-    rows = fragility[
-        (fragility["measure"] == measure) & fragility["theta_ratio"].notna()
-    ]
-    if rows.empty:
-        return []
-    # simulated over measured median and dispersion, with limits
-    texts = zip(
-        *(estimates(rows, f"{key}_ratio", 2) for key in ("theta", "beta")), strict=True
-    )
-    found = dict(zip(rows["who"], texts, strict=True))
-    return [
-        says.finding(
-            "fragility_found", name_and_unit(measure)[0], found[OURS], found[VOTES]
-        )
-    ]
-
-
-def _ordering(fragility: pd.DataFrame) -> str:
-    """Return the measure in which the measured curve has the least dispersion."""
-    measured = fragility[fragility["who"] == "measured"]
-    return str(measured.set_index("measure")["beta"].fillna(math.inf).idxmin())
 
 
 def _with_percents(table: pd.DataFrame) -> pd.DataFrame:
     """Add the fraction of outcomes that are right in words."""
-    return table.assign(percent=[_percent(row) for row in table.to_dict("records")])
+    return table.assign(percent=[percent_text(row) for row in table.to_dict("records")])
 
 
-def _agreement(tables: dict[str, pd.DataFrame], found: Finding, level: str) -> Section:
+def _agreement(tables: Tables, found: Finding, level: str) -> Section:
     named = _with_percents(tables["agreement"])
-    lead = [_better(row) for row in named.to_dict("records")]
-    named = named.assign(who=[_who(name) for name in named["who"]], lead=lead)
+    lead = [better_text(row) for row in named.to_dict("records")]
+    named = named.assign(who=[who_text(name) for name in named["who"]], lead=lead)
     best = max(named.to_dict("records"), key=lambda row: float(row["right"]))
-    parts: list[Markup | FigureSpec] = [
-        says.figure(
-            "agreement", lambda: agreement_figure(named), best, best["who"], level
+    figure = FigureSpec(
+        name="agreement",
+        alt=f"{sentence(best['who'])} is right most often, in {percent_text(best)} of the tests.",
+        caption=(
+            f"Outcomes predicted right, with {level} intervals over motions. Filled dots are judged on motions "
+            "that were not used for fitting, open ones are as given."
         ),
-        says.table("agreement", named),
-        # empty where the laboratory noted nothing of it
-        says.table("rocking", _with_percents(tables["rocking"])),
+        draw=lambda: agreement_figure(named),
+    )
+    caption = "Outcomes predicted, and the difference on the same tests."
+    agreement = table_html(named, _AGREEMENT_COLUMNS, caption)
+    # empty where the laboratory noted nothing of it
+    caption = "Whether the object rocked at all, simulated and noted."
+    rocking = table_html(_with_percents(tables["rocking"]), _ROCKING_COLUMNS, caption)
+    words = (
+        "Unmeasured properties, and thresholds, are fitted on some motions and judged on the others. Other "
+        "programs are as their authors tuned them, on these tests."
+    )
+    title = "How often each prediction is right"
+    return chapter("agreement", title, found, [words], [figure, agreement, rocking])
+
+
+_AGREEMENT_COLUMNS = (
+    column("who", "Predicted by"),
+    column("tests", decimals=0),
+    column("percent", "Right", numeric=True),
+    column("false_alarms", decimals=1),
+    column("missed", decimals=1),
+    column("lead", "Simulation better by [percentage points]", numeric=True),
+    p_values("p", "p"),
+    column("judged"),
+)
+_ROCKING_COLUMNS = (
+    column("percent", "Right", numeric=True),
+    column("false_alarms", "Rocked in the simulation only", decimals=1),
+    column("missed", "Rocked in the laboratory only", decimals=1),
+)
+
+
+def _conditioning(study: CampaignStudy, tables: Tables) -> Section:
+    steps = [" ".join(map(str, step.values())) for step in study.conditioning]
+    columns = [
+        column("conditioning"),
+        column("trials", decimals=0),
+        column("percent", "Right", numeric=True),
+        column("false_alarms", decimals=1),
+        column("missed", decimals=1),
     ]
-    return says.section("agreement", parts, found)
+    caption = "Outcomes predicted right, by conditioning."
+    table = table_html(_with_percents(tables["conditioning"]), columns, caption)
+    return Section(
+        "conditioning",
+        "Effect of conditioning the motions",
+        f"Conditioning of the motions: {listed(steps) or 'none'}.",
+        ["Alternatives were tried with a part of the trials."],
+        [table],
+    )
 
 
-def _fragility(tables: dict[str, pd.DataFrame], level: str) -> Section:
+def _fragility(tables: Tables, level: str) -> Section:
     fragility, tests = tables["fragility"], tables["tests"]
+    outcomes = {
+        "measured": "measured",
+        OURS: "simulated, majority of votes",
+        VOTES: "simulated, votes",
+    }
     shown = fragility.assign(
-        measure=[
-            "{} [{}]".format(*name_and_unit(name)) for name in fragility["measure"]
-        ],
-        who=fragility["who"].map(
-            {"measured": "measured"} | says.pairs("outcomes", OURS, VOTES)
-        ),
+        measure=[_with_unit(name) for name in fragility["measure"]],
+        who=fragility["who"].map(outcomes),
     )
-    measure = _ordering(fragility)
-    name, unit = name_and_unit(measure)
-    found = _fragility_found(fragility)
+    measure = least_dispersed(fragility)
+    name = name_and_unit(measure)[0]
+    found = fragility_found(fragility)
     own = fragility[fragility["measure"] == measure]
-    draw = partial(beside_figure, tests, own, measure, f"{name} [{unit}]")
-    figure = says.figure("fragility_beside", draw, found, name)
-    return says.section(
-        "fragility", [figure, says.table("fragility", shown)], found, level
+    figure = FigureSpec(
+        name="fragility_beside",
+        alt=f"{found[0].headline if found else 'No curve rises'}.",
+        caption=(
+            f"Measured (dots, line) and simulated (squares, dashes) fragility in {name}; points are fractions in "
+            "bins of equally many tests."
+        ),
+        draw=partial(beside_figure, tests, own, measure, _with_unit(measure)),
     )
+    columns = [
+        column("measure"),
+        column("who", "Outcomes"),
+        estimated("theta", "Median θ", 3),
+        estimated("beta", "Dispersion β", 2),
+        estimated("theta_ratio", "θ over measured", 2),
+        estimated("beta_ratio", "β over measured", 2),
+    ]
+    table = table_html(shown, columns, "Curves of measured and of simulated outcomes.")
+    words = f"Lognormal curves with {level} intervals from resampled motions; the ratio is taken in each resample."
+    title = "Fragility, measured and simulated"
+    parts: list[Markup | FigureSpec] = [figure, table]
+    if not found:
+        return Section("fragility", title, "No curve rises.", [words], parts)
+    return chapter("fragility", title, found[0], [words], parts)
 
 
-def _tests(study: CampaignStudy, tables: dict[str, pd.DataFrame]) -> Section:
+def _with_unit(measure: str) -> str:
+    """Name of a column of a measure with its unit in brackets."""
+    name, unit = name_and_unit(measure)
+    return f"{name} [{unit}]"
+
+
+def _tests(study: CampaignStudy, tables: Tables) -> Section:
     tests, regions = tables["tests"], tables["regions"]
     names = [
         name.removesuffix("_from")
         for name in map(str, regions)
         if name.endswith("_from")
     ]
-    listed = study.measures or names
-    labels = {
-        name: "{} [{}]".format(*name_and_unit(name)) for name in (*names, *listed)
-    }
     shown = regions[regions["tests"] > 0].assign(right=100 * regions["right"])
     for name in names:
         ends = zip(shown[f"{name}_from"], shown[f"{name}_to"], strict=True)
         shown[name] = [f"{low:.3g} to {high:.3g}" for low, high in ends]
     wrong = tests[~tests["right"]].assign(votes=lambda t: 100 * t["votes_to_overturn"])
+    message = f"{int(tests['right'].sum())} of {len(tests)} tests are predicted as they happened."
     parts: list[Markup | FigureSpec] = []
     if len(names) == 2:
         x, y = names
-        draw = partial(tests_figure, tests, x, y, (labels[x], labels[y]))
-        parts.append(says.figure("tests", draw, tests))
-    parts.append(says.table("regions", shown, {name: labels[name] for name in names}))
-    parts.append(says.table("wrong", wrong, {name: labels[name] for name in listed}))
-    return says.section("tests", parts, tests)
+        draw = partial(tests_figure, tests, x, y, (_with_unit(x), _with_unit(y)))
+        caption = (
+            "Every test by the intensity of its motion; crosses are wrong predictions."
+        )
+        parts.append(FigureSpec("tests", message, caption, draw))
+    columns = [
+        *(column(name, _with_unit(name), numeric=True) for name in names),
+        column("tests", decimals=0),
+        column("overturned", decimals=0),
+        column("simulated", decimals=0),
+        column("right", "Right [%]", decimals=0),
+    ]
+    parts.append(table_html(shown, columns, "Tests by thirds of two measures."))
+    measures = study.measures or names
+    columns = [
+        column("test"),
+        column("group", "Input motion"),
+        *(column(name, _with_unit(name), decimals=3) for name in measures),
+        column("overturned"),
+        column("votes", "Votes to overturn [%]", decimals=0),
+        column("near_critical", "Near-critical"),
+    ]
+    parts.append(table_html(wrong, columns, "Tests predicted wrong."))
+    words = "Votes are the fraction of plausible ways to set up the object under which it overturns."
+    return Section("tests", "Where the simulation is right", message, [words], parts)
 
 
-def _object(study: CampaignStudy, tables: dict[str, pd.DataFrame]) -> Section:
-    trials, contact, footprint = (
-        tables["trials"],
-        tables["contact"],
-        tables["footprint"],
-    )
+_PROPERTIES = {
+    "direction_deg": "Direction of shaking [°]",
+    "contact_tolerance_mm": "Contact tolerance [mm]",
+    "edge_retreat_mm": "Retreat of the edges [mm]",
+    "restitution": "Restitution [-]",
+    "friction": "Coefficient of friction [-]",
+    "left_m": "Left edge to the centre of gravity [m]",
+    "right_m": "Right edge to the centre of gravity [m]",
+    "alpha_deg": "Smaller critical angle [°]",
+}
+"""Unmeasured properties of an object by their columns in the table ``trials``."""
+
+
+def _object(study: CampaignStudy, tables: Tables) -> Section:
+    trials, contact = tables["trials"], tables["contact"]
     likely = trials[trials["plausible"]]
     parts: list[Markup | FigureSpec] = []
-    if not footprint.empty:
-        draw = partial(footprint_figure, footprint, trials)
-        parts.append(
-            says.figure("footprint", draw, 100 * (likely["left_m"] + likely["right_m"]))
+    if not tables["footprint"].empty:
+        width = 100 * (likely["left_m"] + likely["right_m"])
+        figure = FigureSpec(
+            name="footprint",
+            alt=f"Plausible bases are {width.min():.1f} to {width.max():.1f} cm wide.",
+            caption=(
+                "The object from above: outline, contact polygons for plausible tolerances, centre of gravity, "
+                "and plausible directions of shaking."
+            ),
+            draw=partial(footprint_figure, tables["footprint"], trials),
         )
-    titles = says.pairs("properties")
+        parts.append(figure)
     rows = [
-        (
-            words,
-            _range(trials[name]),
-            _range(likely[name]),
-            f"{likely[name].median():.3g}",
-        )
-        for name, words in titles.items()
+        {
+            "property": words,
+            "tried": _range(trials[name]),
+            "plausible": _range(likely[name]),
+            "median": f"{likely[name].median():.3g}",
+        }
+        for name, words in _PROPERTIES.items()
         if name in trials
     ]
-    properties = pd.DataFrame(
-        rows, columns=["property", "tried", "plausible", "median"]
+    caption = (
+        "Unmeasured properties: ranges tried, and ranges that agree with the tests."
     )
-    parts.append(says.table("properties", properties))
+    parts.append(table_html(pd.DataFrame(rows), _PROPERTY_COLUMNS, caption))
     in_percent = {
         name: 100 * contact[name] for name in ("width_m", "overturned", "right")
     }
-    parts.append(says.table("contact", contact.assign(**in_percent)))
+    caption = "Smallest critical angle by contact tolerance; the object cannot stand where it is negative."
+    table = table_html(contact.assign(**in_percent), _CONTACT_COLUMNS, caption)
+    message = f"{len(likely)} of {len(trials)} trials are plausible."
+    words = _object_words(study, trials, likely)
+    return Section("object", "How the object stood", message, words, [*parts, table])
+
+
+_PROPERTY_COLUMNS = (
+    column("property"),
+    column("tried", "Range tried", numeric=True),
+    column("plausible", "Plausible range", numeric=True),
+    column("median", "Median of the plausible", numeric=True),
+)
+_CONTACT_COLUMNS = (
+    column("contact_tolerance_mm", decimals=2),
+    column("worst_direction_deg", decimals=0),
+    column("alpha_deg", "Critical angle [°]", decimals=1),
+    column("alpha_lower_deg", "5 % of scans", decimals=1),
+    column("alpha_upper_deg", "95 % of scans", decimals=1),
+    column("trials", "Trials near it", decimals=0),
+    column("width_m", "Their base [cm]", decimals=1),
+    column("overturned", "Overturn in [% of tests]", decimals=0),
+    column("right", "Right, in sample [%]", decimals=0),
+)
+
+
+def _object_words(
+    study: CampaignStudy, trials: pd.DataFrame, likely: pd.DataFrame
+) -> list[str]:
+    """Paragraphs on the trials that are plausible, and on what is left open."""
+    words = [
+        "A trial is plausible if its predictions are as right as the best within two standard errors. It is "
+        "chosen on all tests and therefore judges nothing."
+    ]
+    if blocks := len(study.object.get("pedestal", ())):
+        words.append(
+            f"The object stands on {counted(blocks, 'block')}; retreat and friction are the same at every "
+            "contact, and the distances of the edges and the critical angle are those of the object alone."
+        )
+    if len(likely) < FEWEST_VOTERS:
+        words.append(
+            f"Fewer than {FEWEST_VOTERS} trials vote, so that chance decides near-critical tests: raise the "
+            "number of trials."
+        )
     # ranges that end where the tests would have them go on
     edges = [
-        f"{titles[name].split(' [')[0].lower()} ({edge})"
+        f"{_PROPERTIES[name].split(' [')[0].lower()} ({edge})"
         for name, edge in preferred_edges(trials, likely.index, study.unknowns).items()
     ]
-    blocks = len(study.object.get("pedestal", ()))
-    return says.section("object", parts, blocks, len(likely), len(trials), edges)
+    if edges:
+        words.append(
+            f"Plausible trials lie at an end of the range of: {listed(edges)}. Widen the range there: what lies "
+            "beyond may be as plausible."
+        )
+    return words
 
 
 def _range(values: pd.Series) -> str:
@@ -374,7 +472,7 @@ def footprint_figure(footprint: pd.DataFrame, trials: pd.DataFrame) -> Figure:
         for number, angle in enumerate(likely[:60]):
             ends = reach * np.array([[1.02], [1.12]]) * [np.cos(angle), np.sin(angle)]
             words = None if number else "plausible direction"
-            axes.plot(*ends.T, color=style.BLUE, lw=0.8, label=words)
+            axes.plot(ends[:, 0], ends[:, 1], color=style.BLUE, lw=0.8, label=words)
         axes.set(aspect="equal", xlabel="x [m]", ylabel="y [m]")
         figure.legend(loc="outside upper center", ncols=2)
         return figure

@@ -42,7 +42,16 @@ _RIGHT = Path(_ARROW[:, ::-1], _STROKES)
 
 
 def drawn_tests(tests: pd.DataFrame) -> pd.DataFrame:
-    """Tests with what is drawn of each: ``a`` [g], and whether it is only a bound (``up``, ``down``)."""
+    """Tests with what is drawn of each: ``a`` [g], and whether it is only a bound (``up``, ``down``).
+
+    Parameters
+    ----------
+    tests : a row a test
+
+    Returns
+    -------
+    The tests with the columns ``a``, ``up`` and ``down``.
+    """
     known = tests["amplitude_g"].notna()
     up = ~known & tests["upper_g"].isna()
     down = ~known & ~up
@@ -53,16 +62,23 @@ def drawn_tests(tests: pd.DataFrame) -> pd.DataFrame:
 def plot_tests(
     axes: Axes, x: Floats, rows: pd.DataFrame, marker: str, colour: str
 ) -> None:
-    """Draw tests at ``x``, with arrows where only a bound is known."""
+    """Draw tests at ``x``, with arrows where only a bound is known.
+
+    Parameters
+    ----------
+    axes, x : where to draw, shape (n,)
+    rows : n tests of :func:`drawn_tests`
+    marker, colour : of the tests
+    """
     y = rows["a"].to_numpy(dtype=float)
     axes.plot(x, y, ls="", marker=marker, mfc="none", mec=colour, ms=4, mew=0.9)
     for bound, arrow in (("up", _UP), ("down", _DOWN)):
         if rows[bound].any():
-            _plot_arrows(axes, x, y, rows[bound], arrow, colour)
+            _plot_arrows(axes, x, y, bound=rows[bound], arrow=arrow, colour=colour)
 
 
 def _plot_arrows(
-    axes: Axes, x: Floats, y: Floats, bound: pd.Series, arrow: Path, colour: str
+    axes: Axes, x: Floats, y: Floats, *, bound: pd.Series, arrow: Path, colour: str
 ) -> None:
     chosen = bound.to_numpy(dtype=bool)
     axes.plot(
@@ -78,7 +94,16 @@ def _plot_arrows(
 
 
 def bound_handle(tests: pd.DataFrame) -> list[Line2D]:
-    """Entry of a legend for tests that never overturned, if there are any."""
+    """Entry of a legend for tests that never overturned, if there are any.
+
+    Parameters
+    ----------
+    tests : a row a test
+
+    Returns
+    -------
+    One entry or none.
+    """
     if not tests["amplitude_g"].isna().any():
         return []
     return [
@@ -89,12 +114,30 @@ def bound_handle(tests: pd.DataFrame) -> list[Line2D]:
 
 
 def top(rows: pd.DataFrame) -> float:
-    """Upper end of an axis of amplitudes, with room for arrows [g]."""
+    """Upper end of an axis of amplitudes, with room for arrows [g].
+
+    Parameters
+    ----------
+    rows : tests of :func:`drawn_tests`
+
+    Returns
+    -------
+    The end [g].
+    """
     return 1.15 * float(rows["a"].max())
 
 
 def amplitudes_by(by: str, tests: pd.DataFrame, means: pd.DataFrame) -> Figure:
-    """Amplitudes by ``object`` or ``floor``, with and without a pedestal, of one definition, with their means."""
+    """Amplitudes by ``object`` or ``floor``, with and without a pedestal, of one definition, with their means.
+
+    Parameters
+    ----------
+    by, tests, means : the column, a row a test, and their means [g]
+
+    Returns
+    -------
+    The figure.
+    """
     means = means[means["by"] == ("configuration" if by == "object" else by)]
     levels, rows = list(dict.fromkeys(tests[by])), drawn_tests(tests)
     width = (
@@ -115,8 +158,8 @@ def _sides_panel(
     both = set(rows["pedestal"]) == set(SIDES)
     shift = SIDE_SHIFT if both else dict.fromkeys(SIDES, 0.0)
     x = rows[by].map(place) + rows["pedestal"].map(shift)
-    crowded = len(rows) > MOST_MARKS
-    if both and not crowded:
+    are_many = len(rows) > MOST_MARKS
+    if both and not are_many:
         keys, placed = ["object", "motion"], rows.assign(x=x)
         without = placed[placed["pedestal"] == "NP"].drop_duplicates(keys)
         pairs = placed[placed["pedestal"] == "P"].merge(
@@ -132,9 +175,10 @@ def _sides_panel(
         )
     for side in SIDES:
         own = rows["pedestal"] == side
-        if crowded and own.any():
+        if are_many and own.any():
             part = rows[own].assign(x=x[own])
-            box_at(axes, part, "x", sorted(part["x"].unique()), 0.18, SIDE_COLOUR[side])
+            levels_x = sorted(part["x"].unique())
+            box_at(axes, part, "x", levels_x, width=0.18, colour=SIDE_COLOUR[side])
         elif own.any():
             where = x[own].to_numpy(dtype=float)
             plot_tests(axes, where, rows[own], SIDE_MARKER[side], SIDE_COLOUR[side])
@@ -172,7 +216,17 @@ def _finish_sides(figure: Figure, axes: Axes, tests: pd.DataFrame, means: bool) 
 def pedestal_scatter(
     tests: pd.DataFrame, title: str, sides: Sides = WITH_PEDESTAL
 ) -> Figure:
-    """Amplitude of an arrangement against that of its counterpart under the same motion."""
+    """Amplitude of an arrangement against that of its counterpart under the same motion.
+
+    Parameters
+    ----------
+    tests, title : pairs of tests, and what stands above the panel
+    sides : the comparison
+
+    Returns
+    -------
+    The figure.
+    """
     rows = drawn_tests(tests)
     keys = ["object", "earthquake", "floor", "motion"]
     without = rows[rows["pedestal"] == "NP"]
@@ -193,7 +247,7 @@ def pedestal_scatter(
                 x, y, ls="", marker=marker, mfc="none", mec=colour, mew=1.0, ms=4.5
             )
             for bound, arrow in (("up_p", _UP), ("up_np", _RIGHT)):
-                _plot_arrows(axes, x, y, own[bound], arrow, colour)
+                _plot_arrows(axes, x, y, bound=own[bound], arrow=arrow, colour=colour)
         axes.set(xlim=(0, upper), ylim=(0, upper), aspect="equal")
         axes.locator_params(nbins=5)
         # above the panel, where it hides no test
@@ -206,7 +260,16 @@ def pedestal_scatter(
 
 
 def handles_of(names: Sequence[str]) -> list[Line2D]:
-    """Entries of a legend for names that differ in marker and colour."""
+    """Entries of a legend for names that differ in marker and colour.
+
+    Parameters
+    ----------
+    names : in order
+
+    Returns
+    -------
+    The entries; none of more names than there are markers.
+    """
     return [
         Line2D(
             [], [], ls="", marker=marker, mfc="none", mec=colour, label=shortened(name)
@@ -217,14 +280,32 @@ def handles_of(names: Sequence[str]) -> list[Line2D]:
 
 
 def styles_of(names: Sequence[str]) -> dict[str, tuple[str, str]]:
-    """Marker and colour of each name; of many all are alike."""
+    """Marker and colour of each name; of many all are alike.
+
+    Parameters
+    ----------
+    names : in order
+
+    Returns
+    -------
+    Marker and colour by name.
+    """
     if len(names) > len(MARKERS):
         return dict.fromkeys(names, ("o", style.BLUE))
     return dict(zip(names, zip(MARKERS, style.OKABE_ITO, strict=False), strict=False))
 
 
 def highest_box(rows: pd.DataFrame, by: str) -> float:
-    """Upper end of an axis of distributions [g]."""
+    """Upper end of an axis of distributions [g].
+
+    Parameters
+    ----------
+    rows, by : tests of :func:`drawn_tests`, and the column of the levels
+
+    Returns
+    -------
+    The end [g].
+    """
     return 1.15 * float(rows.groupby([by, "pedestal"])["a"].quantile(0.95).max())
 
 
@@ -233,10 +314,18 @@ def box_at(
     part: pd.DataFrame,
     by: str,
     levels: Sequence[Any],
+    *,
     width: float,
     colour: str,
 ) -> None:
-    """Draw the distribution of amplitudes at each level of a column."""
+    """Draw the distribution of amplitudes at each level of a column.
+
+    Parameters
+    ----------
+    axes, part : where to draw, and tests of :func:`drawn_tests`
+    by, levels : column of the levels, and their order
+    width, colour : of the boxes
+    """
     values = [
         part.loc[part[by] == level, "a"].to_numpy(dtype=float) for level in levels
     ]

@@ -1,4 +1,10 @@
-"""The page: one HTML file that loads nothing from outside, with its figures inside as text and lines."""
+"""The page: one HTML file that loads nothing from outside, with its figures inside as text and lines.
+
+In: an answer and sections (:mod:`rockfrag.report.part`) with tables, of which :class:`Column` says what is shown.
+Out: HTML; the same contents give the same bytes. Templates in ``templates/`` only lay out.
+
+Docs: ``docs/report.md``.
+"""
 
 import base64
 import json
@@ -7,6 +13,7 @@ import re
 import zlib
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
+from importlib import resources
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any, NamedTuple
@@ -19,7 +26,8 @@ from rockfrag.base.figure_style import BLUE, GREEN, PURPLE, RED, save_figure
 from rockfrag.report.figures import BAND, GREY
 from rockfrag.report.part import Answer, FigureSpec, Section
 from rockfrag.runtime.processes import in_processes
-from rockfrag.words.sentences import Macros, estimates, number, probability, sentence
+from rockfrag.words.catalogue import FIRST, catalogue
+from rockfrag.words.sentences import estimates, number, probability, sentence
 
 TEMPLATES = Environment(
     loader=PackageLoader("rockfrag.report"),
@@ -55,7 +63,7 @@ Words = Callable[[pd.DataFrame], Iterable[str]]
 
 @dataclass(frozen=True)
 class Column:
-    """A column of a table on the page, see :func:`column`."""
+    """A column of a table on the page; made by :func:`column`, :func:`estimated` and :func:`p_values`."""
 
     name: str  # Column of the data
     title: str  # What its head says, with the unit
@@ -65,58 +73,89 @@ class Column:
     numeric: bool = False
 
 
-_SPEC = re.compile(r"(\w+)(?: = (.+?))?(?: ([.±#p])(\d?))?")
 _UNITS = {unit: unit for unit in ("m", "cm", "mm", "kg", "g", "rad", "bit")} | {
     "deg": "°"
 }
 
 
-Columns = Sequence[str | Column]
-"""Columns of a table, of which a text names some: ``width_cm .1; ratio = Height / width .2; floor``."""
-
-
-def column(words: str) -> Column:
-    """Read a column such as ``width_cm .1`` or ``ratio = Height / width .2``.
-
-    A title that is not given is the name in words with its unit, ``Width [cm]``. Behind it stand the decimals of
-    numbers (``.2``) or of estimates (``±2``, or ``±``), ``p`` of p values, and ``#`` of texts that are numeric.
-    """
-    spec = _SPEC.fullmatch(words)
-    assert spec is not None
-    name, title, kind, digits = spec.groups()
+def usual_title(name: str) -> str:
+    """Head of a column by its name: ``width_cm`` becomes ``Width [cm]``."""
     stem, _, unit = name.rpartition("_")
-    usual = f"{stem} [{_UNITS[unit]}]" if stem and unit in _UNITS else name
-    title, decimals = (
-        title or sentence(usual.replace("_", " ")),
-        int(digits) if digits else None,
-    )
-    if kind == "±":
-        return estimated(name, title, decimals)
-    return (
-        p_values(name, title)
-        if kind == "p"
-        else Column(name, title, decimals, kind == "#")
-    )
+    words = f"{stem} [{_UNITS[unit]}]" if stem and unit in _UNITS else name
+    return sentence(words.replace("_", " "))
+
+
+def column(
+    name: str, title: str = "", *, decimals: int | None = None, numeric: bool = False
+) -> Column:
+    """Column of numbers or text.
+
+    Parameters
+    ----------
+    name, title : column of the data, and its head; by default the name in words with its unit
+    decimals : of numbers; None for text
+    numeric : whether text is of numbers and stands to the right, as they do
+
+    Returns
+    -------
+    The :class:`Column`.
+    """
+    return Column(name, title or usual_title(name), decimals, numeric)
 
 
 def by_row(words: Callable[[Row], str]) -> Words:
-    """Return what words a column row by row."""
+    """Words of a column, row by row.
+
+    Parameters
+    ----------
+    words : text of a row
+
+    Returns
+    -------
+    The function that a :class:`Column` takes as ``shown``.
+    """
     return lambda table: [words(row) for row in table.to_dict("records")]
 
 
 def estimated(
     name: str,
-    title: str,
+    title: str = "",
     decimals: int | None = None,
     limits: tuple[str, str] | None = None,
 ) -> Column:
-    """Return a column of estimates with their limits, see :func:`rockfrag.words.sentences.estimates`."""
-    return Column(name, title, lambda table: estimates(table, name, decimals, limits))
+    """Column of estimates with their limits, see :func:`rockfrag.words.sentences.estimates`.
+
+    Parameters
+    ----------
+    name, title : column of the data, and its head; by default the name in words with its unit
+    decimals : of the estimates; by default three digits of the smallest
+    limits : columns of lower and upper limit; by default the name with ``_lower`` and ``_upper``
+
+    Returns
+    -------
+    The :class:`Column`.
+    """
+    return Column(
+        name,
+        title or usual_title(name),
+        lambda table: estimates(table, name, decimals, limits),
+    )
 
 
-def p_values(name: str, title: str) -> Column:
-    """Return a column of p values."""
-    return Column(name, title, lambda table: map(probability, table[name]))
+def p_values(name: str, title: str = "") -> Column:
+    """Column of p values.
+
+    Parameters
+    ----------
+    name, title : column of the data, and its head; by default the name in words
+
+    Returns
+    -------
+    The :class:`Column`.
+    """
+    return Column(
+        name, title or usual_title(name), lambda table: map(probability, table[name])
+    )
 
 
 def cell(value: Any, digits: int | None) -> str:
@@ -137,14 +176,22 @@ MOST_TABLE_ROWS = 500
 
 
 def table_html(
-    table: pd.DataFrame, shown: Columns, caption: str, file: str = ""
+    table: pd.DataFrame, columns: Sequence[Column], caption: str, file: str = ""
 ) -> Markup:
-    """Render a table, empty without rows; where the file with all rows is named ``MOST_TABLE_ROWS`` are shown."""
+    """Table on the page, empty without rows.
+
+    Parameters
+    ----------
+    table, columns : the data, and what is shown of them
+    caption, file
+        What stands above it, and the file with all rows; where it is named ``MOST_TABLE_ROWS`` are shown.
+
+    Returns
+    -------
+    HTML.
+    """
     if table.empty:
         return Markup("")
-    columns: list[Column] = []
-    for part in shown:
-        columns += map(column, part.split("; ")) if isinstance(part, str) else [part]
     if file and len(table) > MOST_TABLE_ROWS:
         caption += f" The first {MOST_TABLE_ROWS} of {len(table)}; {file} has all."
         table = table.iloc[:MOST_TABLE_ROWS]
@@ -167,7 +214,17 @@ def framed(
     rows: Sequence[Sequence[str | Markup]],
     room: int,
 ) -> Markup:
-    """A table of titles and kinds of columns; the more room they need, the sooner its rows become lists."""
+    """Table from titles and kinds of columns; the more room they need, the sooner its rows become lists.
+
+    Parameters
+    ----------
+    caption, head : what stands above it, and title and kind (``number``, ``short``, ``long``) of each column
+    rows, room : texts or HTML of the cells, and the number of columns, long ones counted more than once
+
+    Returns
+    -------
+    HTML.
+    """
     size = "few" if room <= 4 else "some" if room <= 7 else "many"
     template = TEMPLATES.get_template("table.html.j2")
     return Markup(
@@ -181,7 +238,17 @@ def text_table(
     caption: str,
     numeric: Sequence[str] = (),
 ) -> Markup:
-    """Render rows of texts under their titles; columns that are of numbers stand to the right."""
+    """Table of texts under their titles.
+
+    Parameters
+    ----------
+    titles, rows, caption : heads of the columns, texts of the cells, and what stands above
+    numeric : titles of columns of numbers, which stand to the right
+
+    Returns
+    -------
+    HTML.
+    """
     columns = [Column(title, title, numeric=title in numeric) for title in titles]
     return table_html(pd.DataFrame(rows, columns=list(titles)), columns, caption)
 
@@ -233,7 +300,9 @@ def inline_svg(svg: str, name: str, alt: str) -> Markup:
     ).format(box[1] if box else "", alt, Markup(inner.strip()))
 
 
-TERMS = Macros("rockfrag.report", "terms.j2").pairs("terms")
+TERMS: Mapping[str, str] = json.loads(
+    resources.files("rockfrag.report").joinpath("terms.json").read_text("utf-8")
+)
 """Meaning by term; a term such as ``PGA, PGV`` is used where one of its parts is."""
 
 
@@ -285,6 +354,7 @@ class Page:
     provenance: Mapping[str, str] = field(default_factory=dict)
     basis: str = "simulated"  # The page warns of what is not ``measured``
     live: Markup = _NOTHING  # See :func:`rockfrag.report.live.live_kernel`
+    language: str = FIRST  # Of what stands on every page
 
     @property
     def figures(self) -> dict[str, tuple[FigureSpec, str]]:
@@ -324,6 +394,7 @@ class Page:
             pictures = draw_all(specs, folder or Path(scratch), processes)
         return environment.get_template("report.html.j2").render(
             vars(self),
+            shell=catalogue(self.language).texts,
             pictures=pictures,
             glossary=terms_used(self.words),
             style=Markup(
@@ -334,22 +405,58 @@ class Page:
 
 
 def scripts_of(*names: str) -> Markup:
-    """Return scripts of the package as text of a page."""
+    """Scripts of the package as text of a page.
+
+    Parameters
+    ----------
+    names : files in ``templates/`` without ``.js``
+
+    Returns
+    -------
+    The scripts, one after the other.
+    """
     return Markup(
         "\n".join(TEMPLATES.get_template(f"{name}.js").render() for name in names)
     )
 
 
 def base64_text(content: bytes) -> str:
-    """Return bytes as text of a page."""
+    """Bytes as text of a page.
+
+    Parameters
+    ----------
+    content : any bytes
+
+    Returns
+    -------
+    Base 64.
+    """
     return base64.b64encode(content).decode("ascii")
 
 
 def zipped_text(content: bytes) -> str:
-    """Return bytes, compressed, as text of a page."""
+    """Compress bytes into text of a page.
+
+    Parameters
+    ----------
+    content : any bytes
+
+    Returns
+    -------
+    Base 64 of the compressed bytes (zlib).
+    """
     return base64_text(zlib.compress(content, 9))
 
 
 def json_text(data: Any) -> Markup:
-    """Return data as JSON in a script: a name in it may hold anything, but never the script's end."""
+    """Data as JSON in a script: a name in it may hold anything, but never the script's end.
+
+    Parameters
+    ----------
+    data : what JSON can hold
+
+    Returns
+    -------
+    The text, safe inside an element ``script``.
+    """
     return Markup(json.dumps(data, separators=(",", ":")).replace("<", "\\u003c"))

@@ -1,4 +1,9 @@
-"""What a report is made of: parts, each with its words, tables and figures in one file of ``report/sections``."""
+"""Parts of a report: findings, figures, sections, and the results that they are made of.
+
+In: the tables of a study (:class:`Results`). Out: :class:`Section`, :class:`Finding` and :class:`Answer`, which
+:class:`rockfrag.report.page.Page` lays out; a part of the report is a function of the results that returns its
+section. Docs: ``docs/report.md``, ``CONTRIBUTING.md`` ("How to add a section of the report").
+"""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
@@ -15,7 +20,6 @@ from numpy.typing import NDArray
 from rockfrag.records.motion import Motion, read_motion_metadata, read_motion_set
 from rockfrag.shaketable.definitions import DEFINITION, read_swept
 from rockfrag.study.study import Study
-from rockfrag.words.sentences import Macros
 
 MOST_MOTIONS = 50
 """Motions of which a report shows every outcome; of a larger study it shows the first."""
@@ -78,47 +82,34 @@ class Section:
     parts: Sequence[Markup | FigureSpec] = ()  # Its figures, and the tables behind them
 
 
-class Says(Macros):
-    """What the parts of a page say: macros that part what they say by ``{{ part }}``."""
+def chapter(
+    anchor: str,
+    title: str,
+    found: Finding,
+    paragraphs: Sequence[str] = (),
+    parts: Sequence[Markup | FigureSpec] = (),
+) -> Section:
+    """Chapter whose message is the headline of a finding, with the sentences behind it first.
 
-    def finding(self, macro: str, *about: Any) -> Finding:
-        """A finding of which a macro says headline, text and numbers."""
-        return Finding(*map(" ".join, self.parts(macro, *about)))
+    Parameters
+    ----------
+    anchor, title : its place and its heading
+    found : the finding
+    paragraphs, parts : further paragraphs, and figures and tables
 
-    def figure(
-        self, name: str, draw: Callable[[], Figure], *about: Any, of: str = ""
-    ) -> FigureSpec:
-        """A figure of which ``<name>_figure``, or that ``of`` others, says what it shows and its caption."""
-        alt, caption = map(" ".join, self.parts(f"{of or name}_figure", *about))
-        return FigureSpec(name, alt, caption, draw)
-
-    def table(
-        self,
-        name: str,
-        table: pd.DataFrame,
-        *about: Any,
-        more: Sequence[Any] = (),
-        file: str = "",
-    ) -> Markup:
-        """A table of which ``<name>_table`` says caption and columns, with ``more`` behind them."""
-        from rockfrag.report.page import table_html
-
-        caption, columns = self.parts(f"{name}_table", *about)
-        return table_html(table, [*columns, *more], " ".join(caption), file)
-
-    def section(
-        self,
-        anchor: str,
-        parts: Sequence[Markup | FigureSpec],
-        *about: Any,
-        of: str = "",
-    ) -> Section:
-        """A chapter of which the macro of its anchor, or another, says title, message and paragraphs."""
-        title, message, paragraphs = self.parts(of or anchor.replace("-", "_"), *about)
-        return Section(anchor, " ".join(title), " ".join(message), paragraphs, parts)
+    Returns
+    -------
+    The :class:`Section`.
+    """
+    words = [found.text, found.numbers, *paragraphs]
+    return Section(
+        anchor, title, f"{found.headline}.", [text for text in words if text], parts
+    )
 
 
-says = Says("rockfrag.report.sections", "sections.j2")  # what the parts of a report say
+def joined(*sentences: str) -> str:
+    """Sentences that are not empty, in a row."""
+    return " ".join(filter(None, sentences))
 
 
 class Results:
@@ -179,10 +170,8 @@ class Results:
     @cached_property
     def least_gravity_ratio(self) -> NDArray[np.float64]:
         """Least weight over that on a ground at rest, of every history of a study with vertical motion."""
-        name, paths = (
-            "minimum_gravity_ratio",
-            (self.folder / path for path in self.study.ida_files),
-        )
+        name = "minimum_gravity_ratio"
+        paths = [self.folder / path for path in self.study.ida_files]
         return np.concatenate(
             [pd.read_parquet(path, columns=[name])[name] for path in paths]
         )

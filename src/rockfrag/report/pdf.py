@@ -28,7 +28,16 @@ _PATIENCE = 300.0  # seconds that a browser may take
 
 
 def print_page(page: Path) -> Path:
-    """Print a page, and return the path of the PDF beside it; this needs a browser that prints."""
+    """Print a page to a PDF beside it; this needs a browser that prints.
+
+    Parameters
+    ----------
+    page : path of the HTML file
+
+    Returns
+    -------
+    Path of the PDF.
+    """
     if not page.is_file():
         raise InputError(f"{page}: there is no report yet; run the study first.")
     browser = next((path for name in BROWSERS if (path := shutil.which(name))), None)

@@ -1,4 +1,8 @@
-"""A page in which one body rocks under one record: the live simulation alone."""
+"""Page on which one body rocks under one record: the live simulation alone.
+
+In: a body and a motion of one or two horizontal components. Out: one HTML file with the kernel as WebAssembly;
+peaks [g]. Docs: ``docs/report.md``, "The simulation in the page".
+"""
 
 import os
 from collections.abc import Sequence
@@ -13,17 +17,15 @@ from rockfrag.records.motion import GroundMotion, Motion
 from rockfrag.report.live import AMPLITUDES_G, live_kernel
 from rockfrag.report.live import live_space as space
 from rockfrag.report.page import Page
-from rockfrag.report.part import Answer, Finding, Says
+from rockfrag.report.part import Answer, Finding
 from rockfrag.simulation import overturns
 from rockfrag.system.blocks import SystemLike, as_system
 from rockfrag.system.body import Circle, RigidBody
 from rockfrag.web import in_page
+from rockfrag.words.sentences import counted, number, sentence
 
 MOST_SAMPLES = 20_000
 """Times of a record for which the page stays below 400 kB, and below 700 kB with two components."""
-
-
-says = Says("rockfrag.report", "play_page.j2")
 
 
 def write_play_page(
@@ -32,6 +34,11 @@ def write_play_page(
     """Write the page of a body that rocks under a motion of at most ``MOST_SAMPLES``.
 
     It is at most two blocks under one component, or a body in space under both.
+
+    Parameters
+    ----------
+    body, motion : what rocks, and what shakes it
+    path : file to write
     """
     system = as_system(body)
     samples = _samples(motion)
@@ -56,12 +63,15 @@ def write_play_page(
     *fell, recorded = found.overturned.ravel().tolist()
     page = Page(
         title=f"{name} under {motion.name}",
-        lead=says.line("lead", samples, motion.dt, peak / GRAVITY),
+        lead=(
+            f"{counted(samples, 'sample')} of {motion.dt:.4g} s, as recorded with a peak of "
+            f"{number(peak / GRAVITY, 3)} g."
+        ),
         answer=Answer(
             asked="How strong must this motion be to overturn it?",
             sentences=[
                 _strength(amplitudes.tolist(), fell),
-                says.finding("recorded", recorded, int(found.impacts.flat[-1])),
+                _recorded(recorded, int(found.impacts.flat[-1])),
             ],
             rests_on=rests_on,
         ),
@@ -102,8 +112,33 @@ def _sizes(body: RigidBody) -> str:
 
 
 def _strength(amplitudes: Sequence[float], fell: Sequence[bool]) -> Finding:
-    """Say which of the amplitudes tried [g] overturn."""
-    apart = amplitudes[1] / amplitudes[0] - 1
-    first = fell.index(True) if any(fell) else None
-    later = 0 if first is None else len(fell) - first - sum(fell[first:])
-    return says.finding("strength", amplitudes, apart, first, later)
+    """Amplitudes tried [g] that overturn."""
+    apart = 100 * (amplitudes[1] / amplitudes[0] - 1)
+    tried = f"amplitudes from {amplitudes[0]:g} to {amplitudes[-1]:g} g, {apart:.1f} % apart"
+    if not any(fell):
+        return Finding("It does not overturn", f"It survives all {tried}.")
+    first = fell.index(True)
+    later = len(fell) - first - sum(fell[first:])
+    others = "All stronger ones overturn it too."
+    if later:
+        ones = "one is" if later == 1 else "ones are"
+        others = (
+            f"{later} stronger {ones} survived again: the response is not monotone."
+        )
+    return Finding(
+        f"It first overturns at a peak of {number(amplitudes[first], 3)} g",
+        f"{sentence(tried)} were tried. {others}",
+    )
+
+
+def _recorded(overturned: bool, impacts: int) -> Finding:
+    """Outcome of the motion as recorded."""
+    if overturned:
+        return Finding(
+            "The motion as recorded overturns it",
+            f"It has {counted(impacts, 'impact')} before its fall is certain.",
+        )
+    return Finding(
+        "The motion as recorded does not overturn it",
+        f"It rocks with {counted(impacts, 'impact')}.",
+    )

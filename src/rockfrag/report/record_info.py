@@ -56,6 +56,15 @@ def describe_files(
     without baseline correction; the dominant period is that of the largest 5 % damped pseudo-acceleration;
     ``quality_flags`` says what looks wrong. A file that cannot be read, or whose unit is not known, has the
     reason in ``error`` and does not stop the others.
+
+    Parameters
+    ----------
+    paths : files, folders and archives
+    unit, dt, force : of files that do not state theirs; dt [s]
+
+    Returns
+    -------
+    pandas.DataFrame, a row a channel.
     """
     rows: list[dict[str, Any]] = []
     for path in record_files(*paths):
@@ -117,7 +126,17 @@ def draw_files(
     dt: float | None = None,
     force: bool = False,
 ) -> list[Path]:
-    """Draw every channel of every file that can be read into a folder, and return the pictures."""
+    """Draw every channel of every file that can be read into a folder, and return the pictures.
+
+    Parameters
+    ----------
+    paths, folder : files, folders and archives, and where pictures go
+    unit, dt, force : of files that do not state theirs; dt [s]
+
+    Returns
+    -------
+    Paths of the pictures.
+    """
     drawn: list[Path] = []
     for path in record_files(*paths):
         try:
@@ -145,7 +164,12 @@ def _motion(record: Record, channel: Channel, unit: str | None, force: bool) -> 
 
 
 def draw_record(motion: Motion, path: str | os.PathLike[str]) -> None:
-    """Draw acceleration, its exact integrals from rest, and the spectra of a motion as ``.png`` or ``.svg``."""
+    """Draw acceleration, its exact integrals from rest, and the spectra of a motion as ``.png`` or ``.svg``.
+
+    Parameters
+    ----------
+    motion, path : the record, and the file to write
+    """
     if Path(path).suffix not in (".png", ".svg"):
         raise InputError(f"{path}: a picture is written as .png or .svg.")
     style.save_figure(record_figure(motion), path)
@@ -183,10 +207,10 @@ def record_figure(motion: Motion) -> Figure:
         frequency, amplitude = fourier_amplitude(motion)
         _logarithmic(lower, frequency[1:], amplitude[1:], style.PURPLE)
         lower.set(xlabel="Frequency [Hz]", ylabel="Fourier amplitude [m/s]")
-        told = {key: str(value or "") for key, value in motion.metadata.items()}
-        station = f"{told.get('station', '')} {told.get('station_name', '')}".strip()
+        facts = {key: str(value or "") for key, value in motion.metadata.items()}
+        station = f"{facts.get('station', '')} {facts.get('station_name', '')}".strip()
         found = ", ".join(
-            filter(None, (station, told.get("component"), told.get("earthquake")))
+            filter(None, (station, facts.get("component"), facts.get("earthquake")))
         )
         titles = [
             shorten(line, 100, placeholder="…") for line in (motion.name, found) if line

@@ -1,4 +1,8 @@
-"""The report of a study: its parts in order, every figure drawn once, one page, and what made it."""
+"""Report of a study: its parts in order, every figure drawn once, one page, and its provenance.
+
+In: a :class:`rockfrag.stages.job.Job` whose folder has the tables of all stages. Out: ``report.html`` and the
+folder ``figures``; the same tables give the same bytes. Docs: ``docs/report.md``.
+"""
 
 import json
 from collections.abc import Callable, Mapping, Sequence
@@ -12,11 +16,12 @@ from rockfrag.config.plugins import plugins_of
 from rockfrag.report.answer import study_answer
 from rockfrag.report.live import live_kernel
 from rockfrag.report.page import MOST_TABLE_ROWS, Page
-from rockfrag.report.part import Answer, Part, Section, says
+from rockfrag.report.part import Answer, Part, Section
 from rockfrag.report.part import Results as StudyResults
 from rockfrag.report.sections import PARTS
 from rockfrag.stages.job import Job, Results, package_digest
 from rockfrag.study.study import Study
+from rockfrag.words.sentences import counted
 
 _LIBRARIES = ("numpy", "scipy", "pandas", "numba", "statsmodels", "obspy", "matplotlib")
 
@@ -32,19 +37,35 @@ def run(job: Job[Study]) -> Results:
     for plugin in plugins_of(study):
         parts, answer = plugin.report(study, parts, answer)
     sections = [section for part in parts if (section := part(results)) is not None]
-    earthquakes = len({record.get("earthquake") for record in results.records})
-    lead = says.line("lead", study, len(results.records), earthquakes)
     live, systems = Markup(), {each.name: each for each in study.configurations}
     # nothing where it could not give the outcomes of the study
     if study.simulated_in_page:
         live = live_kernel(systems, results.floors, results.outcomes)
-    first, about = answer(results), _settings(results)
-    write_page(job, first, sections, about, lead, _LIBRARIES, live=live)
+    write_page(
+        job,
+        answer(results),
+        sections,
+        about=_settings(results),
+        lead=_lead(results),
+        libraries=_LIBRARIES,
+        live=live,
+    )
     yield from ()
 
 
+def _lead(results: StudyResults) -> str:
+    """Sentence below the title: how many configurations, records and earthquakes."""
+    study, records = results.study, results.records
+    earthquakes = len({record.get("earthquake") for record in records})
+    floors = ", on the floors of a building" if study.building else ""
+    return (
+        f"Rocking and overturning of {counted(len(study.configurations), 'configuration')} under "
+        f"{counted(len(records), 'record')} of {counted(earthquakes, 'earthquake')}{floors}."
+    )
+
+
 def _settings(results: StudyResults) -> dict[str, str]:
-    """What the numbers of a simulated study depend on."""
+    """Settings and inputs on which the numbers of a simulated study depend."""
     study = results.study
     shown = study.catalogue.head(MOST_TABLE_ROWS)
     digests = shown["sha256"].map(
@@ -54,7 +75,12 @@ def _settings(results: StudyResults) -> dict[str, str]:
     if rest := len(study.catalogue) - len(shown):
         records += f" and {rest} more of {study.catalogue_file.name}"
     digest = ", ".join(sorted(set(results.table("fragility")["record_set_sha256"])))
-    return says.pairs("settings", study) | {
+    amplitudes = study.amplitudes
+    lowest, step = f"{amplitudes.lowest_g:g}", f"{amplitudes.step_percent:g}"
+    protocol = f"{study.protocol_step_percent:g}"
+    return {
+        "Amplitudes": f"{lowest} to {amplitudes.highest_g:g} g in steps of {step} %",
+        "Step protocol": f"from {lowest} g in steps of {protocol} %, read before overturning",
         "Records": records,
         "Motions, SHA-256": digest,
     }
@@ -64,6 +90,7 @@ def write_page(
     job: Job[Any],
     answer: Answer,
     sections: Sequence[Section],
+    *,
     about: Mapping[str, str],
     lead: str,
     libraries: Sequence[str] = (),
@@ -71,8 +98,14 @@ def write_page(
 ) -> None:
     """Draw the figures of a page as SVG and PNG into the folder ``figures``, and write it, ``report.html``.
 
-    Its last section says what a reader needs to get the same results again, also what is in ``about`` and
-    ``libraries``; no dates, no names of machines. What else it shows goes to :class:`rockfrag.report.page.Page`.
+    Parameters
+    ----------
+    job : the study, and the folder of its results
+    answer, sections, lead : what stands on the page
+    about, libraries
+        What a reader needs beside the study to get the same results again, and names of distributions whose
+        versions matter; no dates, no names of machines.
+    page : further fields of :class:`rockfrag.report.page.Page`
     """
     study, folder = job.study, job.folder / "figures"
     digest = package_digest(*(plugin.rules.parent for plugin in plugins_of(study)))

@@ -6,7 +6,7 @@ always overturns are three different figures; between the last two lie structura
 """
 
 import math
-from collections.abc import Hashable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache, partial
 from pathlib import Path
@@ -57,13 +57,31 @@ class Swept:
 
 
 def labels_of(system: System) -> dict[str, str]:
-    """Return what tables of a study call a system: its configuration, its object, with or without a pedestal."""
+    """Labels of a system in tables: its configuration, its object, with or without a pedestal.
+
+    Parameters
+    ----------
+    system : the system
+
+    Returns
+    -------
+    The labels by column.
+    """
     side = "P" if system.count > 1 else "NP"
     return {"configuration": system.name, "object": system.names[-1], "pedestal": side}
 
 
 def fallen_names(system: System) -> tuple[str, ...]:
-    """Return what tables of a study call the body that fell, by its number in outcomes."""
+    """Names in tables of the body that fell, by its number in outcomes.
+
+    Parameters
+    ----------
+    system : of n bodies
+
+    Returns
+    -------
+    The names, n + 1 of them.
+    """
     return (
         "",
         *(
@@ -75,7 +93,16 @@ def fallen_names(system: System) -> tuple[str, ...]:
 
 
 def read_swept(paths: Iterable[Path], *, state: str = OVERTURNS) -> Iterator[Swept]:
-    """Yield the outcomes of IDA curves in a limit state, some motions at a time, so that memory holds one part."""
+    """Yield the outcomes of IDA curves in a limit state, some motions at a time, so that memory holds one part.
+
+    Parameters
+    ----------
+    paths, state : Parquet files of IDA curves, and the limit state
+
+    Returns
+    -------
+    Parts of the IDA curves.
+    """
     reached = limit_state_named(state).column
     columns = [*ABOUT, "amplitude_g", reached, "overturned_body"]
     for path in paths:
@@ -132,14 +159,32 @@ _LABELS = ("configuration", "object", "pedestal", "floor")
 
 
 def first_overturning(amplitudes: Floats, overturned: Flags) -> Outcome:
-    """Bounds of the least amplitude that overturns, of rising ones [g], shape (n,)."""
+    """Bounds of the least amplitude that overturns, of rising ones [g], shape (n,).
+
+    Parameters
+    ----------
+    amplitudes, overturned : rising peaks [g] and their outcomes, shape (n,)
+
+    Returns
+    -------
+    The :class:`Outcome`.
+    """
     return _between(
         amplitudes, int(overturned.argmax()) if overturned.any() else overturned.size
     )
 
 
 def always_overturning(amplitudes: Floats, overturned: Flags) -> Outcome:
-    """Bounds of the amplitude above which all overturn; censored if the largest was survived."""
+    """Bounds of the amplitude above which all overturn; censored if the largest was survived.
+
+    Parameters
+    ----------
+    amplitudes, overturned : rising peaks [g] and their outcomes, shape (n,)
+
+    Returns
+    -------
+    The :class:`Outcome`.
+    """
     return _between(amplitudes, int(np.flatnonzero(~overturned).max(initial=-1)) + 1)
 
 
@@ -153,7 +198,17 @@ def _between(amplitudes: Floats, place: int) -> Outcome:
 
 
 def step_protocol(amplitudes: Floats, overturned: Flags, protocol: Protocol) -> Outcome:
-    """Bounds where the protocol's series of levels is climbed, each level at the nearest amplitude."""
+    """Bounds where the protocol's series of levels is climbed, each level at the nearest amplitude.
+
+    Parameters
+    ----------
+    amplitudes, overturned : rising peaks [g] and their outcomes, shape (n,)
+    protocol : of the laboratory
+
+    Returns
+    -------
+    The :class:`Outcome`.
+    """
     climbed = _levels(amplitudes, protocol, None, 1)
     return first_overturning(amplitudes[climbed], overturned[climbed])
 
@@ -217,7 +272,17 @@ def tests_from_swept(
     definitions: Sequence[str] = DEFINITIONS,
     limits_g: Mapping[str, float] | None = None,
 ) -> pd.DataFrame:
-    """Read IDA curves as tests, part after part, as :func:`tests_from_ida` does those of a table."""
+    """Read IDA curves as tests, part after part, as :func:`tests_from_ida` does those of a table.
+
+    Parameters
+    ----------
+    parts : of IDA curves
+    protocol, definitions, limits_g : as of :func:`tests_from_ida`
+
+    Returns
+    -------
+    Table of tests.
+    """
     rows: list[dict[str, object]] = []
     for part in parts:
         amplitudes_g, first = part.amplitude_g, part.about.iloc[0]
@@ -232,8 +297,8 @@ def tests_from_swept(
             )
         levels = cache(partial(_levels, amplitudes_g, protocol))
         every = np.arange(amplitudes_g.size)
-        for place, about in enumerate(part.about.to_dict("records")):
-            limit = None if limits_g is None else limits_g.get(about["motion"])
+        for place, motion in enumerate(part.about["motion"]):
+            limit = None if limits_g is None else limits_g.get(motion)
             climbed = [
                 levels(limit, number) for number in range(1, protocol.repetitions + 1)
             ]
@@ -241,7 +306,13 @@ def tests_from_swept(
                 series = climbed if definition == DEFINITION else [every]
                 rows += [
                     {"repetition": repetition, "definition": definition}
-                    | _row(part, place, about, protocol, definition, amplitudes)
+                    | _row(
+                        part,
+                        place,
+                        protocol,
+                        definition=definition,
+                        climbed=amplitudes,
+                    )
                     for repetition, amplitudes in enumerate(series, start=1)
                 ]
     return as_tests_table(rows)
@@ -250,15 +321,16 @@ def tests_from_swept(
 def _row(
     part: Swept,
     place: int,
-    about: Mapping[Hashable, object],
     protocol: Protocol,
+    *,
     definition: str,
     climbed: NDArray[np.intp],
 ) -> dict[str, object]:
-    """Outcome of a motion at the amplitudes that were climbed."""
-    bounds = (
-        always_overturning if definition == "always_overturning" else first_overturning
-    )
+    """Outcome of the motion in a row of a part, at the amplitudes that were climbed."""
+    about = part.about.iloc[place]
+    bounds = first_overturning
+    if definition == "always_overturning":
+        bounds = always_overturning
     true = bounds(part.amplitude_g[climbed], part.overturned[place][climbed])
     shown = true
     if protocol.measurement is not None:
@@ -279,7 +351,7 @@ def _row(
 
 
 def mean_amplitudes(tests: pd.DataFrame) -> pd.DataFrame:
-    """Geometric means of what is compared, over the motions that overturned all that is compared, a row a mean.
+    """Geometric means of amplitudes over the motions that overturned all that is compared, a row a mean.
 
     ``tests`` are of one definition; ``amplitude_g`` [g] is missing where the test has none. ``by`` is what is
     compared: all configurations over the same motions (``configuration``), the floors by side over the same
@@ -287,6 +359,14 @@ def mean_amplitudes(tests: pd.DataFrame) -> pd.DataFrame:
     ``pedestal`` and ``floor`` are empty where all are taken together; ``mean_g`` [g] is missing where no motion
     overturned all; of ``of`` motions ``motions`` did. Repetitions are averaged in the logarithm, and count only if
     each of them overturned.
+
+    Parameters
+    ----------
+    tests : of one definition, a row a test
+
+    Returns
+    -------
+    pandas.DataFrame.
     """
     # the same record on another floor has another name: that of the record and the floor's
     names = tests[["motion", "floor"]].to_numpy().tolist()

@@ -185,10 +185,18 @@ def produced_motion(
 def shaker_table(
     shaker: Shaker, motions: Sequence[Motion], payload: float = 0.0
 ) -> pd.DataFrame:
-    """What each motion, as it is, asks per g of its peak, and up to which amplitude it fits.
+    """Demands of each motion, as it is, per g of its peak, and the peak up to which it fits.
 
     A row a motion: ``motion``, ``earthquake``, ``floor``, ``travel_cm_per_g``, ``excursion_cm_per_g``,
     ``velocity_cm_s_per_g``, ``force_n_per_g``, ``limit_g``, ``limited_by``.
+
+    Parameters
+    ----------
+    shaker, motions, payload : the table, the motions, and the mass on it [kg]
+
+    Returns
+    -------
+    pandas.DataFrame.
     """
     rows = []
     for motion in motions:

@@ -45,6 +45,14 @@ def housner_velocity(alpha: float, p: float) -> float:
 
     Housner (1963): θc = v √(m R / (g I_O)), by equating energies; with v the velocity spectrum's
     ordinate he gave it as the earthquake that overturns half of such blocks.
+
+    Parameters
+    ----------
+    alpha, p : critical angle [rad] and frequency parameter [1/s]
+
+    Returns
+    -------
+    The velocity [m/s].
     """
     positive_number("alpha", alpha, "radians")
     positive_number("p", p, "1/s")

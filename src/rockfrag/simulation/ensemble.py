@@ -135,7 +135,10 @@ def overturns(
     (2, 1, 3)
     """
     cases = prepared(
-        *(bodies, motions, dt, scales),
+        bodies,
+        motions,
+        dt,
+        scales,
         forces=forces,
         restitution=restitution,
         friction=friction,

@@ -95,7 +95,7 @@ def simulate(
     """
     shaking = ground_motion(motion, dt, vertical)
     positive_number("g", g, "m/s²")
-    system = system_of(body, friction, restitution, theta0, omega0)
+    system = system_of(body, friction, restitution, theta0=theta0, omega0=omega0)
     request = Request(history=True, linear=checked_switch("linear", linear), g=g)
     engine = engine_for(system, shaking, request)
     response: Response = engine.history(Case(system, shaking, 1.0, request))

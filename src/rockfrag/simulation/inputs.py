@@ -225,7 +225,16 @@ def checked_scales(
 
 
 def checked_threads(threads: object) -> int:
-    """Return the number of threads; that of the cores if None."""
+    """Number of threads; that of the cores if None.
+
+    Parameters
+    ----------
+    threads : number that a user gave, or None
+
+    Returns
+    -------
+    The number.
+    """
     if threads is None:
         return os.cpu_count() or 1
     count = whole_number("threads", threads)

@@ -66,13 +66,21 @@ def system_of(
     body: SystemLike,
     friction: FrictionInput | None = None,
     restitution: Restitution = None,
+    *,
     theta0: StartInput = None,
     omega0: StartInput = None,
     name: str = "",
 ) -> System:
-    """Return the system that a body and its options, as of :func:`rockfrag.simulation.simulate`, are.
+    """System of a body with its options.
 
-    ``name`` is what messages add to the name of an option, such as ``[3]``.
+    Parameters
+    ----------
+    body, friction, restitution, theta0, omega0 : as of :func:`rockfrag.simulation.simulate`
+    name : addition to the name of an option in messages, such as ``[3]``
+
+    Returns
+    -------
+    The :class:`rockfrag.system.system.System`.
     """
     system = as_system(body)
     contacts, start = list(system.contacts), system.start
@@ -119,12 +127,15 @@ def systems_of(
     """Return the systems that bodies and their options, as of :func:`rockfrag.simulation.overturns`, are."""
     count = len(bodies)
     friction = _friction_of_each(options.get("friction"), count)
-    restitution, theta0, omega0 = (
-        _one_per_body(name, options.get(name), count)
-        for name in ("restitution", "theta0", "omega0")
-    )
+    restitution = _one_per_body("restitution", options.get("restitution"), count)
+    theta0 = _one_per_body("theta0", options.get("theta0"), count)
+    omega0 = _one_per_body("omega0", options.get("omega0"), count)
     names = [f"[{i}]" if count > 1 else "" for i in range(count)]
-    return tuple(map(system_of, bodies, friction, restitution, theta0, omega0, names))
+    each = zip(bodies, friction, restitution, theta0, omega0, names, strict=True)
+    return tuple(
+        system_of(body, mu, e, theta0=angle, omega0=velocity, name=name)
+        for body, mu, e, angle, velocity, name in each
+    )
 
 
 def _one_per_body(name: str, given: Any, count: int) -> list[Any]:
@@ -213,22 +224,22 @@ def _law_of(
     if value is None:
         return BY_MOMENTUM
     both = _ratios(name, value, shape)
-    told = [
-        law_named(law).tell(shape, *side) for side in zip(both, (+1, -1), strict=True)
-    ]
-    if any(math.isnan(number) for _, number in told):
+    right, left = both
+    rule = law_named(law)
+    ending_right, ending_left = rule.tell(shape, right, +1), rule.tell(shape, left, -1)
+    if any(math.isnan(number) for _, number in (ending_right, ending_left)):
         raise InputError(
             f"{name}: momentum leaves this block nothing to rock on with, so the law {law} has nothing to "
             "multiply; choose the law position or ratio."
         )
-    if lone:
-        # what was measured is the ratio of the lone body, unless its law makes another one of it
-        right, left = (
-            number if kind == ratio.NUMBER else measured
-            for (kind, number), measured in zip(told, both, strict=True)
-        )
-        return ImpactLaw("ratio", right, left)
-    return ImpactLaw(law, *both)
+    if not lone:
+        return ImpactLaw(law, right, left)
+    # the measured number is the ratio of the lone body, unless its law makes another one of it
+    if ending_right[0] == ratio.NUMBER:
+        right = ending_right[1]
+    if ending_left[0] == ratio.NUMBER:
+        left = ending_left[1]
+    return ImpactLaw("ratio", right, left)
 
 
 def _ratios(name: str, measured: object, shape: geometry.Shape) -> list[float]:

@@ -66,6 +66,15 @@ def quarter_period(
 
     The nonlinear one is the integral of dθ/θ' with the energy of eq. 2.4, by Gauss-Legendre after
     θ = θ0 (1 - u²), which takes the singularity away.
+
+    Parameters
+    ----------
+    block, peak, pivot : the block, its rotation at rest [rad], and 1 for the right pivot, -1 for the left
+    linear : whether by the linearised equation
+
+    Returns
+    -------
+    The time [s].
     """
     alpha, p = block.critical_angle(pivot), block.frequency(pivot)
     if linear:
@@ -165,8 +174,11 @@ def restitution_from_impacts(
             return largest
         if flight(1e-9 * largest, pivot) >= interval:
             return 1e-9 * largest
-        ends = 1e-9 * largest, largest
-        return float(brentq(lambda s: flight(s, pivot) - interval, *ends, xtol=1e-14))
+
+        def too_long(speed: float) -> float:
+            return flight(speed, pivot) - interval
+
+        return float(brentq(too_long, 1e-9 * largest, largest, xtol=1e-14))
 
     speeds = [
         speed_of(float(T), pivot) for T, pivot in zip(intervals, pivots, strict=True)

@@ -95,11 +95,20 @@ def outcome_robustness(
 
 
 def perturbed(system: System, size: float, rng: np.random.Generator) -> System:
-    """Return a system whose widths and heights differ by at most ``size``, relative, drawn evenly."""
-    drawn = [(1 + size * rng.uniform(-1, 1, 2)).tolist() for _ in system.bodies]
-    bodies = (
-        _resized(body, *sizes) for body, sizes in zip(system.bodies, drawn, strict=True)
-    )
+    """System whose widths and heights differ by at most ``size``, relative, drawn evenly.
+
+    Parameters
+    ----------
+    system, size, rng : the system, the largest relative difference [-], and the random numbers
+
+    Returns
+    -------
+    The system.
+    """
+    bodies = []
+    for body in system.bodies:
+        across, up = (1 + size * rng.uniform(-1, 1, 2)).tolist()
+        bodies.append(_resized(body, across, up))
     return replace(system, bodies=tuple(bodies))
 
 
@@ -207,15 +216,15 @@ def find_step_size_sensitive(
     )
     cases = np.stack(np.unravel_index(np.sort(chosen), shape), axis=1).astype(np.int64)
     body, motion, column = cases.T
-    drawn = (body, motion, factors[motion, column])
-    given = overturned_cases(grid, *drawn)
+    scale = factors[motion, column]
+    given = overturned_cases(grid, body, motion, scale)
     # twice the samples on the same straight lines and half the bound on p h: exactly half of each step
     finer = replace(
         grid,
         motions=tuple(map(_doubled, grid.motions)),
         request=replace(grid.request, step=grid.request.step / 2),
     )
-    halved = overturned_cases(finer, *drawn)
+    halved = overturned_cases(finer, body, motion, scale)
     changed = cases[given != halved]
     return StepSizeSensitive(sampled=len(cases), changed=len(changed), cases=changed)
 
@@ -230,5 +239,8 @@ def _doubled(motion: GroundMotion) -> GroundMotion:
             dt=component.dt / 2,
         )
 
-    y, z = (None if part is None else dense(part) for part in (motion.y, motion.z))
-    return GroundMotion(dense(motion.x), y, z)
+    return GroundMotion(
+        dense(motion.x),
+        None if motion.y is None else dense(motion.y),
+        None if motion.z is None else dense(motion.z),
+    )

@@ -48,7 +48,16 @@ class RockingSpectrum:
 
 
 def uniform_block(alpha: float, period: float, g: float = GRAVITY) -> Block:
-    """Return the uniform block of critical angle α [rad] and period 2π/p [s], p = √(3g/4R) (Housner, 1963)."""
+    """Uniform block of critical angle α and period 2π/p, p = √(3g/4R) (Housner, 1963).
+
+    Parameters
+    ----------
+    alpha, period, g : critical angle [rad], period [s] and gravity [m/s²]
+
+    Returns
+    -------
+    The block.
+    """
     if not 0 < alpha < math.pi / 2:
         raise InputError(
             f"alpha: a critical angle lies between 0 and π/2 rad, got {alpha}."

@@ -114,11 +114,11 @@ def _motions(
     tests = campaign.tests
     if study.pulse_cycles:
         settings = tests[list(PULSE_MEASURES)].to_numpy()
-        told = [
+        recorded = [
             commanded_cosine(a * GRAVITY, ratio, study.pulse_cycles)
             for a, ratio in settings
         ]
-        return [process(motion, conditioning) for motion in told]
+        return [process(motion, conditioning) for motion in recorded]
     motions = laboratory.table_motions(
         study.motions, list(tests["motion"]), *study.unstated
     )
@@ -164,12 +164,15 @@ def _block(given: Mapping[str, Any]) -> Block:
 
 
 def measured_tests(study: CampaignStudy, campaign: Campaign) -> MeasuredTests:
-    """Return what the laboratory saw, to be compared as the study says."""
+    """Outcomes of the laboratory, to be compared as the study says."""
     tests = campaign.tests
     return MeasuredTests(
         tests[MEASURED].to_numpy(),
         pd.factorize(tests["group"])[0],
-        *(study.seed, study.folds, study.repeats, study.confidence),
+        study.seed,
+        study.folds,
+        study.repeats,
+        study.confidence,
     )
 
 

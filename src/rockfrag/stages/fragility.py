@@ -93,7 +93,16 @@ GIVEN = ("mean_period_s", "d5_95_s")
 
 
 def best_of(choice: pd.DataFrame, asked: Sequence[str]) -> list[str]:
-    """Names of the best measures of all configurations among those that a study asks for."""
+    """Names of the best measures of all configurations among those that a study asks for.
+
+    Parameters
+    ----------
+    choice, asked : table of the intensity-measure selection, and columns of measures
+
+    Returns
+    -------
+    The names as the field writes them.
+    """
     known = choice[choice["measure"].isin(list(asked)) & choice["score"].notna()]
     return list(dict.fromkeys(known.drop_duplicates("configuration")["im"]))
 
@@ -286,12 +295,16 @@ def export_curves(
         stem = f"fragility_{name}" + (
             f"_{file_name(str(floor))}" if height != 0 else ""
         )
-        xml, *both = (folder / f"{stem}.{end}" for end in ("xml", "csv", "json"))
+        xml, csv, json = (
+            folder / f"{stem}.xml",
+            folder / f"{stem}.csv",
+            folder / f"{stem}.json",
+        )
         if height == 0:
             # the formats know the ground by an empty floor, whatever its user calls it
             write_nrml(usable.assign(floor=""), xml, identifier=stem, fractions=points)
             written.append(xml.name)
         if column in floor_measures(1):
-            write_simcenter(usable, *both, fractions=points)
-            written += [path.name for path in both]
+            write_simcenter(usable, csv, json, fractions=points)
+            written += [csv.name, json.name]
     return written

@@ -1,4 +1,9 @@
-"""Every configuration under every motion at every amplitude: what all statistics start from."""
+"""Incremental dynamic analysis (IDA): every configuration under every motion at every amplitude.
+
+In: the ground motions of a study, on every floor. Out: IDA curves, a Parquet file a configuration and part of
+the motions, which all statistics start from, and the table ``as_recorded``; amplitudes are peaks [g]. Theory:
+``docs/definitions.md``, ``docs/fragility.md``, "Estimators".
+"""
 
 import warnings
 from collections.abc import Iterator, Sequence
@@ -22,7 +27,7 @@ from rockfrag.outcomes.limit_states import (
     limit_states,
 )
 from rockfrag.outcomes.outcomes import Outcomes
-from rockfrag.records.motion import Motion
+from rockfrag.records.motion import GroundMotion
 from rockfrag.shaketable.definitions import Swept, fallen_names, labels_of, read_swept
 from rockfrag.simulation.ensemble import LIGHT, LightBodies, overturns
 from rockfrag.stages.job import Job, Results
@@ -57,21 +62,19 @@ def run_part(job: Job[Study]) -> Results:
     """Write the IDA curve of every configuration under the job's part of the motions, a few motions at a time."""
     study, number = job.study, job.part
     part, amplitudes = (number, study.ida_jobs), study.amplitudes.values_g
-    motions = job.motions("motions/floors", part)
-    ups = job.motions("motions/vertical", part) if study.vertical else None
+    motions = ground_motions_of(job, part)
     batch = max(FEWEST_AT_ONCE, ROWS_AT_ONCE // len(amplitudes))
     histories = 0
 
     def table(configuration: System, start: int) -> pa.Table:
-        here = slice(start, start + batch)
-        up = None if ups is None else ups[here]
-        return ida_table(configuration, motions[here], amplitudes, job.threads, up)
+        here = motions[start : start + batch]
+        return ida_table(configuration, here, amplitudes, job.threads)
 
     for configuration in study.configurations:
         with whole_file(job.folder / study.ida_file(configuration, number)) as path:
             starts = range(0, len(motions), batch)
             histories += _write((table(configuration, start) for start in starts), path)
-        if ups is not None and not configuration.loose:
+        if study.vertical and not configuration.loose:
             _say_how_light(job, configuration, number)
         job.log.info("%s: %d histories so far", configuration.name, histories)
     job.log.info("response histories: %d", histories)
@@ -80,13 +83,32 @@ def run_part(job: Job[Study]) -> Results:
 
 def run_as_recorded(job: Job[Study]) -> Results:
     """Yield the outcomes under the motions as recorded."""
-    motions, study = job.motions("motions/floors"), job.study
-    ups = job.motions("motions/vertical") if study.vertical else None
+    motions = ground_motions_of(job)
     each = [
-        as_recorded(system, motions, job.threads, ups)
-        for system in study.configurations
+        as_recorded(system, motions, job.threads) for system in job.study.configurations
     ]
     yield "as_recorded", pd.concat(each, ignore_index=True)
+
+
+def ground_motions_of(
+    job: Job[Study], part: tuple[int, int] = (0, 1)
+) -> list[GroundMotion]:
+    """Motions of every floor, with the vertical component beside the horizontal one where the study has it.
+
+    Parameters
+    ----------
+    job : the stage's job
+    part : number of the part of the motions, from 0, and number of parts
+
+    Returns
+    -------
+    The motions, in the study's order.
+    """
+    horizontal = job.motions("motions/floors", part)
+    if not job.study.vertical:
+        return [GroundMotion(x) for x in horizontal]
+    upward = job.motions("motions/vertical", part)
+    return [GroundMotion(x, z=z) for x, z in zip(horizontal, upward, strict=True)]
 
 
 def ida_curves_of(
@@ -125,24 +147,33 @@ def _write(tables: Iterator[pa.Table], path: Path) -> int:
 
 def ida_table(
     configuration: System,
-    motions: Sequence[Motion],
+    motions: Sequence[GroundMotion],
     amplitudes_g: NDArray[np.float64],
     threads: int = 1,
-    vertical: Sequence[Motion] | None = None,
 ) -> pa.Table:
-    """Shake one configuration by every motion, scaled to every peak [g], with the vertical one beside it.
+    """Shake one configuration by every motion, scaled to every peak.
 
-    One row per motion and amplitude: ``configuration``, ``object``, ``pedestal`` (``P`` or ``NP``), ``motion``,
-    ``earthquake``, ``floor``, ``amplitude_g``, a column for each limit state that is counted (``overturned``,
-    with friction ``slides``), ``overturned_body``, ``overturning_time_s`` and ``certain_time_s`` (instant of the
-    fall, and from which it was certain), ``impacts``, ``unstable_distance`` (small where the outcome nearly
-    flipped), ``peak_rotation_body_1`` and on (|θ| of each body from below over its critical angle); with vertical
-    motion and without friction also ``minimum_gravity_ratio``; with friction also ``peak_slip_m`` (of any
-    contact), ``slip_contact_1_m`` and on (at the end), ``peak_slip_contact_1_m`` and on, ``flights`` and
-    ``overturned_without_sliding``, the outcome if nothing could slide or fly.
+    Parameters
+    ----------
+    configuration, motions : what is shaken, and by what; the peaks are of the horizontal component
+    amplitudes_g : peaks [g], rising, shape (n,)
+    threads : threads to use; outcomes do not depend on it
+
+    Returns
+    -------
+    pyarrow.Table
+        One row per motion and amplitude: ``configuration``, ``object``, ``pedestal`` (``P`` or ``NP``),
+        ``motion``, ``earthquake``, ``floor``, ``amplitude_g``, a column for each limit state that is counted
+        (``overturned``, with friction ``slides``), ``overturned_body``, ``overturning_time_s`` and
+        ``certain_time_s`` (instant of the fall, and from which it was certain), ``impacts``,
+        ``unstable_distance`` (small where the outcome nearly flipped), ``peak_rotation_body_1`` and on (|θ| of
+        each body from below over its critical angle); with vertical motion and without friction also
+        ``minimum_gravity_ratio``; with friction also ``peak_slip_m`` (of any contact), ``slip_contact_1_m`` and
+        on (at the end), ``peak_slip_contact_1_m`` and on, ``flights`` and ``overturned_without_sliding``, the
+        outcome if nothing could slide or fly.
     """
-    scales = np.array([factors_to_pga(motion, amplitudes_g) for motion in motions])
-    result = _shaken(configuration, motions, scales, threads, vertical)
+    scales = np.array([factors_to_pga(motion.x, amplitudes_g) for motion in motions])
+    result = _shaken(configuration, motions, scales, threads)
     each = len(amplitudes_g)
 
     which = np.repeat(np.arange(len(motions)), each)
@@ -161,26 +192,28 @@ def ida_table(
         **result.wide(0, RECORDED),
     }
     if configuration.loose:
-        rough = _shaken(configuration.held(), motions, scales, threads, vertical)
+        rough = _shaken(configuration.held(), motions, scales, threads)
         made["peak_slip_m"] = result.of_any("peak_slip")[0].ravel()
         made |= result.wide(0, SLID)
         made["overturned_without_sliding"] = rough.overturned[0].ravel()
-    elif vertical is not None:
+    elif motions[0].z is not None:
         made |= result.wide(0, ("minimum_gravity_ratio",))
     return pa.table(made)
 
 
-def _about(configuration: System, motions: Sequence[Motion]) -> dict[str, list[str]]:
-    """What tables call a configuration and each motion."""
+def _about(
+    configuration: System, motions: Sequence[GroundMotion]
+) -> dict[str, list[str]]:
+    """Labels of a configuration and of each motion in tables."""
     labels = {
         key: [text] * len(motions) for key, text in labels_of(configuration).items()
     }
     return labels | {
         "motion": [motion.name for motion in motions],
         "earthquake": [
-            motion.metadata.get("earthquake") or motion.name for motion in motions
+            motion.x.metadata.get("earthquake") or motion.name for motion in motions
         ],
-        "floor": [motion.metadata["floor"] for motion in motions],
+        "floor": [motion.x.metadata["floor"] for motion in motions],
     }
 
 
@@ -191,40 +224,42 @@ def _texts(texts: Sequence[str], which: NDArray[np.integer[Any]]) -> pa.Dictiona
 
 def _shaken(
     configuration: System,
-    motions: Sequence[Motion],
+    motions: Sequence[GroundMotion],
     scales: NDArray[np.float64],
     threads: int,
-    vertical: Sequence[Motion] | None,
 ) -> Outcomes:
     """Outcomes of one configuration under every motion at every scale."""
     with warnings.catch_warnings():
         # told of in the column minimum_gravity_ratio and in the report
         warnings.simplefilter("ignore", LightBodies)
-        return overturns(
-            configuration, motions, scales=scales, vertical=vertical, threads=threads
-        )
+        return overturns(configuration, motions, scales=scales, threads=threads)
 
 
 def as_recorded(
-    configuration: System,
-    motions: Sequence[Motion],
-    threads: int = 1,
-    vertical: Sequence[Motion] | None = None,
+    configuration: System, motions: Sequence[GroundMotion], threads: int = 1
 ) -> pd.DataFrame:
-    """Shake one configuration by every motion as it was recorded, with the vertical motion beside it, if any.
+    """Shake one configuration by every motion as it was recorded.
 
-    One row per motion: ``configuration``, ``object``, ``pedestal`` (``P`` or ``NP``), ``motion``, ``earthquake``,
-    ``floor``, ``pga_g``, ``rocked`` (any body), ``overturned``, ``overturned_body``, ``peak_rotation`` (of the
-    object on what it stands on, |θ| over the critical angle), ``fraction_near`` (fraction that overturns of the
-    motions up to a tenth weaker or stronger); with friction also ``peak_slip_m``.
+    Parameters
+    ----------
+    configuration, motions, threads : as of :func:`ida_table`
+
+    Returns
+    -------
+    pandas.DataFrame
+        One row per motion: ``configuration``, ``object``, ``pedestal`` (``P`` or ``NP``), ``motion``,
+        ``earthquake``, ``floor``, ``pga_g``, ``rocked`` (any body), ``overturned``, ``overturned_body``,
+        ``peak_rotation`` (of the object on what it stands on, |θ| over the critical angle), ``fraction_near``
+        (fraction that overturns of the motions up to a tenth weaker or stronger); with friction also
+        ``peak_slip_m``.
     """
     scales = np.tile(NEAR, (len(motions), 1))
-    result = _shaken(configuration, motions, scales, threads, vertical)
+    result = _shaken(configuration, motions, scales, threads)
     itself = len(NEAR) // 2
     table = pd.DataFrame(
         {
             **_about(configuration, motions),
-            "pga_g": [motion.pga / GRAVITY for motion in motions],
+            "pga_g": [motion.x.pga / GRAVITY for motion in motions],
             "rocked": limit_state_named(ROCKS).reached(result)[0, :, itself],
             "overturned": result.overturned[0, :, itself],
             "overturned_body": np.take(

@@ -94,7 +94,16 @@ PACKAGE = Path(__file__).resolve().parents[1]
 
 @cache
 def package_digest(*plugins: Path) -> str:
-    """Return a digest of source and data of the whole package and of plugins' folders: an edit computes again."""
+    """Digest of source and data of the whole package and of plugins: an edit computes again.
+
+    Parameters
+    ----------
+    plugins : folders of plugins
+
+    Returns
+    -------
+    16 hexadecimal digits.
+    """
     digest = hashlib.sha256()
     for folder in (PACKAGE, *plugins):
         for path in sorted(folder.rglob("*")):

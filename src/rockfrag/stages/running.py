@@ -26,8 +26,8 @@ RESULTS = Path("results")
 OWNER = "configuration.txt"
 """File in a study's folder that names the configuration whose results these are."""
 
-LOCK = ".run"
-"""File in a study's folder that its run holds locked, and that says which process it is."""
+LOCK, HOLDER = ".lock", ".run"
+"""Files in a study's folder: the one that its run holds locked, and the one that says which process that is."""
 
 # Variable of the environment: the process of the run, with which its jobs end
 RUN = "ROCKFRAG_RUN"
@@ -48,7 +48,16 @@ def prepared(
 
 
 def results_folder(study: AnyStudy) -> Path:
-    """Folder of a study's results; refuse one that holds those of another configuration."""
+    """Folder of a study's results; refuse one that holds those of another configuration.
+
+    Parameters
+    ----------
+    study : the study
+
+    Returns
+    -------
+    The folder.
+    """
     folder = RESULTS / study.name
     owner = folder / OWNER
     if owner.is_file():
@@ -67,18 +76,21 @@ def run_lock(results: Path) -> Iterator[None]:
 
     A study that is running already is refused; the message says in which process and since when.
     """
-    file = results / LOCK
-    with locked(file) as free:
+    holder = results / HOLDER
+    with locked(results / LOCK) as free:
         if not free:
+            # it may be about to write who it is
+            who = holder.read_text() if holder.is_file() else "of another run"
             raise InputError(
-                f"{results}: the study is running already, in process {file.read_text()}; wait for it, or "
-                "end that process."
+                f"{results}: the study is running already, in process {who}; wait for it, or end that process."
             )
         for part in results.rglob(".*.part"):
             part.unlink(missing_ok=True)
         bring_to_now([*results.rglob("*"), *Path(RECORDS_FOLDER).glob("*/*.json")])
         results.mkdir(parents=True, exist_ok=True)
-        file.write_text(f"{os.getpid()} since {time.strftime('%H:%M:%S on %Y-%m-%d')}")
+        holder.write_text(
+            f"{os.getpid()} since {time.strftime('%H:%M:%S on %Y-%m-%d')}"
+        )
         yield
 
 

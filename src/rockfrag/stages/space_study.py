@@ -51,13 +51,21 @@ def run(job: Job[SpaceStudy]) -> Results:
     job.log.info("%d records of %d earthquakes", len(pairs), len(set(earthquakes)))
     yield "motions/ground", [component for pair in pairs for component in pair]
     found: list[tuple[pd.DataFrame, pd.DataFrame]] = []
-    for about in study.bodies:
-        found.append(medians(study, *about, pairs, earthquakes, job.threads))
-        job.log.info("%s, H/B %g, %g m", *about)
-    for name, tables in zip(
-        ("medians", "fractions"), zip(*found, strict=True), strict=True
-    ):
-        yield name, pd.concat(tables, ignore_index=True)
+    for base, slenderness, height in study.bodies:
+        found.append(
+            medians(
+                study,
+                base,
+                slenderness,
+                height,
+                pairs=pairs,
+                earthquakes=earthquakes,
+                threads=job.threads,
+            )
+        )
+        job.log.info("%s, H/B %g, %g m", base, slenderness, height)
+    yield "medians", pd.concat([each[0] for each in found], ignore_index=True)
+    yield "fractions", pd.concat([each[1] for each in found], ignore_index=True)
 
 
 def own_pairs(study: SpaceStudy) -> tuple[list[Pair], list[str]]:
@@ -81,7 +89,16 @@ def wide_set(every: int) -> tuple[list[Pair], list[str]]:
 
 
 def body_of(base: str, slenderness: float, height: float) -> Block:
-    """Return a stone body, ``square``, ``one to two`` or ``round``; slenderness is over the narrow side [-]."""
+    """Stone body, ``square``, ``one to two`` or ``round``.
+
+    Parameters
+    ----------
+    base, slenderness, height : kind of base, height over the narrow side [-], and height [m]
+
+    Returns
+    -------
+    The block.
+    """
     width = height / slenderness
     if base == ROUND:
         mass = STONE * math.pi / 4 * width**2 * height
@@ -105,6 +122,7 @@ def medians(
     base: str,
     slenderness: float,
     height: float,
+    *,
     pairs: Sequence[Pair],
     earthquakes: Sequence[str],
     threads: int,

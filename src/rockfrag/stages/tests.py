@@ -1,7 +1,7 @@
 """Tests: the IDA curves read as a laboratory would and in two other ways, within the limits of a shaker."""
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from itertools import repeat
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from rockfrag.base.units import GRAVITY
 from rockfrag.motions.processing import scale_to_pga
-from rockfrag.records.motion import Motion
+from rockfrag.records.motion import GroundMotion
 from rockfrag.shaketable.definitions import (
     DEFINITION,
     Swept,
@@ -20,7 +20,7 @@ from rockfrag.shaketable.definitions import (
 from rockfrag.shaketable.protocols import GeometricSteps, Protocol
 from rockfrag.shaketable.shaker import shaker_table
 from rockfrag.simulation import overturns, simulate
-from rockfrag.stages.ida import ida_curves_of
+from rockfrag.stages.ida import ground_motions_of, ida_curves_of
 from rockfrag.stages.job import Job, Results
 from rockfrag.study.study import Study
 from rockfrag.system import geometry
@@ -51,15 +51,10 @@ def run(job: Job[Study]) -> Results:
     laboratory = tests[tests["definition"] == DEFINITION]
     yield "mean_amplitudes", mean_amplitudes(laboratory)
     yield "bodies", bodies_table(study.configurations)
-    by_name = {motion.name: motion for motion in motions}
-    ups = (
-        {up.name: up for up in job.motions("motions/vertical")}
-        if study.vertical
-        else None
-    )
+    by_name = {motion.name: motion for motion in ground_motions_of(job)}
     yield (
         "validity",
-        validity_table(laboratory, study.configurations, by_name, ups, job.threads),
+        validity_table(laboratory, study.configurations, by_name, job.threads),
     )
     if study.slides:
         yield "sliding", sliding_table(job.file(path) for path in study.ida_files)
@@ -68,7 +63,16 @@ def run(job: Job[Study]) -> Results:
 
 
 def protocol_of(study: Study, step_percent: float | None = None) -> Protocol:
-    """Return the step protocol of a study, or the same with another step [%]."""
+    """Step protocol of a study, or the same with another step.
+
+    Parameters
+    ----------
+    study, step_percent : the study, and the other step [%]
+
+    Returns
+    -------
+    The protocol.
+    """
     step = study.protocol_step_percent if step_percent is None else step_percent
     peaks = study.amplitudes
     return Protocol(GeometricSteps(peaks.lowest_g, step / 100), peaks.highest_g)
@@ -86,7 +90,8 @@ def limited_tests(
     tests = tests_from_swept(
         ida_curves, protocol, definitions=[DEFINITION], limits_g=largest
     )
-    at, by = (tests["motion"].map(known[name]) for name in ("limit_g", "limited_by"))
+    at = tests["motion"].map(known["limit_g"])
+    by = tests["motion"].map(known["limited_by"])
     ended = (tests["censored"] == "right") & (at < protocol.limit_g)
     reached = "shaker's " + by + " reached at " + at.map("{:.3f} g".format)
     return tests.assign(
@@ -132,8 +137,7 @@ MOST_TESTED = 500
 def validity_table(
     tests: pd.DataFrame,
     configurations: Sequence[System],
-    motions: Mapping[str, Motion],
-    vertical: Mapping[str, Motion] | None = None,
+    motions: Mapping[str, GroundMotion],
     threads: int = 1,
 ) -> pd.DataFrame:
     """Simulate tests once more, each at its reported amplitude, and look at the contact forces.
@@ -154,7 +158,7 @@ def validity_table(
     for configuration in configurations:
         rows = known[known["configuration"] == configuration.name]
         if len(rows):
-            forces = _forces(configuration, *_shaken(rows, motions, vertical), threads)
+            forces = _forces(configuration, _shaken(rows, motions), threads)
             parts.append(forces.set_index(rows.index))
     found = pd.concat(parts[1:] or parts)[columns].sort_index()
     keys = [
@@ -179,32 +183,24 @@ def _looked_at(configuration: pd.Series) -> NDArray[np.bool_]:
 
 
 def _shaken(
-    tests: pd.DataFrame,
-    motions: Mapping[str, Motion],
-    vertical: Mapping[str, Motion] | None,
-) -> tuple[list[Motion], list[NDArray[np.float64]] | None]:
-    """Motion of each test as scaled, and the vertical acceleration beside it [m/s²]."""
-    names = list(tests["motion"])
-    peaks = zip(names, tests["amplitude_g"], strict=True)
-    scaled = [scale_to_pga(motions[name], peak) for name, peak in peaks]
-    if vertical is None:
-        return scaled, None
-    return scaled, [
-        shaken.pga / motions[name].pga * vertical[name].acceleration
-        for name, shaken in zip(names, scaled, strict=True)
-    ]
+    tests: pd.DataFrame, motions: Mapping[str, GroundMotion]
+) -> list[GroundMotion]:
+    """Motion of each test, all components scaled alike so that the horizontal one has the test's amplitude."""
+    scaled = []
+    for name, peak in zip(tests["motion"], tests["amplitude_g"], strict=True):
+        motion = motions[name]
+        x, z = scale_to_pga(motion.x, peak), motion.z
+        if z is not None:
+            z = replace(z, acceleration=x.pga / motion.x.pga * z.acceleration)
+        scaled.append(GroundMotion(x, z=z))
+    return scaled
 
 
-def _forces(
-    system: System,
-    motions: list[Motion],
-    vertical: list[NDArray[np.float64]] | None,
-    threads: int,
-) -> pd.DataFrame:
+def _forces(system: System, motions: list[GroundMotion], threads: int) -> pd.DataFrame:
     """Forces of a configuration under motions as they are, a row each."""
     if system.loose or system.count > 2:
-        return _in_contact(system, motions, vertical)
-    found = overturns(system, motions, vertical=vertical, forces=True, threads=threads)
+        return _in_contact(system, motions)
+    found = overturns(system, motions, forces=True, threads=threads)
     return pd.DataFrame(
         {
             "friction_demand": found.of_any("friction_demand")[0, :, 0],
@@ -215,13 +211,11 @@ def _forces(
     )
 
 
-def _in_contact(
-    system: System, motions: list[Motion], vertical: list[NDArray[np.float64]] | None
-) -> pd.DataFrame:
-    """Forces of what may slide, which histories alone tell."""
+def _in_contact(system: System, motions: list[GroundMotion]) -> pd.DataFrame:
+    """Forces of bodies that may slide, which only histories have."""
     rows = []
-    for motion, up in zip(motions, vertical or repeat(None), strict=False):
-        response = simulate(system, motion, vertical=up)
+    for motion in motions:
+        response = simulate(system, motion)
         rows.append(
             {
                 "friction_demand": np.fmax.reduce(response.friction_demand),
@@ -244,12 +238,12 @@ def sliding_table(files: Iterable[Path]) -> pd.DataFrame:
     parts = []
     for path in files:
         cases = pd.read_parquet(path, columns=["configuration", *outcomes])
-        fell, fell_rough, slip, flights = (cases[name] for name in outcomes)
+        fell, fell_rough = cases["overturned"], cases["overturned_without_sliding"]
         each = cases[["configuration"]].assign(
             cases=1,
-            slid=slip > 0,
-            flew=flights > 0,
-            largest_slip_m=slip,
+            slid=cases["peak_slip_m"] > 0,
+            flew=cases["flights"] > 0,
+            largest_slip_m=cases["peak_slip_m"],
             saved=fell_rough & ~fell,
             felled=fell & ~fell_rough,
         )

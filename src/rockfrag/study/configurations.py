@@ -93,7 +93,8 @@ def read_configurations(
             )
             distinct_file_names([name], checked)
         if row.has("counterpart"):
-            counterparts[name] = other = row.text("counterpart")
+            other = row.text("counterpart")
+            counterparts[name] = other
             if other == name or all(other != row.cells["name"] for row in rows):
                 raise row.error(
                     "counterpart", f"expected another arrangement, found {other}"

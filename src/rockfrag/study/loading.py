@@ -32,12 +32,30 @@ AnyStudy = Study | MeasuredTable | CampaignStudy | SpaceStudy
 
 
 def load_any(path: str | os.PathLike[str]) -> AnyStudy:
-    """Read a configuration of any kind: a simulated study, a measured table, a campaign, bodies in space."""
+    """Read a configuration of any kind: a simulated study, a measured table, a campaign, bodies in space.
+
+    Parameters
+    ----------
+    path : YAML file
+
+    Returns
+    -------
+    The study.
+    """
     return any_study(read_yaml(path), path)
 
 
 def any_study(content: Mapping[str, Any], path: str | os.PathLike[str]) -> AnyStudy:
-    """Make a study of any kind of a configuration that was read from ``path``."""
+    """Study of any kind from a configuration that was read from ``path``.
+
+    Parameters
+    ----------
+    content, path : the configuration, and its file
+
+    Returns
+    -------
+    The study.
+    """
     kinds: dict[str, tuple[str, Callable[..., AnyStudy]]] = {
         TABLE_KEY: ("measured_table", measured_table_from),
         CAMPAIGN_KEY: ("campaign", campaign_from),
@@ -63,10 +81,15 @@ def _study(content: Mapping[str, Any], source: Path) -> Study:
         known, counterparts = arrangements.read_configurations(
             configurations_file, specimens
         )
-    building_file, shaker_file, measured_tests = (
-        None if content.get(key) is None else existing_file(source, key, content[key])
-        for key in ("building", "shaker", "measured_tests")
-    )
+
+    def optional_file(key: str) -> Path | None:
+        if content.get(key) is None:
+            return None
+        return existing_file(source, key, content[key])
+
+    building_file = optional_file("building")
+    shaker_file = optional_file("shaker")
+    measured_tests = optional_file("measured_tests")
     catalogue_file = existing_file(source, "motions.catalogue", motions["catalogue"])
     by_name = {configuration.name: configuration for configuration in known}
     tested = _used(source, "bodies", bodies.get("use"), list(by_name), "configurations")
@@ -189,6 +212,14 @@ def check_records(study: Study) -> list[str]:
     """Read every record that lies in a folder of the user's own, once in a process as long as none changes.
 
     Returns warnings: of accelerations that look as if in another unit, of records that will be left out.
+
+    Parameters
+    ----------
+    study : the study
+
+    Returns
+    -------
+    The warnings, a sentence each.
     """
     columns = ("file", "second", "vertical")
     files = own_records(study.catalogue, study.catalogue_file.parent, columns)

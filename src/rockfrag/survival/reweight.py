@@ -85,9 +85,8 @@ class Reweighted:
         """
         curves = self.curves()
         log_level = np.log(curves["level"].to_numpy())
-        before, after = (
-            np.log(curves[f"mean_{when}"].to_numpy()) for when in ("before", "after")
-        )
+        before = np.log(curves["mean_before"].to_numpy())
+        after = np.log(curves["mean_after"].to_numpy())
         wanted = np.log(RATES)
         levels = [
             np.exp(np.interp(-wanted, -rates, log_level, left=np.nan, right=np.nan))
@@ -199,7 +198,16 @@ class Constrained:
 
 
 def constrain(site: Site) -> Constrained:
-    """Reweight branches of a site by the survival of its objects; InputError if none lets all of them stand."""
+    """Reweight branches of a site by the survival of its objects; InputError if none lets all of them stand.
+
+    Parameters
+    ----------
+    site : branches of its hazard and its objects
+
+    Returns
+    -------
+    The :class:`Constrained`.
+    """
     result = reweight(site)
     if float(result.log_survival.max()) < np.log(LEAST_SURVIVAL):
         alone = {}

@@ -387,6 +387,14 @@ def read_site(path: str | os.PathLike[str], records: str | Path = RECORDS) -> Si
     """Read a site from a YAML file such as ``site.yaml``: branches, objects and how these depend on each other.
 
     Paths in it are relative to it; ``records`` is the folder of fetched records, for objects that are simulated.
+
+    Parameters
+    ----------
+    path, records : YAML file, and the folder of fetched records
+
+    Returns
+    -------
+    The :class:`Site`.
     """
     known, folder = checked(read_yaml(path), "site", str(path)), Path(path).parent
     hazard, velocity = known["hazard"], known["hazard"].get("velocity")

@@ -156,7 +156,7 @@ class Block:
         centre = (self.cg_offset, 0.0, self.h)
         if self.round:
             return systems.cylinder(
-                self.width, self.height, self.mass, self.inertia, centre, "block"
+                self.width, self.height, self.mass, self.inertia, centre, name="block"
             )
         if self.depth is not None:
             sides = self.width, self.depth, self.height
@@ -173,14 +173,23 @@ class Block:
     @cached_property
     def shape(self) -> geometry.Shape:
         """The block as the kernels know it, in the plane of its width."""
-        size = self.width, self.height, self.mass
         inertia = (
             self.inertia[1][1] if isinstance(self.inertia, tuple) else self.inertia
         )
         if inertia is None:
-            inertia = systems.round_inertia(*size) if self.round else math.nan
+            inertia = math.nan
+            if self.round:
+                inertia = systems.round_inertia(self.width, self.height, self.mass)
         cg_height = math.nan if self.cg_height is None else self.cg_height
-        return geometry.shape_of(*size, inertia, cg_height, self.cg_offset, self.lean)
+        return geometry.shape_of(
+            self.width,
+            self.height,
+            self.mass,
+            inertia,
+            cg_height,
+            self.cg_offset,
+            self.lean,
+        )
 
     @property
     def b(self) -> float:

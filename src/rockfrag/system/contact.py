@@ -87,7 +87,7 @@ def checked_friction(name: str, value: object) -> Friction | None:
             raise InputError(
                 f"{name}: a coefficient is 0 or more, got {shown(number)}."
             )
-    static, kinetic = (min(float(number), ROUGHEST) for number in pair)
+    static, kinetic = min(float(pair[0]), ROUGHEST), min(float(pair[1]), ROUGHEST)
     if kinetic > static:
         raise InputError(
             f"{name}: the static coefficient {static:g} is less than the kinetic one {kinetic:g}; "

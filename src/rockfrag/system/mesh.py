@@ -116,7 +116,8 @@ class Shape:
         Points up to ``tolerance`` above the lowest carry; edges lie ``retreat`` further in than their polygon [m].
         """
         # rounded or crushed edges carry further in
-        left, right = (edge - retreat for edge in self.edges(direction_deg, tolerance))
+        left, right = self.edges(direction_deg, tolerance)
+        left, right = left - retreat, right - retreat
         if min(left, right) <= 0:
             raise InputError(
                 f"{self.name}: along {direction_deg:g}° its edges are {left:.4f} and {right:.4f} m "
@@ -171,7 +172,7 @@ class Shape:
         return float(directions[least]), float(math.atan2(reach[least], self.cg_height))
 
 
-def _outward(corners: Floats) -> Floats:
+def outward_normals(corners: Floats) -> Floats:
     """Unit normals of the edges of a convex polygon in order, shape (n, 2)."""
     edges = np.roll(corners, -1, axis=0) - corners
     lengths = np.hypot(*edges.T)[:, np.newaxis]
@@ -180,7 +181,7 @@ def _outward(corners: Floats) -> Floats:
 
 def edge_distances(corners: Floats) -> Floats:
     """Distances of a convex polygon's edges from the origin, negative where that is outside [m], shape (n,)."""
-    return np.asarray(np.einsum("ni,ni->n", _outward(corners), corners))
+    return np.asarray(np.einsum("ni,ni->n", outward_normals(corners), corners))
 
 
 def _without_hardly_turning(corners: Floats) -> Floats:
@@ -202,7 +203,7 @@ def _without_hardly_turning(corners: Floats) -> Floats:
 
 def _retreated(corners: Floats, distance: float) -> Floats | None:
     """Move the edges of a convex polygon about the origin inwards; None where the origin is left outside."""
-    outward = _outward(corners)
+    outward = outward_normals(corners)
     reach = edge_distances(corners) - distance
     if not (reach > 0).all():
         return None

@@ -202,9 +202,10 @@ def each_contact(
             return tuple(given)
         raise InputError(f"{name}: {wanted}, got {shown(given)}.")
     known = ("ground", "interface")[:count]
-    for wrong in (key for key in given if key not in known):
+    unknown = [key for key in given if key not in known]
+    if unknown:
         raise InputError(
-            f"{name}: {shown(wrong)} is no contact of a system of {count}; name them {' and '.join(known)}."
+            f"{name}: {shown(unknown[0])} is no contact of a system of {count}; name them {' and '.join(known)}."
         )
     above = given.get("interface")
     each = list(above) if isinstance(above, list) else [above] * (count - 1)
@@ -236,6 +237,7 @@ def cylinder(
     mass: float,
     inertia: Any,
     centre: Vector3,
+    *,
     name: str = "",
 ) -> RigidBody:
     """Return a body in space with a round base and face [m], of uniform mass where inertia is None."""
@@ -256,18 +258,21 @@ def turned_about_vertical(system: System, angle_deg: float) -> System:
     if not angle_deg % 360:
         return system
     (body,) = system.bodies
-    turn = sin_cos(math.radians(angle_deg))
+    sine, cosine = sin_cos(math.radians(angle_deg))
     assert isinstance(body.base, Polygon)
     (xx, xy, xz), (_, yy, yz), (*_, zz) = body.tensor.tolist()
-    xx, xy, yy = geometry.turned_moments(xx, xy, yy, *turn)
-    xz, yz = geometry.turned_in_plan(xz, yz, *turn)
+    xx, xy, yy = geometry.turned_moments(xx, xy, yy, sine, cosine)
+    xz, yz = geometry.turned_in_plan(xz, yz, sine, cosine)
     x, y, z = body.centre
     turned = replace(
         body,
         inertia=((xx, xy, xz), (xy, yy, yz), (xz, yz, zz)),
-        centre=(*geometry.turned_in_plan(x, y, *turn), z),
+        centre=(*geometry.turned_in_plan(x, y, sine, cosine), z),
         base=Polygon(
-            tuple(geometry.turned_in_plan(*at, *turn) for at in body.base.vertices)
+            tuple(
+                geometry.turned_in_plan(east, north, sine, cosine)
+                for east, north in body.base.vertices
+            )
         ),
         face=None,
     )
@@ -299,10 +304,10 @@ def arms_above(system: System, k: int) -> tuple[tuple[float, float], ...]:
 def common_centre(system: System, lowest: int = 0) -> tuple[float, float]:
     """Common centre of gravity of a planar body and all above it as they stand (x, z) [m]."""
     masses = [body.mass for body in system.bodies[lowest:]]
-    x, z = (
-        sum(mass * at for mass, at in zip(masses, axis, strict=True)) / sum(masses)
-        for axis in zip(*standing_centres(system)[lowest:], strict=True)
-    )
+    centres = standing_centres(system)[lowest:]
+    whole = sum(masses)
+    x = sum(mass * at[0] for mass, at in zip(masses, centres, strict=True)) / whole
+    z = sum(mass * at[1] for mass, at in zip(masses, centres, strict=True)) / whole
     return x, z
 
 

@@ -180,7 +180,8 @@ def _object(
             symbol.linkage = "internal"
     module.verify()
     options = llvm.create_pipeline_tuning_options(speed_level=3)
-    options.loop_vectorization = options.slp_vectorization = fused is not None
+    options.loop_vectorization = fused is not None
+    options.slp_vectorization = fused is not None
     builder = llvm.create_pass_builder(machine, options)
     builder.getModulePassManager().run(module, builder)
     if fused is not None:

@@ -1,11 +1,11 @@
-"""Numbers, names and lists in words, and sentences: macros of a template beside what they word.
+"""Numbers, names and lists in words, as reports and messages print them.
 
-Nothing here ever prints NaN, infinity or an empty interval.
+In: numbers, tables of estimates with limits, names. Out: texts; nothing here ever prints NaN, infinity or an empty
+interval. Docs: ``docs/report.md``, "How it is told".
 """
 
 import math
 from collections.abc import Mapping, Sequence
-from functools import cached_property
 from typing import Any
 
 import pandas as pd
@@ -13,8 +13,6 @@ import pandas as pd
 MOST_LISTED = 8  # more names than this are not listed in a sentence, but counted
 
 _FAR = 1000.0  # a limit so many times off its estimate is none
-
-PART = "\f"  # between headline, text and numbers of a finding
 
 # longer names are cut in figures, where they would push everything else aside
 LONGEST_NAME = 24
@@ -44,10 +42,12 @@ def estimate(value: float, lower: float, upper: float, decimals: int) -> str:
     if not math.isfinite(value):
         return "–"
     middle = number(value, decimals)
-    low, high = (
-        number(limit, decimals) if value / _FAR < limit < value * _FAR else "open"
-        for limit in (lower, upper)
-    )
+
+    def end(limit: float) -> str:
+        is_near = value / _FAR < limit < value * _FAR
+        return number(limit, decimals) if is_near else "open"
+
+    low, high = end(lower), end(upper)
     if lower <= 0 and upper <= value:
         # such as the dispersion of tests that a single threshold separates: only a bound is known
         return f"≤ {middle}"
@@ -151,65 +151,3 @@ def amplitude(test: Mapping[Any, Any]) -> str:
 def sentence(words: str) -> str:
     """The words with a capital letter first."""
     return words[:1].upper() + words[1:]
-
-
-def said(text: str) -> list[str]:
-    """Lines of what a macro says that are not empty, each a part of a sentence or more."""
-    return [line.strip() for line in text.split("\n") if line.strip()]
-
-
-def one_line(text: str) -> str:
-    """What a macro says, in one line."""
-    return " ".join(said(text))
-
-
-def environment(package: str) -> Any:
-    """Return what loads the templates of a package; line breaks around blocks are none."""
-    # imported when something is said: most commands and jobs say nothing
-    from jinja2 import ChoiceLoader, Environment, PackageLoader, StrictUndefined
-
-    found = Environment(
-        loader=ChoiceLoader(
-            [PackageLoader(package, ""), PackageLoader("rockfrag.report")]
-        ),
-        undefined=StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-    )
-    found.tests |= {"finite": math.isfinite, "nan": math.isnan}
-    found.filters |= {"listed": listed, "one_line": one_line, "sentence": sentence}
-    found.globals |= {"agree": agree, "counted": counted, "number": number}
-    found.globals |= {"of_all": of_all, "part": PART}
-    return found
-
-
-class Macros:
-    """Macros of a template by their names, which know the ``words`` given and those of this module."""
-
-    def __init__(self, package: str, template: str, **words: Any) -> None:
-        self._of = (package, template, words)
-
-    @cached_property
-    def _module(self) -> Any:
-        package, template, words = self._of
-        found = environment(package)
-        found.globals |= words
-        return found.get_template(template).module
-
-    def __call__(self, macro: str, *about: Any) -> list[str]:
-        """Lines of what a macro says."""
-        return said(getattr(self._module, macro)(*about))
-
-    def line(self, macro: str, *about: Any) -> str:
-        """What a macro says, in one line."""
-        return " ".join(self(macro, *about))
-
-    def pairs(self, macro: str, *about: Any) -> dict[str, str]:
-        """What the lines of a macro say behind ``PART``, by what they say before it."""
-        return dict(line.split(PART) for line in self(macro, *about))
-
-    def parts(self, macro: str, *about: Any, **named: Any) -> list[list[str]]:
-        """Lines of each part of what a macro says."""
-        return list(
-            map(said, getattr(self._module, macro)(*about, **named).split(PART))
-        )

@@ -151,6 +151,9 @@ def beside_stepping(cases: list[Case], step: float) -> pd.DataFrame:
         pytest.param((2,) * 200, 23, 2e-5, 6, (20, 180), marks=pytest.mark.slow),
         pytest.param((3, 4) * 100, 8, 2e-4, 4, (50, 150), marks=pytest.mark.slow),
         pytest.param((8,) * 50, 8, 2e-4, 3, (12, 47), marks=pytest.mark.slow),
+        pytest.param(
+            (4, 5, 6, 7, 8) * 100, 9, 2e-5, 5, (100, 450), marks=pytest.mark.slow
+        ),
     ],
     ids=lambda value: f"{len(value)} of {value[0]}" if isinstance(value, tuple) else "",
 )

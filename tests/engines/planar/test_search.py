@@ -12,6 +12,7 @@ from rockfrag.engines.planar.search import (
     CONSISTENT,
     Trial,
     mode_number,
+    prepare,
     search,
     take_number,
     try_mode,
@@ -129,6 +130,7 @@ def modes_of(touching: np.ndarray, moves: np.ndarray, impact: bool) -> np.ndarra
 def try_all(p, w, trial, numbers, margins):
     """Least margin of every mode."""
     look_at(p, w, w.q)
+    prepare(p, w, trial)
     for i in range(numbers.size):
         take_number(p, w, numbers[i])
         margins[i] = try_mode(p, w, trial)

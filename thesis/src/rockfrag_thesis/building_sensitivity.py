@@ -16,7 +16,7 @@ from rockfrag.building.floors import judge_drift, respond, response_motions
 from rockfrag.building.model import ShearBuilding
 from rockfrag.building.settings import make_building
 from rockfrag.motions.processing import scale
-from rockfrag.records.motion import Motion
+from rockfrag.records.motion import GroundMotion, Motion
 from rockfrag.shaketable.definitions import DEFINITION, mean_amplitudes, tests_from_ida
 from rockfrag.shaketable.protocols import Protocol
 from rockfrag.stages.ida import ida_table
@@ -60,8 +60,8 @@ def run(job: Job[Study]) -> Results:
         study.configurations,
         study.amplitudes.values_g,
         protocol_of(study),
-        job.threads,
-        lambda done: job.log.info("%d of %d buildings", done, len(variants)),
+        threads=job.threads,
+        progress=lambda done: job.log.info("%d of %d buildings", done, len(variants)),
     )
     yield "building_sensitivity/tests", tests
     by = ["axis", "value", "label", "credible"]
@@ -130,6 +130,7 @@ def building_sensitivity(
     specimens: Sequence[System],
     amplitudes_g: Floats,
     protocol: Protocol,
+    *,
     threads: int = 1,
     progress: Callable[[int], None] = lambda done: None,
 ) -> pd.DataFrame:
@@ -148,7 +149,9 @@ def building_sensitivity(
         if motion.metadata["level"] == 0 and motion.name in known:
             return known[motion.name]
         tables = [
-            ida_table(specimen, [motion], amplitudes_g, threads).to_pandas()
+            ida_table(
+                specimen, [GroundMotion(motion)], amplitudes_g, threads
+            ).to_pandas()
             for specimen in specimens
         ]
         earthquake = (

@@ -31,6 +31,7 @@ def standing_definitions(
     motions: Sequence[Motion],
     amplitudes_g: Floats,
     protocol: Protocol,
+    *,
     seed: int,
     threads: int = 1,
 ) -> pd.DataFrame:

@@ -1,8 +1,8 @@
 /* The answer about one object: outcomes of its bodies by motion and level, and what follows from them. */
 const answer = (data) => {
   "use strict";
-  const { constants: { AT_REST, LARGEST_FACTOR, LARGEST_PEAK, MODEL, SPACE }, measures } = data;
-  const judge = risk(data), spatial = inSpace(data), shiftOf = conversion(data);
+  const { constants: { AT_REST, LARGEST_FACTOR, LARGEST_PEAK, GRAVITY, MODEL, SPACE, ACCEPTED_AT_A_LEVEL, ACCEPTED_IN_FIFTY_YEARS }, measures } = data;
+  const judge = risk(data), spatial = inSpace(data), shiftFrom = conversion(data);
 
   // levels of a run: the asked one among those of the measure
   function levelsOf(request, run) {
@@ -54,7 +54,8 @@ const answer = (data) => {
       const shaking = shakingOf(request.place, run.floor ?? "", `${first}-${last}`), { scales, allowed } = scalesOf(request, run, places, shaking);
       // what is allowed follows from the floor as it is, on whatever floor it is counted
       const own = run.floor ? scalesOf(request, run, places, shakingOf(request.place, "", `${first}-${last}`)) : null;
-      return { ...ensemble.count(ensemble.bodyOf(run.body), shaking, own ? moved(own, shaking) : scales), allowed: own?.allowed ?? allowed };
+      const body = ensemble.bodyOf(run.body), lifting = Float64Array.from(shaking, ({ peak }) => (body.uplift * GRAVITY) / peak);
+      return { ...ensemble.count(body, shaking, own ? moved(own, shaking) : scales), allowed: own?.allowed ?? allowed, lifting };
     };
     function countInSpace(request, run, first, last) {
       const on = (floor) => (m) => shakingOf(request.place, floor, `${m}-${m + 1}`)[0], shaken = on(run.floor ?? "");
@@ -78,10 +79,15 @@ const answer = (data) => {
       found[name] = new Uint8Array(levels.length * data.earthquakes.length);
       for (const part of parts) found[name].set(part[name], part.first * levels.length);
     }
+    // from factors to levels
+    found.lifting = new Float64Array(data.earthquakes.length);
+    for (const part of parts) found.lifting.set(part.lifting, part.first);
+    const { values } = tableOf(request);
+    found.lifting.forEach((factor, m) => { found.lifting[m] = factor * values[m]; });
     return found;
   }
 
-  const ESTIMATED = ["fraction", "rocking", "probability", "main", "narrowed", "narrowedFraction", "wide"];
+  const ESTIMATED = ["fraction", "rocking", "probability", "main", "half", "decision", "shifts", "rates"];
   // what is known so far of runs whose outcomes are complete; `outcomes` by the place of the run in the plan, `earlier`
   // what was found when there were fewer
   function found(request, runs, outcomes, ensemble, earlier) {
@@ -95,30 +101,43 @@ const answer = (data) => {
     answer.rockingValue = judge.valueOf(judge.fractionTarget(level, "rocked"), now);
     answer.probabilityValue = hazard ? judge.valueOf(target, now) : null;
     answer.deciding = deciding(now, level);
+    answer.earthquakes = judge.groups;
+    answer.accepted = hazard ? ACCEPTED_IN_FIFTY_YEARS : ACCEPTED_AT_A_LEVEL;
     const moved = known("moved"), sides = [];
     for (let i = 0; i + 1 < moved.length; i += 2) sides.push([moved[i].name, moved[i].outcomes, moved[i + 1].outcomes]);
     answer.complete = runs.every((run, i) => run.role !== "moved" || outcomes[i]);
     if (earlier?.complete) for (const name of ESTIMATED) answer[name] = earlier[name];
     else if (answer.complete) {
-      const shifts = { model: MODEL, ...(request.solid ? {} : { space: SPACE }) }, { ratios } = tableOf(request), fit = ratios ? shiftOf(now, ratios) : null;
-      if (fit) shifts.conversion = fit.shift;
-      const fraction = judge.estimate(judge.fractionTarget(level), now, sides, {}, shifts);
-      const rocking = judge.estimateRocking(level, now, sides, exact);
-      if (!(rocking.value > 0)) fraction.upper = Math.min(fraction.upper, rocking.upper);
-      rocking.lower = Math.max(rocking.lower, fraction.lower);
-      rocking.upper = Math.max(rocking.upper, fraction.upper);
-      Object.assign(answer, { fraction, rocking });
-      if (hazard) answer.probability = judge.estimate(target, now, sides, judge.ofQuantiles(now, hazard), shifts);
-      const main = answer.probability ?? fraction;
-      Object.assign(answer, { main, narrowed: judge.narrowed(main), narrowedFraction: judge.narrowed(fraction), wide: judge.isWide(fraction) });
+      const { ratios } = tableOf(request), fit = ratios ? shiftFrom(now, ratios) : null, { shiftOf, afterUplift } = judge;
+      const shifts = [...sides.map(([name, lower, upper]) => shiftOf(name, lower, upper)), afterUplift("model", MODEL)];
+      if (!request.solid) shifts.push(afterUplift("space", SPACE));
+      if (fit) shifts.push(afterUplift("conversion", fit.shift));
+      const rates = hazard ? judge.ofQuantiles(now, hazard) : {};
+      for (const name of Object.keys(rates)) shifts.push(afterUplift(name, 0));
+      const prediction = judge.predict(now, shifts);
+      const fraction = judge.estimate(judge.fractionTarget(level), prediction, rates);
+      const rocking = judge.estimate(judge.fractionTarget(level, "rocked"), prediction, rates);
+      Object.assign(answer, { fraction, rocking, shifts, rates });
+      if (hazard) answer.probability = judge.estimate(target, prediction, rates);
+      const main = answer.probability ?? fraction, half = judge.estimate(judge.amplitudeTarget(0.5), prediction, rates);
+      Object.assign(answer, { main, half, decision: judge.decision(target, prediction, main, answer.accepted, answer.years) });
     }
-    answer.arrangements = [["on_its_pedestal", judge.valueOf(target, now)], ...known("arrangement").map((run) => [run.name, judge.valueOf(target, run.outcomes)])];
-    const [before] = known("before"), [planar] = known("planar"), as = { mitigation: before?.outcomes ?? now, arrangement: now };
-    answer.planar = planar ? judge.valueOf(target, planar.outcomes) : null;
+    const { shifts = [], rates = {} } = answer, meanOf = (outcomes) => (answer.shifts ? judge.meanOf(target, shifts, rates, outcomes) : judge.valueOf(target, outcomes));
+    answer.arrangements = [["on_its_pedestal", answer.main?.value ?? meanOf(now)], ...known("arrangement").map((run) => [run.name, meanOf(run.outcomes)])];
+    const [before] = known("before"), [planar] = known("planar");
+    const as = { mitigation: judge.compared(target, shifts, rates, before?.outcomes ?? now), arrangement: judge.compared(target, shifts, rates, now) };
+    answer.planar = planar ? meanOf(planar.outcomes) : null;
     const changes = [...known("mitigation"), ...known("arrangement")].filter(({ change }) => change);
-    answer.mitigations = changes.map(({ role, change, values, outcomes: with_ }) => ({ name: change, values, ...judge.compared(target, as[role], with_) }))
+    answer.mitigations = changes.map(({ role, change, values, outcomes: with_ }) => ({ name: change, values, ...as[role](with_) }))
       .sort((a, b) => Number.isNaN(a.factor) - Number.isNaN(b.factor) || (a.factor || 0) - (b.factor || 0) || a.value - b.value);
+    answer.safer = saferOf(known("arrangement"), answer.mitigations);
     return answer;
+  }
+  // arrangements that the motions show to be safer than its own, or its own if it is safer than all others
+  function saferOf(arrangements, mitigations) {
+    const each = arrangements.map(({ name, change }) => [name, mitigations.find((item) => item.name === change)]);
+    const better = each.filter(([, item]) => item.shown).map(([name]) => name);
+    return each.length && each.every(([, { lower, helps }]) => lower > 1 && !helps) ? [...better, "on_its_pedestal"] : better;
   }
   function countsOf({ levels, allowed, rocked, overturned }, level) {
     const at = levels.indexOf(level), counts = [0, 0, 0];
@@ -132,8 +151,7 @@ const answer = (data) => {
   }
   function rocksFrom(request, now, exact, ensemble) {
     if (exact) return ensemble.bodyOf({ ...request, measured: request.restitution }).uplift;
-    const first = judge.fractions(now, "rocked").findIndex((share) => share > 0);
-    return first < 0 ? Infinity : now.levels[first];
+    return Math.min(...judge.liftsFrom(now));
   }
   // the motion that topples it first, and at which level; the first one at the site's where none does
   function deciding({ levels, allowed, overturned }, level) {

@@ -1,6 +1,7 @@
 """The whole assessment as one page, ``rockfrag app``: what it computes with, and what it is made of."""
 
 import math
+from base64 import b64encode
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from importlib.resources import files
@@ -9,26 +10,28 @@ from types import ModuleType
 from typing import Any
 
 import numpy as np
-from scipy import special, stats
+from scipy import special
 
 from rockfrag.assess import (
     conversion,
-    mitigations,
-    objects,
+    findings,
     outcomes,
     place,
     request,
     risk,
     sources,
-    words,
 )
 from rockfrag.assess.conversion import VelocityRelation
+from rockfrag.assess.core import decisions, draws, fractions, parts
+from rockfrag.assess.core.likelihood import BELOW, UP_TO, Likelihood
 from rockfrag.assess.hazard import curve
 from rockfrag.assess.hazard.curve import PGA, PGV
-from rockfrag.assess.motions import MotionSet
+from rockfrag.assess.motions import FEWEST_EARTHQUAKES, MotionSet
 from rockfrag.assess.place import Place
 from rockfrag.assess.request import Records, Request
+from rockfrag.assess.standing import box, changes, contract, rolling
 from rockfrag.base import plausible, units
+from rockfrag.base.arrays import Floats
 from rockfrag.building.model import ModalDamping, ShearBuilding
 from rockfrag.building.response import find_modes
 from rockfrag.fragility import held_out, vector
@@ -36,8 +39,18 @@ from rockfrag.fragility.model_error import CUT, MODEL_ERRORS
 from rockfrag.motions.intensity import IntensityMeasure
 from rockfrag.motions.response_spectra import oscillator_matrix
 from rockfrag.web import driver_text
+from rockfrag.words.findings import as_data
 
-SCRIPTS = ("statistics", "risk", "conversion", "building", "space", "objects", "answer")
+SCRIPTS = (
+    "statistics",
+    "core",
+    "risk",
+    "conversion",
+    "building",
+    "space",
+    "objects",
+    "answer",
+)
 """Scripts that compute, in the order in which they need each other."""
 
 # Storeys up to which modes of the usual building stand in the page, to the bit
@@ -66,13 +79,14 @@ def data_of(motions: MotionSet, asked: Request | None = None) -> dict[str, Any]:
     measures = dict.fromkeys((PGA, PGV, *level, *(each.measure for each in hazard)))
     intervals = sorted({motion.dt for motion in motions.ground})
     names = list(dict.fromkeys(motions.earthquakes))
-    left = {name: source.left for name, source in sources.MEASUREMENTS.items()}
+    left = [[name, source.left] for name, source in sources.MEASUREMENTS.items()]
     # modes of buildings of which only the storeys are known, as they are and with each property moved
     storeys = range(1, TABLED_STOREYS + 1)
     usual = {n: place.make_place({"floor": f"1/{n}"}, Path()) for n in storeys}
     return {
         "earthquakes": [names.index(name) for name in motions.earthquakes],
-        "motions": motions.words,
+        "motions": as_data(motions.about_set),
+        "motionsInSpace": as_data(motions.with_both_components().about_set),
         "names": [motion.name for motion in motions.ground],
         "measures": {measure.imt: _measure(motions, measure) for measure in measures},
         "both": in_space(motions, measures),
@@ -88,16 +102,10 @@ def data_of(motions: MotionSet, asked: Request | None = None) -> dict[str, Any]:
             for q, c in each.quantiles.items()
         ],
         "measurements": left,
+        "draws": _draws(motions),
         "constants": _constants(),
         "floors": {n: _with_variants(at, intervals) for n, at in usual.items()},
         "own": asked and _own(asked.place, intervals),
-        "steps": [
-            {
-                "name": step.name,
-                "below": step.below if math.isfinite(step.below) else None,
-            }
-            for step in risk.STEPS
-        ],
         "limits": {
             "storey": plausible.STOREY_HEIGHTS,
             "period": plausible.FIRST_PERIODS,
@@ -184,6 +192,26 @@ def _modes(
     return found
 
 
+SOURCES_DRAWN = 10  # Sources of an object of the form at most
+
+
+def _draws(motions: MotionSet) -> dict[str, Any]:
+    """Draws of sources and of the weights of so many earthquakes as there are, and as are compared."""
+    count = len(set(motions.earthquakes))
+    fewer = motions.with_both_components().thinned()
+    counts = {count, len(set(fewer.earthquakes))}
+    return {
+        "columns": SOURCES_DRAWN,
+        "normals": _packed(draws.make_draws(SOURCES_DRAWN, count).sources),
+        "weights": {n: _packed(draws.make_draws(0, n).weights) for n in counts},
+    }
+
+
+def _packed(values: Floats) -> str:
+    """Numbers as bytes in base 64, for the page's typed arrays."""
+    return b64encode(np.ascontiguousarray(values, dtype="<f8").tobytes()).decode()
+
+
 def _of(module: ModuleType, *names: str) -> dict[str, Any]:
     """Constants of a module by their names."""
     return {name: getattr(module, name) for name in names}
@@ -194,25 +222,34 @@ def _constants() -> dict[str, Any]:
         **_of(units, "GRAVITY"),
         **_of(outcomes, "AT_REST", "LARGEST_FACTOR"),
         **_of(plausible, "LARGEST_PEAK"),
-        **_of(risk, "LEVEL", "HALF"),
-        "Z": float(stats.norm.ppf(0.5 + risk.LEVEL / 2)),
+        **_of(risk, "LEVEL", "NONE_BELOW", "LEAST_SPAN"),
+        **_of(fractions, "CLASSES", "ROUNDING", "LEAST_SPREAD"),
+        **_of(draws, "MEMBERS", "FEW_MEMBERS"),
+        "BINS": parts.BINS,
+        "CENTRES": parts.CENTRES.tolist(),
         "FLANK_Z": float(special.ndtri(curve.FLANKS[1])),
         **_of(curve, "EC8_SLOPE", "EC8_SLOPE_SD"),
-        **_of(sources, "LIKELY", "UNLIKELY", "LEAST_GAIN", "MOST_NAMED"),
         "MODEL": MODEL_ERRORS[CUT].beyond,
         **_of(sources, "SPACE"),
         **_of(conversion, "MOST_LEVELS", "OF_DISPLACEMENT"),
         **_of(vector, "INTERACTION_LEVEL"),
         **_of(held_out, "FOLDS", "WORST_SCORE"),
         **_of(plausible, "STONE", "DENSITIES", "DEPTHS"),
-        **_of(mitigations, "WIDER", "PLATE", "STEEL", "LOWER", "BALLAST", "BALLAST_AT"),
-        **_of(mitigations, "PEDESTAL_HEIGHT"),
+        **_of(changes, "WIDER", "PLATE", "STEEL", "LOWER", "BALLAST", "BALLAST_AT"),
+        **_of(changes, "PEDESTAL_HEIGHT"),
         **_of(
             place, "PERIOD_FACTORS", "STOREY_HEIGHT", "STOREY_MASS", "HIGHEST_BUILDING"
         ),
-        **_of(words, "MANY", "FEW", "LEAST_PART", "MOST_SOURCES", "MOST_ASSUMPTIONS"),
+        **_of(findings, "HARDLY", "LEAST_PART", "MOST_SOURCES", "MOST_ASSUMPTIONS"),
+        **_of(findings, "MOST_CHANGES"),
+        **_of(decisions, "LEAST_CHANCE"),
+        "FEWEST_EARTHQUAKES": FEWEST_EARTHQUAKES,
+        **_of(request, "ACCEPTED_AT_A_LEVEL", "ACCEPTED_IN_FIFTY_YEARS"),
+        "BELOW": [[limit, step.value] for limit, step in BELOW],
+        "UP_TO": [[limit, step.value] for limit, step in UP_TO],
+        "CERTAIN": Likelihood.VIRTUALLY_CERTAIN.value,
         "DAMPING": ModalDamping().ratio,
-        **_of(objects, "TOLERANCES"),
+        **_of(contract, "TOLERANCES"),
         "PLACE_TOLERANCES": place.TOLERANCES,
         "KNOWN_PERIOD": place.TOLERANCE_OF_KNOWN_PERIOD,
         **_of(request, "LONGEST_PERIOD"),
@@ -249,9 +286,9 @@ def in_space(
         "fewer": [names.index(motion.name) for motion in fewer.ground],
         "measures": levels,
         "turns": [[math.cos(angle), math.sin(angle)] for angle in turns],
-        "aside": objects.ASIDE,
-        "higher": objects.HIGHER,
-        "rolling": objects.ROLLING,
+        "aside": box.ASIDE,
+        "higher": contract.HIGHER,
+        "rolling": rolling.ROLLING,
     }
 
 
@@ -286,5 +323,5 @@ def ratios_of(motions: MotionSet, measure: IntensityMeasure) -> dict[str, Any] |
     return {
         "logs": logs.tolist(),
         "median": float(np.median(logs)),
-        "spread": relation.unknown(Records()),
+        "spread": relation.unknown(Records(), of_site=False),
     }

@@ -3,20 +3,27 @@ const lists_ = (data, fields) => {
   "use strict";
   const cell = (text) => (/[",\n\r]/.test(text) ? `"${text.replaceAll('"', '""')}"` : text);
   // a sheet would take what begins so for a formula
-  const guarded = (text) => (/^[=+@\t]/.test(text) ? ` ${text}` : text);
+  const guarded = (text) => (/^[-=+@\t\r]/.test(text) ? ` ${text}` : text);
   const csvOf = (forms) => [fields.join(","), ...forms.map((form) => fields.map((name) => cell(guarded(String(form[name] ?? "")))).join(","))].join("\r\n") + "\r\n";
-  function rowsOf(text) {
+  // rows of cells; of a file that ends within quotation marks the row in which they open is told
+  function rowsOf(text, say) {
     const rows = [[""]];
-    for (let i = 0, quoted = false; i < text.length; i++) {
+    let quoted = false, opened = 0;
+    for (let i = 0; i < text.length; i++) {
       const letter = text[i], row = rows.at(-1);
       if (quoted && letter === '"' && text[i + 1] === '"') row[row.length - 1] += text[++i];
-      else if (letter === '"') quoted = !quoted;
+      else if (letter === '"') {
+        quoted = !quoted;
+        opened = rows.length;
+      }
       else if (!quoted && letter === ",") row.push("");
       else if (!quoted && letter === "\n") rows.push([""]);
       else if (letter !== "\r" || quoted) row[row.length - 1] += letter;
     }
+    if (quoted) throw new Error(say("file_open_quote", { row: opened }));
     return rows.filter((row) => row.some((text) => text.trim()));
   }
+  const MOST_ROWS = 500;
   // keys of statue.yaml by the fields of the form
   const KEYS = { storey_height: ["building", "storey_height"], material: ["building", "material"], period: ["building", "first_period"],
     pedestal_width: ["pedestal", "width"], pedestal_height: ["pedestal", "height"], pedestal_mass: ["pedestal", "mass"] };
@@ -40,7 +47,9 @@ const lists_ = (data, fields) => {
   const point = (text) => text.replace(/^(\s*[-+]?\d+),(\d+)/, "$1.$2");
   function ofYaml(text, say) {
     const form = {}, unquoted = (value) => {
-      const plain = value.replace(/\s+#.*$/, "").trim();
+      // a comment begins with a # behind a blank; searched from there, in a time that grows with the length
+      const at = [...value.matchAll(/#/g)].map(({ index }) => index).find((index) => /\s/.test(value[index - 1] ?? ""));
+      const plain = value.slice(0, at).trim();
       return /^".*"$/.test(plain) ? JSON.parse(plain) : plain.replace(/^'(.*)'$/, "$1");
     };
     let home = "";
@@ -63,11 +72,14 @@ const lists_ = (data, fields) => {
   }
   function read(name, text, say) {
     if (!/\.csv$/i.test(name)) return ofYaml(text, say);
-    const [titles, ...rows] = rowsOf(text.replace(/^\ufeff/, ""));
+    const [titles, ...rows] = rowsOf(text.replace(/^\ufeff/, ""), say);
     const unknown = (titles ?? []).find((title) => !fields.includes(title.trim()));
     if (unknown !== undefined) throw new Error(say("file_keys", { key: unknown.trim().slice(0, 40) }));
     if (!rows.length) throw new Error(say("file_no_rows"));
-    return rows.slice(0, 500).map((row) => Object.fromEntries(titles.map((title, i) => [title.trim(), (row[i] ?? "").trim()])));
+    if (rows.length > MOST_ROWS) throw new Error(say("file_too_many", { count: rows.length, most: MOST_ROWS }));
+    const torn = rows.findIndex((row) => row.length !== titles.length);
+    if (torn >= 0) throw new Error(say("file_row_cells", { row: torn + 2, found: rows[torn].length, expected: titles.length }));
+    return rows.map((row) => Object.fromEntries(titles.map((title, i) => [title.trim(), (row[i] ?? "").trim()])));
   }
   return { csvOf, yamlOf, read };
 };

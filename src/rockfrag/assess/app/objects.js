@@ -54,7 +54,7 @@ const objects = (data) => {
     const mass = positive("mass", form.mass, "mass"), cgHeight = positive("cg_height", form.cg_height, "length");
     if (cgHeight !== null && cgHeight >= height) refuse("cg_height", "above_top");
     const cgOffset = quantity("cg_offset", form.cg_offset, "length") ?? 0;
-    const { width, depth, facing } = planOfBase(form, side, round), [low, high] = DENSITIES;
+    const { width, depth, facing, narrower = false } = planOfBase(form, side, round), [low, high] = DENSITIES;
     const statue = { width, height, mass: mass ?? STONE * width * depth * height * (round ? Math.PI / 4 : 1), cgHeight, cgOffset };
     checkDensity("mass", statue);
     const density = statue.mass / (width * depth * height);
@@ -74,7 +74,7 @@ const objects = (data) => {
       checkDensity("pedestal_mass", pedestal);
     } else if (form.pedestal_mass?.trim()) refuse("pedestal_width", "missing", { example: "50 cm" });
     return {
-      name: short(form.name ?? "") || data.texts.en.the_object, statue, pedestal, massGiven: mass !== null, depthGiven: Boolean(form.depth?.trim()), restitution,
+      name: short(form.name ?? "") || data.texts.en.the_object, statue, narrower, pedestal, massGiven: mass !== null, depthGiven: Boolean(form.depth?.trim()), restitution,
       solid: round || deep ? { round, facing, anywhere: !form.facing?.trim() } : null, place: placeOf(form), ...shakingOf(form),
     };
   }
@@ -84,7 +84,7 @@ const objects = (data) => {
     if (round && depth !== null && depth !== width) refuse("depth", "round_depth");
     if (facing !== null && (round || depth === null)) refuse("facing", "no_facing");
     if (depth === null || !(depth < width)) return { width, depth: depth ?? width, facing: facing ?? 0 };
-    return { width: depth, depth: width, facing: (facing ?? 0) + 90 };
+    return { width: depth, depth: width, facing: (facing ?? 0) + 90, narrower: true };
   }
   function checkDensity(field, { width, height, mass }) {
     const most = mass / (width * height * DEPTHS[0] * width), least = mass / (width * height * DEPTHS[1] * Math.max(width, height));
@@ -169,6 +169,7 @@ const objects = (data) => {
 
   // ---- bodies
 
+  const three = (value) => ({ number: value, form: "three" });
   const inertiaOf = (block) => block.inertia ?? (block.mass * (block.width * block.width + block.height * block.height)) / 12;
   const heightOf = (block) => block.cgHeight ?? block.height / 2;
   const wider = (block, factor) => ({ ...block, width: block.width * factor, inertia: inertiaOf(block), ...(block.depth ? { depth: block.depth * factor } : {}) });
@@ -198,22 +199,22 @@ const objects = (data) => {
     for (const floor of Object.keys(place.floors).filter(Boolean))
       runs.push({ role: "moved", name: floor.slice(0, -1), few: true, floor, body: body(statue) });
     if (pedestal) {
-      runs.push({ role: "arrangement", name: "fixed_to_pedestal", change: "fix_to_pedestal", values: {}, body: body(joined(statue, pedestal), null) });
+      runs.push({ role: "arrangement", name: "fixed_to_its_pedestal", change: "fix_object", values: {}, body: body(joined(statue, pedestal), null) });
       runs.push({ role: "arrangement", name: "on_the_floor", change: "fix_pedestal", values: {}, body: body(statue, null) });
     }
     const helps = (name, what, values = {}) => runs.push({ role: "mitigation", change: name, body: what, values });
     const onPlate = (block) => joined(block, { width: WIDER * block.width, height: PLATE, mass: STEEL * PLATE * (WIDER * block.width) ** 2 });
-    const plate = (block) => ({ width: 100 * WIDER * block.width, thick: 100 * PLATE });
-    if (!pedestal) helps("plate_it", body(onPlate(statue)), plate(statue));
+    const plate = (block) => ({ width: three(100 * WIDER * block.width), thick: three(100 * PLATE) });
+    if (!pedestal) helps("plate_under_it", body(onPlate(statue)), plate(statue));
     else {
-      helps("plate_pedestal", body(statue, onPlate(pedestal)), plate(pedestal));
-      if (WIDER * statue.width <= pedestal.width) helps("plate_object", body(onPlate(statue)), plate(statue));
+      helps("plate_under_pedestal", body(statue, onPlate(pedestal)), plate(pedestal));
+      if (WIDER * statue.width <= pedestal.width) helps("plate_under_object", body(onPlate(statue)), plate(statue));
     }
-    helps("lower", body(higher(statue, LOWER)), { part: 100 * (1 - LOWER) });
-    helps("ballast", body(withBallast(statue)), { part: 100 * BALLAST });
+    helps("lower_centre", body(higher(statue, LOWER)), { part: { number: 1 - LOWER, form: "percent" } });
+    helps("ballast", body(withBallast(statue)), { part: { number: BALLAST, form: "percent" } });
     if (pedestal) {
       const half = { ...pedestal, height: PEDESTAL_HEIGHT * pedestal.height, mass: PEDESTAL_HEIGHT * pedestal.mass };
-      helps("lower_pedestal", body(statue, half), { height: 100 * half.height });
+      helps("lower_pedestal", body(statue, half), { height: three(100 * half.height) });
     }
     for (const { body: each } of runs) stands(each, ensemble);
     return request.solid ? inSpace(data).planOf(request, runs) : runs;

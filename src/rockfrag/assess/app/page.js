@@ -27,18 +27,19 @@ const ALL = Object.values(FIELDS).flat();
 const PART = 25; // motions of a task
 // why a body cannot stand, in the words of the module
 const FAULTS = Object.fromEntries(ROCKFRAG_FAULTS.map((text, i) => [`fault_${i}`, text]));
-let texts = data.texts.en, say = null, linesOf = null;
+let texts = data.texts.en, say = null, speak = null;
+const wording = findings(data);
 
 // ---- texts
 
 function choose(language) {
   texts = { ...FAULTS, ...data.texts.en, ...data.texts[language] };
   document.documentElement.lang = language;
-  linesOf = words(data, texts);
-  say = (id, values = {}) => (texts[id] ?? id).replace(/\{(\w+)\}/g, (whole, name) => String(values[name] ?? whole));
+  speak = catalogue(texts);
+  say = (id, values = {}) => speak.say({ id, values });
   document.title = say("title");
   for (const element of document.querySelectorAll("[data-text]")) element.textContent = say(element.dataset.text);
-  find("lead").textContent = say("lead", { motions: linesOf.motions });
+  find("lead").textContent = say("lead", { motions: data.motions });
   find("made").hidden = !data.made;
   find("made").textContent = say("made");
   find("progress").setAttribute("aria-label", say("answer"));
@@ -76,13 +77,14 @@ function formTexts() {
   if (!inputs.width) return null;
   return Object.fromEntries(ALL.map((name) => [name, name === "round" ? inputs[name].checked : inputs[name].value]));
 }
+const whyOf = ({ id, values }) => say(texts[`${id}_refused`] ? `${id}_refused` : id, values);
 function complain(refusal) {
   for (const name of ALL) {
     const wrong = refusal?.field === name;
     inputs[name].setAttribute("aria-invalid", String(wrong));
     const { id, values } = refusal ?? {};
     if (wrong && inputs[name].closest("details")) inputs[name].closest("details").open = true;
-    find(`field-${name}-error`).textContent = wrong ? say(texts[`${id}_refused`] ? `${id}_refused` : id, values) : "";
+    find(`field-${name}-error`).textContent = wrong ? whyOf({ id, values }) : "";
   }
 }
 
@@ -142,7 +144,7 @@ function ask(of, message, first = false) {
 }
 // ---- a request, from its plan to its answer
 
-let timer = 0, settle = () => {}; // told whether an answer is complete or refused
+let timer = 0, settle = () => {}; // gets why an answer is refused, null once it is complete
 function later() {
   clearTimeout(timer);
   timer = setTimeout(update, 120);
@@ -157,7 +159,8 @@ function update() {
     current = other = null;
     complain(error);
     find("answer").classList.add("stale");
-    return settle(false);
+    find("done").textContent = "";
+    return settle(error);
   }
   complain(null);
   find("blocked").hidden = true;
@@ -168,16 +171,18 @@ function update() {
     show(told);
     if (!told.last) return;
     slide();
-    settle(true);
+    settle(null);
   });
 }
 async function compute(run, told, only = Infinity) {
   const { id, request } = run, count = data.earthquakes.length;
   const plan = await ask(run, { kind: "plan", id, request });
   if (plan.refusal) {
-    complain({ field: plan.refusal.field, id: plan.refusal.text, values: plan.refusal.values });
+    const refusal = { field: plan.refusal.field, id: plan.refusal.text, values: plan.refusal.values };
+    complain(refusal);
     find("answer").classList.add("stale");
-    return run === current && settle(false);
+    find("done").textContent = "";
+    return run === current && settle(refusal);
   }
   if (plan.failure) return refused(plan.failure);
   const roles = plan.told.roles.slice(0, only), parts = roles.map(() => []);
@@ -213,43 +218,50 @@ function refused(why) {
   find("blocked").textContent = say("failed", { why });
   find("blocked").hidden = false;
   find("answer").classList.add("stale");
-  settle(false);
+  settle({ id: "failed", values: { why } });
 }
 function progress(done, all) {
   find("progress").max = all;
   find("progress").value = done;
-  find("done").textContent = done === all ? say("ready") : say("working", { done, all });
+  find("done").textContent = say("working", { done, all });
 }
 
 // ---- the answer
 
 let shown = null;
-function show(told) {
-  shown = told;
-  const { run: { request, since }, found } = told, said = linesOf(request, found);
+function show(answer) {
+  shown = answer;
+  const { run: { request, since }, found } = answer, said = saidOf(request, found, answer);
   find("answer").classList.remove("stale");
   find("headline").textContent = find("bar").textContent = said.headline;
-  find("lines").replaceChildren(...linesAs(said, told.last, !told.early));
+  find("screen").textContent = said.screen;
+  find("lines").replaceChildren(...linesAs(said));
+  if (answer.last) find("done").textContent = say("ready");
   find("note").hidden = !request.place.computed;
   find("note").textContent = say("computed_floor");
-  const stage = told.last ? "complete" : found.complete ? "interval" : "first", { dataset } = document.body;
+  const stage = answer.last ? "complete" : found.complete ? "interval" : "first", { dataset } = document.body;
   if (stage !== dataset.stage) dataset[stage] = String(performance.now() - since);
   dataset.stage = stage;
-  find("keep").disabled = !told.last;
-  document.dispatchEvent(new CustomEvent("answer", { detail: { found, last: told.last } }));
-  if (!told.early && scene.of !== told.run) scene.drawn = draw(told);
+  find("keep").disabled = !answer.last;
+  document.dispatchEvent(new CustomEvent("answer", { detail: { found, last: answer.last } }));
+  if (!answer.early && scene.of !== answer.run) scene.drawn = draw(answer);
 }
-function linesAs(said, helps = true, risk = true) {
-  const lines = [["Result", said.result], ["Risk", risk ? said.risk : ""], ["Position", said.position], ["What helps", helps ? said.helps : ""], ["How sure", said.sure]];
-  return lines.filter(([, text]) => text).flatMap(([id, text]) => [make("dt", { textContent: say(id) }), make("dd", { textContent: text })]);
+// the first screen and what stands behind it in words; of an answer that is not complete what is known of it
+function saidOf(request, found, { last = true, early = false } = {}) {
+  const { first: [likely, ...others], details } = wording.of(request, found), hidden = [...(last ? [] : ["title_helps"]), ...(early ? ["title_years"] : [])];
+  const lines = details.filter(([{ id }]) => !hidden.includes(id)).map(([title, said]) => [speak.sentence(title), speak.paragraph(said)]);
+  return { headline: speak.sentence(likely).replace(/\.$/, ""), screen: speak.paragraph(others), lines };
+}
+function linesAs({ lines }) {
+  return lines.flatMap(([title, text]) => [make("dt", { textContent: title }), make("dd", { textContent: text })]);
 }
 // what was typed, in a line
 function typedIn(form) {
   const plain = ALL.filter((name) => (form[name] === true || form[name]?.trim?.()) && !["measure", "material", "hazard", "level"].includes(name));
-  const told = plain.map((name) => (form[name] === true ? say(name) : `${say(name)}: ${form[name]}`));
-  if (form.level.trim()) told.push(`${form.measure}: ${form.level}`);
-  if (form.hazard.trim()) told.push(say("curve_of", { measure: form.measure, count: form.hazard.trim().split("\n").length }));
-  return told.join("; ") + ".";
+  const typed = plain.map((name) => (form[name] === true ? say(name) : `${say(name)}: ${form[name]}`));
+  if (form.level.trim()) typed.push(`${form.measure}: ${form.level}`);
+  if (form.hazard.trim()) typed.push(say("curve_of", { measure: form.measure, count: form.hazard.trim().split("\n").length }));
+  return typed.join("; ") + ".";
 }
 
 // ---- what helps: sliders, before and after
@@ -411,10 +423,10 @@ function drawKept() {
     return row;
   }));
 }
-const headings = () => ["rank", "name", "topples_column", "risk_column", "Result"].map((id) => make("th", { scope: "col", textContent: say(id) }));
+const headings = () => ["rank", "name", "topples_column", "risk_column", "page_to_do"].map((id) => make("th", { scope: "col", textContent: say(id) }));
 function rowOf({ told: { run: { request }, found } }, i) {
-  const texts = [i + 1, linesOf.nameOf(request), percent(found.value), percent(found.probabilityValue), linesOf(request, found).result];
-  return make("tr", {}, ...texts.map((text) => make("td", { textContent: text })));
+  const { first } = wording.of(request, found), cells = [i + 1, speak.sentence(wording.called(request)), percent(found.value), percent(found.probabilityValue), speak.sentence(first.at(-1))];
+  return make("tr", {}, ...cells.map((text) => make("td", { textContent: text })));
 }
 async function keep() {
   const item = { form: shown.run.form, told: shown };
@@ -454,10 +466,11 @@ async function openFile(input) {
     const forms = lists.read(file.name, await file.text(), say), left = [];
     if (forms.length === 1) fillForm(forms[0]);
     else for (const [i, form] of forms.entries()) {
-      if (await answered(form)) await keep();
-      else left.push(i + 2); // below the titles
+      const refusal = await answered(form), row = i + 2; // below the titles
+      if (refusal) left.push(say("row_left", { row, field: refusal.field ? say(refusal.field) : "", why: whyOf(refusal) }));
+      else await keep();
     }
-    if (left.length) complainOf(say("rows_left", { rows: left.join(", ") }));
+    if (left.length) complainOf([say("rows_left"), ...left].join(" "));
   } catch (error) {
     complainOf(say("file_unread", { why: error.message }));
   }
@@ -476,8 +489,8 @@ function drawSheets() {
   const items = kept.length ? kept : shown ? [{ form: shown.run.form, told: shown, scene: stillOf(shown.run) }] : [];
   find("sheets").replaceChildren(...(kept.length > 1 ? [rankedSheet()] : []));
   for (const { form, told: { run: { request }, found }, scene: still } of items) {
-    const said = linesOf(request, found), canvas = make("canvas", { width: 600, height: 300 });
-    const sheet = make("section", { className: "sheet" }, make("h2", { textContent: said.headline }), make("p", { textContent: typedIn(form) }), make("dl", {}, ...linesAs(said)));
+    const said = saidOf(request, found), canvas = make("canvas", { width: 600, height: 300 });
+    const sheet = make("section", { className: "sheet" }, make("h2", { textContent: said.headline }), make("p", { textContent: said.screen }), make("p", { textContent: typedIn(form) }), make("dl", {}, ...linesAs(said)));
     find("sheets").append(sheet);
     if (still) {
       sheet.append(make("figure", {}, canvas, make("figcaption", { textContent: `${still.title()}: ${still.words()}` })));

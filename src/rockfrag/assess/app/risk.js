@@ -1,10 +1,8 @@
 /* From outcomes to shares, probabilities and their intervals, as rockfrag.assess.risk and its like have them. */
 const risk = (data) => {
   "use strict";
-  const { HALF, Z, FLANK_Z, LEVEL, LIKELY, UNLIKELY, LEAST_GAIN, MOST_NAMED, EC8_SLOPE, EC8_SLOPE_SD } = data.constants;
-  const hypot = (values) => Math.sqrt(values.reduce((sum, value) => sum + value * value, 0));
-  const logit = (p) => Math.log(p / (1 - p));
-  const expit = (x) => 1 / (1 + Math.exp(-x));
+  const { FLANK_Z, LEVEL, NONE_BELOW, LEAST_SPAN, EC8_SLOPE, EC8_SLOPE_SD } = data.constants;
+  const drawn = core(data);
 
   // numpy's interp, flat beyond the ends
   function interpolated(x, xs, ys) {
@@ -69,150 +67,139 @@ const risk = (data) => {
 
   // ---- what is estimated
 
-  const riskTarget = (curve, years) => ({
-    of: (levels, shares, shift) => topplingRate(levels, shares, curve, shift),
-    forward: (value) => (value > 0 ? Math.log(value) : -Infinity),
-    back: (value) => probabilityIn(Math.exp(value), years),
-    state: "overturned", added: 0, certain: 1,
-  });
+  const { parts, predict, liftsFrom, meansBySet, mean, variance } = drawn;
+  const same = (value) => value;
+  // `of` turns levels and the shares at each into a number, `shown` that into the one that is shown
+  function riskTarget(curve, years) {
+    let known = null, rates = [];
+    const of = (levels, shares) => {
+      if (known !== levels) {
+        known = levels;
+        rates = levels.map((_, k) => topplingRate(levels, levels.map((_, i) => Number(i === k)), curve, 0));
+      }
+      return shares.reduce((sum, share, k) => sum + share * rates[k], 0);
+    };
+    const scale = (values) => values.map((value) => Math.log(Math.max(value, 1e-3 * mean(values), 1e-300)));
+    return { kind: "rate", of, scale, shown: (value) => probabilityIn(value, years), state: "overturned", noneBelow: -Infinity };
+  }
   const fractionTarget = (level, state = "overturned") => ({
-    of: (levels, shares, shift) => interpolated(Math.log(level) - shift, levels.map(Math.log), shares),
-    forward: logit, back: expit, state, added: HALF, certain: 1,
+    kind: "fraction", level, of: (levels, shares) => interpolated(0, levels.map((each) => Math.log(each / level)), shares),
+    scale: same, shown: same, state, noneBelow: NONE_BELOW,
   });
   const amplitudeTarget = (part) => ({
-    of: (levels, shares, shift) => {
+    kind: "level",
+    of: (levels, shares) => {
       const i = shares.findIndex((share) => share >= part);
       if (i < 0) return Infinity;
       if (i === 0) return levels[0];
       const x = levels.map(Math.log), along = (part - shares[i - 1]) / (shares[i] - shares[i - 1]);
-      return Math.exp(x[i - 1] + along * (x[i] - x[i - 1]) + shift);
+      return Math.exp(x[i - 1] + along * (x[i] - x[i - 1]));
     },
-    forward: (value) => (value > 0 ? Math.log(value) : -Infinity),
-    back: Math.exp, state: "overturned", added: 0, certain: Infinity,
+    scale: (values) => values.map(Math.log), shown: same, state: "overturned", noneBelow: -Infinity,
   });
   // earthquakes of the motions that were tried
   const groupsOf = ({ motions }) => [...new Set(motions ? motions.map((m) => data.earthquakes[m]) : data.earthquakes)];
-  function onScale(target, outcomes, { without = -1, shift = 0, added = 0 } = {}) {
-    let shares = fractions(outcomes, target.state, without);
-    if (added) {
-      const count = groupsOf(outcomes).length - (without >= 0 ? 1 : 0), could = fractions(outcomes, "rocked", without);
-      shares = shares.map((share, k) => (count * share + (could[k] > 0 ? added : 0)) / (count + 2 * added));
-    }
-    return target.forward(target.of(outcomes.levels, shares, shift));
+  // of shares as counted
+  const valueOf = (target, outcomes) => target.shown(target.of(outcomes.levels, fractions(outcomes, target.state)));
+
+  // ---- what is not known
+
+  const afterUplift = (name, spread) => [name, 0, spread];
+  // what a property moves at its standard deviation, by outcomes with it on both sides
+  function shiftOf(name, lower, upper) {
+    const [low, high] = [lower, upper].map((side) => {
+      const known = liftsFrom(side).filter(Number.isFinite);
+      return known.length ? mean(known.map(Math.log)) : 0;
+    });
+    const lifts = (high - low) / 2, { levels } = lower, [below, above] = [lower, upper].map((side) => fractions(side));
+    const middle = below.map((share, k) => (share + above[k]) / 2), span = Math.max(...middle) - middle[0];
+    if (span < LEAST_SPAN) return [name, lifts, lifts];
+    let area = 0;
+    for (let k = 0; k + 1 < levels.length; k++) area += (Math.log(levels[k + 1] / levels[k]) * (below[k] - above[k] + below[k + 1] - above[k + 1])) / 2;
+    return [name, lifts, area / 2 / span];
   }
-  const valueOf = (target, outcomes, without = -1) => target.back(onScale(target, outcomes, { without }));
 
   // ---- intervals
 
   const all = groupsOf({}), groups = all.length;
-  function withoutEach(target, outcomes) {
-    const found = all.map((without) => onScale(target, outcomes, { without, added: target.added }));
-    return found.every(Number.isFinite) ? found : all.map((without) => onScale(target, outcomes, { without, added: HALF }));
+  const rowOf = (values, d, size) => Array.from(values.subarray(d * size, (d + 1) * size));
+  // the number in each draw, before it is shown; `rates`: standard deviations of ln rate by source
+  function drawnValues(target, prediction, rates) {
+    const { levels, draws } = prediction, table = target.state === "rocked" ? prediction.rocking : prediction.toppling;
+    const at = target.kind === "fraction" ? levels.indexOf(target.level) : -1;
+    const values = new Float64Array(draws);
+    for (let d = 0; d < draws; d++) values[d] = at < 0 ? target.of(levels, rowOf(table, d, levels.length)) : table[d * levels.length + at];
+    if (target.kind === "rate") for (const [name, spread] of Object.entries(rates)) {
+      const source = drawn.sourceOf(prediction, name);
+      for (let d = 0; d < draws; d++) values[d] *= Math.exp(spread * source[d] - spread ** 2 / 2);
+    }
+    return values;
   }
-  function jackknife(values) {
-    const n = values.length, mean = values.reduce((a, b) => a + b, 0) / n;
-    if (n < 2 || !values.every(Number.isFinite)) return Infinity;
-    return Math.sqrt(((n - 1) / n) * values.reduce((sum, value) => sum + (value - mean) ** 2, 0));
+  function middleOf(target, prediction, values) {
+    if (target.kind === "level") return [...values].sort((a, b) => a - b)[Math.floor(0.5 * (values.length - 1))];
+    const { levels, draws } = prediction, table = target.state === "rocked" ? prediction.rocking : prediction.toppling;
+    const means = levels.map((_, k) => {
+      let sum = 0;
+      for (let d = 0; d < draws; d++) sum += table[d * levels.length + k];
+      return sum / draws;
+    });
+    return target.shown(target.of(levels, means));
   }
-  function halfWidth(low, high, middle) {
-    const ends = [low, high].filter(Number.isFinite);
-    if (ends.length === 2) return Math.abs(high - low) / 2;
-    return ends.length ? Math.abs(ends[0] - middle) : 0;
+  function estimate(target, prediction, rates) {
+    const values = drawnValues(target, prediction, rates), shown = values.map(target.shown), value = middleOf(target, prediction, values);
+    const ordered = Float64Array.from(shown).sort(), aside = Math.trunc(((1 - LEVEL) / 2) * ordered.length);
+    let lower = ordered[aside], upper = ordered[ordered.length - 1 - aside];
+    if (groups < 2 && target.kind !== "level") [lower, upper] = [0, 1];
+    if (lower < target.noneBelow) lower = 0;
+    if (upper > 1 - target.noneBelow) upper = 1;
+    const last = prediction.levels.at(-1), scaled = target.scale(target.kind === "level" ? values.map((each) => Math.min(each, last)) : values);
+    const spread = Math.sqrt(variance(scaled));
+    const sources = Object.fromEntries(Object.entries(parts(prediction, scaled)).map(([name, part]) => [name, spread * Math.sqrt(part)]));
+    return { value, lower: Math.min(lower, value), upper: Math.max(upper, value), sources, draws: values };
   }
-  const quantile = (freedom) => statistics.studentQuantile(0.5 - LEVEL / 2, freedom);
-
-  // `moved`: [name, lower, upper] outcomes; `fixed` and `shifts`: standard deviations by name
-  function estimate(target, outcomes, moved, fixed, shifts) {
-    const middle = onScale(target, outcomes);
-    if (!Number.isFinite(middle)) return bounded(target, outcomes, middle, moved, shifts);
-    const near = (changed, shift = 0) => onScale(target, changed, { shift, added: target.added });
-    const own = near(outcomes), sources = { motions: jackknife(withoutEach(target, outcomes)) };
-    for (const [name, lower, upper] of moved) sources[name] = halfWidth(near(lower), near(upper), own);
-    for (const [name, spread] of Object.entries(shifts))
-      sources[name] = halfWidth(near(outcomes, -spread), near(outcomes, spread), own);
-    Object.assign(sources, fixed);
-    const total = hypot(Object.values(sources));
-    const t = !Number.isFinite(total) || sources.motions === 0 ? Z : quantile((groups - 1) * (total / sources.motions) ** 4);
-    const shift = t * hypot(Object.values(shifts));
-    const ends = [-shift, shift].map((by) => onScale(target, outcomes, { shift: by })).sort((a, b) => a - b);
-    const others = t * hypot(Object.keys(sources).filter((name) => !(name in shifts)).map((name) => sources[name]));
-    const down = Math.max(0, middle - ends[0]), up = Math.max(0, ends[1] - middle);
-    return {
-      value: target.back(middle),
-      lower: target.back(Math.min(middle, own) - Math.hypot(others, down)),
-      upper: target.back(Math.max(middle, own) + Math.hypot(others, up)),
-      sources,
-    };
-  }
-  const hiddenPart = 1 - (1 - LEVEL) ** (1 / groups);
-  function bounded(target, outcomes, middle, moved, shifts) {
-    const shift = Z * hypot(Object.values(shifts));
-    const most = (changed, by = 0) => {
-      const rocks = fractions(changed, "rocked");
-      const shares = fractions(changed, target.state).map((share, k) => (rocks[k] > 0 ? Math.max(share, hiddenPart) : 0));
-      return target.of(changed.levels, shares, -by);
-    };
-    const least = (changed, by = 0) =>
-      target.of(changed.levels, fractions(changed, target.state).map((share) => Math.min(share, 1 - hiddenPart)), by);
-    const told = (value, lower, upper) => ({ value, lower, upper, sources: {} });
-    if (target.certain === Infinity) return told(Infinity, Math.min(most(outcomes, shift), outcomes.levels.at(-1)), Infinity);
-    if (middle > 0) return told(1, target.back(limit(target, least, outcomes, moved, shift, -1)), 1);
-    return told(0, 0, target.back(limit(target, most, outcomes, moved, shift, 1)));
-  }
-  function limit(target, of, outcomes, moved, shift, sign) {
-    const [bound, plain] = [shift, 0].map((by) => target.forward(of(outcomes, by)));
-    const ends = moved.map(([, ...both]) => Math.max(...both.map((side) => sign * target.forward(of(side)))));
-    if (!Number.isFinite(plain)) return sign * Math.max(sign * bound, ...ends);
-    return bound + sign * Z * hypot(ends.map((end) => Math.max(0, end - sign * plain)));
-  }
-  function estimateRocking(level, outcomes, moved, exact) {
-    const target = fractionTarget(level, "rocked");
-    const found = estimate(target, outcomes, moved, {}, {});
-    if (found.value > 0 && found.value < 1) return found;
-    const sides = moved.flatMap(([, ...both]) => both.map((side) => valueOf(target, side)));
-    const hidden = exact ? 0 : hiddenPart;
-    if (found.value === 0) return { value: 0, lower: 0, upper: Math.max(hidden, ...sides), sources: {} };
-    return { value: 1, lower: Math.min(1 - hidden, ...sides), upper: 1, sources: {} };
+  // what to do by a probability; of one in some years by its rate, of which means are taken
+  function decision(target, prediction, { value, draws }, accepted, years) {
+    const rate = (p) => (target.kind === "rate" ? -Math.log1p(-Math.min(p, 1 - 1e-15)) / years : p);
+    return drawn.decide(prediction, rate(value), draws, data.measurements, rate(accepted));
   }
   // standard deviation of ln rate that the quantiles of a hazard stand for
   function ofQuantiles(outcomes, curve) {
-    const known = curve.quantiles.map((each) => [each.z, onScale(riskTarget(each, 1), outcomes)])
+    const known = curve.quantiles.map((each) => [each.z, Math.log(topplingRate(outcomes.levels, fractions(outcomes), each, 0))])
       .filter(([, value]) => Number.isFinite(value)).sort((a, b) => a[0] - b[0]);
     if (known.length < 2) return {};
     return { hazard: Math.abs(known.at(-1)[1] - known[0][1]) / (known.at(-1)[0] - known[0][0]) };
   }
 
-  // what a change does, with limits of the factor by the same motions
-  function compared(target, now, changed) {
-    const before = valueOf(target, now), after = valueOf(target, changed);
-    const helps = target.certain === Infinity ? after > before : after < before;
-    const found = { value: after, factor: NaN, lower: NaN, upper: NaN, helps };
-    if (!(Number.isFinite(before) && before > 0 && Number.isFinite(after))) return found;
-    found.factor = after / before;
-    const shaken = groupsOf(now), pairs = shaken.map((without) => [valueOf(target, changed, without), valueOf(target, now, without)]);
-    if (shaken.length < 2 || !pairs.flat().every((value) => Number.isFinite(value) && value > 0)) return found;
-    const half = quantile(shaken.length - 1) * jackknife(pairs.map(([a, b]) => Math.log(a / b)));
-    return { ...found, lower: found.factor * Math.exp(-half), upper: found.factor * Math.exp(half) };
+  // numpy's quantile
+  function quantileOf(values, part) {
+    const ordered = [...values].sort((a, b) => a - b), at = part * (ordered.length - 1), low = Math.floor(at);
+    return ordered[low] + (at - low) * ((ordered[low + 1] ?? ordered[low]) - ordered[low]);
   }
-
-  // the measurements that would narrow an interval most, and to what; null where none is worth it
-  function narrowed(estimate) {
-    const { value, lower, upper, sources } = estimate, total = hypot(Object.values(sources)) ** 2;
-    if (!(value > 0 && value < 1 && Number.isFinite(total) && total > 0) || (lower <= 0 && upper >= 1)) return null;
-    const left = (name) => data.measurements[name] ?? 1;
-    const gain = (name) => ((sources[name] ?? 0) ** 2 * (1 - left(name) ** 2)) / total;
-    const known = Object.keys(data.measurements).filter((name) => gain(name) >= LEAST_GAIN)
-      .sort((a, b) => gain(b) - gain(a)).slice(0, MOST_NAMED);
-    if (!known.length) return null;
-    const ratio = Math.sqrt(hypot(Object.entries(sources).map(([name, s]) => s * (known.includes(name) ? left(name) : 1))) ** 2 / total);
-    const ends = [lower, upper].map((end) => expit(logit(value) + ratio * (logit(end) - logit(value))));
-    return { known, lower: ends[0], upper: ends[1] };
+  function comparedBy(target, shifts, rates, outcomes) {
+    const prediction = predict(outcomes, shifts, true), values = drawnValues(target, prediction, rates).map(target.shown);
+    return [mean(values), meansBySet(values, prediction.members)];
   }
-  const isWide = (estimate) => estimate.lower < UNLIKELY && estimate.upper > LIKELY;
+  function meanOf(target, shifts, rates, outcomes) {
+    const prediction = predict(outcomes, shifts);
+    return middleOf(target, prediction, target.kind === "level" ? drawnValues(target, prediction, rates) : null);
+  }
+  // what changes do with the same errors, with limits of the factor over the earthquakes
+  function compared(target, shifts, rates, now) {
+    const [before, bySet] = comparedBy(target, shifts, rates, now);
+    return (changed) => {
+      const [after, withIt] = comparedBy(target, shifts, rates, changed);
+      const found = { value: after, factor: NaN, lower: NaN, upper: NaN, helps: after < before, shown: false };
+      if (!(before > 0)) return found;
+      const factor = after / before, ratios = withIt.map((each, i) => each / bySet[i]).filter((_, i) => bySet[i] > 0);
+      const [low, high] = [(1 - LEVEL) / 2, (1 + LEVEL) / 2].map((end) => quantileOf(ratios, end));
+      const upper = Math.max(high, factor);
+      return { ...found, factor, lower: Math.min(low, factor), upper, shown: upper < 1 };
+    };
+  }
 
   return {
     fractions, curveOf, curveOfOneLevel, rateOf, levelOf, probabilityIn, riskTarget, fractionTarget, amplitudeTarget, valueOf,
-    estimate, estimateRocking, ofQuantiles, compared, narrowed, isWide,
+    liftsFrom, estimate, meanOf, shiftOf, afterUplift, predict, decision, ofQuantiles, compared, groups,
   };
 };
 if (typeof module !== "undefined") module.exports = risk;

@@ -1,7 +1,7 @@
 /* Bodies in space: what of a request moves so, and its outcomes, as rockfrag.assess.objects and .outcomes have them. */
 const inSpace = (data) => {
   "use strict";
-  const { both } = data;
+  const { both, constants: { GRAVITY } } = data;
   const recordOf = data.earthquakes.map((_, m) => both.records.find(({ first, second }) => m === first || m === second) ?? { first: m, second: null });
   const inFewer = new Uint8Array(data.earthquakes.length);
   for (const m of both.fewer) inFewer[m] = 1;
@@ -25,11 +25,11 @@ const inSpace = (data) => {
   function planOf({ statue, solid }, runs) {
     // a round base rolls on its rim; what it is fixed to stands on another one
     const rolling = ({ height }) => (height === statue.height ? both.rolling : NaN);
-    const found = runs.filter(({ name }) => !(solid.round && name === "restitution")).map((run) => {
+    const found = runs.filter(({ name }) => name !== "restitution").map((run) => {
       const own = run.role === "moved" ? run.body.statue : statue;
       return { ...run, few: false, fewer: Boolean(run.role === "moved" || run.role === "mitigation"),
         body: solid.round ? { ...run.body, rolling: rolling(run.body.statue) } : run.body, worst: solid.round,
-        solid: run.name === "restitution" ? null : solidOf(run.body.statue, own, solid) };
+        solid: solidOf(run.body.statue, own, solid) };
     });
     const now = found[0];
     if (!solid.round && solid.anywhere) {
@@ -63,6 +63,26 @@ const inSpace = (data) => {
     return { dt: one.dt, samples: one.samples.map((a, i) => a * c + other.samples[i] * s) };
   }
 
+  // ---- statics: the factor on a motion from which it lifts an object
+
+  const liftingInPlane = (body, { samples }) => (body.uplift * GRAVITY) / samples.reduce((peak, a) => Math.max(peak, Math.abs(a)), 0);
+  // over an edge or a rim, by both components
+  function liftingInSpace({ points, height, rim, centre }, [one, other]) {
+    let most = 0;
+    if (rim) {
+      const least = (GRAVITY * (rim - Math.hypot(...centre))) / height;
+      one.samples.forEach((a, i) => { most = Math.max(most, Math.hypot(a, other ? other.samples[i] : 0) / least); });
+      return 1 / most;
+    }
+    const edges = points.map(([x, y], i) => {
+      const [toX, toY] = points[(i + 1) % points.length], [dx, dy] = [toX - x, toY - y], length = Math.hypot(dx, dy), normal = [dy / length, -dx / length];
+      const least = (GRAVITY * (normal[0] * x + normal[1] * y)) / height;
+      return [normal[0] / least, normal[1] / least];
+    });
+    one.samples.forEach((a, i) => { for (const [x, y] of edges) most = Math.max(most, -(x * a + y * (other ? other.samples[i] : 0))); });
+    return 1 / most;
+  }
+
   // ---- outcomes
 
   // a worker's part: outcomes of a run under motions first to last - 1; `shaken` gives a motion on the run's floor, and
@@ -72,14 +92,16 @@ const inSpace = (data) => {
       const kept = Array.from({ length: last - first }, (_, i) => first + i).filter((m) => !run.fewer || inFewer[m]);
       const { levels, allowed, scales } = scalesOf(kept), each = levels.length;
       const found = Object.fromEntries(["overturned", "rocked", "allowed"].map((name) => [name, new Uint8Array((last - first) * each)]));
+      found.lifting = new Float64Array(last - first).fill(Infinity);
+      const lift = (m, factor) => { found.lifting[m - first] = Math.min(found.lifting[m - first], factor); };
       const put = (name, m, values) => values.forEach((value, k) => { found[name][(m - first) * each + k] |= value; });
       kept.forEach((m, i) => put("allowed", m, allowed.subarray(i * each, (i + 1) * each)));
       if (!kept.length) return found;
       const note = (m, told, i) => { for (const name of ["overturned", "rocked"]) put(name, m, told[name].subarray(i * each, (i + 1) * each)); };
       const planar = !run.solid || run.body.pedestal;
       if (planar && !run.worst) {
-        const told = ensemble.count(ensemble.bodyOf(run.body), kept.map(shaken), scales);
-        kept.forEach((m, i) => note(m, told, i));
+        const body = ensemble.bodyOf(run.body), shaking = kept.map(shaken), told = ensemble.count(body, shaking, scales);
+        kept.forEach((m, i) => { note(m, told, i); lift(m, liftingInPlane(body, shaking[i])); });
       }
       if (run.solid || run.worst) for (const record of new Set(kept.map((m) => recordOf[m]))) {
         const own = scalesOf([record.first]), places = [record.first, record.second].filter((m) => kept.includes(m));
@@ -89,6 +111,10 @@ const inSpace = (data) => {
         const sides = planar && run.worst ? sidesOf(record, shaken) : [], across = sides.length / 2;
         const some = sides.filter((_, i) => i % across === 0);
         if (some.length) add(planarOutcomes(run.body, some, own, stands()));
+        for (const m of places) {
+          for (const side of sides) lift(m, liftingInPlane(ensemble.bodyOf(run.body), side));
+          if (run.solid) lift(m, liftingInSpace(space.bodyOf(run.solid), pairOf(record, shaken)));
+        }
         if (run.solid) add(solidOutcomes(run.solid, record, shaken, own.scales, stands()));
         if (sides.length > some.length) add(planarOutcomes(run.body, sides.filter((_, i) => i % across), own, stands()));
       }

@@ -1,6 +1,5 @@
 """The page of ``rockfrag app``: one file that holds motions, modules, scripts and texts."""
 
-import json
 import os
 import zlib
 from collections.abc import Mapping, Sequence
@@ -12,9 +11,6 @@ from markupsafe import Markup
 from rockfrag.assess.app.contents import computing, data_of, script
 from rockfrag.assess.motions import MotionSet
 from rockfrag.assess.request import Request
-from rockfrag.assess.risk import STEPS
-from rockfrag.assess.sources import MEASUREMENTS, SOURCES
-from rockfrag.assess.words import says
 from rockfrag.base.errors import InputError
 from rockfrag.base.files import write_text
 from rockfrag.base.units import GRAVITY
@@ -27,11 +23,9 @@ from rockfrag.report.page import (
     zipped_text,
 )
 from rockfrag.web import driver_text, module_bytes
+from rockfrag.words.catalogue import catalogue, formatter, languages
 
 MOST_BYTES = 6_000_000  # Largest page [bytes], which a memory stick and a mail take
-
-# Of the page, each a file of texts; what one lacks is said in the first
-LANGUAGES = ("en", "it")
 
 # Factors of units in which records state decimals [m/s²]
 _FACTORS = (GRAVITY, 0.01, 1.0)
@@ -77,7 +71,7 @@ def page_of(
         **data_of(motions, request),
         "form": dict(form),
         "made": made,
-        "texts": {language: texts(language) for language in LANGUAGES},
+        "texts": {language: catalogue(language).texts for language in languages()},
         "modules": {
             name: zipped_text(module_bytes(of)) for name, of in modules.items()
         },
@@ -85,8 +79,8 @@ def page_of(
         "packed": base64_text(packed),
     }
     style = TEMPLATES.get_template("style.css").render() + script("app.css")
-    parts = ("building", "space", "objects", "words", "lists", "scene", "page")
-    scripts = [driver_text("integrate", "space"), scripts_of("view")]
+    parts = ("building", "space", "objects", "findings", "lists", "scene", "page")
+    scripts = [driver_text("integrate", "space"), scripts_of("view"), formatter()]
     scripts += [script(f"{name}.js") for name in parts]
     return TEMPLATES.from_string(script("app.html.j2")).render(
         title=data["texts"]["en"]["title"],
@@ -95,22 +89,6 @@ def page_of(
         computing=Markup(f"{computing()}\n{script('worker.js')}"),
         scripts=Markup("\n".join(scripts)),
     )
-
-
-def texts(language: str) -> dict[str, Any]:
-    """Return the texts of a language; those that the package has itself are taken from there."""
-    own: dict[str, Any] = json.loads(script(f"{language}.json"))
-    if language != LANGUAGES[0]:
-        return own
-    return own | {
-        "sources": {name: source.words for name, source in SOURCES.items()},
-        "measurements": {
-            name: source.measurement for name, source in MEASUREMENTS.items()
-        },
-        "steps": [step.name for step in STEPS],
-        "advice": [step.advice for step in STEPS],
-        "scale": says.line("scale"),
-    }
 
 
 def packed_samples(motions: Sequence[Motion]) -> tuple[bytes, dict[str, Any]]:

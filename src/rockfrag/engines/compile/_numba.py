@@ -96,9 +96,13 @@ class LowerPart(typed_passes.NativeLowering):
         state.flags.no_compile = True
         super().run_pass(state)
         made = state["cr"]
-        names = made.fndesc.lookup_module(), made.fndesc.qualname
         function = _dynfunc.make_function(
-            *names, "kernel", 0, made.env, (state.library,)
+            made.fndesc.lookup_module(),
+            made.fndesc.qualname,
+            "kernel",
+            0,
+            made.env,
+            (state.library,),
         )
         state["cr"] = made._replace(cfunc=function)
         state.targetctx.insert_user_function(function, made.fndesc, [state.library])

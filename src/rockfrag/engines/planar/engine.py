@@ -29,8 +29,9 @@ from rockfrag.system.system import System
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
-# parting speed over √(g b) below which a contact stays closed after an impact [-]
-CLOSING = 1e-4
+# speed over √(g b) below which a contact stays closed and slips no more after an impact [-]: of one or two bodies,
+# and of columns, in which every impact calls forth others (docs/columns.md, "Speed")
+CLOSING, CLOSING_OF_COLUMNS = 1e-4, 1e-3
 CHUNK = 8  # cases that a thread takes at once
 
 _KINDS = {
@@ -145,6 +146,7 @@ def contact_outcomes(
         offsets=np.concatenate([[0], np.cumsum(sizes)]),
         dts=dts,
         factors=grid.scales,
+        closing=np.array([closing_of(system) for system in grid.systems]),
         substeps=np.array(
             [step_count(system, dts, g, step) for system in grid.systems]
         ),
@@ -160,13 +162,18 @@ def contact_outcomes(
 
     def work(chunk: Ints) -> None:
         memory = records.working_memory()
-        contact.integrate_cases(chunk, cases, CLOSING, nothing, memory, outcome.ravel())
+        contact.integrate_cases(chunk, cases, nothing, memory, outcome.ravel())
 
     # compiled before threads begin
     work(numbers[:0])
     with ThreadPoolExecutor(grid.threads) as pool:
         list(pool.map(work, np.array_split(numbers, 1 + numbers.size // CHUNK)))
     return outcome
+
+
+def closing_of(system: System) -> float:
+    """Speed over √(g b) below which contacts of a system stay closed after an impact [-]."""
+    return CLOSING if system.count < 3 else CLOSING_OF_COLUMNS
 
 
 def _described(system: System, g: float) -> tuple[np.void, Array]:
@@ -180,7 +187,8 @@ def _described(system: System, g: float) -> tuple[np.void, Array]:
 class ContactRun:
     """One planar system that may slide, rock and fly, integrated by the contact kernels."""
 
-    def __init__(self, case: Case, closing: float = CLOSING) -> None:
+    def __init__(self, case: Case, closing: float | None = None) -> None:
+        closing = closing_of(case.system) if closing is None else closing
         self.case, self.work = case, records.working_memory()
         self.body, start = _described(case.system, case.request.g)
         shaking = shaking_of(case, 1.0)

@@ -273,7 +273,11 @@ def read_slip(p, w, k, still):
 
 @kernel
 def _shut_weak(p, w, ah, av, closing):
-    """Close the ends that part too slowly after an impact, in a crowd whatever pulls; whether there are any."""
+    """Close the ends that part, and end the slips that are, too slow after an impact; whether there are any.
+
+    Slow ends close where they fall back, and in a crowd whatever pulls.  What pulls depends on the sign of a slip,
+    so that slow slips and slow ends would call forth each other without an end.
+    """
     crowd = w.met > CROWD
     found = False
     solve(p, w, w.q, w.v, ah, av, False)
@@ -287,8 +291,8 @@ def _shut_weak(p, w, ah, av, closing):
                 if (pull < 0.0 or crowd) and approach(p, w, k, end) < closing:
                     w.closed[k, end] = 1
                     found = True
-        if was_open or (crowd and w.slides[k] != 0):
+        if was_open or w.slides[k] != 0:
             slid = w.slides[k] != 0
-            read_slip(p, w, k, closing if crowd else 0.0)
+            read_slip(p, w, k, closing)
             found = found or (slid and w.slides[k] == 0)
     return found

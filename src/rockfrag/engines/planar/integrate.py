@@ -13,7 +13,9 @@ from rockfrag.engines.planar import step as stepping
 from rockfrag.engines.planar.records import MOST
 from rockfrag.engines.planar.search import mode_number
 from rockfrag.engines.planar.solve import copy, end_of, look_at, solve
+from rockfrag.engines.planar.witness import breaks_a_law
 from rockfrag.engines.pure_rocking.kernels.single import Shaking
+from rockfrag.laws.momentum import NUMBER as MOMENTUM
 
 # contact events within a sample after which accumulating ones are ended ten times as coarsely, and again
 MOST_CONTACT_EVENTS = 300
@@ -79,6 +81,8 @@ class Cases(NamedTuple):
     # substeps, free_samples: (bodies, motions)
     substeps: NDArray[np.int64]
     free_samples: NDArray[np.int64]
+    # (bodies,) speed over √(g b) below which contacts stay closed after an impact [-]
+    closing: Array
 
 
 class Instant(NamedTuple):
@@ -90,7 +94,7 @@ class Instant(NamedTuple):
 
 
 @entry_kernel
-def integrate_cases(numbers, cases, closing, nothing, w, outcome):
+def integrate_cases(numbers, cases, nothing, w, outcome):
     """Integrate the cases of some ``numbers``, and keep their outcomes; ``nothing`` is a KEPT without rows."""
     motions, scales = cases.factors.shape
     for number in numbers:
@@ -106,7 +110,9 @@ def integrate_cases(numbers, cases, closing, nothing, w, outcome):
             cases.substeps[b, m],
             cases.free_samples[b, m],
         )
-        integrate(cases.bodies[b], shaking, cases.starts[b], closing, nothing, w)
+        integrate(
+            cases.bodies[b], shaking, cases.starts[b], cases.closing[b], nothing, w
+        )
         look_at(cases.bodies[b], w, w.q)
         for k in range(cases.bodies[b].count):
             w.told.slip[k] = slip(cases.bodies[b], w, k)
@@ -177,13 +183,13 @@ def integrate(p, shaking, start, closing, kept, w):
                 if step < stepping.SHORTEST or error <= stepping.ERROR:
                     break
                 step *= 0.5
-            at_end = stepping.least_margin(p, w, w.q1, w.v1)
+            at_end = stepping.least_margin(p, w, w.q1, w.v1, True)
             while not at_end >= -BURST and step > LEAST_STEP:
                 # sliding that jams: forces grow faster than the step sees
                 step *= 0.125
                 stretch = stepping.beginning(stretch, 0.125)
                 work, rubbed = stepping.take_step(p, w, stretch, energy_balance)
-                at_end = stepping.least_margin(p, w, w.q1, w.v1)
+                at_end = stepping.least_margin(p, w, w.q1, w.v1, True)
             when = 2.0
             if idle <= MOST_IDLE or at_end < -LARGEST_FAILURE:
                 when = _contact_event_in_step(p, w, at_end, stretch)
@@ -211,11 +217,9 @@ def integrate(p, shaking, start, closing, kept, w):
                 if 1.0 - tau < 1e-12:
                     tau = 1.0
             else:
-                stepping.margin_at(p, w, when, stretch)  # sets what fails
-                shorter = stepping.beginning(stretch, when)
-                work, rubbed = stepping.take_step(p, w, shorter, energy_balance)
-                copy(p, w.q1, w.q)
-                copy(p, w.v1, w.v)
+                if energy_balance:
+                    shorter = stepping.beginning(stretch, when)
+                    work, rubbed = stepping.take_step(p, w, shorter, True)
                 impact.project(p, w)
                 tau += when * step
                 idle = idle + 1 if when < 1e-9 else 0
@@ -294,21 +298,24 @@ def _track(p, w):
 
 @kernel
 def _contact_event_in_step(p, w, at_end, stretch):
-    """Fraction of the step at which something fails first; 2.0 if nothing does."""
+    """Fraction of the step at which something fails first; 2.0 if nothing does.
+
+    State and ``w.fails`` are then those of that instant, on the quintic through the step.
+    """
     high, at_high = 1.0 if at_end < 0.0 else 2.0, at_end
+    by_force = stepping.force_fails(p, w)
     near = stepping.comes_near(p, w)
     for tau in (0.25, 0.5, 0.75):
-        if near or (tau == 0.5 and at_end < 0.02):
-            value = stepping.margin_at(p, w, tau, stretch)
+        looks = tau == 0.5 and at_end < 0.02
+        if near or looks:
+            value = stepping.margin_at(p, w, tau, stretch, looks)
             if value < 0.0:
                 high, at_high = tau, value
+                by_force = looks and stepping.force_fails(p, w)
                 break
     if high > 1.0:
         return 2.0
-    at_low = stepping.margin_at(p, w, 0.0, stretch)
-    if at_low < 0.0:
-        return 0.0
-    return stepping.first_failure(p, w, at_low, high, at_high, stretch)
+    return stepping.first_failure(p, w, (high, at_high, by_force), stretch)
 
 
 @kernel
@@ -373,9 +380,20 @@ def _handle(p, w, now, closing, exclude, kept):
         impact.strike(p, w, now.ah, now.av, closing * p.speed, True)
         impact.settle(p, w, now.ah, now.av, False)
         kind = PARADOX
+    if kind == IMPACT and _is_unlawful(p, w, closing):
+        w.told.paradoxes += 1
     for k in range(p.count):
         w.told.flights[k] += w.old_closed[k].any() and not w.closed[k].any()
     _note(p, w, now.time, kind, kept)
+
+
+@kernel
+def _is_unlawful(p, w, closing):
+    """Whether an impact breaks a law that its contacts have."""
+    plastic = True
+    for k in range(p.count):
+        plastic = plastic and p.law[k, 0] == MOMENTUM and p.law[k, 1] == MOMENTUM
+    return breaks_a_law(p, w, closing, plastic)
 
 
 @kernel

@@ -92,6 +92,15 @@ WORK = np.dtype(
         # speeds at which open ends part at the start of a step
         *fields("early", MOST, 2),
         *whole("fails", MOST, 6),  # [interface, channel] what has become negative
+        # of each interface normal and tangent of its left and its right end, and a couple: motion per coordinate
+        # of the bodies below and above, motion without forces [interface, row], and motion for a unit force of the
+        # interface below, of this one and of the one above [interface, whose, row, force]
+        *fields("basis", MOST, 5, 6),
+        *fields("free", MOST, 4),
+        *fields("felt", MOST, 3, 4, 5),
+        # of each unknown its forces, and of each interface the forces of a mode
+        *fields("force", 3 * MOST, 5),
+        *fields("given", MOST, 5),
         # search for a mode
         *whole("touching", MOST, 2),
         *whole("moves", MOST),

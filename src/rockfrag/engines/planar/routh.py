@@ -24,11 +24,11 @@ def contact_alone(p, w):
 
 
 @kernel
-def _felt(p, k, one, two):
-    """Velocity along the row ``two`` for a unit impulse along ``one``."""
+def _felt(p, k, pushed, felt):
+    """Velocity along the row ``felt`` for a unit impulse along ``pushed``."""
     total = 0.0
     for d in range(3 if k == 0 else 0, 6):
-        total += one[d] * p.inverse[3 * k - 3 + d] * two[d]
+        total += pushed[d] * p.inverse[3 * k - 3 + d] * felt[d]
     return total
 
 

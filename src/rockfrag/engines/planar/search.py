@@ -1,8 +1,9 @@
 """Finding the mode in which touching contacts go on, after a contact event and in an impact (``docs/contact.md``).
 
 A search starts from a mode, mends what it violates most, and goes on so until nothing is violated.  It is begun
-from the mode that has just failed and from the one in which all is open; of two that are consistent the one with
-fewer closed ends is taken.  Where neither ends, all modes are tried, the neighbours of those tried first.
+from the mode that has just failed, from the one in which all is open and, unless these two meet, from the one in
+which all is closed; of those that are consistent the one with fewest closed ends is taken.  Where none ends, all
+modes are tried, the neighbours of those tried first.
 """
 
 import math
@@ -11,7 +12,15 @@ from typing import NamedTuple
 import numpy as np
 
 from rockfrag.engines.compile.jit import kernel
-from rockfrag.engines.planar.solve import bias, end_of, rate, solve_generally
+from rockfrag.engines.planar.solve import (
+    COUPLE,
+    SHEAR,
+    bias,
+    eliminate,
+    end_of,
+    fill_row,
+    rate,
+)
 
 # violation below which a mode is consistent: forces over the weight, accelerations over g [-].  Less than the
 # slack of contact events, so that a mode that has just failed is not
@@ -35,12 +44,132 @@ class Trial(NamedTuple):
 
 
 @kernel
-def _motion_of(p, w, k, end, along, impact):
-    """Relative motion of an end of interface k under the mode that was solved, across the face or ``along`` it."""
-    x, y, tx, ty, _, _, kind = end_of(p, w, w.q, k, end, w.kind[k, end])
-    dx, dy = (tx, ty) if along else (-ty, tx)
-    found = rate(p, w.q, w.out, k, x, y, dx, dy)
-    return found if impact else found + bias(w.q, w.v, k, x, y, dx, dy, kind)
+def prepare(p, w, trial):
+    """Fill what all modes of the ends that touch share: motion without forces, and motion for unit forces."""
+    for k in range(p.count):
+        for end in range(2):
+            if w.touching[k, end] == 0:
+                continue
+            x, y, tx, ty, _, _, kind = end_of(p, w, w.q, k, end, w.kind[k, end])
+            for along in range(2):
+                dx, dy = (tx, ty) if along == 1 else (-ty, tx)
+                row = 2 * end + along
+                fill_row(w.q, k, x, y, dx, dy, w.basis[k, row])
+                if trial.impact:
+                    w.free[k, row] = rate(p, w.q, w.v, k, x, y, dx, dy)
+                    continue
+                w.free[k, row] = bias(w.q, w.v, k, x, y, dx, dy, kind)
+                if k == 0:
+                    w.free[k, row] -= dx * trial.ah + dy * (p.g + trial.av)
+        w.basis[k, 4, :] = 0.0
+        w.basis[k, 4, 5], w.basis[k, 4, 2] = 1.0, -1.0 if k > 0 else 0.0
+    for k in range(p.count):
+        for whose in range(3):
+            other = k + whose - 1
+            if other < 0 or other >= p.count:
+                continue
+            for row in range(4):
+                if w.touching[k, row // 2] == 1:
+                    _fill_felt(p, w, k, whose, row)
+
+
+@kernel
+def _fill_felt(p, w, k, whose, row):
+    """Fill motion of a row of interface k for unit forces of the interface below, the same or the one above."""
+    other = k + whose - 1
+    shift = 3 * (whose - 1)
+    for force in range(5):
+        if force < 4 and w.touching[other, force // 2] == 0:
+            continue
+        total = 0.0
+        # both move the bodies between them alone
+        for d in range(max(3 if k == 0 else 0, shift), min(6, 6 + shift)):
+            light = p.inverse[3 * k - 3 + d] * w.basis[k, row, d]
+            total += light * w.basis[other, force, d - shift]
+        w.felt[k, whose, row, force] = total
+
+
+@kernel
+def _list_unknowns(p, w, impact):
+    """Number the unknowns of the mode in ``w`` and fill the forces that each stands for; their number."""
+    m = 0
+    for k in range(p.count):
+        friction = w.slides[k] * p.kinetic[k]
+        first = True
+        for end in range(2):
+            if w.closed[k, end] == 0:
+                continue
+            w.owner[m] = 4 * k + end
+            w.force[m, :] = 0.0
+            w.force[m, 2 * end], w.force[m, 2 * end + 1] = 1.0, -friction
+            if impact and w.fraction[k, end] > 0.0:
+                # what the impulse brings about at the other end
+                w.force[m, 2 - 2 * end] = w.fraction[k, end]
+                w.force[m, 3 - 2 * end] = -friction * w.fraction[k, end]
+            m += 1
+            if first and w.slides[k] == 0:
+                w.owner[m] = 4 * k + SHEAR
+                w.force[m, :] = 0.0
+                w.force[m, 2 * end + 1] = 1.0
+                m += 1
+            first = False
+        if impact and w.drive[k] >= 0:
+            w.owner[m] = 4 * k + COUPLE
+            w.force[m, :] = 0.0
+            w.force[m, 4] = 1.0
+            m += 1
+        w.upto[k] = m
+    return m
+
+
+@kernel
+def _solve_mode(p, w, impact):
+    """Forces of the mode in ``w`` into ``w.right`` and ``w.given``, after :func:`prepare`; False if singular."""
+    m = _list_unknowns(p, w, impact)
+    for i in range(m):
+        k, what = w.owner[i] // 4, w.owner[i] % 4
+        row = 2 * what
+        if what == SHEAR:
+            row = 1 if w.closed[k, 0] == 1 else 3
+        elif what == COUPLE:
+            row = 2 * w.drive[k]
+        w.right[i] = -w.free[k, row]
+        if what == COUPLE:
+            w.right[i] += w.depart[k]
+        low = w.upto[k - 2] if k - 2 >= 0 else 0
+        high = w.upto[k + 1] if k + 1 < p.count else m
+        for j in range(low, high):
+            whose = w.owner[j] // 4 - k + 1
+            total = 0.0
+            for force in range(5):
+                if w.force[j, force] != 0.0:
+                    total += w.force[j, force] * w.felt[k, whose, row, force]
+            w.matrix[i, j] = total
+        for j in range(high, w.upto[k + 2] if k + 2 < p.count else m):
+            # room for what elimination fills in
+            w.matrix[i, j] = 0.0
+    if not eliminate(p, w, m, 0):
+        return False
+    for k in range(p.count):
+        for force in range(5):
+            w.given[k, force] = 0.0
+    for i in range(m):
+        for force in range(5):
+            w.given[w.owner[i] // 4, force] += w.force[i, force] * w.right[i]
+    return True
+
+
+@kernel
+def _motion_of(p, w, k, row):
+    """Relative motion of interface k under the mode that was solved, along a row of its basis."""
+    found = w.free[k, row]
+    for whose in range(3):
+        other = k + whose - 1
+        if 0 <= other < p.count and w.closed[other].any():
+            for force in range(5):
+                if w.given[other, force] != 0.0:
+                    found += w.felt[k, whose, row, force] * w.given[other, force]
+    return found
 
 
 @kernel
@@ -54,9 +183,9 @@ def _note_worst(w, worst, margin, k, what, way):
 
 @kernel
 def try_mode(p, w, trial):
-    """Least margin of the mode in ``w``, negative if inconsistent; ``w.flip`` mends it."""
+    """Least margin of the mode in ``w`` after :func:`prepare`, negative if inconsistent; ``w.flip`` mends it."""
     w.flip[0] = -1
-    if not solve_generally(p, w, w.q, w.v, trial.ah, trial.av, trial.impact, True, 0):
+    if not _solve_mode(p, w, trial.impact):
         return -math.inf
     worst = math.inf
     at = 0
@@ -67,7 +196,7 @@ def try_mode(p, w, trial):
         for end in range(2):
             if w.touching[k, end] == 0:
                 continue
-            apart = _motion_of(p, w, k, end, False, trial.impact)
+            apart = _motion_of(p, w, k, 2 * end)
             if w.closed[k, end] == 0:
                 if w.drive[k] != end:
                     worst = _note_worst(w, worst, apart / trial.motion, k, end, 1)
@@ -98,7 +227,7 @@ def try_mode(p, w, trial):
                 w, worst, margin / trial.force, k, SLIP, -1 if shear > 0.0 else 1
             )
         elif trial.impact or w.moves[k] == 0:
-            speed = _motion_of(p, w, k, closed, True, trial.impact)
+            speed = _motion_of(p, w, k, 2 * closed + 1)
             worst = _note_worst(w, worst, slides * speed / trial.motion, k, SLIP, 0)
     return worst
 
@@ -263,6 +392,7 @@ def search(p, w, trial, exclude):
     The mode in ``w`` is where the search starts.  ``w.moves``: signs of slip that are given.  ``exclude``: number
     of a mode that has just failed, -1 for none.
     """
+    prepare(p, w, trial)
     _only_touching(p, w, trial)
     w.count, found, several = 0, -1, False
     for start in range(3):
@@ -273,6 +403,9 @@ def search(p, w, trial, exclude):
             several = several or found >= 0
             if found < 0 or _closed_ends(p, w, other) < _closed_ends(p, w, found):
                 found = other
+        elif other == SEEN and found >= 0:
+            # it has come upon what was tried before: two ways lead to the same mode
+            break
     if found >= 0:
         found, more = _try_slips(p, w, trial, found)
         several = several or more

@@ -136,8 +136,11 @@ def _powers(p, w, q, v, ah, av):
 
 
 @kernel
-def least_margin(p, w, q, v):
-    """Least of all that must stay positive, with the forces in ``w``; ``w.fails`` says what is negative."""
+def least_margin(p, w, q, v, forces):
+    """Least of all that must stay positive; ``w.fails`` says what is negative.
+
+    With ``forces`` those in ``w`` count, without them motions alone do: gaps, edges, slips and falls.
+    """
     least = math.inf
     for k in range(p.count):
         pressed = 0.0
@@ -149,7 +152,9 @@ def least_margin(p, w, q, v):
                 some = True
                 pressed += w.normal[k, end]
                 stiff = max(1.0, p.kinetic[k]) if w.slides[k] != 0 else 1.0
-                margin = stiff * w.normal[k, end] / p.weight + SLACK
+                margin = math.inf
+                if forces:
+                    margin = stiff * w.normal[k, end] / p.weight + SLACK
                 if k > 0 and w.slides[k] != 0:
                     _, _, _, _, _, beyond, _ = end_of(p, w, q, k, end, w.kind[k, end])
                     inside = AT_EDGE - beyond / p.size
@@ -174,9 +179,11 @@ def least_margin(p, w, q, v):
                 end = 0 if w.closed[k, 0] == 1 else 1
                 x, y, tx, ty, _, _, _ = end_of(p, w, q, k, end, w.kind[k, end])
                 margin = w.slides[k] * rate(p, q, v, k, x, y, tx, ty) / p.speed + TOUCH
-            else:
+            elif forces:
                 margin = p.static[k] * pressed - abs(w.shear[k])
                 margin = margin / (p.weight * max(p.static[k], 1.0)) + SLACK
+            else:
+                margin = math.inf
             if margin < 0.0:
                 w.fails[k, FRICTION] = 1
             least = min(least, margin)
@@ -203,8 +210,23 @@ def off_the_edge(p, w, q, k):
 
 
 @kernel
-def margin_at(p, w, tau, stretch):
-    """Least margin at the fraction ``tau`` of the step, where ``q`` and ``v`` are on the quintic through it."""
+def force_fails(p, w):
+    """Whether one of the failing channels in ``w.fails`` is of a force."""
+    for k in range(p.count):
+        if w.fails[k, FRICTION] == 1 and w.slides[k] == 0:
+            return True
+        for end in range(2):
+            if w.fails[k, GAP + end] == 1 and w.closed[k, end] == 1:
+                return True
+    return False
+
+
+@kernel
+def margin_at(p, w, tau, stretch, forces):
+    """Least margin at the fraction ``tau`` of the step, where ``q`` and ``v`` are on the quintic through it.
+
+    Without ``forces`` it is that of motions alone, which needs no equations to be solved.
+    """
     h, t2 = stretch.length, tau * tau
     t3 = t2 * tau
     for d in range(3 * p.count):
@@ -221,25 +243,49 @@ def margin_at(p, w, tau, stretch):
             v0 + 2.0 * a0 * tau + t2 * (3.0 * c3 + tau * (4.0 * c4 + 5.0 * tau * c5))
         ) / h
     look_at(p, w, w.q)
-    ah, av = ground_at(stretch, tau)
-    solve(p, w, w.q, w.v, ah, av, False)
-    return least_margin(p, w, w.q, w.v)
+    if forces:
+        ah, av = ground_at(stretch, tau)
+        solve(p, w, w.q, w.v, ah, av, False)
+    return least_margin(p, w, w.q, w.v, forces)
 
 
 @kernel
-def first_failure(p, w, at_low, high, at_high, stretch):
+def first_failure(p, w, failure, stretch):
+    """Fraction of the step just after the least margin has become negative; goes to the state there.
+
+    ``failure``: a fraction of the step, the negative margin there, and whether a force is among what fails.  Where
+    none is, only motions are looked at on the way, which needs no equations to be solved.
+    """
+    high, at_high, by_force = failure
+    if not by_force:
+        at_low = margin_at(p, w, 0.0, stretch, False)
+        high = _root(p, w, (at_low, high, at_high), stretch, False)
+        at_high = margin_at(p, w, high, stretch, True)
+        if not force_fails(p, w):
+            return high
+    at_low = margin_at(p, w, 0.0, stretch, True)
+    high = _root(p, w, (at_low, high, at_high), stretch, True)
+    margin_at(p, w, high, stretch, True)
+    return high
+
+
+@kernel
+def _root(p, w, bracket, stretch, forces):
     """Fraction of the step just after the least margin has become negative, by Chandrupatla's method.
 
-    It is ``at_low`` at the beginning and ``at_high``, which is negative, at the fraction ``high``.  The least of
-    several margins has kinks, and often starts at its slack and rises before it falls: a parabola is trusted only
-    where the last three values allow it, and the interval is halved elsewhere (T. R. Chandrupatla, Advances in
+    ``bracket``: margin at the beginning, a fraction of the step, and the margin there.  The least of several
+    margins has kinks, and often starts at its slack and rises before it falls: a parabola is trusted only where
+    the last three values allow it, and the interval is halved elsewhere (T. R. Chandrupatla, Advances in
     Engineering Software 28, 1997, 145-149).
     """
+    at_low, high, at_high = bracket
+    if at_low < 0.0:
+        return 0.0
     x1, f1, x2, f2 = high, at_high, 0.0, at_low
     part = 0.5
     while True:
         x = x1 + part * (x2 - x1)
-        value = margin_at(p, w, x, stretch)
+        value = margin_at(p, w, x, stretch, forces)
         if (value < 0.0) == (f1 < 0.0):
             x3, f3 = x1, f1
         else:

@@ -136,9 +136,19 @@ def sampled(
                 if motion.z
             ]
         )
-    extremes = *_extremes(horizontal, offsets), *_extremes(upward, offsets)[2:]
+    high, low, ahead, behind = _extremes(horizontal, offsets)
+    _, _, ahead_upward, behind_upward = _extremes(upward, offsets)
     motions = Motions(
-        horizontal, upward, *extremes, offsets, lasts=offsets[:-1] + sizes - 1
+        horizontal,
+        upward,
+        high,
+        low,
+        ahead,
+        behind,
+        ahead_upward,
+        behind_upward,
+        offsets,
+        lasts=offsets[:-1] + sizes - 1,
     )
     return motions, number.reshape(times.shape), dts[np.newaxis, :] / times
 
@@ -235,7 +245,11 @@ def run_stacks(cases: Cases) -> Outcomes:
     made = sampled(cases, 1.0 / g)
     each = list(zip(cases.systems, made[2], strict=True))
     return _by_lanes(
-        *(TWO_BLOCKS.name, cases, integrate_stacks, stack_case.worker, made),
+        TWO_BLOCKS.name,
+        cases,
+        integrate_stacks,
+        stack_case.worker,
+        made,
         bodies=np.array([body_record(system, g=g) for system in cases.systems], BODY),
         factors=cases.scales,
         parts=1.0 / np.array([step_count(system, h, g, step) for system, h in each]),

@@ -40,7 +40,8 @@ def run(cases: Cases) -> Outcomes:
     ]
     starts = [initial_state(system) for system in cases.systems]
     summaries = np.zeros(cases.shape, kept.SUMMARY)
-    nothing = np.empty(0, kept.SAMPLE), np.empty(0, kept.CONTACT_EVENT)
+    no_samples = np.empty(0, kept.SAMPLE)
+    no_contact_events = np.empty(0, kept.CONTACT_EVENT)
 
     def work(place: tuple[int, int, int]) -> None:
         i, j, k = place
@@ -48,7 +49,9 @@ def run(cases: Cases) -> Outcomes:
             cases.systems[i], cases.motions[j], float(cases.scales[j, k]), cases.request
         )
         shaking = shaking_of(case, case.request.g)
-        summaries[place] = run_integration(records[i], shaking, starts[i], *nothing)[1]
+        _, summaries[place] = run_integration(
+            records[i], shaking, starts[i], no_samples, no_contact_events
+        )
 
     with ThreadPoolExecutor(cases.threads) as pool:
         list(pool.map(work, np.ndindex(*cases.shape)))
@@ -89,18 +92,16 @@ class SingleRun:
                 f"motion: {most} samples, with the free rocking after it, are more than the "
                 f"{MOST_SAMPLES} allowed."
             )
-        told = (
-            self.record,
-            self.shaking,
-            initial_state(case.system),
-            np.zeros(most, kept.SAMPLE),
-        )
+        start = initial_state(case.system)
+        samples = np.zeros(most, kept.SAMPLE)
         room, count = 0, 4096
         while count > room:
             room, found = count, np.zeros(count, kept.CONTACT_EVENT)
-            done, self.summary = run_integration(*told, found)
+            done, self.summary = run_integration(
+                self.record, self.shaking, start, samples, found
+            )
             count = int(self.summary["contact_events"])
-        self.history, self.contact_events = told[-1][:done], found[:count]
+        self.history, self.contact_events = samples[:done], found[:count]
         self.time = np.arange(done, dtype=np.float64) * case.motion.dt
 
     def of(self, name: str, rows: Records | None = None) -> NDArray[Any]:
@@ -253,8 +254,10 @@ class SingleRun:
             closed,
             np.where(found["kind"] == kept.OPENING, 0.0, lost),
         )
-        balance = kinetic, potential, self.history["work"], losses
-        return energy_table(self.time, *balance, contacts=self.count)
+        work = self.history["work"]
+        return energy_table(
+            self.time, kinetic, potential, work, losses, contacts=self.count
+        )
 
 
 def initial_state(system: System) -> np.void:

@@ -17,6 +17,7 @@ from rockfrag.records.parsing.format import (
 )
 from rockfrag.records.parsing.number_fields import number_in
 from rockfrag.records.parsing.quantities import canonical_unit, quantity_of
+from rockfrag.records.parsing.stated_facts import factor_beside_unit
 from rockfrag.records.parsing.text_file import TextFile, last_row
 
 _NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[EeDd][+-]?\d+)?"
@@ -47,7 +48,7 @@ _ENDINGS = {".VT2": "velocity", ".DT2": "displacement"}
 _MAX_HEADER = 30
 _WIDTH = 15
 _COMPONENT = re.compile(
-    r"(?i),\s*(?P<component>\d{1,3}|UP|DWN|DN|V|VERT\w*|[NSEWLTXYZ]{1,2}|[NS]\d{1,2}[EW]|[BHELS][HNLG][ENZ123]\d?\d?"
+    r"(?i),\s*(?P<component>\d{1,3}|UP|DWN|DN|V|VERT\w*|[LTVH]\d|[NSEWLTXYZ]{1,2}|[NS]\d{1,2}[EW]|[BHELS][HNLG][ENZ123]\d?\d?"
     r"|FN|FP)\s*(?:\((?P<agency>[^)]*)\)\s*)?$"
 )
 
@@ -102,7 +103,14 @@ def _parse(text: TextFile) -> Iterator[Channel]:
     found = _size(header)
     if found is None:
         text.fail("no line with NPTS and DT above the data")
+    again = _size(header[found[0] + 1 : found[0] + 2])
+    if again is not None and again[1:] != found[1:]:
+        text.fail(
+            "count and interval stand in this line and the one above, and differ",
+            found[0] + 1,
+        )
     size, words, step, factor = found
+    size += again is not None
     header = header[: size + 1]
     points, dt = number_in(words), number_in(step)
     if points % 1 or not 1 <= points < 1e12:
@@ -110,6 +118,9 @@ def _parse(text: TextFile) -> Iterator[Channel]:
     npts = int(points)
     dt = text.interval(dt * factor if factor != 1 else dt, size)
     quantity, unit = _quantity_and_unit(header)
+    for number, line in enumerate(header):
+        if problem := factor_beside_unit(line):
+            text.fail(f"{problem}; apply it to the samples and take it out", number)
     quantity = quantity or _ENDINGS.get(text.name.upper().removesuffix(".GZ")[-4:], "")
     if quantity not in ("", "acceleration"):
         held = f"{quantity} history" + (f" in {unit}" if unit else "")

@@ -26,6 +26,7 @@ from rockfrag.records.parsing.number_fields import first_odd_row
 from rockfrag.records.parsing.quantities import canonical_unit
 from rockfrag.records.parsing.stated_peak import StatedPeak, with_checked_peak
 from rockfrag.records.parsing.text_file import MAX_BYTES, MAX_LINE, NotAcceleration
+from rockfrag.records.parsing.time_column import GAP
 from rockfrag.records.quality_flags import foreign_kind
 
 _READ_BY_OBSPY = (
@@ -76,7 +77,49 @@ def obspy_channels(path: Path, cut_short: bool = False) -> tuple[str, list[Chann
         stream = _stream(plain, name, path)
         if name == "MSEED":
             _check_whole_records(plain, path, cut_short)
-    return name, [_channel(trace, name, path, cut_short) for trace in stream]
+    parts: dict[str, list[Trace]] = {}
+    for trace in stream:
+        parts.setdefault(trace.id, []).append(trace)
+    return name, [
+        _channel_of(several, name, path, cut_short) for several in parts.values()
+    ]
+
+
+def _channel_of(parts: list[Trace], name: str, path: Path, cut_short: bool) -> Channel:
+    """Return the channel of the traces of one name; several are parts with a gap or an overlap between them."""
+    if len(parts) == 1:
+        return _channel(parts[0], name, path, cut_short)
+    parts = sorted(parts, key=lambda trace: trace.stats.starttime)
+    stats = parts[0].stats
+    samples = np.asarray(parts[0].data, dtype=np.float64)
+    return Channel(
+        samples.size,
+        float(stats.delta),
+        samples,
+        **{key: stats[key] for key in ("network", "station", "location")},
+        start_time=stats.starttime,
+        code=stats.channel,
+        fault=_fault_between(parts),
+    )
+
+
+def _fault_between(parts: list[Trace]) -> str:
+    """Return what keeps parts of a channel from being one series: the first gap or overlap."""
+    rates = {float(trace.stats.sampling_rate) for trace in parts}
+    name = f"channel {parts[0].id}"
+    if len(rates) > 1:
+        listed = ", ".join(f"{rate:g}" for rate in sorted(rates))
+        return f"{name} has parts of {listed} samples a second; keep one of them"
+    end, start = parts[0].stats.endtime, parts[1].stats.starttime
+    apart = float(start - end)
+    dt = float(parts[0].stats.delta)
+    more = f", the first of {len(parts) - 1}" if len(parts) > 2 else ""
+    if apart < GAP * dt:
+        return f"{name} has parts that overlap and differ from {start} on{more}; keep one of them"
+    return (
+        f"{name} has a gap{more}: no samples for {apart:g} s from {end} on, where {round(apart / dt) - 1} are "
+        "missing; fill it, or cut the file to one side of it"
+    )
 
 
 @contextmanager
@@ -202,6 +245,7 @@ def _channel(trace: Trace, format_name: str, path: Path, cut_short: bool) -> Cha
         code=stats.channel,
         # MiniSEED of floating point has been computed: its mean is meant
         raw=not (format_name == "MSEED" and trace.data.dtype.kind == "f"),
+        counts=not unit and trace.data.dtype.kind in "iu",
         details=earthquake,
         steps=tuple(steps),
     )

@@ -9,7 +9,9 @@ stated must agree, with the file and with what the user names; what is not state
 
 import re
 from dataclasses import dataclass, field, replace
-from typing import Any
+from itertools import combinations
+from pathlib import PurePath
+from typing import Any, NoReturn
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,8 +20,16 @@ from rockfrag.base.errors import InputError
 from rockfrag.base.plausible import LONGEST_STEP, SHORTEST_STEP
 from rockfrag.records.formats import HEADED
 from rockfrag.records.parsing import number_fields
-from rockfrag.records.parsing.column_titles import Column, column_titles
+from rockfrag.records.parsing.column_titles import (
+    Column,
+    are_titles_of_other_columns,
+    column_titles,
+    components_of,
+)
+from rockfrag.records.parsing.encodings import encoding_of
 from rockfrag.records.parsing.format import Channel, Format, text_writer
+from rockfrag.records.parsing.plain_rows import PlainRows, plain_rows, with_plain_rows
+from rockfrag.records.parsing.quantities import quantity_in_name
 from rockfrag.records.parsing.stated_facts import StatedFacts, stated_facts
 from rockfrag.records.parsing.text_file import TextFile, is_remark, last_row
 from rockfrag.records.parsing.time_column import TimeColumn
@@ -33,9 +43,14 @@ _MIN_ROWS = 3
 # fraction of the rows in which a column without title must rise to be one of times
 _RISING = 0.9
 _FEW_ROWS = 20
+# part of the mean step by which the steps of a column that may be times differ
+_EVENLY = 0.2
 
 # ratio of steps along columns to steps along rows below which columns are channels
 _SMOOTHER = 0.6
+# part of its peak by which the printed magnitude of components may be off the computed one
+_MOST_COMPONENTS = 8  # columns among which components of a magnitude are looked for
+_LIKE_MAGNITUDE = 1e-3
 _SHOWN = 60
 # significant digits of an interval that stands above samples of more digits
 _LONGEST_ROUND = 3
@@ -49,6 +64,7 @@ class _Layout:
     table: number_fields.NumberTable
     facts: StatedFacts
     titles: list[Column]
+    rows: PlainRows
     npts: int | None = None
     dt: float | None = None
     steps: list[dict[str, Any]] = field(default_factory=list)
@@ -93,6 +109,16 @@ class _Layout:
     ) -> Channel:
         """Return samples that are ``step`` seconds apart as a channel with what the file says of it."""
         stated = self.facts.unit
+        if column.problem:
+            self.text.fail(
+                f"column {column.title!r}: {column.problem}; write the unit of the numbers into its title, such "
+                "as (m/s2)",
+                self.line - 1,
+            )
+        if self.facts.other_unit and not column.unit and not stated:
+            self.text.fail(
+                f"the header states the unit {self.facts.other_unit!r}, which no acceleration has; mend it"
+            )
         if column.unit and stated and column.unit != stated:
             self.text.fail(
                 f"column {column.title!r} is in {column.unit}, but the lines above it say {stated}; mend the "
@@ -106,16 +132,21 @@ class _Layout:
             unit=column.unit or stated,
             component=component,
             station=self.facts.details["station"],
-            details={"title": title, "earthquake": self.facts.details["earthquake"]},
+            details={
+                "title": title,
+                "earthquake": self.facts.details["earthquake"],
+                "recorder_time": self.rows.start,
+            },
             steps=tuple(self.steps),
         )
 
 
 def _recognise(lines: list[str], name: str) -> bool:
-    table = number_fields.number_table(lines)
+    plain = list(plain_rows(lines).lines)
+    table = number_fields.number_table(plain)
     if table is None or _OF_OBSPY.match(lines[0]):
         return False
-    rows = [line for line in lines[table.start :] if not number_fields.is_blank(line)]
+    rows = [line for line in plain[table.start :] if not number_fields.is_blank(line)]
     while rows and is_remark(rows[-1]):
         rows.pop()
     found = [number_fields.numbers_of(line, table.decimal_comma) for line in rows]
@@ -132,7 +163,9 @@ def _parse(text: TextFile) -> list[Channel]:
     dt = text.asked_dt
     if dt is not None and not (np.isfinite(dt) and dt > 0):
         raise InputError(f"dt must be a positive number of seconds, got {dt}.")
-    layout = _layout(text)
+    text, rows = with_plain_rows(_decoded(text))
+    layout = _layout(text, rows)
+    _refuse_by_name(layout)
     columns = layout.table.columns
     stop = last_row(text, layout.line)
     values, widths = text.rows(layout.line, stop, layout.table.decimal_comma)
@@ -151,7 +184,28 @@ def _parse(text: TextFile) -> list[Channel]:
     return [_series(layout, values)]
 
 
-def _layout(text: TextFile) -> _Layout:
+def _refuse_by_name(layout: _Layout) -> None:
+    """Refuse a file whose name says velocity or displacement, and in which nothing says acceleration."""
+    said = [layout.facts.quantity, *(column.quantity for column in layout.titles)]
+    named = quantity_in_name(PurePath(layout.text.name).name)
+    if named and "acceleration" not in said:
+        layout.text.refuse(
+            f"its name says {named}, and nothing in it says acceleration; if it holds that, write the word above "
+            "the numbers"
+        )
+
+
+def _decoded(text: TextFile) -> TextFile:
+    """Return a text whose words are understood, if they are not UTF-8."""
+    head = text.body(0, number_fields.LOOKED_AT)
+    try:
+        head.decode("utf-8")
+    except UnicodeDecodeError:
+        return replace(text, encoding=encoding_of(head))
+    return text
+
+
+def _layout(text: TextFile, rows: PlainRows) -> _Layout:
     """Return what the lines above the samples say of them."""
     lines = text.lines(0, number_fields.LOOKED_AT)
     table = number_fields.number_table(lines)
@@ -163,15 +217,20 @@ def _layout(text: TextFile) -> _Layout:
             text.fail(
                 f"{lines[number].strip()[:_SHOWN]!r} is no row of numbers", number
             )
-    facts = stated_facts([words for _, words in table.words])
+    titles, titled = column_titles(table, lines[table.start])
+    # titles of several columns speak of each of them alone
+    words = [words for _, words in table.words]
+    facts = stated_facts(words[: len(words) - titled] if len(titles) > 1 else words)
     if facts.contradiction:
         text.fail(f"{facts.contradiction}; mend the header")
     if facts.factor:
         text.fail(
             f"{facts.factor[:_SHOWN]!r} is a factor that is not applied here; apply it and take the line out"
         )
-    titles = column_titles(table, lines[table.start])
-    layout = _Layout(text, table, facts, titles, facts.npts, facts.dt)
+    if rows.clock_column is not None and titles:
+        clock = titles[rows.clock_column]
+        titles[rows.clock_column] = Column(clock.title, "time", "", "")
+    layout = _Layout(text, table, facts, titles, rows, facts.npts, facts.dt)
     _take_numbers_above(layout, lines)
     dt = text.asked_dt
     if dt is not None and layout.dt is not None and abs(dt - layout.dt) > 1e-6 * dt:
@@ -298,6 +357,12 @@ def _series(layout: _Layout, values: NDArray[np.float64]) -> Channel:
     stated = next(iter(layout.titles), Column("", "", "", ""))
     _refuse_other(layout, stated.quantity or layout.facts.quantity)
     if layout.npts is not None:
+        filled = layout.table.columns
+        if layout.text.is_filled_up(values, layout.npts, filled):
+            surplus = values.size - layout.npts
+            note = {"step": "leave out zeros that fill the last row", "values": surplus}
+            layout.steps.append(note)
+            values = values[: layout.npts]
         layout.text.check_count(layout.npts, values.size, layout.line)
     if layout.interval is None:
         what = "one column" if layout.table.columns == 1 else "rows of numbers"
@@ -328,9 +393,10 @@ def _without_leading(
     ]
     first, body = words[:2], words[2:]
     whole = [_is_whole(word) for word in first]
-    odd = [
-        _notation(word) not in {_notation(sample) for sample in body} for word in first
-    ]
+    notations = {_notation(sample) for sample in body}
+    odd = [_notation(word) not in notations for word in first]
+    # numbers of as many digits as each needs have every notation
+    unlike = odd[0] and len(notations) == 1
     count, step = _count_and_step(first) if len(first) == 2 else (None, None)
     skip = 0
     if count == values.size - 2 and step is not None:
@@ -342,14 +408,13 @@ def _without_leading(
         skip = 2 if len(first) == 2 and _is_interval(first[1], odd[1], body) else 1
         step = float(values[1]) if skip == 2 else None
         if values[0] == 1 and skip == 1:
-            text.fail(
-                f"{words[0]!r} above the samples looks like no sample; take the line out, or write it as they are",
-                layout.line,
-            )
-    elif _is_interval(words[0], odd[0], body) and (odd[0] or values[0] == dt):
+            _fail_no_sample(layout, words[0])
+    elif _is_interval(words[0], unlike, body) and (unlike or values[0] == dt):
         skip, count, step = 1, None, float(values[0])
         if len(first) == 2 and whole[1] and odd[1] and values[1] > 1:
             skip, count = 2, int(values[1])
+    elif unlike and values[0] != 0:
+        _fail_no_sample(layout, words[0])
     if not skip:
         return values
     layout.agree(count, step, layout.line)
@@ -364,16 +429,25 @@ def _without_leading(
     return values[skip:]
 
 
+def _fail_no_sample(layout: _Layout, word: str) -> NoReturn:
+    layout.text.fail(
+        f"{word!r} above the samples looks like no sample; take the line out, or write it as they are",
+        layout.line,
+    )
+
+
 def _is_interval(word: str, odd: bool, body: list[str]) -> bool:
     """Tell whether a number is an interval that recorders have, rounder than the samples below it."""
     value = number_fields.number_in(word)
     if _is_whole(word) or not SHORTEST_STEP <= value <= LONGEST_STEP:
         return False
     digits = [_digits(sample) for sample in body]
-    return odd or (
-        _digits(word) <= _LONGEST_ROUND
-        and _digits(word) < float(np.median(digits or [0]))
-    )
+    is_round = _digits(word) <= _LONGEST_ROUND
+    if odd:
+        # of a whole rate the interval may have many digits
+        rate = 1 / float(f"{1 / round(1 / value):.{_digits(word)}g}")
+        return is_round or abs(1 / rate - value) <= 1e-9 * value
+    return is_round and _digits(word) < float(np.median(digits or [0]))
 
 
 def _digits(word: str) -> int:
@@ -423,15 +497,49 @@ def _channels(layout: _Layout, table: NDArray[np.float64]) -> list[Channel]:
         )
     if layout.npts is not None:
         text.check_count(layout.npts, table.shape[0], layout.line)
-    names = [columns[i].component for i in chosen]
+    chosen = _without_magnitude(layout, columns, table, chosen)
+    names = components_of([columns[i] for i in chosen])
     channels = []
-    for name, i in zip(names, chosen, strict=True):
+    for component, i in zip(names, chosen, strict=True):
         step, notes = _interval(layout, columns, table, i)
-        component = name if names.count(name) == 1 else columns[i].title
         title = columns[i].title if layout.titles else layout.table.title
         noted = replace(layout, steps=[*layout.steps, *notes])
         channels.append(noted.channel(table[:, i], step, columns[i], component, title))
     return channels
+
+
+def _without_magnitude(
+    layout: _Layout,
+    columns: list[Column],
+    table: NDArray[np.float64],
+    chosen: list[int],
+) -> list[int]:
+    """Return the columns that are components: the length of their vector, never negative, is none."""
+    positive = [i for i in chosen if table[:, i].min() >= 0 and table[:, i].max() > 0]
+    named = [i for i in positive if columns[i].is_named_magnitude]
+    if named == chosen:
+        layout.text.refuse(
+            f"column {columns[named[0]].title!r} is the magnitude of components, which has no direction",
+            layout.line - 1,
+        )
+    if not named:
+        every = [i for i, c in enumerate(columns) if c.quantity in ("", "acceleration")]
+        off = {
+            i: _off_magnitude(table, i, [k for k in every if k != i]) for i in positive
+        }
+        like = [i for i in positive if off[i] < _LIKE_MAGNITUDE]
+        named = [i for i in like if off[i] == min(off.values())][-1:]
+    return [i for i in chosen if i not in named]
+
+
+def _off_magnitude(table: NDArray[np.float64], column: int, others: list[int]) -> float:
+    """Return by what part of its peak a column is off the length of the vector of two or three others."""
+    peak = table[:, column].max()
+    few = others if len(others) <= _MOST_COMPONENTS else []
+    vectors = [pair for k in (2, 3) for pair in combinations(few, k)]
+    lengths = (np.sqrt((table[:, list(v)] ** 2).sum(axis=1)) for v in vectors)
+    off = (float(np.abs(length - table[:, column]).max() / peak) for length in lengths)
+    return min(off, default=1.0)
 
 
 def _untitled(layout: _Layout, table: NDArray[np.float64]) -> list[Column]:
@@ -439,7 +547,7 @@ def _untitled(layout: _Layout, table: NDArray[np.float64]) -> list[Column]:
     count = table.shape[1]
     timed = _is_timed(table.ravel(), count)
     number, words = layout.table.words[-1] if layout.table.words else (0, "")
-    if (
+    if are_titles_of_other_columns(words) or (
         timed
         and count > 2
         and len(re.findall(r"\b(?:acc|vel|disp|time)", words, re.I)) > 1
@@ -465,11 +573,7 @@ def _interval(
     timed = [i for i, column in enumerate(columns) if column.quantity == "time"]
     left = [i for i in timed if i < column] or timed[:1]
     if not left:
-        if layout.interval is None:
-            text.fail(
-                "no column is titled as time; give the sampling interval with dt= (in seconds)"
-            )
-        return layout.interval, ()
+        return _interval_without_times(layout, columns, table), ()
     title, times = columns[left[-1]], table[:, left[-1]]
     seconds = title.seconds
     if seconds is None:
@@ -488,6 +592,35 @@ def _interval(
     whose = "the header gives dt =" if layout.dt is not None else "dt= gives"
     stated_times = TimeColumn(times, text, layout.line, seconds)
     return stated_times.interval_beside(layout.interval, whose)
+
+
+def _interval_without_times(
+    layout: _Layout, columns: list[Column], table: NDArray[np.float64]
+) -> float:
+    """Return the interval [s] of columns without titled times; a column that may be times must fit it."""
+    text, dt = layout.text, layout.interval
+    title, first = columns[0].title, table[:, 0]
+    steps = np.diff(first)
+    rises = columns[0].quantity == "" and steps.size > 1 and steps.min() > 0
+    even = bool(rises and np.ptp(steps) <= _EVENLY * steps.mean())
+    if dt is None:
+        more = (
+            f" column {title!r} rises evenly: if it is time, call it 'time (s)';"
+            if even
+            else ""
+        )
+        text.fail(
+            f"no column is titled as time;{more} give the sampling interval with dt= (in seconds)"
+        )
+    step = float(steps.mean()) if even else 1.0
+    # samples that are counted, seconds or milliseconds
+    if not any(abs(step - known) <= 1e-3 * known for known in (1.0, dt, 1e3 * dt)):
+        text.fail(
+            f"column {title!r} rises evenly by {step:.6g}, which is not {dt:g} s; if it is time, call it 'time "
+            "(s)', else 'number'",
+            layout.line - 1,
+        )
+    return dt
 
 
 FORMAT = Format("PLAINTEXT", _recognise, _parse, encoding="latin-1")

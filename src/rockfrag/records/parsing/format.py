@@ -70,8 +70,12 @@ class Channel:
     component: str = ""  # orientation as the file words it (``090``, ``N10E``, ``UP``)
     # name of the file within an archive of several records, else empty
     member: str = ""
+    # what is wrong with this channel alone, where others of the file may be in order; empty if nothing is
+    fault: str = ""
     # whether a recorder's, whose mean is the zero of the sensor and not motion
     raw: bool = False
+    # whether whole numbers of a recorder that nothing turns into a unit
+    counts: bool = False
     # more facts for the metadata: ``station_name``, ``earthquake``, ``title``, …; numbers may be words
     details: Mapping[str, Any] = field(default_factory=dict)
     # what was done to the samples, for the provenance

@@ -83,6 +83,9 @@ _NEARLY_A_NUMBER = re.compile(
     r"[+-]?(?:nan|inf(?:inity)?)$|\*{3,}$|(?=\D*\d)[\d.+\-eEdDxXp_*]+$", re.I
 )
 _DATE = re.compile(r"\d{1,4}-\d{1,2}-\d{1,4}")
+_PER_CENT = re.compile(r"\W*%\s?(?:of\s)?g\b", re.I)
+_MANY_ROWS = 20  # of samples of which some are negative
+_NUMBER_SIGN = re.compile(r"[\s#]*[\"']?#[\"']?([\t,;]|\s{2,})")
 _MARKS = " \t#%!/\"'"
 # rows of one width, one below the other, that are samples and not a header of numbers
 _RUN = 4
@@ -120,7 +123,7 @@ def number_table(lines: list[str]) -> NumberTable | None:
     if start is None:
         return None
     words = tuple(
-        (number, line.strip(_MARKS))
+        (number, _without_marks(line))
         for number, line in enumerate(lines[:start])
         if number not in rows and line.strip(_MARKS)
     )
@@ -128,6 +131,17 @@ def number_table(lines: list[str]) -> NumberTable | None:
         (number, tuple(found)) for number, found in rows.items() if number < start
     )
     return NumberTable(start, len(rows[start]), words, above, comma)
+
+
+def _without_marks(line: str) -> str:
+    """Return words without the marks of a comment; ``#`` alone is the title of a column of numbers."""
+    # of per cent of g the sign is no mark
+    words = line.rstrip(" \t\"'#!")
+    words = words.lstrip(_MARKS if not _PER_CENT.match(line) else " \t\"'#!")
+    numbered = _NUMBER_SIGN.match(line)
+    if not (numbered and words):
+        return words
+    return f"#{numbered[1]}{words.lstrip(' ,;' + chr(9))}"
 
 
 def _first_run(lines: list[str], rows: dict[int, list[str]]) -> int | None:
@@ -191,8 +205,9 @@ def numbers_of(line: str, decimal_comma: bool = False) -> list[str]:
 def has_decimal_commas(lines: list[str]) -> bool:
     """Tell whether the commas of rows without semicolons can only be decimal signs.
 
-    So they are where blanks separate numbers that all have one, or where a number such as ``0,012``
-    would begin with a zero if the comma separated.
+    So they are where blanks separate numbers that all have one, where a number such as ``0,012`` would begin with
+    a zero if the comma separated, and where what stands behind all of many commas has no sign, or an exponent and
+    no decimals: such numbers are no samples.
     """
     rows = [
         line.split() for line in lines if "," in line and are_numbers(numbers_of(line))
@@ -203,7 +218,11 @@ def has_decimal_commas(lines: list[str]) -> bool:
     if not all(_WITH_DECIMAL_COMMA.match(word) for word in with_comma):
         return False
     several = all(len(row) > 1 for row in rows)
-    return several or any(re.search(r",0\d", word) for word in with_comma)
+    return (
+        several
+        or len(rows) >= _MANY_ROWS
+        or any(re.search(r",0\d|,\d+[EeDd]", word) for word in with_comma)
+    )
 
 
 def number_in(word: str) -> float:

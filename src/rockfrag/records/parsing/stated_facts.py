@@ -1,68 +1,68 @@
-"""What the words above the samples of a text file state: count, interval, unit, quantity, components."""
+"""What the words above the samples of a text file state: count, interval, unit, quantity, components.
+
+Words of many languages are understood (:mod:`.vocabulary`); lines are compared without accents and capitals.
+"""
 
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from functools import cache
 
 from rockfrag.base.plausible import LONGEST_STEP, SHORTEST_STEP
+from rockfrag.records.parsing.directions import is_direction
 from rockfrag.records.parsing.format import stated
 from rockfrag.records.parsing.number_fields import number_in
-from rockfrag.records.parsing.quantities import TO_SI, canonical_unit, quantity_of
+from rockfrag.records.parsing.quantities import (
+    Unit,
+    has_factor,
+    looks_like_unit,
+    read_unit,
+)
+from rockfrag.records.parsing.vocabulary import alternatives, folded
 
-_VALUE = r"(?:\d+[.,]\d+|\d+\.?|[.,]\d+)(?:[EeDd][+-]?\d+)?"
-_IS = r"[\s\"']*(?:\((?P<note>[^)]*)\)|\[(?P<note2>[^\]]*)\])?[\s\"',]*(?P<sign>[=:]|\bis\b)?[\s\"',]*"
-_STEP = re.compile(
-    r"(?i)(?:\b(?:dt|d\.t\.|delta[\s_-]*t|time[\s_-]*(?:step|increment|interval|spacing)|timestep"
-    r"|sampl\w*[\s_-]*(?:step|increment|interval|period|spacing|time)|spaced\s+at|intervals?\s+of)"
-    r"|(?<![\w.])Δt|\b(?P<unsure>delta|interval))"
-    rf"{_IS}(?P<value>{_VALUE})\s*(?P<unit>ms|msec\w*|millis\w*|[uµ]s|microsec\w*|min\w*|deg\w*|km|°)?"
+_VALUE = r"(?:\d+[.,]\d+|\d+\.?|[.,]\d+)(?:[ed][+-]?\d+)?"
+_IS = (
+    r"(?:[\s_]+(?P<behind>m?s|m?sec|[uμ]s|k?hz)(?![^\W\d_]))?[\s\"']*(?:\((?P<note>[^)]*)\)|\[(?P<note2>[^\]]*)\])?"
+    r"[\s\"',]*(?P<sign>[=:]|\bis\b|\bes\b|\best\b)?[\s\"',]*"
 )
+_UNIT_BEHIND_VALUE = r"\s*(?P<unit>°|[^\W\d_]+(?:\s*/\s*s\w*|\s+p[eo]r\s+s\w*)?)?"
+_NUMBER = re.compile(_VALUE)
+_LONE_FACTOR = re.compile(r"\W*[x×*]\s*(?:10|0?[.,]\d|\d+e|1\d*)[\d\s^.,+-]*\W*")
 _STEP_BEFORE = re.compile(
-    rf"(?P<value>{_VALUE})\s*(?:s|sec\w*)\.?\s+(?:time\s+)?(?:intervals?|steps?|spacing)\b",
-    re.I,
+    rf"(?P<value>{_VALUE})\s*(?:s|sec\w*)\.?\s+(?:time\s+)?(?:intervals?|steps?|spacing)\b"
 )
-_RATE = re.compile(
-    rf"(?i)\bsampl\w*[\s_-]*(?P<named>rate|freq\w*)?(?:\s+at\b)?{_IS}(?P<value>{_VALUE})\s*"
-    r"(?P<unit>k?hz|sps|samples|pts|points)?|(?<![\w.])fs\s*(?:\([^)]*\))?\s*[=:]\s*(?P<value2>[\d.]+)"
-    r"|(?P<value3>[\d.]+)\s*(?:sps\b|(?:samples?|pts|points)\s*(?:/|per)\s*s)"
+_ENGLISH_COUNT = (
+    r"\b(?:no\.?|number|num\.?|nr\.?|total)\s*(?:of\s+)?(?:acc\w*\s+)?"
+    r"(?:data\s+|time\s+)?(?:points?|pts|samples?|data|values?|steps?)"
 )
-_COUNT = re.compile(
-    r"(?i)(?:\b(?:npts|npoints|ndata|nsamples?|npt|(?:no\.?|number|num\.?|nr\.?|total)\s*(?:of\s+)?(?:acc\w*\s+)?"
-    r"(?:data\s+|time\s+)?(?:points?|pts|samples?|data|values?|steps?))|(?P<unsure>\bsamples|\bpoints))"
-    rf"{_IS}(?P<count>\d+)(?![\d.,]*\d)(?!\s*(?:hz|s\b|sec|/|per))"
+_UNSURE_STEP = r"delta|interval(?:l?o)?s?|passo|шаг|步长|步長"
+# for a key that no count of a day or of a place has, and that a message may therefore call impossible
+_OF_SAMPLING = re.compile(
+    "sampl|muestr|amostr|echantillon|campion|abtast|дискрет|采样|ornek"
 )
-_COUNTED = re.compile(
-    r"^\s*(?P<count>\d+)\s+(?:data\s+)?(?:points?|samples?|values?)\b(?!\s*(?:/|per))",
-    re.I,
-)
-_UNIT_WORDS = re.compile(
-    r"\bunits?\b(?:\s*\([^)]*\))?\s*(?:of|are|is|in|for\s+\w+)?\s*[=:]?(?P<rest>.*)$",
-    re.I,
-)
+_SHOWN = 60
+# in the place of a unit; A-1 may be the name of an instrument
+_SHORT_WORDS = re.compile(r"(?!\W*[^\W\d_]+-\d)(?=.*[^\W\d_]).{1,14}")
+_PER_SECOND = re.compile(r"[^\W\d_]+\s*/\s*s[ec]*(?:\^?2|/s)$")
+_IMPERATIVE = re.compile("multipl|divide|divid")
+_QUANTITY_LETTERS = {"acc": "acceleration", "vel": "velocity", "dis": "displacement"}
 _QUANTITY = r"\b(?P<quantity>acc|vel|dis(?=p))(?:[a-z]*\.?)"
-_QUANTITY_IN = re.compile(
-    rf"(?i){_QUANTITY}[^,;:(\[=\d]{{0,40}}?(?:\bin\s+(?:units?\s+(?:of\s+)?)?|[:(\[,=_]\s*)(?P<rest>.+)$"
-)
-_NAMED_QUANTITY = re.compile(rf"{_QUANTITY}", re.I)
-_IN_UNIT = re.compile(r"(?:\bin\s+|[(\[{]\s*)(?P<rest>[^)\]}]+)", re.I)
+_NAMED_QUANTITY = re.compile(_QUANTITY)
+_IN_UNIT = re.compile(r"(?:\bin\s+|[(\[{]\s*)(?P<rest>[^)\]}]+)")
 _ONE_VALUE = re.compile(
-    r"\b(?:pga|pgv|pgd|peak|max\w*|largest|min\w*|full\s*scale|filter)\b", re.I
+    r"\b(?:pga|pgv|pgd|peak|max\w*|largest|min\w*|full\s*scale|filter|pico|picco|sensitiv\w*)\b"
 )
 _VALUE_OF = re.compile(r"[=:]\s*[-+]?\.?\d")
-_UNIT_TOKEN = re.compile(
-    r"[\s\"'=:(\[{]*(?P<unit>(?:[a-z%°µ]+[\w%°^*²-]*(?:\.[a-z-]+\d?)?(?:\s*/\s*\(?\s*[a-z\d]+\)?(?:\^|\*\*)?[\d²]*)*))",
-    re.I,
-)
-_LIST = r"^\W*(?:components?|channels?|directions?|orientations?)\s*[=:]\s*(.+)$"
-_FACTOR = re.compile(
-    rf"\b(?:scal(?:e|ing)|conversion|calibration)[\s_-]*factor{_IS}(?P<value>[+-]?{_VALUE})",
-    re.I,
+_LIST = r"^\W*(?:components?|channels?|directions?|orientations?|componentes?|canales)\s*[=:]\s*(.+)$"
+# a scale of these is no factor of the samples, nor is a ratio such as 1:50
+_OTHER_SCALE = (
+    r"(?<!full )(?<!full-)(?<!time )(?<!length )(?<!richter )(?<!magnitude )(?<!quality )(?<!q )(?<!safety )"
+    r"(?<!damping )(?<!intensity )(?<!full_)"
 )
 _KEYS = {
-    "earthquake": r"^\W*(?:event|earthquake)\b[^:=]*[:=]\s*(\S.*)$",
-    "station": r"^\W*(?:recording\s+)?station\b[^:=]*[:=]\s*(\S.*)$",
+    "earthquake": r"^\W*(?:event|earthquake|evento|sismo|terremoto)\b[^:=]*[:=]\s*(\S.*)$",
+    "station": r"^\W*(?:recording\s+)?(?:station|estaci[oó]n|stazione|istasyon)\b[^:=]*[:=]\s*(\S.*)$",
 }
-_SECONDS = {"ms": 1e-3, "mi": 1e-3, "us": 1e-6, "µs": 1e-6}
 
 
 @dataclass(frozen=True)
@@ -72,6 +72,7 @@ class StatedFacts:
     npts: int | None = None  # number of samples
     dt: float | None = None  # interval [s]
     unit: str = ""  # canonical unit of acceleration
+    other_unit: str = ""  # unit of another quantity, where a line says unit
     # what the samples are, where words say so: ``acceleration``, ``velocity``, ``force``, …
     quantity: str = ""
     # names of the components, in the order of the columns
@@ -80,150 +81,122 @@ class StatedFacts:
     factor: str = ""
     # ``earthquake`` and ``station``
     details: dict[str, str] = field(default_factory=dict)
-    contradiction: str = ""  # two statements that exclude each other, in words
+    # two statements that exclude each other, one that cannot be, or a unit that is not known, in words
+    contradiction: str = ""
+
+
+@cache
+def _patterns() -> dict[str, re.Pattern[str]]:
+    """Return the patterns that are made of the words of all languages."""
+    samples = alternatives("samples")
+    is_value = rf"{_IS}(?P<value>{_VALUE}){_UNIT_BEHIND_VALUE}"
+    return {
+        "step": re.compile(
+            rf"(?P<key>{alternatives('interval')}|(?<![\w.])δt|\bintervals?\s+of)"
+            rf"{is_value}"
+        ),
+        "unsure step": re.compile(
+            rf"(?<![^\W\d_])(?P<key>{_UNSURE_STEP})(?![^\W\d_]){is_value}"
+        ),
+        "rate": re.compile(rf"(?P<key>{alternatives('rate')}){is_value}"),
+        "unsure rate": re.compile(
+            rf"(?P<key>{alternatives('sampling')})(?:\s+at\b)?{is_value}"
+        ),
+        "rate before": re.compile(
+            rf"(?P<value>{_VALUE})\s*(?:sps\b|{samples}\s*(?:/|per|por|al|par|pro)\s*s)"
+        ),
+        "count": re.compile(
+            rf"(?:{alternatives('count')}|{_ENGLISH_COUNT}|(?P<unsure>\bsamples|\bpoints))"
+            rf"{_IS}(?P<count>\d+)(?![\d.,]*\d)(?!\s*(?:hz|s\b|sec|/|per))"
+        ),
+        "counted": re.compile(
+            rf"^\s*(?P<count>\d+)\s+(?:data\s+)?{samples}(?!\s*(?:/|per|por))"
+        ),
+        "unit": re.compile(
+            rf"{alternatives('unit')}(?:\s*\([^)]*\))?\s*"
+            r"(?P<sign>of|are|is|in|for\s+\w+)?\s*(?P<colon>[=:])?(?P<rest>.*)$"
+        ),
+        "quantity in": re.compile(
+            rf"(?:{_QUANTITY}|{alternatives('acceleration')})[^,;:(\[=\d]{{0,40}}?"
+            r"(?:\b(?:in|en|em)\s+(?:units?\s+(?:of\s+)?)?|[:(\[,=_]\s*)(?P<rest>.+)$"
+        ),
+        "factor": re.compile(
+            rf"{_OTHER_SCALE}{alternatives('factor')}{_IS}"
+            rf"(?:by|of|con|with|mit|por|per|par)?\s*(?P<value>[+-]?{_VALUE})(?!\s*:\s*\d)"
+        ),
+    }
 
 
 def stated_facts(lines: Sequence[str]) -> StatedFacts:
-    """Return what lines of words, the uppermost first, state about the samples below them."""
-    steps = list(dict.fromkeys(step for line in lines for step in _steps(line)))
-    counts = list(dict.fromkeys(count for line in lines for count in _counts(line)))
-    behind = (_units_in(m["rest"]) for line in lines if (m := _UNIT_WORDS.search(line)))
-    # of each line that has the word unit one of acceleration
-    units = list(
-        dict.fromkeys(
-            u for found in behind for u in [u for u in found if u in TO_SI][:1]
+    """Return what lines of words state about the samples below them.
+
+    Parameters
+    ----------
+    lines
+        The uppermost first, without the titles of columns.
+    """
+    plain = [folded(line) for line in lines]
+    steps = list(dict.fromkeys(step for line in plain for step in _steps(line)))
+    counts = list(dict.fromkeys(count for line in plain for count in _counts(line)))
+    units = list(dict.fromkeys(filter(None, map(_unit_in_so_many_words, plain))))
+    others = [u.name for line in plain for u in _other_units(line)]
+    impossible = [s for s in steps if not SHORTEST_STEP <= s <= LONGEST_STEP]
+    if impossible:
+        wrong = (
+            f"the header states an interval of {impossible[0]:g} s, which no record has "
+            f"(as a rate it would be {1 / impossible[0]:g} s)"
         )
-    )
-    contradiction = next(
-        (
-            f"the header states {what} "
-            + " and ".join(
-                f"{v:g}" if isinstance(v, float) else str(v) for v in found[:2]
-            )
-            for what, found in (
-                ("intervals of", steps),
-                ("counts of", counts),
-                ("units of", units),
-            )
-            if len(found) > 1 and not _close(found)
-        ),
-        "",
-    )
-    quantity, unit = _quantity_and_unit(lines)
+    else:
+        statements: dict[str, Sequence[float | int | str]]
+        statements = {"intervals of": steps, "counts of": counts, "units of": units}
+        wrong = next(filter(None, map(_two_of, statements.items())), "")
+    quantity, unit, problem = _quantity_and_unit(plain)
     return StatedFacts(
         npts=counts[0] if counts else None,
         dt=steps[0] if steps else None,
         unit=units[0] if units else unit,
+        other_unit=next(iter(others), ""),
         quantity="acceleration" if units else quantity,
         components=tuple(re.findall(r"[^\s,;]+", stated(_LIST, lines))),
         factor=next(
-            (
-                x
-                for x in lines
-                if (m := _FACTOR.search(x)) and number_in(m["value"]) != 1
-            ),
+            (line for line, own in zip(lines, plain, strict=True) if _has_factor(own)),
             "",
         ),
         details={key: stated(pattern, lines) for key, pattern in _KEYS.items()},
-        contradiction=contradiction,
+        contradiction=wrong or problem,
     )
 
 
-def _steps(line: str) -> list[float]:
-    """Return the intervals [s] that a line states, as a step or a rate."""
-    found = []
-    for match in _STEP.finditer(line):
-        unit = (match["unit"] or "").lower()
-        if match["unsure"] and (not match["sign"] or unit.startswith(("d", "k", "°"))):
-            continue
-        note = (match["note"] or match["note2"] or "").strip().lower()
-        factor = next(
-            (f for u, f in _SECONDS.items() if (unit or note).startswith(u)), 1.0
-        )
-        factor = 60.0 if (unit or note).startswith("min") else factor
-        found.append(float(f"{number_in(match['value']) * factor:.12g}"))
-    found += [number_in(match["value"]) for match in _STEP_BEFORE.finditer(line)]
-    for match in _RATE.finditer(line):
-        words = match["value"] or match["value2"] or match["value3"]
-        note = (
-            f"{match['note'] or ''}{match['note2'] or ''}{match['unit'] or ''}".lower()
-        )
-        sure = match["named"] or match["unit"] or match["value2"] or match["value3"]
-        rate = number_in(words.rstrip(".")) if sure and words.strip(".") else 0.0
-        if rate > 0:
-            rate *= 1000 if "khz" in note else 1
-            found.append(float(f"{1 / rate:.9g}"))
-    return [step for step in found if SHORTEST_STEP <= step <= LONGEST_STEP]
+def factor_beside_unit(line: str) -> str:
+    """Return that a line of a header has a factor which the samples may still have to be multiplied by.
+
+    Parameters
+    ----------
+    line
+        Of any header, as it stands there.
+
+    Returns
+    -------
+    str
+        What is wrong, in words; empty where nothing is.
+    """
+    plain = folded(line)
+    unit = _patterns()["unit"].search(plain)
+    units = _units_in(unit["rest"]) if unit else []
+    of_motion = [u for u in units if u.quantity == "acceleration"]
+    # a factor elsewhere in a header may tell how the record was made
+    if _IMPERATIVE.search(plain) and _has_factor(plain):
+        return f"{line.strip()[:_SHOWN]!r} is a factor that is not applied here"
+    return _problem_of_factor(plain, of_motion[0]) if of_motion else ""
 
 
-def _counts(line: str) -> list[int]:
-    found = [m for m in _COUNT.finditer(line) if m["sign"] or not m["unsure"]]
-    counted = _COUNTED.match(line)
-    return [
-        int(m["count"])
-        for m in (*found, *([counted] if counted else []))
-        if int(m["count"])
-    ]
-
-
-def _units_in(words: str) -> list[str]:
-    """Return what may be units in words, canonical, from left to right."""
-    parts = re.split(
-        r"[,;]|\s+and\s+|(?<=[\w)\]])\s+(?![/\d])|[()\[\]]", words, flags=re.I
-    )
-    tokens = (_UNIT_TOKEN.match(part) for part in parts)
-    return [canonical_unit(token["unit"]) for token in tokens if token]
-
-
-def _quantity_and_unit(lines: Sequence[str]) -> tuple[str, str]:
-    """Return the quantity and the unit of acceleration that the line nearest the numbers states."""
-    for line in reversed(lines):
-        explicit = _UNIT_WORDS.search(line)
-        held = (
-            next(iter(map(quantity_of, _units_in(explicit["rest"])[:1])), "")
-            if explicit
-            else ""
-        )
-        if held:
-            return held, ""
-        # one value, as of a velocity of waves, is not what the samples are
-        of_one = _VALUE_OF.search(line) and not (
-            _STEP.search(line) or _COUNT.search(line)
-        )
-        if _ONE_VALUE.search(line) or of_one:
-            continue
-        match = _QUANTITY_IN.search(line) or _IN_UNIT.search(line)
-        first = next(iter(_units_in(match["rest"])), "") if match else _sure_unit(line)
-        named = match.groupdict().get("quantity") if match else None
-        if first in TO_SI and (named or first not in ("g", "mg") or not match):
-            return "acceleration", first
-        if named and quantity_of(first):
-            return quantity_of(first), ""
-    last = [
-        m["quantity"].lower()
-        for line in lines[-1:]
-        if (m := _NAMED_QUANTITY.match(line))
-    ]
-    everywhere = any(
-        m["quantity"].lower() == "acc"
-        for x in lines
-        for m in _NAMED_QUANTITY.finditer(x)
-    )
-    if last and not everywhere:
-        return {"vel": "velocity", "dis": "displacement"}[last[0]], ""
-    return "", ""
-
-
-def _sure_unit(line: str) -> str:
-    """Return a unit that only an acceleration has, if a line has one that is not of a value in it."""
-    return next(
-        (
-            unit
-            for part in re.split(r"(?<![\d.])[,;\s]+(?![/\d])", line)
-            if (unit := canonical_unit(part)) in TO_SI and "/s" in unit
-        ),
-        canonical_unit(line),
-    )
+def _two_of(statement: tuple[str, Sequence[float | int | str]]) -> str:
+    """Return in words that one fact is stated in two ways, or nothing."""
+    what, found = statement
+    if len(found) < 2 or _close(found):
+        return ""
+    both = (f"{v:g}" if isinstance(v, float) else str(v) for v in found[:2])
+    return f"the header states {what} " + " and ".join(both)
 
 
 def _close(found: Sequence[float | int | str]) -> bool:
@@ -231,4 +204,206 @@ def _close(found: Sequence[float | int | str]) -> bool:
     numbers = [value for value in found if isinstance(value, float)]
     return len(numbers) == len(found) and max(numbers) - min(numbers) <= 1e-4 * max(
         numbers
+    )
+
+
+def _has_factor(line: str) -> bool:
+    found = _patterns()["factor"].search(line)
+    alone = _LONE_FACTOR.fullmatch(line) is not None
+    return alone or (found is not None and number_in(found["value"]) != 1)
+
+
+def _steps(line: str) -> list[float]:
+    """Return the intervals [s] that a folded line states, as a step or a rate."""
+    found = []
+    for name in ("step", "unsure step"):
+        for match in _patterns()[name].finditer(line):
+            unit = read_unit(_unit_of(match))
+            stroke = unit.quantity in ("angle", "displacement", "frequency")
+            if name == "unsure step" and (not match["sign"] or stroke):
+                continue
+            value = number_in(match["value"])
+            if unit.quantity == "frequency":
+                found += _intervals(value, _unit_of(match))
+                continue
+            seconds = unit.to_si if unit.quantity == "time" else 1.0
+            step = float(f"{value * seconds:.12g}")
+            sure = _OF_SAMPLING.search(match["key"]) and step > 0
+            if sure or SHORTEST_STEP <= step <= LONGEST_STEP:
+                found.append(step)
+    before = [number_in(m["value"]) for m in _STEP_BEFORE.finditer(line)]
+    found += [step for step in before if SHORTEST_STEP <= step <= LONGEST_STEP]
+    return found + _steps_of_rates(line)
+
+
+def _steps_of_rates(line: str) -> list[float]:
+    """Return the intervals [s] of the rates that a folded line states."""
+    found = []
+    for name in ("rate", "unsure rate"):
+        for match in _patterns()[name].finditer(line):
+            unit, value = _unit_of(match), number_in(match["value"])
+            seconds = read_unit(unit)
+            per_second = re.match(r"k?hz|sps|[^\W\d_]+\s*(?:/|p[eo]r)\s*s", unit)
+            if seconds.quantity == "time" and name == "rate":
+                found.append(float(f"{value * seconds.to_si:.12g}"))
+            elif per_second or name == "rate" or unit in ("samples", "pts", "points"):
+                found += _intervals(value, unit)
+    for match in _patterns()["rate before"].finditer(line):
+        found += _intervals(number_in(match["value"]), "")
+    return [step for step in found if SHORTEST_STEP <= step <= LONGEST_STEP]
+
+
+def _unit_of(match: re.Match[str]) -> str:
+    """Return the unit that stands behind a value, in brackets before it or at the end of its key."""
+    behind = (match["unit"] or "").strip()
+    if re.match(r"°|k?hz|sps|.*(?:/|\bp[eo]r\b)", behind) or read_unit(behind).quantity:
+        return behind
+    if behind in ("samples", "pts", "points"):
+        return behind
+    return (match["note"] or match["note2"] or match["behind"] or "").strip()
+
+
+def _intervals(rate: float, unit: str) -> list[float]:
+    """Return the interval [s] of a rate, none of a rate of zero."""
+    rate *= 1000 if "khz" in unit else 1
+    return [float(f"{1 / rate:.9g}")] if rate > 0 else []
+
+
+def _counts(line: str) -> list[int]:
+    """Return the numbers of samples that a folded line states."""
+    found = [
+        m for m in _patterns()["count"].finditer(line) if m["sign"] or not m["unsure"]
+    ]
+    counted = _patterns()["counted"].match(line)
+    every = (*found, *([counted] if counted else []))
+    return [int(m["count"]) for m in every if int(m["count"])]
+
+
+def _units_in(words: str) -> list[Unit]:
+    """Return the units in folded words that are known, from left to right."""
+    found = []
+    for part in re.split(r"[,;]|\s+(?:and|y|und|et|e)\s+|[()\[\]]", words):
+        tokens = part.strip(" .:=\"'").split()
+        start = 0
+        while start < len(tokens):
+            ends = range(len(tokens), start, -1)
+            every = ((read_unit(" ".join(tokens[start:end])), end) for end in ends)
+            known = next((pair for pair in every if pair[0].quantity), None)
+            if known and start and _NUMBER.fullmatch(tokens[start - 1]):
+                # a number before a unit is a factor that was not understood
+                words = " ".join(tokens[start - 1 : known[1]])
+                known = Unit(words, known[0].quantity, factor=words), known[1]
+            start = known[1] if known else start + 1
+            found += [known[0]] if known else []
+    return found
+
+
+def _unit_in_so_many_words(line: str) -> str:
+    """Return the unit of acceleration of a folded line that has the word unit, or nothing."""
+    match = _patterns()["unit"].search(line)
+    units = _units_in(match["rest"]) if match else []
+    known = [u.name for u in units if u.quantity == "acceleration" and not u.factor]
+    return next(iter(known), "")
+
+
+def _other_units(line: str) -> list[Unit]:
+    """Return the units of a folded line that states a unit with a colon, if none is of acceleration."""
+    match = _patterns()["unit"].search(line)
+    units = _units_in(match["rest"]) if match and match["colon"] else []
+    of_motion = any(u.quantity == "acceleration" for u in units)
+    return [] if of_motion else [u for u in units if u.quantity != "time"]
+
+
+def _unknown_unit(words: str) -> str:
+    """Return what words in the place of a unit are, if they are a unit that is not known."""
+    first = re.split(r"[,;]|\s{2,}", words.strip(" .:=\"'([{"))[0].strip(" )]}\"'.")
+    known = not first or is_direction(first) or read_unit(first).quantity
+    return "" if known or not looks_like_unit(first) else first
+
+
+def _quantity_and_unit(lines: Sequence[str]) -> tuple[str, str, str]:
+    """Return quantity and unit of acceleration that the line nearest the numbers states, and what is wrong."""
+    for line in reversed(lines):
+        explicit = _patterns()["unit"].search(line)
+        units = _units_in(explicit["rest"]) if explicit else []
+        if explicit and (problem := _problem_of_unit(line, explicit, units)):
+            return "", "", problem
+        others = [u.quantity for u in units if u.quantity != "time"]
+        if others:
+            return others[0], "", ""
+        # one value, as of a velocity of waves, is not what the samples are
+        of_one = _VALUE_OF.search(line) and not (_steps(line) or _counts(line))
+        if _ONE_VALUE.search(line) or of_one:
+            continue
+        quantity, unit, problem = _of_named_quantity(line)
+        if quantity or problem:
+            return quantity, unit, problem
+    last = [m["quantity"] for line in lines[-1:] if (m := _NAMED_QUANTITY.match(line))]
+    everywhere = any(
+        m["quantity"] == "acc" for x in lines for m in _NAMED_QUANTITY.finditer(x)
+    )
+    return (_QUANTITY_LETTERS[last[0]] if last and not everywhere else ""), "", ""
+
+
+def _problem_of_unit(line: str, explicit: re.Match[str], units: list[Unit]) -> str:
+    """Return why the unit of a line that has the word unit cannot be used, or nothing."""
+    stated_so = explicit["sign"] or explicit["colon"]
+    unknown = _unknown_unit(explicit["rest"]) if stated_so and not units else ""
+    if explicit["colon"] and not units and _SHORT_WORDS.fullmatch(explicit["rest"]):
+        unknown = explicit["rest"].strip()
+    if unknown:
+        return f"the header states the unit {unknown!r}, which is not known here"
+    of_motion = [u for u in units if u.quantity == "acceleration"]
+    return _problem_of_factor(line, of_motion[0]) if of_motion else ""
+
+
+def _problem_of_factor(line: str, unit: Unit) -> str:
+    """Return that a line has a factor beside a unit which may be meant either way, or nothing."""
+    if unit.factor or _has_factor_outside_units(line):
+        return f"{line.strip()[:_SHOWN]!r} has a factor that may be meant either way"
+    return ""
+
+
+def _has_factor_outside_units(line: str) -> bool:
+    """Tell whether a line has a factor that is no part of a unit, as that of ``in 10-3 g`` is."""
+    left = line
+    for part in re.split(r"[,;()\[\]]|\bin\b|\bof\b|[=:]", line):
+        unit = read_unit(part)
+        if unit.quantity and not unit.factor:
+            left = left.replace(part, " ", 1)
+    return has_factor(left)
+
+
+def _of_named_quantity(line: str) -> tuple[str, str, str]:
+    """Return quantity, unit of acceleration and what is wrong of a line such as ``Acceleration in m/s2``."""
+    match = _patterns()["quantity in"].search(line) or _IN_UNIT.search(line)
+    if not match:
+        unit = _sure_unit(line)
+        if unit is None:
+            return "", "", ""
+        return "acceleration", unit.name, _problem_of_factor(line, unit)
+    units = _units_in(match["rest"])
+    named = match.re is not _IN_UNIT
+    first = units[0] if units else Unit("")
+    if first.quantity == "acceleration":
+        if named or first.name not in ("g", "mg"):
+            problem = _problem_of_factor(line, first)
+            return "acceleration", "" if problem else first.name, problem
+    elif named and first.quantity not in ("", "time"):
+        return first.quantity, "", ""
+    elif not units and (unknown := _unknown_unit(match["rest"])):
+        is_unit = (re.search(r"[/^]", unknown) and named) or _PER_SECOND.match(unknown)
+        problem = f"the header states the unit {unknown!r}, which is not known here"
+        return ("", "", problem) if is_unit else ("", "", "")
+    return "", "", ""
+
+
+def _sure_unit(line: str) -> Unit | None:
+    """Return a unit that only an acceleration has, if a line has one that is not of a value in it."""
+    whole = read_unit(line)
+    if whole.quantity == "acceleration" and not whole.factor:
+        return whole
+    parts = map(read_unit, re.split(r"(?<![\d.])[,;\s]+(?![/\d])", line))
+    return next(
+        (u for u in parts if u.quantity == "acceleration" and "/s" in u.name), None
     )

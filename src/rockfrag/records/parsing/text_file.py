@@ -18,6 +18,7 @@ from rockfrag.base.errors import InputError
 from rockfrag.base.plausible import LONGEST_STEP, SHORTEST_STEP
 from rockfrag.records.parsing.number_fields import (
     NumberError,
+    numbers_of,
     parse_columns,
     parse_separated,
 )
@@ -34,6 +35,7 @@ MAX_LINES = 6_000_000
 _BLOCK = 2**20
 _PIECE = 4 * _BLOCK
 _MOST_ZEROS = 4 * _BLOCK  # bytes after which a file that has only zeros is given up
+_BY_SIGNS = -1  # width of fields that touch, and that signs tell apart
 _TOUCHING = re.compile(rb"(?<=[\d.])([+-])(?=\d*\.)")
 """A sign that begins a number right behind another one, as in Fortran's ``-.12E-01-.13E-01``."""
 
@@ -187,18 +189,19 @@ class TextFile:
         """Parse lines ``start`` up to ``stop`` as numbers, shape (n,), of ``count`` if one is promised.
 
         ``widths`` are of Fortran fields, None of separated numbers; the first that the lines (blanks may be edited
-        away) and the count fit is taken. Separated numbers are tried at last.
+        away) and the count fit is taken. Separated numbers are tried at last, then those that signs tell apart.
         """
         body = self.body(start, stop)
         found: list[NDArray[np.float64]] = []
         wrong: list[NumberError] = []
-        for width in dict.fromkeys((*widths, None)):
+        for width in (*dict.fromkeys((*widths, None)), _BY_SIGNS):
             try:
-                values = (
-                    parse_columns(body.split(b"\n"), width)
-                    if width
-                    else parse_separated(body)
-                )
+                if width == _BY_SIGNS:
+                    values = parse_separated(_TOUCHING.sub(rb" \1", body))
+                elif width:
+                    values = parse_columns(body.split(b"\n"), width)
+                else:
+                    values = parse_separated(body)
             except NumberError as error:
                 wrong.append(error)
                 continue
@@ -209,8 +212,20 @@ class TextFile:
             # of the layouts the one that most lines fit
             last = max(wrong, key=lambda each: each.line)
             self.fail(str(last), start + last.line)
+        row = len(numbers_of(self.raw(start)))
+        for values in found:
+            if self.is_filled_up(values, count or 0, row):
+                return values[:count]
         self.check_count(count or 0, found[0].size, start)
         return found[0]
+
+    def is_filled_up(
+        self, values: NDArray[np.float64], count: int, columns: int
+    ) -> bool:
+        """Tell whether behind ``count`` values in rows of ``columns`` only zeros fill up the last row."""
+        surplus = values.size - count
+        whole = 0 < surplus < columns and values.size % columns == 0
+        return count > 0 and whole and not values[count:].any()
 
     def reals(
         self, start: int, stop: int, width: int, count: int, kind: str = "numbers"

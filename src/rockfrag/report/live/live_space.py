@@ -37,10 +37,19 @@ def live_in_space(
     motions: Sequence[GroundMotion],
     left_out: Sequence[str] = (),
 ) -> Markup:
-    """Return the element of a page in which bodies in space rock under motions, live; one to a page.
+    """Element of a page in which bodies in space rock under motions, live; one to a page.
 
     It shows bodies and motions by name and loads nothing; no more motions are taken than have ``MOST_SAMPLES``
     times, the first ones, at least one. ``left_out`` names what is not shown.
+
+    Parameters
+    ----------
+    bodies, motions : by the names that the page shows, and what shakes them
+    left_out : names of bodies that are not shown
+
+    Returns
+    -------
+    HTML.
     """
     total = np.cumsum([motion.x.acceleration.size for motion in motions])
     kept = motions[: max(1, int((total <= MOST_SAMPLES).sum()))]
@@ -95,7 +104,7 @@ def _sizes(body: RigidBody) -> dict[str, Any] | None:
     """Width, depth, and turn about the vertical of a box or cylinder, and what else is typed; None of others."""
     turn = 0.0
     if isinstance(body.base, Circle):
-        width = depth = 2 * body.base.radius
+        width, depth = 2 * body.base.radius, 2 * body.base.radius
     else:
         base = np.array(body.base.vertices)  # type: ignore[union-attr]
         if len(base) != 4 or np.ptp(np.hypot(*(base - base.mean(axis=0)).T)) > 1e-9:

@@ -1,6 +1,12 @@
-"""Overturning amplitudes: as recorded, of every test, and side by side by object, floor and pedestal."""
+"""Overturning amplitudes: as recorded, of every test, and side by side by object, floor and pedestal.
 
-from collections.abc import Sequence
+In: the results of a study (tables ``as_recorded``, ``tests``, ``resurrections``, ``mean_amplitudes``, outcomes
+of the IDA). Out: sections of the report with their tables and figures; amplitudes are peaks [g].
+
+Docs: ``docs/report.md``; definitions of overturning intensity: ``docs/definitions.md``.
+"""
+
+from collections.abc import Callable, Sequence
 from functools import partial
 from typing import Any
 
@@ -16,9 +22,9 @@ from rockfrag.base import figure_style as style
 from rockfrag.base.files import file_name
 from rockfrag.effects.paired_tests import with_counterparts
 from rockfrag.report import figures, findings
-from rockfrag.report.page import Column
-from rockfrag.report.part import Results, Section, says
-from rockfrag.words.sentences import amplitude, label, shortened
+from rockfrag.report.page import Column, column, table_html
+from rockfrag.report.part import FigureSpec, Results, Section, chapter
+from rockfrag.words.sentences import amplitude, counted, label, of_all, shortened
 
 
 def _wide(
@@ -38,18 +44,44 @@ def as_recorded(results: Results) -> Section:
     names = recorded["configuration"].unique()
     found = findings.recorded_found(recorded)
     motions = recorded["motion"].nunique()
-    draw = partial(recorded_map, recorded)
-    figure = says.figure("as_recorded", draw, found, motions, MOST_MOTIONS)
+    caption = (
+        "Largest rotation divided by the critical angle, under each motion as recorded. A dot marks an outcome "
+        "that flips if the motion is scaled within ±10 %."
+    )
+    if motions > MOST_MOTIONS:
+        caption += f" Shown are the {MOST_MOTIONS} strongest of {motions} motions; the table has all."
+    figure = FigureSpec(
+        "as_recorded", found.shown, caption, partial(recorded_map, recorded)
+    )
     texts = [_outcome(row) for row in recorded.to_dict("records")]
     shown = _wide(recorded, texts, ("earthquake", "floor", "motion", "pga_g"))
-    columns = [Column(name, name) for name in names]
-    table = says.table("as_recorded", shown, more=columns, file="as_recorded.csv")
-    return says.section("as_recorded", [figure, table], found)
+    columns = [
+        column("earthquake"),
+        column("floor"),
+        column("motion"),
+        column("pga_g", "Peak [g]", decimals=3),
+        *(Column(name, name) for name in names),
+    ]
+    table = table_html(
+        shown, columns, "Outcome under each motion as recorded.", "as_recorded.csv"
+    )
+    words = (
+        "Each motion shakes the objects as strongly as it was recorded, or as the building passes it on to the "
+        "floor. “Sensitive” marks an outcome that flips if the motion is scaled within ±10 %."
+    )
+    return chapter(
+        "as_recorded", "Motions as recorded", found, [words], [figure, table]
+    )
 
 
 def _outcome(row: dict[Any, Any]) -> str:
-    still = "slides" if row.get("peak_slip_m", 0.0) > 0 else "stays"
-    words = "overturns" if row["overturned"] else "rocks" if row["rocked"] else still
+    words = "stays"
+    if row["overturned"]:
+        words = "overturns"
+    elif row["rocked"]:
+        words = "rocks"
+    elif row.get("peak_slip_m", 0.0) > 0:
+        words = "slides"
     return f"{words} (sensitive)" if 0 < row["fraction_near"] < 1 else words
 
 
@@ -59,26 +91,60 @@ def amplitudes(results: Results) -> Section:
     resurrections = findings.resurrections_found(survived, results.table("tests"))
     tests = tests[tests["repetition"] == tests["repetition"].min()]
     names = tests["configuration"].unique()
-    columns = [Column(name, f"{name} [g]", numeric=True) for name in names]
+    columns = [column("earthquake"), column("floor"), column("motion")]
+    columns += [Column(name, f"{name} [g]", numeric=True) for name in names]
     texts = [amplitude(test) for test in tests.to_dict("records")]
     shown = _wide(tests, texts, ("earthquake", "floor", "motion"))
-    parts: list[Any] = [says.table("amplitudes", shown, more=columns, file="tests.csv")]
+    caption = "Overturning amplitude of every test (step protocol)."
+    parts: list[Any] = [table_html(shown, columns, caption, "tests.csv")]
     for name in results.objects:
         own = results.outcomes[results.outcomes["object"] == name]
         configurations = list(dict.fromkeys(own["configuration"]))
         curves = survived[survived["configuration"].isin(configurations)]
-        fallen, motions = curves["first_upper"].count(), curves["motion"].nunique()
         draw = partial(outcome_map, own, configurations)
-        about = (name, fallen, len(curves), motions, MOST_ROWS)
-        parts.append(
-            says.figure(f"outcomes_{file_name(name)}", draw, *about, of="outcomes")
-        )
+        parts.append(_outcomes_figure(name, curves, draw))
+    words = [
+        resurrections.said,
+        "The motion is raised in steps from rest until the body overturns. “>” stands before the largest "
+        "amplitude survived by a body that never overturned, “<” before the first step where it overturned "
+        "there already. These bounds enter no mean.",
+        "Bars show all amplitudes that overturn. Gaps are amplitudes survived although a weaker motion "
+        "overturned the body.",
+    ]
     found = findings.amplitudes_found(results.tests)
-    return says.section("amplitudes", parts, found, resurrections)
+    return chapter("amplitudes", "Overturning amplitudes", found, words, parts)
+
+
+def _outcomes_figure(
+    name: str, curves: pd.DataFrame, draw: Callable[[], Figure]
+) -> FigureSpec:
+    """Figure of the amplitudes that overturn one object; ``curves`` are the resurrections of its IDA curves."""
+    fallen, motions = int(curves["first_upper"].count()), curves["motion"].nunique()
+    counts = of_all(fallen, len(curves), "analysis", "analyses")
+    caption = f"{name}: amplitudes that overturn it, by motion."
+    if motions > MOST_ROWS:
+        caption += (
+            f" Shown are the first {MOST_ROWS} of {motions} motions; the table has all."
+        )
+    return FigureSpec(
+        name=f"outcomes_{file_name(name)}",
+        alt=f"Map of the amplitudes that overturn {name}; it overturns in {counts}.",
+        caption=caption,
+        draw=draw,
+    )
 
 
 def comparisons(results: Results) -> Section | None:
-    """Objects, floors and pedestals side by side."""
+    """Objects, floors and pedestals side by side.
+
+    Parameters
+    ----------
+    results : tables of the study
+
+    Returns
+    -------
+    The section; None for a single test.
+    """
     study, tests, means = results.study, results.tests, results.table("mean_amplitudes")
     if len(tests) < 2:
         return None
@@ -93,23 +159,56 @@ def comparisons(results: Results) -> Section | None:
             t["floor"] + t["pedestal"].map({"P": ", with pedestal", "NP": ""})
         )
     )
-    draw, about = figures.amplitudes_by, (len(results.objects), words, study.has_pairs)
-    by_object = partial(draw, "object", tests, means)
-    parts: list[Any] = [says.figure("amplitudes_by_object", by_object, *about)]
+    joins = "; thin lines join the tests of one motion with and without pedestal"
+    parts: list[Any] = [
+        FigureSpec(
+            name="amplitudes_by_object",
+            alt=f"Overturning amplitudes of {counted(len(results.objects), 'object')}. {words}",
+            caption=f"Overturning amplitude of every test by object{joins if study.has_pairs else ''}.",
+            draw=partial(figures.amplitudes_by, "object", tests, means),
+        )
+    ]
     if (of_floors := len(set(tests["floor"]))) > 1:
-        by_floor = partial(draw, "floor", tests, means)
-        parts.append(says.figure("amplitudes_by_floor", by_floor, of_floors))
+        figure = FigureSpec(
+            name="amplitudes_by_floor",
+            alt=f"Overturning amplitudes on {counted(of_floors, 'floor')}.",
+            caption="Overturning amplitude of every test by floor.",
+            draw=partial(figures.amplitudes_by, "floor", tests, means),
+        )
+        parts.append(figure)
     if study.has_pairs:
-        sides = findings.sides_of(study)
-        ratio = findings.ratio_of(results.table("pedestal/effects"), sides)
-        paired, _ = with_counterparts(tests, study.counterparts)
-        scatter = partial(figures.pedestal_scatter, paired, ratio, sides)
-        parts.append(says.figure("with_and_without_pedestal", scatter, sides, ratio))
+        parts.append(_paired_figure(results))
     if len(whole) > 1:
-        parts.append(says.table("means", whole, "motions"))
+        parts.append(table_html(whole, _MEANS_COLUMNS, "Means over the same motions."))
     if len(set(floors["floor"])) > 1:
-        parts.append(says.table("means", floors, "records and objects"))
-    return says.section("comparisons", parts, found, words)
+        caption = "Means over the same records and objects."
+        parts.append(table_html(floors, _MEANS_COLUMNS, caption))
+    title = "Objects, floors and pedestals compared"
+    if not found:
+        return Section("comparisons", title, words, [], parts)
+    return chapter("comparisons", title, found[0], [words], parts)
+
+
+_MEANS_COLUMNS = (
+    column("what", "Of"),
+    column("mean_g", "Geometric mean [g]", decimals=3),
+    column("motions", "Tests each", decimals=0),
+    column("of", "of", decimals=0),
+)
+
+
+def _paired_figure(results: Results) -> FigureSpec:
+    """Figure of amplitudes with a pedestal, or of an arrangement, against those of the counterpart."""
+    sides = findings.sides_of(results.study)
+    ratio = findings.ratio_of(results.table("pedestal/effects"), sides)
+    paired, _ = with_counterparts(results.tests, results.study.counterparts)
+    axes = f"Amplitude {sides.first} against that {sides.second}"
+    return FigureSpec(
+        name="with_and_without_pedestal",
+        alt=f"{axes}. {ratio}.",
+        caption=f"{axes}; the grey band is ±10 %, arrows are bounds.",
+        draw=partial(figures.pedestal_scatter, paired, ratio, sides),
+    )
 
 
 MOST_MOTIONS = 30  # more motions than this are not legible; the strongest are drawn
@@ -138,9 +237,9 @@ def recorded_map(recorded: pd.DataFrame) -> Figure:
     sensitive = shown[shown["fraction_near"].between(0, 1, inclusive="neither")]
     with style.panels(style.WIDEST, 1.35 + 0.185 * len(rows)) as (figure, axes):
         colours = _SHADES.with_extremes(over=_OVERTURNED, bad="#ffffff")
-        edges = (np.arange(count + 1) - 0.5 for count in (len(names), len(rows)))
         mesh = axes.pcolormesh(
-            *edges,
+            np.arange(len(names) + 1) - 0.5,
+            np.arange(len(rows) + 1) - 0.5,
             table,
             cmap=colours,
             vmin=0,
@@ -148,10 +247,8 @@ def recorded_map(recorded: pd.DataFrame) -> Figure:
             edgecolors="#cccccc",
             linewidth=0.4,
         )
-        x, y = (
-            sensitive["configuration"].map(names.index),
-            sensitive["motion"].map(rows.index),
-        )
+        x = sensitive["configuration"].map(names.index)
+        y = sensitive["motion"].map(rows.index)
         axes.plot(x, y, "o", ms=3.4, mfc="white", mec=style.BLACK, mew=0.7)
         axes.set_ylim(len(rows) - 0.5, -0.5)
         peaks = dict(zip(motions["motion"], motions["pga_g"], strict=True))

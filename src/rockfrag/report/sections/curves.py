@@ -1,6 +1,13 @@
-"""Fragility: curves by object, in two measures and by floor, and the measure that predicts best."""
+"""Fragility: curves by object, in two measures and by floor, and the measure that predicts best.
+
+In: the results of a study (tables ``fragility…`` and ``measure_selection``). Out: sections of the report with
+their tables and figures; medians θ in the unit of their measure, β [-].
+
+Theory: ``docs/fragility.md``.
+"""
 
 import math
+from collections.abc import Sequence
 from functools import partial
 
 import numpy as np
@@ -13,7 +20,7 @@ from matplotlib.ticker import PercentFormatter
 
 from rockfrag.base import figure_style as style
 from rockfrag.base.files import file_name
-from rockfrag.fragility.checks import REJECTION, TAILS
+from rockfrag.fragility.check_notes import REJECTION, TAILS
 from rockfrag.fragility.curve_facts import REJECTED, compared_curves
 from rockfrag.fragility.observations import Floats, name_and_unit
 from rockfrag.fragility.vector import INTERACTION_LEVEL, VectorTables
@@ -21,10 +28,19 @@ from rockfrag.outcomes.limit_states import OVERTURNS, limit_states
 from rockfrag.report.answer import has_one_record
 from rockfrag.report.figures import GREY
 from rockfrag.report.findings import ONE_MOTION, strength_found
-from rockfrag.report.page import Row
-from rockfrag.report.part import FigureSpec, Results, Section, says
+from rockfrag.report.page import Row, column, estimated, p_values, table_html
+from rockfrag.report.part import FigureSpec, Finding, Results, Section, chapter
 from rockfrag.stages.fragility import best_of
-from rockfrag.words.sentences import decimals_of, estimates, number, shortened
+from rockfrag.words.sentences import (
+    agree,
+    decimals_of,
+    estimates,
+    listed,
+    number,
+    of_all,
+    sentence,
+    shortened,
+)
 
 
 def fragility(results: Results) -> Section:
@@ -52,9 +68,47 @@ def fragility(results: Results) -> Section:
         rest for note in kept if (rest := note.replace(TAILS, "").strip())
     )
     notes = [*others, *([TAILS] if any(TAILS in note for note in kept) else [])]
-    figures, tables = _figures(results, curves), _tables(known_curves, results.level)
-    about = (found, results.level, rejected, total, REJECTED, without, notes)
-    return says.section("fragility", [*figures, *tables], *about)
+    words = [_reading(results.level)]
+    if rejected:
+        words.append(_rejection(rejected, total))
+    if without:
+        words.append(f"Some definitions give no curve for {listed(without)}.")
+    parts: list[Markup | FigureSpec] = [*_figures(results, curves)]
+    parts += _tables(known_curves, results.level)
+    return _fragility_section(found, [*words, *notes], parts)
+
+
+def _fragility_section(
+    found: Finding | None,
+    paragraphs: list[str],
+    parts: Sequence[Markup | FigureSpec],
+) -> Section:
+    """Section of curves, with its finding as the message where there is one."""
+    if found is not None:
+        return chapter("fragility", "Fragility", found, paragraphs, parts)
+    message = "These tests give no fragility curve."
+    return Section("fragility", "Fragility", message, paragraphs, parts)
+
+
+def _reading(level: str) -> str:
+    """Paragraph on how curves and their tables are read."""
+    return (
+        "Lognormal curves have the form Φ(ln(IM/θ)/β). The definition “mean probability” counts every amplitude, "
+        "structural resurrections included; “first overturning” and “always overturning” take one amplitude per "
+        f"motion. The {level} intervals resample earthquakes or motions, not amplitudes; “open” is a limit that "
+        "the data do not set. A small p of the fit rejects the lognormal curve. The last column of each table "
+        "gives the factor on the median without the most influential earthquake or motion."
+    )
+
+
+def _rejection(rejected: int, curves: int) -> str:
+    """Paragraph on the estimator that is compared where lognormal curves are rejected."""
+    return (
+        f"{sentence(of_all(rejected, curves, 'lognormal curve'))} {agree(rejected, curves, 'is', 'are')} "
+        f"rejected (p below {REJECTED:g}). Where one is, all curves of that measure and reading are compared by "
+        "the nonparametric monotone curve: the columns “nonparametric” give its median and half the distance from "
+        "its 16 to its 84 % point; its points with their intervals are in the table fragility_fractions."
+    )
 
 
 def _figures(results: Results, curves: pd.DataFrame) -> list[FigureSpec]:
@@ -74,15 +128,26 @@ def _figures(results: Results, curves: pd.DataFrame) -> list[FigureSpec]:
             f"{row['configuration']} {number(row['theta'], decimals_of(row['theta']))} {row['unit']}"
             for row in chosen.dropna(subset=["theta"]).to_dict("records")
         ]
-        band, points = (
-            table[table["configuration"].isin(own) & (table["im"] == measure)]
-            for table in (bands, bins)
+        band = bands[bands["configuration"].isin(own) & (bands["im"] == measure)]
+        points = bins[bins["configuration"].isin(own) & (bins["im"] == measure)]
+        known = f"medians {'; '.join(medians)}" if medians else "no curve"
+        caption = (
+            f"{name}: probability of overturning over {measure}, with {results.level} limits (band). Points are "
+            "fractions of all analyses in bins, with binomial limits."
         )
-        draw = partial(fragility_figure, chosen, band, points, nonparametric)
-        about = (name, measure, results.level, nonparametric, medians)
-        specs.append(
-            says.figure(f"fragility_{file_name(name)}", draw, *about, of="fragility")
+        if nonparametric:
+            caption += (
+                " Line: nonparametric monotone curve; dotted: lognormal curve, rejected for at least one of "
+                "them. The band is wide where all earthquakes agree, because few earthquakes cannot bound a "
+                "probability closely."
+            )
+        spec = FigureSpec(
+            name=f"fragility_{file_name(name)}",
+            alt=f"Fragility of {name} over {measure}: {known}.",
+            caption=caption,
+            draw=partial(fragility_figure, chosen, band, points, nonparametric),
         )
+        specs.append(spec)
     return specs
 
 
@@ -91,9 +156,19 @@ def _tables(curves: pd.DataFrame, level: str) -> list[Markup]:
     tables, keys = [], ["im", "unit", "estimator"]
     for (measure, unit, definition), rows in curves.groupby(keys, sort=False):
         shown = rows.assign(lean=[_lean(row) for row in rows.to_dict("records")])
-        rejected = (rows["p_fit"] < REJECTED).any()
-        about = (str(measure), unit, str(definition), level, rejected)
-        tables.append(says.table("curves", shown, *about))
+        columns = [
+            column("configuration"),
+            estimated("theta", f"Median θ [{unit}]"),
+            estimated("beta", "Dispersion β"),
+            p_values("p_fit", "p of the fit"),
+            column("lean", "Most influential"),
+        ]
+        if (rows["p_fit"] < REJECTED).any():
+            columns.append(estimated("theta_isotonic", "Nonparametric median"))
+            columns.append(estimated("beta_isotonic", "Nonparametric β"))
+        reading = str(definition).replace("_", " ")
+        caption = f"{sentence(str(measure))}, {reading}, with {level} intervals."
+        tables.append(table_html(shown, columns, caption))
     return tables
 
 
@@ -108,8 +183,11 @@ def two_measures(results: Results) -> Section | None:
     """Fits in two measures; None where the study asks for none."""
     if not results.study.fragility.pairs:
         return None
-    names = ("two_measures", "contours", "cells")
-    tables = VectorTables(*(results.table(f"fragility_{name}") for name in names))
+    tables = VectorTables(
+        fits=results.table("fragility_two_measures"),
+        contours=results.table("fragility_contours"),
+        cells=results.table("fragility_cells"),
+    )
     return two_measures_section(tables, results.study.fragility.confidence)
 
 
@@ -125,21 +203,59 @@ def two_measures_section(tables: VectorTables, confidence: float) -> Section | N
     ]
     keys, parts = ["configuration", "first", "second"], []
     for pair, row in zip(pairs, found[keys].to_dict("records"), strict=True):
-        own, tests = (
-            t[(t[keys] == pd.Series(row)).all(axis=1)]
-            for t in (tables.contours, tables.cells)
+        of_fit = pd.Series(row)
+        own = tables.contours[(tables.contours[keys] == of_fit).all(axis=1)]
+        tests = tables.cells[(tables.cells[keys] == of_fit).all(axis=1)]
+        words = (
+            f"{row['configuration']}: probability of overturning in {pair}. Lines are fitted, the band holds the "
+            "median; squares show the fraction of tests that overturned by cell, rising in both measures."
         )
         name = file_name(f"two_measures_{'_'.join(map(str, row.values()))}")
-        draw, of = partial(two_measures_figure, own, tests), row["configuration"]
-        parts.append(says.figure(name, draw, of, pair, of="two_measures"))
-    table = says.table(
-        "two_measures", found.assign(pair=pairs), file="fragility_two_measures"
+        draw = partial(two_measures_figure, own, tests)
+        parts.append(FigureSpec(name, words, words, draw))
+    table = table_html(
+        found.assign(pair=pairs),
+        _PAIR_COLUMNS,
+        "Fits in two measures.",
+        "fragility_two_measures",
     )
-    rejected, level = int((found["p_fit"] < REJECTED).sum()), f"{100 * confidence:g} %"
-    limits, notes = (INTERACTION_LEVEL, level), list(dict.fromkeys(fits["warnings"]))
+    rejected = int((found["p_fit"] < REJECTED).sum())
     named = ", ".join(dict.fromkeys(pairs))
-    about = (named, len(found), rejected, *limits, notes)
-    return says.section("two-measures", [*parts, table], *about)
+    message = f"Every fit in {named} describes its tests."
+    if rejected:
+        message = (
+            f"{sentence(of_all(rejected, len(found), 'fit'))} in {named} "
+            f"{agree(rejected, len(found), 'does', 'do')} not describe the tests; use the observed "
+            "probabilities by cell there."
+        )
+    reading = (
+        "The probability of overturning is Φ(b₀ + b₁ ln IM₁ + b₂ ln IM₂ + b₁₂ ln IM₁ ln IM₂). The product "
+        "stands in it where a score test over earthquakes rejects its absence at "
+        f"{100 * INTERACTION_LEVEL:.0f} % and it improves the prediction of held-out earthquakes; b₁₂ is 0 "
+        f"otherwise. Bands are {100 * confidence:g} % intervals over earthquakes (jackknife). The p of the fit "
+        "is from simulated tests in which each motion has one capacity."
+    )
+    notes = [note for note in dict.fromkeys(fits["warnings"]) if note]
+    return Section(
+        "two-measures",
+        "Fragility in two measures",
+        message,
+        [reading, *notes],
+        [*parts, table],
+    )
+
+
+_PAIR_COLUMNS = (
+    column("configuration", "Object"),
+    column("pair", "Measures"),
+    column("c0", "b₀", decimals=2),
+    column("c1", "b₁", decimals=2),
+    column("c2", "b₂", decimals=2),
+    column("c12", "b₁₂", decimals=2),
+    column("aic", "AIC", decimals=1),
+    column("p_interaction", "p of no interaction", decimals=3),
+    column("p_fit", "p of the fit", decimals=3),
+)
 
 
 def floor_curves(results: Results) -> Section | None:
@@ -158,8 +274,31 @@ def floor_curves(results: Results) -> Section | None:
     shown = shown.assign(state_text=shown["state"].map(labels), theta_text=theta)
     fallen = shown[shown["state"] == OVERTURNS].to_dict("records")
     weakest = min(fallen, key=lambda row: float(row["theta"]), default=None)
-    table = says.table("floors", shown, results.level)
-    return says.section("floor_curves", [table], weakest, files)
+    message = "No floor has a curve of overturning: too few objects overturned on a single one."
+    if weakest is not None:
+        message = (
+            f"{weakest['configuration']} on {weakest['floor']} is the most fragile: the median of its lognormal "
+            f"curve is {weakest['theta_text']} g."
+        )
+    words = [
+        "Each floor by itself, as a function of the peak acceleration of that floor. Curves in other measures "
+        "are in the table fragility_floors."
+    ]
+    if files:
+        words.append(
+            f"Files for other programs are in the folder exports: {listed(files)}."
+        )
+    columns = [
+        column("configuration"),
+        column("floor"),
+        column("state_text", "Limit state"),
+        column("im", "Measure"),
+        column("theta_text", "Median θ [g]", numeric=True),
+        estimated("beta", "Dispersion β"),
+    ]
+    caption = f"Curves by floor, with {results.level} intervals where there are any."
+    table = table_html(shown, columns, caption)
+    return Section("floor_curves", "Fragility by floor", message, words, [table])
 
 
 def measures(results: Results) -> Section:
@@ -173,8 +312,45 @@ def measures(results: Results) -> Section:
     ]
     better = list(dict.fromkeys(best.loc[~best["measure"].isin(list(asked)), "im"]))
     compared = choice["measure"].nunique()
-    about = (best_of(choice, asked), better, compared, none)
-    return says.section("measures", [says.table("measures", best)], *about)
+    words = [
+        "Measures are compared by how well they predict the first overturning amplitude of each motion, over all "
+        f"floors. The table recommends one of all {compared} that were compared, whether or not the study gives "
+        "curves in it."
+    ]
+    if none:
+        words.append(f"No measure can be recommended for {', '.join(none)}.")
+    columns = [
+        column("configuration"),
+        column("im", "Recommended"),
+        column("beta_amplitude", "β", decimals=3),
+        column("auc", "AUC", decimals=3),
+        column(
+            "chosen_fraction",
+            "Fraction of bootstrap samples in which it is best",
+            decimals=2,
+        ),
+        column("words", "Reasons"),
+    ]
+    caption = "Recommended measure of each configuration, with reasons."
+    return Section(
+        "measures",
+        "Recommended intensity measure",
+        _recommended(best_of(choice, asked), better),
+        words,
+        [table_html(best, columns, caption)],
+    )
+
+
+def _recommended(named: Sequence[str], better: Sequence[str]) -> str:
+    """Best of the measures that a study asks for, and others that predict better."""
+    if not named:
+        return "No measure can be recommended."
+    verb = "is" if len(named) == 1 else "are"
+    words = f"{listed(named)} {verb} the best of the measures asked for."
+    if better:
+        verb = "predicts" if len(better) == 1 else "predict"
+        words += f" Of all compared, {listed(better)} {verb} better."
+    return words
 
 
 def fragility_figure(
@@ -191,21 +367,18 @@ def fragility_figure(
     compared with each other need the same.
     """
     rows, nonparametric, _ = compared_curves(curves, nonparametric)
-    used, other = (
-        ("fraction", "probability") if nonparametric else ("probability", None)
-    )
-    lower, upper = (
-        ("fraction_lower", "fraction_upper") if nonparametric else ("lower", "upper")
-    )
+    used, lower, upper = "probability", "lower", "upper"
+    if nonparametric:
+        used, lower, upper = "fraction", "fraction_lower", "fraction_upper"
     first = curves.iloc[0]
-    size, shape = (
-        (style.COLUMN_WIDTH, 0.75 + 1.65 * len(curves)),
-        {"nrows": len(curves)},
-    )
-    with style.panels(*size, **shape, sharex=True, sharey=True, squeeze=False) as (
-        figure,
-        grid,
-    ):
+    with style.panels(
+        style.COLUMN_WIDTH,
+        0.75 + 1.65 * len(curves),
+        nrows=len(curves),
+        sharex=True,
+        sharey=True,
+        squeeze=False,
+    ) as (figure, grid):
         panels = grid[:, 0]
         for k, (panel, curve) in enumerate(
             zip(panels, rows.to_dict("records"), strict=True)
@@ -216,8 +389,9 @@ def fragility_figure(
             points = bands[bands["configuration"] == own]
             x, low, high = points["x"], points[lower], points[upper]
             panel.fill_between(x, low, high, color=colour, alpha=0.18, linewidth=0)
-            if other:
-                panel.plot(x, points[other], ":", color=style.BLACK, linewidth=0.9)
+            if nonparametric:
+                dotted = points["probability"]
+                panel.plot(x, dotted, ":", color=style.BLACK, linewidth=0.9)
             panel.plot(x, points[used], color=colour)
             probability_axis(panel, np.array([bands["x"].min(), bands["x"].max()]))
             words = "no median"
@@ -230,30 +404,27 @@ def fragility_figure(
         style.letter_panels(panels)
         panels[-1].set_xlabel(axis_label(first["im"], first["unit"]))
         figure.supylabel("Probability of overturning", fontsize=8)
-        names = (
-            ["nonparametric", "lognormal (rejected)"]
-            if nonparametric
-            else ["lognormal"]
+        handles = {"lognormal": Line2D([], [], color=GREY)}
+        if nonparametric:
+            rejected = Line2D([], [], color=style.BLACK, ls=":", lw=0.9)
+            handles = {
+                "nonparametric": Line2D([], [], color=GREY),
+                "lognormal (rejected)": rejected,
+            }
+        handles["analyses in bins"] = Line2D(
+            [], [], color=GREY, marker="o", ls="", ms=3.2
         )
-        handles = [
-            Line2D([], [], color=GREY),
-            Line2D([], [], color=style.BLACK, ls=":", lw=0.9),
-        ]
-        handles = [
-            *handles[: len(names)],
-            Line2D([], [], color=GREY, marker="o", ls="", ms=3.2),
-        ]
-        names.append("analyses in bins")
-        figure.legend(handles, names, loc="outside upper center", ncols=2)
+        figure.legend(
+            list(handles.values()), list(handles), loc="outside upper center", ncols=2
+        )
         return figure
 
 
 def draw_fractions(axes: Axes, bins: pd.DataFrame, colour: str) -> None:
     """Fractions of overturned tests in bins with their binomial limits."""
     fraction = bins["fraction"].to_numpy(dtype=float)
-    lower, upper = (
-        bins[f"fraction_{end}"].to_numpy(dtype=float) for end in ("lower", "upper")
-    )
+    lower = bins["fraction_lower"].to_numpy(dtype=float)
+    upper = bins["fraction_upper"].to_numpy(dtype=float)
     reach = [np.maximum(fraction - lower, 0.0), np.maximum(upper - fraction, 0.0)]
     x = bins["x"].to_numpy(dtype=float)
     axes.errorbar(
@@ -288,30 +459,30 @@ def two_measures_figure(contours: pd.DataFrame, cells: pd.DataFrame) -> Figure:
     first, second = str(cells["first"].iloc[0]), str(cells["second"].iloc[0])
     x, y = cells["at_first"].to_numpy(), cells["at_second"].to_numpy()
     with style.panels(style.COLUMN_WIDTH, 3.2) as (figure, axes):
-        size, shades = (
-            6 + 30 * np.sqrt(cells["tests"] / cells["tests"].max()),
-            cells["probability"],
-        )
+        size = 6 + 30 * np.sqrt(cells["tests"] / cells["tests"].max())
+        shades = cells["probability"]
         shown = axes.scatter(
             x, y, size, shades, marker="s", cmap="Greys", vmin=0, vmax=1
         )
         shown.set(edgecolor="#999999", linewidth=0.3)
         reach, rise = (0.8 * x.min(), 1.25 * x.max()), (0.9 * y.min(), 1.1 * y.max())
         across = bool((contours["of"] == first).all())
-        within = reach if across else rise
+        low, high = reach if across else rise
         fill = axes.fill_betweenx if across else axes.fill_between
         for probability, line in LINES.items():
             part = contours[np.isclose(contours["probability"], probability)]
-            at, value = part["at"], part["value"].where(part["value"].between(*within))
-            drawn = (value, at) if across else (at, value)
+            at = part["at"]
+            value = part["value"].where(part["value"].between(low, high))
             axes.plot(
-                *drawn,
+                value if across else at,
+                at if across else value,
                 color=style.BLUE,
                 linestyle=line,
                 label=f"{100 * probability:.0f} %",
             )
             if probability == MEDIAN:
-                lower, upper = (part[side].clip(*within) for side in ("lower", "upper"))
+                lower = part["lower"].clip(low, high)
+                upper = part["upper"].clip(low, high)
                 fill(at, lower, upper, color=style.BLUE, alpha=0.2, linewidth=0)
         axes.set(xlim=reach, ylim=rise, xlabel=_axis(first), ylabel=_axis(second))
         style.plain_log(axes, "xy")

@@ -1,4 +1,10 @@
-"""The effect of the pedestal, ratios of amplitudes with and without it; and tests that were measured."""
+"""Effect of the pedestal, ratios of amplitudes with and without it; and tests that were measured.
+
+In: the results of a study (tables ``pedestal/…`` and ``measured/…``). Out: sections of the report with their
+tables and figures; ratios are with over without pedestal [-], with 95 % intervals.
+
+Theory: ``docs/pedestal.md``.
+"""
 
 from collections.abc import Sequence
 from functools import partial
@@ -22,13 +28,14 @@ from rockfrag.report.findings import (
     ratio_of,
     sides_of,
 )
-from rockfrag.report.page import Columns, estimated, table_html
-from rockfrag.report.part import FigureSpec, Results, Section, says
+from rockfrag.report.page import Column, column, estimated, p_values, table_html
+from rockfrag.report.part import FigureSpec, Finding, Results, Section, chapter
 from rockfrag.shaketable.definitions import DEFINITION
 from rockfrag.words.sentences import (
     amplitude,
     counted,
     has_interval,
+    listed,
     sentence,
     shortened,
 )
@@ -39,19 +46,24 @@ MOST_ROWS = 45
 _SCOPES = {"whole": "all pairs", "cell": "floor and object"}
 
 
-def effect_columns(ratio: str = "With/without pedestal") -> Columns:
-    """What is shown of :func:`rockfrag.effects.study.effects_table` after :func:`shown_effects`."""
-    return (
-        "scope; level = Of; pairs .0; at_bound = of which bounds .0",
+def effect_columns(ratio: str = "With/without pedestal") -> list[Column]:
+    """Columns of :func:`rockfrag.effects.study.effects_table` after :func:`shown_effects`."""
+    return [
+        column("scope"),
+        column("level", "Of"),
+        column("pairs", decimals=0),
+        column("at_bound", "of which bounds", decimals=0),
         estimated("ratio", f"{ratio} [95 % interval]", 3, limits=("lower", "upper")),
-        "detectable_ratio .2; within = Within ±10 %; p_holm = p (Holm) p",
-    )
+        column("detectable_ratio", decimals=2),
+        column("within", "Within ±10 %"),
+        p_values("p_holm", "p (Holm)"),
+    ]
 
 
 def shown_effects(effects: pd.DataFrame) -> pd.DataFrame:
     """Effects with scopes and levels in words, and without what says nothing where an interval has no width."""
     limits = zip(effects["lower"], effects["upper"], strict=True)
-    known = np.array([has_interval(*ends, 3) for ends in limits], dtype=bool)
+    known = np.array([has_interval(low, high, 3) for low, high in limits], dtype=bool)
     return effects.assign(
         scope=effects["scope"].replace(_SCOPES),
         level=effects["level"].str.replace("/", ", "),
@@ -68,22 +80,24 @@ def pedestal(results: Results) -> Section | None:
         return None
     effects, whole = results.table("pedestal/effects"), results.table("pedestal/whole")
     here = effects[effects["definition"] == DEFINITION]
-    about = sides_of(study)
-    found = pedestal_effect(effects, about)
+    sides = sides_of(study)
+    found = pedestal_effect(effects, sides)
     # a name that the user gave stays as it is
-    ratio = sentence(about.ratio) if about is WITH_PEDESTAL else about.ratio
+    ratio = sentence(sides.ratio) if sides is WITH_PEDESTAL else sides.ratio
     parts: list[Any] = []
     if len(here):
         methods = whole.assign(definition=whole["definition"].str.replace("_", " "))
-        columns: Columns = (
-            "definition; method",
-            estimated(
-                "estimate", f"{ratio} [95 % interval]", 3, limits=("lower", "upper")
-            ),
-            "p = p p; smallest_p = Smallest possible p p; remark",
-        )
+        interval = f"{ratio} [95 % interval]"
+        columns = [
+            column("definition"),
+            column("method"),
+            estimated("estimate", interval, 3, limits=("lower", "upper")),
+            p_values("p", "p"),
+            p_values("smallest_p", "Smallest possible p"),
+            column("remark"),
+        ]
         caption = "All pairs, by other methods and other ways to read the amplitude."
-        parts = [_forest(here, about), table_html(methods, columns, caption)]
+        parts = [_forest(here, sides), table_html(methods, columns, caption)]
         caption = "Effect by scope, step protocol."
         if len(here) > page.MOST_TABLE_ROWS:
             each = here["scope"] == "earthquake"
@@ -91,24 +105,51 @@ def pedestal(results: Results) -> Section | None:
                 f" Each of the {each.sum()} earthquakes is in pedestal/effects.csv."
             )
             here = here[~each]
-        file, columns = "pedestal/effects.csv", effect_columns(ratio)
-        parts.insert(1, table_html(shown_effects(here), columns, caption, file))
+        shown = table_html(
+            shown_effects(here), effect_columns(ratio), caption, "pedestal/effects.csv"
+        )
+        parts.insert(1, shown)
     notes = results.table("pedestal/notes")
     notes = notes[notes["definition"] == DEFINITION] if len(notes) else notes
-    return says.section(
-        "pedestal", parts, found, about, study.counterparts, notes["note"]
+    title = "Arrangements compared" if study.counterparts else "Effect of the pedestal"
+    words = _pedestal_words(found, sides, list(notes["note"]))
+    return chapter("pedestal", title, found[0], words, parts)
+
+
+def _pedestal_words(
+    found: Sequence[Finding], sides: Sides, notes: Sequence[str]
+) -> list[str]:
+    """Paragraphs behind the first finding: the others, how ratios are read, and notes on the pairs."""
+    words = [further.said for further in found[1:]]
+    words.append(
+        f"The ratio is the overturning {sides.divided}, paired by object and motion. Motions of one earthquake "
+        "are not independent, so intervals are over earthquakes where there are several. “Detectable” is the "
+        "smallest ratio found with 80 % power. There is neither interval nor test where all amplitudes agree to "
+        "the steps tested. p values are adjusted within each scope (Holm)."
     )
+    for note in dict.fromkeys(notes):
+        words.append(f"{sentence(note).removesuffix('.')}.")
+    return words
 
 
-def _forest(effects: pd.DataFrame, about: Sides) -> FigureSpec:
+def _forest(effects: pd.DataFrame, sides: Sides) -> FigureSpec:
     shown, left_out = effects, []
     for scope, words in (("cell", "floors by object"), ("earthquake", "earthquakes")):
         if len(shown) > MOST_ROWS:
             shown = shown[shown["scope"] != scope]
             left_out.append(words)
-    ratio = ratio_of(effects, about)
-    draw = partial(forest_figure, shown, about)
-    return says.figure("pedestal_effect", draw, about, left_out, ratio)
+    caption = (
+        f"Overturning {sides.divided}, with 95 % intervals; grey is ±10 %, the range that counts as no effect. "
+        "Step protocol."
+    )
+    if left_out:
+        caption += f" Not drawn, and in the table only: {listed(left_out)}."
+    return FigureSpec(
+        name="pedestal_effect",
+        alt=f"Ratios by scope. All pairs: {ratio_of(effects, sides)}.",
+        caption=caption,
+        draw=partial(forest_figure, shown, sides),
+    )
 
 
 NONE = (1 / 1.1, 1.1)  # ratios between which an effect counts as none
@@ -127,12 +168,15 @@ def forest_figure(effects: pd.DataFrame, sides: Sides = WITH_PEDESTAL) -> Figure
         np.r_[False, scope[1:] != scope[:-1]]
     )
     names = ["level", "units", "unit"]
-    labels = [_label(*row) for row in effects[names].itertuples(index=False, name=None)]
+    labels = [
+        _label(level, units, unit)
+        for level, units, unit in effects[names].itertuples(index=False, name=None)
+    ]
     columns = ["lower", "ratio", "upper", "p_holm"]
     figures = effects[columns].to_numpy(dtype=float)
     height = 0.9 + 0.19 * float(place[-1] + 1)
     with style.panels(style.COLUMN_WIDTH + 1.1, height) as (figure, axes):
-        axes.axvspan(*NONE, color=BAND, lw=0)
+        axes.axvspan(NONE[0], NONE[1], color=BAND, lw=0)
         axes.axvline(1.0, color=GREY, lw=0.8)
         for y, (lower, ratio, upper, p) in zip(place, figures, strict=True):
             if np.isfinite([lower, upper]).all():
@@ -163,7 +207,7 @@ def forest_figure(effects: pd.DataFrame, sides: Sides = WITH_PEDESTAL) -> Figure
 
 def _label(level: str, units: int, unit: str) -> str:
     name = "all pairs" if level == "all" else shortened(level.replace("/", ", "), 30)
-    return f"{name} ({counted(int(units), 'earthquake' if unit == 'earthquake' else unit)})"
+    return f"{name} ({counted(int(units), unit)})"
 
 
 def ratio_axis(
@@ -171,7 +215,13 @@ def ratio_axis(
     values: NDArray[np.float64] | Sequence[float],
     sides: Sides = WITH_PEDESTAL,
 ) -> None:
-    """A logarithmic axis of ratios with plain ticks that covers all values and the band of none."""
+    """Set a logarithmic axis of ratios with plain ticks that covers all values and the band of none.
+
+    Parameters
+    ----------
+    axes, values : where ratios are drawn, and the ratios [-]
+    sides : the comparison
+    """
     known = np.asarray(values, dtype=float)
     known = known[np.isfinite(known) & (known > 0)]
     # one interval without a useful limit may not press all others together
@@ -180,10 +230,10 @@ def ratio_axis(
     axes.set_xscale("log")
     axes.set_xlim(low, high)
     ticks = [tick for tick in _TICKS if low <= tick <= high]
-    for crowded in ((0.9, 1.1), (0.7, 1.2), (0.8, 1.5), (0.3, 3)):
+    for omitted in ((0.9, 1.1), (0.7, 1.2), (0.8, 1.5), (0.3, 3)):
         apart = np.diff(np.log(ticks) / np.log(high / low))
         if len(ticks) > _MOST_TICKS or apart.min(initial=np.inf) < _LEAST_APART:
-            ticks = [tick for tick in ticks if tick not in crowded]
+            ticks = [tick for tick in ticks if tick not in omitted]
     axes.set_xticks(ticks, [f"{tick:g}" for tick in ticks])
     axes.minorticks_off()
     words = "with / without pedestal" if sides == WITH_PEDESTAL else "over the other's"
@@ -196,27 +246,51 @@ def measured(results: Results) -> Section | None:
         return None
     beside = results.table("measured/beside")
     ratio = np.log(beside["ratio"].dropna())
-    words = says.line(
-        "beside", len(beside), len(ratio), np.exp(ratio.mean()), ratio.std()
-    )
+    words = f"{counted(len(beside), 'measured test')}, {len(ratio)} of them with a simulated counterpart."
+    if len(ratio) > 1:
+        words += (
+            f" Measured over simulated amplitude: {np.exp(ratio.mean()):.2f} in the geometric mean, with a "
+            f"scatter of {ratio.std():.2f} in the logarithm."
+        )
     parts: list[Markup | FigureSpec] = []
     if beside["simulated_g"].notna().any():
-        parts.append(
-            says.figure("measured_beside", lambda: measured_beside(beside), words)
+        figure = FigureSpec(
+            name="measured_beside",
+            alt=f"Measured against simulated amplitudes. {words}",
+            caption="Measured against simulated amplitude of the same test; arrows are bounds.",
+            draw=lambda: measured_beside(beside),
         )
-    curves, effects = (
-        results.table("measured/fragility"),
-        results.table("measured/effects"),
-    )
+        parts.append(figure)
+    curves = results.table("measured/fragility")
+    effects = results.table("measured/effects")
     shown = beside.assign(
         measured=[amplitude(row) for row in beside.to_dict("records")]
     )
-    parts += [says.table("measured", shown), says.table("measured_curves", curves)]
+    caption = "Measured tests beside simulated ones."
+    parts.append(table_html(shown, _MEASURED_COLUMNS, caption))
+    caption = "Fragility from the measured tests."
+    parts.append(table_html(curves, _CURVES_COLUMNS, caption))
     if len(effects):
         caption = "Measured effect of the pedestal."
         parts.append(table_html(shown_effects(effects), effect_columns(), caption))
-    notes = results.table("measured/notes")["note"]
-    return says.section("measured", parts, words, notes)
+    notes = list(results.table("measured/notes")["note"])
+    return Section("measured", "Measured tests", words, notes, parts)
+
+
+_MEASURED_COLUMNS = (
+    column("object"),
+    column("pedestal", "Side"),
+    column("earthquake"),
+    column("floor"),
+    column("measured", "Measured [g]", numeric=True),
+    column("simulated_g", decimals=3),
+    column("ratio", "Measured / simulated", decimals=2),
+)
+_CURVES_COLUMNS = (
+    column("configuration"),
+    estimated("theta", "Median θ [g]"),
+    column("beta", "β", decimals=3),
+)
 
 
 def measured_beside(beside: pd.DataFrame) -> Figure:

@@ -1,4 +1,10 @@
-"""What was tested: bodies, motions and shaking table, what the model assumes, and what a study went on without."""
+"""Bodies, motions and shaking table that were tested, validity of the model, and records left out.
+
+In: the results of a study (tables ``bodies``, ``measures``, ``shaker``, ``validity``, ``sliding``,
+``left_out``). Out: sections of the report with their tables and figures.
+
+Docs: ``docs/report.md``; the model's assumptions: ``docs/rocking.md``, "What a response says about itself".
+"""
 
 from collections.abc import Sequence
 from functools import partial
@@ -16,21 +22,48 @@ from rockfrag.motions.intensity import intensity_measures
 from rockfrag.records.motion import Motion
 from rockfrag.report.figures import GREY, MARKERS, drawn_tests
 from rockfrag.report.findings import model_allowed, sliding_found
-from rockfrag.report.page import Column
-from rockfrag.report.part import Results, Section, says
+from rockfrag.report.page import Column, column, table_html
+from rockfrag.report.part import FigureSpec, Results, Section, chapter
 from rockfrag.report.sections.amplitudes import MOST_ROWS
 from rockfrag.stages.tests import LIMITED, MOST_TESTED
-from rockfrag.words.sentences import label, number, shortened
+from rockfrag.words.sentences import (
+    counted,
+    label,
+    listed,
+    number,
+    of_all,
+    sentence,
+    shortened,
+)
 
 
 def left_out(results: Results) -> Section | None:
     """Records that a study went on without."""
     if not results.study.keep_going or (table := results.table("left_out")).empty:
         return None
-    shown = says.table("left_out", table, file="left_out.csv")
-    return says.section(
-        "left-out", [shown], list(table["motion"]), len(results.study.catalogue)
+    columns = [
+        column("motion", "Record"),
+        column("reason", "Why it could not be used"),
+    ]
+    caption = "Records that could not be used."
+    shown = table_html(table, columns, caption, "left_out.csv")
+    names = list(table["motion"])
+    records = counted(len(results.study.catalogue), "record")
+    message = (
+        f"{len(names)} of {records} could not be used: {_first_names(names)}. This page describes the "
+        "others."
     )
+    return Section("left-out", "Left out", message, [], [shown])
+
+
+def _first_names(names: Sequence[str]) -> str:
+    """All of a few names, the first two of many."""
+    if len(names) <= MOST_NAMED:
+        return listed(names)
+    return f"{names[0]}, {names[1]} and others"
+
+
+MOST_NAMED = 5  # so many records that were left out are named in a sentence
 
 
 def shaker(results: Results) -> Section | None:
@@ -43,14 +76,46 @@ def shaker(results: Results) -> Section | None:
     free = results.tests[results.tests["censored"] == "right"]
     new = ended[~ended["test"].isin(free["test"])]
     names = [f"{row['test']} ({row['remark']})" for row in new.to_dict("records")]
+    ended_tests = of_all(len(names), len(limited), "test") if names else "no test"
+    message = (
+        f"The shaking table’s limits end {ended_tests} before the object overturns."
+    )
+    caption = (
+        "Peak up to which the shaking table can reproduce each motion (bars; behind each its limiting quantity: "
+        "stroke, velocity, acceleration or force), and the peak that overturns each object."
+    )
     draw = partial(shaker_limits, limits, results.tests)
-    figure = says.figure("shaker_limits", draw, names, len(limited))
-    table = says.table("shaker", limits, file="shaker.csv")
-    return says.section("shaker", [figure, table], names, len(limited))
+    figure = FigureSpec("shaker_limits", message, caption, draw)
+    columns = [
+        column("motion"),
+        column("travel_cm_per_g", "Peak to peak [cm/g]", decimals=2),
+        column("excursion_cm_per_g", "From the start [cm/g]", decimals=2),
+        column("limit_g", "Fits up to [g]", decimals=3),
+        column("limited_by"),
+    ]
+    caption = "What each motion requires of the shaking table, per g of its peak."
+    table = table_html(limits, columns, caption, "shaker.csv")
+    words = [f"These are {listed(names)}."] if names else []
+    words.append(
+        "The definition “step protocol shaker” of the pedestal’s effect includes these limits. The other "
+        "definitions do not, because the position at which the table starts is an assumption."
+    )
+    return Section(
+        "shaker", "What the shaking table could do", message, words, [figure, table]
+    )
 
 
 def motions(results: Results) -> Section:
-    """The motions, how strong each is and how it goes."""
+    """Motions with their measures and histories.
+
+    Parameters
+    ----------
+    results : tables of the study
+
+    Returns
+    -------
+    The section.
+    """
     measures, ground = results.table("measures"), results.ground
     columns = [
         Column(
@@ -61,15 +126,32 @@ def motions(results: Results) -> Section:
         for each in intensity_measures()
         if each.decimals is not None
     ]
-    table = says.table("motions", measures, more=columns, file="measures.csv")
+    columns.insert(0, column("name", "Motion"))
+    caption = "Intensity of every motion as recorded."
+    table = table_html(measures, columns, caption, "measures.csv")
     shown = min(len(ground), MOST_PANELS)
     peak = max(ground[:shown], key=lambda motion: motion.pga)
-    about = (shown, len(results.records), peak, peak.pga / GRAVITY)
-    figure = says.figure(
-        "accelerations", lambda: acceleration_histories(ground), *about
+    records = len(results.records)
+    caption = "Ground accelerations over time; the dot marks the peak."
+    if shown < records:
+        caption += f" The first {shown} of {records}; all are in the table."
+    figure = FigureSpec(
+        name="accelerations",
+        alt=(
+            f"Ground accelerations of {counted(shown, 'record')}; the strongest, {peak.name}, peaks at "
+            f"{peak.pga / GRAVITY:.2f} g."
+        ),
+        caption=caption,
+        draw=lambda: acceleration_histories(ground),
     )
-    floors = list(dict.fromkeys(measures["floor"]))
-    return says.section("motions", [table, figure], floors, results.study.building)
+    message = "The records shake the objects directly, without a building."
+    if (building := results.study.building) is not None:
+        floors = list(dict.fromkeys(measures["floor"]))
+        message = (
+            f"The motions of {counted(len(floors), 'floor')} ({listed(floors)}) are computed with a building "
+            f"model ({building.name})."
+        )
+    return Section("motions", "Motions", message, [], [table, figure])
 
 
 def bodies(results: Results) -> Section:
@@ -81,31 +163,55 @@ def bodies(results: Results) -> Section:
         height_cm=table["height_m"] * CENTIMETRES_PER_METRE,
         uplift_g=table["uplift_m_s2"] / GRAVITY,
     )
-    ends = (
-        number(value, 2) for value in (shown["uplift_g"].min(), shown["uplift_g"].max())
+    columns = [
+        column("configuration"),
+        column("stands_on"),
+        column("width_cm", decimals=1),
+        column("height_cm", decimals=1),
+        column("mass_kg", decimals=3),
+        column("slenderness", "Height / width", decimals=2),
+        column("critical_angle_rad", decimals=3),
+        column("frequency_1_s", "Frequency parameter p [1/s]", decimals=2),
+        column("uplift_g", "Starts to rock at [g]", decimals=3),
+    ]
+    caption = "The objects, alone and on their pedestals."
+    low, high = number(shown["uplift_g"].min(), 2), number(shown["uplift_g"].max(), 2)
+    span = f"at {low} g" if low == high else f"between {low} and {high} g"
+    condition = ""
+    if results.study.slides or results.study.vertical:
+        condition = " if the surfaces neither slip nor move vertically"
+    message = f"{sentence(counted(len(shown), 'configuration'))}; rocking starts {span} at the base{condition}."
+    words = (
+        "Rigid blocks that rock on two edges in the plane of the motion. The critical angle is the angle "
+        "between the diagonal and the vertical. A block starts to rock when the acceleration of its base "
+        "exceeds the one given, and overturns if it rotates too far beyond the critical angle."
     )
-    may_differ = results.study.slides or results.study.vertical
-    return says.section(
-        "bodies", [says.table("bodies", shown)], len(shown), *ends, may_differ
+    return Section(
+        "bodies", "Bodies", message, [words], [table_html(shown, columns, caption)]
     )
 
 
 def validity(results: Results) -> Section | None:
-    """What the model assumes, or what friction did where it is limited."""
+    """Validity of the model, or effect of friction where it is limited.
+
+    Parameters
+    ----------
+    results : tables of the study
+
+    Returns
+    -------
+    The section; None without tests that overturned.
+    """
     if results.study.slides:
-        sliding = results.table("sliding")
-        shown = sliding.assign(largest_slip_cm=100 * sliding["largest_slip_m"])
-        table = says.table("sliding", shown)
-        return says.section("validity", [table], sliding_found(sliding), of="sliding")
+        return _sliding(results.table("sliding"))
     tests = results.table("validity")
     if tests.empty:
         return None
     demand = tests["friction_demand"].astype(float)
-    needed, lifted = (
-        demand.where(np.isfinite(demand)),
-        tests["least_normal_force_n"] <= 0,
+    known = tests.assign(
+        needed=demand.where(np.isfinite(demand)),
+        lifted=tests["least_normal_force_n"] <= 0,
     )
-    known = tests.assign(needed=needed, lifted=lifted)
     shown = known.groupby(["object", "pedestal"], sort=False, as_index=False).agg(
         tests=("needed", "size"),
         known=("needed", "count"),
@@ -115,8 +221,53 @@ def validity(results: Results) -> Section | None:
     )
     side = shown["pedestal"].map({"P": "with", "NP": "without"})
     shown = shown.assign(side=side, beyond=shown["tests"] - shown["known"])
-    table, all_tests = says.table("validity", shown), shown["tests"].max() < MOST_TESTED
-    return says.section("validity", [table], model_allowed(tests), all_tests)
+    columns = [
+        column("object"),
+        column("side", "Pedestal"),
+        column("tests", decimals=0),
+        column("median", "Friction needed, median", decimals=2),
+        column("largest", "largest", decimals=2),
+        column("beyond", "No friction is enough", decimals=0),
+        column("lifted", "Lifts off", decimals=0),
+    ]
+    caption = "Friction coefficient needed, and tests with lift-off."
+    which = "each test of a sample spread evenly over all"
+    if shown["tests"].max() < MOST_TESTED:
+        which = "every test"
+    words = (
+        f"Blocks neither slide nor jump in this model. The contact forces of {which}, at its overturning "
+        "amplitude, give the friction that this requires."
+    )
+    return chapter(
+        "validity",
+        "What the model assumes",
+        model_allowed(tests),
+        [words],
+        [table_html(shown, columns, caption)],
+    )
+
+
+def _sliding(sliding: pd.DataFrame) -> Section:
+    """Section on what limited friction did; slips in metres."""
+    shown = sliding.assign(largest_slip_cm=100 * sliding["largest_slip_m"])
+    columns = [
+        column("configuration"),
+        column("cases", "Analyses", decimals=0),
+        column("slid", "Slides", decimals=0),
+        column("flew", "Flies", decimals=0),
+        column("largest_slip_cm", decimals=1),
+        column("saved", "Saved by sliding", decimals=0),
+        column("felled", "Overturned by it", decimals=0),
+    ]
+    words = (
+        "Bodies stick, slide, rock and fly with the friction of this study, at every amplitude of every motion. "
+        "Each analysis is repeated without sliding. “Saved by sliding” overturns only without sliding, "
+        "“overturned by it” only with sliding and flight."
+    )
+    table = table_html(shown, columns, "Sliding and flight in all analyses.")
+    return chapter(
+        "validity", "What friction does", sliding_found(sliding), [words], [table]
+    )
 
 
 def shaker_limits(limits: pd.DataFrame, tests: pd.DataFrame) -> Figure:
@@ -167,11 +318,14 @@ MOST_PANELS = 8  # more motions than this do not fit one figure; the first are d
 def acceleration_histories(motions: Sequence[Motion]) -> Figure:
     """Draw the acceleration of ``MOST_PANELS`` motions over time with its peak, a panel a motion, on one scale."""
     shown = motions[:MOST_PANELS]
-    size, shape = (style.COLUMN_WIDTH, 0.5 + 0.95 * len(shown)), {"nrows": len(shown)}
-    with style.panels(*size, **shape, sharex=True, sharey=True, squeeze=False) as (
-        figure,
-        grid,
-    ):
+    with style.panels(
+        style.COLUMN_WIDTH,
+        0.5 + 0.95 * len(shown),
+        nrows=len(shown),
+        sharex=True,
+        sharey=True,
+        squeeze=False,
+    ) as (figure, grid):
         panels = grid[:, 0]
         highest = 1.12 * max(motion.pga for motion in shown) / GRAVITY
         for panel, motion in zip(panels, shown, strict=True):

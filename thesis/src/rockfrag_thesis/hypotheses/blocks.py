@@ -110,7 +110,7 @@ def c6(setting: Setting) -> Result:
     """Period of free rocking over amplitude."""
     ratios, law = {}, 0.0
     for name, block in setting.blocks.items():
-        small, large = (fraction * block.critical_angle(1) for fraction in (0.2, 0.9))
+        small, large = 0.2 * block.critical_angle(1), 0.9 * block.critical_angle(1)
         ratios[name] = _first_impact(block, large) / _first_impact(block, small)
         for theta0 in (small, large):
             exact = quarter_period(block, theta0, linear=True)

@@ -46,6 +46,7 @@ def contrast(
     factor: str,
     level: str,
     reference: str,
+    *,
     block: str = "earthquake",
     value: str = "d",
 ) -> Estimate:

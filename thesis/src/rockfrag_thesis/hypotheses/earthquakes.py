@@ -13,12 +13,13 @@ from rockfrag_thesis.hypotheses.hypothesis import Result, Undecidable, hypothesi
 from rockfrag_thesis.hypotheses.orders import Part, Parts, Size, order_hypothesis
 from rockfrag_thesis.hypotheses.outcomes import LEVEL, decided, jackknife, p_nonzero
 
-EARTHQUAKES = FRIULI, KOBE, LOMA_PRIETA, NORTHRIDGE = (
+EARTHQUAKES = (
     "Friuli",
     "Kobe",
     "Loma Prieta",
     "Northridge",
 )
+FRIULI, KOBE, LOMA_PRIETA, NORTHRIDGE = EARTHQUAKES
 INFERENCE = "about motions of the same earthquakes on the tested floors"
 
 

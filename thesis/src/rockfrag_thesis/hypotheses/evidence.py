@@ -128,8 +128,8 @@ class Evidence:
         self, factor: str, word: str, other: str, block: str = "earthquake"
     ) -> Estimate:
         """By how much the effect at one level of a factor exceeds that at another, block by block."""
-        names = self.level(factor, word), self.level(factor, other)
-        return contrast(self.table, factor, *names, block=block)
+        level, reference = self.level(factor, word), self.level(factor, other)
+        return contrast(self.table, factor, level, reference, block=block)
 
 
 def _plain(name: str) -> str:

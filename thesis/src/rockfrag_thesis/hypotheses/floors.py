@@ -31,7 +31,8 @@ from rockfrag_thesis.hypotheses.orders import (
 )
 from rockfrag_thesis.hypotheses.outcomes import SEEN
 
-GROUND, THIRD, FIFTH = FLOORS = ("GF", "F3", "F5")
+FLOORS = ("GF", "F3", "F5")
+GROUND, THIRD, FIFTH = FLOORS
 TOWERS = ("T1", "T2", "T3")
 
 
@@ -180,9 +181,8 @@ def c51(tests: Evidence) -> Result:
 def floor_steps(tests: Evidence) -> Parts:
     """The thesis's order of the floors for lone towers: 3rd below 5th below ground."""
     rows = tests.amplitudes[tests.amplitudes["side"] == "NP"]
-    third, fifth, ground = (
-        tests.level("floor", name) for name in (THIRD, FIFTH, GROUND)
-    )
+    third, fifth = tests.level("floor", THIRD), tests.level("floor", FIFTH)
+    ground = tests.level("floor", GROUND)
     return {
         f"NP on {first} over {other}": _over(rows, first, other)
         for first, other in ((fifth, third), (ground, fifth))

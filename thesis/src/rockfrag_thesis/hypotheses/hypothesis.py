@@ -131,20 +131,21 @@ def hypothesis(number: int, **figures: Any) -> Callable[[Test], Test]:
 
     def enter(test: Test) -> Test:
         said = _STATEMENTS[number]
-        evidence, rule = (
-            said[name].format(one=_ONE_RULE, several=_SEVERAL_RULE, **figures)
-            for name in ("evidence", "rule")
-        )
-        error_rate = said.get("error_rate", "none: nothing is sampled")
-        about = (
+
+        def filled(name: str) -> str:
+            words: str = said[name]
+            return words.format(one=_ONE_RULE, several=_SEVERAL_RULE, **figures)
+
+        HYPOTHESES[number] = Hypothesis(
+            number,
             said["statement"],
             said["source"],
             Kind(said["kind"]),
-            evidence,
-            rule,
-            error_rate,
+            filled("evidence"),
+            filled("rule"),
+            said.get("error_rate", "none: nothing is sampled"),
+            test,
         )
-        HYPOTHESES[number] = Hypothesis(number, *about, test)
         return test
 
     return enter

@@ -259,7 +259,8 @@ def same_block(block: Block, other: Block) -> bool:
         and not block.cg_offset
         and not block.lean
     )
-    own, wanted = ((each.width, each.height, each.mass) for each in (block, other))
+    own = (block.width, block.height, block.mass)
+    wanted = (other.width, other.height, other.mass)
     return uniform and bool(np.allclose(own, wanted, rtol=1e-6))
 
 

@@ -55,7 +55,7 @@ def _earthquake_means(tests: Evidence) -> pd.DataFrame:
 def c25(tests: Evidence) -> Result:
     """The slope, and the bend at T2; equilibrium alone (a as B/H) has a bend of -6 %."""
     means = _earthquake_means(tests)
-    low, middle, high = (means[name] for name in means.columns)
+    _, (low, middle, high) = zip(*means.items(), strict=True)
     bend = t_estimate(np.log(2 * middle / (low + high)))
     falls = order({"fall of a per unit of H/B": Part(_fall(tests.amplitudes))})
     straight = same(bend, f"T2 over the straight line {bend.text()}")
@@ -226,8 +226,8 @@ def c53(tests: Evidence) -> Parts:
 def c54(tests: Evidence) -> Result:
     """Error of three extrapolations to T3; scatter alone makes none of them miss the mean."""
     means = _earthquake_means(tests)
-    squat, middle, slender = (means[name] for name in means.columns)
-    s1, s2, s3 = (tests.slenderness[name] for name in means.columns)
+    names, (squat, middle, slender) = zip(*means.items(), strict=True)
+    s1, s2, s3 = map(tests.slenderness.__getitem__, names)
     weight = (s3 - s1) / (s2 - s1)
     inverse = (1 / s3 - 1 / s1) / (1 / s2 - 1 / s1)
     reached = float(slender.mean())

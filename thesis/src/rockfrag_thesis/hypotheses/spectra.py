@@ -112,7 +112,7 @@ def _longest_band(inside: NDArray[np.bool_]) -> tuple[float, float]:
 @hypothesis(16, dampings=PERCENTS, ends=PERIODS[[0, -1]])
 def c16(setting: Setting) -> Result:
     """Ranges of period in which Sd at 2 % and at 10 % damping are nearly the same."""
-    low, high = (setting.spectra.displacement(damping) for damping in DAMPINGS)
+    low, high = map(setting.spectra.displacement, DAMPINGS)
     inside = np.abs(np.log(low / high)) < math.log1p(SEEN)
     bands = {
         motion.name: _longest_band(row)
@@ -166,6 +166,12 @@ def c17(setting: Setting) -> Result:
     )
 
 
+def _order(spectrum: Floats, other: Floats) -> int:
+    """1 if a spectrum exceeds the other over more abscissas than it is exceeded, -1 if over fewer, else 0."""
+    more, fewer = (spectrum > other).sum(dtype=int), (spectrum < other).sum(dtype=int)
+    return int(np.sign(more - fewer))
+
+
 def exchanges(values: Floats, other: Floats) -> tuple[int, int]:
     """How many pairs of motions change their order between two sets of spectra, shape (motions, abscissas) each.
 
@@ -174,10 +180,7 @@ def exchanges(values: Floats, other: Floats) -> tuple[int, int]:
     """
     changed = total = 0
     for i, j in itertools.combinations(range(len(values)), 2):
-        first, second = (
-            np.sign((a[i] > a[j]).sum(dtype=int) - (a[i] < a[j]).sum(dtype=int))
-            for a in (values, other)
-        )
+        first, second = _order(values[i], values[j]), _order(other[i], other[j])
         if first and second:
             total += 1
             changed += bool(first != second)
@@ -189,7 +192,7 @@ def c18(setting: Setting) -> Result:
     """Order of the motions' spectra at two dampings, and at two slendernesses."""
     if len(setting.motions) < 2:
         raise Undecidable("spectra are compared between motions, and there is one only")
-    low, high = (setting.spectra.displacement(damping) for damping in DAMPINGS)
+    low, high = map(setting.spectra.displacement, DAMPINGS)
     changed, total = exchanges(low, high)
     rotation = setting.spectra.rotation()
     blocks = [

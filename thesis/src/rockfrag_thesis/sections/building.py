@@ -1,4 +1,8 @@
-"""The building as an assumption: amplitudes on its floors where one of its properties is another."""
+"""Building as an assumption: amplitudes on its floors where one of its properties is changed.
+
+In: the tables ``building_sensitivity/…``; amplitudes [g]. Out: a section of the report. Theory:
+``docs/building.md``, "The building as an axis".
+"""
 
 from functools import partial
 
@@ -8,9 +12,8 @@ from matplotlib.figure import Figure
 from rockfrag.base.figure_style import COLUMN_WIDTH, OKABE_ITO, panels
 from rockfrag.report.figures import GREY, MARKERS
 from rockfrag.report.page import Column, table_html
-from rockfrag.report.part import Results, Section
-from rockfrag.words.sentences import shortened
-from rockfrag_thesis.sections import says
+from rockfrag.report.part import FigureSpec, Results, Section
+from rockfrag.words.sentences import agree, number, of_all, sentence, shortened
 from rockfrag_thesis.settings import settings_of
 
 AXIS_NAMES = {
@@ -45,19 +48,39 @@ def building(results: Results) -> Section | None:
     span = span.assign(axis=span["axis"].map(AXIS_NAMES))
     variants = means.drop_duplicates("label")
     doubtful = int((~variants["credible"].astype(bool)).sum())
-    figures = [
-        says.figure(
-            f"building_{axis}",
-            partial(floor_amplitudes, means, axis),
-            AXIS_NAMES[axis],
-            of="building",
-        )
-        for axis in dict.fromkeys(varied["axis"])
-    ]
+    figures = [_figure(means, axis) for axis in dict.fromkeys(varied["axis"])]
     table = table_html(span, _COLUMNS, "Range of the mean amplitude on each floor.")
     known = span[span["min"] > 0].to_dict("records")
     most = max(known, key=lambda row: float(row["max"] / row["min"]), default=None)
-    return says.section("building", [*figures, table], most, doubtful, len(variants))
+    message = "No mean amplitude is known for other buildings."
+    if most is not None:
+        message = (
+            f"The {most['axis'].lower()} matters most: the mean amplitude on {most['floor']} lies between "
+            f"{number(most['min'], 2)} and {number(most['max'], 2)} g over the values tried."
+        )
+    words = [
+        "One property of the building is changed at a time. Lines are geometric means of the objects without "
+        "pedestal over the motions that overturned them on every floor.",
+        f"{sentence(of_all(doubtful, len(variants), 'building'))} {agree(doubtful, len(variants), 'is', 'are')} "
+        "shaken beyond the validity of the building model.",
+    ]
+    return Section(
+        "building", "The assumed building", message, words, [*figures, table]
+    )
+
+
+def _figure(means: pd.DataFrame, axis: str) -> FigureSpec:
+    """Figure of the amplitudes along one assumption."""
+    name = AXIS_NAMES[axis]
+    return FigureSpec(
+        name=f"building_{axis}",
+        alt=f"Mean overturning amplitude on each floor over {name}.",
+        caption=(
+            f"Mean overturning amplitude on each floor. {name}; crosses mark buildings shaken beyond the "
+            "validity of their model."
+        ),
+        draw=partial(floor_amplitudes, means, axis),
+    )
 
 
 def floor_amplitudes(means: pd.DataFrame, axis: str) -> Figure:

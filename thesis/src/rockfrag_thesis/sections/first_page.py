@@ -1,6 +1,8 @@
-"""What stands first where a study is compared: what the thesis reports, what the model gives, and what would.
+"""Answer on the first screen of the thesis's study: its reports, the model's results, and perturbations.
 
-Sentences are made of tables alone, so that every number in them can be looked up there.
+In: the tables ``pedestal/effects``, ``hypotheses`` and ``sensitivity_analysis/…``, ratios with over without
+pedestal [-]. Out: :class:`rockfrag.report.part.Answer`, made of tables alone, so that every number in it can be
+looked up there. Docs: ``docs/hypotheses.md``, "The first page".
 """
 
 from collections.abc import Mapping
@@ -15,13 +17,12 @@ from rockfrag.base.figure_style import BLUE, COLUMN_WIDTH, ORANGE, panels
 from rockfrag.report.answer import study_answer
 from rockfrag.report.figures import BAND, GREY
 from rockfrag.report.findings import FRICTION, ratio_text
-from rockfrag.report.part import Answer, Finding, Results
+from rockfrag.report.part import Answer, FigureSpec, Finding, Results
 from rockfrag.report.sections.pedestal import NONE, ratio_axis
 from rockfrag.shaketable.definitions import DEFINITION
-from rockfrag.words.sentences import counted, listed
+from rockfrag.words.sentences import agree, counted, listed, of_all, sentence
 from rockfrag_thesis.hypotheses.floors import FIFTH, FLOORS, GROUND, THIRD
 from rockfrag_thesis.hypotheses.hypothesis import Finding as Evidence
-from rockfrag_thesis.sections import says
 from rockfrag_thesis.sections.inverse_problem import (
     asks_inverse_problem,
     goals,
@@ -48,7 +49,7 @@ _ON_FLOOR = {
 
 
 def thesis_answer(results: Results) -> Answer:
-    """Return what the thesis reports, what the model gives, and what would give an effect."""
+    """Answer on the first screen: reports of the thesis, results of the model, perturbations with an effect."""
     study = results.study
     if not study.has_pairs:
         return study_answer(results)
@@ -66,28 +67,37 @@ def thesis_answer(results: Results) -> Answer:
         settings_of(study).wanted_percent,
     )
     here = effects[effects["definition"] == DEFINITION]
+    arrows = " Arrows: thesis." if has_thesis_floors(here) else ""
     return replace(
         study_answer(results),
         asked="Does a pedestal delay overturning on the ground and hasten it on upper floors?",
         sentences=found,
-        figure=says.figure(
-            "answer",
-            lambda: ratios_figure(here),
-            found[0].headline,
-            has_thesis_floors(here),
+        figure=FigureSpec(
+            name="answer",
+            alt=(
+                "Amplitude with over amplitude without pedestal, with what the thesis reports. "
+                f"{found[0].headline}."
+            ),
+            caption=f"Ratio with/without pedestal, 95 % intervals; grey: ±10 %.{arrows}",
+            draw=lambda: ratios_figure(here),
         ),
         advice=_advice(results),
     )
 
 
 def _advice(results: Results) -> list[str]:
-    """What to measure: the friction that rocking without sliding needs, where that is much."""
+    """Advice to measure the friction that rocking without sliding needs, where that is much."""
     validity = results.table("validity")
     if results.study.slides or validity.empty:
         return []
     with_pedestal = validity[validity["pedestal"] == "P"]
     beyond = int((~(with_pedestal["friction_demand"].astype(float) <= FRICTION)).sum())
-    return says("advice", beyond, len(with_pedestal), FRICTION)
+    total = len(with_pedestal)
+    tests = of_all(beyond, total, "test with", "tests with")
+    return [
+        f"Measure the friction under the statue: {tests} pedestal {agree(beyond, total, 'needs', 'need')} more "
+        f"than {FRICTION:g}."
+    ]
 
 
 def first_page(
@@ -97,11 +107,18 @@ def first_page(
     inverse_problem: pd.DataFrame | None = None,
     wanted_percent: Mapping[str, float] | None = None,
 ) -> list[Finding]:
-    """Say what the thesis reports, what the simulations of a study give, and what would give an effect.
+    """Findings on the reports of the thesis, the simulations of a study, and perturbations that have an effect.
 
-    ``effects`` are of the study's simulations, ``hypotheses`` the table of all, ``sensitivity_analysis`` the
-    effects of perturbed parameters, ``inverse_problem`` those that come closest to ``wanted_percent``, the change
-    of P/NP on the ``ground`` and ``above`` it [%].
+    Parameters
+    ----------
+    effects, hypotheses : of the study's simulations, and the table of all hypotheses
+    sensitivity_analysis, inverse_problem : effects of perturbed parameters, and those closest to
+        ``wanted_percent``
+    wanted_percent : change of P/NP that is asked for on the ``ground`` and ``above`` it [%]
+
+    Returns
+    -------
+    The findings.
     """
     here = effects[effects["definition"] == DEFINITION]
     found = [_reported(here, hypotheses.set_index("number"))]
@@ -115,7 +132,7 @@ def first_page(
 
 
 def _reported(effects: pd.DataFrame, hypotheses: pd.DataFrame) -> Finding:
-    """Say what the thesis reports beside what the model gives, and the table of hypotheses's words for it."""
+    """Finding on the reports of the thesis beside the results of the model."""
     of_floors = effects[effects["scope"] == "floor"].to_dict("records")
     on_floors = {row["level"]: row for row in of_floors}
     found = {number: Evidence(value) for number, value in hypotheses["finding"].items()}
@@ -124,7 +141,11 @@ def _reported(effects: pd.DataFrame, hypotheses: pd.DataFrame) -> Finding:
         ratio_text(all_pairs[0]) if all_pairs else "no pair with both amplitudes known"
     )
     if not set(FLOORS) <= set(on_floors):
-        return says.finding("other_floors", whole)
+        return Finding(
+            "The thesis reports an effect of the pedestal that depends on the floor",
+            "",
+            f"{_REPORTS} {whole} (95 % interval over earthquakes); this study does not have the thesis’s floors.",
+        )
     ratios = [f"{floor} {ratio_text(on_floors[floor])}" for floor in FLOORS]
     pairs = sum(int(on_floors[floor]["pairs"]) for floor in FLOORS)
     stated = {
@@ -138,12 +159,39 @@ def _reported(effects: pd.DataFrame, hypotheses: pd.DataFrame) -> Finding:
     ]
     # the pedestal matters so little where C12 is true of all landings
     lifts_briefly = hypotheses["estimate"].to_dict().get(12) == 1
-    about = (found[35].name, ratios, whole, pairs, outcomes, lifts_briefly)
-    return says.finding("reported", *about)
+    numbers = (
+        f"{_REPORTS} {listed(ratios)}, and {whole} over all {counted(pairs, 'pair')} (95 % intervals over "
+        f"earthquakes). {'; '.join(outcomes)}. A difference between thesis and model implies an effect that the "
+        "model omits."
+    )
+    if lifts_briefly:
+        numbers += (
+            " In the model a landing of the statue lifts the pedestal so briefly that it stands still before "
+            "the next one."
+        )
+    headline = (
+        f"The thesis reports a gain on the ground floor; {_IN_PURE_ROCKING[found[35]]}"
+    )
+    return Finding(headline, "", numbers)
+
+
+_REPORTS = (
+    "The thesis reports that its towers overturn later with the pedestal than without it on the ground floor, "
+    "significantly so, and slightly earlier on the 3rd and 5th floors; it prints no ratios. For rigid blocks "
+    "that only rock, the amplitude with pedestal divided by that without is"
+)
+"""Sections 4.3, 4.4 and 5 of thesis."""
+
+_IN_PURE_ROCKING = {
+    Evidence.FOR: "pure rocking reproduces it",
+    Evidence.AGAINST: "pure rocking gives the opposite",
+    Evidence.OPEN: "for pure rocking it is undecided",
+    Evidence.BOUNDED: "for pure rocking a gain of 10 % or more is excluded, a smaller one is not",
+}
 
 
 def _what_would(sensitivity_analysis: pd.DataFrame) -> Finding:
-    """Say which perturbations change the ratio, and which have the thesis's pattern."""
+    """Finding on the perturbations that change the ratio, and on those that have the thesis's pattern."""
     table = perturbations_by_floor(sensitivity_analysis)
     simulated, computed = table[~table["arithmetic"]], table[table["arithmetic"]]
     patterned = list(table.loc[table["beyond_chance"], "name"])
@@ -151,14 +199,38 @@ def _what_would(sensitivity_analysis: pd.DataFrame) -> Finding:
     size = np.log(simulated["ratio"]).abs()
     largest = simulated.loc[size.nlargest(MOST_NAMED).index].to_dict("records")
     strong = [f"{row['name']} ({ratio_text(row)})" for row in largest]
-    about = (patterned, len(table), len(changing), len(simulated), DISCOVERY_RATE)
-    return says.finding("what_would", *about, strong, computed["ratio"])
+    numbers = [
+        "No perturbation has intervals above 1 on the ground floor and below 1 on both floors above."
+    ]
+    if patterned:
+        numbers = [
+            "Ratios above 1 on the ground floor and below 1 on both floors above, intervals included: "
+            f"{listed(patterned)}."
+        ]
+    if total := len(simulated):
+        change = agree(len(changing), total, "changes", "change")
+        numbers.append(
+            f"{sentence(of_all(len(changing), total, 'simulated perturbation'))} {change} the ratio over all "
+            f"floors (Benjamini–Hochberg at {100 * DISCOVERY_RATE:g} % over {counted(total, 'test')}); the "
+            f"largest {'is' if len(strong) == 1 else 'are'} {listed(strong)}."
+        )
+    if count := len(computed):
+        ratios = computed["ratio"]
+        numbers.append(
+            f"{sentence(counted(count, 'other'))} {'is' if count == 1 else 'are'} arithmetic, not simulation: a "
+            f"mass that is moved but not counted gives {ratios.min():.3f} to {ratios.max():.3f} on all floors "
+            "alike."
+        )
+    produce = agree(len(patterned), len(table), "produces", "produce")
+    counts = sentence(of_all(len(patterned), len(table), "perturbation"))
+    headline = f"{counts} of the model {produce} its pattern"
+    return Finding(headline, "", " ".join(numbers))
 
 
 def _inverted(
     inverse_problem: pd.DataFrame, wanted_percent: Mapping[str, float]
 ) -> str:
-    """Say which perturbation, or which two, come closest to the effect asked for, and how close."""
+    """Sentence on the perturbation, and on the two together, that come closest to the effect asked for."""
     everywhere = inverse_problem["acts_on"] == "all floors"
     pairs = inverse_problem["factor_2"] != ""
     kinds = {
@@ -172,9 +244,10 @@ def _inverted(
             both = listed([f"{row[name]:.3f}" for name in wanted_percent])
             mechanism = mechanism_name(row) + _ACTING[row["acts_on"]]
             nearest.append(f"the closest {what} gives {both} ({mechanism})")
-    reached = int(inverse_problem["reaches"].sum())
-    return says.line(
-        "inverted", reached, len(inverse_problem), goals(wanted_percent), nearest
+    reached, total = int(inverse_problem["reaches"].sum()), len(inverse_problem)
+    return (
+        f"{sentence(of_all(reached, total, 'mechanism'))} (one perturbation, or two together) "
+        f"{agree(reached, total, 'produces', 'produce')} {listed(goals(wanted_percent))}; {listed(nearest)}."
     )
 
 
@@ -194,14 +267,12 @@ def has_thesis_floors(effects: pd.DataFrame) -> bool:
 
 def ratios_figure(effects: pd.DataFrame) -> Figure:
     """Draw the ratio with over without pedestal, of all pairs and on each floor, of effects of one definition."""
-    whole, floors = (
-        effects[effects["scope"] == "whole"],
-        effects[effects["scope"] == "floor"],
-    )
+    whole = effects[effects["scope"] == "whole"]
+    floors = effects[effects["scope"] == "floor"]
     rows = [("all pairs", row) for row in whole.to_dict("records")]
     rows += [(str(row["level"]), row) for row in floors.to_dict("records")]
     with panels(COLUMN_WIDTH, 1.0 + 0.33 * len(rows)) as (figure, axes):
-        axes.axvspan(*NONE, color=BAND, lw=0)
+        axes.axvspan(NONE[0], NONE[1], color=BAND, lw=0)
         axes.axvline(1.0, color=GREY, lw=0.8)
         drawn = [1 / 1.25, 1.25]
         for y, (name, row) in enumerate(rows):

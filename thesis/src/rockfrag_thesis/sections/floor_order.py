@@ -1,6 +1,10 @@
-"""The thesis's hypotheses on floors where the building is another: order and margins."""
+"""Hypotheses of the thesis on floors, their order and margins, where the building is another.
 
-from dataclasses import replace
+In: the tables ``building_sensitivity/…``; margins [-] of amplitudes. Out: a section of the report. Theory:
+``docs/building.md``, "The building as an axis".
+"""
+
+from collections.abc import Sequence
 from functools import partial
 from textwrap import fill
 
@@ -16,8 +20,8 @@ from rockfrag.base.figure_style import BLUE, COLUMN_WIDTH, GREEN, ORANGE, WIDEST
 from rockfrag.report.page import Column, table_html
 from rockfrag.report.part import FigureSpec, Results, Section
 from rockfrag.shaketable.definitions import DEFINITION
+from rockfrag.words.sentences import number
 from rockfrag_thesis.floor_order import HYPOTHESES, TIE
-from rockfrag_thesis.sections import says
 from rockfrag_thesis.sections.building import AXIS_NAMES
 from rockfrag_thesis.settings import settings_of
 
@@ -55,30 +59,53 @@ def floor_order_found(results: Results) -> Section | None:
     # adding zero turns a negative zero into a plain one
     shown = ((100 * span).round(1) + 0.0).reset_index()
     shown["axis"] = shown["axis"].map(AXIS_NAMES)
-    ends = (100 * float(value) for value in (span["min"].min(), span["max"].max()))
-    section = says.section(
-        "sensitivity", [], holds, len(order), *ends, of="floor_order"
-    )
+    low, high = 100 * float(span["min"].min()), 100 * float(span["max"].max())
+    message = f"Margins of the hypotheses lie between {number(low, 1)} and {number(high, 1)} %."
     parts: list[Markup | FigureSpec] = []
     if len(order):
+        message = _order_message(holds, len(order))
         draw = partial(
             floor_order,
             results.table("building_sensitivity/means"),
             margins,
             DEFINITION,
         )
-        parts.append(says.figure("sensitivity_order", draw, section.message))
-    for axis in dict.fromkeys(varied["axis"]):
-        draw = partial(floor_hypotheses, margins, axis, DEFINITION)
-        parts.append(
-            says.figure(
-                f"sensitivity_hypotheses_{axis}", draw, AXIS_NAMES[axis], of="margins"
-            )
+        caption = (
+            "Mean overturning amplitude of lone objects on each floor over the first period of the building; "
+            "shaded where the order is the thesis’s."
         )
+        parts.append(FigureSpec("sensitivity_order", message, caption, draw))
+    parts += [_margins_figure(margins, axis) for axis in dict.fromkeys(varied["axis"])]
     parts.append(
         table_html(shown, _COLUMNS, "Range of the margins of each hypothesis.")
     )
-    return replace(section, parts=parts)
+    title = "The thesis’s floors in other buildings"
+    return Section("sensitivity", title, message, [], parts)
+
+
+def _order_message(holds: Sequence[str], periods: int) -> str:
+    """First periods, of those tried, at which the order of the floors is the thesis's."""
+    order = "The thesis’s order of the floors, ground highest and 3rd lowest,"
+    if not holds:
+        return f"{order} does not appear by more than 2 % at any of {periods} first periods tried."
+    return (
+        f"{order} appears by more than 2 % at {len(holds)} of {periods} first periods tried "
+        f"({', '.join(holds)})."
+    )
+
+
+def _margins_figure(margins: pd.DataFrame, axis: str) -> FigureSpec:
+    """Figure of the margins along one assumption."""
+    name = AXIS_NAMES[axis]
+    return FigureSpec(
+        name=f"sensitivity_hypotheses_{axis}",
+        alt=f"Margins of the thesis’s hypotheses on floors over {name}.",
+        caption=(
+            "Margin by which each hypothesis on floors is true (positive) or false; dots: true by more than 2 %. "
+            f"{name}."
+        ),
+        draw=partial(floor_hypotheses, margins, axis, DEFINITION),
+    )
 
 
 def floor_order(means: pd.DataFrame, margins: pd.DataFrame, definition: str) -> Figure:
@@ -150,7 +177,7 @@ def floor_hypotheses(margins: pd.DataFrame, axis: str, definition: str) -> Figur
         ticks = values if len(set(values)) == len(labels) else labels
         axes.set_xticks(range(len(labels)), ticks, rotation=90)
         axes.set_xlabel(AXIS_NAMES[axis])
-        names = [fill(f"{number}  {text}", 48) for number, text in HYPOTHESES.items()]
+        names = [fill(f"{number} {text}", 48) for number, text in HYPOTHESES.items()]
         axes.set_yticks(range(len(names)), names, fontsize=7)
         axes.tick_params(length=0)
         axes.spines[:].set_visible(False)

@@ -1,19 +1,26 @@
-"""What friction does to the effect of a pedestal."""
+"""Effect of friction on the effect of a pedestal.
+
+In: the table ``sensitivity_analysis/friction``, ratios with over without pedestal [-] by coefficients of
+friction [-]. Out: a section of the report. Theory: ``docs/contact.md``, "Which friction would give an effect of
+the pedestal".
+"""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import pandas as pd
 
 from rockfrag.report.findings import ratio_text
 from rockfrag.report.page import Column, Row, by_row, table_html
 from rockfrag.report.part import Results, Section
-from rockfrag_thesis.sections import says
+from rockfrag.words.sentences import listed
 from rockfrag_thesis.sections.inverse_problem import PLACES, goals
 from rockfrag_thesis.settings import settings_of
 
 ORDINARY = (0.3, 0.7)
 """Friction of dry wood, stone and mortar on each other, as handbooks of engineering give it [-]."""
+
+MOST_PAIRS = 6  # so many pairs of coefficients are named
 
 Means = Mapping[tuple[float, float], Row]
 """Mean ratios with their intervals, by the coefficients at the ground and at the interface."""
@@ -71,8 +78,20 @@ def friction(results: Results) -> Section | None:
     ]
     caption = "Ratio of overturning amplitudes with/without pedestal by friction."
     table = table_html(pd.DataFrame(rows), _COLUMNS, caption)
-    words = _found(tables, settings_of(results.study).wanted_percent)
-    return says.section("friction", [table], words)
+    found = _found(tables, settings_of(results.study).wanted_percent)
+    reading = (
+        "Bodies slide, rock and fly on surfaces with these friction coefficients, with the amplitudes of the "
+        "protocol. Without pedestal an object stands on the ground. A pair has no ratio where nothing overturns "
+        "with or without the pedestal: a body slides and never rocks if the friction coefficient is below its "
+        "width over its height."
+    )
+    return Section(
+        "friction",
+        "What friction does to the effect of the pedestal",
+        found[0] if found else "The ratio is known for these friction coefficients.",
+        [*found[1:], reading],
+        [table],
+    )
 
 
 def _by_pair(effects: pd.DataFrame, place: str) -> Means:
@@ -87,7 +106,7 @@ def _is_ordinary(pair: tuple[float, float]) -> bool:
 
 
 def _found(tables: Mapping[str, Means], wanted: Mapping[str, float]) -> list[str]:
-    """Say how far the mean ratio goes with ordinary friction, and with which it has the signs asked for."""
+    """Mean ratios with ordinary friction, and coefficients that give the signs asked for, in sentences."""
     ordinary = []
     for place, table in tables.items():
         inside = [row["ratio"] for pair, row in table.items() if _is_ordinary(pair)]
@@ -108,10 +127,35 @@ def _found(tables: Mapping[str, Means], wanted: Mapping[str, float]) -> list[str
     known = tables["ground"] if asked and all(table for table, _ in asked) else {}
     signs = [pair for pair in known if has_signs(pair, "ratio", "ratio")]
     clear = [pair for pair in signs if has_signs(pair, "lower", "upper")]
-    goal = " and ".join(goals(wanted)) if known else ""
+    words = []
+    if ordinary:
+        words.append(
+            f"Friction of ordinary surfaces ({ORDINARY[0]} to {ORDINARY[1]}) changes the mean ratio to "
+            f"{listed(ordinary)}."
+        )
+    if known:
+        words.append(
+            _signs_sentence(" and ".join(goals(wanted)), len(known), signs, clear)
+        )
+    return words
+
+
+Pair = tuple[float, float]
+"""Coefficients of friction at the ground and at the interface [-]."""
+
+
+def _signs_sentence(
+    goal: str, pairs: int, signs: Sequence[Pair], clear: Sequence[Pair]
+) -> str:
+    """Pairs of coefficients with the signs asked for, and those whose intervals have them too."""
+    if not signs:
+        return f"No pair of friction coefficients gives the signs asked for ({goal})."
     named = [
         f"{_coefficient(first)} and {_coefficient(other)}" for first, other in signs
     ]
-    usual = sum(map(_is_ordinary, signs))
-    about = (ordinary, *ORDINARY, goal, len(tables["ground"]), named, len(clear), usual)
-    return says("friction_found", *about)
+    among = " among them" if len(named) > MOST_PAIRS else ""
+    return (
+        f"{len(signs)} of {pairs} pairs of friction coefficients (ground, interface) give the signs asked for "
+        f"({goal}): {listed(named[:MOST_PAIRS])}{among}. The intervals have these signs too in {len(clear)}; "
+        f"{sum(map(_is_ordinary, signs))} are of ordinary surfaces."
+    )

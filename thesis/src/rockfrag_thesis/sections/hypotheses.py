@@ -1,4 +1,8 @@
-"""The thesis's hypotheses with what was found of each, and where it contradicts itself."""
+"""Hypotheses of the thesis with the finding on each, and its contradictions.
+
+In: the tables ``hypotheses`` and ``contradictions``. Out: sections of the report. Theory:
+``docs/hypotheses.md``, "How a test decides" and "How often it errs".
+"""
 
 import math
 from collections import Counter
@@ -9,9 +13,8 @@ from markupsafe import Markup
 
 from rockfrag.report.page import Column, Row, table_html
 from rockfrag.report.part import Results, Section
-from rockfrag.words.sentences import probability
+from rockfrag.words.sentences import listed, number, probability
 from rockfrag_thesis.hypotheses.hypothesis import EXCLUDED
-from rockfrag_thesis.sections import says
 
 _CONTRADICTIONS = (
     Column("hypotheses", "Hypotheses"),
@@ -24,6 +27,8 @@ _KINDS = (
     Column("hypotheses", "Hypotheses"),
     Column("outcomes", "Found"),
 )
+
+ERROR_RATE = 0.05  # of a rule of inference, both ways together [-]
 
 SHORT = {
     EXCLUDED: "undecided but below 10 %",
@@ -42,10 +47,8 @@ def hypotheses_found(results: Results) -> Section | None:
     """What was found of each hypothesis, and where the thesis contradicts itself."""
     if not results.study.has_pairs:
         return None
-    hypotheses, contradictions = (
-        results.table("hypotheses"),
-        results.table("contradictions"),
-    )
+    hypotheses = results.table("hypotheses")
+    contradictions = results.table("contradictions")
     parts = [
         table_html(
             outcomes_by_kind(hypotheses),
@@ -67,10 +70,8 @@ def measured_hypotheses(results: Results) -> Section | None:
     hypotheses = results.table("measured/hypotheses")
     if hypotheses.empty:
         return None
-    title, parts = (
-        "The thesis’s hypotheses on measured tests",
-        [hypotheses_html(hypotheses)],
-    )
+    title = "The thesis’s hypotheses on measured tests"
+    parts = [hypotheses_html(hypotheses)]
     return outcomes_section("measured_hypotheses", title, hypotheses, parts)
 
 
@@ -83,11 +84,19 @@ def outcomes_section(
         f"{count} {SHORT.get(str(outcome), outcome)}"
         for outcome, count in outcomes.items()
     ]
-    inferred, tested = (
-        int(hypotheses["p"].notna().sum()),
-        hypotheses["number"].nunique(),
+    inferred = int(hypotheses["p"].notna().sum())
+    tested = hypotheses["number"].nunique()
+    reading = (
+        "A simulation can reproduce what a laboratory reports or not; only measured tests can confirm or reject "
+        "it. Hypotheses about the model’s equations are confirmed or refuted, for the specimens or in general. "
+        "Each rule of inference uses the printed 95 % interval and errs in at most 2.5 % of tables each way, so "
+        f"up to {number(ERROR_RATE * inferred, 1)} of the {inferred} hypotheses inferred here may be wrong by "
+        "chance; the second p value of each is adjusted for all of them (Holm). Where the sign of a change is "
+        "not shown but a change of 10 % or more is excluded, just that is said: 10 % is the smallest mean "
+        "change that the thesis’s own tests could detect (80 % power)."
     )
-    return says.section(anchor, parts, title, tested, counts, inferred, of="hypotheses")
+    message = f"{tested} hypotheses of the thesis are tested: {listed(counts)}."
+    return Section(anchor, title, message, [reading], parts)
 
 
 def spelled(words: str) -> str:

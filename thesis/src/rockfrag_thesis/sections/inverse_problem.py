@@ -1,4 +1,8 @@
-"""Which perturbed parameters, alone and in pairs, would give the effect that a study asks for."""
+"""Inverse problem: perturbed parameters, alone and in pairs, that would give the effect that a study asks for.
+
+In: the table ``sensitivity_analysis/inverse_problem``, ratios with over without pedestal [-]. Out: a section of
+the report. Theory: ``docs/pedestal.md``, "What could produce an effect".
+"""
 
 import math
 from collections.abc import Mapping
@@ -9,7 +13,6 @@ from rockfrag.report.page import Column, Row, by_row, table_html
 from rockfrag.report.part import Results, Section
 from rockfrag.study.study import Study
 from rockfrag.words.sentences import sentence
-from rockfrag_thesis.sections import says
 from rockfrag_thesis.sections.sensitivity_analysis import (
     FACTORS,
     asks_sensitivity_analysis,
@@ -18,6 +21,9 @@ from rockfrag_thesis.settings import settings_of
 
 SHOWN = 12
 """Rows of the table, the closest first; the others are in ``sensitivity_analysis/inverse_problem.csv``."""
+
+
+MOST_NAMED = 3  # so many mechanisms of a kind are named
 
 
 def _together(row: Row) -> str:
@@ -66,8 +72,20 @@ def inverse_problem(results: Results) -> Section | None:
     left_out = {"ground", "above"} - set(wanted)
     columns = [column for column in _COLUMNS if column.name not in left_out]
     caption = f"The closest of {len(table)} mechanisms (single perturbed parameters and pairs)."
-    words = inverse_problem_words(readable, wanted)
-    return says.section("inverse_problem", [table_html(shown, columns, caption)], words)
+    found, *others = inverse_problem_words(readable, wanted)
+    reading = (
+        "Between the values tried, ln(with/without pedestal) is interpolated linearly; nothing is said beyond "
+        "them. The changes of two parameters are added; the closest pairs, and friction at both interfaces, "
+        "were also simulated together. A mechanism is ruled out if no value of it lies within the scatter between "
+        "earthquakes (Hotelling’s T² at 5 %, Bonferroni over all mechanisms). Few earthquakes rule out little."
+    )
+    return Section(
+        "inverse_problem",
+        "What would produce the effect asked for",
+        found,
+        [*others, reading],
+        [table_html(shown, columns, caption)],
+    )
 
 
 PLACES = {"ground": "on the ground", "above": "above it"}
@@ -84,7 +102,7 @@ def goals(wanted_percent: Mapping[str, float]) -> list[str]:
 def inverse_problem_words(
     table: pd.DataFrame, wanted: Mapping[str, float]
 ) -> list[str]:
-    """Say what would and what would not produce the wanted effect, the most important sentence first.
+    """Mechanisms that would and that would not produce the wanted effect, the most important sentence first.
 
     Mechanisms are those of `rockfrag_thesis.sensitivity_analysis.inverse_problem.invert`, with readable names.
     """
@@ -104,8 +122,30 @@ def inverse_problem_words(
         for row in can
         if row not in everywhere
     ]
-    excluded, several = int((~table["plausible"]).sum()), len(wanted) > 1
-    return says("mechanisms", asked, alone, pairs, several, local, excluded, len(table))
+    words = []
+    if alone or pairs:
+        subject = "No single perturbed parameter"
+        if alone:
+            subject = sentence(f"{', '.join(alone)} alone")
+        words.append(f"{subject} can produce {asked} within the values tried.")
+        can_pairs = f"Pairs that can: {'; '.join(pairs[:MOST_NAMED])}."
+        words.append(can_pairs if pairs else "No pair can.")
+    else:
+        words.append(
+            f"No perturbed parameter, alone or with a second one, produces {asked} within the values tried."
+        )
+    if len(wanted) > 1 and local:
+        named = ", ".join(local[:MOST_NAMED])
+        words.append(f"Mechanisms that act at one place only and can: {named}.")
+    elif len(wanted) > 1:
+        words.append(
+            "No mechanism that acts on the ground alone, or above it alone, can."
+        )
+    excluded = int((~table["plausible"]).sum())
+    words.append(
+        f"The scatter between earthquakes rules out {excluded or 'none'} of the {len(table)} mechanisms tried."
+    )
+    return words
 
 
 def mechanism_name(row: Row) -> str:

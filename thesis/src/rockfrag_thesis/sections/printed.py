@@ -1,4 +1,7 @@
-"""Tables 3.1, 3.3 and 4.1: computed values with the printed ones below them."""
+"""Tables 3.1, 3.3 and 4.1 of the thesis: computed values with the printed ones below them.
+
+In: the tables ``table_3_1``, ``table_3_3`` and ``table_4_1``. Out: a section of the report.
+"""
 
 from collections.abc import Mapping
 from typing import Any
@@ -8,8 +11,7 @@ from markupsafe import Markup
 
 from rockfrag.report.page import framed
 from rockfrag.report.part import Results, Section
-from rockfrag.words.sentences import number
-from rockfrag_thesis.sections import says
+from rockfrag.words.sentences import listed, number
 
 _CAPTIONS = {
     "table_3_1": "Table 3.1: critical angle, radius, frequency parameter and slenderness of the "
@@ -33,7 +35,20 @@ def printed(results: Results) -> Section:
         comparison_html(results.table(name), caption)
         for name, caption in _CAPTIONS.items()
     ]
-    return says.section("printed", parts, len(known) - len(wrong), len(known), names)
+    right, total = len(known) - len(wrong), len(known)
+    message = "None of these values is printed in the thesis."
+    if total:
+        which = "All" if right == total else f"{right} of"
+        message = (
+            f"{which} {total} printed values of Tables 3.1, 3.3 and 4.1 are reproduced."
+        )
+    words = [f"Different: {listed(names)}."] if names else []
+    words.append(
+        "Computed values are rounded to the digits printed in the thesis, with g = 9.81 m/s². GF is the ground "
+        "motion itself; F3 and F5 are floors of an assumed building, which the thesis does not describe. The "
+        "printed value is below each computed one, with ✓ where they agree to its digits."
+    )
+    return Section("printed", "The thesis’s printed tables", message, words, parts)
 
 
 def comparison_html(comparison: pd.DataFrame, caption: str) -> Markup:

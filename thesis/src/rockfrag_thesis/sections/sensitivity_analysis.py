@@ -1,6 +1,10 @@
-"""What could produce an effect of the pedestal: one parameter of the ideal model at a time is perturbed."""
+"""Sensitivity analysis: one parameter of the ideal model at a time is perturbed.
 
-from collections.abc import Mapping, Sequence
+In: the table ``sensitivity_analysis/effects``, ratios with over without pedestal [-] with 95 % intervals. Out: a
+section of the report. Theory: ``docs/pedestal.md``, "What could produce an effect".
+"""
+
+from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from textwrap import fill
 from typing import Any, NamedTuple
@@ -16,11 +20,19 @@ from rockfrag.effects.cluster_means import benjamini_hochberg
 from rockfrag.report.figures import BAND, GREY, MARKERS
 from rockfrag.report.findings import ratio_text
 from rockfrag.report.page import Column, Row, by_row, estimated, table_html
-from rockfrag.report.part import Results, Section
+from rockfrag.report.part import FigureSpec, Results, Section
 from rockfrag.report.sections.pedestal import NONE, ratio_axis
 from rockfrag.study.study import Study
-from rockfrag.words.sentences import has_interval, probability, sentence, shortened
-from rockfrag_thesis.sections import says
+from rockfrag.words.sentences import (
+    agree,
+    counted,
+    has_interval,
+    listed,
+    of_all,
+    probability,
+    sentence,
+    shortened,
+)
 from rockfrag_thesis.sensitivity_analysis.simulated import LAW_OF, REFERENCE
 from rockfrag_thesis.settings import settings_of
 
@@ -143,8 +155,7 @@ def sensitivity_analysis(results: Results) -> Section | None:
         return None
     named = whole.assign(name=whole["name"].map(sentence))
     simulated = whole[~whole["arithmetic"]]
-    small = int(simulated["ratio"].between(*NONE).sum())
-    message = says.line("within", small, len(simulated))
+    message = _within(simulated)
     tables = [
         table_html(
             named[~named["arithmetic"]],
@@ -157,37 +168,98 @@ def sensitivity_analysis(results: Results) -> Section | None:
             "Ratio over all floors, errors of arithmetic (not simulated).",
         ),
     ]
-    draw = partial(sensitivity_analysis_figure, effects, list(results.study.floors))
-    figure = says.figure(
-        "sensitivity_analysis", draw, message, len(simulated), MOST_DRAWN
+    figures = []
+    if len(simulated):
+        draw = partial(sensitivity_analysis_figure, effects, list(results.study.floors))
+        figures.append(_figure(message, len(simulated), draw))
+    return Section(
+        "sensitivity_analysis",
+        "What could produce an effect of the pedestal",
+        message,
+        _paragraphs(simulated, len(whole) - len(simulated)),
+        [*figures, *tables],
     )
-    figures = [figure] if len(simulated) else []
-    about = (
-        *_beyond(simulated),
-        adjusted_words(simulated),
-        len(whole) - len(simulated),
+
+
+def _within(simulated: pd.DataFrame) -> str:
+    """Number of simulated perturbations that leave the mean ratio within ±10 %."""
+    total = len(simulated)
+    if not total:
+        return "No perturbation was simulated."
+    small = int(simulated["ratio"].between(NONE[0], NONE[1]).sum())
+    return (
+        f"{sentence(of_all(small, total, 'simulated perturbation'))} {agree(small, total, 'leaves', 'leave')} "
+        "the mean ratio with/without pedestal within ±10 %."
     )
-    return says.section("sensitivity_analysis", [*figures, *tables], message, *about)
+
+
+def _figure(message: str, simulated: int, draw: Callable[[], Figure]) -> FigureSpec:
+    caption = (
+        "Overturning amplitude with over that without pedestal, where one parameter of the ideal model is "
+        "perturbed: diamonds with 95 % intervals are all floors, small marks single floors. Grey is ±10 %."
+    )
+    if simulated > MOST_DRAWN:
+        caption += f" Shown are the {MOST_DRAWN} of {simulated} perturbations with the largest effect."
+    words = "Ratios with over without pedestal where one parameter is perturbed."
+    return FigureSpec("sensitivity_analysis", f"{words} {message}", caption, draw)
+
+
+def _paragraphs(simulated: pd.DataFrame, computed: int) -> list[str]:
+    """Paragraphs on the simulated perturbations, and on the number of those that are arithmetic."""
+    words = [
+        "One parameter at a time is perturbed, with the amplitudes and steps of the protocol; the rest is as in "
+        "the study."
+    ]
+    beyond, undecided = _beyond(simulated)
+    if beyond:
+        words.append(f"Beyond ±10 %: {listed(beyond)}.")
+    if undecided:
+        words.append(
+            "Undecided, because the laws of impact that agree with a measured restitution disagree here: "
+            f"{listed(undecided)}."
+        )
+    words.append(adjusted_words(simulated))
+    if computed:
+        words.append(
+            f"{sentence(counted(computed, 'further value'))} {'is' if computed == 1 else 'are'} arithmetic and "
+            "not simulation: a mass that is moved but not counted multiplies each amplitude by a known factor. "
+            "Their intervals are scatter of the same pairs, and no adjustment applies."
+        )
+    return words
 
 
 def adjusted_words(simulated: pd.DataFrame, level: float = 0.05) -> str:
-    """Say how many intervals exclude 1, and how many still do when all of them are counted."""
+    """Number of intervals that exclude 1, also when all of them are counted, in sentences."""
     tests = len(simulated)
     outside = int(((simulated["lower"] > 1) | (simulated["upper"] < 1)).sum())
     left = int((simulated["p_adjusted"] < level).sum())
-    return says.line("adjusted", outside, left, tests, level)
+    verb = agree(
+        outside,
+        tests,
+        "has a 95 % interval that excludes",
+        "have 95 % intervals that exclude",
+    )
+    return (
+        f"{sentence(of_all(outside, tests, 'simulated perturbation'))} {verb} 1. Chance alone produces some of "
+        f"these: after the Benjamini–Hochberg adjustment for {counted(tests, 'test')}, {left or 'none'} "
+        f"{agree(left, tests, 'differs', 'differ')} from 1 at the {100 * level:g} % level."
+    )
 
 
-def _beyond(simulated: pd.DataFrame) -> list[list[str]]:
-    """Perturbations beyond ±10 % with their ratios, and those whose laws disagree on which side of it they are."""
+def _beyond(simulated: pd.DataFrame) -> tuple[list[str], list[str]]:
+    """Perturbations beyond ±10 % with their ratios, and those on whose side of it the laws disagree."""
     beyond = (simulated["ratio"] > NONE[1]).astype(int) - (
         simulated["ratio"] < NONE[0]
     ).astype(int)
     base = simulated["factor"].map(lambda factor: LAW_OF.get(factor, (factor, ""))[0])
     differ = beyond.groupby([base, simulated["level"]]).transform("nunique") > 1
+    return _named(simulated[(beyond != 0) & ~differ]), _named(simulated[differ])
+
+
+def _named(perturbed: pd.DataFrame) -> list[str]:
+    """Names of perturbations with their ratios."""
     return [
-        [f"{row['name']} ({ratio_text(row)})" for row in rows.to_dict("records")]
-        for rows in (simulated[(beyond != 0) & ~differ], simulated[differ])
+        f"{row['name']} ({ratio_text(row)})" for row in perturbed.to_dict("records")
     ]
 
 
@@ -223,13 +295,12 @@ def sensitivity_analysis_figure(
         for k, floor in enumerate(floors if len(floors) > 1 else [])
     }
     with panels(WIDEST, 1.0 + 0.26 * len(rows)) as (figure, axes):
-        axes.axvspan(*NONE, color=BAND, lw=0)
+        axes.axvspan(NONE[0], NONE[1], color=BAND, lw=0)
         axes.axvline(1.0, color=GREY, lw=0.8)
         drawn: list[float] = []
         for y, row in enumerate(rows.to_dict("records")):
-            low, middle, high = (
-                float(row[name]) for name in ("lower", "ratio", "upper")
-            )
+            low, middle = float(row["lower"]), float(row["ratio"])
+            high = float(row["upper"])
             drawn += [low, middle, high]
             if np.isfinite([low, high]).all():
                 axes.plot([low, high], [y - 0.14] * 2, color=BLACK, lw=1.0, zorder=3)

@@ -1,12 +1,15 @@
-"""Which perturbed parameters give the signs that the thesis reports on its floors."""
+"""Perturbed parameters that give the signs that the thesis reports on its floors.
+
+In: the table ``sensitivity_analysis/effects``, ratios with over without pedestal [-]. Out: a section of the
+report.
+"""
 
 import pandas as pd
 
 from rockfrag.report.page import Column, table_html
 from rockfrag.report.part import Results, Section
-from rockfrag.words.sentences import sentence
+from rockfrag.words.sentences import agree, listed, of_all, sentence
 from rockfrag_thesis.hypotheses.floors import FLOORS, GROUND
-from rockfrag_thesis.sections import says
 from rockfrag_thesis.sections.sensitivity_analysis import (
     asks_sensitivity_analysis,
     perturbations,
@@ -29,12 +32,13 @@ def perturbations_by_floor(effects: pd.DataFrame) -> pd.DataFrame:
     ``beyond_chance`` (so are the 95 % intervals).
     """
     keys = ["factor", "level"]
-    ratio, lower, upper = (
-        effects.pivot_table(index=keys, columns="floor", values=name).reindex(
-            columns=list(FLOORS)
-        )
-        for name in ("ratio", "ratio_lower", "ratio_upper")
-    )
+
+    def by_floor(name: str) -> pd.DataFrame:
+        wide = effects.pivot_table(index=keys, columns="floor", values=name)
+        return wide.reindex(columns=list(FLOORS))
+
+    ratio = by_floor("ratio")
+    lower, upper = by_floor("ratio_lower"), by_floor("ratio_upper")
     found = ratio.assign(
         signs=(ratio[GROUND] > 1) & (ratio[_UPPER] < 1).all(axis=1),
         beyond_chance=(lower[GROUND] > 1) & (upper[_UPPER] < 1).all(axis=1),
@@ -48,12 +52,31 @@ def signs(results: Results) -> Section | None:
         return None
     table = perturbations_by_floor(results.table("sensitivity_analysis/effects"))
     kinds = ("signs", "beyond_chance")
-    named, clear = (list(table.loc[table[kind], "name"]) for kind in kinds)
+    named = list(table.loc[table["signs"], "name"])
+    clear = list(table.loc[table["beyond_chance"], "name"])
     shown = table.assign(
         name=table["name"].map(sentence),
         **{kind: table[kind].map({True: "yes", False: "no"}) for kind in kinds},
     )
     caption = "Mean ratio of amplitudes with/without pedestal by floor."
-    return says.section(
-        "signs", [table_html(shown, _COLUMNS, caption)], named, clear, len(table)
+    counts = of_all(len(named), len(table), "perturbation")
+    verb = agree(len(named), len(table), "gives", "give")
+    words = [
+        "The thesis reports a ratio above 1 on the ground floor and below 1 on the other two. The perturbations "
+        "share the same pairs of tests, and many leave the ratio at exactly 1, so no chance level is given for "
+        "them."
+    ]
+    if named:
+        words.append(f"The mean ratios have these signs for {listed(named)}.")
+    if clear:
+        words.append(f"The intervals have them for {listed(clear)}.")
+
+    else:
+        words.append("No perturbation has its intervals on these sides.")
+    return Section(
+        "signs",
+        "What would give the thesis’s signs",
+        f"{sentence(counts)} {verb} mean ratios with the signs of the thesis.",
+        words,
+        [table_html(shown, _COLUMNS, caption)],
     )

@@ -124,7 +124,8 @@ def _explain_factor(name: str, rows: pd.DataFrame) -> pd.DataFrame:
         ),
         "scope",
     )
-    tried, pairs = (rows.groupby(["level", "floor"]).size() for rows in (both, known))
+    tried = both.groupby(["level", "floor"]).size()
+    pairs = known.groupby(["level", "floor"]).size()
     found: list[dict[str, object]] = []
     floors = [ALL, *sorted(set(known["floor"]) - {ALL})]
     for level, floor in itertools.product(levels, floors):

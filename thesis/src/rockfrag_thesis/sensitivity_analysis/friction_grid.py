@@ -27,6 +27,7 @@ def friction_ratios(
     stacks: Mapping[str, Stack],
     motions: Sequence[Motion],
     levels_g: Floats,
+    *,
     ground: Sequence[float],
     interface: Sequence[float],
     threads: int = 1,
@@ -147,7 +148,12 @@ def survived_amplitudes(
         while open_.any():
             chosen = _least(open_, dominates)
             found = _outcomes(
-                body, frictions, motions, scales[:, [level]], chosen, threads
+                body,
+                frictions,
+                motions,
+                scales[:, [level]],
+                chosen=chosen,
+                threads=threads,
             )
             for p, m in np.argwhere(chosen):
                 slid = found[p, m]["slid"][: mu.shape[1]] > 0
@@ -174,14 +180,13 @@ def _outcomes(
     frictions: Sequence[tuple[float, ...]],
     motions: Sequence[Motion],
     scales: Floats,
+    *,
     chosen: Flags,
     threads: int,
 ) -> NDArray[np.void]:
     """Outcomes of the chosen frictions × motions; the others are zero."""
-    rows, columns = (
-        np.flatnonzero(chosen.any(axis=1)),
-        np.flatnonzero(chosen.any(axis=0)),
-    )
+    rows = np.flatnonzero(chosen.any(axis=1))
+    columns = np.flatnonzero(chosen.any(axis=0))
     systems = tuple(
         system_of(
             body, dict(zip(("ground", "interface"), frictions[row], strict=False))

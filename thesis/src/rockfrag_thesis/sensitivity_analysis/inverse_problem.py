@@ -11,6 +11,7 @@ import itertools
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 import pandas as pd
@@ -109,21 +110,20 @@ def invert(
     everywhere_or_not = ("all floors", *(places if len(places) > 1 else []))
     mechanisms = len(lines) * len(everywhere_or_not) + math.comb(len(lines), 2)
     least_p = PLAUSIBLE / max(mechanisms, 1)
+    row = partial(
+        _row, goal=goal, places=places, resolution=resolution, least_p=least_p
+    )
     for line in lines:
         for acts_on in everywhere_or_not:
             mask = np.array(
                 [acts_on in ("all floors", name) for name in places], dtype=float
             )
             tried = start + line.change * mask
-            found.append(
-                _row([line], tried, acts_on, goal, places, resolution, least_p)
-            )
+            found.append(row([line], tried, acts_on))
     for first, two in itertools.combinations(lines, 2):
         both = first.change[:, None] + two.change[None, :]
         tried = start + both.reshape(-1, *both.shape[2:])
-        found.append(
-            _row([first, two], tried, "all floors", goal, places, resolution, least_p)
-        )
+        found.append(row([first, two], tried, "all floors"))
     table = pd.DataFrame(found, columns=[*COLUMNS, "distance"])
     table = table.sort_values("distance", kind="stable", ignore_index=True)
     return table.drop(columns="distance")
@@ -207,6 +207,7 @@ def _row(
     lines: Sequence[_Line],
     tried: Array,
     acts_on: str,
+    *,
     goal: Array,
     places: Sequence[str],
     resolution: float,

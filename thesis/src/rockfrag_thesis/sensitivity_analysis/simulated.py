@@ -160,6 +160,7 @@ PERTURBATIONS = (*_SHAPES, *LAW_OF)  # names of the mechanical factors
 def perturbed_cases(
     object_name: str,
     stack: Stack,
+    *,
     tolerance: float,
     restitution: float,
     replicates: int,
@@ -172,10 +173,9 @@ def perturbed_cases(
     """
     cases = []
     for number in range(1, replicates + 1):
-        lone, pedestal, statue = (
-            _perturbed(block, tolerance, rng)
-            for block in (stack.upper, stack.lower, stack.upper)
-        )
+        lone = _perturbed(stack.upper, tolerance, rng)
+        pedestal = _perturbed(stack.lower, tolerance, rng)
+        statue = _perturbed(stack.upper, tolerance, rng)
         values = [
             float(
                 np.clip(

@@ -89,8 +89,8 @@ def _standing(job: Job[Study]) -> pd.DataFrame:
         job.motions("motions/floors"),
         study.amplitudes.values_g,
         protocol_of(study),
-        study.seed,
-        job.threads,
+        seed=study.seed,
+        threads=job.threads,
     )
     columns = [name for name in table.columns if name.startswith("stands_")]
     for definition, part in table.groupby("definition", sort=False):

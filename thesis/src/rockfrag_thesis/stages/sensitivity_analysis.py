@@ -21,22 +21,20 @@ def run(job: Job[Study]) -> Results:
     """Yield the ratio P/NP for every perturbed parameter of the ideal model, and effects."""
     from rockfrag_thesis.sensitivity_analysis import friction_grid
 
-    study, settings, motions = (
-        job.study,
-        settings_of(job.study),
-        job.motions("motions/floors"),
-    )
+    study, settings = job.study, settings_of(job.study)
+    motions = job.motions("motions/floors")
     ratios, effects = _one_at_a_time(job, motions)
     yield "sensitivity_analysis/ratios", ratios
     yield "sensitivity_analysis/effects", effects
     found = None
     if tried := settings.friction:
-        levels_g, frictions = (
-            protocol_of(study).amplitudes(),
-            (tried["ground"], tried["interface"]),
-        )
         found = friction_grid.friction_ratios(
-            tested_stacks(study), motions, levels_g, *frictions, job.threads
+            tested_stacks(study),
+            motions,
+            protocol_of(study).amplitudes(),
+            ground=tried["ground"],
+            interface=tried["interface"],
+            threads=job.threads,
         )
         yield "sensitivity_analysis/friction_ratios", found
         means = friction_grid.friction_effects(found, study.floors)
@@ -67,13 +65,19 @@ def _one_at_a_time(
 
     study, threads = job.study, job.threads
     settings, stacks = settings_of(study).sensitivity_analysis, tested_stacks(study)
-    ideal_cases = [simulated.ideal_case(*named) for named in stacks.items()]
+    ideal_cases = [simulated.ideal_case(name, stack) for name, stack in stacks.items()]
     rng = np.random.default_rng(study.seed)
     cases = list(ideal_cases)
-    spread = (settings["tolerance_percent"] / 100, settings["tolerance_restitution"])
-    for named in stacks.items():
-        cases += simulated.factor_cases(*named, settings)
-        cases += simulated.perturbed_cases(*named, *spread, settings["replicates"], rng)
+    for name, stack in stacks.items():
+        cases += simulated.factor_cases(name, stack, settings)
+        cases += simulated.perturbed_cases(
+            name,
+            stack,
+            tolerance=settings["tolerance_percent"] / 100,
+            restitution=settings["tolerance_restitution"],
+            replicates=settings["replicates"],
+            rng=rng,
+        )
 
     def progress(done: int) -> None:
         job.log.info("%d of at most %d bodies", done, 2 * len(cases))

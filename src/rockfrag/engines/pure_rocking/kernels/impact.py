@@ -16,7 +16,7 @@ from rockfrag.engines.pure_rocking.kernels.equations import (
 from rockfrag.engines.pure_rocking.kernels.laws import moves_impulse, rate
 
 # relative growth of the kinetic energy in an impact that counts as rounding
-GAIN = 1e-9
+GAIN = 1e-12
 
 
 @kernel
@@ -178,8 +178,8 @@ def _measured(body, state, closes, momentum):
     n1, n2, w1, w2 = _with_rates(
         body, state, closes, others, (has1, want1), (has2, want2)
     )
-    limit = kinetic_energy(body, state) * (1.0 + GAIN)
-    if energy_with(body, state, (n1, n2), (w1, w2)) <= limit:
+    energy = kinetic_energy(body, state)
+    if energy_with(body, state, (n1, n2), (w1, w2)) <= energy * (1.0 + GAIN):
         return n1, n2, w1, w2, 0 if exists else 1
     # as far from what momentum says as energy allows
     low, high = 0.0, 1.0
@@ -189,7 +189,7 @@ def _measured(body, state, closes, momentum):
         first = has1, rate1 + fraction * (want1 - rate1)
         two = has2, rate2 + fraction * (want2 - rate2)
         n1, n2, w1, w2 = _with_rates(body, state, closes, others, first, two)
-        if energy_with(body, state, (n1, n2), (w1, w2)) <= limit:
+        if energy_with(body, state, (n1, n2), (w1, w2)) <= energy:
             low = fraction
         else:
             high = fraction

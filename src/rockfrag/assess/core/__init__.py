@@ -1,0 +1,1 @@
+"""From outcomes to one probability: draws, fractions, parts of sources, decisions; functions on arrays."""

@@ -1,0 +1,95 @@
+"""What to do: leave it, secure it, or measure something first, by a risk that is accepted."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from enum import Enum
+
+from rockfrag.assess.core.parts import means_once_known
+from rockfrag.base.arrays import Floats
+
+LEAST_CHANCE = (
+    0.2  # With which a measurement must turn the decision round to be named [-]
+)
+
+
+class Action(Enum):
+    """What to do with an object."""
+
+    LEAVE = "leave"
+    SECURE = "secure"
+    MEASURE = "measure"
+
+
+@dataclass(frozen=True)
+class Measurement:
+    """What knowing a source would do.
+
+    Attributes
+    ----------
+    source : its name
+    chance : with which it turns the decision round [-]
+    mean_if : mean probability where it does [-]; that of today where it never does
+    """
+
+    source: str
+    chance: float
+    mean_if: float
+
+
+@dataclass(frozen=True)
+class Decision:
+    """What to do, and what could turn it round.
+
+    Attributes
+    ----------
+    action : what to do
+    otherwise : what to do if nothing is measured; ``LEAVE`` or ``SECURE``
+    source : name of what is measured first, the cheapest that may turn it round; empty where nothing may
+    chance : with which knowing it turns the decision round [-]
+    measurements : all that were considered, the cheapest first
+    """
+
+    action: Action
+    otherwise: Action
+    source: str = ""
+    chance: float = 0.0
+    measurements: tuple[Measurement, ...] = ()
+
+
+def decide(
+    mean: float,
+    values: Floats,
+    sources: Mapping[str, Floats],
+    left: Mapping[str, float],
+    accepted: float,
+) -> Decision:
+    """Decide by the mean of a probability.
+
+    Parameters
+    ----------
+    mean : of the probability, or rate, over what is not known
+    values : the same in each draw, shape (draws,)
+    sources : standard normal values of each source in the draws, shape (draws,) each
+    left : what measuring a source leaves of its standard deviation [-], the cheapest measurement first
+    accepted : probability, or rate, that is accepted
+
+    Returns
+    -------
+    The decision; to measure is named where that would turn it round with a chance of ``LEAST_CHANCE``.
+    """
+    tried = tuple(
+        _tried(name, means_once_known(values, sources[name], rest), mean, accepted)
+        for name, rest in left.items()
+        if name in sources
+    )
+    first = next((each for each in tried if each.chance >= LEAST_CHANCE), None)
+    otherwise = Action.SECURE if mean > accepted else Action.LEAVE
+    if first is None:
+        return Decision(otherwise, otherwise, measurements=tried)
+    return Decision(Action.MEASURE, otherwise, first.source, first.chance, tried)
+
+
+def _tried(source: str, means: Floats, mean: float, accepted: float) -> Measurement:
+    turned = (means > accepted) != (mean > accepted)
+    there = float(means[turned].mean()) if turned.any() else mean
+    return Measurement(source, float(turned.mean()), there)

@@ -1,0 +1,47 @@
+"""Statics: the factor on each motion from which it lifts an object, by its own components."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from rockfrag.base.arrays import Floats
+from rockfrag.base.units import GRAVITY
+from rockfrag.records.motion import GroundMotion, Motion
+from rockfrag.system.body import Circle, Polygon
+from rockfrag.system.mesh import outward_normals
+from rockfrag.system.system import System, uplift_ratios
+
+
+def lifting_in_plane(system: System, shaking: Sequence[Motion]) -> Floats:
+    """Factor on each motion from which it opens a contact of a planar system at rest, shape (motions,)."""
+    least = min(uplift_ratios(system)) * GRAVITY
+    return np.array([least / motion.pga for motion in shaking])
+
+
+def lifting_in_space(system: System, shaking: Sequence[GroundMotion]) -> Floats:
+    """Factor on each record from which both components lift a body in space over an edge, shape (records,).
+
+    Over an edge at the distance d from below the centre of gravity at height h, an acceleration of the base away
+    from it of g d/h; over a rim of radius r in any direction of g r/h. A centre that is not above the middle of a
+    rim lifts it earlier towards the near side, by its distance.
+    """
+    (body,) = system.bodies
+    below, height = np.array(body.centre[:2]), body.centre[2]
+    if isinstance(body.base, Circle):
+        aside = float(np.hypot(*(np.array(body.base.centre) - below)))
+        least = GRAVITY * (body.base.radius - aside) / height
+        return np.array([least / np.hypot(*_samples(m)).max() for m in shaking])
+    assert isinstance(body.base, Polygon)
+    corners = np.array(body.base.vertices) - below
+    outward = outward_normals(corners)
+    distances = np.einsum("ni,ni->n", outward, corners)
+    directions = outward / (GRAVITY * distances / height)[:, np.newaxis]
+    return np.array([1 / (-(directions @ _samples(m)).min()) for m in shaking])
+
+
+def _samples(motion: GroundMotion) -> Floats:
+    """Both horizontal components, shape (2, samples); zeros where there is no second one [m/s²]."""
+    x = motion.x.acceleration
+    return np.stack(
+        [x, np.zeros_like(x) if motion.y is None else motion.y.acceleration]
+    )

@@ -1,0 +1,449 @@
+"""Dimensions that stand in a sentence, such as ``H 180 × W 60 × D 40 cm`` or ``70 7/8 x 24 in. (180 x 61 cm)``.
+
+Museums write height, width and depth in any order, in centimetres and in inches with fractions, of the whole, of
+the object without its base, of each of a pair. What is stated is read; what is not stated (which of three bare
+numbers is the height) is asked and never guessed: a bookcase taken for its own side is another object.
+
+In goes the text of a cell, out come :class:`Dimensions` in metres (``docs/collections.md``).
+"""
+
+import re
+import unicodedata
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+
+from rockfrag.base.errors import InputError
+from rockfrag.collections.order_words import (
+    DIRECTION_OF,
+    WEIGHT_WORDS,
+    Direction,
+    directions,
+)
+
+METRES = {
+    "mm": 1e-3,
+    "cm": 1e-2,
+    "m": 1.0,
+    "in": 0.0254,
+    "inch": 0.0254,
+    "inches": 0.0254,
+    '"': 0.0254,
+    "ft": 0.3048,
+    "feet": 0.3048,
+    "foot": 0.3048,
+    "'": 0.3048,
+}
+"""Metres of each unit of length."""
+
+KILOGRAMS = {"kg": 1.0, "g": 1e-3, "lb": 0.45359237, "lbs": 0.45359237, "t": 1000.0}
+"""Kilograms of each unit of mass."""
+
+SAME = 0.02
+"""Largest relative difference of one length in two units: catalogues round to an eighth of an inch, or to 1 mm."""
+
+ROUNDED_M = 3e-3  # and the largest difference [m] that rounding alone explains
+
+WITH_BASE = (
+    *("with base", "including base", "incl. base", "overall", "installed"),
+    *("mit sockel", "gesamt", "gesamtmaß", "avec socle", "hors tout"),
+    *("con base", "complessivo", "total", "met sokkel", "totaal"),
+)
+WITHOUT_BASE = (
+    *("without base", "excluding base", "ohne sockel", "sans socle"),
+    *("senza base", "sin base", "zonder sokkel"),
+)
+OBJECT = ("object", "sculpture", "figure", "statue", "objekt", "objet", "objeto")
+PIECES_OF_IT = (
+    *("base", "plinth", "pedestal", "sockel", "socle", "zoccolo", "sokkel"),
+    *("frame", "framed", "unframed", "image", "sheet", "lid", "case", "head"),
+    *("rahmen", "cadre", "cornice", "marco", "lijst", "deckel", "couvercle"),
+)
+EACH = ("each", "jeweils", "je", "chacun", "chacune", "ciascuno", "cada uno", "elk")
+
+_APPROXIMATE = re.compile(
+    r"\b(?:approximately|approx|about|circa|ca|c|etwa|ungefähr|environ|env|aprox|ongeveer)\b\.?\s*"
+)
+_FRACTIONS = {
+    mark: unicodedata.normalize("NFKC", mark).replace("⁄", "/")
+    for mark in "¼½¾⅓⅔⅛⅜⅝⅞⅙⅚⅕⅖⅗⅘"
+}
+
+
+def _any_of(words: Sequence[str]) -> str:
+    """Pattern of any of several words, the longest first."""
+    return "|".join(re.escape(word) for word in sorted(words, key=len, reverse=True))
+
+
+_ORDER = _any_of([*DIRECTION_OF, *WEIGHT_WORDS])
+_UNIT = _any_of([*METRES, *KILOGRAMS])
+_PART = _any_of([*WITHOUT_BASE, *WITH_BASE, *PIECES_OF_IT, *EACH])
+_NUMBER = r"\d+(?:[.,]\d+)?(?:(?:\s+|-)\d+/\d+)?"
+_ANY_NUMBER = rf"(?:\d+/\d+|{_NUMBER})"
+_TERM = re.compile(
+    rf"(?:(?<!\w)(?P<before>{_ORDER})(?![^\W\d_])[.:=\s]*)?"
+    rf"(?P<low>{_ANY_NUMBER})(?:\s*(?:-|\bto\b|\bbis\b|à)\s*(?P<high>{_ANY_NUMBER}))?"
+    rf"\s*(?P<unit>{_UNIT})?(?![^\W\d_])\.?"
+    rf"(?:\s*(?P<after>{_ORDER})(?![^\W\d_])\.?(?:\s*(?P<last>{_UNIT})(?![^\W\d_]))?)?"
+)
+_ORDER_ALONE = re.compile(
+    rf"(?<!\w)((?:{_ORDER})\.?(?:\s*[×/,]\s*(?:{_ORDER})\.?)+)(?!\w)\s*[:=]?"
+)
+
+
+@dataclass(frozen=True)
+class Length:
+    """One stated length.
+
+    Attributes
+    ----------
+    low, high : its limits [m], equal unless a range is stated
+    """
+
+    low: float
+    high: float
+
+    @property
+    def middle(self) -> float:
+        """Middle of the limits [m]."""
+        return 0.5 * (self.low + self.high)
+
+
+@dataclass(frozen=True)
+class Dimensions:
+    """Size of an object as a text states it.
+
+    Attributes
+    ----------
+    height, width, depth, diameter : lengths that are stated; None where they are not
+    mass : mass [kg]; None where it is not stated
+    part : what the lengths are of, such as ``with base``; empty where the text does not say
+    others : sizes of other parts, as they stand
+    approximate : whether the text says that they are about so
+    question : what has to be asked before the lengths can be used; empty where nothing has
+    """
+
+    height: Length | None = None
+    width: Length | None = None
+    depth: Length | None = None
+    diameter: Length | None = None
+    mass: float | None = None
+    part: str = ""
+    others: tuple[str, ...] = ()
+    approximate: bool = False
+    question: str = ""
+
+    def with_lengths(self, lengths: Mapping[str, Length]) -> "Dimensions":
+        """Return the same with these lengths, by ``height``, ``width``, ``depth`` and ``diameter``."""
+        return replace(
+            self,
+            height=lengths.get("height"),
+            width=lengths.get("width"),
+            depth=lengths.get("depth"),
+            diameter=lengths.get("diameter"),
+        )
+
+    @property
+    def understood(self) -> str:
+        """What was understood, in words."""
+        said = [
+            f"{name} {_centimetres(length)}"
+            for name in ("height", "width", "depth", "diameter")
+            if (length := getattr(self, name)) is not None
+        ]
+        if self.mass is not None:
+            said.append(f"mass {self.mass:.4g} kg")
+        text = ", ".join(said) or "nothing"
+        return f"{text} ({self.part})" if self.part else text
+
+
+@dataclass(frozen=True)
+class _Stated:
+    """A length as it stands: limits in its unit, and the word beside it."""
+
+    low: float
+    high: float
+    unit: str
+    word: str
+
+    def metres(self) -> Length:
+        factor = METRES[self.unit]
+        return Length(factor * self.low, factor * self.high)
+
+
+@dataclass(frozen=True)
+class _Phrase:
+    """A piece of the text: lengths that belong together, and the part of the object that they are of."""
+
+    text: str
+    part: str = ""
+    lengths: tuple[_Stated, ...] = ()
+    order: tuple[str, ...] = ()
+    mass: float | None = None
+    unit_missing: bool = False
+
+
+def read_dimensions(text: str, order: str = "") -> Dimensions:
+    """Read the size of an object out of a sentence.
+
+    Parameters
+    ----------
+    text : what a catalogue says
+    order : directions of lengths that the text does not name, such as ``HWD``, if it is known of the whole table
+
+    Returns
+    -------
+    What is stated. Where ``question`` is not empty no length is given.
+
+    Raises
+    ------
+    InputError
+        If ``order`` has a letter that is no direction.
+    """
+    for letter in order:
+        if letter.casefold() not in DIRECTION_OF:
+            raise InputError(
+                f"order: expected letters of height, width, depth or length such as HWD, got {order!r}."
+            )
+    phrases = list(_phrases(_plain(text)))
+    masses = [phrase.mass for phrase in phrases if phrase.mass is not None]
+    about = Dimensions(
+        mass=masses[0] if masses else None,
+        approximate=bool(_APPROXIMATE.search(text.casefold())),
+    )
+    measured = [phrase for phrase in _with_orders(phrases, order) if phrase.lengths]
+    if not measured:
+        return replace(
+            about, question="no length is stated; give height, width and depth"
+        )
+    part = min((phrase.part for phrase in measured), key=_rank_of_part)
+    own = [phrase for phrase in measured if phrase.part == part]
+    others = [phrase.text for phrase in measured if phrase.part != part]
+    about = replace(about, part=part, others=tuple(others))
+    if part in PIECES_OF_IT:
+        return replace(
+            about, question=f"only the {part} is measured; give the size of the whole"
+        )
+    return _joined(about, own)
+
+
+def _plain(text: str) -> str:
+    """Text in small letters, with one sign each for times, ranges, inches and feet, and plain fractions."""
+    for mark, digits in _FRACTIONS.items():
+        text = re.sub(rf"(\d)\s*{mark}", rf"\1 {digits}", text).replace(mark, digits)
+    text = re.sub("[″”“]|''|’’", '"', text.replace("⁄", "/"))
+    text = re.sub("[′’‘]", "'", text)
+    text = re.sub("[–—−]", "-", text)
+    text = re.sub(r"[✕✖*]", "×", text).replace("⌀", "ø").replace("\u00a0", " ")
+    text = _APPROXIMATE.sub("", text.casefold())
+    # 180 (H) x 60 (W): a word in brackets is the word of the number before it
+    text = re.sub(rf"\(\s*({_ORDER})\.?\s*\)", r" \1 ", text)
+    # H 180 cm (with base): a part in brackets is what the lengths before it are of
+    text = re.sub(rf"\(\s*({_PART})\s*\)", r" \1", text)
+    # HxWxD, 60x40, 60cmx40cm: an x between directions, numbers and units is a sign
+    before = rf"(?:{_ORDER}|{_UNIT}|\d|\.|\))"
+    previous = None
+    while previous != text:
+        previous = text
+        text = re.sub(
+            rf"(?<![^\W\d_])({before}\.?)\s*x\s*(?=(?:{_ORDER}|\d))", r"\1 × ", text
+        )
+        text = re.sub(rf"(?<=\d)({_UNIT})\.?\s*x\s*(?=(?:{_ORDER}|\d))", r"\1 × ", text)
+    return re.sub(r"\bby\b", "×", text)
+
+
+def _phrases(text: str) -> Iterator[_Phrase]:
+    """Yield the pieces of a text, each with its lengths and the part of the object that it is of."""
+    part = ""
+    for piece in re.split(r"[;\n|()\[\]]", text):
+        named, words = _split_part(piece.strip(" .,:"))
+        part = part if named is None else named
+        if words:
+            yield _read_phrase(words, part)
+
+
+def _split_part(words: str) -> tuple[str | None, str]:
+    """Part of the object that a piece names first or last, None without one, and the rest of the piece."""
+    for names, stands_for in (
+        (WITHOUT_BASE, "without base"),
+        (WITH_BASE, "with base"),
+        (OBJECT, ""),
+        (EACH, "each"),
+        (PIECES_OF_IT, None),
+    ):
+        for name in sorted(names, key=len, reverse=True):
+            part = name if stands_for is None else stands_for
+            if re.match(rf"{re.escape(name)}(?!\w)", words):
+                return part, words[len(name) :].strip(" .,:")
+            if re.search(rf"\d.*[\s,]{re.escape(name)}$", words):
+                return part, words[: -len(name)].strip(" .,:")
+    return None, words
+
+
+def _rank_of_part(part: str) -> int:
+    """Order in which parts are taken: what stands on the floor first."""
+    ranks = ("with base", "", "each", "without base")
+    return ranks.index(part) if part in ranks else len(ranks)
+
+
+def _read_phrase(words: str, part: str) -> _Phrase:
+    """Read the lengths, the mass and the order of one piece."""
+    order: tuple[str, ...] = ()
+    if alone := _ORDER_ALONE.search(words):
+        order = tuple(re.findall(rf"(?<!\w)(?:{_ORDER})(?!\w)", alone[1]))
+        words = words[: alone.start()] + words[alone.end() :]
+    terms = list(_TERM.finditer(words))
+    # H 180 W 60 or 180 H 60 W: the first number tells on which side its word stands
+    side = "before" if terms and terms[0]["before"] else "after"
+    lengths: list[_Stated] = []
+    mass = None
+    for i, term in enumerate(terms):
+        unit = term["unit"] or term["last"] or ""
+        low = _number(term["low"], unit)
+        high = _number(term["high"], unit) if term["high"] else low
+        word = term[side] or ""
+        if side == "before" and not word and i and terms[i - 1]["after"]:
+            # the word between two numbers belongs to the second
+            word = terms[i - 1]["after"]
+        if word in WEIGHT_WORDS or unit in KILOGRAMS:
+            mass = KILOGRAMS.get(unit, 1.0) * 0.5 * (low + high)
+        elif lengths and _continues(
+            lengths[-1], unit, words[terms[i - 1].end() : term.start()]
+        ):
+            joined = _feet_and_inches(lengths[-1], low, unit)
+            lengths[-1] = replace(joined, word=joined.word or word)
+        else:
+            lengths.append(_Stated(low, high, unit, word))
+    units = [length.unit for length in lengths if length.unit]
+    if units:
+        lengths = _with_units(lengths)
+    return _Phrase(
+        words, part, tuple(lengths), order, mass, bool(lengths and not units)
+    )
+
+
+def _continues(before: _Stated, unit: str, between: str) -> bool:
+    """Whether inches go on what feet began: 6 ft 2 in."""
+    feet = METRES.get(before.unit) == METRES["ft"]
+    return feet and METRES.get(unit) == METRES["in"] and not between.strip(" .")
+
+
+def _feet_and_inches(feet: _Stated, inches: float, unit: str) -> _Stated:
+    """One length of feet and inches, in inches."""
+    return replace(
+        feet, low=12 * feet.low + inches, high=12 * feet.high + inches, unit=unit
+    )
+
+
+def _with_units(lengths: Sequence[_Stated]) -> list[_Stated]:
+    """Give lengths without a unit that of the next one that has it, or of the last."""
+    found: list[_Stated] = []
+    unit = next(length.unit for length in reversed(lengths) if length.unit)
+    for length in reversed(lengths):
+        unit = length.unit or unit
+        found.append(replace(length, unit=unit))
+    return found[::-1]
+
+
+def _number(text: str, unit: str) -> float:
+    """Read ``70 7/8``, ``1,8`` or ``1,800`` (of millimetres)."""
+    whole, _, fraction = text.replace("-", " ").rpartition(" ")
+    if "/" not in fraction:
+        whole, fraction = fraction, ""
+    if re.fullmatch(r"\d{1,3},\d{3}", whole) and unit == "mm":
+        whole = whole.replace(",", "")
+    value = float(whole.strip().replace(",", ".")) if whole.strip() else 0.0
+    if fraction:
+        above, below = fraction.split("/")
+        value += float(above) / float(below) if float(below) else 0.0
+    return value
+
+
+def _with_orders(phrases: Sequence[_Phrase], order: str) -> list[_Phrase]:
+    """Give each phrase of bare numbers the order that stands alone beside it, or the one that is known."""
+    alone = next((phrase.order for phrase in phrases if phrase.order), tuple(order))
+    found = []
+    for phrase in phrases:
+        bare = not any(length.word for length in phrase.lengths)
+        given = phrase.order or alone
+        if bare and len(given) == len(phrase.lengths):
+            lengths = [
+                replace(length, word=word.casefold())
+                for length, word in zip(phrase.lengths, given, strict=True)
+            ]
+            phrase = replace(phrase, lengths=tuple(lengths))
+        found.append(phrase)
+    return found
+
+
+def _joined(about: Dimensions, phrases: Sequence[_Phrase]) -> Dimensions:
+    """Join what several phrases say of one part, or ask."""
+    if any(phrase.unit_missing for phrase in phrases):
+        return replace(about, question="no unit stands beside the lengths; give it")
+    kept: list[_Stated] = []
+    for phrase in phrases:
+        restated = _restates(kept, phrase.lengths)
+        if restated is None:
+            text = "; ".join(phrase.text for phrase in phrases)
+            return replace(
+                about,
+                question=f"the sizes “{text}” differ; say which is the object's",
+            )
+        kept = restated
+    words = [length.word for length in kept]
+    if not all(words):
+        return replace(
+            about,
+            question="which length is the height and which a side is not stated; give their order",
+        )
+    ways = directions(words)
+    if ways is None:
+        named = " × ".join(word.upper() for word in words)
+        return replace(about, question=f"{named} leaves open which length is which")
+    by_way = dict(zip(ways, (length.metres() for length in kept), strict=True))
+    return about.with_lengths(_placed(by_way))
+
+
+def _restates(kept: Sequence[_Stated], more: Sequence[_Stated]) -> list[_Stated] | None:
+    """Lengths that were known with those of one phrase more; None where they contradict each other.
+
+    A phrase of as many lengths as were known says the same in another unit, or speaks of something else.
+    """
+    if not kept:
+        return list(more)
+    known = {length.word: length for length in kept if length.word}
+    added = [length for length in more if length.word and length.word not in known]
+    if len(added) == len(more):
+        return [*kept, *added]
+    again = [length for length in more if length not in added]
+    against = [known.get(length.word) for length in again]
+    if not all(length.word for length in again):
+        # the last ones, as in H. 70 in. (178 cm); W. 24 in. (61 cm)
+        against = list(kept[-len(again) :])
+    found = list(kept)
+    for length, other in zip(again, against, strict=True):
+        if other is None or not _same(length, other):
+            return None
+        if METRES[length.unit] in (1e-3, 1e-2, 1.0):
+            found[found.index(other)] = replace(length, word=other.word)
+    return [*found, *added]
+
+
+def _same(first: _Stated, second: _Stated) -> bool:
+    a, b = first.metres().middle, second.metres().middle
+    return abs(a - b) <= max(SAME * max(a, b), ROUNDED_M)
+
+
+def _placed(lengths: dict[Direction, Length]) -> dict[str, Length]:
+    """Lengths by the field that they fill: a length lies along whichever side is free, the width first."""
+    found = dict(lengths)
+    length = found.pop(Direction.LENGTH, None)
+    if length is not None:
+        free = Direction.DEPTH if Direction.WIDTH in found else Direction.WIDTH
+        found[free] = length
+    return {way.value: size for way, size in found.items()}
+
+
+def _centimetres(length: Length) -> str:
+    """A length in words, such as ``180 cm`` or ``178 to 182 cm``."""
+    low, high = 100 * length.low, 100 * length.high
+    return f"{low:.4g} cm" if low == high else f"{low:.4g} to {high:.4g} cm"

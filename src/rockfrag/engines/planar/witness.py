@@ -1,0 +1,124 @@
+"""A witness of impacts: what contacts have given, from the whole change of momentum (``docs/contact.md``).
+
+What is above a contact has been pushed by that contact and by nothing else, so its change of momentum and of
+angular momentum is the resultant of the contact and where it acts.  Nothing here is shared with the search and its
+equations.  Impulses on bodies from outside the column would be taken from the change first.
+"""
+
+from typing import NamedTuple
+
+from rockfrag.base.elementary import sin_cos
+from rockfrag.engines.compile.jit import kernel
+
+SHUT = 30.0
+"""What shutting slow ends asks of impulses at most, over mass and closing speed [-]."""
+ROUNDING = 1e-6  # fraction of mass times √(g b) below which an impulse is none
+TOUCHES = 1e-12  # gap over the half width below which an end touches [-]
+
+
+class Limits(NamedTuple):
+    """What is allowed: speeds [m/s], impulses [Ns], and whether impacts are plastic."""
+
+    speed: float
+    impulse: float
+    plastic: bool
+
+
+@kernel
+def _turned(x, y, angle):
+    """Vector turned clockwise."""
+    s, c = sin_cos(angle)
+    return x * c + y * s, y * c - x * s
+
+
+@kernel
+def _place(p, q, k, end):
+    """End of contact k: its point (x, y), the tangent there, and the gap [m]."""
+    x, y = _turned(p.corner[k, end, 0], p.corner[k, end, 1], q[3 * k + 2])
+    x, y = x + q[3 * k], y + q[3 * k + 1]
+    if k == 0:
+        return x, y, 1.0, 0.0, y
+    side, tilt, below = 2 * end - 1, (p.tilt_cos[k], -p.tilt_sin[k]), q[3 * k - 1]
+    ex, ey = p.face[k, 0] + side * p.half[k] * tilt[0], 0.0
+    ey = p.face[k, 1] + side * p.half[k] * tilt[1]
+    ex, ey = _turned(ex, ey, below)
+    ex, ey = ex + q[3 * k - 3], ey + q[3 * k - 2]
+    tx, ty = _turned(tilt[0], tilt[1], below)
+    if side * ((x - ex) * tx + (y - ey) * ty) <= 1e-9 * p.size:
+        return x, y, tx, ty, (y - ey) * tx - (x - ex) * ty
+    # the edge of the face is against the base
+    tx, ty = _turned(tilt[0], tilt[1], q[3 * k + 2])
+    return ex, ey, tx, ty, (y - ey) * tx - (x - ex) * ty
+
+
+@kernel
+def _speed(q, v, k, point, direction):
+    """Velocity of body k relative to what is below at a point (x, y) along a direction [m/s]."""
+    x, y = point
+    dx, dy = direction
+    found = dx * (v[3 * k] + v[3 * k + 2] * (y - q[3 * k + 1]))
+    found += dy * (v[3 * k + 1] - v[3 * k + 2] * (x - q[3 * k]))
+    if k > 0:
+        found -= dx * (v[3 * k - 3] + v[3 * k - 1] * (y - q[3 * k - 2]))
+        found -= dy * (v[3 * k - 2] - v[3 * k - 1] * (x - q[3 * k - 3]))
+    return found
+
+
+@kernel
+def breaks_a_law(p, w, closing, plastic):
+    """Whether the change from ``old_v`` to ``v`` breaks a law of impacts by more than shutting slow ends asks.
+
+    P_n ≥ 0 at each end, nothing at ends that part, |P_t| ≤ µ ΣP_n, kinetic for a shear against the old slip, and
+    no gain of energy.  Where laws of restitution act, impacts are not ``plastic``: ends may be pushed and part.
+    """
+    mass = gain = 0.0
+    for d in range(3 * p.count):
+        gain += 0.5 * (w.v[d] * w.v[d] - w.old_v[d] * w.old_v[d]) / p.inverse[d]
+        mass += p.mass[d // 3] if d % 3 == 0 else 0.0
+    slack = (SHUT * closing + ROUNDING) * p.speed
+    limits = Limits(slack, slack * mass, plastic)
+    broken = gain > ROUNDING * mass * p.speed * p.speed
+    push_x = push_y = turn = 0.0
+    for k in range(p.count - 1, -1, -1):
+        jump_x = (w.v[3 * k] - w.old_v[3 * k]) * p.mass[k]
+        jump_y = (w.v[3 * k + 1] - w.old_v[3 * k + 1]) * p.mass[k]
+        spin = (w.v[3 * k + 2] - w.old_v[3 * k + 2]) * p.inertia[k]
+        push_x, push_y = push_x + jump_x, push_y + jump_y
+        turn += spin + jump_x * w.q[3 * k + 1] - jump_y * w.q[3 * k]
+        broken = broken or _contact_breaks(p, w, k, (push_x, push_y, turn), limits)
+    return broken
+
+
+@kernel
+def _contact_breaks(p, w, k, resultant, limits):
+    """Whether contact k breaks a law by the resultant (x, y, moment about the origin) that it has given."""
+    push_x, push_y, turn = resultant
+    slack, allowed, plastic = limits.speed, limits.impulse, limits.plastic
+    x0, y0, tx, ty, gap0 = _place(p, w.q, k, 0)
+    x1, y1, ux, uy, gap1 = _place(p, w.q, k, 1)
+    left, right = abs(gap0) < TOUCHES * p.size, abs(gap1) < TOUCHES * p.size
+    if not (left or right):
+        return abs(push_x) + abs(push_y) > allowed
+    if not left:
+        x0, y0, tx, ty = x1, y1, ux, uy
+    along, pressed = push_x * tx + push_y * ty, push_y * tx - push_x * ty
+    off = turn - push_x * y0 + push_y * x0
+    if not (left and right):
+        # one end carries all
+        if plastic and abs(off) > allowed * p.size:
+            return True
+        x1, y1, far = x0, y0, 0.0
+    else:
+        far = -off / ((x1 - x0) * tx + (y1 - y0) * ty)
+    parts = min(pressed - far, far) if left and right else pressed
+    if parts < -allowed and (plastic or pressed < -allowed):
+        return True
+    for end in range(2):
+        x, y, given = (x0, y0, pressed - far) if end == 0 else (x1, y1, far)
+        speed = _speed(w.q, w.v, k, (x, y), (-ty, tx))
+        if speed < -slack or (plastic and given > allowed and speed > slack):
+            return True
+    slid = _speed(w.q, w.old_v, k, (x0, y0), (tx, ty))
+    brakes = abs(slid) > slack and slid * along < 0.0
+    limit = p.kinetic[k] if brakes else p.static[k]
+    return abs(along) > limit * max(0.0, pressed) + allowed

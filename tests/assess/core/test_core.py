@@ -1,0 +1,137 @@
+"""All that is not known drawn at once: closed forms, statics as a cap, parts of sources, decisions."""
+
+import numpy as np
+import pytest
+from scipy import stats
+
+from rockfrag.assess.core.decisions import Action, decide
+from rockfrag.assess.core.draws import make_draws
+from rockfrag.assess.core.fractions import count_motions
+from rockfrag.assess.core.likelihood import Likelihood, likelihood_of
+from rockfrag.assess.core.parts import part_of_source
+from rockfrag.assess.core.prediction import Shift, predict
+
+LEVELS = np.geomspace(0.02, 4.0, 80)
+MANY = 400
+
+
+def predicted(capacities, shifts, uplifts=None, levels=LEVELS):
+    """A prediction for motions, each an earthquake, that topple from a level on."""
+    capacities = np.asarray(capacities, dtype=float)
+    fell = capacities[:, None] <= levels
+    uplifts = np.full(capacities.size, levels[0]) if uplifts is None else uplifts
+    counts = count_motions(
+        levels, fell, np.ones_like(fell), uplifts, np.arange(capacities.size)
+    )
+    return predict(levels, counts, shifts)
+
+
+def lognormal(median, spread):
+    """Capacities at equal probabilities of a lognormal distribution."""
+    z = stats.norm.ppf((np.arange(MANY) + 0.5) / MANY)
+    return median * np.exp(spread * z)
+
+
+def test_the_mean_is_the_lognormal_curve_of_both_spreads():
+    shifts = {"model": Shift(0.0, 0.25), "width": Shift(0.05, 0.15)}
+    found = predicted(lognormal(0.5, 0.3), shifts).toppling.mean(axis=0)
+    both = np.sqrt(0.3**2 + 0.25**2 + 0.15**2)
+    exact = stats.norm.cdf(np.log(LEVELS / 0.5) / both)
+    assert np.abs(found - exact).max() < 0.015
+
+
+def test_what_is_not_lifted_does_not_topple_whatever_the_errors():
+    # the text's formula: E[F(x exp(-s-m)) 1(x exp(-s) ≥ u)] with F lognormal
+    of_statics, of_model, lifted = 0.06, 0.4, 0.45
+    shifts = {"width": Shift(of_statics, of_statics), "model": Shift(0.0, of_model)}
+    uplifts = np.full(MANY, lifted)
+    found = predicted(lognormal(0.5, 0.3), shifts, uplifts)
+    assert (found.toppling <= found.rocking).all()
+    for x in (0.35, 0.42, 0.47, 0.6):
+        place = LEVELS.searchsorted(x)
+        level = LEVELS[place]
+        s = np.linspace(-5, 5, 4001) * of_statics
+        density = stats.norm.pdf(s, scale=of_statics) * (s[1] - s[0])
+        beyond = np.hypot(0.3, of_model)
+        falls = stats.norm.cdf((np.log(level / 0.5) - s) / beyond)
+        exact = density @ (falls * (np.log(level / lifted) >= s))
+        assert found.toppling[:, place].mean() == pytest.approx(exact, abs=0.01)
+        rocks = stats.norm.cdf(np.log(level / lifted) / of_statics)
+        assert found.rocking[:, place].mean() == pytest.approx(rocks, abs=0.01)
+
+
+def test_a_motion_that_lifts_later_topples_no_earlier():
+    """By motion: of two that would topple alike, the one whose components lift it at twice the level holds."""
+    capacities, levels = np.full(40, 0.3), np.geomspace(0.1, 2.0, 60)
+    uplifts = np.where(np.arange(40) < 20, 0.2, 0.6)
+    found = predicted(capacities, {}, uplifts, levels).toppling.mean(axis=0)
+    assert found[levels.searchsorted(0.4)] == pytest.approx(0.5, abs=0.05)
+    assert found[levels.searchsorted(0.7)] == pytest.approx(1.0, abs=0.03)
+
+
+def test_parts_are_those_of_a_sum_of_sources():
+    """Of a level that is a product of errors the parts are their variances over the sum."""
+    sources = {"a": 0.3, "b": 0.2, "c": 0.1}
+    draws = make_draws(3, 10)
+    values = draws.sources @ np.array(list(sources.values()))
+    total = sum(size**2 for size in sources.values())
+    for column, size in enumerate(sources.values()):
+        part = part_of_source(values, draws.sources[:, column])
+        assert part == pytest.approx(size**2 / total, abs=0.02)
+
+
+def test_draws_have_the_moments_of_what_they_stand_for():
+    draws = make_draws(8, 19)
+    assert np.abs(draws.sources.mean(axis=0)).max() < 0.01
+    assert draws.sources.std(axis=0) == pytest.approx(1.0, abs=0.02)
+    assert np.abs(np.corrcoef(draws.sources.T) - np.eye(8)).max() < 0.05
+    assert draws.weights.sum(axis=1) == pytest.approx(1.0)
+    assert draws.weights.mean(axis=0) == pytest.approx(1 / 20, rel=0.1)
+    assert make_draws(8, 19) is draws
+
+
+@pytest.mark.parametrize("count", [6, 19])
+def test_the_interval_of_a_mean_of_few_earthquakes_is_students(count):
+    values = stats.norm.ppf((np.arange(count) + 0.5) / count)
+    weights = make_draws(1, count).weights[:, :count]
+    means = weights @ values / weights.sum(axis=1)
+    exact = stats.t.ppf(0.95, count - 1) * values.std(ddof=1) / np.sqrt(count)
+    half = np.diff(np.quantile(means, [0.05, 0.95]))[0] / 2
+    assert half == pytest.approx(exact, rel=0.12)
+
+
+def test_a_measurement_is_named_where_it_would_turn_the_decision_round():
+    draws = make_draws(2, 10)
+    known, other = draws.sources.T
+    sources = {"velocity": known, "width": other}
+    # the probability is 5 or 25 %, as the velocity is low or high
+    values = np.where(known > 0.5, 0.25, 0.05)
+    found = decide(values.mean(), values, sources, {"width": 0.2, "velocity": 0.0}, 0.1)
+    assert (found.action, found.source) == (Action.MEASURE, "velocity")
+    # the mean is above 10 %; it is low with a probability of 69 %
+    assert found.otherwise is Action.SECURE
+    assert found.chance == pytest.approx(stats.norm.cdf(0.5), abs=0.04)
+    # the cheapest of those that would do
+    both = {"velocity": known, "width": known}
+    first = decide(values.mean(), values, both, {"width": 0.2, "velocity": 0.0}, 0.1)
+    assert first.source == "width"
+    # far from what is accepted nothing turns it round
+    for accepted, action in ((0.001, Action.SECURE), (0.6, Action.LEAVE)):
+        sure = decide(values.mean(), values, sources, {"velocity": 0.0}, accepted)
+        assert (sure.action, sure.source) == (action, "")
+
+
+def test_a_measurement_that_leaves_much_decides_less():
+    draws = make_draws(1, 10)
+    z = draws.sources[:, 0]
+    values = stats.norm.cdf(z - 1.0)
+    chances = [
+        decide(values.mean(), values, {"a": z}, {"a": left}, 0.1).measurements[0].chance
+        for left in (0.0, 0.5, 0.95)
+    ]
+    assert chances[0] >= chances[1] > chances[2] == 0
+
+
+def test_likelihoods_are_those_of_the_scale():
+    steps = [likelihood_of(p) for p in (0.005, 0.05, 0.2, 0.5, 0.8, 0.95, 0.995)]
+    assert steps == list(Likelihood)

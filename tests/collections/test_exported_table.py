@@ -1,0 +1,81 @@
+"""A museum's export made an inventory: every row is in it or asked about."""
+
+import pytest
+
+from rockfrag.assess.inventory import read_inventory
+from rockfrag.base.errors import InputError
+from rockfrag.cli.main import main
+from rockfrag.collections.exported_table import inventory_table, read_export
+
+EXPORT = """\
+Title,Artist,Medium,Dimensions,ObjectID
+Bust,A,Marble,"H 60 × W 40 × D 30 cm",11
+Bust,B,Marble,"Höhe 70 cm, Breite 42 cm",12
+"Vase,
+two handles",C,Terracotta,"H. 45 cm, Diam. 30 cm",13
+=Untitled,D,Bronze,"180 x 60 x 40 cm",14
+Stele,E,Granite,"H 180–185 × W 60–62 cm",15
+"""
+
+
+@pytest.fixture
+def export(tmp_path):
+    path = tmp_path / "export.csv"
+    path.write_text(EXPORT, encoding="utf-8")
+    return path
+
+
+def test_every_row_is_in_the_inventory_or_asked_about(export, tmp_path, capsys):
+    place, understood = tmp_path / "objects.csv", tmp_path / "understood.csv"
+    arguments = ["--output", str(place), "--understood", str(understood)]
+    assert main(["collection", str(export), *arguments]) == 1
+    printed = capsys.readouterr()
+    assert printed.out.startswith("4 of 5 objects")
+    assert "line 6, Untitled: which length is the height" in printed.err
+    requests, faults = read_inventory(place, {})
+    assert not faults
+    assert [request.name for request in requests] == [
+        "Bust",
+        "Bust (12)",
+        "Vase, two handles",
+        "Stele",
+    ]
+    assert understood.read_text(encoding="utf-8").count("\n") == 6
+
+
+def test_the_order_of_the_museum_answers_the_question(export, tmp_path):
+    arguments = ["--order", "HWD", "--output", str(tmp_path / "objects.csv")]
+    assert main(["collection", str(export), *arguments]) == 0
+
+
+def test_a_range_is_taken_to_the_side_that_topples_first(export):
+    stele = inventory_table(read_export(export)).set_index("name").loc["Stele"]
+    assert (stele["height_m"], stele["width_m"]) == ("1.85", "0.6")
+
+
+def test_columns_of_numbers_come_before_words(tmp_path):
+    path = tmp_path / "numbers.csv"
+    path.write_text(
+        "Title,Dimensions,Height (cm),Width (cm),Depth (cm)\n"
+        'A,"see file",180.5,60,\nB,"H 20 × W 10 cm",,,\n',
+        encoding="utf-8",
+    )
+    first, second = read_export(path)
+    assert first.dimensions.understood == "height 180.5 cm, width 60 cm"
+    assert second.dimensions.understood == "height 20 cm, width 10 cm"
+
+
+@pytest.mark.parametrize(
+    ("text", "says"),
+    [
+        ("Title,Medium\nA,Marble\n", "expected a column Dimensions"),
+        ("Title,Dimensions\nA,H 20 cm,more\n", "line 2: expected 2 cells"),
+        ("Title,Height (cm)\nA,tall\n", "column height: expected a number"),
+        ("Title,Dimensions\n", "expected a header line and a row"),
+    ],
+)
+def test_what_cannot_be_read_is_said_with_its_line(tmp_path, text, says):
+    path = tmp_path / "bad.csv"
+    path.write_text(text, encoding="utf-8")
+    with pytest.raises(InputError, match=says):
+        read_export(path)
