@@ -4,7 +4,6 @@ import math
 from dataclasses import replace
 
 import numpy as np
-from numpy.lib.stride_tricks import sliding_window_view
 
 from rockfrag.base.arrays import Floats
 from rockfrag.base.errors import InputError
@@ -73,8 +72,13 @@ def later_peaks(acceleration: Floats) -> Floats:
     level = np.sqrt(x * x + y * y)
     both = np.stack([level, np.abs(acceleration[:, 2])], axis=1)
     later = np.maximum.accumulate(both[::-1], axis=0)[::-1]
-    padded = np.pad(both, ((0, WINDOW), (0, 0)))
-    soon = sliding_window_view(padded, WINDOW + 1, axis=0).max(axis=-1)
+    soon = np.pad(both, ((0, WINDOW), (0, 0)))
+    part = 1
+    while part < WINDOW:
+        # the largest of twice as many samples
+        soon = np.maximum(soon[:-part], soon[part:])
+        part *= 2
+    soon = np.maximum(soon[:-1], soon[1:])
     return np.ascontiguousarray(np.hstack([later, soon]))
 
 
