@@ -11,7 +11,7 @@ from scipy import stats
 
 from rockfrag.base.errors import InputError
 from rockfrag.campaign.comparison import MeasuredTests
-from rockfrag.campaign.standing import LEAST_ANGLE_DEG, unknowns_of, ways_to_stand
+from rockfrag.campaign.standing import LEAST_ANGLE_DEG, draw_arrangements, unknowns_of
 from rockfrag.fragility.model_error import CUT, MODEL_ERRORS, SCAN
 from rockfrag.stages.model_error import BlindAnswer, blind_answer, main, model_error
 from rockfrag.system.blocks import Block
@@ -33,7 +33,9 @@ def test_a_model_that_errs_by_a_factor_is_seen_to_err_by_it():
     )
     found = blind_answer(MeasuredTests(measured, groups, 1), measure, ways)
     assert found.error == pytest.approx(math.log(1.4), abs=0.1)
-    assert found.ways == pytest.approx(math.log(1.25 / 0.8) / 3.29, rel=0.2)
+    assert found.arrangement_spread == pytest.approx(
+        math.log(1.25 / 0.8) / 3.29, rel=0.2
+    )
     low, high = found.interval()
     assert low < found.lower < found.median < found.upper < high
     # outcomes of the laboratory move the measured median only
@@ -68,13 +70,13 @@ def test_a_cut_block_leaves_less_open_than_a_scan():
     stated = unknowns_of(SCAN, 0.5)["contact_tolerance_mm"]
     guessed = scan["contact_tolerance_mm"]
     assert stated(0.5) == guessed(0.5) and stated(0.95) < guessed(0.95)
-    ways = ways_to_stand(Block(0.1, 0.8, 30.0), cut, 64, 1)
+    ways = draw_arrangements(Block(0.1, 0.8, 30.0), cut, 64, 1)
     assert (
         ways.table["width_m"].between(0.096, 0.1).all()
         and ways.table["width_m"].std() > 5e-4
     )
     with pytest.raises(InputError, match=f"stand at {LEAST_ANGLE_DEG:g}"):
-        ways_to_stand(Block(0.02, 0.8, 30.0), cut, 64, 1)
+        draw_arrangements(Block(0.02, 0.8, 30.0), cut, 64, 1)
 
 
 def test_the_command_prints_the_error_of_a_synthetic_laboratory(

@@ -60,6 +60,11 @@ def found(folder, **given):
         ("ABC_NS_acc", "ABC_EW_acc", "ABC_UD_acc"),
         ("ABC_north", "ABC_east", "ABC_vertical"),
         ("ABC_H1", "ABC_H2", "ABC_V"),
+        ("TCU045-E", "TCU045-N", "TCU045-V"),
+        ("CHY074E", "CHY074N", "CHY074V"),
+        ("ABBAR--L", "ABBAR--T", "ABBAR--V"),
+        ("STA_HNE_20200101", "STA_HNN_20200101", "STA_HNZ_20200101"),
+        ("rec_EW_acc_corrected", "rec_NS_acc_corrected", "rec_UD_acc_corrected"),
     ],
 )
 def test_names_tell_the_components_of_one_record(tmp_path, first, second, vertical):

@@ -24,6 +24,7 @@ from rockfrag.system.mesh_file import (
     files_of_mesh,
 )
 
+ON_LINUX = pytest.mark.skipif(sys.platform != "linux", reason="memory is read in /proc")
 BOX = trimesh.creation.box((0.4, 1.0, 0.6))
 
 
@@ -218,6 +219,7 @@ def read_alone(path: Path) -> tuple[str, float, float]:
     return said, memory, seconds
 
 
+@ON_LINUX
 def test_a_texture_is_not_decoded(tmp_path: Path):
     (tmp_path / "wall.png").write_bytes(png(13_000))
     tree = gltf_of_a_box(
@@ -240,6 +242,7 @@ def stl(path: Path, triangles: int) -> Path:
     return path
 
 
+@ON_LINUX
 def test_too_many_triangles_are_refused_before_they_are_read(tmp_path: Path):
     said, memory, _ = read_alone(stl(tmp_path / "scan.stl", 10**7))
     assert "scan.stl: has 500 MB" in said and "make it coarser" in said
@@ -257,6 +260,7 @@ def test_too_many_triangles_are_refused_before_they_are_read(tmp_path: Path):
             read_shape(tmp_path / f"many{ending}", mass=1.0)
 
 
+@ON_LINUX
 @pytest.mark.slow
 @pytest.mark.parametrize("ending", [".stl", ".ply", ".obj", ".glb"])
 def test_as_many_triangles_as_are_read_fit_into_two_gibibytes(

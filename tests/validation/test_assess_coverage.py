@@ -31,7 +31,7 @@ from rockfrag.assess.sources import SPACE
 from rockfrag.assess.standing import Standing
 from rockfrag.assess.standing.contract import stretched_block
 from rockfrag.assess.standing.scanned import ON_POINTS, Scanned
-from rockfrag.campaign.standing import body_of, unknowns_of, ways_to_stand
+from rockfrag.campaign.standing import body_of, draw_arrangements, unknowns_of
 from rockfrag.fragility.model_error import CUT, MODEL_ERRORS, SCAN
 from rockfrag.motions import scale_to_pga
 from rockfrag.motions.processing import bandpass
@@ -107,7 +107,7 @@ def _true_scan(shape: Shape, told: Standing, seed: int, outside: float) -> Stand
     unknowns["contact_tolerance_mm"] = lambda u: (
         middle * (tolerance(u) / middle) ** outside
     )
-    way = dict(ways_to_stand(shape, unknowns, 64, seed).table.iloc[0])
+    way = dict(draw_arrangements(shape, unknowns, 64, seed).table.iloc[0])
     return replace(told, block=body_of(shape, way), livelier=way["restitution_ratio"])
 
 

@@ -374,7 +374,8 @@ class VelocityRelation:
     def unknown(self, given: Records, *, of_site: bool = True) -> float:
         """Standard deviation of the mean at a site, for what is not known of its earthquakes and ground.
 
-        ``of_site`` counts what all motions of a site share beyond that.
+        ``of_site`` counts what all motions of a site share beyond that; it always counts where facts of too few
+        records are known to say how the mean follows them.
         """
         slopes = zip(
             self.coefficients[1:], UNKNOWN.values(), _facts(given), strict=False
@@ -382,8 +383,9 @@ class VelocityRelation:
         parts = [
             (slope * spread) ** 2 for slope, spread, fact in slopes if math.isnan(fact)
         ]
-        shared = OF_THE_SITE * self.scatter**2 if of_site else 0.0
-        return math.sqrt(shared + sum(parts))
+        if of_site or not self.middle:
+            parts.append(OF_THE_SITE * self.scatter**2)
+        return math.sqrt(sum(parts))
 
 
 def _facts(given: Records) -> tuple[float, float, float]:

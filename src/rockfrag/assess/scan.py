@@ -19,9 +19,9 @@ from rockfrag.assess.assumed import Assumption, assume
 from rockfrag.campaign.standing import (
     LEAST_ANGLE_DEG,
     body_of,
+    draw_arrangements,
     lognormal,
     unknowns_of,
-    ways_to_stand,
 )
 from rockfrag.fragility.model_error import SCAN
 from rockfrag.system.blocks import Block
@@ -113,7 +113,7 @@ def make_scan(
     open_ones = {
         name: unknown for name, unknown in unknowns.items() if name not in exact
     }
-    ways = ways_to_stand(shape, open_ones, WAYS, 1, exact).table
+    ways = draw_arrangements(shape, open_ones, WAYS, 1, exact).table
     ways["least_deg"] = [
         _least_angle_deg(shape, way) for way in ways.to_dict("records")
     ]

@@ -191,7 +191,7 @@ def _standing(
     return system_of(planar, friction=guess["friction"])
 
 
-OUTER, CROWDED = 0.1, 0.25
+OUTER, GATHERED = 0.1, 0.25
 """An end of a range is preferred if its outer tenth holds more than a quarter of the plausible trials: ours."""
 
 
@@ -222,7 +222,7 @@ def preferred_edges(
             (low, "low", rank <= OUTER),
             (high, "high", rank > 1 - OUTER),
         ):
-            if at.mean() > CROWDED and (name, limit) not in _NOTHING_BEYOND:
+            if at.mean() > GATHERED and (name, limit) not in _NOTHING_BEYOND:
                 found[name] = f"{edge} end"
     return found
 
@@ -297,7 +297,7 @@ def unknowns_of(
     }
 
 
-def ways_to_stand(
+def draw_arrangements(
     thing: Shape | Block,
     unknowns: Mapping[str, Quantile],
     count: int,

@@ -18,7 +18,7 @@ from rockfrag.cli.assess_commands import (
     add_records_option,
 )
 from rockfrag.cli.collection_commands import add_collection_command
-from rockfrag.cli.record_commands import add_record_commands, read_told
+from rockfrag.cli.record_commands import add_record_commands, read_as_asked
 from rockfrag.runtime.processes import speak_utf8
 
 if TYPE_CHECKING:
@@ -190,7 +190,7 @@ def _simulate(options: argparse.Namespace) -> int:
     else:
         up = None
         if options.vertical is not None:
-            up = scale(read_told(options.vertical, options, None), factor)
+            up = scale(read_as_asked(options.vertical, options, None), factor)
         with warnings.catch_warnings():
             # what `simulate` doubts of the acceleration has been said
             warnings.simplefilter("ignore", UserWarning)
@@ -258,7 +258,7 @@ def _case(options: argparse.Namespace) -> "tuple[Body, Motion]":
         )
     below = [_block("--pedestal", size) for size in reversed(options.pedestal or [])]
     body = stacked([*below, _block("--body", options.body)])
-    return body, read_told(options.record, options, options.channel)
+    return body, read_as_asked(options.record, options, options.channel)
 
 
 def _case_in_space(
@@ -271,11 +271,11 @@ def _case_in_space(
     from rockfrag.motions.rotation import common_time
 
     others = [name for name in (options.second, vertical) if name is not None]
-    told = [first, *(read_told(name, options, None) for name in others)]
+    components = [first, *(read_as_asked(name, options, None) for name in others)]
     with errors_of("--depth"):
         depth = None if options.depth is None else quantity(options.depth, "m", "m")
     block = replace(body.blocks[0], depth=depth, round=options.round)
-    return block, common_time(told, verticals=(2,))
+    return block, common_time(components, verticals=(2,))
 
 
 def _play(options: argparse.Namespace) -> int:

@@ -90,7 +90,9 @@ def _add_write(commands: Any) -> None:
     write.set_defaults(run=_write)
 
 
-def read_told(file: str, options: argparse.Namespace, channel: str | None) -> "Motion":
+def read_as_asked(
+    file: str, options: argparse.Namespace, channel: str | None
+) -> "Motion":
     """Read a record as the options of a command say, with errors that name those that it has."""
     from rockfrag.records.read import read_motion
 
@@ -121,7 +123,7 @@ def _info(options: argparse.Namespace) -> int:
     if options.picture:
         if len(options.files) != 1:
             raise InputError("--picture draws one record; name one FILE.")
-        motion = read_told(options.files[0], options, options.channel)
+        motion = read_as_asked(options.files[0], options, options.channel)
         record_info.draw_record(motion, options.picture)
         print(f"drawn in {options.picture}", file=sys.stderr)
     if options.pictures:
@@ -191,6 +193,6 @@ def _write(options: argparse.Namespace) -> int:
         for path in write_motions(motions, options.target, form, options.in_unit):
             print(path)
         return 0
-    motion = read_told(options.source, options, options.channel)
+    motion = read_as_asked(options.source, options, options.channel)
     print(write_motion(motion, options.target, options.format, options.in_unit))
     return 0

@@ -65,7 +65,16 @@ def read_motions(
 
 
 def motions_of_catalogue(path: Path, records: Path) -> list[Motion]:
-    """Read the motions of a catalogue, see :func:`read_motions`; all that is wrong is refused at once."""
+    """Read the motions of a catalogue, see :func:`read_motions`; all that is wrong is refused at once.
+
+    Parameters
+    ----------
+    path, records : the catalogue, and the folder of fetched records
+
+    Returns
+    -------
+    The motions [m/s²], in the catalogue's order.
+    """
     rows = numbered_rows(path)
     own = {(row["source"], row["file"]) for _, row in rows}
     motions: list[Motion] = []
@@ -83,7 +92,16 @@ def motions_of_catalogue(path: Path, records: Path) -> list[Motion]:
 def motions_of_files(
     path: Path, unit: str | None, dt: float | None
 ) -> tuple[list[Motion], list[str]]:
-    """Read the motions of a folder, an archive or a record, and return what must be said of them as well."""
+    """Read the motions of a folder, an archive or a record, with notes on them.
+
+    Parameters
+    ----------
+    path, unit, dt : folder, archive or record; unit and interval [s] of files that do not state theirs
+
+    Returns
+    -------
+    The motions [m/s²], and the notes.
+    """
     # reading the headers of all formats loads ObsPy
     from rockfrag.records.make_catalogue import make_catalogue
 
@@ -117,9 +135,17 @@ def _motions_of_row(
 
 
 def pairs_of(motions: Sequence[Motion]) -> tuple[tuple[int, int], ...]:
-    """Return positions of the two components of records: those that name each other, else of one station and time.
+    """Positions of the two components of records: those that name each other, else of one station and time.
 
     Without names of files, motions of one earthquake and station are of one record where there are two.
+
+    Parameters
+    ----------
+    motions : components of records
+
+    Returns
+    -------
+    Pairs of positions, rising.
     """
     by_file = {
         str(motion.metadata["file"]): i
@@ -136,8 +162,8 @@ def pairs_of(motions: Sequence[Motion]) -> tuple[tuple[int, int], ...]:
             if i < other:
                 pairs.append((i, other))
             continue
-        facts = (motion.metadata.get(key) for key in ("earthquake", "station"))
-        earthquake, station = (str(fact or "") for fact in facts)
+        earthquake = str(motion.metadata.get("earthquake") or "")
+        station = str(motion.metadata.get("station") or "")
         if earthquake and station:
             left.setdefault((earthquake, station), []).append(i)
     pairs += [(both[0], both[1]) for both in left.values() if len(both) == 2]

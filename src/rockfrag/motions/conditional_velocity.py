@@ -62,11 +62,9 @@ class ConditionalModel:
 
     def spreads(self, magnitude: float) -> tuple[float, float]:
         """Standard deviations of ln PGV between earthquakes and within one [-]."""
-        tau, phi = (
-            float(np.interp(magnitude, [5.0, 7.0], ends))
-            for ends in (self.tau, self.phi)
-        )
-        return tau, phi
+        magnitudes = [5.0, 7.0]
+        tau = float(np.interp(magnitude, magnitudes, self.tau))
+        return tau, float(np.interp(magnitude, magnitudes, self.phi))
 
 
 BY_PGA = ConditionalModel(

@@ -3,6 +3,8 @@
 import re
 from collections.abc import Iterable
 
+from rockfrag.records.parsing.directions import is_vertical
+
 _DIRECTIONS = (
     r"E-?W|W-?E|N-?S|S-?N|U-?D|[BEH][NLGH][ENZ123]|UP|DWN|DOWN|DN|VERT?|VERTICAL|VRT|UPDO"
     r"|FN|FP|LN|TR|LONG|TRAN"
@@ -24,11 +26,14 @@ _PATTERNS = tuple(
 _NUMBERED = re.compile(r"^(?P<stem>.+)(?P<name>[123])$")
 _NUMBER = re.compile(r"^(?P<stem>.*?)(?P<number>\d+)$")
 _TAIL = re.compile(
-    r"(?i)[-_. ](?P<tail>hor(?:iz\w*)?[-_ ]?\d|h[12]|up|vert?(?:ical)?|v"
+    r"(?i)[-_. ](?P<tail>hor(?:iz\w*)?[-_ ]?\d|up|vert?(?:ical)?|v"
     r"|acc(?:el\w*)?|raw|cor(?:r\w*)?|filt\w*|proc\w*|scaled|new|copy)$"
 )
-_OF_COMPONENT = re.compile(r"(?i)hor|h[12]$|up$|v")
-"""Tails that name the component once more, and are not part of the record's name."""
+_UPRIGHT = re.compile(r"(?i)(?:up|v|vert?(?:ical)?)$")
+# a word of its own, with the station before it and the day behind it: STA_HNE_20200101
+_WITHIN = re.compile(
+    r"(?i)(?<=[-_. ])(?P<name>E-?W|N-?S|U-?D|[BEH][NLGH][ENZ123]|UP|VERT)(?=[-_. ])"
+)
 
 NUMBERS = frozenset("123")
 """Components that a file's name calls by a number alone."""
@@ -42,12 +47,17 @@ def parts_of(name: str) -> tuple[str, str]:
     tail = _TAIL.search(name)
     if tail is not None:
         stem, component = _split(name[: tail.start()])
-        if component:
-            kept = "" if _OF_COMPONENT.match(tail["tail"]) else tail["tail"].lower()
-            return f"{stem} {kept}".strip(), component
+        upright = _UPRIGHT.match(tail["tail"])
+        # TCU045-V is the vertical of a station, PULDWN-up says it twice
+        if component and (upright is None or is_vertical(component)):
+            once_more = upright or tail["tail"].lower().startswith("hor")
+            return (stem if once_more else f"{stem} {tail['tail'].lower()}"), component
     stem, component = _split(name)
     if component:
         return stem, component
+    within = _WITHIN.findall(name)
+    if len(within) == 1:
+        return _WITHIN.sub("", name), within[0]
     numbered = _NUMBERED.match(name)
     return (numbered["stem"], numbered["name"]) if numbered else (name, "")
 

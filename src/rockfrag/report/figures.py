@@ -158,8 +158,8 @@ def _sides_panel(
     both = set(rows["pedestal"]) == set(SIDES)
     shift = SIDE_SHIFT if both else dict.fromkeys(SIDES, 0.0)
     x = rows[by].map(place) + rows["pedestal"].map(shift)
-    crowded = len(rows) > MOST_MARKS
-    if both and not crowded:
+    are_many = len(rows) > MOST_MARKS
+    if both and not are_many:
         keys, placed = ["object", "motion"], rows.assign(x=x)
         without = placed[placed["pedestal"] == "NP"].drop_duplicates(keys)
         pairs = placed[placed["pedestal"] == "P"].merge(
@@ -175,7 +175,7 @@ def _sides_panel(
         )
     for side in SIDES:
         own = rows["pedestal"] == side
-        if crowded and own.any():
+        if are_many and own.any():
             part = rows[own].assign(x=x[own])
             levels_x = sorted(part["x"].unique())
             box_at(axes, part, "x", levels_x, width=0.18, colour=SIDE_COLOUR[side])

@@ -207,10 +207,10 @@ def record_figure(motion: Motion) -> Figure:
         frequency, amplitude = fourier_amplitude(motion)
         _logarithmic(lower, frequency[1:], amplitude[1:], style.PURPLE)
         lower.set(xlabel="Frequency [Hz]", ylabel="Fourier amplitude [m/s]")
-        told = {key: str(value or "") for key, value in motion.metadata.items()}
-        station = f"{told.get('station', '')} {told.get('station_name', '')}".strip()
+        facts = {key: str(value or "") for key, value in motion.metadata.items()}
+        station = f"{facts.get('station', '')} {facts.get('station_name', '')}".strip()
         found = ", ".join(
-            filter(None, (station, told.get("component"), told.get("earthquake")))
+            filter(None, (station, facts.get("component"), facts.get("earthquake")))
         )
         titles = [
             shorten(line, 100, placeholder="…") for line in (motion.name, found) if line

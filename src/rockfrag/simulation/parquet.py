@@ -202,10 +202,10 @@ def stream_histories(
 def _history_schema(answering: Sequence[Engine]) -> pa.Schema:
     """Columns of histories that these engines tell."""
     in_space = {engine is SPATIAL for engine in answering}
-    told = IN_PLANE if in_space != {True} else {}
+    fields = IN_PLANE if in_space != {True} else {}
     if True in in_space:
-        told = told | dict.fromkeys(SPATIAL_COLUMNS, pa.float64())
-    return pa.schema(SAMPLE | told)
+        fields = fields | dict.fromkeys(SPATIAL_COLUMNS, pa.float64())
+    return pa.schema(SAMPLE | fields)
 
 
 def _history_table(cases: Cases, schema: pa.Schema, place: tuple[int, ...]) -> pa.Table:

@@ -114,11 +114,11 @@ def _motions(
     tests = campaign.tests
     if study.pulse_cycles:
         settings = tests[list(PULSE_MEASURES)].to_numpy()
-        told = [
+        recorded = [
             commanded_cosine(a * GRAVITY, ratio, study.pulse_cycles)
             for a, ratio in settings
         ]
-        return [process(motion, conditioning) for motion in told]
+        return [process(motion, conditioning) for motion in recorded]
     motions = laboratory.table_motions(
         study.motions, list(tests["motion"]), *study.unstated
     )

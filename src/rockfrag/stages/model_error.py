@@ -22,17 +22,17 @@ from rockfrag.base.errors import InputError
 from rockfrag.campaign.comparison import MeasuredTests, curves_of
 from rockfrag.campaign.laboratory import Campaign
 from rockfrag.campaign.standing import (
+    draw_arrangements,
     kind_of,
     simulate_tests,
     unknowns_of,
-    ways_to_stand,
 )
 from rockfrag.records.motion import Motion
 from rockfrag.stages.campaign import campaign_with_motions, measured_tests, object_of
 from rockfrag.study.campaign import CampaignStudy
 from rockfrag.study.loading import load_any
 
-WAYS = 512  # guesses of how an object stands
+ARRANGEMENTS = 512  # guesses of how an object stands
 
 _LOG = logging.getLogger(__name__)
 LEVEL = 0.90  # confidence of intervals
@@ -58,7 +58,7 @@ class BlindAnswer:
         return math.log(self.median / self.measured)
 
     @property
-    def ways(self) -> float:
+    def arrangement_spread(self) -> float:
         """Standard deviation of ln median between the ways to stand [-]: 90 % of them as those of a normal."""
         return math.log(self.upper / self.lower) / (2 * _Z)
 
@@ -104,8 +104,10 @@ def model_error(answers: Sequence[BlindAnswer]) -> tuple[float, float]:
     """
     square = float(np.mean([answer.error**2 for answer in answers]))
     sampling = float(np.mean([answer.sampling**2 for answer in answers]))
-    ways = float(np.mean([answer.ways**2 for answer in answers]))
-    return math.sqrt(square + sampling), math.sqrt(max(0.0, square - ways) + sampling)
+    arrangements = float(np.mean([answer.arrangement_spread**2 for answer in answers]))
+    return math.sqrt(square + sampling), math.sqrt(
+        max(0.0, square - arrangements) + sampling
+    )
 
 
 def blind_of(
@@ -118,8 +120,8 @@ def blind_of(
         )
     thing = object_of(study)
     unknowns = unknowns_of(kind_of(thing), study.object.get("scan_tolerance_mm"))
-    ways = ways_to_stand(thing, unknowns, WAYS, study.seed)
-    simulated, _ = simulate_tests(ways.systems, motions)
+    arrangements = draw_arrangements(thing, unknowns, ARRANGEMENTS, study.seed)
+    simulated, _ = simulate_tests(arrangements.systems, motions)
     measured = measured_tests(study, campaign)
     found = {
         name: blind_answer(measured, campaign.tests[name].to_numpy(), simulated)

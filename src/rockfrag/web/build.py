@@ -105,7 +105,7 @@ def build_space() -> bytes:
     """Return the bytes of the module of a body in space."""
     call, tables = (
         np.zeros(1, SPACE)[0],
-        [np.zeros((1, n)) for n in (3, 2, spatial.COLUMNS)],
+        [np.zeros((1, n)) for n in (3, 4, spatial.COLUMNS)],
     )
     entries: Entries = {
         "describe": (describe_solid, (call,)),
@@ -113,6 +113,7 @@ def build_space() -> bytes:
     }
     constants = {
         "gravity": GRAVITY, "tolerance": TOLERANCE, "cut": CUT_OFF, "after": AFTER, "rests": RESTS,
+        "window": spatial.WINDOW,
         "columns": spatial.COLUMNS, "outcome": spatial.OUTCOME, "most": MOST_VERTICES,
         "sticks": NEVER_SLIDES, "fell": spatial.FELL, "certain": spatial.CERTAIN_TIME,
         "azimuth": spatial.FALL_AZIMUTH, "peak": spatial.PEAK_RATIO, "tilt": spatial.PEAK_TILT,

@@ -40,19 +40,27 @@ async function rockfragSpace(bytes) {
     };
   }
 
-  // largest horizontal and vertical acceleration from each sample on
+  // largest horizontal and vertical acceleration from each sample on, and in the next intervals that rest may skip
   function laterPeaks(samples, into) {
-    for (let i = samples.length / 3 - 1, level = 0, upright = 0; i >= 0; i--) {
+    const count = samples.length / 3, levels = new Float64Array(count), uprights = new Float64Array(count);
+    for (let i = count - 1, level = 0, upright = 0; i >= 0; i--) {
       const x = samples[3 * i], y = samples[3 * i + 1];
-      into[2 * i] = level = Math.max(level, Math.sqrt(x * x + y * y));
-      into[2 * i + 1] = upright = Math.max(upright, Math.abs(samples[3 * i + 2]));
+      levels[i] = Math.sqrt(x * x + y * y);
+      uprights[i] = Math.abs(samples[3 * i + 2]);
+      into[4 * i] = level = Math.max(level, levels[i]);
+      into[4 * i + 1] = upright = Math.max(upright, uprights[i]);
+      into[4 * i + 2] = into[4 * i + 3] = 0;
+      for (let j = i; j < count && j <= i + constants.window; j++) {
+        into[4 * i + 2] = Math.max(into[4 * i + 2], levels[j]);
+        into[4 * i + 3] = Math.max(into[4 * i + 3], uprights[j]);
+      }
     }
   }
 
   // a motion stays in memory until another one is shaken by
   let loaded = null;
   function load(x, y, z) {
-    const count = x.length, peaksAt = arrays + 24 * count, end = peaksAt + 16 * count;
+    const count = x.length, peaksAt = arrays + 24 * count, end = peaksAt + 32 * count;
     if (loaded?.x === x && loaded.y === y && loaded.z === z) return loaded;
     reserve(end);
     const samples = numbers(arrays, 3 * count);
@@ -61,8 +69,8 @@ async function rockfragSpace(bytes) {
       samples[3 * i + 1] = y ? y[i] : 0;
       samples[3 * i + 2] = z ? z[i] : 0;
     }
-    laterPeaks(samples, numbers(peaksAt, 2 * count));
-    return (loaded = { x, y, z, end, parameters: [...array(arrays, [count, 3], 8), ...array(peaksAt, [count, 2], 8)] });
+    laterPeaks(samples, numbers(peaksAt, 4 * count));
+    return (loaded = { x, y, z, end, parameters: [...array(arrays, [count, 3], 8), ...array(peaksAt, [count, 4], 8)] });
   }
 
   // what becomes of a body, and where history is asked for its rows: centre of gravity, quaternion, velocities, turn

@@ -33,9 +33,6 @@ SPACE = np.dtype(
 
 share_with_kernels(_describe)
 
-# as a part of what is compiled here, and not as the entry that Python calls
-_integrate = kernel(integrate.py_func)
-
 
 @kernel
 def describe_solid(call):
@@ -75,7 +72,7 @@ def describe_solid(call):
 @kernel
 def integrate_solid(call, acceleration, peaks, history):
     """Integrate the body of a call; see ``spatial.integrate``."""
-    _integrate(
+    integrate(
         call.body, acceleration, peaks, call.scale, call.dt, call.gravity, call.extra, call.tolerance, call.cut,
         call.state, history, call.outcome, call.case,
     )  # fmt: skip

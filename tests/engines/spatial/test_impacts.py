@@ -10,9 +10,10 @@ from rockfrag.base.units import GRAVITY
 from rockfrag.engines.spatial.engine import run_case
 from rockfrag.records.motion import GroundMotion, Motion
 from rockfrag.simulation.options import Friction
+from rockfrag.system.body import Polygon
 
 from .checks import turned_by
-from .samples import box
+from .samples import DT, box, cylinder, solid, synthetic_motion
 
 BRIEF = 1e-7  # in which an impact is over, and next to nothing else happens [s]
 
@@ -117,3 +118,46 @@ def test_along_an_axis_static_above_kinetic_friction_is_that_of_the_planar_engin
         assert np.abs(tilt[:n] - theta[:n]).max() < 1e-5
         assert space.overturned == plane.overturned
     assert slid > 5
+
+
+def test_ends_of_an_edge_share_its_friction_by_what_each_can_bear():
+    """With the centre of mass nearer to one end, that end bears more; friction that is just enough holds both."""
+    base = Polygon(((-0.15, -0.15), (0.15, -0.15), (0.15, 0.45), (-0.15, 0.45)))
+    inertia = np.diag([1.0 + 0.36, 1.0 + 0.09, 0.09 + 0.36]) / 12
+    # tips over the edge at +x while the ground moves along the edge too: shear over weight is .34 at both ends
+    body = solid(base, inertia, 0.5, 0.36)
+    ramp = np.minimum(np.arange(40) * DT / 0.2, 1.0)
+    ground = -GRAVITY * np.column_stack([0.33 * ramp, 0.08 * ramp, 0 * ramp])
+    outcome, history = run_case(body, ground, DT, samples=40)
+    on_edge = history[:40, 14] == 2
+    assert on_edge.sum() > 10
+    assert outcome.slidings == 0 and history[:40, 14].min() == 2
+
+
+@pytest.mark.parametrize(
+    ("cases", "least"),
+    [(40, 1000), pytest.param(2500, 100_000, marks=pytest.mark.slow)],
+)
+def test_every_impact_obeys_its_friction_and_none_gains(cases, least):
+    """From the whole change of momentum: no shear beyond friction but for slow slip that is stopped."""
+    rng = np.random.default_rng(8)
+    impacts = 0
+    for case in range(cases):
+        width, slenderness = rng.uniform(0.2, 0.6), rng.uniform(1.5, 5.0)
+        static = rng.uniform(0.2, 1.2)
+        if case % 4:
+            body = box(
+                width, width * rng.uniform(0.5, 1.5), slenderness * width, static
+            )
+        else:
+            sides = int(rng.integers(5, 12))
+            body = cylinder(width / 2, slenderness * width, static, sides)
+        body["kinetic"] = static * rng.uniform(0.3, 1.0)
+        level = rng.uniform(0.8, 3.0) / slenderness
+        motion = synthetic_motion(rng, 3, 8.0) * level
+        outcome, _ = run_case(body, motion, DT)
+        impacts += outcome.impacts
+        if outcome.paradoxes == 0:
+            assert outcome.beyond_friction < 1e-3
+        assert outcome.gained < 1e-5
+    assert impacts > least

@@ -141,7 +141,7 @@ def test_energy_never_grows_and_its_balance_closes(
     ("seed", "slenderness", "level", "friction", "slidings", "most"),
     [
         # tips and lies down many times; each tilt from flat is work of the ground's motion
-        (398, 2.8799544853579295, 1.7204253993757883, 0.346057166250694, 51, 1e-6),
+        (398, 2.8799544853579295, 1.7204253993757883, 0.346057166250694, 20, 1e-6),
         # after a thousand short steps of a slip that hardly begins, it sticks and passes at a tilt of 1e-4 rad
         (74, 3.201039286321903, 3.377270681190125, 0.4938438887579878, 0, 1e-7),
     ],

@@ -28,7 +28,7 @@ ORDER = (0, 1, 2, 4, 8, 3, 5, 6, 9, 10, 12, 7, 11, 13, 14, 15)
 SOFT = 1e-8
 # residual over what is to be stopped at which Newton's method ends [-]
 CLOSE_ENOUGH = 1e-13
-NEWTON_STEPS = 60
+NEWTON_STEPS = 32
 HALVINGS = 12  # times that a step of Newton's method is halved at most
 # steps that may leave the residual as it was; then there is no solution nearby
 MOST_STUCK = 4

@@ -48,6 +48,8 @@ CASE = np.dtype(
         # directions between
         *whole("which given slid", MOST),
         *fields("way came", MOST, 2),
+        # velocities (or accelerations) of contacts but for the body's rotation, in the body
+        *fields("load", MOST, 3),
         *fields("friction holds grip best_grip", MOST),
         *fields("edge", MOST, MOST, 2),
         *fields("delassus matrix", 3 * MOST, 3 * MOST),
@@ -60,6 +62,10 @@ CASE = np.dtype(
         *fields("slip", MOST, 2),
         *whole("armed", MOST),
         *whole("counters", 8),
+        # largest horizontal and vertical acceleration of the ground soon [m/s²], and how long that is [s]
+        *fields("soon", 3),
+        # largest impulse of an impact along the ground beyond friction, for a unit of mass [m/s]
+        *fields("beyond"),
         # velocity after an impact below which a point that touches stays closed [m/s]
         *fields("close"),
     ],
@@ -191,11 +197,20 @@ def slip_direction(s, i, u, v):
 def pivot_acceleration(body, up, omega, weight, i):
     """Angular acceleration about a sticking point, the force at it, both in the body."""
     p = solid.arm(body, up, i)
-    b = solid.bias(body, up, omega, p, i)
-    load = plus(b, weight)
-    moment = minus(
-        scaled(-1.0, cross(omega, times(body.inertia, omega))), cross(p, load)
-    )
+    load = plus(solid.bias(body, up, omega, p, i), weight)
+    gyroscopic = scaled(-1.0, cross(omega, times(body.inertia, omega)))
+    return stop_point(body, up, i, load, gyroscopic)
+
+
+@kernel
+def stop_point(body, up, i, load, momentum):
+    """Angular velocity with which a body leaves an impact that stops point i, and the impulse, both in the body.
+
+    ``load`` is the velocity of the point but for rotation, and ``momentum`` the angular momentum about the centre
+    of mass, before; or accelerations and the moment.
+    """
+    p = solid.arm(body, up, i)
+    moment = minus(momentum, cross(p, load))
     if i == solid.rim_contact(body):
         m = body.inertia
         square = dot(p, p)
@@ -207,6 +222,29 @@ def pivot_acceleration(body, up, omega, weight, i):
         alpha = times(body.about_inverse[i], moment)
     force = scaled(-1.0, plus(cross(alpha, p), load))
     return alpha, force
+
+
+@kernel
+def stop_edge(body, up, i, j, first, second, momentum, small):
+    """Angular velocity after an impact that stops points i and j, and its impulse.
+
+    Returned are also the impulse at j but for its part along the edge, the edge's direction, and whether both can
+    be stopped.  ``first`` and ``second`` are the loads of :func:`stop_point`.
+    """
+    p, q = solid.arm(body, up, i), solid.arm(body, up, j)
+    edge = minus(q, p)
+    length = math.sqrt(dot(edge, edge))
+    e = scaled(1.0 / length, edge)
+    # a turn about the edge, beside that which makes up for different loads
+    apart = minus(first, second)
+    turn = scaled(1.0 / length, cross(e, apart))
+    moment = minus(momentum, cross(p, first))
+    about = body.about[i]
+    left = minus(moment, times(about, turn))
+    turn = plus(turn, scaled(dot(e, left) / dot(e, times(about, e)), e))
+    push = scaled(-1.0, plus(cross(turn, p), first))
+    far = scaled(1.0 / length, cross(minus(times(about, turn), moment), e))
+    return turn, push, far, e, abs(dot(e, apart)) <= small
 
 
 @kernel

@@ -17,7 +17,7 @@ RIM_START = 1e-7
 FLAT_PASS = 1e-8
 SHORTEST = 1e-11  # step [s]
 # time in which rates stay: its square times an acceleration is less than TOUCH [s]
-BRIEF = 1e-7
+BRIEF = 1e-6
 # contact events in one interval after which the velocity that closes contacts is doubled
 MANY = 40
 # steps in one interval after which errors of COARSE [m, m/s, rad/s] are allowed to what slides: slip that hardly
@@ -30,10 +30,20 @@ PATIENCE = 30  # times that this may happen before an analysis ends as one that 
 # after which an analysis ends as one that stood, counted as a paradox
 MOST_STEPS = 400_000
 
-OUTCOME = 16
+# energy over rest, as a part of what a fall takes, below which a rattle is not followed that ends before the
+# ground could lift the body
+RATTLE = 1e-3
+# energy of a wobble at which a round body lies down, over that at which a body rests after an impact: rolling
+# loses nothing, so that it would go on for ever, by micrometres
+LEAST_WOBBLE = 100.0
+# intervals that a body at rest passes at once where the ground cannot move it
+WINDOW = 16
+
+OUTCOME = 17
 (
     FELL, FALL_AZIMUTH, FALL_FIRST, FALL_SECOND, PEAK_RATIO, PEAK_TILT, PEAK_SPEED, WALK_X, WALK_Y, TURN, STEPS,
     LOST, ENERGY_BALANCE, CERTAIN_TIME, CONTACT_EVENTS, GAINED,
+    BEYOND,
 ) = range(OUTCOME)  # fmt: skip
 
 COLUMNS = 17
@@ -232,8 +242,9 @@ def guess_landing(body, h, y, below, s):
     end = h * rising(body, s.new, i)
     square = 3.0 * (below - above) - 2.0 * fall - end
     cube = 2.0 * (above - below) + fall + end
-    part = above / (above - below)
-    for _ in range(3):
+    # the last time that it comes down, also where it has only just gone up
+    part = 1.0 if end < 0.0 else above / (above - below)
+    for _ in range(5):
         value = above + part * (fall + part * (square + part * cube))
         part -= value / (fall + part * (2.0 * square + part * 3.0 * cube))
     return h * part
@@ -250,7 +261,7 @@ def locate(body, tau, h, y, s):
         for i in range(solid.SIZE):
             s.new[i] = y[i]
         return 0.0, at_once
-    bracket = (0.0, above, h, below, 0)
+    bracket, below_what = (0.0, above, h, below, 0), what
     for _ in range(80):
         low, above, high, below, _ = bracket
         if not low < middle < high:
@@ -260,14 +271,14 @@ def locate(body, tau, h, y, s):
         step.attempt(body, tau, middle, y, s)
         value, what = step.margin(body, s.new, s)
         at, middle = middle, 0.0
-        rate = (
-            rising(body, s.new, lowest_open(body, s.new, s))
-            if what == modes.LANDS
-            else 0.0
-        )
+        below_what = what if value < 0.0 else below_what
+        rate = 0.0
+        if what == modes.LANDS and below_what == modes.LANDS:
+            rate = rising(body, s.new, lowest_open(body, s.new, s))
         if rate < 0.0:
             # a last step of Newton's, so short that the rates at its beginning suffice
             rest = -value / rate
+            middle = at + rest
             if abs(rest) < BRIEF and low < at + rest < high:
                 for i in range(solid.SIZE):
                     s.new[i] += rest * s.slopes[forces.STAGES - 1, i]
@@ -341,19 +352,50 @@ def slides_any(s):
 
 
 @kernel
+def rattle_ends(body, left, s):
+    """Whether a polygon with so much energy left [J/kg] rattles to rest before the ground could lift it.
+
+    A swing of energy E lasts 2 √(2 E J) / M about an edge, where M is what the ground leaves of the moment that
+    rights the body; the next ones are shorter by the ratio 1 - 2 b²/J each (Housner 1963), all together
+    1 / (2 b²/J) times as long.
+    """
+    if body.rim > 0.0 or left > RATTLE * body.barrier:
+        return False
+    weight = s.field[6] - s.soon[1]
+    rights = weight * body.nearest - s.soon[0] * body.height
+    if rights <= 0.0 or s.soon[0] >= body.static * weight:
+        return False
+    square = body.nearest * body.nearest
+    inertia = max(body.inertia[0, 0], body.inertia[1, 1])
+    inertia += body.height * body.height + body.furthest * body.furthest
+    lasts = math.sqrt(2.0 * left * inertia) * inertia / (rights * square)
+    return lasts <= s.soon[2]
+
+
+@kernel
+def note_soon(s, peaks, k, scale, dt):
+    """Note how strongly the ground moves in the next intervals at most."""
+    inside = k < peaks.shape[0]
+    for i in range(2):
+        s.soon[i] = scale * peaks[k, 2 + i] if inside else 0.0
+    s.soon[2] = (WINDOW - 1) * dt
+
+
+@kernel
 def happen(body, what, tau, y, cut, stuck, s):
     """Change velocities and mode by what ended a step (a landing, an opening, …); return the energy lost [J]."""
     g = s.field[6]
     pull = forces.pull_at(s.field, tau)
     before = solid.energy(body, y, g) - y[solid.WORK]
     if what == modes.LANDS:
-        modes.impact(body, y, 0, s)
+        modes.impact(body, y, pull, 0, s)
         rows = algebra.rotation(y)
         if body.rim == 0.0 and modes.count_touching(body, y, rows) >= 3:
             # the points that open begin with no gap, not with one of rounding
             modes.lay_flat(body, y)
+        left = solid.energy(body, y, g)
         carried = modes.rest_margin(body, y, rows, pull) >= 0
-        if carried and solid.energy(body, y, g) < cut * body.barrier:
+        if carried and (left < cut * body.barrier or rattle_ends(body, left, s)):
             modes.come_to_rest(body, y, s)
     elif what == modes.SLIP_ENDS:
         stop_slips(body, y, s)
@@ -367,7 +409,7 @@ def happen(body, what, tau, y, cut, stuck, s):
         free = slides_any(s)
         if free:
             # an impact without a collision
-            modes.impact(body, y, 1, s)
+            modes.impact(body, y, pull, 1, s)
             free = modes.choose_mode(body, tau, y, s)
         if not free:
             modes.jam(body, y, s)
@@ -468,7 +510,7 @@ def small_rim(body, y, tau, cut, s):
     rows = algebra.rotation(y)
     if s.count != 1:
         return
-    small = cut * body.barrier
+    small = LEAST_WOBBLE * cut * body.barrier
     # of the motion that tilts the body, what it would lose by lying down [J/kg]
     tilting = 0.5 * (body.inertia[0, 0] * y[10] ** 2 + body.inertia[1, 1] * y[11] ** 2)
     lift = s.field[6] * body.rim * algebra.norm(rows[2][0], rows[2][1])
@@ -563,13 +605,64 @@ def look_after_rim(body, y, tau, cut, ahead, s, out):
 
 
 @entry_kernel
+def integrate_scales(
+    body,
+    acceleration,
+    peaks,
+    scales,
+    dt,
+    g,
+    extra,
+    tolerance,
+    cut,
+    ends,
+    history,
+    outs,
+    counts,
+    s,
+):
+    """Integrate one analysis after the other, at each of ``scales``, as :func:`integrate` does.
+
+    ``ends``, shape (scales, SIZE), holds the states to begin with and then those at the end, ``outs`` and
+    ``counts`` take outcomes and counters, shapes (scales, OUTCOME) and (scales, COUNTERS).
+    """
+    for k in range(scales.shape[0]):
+        integrate(
+            body,
+            acceleration,
+            peaks,
+            scales[k],
+            dt,
+            g,
+            extra,
+            tolerance,
+            cut,
+            ends[k],
+            history,
+            outs[k],
+            s,
+        )
+        for i in range(modes.COUNTERS):
+            counts[k, i] = s.counters[i]
+
+
+@kernel
+def rests_on(body, peaks, k, scale, g):
+    """Whether a body at rest stays there for the next WINDOW intervals, whichever way the ground pulls."""
+    level, weight = scale * peaks[k, 2], g - scale * peaks[k, 3]
+    upright = level * body.height < weight * body.nearest * (1 - 1e-9)
+    return upright and level < body.static * weight
+
+
+@kernel
 def integrate(
     body, acceleration, peaks, scale, dt, g, extra, tolerance, cut, y, history, out, s
 ):
     """Integrate one analysis of a BODY from the state ``y`` into ``out``, shape (OUTCOME,).
 
     ``acceleration`` of the ground (x, y, up), shape (n, 3) [m/s²], is linear between samples and counts times
-    ``scale``; ``peaks``, shape (n, 2), are its largest horizontal and vertical ones from each sample on. The
+    ``scale``; ``peaks``, shape (n, 4), are its largest horizontal and vertical ones from each sample on, and those
+    of the next WINDOW intervals. The
     analysis ends ``extra`` intervals after the motion at the latest. ``tolerance`` and ``cut`` are as
     ``outcome.TOLERANCE`` and ``CUT_OFF``; ``history``, shape (m, COLUMNS), m ≥ 0, takes a sample of each interval;
     ``s`` is a CASE to work in, whose counters tell the contact events afterwards.
@@ -581,6 +674,7 @@ def integrate(
     start = solid.position_of_base(y, algebra.rotation(y), (0.0, 0.0, -body.height))
     before = heading(y)
     s.count = s.rests = s.jammed = s.goes_on = 0
+    s.beyond = 0.0
     for i in range(modes.COUNTERS):
         s.counters[i] = 0
     modes.choose_mode(body, 0.0, y, s)
@@ -592,7 +686,13 @@ def integrate(
     ahead = dt
     k = 0
     while k <= last + extra:
+        if s.rests == 1 and k + WINDOW <= last and rests_on(body, peaks, k, scale, g):
+            for _ in range(WINDOW):
+                record(history, k, y, out, s)
+                k += 1
+            continue
         set_field(s.field, acceleration, k, scale, dt, g)
+        note_soon(s, peaks, k, scale, dt)
         record(history, k, y, out, s)
         if k > last and (s.rests == 1 or solid.energy(body, y, g) < body.barrier):
             # on a ground at rest it stands, or has too little energy left to fall
@@ -645,6 +745,7 @@ def integrate(
         k += 1
     if out[FELL] == 0.0:
         record(history, k, y, out, s)
+    out[BEYOND] = s.beyond
     out[ENERGY_BALANCE] = (
         solid.energy(body, y, g)
         - started

@@ -7,6 +7,7 @@ from rockfrag.engines.compile.jit import kernel
 from rockfrag.engines.spatial import _algebra as algebra
 from rockfrag.engines.spatial import _body as solid
 from rockfrag.engines.spatial import _forces as forces
+from rockfrag.engines.spatial import _stick as stick
 from rockfrag.engines.spatial._cone import solve_cones
 
 TOUCH = 1e-10  # gap below which a point touches [m]
@@ -17,6 +18,11 @@ AT_REST = forces.SLIP_FLOOR
 SLOW_SLIP = 30 * AT_REST
 # velocity above which points that touch leave when the mode is chosen [m/s]
 LEAVES = 1e-8
+# hops of one end of an edge beside the other: speed above which they are followed [m/s]; part by which each is
+# slower than the one before, at least [-]; and what closing them may change of the body's angular velocity [rad/s]
+FASTEST_HOP, SLOWING, CHATTER = 1e-2, 0.05, 1e-6
+# impulse beyond friction, for a unit of mass, that points which slip or leave slowly are stopped by unseen [m/s]
+BEYOND = 1e-3
 LANDS, OPENS, LEAVES_CONE, SLIP_ENDS, NOTHING = 1, 2, 3, 4, 0
 
 COUNTERS = 6
@@ -80,10 +86,42 @@ def fill_edges(body, y, rows, which, n, s):
 
 
 @kernel
+def kind_of_mode(s):
+    """Kind of a mode of which only what sticks matters: a point, an edge, or any other."""
+    if s.rests == 0 and s.count == 1 and s.slides[0] == forces.STICKS:
+        return forces.PIVOT
+    if s.rests == 0 and s.count == 2 and s.slides[0] + s.slides[1] == 0:
+        return forces.HINGE
+    return forces.GENERAL
+
+
+@kernel
+def hold_still(body, y, rows, kind, s):
+    """Take away what velocity is left at a point or an edge that sticks."""
+    velocity = algebra.to_body(rows, (y[7], y[8], y[9]))
+    momentum = algebra.times(body.inertia, solid.omega_of(y))
+    i = s.closed[0]
+    if kind == forces.PIVOT:
+        turn, push = forces.stop_point(body, rows[2], i, velocity, momentum)
+    else:
+        turn, push, _, _, _ = forces.stop_edge(
+            body, rows[2], i, s.closed[1], velocity, velocity, momentum, 0.0
+        )
+    pushed = algebra.to_world(rows, push)
+    for k in range(3):
+        y[7 + k] += pushed[k]
+        y[10 + k] = turn[k]
+
+
+@kernel
 def hold(body, y, rows, s):
     """Take away what velocity is left against the conditions of a mode, by the least kinetic energy."""
     n = s.count
     if n == 0:
+        return
+    kind = kind_of_mode(s)
+    if kind != forces.GENERAL:
+        hold_still(body, y, rows, kind, s)
         return
     twist = forces.twist_of(body, s)
     forces.fill_velocities(body, y, rows, s.closed, n, s.free, twist)
@@ -94,15 +132,14 @@ def hold(body, y, rows, s):
 
 
 @kernel
-def impact(body, y, least, s):
+def impact(body, y, pull, least, s):
     """Solve an impact of all points that touch, and hold those that hardly leave."""
     rows = algebra.rotation(y)
+    before = (y[7], y[8], y[9])
     n = touching(body, y, rows, s)
-    forces.fill_delassus(body, rows, s.which, n, s.delassus)
-    forces.fill_velocities(body, y, rows, s.which, n, s.free)
+    momentum = stick.fill_velocities(body, y, rows, n, s)
     note_slips(body, n, s)
-    fill_edges(body, y, rows, s.which, n, s)
-    found, ways = solve_cones(s, n, least)
+    found, ways = solve(body, y, rows, n, least, momentum, s)
     s.counters[IMPACTS] += 1
     s.counters[AMBIGUOUS] += ways > 1
     s.jammed = 0
@@ -117,7 +154,33 @@ def impact(body, y, least, s):
     for i in range(n):
         push = (s.impulse[3 * i], s.impulse[3 * i + 1], s.impulse[3 * i + 2])
         forces.push_at(body, y, rows, s.which[i], push)
-    keep_slow_contacts(body, y, rows, n, found, s)
+    keep_slow_contacts(body, y, rows, pull, n, found, s)
+    witness(body, y, before, s)
+
+
+@kernel
+def witness(body, y, before, s):
+    """Note, and count, what the whole change of momentum asks of friction beyond what it can give."""
+    shear = algebra.norm(y[7] - before[0], y[8] - before[1])
+    beyond = shear - body.static * (y[9] - before[2])
+    s.beyond = max(s.beyond, beyond)
+    s.counters[UNSOLVED] += beyond > BEYOND
+
+
+@kernel
+def solve(body, y, rows, n, least, moment, s):
+    """Find the impulses (or forces) at the contacts s.which; return the set that pushes, and how many would do."""
+    plain = True
+    for i in range(n):
+        regains = s.slid[i] and s.friction[i] < s.holds[i]
+        plain = plain and not (s.given[i] or regains)
+    if plain:
+        found, ways = stick.stick_alone_or_by_two(body, rows, n, least, moment, s)
+        if found >= 0:
+            return found, ways
+    forces.fill_delassus(body, rows, s.which, n, s.delassus)
+    fill_edges(body, y, rows, s.which, n, s)
+    return solve_cones(s, n, least)
 
 
 @kernel
@@ -133,19 +196,63 @@ def note_slips(body, n, s):
 
 
 @kernel
-def keep_slow_contacts(body, y, rows, n, found, s):
-    """Close, together with those that pushed, the contacts that leave more slowly than CLOSE."""
+def chatters(body, y, rows, pull, i, k, leaving, s):
+    """Whether contact k hops, with a speed, beside contact i on which the body pivots, so little that both close.
+
+    Impacts at either end conserve the momentum about the edge between them, with which it goes on when hops are
+    over.  What is left out is of the third order: the tilt of the edge in a hop, u² / (2 a L), turns gravity's
+    moment, over h, for the time of all hops, 2 u / (a (1 - r)).
+    """
+    if leaving > FASTEST_HOP:
+        return False
+    up, omega = rows[2], solid.omega_of(y)
+    weight = algebra.to_body(rows, pull)
+    here, there = s.which[i], s.which[k]
+    alpha, force = forces.pivot_acceleration(body, up, omega, weight, here)
+    p, q = solid.arm(body, up, here), solid.arm(body, up, there)
+    free = algebra.plus(weight, solid.bias(body, up, omega, q, there))
+    free = algebra.plus(free, algebra.plus(force, algebra.cross(alpha, q)))
+    falls = -algebra.dot(up, free)
+    if falls <= 0.0:
+        return False
+    edge = algebra.minus(q, p)
+    length = math.sqrt(algebra.dot(edge, edge))
+    left_out = leaving**3 * s.field[6] / (SLOWING * falls**2 * length * body.height)
+    return left_out < CHATTER
+
+
+@kernel
+def hopping(body, y, rows, pull, n, found, s):
+    """Contact that chatters beside the only one that pushed, and stuck; -1 if there is none."""
+    slowest, alone = -1, -1
+    for k in range(n):
+        if found == 1 << k:
+            alone = k
+        elif slowest < 0 or s.after[3 * k + 2] < s.after[3 * slowest + 2]:
+            slowest = k
+    if alone < 0 or slowest < 0 or body.rim > 0.0:
+        return -1
+    if algebra.norm(s.after[3 * alone], s.after[3 * alone + 1]) > AT_REST:
+        return -1
+    leaving = s.after[3 * slowest + 2]
+    closes = chatters(body, y, rows, pull, alone, slowest, leaving, s)
+    return slowest if closes else -1
+
+
+@kernel
+def keep_slow_contacts(body, y, rows, pull, n, found, s):
+    """Close, together with those that pushed, the contacts that leave more slowly than CLOSE, or chatter."""
     count = 0
     slow = False
+    hops = hopping(body, y, rows, pull, n, found, s)
     for i in range(n):
         leaving = s.after[3 * i + 2]
-        if forces.in_set(found, i) or leaving < s.close:
+        if forces.in_set(found, i) or leaving < s.close or i == hops:
             slow = slow or not forces.in_set(found, i)
             s.closed[count] = s.which[i]
             slip = algebra.norm(s.after[3 * i], s.after[3 * i + 1])
-            s.slides[count] = (
-                forces.SLIDES if slip > max(s.close, AT_REST) else forces.STICKS
-            )
+            slides = slip > max(s.close, AT_REST) and i != hops
+            s.slides[count] = forces.SLIDES if slides else forces.STICKS
             count += 1
     s.count, s.rests = count, 0
     if slow:
@@ -370,12 +477,9 @@ def pick_closed(body, y, rows, slow, s):
 @kernel
 def solve_forces(body, y, rows, pull, n, s):
     """Solve for the forces at the contacts s.which; return the set that pushes, and how many would do."""
-    forces.fill_delassus(body, rows, s.which, n, s.delassus)
-    forces.fill_accelerations(
-        body, y, rows, algebra.to_body(rows, pull), s.which, n, s.free
-    )
-    fill_edges(body, y, rows, s.which, n, s)
-    return solve_cones(s, n, 0)
+    weight = algebra.to_body(rows, pull)
+    moment = stick.fill_accelerations(body, y, rows, weight, n, s)
+    return solve(body, y, rows, n, 0, moment, s)
 
 
 @kernel

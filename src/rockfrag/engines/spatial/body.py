@@ -4,12 +4,14 @@ import math
 from dataclasses import replace
 
 import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
 
 from rockfrag.base.arrays import Floats
 from rockfrag.base.errors import InputError
 from rockfrag.base.units import GRAVITY
 from rockfrag.engines.spatial._body import BODY, MOST_VERTICES, SIZE
 from rockfrag.engines.spatial._describe import fill_body
+from rockfrag.engines.spatial._integrate import WINDOW
 from rockfrag.system.body import Circle, Polygon
 from rockfrag.system.system import System
 
@@ -63,11 +65,17 @@ def standing(body: np.void, turned: float = 0.0) -> Floats:
 
 
 def later_peaks(acceleration: Floats) -> Floats:
-    """Return the largest horizontal and vertical acceleration from each sample on, shape (n, 2) [m/s²]."""
+    """Return the largest horizontal and vertical acceleration from each sample on, shape (n, 4) [m/s²].
+
+    The last two columns are those of the next WINDOW intervals alone.
+    """
     x, y = acceleration[:, 0], acceleration[:, 1]
     level = np.sqrt(x * x + y * y)
     both = np.stack([level, np.abs(acceleration[:, 2])], axis=1)
-    return np.ascontiguousarray(np.maximum.accumulate(both[::-1], axis=0)[::-1])
+    later = np.maximum.accumulate(both[::-1], axis=0)[::-1]
+    padded = np.pad(both, ((0, WINDOW), (0, 0)))
+    soon = sliding_window_view(padded, WINDOW + 1, axis=0).max(axis=-1)
+    return np.ascontiguousarray(np.hstack([later, soon]))
 
 
 def perturbed(

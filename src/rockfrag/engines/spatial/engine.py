@@ -4,7 +4,7 @@ import math
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 import pandas as pd
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 # largest error of a step: position [m], attitude [-], velocities [m/s, rad/s]
-TOLERANCE = 1e-9
+TOLERANCE = 1e-8
 # energy over rest, as a part of what a fall takes, at which a body rests [-]
 CUT_OFF = 1e-6
 AFTER = 30.0  # time after the motion at which an analysis ends at the latest [s]
@@ -61,6 +61,8 @@ class SpatialOutcome:
     residual: float  # what the balance of energy does not close by [J/kg]
     # energy that events of contact added, by rounding or as a rim leaves rest tilted [J/kg]
     gained: float
+    # largest impulse of an impact along the ground beyond the friction of that across it, for a unit of mass [m/s]
+    beyond_friction: float
 
 
 @dataclass(frozen=True)
@@ -116,12 +118,15 @@ def run(cases: Cases, spread: float = 0.0, seed: int = 0) -> Outcomes:
             body = kernel_body(system, g)
         ground, start = motion.accelerations, standing(body, turned)
         later = later_peaks(ground)
-        for k, scale in enumerate(cases.scales[j].tolist()):
-            found, _ = run_case(
-                body, ground, motion.dt, scale, g=g, peaks=later, start=start
-            )
-            least_gravity_ratio = 1.0 + scale * float(ground[:, 2].min()) / g
-            _write(result, (i, j, k), found, least_gravity_ratio)
+        # a copy: an array that may not be written would be a type of its own to the kernel
+        scales = np.array(cases.scales[j])
+        found = run_scales(
+            body, ground, motion.dt, scales, g=g, peaks=later, start=start
+        )
+        result.minimum_gravity_ratio[i, j] = (
+            1.0 + scales * float(ground[:, 2].min()) / g
+        )
+        _write(result, (i, j), body, found)
 
     with ThreadPoolExecutor(cases.threads) as pool:
         list(pool.map(run_pair, tasks))
@@ -159,19 +164,60 @@ def run_case(
     ``acceleration`` is the ground's (x, y, up), shape (n, 3) [m/s²], ``peaks`` those of :func:`later_peaks`, and
     ``start`` a state to begin with, shape (SIZE,).
     """
-    acceleration = np.ascontiguousarray(acceleration)
-    y = standing(body) if start is None else start.copy()
     history = np.full((samples, kernel.COLUMNS), math.nan)
-    out = np.zeros(kernel.OUTCOME)
-    case: Any = np.zeros(1, CASE)[0]
-    later = later_peaks(acceleration) if peaks is None else peaks
-    steps = dt, g, math.ceil(AFTER / dt), tolerance, CUT_OFF
-    with compiling_alone(kernel.integrate):
-        kernel.integrate(
-            body, acceleration, later, scale, *steps, y, history, out, case
-        )
+    found = run_scales(
+        body,
+        acceleration,
+        dt,
+        np.array([scale]),
+        g=g,
+        peaks=peaks,
+        tolerance=tolerance,
+        start=start,
+        history=history,
+    )
     kept = ~np.isnan(history[:, 0])
-    return _outcome(body, out, case["counters"], y), history[kept]
+    outcome = _outcome(body, found.outs[0], found.counts[0], found.ends[0])
+    return outcome, history[kept]
+
+
+class Found(NamedTuple):
+    """What the kernel leaves of a body at several scales of a motion."""
+
+    outs: Floats  # outcomes, shape (scales, OUTCOME)
+    counts: NDArray[np.int64]  # counters, shape (scales, COUNTERS)
+    ends: Floats  # states at the end, shape (scales, SIZE)
+
+
+def run_scales(
+    body: np.void,
+    acceleration: Floats,
+    dt: float,
+    scales: Floats,
+    *,
+    g: float = GRAVITY,
+    peaks: Floats | None = None,
+    tolerance: float = TOLERANCE,
+    start: Floats | None = None,
+    history: Floats | None = None,
+) -> Found:
+    """Integrate one analysis a scale, all from the same state; arguments are those of :func:`run_case`."""
+    acceleration = np.ascontiguousarray(acceleration)
+    later = later_peaks(acceleration) if peaks is None else peaks
+    begins = standing(body) if start is None else start
+    found = Found(
+        np.zeros((len(scales), kernel.OUTCOME)),
+        np.zeros((len(scales), modes.COUNTERS), np.int64),
+        np.tile(begins, (len(scales), 1)),
+    )
+    rows = np.empty((0, kernel.COLUMNS)) if history is None else history
+    steps = dt, g, math.ceil(AFTER / dt), tolerance, CUT_OFF
+    case: Any = np.zeros(1, CASE)[0]
+    with compiling_alone(kernel.integrate_scales):
+        kernel.integrate_scales(
+            body, acceleration, later, scales, *steps, found.ends, rows, found.outs, found.counts, case
+        )  # fmt: skip
+    return found
 
 
 def _outcome(
@@ -196,6 +242,7 @@ def _outcome(
         dissipated=(float(out[kernel.LOST]), float(y[14])),
         residual=float(out[kernel.ENERGY_BALANCE]),
         gained=float(out[kernel.GAINED]),
+        beyond_friction=float(out[kernel.BEYOND]),
     )
 
 
@@ -237,27 +284,27 @@ def history_table(history: Floats, dt: float, height: float) -> pd.DataFrame:
 
 
 def _write(
-    result: Outcomes,
-    case: tuple[int, int, int],
-    found: SpatialOutcome,
-    least_gravity_ratio: float,
+    result: Outcomes, case: tuple[int, int], body: np.void, found: Found
 ) -> None:
-    """Write one outcome into those of all."""
-    for name in ("overturned", "certain_time", "impacts", "flights", "paradoxes"):
-        getattr(result, name)[case] = getattr(found, name)
-    result.overturned_body[case] = 1 if found.overturned else 0
-    result.several_modes[case] = found.ambiguous
+    """Write the outcomes of a body under a motion, at all scales, into those of all."""
+    outs, counts = found.outs, found.counts
+    fell = outs[:, kernel.FELL] > 0
+    result.overturned[case], result.overturned_body[case] = fell, fell
+    result.certain_time[case] = outs[:, kernel.CERTAIN_TIME]
+    result.impacts[case] = counts[:, modes.IMPACTS]
+    result.flights[case] = counts[:, modes.FLIGHTS]
+    result.paradoxes[case] = counts[:, modes.UNSOLVED] + counts[:, modes.JAMS]
+    result.several_modes[case] = counts[:, modes.AMBIGUOUS]
     result.unstable_distance[case] = math.nan
-    result.minimum_gravity_ratio[case] = least_gravity_ratio
-    for name in (
-        "peak_rotation",
-        "peak_velocity",
-        "turn",
-        "fall_direction",
-        "fell_over",
-    ):
-        getattr(result, name)[(*case, 0)] = getattr(found, name)
-    result.walk[(*case, 0)] = math.hypot(*found.walk)
+    peaks = np.where(fell, math.inf, outs[:, kernel.PEAK_RATIO])
+    directions = np.where(fell, outs[:, kernel.FALL_AZIMUTH], math.nan)
+    result.peak_rotation[case][:, 0] = peaks
+    result.peak_velocity[case][:, 0] = outs[:, kernel.PEAK_SPEED]
+    result.turn[case][:, 0] = outs[:, kernel.TURN]
+    result.fall_direction[case][:, 0] = directions
+    for k, out in enumerate(outs):
+        result.fell_over[case][k, 0] = _named(body, out) if fell[k] else ""
+        result.walk[case][k, 0] = math.hypot(out[kernel.WALK_X], out[kernel.WALK_Y])
 
 
 def run_in_space(

@@ -30,9 +30,9 @@ def c55(tests: Evidence) -> Result:
     if len(exact):
         width = 100 * float((1 - exact["lower_g"] / exact["upper_g"]).median())
         close = f"the largest amplitude survived lies {width:.1f} % (median) below the one that overturned"
-    as_told = bool((counts == MOTIONS).all())
+    as_stated = bool((counts == MOTIONS).all())
     return Result(
-        Finding.FOR if as_told else Finding.OPEN,
+        Finding.FOR if as_stated else Finding.OPEN,
         f"motions: {counts.min()} to {counts.max()}; configurations: {len(counts)}; {close}",
         float(counts.min()),
         float(counts.min()),
@@ -40,7 +40,7 @@ def c55(tests: Evidence) -> Result:
         unit="motions",
         remark="'just before overturning' (3.4) and 'leads to overturning' (abstract) differ by "
         "that width"
-        + ("" if as_told else "; this table is not the thesis's twelve motions"),
+        + ("" if as_stated else "; this table is not the thesis's twelve motions"),
     )
 
 

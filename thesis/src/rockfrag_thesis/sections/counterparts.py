@@ -84,19 +84,19 @@ def slenderness_figure(
     rows = rows.assign(x=rows["object"].map(slenderness))
     known = means[(means["by"] == "configuration") & means["mean_g"].notna()]
     earthquakes = list(dict.fromkeys(tests["earthquake"]))
-    crowded = len(tests) > amplitudes.MOST_MARKS
+    are_many = len(tests) > amplitudes.MOST_MARKS
     with style.panels(style.COLUMN_WIDTH, 3.0, 1, 2, sharex=True, sharey=True) as (
         figure,
         grid,
     ):
         for axes, side in zip(grid, amplitudes.SIDES, strict=True):
             part = rows[rows["pedestal"] == side]
-            if crowded:
+            if are_many:
                 levels = sorted(part["x"].unique())
                 amplitudes.box_at(axes, part, "x", levels, width=0.3, colour=style.BLUE)
             # by earthquake with a little sideways shift
             shifts = np.linspace(-0.14, 0.14, max(len(earthquakes), 2))
-            styles = {} if crowded else amplitudes.styles_of(earthquakes)
+            styles = {} if are_many else amplitudes.styles_of(earthquakes)
             for shift, (name, style_of) in zip(shifts, styles.items(), strict=False):
                 marked = part[part["earthquake"] == name]
                 x = marked["x"].to_numpy(dtype=float) + shift
@@ -110,14 +110,14 @@ def slenderness_figure(
             axes.set_title(amplitudes.SIDE_NAME[side], loc="left")
             axes.set_ylim(
                 0,
-                amplitudes.highest_box(rows, "x") if crowded else amplitudes.top(rows),
+                amplitudes.highest_box(rows, "x") if are_many else amplitudes.top(rows),
             )
             axes.set_xticks(sorted(rows["x"].unique()))
         figure.supxlabel("Slenderness H/B", fontsize=8)
         style.letter_panels(grid)
         figure.supylabel(amplitudes.AMPLITUDE, fontsize=8)
         handles = [Line2D([], [], color=style.BLUE, label=amplitudes.BOX)]
-        if not crowded:
+        if not are_many:
             handles = amplitudes.handles_of(earthquakes) + amplitudes.bound_handle(
                 tests
             )

@@ -1,6 +1,9 @@
-"""The constants of a stack: all that its contact states fix, for lanes and contact events to look up.
+"""Constants of a stack that its contact states fix, for lanes and contact events to look up.
 
-Time is counted in samples, so lengths of time in the constants carry the sampling interval.
+In: the record of a body (``equations.BODY``) and a sampling interval [s]. Out: records ``ONE``, ``TWO`` and
+``IMPACT``, one a contact state. Time is counted in samples, so lengths of time in the constants carry the
+sampling interval.
+Theory: ``docs/kernels.md``, "Contact states"; ``docs/derivation.md``.
 """
 
 import math
@@ -14,8 +17,14 @@ from rockfrag.engines.pure_rocking.kernels import equations
 from rockfrag.engines.pure_rocking.kernels.impact import impact
 
 HOLD = 12
-"""Coefficients of what holds a closed contact at a corner: of (1, sin θ, cos θ) θ'', (1, sin θ, cos θ) θ'²,
+"""Coefficients of the moment that closes a contact at a corner: of (1, sin θ, cos θ) θ'', (1, sin θ, cos θ) θ'²,
 (1, sin θ, cos θ) of the ground, and (1, sin θ, cos θ) of gravity."""
+
+# rows of these coefficients
+OF_ROTATION, OF_ROTATION_SIN, OF_ROTATION_COS = 0, 1, 2
+OF_SQUARE, OF_SQUARE_SIN, OF_SQUARE_COS = 3, 4, 5
+OF_GROUND, OF_GROUND_SIN, OF_GROUND_COS = 6, 7, 8
+OF_GRAVITY, OF_GRAVITY_SIN, OF_GRAVITY_COS = 9, 10, 11
 
 ONE = np.dtype(
     [
@@ -38,8 +47,8 @@ IMPACT = np.dtype(
     [
         # products of the velocity fields before and after one contact of two closes
         *fields("ground both11 both12 both21 both22"),
-        # landing of what rocks alone: contacts and velocities after it at unit speed, √ of the energy left, and
-        # whether the law of a measured restitution has to give way in it
+        # landing of the one part that rocks: contacts and velocities after it at unit speed, √ of the energy left,
+        # and whether the law of a measured restitution has to give way in it
         *whole("next1 next2"),
         *fields("after1 after2 fraction"),
         *whole("gives_way"),
@@ -102,10 +111,10 @@ def _ground_hold(body, s1, s2, hh, hold):
     e, f = equations.coupling(body, s1, s2)
     vx, vy = equations.first_moment1(body, s1, s2)
     # (e cos θ + f sin θ) θ'' + (f cos θ - e sin θ) θ'² + a vy - g vx
-    hold[1, 0], hold[2, 0] = s1 * f, s1 * e
-    hold[4, 0], hold[5, 0] = -s1 * e, s1 * f
-    hold[6, 0] = s1 * hh * vy
-    hold[9, 0] = -s1 * hh * body.gravity * vx
+    hold[OF_ROTATION_SIN, 0], hold[OF_ROTATION_COS, 0] = s1 * f, s1 * e
+    hold[OF_SQUARE_SIN, 0], hold[OF_SQUARE_COS, 0] = -s1 * e, s1 * f
+    hold[OF_GROUND, 0] = s1 * hh * vy
+    hold[OF_GRAVITY, 0] = -s1 * hh * body.gravity * vx
 
 
 @kernel
@@ -114,11 +123,11 @@ def _interface_hold(body, s1, s2, hh, hold):
     e, f = equations.coupling(body, s1, s2)
     vx, vy = equations.first_moment2(body, s2)
     # (e + m22) θ'' - f θ'² + a (vy cos θ - vx sin θ) - g (vx cos θ + vy sin θ)
-    hold[0, 0] = s2 * (e + equations.inertia2(body, s2))
-    hold[3, 0] = -s2 * f
+    hold[OF_ROTATION, 0] = s2 * (e + equations.inertia2(body, s2))
+    hold[OF_SQUARE, 0] = -s2 * f
     weight = s2 * hh * body.gravity
-    hold[7, 0], hold[8, 0] = -s2 * hh * vx, s2 * hh * vy
-    hold[10, 0], hold[11, 0] = -weight * vy, -weight * vx
+    hold[OF_GROUND_SIN, 0], hold[OF_GROUND_COS, 0] = -s2 * hh * vx, s2 * hh * vy
+    hold[OF_GRAVITY_SIN, 0], hold[OF_GRAVITY_COS, 0] = -weight * vy, -weight * vx
 
 
 @kernel
@@ -138,7 +147,7 @@ def _closing(body, c1, c2, products):
 
 @kernel
 def _impact(body, c1, c2, products, scratch):
-    """Landing of what rocks alone: the outcome is the same for every speed but for its size."""
+    """Landing of the one part that rocks: the outcome is the same for every speed but for its size."""
     scratch.c1, scratch.c2, scratch.theta1, scratch.theta2 = c1, c2, 0.0, 0.0
     scratch.omega1, scratch.omega2 = -1.0 * c1, -1.0 * (c1 + c2)
     n1, n2, w1, w2, gives_way = impact(body, scratch, c1 != 0, c2 != 0)

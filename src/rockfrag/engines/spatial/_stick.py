@@ -1,0 +1,207 @@
+"""Impacts (or changes of mode) in which one point or an edge pushes and sticks, in closed form.
+
+They are nearly all there are.  What they are not goes to the one problem of cones (``_cone``).
+"""
+
+import math
+
+from rockfrag.engines.compile.jit import kernel
+from rockfrag.engines.spatial import _body as solid
+from rockfrag.engines.spatial._algebra import (
+    cross,
+    dot,
+    plus,
+    scaled,
+    times,
+    to_body,
+    to_world,
+)
+from rockfrag.engines.spatial._forces import stop_edge, stop_point
+
+NOTHING = (0.0, 0.0, 0.0)
+
+
+@kernel
+def load_of(s, k):
+    """Velocity of contact k of a small system but for rotation, in the body."""
+    return (s.load[k, 0], s.load[k, 1], s.load[k, 2])
+
+
+@kernel
+def fill_velocities(body, y, rows, n, s):
+    """Fill in how the contacts s.which move before an impact; return the angular momentum."""
+    omega = solid.omega_of(y)
+    velocity = to_body(rows, (y[7], y[8], y[9]))
+    for k in range(n):
+        s.load[k, 0], s.load[k, 1], s.load[k, 2] = velocity
+        fill_free(body, rows, k, omega, s)
+    return times(body.inertia, omega)
+
+
+@kernel
+def fill_accelerations(body, y, rows, weight, n, s):
+    """Fill in how the contacts s.which accelerate without forces; return the moment that turns the body."""
+    omega = solid.omega_of(y)
+    moment = scaled(-1.0, cross(omega, times(body.inertia, omega)))
+    spin = times(body.inverse, moment)
+    for k in range(n):
+        p = solid.arm(body, rows[2], s.which[k])
+        bias = solid.bias(body, rows[2], omega, p, s.which[k])
+        s.load[k, 0], s.load[k, 1], s.load[k, 2] = plus(weight, bias)
+        fill_free(body, rows, k, spin, s)
+    return moment
+
+
+@kernel
+def fill_free(body, rows, k, spin, s):
+    """Fill in the velocity of contact k in the world."""
+    p = solid.arm(body, rows[2], s.which[k])
+    free = to_world(rows, plus(load_of(s, k), cross(spin, p)))
+    s.free[3 * k], s.free[3 * k + 1], s.free[3 * k + 2] = free
+
+
+@kernel
+def parts(body, up, k, turn, push, s):
+    """Velocity upwards of contact k after an impulse that leaves the body turning so."""
+    p = solid.arm(body, up, s.which[k])
+    after = plus(plus(load_of(s, k), push), cross(turn, p))
+    return dot(up, after)
+
+
+@kernel
+def others_part(body, up, n, i, j, turn, push, small, s):
+    """Whether all contacts but i and j part, or stay."""
+    part = True
+    for k in range(n):
+        if part and k not in (i, j):
+            part = parts(body, up, k, turn, push, s) >= -small
+    return part
+
+
+@kernel
+def within_cone(up, push, friction, small):
+    """Whether an impulse, in the body, pushes and is within its cone."""
+    normal = dot(up, push)
+    shear = math.sqrt(max(dot(push, push) - normal * normal, 0.0))
+    return normal >= -small and shear <= friction * normal * (1 + 1e-12) + small
+
+
+@kernel
+def room_along(up, push, along, friction):
+    """Impulse along an edge that one of its ends can bear beside what it bears across it."""
+    normal = dot(up, push)
+    across = dot(push, push) - normal * normal - along * along
+    return math.sqrt(max((friction * normal) ** 2 - max(across, 0.0), 0.0))
+
+
+@kernel
+def share_along(up, first, second, e, friction_first, friction_second):
+    """Share the impulse of an edge along it so that both ends' cones hold, if they can."""
+    near, far = dot(first, e), dot(second, e)
+    a = room_along(up, first, near, friction_first)
+    b = room_along(up, second, far, friction_second)
+    part = 0.5 if a + b == 0.0 else a / (a + b)
+    along = near + far
+    return (
+        plus(first, scaled(part * along - near, e)),
+        plus(second, scaled((1.0 - part) * along - far, e)),
+    )
+
+
+@kernel
+def speed_to_stop(s, n):
+    """Largest velocity (or acceleration) that there is to stop."""
+    scale = 1e-300
+    for i in range(3 * n):
+        scale = max(scale, abs(s.free[i]))
+    return scale
+
+
+@kernel
+def keep(rows, n, i, j, first, second, s):
+    """Write the impulses of contacts i and j into s.impulse, those of all others are none."""
+    for k in range(3 * n):
+        s.impulse[k] = 0.0
+    if i >= 0:
+        push = to_world(rows, first)
+        s.impulse[3 * i], s.impulse[3 * i + 1], s.impulse[3 * i + 2] = push
+    if j >= 0:
+        push = to_world(rows, second)
+        s.impulse[3 * j], s.impulse[3 * j + 1], s.impulse[3 * j + 2] = push
+
+
+@kernel
+def fill_after(body, rows, n, turn, push, s):
+    """Fill in the velocities of all contacts after the impulse."""
+    for k in range(n):
+        p = solid.arm(body, rows[2], s.which[k])
+        after = to_world(rows, plus(plus(load_of(s, k), push), cross(turn, p)))
+        s.after[3 * k], s.after[3 * k + 1], s.after[3 * k + 2] = after
+
+
+@kernel
+def work_of(rows, k, push, s):
+    """Twice the kinetic energy that an impulse at contact k takes by stopping it, with its sign."""
+    p = to_world(rows, push)
+    return p[0] * s.free[3 * k] + p[1] * s.free[3 * k + 1] + p[2] * s.free[3 * k + 2]
+
+
+@kernel
+def stick_alone_or_by_two(body, rows, n, least, moment, s):
+    """Find the fewest contacts, none, one or two, that stick while no other approaches, as ``_cone.fewest`` does.
+
+    ``moment`` is what :func:`fill_velocities` or :func:`fill_accelerations` returned.  Returned are the set as
+    bits (-1 if there is none) and how many of its size would do.
+    """
+    up = rows[2]
+    scale = speed_to_stop(s, n)
+    small = 1e-11 * scale
+    spin = times(body.inverse, moment)
+    if least == 0 and others_part(body, up, n, -1, -1, spin, NOTHING, small, s):
+        keep(rows, n, -1, -1, NOTHING, NOTHING, s)
+        fill_after(body, rows, n, spin, NOTHING, s)
+        return 0, 1
+    chosen, ways, lowest = -1, 0, 0.0
+    best_turn, best_push = spin, NOTHING
+    for i in range(n):
+        turn, push = stop_point(body, up, s.which[i], load_of(s, i), moment)
+        if not within_cone(up, push, s.holds[i], small):
+            continue
+        if not others_part(body, up, n, i, i, turn, push, small, s):
+            continue
+        ways += 1
+        change = work_of(rows, i, push, s)
+        if chosen < 0 or change < lowest - 1e-12 * scale * scale:
+            chosen, lowest = 1 << i, change
+            best_turn, best_push = turn, push
+            keep(rows, n, i, -1, push, NOTHING, s)
+    for j in range(n if chosen < 0 else 0):
+        for i in range(j):
+            turn, push, far, e, fits = stop_edge(
+                body,
+                up,
+                s.which[i],
+                s.which[j],
+                load_of(s, i),
+                load_of(s, j),
+                moment,
+                small,
+            )
+            if not fits or not others_part(body, up, n, i, j, turn, push, small, s):
+                continue
+            near = plus(push, scaled(-1.0, far))
+            near, far = share_along(up, near, far, e, s.holds[i], s.holds[j])
+            holds = within_cone(up, near, s.holds[i], small)
+            if not (holds and within_cone(up, far, s.holds[j], small)):
+                continue
+            ways += 1
+            change = work_of(rows, i, near, s) + work_of(rows, j, far, s)
+            if chosen < 0 or change < lowest - 1e-12 * scale * scale:
+                chosen, lowest = (1 << i) | (1 << j), change
+                best_turn, best_push = turn, push
+                keep(rows, n, i, j, near, far, s)
+    if chosen >= 0:
+        fill_after(body, rows, n, best_turn, best_push, s)
+        for k in range(n):
+            s.grip[k] = s.holds[k]
+    return chosen, ways
