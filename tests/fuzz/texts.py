@@ -99,7 +99,7 @@ EN = Language(
     "Velocity",
     (
         *(("NS", "EW", "UD"), ("EW", "NS", "VER"), ("N00E", "N90E", "UPDO")),
-        *(("LONG", "TRAN", "VERT"), ("H1", "H2", "V"), ("360", "90", "UP")),
+        *(("LONG", "TRAN", "VERT"), ("H1", "H2", "V"), ("S00E", "N90E", "UP")),
         *(("x", "y", "z"), ("Longitudinal", "Transversal", "Vertical"), ("HNN", "HNE", "HNZ")),
         *(("HN1", "HN2", "HN3"), ("North", "East", "Up"), ("N", "E", "Z"), ("L", "T", "V")),
         *(("X-axis", "Y-axis", "Z-axis"), ("S90W", "S00E", "DOWN"), ("R", "T", "Z")),

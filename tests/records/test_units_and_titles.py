@@ -338,3 +338,9 @@ def test_the_page_of_formats_shows_what_the_readers_read():
     spec.loader.exec_module(tables)
     page = tables.PAGE.read_text(encoding="utf-8")
     assert tables.page_with_table(page) == page
+
+
+def test_azimuths_above_columns_are_no_samples(write):
+    path = write("360,90", WAVE, WAVE[::-1])
+    with pytest.raises(InputError, match="looks like titles"):
+        read_motion(path, unit="gal", dt=DT, channel="1")

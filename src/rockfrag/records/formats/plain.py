@@ -258,6 +258,10 @@ def _take_numbers_above(layout: _Layout, lines: list[str]) -> None:
         ):
             above = [(table.start, word) for word in row]
             layout.table = replace(table, start=table.start + 1)
+    if not above and table.columns > 1:
+        _check_first_row(
+            layout, row, number_fields.numbers_of(below, table.decimal_comma)
+        )
     if not above:
         return
     # a row that begins with anything else than a count may have one number of columns before it
@@ -273,6 +277,17 @@ def _take_numbers_above(layout: _Layout, lines: list[str]) -> None:
             above[0][0],
         )
     layout.agree(npts, dt, above[0][0])
+
+
+def _check_first_row(layout: _Layout, row: list[str], below: list[str]) -> None:
+    """Refuse azimuths that stand above columns as their titles: whole numbers above samples that are none."""
+    whole = [_is_whole(word) and number_fields.number_in(word) != 0 for word in row]
+    if all(whole) and not any(map(_is_whole, below)):
+        layout.text.fail(
+            f"{' '.join(row)[:_SHOWN]!r} above the samples looks like titles; write them with a letter, such as "
+            "N90E, or as the samples are written",
+            layout.line,
+        )
 
 
 def _is_count_row(row: list[str], below: list[str], columns: int) -> bool:

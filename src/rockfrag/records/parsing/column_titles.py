@@ -202,7 +202,9 @@ def _columns(titles: list[str], units: list[str]) -> list[Column]:
     ]
     others = [c for c in columns if c.quantity != "time"]
     directed = any(
-        is_direction(c.title) and c.title.lower() not in _AMBIGUOUS for c in others
+        c.title.lower() not in _AMBIGUOUS
+        and (is_direction(c.title) or _has_direction_beside_word(c))
+        for c in others
     )
     # beside N and E a V is the vertical, beside a it is the velocity
     columns = [
@@ -212,6 +214,11 @@ def _columns(titles: list[str], units: list[str]) -> list[Column]:
         for c in columns
     ]
     return _with_doubtful_letters(columns)
+
+
+def _has_direction_beside_word(column: Column) -> bool:
+    """Tell whether a title is a word for acceleration and a direction, such as ``L Acceleration``."""
+    return column.component != column.title and is_direction(column.component)
 
 
 def _with_doubtful_letters(columns: list[Column]) -> list[Column]:
