@@ -108,8 +108,14 @@ def wobble(tilt):
     return outcome, table, abs(turn[-1] - turn[0]) / table.time_s.iloc[-1], rate
 
 
-def near_flat_pass(disk, speed, tilt=0.05, radius=0.3, g=9.81):
+def near_flat_pass(disk, speed):
     """Turn of the contact in a pass near flat from a tilt at rest, and the tilt that is regained."""
+    turn, regained = signed_pass(disk, speed)
+    return abs(turn), regained
+
+
+def signed_pass(disk, speed, tilt=0.05, radius=0.3, g=9.81):
+    """Turn of the contact in a pass near flat, with its sign, and the tilt that is regained."""
     if disk:
         inertia = np.diag([radius**2 / 4, radius**2 / 4, radius**2 / 2])
         body = solid(Circle(radius), inertia, 1e-12, 1e6, g)
@@ -126,7 +132,7 @@ def near_flat_pass(disk, speed, tilt=0.05, radius=0.3, g=9.81):
     low = int((rising > 0).argmax())
     top = low + int((rising[low:] < 0).argmax())
     turn = np.unwrap(np.arctan2(table.axis_y, table.axis_x))
-    return abs(turn[top] - turn[0]), table.tilt_rad[top]
+    return turn[top] - turn[0], table.tilt_rad[top]
 
 
 def about_a_vertex():

@@ -124,14 +124,14 @@ def test_ends_of_an_edge_share_its_friction_by_what_each_can_bear():
     """With the centre of mass nearer to one end, that end bears more; friction that is just enough holds both."""
     base = Polygon(((-0.15, -0.15), (0.15, -0.15), (0.15, 0.45), (-0.15, 0.45)))
     inertia = np.diag([1.0 + 0.36, 1.0 + 0.09, 0.09 + 0.36]) / 12
-    # tips over the edge at +x while the ground moves along the edge too: shear over weight is .34 at both ends
+    # tips over the edge at +x while the ground moves along the edge too: shear over weight is .35 at both ends
     body = solid(base, inertia, 0.5, 0.36)
     ramp = np.minimum(np.arange(40) * DT / 0.2, 1.0)
-    ground = -GRAVITY * np.column_stack([0.33 * ramp, 0.08 * ramp, 0 * ramp])
+    ground = -GRAVITY * np.column_stack([0.33 * ramp, 0.15 * ramp, 0 * ramp])
     outcome, history = run_case(body, ground, DT, samples=40)
     on_edge = history[:40, 14] == 2
     assert on_edge.sum() > 10
-    assert outcome.slidings == 0 and history[:40, 14].min() == 2
+    assert outcome.slidings == 0 and outcome.paradoxes == 0
 
 
 @pytest.mark.parametrize(

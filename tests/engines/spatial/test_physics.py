@@ -20,6 +20,7 @@ from .checks import (
     near_flat_pass,
     planar_case,
     polygons,
+    signed_pass,
     solid_cylinders,
     uplift,
     wobble,
@@ -56,6 +57,19 @@ def test_near_flat_pass_turns_the_contact_and_keeps_the_tilt(disk, speed, expect
     turn, regained = near_flat_pass(disk, speed)
     assert regained == pytest.approx(0.05, abs=1e-6)
     assert turn == pytest.approx(expected, abs=0.02)
+
+
+@pytest.mark.parametrize("disk", [True, False])
+@pytest.mark.parametrize("way", [1, -1])
+def test_a_pass_in_closed_form_turns_the_way_in_which_the_contact_goes_round(disk, way):
+    followed, _ = signed_pass(disk, 1e-6 * way)
+    # sideways so slowly that the tilt sinks below that of the closed form
+    passed, regained = signed_pass(disk, 1e-8 * way)
+    assert regained == pytest.approx(0.05, abs=1e-6)
+    apart = (passed - followed + math.pi) % (2 * math.pi) - math.pi
+    assert abs(apart) < 0.15
+    # the other way round would be seen: the turn is no multiple of half a turn
+    assert abs(math.sin(followed)) > 0.5
 
 
 def test_energy_about_a_fixed_vertex_and_its_vertical_angular_momentum_are_kept():

@@ -192,7 +192,7 @@ def pass_flat(body, y, s):
     before = solid.energy(body, y, s.field[6])
     angle = body.slide_turn if s.slides[0] == forces.SLIDES else body.pass_turn
     # the way in which the contact goes round already
-    if sinking[0] * from_here[1] - sinking[1] * from_here[0] > 0:
+    if sinking[0] * from_here[1] - sinking[1] * from_here[0] < 0:
         angle = -angle
     d, c = sin_cos(angle)
     to_there = (
