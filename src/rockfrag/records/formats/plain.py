@@ -503,6 +503,8 @@ def _channels(layout: _Layout, table: NDArray[np.float64]) -> list[Channel]:
         _refuse_other(layout, layout.facts.quantity)
         # beside a depth what has no name is no acceleration in time
         in_time = not any(kinds) or "time" in kinds or "index" in kinds
+        # beside an acceleration in a unit of another quantity neither
+        in_time = in_time and not any(column.is_said_acceleration for column in columns)
         chosen = [i for i, kind in enumerate(kinds) if not kind and in_time]
     if not chosen:
         text.refuse(

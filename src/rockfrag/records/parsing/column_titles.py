@@ -65,6 +65,11 @@ class Column:
         return found.to_si if found.quantity == "time" else None
 
     @property
+    def is_said_acceleration(self) -> bool:
+        """Whether a word of the title is acceleration, whatever its unit is."""
+        return bool(words_for("acceleration").search(folded(spaced(self.title))))
+
+    @property
     def is_named_magnitude(self) -> bool:
         """Whether the title speaks of the length of a vector and not of one of its components."""
         return bool(words_for("magnitude").search(folded(spaced(self.title))))
