@@ -21,6 +21,7 @@ BLACK, ORANGE, SKY, GREEN = "#000000", "#E69F00", "#56B4E9", "#009E73"
 YELLOW, BLUE, RED, PURPLE = "#F0E442", "#0072B2", "#D55E00", "#CC79A7"
 """Colours of Okabe and Ito (2008), told apart by readers with any colour vision."""
 
+GUIDE = "#999999"  # of lines and shapes that others are seen against
 OKABE_ITO = (BLUE, ORANGE, GREEN, RED, SKY, PURPLE, BLACK, YELLOW)
 
 COLUMN_WIDTH, PAGE_WIDTH = 3.5, 7.0  # of one and of two columns of a journal [in]
@@ -68,7 +69,7 @@ def panels(
 def draw_history(panel: Axes, time: Floats, values: Floats, **line: Any) -> float:
     """Draw values over time with zero and a dot at the largest, and return that in magnitude; shapes (n,)."""
     peak = int(np.abs(values).argmax())
-    panel.axhline(0, color="#999999", linewidth=0.6, zorder=1)
+    panel.axhline(0, color=GUIDE, linewidth=0.6, zorder=1)
     panel.plot(time, values, **{"color": BLUE, "linewidth": 0.6, **line})
     panel.plot(time[peak], values[peak], "o", color=RED, markersize=3)
     return float(abs(values[peak]))

@@ -15,7 +15,6 @@ if TYPE_CHECKING:
     from rockfrag.outcomes.response import Response
 
 MOST_ROCKING_MODES = len(style.OKABE_ITO)  # rows of patterns; more are counted
-GREY = "#999999"
 _ROCKING_MODES = ("1a", "1b", "2a", "2b", "3a", "3b", "4a", "4b", "flight")
 
 
@@ -44,8 +43,8 @@ def response_figure(response: "Response", title: str) -> Figure:
         for i, name in enumerate(names):
             turned = response.theta[:, i] / critical[i]
             rotation.plot(response.time, turned, color=colours[i], lw=0.8, label=name)
-        rotation.axhline(1, color=GREY, lw=0.6, ls="--")
-        rotation.axhline(-1, color=GREY, lw=0.6, ls="--")
+        rotation.axhline(1, color=style.GUIDE, lw=0.6, ls="--")
+        rotation.axhline(-1, color=style.GUIDE, lw=0.6, ls="--")
         # a body that never rocked has a panel, too
         largest = float(np.abs(response.theta / critical).max()) or 1.0
         rotation.set_ylim(-min(1.6, 1.15 * largest), min(1.6, 1.15 * largest))

@@ -365,7 +365,6 @@ def _range(values: pd.Series) -> str:
     return f"{values.min():.3g} to {values.max():.3g}"
 
 
-_GREY = "#999999"
 _BINS = 8
 
 
@@ -423,7 +422,7 @@ def tests_figure(
     """Draw every test in two measures: what happened by colour, wrong predictions as crosses."""
     with style.panels(style.COLUMN_WIDTH, 2.8) as (figure, axes):
         for right, fell, colour, word in (
-            (True, False, _GREY, "survived"),
+            (True, False, style.GUIDE, "survived"),
             (True, True, style.ORANGE, "overturned"),
             (False, True, style.RED, "overturned only in the laboratory"),
             (False, False, style.BLACK, "overturned only in the simulation"),
@@ -449,7 +448,7 @@ def footprint_figure(footprint: pd.DataFrame, trials: pd.DataFrame) -> Figure:
     """Draw the object from above: outline, contact polygons, centre of gravity, plausible directions."""
     with style.panels(style.COLUMN_WIDTH, 3.2) as (figure, axes):
         styles = {
-            "outline": (_GREY, "-", "outline"),
+            "outline": (style.GUIDE, "-", "outline"),
             "contact, low": (style.GREEN, ":", None),
             "contact": (style.GREEN, "-", "contact polygon"),
             "contact, high": (style.GREEN, "--", None),

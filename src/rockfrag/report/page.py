@@ -22,7 +22,7 @@ import pandas as pd
 from jinja2 import Environment, PackageLoader, StrictUndefined, select_autoescape
 from markupsafe import Markup
 
-from rockfrag.base.figure_style import BLUE, GREEN, PURPLE, RED, save_figure
+from rockfrag.base.figure_style import BLUE, GREEN, GUIDE, PURPLE, RED, save_figure
 from rockfrag.report.figures import BAND, GREY
 from rockfrag.report.part import Answer, FigureSpec, Section
 from rockfrag.runtime.processes import in_processes
@@ -47,7 +47,7 @@ _SCHEME = {
     GREY: "rule",
     BAND: "band",
     "#cccccc": "faint",
-    "#999999": "rule",
+    GUIDE: "rule",
     BLUE.lower(): "blue",
     RED.lower(): "red",
     GREEN.lower(): "green",

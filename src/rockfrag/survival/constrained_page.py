@@ -332,7 +332,7 @@ def weights_figure(found: Constrained) -> Figure:
     before, after = table["weight_before"], table["weight_after"]
     place = np.arange(len(table))
     with style.panels(style.WIDEST, 0.7 + 0.2 * len(table)) as (figure, axes):
-        axes.hlines(place, before, after, color="#999999", linewidth=0.8)
+        axes.hlines(place, before, after, color=style.GUIDE, linewidth=0.8)
         axes.plot(
             before,
             place,

@@ -13,8 +13,6 @@ from rockfrag.base import figure_style as style
 if TYPE_CHECKING:
     from rockfrag.engines.spatial.engine import SpatialOutcome
 
-GREY = "#999999"
-
 
 def spatial_figure(
     outcome: "SpatialOutcome",
@@ -55,7 +53,7 @@ def _plan(panel: Axes, history: pd.DataFrame, outline: NDArray[np.float64]) -> N
     closed = np.vstack([outline, outline[:1]])
     corners = []
     for row, colour, name in (
-        (history.iloc[0], GREY, "at the start"),
+        (history.iloc[0], style.GUIDE, "at the start"),
         (history.iloc[-1], style.ORANGE, "at the end"),
     ):
         c, s = np.cos(row.turn_rad), np.sin(row.turn_rad)

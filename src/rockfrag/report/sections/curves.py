@@ -464,7 +464,7 @@ def two_measures_figure(contours: pd.DataFrame, cells: pd.DataFrame) -> Figure:
         shown = axes.scatter(
             x, y, size, shades, marker="s", cmap="Greys", vmin=0, vmax=1
         )
-        shown.set(edgecolor="#999999", linewidth=0.3)
+        shown.set(edgecolor=style.GUIDE, linewidth=0.3)
         reach, rise = (0.8 * x.min(), 1.25 * x.max()), (0.9 * y.min(), 1.1 * y.max())
         across = bool((contours["of"] == first).all())
         low, high = reach if across else rise
