@@ -16,6 +16,7 @@ import pandas as pd
 from rockfrag.fragility.curve_facts import Compared, compared_curves
 from rockfrag.report.part import Finding
 from rockfrag.shaketable.definitions import DEFINITION
+from rockfrag.study.scaling import LARGEST_FACTOR
 from rockfrag.study.study import Study
 from rockfrag.words import sentences as wording
 from rockfrag.words.sentences import agree, counted, listed, number, of_all, sentence
@@ -694,4 +695,33 @@ def sliding_found(sliding: pd.DataFrame) -> Finding:
         f"Bodies slide in {_analyses(slid, cases)}",
         text,
         f"The largest slip is {slip} cm ({farthest['configuration']}); {flies}.",
+    )
+
+
+def scaled_far(scaling: pd.DataFrame, tests: pd.DataFrame) -> str:
+    """Sentence on the tests that overturn under a motion scaled by more than :data:`LARGEST_FACTOR`.
+
+    Parameters
+    ----------
+    scaling : peak of each motion as recorded or felt, ``pga_g`` [g], by ``motion``
+    tests : a row a test, with ``motion`` and ``upper_g``, the amplitude that overturned [g]
+
+    Returns
+    -------
+    The sentence, empty if there is no such test.
+    """
+    fallen = tests.dropna(subset=["upper_g"])
+    if fallen.empty:
+        return ""
+    factors = fallen["upper_g"] / fallen["motion"].map(
+        scaling.set_index("motion")["pga_g"]
+    )
+    far = factors > LARGEST_FACTOR
+    if not far.any():
+        return ""
+    motions = list(dict.fromkeys(fallen.loc[far, "motion"]))
+    return (
+        f"Scaling: {of_all(int(far.sum()), len(fallen), 'test')} that overturned needed more than "
+        f"{LARGEST_FACTOR:g} times the motion (at most {factors.max():.3g} times: {listed(motions)}); small "
+        "earthquakes scaled so far are not large ones."
     )
