@@ -17,7 +17,7 @@ blocks = [Block(width=h / 4, height=h, mass=2500 * h**3 / 16) for h in heights]
 periods = (0.5, 1.0, 2.0)
 motions = [one_sine(amplitude=1.0, period=period) for period in periods]
 found = find_thresholds(
-    blocks, motions, None, highest=45.0, tolerance=0.02, narrowest_resurrection=0.25
+    blocks, motions, highest=45.0, tolerance=0.02, narrowest_resurrection=0.25
 ).table
 
 # %%
@@ -36,4 +36,4 @@ axes.axhline(0.25, color="0.4", linestyle="--", label="starts to rock, b/h = 0.2
 axes.set(
     xlabel="height of the block [m]", ylabel="least acceleration that overturns [g]"
 )
-axes.legend(fontsize=8)
+_ = axes.legend(fontsize=8)

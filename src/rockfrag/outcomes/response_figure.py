@@ -39,7 +39,7 @@ def response_figure(response: "Response", title: str) -> Figure:
         acceleration = response.ground_acceleration / GRAVITY
         ground.plot(response.time, acceleration, color=style.BLACK, lw=0.5)
         ground.set_ylabel("Ground [g]")
-        ground.set_title(title, loc="left")
+        ground.set_title(style.checked_title(title), loc="left")
         for i, name in enumerate(names):
             turned = response.theta[:, i] / critical[i]
             rotation.plot(response.time, turned, color=colours[i], lw=0.8, label=name)
