@@ -158,6 +158,20 @@ def _add_constrain(commands: Any) -> None:
 
 # each command imports what it needs when it runs: `rockfrag --help` should not wait for numba
 def _simulate(options: argparse.Namespace) -> int:
+    from rockfrag.runtime.progress import sign_of_life
+
+    words = (
+        "still simulating; kernels are compiled once a machine, and many bodies, friction or a body in space take "
+        "longer than blocks that only rock"
+    )
+    with sign_of_life(words):
+        lines = _simulated(options)
+    print("\n".join(lines))
+    return 0
+
+
+def _simulated(options: argparse.Namespace) -> list[str]:
+    """Simulate what the options tell, draw it if asked for, and return the lines to print."""
     from rockfrag.cli.simulated import (
         contact_event_lines,
         lines_in_plane,
@@ -206,13 +220,12 @@ def _simulate(options: argparse.Namespace) -> int:
         )
         contact_events = response.contact_events.to_dict("records")
         lines += contact_event_lines(contact_events, most)
-    print("\n".join(lines))
     if options.plot:
         from rockfrag.base.figure_style import save_figure
 
         save_figure(response.plot(title), options.plot)
-        print(f"drawn in {options.plot}")
-    return 0
+        lines.append(f"drawn in {options.plot}")
+    return lines
 
 
 def _factor(options: argparse.Namespace, motion: "Motion") -> float:
