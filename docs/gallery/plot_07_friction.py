@@ -37,9 +37,11 @@ mesh = axes.pcolormesh(
 )
 axes.plot(frictions, 1 / frictions, "k--", linewidth=1)
 axes.set(
-    xlabel="coefficient of friction [-]",
-    ylabel="height over width [-]",
+    xlabel="coefficient of friction",
+    ylabel="height over width",
     ylim=(1.2, 6.0),
 )
 bar = figure.colorbar(mesh, ticks=range(4))
-bar.ax.set_yticklabels(["slides", "rocks", "rocks and slides", "overturns"], fontsize=8)
+names = ["slides", "rocks", "rocks and slides", "overturns"]
+_ = bar.ax.set_yticklabels(names, fontsize=8)
+_ = axes.text(0.24, 4.6, "friction = width over height", rotation=-72, fontsize=8)

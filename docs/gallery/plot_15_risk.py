@@ -49,4 +49,6 @@ right.bar(
     color="#E69F00",
     edgecolor="white",
 )
-right.set(xlabel="peak ground acceleration [g]", ylabel="part of the yearly rate [%]")
+_ = right.set(
+    xlabel="peak ground acceleration [g]", ylabel="part of the yearly rate [%]"
+)
