@@ -79,7 +79,7 @@ class StateCurve:
         """Sentence on what the written curve holds, empty where there is no doubt."""
         if not self.added:
             return ""
-        return "The curve as written holds all three: its median is that of the motions, and its slope is less steep."
+        return "The curve as written holds all three, around the median of the motions."
 
 
 @dataclass(frozen=True)
