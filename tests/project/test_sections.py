@@ -16,11 +16,6 @@ OTHERS = {
     "system",
     "laws",
     "base",
-    "words",
-    "web",
-    "runtime",
-    "config",
-    "cli",
 }
 """Rooms whose functions are not yet described throughout; this list must shrink to nothing."""
 

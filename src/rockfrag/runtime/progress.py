@@ -92,6 +92,10 @@ def sign_of_life(words: str, stream: TextIO | None = None) -> Iterator[None]:
     ----------
     words : what it does, and what would be quicker
     stream : where to say it, the error stream if None
+
+    Returns
+    -------
+    A context that lasts as long as the block.
     """
     to = sys.stderr if stream is None else stream
     ended = threading.Event()
