@@ -1,4 +1,7 @@
-"""Outcomes of systems × motions × scales, as arrays, and as three tidy tables (``docs/definitions.md``)."""
+"""Outcomes of systems × motions × scales, as arrays, and as three tidy tables (``docs/definitions.md``).
+
+In: arrays that engines fill. Out: tables and a figure. Systems, motions and scales are the three axes everywhere.
+"""
 
 import math
 from collections.abc import Sequence

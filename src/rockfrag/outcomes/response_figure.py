@@ -1,4 +1,7 @@
-"""Figure of one response of planar bodies: motion, rotations, slip and rocking mode over time."""
+"""Figure of one response of planar bodies: motion, rotations, slip and rocking mode over time.
+
+In: a response. Out: a figure with rotations over the critical angle [-] and slips [mm]. Docs: ``docs/rocking.md``.
+"""
 
 from typing import TYPE_CHECKING, Any
 

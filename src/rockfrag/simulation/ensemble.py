@@ -1,4 +1,8 @@
-"""Many bodies × motions × amplitudes at once."""
+"""Many bodies × motions × amplitudes at once.
+
+In: systems, motions [m/s²] and scales [-]. Out: :class:`rockfrag.outcomes.Outcomes`. Theory: ``docs/rocking.md``,
+``docs/definitions.md``; who answers: :mod:`rockfrag.engines.contract`.
+"""
 
 from __future__ import annotations
 

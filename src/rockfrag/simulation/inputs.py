@@ -1,4 +1,8 @@
-"""Checks of what users give, and the step sizes that follow from it."""
+"""Checks of what users give, and the step sizes that follow from it.
+
+In: anything. Out: lists of systems, :class:`GroundMotion` and scales, or one sentence on what is wrong. Docs:
+``docs/rocking.md``, "What a response says about itself".
+"""
 
 import math
 import numbers

@@ -1,4 +1,8 @@
-"""Ensembles larger than memory: outcomes, peaks or whole histories straight into a Parquet file."""
+"""Ensembles larger than memory: outcomes, peaks or whole histories straight into a Parquet file.
+
+In: as for :func:`rockfrag.simulation.overturns`. Out: a file whose bytes do not depend on threads. Docs:
+``docs/reliability.md``.
+"""
 
 from __future__ import annotations
 

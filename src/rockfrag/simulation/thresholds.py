@@ -3,6 +3,8 @@
 More shaking does not always mean overturning: above the first overturning amplitude there can be windows
 in which the body survives again (``docs/derivation.md``).  A coarse grid finds every window that is at
 least as wide as its spacing, and bisection puts both ends of what it finds to a tolerance.
+
+In: bodies, motions, the highest scale. Out: a table of scales and of peaks [g]. Theory: ``docs/definitions.md``.
 """
 
 from __future__ import annotations

@@ -1,4 +1,8 @@
-"""Fragility: curves of every configuration and floor, the measure that predicts overturning best, exports."""
+"""Fragility: curves of every configuration and floor, the measure that predicts overturning best, exports.
+
+In: IDA curves and measures of the motions. Out: tables of curves with θ in the unit of the measure and β [-], and
+files for other programs. Theory: ``docs/fragility.md``.
+"""
 
 import re
 from collections import defaultdict

@@ -1,4 +1,8 @@
-"""Reading a study before anything runs, with every check that can be made beforehand."""
+"""Reading a study before anything runs, with every check that can be made beforehand.
+
+In: a YAML file and what it names. Out: a study of any kind, or one sentence on what is wrong; warnings on records.
+Docs: ``config/README.md``.
+"""
 
 import math
 import os

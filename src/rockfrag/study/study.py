@@ -1,4 +1,8 @@
-"""A study: what its configuration says, read once, checked, and as the stages need it."""
+"""A study: what its configuration says, read once, checked, and as the stages need it.
+
+In: what :mod:`rockfrag.study.loading` has read. Out: amplitudes [g], jobs, names of files. Docs:
+``config/README.md``.
+"""
 
 import math
 from collections.abc import Mapping
