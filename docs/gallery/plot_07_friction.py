@@ -44,4 +44,4 @@ axes.set(
 bar = figure.colorbar(mesh, ticks=range(4))
 names = ["slides", "rocks", "rocks and slides", "overturns"]
 _ = bar.ax.set_yticklabels(names, fontsize=8)
-_ = axes.text(0.24, 4.6, "friction = width over height", rotation=-72, fontsize=8)
+_ = axes.text(0.42, 2.7, "friction = width / height", fontsize=8, color="white")

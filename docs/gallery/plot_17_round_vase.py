@@ -16,13 +16,13 @@ noise = {"arias_m_s": 1.0, "d5_95_s": 5.0, "mid_s": 3.0, "slope_hz_s": -0.05}
 
 
 def component(seed, peak):
-    """One synthetic component with a peak [m/s²], cut to a common length."""
+    """One synthetic component with a peak [g], cut to a common length."""
     motion = evolutionary(seed, mid_hz=1.5, filter_damping=0.3, **noise)
     return scale_to_pga(motion.after("cut", motion.acceleration[:1000]), peak)
 
 
 motions = [
-    GroundMotion(component(seed, 9.81), y=component(100 + seed, 8.0))
+    GroundMotion(component(seed, 1.0), y=component(100 + seed, 0.8))
     for seed in range(12)
 ]
 bases = {
