@@ -48,10 +48,8 @@ for panel, title, outcomes in zip(
     )
     panel.set(title=title, xlabel="peak ground acceleration [g]")
 panels[0].set(ylabel="synthetic motion", yticks=range(1, 11))
-shades = [plt.cm.Blues(1 / 1.3), "white"]
-words = ["overturns", "stands"]
 handles = [
-    Patch(facecolor=shade, edgecolor="0.5", label=word)
-    for shade, word in zip(shades, words, strict=True)
+    Patch(facecolor=plt.get_cmap("Blues")(1 / 1.3), label="overturns"),
+    Patch(facecolor="white", edgecolor="0.5", label="stands"),
 ]
-_ = figure.legend(handles=handles, loc="outside lower center", ncols=2)
+figure.legend(handles=handles, loc="outside lower center", ncols=2)

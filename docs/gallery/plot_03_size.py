@@ -36,4 +36,4 @@ axes.axhline(0.25, color="0.4", linestyle="--", label="starts to rock, b/h = 0.2
 axes.set(
     xlabel="height of the block [m]", ylabel="least acceleration that overturns [g]"
 )
-_ = axes.legend(fontsize=8)
+axes.legend(fontsize=8)

@@ -39,6 +39,6 @@ axes.set(
     ylabel="amplitude, a/(α g)",
     ylim=(1, 14),
 )
-shade = Patch(facecolor=plt.cm.Blues(1 / 1.5), label="overturns, simulated")
+shade = Patch(facecolor=plt.get_cmap("Blues")(1 / 1.5), label="overturns, simulated")
 handles = [shade, *axes.get_legend_handles_labels()[0]]
-_ = axes.legend(handles=handles, loc="upper left", fontsize=8, framealpha=1.0)
+axes.legend(handles=handles, loc="upper left", fontsize=8, framealpha=1.0)

@@ -25,4 +25,4 @@ for label, ratio in (
     )
     axes.plot(response.time, response.theta[:, 0] / block.alpha, label=label)
 axes.set(xlabel="time [s]", ylabel="rotation over the critical angle", xlim=(0, 7))
-_ = axes.legend(fontsize=8)
+axes.legend(fontsize=8)

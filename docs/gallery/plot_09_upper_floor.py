@@ -59,4 +59,4 @@ for motion, colour in zip(motions, ("#0072B2", "#E69F00", "#D55E00"), strict=Tru
     )
 left.set(xlabel="time [s]", ylabel="acceleration [g]", xlim=(0, 15))
 right.set(xlabel="period [s]", ylabel="spectral acceleration [g]")
-_ = right.legend(fontsize=8)
+right.legend(fontsize=8)

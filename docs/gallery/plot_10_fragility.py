@@ -62,4 +62,4 @@ axes.set(
 )
 axes.set_xticks([10, 20, 50, 100, 200], ["10", "20", "50", "100", "200"])
 axes.minorticks_off()
-_ = axes.legend(fontsize=8)
+axes.legend(fontsize=8)

@@ -34,4 +34,4 @@ axes.plot(
 )
 # the numbers of the circles away from the star
 axes.set_rlabel_position((found.angle_deg + 100) % 360)
-_ = axes.set_title("least scale of the record that overturns", fontsize=10)
+axes.set_title("least scale of the record that overturns", fontsize=10)

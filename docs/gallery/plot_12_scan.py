@@ -32,5 +32,5 @@ angles = [
 
 figure, axes = plt.subplots(figsize=(4, 4), subplot_kw={"projection": "polar"})
 axes.plot(np.radians(directions), angles, "o-", markersize=3)
-_ = axes.set_rgrids([5, 10, 15, 20])
-_ = axes.set_title("angle at which it balances [°]", fontsize=10)
+axes.set_rgrids([5, 10, 15, 20])
+axes.set_title("angle at which it balances [°]", fontsize=10)

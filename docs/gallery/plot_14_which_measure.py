@@ -44,4 +44,4 @@ for panel, (name, values) in zip(panels, measures.items(), strict=True):
         )
     panel.set(xlabel=name, yticks=[0, 1], yticklabels=["stands", "overturns"])
     outcomes = Observations(values, fallen.astype(float), np.ones(100), names, names)
-    _ = panel.set_title(f"area under the ROC curve {area_under_curve(outcomes):.2f}")
+    panel.set_title(f"area under the ROC curve {area_under_curve(outcomes):.2f}")

@@ -49,6 +49,4 @@ right.bar(
     color="#E69F00",
     edgecolor="white",
 )
-_ = right.set(
-    xlabel="peak ground acceleration [g]", ylabel="part of the yearly rate [%]"
-)
+right.set(xlabel="peak ground acceleration [g]", ylabel="part of the yearly rate [%]")

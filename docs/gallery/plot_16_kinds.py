@@ -64,4 +64,4 @@ levels.set(ylabel="peak acceleration [g]", yscale="log")
 levels.set_yticks([0.1, 0.2, 0.5, 1, 2], ["0.1", "0.2", "0.5", "1", "2"])
 levels.minorticks_off()
 titles = [name.replace("-", "\n") for name in names]
-_ = levels.set_xticks(range(len(names)), titles, fontsize=8)
+levels.set_xticks(range(len(names)), titles, fontsize=8)

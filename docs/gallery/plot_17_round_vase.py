@@ -37,10 +37,10 @@ for (name, outcomes), marker in zip(
     zip(bases, fallen, strict=True), ("o", "s"), strict=True
 ):
     count = outcomes.sum(axis=0)
-    _ = axes.plot(pga, count, marker + "-", ms=4, label=f"{name} base")
+    axes.plot(pga, count, marker + "-", ms=4, label=f"{name} base")
 axes.set(
     xlabel="peak of the stronger component [g]",
     ylabel="motions that overturn, of 12",
     ylim=(-0.4, 12.4),
 )
-_ = axes.legend(fontsize=8, loc="lower right")
+axes.legend(fontsize=8, loc="lower right")

@@ -25,4 +25,4 @@ for k, name in enumerate(names):
     slips.plot(response.time, 1000 * response.slip[:, k], lw=0.8)
 turns.set(ylabel="rotation [°]")
 slips.set(ylabel="slip under it [mm]", xlabel="time [s]", xlim=(0, response.time[-1]))
-_ = figure.legend(fontsize=8, loc="outside lower center", ncols=5)
+figure.legend(fontsize=8, loc="outside lower center", ncols=5)

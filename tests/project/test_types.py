@@ -46,10 +46,11 @@ def test_every_page_with_code_is_looked_at(written):
     assert len(names) > 25
 
 
-# what libraries without types of their own leave open, and a script need not say
-OPEN = (
-    "import-untyped", "no-untyped-call", "no-untyped-def", "attr-defined:matplotlib",
-)  # fmt: skip
+LEFT_TO_THE_READER = ("[name-defined]", "[used-before-def]", "[has-type]")
+"""Errors of reference pages, which show a call and not where its arguments come from."""
+
+OF_OTHERS = '"Axes" has no attribute'
+"""What matplotlib's types do not tell of polar axes."""
 
 
 @pytest.mark.slow
@@ -60,17 +61,19 @@ def test_mypy_accepts_what_is_shown(written):
         *("--disable-error-code", "no-untyped-def"),
         *("--disable-error-code", "no-untyped-call"),
         *("--disable-error-code", "import-untyped"),
-        *map(str, sorted(written.glob("*.py"))),
+        *sorted(path.name for path in written.glob("*.py")),
     ]
     done = subprocess.run(
         command, cwd=written, capture_output=True, text=True, check=False
     )
-    said = [
+    own = [
         line
         for line in done.stdout.splitlines()
-        if str(written.name) in line or ".py:" in line
+        if ".py:" in line
+        and OF_OTHERS not in line
+        and not (line.startswith("docs_") and line.endswith(LEFT_TO_THE_READER))
     ]
-    own = [line for line in said if "site-packages" not in line and "/src/" not in line]
+    assert done.returncode in (0, 1), done.stderr
     assert not own, "\n".join(own)
 
 

@@ -53,7 +53,7 @@ def test_times_are_said_as_people_say_them():
 
 
 def test_a_block_that_lasts_gives_a_sign_of_life(monkeypatch):
-    monkeypatch.setattr(progress, "QUIET", 0.02)
+    monkeypatch.setattr(progress, "SILENT", 0.02)
     stream = io.StringIO()
     with sign_of_life("still simulating", stream):
         deadline = time.monotonic() + 5

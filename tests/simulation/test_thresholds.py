@@ -90,7 +90,7 @@ def test_thresholds_are_those_of_the_grid(ensemble):
 def test_both_ends_of_every_window_survive_and_it_overturns_just_outside(ensemble):
     bodies, motions = ensemble
     found = find_thresholds(
-        bodies, motions, DT, 1.5, tolerance=0.004, narrowest_resurrection=0.01
+        bodies, motions, DT, highest=1.5, tolerance=0.004, narrowest_resurrection=0.01
     )
     assert len(found.resurrections) > 3
     width = 0.01 / 4

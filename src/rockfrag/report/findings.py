@@ -7,6 +7,7 @@ Docs: ``docs/report.md``, "How it is told"; theory of what is said: ``docs/fragi
 """
 
 import math
+import re
 from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
@@ -123,22 +124,50 @@ def strength_found(curves: pd.DataFrame, level: str) -> Finding | None:
 
 
 def _strongest_and_weakest(rows: pd.DataFrame, decimals: int) -> str:
-    """Headline on the configurations with the least and the largest median of a fragility table."""
+    """Headline on the configurations with the least and the largest median of a fragility table, with limits."""
     measure, unit = rows["im"].iloc[0], rows["unit"].iloc[0]
     printed = rows["theta"].map(lambda value: number(value, decimals))
+    # words on the first screen, brackets behind a click
+    said = [
+        re.sub(r"\[(.*), (.*)\]", r"(\1 to \2)", text)
+        for text in wording.estimates(rows, "theta", decimals)
+    ]
+    of = dict(zip(printed, said, strict=True))
     least = number(rows["theta"].min(), decimals)
     most = number(rows["theta"].max(), decimals)
     # what differs in no digit that is shown is named together
-    weakest = list(rows.loc[printed == least, "configuration"])
-    strongest = list(rows.loc[printed == most, "configuration"])
+    weakest = rows[printed == least]
+    strongest = rows[printed == most]
+    names = list(weakest["configuration"])
     if least == most:
-        return f"A {measure} of {least} {unit} overturns {listed(weakest)} with 50 % probability"
+        return f"A {measure} of {of[least]} {unit} overturns {listed(names)} with 50 % probability"
+    if not told_apart(weakest, strongest):
+        all_names = listed(list(rows["configuration"]))
+        return (
+            f"A {measure} of {of[least]} to {of[most]} {unit} overturns {all_names} with 50 % probability; "
+            "their intervals overlap, so that none is shown to be the most fragile"
+        )
     is_one = len(weakest) == 1
     return (
-        f"{listed(weakest)} {'is' if is_one else 'are'} the most fragile: a {measure} of {least} {unit} "
-        f"overturns {'it' if is_one else 'them'} with 50 % probability, while {listed(strongest)} "
-        f"{'needs' if len(strongest) == 1 else 'need'} {most} {unit}"
+        f"{listed(names)} {'is' if is_one else 'are'} the most fragile: a {measure} of {of[least]} {unit} "
+        f"overturns {'it' if is_one else 'them'} with 50 % probability, while "
+        f"{listed(list(strongest['configuration']))} {'needs' if len(strongest) == 1 else 'need'} {of[most]} "
+        f"{unit}"
     )
+
+
+def told_apart(weaker: pd.DataFrame, stronger: pd.DataFrame) -> bool:
+    """Whether the intervals of some medians lie below those of others; unknown where one has no interval.
+
+    Parameters
+    ----------
+    weaker, stronger : rows with ``theta_upper`` and ``theta_lower``, in one unit
+
+    Returns
+    -------
+    Whether none of them overlap.
+    """
+    return bool(weaker["theta_upper"].max() < stronger["theta_lower"].min())
 
 
 def _medians(named: Sequence[str], unit: str, level: str) -> str:

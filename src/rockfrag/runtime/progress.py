@@ -14,6 +14,7 @@ from typing import TextIO
 
 QUIET = 3.0  # seconds that pass before anything is said
 EVERY = 10.0  # seconds between two lines of a file or a pipe
+SILENT = 15.0  # seconds after which what cannot be counted gives its first sign
 OFTEN = 0.5  # seconds between two states of the line of a terminal
 
 Progress = Callable[[int, int], None]
@@ -86,7 +87,7 @@ def in_words(seconds: float) -> str:
 
 @contextmanager
 def sign_of_life(words: str, stream: TextIO | None = None) -> Iterator[None]:
-    """Say after :data:`QUIET` seconds, and again at ever longer intervals, that a block is still at work.
+    """Say after :data:`SILENT` seconds, and again at ever longer intervals, that a block is still at work.
 
     Parameters
     ----------
@@ -102,7 +103,7 @@ def sign_of_life(words: str, stream: TextIO | None = None) -> Iterator[None]:
     begun = time.monotonic()
 
     def speak() -> None:
-        wait = QUIET
+        wait = SILENT
         while not ended.wait(wait):
             so_far = in_words(time.monotonic() - begun)
             print(f"{words} ({so_far} so far)", file=to, flush=True)

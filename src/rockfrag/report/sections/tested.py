@@ -383,32 +383,36 @@ def shaker_limits(limits: pd.DataFrame, tests: pd.DataFrame) -> Figure:
         return figure
 
 
+TWO_COLUMNS = 4  # so many motions are drawn in two columns
 MOST_PANELS = 8  # more motions than this do not fit one figure; the first are drawn
 
 
 def acceleration_histories(motions: Sequence[Motion]) -> Figure:
     """Draw the acceleration of ``MOST_PANELS`` motions over time with its peak, a panel a motion, on one scale."""
     shown = motions[:MOST_PANELS]
-    with style.panels(
-        style.COLUMN_WIDTH,
-        0.5 + 0.95 * len(shown),
-        nrows=len(shown),
-        sharex=True,
-        sharey=True,
-        squeeze=False,
-    ) as (figure, grid):
-        panels = grid[:, 0]
+    columns = 1 if len(shown) < TWO_COLUMNS else 2
+    rows = -(-len(shown) // columns)
+    width = style.COLUMN_WIDTH if columns == 1 else style.PAGE_WIDTH
+    shape = {"nrows": rows, "ncols": columns, "sharex": True, "sharey": True}
+    with style.panels(width, 0.5 + 1.05 * rows, squeeze=False, **shape) as (
+        figure,
+        grid,
+    ):
+        panels = list(grid.ravel())
         highest = 1.12 * max(motion.pga for motion in shown) / GRAVITY
-        for panel, motion in zip(panels, shown, strict=True):
+        for panel, motion in zip(panels, shown, strict=False):
             values = motion.acceleration / GRAVITY
             peak = style.draw_history(panel, motion.time, values, linewidth=0.5)
             panel.set_ylim(-highest, highest)
             name, earthquake = motion.name, str(motion.metadata.get("earthquake") or "")
             if earthquake.casefold() not in name.casefold():
                 name = f"{earthquake}, {name}"
-            panel.set_title(f"{shortened(name, 44)}: {peak:.2f} g", loc="left")
-        style.letter_panels(panels, size=6.5)
-        panels[-1].set_xlabel("Time [s]")
-        panels[-1].set_xlim(0, max(motion.time[-1] for motion in shown))
+            panel.set_title(f"{shortened(name, 40)}: {peak:.2g} g", loc="left")
+        for panel in panels[len(shown) :]:
+            panel.set_visible(False)
+        style.letter_panels(panels[: len(shown)], size=6.5)
+        for panel in grid[-1]:
+            panel.set_xlabel("Time [s]")
+        panels[0].set_xlim(0, max(motion.time[-1] for motion in shown))
         figure.supylabel("Acceleration [g]", fontsize=8)
         return figure
