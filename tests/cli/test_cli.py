@@ -11,6 +11,8 @@ import rockfrag
 from rockfrag.cli.main import main, with_negative_sizes
 from rockfrag.cli.simulated import _friction
 
+from ..workflow.conftest import write_example, write_synthetic
+
 ROOT = Path(__file__).resolve().parents[2]
 
 
@@ -240,3 +242,15 @@ def test_a_number_that_is_none_is_refused_in_plain_words(capsys):
 def test_friction_that_no_surface_has_is_said_in_words():
     lines = [_friction(value) for value in (0.3512, 1e6, float("inf"), float("nan"))]
     assert lines == ["0.351", *["none is enough"] * 3]
+
+
+def test_a_table_of_tests_is_looked_into_before_it_is_called_right(tmp_path, capsys):
+    write_synthetic(tmp_path)
+    path = write_example(tmp_path, "synthetic.csv")
+    assert main(["check-config", str(path)]) == 0
+    table = tmp_path / "synthetic.csv"
+    rows = table.read_text().splitlines()
+    rows[3] = rows[3].rpartition(",")[0] + ",collapsed"
+    table.write_text("\n".join(rows) + "\n")
+    assert main(["check-config", str(path)]) == 2
+    assert "'collapsed'" in capsys.readouterr().err

@@ -405,11 +405,12 @@ def _constrain(options: argparse.Namespace) -> int:
 
 def _check_config(options: argparse.Namespace) -> int:
     from rockfrag.stages.running import results_folder
-    from rockfrag.study.loading import check_records, load_any
+    from rockfrag.study.loading import check_records, check_tables, load_any
     from rockfrag.study.study import Study
 
     study = load_any(options.file)
     folder = results_folder(study)
+    check_tables(study)
     if isinstance(study, Study):
         for quality_flag in (*study.quality_flags(), *check_records(study)):
             print(f"warning: {quality_flag}", file=sys.stderr)

@@ -223,6 +223,26 @@ def _check_measured_tests(study: Study, path: Path) -> None:
             )
 
 
+def check_tables(study: AnyStudy) -> None:
+    """Read the tests of a measured table or a campaign, so that what is wrong in them is said beforehand.
+
+    Parameters
+    ----------
+    study : of any kind; a table that is still to be fetched is not looked at
+    """
+    # statistics load what a study of simulations need not wait for
+    if isinstance(study, MeasuredTable):
+        from rockfrag.fragility.tests_file import read_tests
+
+        read_tests(study.table, study.measures, **study.columns)
+    elif isinstance(study, CampaignStudy) and is_file(study.tests):
+        from rockfrag.campaign.laboratory import read_campaign
+
+        codes = study.other_codes
+        known = codes if codes is not None and is_file(codes) else None
+        read_campaign(study.tests, study.columns, study.measures, known)
+
+
 _FOUND: dict[tuple[object, ...], list[str]] = {}
 """What was found of the records as they are: a run is checked by itself and by Snakemake, in one process."""
 
