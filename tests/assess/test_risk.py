@@ -402,7 +402,7 @@ def topples_from(pgv: float, logs: np.ndarray) -> ObjectOutcomes:
 
 
 def conversion_of(logs, known, weight=1.0):
-    return Conversion(PGA, None, weight, logs, known, 0.0, 0.0, by_statics=False)
+    return Conversion(PGA, (), weight, 0.0, logs, known, 0.0, 0.0, by_statics=False)
 
 
 def test_an_object_that_velocity_topples_has_the_rate_of_that_velocity():

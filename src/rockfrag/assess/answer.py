@@ -13,6 +13,8 @@ from rockfrag.assess.assumed import Moved
 from rockfrag.assess.conversion import Conversion, find_conversion
 from rockfrag.assess.core.decisions import Decision, decide
 from rockfrag.assess.core.draws import FEW_MEMBERS
+from rockfrag.assess.core.estimates import fill_sides, rate_of
+from rockfrag.assess.core.hazards import spread_of_quantiles
 from rockfrag.assess.core.likelihood import Likelihood, likelihood_of
 from rockfrag.assess.hazard.curve import PGA, PGV, HazardCurve
 from rockfrag.assess.mitigations import Mitigation, compare
@@ -292,9 +294,7 @@ def assessed(request: Request, plan: Plan, shaken: Shaken) -> Assessment:
     conversion = None
     if level:
         about = (request.records, level, plan.curves)
-        conversion = find_conversion(
-            counted, motions, *about, by_statics=exact, brief=plan.brief
-        )
+        conversion = find_conversion(counted, motions, *about, by_statics=exact)
     shaken = _at_site(shaken, plan, conversion)
     arrangements = shaken.arrangements
     now = next(iter(arrangements.values()))
@@ -381,22 +381,22 @@ def _decision(
     value: float, evidence: risk.Evidence, target: risk.Target, request: Request
 ) -> Decision:
     """What to do by a probability; of one in some years by its rate, of which means are taken."""
-    accepted, values = request.accepted, evidence.drawn(target)
+    drawn, accepted = evidence.drawn(target), request.accepted
     if target.is_rate:
-        value, accepted = (
-            -math.log1p(-min(p, 1 - 1e-15)) / request.years for p in (value, accepted)
-        )
+        value, accepted = drawn.middle, rate_of(accepted, request.years)
     left = {name: source.left for name, source in MEASUREMENTS.items()}
-    return decide(value, values, evidence.prediction.sources, left, accepted)
+    return decide(value, drawn.values, drawn.prediction, left, accepted)
 
 
 def _effect(
     target: risk.Target, evidence: risk.Evidence, change: Moved[ObjectOutcomes]
 ) -> Moved[float]:
     """What is estimated with a property one standard deviation smaller and larger."""
-    values = target.shown(evidence.drawn(target))
-    lower, upper = evidence.prediction.effect(values, change.name)
-    return Moved(change.name, change.spread, lower, upper)
+    prediction, sides = evidence.prediction, np.zeros(2)
+    place = prediction.sources.index(change.name)
+    shown = evidence.drawn(target).shown
+    fill_sides(shown, prediction.draws.bins[place], sides)
+    return Moved(change.name, change.spread, *sides.tolist())
 
 
 def _at_site(shaken: Shaken, plan: Plan, conversion: Conversion | None) -> Shaken:
@@ -497,16 +497,12 @@ def _moved(
 
 def _of_quantiles(now: ObjectOutcomes, hazard: HazardCurve) -> dict[str, float]:
     """Standard deviation of ln rate that the quantiles of the hazard stand for."""
-    rates = {
-        q: risk.toppling_rate(now.intensity_levels.levels, now.fractions(), curve)
-        for q, curve in hazard.quantiles.items()
-    }
-    finite = {q: math.log(rate) for q, rate in rates.items() if rate > 0}
-    if len(finite) < 2:
-        return {}
-    low, high = min(finite), max(finite)
-    width = float(special.ndtri(high) - special.ndtri(low))
-    return {"hazard": abs(finite[high] - finite[low]) / width}
+    scores = special.ndtri(np.array(list(hazard.quantiles)))
+    levels, fractions = now.intensity_levels.levels, now.fractions()
+    curves = hazard.quantiles.values()
+    rates = [risk.toppling_rate(levels, fractions, curve) for curve in curves]
+    spread = spread_of_quantiles(scores, np.array(rates))
+    return {} if math.isnan(spread) else {"hazard": float(spread)}
 
 
 def _mitigations(

@@ -1,6 +1,6 @@
 """Two measures: what is known of the ground velocity that comes with a level of PGA or Sa at a site.
 
-P(topples | IM, PGV/IM) is fitted to the simulated motions (:func:`rockfrag.fragility.fit_vector`).  A motion whose
+P(topples | IM, PGV/IM) is fitted to the simulated motions (:mod:`rockfrag.assess.core.velocity`).  A motion whose
 PGV/IM is larger by a factor r topples the object at levels of IM smaller by r^w, with w the effect of ln PGV/IM
 over that of ln IM: fractions of motions are still counted.  The spread of ln PGV/IM at a site differs from one
 earthquake to the next and belongs into the fractions; its mean is not known and belongs into the interval.
@@ -14,14 +14,12 @@ import numpy as np
 import pandas as pd
 from scipy import special
 
+from rockfrag.assess.core.velocity import MEMORY, MOST_LEVELS, STATE, fill_weight
 from rockfrag.assess.hazard.curve import PGV, VELOCITY_PER_G, HazardCurve
 from rockfrag.assess.motions import MotionSet
-from rockfrag.assess.outcomes import ObjectOutcomes
+from rockfrag.assess.outcomes import ObjectOutcomes, earthquake_numbers
 from rockfrag.assess.request import Level, Records
 from rockfrag.base.arrays import Floats
-from rockfrag.base.errors import InputError
-from rockfrag.fragility.intervals import jackknife_error
-from rockfrag.fragility.vector import VectorFragility, fit_vector
 from rockfrag.motions.conditional_velocity import MODELS, ConditionalModel
 from rockfrag.motions.intensity import IntensityMeasure
 
@@ -43,13 +41,6 @@ TOGETHER = 0.25
 ours."""
 
 NODES = 11  # Values of equal probability that stand for the spread of ln PGV/IM
-
-OF_DISPLACEMENT = 2.0
-"""Largest weight of ln PGV/IM [-]: a motion stretched in time by r at a given PGA has a PGV larger by r and a
-displacement larger by r²."""
-
-# Levels of a motion that are fitted; tests under one motion depend on each other
-MOST_LEVELS = 8
 
 
 @dataclass(frozen=True)
@@ -144,10 +135,13 @@ class Conversion:
     """What is known of the velocity at a site whose shaking is given in another measure."""
 
     measure: IntensityMeasure  # The measure that is known
-    # P(topples | ``im``, ``ratio_s``): the measure, and PGV over it
-    fragility: VectorFragility
+    # Of 1, ln measure and ln ratio in the probit of toppling
+    coefficients: tuple[float, ...]
     # Effect of ln ratio over that of ln measure [-]: 0 if PGV says nothing, 1 if all, up to 2 for displacement
     weight: float
+    error: (
+        float  # Its standard error by a jackknife over earthquakes [-]; 0 if not needed
+    )
     logs: Floats  # ln (PGV over the measure [s]) of each motion, shape (motions,)
     known: SiteVelocity | None  # What is known of the site; None if nothing is
     spread: float  # Standard deviation of the mean of ln ratio at the site [-]
@@ -241,23 +235,15 @@ def find_conversion(
     curves: tuple[HazardCurve, ...],
     *,
     by_statics: bool,
-    brief: bool,
 ) -> Conversion | None:
     """Fit the fragility in two measures, and gather what is known of the site's velocity; None in PGV or unfitted.
 
-    ``curves`` are the hazard in the measure and, if known, in PGV; ``brief`` fits without an interaction.
+    ``curves`` are the hazard in the measure and, if known, in PGV.
     """
     measure = outcomes.intensity_levels.measure
     if measure == PGV:
         return None
     logs = motions.log_ratios(measure)
-    fit = _fitted(outcomes, logs, brief)
-    if fit is None:
-        return None
-    middle = float(np.median(logs))
-    weight, error = _weight(fit, middle)
-    if not math.isfinite(weight):
-        return None
     # what is known of the velocity at the site, and the standard deviation of the mean of ln ratio
     relation = VelocityRelation.of(
         motions.about, motions.log_ratios(measure, of_all=True)
@@ -280,47 +266,36 @@ def find_conversion(
     else:
         spread = relation.unknown(given)
         known = SiteVelocity(own, relation.mean(given))
-    if known is not None:
-        away = float(
-            np.abs(known.log_ratio(outcomes.intensity_levels.levels) - middle).mean()
-        )
-    shift = math.hypot(weight * spread, error * away)
-    return Conversion(measure, fit, weight, logs, known, spread, shift, by_statics)
-
-
-def _fitted(
-    outcomes: ObjectOutcomes, logs: Floats, brief: bool
-) -> VectorFragility | None:
-    intensity_levels = outcomes.intensity_levels
-    step = -(-intensity_levels.levels.size // MOST_LEVELS)
-    motion, level = np.nonzero(intensity_levels.allowed[:, ::step])
-    level *= step
-    table = pd.DataFrame(
-        {
-            "im": intensity_levels.levels[level],
-            "ratio_s": np.exp(logs[motion]),
-            "overturned": outcomes.overturned[motion, level].astype(np.float64),
-            "earthquake": outcomes.earthquakes[motion],
-        }
-    )
-    try:
-        return fit_vector(table, ("im", "ratio_s"), try_interaction=not brief)
-    except InputError:
+    weight, error, *coefficients = _weight(outcomes, logs, jackknifes=known is not None)
+    if math.isnan(weight):
         return None
+    if known is not None:
+        levels, middle = outcomes.intensity_levels.levels, float(np.median(logs))
+        away = float(np.abs(known.log_ratio(levels) - middle).mean())
+    shift = math.hypot(weight * spread, error * away)
+    return Conversion(
+        measure=measure,
+        coefficients=tuple(coefficients),
+        weight=weight,
+        error=error,
+        logs=logs,
+        known=known,
+        spread=spread,
+        shift=shift,
+        by_statics=by_statics,
+    )
 
 
-def _weight(fit: VectorFragility, log_ratio: float) -> tuple[float, float]:
-    """Effect of ln ratio over that of ln measure at half toppling, within its bounds, and its standard error."""
-    middle, *_ = fit.contour(0.5, math.exp(log_ratio))
-    log_level = float(np.log(middle[0]))
-    # of the fit and of those without an earthquake each
-    c = np.vstack([fit.coefficients, fit.replicates])
-    more = c[:, 3] if c.shape[1] > 3 else 0.0
-    own, *left_out = (c[:, 2] + more * log_level) / (c[:, 1] + more * log_ratio)
-    error = float(jackknife_error(np.array(left_out))) if len(left_out) > 1 else 0.0
-    return float(np.clip(own, 0.0, OF_DISPLACEMENT)), error if math.isfinite(
-        error
-    ) else 0.0
+def _weight(outcomes: ObjectOutcomes, logs: Floats, *, jackknifes: bool) -> list[float]:
+    """Weight of ln ratio, its standard error, and the coefficients; a weight of NaN where nothing follows."""
+    levels = outcomes.intensity_levels
+    numbers = earthquake_numbers(outcomes.earthquakes).astype(np.int64)
+    tests, found = np.zeros((logs.size * MOST_LEVELS, MEMORY)), np.zeros(5)
+    happened = map(np.ascontiguousarray, (levels.allowed, outcomes.overturned))
+    given = levels.levels, *happened, logs, numbers
+    fill_weight(*given, jackknifes, tests, np.zeros(STATE), found)
+    values: list[float] = found.tolist()
+    return values
 
 
 @dataclass(frozen=True)

@@ -117,12 +117,11 @@ def _two_measures(found: Assessment) -> dict[str, Any] | None:
     }
     return {
         "measures": [f"{about.measure.imt} [{about.measure.unit}]", "PGV over it [s]"],
-        "coefficients": about.fragility.coefficients,
-        "covariance": about.fragility.covariance,
+        "coefficients": about.coefficients,
         "weight": about.weight,
+        "standard_error_of_weight": about.error,
         "at_the_site": known,
         "sd_of_mean": about.spread,
-        "warnings": about.fragility.warnings,
     }
 
 

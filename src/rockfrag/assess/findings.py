@@ -428,6 +428,9 @@ def assumptions(found: Assessment) -> list[Finding]:
     if math.isfinite(found.flip_rate):
         said.append(finding(Text.FLIPS, part=percent(found.flip_rate)))
     said.append(_sliding(found))
+    if found.outcomes.light:
+        strongest = float(found.outcomes.intensity_levels.levels[-1])
+        said.append(finding(Text.STAYS_ON_GROUND, level=_amount(found, strongest)))
     if found.conversion:
         said += _velocity(found)
     if found.hazard:
@@ -485,10 +488,6 @@ def quality_flags(found: Assessment) -> list[Value]:
     said += [*_hazard_flags(found), *_velocity_flags(found)]
     if found.request.objects.in_space and not found.motions.pairs:
         said.append(finding(Text.FLAG_ONE_COMPONENT))
-    if found.outcomes.light:
-        strongest = float(found.outcomes.intensity_levels.levels[-1])
-        level = _amount(found, strongest)
-        said.append(finding(Text.FLAG_LEAVES_GROUND, level=level))
     return [*said, *_influential(found)]
 
 

@@ -9,6 +9,7 @@ from typing import Any, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
+from rockfrag.assess.core.fractions import fill_counted, fill_uplifts
 from rockfrag.assess.motions import MotionSet
 from rockfrag.assess.place import Place
 from rockfrag.assess.standing import Standing
@@ -111,14 +112,18 @@ class ObjectOutcomes:
 
     def lifts_from(self) -> Floats:
         """Level at which each motion lifts the body; infinite where none of the levels does, shape (motions,)."""
-        moved = (self.rocked | self.overturned) & self.intensity_levels.allowed
-        first = np.where(
-            moved.any(axis=1),
-            self.intensity_levels.levels[moved.argmax(axis=1)],
-            np.inf,
+        lifting = self.lifting
+        if lifting is None:
+            lifting = np.full(len(self.overturned), np.inf)
+        found = np.zeros(len(self.overturned))
+        fill_uplifts(
+            self.intensity_levels.levels,
+            *map(np.ascontiguousarray, (self.rocked, self.overturned)),
+            np.ascontiguousarray(self.intensity_levels.allowed),
+            np.ascontiguousarray(lifting, dtype=np.float64),
+            found,
         )
-        # what rocks was lifted, whatever rounding says
-        return first if self.lifting is None else np.minimum(first, self.lifting)
+        return found
 
     def fractions(
         self, weights: Floats | None = None, *, state: str = OVERTURNS
@@ -130,16 +135,15 @@ class ObjectOutcomes:
         (motions,); all alike if None.
         """
         w = np.ones(len(self.overturned)) if weights is None else weights
-        allowed = self.intensity_levels.allowed
-        happened = {OVERTURNS: self.overturned, ROCKS: self.rocked, **self.others}[
-            state
-        ]
-        total = w @ allowed
-        fell = w @ (allowed & happened)
-        known = total > 0
-        at = np.maximum.accumulate(np.where(known, np.arange(total.size), 0))
-        fraction = np.divide(fell, total, out=np.zeros(total.size), where=known)
-        return np.asarray(fraction[at])
+        reached = {OVERTURNS: self.overturned, ROCKS: self.rocked, **self.others}
+        happened, found = reached[state], np.zeros(self.intensity_levels.levels.size)
+        fill_counted(
+            np.ascontiguousarray(happened),
+            np.ascontiguousarray(self.intensity_levels.allowed),
+            np.ascontiguousarray(w, dtype=np.float64),
+            found,
+        )
+        return found
 
     def band(self) -> tuple[Floats, Floats]:
         """Limits of the fraction at each level that as few earthquakes leave open (90 %), shape (levels,) each.
@@ -385,6 +389,13 @@ class Shaking(IntensityLevels):
             friction=objects.friction,
         ).overturned[0, :, 0]
         return float(fallen[allowed].mean())
+
+
+def earthquake_numbers(earthquakes: NDArray[np.object_]) -> NDArray[np.intp]:
+    """Number of the earthquake of each motion, in the order in which they come, shape (motions,)."""
+    names = list(dict.fromkeys(earthquakes))
+    place = {name: number for number, name in enumerate(names)}
+    return np.array([place[name] for name in earthquakes], dtype=np.intp)
 
 
 def fraction_at(

@@ -192,8 +192,6 @@ def _one(options: argparse.Namespace, given: dict[str, Any]) -> int:
 
     texts = catalogue(options.language)
     found = assess(_request(options, given), options.records)
-    for quality_flag in texts.lines(quality_flags(found)):
-        print(f"warning: {quality_flag}", file=sys.stderr)
     place = write_answer(found, options.output, options.language)
     if options.pdf:
         from rockfrag.report.pdf import print_page
@@ -211,7 +209,11 @@ def _one(options: argparse.Namespace, given: dict[str, Any]) -> int:
             lines = [
                 textwrap.fill(line, width, subsequent_indent="    ") for line in lines
             ]
-        print("\n".join(lines))
+        print("\n".join(lines), flush=True)
+    # what looks wrong stands behind the answer, and the page last
+    for quality_flag in texts.lines(quality_flags(found)):
+        print(f"warning: {quality_flag}", file=sys.stderr)
+    if not options.json:
         print(f"{place}", file=sys.stderr)
     return 0
 

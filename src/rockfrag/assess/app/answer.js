@@ -1,8 +1,8 @@
 /* The answer about one object: outcomes of its bodies by motion and level, and what follows from them. */
-const answer = (data) => {
+const answer = (data, core) => {
   "use strict";
   const { constants: { AT_REST, LARGEST_FACTOR, LARGEST_PEAK, GRAVITY, MODEL, SPACE, ACCEPTED_AT_A_LEVEL, ACCEPTED_IN_FIFTY_YEARS }, measures } = data;
-  const judge = risk(data), spatial = inSpace(data), shiftFrom = conversion(data);
+  const judge = risk(data, core), spatial = inSpace(data);
 
   // levels of a run: the asked one among those of the measure
   function levelsOf(request, run) {
@@ -108,19 +108,18 @@ const answer = (data) => {
     answer.complete = runs.every((run, i) => run.role !== "moved" || outcomes[i]);
     if (earlier?.complete) for (const name of ESTIMATED) answer[name] = earlier[name];
     else if (answer.complete) {
-      const { ratios } = tableOf(request), fit = ratios ? shiftFrom(now, ratios) : null, { shiftOf, afterUplift } = judge;
+      const { ratios } = tableOf(request), { shiftOf, afterUplift } = judge, velocity = ratios && judge.shiftOfVelocity(now, ratios);
       const shifts = [...sides.map(([name, lower, upper]) => shiftOf(name, lower, upper)), afterUplift("model", MODEL)];
       if (!request.solid) shifts.push(afterUplift("space", SPACE));
-      if (fit) shifts.push(afterUplift("conversion", fit.shift));
+      if (velocity !== null) shifts.push(afterUplift("conversion", velocity));
       const rates = hazard ? judge.ofQuantiles(now, hazard) : {};
       for (const name of Object.keys(rates)) shifts.push(afterUplift(name, 0));
-      const prediction = judge.predict(now, shifts);
-      const fraction = judge.estimate(judge.fractionTarget(level), prediction, rates);
-      const rocking = judge.estimate(judge.fractionTarget(level, "rocked"), prediction, rates);
-      Object.assign(answer, { fraction, rocking, shifts, rates });
-      if (hazard) answer.probability = judge.estimate(target, prediction, rates);
-      const main = answer.probability ?? fraction, half = judge.estimate(judge.amplitudeTarget(0.5), prediction, rates);
-      Object.assign(answer, { main, half, decision: judge.decision(target, prediction, main, answer.accepted, answer.years) });
+      Object.assign(answer, { shifts, rates }, judge.within(() => {
+        const prediction = judge.predict(now, shifts), of = (target) => judge.estimate(target, prediction, rates);
+        const fraction = of(judge.fractionTarget(level)), rocking = of(judge.fractionTarget(level, "rocked")), probability = hazard ? of(target) : null;
+        const decision = judge.decision(target, prediction, rates, answer.accepted);
+        return { fraction, rocking, ...(hazard ? { probability } : {}), main: probability ?? fraction, half: of(judge.amplitudeTarget(0.5)), decision };
+      }));
     }
     const { shifts = [], rates = {} } = answer, meanOf = (outcomes) => (answer.shifts ? judge.meanOf(target, shifts, rates, outcomes) : judge.valueOf(target, outcomes));
     answer.arrangements = [["on_its_pedestal", answer.main?.value ?? meanOf(now)], ...known("arrangement").map((run) => [run.name, meanOf(run.outcomes)])];

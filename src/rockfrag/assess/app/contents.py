@@ -13,16 +13,14 @@ import numpy as np
 from scipy import special
 
 from rockfrag.assess import (
-    conversion,
     findings,
     outcomes,
     place,
     request,
-    risk,
     sources,
 )
 from rockfrag.assess.conversion import VelocityRelation
-from rockfrag.assess.core import decisions, draws, fractions, parts
+from rockfrag.assess.core import decisions, draws
 from rockfrag.assess.core.likelihood import BELOW, UP_TO, Likelihood
 from rockfrag.assess.hazard import curve
 from rockfrag.assess.hazard.curve import PGA, PGV
@@ -34,7 +32,6 @@ from rockfrag.base import plausible, units
 from rockfrag.base.arrays import Floats
 from rockfrag.building.model import ModalDamping, ShearBuilding
 from rockfrag.building.response import find_modes
-from rockfrag.fragility import held_out, vector
 from rockfrag.fragility.model_error import CUT, MODEL_ERRORS
 from rockfrag.motions.intensity import IntensityMeasure
 from rockfrag.motions.response_spectra import oscillator_matrix
@@ -42,10 +39,8 @@ from rockfrag.web import driver_text
 from rockfrag.words.findings import as_data
 
 SCRIPTS = (
-    "statistics",
     "core",
     "risk",
-    "conversion",
     "building",
     "space",
     "objects",
@@ -200,9 +195,12 @@ def _draws(motions: MotionSet) -> dict[str, Any]:
     count = len(set(motions.earthquakes))
     fewer = motions.with_both_components().thinned()
     counts = {count, len(set(fewer.earthquakes))}
+    made = draws.make_draws(SOURCES_DRAWN, count)
     return {
         "columns": SOURCES_DRAWN,
-        "normals": _packed(draws.make_draws(SOURCES_DRAWN, count).sources),
+        "size": draws.BLOCKS * draws.MEMBERS,
+        "normals": _packed(made.sources),
+        "bins": b64encode(made.bins.tobytes()).decode(),
         "weights": {n: _packed(draws.make_draws(0, n).weights) for n in counts},
     }
 
@@ -222,18 +220,11 @@ def _constants() -> dict[str, Any]:
         **_of(units, "GRAVITY"),
         **_of(outcomes, "AT_REST", "LARGEST_FACTOR"),
         **_of(plausible, "LARGEST_PEAK"),
-        **_of(risk, "LEVEL", "NONE_BELOW", "LEAST_SPAN"),
-        **_of(fractions, "CLASSES", "ROUNDING", "LEAST_SPREAD"),
         **_of(draws, "MEMBERS", "FEW_MEMBERS"),
-        "BINS": parts.BINS,
-        "CENTRES": parts.CENTRES.tolist(),
         "FLANK_Z": float(special.ndtri(curve.FLANKS[1])),
         **_of(curve, "EC8_SLOPE", "EC8_SLOPE_SD"),
         "MODEL": MODEL_ERRORS[CUT].beyond,
         **_of(sources, "SPACE"),
-        **_of(conversion, "MOST_LEVELS", "OF_DISPLACEMENT"),
-        **_of(vector, "INTERACTION_LEVEL"),
-        **_of(held_out, "FOLDS", "WORST_SCORE"),
         **_of(plausible, "STONE", "DENSITIES", "DEPTHS"),
         **_of(changes, "WIDER", "PLATE", "STEEL", "LOWER", "BALLAST", "BALLAST_AT"),
         **_of(changes, "PEDESTAL_HEIGHT"),
@@ -322,6 +313,5 @@ def ratios_of(motions: MotionSet, measure: IntensityMeasure) -> dict[str, Any] |
     )
     return {
         "logs": logs.tolist(),
-        "median": float(np.median(logs)),
         "spread": relation.unknown(Records(), of_site=False),
     }

@@ -3,6 +3,7 @@
 import os
 import zlib
 from collections.abc import Mapping, Sequence
+from importlib.resources import files
 from typing import Any
 
 import numpy as np
@@ -73,7 +74,8 @@ def page_of(
         "made": made,
         "texts": {language: catalogue(language).texts for language in languages()},
         "modules": {
-            name: zipped_text(module_bytes(of)) for name, of in modules.items()
+            **{name: zipped_text(module_bytes(of)) for name, of in modules.items()},
+            "core": zipped_text((files(__package__) / "core.wasm").read_bytes()),
         },
         "samples": about,
         "packed": base64_text(packed),

@@ -1,0 +1,225 @@
+"""How much a motion's velocity counts beside the measure that is given, by its outcomes; compiled.
+
+P(topples) = Φ(c0 + c1 ln IM + c2 ln PGV/IM) is fitted to the outcomes by the likelihood with Jeffreys's prior,
+whose maximum is finite even where a plane parts what falls from what stands (Firth 1993, Biometrika 80: 27). The
+weight of ln PGV/IM is c2/c1; its error is that of a jackknife over earthquakes (Tukey 1958).
+"""
+
+import math
+
+from rockfrag.assess.core.compiled import entry_kernel, kernel
+from rockfrag.base.exponentials import exp, log, log_normal_cdf
+
+OF_DISPLACEMENT = 2.0
+"""Largest weight of ln PGV/IM [-]: a motion stretched in time by r at a given PGA has a PGV larger by r and a
+displacement larger by r²."""
+
+MOST_LEVELS = (
+    8  # Levels of a motion that are fitted; tests under one motion depend on each other
+)
+
+MEMORY = 8  # Numbers of working memory a fitted test, beside ``STATE`` numbers in all
+STATE = 32
+_STEEPEST = 30.0  # Most standard deviations that a test is taken from the plane
+_PASSES = 100
+_SETTLED = 1e-11  # Change of coefficients at which a fit has ended
+_LOG_ROOT_TWO_PI = 0.5 * math.log(2.0 * math.pi)
+
+WEIGHT, ERROR, FIRST = range(3)
+"""Places in what :func:`fill_weight` leaves: weight, standard error, and the first of three coefficients."""
+
+# Columns of the memory of a test, and places in the state
+_X1, _X2, _FELL, _QUAKE, _ETA, _UP, _DOWN, _HERE = range(8)
+_C, _STEP, _TRIAL, _SCORE, _FISHER, _INVERSE = 0, 3, 6, 9, 12, 18
+
+
+@entry_kernel
+def fill_weight(
+    levels, allowed, overturned, logs, earthquakes, jackknifes, tests, state, found
+):
+    """Fit the outcomes of motions, and leave what their velocity counts; a weight of NaN where nothing follows.
+
+    Parameters
+    ----------
+    levels : of shaking, shape (levels,)
+    allowed, overturned : what counts, and what topples, shape (motions, levels)
+    logs : ln (PGV over the measure [s]) of each motion, shape (motions,)
+    earthquakes : number of the earthquake of each motion, shape (motions,)
+    jackknifes : whether the error is wanted
+    tests : memory, shape (motions × ``MOST_LEVELS``, ``MEMORY``)
+    state : memory, shape (``STATE``,)
+    found : weight, error and coefficients, shape (5,)
+    """
+    found[WEIGHT], found[ERROR] = math.nan, 0.0
+    count, fell = _gather(levels, allowed, overturned, logs, earthquakes, tests)
+    if fell == 0 or fell == count:
+        return
+    for i in range(3):
+        state[_C + i] = 0.0
+    fitted = _fit(tests[:count], -1.0, state)
+    for i in range(3):
+        found[FIRST + i] = state[_C + i]
+    if not fitted or not state[_C + 1] > 0.0:
+        return
+    found[WEIGHT] = min(max(state[_C + 2] / state[_C + 1], 0.0), OF_DISPLACEMENT)
+    if jackknifes:
+        found[ERROR] = _jackknife(tests[:count], state, found)
+
+
+@kernel
+def _gather(levels, allowed, overturned, logs, earthquakes, tests):
+    """Put every so many tests into memory; returns how many they are, and how many fell."""
+    step = (levels.size + MOST_LEVELS - 1) // MOST_LEVELS
+    count, fell = 0, 0
+    for m in range(logs.size):
+        for k in range(0, levels.size, step):
+            if not allowed[m, k]:
+                continue
+            test = tests[count]
+            test[_X1], test[_X2] = log(levels[k]), logs[m]
+            test[_FELL] = 1.0 if overturned[m, k] else 0.0
+            test[_QUAKE] = earthquakes[m]
+            fell += 1 if overturned[m, k] else 0
+            count += 1
+    return count, fell
+
+
+@kernel
+def _jackknife(tests, state, found):
+    """Standard error of the weight, of fits without an earthquake each; 0 where there are too few."""
+    last = 0.0
+    for r in range(tests.shape[0]):
+        last = max(last, tests[r, _QUAKE])
+    count, total, squares = 0, 0.0, 0.0
+    for quake in range(int(last) + 1):
+        for i in range(3):
+            state[_C + i] = found[FIRST + i]
+        if _fit(tests, float(quake), state) and state[_C + 1] > 0.0:
+            weight = state[_C + 2] / state[_C + 1]
+            total += weight
+            squares += weight * weight
+            count += 1
+    if count < 2:
+        return 0.0
+    spread = max(squares - total * total / count, 0.0)
+    return math.sqrt((count - 1) / count * spread)
+
+
+@kernel
+def _fit(tests, without, state):
+    """Climb from the coefficients of the state to the maximum by Fisher scoring; whether it was reached."""
+    best = -math.inf
+    for i in range(3):
+        state[_STEP + i] = 0.0
+    for _ in range(_PASSES):
+        for i in range(3):
+            state[_TRIAL + i] = state[_C + i] + state[_STEP + i]
+        goal = _likelihood(tests, without, state)
+        if not goal > -math.inf:
+            return False
+        size = 0.0
+        for i in range(3):
+            size = max(size, abs(state[_STEP + i]))
+        if goal < best - 1e-10:
+            if size < 1e-14:
+                return False
+            for i in range(3):
+                state[_STEP + i] /= 2.0
+            continue
+        settled = size < _SETTLED and best > -math.inf
+        for i in range(3):
+            state[_C + i] = state[_TRIAL + i]
+        best = goal
+        if settled:
+            return True
+        _take_step(tests, without, state)
+    return False
+
+
+@kernel
+def _likelihood(tests, without, state):
+    """Penalised logarithm of the likelihood of the trial; leaves Fisher's matrix and its inverse."""
+    for i in range(6):
+        state[_FISHER + i] = 0.0
+    goal = 0.0
+    for r in range(tests.shape[0]):
+        test = tests[r]
+        if test[_QUAKE] == without:
+            continue
+        eta = (
+            state[_TRIAL]
+            + state[_TRIAL + 1] * test[_X1]
+            + state[_TRIAL + 2] * test[_X2]
+        )
+        eta = min(max(eta, -_STEEPEST), _STEEPEST)
+        falls, stands = log_normal_cdf(eta), log_normal_cdf(-eta)
+        density = -0.5 * eta * eta - _LOG_ROOT_TWO_PI
+        test[_ETA], test[_UP] = eta, exp(density - falls)
+        test[_DOWN] = exp(density - stands)
+        test[_HERE] = test[_UP] * test[_DOWN]
+        goal += falls if test[_FELL] > 0.0 else stands
+        _add_square(state, test[_HERE], test[_X1], test[_X2])
+    determinant = _invert(state)
+    return goal + 0.5 * log(determinant) if determinant > 0.0 else -math.inf
+
+
+@kernel
+def _add_square(state, weight, x1, x2):
+    """Add the weighted square of (1, x1, x2) to Fisher's matrix, whose rows are 11, 12, 13, 22, 23, 33."""
+    state[_FISHER] += weight
+    state[_FISHER + 1] += weight * x1
+    state[_FISHER + 2] += weight * x2
+    state[_FISHER + 3] += weight * x1 * x1
+    state[_FISHER + 4] += weight * x1 * x2
+    state[_FISHER + 5] += weight * x2 * x2
+
+
+@kernel
+def _invert(state):
+    """Invert Fisher's matrix by its adjugate, and return its determinant; below 0 where it is singular."""
+    a, b, c = state[_FISHER], state[_FISHER + 1], state[_FISHER + 2]
+    d, e, f = state[_FISHER + 3], state[_FISHER + 4], state[_FISHER + 5]
+    determinant = a * (d * f - e * e) - b * (b * f - c * e) + c * (b * e - c * d)
+    if not determinant > 1e-14 * a * d * f:
+        return -1.0
+    state[_INVERSE] = (d * f - e * e) / determinant
+    state[_INVERSE + 1] = (c * e - b * f) / determinant
+    state[_INVERSE + 2] = (b * e - c * d) / determinant
+    state[_INVERSE + 3] = (a * f - c * c) / determinant
+    state[_INVERSE + 4] = (b * c - a * e) / determinant
+    state[_INVERSE + 5] = (a * d - b * b) / determinant
+    return determinant
+
+
+@kernel
+def _take_step(tests, without, state):
+    """Leave the step from the coefficients to where Fisher's matrix expects the maximum."""
+    for i in range(3):
+        state[_SCORE + i] = 0.0
+    p, q, r, s, t, u = (
+        _INVERSE,
+        _INVERSE + 1,
+        _INVERSE + 2,
+        _INVERSE + 3,
+        _INVERSE + 4,
+        _INVERSE + 5,
+    )
+    for row in range(tests.shape[0]):
+        test = tests[row]
+        if test[_QUAKE] == without:
+            continue
+        x1, x2 = test[_X1], test[_X2]
+        one = state[p] + state[q] * x1 + state[r] * x2
+        two = state[q] + state[s] * x1 + state[t] * x2
+        three = state[r] + state[t] * x1 + state[u] * x2
+        lever = one + two * x1 + three * x2
+        value = test[_UP] if test[_FELL] > 0.0 else -test[_DOWN]
+        bend = test[_DOWN] - test[_UP] - 2.0 * test[_ETA]
+        value += 0.5 * test[_HERE] * lever * bend
+        state[_SCORE] += value
+        state[_SCORE + 1] += value * x1
+        state[_SCORE + 2] += value * x2
+    one, two, three = state[_SCORE], state[_SCORE + 1], state[_SCORE + 2]
+    state[_STEP] = state[p] * one + state[q] * two + state[r] * three
+    state[_STEP + 1] = state[q] * one + state[s] * two + state[t] * three
+    state[_STEP + 2] = state[r] * one + state[t] * two + state[u] * three
