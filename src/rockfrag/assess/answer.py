@@ -3,6 +3,7 @@
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from pathlib import Path
 
 import numpy as np
@@ -59,17 +60,14 @@ class Assessment:
     amplitudes : levels at which a tenth and half of the motions topple it, by fraction
     by_arrangement : what is estimated of each arrangement
     shown_safer : arrangements that the motions show to be safer than the others
-    curve : lognormal curve of the motions as recorded, NaN where there is none; None with the site's velocity
-    predicted : fraction at each level, the mean over what is not known, with its median and its two spreads
+    evidence : what estimates rest on
+    shaking : motions at the levels that were tried
+    brief : whether directions, changes and what only a page shows are left out
     decision : what to do by an accepted risk; None without a level
     conversion : what hazard in another measure than PGV leaves open; None in PGV
     planar : what is estimated in one plane, beside the answer in space, which counts; None where there is none
-    directions : the worst direction; None where no record has two components
     mitigations : what helps, most helpful first
-    effects : what is estimated with each property smaller and larger
-    rules : engineers' rules held against the outcomes
-    sliding_fraction : fraction of motions at the level that topple it if it may slide [-]; or NaN
-    flip_rate : fraction of outcomes in space at the level that differ if the base does by 1e-6 [-]; or NaN
+    spreads : relative standard deviation of each property that was moved
     """
 
     request: Request
@@ -86,17 +84,14 @@ class Assessment:
     amplitudes: Mapping[float, Estimate]
     by_arrangement: Mapping[str, float]
     shown_safer: frozenset[str]
-    curve: Fragility | None
-    predicted: PredictedCurve
+    evidence: risk.Evidence
+    shaking: Shaking
+    brief: bool
     decision: Decision | None
     conversion: Conversion | None
     planar: float | None
-    directions: Directions | None
     mitigations: tuple[Mitigation, ...]
-    effects: tuple[Moved[float], ...]
-    rules: tuple[RuleCheck, ...]
-    sliding_fraction: float
-    flip_rate: float = math.nan
+    spreads: Mapping[str, float]
 
     __repr__ = short_repr
 
@@ -115,6 +110,75 @@ class Assessment:
         """Whether it is exceptionally unlikely that it rocks at the level, limits included."""
         limit = self.rocking.upper if self.rocking else 1.0
         return likelihood_of(limit) is Likelihood.EXCEPTIONALLY_UNLIKELY
+
+    # ---- what no line says is computed where a page or a file shows it
+
+    @cached_property
+    def predicted(self) -> PredictedCurve:
+        """Fraction at each level, the mean over what is not known, with its median and its two spreads."""
+        return self.evidence.curve()
+
+    @cached_property
+    def curve(self) -> Fragility | None:
+        """Lognormal curve of the motions as recorded, NaN where there is none; None where it is left out."""
+        return None if self.brief else fragility_of(self.counted.outcomes())
+
+    @cached_property
+    def directions(self) -> Directions | None:
+        """The worst direction; None where no record has two components, or where it is left out."""
+        objects, motions = self.request.objects, self.motions
+        if self.brief or motions.both or objects.many:
+            return None
+        level = self.level.value if self.level else None
+        return outcomes.find_directions(objects, motions, self.measure, level)
+
+    @cached_property
+    def rules(self) -> tuple[RuleCheck, ...]:
+        """Engineers' rules held against the outcomes."""
+        if self.brief or self.motions.both:
+            return ()
+        checks = check_rules(self.request.objects, self.motions, self.counted)
+        return tuple(checks)
+
+    @cached_property
+    def sliding_fraction(self) -> float:
+        """Fraction of motions at the level that topple it if it may slide [-]; or NaN."""
+        objects = self.request.objects
+        if self._here is None or objects.friction is None:
+            return math.nan
+        return self._here.fraction_with_sliding(objects)
+
+    @cached_property
+    def flip_rate(self) -> float:
+        """Fraction of outcomes in space at the level that differ if the base does by 1e-6 [-]; or NaN."""
+        if self._here is None or not self.motions.both:
+            return math.nan
+        return self._here.flip_rate(self.request.objects)
+
+    @cached_property
+    def effects(self) -> tuple[Moved[float], ...]:
+        """What is estimated with each property smaller and larger."""
+        return tuple(
+            _effect(self.target, self.evidence, name, spread)
+            for name, spread in self.spreads.items()
+        )
+
+    @property
+    def target(self) -> risk.Target:
+        """What is asked for first, as it is estimated."""
+        if self.hazard is not None:
+            return risk.risk_target(self.hazard, self.request.years)
+        if self.level is not None:
+            return risk.fraction_target(self.level.value)
+        return risk.amplitude_target(0.5)
+
+    @cached_property
+    def _here(self) -> Shaking | None:
+        """The motions at the site's level alone; None without one, or where that is left out."""
+        if self.brief or self.level is None:
+            return None
+        level = np.array([self.level.value])
+        return outcomes.scaled_to(level, self.motions, self.measure)
 
     @property
     def main(self) -> Estimate:
@@ -297,7 +361,6 @@ def assessed(request: Request, plan: Plan, shaken: Shaken) -> Assessment:
         conversion = find_conversion(counted, motions, *about, by_statics=exact)
     shaken = _at_site(shaken, plan, conversion)
     arrangements = shaken.arrangements
-    now = next(iter(arrangements.values()))
     evidence = _evidence(objects, shaken, plan, conversion)
     compared = replace(evidence, members=FEW_MEMBERS)
     probability, rocking, fraction, decision = None, None, None, None
@@ -313,14 +376,7 @@ def assessed(request: Request, plan: Plan, shaken: Shaken) -> Assessment:
         name: evidence.mean(target, arrangement)
         for name, arrangement in arrangements.items()
     }
-    at = level.value if level else None
-    brief = plan.brief
     helps = _mitigations(target, compared, shaken)
-    here = (
-        None
-        if brief or at is None
-        else outcomes.scaled_to(np.array([at]), motions, measure)
-    )
     lifts_from = objects.least_uplift if exact else counted.lifts_from().min()
     return Assessment(
         request=request,
@@ -333,29 +389,18 @@ def assessed(request: Request, plan: Plan, shaken: Shaken) -> Assessment:
         rocks_from=float(lifts_from),
         fraction=fraction,
         probability=probability,
-        counts=_counts(counted, level) if now is counted else None,
+        counts=_counts(counted, level),
         amplitudes={p: evidence.estimate(risk.amplitude_target(p)) for p in (0.1, 0.5)},
         by_arrangement=values,
         shown_safer=_shown_safer(shaken, helps),
-        curve=None if brief or now is not counted else fragility_of(now.outcomes()),
-        predicted=evidence.curve(),
+        evidence=evidence,
+        shaking=plan.shaking,
+        brief=plan.brief,
         decision=decision,
         conversion=conversion,
-        directions=None
-        if brief or motions.both or objects.many
-        else outcomes.find_directions(objects, motions, measure, at),
         planar=None if shaken.planar is None else evidence.mean(target, shaken.planar),
         mitigations=helps,
-        effects=tuple(_effect(target, evidence, change) for change in shaken.moved),
-        rules=()
-        if brief or motions.both
-        else tuple(check_rules(objects, motions, counted)),
-        sliding_fraction=math.nan
-        if here is None or objects.friction is None
-        else here.fraction_with_sliding(objects),
-        flip_rate=math.nan
-        if here is None or not motions.both
-        else here.flip_rate(objects),
+        spreads={change.name: change.spread for change in shaken.moved},
     )
 
 
@@ -389,14 +434,14 @@ def _decision(
 
 
 def _effect(
-    target: risk.Target, evidence: risk.Evidence, change: Moved[ObjectOutcomes]
+    target: risk.Target, evidence: risk.Evidence, name: str, spread: float
 ) -> Moved[float]:
     """What is estimated with a property one standard deviation smaller and larger."""
     prediction, sides = evidence.prediction, np.zeros(2)
-    place = prediction.sources.index(change.name)
+    place = prediction.sources.index(name)
     shown = evidence.drawn(target).shown
     fill_sides(shown, prediction.draws.bins[place], sides)
-    return Moved(change.name, change.spread, *sides.tolist())
+    return Moved(name, spread, *sides.tolist())
 
 
 def _at_site(shaken: Shaken, plan: Plan, conversion: Conversion | None) -> Shaken:

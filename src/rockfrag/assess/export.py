@@ -10,6 +10,7 @@ import numpy as np
 
 from rockfrag import __version__
 from rockfrag.assess.answer import Assessment
+from rockfrag.assess.core.estimates import INSIDE
 from rockfrag.assess.findings import (
     assumptions,
     details,
@@ -18,7 +19,7 @@ from rockfrag.assess.findings import (
     lines_of,
     quality_flags,
 )
-from rockfrag.assess.risk import LEVEL, Estimate
+from rockfrag.assess.risk import Estimate
 from rockfrag.assess.texts import Text
 from rockfrag.fragility.exports import identifiers, model_text
 from rockfrag.fragility.model_error import MODEL_ERRORS
@@ -55,7 +56,7 @@ def as_json(found: Assessment) -> str:
         "unit": found.measure.unit,
         "level": None if found.level is None else found.level.value,
         "years": request.years,
-        "interval_level": LEVEL,
+        "interval_level": INSIDE,
         "rocks_from": found.rocks_from,
         "does_not_move": found.does_not_move,
         "accepted": request.accepted,

@@ -72,6 +72,12 @@ class MotionSet:
             velocity, other = self.values(PGV), self.values(measure)
         return np.log(velocity / other / VELOCITY_PER_G)
 
+    def log_over(self, measure: IntensityMeasure, other: IntensityMeasure) -> Floats:
+        """Return ln of a measure over another, each in its unit, of all among which the motions were chosen."""
+        motions = self.library or self.ground
+        values = [self._measured(each, motions) for each in (measure, other)]
+        return np.asarray(np.log(values[0] / values[1]))
+
     @cached_property
     def earthquakes(self) -> NDArray[np.object_]:
         """Earthquake of each motion, shape (n,); its own name where none is known."""

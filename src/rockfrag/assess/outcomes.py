@@ -328,8 +328,7 @@ class Shaking(IntensityLevels):
         ``of_row`` is the record of each motion of the result where several may be of one; what happens to a record
         from one side happens. ``lifting`` are the factors on motions, or on these records, that lift each system.
         """
-        # level of each motion as recorded
-        recorded = self.levels[0] / self.scales[:, 0]
+        recorded = self.motions.values(self.measure)
         states = {
             state.name: state.reached(result)
             for state in limit_states()

@@ -48,6 +48,13 @@ ENTRIES: dict[Any, tuple[Any, ...]] = {
     velocity.fill_weight: (
         *(_ROW, _FLAGS, _FLAGS, _ROW, _NUMBERS, False), _TABLE, _ROW, _ROW,
     ),
+    velocity.fill_wanted: (_ROW, _TABLE, _ROW),
+    velocity.spread_of_mean: (_FLOAT, _FLOAT, _TABLE),
+    velocity.shift_by_velocity: (*(_FLOAT,) * 3, _ROW, _FLOAT),
+    velocity.fill_moved: (
+        *(_ROW, *(_FLAGS,) * 3, *(_ROW,) * 3, _FLOAT, False, _ROW),
+        *(np.zeros((1, 1), np.int64), *(_FLAGS,) * 3),
+    ),
 }  # fmt: skip
 """Functions of the module, with arguments of their types."""
 

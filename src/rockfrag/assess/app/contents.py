@@ -19,7 +19,7 @@ from rockfrag.assess import (
     request,
     sources,
 )
-from rockfrag.assess.conversion import VelocityRelation
+from rockfrag.assess.conversion import NODES, VelocityRelation, published_velocity
 from rockfrag.assess.core import decisions, draws
 from rockfrag.assess.core.likelihood import BELOW, UP_TO, Likelihood
 from rockfrag.assess.hazard import curve
@@ -70,6 +70,7 @@ def data_of(motions: MotionSet, asked: Request | None = None) -> dict[str, Any]:
     ``asked`` says where they were recorded, and has the building and hazard that the form does not tell.
     """
     hazard = asked.hazard if asked else ()
+    given = asked.records if asked else Records()
     level = [asked.level.measure] if asked and asked.level else []
     measures = dict.fromkeys((PGA, PGV, *level, *(each.measure for each in hazard)))
     intervals = sorted({motion.dt for motion in motions.ground})
@@ -83,8 +84,10 @@ def data_of(motions: MotionSet, asked: Request | None = None) -> dict[str, Any]:
         "motions": as_data(motions.about_set),
         "motionsInSpace": as_data(motions.with_both_components().about_set),
         "names": [motion.name for motion in motions.ground],
-        "measures": {measure.imt: _measure(motions, measure) for measure in measures},
-        "both": in_space(motions, measures),
+        "measures": {
+            measure.imt: _measure(motions, measure, given) for measure in measures
+        },
+        "both": in_space(motions, measures, given),
         "onFloor": asked is not None and asked.records.on_floor,
         # curves of the hazard's quantiles, by the standard normal score of each
         "quantiles": [
@@ -115,7 +118,9 @@ def data_of(motions: MotionSet, asked: Request | None = None) -> dict[str, Any]:
     }
 
 
-def _measure(motions: MotionSet, measure: IntensityMeasure) -> dict[str, Any]:
+def _measure(
+    motions: MotionSet, measure: IntensityMeasure, given: Records
+) -> dict[str, Any]:
     levels, few = (
         outcomes.make_intensity_levels(motions, measure, (), count).levels.tolist()
         for count in (outcomes.LEVELS, outcomes.FEW_LEVELS)
@@ -125,7 +130,7 @@ def _measure(motions: MotionSet, measure: IntensityMeasure) -> dict[str, Any]:
         "levels": levels,
         "few": few,
         "values": motions.values(measure).tolist(),
-        "ratios": ratios_of(motions, measure),
+        "ratios": ratios_of(motions, measure, given),
         "highest": curve.HIGHEST[measure.openquake],
         "damaging": curve.DAMAGING[measure.openquake],
     }
@@ -232,7 +237,7 @@ def _constants() -> dict[str, Any]:
             place, "PERIOD_FACTORS", "STOREY_HEIGHT", "STOREY_MASS", "HIGHEST_BUILDING"
         ),
         **_of(findings, "HARDLY", "LEAST_PART", "MOST_SOURCES", "MOST_ASSUMPTIONS"),
-        **_of(findings, "MOST_CHANGES"),
+        **_of(findings, "MOST_CHANGES", "LEAST_WORTH"),
         **_of(decisions, "LEAST_CHANCE"),
         "FEWEST_EARTHQUAKES": FEWEST_EARTHQUAKES,
         **_of(request, "ACCEPTED_AT_A_LEVEL", "ACCEPTED_IN_FIFTY_YEARS"),
@@ -248,7 +253,7 @@ def _constants() -> dict[str, Any]:
 
 
 def in_space(
-    motions: MotionSet, measures: Iterable[IntensityMeasure]
+    motions: MotionSet, measures: Iterable[IntensityMeasure], given: Records
 ) -> dict[str, Any]:
     """Return records, levels and constants of bodies in space, of motions one component at a time."""
     both = motions.with_both_components()
@@ -267,7 +272,7 @@ def in_space(
             "fewer": fewest,
             "values": both.values(measure).tolist(),
         }
-        levels[measure.imt] = {**about, "ratios": ratios_of(both, measure)}
+        levels[measure.imt] = {**about, "ratios": ratios_of(both, measure, given)}
     turns = [math.radians(angle) for angle in range(0, 180, outcomes.STEP_DEG)]
     return {
         "records": [
@@ -303,15 +308,26 @@ def _times(motions: MotionSet, pair: tuple[int, int]) -> list[dict[str, Any] | N
     return found
 
 
-def ratios_of(motions: MotionSet, measure: IntensityMeasure) -> dict[str, Any] | None:
-    """Return what is known of PGV over a measure in the motions; None of PGV itself."""
+def ratios_of(
+    motions: MotionSet, measure: IntensityMeasure, given: Records
+) -> dict[str, Any] | None:
+    """Return what is known of PGV over a measure in the motions and at the site; None of PGV itself."""
     if measure == PGV:
         return None
     logs = motions.log_ratios(measure)
     relation = VelocityRelation.of(
         motions.about, motions.log_ratios(measure, of_all=True)
     )
+    published, of_site = published_velocity(measure, given), None
+    if published is not None:
+        of_site = {
+            "lines": published.lines(given).tolist(),
+            "ofSite": published.of_site,
+            "nodes": (published.within * NODES).tolist(),
+        }
     return {
         "logs": logs.tolist(),
-        "spread": relation.unknown(Records(), of_site=False),
+        "median": float(np.median(logs)),
+        "spread": relation.unknown(given, of_site=False),
+        "published": of_site,
     }

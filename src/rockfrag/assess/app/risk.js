@@ -18,7 +18,19 @@ const risk = (data, core) => {
     const made = { levels: put(levels), count: names.length, rows, uplifts: zeros([rows.length]), ones: put(rows.map(() => 1)) };
     for (const name of ["overturned", "rocked", "allowed"]) made[name] = table(name);
     made.quakes = put(BigInt64Array.from(rows, (m) => BigInt(names.indexOf(data.earthquakes[m]))));
-    call("fill_uplifts", made.levels, made.rocked, made.overturned, made.allowed, put(rows.map((m) => outcomes.lifting[m])), made.uplifts);
+    lift(made, rows.map((m) => outcomes.lifting[m]));
+    return outcomes.site ? moved(made, outcomes.site) : made;
+  }
+  const lift = (at, lifting) => call("fill_uplifts", at.levels, at.rocked, at.overturned, at.allowed, put(lifting), at.uplifts);
+  // the same with the velocity of a site
+  function moved(at, { logs, weight, lines, nodes, byStatics }) {
+    const wanted = zeros(at.levels.shape), each = (values) => [...values].flatMap((value) => nodes.map(() => value));
+    const rows = each(at.rows), shape = [rows.length, at.levels.shape[0]], [allowed, overturned, rocked] = [1, 2, 3].map(() => zeros(shape, Uint8Array));
+    call("fill_wanted", at.levels, put(lines.flat(), [lines.length, 2]), wanted);
+    call("fill_moved", at.levels, at.allowed, at.overturned, at.rocked, put(at.rows.map((m) => logs[m])), wanted, put(nodes), weight, byStatics ? 1 : 0,
+      zeros(at.levels.shape), zeros(shape, BigInt64Array), allowed, overturned, rocked);
+    const made = { ...at, rows, allowed, overturned, rocked, uplifts: zeros([rows.length]), ones: put(rows.map(() => 1)), quakes: put(BigInt64Array.from(each(at.quakes.values))) };
+    lift(made, each(at.uplifts.values));
     return made;
   }
   function counted(at, state = "overturned") {
@@ -85,11 +97,18 @@ const risk = (data, core) => {
     call("fill_shift", low.levels, counted(low), counted(high), low.uplifts, high.uplifts, found);
     return [name, ...found.values];
   });
-  // by which the site's velocity may differ from that of the motions; null where no fit is
-  const shiftOfVelocity = (outcomes, { logs, spread }) => within(() => {
+  // what the velocity of the site does: the shift of ln level that it leaves open, and how motions are moved; null where
+  // nothing follows
+  const velocityOf = (outcomes, { logs, median, spread, published }, level, byStatics) => within(() => {
     const at = placed(outcomes), found = zeros([5]), tests = zeros([at.rows.length * MOST_LEVELS, MEMORY]);
-    call("fill_weight", at.levels, at.allowed, at.overturned, put(at.rows.map((m) => logs[m])), at.quakes, 0, tests, zeros([STATE]), found);
-    return Number.isNaN(found.values[0]) ? null : found.values[0] * spread;
+    call("fill_weight", at.levels, at.allowed, at.overturned, put(at.rows.map((m) => logs[m])), at.quakes, published ? 1 : 0, tests, zeros([STATE]), found);
+    const [weight, error] = found.values;
+    if (Number.isNaN(weight)) return null;
+    if (!published) return { shift: weight * spread, site: null };
+    const { lines, nodes, ofSite } = published, table = put(lines.flat(), [lines.length, 2]), wanted = zeros(at.levels.shape);
+    call("fill_wanted", at.levels, table, wanted);
+    const shift = call("shift_by_velocity", weight, call("spread_of_mean", level, ofSite, table), error, wanted, median);
+    return { shift, site: { logs, weight, lines, nodes, byStatics } };
   });
   const ofQuantiles = (outcomes, curve) => within(() => {
     const at = placed(outcomes), known = curve.quantiles;
@@ -131,21 +150,21 @@ const risk = (data, core) => {
   const decision = (target, prediction, rates, accepted) => within(() => {
     const { values, middle } = drawn(target, prediction, rates), { names } = prediction, found = zeros([2]), means = zeros([BINS]);
     const limit = target.kind === RATE ? call("rate_of", accepted, target.years) : accepted, otherwise = middle > limit ? "secure" : "leave";
-    for (const [source, left] of data.measurements) {
-      const place = names.indexOf(source), { size } = data.draws;
-      if (place < 0) continue;
-      call("fill_turned", values, put(bins.slice(place * size, (place + 1) * size)), left, middle, limit, means, found);
-      const [chance] = found.values;
-      if (chance >= LEAST_CHANCE) return { action: "measure", otherwise, source, chance };
-    }
-    return { action: otherwise, otherwise, source: "", chance: 0 };
+    const measurements = data.measurements.filter(([source]) => names.includes(source)).map(([source, left]) => {
+      const { size } = data.draws, first = names.indexOf(source) * size;
+      call("fill_turned", values, put(bins.slice(first, first + size)), left, middle, limit, means, found);
+      return { source, chance: found.values[0] };
+    });
+    const first = measurements.find(({ chance }) => chance >= LEAST_CHANCE);
+    return { otherwise, measurements, ...(first ? { action: "measure", ...first } : { action: otherwise, source: "", chance: 0 }) };
   });
   const meanOf = (target, shifts, rates, outcomes) => within(() => shown(target, drawn(target, predict(outcomes, shifts), rates).middle));
   // what changes do with the same errors, with limits of the factor over the earthquakes
   function compared(target, shifts, rates, now) {
     const with_ = (outcomes) => shownOf(target, drawn(target, predict(outcomes, shifts, true), rates).values);
+    const today = within(() => with_(now).values.slice());
     return (changed) => within(() => {
-      const [before, after] = [now, changed].map(with_), found = zeros([5]);
+      const before = put(today), after = with_(changed), found = zeros([5]);
       call("fill_comparison", BigInt(target.kind), before, after, BigInt(sets), zeros([2, before.shape[0]]), found);
       const [was, value, factor, lower, upper] = found.values;
       return { value, factor, lower, upper, helps: value < was, shown: upper < 1 };
@@ -154,7 +173,7 @@ const risk = (data, core) => {
 
   return {
     fractions, curveOf, curveOfOneLevel, levelOf, riskTarget, fractionTarget, amplitudeTarget, valueOf, liftsFrom, estimate, meanOf,
-    shiftOf, shiftOfVelocity, afterUplift, predict, decision, ofQuantiles, compared, groups, within,
+    shiftOf, velocityOf, afterUplift, predict, decision, ofQuantiles, compared, groups, within,
   };
 };
 if (typeof module !== "undefined") module.exports = risk;

@@ -223,3 +223,95 @@ def _take_step(tests, without, state):
     state[_STEP] = state[p] * one + state[q] * two + state[r] * three
     state[_STEP + 1] = state[q] * one + state[s] * two + state[t] * three
     state[_STEP + 2] = state[r] * one + state[t] * two + state[u] * three
+
+
+# ---- the velocity of a site
+
+
+@entry_kernel
+def fill_wanted(levels, lines, wanted):
+    """Ln (PGV over the measure [s]) expected at levels: the first line in ln level, shape (levels,)."""
+    for k in range(levels.size):
+        wanted[k] = lines[0, 0] + lines[0, 1] * log(levels[k])
+
+
+@entry_kernel
+def spread_of_mean(level, rest, lines):
+    """Standard deviation of that mean at a level [-].
+
+    By how much it differs where one fact of the site is a standard deviation off is a line in ln level too, one
+    for each fact; ``rest`` is what remains.
+    """
+    squares = rest * rest
+    for i in range(1, lines.shape[0]):
+        away = lines[i, 0] + lines[i, 1] * log(level)
+        squares += away * away
+    return math.sqrt(squares)
+
+
+@entry_kernel
+def shift_by_velocity(weight, spread, error, wanted, middle):
+    """Standard deviation of ln level that follows from that of the velocity, and from that of the weight [-].
+
+    The second counts as far as the site's velocity lies from that of the motions, whose median is ``middle``.
+    """
+    away = 0.0
+    for k in range(wanted.size):
+        away += abs(wanted[k] - middle)
+    away *= error / wanted.size
+    return math.sqrt(weight * spread * weight * spread + away * away)
+
+
+@entry_kernel
+def fill_moved(
+    levels, allowed, overturned, rocked, logs, wanted, nodes, weight, by_statics, work,
+    places, now_allowed, now_overturned, now_rocked,
+):  # fmt: skip
+    """Take each motion at the level at which it is as strong for the object as with the velocity of the site.
+
+    Parameters
+    ----------
+    levels : of shaking, rising, shape (levels,)
+    allowed, overturned, rocked : outcomes of motions as recorded, shape (motions, levels)
+    logs : ln (PGV over the measure [s]) of each motion, shape (motions,)
+    wanted : mean of the same at the site, at each level, shape (levels,)
+    nodes : values that stand for how it differs about the mean, shape (nodes,)
+    weight : of the velocity
+    by_statics : whether the level alone decides what rocks
+    work : memory, shape (levels,)
+    places : levels at which outcomes were taken, shape (motions × nodes, levels)
+    now_allowed, now_overturned, now_rocked : outcomes at the site, of the same shape
+    """
+    size = levels.size
+    for k in range(size):
+        work[k] = log(levels[k])
+    first, last = work[0], work[size - 1]
+    for m in range(logs.size):
+        for n in range(nodes.size):
+            row = m * nodes.size + n
+            for k in range(size):
+                moved = work[k] + weight * (wanted[k] + nodes[n] - logs[m])
+                at = _nearest(work, moved)
+                places[row, k] = at
+                falls, rocks = overturned[m, at], rocked[m, k]
+                inside = allowed[m, at] and first <= moved <= last
+                if by_statics:
+                    # at a level where it does not rock a motion says nothing of one that makes it rock
+                    falls = falls and rocks
+                    inside = inside and (rocked[m, at] or not rocks)
+                now_allowed[row, k] = inside
+                now_overturned[row, k] = falls
+                now_rocked[row, k] = rocks or falls
+
+
+@kernel
+def _nearest(logs, moved):
+    """Place of the logarithm that is nearest to one among rising ones."""
+    low, high = 0, logs.size - 1
+    while high - low > 1:
+        middle = (low + high) // 2
+        if logs[middle] <= moved:
+            low = middle
+        else:
+            high = middle
+    return high if moved - logs[low] > logs[high] - moved else low

@@ -17,6 +17,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from rockfrag.assess.core.hazards import fill_level, fill_power_law
 from rockfrag.base.arrays import Floats
 from rockfrag.base.errors import InputError
 from rockfrag.base.short_repr import short_repr
@@ -80,11 +81,9 @@ class HazardCurve:
 
     def level(self, rate: float) -> float:
         """Level that is exceeded with an annual rate [1/year], in the measure's unit."""
-        logs, x = np.log(self.rates), np.log(self.levels)
-        start = int(np.clip(np.searchsorted(-logs, -math.log(rate)) - 1, 0, x.size - 2))
-        return float(
-            np.exp(x[start] + (math.log(rate) - logs[start]) / self._slopes[start])
-        )
+        found = np.zeros(1)
+        fill_level(self.levels, self.rates, float(rate), found)
+        return float(found[0])
 
     @property
     def _slopes(self) -> Floats:
@@ -181,9 +180,9 @@ def curve_of_one_level(
     """Continue one level with its mean return period [year] as a power law."""
 
     def curve(k: float, source: str) -> HazardCurve:
-        factors = np.array([0.1, 1.0, 10.0])
-        rates = factors**-k / years
-        return HazardCurve(measure, level * factors, rates, source, is_read=False)
+        levels, rates = np.zeros(3), np.zeros(3)
+        fill_power_law(float(level), float(years), k, levels, rates)
+        return HazardCurve(measure, levels, rates, source, is_read=False)
 
     source = (
         f"{measure.imt} of {level:.3g} {measure.unit} every {years:g} years, continued with the exponent "
@@ -222,6 +221,9 @@ def read_measure(text: str, where: str) -> IntensityMeasure:
             f"{PERIODS[0]:g} to {PERIODS[1]:g} s."
         )
     return SA.at(period)
+
+
+SA_1S = read_measure("SA(1)", "SA(1)")
 
 
 def read_level(text: str, measure: IntensityMeasure) -> float:
