@@ -386,7 +386,6 @@ def test_none_of_n_motions_is_said_as_that_and_bounds_are_called_bounds(on_pedes
         on_pedestal,
         fraction=Estimate(0.0, 0.0, 0.11, {}),
         counts=(24, 12, 0),
-        directions=None,
     )
     assert "(at most 11 %)" in lines_of(none)[0]
     level = _behind(none, Text.TITLE_LEVEL)

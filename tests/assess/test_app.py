@@ -1,15 +1,19 @@
 """The page of ``rockfrag app`` says what ``rockfrag assess`` does: its scripts in Node, of random objects."""
 
+import importlib.util
 import json
+import os
 import random
 import shutil
 import subprocess
+import sys
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 from rockfrag.assess.answer import Assessment, assess_with
+from rockfrag.assess.app.build import PATH
 from rockfrag.assess.app.contents import computing, script
 from rockfrag.assess.app.writing import page_of
 from rockfrag.assess.findings import details, first_screen
@@ -288,3 +292,19 @@ def test_the_command_writes_a_page_and_refuses_what_it_cannot_say(
     page = path.read_text()
     assert len(page) < 6_000_000
     assert "http:" not in page.replace("http-equiv", "") and "https:" not in page
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(
+    importlib.util.find_spec("ziglang") is None,
+    reason="ziglang, the linker, is not installed",
+)
+def test_the_module_of_the_core_is_that_of_its_functions():
+    code = "from rockfrag.assess.app.build import build_core; made = build_core()"
+    done = subprocess.run(
+        [sys.executable, "-c", f"import sys; {code}; sys.stdout.buffer.write(made)"],
+        env={**os.environ, "PYTHONHASHSEED": "3"},
+        check=True,
+        capture_output=True,
+    )
+    assert done.stdout == PATH.read_bytes(), "python -m rockfrag.assess.app.build"

@@ -11,7 +11,7 @@ from scipy import special
 
 from rockfrag.assess import outcomes, risk
 from rockfrag.assess.assumed import Moved
-from rockfrag.assess.conversion import Conversion, find_conversion
+from rockfrag.assess.conversion import Conversion, Site, find_conversion
 from rockfrag.assess.core.decisions import Decision, decide
 from rockfrag.assess.core.draws import FEW_MEMBERS
 from rockfrag.assess.core.estimates import fill_sides, rate_of
@@ -357,8 +357,8 @@ def assessed(request: Request, plan: Plan, shaken: Shaken) -> Assessment:
     exact = measure == PGA and on_ground and not motions.both
     conversion = None
     if level:
-        about = (request.records, level, plan.curves)
-        conversion = find_conversion(counted, motions, *about, by_statics=exact)
+        site = Site(request.records, level, plan.curves)
+        conversion = find_conversion(counted, motions, site, by_statics=exact)
     shaken = _at_site(shaken, plan, conversion)
     arrangements = shaken.arrangements
     evidence = _evidence(objects, shaken, plan, conversion)
@@ -510,10 +510,8 @@ def _counts(now: ObjectOutcomes, level: Level | None) -> tuple[int, int, int] | 
     allowed = levels.allowed[:, at]
     if levels.levels[at] != level.value or not allowed.any():
         return None
-    rocked, fell = (
-        int(what[allowed, at].sum()) for what in (now.rocked, now.overturned)
-    )
-    return int(allowed.sum()), rocked, fell
+    rocked, fell = now.rocked[allowed, at].sum(), now.overturned[allowed, at].sum()
+    return int(allowed.sum()), int(rocked), int(fell)
 
 
 def _moved(

@@ -69,13 +69,18 @@ class PublishedVelocity:
     ) -> "PublishedVelocity | None":
         """Return it for what is given of the earthquakes, the rest as in ``PRIOR``; None for other measures."""
         model = MODELS.get(measure.imt)
-        facts = zip(_facts(given), PRIOR.values(), strict=True)
-        magnitude, ln_distance, ln_vs30 = (
-            prior if math.isnan(fact) else fact for fact, prior in facts
-        )
         if model is None:
             return None
-        return cls(model, magnitude, math.exp(ln_distance), math.exp(ln_vs30))
+        known = {
+            name: PRIOR[name] if math.isnan(fact) else fact
+            for name, fact in zip(PRIOR, _facts(given), strict=True)
+        }
+        return cls(
+            model,
+            magnitude=known["magnitude"],
+            distance_km=math.exp(known["ln_distance"]),
+            vs30=math.exp(known["ln_vs30"]),
+        )
 
     @property
     def scatter(self) -> float:
@@ -103,8 +108,9 @@ class PublishedVelocity:
         return np.array(found)
 
     def _line(self) -> Floats:
-        about = self.magnitude, self.distance_km, self.vs30
-        at_one = float(self.model.log_velocity(np.ones(1), *about)[0])
+        (at_one,) = self.model.log_velocity(
+            np.ones(1), self.magnitude, self.distance_km, self.vs30
+        )
         slope = self.model.slope(self.magnitude) - 1
         return np.array([at_one - math.log(VELOCITY_PER_G), slope])
 
@@ -213,26 +219,24 @@ class Conversion:
         known = self.known
         if known is None or not known.curves:
             return None
-        lower, upper = (
-            self._moved(outcomes, replace(known, spread=known.spread * factor))
-            for factor in (1 - TOGETHER, 1 + TOGETHER)
-        )
-        return lower, upper
+        less = replace(known, spread=known.spread * (1 - TOGETHER))
+        more = replace(known, spread=known.spread * (1 + TOGETHER))
+        return self._moved(outcomes, less), self._moved(outcomes, more)
 
     def _moved(self, outcomes: ObjectOutcomes, site: SiteVelocity) -> ObjectOutcomes:
         """Each motion at the level at which it is as strong for the object as with the velocity of the site."""
-        intensity_levels, levels = (
-            outcomes.intensity_levels,
-            outcomes.intensity_levels.levels,
-        )
+        intensity_levels = outcomes.intensity_levels
+        levels = intensity_levels.levels
         nodes = site.spread * NODES if site.spread > 0 else np.zeros(1)
         shape = self.logs.size * nodes.size, levels.size
         places = np.zeros(shape, dtype=np.int64)
-        allowed, overturned, rocked = (np.zeros(shape, dtype=np.bool_) for _ in "123")
-        happened = intensity_levels.allowed, outcomes.overturned, outcomes.rocked
+        allowed = np.zeros(shape, dtype=np.bool_)
+        overturned, rocked = allowed.copy(), allowed.copy()
         fill_moved(
             levels,
-            *map(np.ascontiguousarray, happened),
+            np.ascontiguousarray(intensity_levels.allowed),
+            np.ascontiguousarray(outcomes.overturned),
+            np.ascontiguousarray(outcomes.rocked),
             self.logs,
             site.log_ratio(levels),
             nodes,
@@ -262,24 +266,24 @@ class Conversion:
         )
 
 
-def find_conversion(
-    outcomes: ObjectOutcomes,
-    motions: MotionSet,
-    given: Records,
-    level: Level,
-    curves: tuple[HazardCurve, ...],
-    *,
-    by_statics: bool,
-) -> Conversion | None:
-    """Fit the fragility in two measures, and gather what is known of the site's velocity; None in PGV or unfitted.
+@dataclass(frozen=True)
+class Site:
+    """What is known of the shaking of a site."""
 
-    ``curves`` are the hazard in the measure and, if known, in PGV.
-    """
+    given: Records  # Of its earthquakes and ground
+    level: Level  # Level of shaking
+    curves: tuple[HazardCurve, ...]  # Hazard in the measure and, if known, in PGV
+
+
+def find_conversion(
+    outcomes: ObjectOutcomes, motions: MotionSet, site: Site, *, by_statics: bool
+) -> Conversion | None:
+    """Fit the fragility in two measures, and gather what is known of the velocity; None in PGV or unfitted."""
     measure = outcomes.intensity_levels.measure
     if measure == PGV:
         return None
     logs = motions.log_ratios(measure)
-    known, spread = _site_velocity(outcomes, motions, given, level, curves)
+    known, spread = _site_velocity(motions, measure, site)
     weight, error, *coefficients = _weight(outcomes, logs, jackknifes=known is not None)
     if math.isnan(weight):
         return None
@@ -315,14 +319,10 @@ def published_velocity(
 
 
 def _site_velocity(
-    outcomes: ObjectOutcomes,
-    motions: MotionSet,
-    given: Records,
-    level: Level,
-    curves: tuple[HazardCurve, ...],
+    motions: MotionSet, measure: IntensityMeasure, site: Site
 ) -> tuple[SiteVelocity | None, float]:
     """What is known of the velocity at the site, and the standard deviation of the mean of ln ratio [-]."""
-    measure = outcomes.intensity_levels.measure
+    given, level, curves = site.given, site.level, site.curves
     logs = motions.log_ratios(measure, of_all=True)
     relation = VelocityRelation.of(motions.about, logs)
     own = math.sqrt(1 - OF_THE_SITE) * relation.scatter
@@ -356,9 +356,17 @@ def _weight(outcomes: ObjectOutcomes, logs: Floats, *, jackknifes: bool) -> list
     levels = outcomes.intensity_levels
     numbers = earthquake_numbers(outcomes.earthquakes).astype(np.int64)
     tests, found = np.zeros((logs.size * MOST_LEVELS, MEMORY)), np.zeros(5)
-    happened = map(np.ascontiguousarray, (levels.allowed, outcomes.overturned))
-    given = levels.levels, *happened, logs, numbers
-    fill_weight(*given, jackknifes, tests, np.zeros(STATE), found)
+    fill_weight(
+        levels.levels,
+        np.ascontiguousarray(levels.allowed),
+        np.ascontiguousarray(outcomes.overturned),
+        logs,
+        numbers,
+        jackknifes,
+        tests,
+        np.zeros(STATE),
+        found,
+    )
     values: list[float] = found.tolist()
     return values
 

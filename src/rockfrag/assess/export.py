@@ -29,7 +29,16 @@ from rockfrag.words.findings import Finding, as_data, finding, three, two
 
 
 def as_json(found: Assessment) -> str:
-    """Return the answer as JSON, its sentences in English; infinite and unknown numbers are null."""
+    """Return the answer as JSON, its sentences in English; infinite and unknown numbers are null.
+
+    Parameters
+    ----------
+    found : the answer
+
+    Returns
+    -------
+    The text, which ends with a line break.
+    """
     texts = catalogue()
     outcomes = found.outcomes
     request = found.request

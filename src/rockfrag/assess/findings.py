@@ -51,12 +51,32 @@ Titled = dict[Finding, list[Finding]]
 
 
 def lines_of(found: Assessment, language: str = FIRST) -> list[str]:
-    """Return the first screen of an answer in a language, a sentence each."""
+    """Return the first screen of an answer in a language, a sentence each.
+
+    Parameters
+    ----------
+    found : the answer
+    language : of the texts
+
+    Returns
+    -------
+    The lines.
+    """
     return catalogue(language).lines(first_screen(found))
 
 
 def details_of(found: Assessment, language: str = FIRST) -> list[str]:
-    """Return what stands behind the first screen in a language, a line for each title."""
+    """Return what stands behind the first screen in a language, a line for each title.
+
+    Parameters
+    ----------
+    found : the answer
+    language : of the texts
+
+    Returns
+    -------
+    The lines.
+    """
     texts = catalogue(language)
     return [
         f"{texts.sentence(title)}: {texts.paragraph(findings)}"
@@ -345,11 +365,10 @@ def _reduction(change: Mitigation) -> dict[str, Value]:
     """What a change takes off the risk, or adds to the shaking that the object bears, with its limits."""
     sign = -1.0 if change.factor > 1 else 1.0
     ends = sorted(sign * (1 - factor) for factor in (change.lower, change.upper))
-    low, high = (whole(100 * end) for end in ends)
     return {
         "value": _whole_percent(sign * (1 - change.factor)),
-        "lower": low,
-        "upper": high,
+        "lower": whole(100 * ends[0]),
+        "upper": whole(100 * ends[1]),
     }
 
 
@@ -511,7 +530,16 @@ def _velocity(found: Assessment) -> list[Finding]:
 
 
 def quality_flags(found: Assessment) -> list[Value]:
-    """What a reader should check."""
+    """What a reader should check.
+
+    Parameters
+    ----------
+    found : the answer
+
+    Returns
+    -------
+    Findings, and texts that stand as they are.
+    """
     said: list[Value] = [*found.request.objects.under.quality_flags]
     said += found.motions.warnings
     said += [*_hazard_flags(found), *_velocity_flags(found)]

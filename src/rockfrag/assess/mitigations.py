@@ -43,10 +43,9 @@ def compare(
     for change, outcomes in changed.items():
         other = evidence.drawn(target, evidence.of(outcomes))
         before, after, factor, least, most = _compared(drawn, other)
-        limits = least, most
         helps = after > before if target.is_level else after < before
-        shown = limits[0] > 1 if target.is_level else limits[1] < 1
-        found.append(Mitigation(change, after, factor, *limits, helps, shown))
+        shown = least > 1 if target.is_level else most < 1
+        found.append(Mitigation(change, after, factor, least, most, helps, shown))
     return found
 
 

@@ -365,11 +365,10 @@ class Shaking(IntensityLevels):
         solid = objects.solid(objects.body)
         if solid is None or not self.allowed.any():
             return math.nan
-        first, other = (
-            self.in_space(solid, objects.base_spread + more).overturned[self.allowed]
-            for more in (0.0, PERTURBATION)
-        )
-        return float((first != other).mean())
+        first = self.in_space(solid, objects.base_spread)
+        other = self.in_space(solid, objects.base_spread + PERTURBATION)
+        differs = first.overturned != other.overturned
+        return float(differs[self.allowed].mean())
 
     def fraction_with_sliding(self, objects: Standing) -> float:
         """Fraction of the motions at the first level that topple the object if it may slide, which takes long."""
@@ -417,8 +416,12 @@ def simulated(
         if issubclass(warning.category, LightBodies):
             light = True
         else:
-            about = (warning.filename, warning.lineno)
-            warnings.warn_explicit(warning.message, warning.category, *about)
+            warnings.warn_explicit(
+                warning.message,
+                warning.category,
+                filename=warning.filename,
+                lineno=warning.lineno,
+            )
     # more than two bodies leave the ground where they have to
     return result, [light and system.count < 3 for system in systems]
 
@@ -463,11 +466,11 @@ def find_directions(
     by_record = fallen.reshape(len(motions.pairs), len(angles), -1)
     anyhow, worst = by_record.mean(axis=(0, 1)), by_record.any(axis=1).mean(axis=0)
     x = np.log(levels)
-    at = (math.nan if level is None else level, levels)
+    at = math.nan if level is None else level
     return Directions(
         factor=float(np.exp(_half(x, worst) - _half(x, anyhow))),
-        fraction=fraction_at(*at, anyhow),
-        worst_fraction=fraction_at(*at, worst),
+        fraction=fraction_at(at, levels, anyhow),
+        worst_fraction=fraction_at(at, levels, worst),
         records=len(motions.pairs),
     )
 

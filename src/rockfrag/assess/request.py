@@ -134,7 +134,15 @@ def make_request(
 ) -> Request:
     """Make a request of keys as in ``statue.yaml``, see ``docs/assess.md``.
 
-    ``source`` says in messages where they come from; paths are read from ``folder``, or the present one.
+    Parameters
+    ----------
+    settings : the keys
+    source : where they come from, which messages name
+    folder : from which paths in them are read; the present one if None
+
+    Returns
+    -------
+    What is asked, for :func:`rockfrag.assess.assess`.
     """
     known = checked(settings, "statue", source)
     where = folder or Path()

@@ -145,12 +145,12 @@ class Target:
 
 def risk_target(hazard: HazardCurve, years: float) -> Target:
     """The probability of toppling in some years."""
-    return Target(estimates.RATE, hazard=hazard, years=years)
+    return Target(estimates.RATE, hazard=hazard, years=float(years))
 
 
 def fraction_target(level: float, *, state: str = OVERTURNS) -> Target:
     """The fraction of motions that bring the object into a limit state at a level."""
-    return Target(estimates.FRACTION, state=state, level=level)
+    return Target(estimates.FRACTION, state=state, level=float(level))
 
 
 def amplitude_target(fraction: float) -> Target:
@@ -202,8 +202,18 @@ class Drawn:
         shown, work = np.zeros(values.size), np.zeros(values.size)
         found = np.zeros(estimates.MOTIONS + 1 + len(prediction.sources))
         last, sets = float(prediction.levels[-1]), len(draws.weights)
-        given = target.kind, target.years, self.middle, last
-        estimates.fill_estimate(*given, values, shown, work, draws.bins, sets, found)
+        estimates.fill_estimate(
+            target.kind,
+            target.years,
+            self.middle,
+            last,
+            values,
+            shown,
+            work,
+            draws.bins,
+            sets,
+            found,
+        )
         value, lower, upper, *sources = found.tolist()
         if draws.weights.shape[1] < 3 and not target.is_level:
             # one earthquake says nothing of others

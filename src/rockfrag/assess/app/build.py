@@ -15,7 +15,7 @@ from rockfrag.web.build import module_of
 PATH = Path(__file__).with_name("core.wasm")
 
 _FLOAT, _WHOLE = 0.0, 0
-_ROW, _TABLE, _CUBE = (np.zeros((1,) * n) for n in (1, 2, 3))
+_ROW, _TABLE, _CUBE = np.zeros(1), np.zeros((1, 1)), np.zeros((1, 1, 1))
 _NUMBERS, _BIN, _BINS = (
     np.zeros(1, np.int64),
     np.zeros(1, np.uint8),

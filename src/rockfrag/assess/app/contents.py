@@ -121,19 +121,22 @@ def data_of(motions: MotionSet, asked: Request | None = None) -> dict[str, Any]:
 def _measure(
     motions: MotionSet, measure: IntensityMeasure, given: Records
 ) -> dict[str, Any]:
-    levels, few = (
-        outcomes.make_intensity_levels(motions, measure, (), count).levels.tolist()
-        for count in (outcomes.LEVELS, outcomes.FEW_LEVELS)
-    )
     return {
         "unit": measure.unit,
-        "levels": levels,
-        "few": few,
+        "levels": _levels(motions, measure, outcomes.LEVELS),
+        "few": _levels(motions, measure, outcomes.FEW_LEVELS),
         "values": motions.values(measure).tolist(),
         "ratios": ratios_of(motions, measure, given),
         "highest": curve.HIGHEST[measure.openquake],
         "damaging": curve.DAMAGING[measure.openquake],
     }
+
+
+def _levels(motions: MotionSet, measure: IntensityMeasure, count: int) -> list[float]:
+    """Levels that are tried where none is asked for."""
+    shaking = outcomes.make_intensity_levels(motions, measure, (), count)
+    values: list[float] = shaking.levels.tolist()
+    return values
 
 
 def _with_variants(at: Place, intervals: Sequence[float]) -> dict[str, Any]:
@@ -261,15 +264,9 @@ def in_space(
     names = [motion.name for motion in both.ground]
     levels = {}
     for measure in measures:
-        few, fewest = (
-            outcomes.make_intensity_levels(
-                each, measure, (), outcomes.FEW_LEVELS
-            ).levels.tolist()
-            for each in (both, fewer)
-        )
         about = {
-            "levels": few,
-            "fewer": fewest,
+            "levels": _levels(both, measure, outcomes.FEW_LEVELS),
+            "fewer": _levels(fewer, measure, outcomes.FEW_LEVELS),
             "values": both.values(measure).tolist(),
         }
         levels[measure.imt] = {**about, "ratios": ratios_of(both, measure, given)}

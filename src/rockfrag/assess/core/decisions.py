@@ -92,5 +92,4 @@ def decide(
     otherwise = Action.SECURE if mean > accepted else Action.LEAVE
     if first is None:
         return Decision(otherwise, otherwise, measurements=tuple(tried))
-    named = first.source, first.chance
-    return Decision(Action.MEASURE, otherwise, *named, measurements=tuple(tried))
+    return Decision(Action.MEASURE, otherwise, first.source, first.chance, tuple(tried))

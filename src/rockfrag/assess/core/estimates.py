@@ -262,10 +262,10 @@ def fill_comparison(kind, before, after, sets, work, found):
     members, count = before.size // sets, 0
     for b in range(sets):
         first, end = b * members, (b + 1) * members
-        one = _centre(kind, before[first:end], work[0, :members])
-        other = _centre(kind, after[first:end], work[0, :members])
-        if 0.0 < one < math.inf and other < math.inf:
-            work[1, count] = other / one
+        today = _centre(kind, before[first:end], work[0, :members])
+        changed = _centre(kind, after[first:end], work[0, :members])
+        if 0.0 < today < math.inf and changed < math.inf:
+            work[1, count] = changed / today
             count += 1
     if count > 0:
         ratios = work[1, :count]

@@ -80,7 +80,7 @@ def count_motions(
         log_uplifts=np.zeros(CLASSES),
         next_one=np.zeros(4),
     )
-    fell, counts = (np.ascontiguousarray(each) for each in (overturned, allowed))
+    fell, counts = np.ascontiguousarray(overturned), np.ascontiguousarray(allowed)
     numbers = np.asarray(earthquakes, dtype=np.int64)
     work = np.zeros((3, len(uplifts)))
     fill_counts(levels, fell, counts, uplifts, numbers, work, *found)

@@ -209,20 +209,19 @@ def _take_step(tests, without, state):
         if test[_QUAKE] == without:
             continue
         x1, x2 = test[_X1], test[_X2]
-        one = state[p] + state[q] * x1 + state[r] * x2
-        two = state[q] + state[s] * x1 + state[t] * x2
-        three = state[r] + state[t] * x1 + state[u] * x2
-        lever = one + two * x1 + three * x2
+        lever = state[p] + state[q] * x1 + state[r] * x2
+        lever += (state[q] + state[s] * x1 + state[t] * x2) * x1
+        lever += (state[r] + state[t] * x1 + state[u] * x2) * x2
         value = test[_UP] if test[_FELL] > 0.0 else -test[_DOWN]
         bend = test[_DOWN] - test[_UP] - 2.0 * test[_ETA]
         value += 0.5 * test[_HERE] * lever * bend
         state[_SCORE] += value
         state[_SCORE + 1] += value * x1
         state[_SCORE + 2] += value * x2
-    one, two, three = state[_SCORE], state[_SCORE + 1], state[_SCORE + 2]
-    state[_STEP] = state[p] * one + state[q] * two + state[r] * three
-    state[_STEP + 1] = state[q] * one + state[s] * two + state[t] * three
-    state[_STEP + 2] = state[r] * one + state[t] * two + state[u] * three
+    at, by1, by2 = state[_SCORE], state[_SCORE + 1], state[_SCORE + 2]
+    state[_STEP] = state[p] * at + state[q] * by1 + state[r] * by2
+    state[_STEP + 1] = state[q] * at + state[s] * by1 + state[t] * by2
+    state[_STEP + 2] = state[r] * at + state[t] * by1 + state[u] * by2
 
 
 # ---- the velocity of a site

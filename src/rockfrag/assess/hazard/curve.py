@@ -91,10 +91,19 @@ class HazardCurve:
 
 
 def rate_weights(curve: HazardCurve, levels: Floats) -> Floats:
-    """Weights with which a function linear in ln level is integrated over a hazard curve [1/year], shape (n,).
+    """Weights with which a function linear in ln level is integrated over a hazard curve.
 
-    ∫ P(x) |dν(x)| from the first of n ≥ 2 rising levels on, where ν is a power law between levels and P stays as
-    it is above the last one, is the sum of P at the levels times these weights.
+    ∫ P(x) |dν(x)| from the first level on, where ν is a power law between levels and P stays as it is above the
+    last one, is the sum of P at the levels times these weights.
+
+    Parameters
+    ----------
+    curve : the hazard curve ν [1/year]
+    levels : rising, shape (n,), n ≥ 2
+
+    Returns
+    -------
+    The weights [1/year], shape (n,).
     """
     rate = curve.rate(levels)
     fall = -np.diff(np.log(rate))
@@ -205,11 +214,21 @@ _SA = re.compile(
 
 
 _KNOWN = {measure.openquake: measure for measure in declared()}
-PGA, PGV, SA = (_KNOWN[kind] for kind in ("PGA", "PGV", "SA"))
+PGA, PGV, SA = _KNOWN["PGA"], _KNOWN["PGV"], _KNOWN["SA"]
 
 
 def read_measure(text: str, where: str) -> IntensityMeasure:
-    """Read the name of a measure as hazard models write it: ``PGA``, ``SA(0.3)``, ``SA0P2``, ``PSA-1.0s``."""
+    """Read the name of a measure as hazard models write it.
+
+    Parameters
+    ----------
+    text : ``PGA``, ``SA(0.3)``, ``SA0P2``, ``PSA-1.0s`` or alike
+    where : what messages begin with
+
+    Returns
+    -------
+    The measure.
+    """
     plain = re.sub(r"[\s\-]", "", text).upper()
     if plain in ("PGA", "PGV"):
         return _KNOWN[plain]
@@ -227,7 +246,17 @@ SA_1S = read_measure("SA(1)", "SA(1)")
 
 
 def read_level(text: str, measure: IntensityMeasure) -> float:
-    """Read a level with its unit, such as ``0.25 g``; return it in the unit of the measure."""
+    """Read a level with its unit.
+
+    Parameters
+    ----------
+    text : such as ``0.25 g``
+    measure : of which it is a level
+
+    Returns
+    -------
+    The level in the unit of the measure.
+    """
     if measure.openquake == "PGV":
         return quantity(text, "m_s", None) * CENTIMETRES_PER_METRE
     return quantity(text, "m_s2", None) / GRAVITY
@@ -318,6 +347,15 @@ def read_openquake(text: str, path: str) -> Found:
 
     A comment with ``kind``, ``investigation_time`` and ``imt``, a header ``lon,lat,depth,poe-0.0050000,…``
     whose names hold the levels (g; cm/s for PGV), and a row of probabilities of exceedance for each site.
+
+    Parameters
+    ----------
+    text : of the file
+    path : which messages name
+
+    Returns
+    -------
+    The curve and its kind, such as ``mean``.
     """
     try:
         rows = [
@@ -475,10 +513,9 @@ def _of_element(
         f"SA({about.get('saPeriod', '')})" if imt.upper() == "SA" else imt, path
     )
     try:
-        values, fractions, times = (
-            [float(word) for word in words.split()]
-            for words in (levels.text or "", poes[0].text or "", years)
-        )
+        values = [float(word) for word in (levels.text or "").split()]
+        fractions = [float(word) for word in (poes[0].text or "").split()]
+        times = [float(word) for word in years.split()]
     except ValueError as error:
         raise InputError(
             f"{path}: a level or probability is no number ({error})."
@@ -522,8 +559,17 @@ def read_levels(
     """Read a table of levels and rates, as people write it by hand.
 
     Beside the columns ``labels`` it has levels, as ``pga_g``, ``pgv_cm_s`` or ``sa_0_3s_g``, and how often they
-    are exceeded: ``annual_rate``, ``return_period_years`` or such as ``poe_50_years``. Returns the rows, and what
-    makes the curve of some of them, whose messages say where it stands.
+    are exceeded: ``annual_rate``, ``return_period_years`` or such as ``poe_50_years``.
+
+    Parameters
+    ----------
+    path : of the table, which messages name
+    text : of it, where it was read already
+    labels : columns that it has beside
+
+    Returns
+    -------
+    The rows, and what makes the curve of some of them, whose messages say where it stands.
     """
     table = read_table(path, text)
     titles = [_plain(title) for title in table.titles]

@@ -182,11 +182,8 @@ class Standing(ABC):
     ) -> tuple[float, float]:
         """Ratios of velocities at the right and left pivot, none of which gains energy."""
         e = math.nan if measured is None else measured
-        right, left = (
-            geometry.scaled_restitution(shape, pivot, e, self.livelier)
-            for pivot in (1, -1)
-        )
-        return right, left
+        right = geometry.scaled_restitution(shape, 1, e, self.livelier)
+        return right, geometry.scaled_restitution(shape, -1, e, self.livelier)
 
     @property
     def in_space(self) -> bool:

@@ -167,8 +167,7 @@ def sizes_of(settings: Mapping[str, Any]) -> Sizes:
     block = Block(width, height, mass, inertia, cg_height=cg_height, cg_offset=offset)
     block = _as_it_rocks(_as_it_tips(block, settings), settings)
     facing = float(settings.get("facing_deg", 0.0)) + 90.0 * across
-    told = tuple(assumed), tuple(quality_flags)
-    return Sizes(block, plane, depth, facing, *told)
+    return Sizes(block, plane, depth, facing, tuple(assumed), tuple(quality_flags))
 
 
 _FORCE = re.compile(r"\s*(\d+(?:\.\d+)?)\s*(k?N)\s*(?:@|at)\s*(.+)", re.IGNORECASE)
