@@ -30,10 +30,14 @@ from rockfrag.assess.texts import Text
 from rockfrag.base.arrays import Floats
 from rockfrag.base.errors import InputError
 from rockfrag.base.short_repr import short_repr
+from rockfrag.engines.pure_rocking.kernels.lanes.block import integrate_blocks
+from rockfrag.engines.pure_rocking.kernels.lanes.scheduler import integrate_stacks
+from rockfrag.engines.spatial._integrate import integrate_scales
 from rockfrag.fragility.estimators import Fragility, fragility_of
 from rockfrag.fragility.model_error import MODEL_ERRORS
 from rockfrag.motions.intensity import IntensityMeasure
 from rockfrag.outcomes.limit_states import ROCKS
+from rockfrag.runtime.machine_code import is_kept
 from rockfrag.system.blocks import Body
 from rockfrag.words.findings import Finding, finding, two
 
@@ -246,6 +250,30 @@ def assess(
     """
     motions = motion_set(request.records, request.place, Path(records))
     return assess_with(request, motions, brief=brief)
+
+
+COMPILING_S = {False: 20, True: 60}
+"""About how long kernels compile once on a machine, in a plane and in space [s]."""
+
+
+def waiting_for(request: Request) -> str:
+    """Say what a first answer on a machine waits for.
+
+    Parameters
+    ----------
+    request : what is asked
+
+    Returns
+    -------
+    A sentence; empty where the kernels are compiled.
+    """
+    in_space = request.objects.in_space
+    entries = [integrate_scales] if in_space else [integrate_blocks]
+    if request.objects.pedestals:
+        entries.append(integrate_stacks)
+    if all(map(is_kept, entries)):
+        return ""
+    return f"compiling once on this machine, about {COMPILING_S[in_space]} s"
 
 
 def assess_with(

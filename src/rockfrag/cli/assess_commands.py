@@ -184,14 +184,17 @@ def _refuse_unused(options: argparse.Namespace) -> None:
 
 
 def _one(options: argparse.Namespace, given: dict[str, Any]) -> int:
-    from rockfrag.assess.answer import assess
+    from rockfrag.assess.answer import assess, waiting_for
     from rockfrag.assess.export import as_json
     from rockfrag.assess.findings import quality_flags
     from rockfrag.assess.page import write_answer
     from rockfrag.words.catalogue import catalogue
 
     texts = catalogue(options.language)
-    found = assess(_request(options, given), options.records)
+    request = _request(options, given)
+    if wait := waiting_for(request):
+        print(wait, file=sys.stderr)
+    found = assess(request, options.records)
     if not options.json:
         _print_lines(found, options)
     # what looks wrong stands behind the answer, and what a page alone shows is computed after both

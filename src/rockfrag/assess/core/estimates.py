@@ -250,22 +250,26 @@ def fill_comparison(kind, before, after, sets, work, found):
     """Compare shown numbers of the same draws without and with a change, shape (draws,) both.
 
     Limits of the factor are over the sets of weights of the earthquakes; NaN where there are none. Levels are
-    compared by their medians, all else by means. ``work`` has the shape (2, draws).
+    compared by their medians, all else by means. ``work`` has the shape (3, draws).
     """
     for place in range(5):
         found[place] = math.nan
-    found[BEFORE] = _centre(kind, before, work[0])
-    found[AFTER] = _centre(kind, after, work[0])
-    if not (0.0 < found[BEFORE] < math.inf and found[AFTER] < math.inf):
-        return
-    found[FACTOR] = found[AFTER] / found[BEFORE]
     members, count = before.size // sets, 0
-    for b in range(sets):
-        first, end = b * members, (b + 1) * members
-        today = _centre(kind, before[first:end], work[0, :members])
-        changed = _centre(kind, after[first:end], work[0, :members])
-        if 0.0 < today < math.inf and changed < math.inf:
-            work[1, count] = changed / today
+    for b in range(-1, sets):
+        # all draws first, then those of each set
+        first, end = (0, before.size) if b < 0 else (b * members, (b + 1) * members)
+        centres = found[BEFORE : AFTER + 1] if b < 0 else work[2, :2]
+        for side in range(2):
+            values = before if side == 0 else after
+            centres[side] = _centre(kind, values[first:end], work[0, : end - first])
+        if not (0.0 < centres[0] < math.inf and centres[1] < math.inf):
+            if b < 0:
+                return
+            continue
+        if b < 0:
+            found[FACTOR] = centres[1] / centres[0]
+        else:
+            work[1, count] = centres[1] / centres[0]
             count += 1
     if count > 0:
         ratios = work[1, :count]

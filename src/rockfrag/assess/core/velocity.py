@@ -50,20 +50,42 @@ def fill_weight(
     state : memory, shape (``STATE``,)
     found : weight, error and coefficients, shape (5,)
     """
-    found[WEIGHT], found[ERROR] = math.nan, 0.0
+    for place in range(5):
+        found[place] = math.nan if place == WEIGHT else 0.0
     count, fell = _gather(levels, allowed, overturned, logs, earthquakes, tests)
     if fell == 0 or fell == count:
         return
-    for i in range(3):
-        state[_C + i] = 0.0
-    fitted = _fit(tests[:count], -1.0, state)
-    for i in range(3):
-        found[FIRST + i] = state[_C + i]
-    if not fitted or not state[_C + 1] > 0.0:
-        return
-    found[WEIGHT] = min(max(state[_C + 2] / state[_C + 1], 0.0), OF_DISPLACEMENT)
-    if jackknifes:
-        found[ERROR] = _jackknife(tests[:count], state, found)
+    replicates, total, squares = 0, 0.0, 0.0
+    for quake in range(-1, _last_quake(tests[:count]) + 1 if jackknifes else 0):
+        # all of them first, then without an earthquake each, from the coefficients of all
+        for i in range(3):
+            state[_C + i] = found[FIRST + i]
+        weight = math.nan
+        if _fit(tests[:count], float(quake), state) and state[_C + 1] > 0.0:
+            weight = state[_C + 2] / state[_C + 1]
+        if quake < 0:
+            found[WEIGHT] = min(max(weight, 0.0), OF_DISPLACEMENT)
+            for i in range(3):
+                found[FIRST + i] = state[_C + i]
+            if math.isnan(weight):
+                found[WEIGHT] = weight
+                return
+        elif not math.isnan(weight):
+            total += weight
+            squares += weight * weight
+            replicates += 1
+    if replicates > 1:
+        spread = max(squares - total * total / replicates, 0.0)
+        found[ERROR] = math.sqrt((replicates - 1) / replicates * spread)
+
+
+@kernel
+def _last_quake(tests):
+    """Largest number of an earthquake."""
+    last = 0.0
+    for r in range(tests.shape[0]):
+        last = max(last, tests[r, _QUAKE])
+    return int(last)
 
 
 @kernel
@@ -82,27 +104,6 @@ def _gather(levels, allowed, overturned, logs, earthquakes, tests):
             fell += 1 if overturned[m, k] else 0
             count += 1
     return count, fell
-
-
-@kernel
-def _jackknife(tests, state, found):
-    """Standard error of the weight, of fits without an earthquake each; 0 where there are too few."""
-    last = 0.0
-    for r in range(tests.shape[0]):
-        last = max(last, tests[r, _QUAKE])
-    count, total, squares = 0, 0.0, 0.0
-    for quake in range(int(last) + 1):
-        for i in range(3):
-            state[_C + i] = found[FIRST + i]
-        if _fit(tests, float(quake), state) and state[_C + 1] > 0.0:
-            weight = state[_C + 2] / state[_C + 1]
-            total += weight
-            squares += weight * weight
-            count += 1
-    if count < 2:
-        return 0.0
-    spread = max(squares - total * total / count, 0.0)
-    return math.sqrt((count - 1) / count * spread)
 
 
 @kernel
@@ -152,12 +153,14 @@ def _likelihood(tests, without, state):
             + state[_TRIAL + 2] * test[_X2]
         )
         eta = min(max(eta, -_STEEPEST), _STEEPEST)
-        falls, stands = log_normal_cdf(eta), log_normal_cdf(-eta)
         density = -0.5 * eta * eta - _LOG_ROOT_TWO_PI
-        test[_ETA], test[_UP] = eta, exp(density - falls)
-        test[_DOWN] = exp(density - stands)
+        test[_ETA] = eta
+        for side in range(2):
+            part = log_normal_cdf(eta if side == 0 else -eta)
+            test[_UP + side] = exp(density - part)
+            if (test[_FELL] > 0.0) == (side == 0):
+                goal += part
         test[_HERE] = test[_UP] * test[_DOWN]
-        goal += falls if test[_FELL] > 0.0 else stands
         _add_square(state, test[_HERE], test[_X1], test[_X2])
     determinant = _invert(state)
     return goal + 0.5 * log(determinant) if determinant > 0.0 else -math.inf
