@@ -20,6 +20,8 @@ from rockfrag.records.formats.obspy_native import obspy_channels
 from rockfrag.records.motion import Motion
 from rockfrag.records.parsing import directions, quantities
 from rockfrag.records.parsing.format import Channel
+from rockfrag.records.parsing.peak_in_words import with_checked_peaks
+from rockfrag.records.parsing.stated_peak import StatedPeak
 from rockfrag.records.parsing.text_file import NotAcceleration, check_file
 from rockfrag.records.quality_flags import STRONGEST_G
 from rockfrag.records.sources.archive import is_archive, is_no_record, unpacked
@@ -215,6 +217,10 @@ def motion_of(
     where = f", channel {channel.label or number}" if len(record.channels) > 1 else ""
     told = replace(record, name=f"{record.name}{where}")
     stored = _settled_unit(told, channel, samples, unit)
+    if channel.peaks:
+        peaks = [StatedPeak(number, unit) for number, unit in channel.peaks]
+        found = with_checked_peaks([replace(channel, unit=stored)], peaks, told.name)
+        channel = replace(channel, steps=found[0].steps)
     factor = quantities.to_si(stored)
     acceleration = _in_si(told, samples, factor)
     read = {

@@ -9,7 +9,7 @@ _NAMED |= {"S": 180.0, "SN": 180.0, "W": 270.0}
 _WORDS = {"north": 0.0, "east": 90.0, "south": 180.0, "west": 270.0}
 # the third of 1, 2, 3 is the vertical by the rules of the FDSN, whatever the others are turned by
 _SEED = re.compile(r"^(?!CH\d)[A-Z][HNLG](?P<axis>[NEZ123])\d{0,2}$")
-_VERTICAL = re.compile(r"^(?:V|Z|U|UD|DU|A_?Z|G_?F?Z|[+-][VZU]|[VZU][+-])\d?$", re.I)
+_VERTICAL = re.compile(r"^(?:V|Z|U|D|UD|DU|A_?Z|G_?F?Z|[+-][VZU]|[VZU][+-])\d?$", re.I)
 _AXIS = re.compile(
     r"(?i)^(?:[NSEWUD]-?[NSEWUD]|[NEZUVLTRXYH][+-]?\d?|[+-][NEZUVLTXY]|[ag]F?_?[xyz]|H[12]|FN|FP"
     r"|[xyz][ _-]?axis|axis[ _-]?[xyz]"
