@@ -361,11 +361,12 @@ def section(
     text: text_file.TextFile,
     line: int,
     stop: int,
+    *,
     count: int,
     dt: float,
     unit: str,
     width: int | None,
-    quantity: str = "acceleration",
+    quantity: str,
 ) -> Channel:
     """Return the ``count`` values in the lines below ``line``, which states them, up to ``stop``."""
     dt = text.interval(dt, line)

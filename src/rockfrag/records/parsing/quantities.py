@@ -375,7 +375,18 @@ def to_si(unit: str) -> float:
 
 
 def asked_unit(unit: str) -> str:
-    """Check a unit that the user named and return its canonical spelling."""
+    """Check a unit that the user named and return its canonical spelling.
+
+    Parameters
+    ----------
+    unit
+        In any usual writing.
+
+    Returns
+    -------
+    str
+        The one spelling used here, such as ``cm/s2`` for ``gal``.
+    """
     if quantity_of(unit) != "acceleration":
         raise InputError(
             f"unit {unit!r} is not a unit of acceleration known here; give one of {', '.join(ASKED_UNITS)}."
