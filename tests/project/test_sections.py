@@ -10,7 +10,6 @@ SOURCE = ROOT / "src" / "rockfrag"
 THESIS = ROOT / "thesis" / "src" / "rockfrag_thesis"
 
 OTHERS = {
-    "records",
     "engines",
     "system",
     "laws",
