@@ -12,10 +12,6 @@ THESIS = ROOT / "thesis" / "src" / "rockfrag_thesis"
 OTHERS = {
     "records",
     "assess",
-    "engines",
-    "system",
-    "laws",
-    "base",
     "words",
     "web",
     "runtime",
