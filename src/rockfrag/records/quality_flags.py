@@ -76,7 +76,18 @@ _DOUBLED = 0.9
 
 
 def quality_flags(motion: Motion) -> list[str]:
-    """Return what looks wrong in a motion, one phrase each; none for a record in order."""
+    """Return what looks wrong in a motion, one phrase each; none for a record in order.
+
+    Parameters
+    ----------
+    motion
+        As read, in m/s².
+
+    Returns
+    -------
+    list
+        Phrases for tables and warnings.
+    """
     a, peak = motion.acceleration, motion.pga
     if peak == 0:
         return ["all samples are zero"]
