@@ -262,8 +262,8 @@ def text_writer(template: str, with_unit: bool = True) -> Callable[..., None]:
     """Return what writes one trace of a stream to a file, ``(stream, filename)``, as ObsPy wants it.
 
     ``template`` is one of ``formats/written`` without its suffix: ``facts`` in it are of ObsPy's stats and
-    ``stats.rockfrag``, ``samples`` are numbers in ``unit``, ``timed`` has them with their times; times and ``dt``
-    are in seconds. A writer ``with_unit`` needs a unit of acceleration.
+    ``stats.rockfrag``, ``samples`` are numbers in ``unit``, ``timed`` has them with their times; times and
+    ``dt`` are in seconds. A writer ``with_unit`` needs a unit of acceleration.
     """
 
     def write(stream: Stream, filename: str | os.PathLike[str], **_: Any) -> None:
