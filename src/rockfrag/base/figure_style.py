@@ -15,6 +15,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 from rockfrag.base.arrays import Floats
+from rockfrag.base.errors import InputError
 from rockfrag.base.files import whole_file
 
 BLACK, ORANGE, SKY, GREEN = "#000000", "#E69F00", "#56B4E9", "#009E73"
@@ -154,6 +155,24 @@ def letter_panels(axes: Iterable[Axes], size: float = 8.5) -> None:
     ):
         title = panel.get_title(loc="left")
         panel.set_title(f"({letter}) {title}".strip(), loc="left", pad=3, fontsize=size)
+
+
+def checked_title(title: object) -> str:
+    """Return the heading of a figure, which is a text.
+
+    Parameters
+    ----------
+    title : heading that a user gave
+
+    Returns
+    -------
+    The heading.
+    """
+    if not isinstance(title, str):
+        raise InputError(
+            f"title: expected a text that heads the figure, got {title!r}."
+        )
+    return title
 
 
 def note_figure(words: str) -> Figure:

@@ -622,10 +622,15 @@ def integrate_scales(
     counts,
     s,
 ):
-    """Integrate one analysis after the other, at each of ``scales``, as :func:`integrate` does.
+    """Integrate one analysis after the other, at each of several scales, as :func:`integrate` does.
 
-    ``ends``, shape (scales, SIZE), holds the states to begin with and then those at the end, ``outs`` and
-    ``counts`` take outcomes and counters, shapes (scales, OUTCOME) and (scales, COUNTERS).
+    Parameters
+    ----------
+    body, acceleration, peaks, dt, g, extra, tolerance, cut, history, s : as there
+    scales : of the motion, shape (scales,) [-]
+    ends : states to begin with, and then those at the end, shape (scales, SIZE)
+    outs : takes the outcomes, shape (scales, OUTCOME)
+    counts : takes the counters, shape (scales, COUNTERS)
     """
     for k in range(scales.shape[0]):
         integrate(
