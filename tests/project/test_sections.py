@@ -10,13 +10,10 @@ SOURCE = ROOT / "src" / "rockfrag"
 THESIS = ROOT / "thesis" / "src" / "rockfrag_thesis"
 
 OTHERS = {
-    "assess",
     "engines",
     "system",
     "laws",
     "base",
-    "words",
-    "web",
     "runtime",
     "config",
     "cli",
