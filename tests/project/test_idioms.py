@@ -21,7 +21,7 @@ LEFT = {"contact_event_table", "energy_table"}
 COMPILED = {"rockfrag/system/geometry.py", "rockfrag/base/elementary.py"}
 """Modules that kernels compile, which take no names."""
 
-TEMPLATES_THAT_DECIDE = ("records/formats/written.j2", "assess/app/app.html.j2")
+TEMPLATES_THAT_DECIDE = "assess/app/app.html.j2"
 
 
 @cache
