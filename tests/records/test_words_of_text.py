@@ -189,8 +189,8 @@ def test_peaks_of_sensors_and_targets_are_not_those_of_the_samples(write, words)
 
 
 def test_a_peak_is_held_against_samples_in_a_part_of_a_unit(write):
-    titles = "PGA = 3 m/s2\nTime (s);Acc (10^-3 dm/s2)"
-    with pytest.raises(InputError, match="states a peak of 3 m/s2"):
+    titles = "PGA = 3.80 m/s2\nTime (s);Acc (10^-3 dm/s2)"
+    with pytest.raises(InputError, match=r"states a peak of 3\.8 m/s2"):
         read_motion(write(titles, TIMES, 1e4 * WAVE, mark=";"))
 
 
