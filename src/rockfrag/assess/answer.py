@@ -30,7 +30,7 @@ from rockfrag.base.short_repr import short_repr
 from rockfrag.fragility.estimators import Fragility, fragility_of
 from rockfrag.fragility.model_error import MODEL_ERRORS
 from rockfrag.motions.intensity import IntensityMeasure
-from rockfrag.outcomes.limit_states import ROCKS
+from rockfrag.outcomes.limit_states import OVERTURNS, ROCKS
 from rockfrag.system.blocks import Body
 from rockfrag.words.findings import Finding, finding, two
 
@@ -283,7 +283,7 @@ def assessed(request: Request, plan: Plan, shaken: Shaken) -> Assessment:
     hazard = plan.hazard
     measure = plan.shaking.measure
     counted = next(iter(shaken.arrangements.values()))
-    target = risk.fraction_target(level.value) if level else risk.amplitude_target(0.5)
+    target = _fraction_at(level) if level else risk.amplitude_target(0.5)
     if hazard:
         target = risk.risk_target(hazard, request.years)
     # rocking starts where the measure passes a number: a peak acceleration of what it stands on
@@ -302,8 +302,8 @@ def assessed(request: Request, plan: Plan, shaken: Shaken) -> Assessment:
     compared = replace(evidence, members=FEW_MEMBERS)
     probability, rocking, fraction, decision = None, None, None, None
     if level:
-        rocking = evidence.estimate(risk.fraction_target(level.value, state=ROCKS))
-        fraction = evidence.estimate(risk.fraction_target(level.value))
+        rocking = evidence.estimate(_fraction_at(level, state=ROCKS))
+        fraction = evidence.estimate(_fraction_at(level))
     if hazard:
         probability = evidence.estimate(risk.risk_target(hazard, request.years))
     main = probability or fraction
@@ -357,6 +357,13 @@ def assessed(request: Request, plan: Plan, shaken: Shaken) -> Assessment:
         if here is None or not motions.both
         else here.flip_rate(objects),
     )
+
+
+def _fraction_at(level: Level, *, state: str = OVERTURNS) -> risk.Target:
+    """The fraction of motions at a level, over all that it may be where it is not known exactly."""
+    if level.spread is None or not level.spread.value > 0:
+        return risk.fraction_target(level.value, state=state)
+    return risk.mean_fraction_target(level.value, level.spread.value, state=state)
 
 
 def _evidence(

@@ -111,10 +111,30 @@ class SiteVelocity:
     spread: float  # Its standard deviation from one earthquake to the next [-]
     # Its mean, the same at all levels, where no curves are known
     constant: float = math.nan
+    # By how much it grows with ln of the measure [-], and the level at which it is ``constant``
+    slope: float = 0.0
+    at: float = 1.0
     # Hazard curves of the measure and of PGV, with which it agrees; the spread at a given level is then not known
     curves: tuple[HazardCurve, ...] = ()
     # Published relation for the earthquakes of the site, at levels of the measure
     published: "PublishedVelocity | None" = None
+
+    @classmethod
+    def given(cls, level: Level, between_earthquakes: float) -> "SiteVelocity":
+        """PGV that is given with a level; of levels that are not known exactly that which comes with each.
+
+        Of two normal logarithms the one has, where the other is known, a mean that is linear in it and a smaller
+        spread.
+        """
+        ratio = math.log(level.pgv / level.value / VELOCITY_PER_G)
+        about = level.spread
+        if about is None:
+            return cls(between_earthquakes, ratio)
+        slope = 0.0
+        if about.value > 0:
+            slope = about.correlation * about.pgv / about.value - 1.0
+        left = about.pgv * math.sqrt(1.0 - about.correlation**2)
+        return cls(math.hypot(between_earthquakes, left), ratio, slope, level.value)
 
     def log_ratio(self, levels: Floats) -> Floats:
         """Mean of ln ratio at levels of the measure, of their shape.
@@ -126,7 +146,7 @@ class SiteVelocity:
         if self.published is not None:
             return self.published.log_ratio(levels)
         if not self.curves:
-            return np.full(levels.shape, self.constant)
+            return self.constant + self.slope * np.log(levels / self.at)
         first, velocity = self.curves
         rates = first.rate(levels)
         logs = [
@@ -268,8 +288,7 @@ def find_conversion(
         known = SiteVelocity(relation.scatter, curves=curves)
     elif math.isfinite(level.pgv):
         # of a hazard curve other levels count too, with velocities of their own
-        ratio = math.log(level.pgv / level.value / VELOCITY_PER_G)
-        known = SiteVelocity(own if curves else 0.0, ratio)
+        known = SiteVelocity.given(level, own if curves else 0.0)
     elif math.isnan(given.magnitude) and math.isnan(given.distance_km):
         # what differs about the relation is in the motions, once
         spread = relation.unknown(given, of_site=False)

@@ -193,6 +193,9 @@ PEDESTAL = (
     "pedestal_depth_m",
     "pedestal_mass_kg",
 )
+COORDINATES = {"latitude": 90, "longitude": 360}
+"""Columns of coordinates [degrees], with the largest that they hold."""
+
 # What says whether a base is round
 YES, NO = ("yes", "true", "1", "x"), ("no", "false", "0")
 
@@ -269,14 +272,31 @@ def _all_assessed(requests: Sequence[Request], motions: MotionSet) -> list[Asses
 
 
 def read_inventory(
-    path: str | os.PathLike[str], shared: Mapping[str, Any]
+    path: str | os.PathLike[str],
+    shared: Mapping[str, Any],
+    *,
+    also: Sequence[str] = (),
+    cells: dict[str, Mapping[str, str]] | None = None,
 ) -> tuple[list[Request], list[str]]:
-    """Read the objects of a table: those that can be used, and what is wrong with the others."""
+    """Read the objects of a table: those that can be used, and what is wrong with the others.
+
+    Parameters
+    ----------
+    path : the table
+    shared : keys of ``statue.yaml`` that hold for all
+    also : columns that it may have beside those of an inventory
+    cells : takes the cells of each row, by the name of its object
+
+    Returns
+    -------
+    The objects, and a sentence on each row that was left out.
+    """
     if "friction" in shared:
         raise InputError("key friction: sliding takes long; assess the object alone.")
     needed = ["name", *SIZES[:2]]
     faults: list[str] = []
-    others, quantities = [*SIZES[2:], *PEDESTAL, *OTHERS], (*SIZES, *PEDESTAL)
+    others = [*SIZES[2:], *PEDESTAL, *OTHERS, *also]
+    quantities = (*SIZES, *PEDESTAL)
     rows = read_rows(path, needed, others, quantities=quantities, faults=faults)
     if len(rows) > MOST_OBJECTS:
         raise InputError(
@@ -288,6 +308,8 @@ def read_inventory(
         try:
             name = _own_name(row, taken)
             requests.append(_request(row, name, shared))
+            if cells is not None:
+                cells[name] = row.cells
         except InputError as error:
             faults.append(str(error))
     without = [request.name for request in requests if math.isnan(request.value)]
@@ -325,15 +347,29 @@ def _request(row: Row, name: str, shared: Mapping[str, Any]) -> Request:
     if pedestals:
         own["pedestal"] = pedestals if len(pedestals) > 1 else pedestals[0]
     own |= {key: read(row, key) for key, read in OTHERS.items() if row.has(key)}
-    worth = own.pop("value", math.nan)
+    worth, place = own.pop("value", math.nan), _coordinates(row, own)
     where = f"{row.path}, line {row.line}"
     try:
-        return replace(make_request({**shared, **own}, where), value=worth)
+        request = make_request({**shared, **own}, where)
+        return replace(request, value=worth, coordinates=place)
     except InputError as error:
         # columns instead of keys, of what stands in the row
         words = re.sub(rf"\bkey ({'|'.join(own)})\b", r"column \1", str(error))
         words = re.sub(r"column pedestal(\[\d+\])?\.", "column pedestal_", words)
         raise InputError(words) from None
+
+
+def _coordinates(row: Row, own: dict[str, Any]) -> tuple[float, float] | None:
+    """Latitude and longitude of a row, taken out of what is known of its object; None where neither is given."""
+    given = [key for key in COORDINATES if key in own]
+    if not given:
+        return None
+    for key, largest in COORDINATES.items():
+        if key not in own:
+            raise row.error(key, "expected degrees, as the other coordinate is given")
+        if abs(own[key]) > largest:
+            raise row.error(key, f"expected degrees from -{largest} to {largest}")
+    return own.pop("latitude"), own.pop("longitude")
 
 
 def _pedestals(row: Row) -> list[dict[str, float]]:
@@ -359,7 +395,8 @@ def _yes(row: Row, column: str) -> bool:
 
 _above_0 = partial(Row.number, above=0)
 OTHERS: Mapping[str, Callable[[Row, str], Any]] = {
-    "floor": Row.text, "restitution": _above_0, "round": _yes, "value": _above_0
+    "floor": Row.text, "restitution": _above_0, "round": _yes, "value": _above_0,
+    "latitude": Row.number, "longitude": Row.number,
 }  # fmt: skip
 """What else a column may say, and how it is read."""
 

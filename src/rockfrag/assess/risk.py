@@ -14,6 +14,7 @@ from functools import cached_property, lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy import special
 
 from rockfrag.assess.core.draws import MEMBERS
 from rockfrag.assess.core.fractions import count_motions
@@ -123,6 +124,37 @@ def fraction_target(level: float, *, state: str = OVERTURNS) -> Target:
         return np.asarray(np.where(along == 0, low, low + along * (high - low)))
 
     return Target(of=fraction, state=state, none_below=NONE_BELOW)
+
+
+def mean_fraction_target(
+    level: float, spread: float, *, state: str = OVERTURNS
+) -> Target:
+    """The fraction of motions that bring the object into a limit state, over levels that are lognormal.
+
+    ``spread`` is the standard deviation of ln level about that of ``level``. The fraction is linear in ln level
+    between levels, and that of the nearest one beyond them, so that its mean is exact.
+    """
+
+    def fraction(levels: Floats, fractions: Floats) -> Floats:
+        weights = _weights_of_normal(np.log(levels / level), spread)
+        return np.asarray(fractions @ weights)
+
+    return Target(of=fraction, state=state, none_below=NONE_BELOW)
+
+
+def _weights_of_normal(x: Floats, spread: float) -> Floats:
+    """Weights of rising points in the mean of what is linear between them, over a normal value about 0."""
+    z = x / spread
+    below = special.ndtr(z)
+    # integral of the value times its density up to each point
+    moment = -spread * np.exp(-0.5 * z**2) / math.sqrt(2 * math.pi)
+    part, first, step = np.diff(below), np.diff(moment), np.diff(x)
+    weights = np.zeros(x.size)
+    weights[:-1] += (x[1:] * part - first) / step
+    weights[1:] += (first - x[:-1] * part) / step
+    weights[0] += below[0]
+    weights[-1] += 1.0 - below[-1]
+    return weights
 
 
 def amplitude_target(fraction: float) -> Target:
