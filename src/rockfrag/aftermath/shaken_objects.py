@@ -152,7 +152,7 @@ def after_earthquake(
             f"{path}: nothing is known of the shaking of any object; the map does not reach their coordinates."
         )
     motions = motion_set(requests[0].records, requests[0].place, Path(records))
-    found = _all_assessed([request for request, _ in shaken], motions)
+    found = assess_each([request for request, _ in shaken], motions)
     objects = [
         ShakenObject(each, here, _under_record(each.request, recorded))
         for each, (_, here) in zip(found, shaken, strict=True)
@@ -188,8 +188,17 @@ def _asked(request: Request, ground: GroundShaking) -> Request:
     return replace(request, level=level_of(ground), hazard=(), records=records)
 
 
-def _all_assessed(requests: Sequence[Request], motions: MotionSet) -> list[Assessment]:
-    """Assess objects, those on floors that move alike at once, each at its own level."""
+def assess_each(requests: Sequence[Request], motions: MotionSet) -> list[Assessment]:
+    """Assess objects, those on floors that move alike at once, each at its own level.
+
+    Parameters
+    ----------
+    requests, motions : the objects at their levels, and the ground motions by which they are shaken
+
+    Returns
+    -------
+    An assessment each, in their order.
+    """
     groups: dict[object, list[int]] = {}
     for i, request in enumerate(requests):
         about, level = request.objects, request.level

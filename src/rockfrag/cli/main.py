@@ -19,6 +19,7 @@ from rockfrag.cli.assess_commands import (
 )
 from rockfrag.cli.collection_commands import add_collection_command
 from rockfrag.cli.constrain_command import add_constrain_command
+from rockfrag.cli.export_command import add_export_command
 from rockfrag.cli.record_commands import add_record_commands, read_as_asked
 from rockfrag.runtime.processes import speak_utf8
 
@@ -67,6 +68,7 @@ def make_parser() -> argparse.ArgumentParser:
     add_assess_commands(commands)
     add_app_command(commands)
     add_after_command(commands)
+    add_export_command(commands)
     add_constrain_command(commands)
     add_record_commands(commands)
     add_collection_command(commands)
