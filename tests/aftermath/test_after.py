@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from rockfrag.aftermath.check_list import after_lines, after_page
+from rockfrag.aftermath.sequence import one_after_the_other
 from rockfrag.aftermath.shakemap import read_shakemap
 from rockfrag.aftermath.shaken_ground import GroundShaking, level_of, mapped_ground
 from rockfrag.aftermath.shaken_objects import after_earthquake, shaken_table
@@ -19,6 +20,8 @@ from rockfrag.assess.request import Level, LevelSpread, make_request
 from rockfrag.assess.risk import fraction_target, mean_fraction_target
 from rockfrag.base.errors import InputError
 from rockfrag.cli.main import main
+from rockfrag.simulation import overturns
+from rockfrag.system.blocks import Block
 
 from .grids import write_grids
 
@@ -168,6 +171,43 @@ def test_the_record_of_the_place_shakes_each_object_itself(
         rows = {row["name"]: row["under_the_record"] for row in csv.DictReader(file)}
     assert rows["slender"] == "fell" and rows["stout"] == "stood"
     assert "Under the record" in (place / "out" / "after.html").read_text()
+
+
+def test_two_shocks_fell_more_than_one_and_errors_of_an_object_are_its_own(
+    place, records
+):
+    ground = GroundShaking(0.25, 30.0, 0.2, 0.2)
+
+    def found(then) -> dict:
+        collection = after_earthquake(
+            place / "inventory.csv", lambda _: ground, records, then=then
+        )
+        return {each.request.name: each for each in collection.objects}
+
+    once, twice = found(None), found(lambda _: ground)
+    for name, each in twice.items():
+        first = once[name].fell
+        # what survived a shock is stronger than others: less than of two that know nothing of each other
+        assert first <= each.fell <= 1 - (1 - first) ** 2 + 1e-9
+        assert each.fell + each.moved <= 1 + 1e-9
+    assert twice["upstairs"].fell > once["upstairs"].fell + 0.01
+
+
+def test_a_sequence_is_both_motions_with_quiet_time_between_them(made_motions):
+    first, second = made_motions(4)[:2], made_motions(4)[2:]
+    joined = one_after_the_other(first, second, quiet=20.0)
+    body = Block(0.12, 0.6, 20.0)
+    for motion, alone, after in zip(joined, first, second, strict=True):
+        assert motion.pga == max(alone.pga, after.pga)
+        # without friction a block that stands is where it was: falls are those of either shock
+        scales = np.geomspace(0.1, 3, 12)[np.newaxis]
+        fell = [
+            overturns(body, each, scales=scales).overturned[0, 0]
+            for each in (motion, alone, after)
+        ]
+        assert (fell[0] == (fell[1] | fell[2])).all() and fell[0].any()
+    with pytest.raises(InputError, match="components"):
+        one_after_the_other(first, second[:1])
 
 
 def test_hostile_names_stay_text_and_pages_speak_italian(place, records):

@@ -3,14 +3,19 @@
 import json
 import math
 
+import numpy as np
 import pytest
 
+from rockfrag.assess.hazard.curve import PGA, PGV
 from rockfrag.assess.inventory import FaultyRows
+from rockfrag.assess.motions import motion_set
+from rockfrag.assess.outcomes import make_intensity_levels
+from rockfrag.assess.request import make_request
 from rockfrag.cli.main import main
 from rockfrag.survival import fallen
 from rockfrag.survival.fallen import Knowledge, constrain_shaking, read_fallen
 from rockfrag.survival.fallen_page import LIMITS, fallen_lines
-from rockfrag.survival.shaking_posterior import Prior
+from rockfrag.survival.shaking_posterior import Falls, Prior, shaking_posterior
 
 from ..aftermath.grids import write_grids
 
@@ -140,3 +145,35 @@ def test_a_wrong_option_is_refused(options, words, table, capsys):
 def test_options_of_falls_do_not_go_with_a_site(tmp_path, capsys):
     assert main(["constrain", "site.yaml", "--slenderness-sd", "0.2"]) == 2
     assert "--slenderness-sd needs a table" in capsys.readouterr().err
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("stones", [5, 30, 300])
+def test_coverage_under_recorded_motions_of_earthquakes_that_are_left_out(stones):
+    """Stones under the default motions; each world shakes them by one whose earthquake the others do not know."""
+    request = make_request({"width": "30 cm", "height": "90 cm"}, "test")
+    motions = motion_set(request.records, request.place, "resources/records")
+    shaking = make_intensity_levels(motions, PGV)
+    (found,) = shaking.outcomes_of([request.objects])
+    toppled = fallen.toppled_everywhere(found)
+    x = np.log(shaking.levels)
+    ratios = (motions.values(PGA) / motions.values(PGV))[:, np.newaxis]
+    rng = np.random.default_rng(4)
+    own, shared, held, worlds = 0.22, 0.29, 0, 300
+    for _ in range(worlds):
+        pgv, which = rng.normal(math.log(60), 0.5), rng.integers(len(toppled))
+        felt = pgv - shared * rng.normal() - own * rng.normal(size=stones)
+        place = np.rint(np.interp(felt, x, np.arange(x.size))).astype(int)
+        fell = int(toppled[which][place].sum())
+        others = motions.earthquakes != motions.earthquakes[which]
+        posterior = shaking_posterior(
+            shaking.levels,
+            (ratios * shaking.levels)[others],
+            [Falls(fell, stones, toppled[others], own)],
+            shared_spread=shared,
+            prior=Prior(60.0, 0.5),
+            allowed=shaking.allowed[others].astype(float),
+        )
+        _, low, high = posterior.pgv()
+        held += math.log(low) <= pgv <= math.log(high)
+    assert 0.86 <= held / worlds <= 0.94

@@ -11,9 +11,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from rockfrag.aftermath.shaken_objects import assess_each
 from rockfrag.assess.answer import Assessment
 from rockfrag.assess.hazard.curve import PGA
+from rockfrag.assess.inventory import assess_each
 from rockfrag.assess.motions import MotionSet
 from rockfrag.assess.place import Place
 from rockfrag.assess.request import Level, Request

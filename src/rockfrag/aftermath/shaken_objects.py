@@ -9,19 +9,22 @@ import math
 import os
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pandas as pd
 
+from rockfrag.aftermath.sequence import in_either, one_after_the_other
 from rockfrag.aftermath.shaken_ground import GroundShaking, level_of
-from rockfrag.assess.answer import RECORDS, Assessment, assessed, plan_for, shake_all
+from rockfrag.assess.answer import RECORDS, Assessment
 from rockfrag.assess.hazard.curve import PGA
-from rockfrag.assess.inventory import FaultyRows, read_inventory
+from rockfrag.assess.inventory import FaultyRows, assess_each, read_inventory
 from rockfrag.assess.motions import MotionSet, motion_set
 from rockfrag.assess.outcomes import Shaking
 from rockfrag.assess.request import Request
+from rockfrag.assess.risk import LEVEL, Estimate
 from rockfrag.base.errors import InputError
 from rockfrag.records.motion import Motion
 from rockfrag.words.catalogue import catalogue
@@ -44,34 +47,39 @@ class ShakenObject:
     found : its assessment at the level that shook its place
     ground : what shook its place
     under_record : id of the text that says what the record itself does to it; empty without one
+    then : its assessment at the level of a second shock; None without one
     """
 
     found: Assessment
     ground: GroundShaking
     under_record: str = ""
+    then: Assessment | None = None
 
     @property
     def request(self) -> Request:
         """What the object is, and where."""
         return self.found.request
 
+    @cached_property
+    def falls(self) -> tuple[float, float, float]:
+        """Probability that it fell, with its limits for what is not known of object and model (90 %) [-]."""
+        return _in_all(self.found.fraction, self.then and self.then.fraction)
+
     @property
     def fell(self) -> float:
         """Probability that it fell [-]."""
-        assert self.found.fraction is not None
-        return self.found.fraction.value
+        return self.falls[0]
 
     @property
     def limits(self) -> tuple[float, float]:
-        """Limits of that probability for what is not known of the object and of the model (90 %) [-]."""
-        assert self.found.fraction is not None
-        return self.found.fraction.lower, self.found.fraction.upper
+        """Limits of that probability [-]."""
+        return self.falls[1:]
 
-    @property
+    @cached_property
     def moved(self) -> float:
         """Probability that it rocked, or walked as it did, and still stands [-]."""
-        assert self.found.rocking is not None
-        return max(self.found.rocking.value - self.fell, 0.0)
+        rocked, *_ = _in_all(self.found.rocking, self.then and self.then.rocking)
+        return max(rocked - self.fell, 0.0)
 
     @property
     def what_to_do(self) -> str:
@@ -83,6 +91,19 @@ class ShakenObject:
         if self.fell + self.moved >= NOT_TOUCHED:
             return "after_look_later"
         return "after_can_wait"
+
+
+def _in_all(
+    first: Estimate | None, then: Estimate | None
+) -> tuple[float, float, float]:
+    """A probability in one shock, or in either of two, with its limits."""
+    assert first is not None
+    if then is None:
+        return first.value, first.lower, first.upper
+    draws = in_either(first.draws, then.draws)
+    value = float(draws.mean())
+    low, high = np.quantile(draws, [(1 - LEVEL) / 2, (1 + LEVEL) / 2]).tolist()
+    return value, min(low, value), max(high, value)
 
 
 @dataclass(frozen=True, eq=False)
@@ -115,7 +136,10 @@ def after_earthquake(
     records: str | Path = RECORDS,
     *,
     recorded: Sequence[Motion] = (),
+    then: Ground | None = None,
+    then_recorded: Sequence[Motion] = (),
     keep_going: bool = False,
+    order: str = "",
 ) -> ShakenCollection:
     """Say of each object of an inventory how probably an earthquake felled it, and rocked it.
 
@@ -126,7 +150,9 @@ def after_earthquake(
     shared : keys of ``statue.yaml`` that hold for all, such as ``floor``
     records : folder of fetched records
     recorded : components of the record of the place, if there is one: what it does to each is said too
+    then, then_recorded : the same of a second shock; None and empty without one
     keep_going : list the rows that are right where others are not
+    order : of lengths that a museum's table does not name, such as ``HWD``
 
     Returns
     -------
@@ -137,7 +163,7 @@ def after_earthquake(
     InputError
         If a row is wrong, or nothing is known of the shaking of any object.
     """
-    requests, faults = read_inventory(path, shared or {})
+    requests, faults = read_inventory(path, shared or {}, order=order)
     if faults and not (keep_going and requests):
         raise FaultyRows(faults)
     shaken, beyond = [], []
@@ -153,18 +179,46 @@ def after_earthquake(
         )
     motions = motion_set(requests[0].records, requests[0].place, Path(records))
     found = assess_each([request for request, _ in shaken], motions)
+    again = _again([request for request, _ in shaken], then, motions)
+    both = one_after_the_other(recorded, then_recorded) if then_recorded else ()
     objects = [
-        ShakenObject(each, here, _under_record(each.request, recorded))
-        for each, (_, here) in zip(found, shaken, strict=True)
+        ShakenObject(each, here, _under_record(each.request, recorded, both), later)
+        for each, (_, here), later in zip(found, shaken, again, strict=True)
     ]
     objects.sort(key=lambda each: (each.fell, each.moved), reverse=True)
     return ShakenCollection(objects, motions, beyond, faults)
 
 
-def _under_record(request: Request, recorded: Sequence[Motion]) -> str:
+def _again(
+    requests: Sequence[Request], then: Ground | None, motions: MotionSet
+) -> Sequence[Assessment | None]:
+    """Assess objects at the levels of a second shock; None each without one, and where nothing is known of it."""
+    grounds = [then(each.coordinates) if then else None for each in requests]
+    known = [i for i, ground in enumerate(grounds) if ground is not None]
+    asked = [
+        _asked(requests[i], ground) for i in known if (ground := grounds[i]) is not None
+    ]
+    found = dict(zip(known, assess_each(asked, motions), strict=True))
+    return [found.get(i) for i in range(len(requests))]
+
+
+def _under_record(
+    request: Request, recorded: Sequence[Motion], both: Sequence[Motion]
+) -> str:
     """Id of the text that says what the record of the place does to an object; empty without one."""
     if not recorded:
         return ""
+    alone = _fate(request, recorded)
+    if not both or alone == "after_record_fell":
+        return alone
+    in_sequence = _fate(request, both)
+    return (
+        "after_record_fell_then" if in_sequence == "after_record_fell" else in_sequence
+    )
+
+
+def _fate(request: Request, recorded: Sequence[Motion]) -> str:
+    """What a record does to an object, as the id of its text."""
     pairs = ((0, 1),) if len(recorded) == 2 else ()
     motions = MotionSet(tuple(recorded), tuple(recorded), pairs, "")
     if request.objects.in_space and pairs:
@@ -186,34 +240,6 @@ def _asked(request: Request, ground: GroundShaking) -> Request:
             records, magnitude=ground.magnitude, distance_km=ground.distance_km
         )
     return replace(request, level=level_of(ground), hazard=(), records=records)
-
-
-def assess_each(requests: Sequence[Request], motions: MotionSet) -> list[Assessment]:
-    """Assess objects, those on floors that move alike at once, each at its own level.
-
-    Parameters
-    ----------
-    requests, motions : the objects at their levels, and the ground motions by which they are shaken
-
-    Returns
-    -------
-    An assessment each, in their order.
-    """
-    groups: dict[object, list[int]] = {}
-    for i, request in enumerate(requests):
-        about, level = request.objects, request.level
-        assert level is not None
-        kind = (request.place.key, type(about), about.in_space, about.many)
-        groups.setdefault((*kind, level.measure), []).append(i)
-    found: dict[int, Assessment] = {}
-    for rows in groups.values():
-        same = [requests[i] for i in rows]
-        plan = plan_for(same[0], motions.at(same[0].place), brief=True)
-        for i, request, shaken in zip(rows, same, shake_all(same, plan), strict=True):
-            # a level between those that were tried lies between their fractions
-            own = replace(plan, level=request.level)
-            found[i] = assessed(request, own, shaken)
-    return [found[i] for i in range(len(requests))]
 
 
 def shaken_table(collection: ShakenCollection) -> pd.DataFrame:
@@ -248,6 +274,8 @@ def shaken_table(collection: ShakenCollection) -> pd.DataFrame:
             "probability_rocked_and_stands": each.moved,
             "look": texts.text(each.what_to_do),
         }
+        if each.then is not None and each.found.fraction is not None:
+            row["probability_fell_in_the_first"] = each.found.fraction.value
         if each.under_record:
             row["under_the_record"] = texts.text(each.under_record)
         rows.append(row)

@@ -45,6 +45,10 @@ def add_after_command(commands: Any) -> None:
     ground.add_argument(
         "--station-km", metavar="KM", type=float, default=0.0, help=words
     )
+    words = "grid.xml of a second shock, which found the objects as the first left them"
+    ground.add_argument("--then-shakemap", metavar="GRID", help=words)
+    words = "record of a second shock, with as many files as --station"
+    ground.add_argument("--then-station", metavar="RECORD", nargs="+", help=words)
     words = "place of objects without coordinates of their own [degrees]"
     ground.add_argument(
         "--at", metavar=("LATITUDE", "LONGITUDE"), nargs=2, type=float, help=words
@@ -59,6 +63,8 @@ def add_after_command(commands: Any) -> None:
     out.add_argument("--language", default="en", help="of the list, such as it")
     words = "list the rows that are right, and say what is wrong with the others"
     out.add_argument("--keep-going", action="store_true", help=words)
+    words = "order of lengths that a museum's table does not name, such as HWD"
+    out.add_argument("--order", default="", help=words)
     command.set_defaults(run=_after)
 
 
@@ -84,13 +90,17 @@ def _after(options: argparse.Namespace) -> int:
     }
     try:
         ground, recorded = _ground_of(options, typed, about_station)
+        then, then_recorded = _then_of(options, about_station)
         found = after_earthquake(
             options.file,
             ground,
             given,
             options.records,
             recorded=recorded,
+            then=then,
+            then_recorded=then_recorded,
             keep_going=options.keep_going,
+            order=options.order,
         )
     except FaultyRows as error:
         for fault in error.faults:
@@ -126,6 +136,28 @@ def _ground_of(
         ground = _typed(options, typed)
         return lambda _: ground, ()
     recorded, motions = _of_station(options, about_station)
+    return lambda _: recorded, motions
+
+
+def _then_of(
+    options: argparse.Namespace, about_station: dict[str, Any]
+) -> "tuple[Ground | None, tuple[Motion, ...]]":
+    """What shook a place a second time, and the record if that is one."""
+    if options.then_shakemap and options.then_station:
+        raise InputError("give the second shock by --then-shakemap or --then-station.")
+    if options.then_shakemap:
+        second = argparse.Namespace(**vars(options))
+        second.shakemap, second.map_uncertainty = options.then_shakemap, None
+        return _by_map(second), ()
+    if not options.then_station:
+        return None, ()
+    if not options.station:
+        raise InputError(
+            "--then-station needs --station, the record of the first shock."
+        )
+    second = argparse.Namespace(**vars(options))
+    second.station = options.then_station
+    recorded, motions = _of_station(second, about_station)
     return lambda _: recorded, motions
 
 

@@ -271,7 +271,7 @@ def _shaken(group: Observed, motions: MotionSet, known: Knowledge) -> _Shaken:
             slenderness = abs(shift) / variant.spread
     ratios = here.values(PGA) / here.values(PGV)
     return _Shaken(
-        Falls(group.fallen, group.count, _toppled(found), own),
+        Falls(group.fallen, group.count, toppled_everywhere(found), own),
         shaking.levels,
         ratios[:, np.newaxis] * shaking.levels,
         shaking.allowed.astype(np.float64),
@@ -279,8 +279,17 @@ def _shaken(group: Observed, motions: MotionSet, known: Knowledge) -> _Shaken:
     )
 
 
-def _toppled(found: ObjectOutcomes) -> Floats:
-    """Whether each motion topples the object; beyond what it can be scaled to, as at the next level."""
+def toppled_everywhere(found: ObjectOutcomes) -> Floats:
+    """Say whether each motion topples the object, beyond what it can be scaled to as at the next level.
+
+    Parameters
+    ----------
+    found : outcomes of the object
+
+    Returns
+    -------
+    0 or 1 at each level, shape (motions, levels).
+    """
     toppled, allowed = found.overturned, found.intensity_levels.allowed
     place = np.arange(allowed.shape[1])
     first = allowed.argmax(axis=1)[:, np.newaxis]
