@@ -17,7 +17,7 @@ from rockfrag.assess.answer import assess_with
 from rockfrag.assess.hazard.curve import PGA
 from rockfrag.assess.motions import motion_set
 from rockfrag.assess.request import Level, LevelSpread, make_request
-from rockfrag.assess.risk import fraction_target, mean_fraction_target
+from rockfrag.assess.risk import fraction_target
 from rockfrag.base.errors import InputError
 from rockfrag.cli.main import main
 from rockfrag.simulation import overturns
@@ -57,14 +57,16 @@ def collection(place, records):
 def test_the_mean_over_levels_is_that_of_a_fraction_linear_in_ln_level():
     levels = np.geomspace(0.05, 2.0, 9)
     fractions = np.array([0, 0, 0.1, 0.3, 0.35, 0.8, 0.8, 0.95, 1.0])
-    found = mean_fraction_target(0.3, 0.5).of(levels, fractions)
+    found = fraction_target(0.3, spread=0.5).of(levels, fractions)
     rng = np.random.default_rng(1)
     drawn = np.log(0.3) + 0.5 * rng.standard_normal(400_000)
     mean = np.interp(drawn, np.log(levels), fractions).mean()
     assert found == pytest.approx(mean, abs=1e-3)
     # of a level that is known all but exactly it is the fraction there
     exact = fraction_target(0.3).of(levels, fractions)
-    assert mean_fraction_target(0.3, 1e-6).of(levels, fractions) == pytest.approx(exact)
+    assert fraction_target(0.3, spread=1e-6).of(levels, fractions) == pytest.approx(
+        exact
+    )
 
 
 @pytest.mark.slow

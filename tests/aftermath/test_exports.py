@@ -198,7 +198,8 @@ def test_pelicun_reads_the_curves(on_floor, tmp_path):
         "pelicun.assessment", reason="pelicun is not installed", exc_type=ImportError
     )
     path = tmp_path / "fragility.csv"
-    write_simcenter(fragility_rows(on_floor), path, tmp_path / "fragility.json")
+    notes = tmp_path / "fragility.json"
+    write_simcenter(fragility_rows(on_floor), path, notes, model_error=False)
     with path.open(newline="") as file:
         names = {row["ID"] for row in csv.DictReader(file)}
     model = assessment.Assessment({"PrintLog": False})
@@ -213,7 +214,8 @@ def test_curves_for_pelicun_are_of_the_floor_and_count_nothing_twice(
     on_floor, tmp_path
 ):
     path = tmp_path / "fragility.csv"
-    write_simcenter(fragility_rows(on_floor), path, tmp_path / "fragility.json")
+    notes = tmp_path / "fragility.json"
+    write_simcenter(fragility_rows(on_floor), path, notes, model_error=False)
     with path.open(newline="") as file:
         rows = {row["ID"]: row for row in csv.DictReader(file)}
     urn = rows["ROCKFRAG.urn"]

@@ -113,11 +113,11 @@ def _overturning(found: Assessment) -> LognormalState | None:
     curve = found.predicted
     if not math.isfinite(curve.median):
         return None
-    spreads = curve.of_records, curve.of_unknown
-    if not all(map(math.isfinite, spreads)):
+    beta = math.hypot(curve.of_records, curve.of_unknown)
+    if not math.isfinite(beta):
         tenth = found.amplitudes[0.1].value
-        spreads = (math.log(curve.median / tenth) / NORMAL_TENTH, 0.0)
-    return LognormalState(curve.median, max(math.hypot(*spreads), OF_STATICS))
+        beta = math.log(curve.median / tenth) / NORMAL_TENTH
+    return LognormalState(curve.median, max(beta, OF_STATICS))
 
 
 def _rocking(found: Assessment, topples: LognormalState) -> LognormalState:

@@ -69,7 +69,7 @@ def level_of(ground: GroundShaking) -> Level:
     if math.isnan(ground.pgv):
         return Level(PGA, ground.pga, spread=LevelSpread(ground.pga_spread))
     spread = LevelSpread(ground.pga_spread, ground.pgv_spread, CORRELATION)
-    return Level(PGA, ground.pga, ground.pgv, spread)
+    return Level(PGA, ground.pga, ground.pgv, spread=spread)
 
 
 def mapped_ground(

@@ -19,12 +19,13 @@ import pandas as pd
 from rockfrag.aftermath.sequence import in_either, one_after_the_other
 from rockfrag.aftermath.shaken_ground import GroundShaking, level_of
 from rockfrag.assess.answer import RECORDS, Assessment
+from rockfrag.assess.core.estimates import INSIDE
 from rockfrag.assess.hazard.curve import PGA
 from rockfrag.assess.inventory import FaultyRows, assess_each, read_inventory
 from rockfrag.assess.motions import MotionSet, motion_set
 from rockfrag.assess.outcomes import Shaking
 from rockfrag.assess.request import Request
-from rockfrag.assess.risk import LEVEL, Estimate
+from rockfrag.assess.risk import Estimate
 from rockfrag.base.errors import InputError
 from rockfrag.records.motion import Motion
 from rockfrag.words.catalogue import catalogue
@@ -63,7 +64,7 @@ class ShakenObject:
     @cached_property
     def falls(self) -> tuple[float, float, float]:
         """Probability that it fell, with its limits for what is not known of object and model (90 %) [-]."""
-        return _in_all(self.found.fraction, self.then and self.then.fraction)
+        return _in_all(self.found.fraction, self.then.fraction if self.then else None)
 
     @property
     def fell(self) -> float:
@@ -78,7 +79,9 @@ class ShakenObject:
     @cached_property
     def moved(self) -> float:
         """Probability that it rocked, or walked as it did, and still stands [-]."""
-        rocked, *_ = _in_all(self.found.rocking, self.then and self.then.rocking)
+        rocked, *_ = _in_all(
+            self.found.rocking, self.then.rocking if self.then else None
+        )
         return max(rocked - self.fell, 0.0)
 
     @property
@@ -102,7 +105,7 @@ def _in_all(
         return first.value, first.lower, first.upper
     draws = in_either(first.draws, then.draws)
     value = float(draws.mean())
-    low, high = np.quantile(draws, [(1 - LEVEL) / 2, (1 + LEVEL) / 2]).tolist()
+    low, high = np.quantile(draws, [(1 - INSIDE) / 2, (1 + INSIDE) / 2]).tolist()
     return value, min(low, value), max(high, value)
 
 

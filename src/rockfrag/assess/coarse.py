@@ -92,11 +92,8 @@ class Surface:
             )
         ]
         points = np.column_stack(inside)
-        medians, betas = (
-            RegularGridInterpolator(axes, values)(points)
-            for values in (self.log_medians, self.betas)
-        )
-        return np.exp(medians), betas
+        logs = RegularGridInterpolator(axes, self.log_medians)(points)
+        return np.exp(logs), RegularGridInterpolator(axes, self.betas)(points)
 
     def fractions(self, medians: Floats, betas: Floats) -> Floats:
         """Probability of toppling at the level, shape (n,)."""
@@ -296,9 +293,9 @@ def _curve(found: Assessment) -> tuple[float, float]:
     curve, highest = found.predicted, float(found.predicted.levels[-1])
     if not math.isfinite(curve.median):
         return BEYOND * highest, USUAL_BETA
-    spreads = (curve.of_records, curve.of_unknown)
-    if all(map(math.isfinite, spreads)):
-        return curve.median, math.hypot(*spreads)
+    beta = math.hypot(curve.of_records, curve.of_unknown)
+    if math.isfinite(beta):
+        return curve.median, beta
     tenth = found.amplitudes[0.1].value
     return curve.median, max(math.log(curve.median / tenth) / NORMAL_TENTH, 0.1)
 
@@ -337,7 +334,8 @@ def _joined(
     table["simulated"] = math.nan
     table.loc[rows, "simulated"] = main
     exact = np.array([_curve(each)[0] for each in found])
-    reached = np.array([math.isfinite(each.predicted.median) for each in found])
+    medians = [each.predicted.median for each in found]
+    reached = np.isfinite(np.array(medians, dtype=np.float64))
     ratio = np.log(table.loc[rows, "median"].to_numpy() / exact)[reached]
     bias, scatter = (
         (float(ratio.mean()), float(ratio.std()))

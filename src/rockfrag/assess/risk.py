@@ -321,7 +321,16 @@ def after_uplift(spread: float) -> Shift:
 
 
 def shift_of(lower: ObjectOutcomes, upper: ObjectOutcomes) -> Shift:
-    """What a property moves at its standard deviation, by outcomes with it on both sides."""
+    """What a property moves at its standard deviation, by outcomes with it on both sides.
+
+    Parameters
+    ----------
+    lower, upper : outcomes with the property a standard deviation smaller and larger
+
+    Returns
+    -------
+    Shifts of ln level [-].
+    """
     found = np.zeros(2)
     levels = lower.intensity_levels.levels
     fill_shift(

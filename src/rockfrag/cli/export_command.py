@@ -76,6 +76,8 @@ def _export(options: argparse.Namespace) -> int:
             fragility_rows(on_floor),
             folder / "fragility.csv",
             folder / "fragility.json",
+            # beta holds the error of the model already
+            model_error=False,
         )
     placed = [each for each in requests if each.coordinates is not None]
     if placed:

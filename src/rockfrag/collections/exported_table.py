@@ -88,7 +88,10 @@ def is_export(path: str | os.PathLike[str]) -> bool:
     if "name" in named and any(_OF_INVENTORY.fullmatch(title) for title in named):
         return False
     columns = {_plain_title(title): i for i, title in enumerate(titles)}
-    return _first(columns, TEXTS) is not None or "height" in _columns_of_sides(columns)
+    if _first(columns, TEXTS) is not None:
+        return True
+    # without a title of its objects it is nobody's export
+    return _first(columns, NAMES) is not None and "height" in _columns_of_sides(columns)
 
 
 _OF_INVENTORY = re.compile(r"width(_[a-z]+)?")
