@@ -36,7 +36,7 @@ from rockfrag.engines.spatial._integrate import integrate_scales
 from rockfrag.fragility.estimators import Fragility, fragility_of
 from rockfrag.fragility.model_error import MODEL_ERRORS
 from rockfrag.motions.intensity import IntensityMeasure
-from rockfrag.outcomes.limit_states import ROCKS
+from rockfrag.outcomes.limit_states import OVERTURNS, ROCKS
 from rockfrag.runtime.machine_code import is_kept
 from rockfrag.system.blocks import Body
 from rockfrag.words.findings import Finding, finding, two
@@ -173,7 +173,7 @@ class Assessment:
         if self.hazard is not None:
             return risk.risk_target(self.hazard, self.request.years)
         if self.level is not None:
-            return risk.fraction_target(self.level.value)
+            return _fraction_at(self.level)
         return risk.amplitude_target(0.5)
 
     @cached_property
@@ -377,7 +377,7 @@ def assessed(request: Request, plan: Plan, shaken: Shaken) -> Assessment:
     hazard = plan.hazard
     measure = plan.shaking.measure
     counted = next(iter(shaken.arrangements.values()))
-    target = risk.fraction_target(level.value) if level else risk.amplitude_target(0.5)
+    target = _fraction_at(level) if level else risk.amplitude_target(0.5)
     if hazard:
         target = risk.risk_target(hazard, request.years)
     # rocking starts where the measure passes a number: a peak acceleration of what it stands on
@@ -393,8 +393,8 @@ def assessed(request: Request, plan: Plan, shaken: Shaken) -> Assessment:
     compared = replace(evidence, members=FEW_MEMBERS)
     probability, rocking, fraction, decision = None, None, None, None
     if level:
-        rocking = evidence.estimate(risk.fraction_target(level.value, state=ROCKS))
-        fraction = evidence.estimate(risk.fraction_target(level.value))
+        rocking = evidence.estimate(_fraction_at(level, state=ROCKS))
+        fraction = evidence.estimate(_fraction_at(level))
     if hazard:
         probability = evidence.estimate(risk.risk_target(hazard, request.years))
     main = probability or fraction
@@ -430,6 +430,12 @@ def assessed(request: Request, plan: Plan, shaken: Shaken) -> Assessment:
         mitigations=helps,
         spreads={change.name: change.spread for change in shaken.moved},
     )
+
+
+def _fraction_at(level: Level, *, state: str = OVERTURNS) -> risk.Target:
+    """The fraction of motions at a level, over all that it may be where it is not known exactly."""
+    spread = level.spread.value if level.spread else 0.0
+    return risk.fraction_target(level.value, state=state, spread=spread)
 
 
 def _evidence(

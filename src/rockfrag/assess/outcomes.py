@@ -76,7 +76,18 @@ def make_intensity_levels(
     asked: Sequence[float] = (),
     count: int = LEVELS,
 ) -> "Shaking":
-    """Make ``count`` levels for a set of motions, and those that are asked for exactly, in the measure's unit."""
+    """Make levels for a set of motions, a constant factor apart, and those that are asked for exactly.
+
+    Parameters
+    ----------
+    motions, measure : the set, and the measure of the levels
+    asked : further levels, in the measure's unit
+    count : number of levels
+
+    Returns
+    -------
+    The motions at their levels.
+    """
     middle = motions.median(measure)
     levels = np.geomspace(RANGE[0] * middle, RANGE[1] * middle, count)
     levels = np.unique(np.append(levels, list(asked)))
