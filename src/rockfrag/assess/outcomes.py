@@ -2,7 +2,7 @@
 
 import math
 import warnings
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any, TypeVar
 
@@ -10,7 +10,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockfrag.assess.core.fractions import fill_counted, fill_uplifts
-from rockfrag.assess.core.levels import fill_band, fill_scan
 from rockfrag.assess.motions import MotionSet
 from rockfrag.assess.place import Place
 from rockfrag.assess.standing import Standing
@@ -300,18 +299,9 @@ class Shaking(IntensityLevels):
         first = [record[0] for record in motions.records]
         scales = self._factors([motions.base[i] for i in first], first)
         lifting = lifting_in_space(body, shaking)
-
-        def simulate(chosen: Flags) -> dict[str, Flags]:
-            result = run_in_space(
-                [body],
-                shaking,
-                np.where(chosen, scales, AT_REST),
-                spread=spread,
-                threads=checked_threads(None),
-            )
-            return states_of(result)
-
-        states = by_band(scales, lifting, simulate)
+        threads = checked_threads(None)
+        result = run_in_space([body], shaking, scales, spread=spread, threads=threads)
+        states = states_of(result)
         of_row = np.arange(len(first))
         return self._each_system(states, of_row=of_row, lifting=[lifting])[0]
 
@@ -425,27 +415,6 @@ def states_of(result: Outcomes) -> dict[str, Flags]:
         for state in limit_states()
         if not state.slipping
     }
-
-
-def by_band(
-    scales: Floats, lifting: Floats, simulate: Callable[[Flags], dict[str, Flags]]
-) -> dict[str, Flags]:
-    """States of one system at all levels, of a scan and of the band in which they change.
-
-    ``simulate`` gives states of some levels, of shape (1, motions, levels), at rest elsewhere; ``scales`` and
-    ``lifting`` are those of :mod:`rockfrag.assess.core.levels`.
-    """
-    scan, band = np.zeros(scales.shape, bool), np.zeros(scales.shape, bool)
-    sources = np.zeros(scales.shape, np.int64)
-    fill_scan(scales, lifting, scan)
-    found = simulate(scan)
-    fell = np.ascontiguousarray(found[OVERTURNS][0])
-    fill_band(scales, lifting, scan, fell, band, sources)
-    if band.any():
-        more = simulate(band)
-        found = {name: np.where(band, more[name], found[name]) for name in found}
-    rows = np.arange(len(scales))[:, np.newaxis]
-    return {name: cases[:, rows, sources] for name, cases in found.items()}
 
 
 def simulated(
