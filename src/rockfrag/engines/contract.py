@@ -61,6 +61,7 @@ class Wish(Enum):
     TIE = "a tie"
     BOND = "a bond"
     SUPPORT = "an isolator"
+    PLACE = "bodies where an earlier response left them"
 
 
 @dataclass(frozen=True)
@@ -171,6 +172,7 @@ def wishes(system: System, motion: GroundMotion, request: Request) -> frozenset[
         Wish.TIE: any(isinstance(each, Tie) for each in system.constraints),
         Wish.BOND: len(system.bonds) > 0,
         Wish.SUPPORT: system.support is not None,
+        Wish.PLACE: start is not None and start.position is not None,
     }
     return frozenset(wish for wish, there in made.items() if there)
 

@@ -30,10 +30,15 @@ class Start:
     rotation : of each body from below, from how it stands: clockwise [rad] of planar bodies, a rotation vector
         (x, y, z) [rad] of bodies in space
     velocity : angular velocity of each body, likewise [rad/s]
+    position : of each centre of gravity of planar bodies (x, z) [m], as an earlier response left it; None: they
+        stand as they were set
+    plate : displacement of the plate of an isolator [m]
     """
 
     rotation: tuple[Any, ...]
     velocity: tuple[Any, ...]
+    position: tuple[tuple[float, float], ...] | None = None
+    plate: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -435,15 +440,28 @@ def standing_centres(system: System) -> list[tuple[float, float]]:
     return found
 
 
+def standing_points(
+    system: System, k: int, points: Sequence[tuple[float, float]]
+) -> list[tuple[float, float]]:
+    """Points (x, z) [m] of planar body k from its frame, which an uneven base turns, to where they stand."""
+    angle, (x, y), body = _bases(system)[k]
+    middle, found = body.ends[0].middle, []
+    for across, up in points:
+        dx, dy = geometry.turned(across - middle, up, system.contacts[k].tilt)
+        dx, dy = geometry.turned(middle + dx, dy, angle)
+        found.append((x + dx, y + dy))
+    return found
+
+
 def corners(system: System) -> list[tuple[float, float]]:
     """Corners of each planar body as they stand (x, z) [m]: its left side from below, then its right one."""
     found = []
-    for angle, (x, y), body in _bases(system):
+    for k, (angle, (x, y), body) in enumerate(_bases(system)):
         base, face = body.ends
-        for side in (0, 1):
-            for end, height in ((base[side], 0.0), (face[side], body.height)):
-                dx, dy = geometry.turned(end, height, angle)
-                found.append((x + dx, y + dy))
+        tops = standing_points(system, k, [(end, body.height) for end in face])
+        for end, top in zip(base, tops, strict=True):
+            dx, dy = geometry.turned(end, 0.0, angle)
+            found += [(x + dx, y + dy), top]
     return found
 
 
