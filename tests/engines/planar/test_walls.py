@@ -11,6 +11,7 @@ from rockfrag.engines.planar.engine import ContactRun
 from rockfrag.simulation.inputs import ground_motion
 from rockfrag.simulation.options import system_of
 from rockfrag.system import Wall, as_system, hold
+from rockfrag.system.mounts import on_casters
 
 from ...simulation.reference_bodies import random_motion
 from .cases import DT, G, random_column, run, with_contacts
@@ -198,3 +199,17 @@ def test_the_third_body_of_a_column_that_leans_over_is_held_by_the_wall() -> Non
     free = run(column, motion, friction=0.7)
     held = run(walled(column, Wall(0.27), Wall(0.27, LEFT)), motion, friction=0.7)
     assert (free.overturned, held.overturned) == (True, False)
+
+
+def test_a_cart_on_free_casters_never_rocks_until_it_meets_the_kerb() -> None:
+    motion = 2 * random_motion(np.random.default_rng(3))
+    cart = on_casters(as_system(BLOCK), "free")
+    rolls = run(cart, motion)
+    gap = 0.5 * rolls.slip.max()
+    held = hold(cart, Wall(B + gap, height=0.1, friction=0.5))
+    meets = run(held, motion)
+    hit = meets.contact_events["time"][meets.contact_events["kind"] == "impact"].iloc[0]
+    assert np.abs(rolls.theta).max() == 0.0
+    assert np.abs(meets.theta[meets.time < hit]).max() == 0.0
+    assert np.abs(meets.theta[meets.time > hit]).max() > 0.0
+    assert meets.constraints["hits"][0] > 0

@@ -85,7 +85,9 @@ def run(cases: Cases) -> Outcomes:
 
 
 def _pure(system: System, motion: GroundMotion, request: Request) -> Engine | None:
-    """Engine of pure rocking of a system, if there is one."""
+    """Engine of pure rocking of a system that nothing holds, if there is one."""
+    if system.holding:
+        return None
     others = (engine for engine in engines() if engine is not PLANAR)
     return next(
         (other for other in others if other.supports(system, motion, request)), None
