@@ -125,7 +125,8 @@ def _write(
     fell = left["overturned_body"]
     into.engine[place] = 0
     into.overturned[place] = fell > 0
-    into.certain_time[place] = into.unstable_distance[place] = np.nan
+    into.certain_time[place] = np.nan
+    into.unstable_distance[place] = np.nan
     into.flights[place] = flights[other]
     into.leaning[place] = left["leaning"] > 0
     for name in _OF_CASES:
@@ -174,7 +175,17 @@ def without_slip(response: Response) -> Response:
 def contact_outcomes(
     grid: Cases, wanted: NDArray[np.bool_] | None = None
 ) -> NDArray[np.void]:
-    """Integrate the ``wanted`` cases of systems × motions × scales, all if None; others are left zero."""
+    """Integrate the ``wanted`` cases of systems × motions × scales, all if None; others are left zero.
+
+    Parameters
+    ----------
+    grid : systems × motions × scales
+    wanted : of them, shape (systems, motions, scales)
+
+    Returns
+    -------
+    Records ``OUTCOME``, shape (systems, motions, scales).
+    """
     g, step = grid.request.g, grid.request.step
     dts = np.array([motion.dt for motion in grid.motions])
     described = [_described(system, g) for system in grid.systems]
@@ -264,16 +275,14 @@ class ContactRun:
         first = int(self.body["count"]) - count
         values, ground = case.scale * case.motion.x.acceleration, np.zeros(done)
         ground[: values.size] = values[:done]
-        centres, speeds = (
-            history[name][:, 3 * first : 3 * (first + count)].reshape(done, count, 3)
-            for name in "qv"
-        )
-        slips, normal, shear, alpha = (
-            history[name][:, first : first + count]
-            for name in ("slip", "normal", "shear", "alpha")
-        )
+        above = slice(first, first + count)
+        centres = history["q"][:, 3 * first : 3 * (first + count)]
+        centres = centres.reshape(done, count, 3)
+        speeds = history["v"][:, 3 * first : 3 * (first + count)]
+        speeds = speeds.reshape(done, count, 3)
+        normal, shear = history["normal"][:, above], history["shear"][:, above]
         state, slides = (
-            each[:, first:] for each in _modes(history["mode"], first + count)
+            each[:, above] for each in _modes(history["mode"], first + count)
         )
         table = _contact_events(self.contact_events, first, count)
         meets = np.array(
@@ -287,10 +296,10 @@ class ContactRun:
             position=centres[:, :, :2] - (0.0, THIN if first else 0.0),
             theta=centres[:, :, 2],
             omega=speeds[:, :, 2],
-            alpha=alpha,
+            alpha=history["alpha"][:, above],
             state=state,
             slides=slides,
-            slip=slips,
+            slip=history["slip"][:, above],
             contact_events=table,
             overturned=fallen > 0,
             overturned_body=("", *case.system.names)[fallen],
@@ -327,18 +336,23 @@ class ContactRun:
         lost = struck["energy_before"] - struck["energy_after"]
         lost[~np.isin(struck["kind"], (contact.IMPACT, contact.PARADOX))] = 0.0
         # the lowest contact whose mode changes as it comes down, or the uppermost
-        opened, closed = (
-            _modes(struck[name], count)[0] for name in ("before", "after")
-        )
+        opened, _ = _modes(struck["before"], count)
+        closed, _ = _modes(struck["after"], count)
         closes = (opened != 0) & (opened != closed)
         closes[:, -1] = True
         own = self.case.system.count
         contact_of = np.maximum(closes.argmax(axis=1) - (count - own), 0)
         contact_of[struck["at_wall"] > 0] = own
-        losses = struck["time"], contact_of, lost
-        balance = kinetic, potential, history["work"], losses, history["rubbed"]
-        tied = history["tied"] if self.case.system.holding else None
-        return responses.energy_table(time, *balance, contacts=own, held=tied)
+        return responses.energy_table(
+            time,
+            kinetic,
+            potential,
+            history["work"],
+            contacts=own,
+            losses=(struck["time"], contact_of, lost),
+            friction=history["rubbed"],
+            held=history["tied"] if self.case.system.holding else None,
+        )
 
 
 def _modes(numbers: Ints, blocks: int) -> tuple[Ints, Ints]:
@@ -350,24 +364,23 @@ def _modes(numbers: Ints, blocks: int) -> tuple[Ints, Ints]:
 def _contact_events(found: NDArray[Any], first: int, blocks: int) -> pd.DataFrame:
     """Make the table of contact events of a response, of the bodies from the ``first`` on."""
     above = slice(first, first + blocks)
-    before, slid, after, slides = (
-        each[:, above]
-        for name in ("before", "after")
-        for each in _modes(found[name], first + blocks)
-    )
+    before, slid = (each[:, above] for each in _modes(found["before"], first + blocks))
+    after, slides = (each[:, above] for each in _modes(found["after"], first + blocks))
     slip = found["slip"][:, above]
-    theta, old, new = (
-        found[name][:, 2::3][:, above] for name in ("q", "v_before", "v_after")
-    )
+    turns = slice(3 * first + 2, 3 * (first + blocks), 3)
     kinds = [
         _KINDS.get(kind) or _kind_of_change(*change)
         for kind, *change in zip(
             found["kind"].tolist(), before, after, slid, slides, strict=True
         )
     ]
-    energies = found["energy_before"], found["energy_after"]
     table = responses.contact_event_table(
-        found["time"], kinds, (before, after), (old, new), theta, energies
+        found["time"],
+        kinds,
+        (before, after),
+        (found["v_before"][:, turns], found["v_after"][:, turns]),
+        theta=found["q"][:, turns],
+        kinetic=(found["energy_before"], found["energy_after"]),
     )
     return responses.with_slips(table, after, slides, slip)
 

@@ -78,6 +78,8 @@ class Channel:
     counts: bool = False
     # more facts for the metadata: ``station_name``, ``earthquake``, ``title``, …; numbers may be words
     details: Mapping[str, Any] = field(default_factory=dict)
+    # peaks that words state, number and unit, where the unit of the samples is the user's
+    peaks: tuple[tuple[str, str], ...] = ()
     # what was done to the samples, for the provenance
     steps: tuple[Mapping[str, Any], ...] = ()
 
@@ -256,10 +258,12 @@ def _lines_of(head: bytes) -> tuple[str, ...]:
     return tuple(line[:_LONGEST].rstrip() for line in lines)
 
 
-def text_writer(macro: str, with_unit: bool = True) -> Callable[..., None]:
+def text_writer(template: str, with_unit: bool = True) -> Callable[..., None]:
     """Return what writes one trace of a stream to a file, ``(stream, filename)``, as ObsPy wants it.
 
-    ``macro`` is one of ``formats/written.j2``; a writer ``with_unit`` needs a unit of acceleration.
+    ``template`` is one of ``formats/written`` without its suffix: ``facts`` in it are of ObsPy's stats and
+    ``stats.rockfrag``, ``samples`` are numbers in ``unit``, ``timed`` has them with their times; times and ``dt`` are
+    in seconds. A writer ``with_unit`` needs a unit of acceleration.
     """
 
     def write(stream: Stream, filename: str | os.PathLike[str], **_: Any) -> None:
@@ -284,21 +288,30 @@ def text_writer(macro: str, with_unit: bool = True) -> Callable[..., None]:
                 "{'unit': 'g'} (or 'cm/s2', 'm/s2', …) once it is known."
             )
         dt = float(f"{stats.delta:.12g}")
-        text = getattr(_macros(), macro)(facts, samples.tolist(), unit, dt)
-        write_text(str(text), filename)
+        text = _templates().get_template(f"{template}.j2")
+        values = {
+            "facts": facts,
+            "samples": samples.tolist(),
+            "timed": [(k * dt, value) for k, value in enumerate(samples.tolist())],
+            "unit": unit,
+            "dt": dt,
+        }
+        write_text(text.render(values), filename)
 
     return write
 
 
 @cache
-def _macros() -> Any:
+def _templates() -> Any:
     # imported when something is written, which most programs never do
     from jinja2 import Environment, PackageLoader
 
-    loader = PackageLoader("rockfrag.records.formats", "")
-    found = Environment(loader=loader, trim_blocks=True, lstrip_blocks=True)
+    loader = PackageLoader("rockfrag.records.formats", "written")
+    found = Environment(
+        loader=loader, trim_blocks=True, lstrip_blocks=True, keep_trailing_newline=True
+    )
     found.filters["one_line"] = lambda words: " ".join(str(words).split())
-    return found.get_template("written.j2").module
+    return found
 
 
 CHANNEL_END = re.compile(r"^\s*/&")
@@ -359,11 +372,12 @@ def section(
     text: text_file.TextFile,
     line: int,
     stop: int,
+    *,
     count: int,
     dt: float,
     unit: str,
     width: int | None,
-    quantity: str = "acceleration",
+    quantity: str,
 ) -> Channel:
     """Return the ``count`` values in the lines below ``line``, which states them, up to ``stop``."""
     dt = text.interval(dt, line)
