@@ -101,7 +101,7 @@ def test_bodies_that_are_bonded_for_ever_move_as_one() -> None:
 def test_what_a_bond_needs_is_told_where_it_holds() -> None:
     """2 (N/2 - m a h/(2 c)) below zero: m (a h/c - g)."""
     motion = np.concatenate([np.linspace(0, 4.0, 20), np.linspace(4.0, 0, 20)])
-    found = run(bonded(Bond(900.0, STRONG, 0.1)), motion, DT, friction=0.6)
+    found = run(bonded(Bond(2000.0, STRONG, 0.1)), motion, DT, friction=0.6)
     needed = M * (4.0 * H / 0.1 - G)
     assert found.constraints["largest_force_n"][0] == pytest.approx(needed, rel=1e-9)
     assert math.isnan(found.constraints["breaking_time_s"][0])

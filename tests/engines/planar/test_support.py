@@ -92,7 +92,8 @@ def test_nothing_rocks_before_the_stop_where_the_isolator_pushes_less(
 
 def stopped(speed: float):
     """Response of a block on a smooth plate that meets its stop at a speed."""
-    pulse = np.concatenate([np.full(21, -speed / 0.2), np.zeros(60)])
+    # it ends by a ramp of one sample
+    pulse = np.concatenate([np.full(21, -speed / 0.205), np.zeros(60)])
     support = SlidingPendulum(mass=1e-3, stroke=0.5 * 0.2 * speed + 0.05 * speed)
     return run(isolated(support), pulse, friction=math.inf, closing=1e-6)
 

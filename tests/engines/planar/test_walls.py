@@ -114,7 +114,8 @@ def test_a_rocking_block_that_hits_a_smooth_wall_is_thrown_up_at_its_foot(
 
 def tripping(height: float, speed: float):
     """Response of a block that slides at a speed into a kerb that it cannot slide along."""
-    pulse = np.full(21, -speed / 0.2)
+    # it ends by a ramp of one sample
+    pulse = np.full(21, -speed / 0.205)
     motion = np.concatenate([pulse, np.zeros(20)])
     kerb = Wall(B + 0.5 * speed * 0.2 + 0.05 * speed, height=height, friction=math.inf)
     return run(walled(BLOCK, kerb), motion, friction=0.0, closing=1e-6)
