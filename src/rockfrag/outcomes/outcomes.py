@@ -66,7 +66,9 @@ class Column:
 
 def column(empty: Any = math.nan, unit: str = "", table: Table = "cases") -> Any:
     """Declare a column as a field of :class:`rockfrag.outcomes.Outcomes`; NaN where an engine does not tell."""
-    return field(metadata={"table": table, "unit": unit, "empty": empty})
+    about = {"table": table, "unit": unit, "empty": empty}
+    # at the prompt, a result fits a screen
+    return field(metadata=about, repr=table != "constraints")
 
 
 @dataclass(frozen=True)
@@ -89,7 +91,7 @@ class Outcomes:
     """
 
     names: tuple[tuple[str, ...], ...]
-    holding: tuple[tuple[str, ...], ...]
+    holding: tuple[tuple[str, ...], ...] = field(repr=False)
     scales: Floats
     engines: tuple[str, ...]
     engine: Small
@@ -107,8 +109,10 @@ class Outcomes:
     given_way: Whole = column(np.int64(0))
     # number from below, from 1, of the contact open furthest under what fell; 0: no fall, or not told
     parted_contact: Small = column(np.int8(0))
-    # whether a body rests against a wall or hangs in a tie, beyond its balance, and has not fallen
-    leaning: Flags = column(False)
+    # whether a body that has not fallen rests turned, against a wall or in a tie
+    leaning: Flags = field(
+        metadata={"table": "cases", "unit": "", "empty": False}, repr=False
+    )
     # times that more than one mode of contact was found consistent
     several_modes: Whole = column(np.int64(0))
     # times that no mode of contact was consistent

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -155,8 +155,8 @@ class Response:
     forced: int = 0
     given_way: int
     unstable_distance: float = math.nan
-    constraints: pd.DataFrame | None = None
-    plate: Floats | None = None
+    constraints: pd.DataFrame | None = field(default=None, repr=False)
+    plate: Floats | None = field(default=None, repr=False)
 
     __repr__ = short_repr
 

@@ -142,10 +142,8 @@ def putty_under(
     -------
     The bond.
     """
-    half = system.in_plane().bodies[-1].width / 2
-    return Bond(
-        tension, tension if shear is None else shear, half if spread is None else spread
-    )
+    half = system.in_plane().bodies[-1].width / 2 if spread is None else spread
+    return Bond(tension, tension if shear is None else shear, (half, half))
 
 
 def on_casters(system: System, word: str) -> System:

@@ -491,7 +491,17 @@ def standing_centres(system: System) -> list[tuple[float, float]]:
 def standing_points(
     system: System, k: int, points: Sequence[tuple[float, float]]
 ) -> list[tuple[float, float]]:
-    """Points (x, z) [m] of planar body k from its frame, which an uneven base turns, to where they stand."""
+    """Points of a planar body, from its frame, which an uneven base turns, to where they stand.
+
+    Parameters
+    ----------
+    system, k : the system, and the number of the body from below, from 0
+    points : (x, z) in the frame of the body [m]
+
+    Returns
+    -------
+    (x, z) of each, from the origin of the lowest base [m].
+    """
     angle, (x, y), body = _bases(system)[k]
     middle, found = body.ends[0].middle, []
     for across, up in points:
@@ -502,7 +512,16 @@ def standing_points(
 
 
 def corners(system: System) -> list[tuple[float, float]]:
-    """Corners of each planar body as they stand (x, z) [m]: its left side from below, then its right one."""
+    """Corners of planar bodies as they stand.
+
+    Parameters
+    ----------
+    system : the bodies
+
+    Returns
+    -------
+    (x, z) [m] of the left side of each body from below, then of its right one.
+    """
     found = []
     for k, (angle, (x, y), body) in enumerate(_bases(system)):
         base, face = body.ends
