@@ -413,7 +413,7 @@ def states_of(result: Outcomes) -> dict[str, Flags]:
     return {
         state.name: np.asarray(state.reached(result))
         for state in limit_states()
-        if not state.slipping
+        if not (state.slipping or state.held)
     }
 
 

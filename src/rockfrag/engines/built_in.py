@@ -11,6 +11,7 @@ from rockfrag.engines.contract import Case, Cases, Engine, Request, Support, Wis
 from rockfrag.outcomes.outcomes import Outcomes
 from rockfrag.records.motion import GroundMotion
 from rockfrag.system import geometry
+from rockfrag.system.constraints import Tie, Wall
 from rockfrag.system.system import System
 
 
@@ -59,6 +60,26 @@ class PureRocking(BuiltIn):
         )
 
 
+class PlanarEngine(BuiltIn):
+    """Planar bodies with all contact events, and what holds them in their plane (``docs/contact.md``)."""
+
+    def supports(
+        self, system: System, motion: GroundMotion, request: Request
+    ) -> Support:
+        """Say whether it computes this system under this motion as requested, and if not, why."""
+        found = super().supports(system, motion, request)
+        if not found:
+            return found
+        for constraint in system.constraints:
+            if isinstance(constraint, Wall) and constraint.side == 0:
+                return Support(reason="a wall stands askew to the plane of motion")
+            if isinstance(constraint, Tie) and (
+                constraint.point[1] != constraint.anchor[1]
+            ):
+                return Support(reason="a tie leads out of the plane of motion")
+        return found
+
+
 class SpatialEngine(BuiltIn):
     """One rigid body on a polygon or a circle, contact event by contact event (``docs/space.md``)."""
 
@@ -101,10 +122,11 @@ SINGLE = PureRocking(
 )
 """One or two bodies, case by case (``kernels.single``)."""
 
-PLANAR = BuiltIn(
+PLANAR = PlanarEngine(
     "planar contact",
     _STANDING
-    | {Wish.TWO_BODIES, Wish.MANY_BODIES, Wish.FRICTION, Wish.START, Wish.HISTORY},
+    | {Wish.TWO_BODIES, Wish.MANY_BODIES, Wish.FRICTION, Wish.START, Wish.HISTORY}
+    | {Wish.WALL, Wish.TIE, Wish.BOND, Wish.SUPPORT, Wish.PLACE},
     "rockfrag.engines.planar.engine:run",
     "rockfrag.engines.planar.engine:history",
 )
