@@ -1,6 +1,6 @@
 """Behind one contract the first engine that supports a wish answers; at every door, or a sentence says why not.
 
-What it answers are three tidy tables whose columns are declared once, and limit states that are read off them.
+What it answers are four tidy tables whose columns are declared once, and limit states that are read off them.
 """
 
 import itertools

@@ -329,7 +329,7 @@ class Shaking(IntensityLevels):
         states = {
             state.name: state.reached(result)
             for state in limit_states()
-            if not state.slipping
+            if not (state.slipping or state.held)
         }
         if of_row is not None:
             place = self.motions.place_of_record()

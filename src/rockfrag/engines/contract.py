@@ -39,6 +39,7 @@ from rockfrag.base.units import GRAVITY
 from rockfrag.engines.steps import STEP
 from rockfrag.outcomes.outcomes import Outcomes, empty_outcomes, merge_outcomes
 from rockfrag.records.motion import GroundMotion
+from rockfrag.system.constraints import Tie, Wall
 from rockfrag.system.system import System
 
 
@@ -56,6 +57,10 @@ class Wish(Enum):
     FORCES = "forces"
     HISTORY = "the history"
     TILT = "an uneven base in space"
+    WALL = "a wall"
+    TIE = "a tie"
+    BOND = "a bond"
+    SUPPORT = "an isolator"
 
 
 @dataclass(frozen=True)
@@ -107,6 +112,11 @@ class Cases:
         """Names of the bodies of each system."""
         return [system.names for system in self.systems]
 
+    @cached_property
+    def holding(self) -> list[tuple[str, ...]]:
+        """Names of what holds the bodies of each system."""
+        return [system.holding for system in self.systems]
+
 
 @dataclass(frozen=True)
 class Support:
@@ -157,6 +167,10 @@ def wishes(system: System, motion: GroundMotion, request: Request) -> frozenset[
         Wish.HISTORY: request.history,
         Wish.TILT: motion.y is not None
         and any(contact.tilt for contact in system.contacts),
+        Wish.WALL: any(isinstance(each, Wall) for each in system.constraints),
+        Wish.TIE: any(isinstance(each, Tie) for each in system.constraints),
+        Wish.BOND: len(system.bonds) > 0,
+        Wish.SUPPORT: system.support is not None,
     }
     return frozenset(wish for wish, there in made.items() if there)
 
@@ -217,7 +231,7 @@ def refusal(system: System, motion: GroundMotion, request: Request) -> str:
 def run_cases(cases: Cases) -> Outcomes:
     """Let the engines answer, each for the systems and motions that it is the first to support."""
     if not cases.motions or not cases.systems or not cases.scales.size:
-        return empty_outcomes(cases.names, cases.scales)
+        return empty_outcomes(cases.names, cases.scales, holding=cases.holding)
     chosen = cases.answering
     if all(engine is chosen[0] for engine in chosen):
         return chosen[0].run(cases)
@@ -228,7 +242,9 @@ def run_cases(cases: Cases) -> Outcomes:
         parts.append((rows, engine.run(some)))
     # an engine may have asked others
     used = dict.fromkeys(name for _, found in parts for name in found.engines)
-    result = empty_outcomes(cases.names, cases.scales, tuple(used))
+    result = empty_outcomes(
+        cases.names, cases.scales, tuple(used), holding=cases.holding
+    )
     for rows, found in parts:
         merge_outcomes(result, rows, found)
     return result
