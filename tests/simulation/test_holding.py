@@ -32,7 +32,7 @@ def test_a_bond_opens_where_the_pull_at_a_pad_is_all_it_holds(
 ) -> None:
     half, a, up = 0.12, 5.0 * side, -1.3
     needed = holding.bond_tension_needed(block, a, half, up)
-    assert needed == pytest.approx(-min(pads(block, a, up, half)), rel=1e-12)
+    assert needed == pytest.approx(-2 * min(pads(block, a, up, half)), rel=1e-12)
 
 
 def test_the_bond_that_a_motion_needs_breaks_at_its_peak() -> None:

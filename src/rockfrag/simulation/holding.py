@@ -23,12 +23,12 @@ def bond_breaks_at(
 ) -> float:
     """Least acceleration of the ground that opens a bond of two pads [m/s²].
 
-    ``docs/holding.md`` (4); the pads hold an equal tension each and lie as far from the middle of the base.
+    ``docs/holding.md`` (4); each pad holds half of the tension, and both lie as far from the middle of the base.
 
     Parameters
     ----------
     block : what is bonded to the ground
-    tension : that each pad holds [N]
+    tension : that both pads hold together [N]
     half_spacing : from the middle of the base to each pad [m]
     g : acceleration of gravity, with that of the ground upwards [m/s²]
 
@@ -39,7 +39,7 @@ def bond_breaks_at(
     number_from_zero("tension", tension, "newtons")
     positive_number("half_spacing", half_spacing, "metres")
     reach = half_spacing - abs(block.cg_offset)
-    return (g * reach + 2 * half_spacing * tension / block.mass) / block.h
+    return (g * reach + half_spacing * tension / block.mass) / block.h
 
 
 def bond_slides_at(
@@ -100,7 +100,7 @@ def bond_tension_needed(
     *,
     g: float = GRAVITY,
 ) -> float:
-    """Tension that each of two pads must hold for a block to move with the ground [N]; ``docs/holding.md`` (3).
+    """Tension that two pads together must hold for a block to move with the ground [N]; ``docs/holding.md`` (3).
 
     The force is linear in the accelerations, which are linear between samples, so that samples suffice: exact.
 
@@ -113,13 +113,13 @@ def bond_tension_needed(
 
     Returns
     -------
-    The tension, 0 where no pad is pulled [N].
+    The tension, twice that of the pad that is pulled most; 0 where none is [N].
     """
     positive_number("half_spacing", half_spacing, "metres")
     a, weight = _accelerations(acceleration, vertical, g)
     # pushed to the left (a > 0) a block pulls at its right pad
     reach = half_spacing + np.sign(a) * block.cg_offset
-    pulled = block.mass * (np.abs(a) * block.h - weight * reach) / (2 * half_spacing)
+    pulled = block.mass * (np.abs(a) * block.h - weight * reach) / half_spacing
     return max(float(pulled.max()), 0.0)
 
 
