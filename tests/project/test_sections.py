@@ -11,13 +11,10 @@ THESIS = ROOT / "thesis" / "src" / "rockfrag_thesis"
 
 OTHERS = {
     "records",
-    "assess",
     "engines",
     "system",
     "laws",
     "base",
-    "words",
-    "web",
     "runtime",
     "config",
     "cli",

@@ -9,6 +9,7 @@ from typing import Any, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
+from rockfrag.assess.core.fractions import fill_counted, fill_uplifts
 from rockfrag.assess.motions import MotionSet
 from rockfrag.assess.place import Place
 from rockfrag.assess.standing import Standing
@@ -111,14 +112,18 @@ class ObjectOutcomes:
 
     def lifts_from(self) -> Floats:
         """Level at which each motion lifts the body; infinite where none of the levels does, shape (motions,)."""
-        moved = (self.rocked | self.overturned) & self.intensity_levels.allowed
-        first = np.where(
-            moved.any(axis=1),
-            self.intensity_levels.levels[moved.argmax(axis=1)],
-            np.inf,
+        lifting = self.lifting
+        if lifting is None:
+            lifting = np.full(len(self.overturned), np.inf)
+        found = np.zeros(len(self.overturned))
+        fill_uplifts(
+            self.intensity_levels.levels,
+            *map(np.ascontiguousarray, (self.rocked, self.overturned)),
+            np.ascontiguousarray(self.intensity_levels.allowed),
+            np.ascontiguousarray(lifting, dtype=np.float64),
+            found,
         )
-        # what rocks was lifted, whatever rounding says
-        return first if self.lifting is None else np.minimum(first, self.lifting)
+        return found
 
     def fractions(
         self, weights: Floats | None = None, *, state: str = OVERTURNS
@@ -130,16 +135,15 @@ class ObjectOutcomes:
         (motions,); all alike if None.
         """
         w = np.ones(len(self.overturned)) if weights is None else weights
-        allowed = self.intensity_levels.allowed
-        happened = {OVERTURNS: self.overturned, ROCKS: self.rocked, **self.others}[
-            state
-        ]
-        total = w @ allowed
-        fell = w @ (allowed & happened)
-        known = total > 0
-        at = np.maximum.accumulate(np.where(known, np.arange(total.size), 0))
-        fraction = np.divide(fell, total, out=np.zeros(total.size), where=known)
-        return np.asarray(fraction[at])
+        reached = {OVERTURNS: self.overturned, ROCKS: self.rocked, **self.others}
+        happened, found = reached[state], np.zeros(self.intensity_levels.levels.size)
+        fill_counted(
+            np.ascontiguousarray(happened),
+            np.ascontiguousarray(self.intensity_levels.allowed),
+            np.ascontiguousarray(w, dtype=np.float64),
+            found,
+        )
+        return found
 
     def band(self) -> tuple[Floats, Floats]:
         """Limits of the fraction at each level that as few earthquakes leave open (90 %), shape (levels,) each.
@@ -324,8 +328,7 @@ class Shaking(IntensityLevels):
         ``of_row`` is the record of each motion of the result where several may be of one; what happens to a record
         from one side happens. ``lifting`` are the factors on motions, or on these records, that lift each system.
         """
-        # level of each motion as recorded
-        recorded = self.levels[0] / self.scales[:, 0]
+        recorded = self.motions.values(self.measure)
         states = {
             state.name: state.reached(result)
             for state in limit_states()
@@ -362,11 +365,10 @@ class Shaking(IntensityLevels):
         solid = objects.solid(objects.body)
         if solid is None or not self.allowed.any():
             return math.nan
-        first, other = (
-            self.in_space(solid, objects.base_spread + more).overturned[self.allowed]
-            for more in (0.0, PERTURBATION)
-        )
-        return float((first != other).mean())
+        first = self.in_space(solid, objects.base_spread)
+        other = self.in_space(solid, objects.base_spread + PERTURBATION)
+        differs = first.overturned != other.overturned
+        return float(differs[self.allowed].mean())
 
     def fraction_with_sliding(self, objects: Standing) -> float:
         """Fraction of the motions at the first level that topple the object if it may slide, which takes long."""
@@ -385,6 +387,13 @@ class Shaking(IntensityLevels):
             friction=objects.friction,
         ).overturned[0, :, 0]
         return float(fallen[allowed].mean())
+
+
+def earthquake_numbers(earthquakes: NDArray[np.object_]) -> NDArray[np.intp]:
+    """Number of the earthquake of each motion, in the order in which they come, shape (motions,)."""
+    names = list(dict.fromkeys(earthquakes))
+    place = {name: number for number, name in enumerate(names)}
+    return np.array([place[name] for name in earthquakes], dtype=np.intp)
 
 
 def fraction_at(
@@ -407,8 +416,12 @@ def simulated(
         if issubclass(warning.category, LightBodies):
             light = True
         else:
-            about = (warning.filename, warning.lineno)
-            warnings.warn_explicit(warning.message, warning.category, *about)
+            warnings.warn_explicit(
+                warning.message,
+                warning.category,
+                filename=warning.filename,
+                lineno=warning.lineno,
+            )
     # more than two bodies leave the ground where they have to
     return result, [light and system.count < 3 for system in systems]
 
@@ -453,11 +466,11 @@ def find_directions(
     by_record = fallen.reshape(len(motions.pairs), len(angles), -1)
     anyhow, worst = by_record.mean(axis=(0, 1)), by_record.any(axis=1).mean(axis=0)
     x = np.log(levels)
-    at = (math.nan if level is None else level, levels)
+    at = math.nan if level is None else level
     return Directions(
         factor=float(np.exp(_half(x, worst) - _half(x, anyhow))),
-        fraction=fraction_at(*at, anyhow),
-        worst_fraction=fraction_at(*at, worst),
+        fraction=fraction_at(at, levels, anyhow),
+        worst_fraction=fraction_at(at, levels, worst),
         records=len(motions.pairs),
     )
 

@@ -58,7 +58,18 @@ FURTHEST = 3.0
 def write_answer(
     found: Assessment, folder: str | os.PathLike[str], language: str = FIRST
 ) -> Path:
-    """Write page, JSON and the fragility for OpenQuake into a folder, and return the path of the page."""
+    """Write page, JSON and the fragility for OpenQuake into a folder.
+
+    Parameters
+    ----------
+    found : the answer
+    folder : into which they are written
+    language : of the page
+
+    Returns
+    -------
+    Path of the page.
+    """
     stem = Path(folder) / file_name(found.request.name)
     write_text(as_json(found), f"{stem}.json")
     write_text(as_nrml(found), f"{stem}.xml")
@@ -471,9 +482,8 @@ def _in_space(
 def _named(motions: MotionSet, motion: Motion, i: int) -> Motion:
     """A motion with the name by which a reader knows it: earthquake, station and component."""
     about = motions.ground[i]
-    earthquake, station = (
-        str(about.metadata.get(key, "")) for key in ("earthquake", "station")
-    )
+    earthquake = str(about.metadata.get("earthquake", ""))
+    station = str(about.metadata.get("station", ""))
     known = (
         f"{earthquake}, {station} ({about.name})"
         if earthquake and station

@@ -125,7 +125,17 @@ def check_rules(
 
 
 def rules_study(path: str | os.PathLike[str], records: str | Path) -> pd.DataFrame:
-    """A row, a :class:`RuleCheck`, for each rule and object of a file, under the default motions."""
+    """Hold engineers' rules against simulations of the objects of a file, under the default motions.
+
+    Parameters
+    ----------
+    path : of the file, such as ``config/rules-of-thumb.yaml``
+    records : folder of fetched records
+
+    Returns
+    -------
+    A row, a :class:`RuleCheck`, for each rule and object.
+    """
     given = checked(read_yaml(path), "rules_of_thumb", str(path))
     requests = [
         make_request(object_, f"{path}, object {i}", Path(path).parent)

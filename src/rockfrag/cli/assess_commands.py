@@ -184,14 +184,20 @@ def _refuse_unused(options: argparse.Namespace) -> None:
 
 
 def _one(options: argparse.Namespace, given: dict[str, Any]) -> int:
-    from rockfrag.assess.answer import assess
+    from rockfrag.assess.answer import assess, waiting_for
     from rockfrag.assess.export import as_json
-    from rockfrag.assess.findings import details_of, lines_of, quality_flags
+    from rockfrag.assess.findings import quality_flags
     from rockfrag.assess.page import write_answer
     from rockfrag.words.catalogue import catalogue
 
     texts = catalogue(options.language)
-    found = assess(_request(options, given), options.records)
+    request = _request(options, given)
+    if wait := waiting_for(request):
+        print(wait, file=sys.stderr)
+    found = assess(request, options.records)
+    if not options.json:
+        _print_lines(found, options)
+    # what looks wrong stands behind the answer, and what a page alone shows is computed after both
     for quality_flag in texts.lines(quality_flags(found)):
         print(f"warning: {quality_flag}", file=sys.stderr)
     place = write_answer(found, options.output, options.language)
@@ -202,18 +208,22 @@ def _one(options: argparse.Namespace, given: dict[str, Any]) -> int:
     if options.json:
         print(as_json(found), end="")
     else:
-        lines = lines_of(found, options.language)
-        if options.details:
-            lines += ["", *details_of(found, options.language)]
-        if sys.stdout.isatty():
-            # broken where a terminal ends; what goes into a file or a pipe stays whole
-            width = max(shutil.get_terminal_size().columns, 40)
-            lines = [
-                textwrap.fill(line, width, subsequent_indent="    ") for line in lines
-            ]
-        print("\n".join(lines))
         print(f"{place}", file=sys.stderr)
     return 0
+
+
+def _print_lines(found: Any, options: argparse.Namespace) -> None:
+    """Print the first screen, and what stands behind it where that is asked for."""
+    from rockfrag.assess.findings import details_of, lines_of
+
+    lines = lines_of(found, options.language)
+    if options.details:
+        lines += ["", *details_of(found, options.language)]
+    if sys.stdout.isatty():
+        # broken where a terminal ends; what goes into a file or a pipe stays whole
+        width = max(shutil.get_terminal_size().columns, 40)
+        lines = [textwrap.fill(line, width, subsequent_indent="    ") for line in lines]
+    print("\n".join(lines), flush=True)
 
 
 def _request(options: argparse.Namespace, given: dict[str, Any]) -> Any:

@@ -43,6 +43,26 @@ def cached_njit(
     return decorate
 
 
+def is_kept(function: Any) -> bool:
+    """Whether the machine code of a function is at hand, so that calling it compiles nothing.
+
+    Parameters
+    ----------
+    function : as :func:`cached_njit` has made it
+
+    Returns
+    -------
+    Whether it is, as far as numba says so.
+    """
+    if function.signatures:
+        return True
+    file: Any = getattr(getattr(function, "_cache", None), "_cache_file", None)
+    try:
+        return bool(file._load_index())
+    except Exception:  # a folder that is not there, a damaged file, another numba
+        return False
+
+
 _OF_A_FILE = ("load", "save", "flush", "_dump", "_load_data", "_data_path")
 """What is asked of numba's file of machine code."""
 

@@ -19,14 +19,34 @@ LONGEST_NAME = 24
 
 
 def number(value: float, decimals: int) -> str:
-    """A number with its decimals and a real minus sign; a dash where there is none."""
+    """A number with its decimals and a real minus sign; a dash where there is none.
+
+    Parameters
+    ----------
+    value : the number
+    decimals : that are shown
+
+    Returns
+    -------
+    The words.
+    """
     if not math.isfinite(value):
         return "–"
     return f"{value:.{decimals}f}".replace("-", "−")
 
 
 def decimals_of(value: float, significant: int = 3) -> int:
-    """Decimals that show so many digits of a value: 2 of 1.23, 0 of 123."""
+    """Decimals that show so many digits of a value: 2 of 1.23, 0 of 123.
+
+    Parameters
+    ----------
+    value : the number
+    significant : digits to be shown
+
+    Returns
+    -------
+    The number of decimals.
+    """
     if not math.isfinite(value) or value == 0:
         return significant
     return max(0, significant - 1 - math.floor(math.log10(abs(value))))
@@ -38,6 +58,15 @@ def estimate(value: float, lower: float, upper: float, decimals: int) -> str:
     Limits say nothing where there are none, or where they are the same to the decimals shown: a set of steps
     cannot show that something is exactly so. An estimate that is its own upper limit, with none below, is a
     bound: ``≤ 0.04``.
+
+    Parameters
+    ----------
+    value, lower, upper : the estimate and its limits
+    decimals : that are shown
+
+    Returns
+    -------
+    The words; a dash where there is no estimate.
     """
     if not math.isfinite(value):
         return "–"
@@ -65,6 +94,17 @@ def estimates(
     """Estimates of a table in words, of a column and those of its limits, by default ``_lower`` and ``_upper``.
 
     The decimals are the same for all; by default they show three digits of the smallest value.
+
+    Parameters
+    ----------
+    table : a row an estimate
+    name : column of the estimates
+    decimals : that are shown
+    limits : columns of the limits
+
+    Returns
+    -------
+    The words of each row.
     """
     values = table[[name, *(limits or (f"{name}_lower", f"{name}_upper"))]].to_numpy(
         dtype=float
@@ -77,7 +117,17 @@ def estimates(
 
 
 def has_interval(lower: float, upper: float, decimals: int) -> bool:
-    """Whether limits of a positive quantity have a width that the decimals show."""
+    """Whether limits of a positive quantity have a width that the decimals show.
+
+    Parameters
+    ----------
+    lower, upper : the limits
+    decimals : that are shown
+
+    Returns
+    -------
+    Whether they have one.
+    """
     if math.isnan(lower) or math.isnan(upper):
         return False
     if lower <= 0 and math.isinf(upper):
@@ -86,21 +136,50 @@ def has_interval(lower: float, upper: float, decimals: int) -> bool:
 
 
 def probability(p: float) -> str:
-    """A p value; those too small to tell apart are bounded, never zero."""
+    """A p value; those too small to tell apart are bounded, never zero.
+
+    Parameters
+    ----------
+    p : the p value [-]
+
+    Returns
+    -------
+    The words; a dash where there is none.
+    """
     if not math.isfinite(p):
         return "–"
     return "< 0.001" if p < 0.001 else f"{p:.3f}"
 
 
 def counted(n: int, word: str, many: str | None = None) -> str:
-    """``1 record``, ``2 records``, ``no record``."""
+    """A count with its noun: ``1 record``, ``2 records``, ``no record``.
+
+    Parameters
+    ----------
+    n : the count
+    word, many : the noun of one and of several, by default with an s
+
+    Returns
+    -------
+    The words.
+    """
     if n == 0:
         return f"no {word}"
     return f"{n} {word}" if n == 1 else f"{n} {many or word + 's'}"
 
 
 def of_all(n: int, total: int, word: str, many: str | None = None) -> str:
-    """``3 of 12 tests``, ``all 12 tests``, ``none of 12 tests``, ``the only test``, ``no test``."""
+    """How many of all: ``3 of 12 tests``, ``all 12 tests``, ``none of 12 tests``, ``the only test``, ``no test``.
+
+    Parameters
+    ----------
+    n, total : the counts
+    word, many : the noun of one and of several, by default with an s
+
+    Returns
+    -------
+    The words.
+    """
     noun = word if total == 1 else many or word + "s"
     if n == 0:
         return f"none of {total} {noun}" if total > 1 else f"no {noun}"
@@ -110,12 +189,31 @@ def of_all(n: int, total: int, word: str, many: str | None = None) -> str:
 
 
 def agree(n: int, total: int, word: str, many: str) -> str:
-    """The verb that goes with :func:`of_all`: ``needs`` of one, of none and of the only one, else ``need``."""
+    """The verb that goes with :func:`of_all`: ``needs`` of one, of none and of the only one, else ``need``.
+
+    Parameters
+    ----------
+    n, total : the counts that :func:`of_all` says
+    word, many : the verb of one and of several
+
+    Returns
+    -------
+    The verb.
+    """
     return word if n in (0, 1) or total == 1 else many
 
 
 def listed(names: Sequence[str]) -> str:
-    """``a``, ``a and b``, ``a, b and c``; of many the first ones and how many more."""
+    """Names one after the other: ``a``, ``a and b``, ``a, b and c``.
+
+    Parameters
+    ----------
+    names : in their order
+
+    Returns
+    -------
+    The words; of many the first ones and how many more.
+    """
     if len(names) > MOST_LISTED:
         return f"{', '.join(names[:MOST_LISTED])} and {len(names) - MOST_LISTED} more"
     if len(names) < 2:
@@ -127,12 +225,31 @@ LONGEST_LABEL = 40
 
 
 def label(name: str) -> str:
-    """A name that a reader looks up elsewhere, whole wherever a figure has room for it."""
+    """A name that a reader looks up elsewhere, whole wherever a figure has room for it.
+
+    Parameters
+    ----------
+    name : such as that of a motion
+
+    Returns
+    -------
+    The name, cut in the middle where it is longer.
+    """
     return shortened(name, LONGEST_LABEL)
 
 
 def shortened(name: str, longest: int = LONGEST_NAME) -> str:
-    """A name of at most ``longest`` characters; the middle of a longer one is left out."""
+    """A name of at most ``longest`` characters; the middle of a longer one is left out.
+
+    Parameters
+    ----------
+    name : to be cut
+    longest : letters that it may have
+
+    Returns
+    -------
+    The name.
+    """
     if len(name) <= longest:
         return name
     head = (longest - 1) // 2
@@ -140,7 +257,16 @@ def shortened(name: str, longest: int = LONGEST_NAME) -> str:
 
 
 def amplitude(test: Mapping[Any, Any]) -> str:
-    """The amplitude [g] of a test, or the bound that is known of it: ``0.523``, ``> 2.000``, ``< 0.100``."""
+    """The amplitude [g] of a test, or the bound that is known of it: ``0.523``, ``> 2.000``, ``< 0.100``.
+
+    Parameters
+    ----------
+    test : with ``amplitude_g`` and its bounds ``lower_g`` and ``upper_g``
+
+    Returns
+    -------
+    The words; a dash where nothing is known.
+    """
     if math.isfinite(test["amplitude_g"]):
         return number(test["amplitude_g"], 3)
     if math.isfinite(test["upper_g"]):
@@ -149,5 +275,14 @@ def amplitude(test: Mapping[Any, Any]) -> str:
 
 
 def sentence(words: str) -> str:
-    """The words with a capital letter first."""
+    """The words with a capital letter first.
+
+    Parameters
+    ----------
+    words : which may be none
+
+    Returns
+    -------
+    The same words.
+    """
     return words[:1].upper() + words[1:]
