@@ -187,6 +187,7 @@ def _correlation(fell: Flags, allowed: Flags, per_level: Floats) -> Floats:
 
 
 SIZES = ("width_m", "height_m", "depth_m", "mass_kg", "cg_height_m")
+HELD_BY = ("wall_m", "isolator_m")  # Lengths of what holds it
 PEDESTAL = (
     "pedestal_width_m",
     "pedestal_height_m",
@@ -197,6 +198,8 @@ PEDESTAL = (
 YES, NO = ("yes", "true", "1", "x"), ("no", "false", "0")
 
 MOST_OBJECTS = 10_000  # Rows of an inventory
+# Rows up to which what may hold an object is tried, which takes seconds for each
+MOST_HELD = 25
 
 
 @dataclass(frozen=True, eq=False)
@@ -270,7 +273,8 @@ def _all_assessed(requests: Sequence[Request], motions: MotionSet) -> list[Asses
         groups.setdefault((*kind, alone), []).append(request)
     found = {}
     for same in groups.values():
-        plan = plan_for(same[0], motions.at(same[0].place), brief=True)
+        holds = len(requests) <= MOST_HELD
+        plan = plan_for(same[0], motions.at(same[0].place), brief=True, holds=holds)
         for request, shaken in zip(same, shake_all(same, plan), strict=True):
             found[request.name] = assessed(request, plan, shaken)
     return [found[request.name] for request in requests]
@@ -284,7 +288,8 @@ def read_inventory(
         raise InputError("key friction: sliding takes long; assess the object alone.")
     needed = ["name", *SIZES[:2]]
     faults: list[str] = []
-    others, quantities = [*SIZES[2:], *PEDESTAL, *OTHERS], (*SIZES, *PEDESTAL)
+    others = [*SIZES[2:], *PEDESTAL, *HELD_BY, *OTHERS]
+    quantities = (*SIZES, *PEDESTAL, *HELD_BY)
     rows = read_rows(path, needed, others, quantities=quantities, faults=faults)
     if len(rows) > MOST_OBJECTS:
         raise InputError(
@@ -329,6 +334,7 @@ def _own_name(row: Row, taken: dict[str, str]) -> str:
 def _request(row: Row, name: str, shared: Mapping[str, Any]) -> Request:
     own: dict[str, Any] = {"name": name}
     own |= {key: row.quantity(key, above=0) for key in SIZES if row.has(key)}
+    own |= {key: row.quantity(key) for key in HELD_BY if row.has(key)}
     pedestals = _pedestals(row)
     if pedestals:
         own["pedestal"] = pedestals if len(pedestals) > 1 else pedestals[0]
@@ -367,7 +373,8 @@ def _yes(row: Row, column: str) -> bool:
 
 _above_0 = partial(Row.number, above=0)
 OTHERS: Mapping[str, Callable[[Row, str], Any]] = {
-    "floor": Row.text, "restitution": _above_0, "round": _yes, "value": _above_0
+    "floor": Row.text, "restitution": _above_0, "round": _yes, "value": _above_0,
+    "casters": Row.text, "putty_n": _above_0, "bracket_n": _above_0, "cord_n": _above_0,
 }  # fmt: skip
 """What else a column may say, and how it is read."""
 

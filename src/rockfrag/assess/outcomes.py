@@ -229,10 +229,14 @@ class Shaking(IntensityLevels):
         On a pedestal that may lift both answers count: what falls in either falls. Planar answers of round bases
         are those of the worst direction of each record.
         """
-        systems = [object_.system_of(body) for object_, body in every]
+        systems = [object_.held(object_.system_of(body)) for object_, body in every]
         if not self.motions.both:
             return self._in_plane(systems)
-        solids = [object_.solid(body) for object_, body in every]
+        solids = [
+            solid and object_.held(solid)
+            for object_, body in every
+            for solid in [object_.solid(body)]
+        ]
         planar = [
             i for i, solid in enumerate(solids) if solid is None or systems[i].count > 1
         ]
@@ -282,6 +286,9 @@ class Shaking(IntensityLevels):
 
         Corners of its base lie elsewhere by ``spread`` over its extent, and it is turned by up to as many radians.
         """
+        return self._in_space(body, spread)[0]
+
+    def _in_space(self, body: System, spread: float) -> tuple[ObjectOutcomes, Outcomes]:
         motions = self.motions
         shaking = [
             GroundMotion(*motions.components(record)) for record in motions.records
@@ -292,9 +299,26 @@ class Shaking(IntensityLevels):
             [body], shaking, scales, spread=spread, threads=checked_threads(None)
         )
         lifting = [lifting_in_space(body, shaking)]
-        return self._each_system(result, of_row=np.arange(len(first)), lifting=lifting)[
-            0
-        ]
+        rows = np.arange(len(first))
+        return self._each_system(result, of_row=rows, lifting=lifting)[0], result
+
+    def outcomes_of_system(self, system: System) -> tuple[ObjectOutcomes, Outcomes]:
+        """Outcomes of one system, and all that its simulation says.
+
+        Parameters
+        ----------
+        system : shaken by both components where it is known in space, else by one
+
+        Returns
+        -------
+        What becomes of it, and the outcomes of the system under motions, or records, at the levels.
+        """
+        if not system.planar:
+            return self._in_space(system, 0.0)
+        base = self.motions.base
+        result, light = simulated([system], base, self._factors(base))
+        lifting = [lifting_in_plane(system, base)]
+        return self._each_system(result, light, lifting=lifting)[0], result
 
     def on_pad(
         self, objects: Standing, friction: float

@@ -98,6 +98,8 @@ class Request:
     value: float = math.nan  # What the object is worth, in any unit; NaN if not given
     # Probability of toppling that is accepted; None for the usual one
     accept: float | None = None
+    # What ways to hold it cost, by their keys, in any unit
+    costs: Mapping[str, float] = field(default_factory=dict)
 
     @property
     def accepted(self) -> float:
@@ -155,6 +157,7 @@ def make_request(
             hazard=_hazard(known, where),
             years=float(known.get("years", YEARS)),
             accept=known.get("accept"),
+            costs=known.get("costs", {}),
             records=_records(known, where),
         )
 

@@ -108,14 +108,14 @@ def test_a_cord_bears_twice_the_steady_force_of_a_sudden_acceleration():
 
 
 def test_a_held_body_swings_with_the_frequency_of_cord_and_weight():
-    a, k, z = 6.0, 2e6, 1.0
+    a, k, z = 6.0, 2e5, 1.0
     motion = along_x([a] * 300)
-    system = hold(BOX.system(), *cords(k, slack=0.0))
-    _, history = run_case(kernel_body(system), motion, DT / 10, samples=300)
-    tilt = 2 * history[:, 5]
-    rate = np.gradient(tilt, DT / 10)
-    turns = np.flatnonzero((rate[:-1] < 0) & (rate[1:] >= 0))
-    period = np.diff(turns).mean() * DT / 10
+    system = hold(BOX.system(), *cords(k))
+    _, history = run_case(kernel_body(system), motion, DT, samples=300)
+    rate = history[:, 11]
+    turns = np.flatnonzero((rate[1:-1] < 0) & (rate[2:] >= 0)) + 1
+    instants = turns - rate[turns] / (rate[turns + 1] - rate[turns])
+    period = np.diff(instants).mean() * DT
     inertia = FLAT.centroidal_inertia + 300.0 * (0.2**2 + 0.6**2)
     square = (k * z * z - 300.0 * (G * 0.6 + a * 0.2)) / inertia
     assert 2 * math.pi / period == pytest.approx(math.sqrt(square), rel=0.02)
@@ -210,13 +210,17 @@ def test_a_shelf_leans_where_its_foot_holds_and_slides_down_where_it_does_not():
         y[:3] = np.array([0.15, 0.0, 0.0]) - lever
         outcome, history = run_case(body, np.zeros((50, 3)), DT, samples=50, start=y)
         moved = np.abs(history[-1, :3] - history[0, :3]).max()
-        assert (moved < 1e-6) is (part > 1), (part, moved)
+        assert (moved < 1e-6) == (part > 1), (part, moved)
         assert outcome.overturned is False
 
 
-def test_impacts_at_rough_walls_never_gain_energy():
+@pytest.mark.parametrize(
+    "cases", [2, pytest.param(60, marks=pytest.mark.slow, id="many")]
+)
+def test_impacts_at_rough_walls_never_gain_energy(cases):
     rng = np.random.default_rng(6)
-    for _ in range(12):
+    impacts = 0
+    for _ in range(cases):
         sides = rng.uniform(0.2, 0.6, 2)
         block = Block(sides[0], rng.uniform(0.8, 1.8), 1.0, depth=sides[1])
         rough = {
@@ -234,6 +238,8 @@ def test_impacts_at_rough_walls_never_gain_energy():
         found, _ = run_case(body, motion, DT)
         assert found.gained < 1e-6
         assert abs(found.residual) < 1e-5
+        impacts += found.impacts
+    assert impacts > 20 * cases
 
 
 def test_what_space_cannot_hold_is_refused_in_a_sentence():
