@@ -80,7 +80,7 @@ def test_page_and_file_say_what_it_bears_before_and_after_and_what_it_costs(foun
     costs = {each["cost"] for each in answer["mitigations"]}
     assert {5.0, 80.0} <= costs
     page = page_of(found)
-    assert "a bracket to the wall that bears" in page
+    assert "bracket to the wall that bears" in page
     assert "<th" in page and "Cost" in page
     italian = page_of(found, "it")
     assert "cera o mastice" in italian and "Costo" in italian

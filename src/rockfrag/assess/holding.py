@@ -67,11 +67,15 @@ def try_holders(
     if level is None:
         return []
     at_level = scaled_to(np.array([level.value]), shaking.motions, shaking.measure)
-    systems = list(_systems(objects, shaking))
-    before = [few.outcomes_of_system(system)[0] for system in systems]
+    systems = [
+        system
+        for system in _systems(objects, shaking)
+        if _can_be_simulated(system, shaking)
+    ]
+    before: dict[int, ObjectOutcomes] = {}
     found = []
     for holder in objects.holders_to_try():
-        for system, without in zip(systems, before, strict=True):
+        for k, system in enumerate(systems):
             if not _can_be_simulated(holder.on(system), shaking):
                 continue
             enough, change = holder, holder.called()
@@ -85,8 +89,10 @@ def try_holders(
                 )
                 if not demands.any():
                     break
+            if k not in before:
+                before[k] = few.outcomes_of_system(system)[0]
             after = few.outcomes_of_system(enough.on(system))[0]
-            found.append(Trial(change, holder.key, without, after))
+            found.append(Trial(change, holder.key, before[k], after))
             break
     return found
 

@@ -36,8 +36,6 @@ RATTLE = 1e-3
 # energy of a wobble at which a round body lies down, over that at which a body rests after an impact: rolling
 # loses nothing, so that it would go on for ever, by micrometres
 LEAST_WOBBLE = 100.0
-# intervals on ground at rest in which a body that walls or ties hold hardly moves, after which it is at rest
-STILL = 20
 # intervals that a body at rest passes at once where the ground cannot move it
 WINDOW = 16
 
@@ -718,7 +716,7 @@ def integrate(
     modes.anchor_all(body, y, s)
     out[CERTAIN_TIME] = math.nan
     last = acceleration.shape[0] - 1
-    stuck = lost_track = still = 0
+    stuck = lost_track = 0
     ahead = dt
     k = 0
     while k <= last + extra:
@@ -733,9 +731,8 @@ def integrate(
         note_soon(s, peaks, k, scale, dt)
         record(history, k, y, out, s)
         free = body.constraints == 0 and solid.energy(body, y, g) < body.barrier
-        still = still + 1 if k > last and hardly_moves(body, y, cut) else 0
-        if k > last and (s.rests == 1 or free or still > STILL):
-            # on a ground at rest it stands, has too little energy left to fall, or leans and does not move
+        if k > last and (s.rests == 1 or free):
+            # on a ground at rest it stands, or has too little energy left to fall
             break
         if s.bonded:
             note_bond(body, y, 0.0, s)
@@ -805,12 +802,6 @@ def integrate(
         + y[solid.FRICTION]
         + out[LOST]
     )
-
-
-@kernel
-def hardly_moves(body, y, cut):
-    """Whether a body has less energy of motion than is followed."""
-    return solid.kinetic_energy(body, y) < cut * body.barrier
 
 
 @kernel

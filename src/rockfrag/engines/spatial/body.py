@@ -119,7 +119,7 @@ def _corners(given: RigidBody) -> Floats:
     for outline, height in ((given.base, 0.0), (given.face, given.height)):
         assert isinstance(outline, Polygon)
         found += [(x, y, height) for x, y in outline.vertices]
-    return np.array(found) - np.array(given.centre)
+    return np.asarray(np.array(found) - np.array(given.centre))
 
 
 def _fill_bond(body: np.void, given: RigidBody, bond: Bond) -> None:
