@@ -2,7 +2,7 @@
 
 import math
 import warnings
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any, TypeVar
 
@@ -10,11 +10,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockfrag.assess.core.fractions import fill_counted, fill_uplifts
+from rockfrag.assess.core.levels import fill_band, fill_scan
 from rockfrag.assess.motions import MotionSet
 from rockfrag.assess.place import Place
 from rockfrag.assess.standing import Standing
 from rockfrag.assess.statics import lifting_in_plane, lifting_in_space
-from rockfrag.base.arrays import Floats
+from rockfrag.base.arrays import Flags, Floats
 from rockfrag.base.plausible import LARGEST_PEAK
 from rockfrag.engines.spatial import run_in_space
 from rockfrag.engines.spatial.body import PERTURBATION
@@ -255,9 +256,8 @@ class Shaking(IntensityLevels):
             return []
         base = self.motions.base
         lifting = [lifting_in_plane(system, base) for system in systems]
-        return self._each_system(
-            *simulated(systems, base, self._factors(base)), lifting=lifting
-        )
+        result, light = simulated(systems, base, self._factors(base))
+        return self._each_system(states_of(result), light, lifting=lifting)
 
     def _from_all_sides(self, systems: Sequence[System]) -> list[ObjectOutcomes]:
         """Outcomes by records, each in its worst direction of half a turn; both components get those."""
@@ -279,28 +279,42 @@ class Shaking(IntensityLevels):
             np.minimum.reduceat(lifting_in_plane(system, shaking), starts)
             for system in systems
         ]
-        return self._each_system(result, light, of_row, lifting=lifting)
+        return self._each_system(states_of(result), light, of_row, lifting=lifting)
 
     def in_space(self, body: System, spread: float) -> ObjectOutcomes:
         """Outcomes of a body in space under both components of each record, where it has two.
 
         Corners of its base lie elsewhere by ``spread`` over its extent, and it is turned by up to as many radians.
         """
-        return self._in_space(body, spread)[0]
+        shaking, scales = self._records()
+        lifting = lifting_in_space(body, shaking)
 
-    def _in_space(self, body: System, spread: float) -> tuple[ObjectOutcomes, Outcomes]:
+        def simulate(chosen: Flags) -> dict[str, Flags]:
+            result = run_in_space(
+                [body],
+                shaking,
+                np.where(chosen, scales, AT_REST),
+                spread=spread,
+                threads=checked_threads(None),
+            )
+            return states_of(result)
+
+        if np.isinf(lifting).all():
+            # something holds it: statics do not say from where it moves
+            states = simulate(np.ones(scales.shape, bool))
+        else:
+            states = by_band(scales, lifting, simulate)
+        of_row = np.arange(len(scales))
+        return self._each_system(states, of_row=of_row, lifting=[lifting])[0]
+
+    def _records(self) -> tuple[list[GroundMotion], Floats]:
+        """All components of each record, and the factors on them, shape (records, levels)."""
         motions = self.motions
         shaking = [
             GroundMotion(*motions.components(record)) for record in motions.records
         ]
         first = [record[0] for record in motions.records]
-        scales = self._factors([motions.base[i] for i in first], first)
-        result = run_in_space(
-            [body], shaking, scales, spread=spread, threads=checked_threads(None)
-        )
-        lifting = [lifting_in_space(body, shaking)]
-        rows = np.arange(len(first))
-        return self._each_system(result, of_row=rows, lifting=lifting)[0], result
+        return shaking, self._factors([motions.base[i] for i in first], first)
 
     def outcomes_of_system(self, system: System) -> tuple[ObjectOutcomes, Outcomes]:
         """Outcomes of one system, and all that its simulation says.
@@ -313,12 +327,18 @@ class Shaking(IntensityLevels):
         -------
         What becomes of it, and the outcomes of the system under motions, or records, at the levels.
         """
-        if not system.planar:
-            return self._in_space(system, 0.0)
-        base = self.motions.base
-        result, light = simulated([system], base, self._factors(base))
-        lifting = [lifting_in_plane(system, base)]
-        return self._each_system(result, light, lifting=lifting)[0], result
+        if system.planar:
+            base = self.motions.base
+            result, light = simulated([system], base, self._factors(base))
+            lifting = [lifting_in_plane(system, base)]
+            found = self._each_system(states_of(result), light, lifting=lifting)
+            return found[0], result
+        shaking, scales = self._records()
+        result = run_in_space([system], shaking, scales, threads=checked_threads(None))
+        lifting = [lifting_in_space(system, shaking)]
+        rows = np.arange(len(scales))
+        found = self._each_system(states_of(result), of_row=rows, lifting=lifting)
+        return found[0], result
 
     def on_pad(
         self, objects: Standing, friction: float
@@ -331,7 +351,7 @@ class Shaking(IntensityLevels):
         base = self.motions.base
         result = overturns(system, base, scales=self._factors(base))
         lifting = [lifting_in_plane(system, base)]
-        (found,) = self._each_system(result, lifting=lifting)
+        (found,) = self._each_system(states_of(result), lifting=lifting)
         return found, result.peak_slip[0, ..., -1]
 
     def _factors(self, shaking: Sequence[Motion], rows: Any = slice(None)) -> Floats:
@@ -341,23 +361,18 @@ class Shaking(IntensityLevels):
 
     def _each_system(
         self,
-        result: Outcomes,
+        states: Mapping[str, Flags],
         light: Sequence[bool] = (False,),
         of_row: NDArray[np.intp] | None = None,
         *,
         lifting: Sequence[Floats],
     ) -> list[ObjectOutcomes]:
-        """Outcomes of each system, which cannot slide.
+        """Outcomes of each system, which cannot slide, of states with the shape (systems, motions, levels).
 
         ``of_row`` is the record of each motion of the result where several may be of one; what happens to a record
         from one side happens. ``lifting`` are the factors on motions, or on these records, that lift each system.
         """
         recorded = self.motions.values(self.measure)
-        states = {
-            state.name: state.reached(result)
-            for state in limit_states()
-            if not (state.slipping or state.held)
-        }
         if of_row is not None:
             place = self.motions.place_of_record()
             lifting = [factors[place] for factors in lifting]
@@ -426,6 +441,36 @@ def fraction_at(
     """Fraction of the motions at a level, between levels by the logarithm; all lie higher by ``shift`` in it."""
     # relative to the asked level: where it is one of the series its logarithm is 0 to the bit
     return float(np.interp(-shift, np.log(levels / level), fractions))
+
+
+def states_of(result: Outcomes) -> dict[str, Flags]:
+    """Which cases reached each limit state that needs no sliding, by its name."""
+    return {
+        state.name: np.asarray(state.reached(result))
+        for state in limit_states()
+        if not (state.slipping or state.held)
+    }
+
+
+def by_band(
+    scales: Floats, lifting: Floats, simulate: Callable[[Flags], dict[str, Flags]]
+) -> dict[str, Flags]:
+    """States of one system at all levels, of a scan and of the band in which they change.
+
+    ``simulate`` gives states of some levels, of shape (1, motions, levels), at rest elsewhere; ``scales`` and
+    ``lifting`` are those of :mod:`rockfrag.assess.core.levels`.
+    """
+    scan, band = np.zeros(scales.shape, bool), np.zeros(scales.shape, bool)
+    sources = np.zeros(scales.shape, np.int64)
+    fill_scan(scales, lifting, scan)
+    found = simulate(scan)
+    fell = np.ascontiguousarray(found[OVERTURNS][0])
+    fill_band(scales, lifting, scan, fell, band, sources)
+    if band.any():
+        more = simulate(band)
+        found = {name: np.where(band, more[name], found[name]) for name in found}
+    rows = np.arange(len(scales))[:, np.newaxis]
+    return {name: cases[:, rows, sources] for name, cases in found.items()}
 
 
 def simulated(

@@ -460,9 +460,8 @@ def live_of(found: Assessment, texts: Catalogue) -> Markup:
         texts.text(way): objects.system_of(body)
         for way, body in objects.arrangements().items()
     }
-    return live_kernel(
-        bodies, carried([_named(motions, motions.base[i], i) for i in chosen])
-    )
+    shaking = carried([_named(motions, motions.base[i], i) for i in chosen])
+    return live_kernel(bodies, shaking, texts=texts)
 
 
 def _in_space(
@@ -485,7 +484,7 @@ def _in_space(
     for record in dict.fromkeys(records[place[i]] for i in chosen):
         x, *others = motions.components(record)
         shaking.append(GroundMotion(_named(motions, x, record[0]), *others))
-    return live_in_space(bodies, shaking, left_out)
+    return live_in_space(bodies, shaking, left_out, texts)
 
 
 def _named(motions: MotionSet, motion: Motion, i: int) -> Motion:

@@ -1,17 +1,24 @@
-"""Outcomes of systems × motions × scales, as arrays, and as four tidy tables (``docs/definitions.md``)."""
+"""Outcomes of systems × motions × scales, as arrays, and as four tidy tables (``docs/definitions.md``).
+
+In: arrays that engines fill. Out: tables and a figure. Systems, motions and scales are the three axes everywhere.
+"""
 
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field, fields
 from functools import cache
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal, get_args
 
 import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
 from rockfrag.base.arrays import Flags, Floats
+from rockfrag.base.errors import InputError
 from rockfrag.base.short_repr import short_repr
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 Whole = NDArray[np.int64]
 Small = NDArray[np.int8]
@@ -59,7 +66,9 @@ class Column:
 
 def column(empty: Any = math.nan, unit: str = "", table: Table = "cases") -> Any:
     """Declare a column as a field of :class:`rockfrag.outcomes.Outcomes`; NaN where an engine does not tell."""
-    return field(metadata={"table": table, "unit": unit, "empty": empty})
+    about = {"table": table, "unit": unit, "empty": empty}
+    # at the prompt, a result fits a screen
+    return field(metadata=about, repr=table != "constraints")
 
 
 @dataclass(frozen=True)
@@ -77,10 +86,12 @@ class Outcomes:
     scales : factors on the motions, shape (motions, scales)
     engines : names of those that answered
     engine : which of them answered each case
+    systems, motions : names of systems and motions, empty where one has none; no names at all if not known
+    peaks : peak accelerations of the unscaled motions along x [m/s²], shape (motions,), NaN where not known
     """
 
     names: tuple[tuple[str, ...], ...]
-    holding: tuple[tuple[str, ...], ...]
+    holding: tuple[tuple[str, ...], ...] = field(repr=False)
     scales: Floats
     engines: tuple[str, ...]
     engine: Small
@@ -98,8 +109,10 @@ class Outcomes:
     given_way: Whole = column(np.int64(0))
     # number from below, from 1, of the contact open furthest under what fell; 0: no fall, or not told
     parted_contact: Small = column(np.int8(0))
-    # whether a body rests against a wall or hangs in a tie, beyond its balance, and has not fallen
-    leaning: Flags = column(False)
+    # whether a body that has not fallen rests turned, against a wall or in a tie
+    leaning: Flags = field(
+        metadata={"table": "cases", "unit": "", "empty": False}, repr=False
+    )
     # times that more than one mode of contact was found consistent
     several_modes: Whole = column(np.int64(0))
     # times that no mode of contact was consistent
@@ -140,6 +153,9 @@ class Outcomes:
     breaking_time: Floats = column(unit="s", table="constraints")
     # largest displacement of the plate of an isolator; NaN of all else
     stroke: Floats = column(unit="m", table="constraints")
+    systems: tuple[str, ...] = field(default=(), repr=False)
+    motions: tuple[str, ...] = field(default=(), repr=False)
+    peaks: tuple[float, ...] = field(default=(), repr=False)
 
     __repr__ = short_repr
 
@@ -188,6 +204,25 @@ class Outcomes:
                 found[name] = values[..., k].ravel()
         return found
 
+    def plot(self, title: str = "") -> "Figure":
+        """Draw the incremental dynamic analysis: peak rotations over the peak of the motion, and who falls.
+
+        Parameters
+        ----------
+        title : heading of the figure
+
+        Returns
+        -------
+        matplotlib.figure.Figure
+            A panel a system: of each motion the peak rotation of the uppermost body over its critical angle [-]
+            and a cross where it overturns, over the peak of the scaled motion [g]; below the fraction of the
+            motions that overturn it.
+        """
+        # matplotlib is loaded only by those who draw
+        from rockfrag.outcomes.outcomes_figure import outcomes_figure
+
+        return outcomes_figure(self, title)
+
     def table(
         self, which: Table = "cases", columns_of: Sequence[str] | None = None
     ) -> pd.DataFrame:
@@ -201,12 +236,15 @@ class Outcomes:
         Returns
         -------
         A row per case, or per body or contact of a case: ``system``, ``motion`` (positions in the lists given),
-        ``scale``, in tables of bodies and contacts ``body`` or ``contact`` (from below, from 1; contact k lies
-        under body k) and ``name`` of that body, in that of constraints ``constraint`` (from 1) and its
-        ``name`` (``"wall 1"``, ``"bond 2"``, ``"support"``), and the columns of :func:`columns`, with their units
-        in the names;
-        of cases ``engine`` too.
+        ``system_name``, ``motion_name`` (empty where they have none), ``scale``, in tables of bodies and contacts
+        ``body`` or ``contact`` (from below, from 1; contact k lies under body k) and ``name`` of that body, in
+        that of constraints ``constraint`` (from 1) and its ``name`` (``"wall 1"``, ``"bond 2"``, ``"support"``),
+        and the columns of :func:`columns`, with their units in the names; of cases ``engine`` too.
         """
+        if which not in get_args(Table):
+            raise InputError(
+                f"table: expected one of {', '.join(get_args(Table))}, got {which!r}."
+            )
         chosen = [
             known
             for known in columns(which)
@@ -221,6 +259,10 @@ class Outcomes:
         made: dict[str, Any] = {
             "system": np.arange(systems)[:, np.newaxis, np.newaxis, np.newaxis],
             "motion": np.arange(motions)[:, np.newaxis, np.newaxis],
+            "system_name": _names(self.systems, systems)[
+                :, np.newaxis, np.newaxis, np.newaxis
+            ],
+            "motion_name": _names(self.motions, motions)[:, np.newaxis, np.newaxis],
             "scale": self.scales[..., np.newaxis],
         }
         if not whole:
@@ -243,6 +285,11 @@ class Outcomes:
         return pd.DataFrame(
             {name: np.broadcast_to(a, full).ravel()[rows] for name, a in made.items()}
         )
+
+
+def _names(names: Sequence[str], count: int) -> Words:
+    """Names as an array, shape (count,), empty ones where none are known."""
+    return np.array(list(names) or [""] * count, dtype=object)
 
 
 @cache
@@ -290,7 +337,7 @@ def empty_outcomes(
         **{"cases": (), "bodies": (most,), "contacts": (most,)},
         "constraints": (max((len(each) for each in holding), default=0),),
     }
-    arrays = {
+    arrays: dict[str, Any] = {
         known.name: np.full((*shape, *rows[known.table]), known.empty, known.dtype)
         for known in columns()
     }

@@ -24,8 +24,9 @@ share_with_kernels(exponentials)
 def _digest() -> str:
     """Digest of all sources of the core."""
     digest = hashlib.sha256()
-    for path in [*sorted(Path(__file__).parent.glob("*.py")), exponentials.__file__]:
-        digest.update(Path(path).read_bytes())
+    own = sorted(Path(__file__).parent.glob("*.py"))
+    for path in [*own, Path(exponentials.__file__)]:
+        digest.update(path.read_bytes())
     return digest.hexdigest()
 
 

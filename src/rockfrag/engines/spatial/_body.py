@@ -225,13 +225,18 @@ def velocity_of(body, y, rows, i):
 
 
 @kernel
-def energy(body, y, g):
-    """Kinetic energy and the energy of height over rest [J/kg]."""
+def kinetic_energy(body, y):
+    """Energy of motion [J/kg]."""
     omega = omega_of(y)
-    kinetic = 0.5 * (
+    return 0.5 * (
         y[7] ** 2 + y[8] ** 2 + y[9] ** 2 + dot(omega, times(body.inertia, omega))
     )
-    return kinetic + g * (y[2] - body.height)
+
+
+@kernel
+def energy(body, y, g):
+    """Kinetic energy and the energy of height over rest [J/kg]."""
+    return kinetic_energy(body, y) + g * (y[2] - body.height)
 
 
 @kernel

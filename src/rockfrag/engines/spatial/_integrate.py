@@ -36,6 +36,8 @@ RATTLE = 1e-3
 # energy of a wobble at which a round body lies down, over that at which a body rests after an impact: rolling
 # loses nothing, so that it would go on for ever, by micrometres
 LEAST_WOBBLE = 100.0
+# intervals on ground at rest in which a body that walls or ties hold hardly moves, after which it is at rest
+STILL = 20
 # intervals that a body at rest passes at once where the ground cannot move it
 WINDOW = 16
 
@@ -144,7 +146,8 @@ def add_edge(body, y, rows, pull, i, j, small, s):
         return
     if s.count == 0:
         s.closed[0], s.closed[1] = i, j
-        s.slides[0] = s.slides[1] = forces.STICKS
+        s.slides[0] = forces.STICKS
+        s.slides[1] = forces.STICKS
         s.count = 2
     else:
         shared = i if i in (s.closed[0], s.closed[1]) else j
@@ -651,10 +654,15 @@ def integrate_scales(
     counts,
     s,
 ):
-    """Integrate one analysis after the other, at each of ``scales``, as :func:`integrate` does.
+    """Integrate one analysis after the other, at each of several scales, as :func:`integrate` does.
 
-    ``ends``, shape (scales, SIZE), holds the states to begin with and then those at the end, ``outs`` and
-    ``counts`` take outcomes and counters, shapes (scales, OUTCOME) and (scales, COUNTERS).
+    Parameters
+    ----------
+    body, acceleration, peaks, dt, g, extra, tolerance, cut, history, s : as there
+    scales : of the motion, shape (scales,) [-]
+    ends : states to begin with, and then those at the end, shape (scales, SIZE)
+    outs : takes the outcomes, shape (scales, OUTCOME)
+    counts : takes the counters, shape (scales, COUNTERS)
     """
     for k in range(scales.shape[0]):
         integrate(
@@ -688,14 +696,23 @@ def rests_on(body, peaks, k, scale, g):
 def integrate(
     body, acceleration, peaks, scale, dt, g, extra, tolerance, cut, y, history, out, s
 ):
-    """Integrate one analysis of a BODY from the state ``y`` into ``out``, shape (OUTCOME,).
+    """Integrate one analysis of a body from the state ``y``; it ends ``extra`` intervals after the motion at most.
 
-    ``acceleration`` of the ground (x, y, up), shape (n, 3) [m/s²], is linear between samples and counts times
-    ``scale``; ``peaks``, shape (n, 4), are its largest horizontal and vertical ones from each sample on, and those
-    of the next WINDOW intervals. The
-    analysis ends ``extra`` intervals after the motion at the latest. ``tolerance`` and ``cut`` are as
-    ``outcome.TOLERANCE`` and ``CUT_OFF``; ``history``, shape (m, COLUMNS), m ≥ 0, takes a sample of each interval;
-    ``s`` is a CASE to work in, whose counters tell the contact events afterwards.
+    Parameters
+    ----------
+    body : record ``BODY``
+    acceleration : of the ground (x, y, up), linear between samples, shape (n, 3) [m/s²]
+    peaks : largest horizontal and vertical ones from each sample on, and of the next WINDOW, shape (n, 4)
+    scale : of both [-]
+    dt : interval of the samples [s]
+    g : acceleration of gravity [m/s²]
+    extra : intervals after the motion at most
+    tolerance : error of a step [m, m/s, rad/s]
+    cut : energy at which a body rests, over what a fall takes [-]
+    y : state, shape (SIZE,), changed in place
+    history : takes a sample of each interval, as many as fit, shape (m, COLUMNS)
+    out : takes the outcome, shape (OUTCOME,)
+    s : record ``CASE`` to work in, whose counters tell the contact events afterwards
     """
     for i in range(OUTCOME):
         out[i] = 0.0
@@ -716,7 +733,7 @@ def integrate(
     modes.anchor_all(body, y, s)
     out[CERTAIN_TIME] = math.nan
     last = acceleration.shape[0] - 1
-    stuck = lost_track = 0
+    stuck = lost_track = still = 0
     ahead = dt
     k = 0
     while k <= last + extra:
@@ -731,8 +748,9 @@ def integrate(
         note_soon(s, peaks, k, scale, dt)
         record(history, k, y, out, s)
         free = body.constraints == 0 and solid.energy(body, y, g) < body.barrier
-        if k > last and (s.rests == 1 or free):
-            # on a ground at rest it stands, or has too little energy left to fall
+        still = still + 1 if k > last and hardly_moves(body, y, cut) else 0
+        if k > last and (s.rests == 1 or free or still > STILL):
+            # on a ground at rest it stands, has too little energy left to fall, or leans and does not move
             break
         if s.bonded:
             note_bond(body, y, 0.0, s)
@@ -802,6 +820,12 @@ def integrate(
         + y[solid.FRICTION]
         + out[LOST]
     )
+
+
+@kernel
+def hardly_moves(body, y, cut):
+    """Whether a body that walls or ties hold has less energy of motion than is followed."""
+    return body.constraints > 0 and solid.kinetic_energy(body, y) < cut * body.barrier
 
 
 @kernel
