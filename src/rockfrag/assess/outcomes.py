@@ -240,10 +240,14 @@ class Shaking(IntensityLevels):
         On a pedestal that may lift both answers count: what falls in either falls. Planar answers of round bases
         are those of the worst direction of each record.
         """
-        systems = [object_.system_of(body) for object_, body in every]
+        systems = [object_.held(object_.system_of(body)) for object_, body in every]
         if not self.motions.both:
             return self._in_plane(systems)
-        solids = [object_.solid(body) for object_, body in every]
+        solids = [
+            solid and object_.held(solid)
+            for object_, body in every
+            for solid in [object_.solid(body)]
+        ]
         planar = [
             i for i, solid in enumerate(solids) if solid is None or systems[i].count > 1
         ]
@@ -292,18 +296,46 @@ class Shaking(IntensityLevels):
 
         Corners of its base lie elsewhere by ``spread`` over its extent, and it is turned by up to as many radians.
         """
+        shaking, scales = self._records()
+        lifting = lifting_in_space(body, shaking)
+        threads = checked_threads(None)
+        result = run_in_space([body], shaking, scales, spread=spread, threads=threads)
+        states = states_of(result)
+        of_row = np.arange(len(scales))
+        return self._each_system(states, of_row=of_row, lifting=[lifting])[0]
+
+    def _records(self) -> tuple[list[GroundMotion], Floats]:
+        """All components of each record, and the factors on them, shape (records, levels)."""
         motions = self.motions
         shaking = [
             GroundMotion(*motions.components(record)) for record in motions.records
         ]
         first = [record[0] for record in motions.records]
-        scales = self._factors([motions.base[i] for i in first], first)
-        lifting = lifting_in_space(body, shaking)
-        threads = checked_threads(None)
-        result = run_in_space([body], shaking, scales, spread=spread, threads=threads)
-        states = states_of(result)
-        of_row = np.arange(len(first))
-        return self._each_system(states, of_row=of_row, lifting=[lifting])[0]
+        return shaking, self._factors([motions.base[i] for i in first], first)
+
+    def outcomes_of_system(self, system: System) -> tuple[ObjectOutcomes, Outcomes]:
+        """Outcomes of one system, and all that its simulation says.
+
+        Parameters
+        ----------
+        system : shaken by both components where it is known in space, else by one
+
+        Returns
+        -------
+        What becomes of it, and the outcomes of the system under motions, or records, at the levels.
+        """
+        if system.planar:
+            base = self.motions.base
+            result, light = simulated([system], base, self._factors(base))
+            lifting = [lifting_in_plane(system, base)]
+            found = self._each_system(states_of(result), light, lifting=lifting)
+            return found[0], result
+        shaking, scales = self._records()
+        result = run_in_space([system], shaking, scales, threads=checked_threads(None))
+        lifting = [lifting_in_space(system, shaking)]
+        rows = np.arange(len(scales))
+        found = self._each_system(states_of(result), of_row=rows, lifting=lifting)
+        return found[0], result
 
     def on_pad(
         self, objects: Standing, friction: float
