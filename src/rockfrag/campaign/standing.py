@@ -34,11 +34,12 @@ UNKNOWNS = (
     "edge_retreat_mm",
     "restitution",
     "friction",
+    "size",
 )
 """What may be given as a range: direction of shaking from the mesh's x axis, height above the lowest point up
 to which points carry, distance by which edges lie further in, and in the plane the ratio of angular velocities in
 an impact (values above the one that conserves momentum stand for that); in space, and of blocks on each other, the
-coefficient of friction."""
+coefficient of friction; of a block by hand its size over that given."""
 
 # quantile function of something that nobody measured
 Quantile = Callable[[float], float]
@@ -61,7 +62,16 @@ class Trials:
 
 
 def uniform(low: float, high: float) -> Quantile:
-    """Quantile function of a uniform distribution."""
+    """Quantile function of a uniform distribution.
+
+    Parameters
+    ----------
+    low, high : its ends
+
+    Returns
+    -------
+    A function of probabilities [-].
+    """
     return lambda fraction: low + (high - low) * fraction
 
 
@@ -141,7 +151,9 @@ def sample_trials(
 
 
 def simulate_tests(
-    systems: Sequence[System], motions: Sequence[Motion], threads: int | None = None
+    systems: Sequence[System],
+    motions: Sequence[Motion | GroundMotion],
+    threads: int | None = None,
 ) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
     """Whether a body overturns, and whether any rocks, shape (trials, tests).
 
@@ -160,7 +172,12 @@ def simulate_tests(
         with warnings.catch_warnings():
             # a guess may be squat where the object is not
             warnings.simplefilter("ignore", LightBodies)
-            shaking = batch if systems[0].planar else list(map(GroundMotion, batch))
+            shaking = [
+                each
+                if systems[0].planar or isinstance(each, GroundMotion)
+                else GroundMotion(each)
+                for each in batch
+            ]
             result = overturns(systems, shaking, threads=threads)
         overturned.append(result.overturned[:, :, 0])
         rocked.append((result.peak_rotation[:, :, 0] > 0).any(axis=-1))
@@ -245,7 +262,23 @@ def body_of(
         return thing.block(
             guess["direction_deg"], guess["contact_tolerance_mm"] / 1e3, retreat
         )
+    if "size" in guess:
+        (block,) = thing.blocks
+        return _of_size(block, guess["size"]).narrowed(retreat)
     return thing.narrowed(retreat)
+
+
+def _of_size(block: Block, factor: float) -> Block:
+    """A planar block with all its lengths times a factor, of the same material."""
+    assert isinstance(block.cg_height, float) and isinstance(block.inertia, float)
+    return Block(
+        factor * block.width,
+        factor * block.height,
+        factor**3 * block.mass,
+        factor**5 * block.inertia,
+        cg_height=factor * block.cg_height,
+        cg_offset=factor * block.cg_offset,
+    )
 
 
 def possible_restitution(block: Block, restitution: float) -> float | None:

@@ -27,7 +27,7 @@ from rockfrag.campaign.standing import (
     simulate_tests,
     unknowns_of,
 )
-from rockfrag.records.motion import Motion
+from rockfrag.records.motion import GroundMotion, Motion
 from rockfrag.stages.campaign import campaign_with_motions, measured_tests, object_of
 from rockfrag.study.campaign import CampaignStudy
 from rockfrag.study.loading import load_any
@@ -111,7 +111,7 @@ def model_error(answers: Sequence[BlindAnswer]) -> tuple[float, float]:
 
 
 def blind_of(
-    study: CampaignStudy, campaign: Campaign, motions: Sequence[Motion]
+    study: CampaignStudy, campaign: Campaign, motions: Sequence[Motion | GroundMotion]
 ) -> dict[str, BlindAnswer]:
     """Blind answers of a campaign, by measure, that in which outcomes scatter least first."""
     if "pedestal" in study.object:
