@@ -4,6 +4,7 @@ import json
 import random
 import re
 from dataclasses import replace
+from itertools import product
 from unittest.mock import patch
 
 import numpy as np
@@ -12,7 +13,7 @@ import pytest
 from scipy.stats import norm
 
 from rockfrag.assess.answer import assess_with
-from rockfrag.assess.core.decisions import decide
+from rockfrag.assess.core.decisions import Action, Decision, decide
 from rockfrag.assess.core.likelihood import Likelihood, likelihood_of
 from rockfrag.assess.export import as_json, as_nrml
 from rockfrag.assess.findings import (
@@ -284,7 +285,7 @@ def test_advice_agrees_with_the_risk_that_is_accepted(on_pedestal):
     def said(value, **more):
         estimate = Estimate(value, value / 2, min(1, 2 * value), {})
         request = replace(on_pedestal.request, **more)
-        decision = decide(value, np.full(32, value), {}, {}, request.accepted)
+        decision = decide(value, np.full(32, value), None, {}, request.accepted)
         about = {"request": request, "decision": decision}
         return advice(replace(on_pedestal, probability=estimate, **about)).id
 
@@ -325,9 +326,19 @@ def test_the_first_screen_has_at_most_sixty_words_and_says_nothing_twice(on_pede
         fraction=Estimate(0.46, 0.1, 0.9, {"conversion": 1.0}),
         probability=Estimate(0.011, 0.002, 0.06, {"period": 2.0}),
     )
-    unnamed = replace(longest.request, name="the object")
-    for language in ("en", "it"):
-        lines = lines_of(replace(longest, request=unnamed), language)
+    hardly = replace(
+        longest,
+        rocking=Estimate(0.09, 0.05, 0.2, {}),
+        fraction=Estimate(0.046, 0.01, 0.09, {}),
+    )
+    both = replace(longest.level, pgv=25.1)
+    for found, language, source in product(
+        (longest, hardly), ("en", "it"), MEASUREMENTS
+    ):
+        first = Decision(Action.MEASURE, Action.LEAVE, source, 0.3)
+        request = replace(longest.request, name="the object")
+        shown = replace(found, request=request, level=both, decision=first)
+        lines = lines_of(shown, language)
         assert len(" ".join(lines).split()) <= 60, lines
         assert len(lines) == len(set(lines)) == 4
     verdict = lines_of(longest)[0]
@@ -386,7 +397,6 @@ def test_none_of_n_motions_is_said_as_that_and_bounds_are_called_bounds(on_pedes
         on_pedestal,
         fraction=Estimate(0.0, 0.0, 0.11, {}),
         counts=(24, 12, 0),
-        directions=None,
     )
     assert "(at most 11 %)" in lines_of(none)[0]
     level = _behind(none, Text.TITLE_LEVEL)

@@ -16,12 +16,14 @@ from scipy import stats
 from rockfrag.assess.answer import assess_with
 from rockfrag.assess.conversion import (
     OF_THE_SITE,
+    PRIOR,
     UNKNOWN,
     Conversion,
     PublishedVelocity,
     SiteVelocity,
     VelocityRelation,
 )
+from rockfrag.assess.core.velocity import spread_of_mean
 from rockfrag.assess.export import as_nrml
 from rockfrag.assess.findings import (
     assumptions,
@@ -291,14 +293,15 @@ def test_the_velocity_of_a_site_is_the_published_one_of_its_earthquakes(motions)
     ):
         known = Records(magnitude=magnitude, distance_km=distance)
         site = replace(PublishedVelocity.of(PGA, known), vs30=425.0)
-        ratio = math.exp(float(site.log_ratio(np.array(0.2)))) * VELOCITY_PER_G
+        at_one, slope = site.lines(known)[0]
+        ratio = math.exp(at_one + slope * math.log(0.2)) * VELOCITY_PER_G
         assert ratio == pytest.approx(expected, abs=0.5)
     # less is open the more is given
-    full, part = (
-        PublishedVelocity.of(PGA, given).unknown(given, 0.2)
-        for given in (known, Records(magnitude=7.0))
+    full, part, none = (
+        spread_of_mean(0.2, site.of_site, PublishedVelocity.of(PGA, given).lines(given))
+        for given in (known, Records(magnitude=7.0), Records())
     )
-    assert math.sqrt(OF_THE_SITE) * site.scatter < full < part
+    assert math.sqrt(OF_THE_SITE) * site.scatter < full < part < none
     slow, fast = (
         assess_with(
             figure(pga="0.6 g", magnitude=m, distance_km=20.0), motions, brief=True
@@ -402,7 +405,7 @@ def topples_from(pgv: float, logs: np.ndarray) -> ObjectOutcomes:
 
 
 def conversion_of(logs, known, weight=1.0):
-    return Conversion(PGA, None, weight, logs, known, 0.0, 0.0, by_statics=False)
+    return Conversion(PGA, (), weight, 0.0, logs, known, 0.0, 0.0, by_statics=False)
 
 
 def test_an_object_that_velocity_topples_has_the_rate_of_that_velocity():
@@ -461,8 +464,9 @@ def test_what_is_known_of_velocity_counts_and_is_no_longer_a_source(motions):
         )
         for more in ({}, {"pgv": "40 cm/s"}, {"pgv": f"{1.3 * middle} cm/s"})
     )
-    # nothing known leaves counted fractions
-    assert nothing.outcomes is nothing.counted and nothing.counts is not None
+    # with nothing said the velocity is that of the usual earthquakes; motions are counted as recorded
+    assert nothing.conversion.known.published.magnitude == PRIOR["magnitude"]
+    assert nothing.counts[0] == len(motions.ground)
     assert nothing.fraction.sources["conversion"] > 0
     assert slow.probability.value < fast.probability.value
     for found in (slow, fast):

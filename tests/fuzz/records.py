@@ -15,7 +15,8 @@ from rockfrag.motions.catalogued import read_motions
 from rockfrag.records.make_catalogue import make_catalogue
 from rockfrag.records.read import motion_of, read_record
 
-from ..records.built_records import KINDS, build, knet_text, pack, pack_tar, written
+from ..records.built_records import KINDS, build, pack, pack_tar
+from ..records.record_texts import knet_text, search_results
 from .damage import Attempt, Seed, damaged
 from .inputs import CASES
 
@@ -72,7 +73,7 @@ def _seeds(folder: Path) -> Iterable[Seed]:
         yield name, text.encode(), _load_all
     yield (
         "_SearchResults.csv",
-        written("search_results", count=4).encode(),
+        search_results(4).encode(),
         _catalogue_of,
     )
 

@@ -21,7 +21,8 @@ from rockfrag.records.parsing.text_file import NotAcceleration
 from rockfrag.records.read import FORMATS, read_motion, read_record
 
 from ..case_tables import case_tables
-from .built_records import build, knet_text
+from .built_records import build
+from .record_texts import knet_text
 
 CASES = case_tables(__file__)
 QUICK = settings(

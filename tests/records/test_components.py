@@ -13,7 +13,9 @@ from rockfrag.records.make_catalogue import make_catalogue
 from rockfrag.records.parsing.text_file import NotAcceleration
 from rockfrag.records.read import read_motion
 
-from .built_records import build, wave, written
+from .built_records import build
+from .fields import wave
+from .record_texts import peer_file
 
 
 def peer(
@@ -22,12 +24,8 @@ def peer(
     """Write an AT2 file whose second line says event, station and component, if it says a component."""
     words = "ACCELERATION TIME SERIES IN UNITS OF G"
     samples = wave(zlib.crc32(f"{name}{event}".encode()) % 1000)
-    text = written(
-        "peer_file", station=1, component=component, words=words, wave=samples
-    )
     line = f"{event}, {station}, {component}" if component else "no facts"
-    text = text.replace(text.splitlines()[1], line)
-    (folder / f"{name}.AT2").write_text(text)
+    (folder / f"{name}.AT2").write_text(peer_file(line, words, samples))
 
 
 def columns(path, *series, dt=0.01, titles=""):

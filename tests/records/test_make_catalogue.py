@@ -13,7 +13,8 @@ from rockfrag.records.catalogue import read_catalogue, repeated_motions
 from rockfrag.records.make_catalogue import make_catalogue, read_search_results
 from rockfrag.records.parsing.directions import azimuth_of, is_vertical
 
-from .built_records import build, pack, peer_download, wave
+from .built_records import build, pack, peer_download
+from .fields import wave
 
 
 def write(path, seed, dt=0.01):

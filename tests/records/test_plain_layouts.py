@@ -11,7 +11,7 @@ from rockfrag.records.parsing.text_file import NotAcceleration
 from rockfrag.records.read import read_motion, read_record
 
 from ..case_tables import case_tables
-from .built_records import lines
+from .fields import lines
 
 CASES = case_tables(__file__)
 N = 400

@@ -8,7 +8,8 @@ from rockfrag.base.errors import InputError
 from rockfrag.records.quality_flags import quality_flags
 from rockfrag.records.read import motion_of, read_motion, read_record
 
-from .built_records import build, knet_text
+from .built_records import build
+from .record_texts import knet_text
 
 STATED = {
     "afad": r"RAW PGA VALUES \(gal\)    : \(N-S\) ",

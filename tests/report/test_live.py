@@ -17,6 +17,7 @@ from rockfrag.report.live import (
     carried,
     frames_svg,
     live_kernel,
+    live_texts,
     outlines,
     swept,
 )
@@ -25,6 +26,7 @@ from rockfrag.report.play_page import MOST_SAMPLES as MOST_PLAYED
 from rockfrag.report.play_page import write_play_page
 from rockfrag.simulation.options import system_of
 from rockfrag.system.system import turned_about_vertical
+from rockfrag.words.catalogue import catalogue
 
 from ..conftest import wave as motion
 
@@ -155,3 +157,12 @@ def test_the_played_page_is_small_and_the_same_every_time(tmp_path: Path):
         write_play_page(
             STATUE, Motion(np.zeros(100), 0.01, "still", {}), tmp_path / "c.html"
         )
+
+
+def test_the_live_part_is_in_the_language_of_its_page():
+    italian = live_kernel(BODIES, [motion()], texts=catalogue("it"))
+    assert "Provi: simuli in questa pagina" in italian
+    english = live_texts(catalogue())
+    left = [text for text in english.values() if len(text) > 12 and text in italian]
+    assert not left
+    assert set(live_texts(catalogue("it"))) == set(english)

@@ -24,7 +24,9 @@ from rockfrag.words.findings import Finding, Form, Number, as_data, finding, lis
 SOURCE = Path(catalogues.__file__).parents[1]
 PLACES = re.compile(r"\{(\w+)\}")
 NODE = shutil.which("node")
-FAMILIES = r"(source|basis|measurement|assumed|why|word|meaning|shell|of|slide)_\w+"
+FAMILIES = (
+    r"(source|basis|measurement|assumed|why|word|meaning|shell|of|slide|live)_\w+"
+)
 """Ids that are made of the name of what they are of."""
 
 

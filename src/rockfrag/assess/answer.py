@@ -3,6 +3,7 @@
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from pathlib import Path
 
 import numpy as np
@@ -10,9 +11,11 @@ from scipy import special
 
 from rockfrag.assess import outcomes, risk
 from rockfrag.assess.assumed import Moved
-from rockfrag.assess.conversion import Conversion, find_conversion
+from rockfrag.assess.conversion import Conversion, Site, find_conversion
 from rockfrag.assess.core.decisions import Decision, decide
 from rockfrag.assess.core.draws import FEW_MEMBERS
+from rockfrag.assess.core.estimates import fill_sides, rate_of
+from rockfrag.assess.core.hazards import spread_of_quantiles
 from rockfrag.assess.core.likelihood import Likelihood, likelihood_of
 from rockfrag.assess.hazard.curve import PGA, PGV, HazardCurve
 from rockfrag.assess.mitigations import Mitigation, compare
@@ -27,10 +30,14 @@ from rockfrag.assess.texts import Text
 from rockfrag.base.arrays import Floats
 from rockfrag.base.errors import InputError
 from rockfrag.base.short_repr import short_repr
+from rockfrag.engines.pure_rocking.kernels.lanes.block import integrate_blocks
+from rockfrag.engines.pure_rocking.kernels.lanes.scheduler import integrate_stacks
+from rockfrag.engines.spatial._integrate import integrate_scales
 from rockfrag.fragility.estimators import Fragility, fragility_of
 from rockfrag.fragility.model_error import MODEL_ERRORS
 from rockfrag.motions.intensity import IntensityMeasure
 from rockfrag.outcomes.limit_states import ROCKS
+from rockfrag.runtime.machine_code import is_kept
 from rockfrag.system.blocks import Body
 from rockfrag.words.findings import Finding, finding, two
 
@@ -57,17 +64,14 @@ class Assessment:
     amplitudes : levels at which a tenth and half of the motions topple it, by fraction
     by_arrangement : what is estimated of each arrangement
     shown_safer : arrangements that the motions show to be safer than the others
-    curve : lognormal curve of the motions as recorded, NaN where there is none; None with the site's velocity
-    predicted : fraction at each level, the mean over what is not known, with its median and its two spreads
+    evidence : what estimates rest on
+    shaking : motions at the levels that were tried
+    brief : whether directions, changes and what only a page shows are left out
     decision : what to do by an accepted risk; None without a level
     conversion : what hazard in another measure than PGV leaves open; None in PGV
     planar : what is estimated in one plane, beside the answer in space, which counts; None where there is none
-    directions : the worst direction; None where no record has two components
     mitigations : what helps, most helpful first
-    effects : what is estimated with each property smaller and larger
-    rules : engineers' rules held against the outcomes
-    sliding_fraction : fraction of motions at the level that topple it if it may slide [-]; or NaN
-    flip_rate : fraction of outcomes in space at the level that differ if the base does by 1e-6 [-]; or NaN
+    spreads : relative standard deviation of each property that was moved
     """
 
     request: Request
@@ -84,17 +88,14 @@ class Assessment:
     amplitudes: Mapping[float, Estimate]
     by_arrangement: Mapping[str, float]
     shown_safer: frozenset[str]
-    curve: Fragility | None
-    predicted: PredictedCurve
+    evidence: risk.Evidence
+    shaking: Shaking
+    brief: bool
     decision: Decision | None
     conversion: Conversion | None
     planar: float | None
-    directions: Directions | None
     mitigations: tuple[Mitigation, ...]
-    effects: tuple[Moved[float], ...]
-    rules: tuple[RuleCheck, ...]
-    sliding_fraction: float
-    flip_rate: float = math.nan
+    spreads: Mapping[str, float]
 
     __repr__ = short_repr
 
@@ -113,6 +114,75 @@ class Assessment:
         """Whether it is exceptionally unlikely that it rocks at the level, limits included."""
         limit = self.rocking.upper if self.rocking else 1.0
         return likelihood_of(limit) is Likelihood.EXCEPTIONALLY_UNLIKELY
+
+    # ---- what no line says is computed where a page or a file shows it
+
+    @cached_property
+    def predicted(self) -> PredictedCurve:
+        """Fraction at each level, the mean over what is not known, with its median and its two spreads."""
+        return self.evidence.curve()
+
+    @cached_property
+    def curve(self) -> Fragility | None:
+        """Lognormal curve of the motions as recorded, NaN where there is none; None where it is left out."""
+        return None if self.brief else fragility_of(self.counted.outcomes())
+
+    @cached_property
+    def directions(self) -> Directions | None:
+        """The worst direction; None where no record has two components, or where it is left out."""
+        objects, motions = self.request.objects, self.motions
+        if self.brief or motions.both or objects.many:
+            return None
+        level = self.level.value if self.level else None
+        return outcomes.find_directions(objects, motions, self.measure, level)
+
+    @cached_property
+    def rules(self) -> tuple[RuleCheck, ...]:
+        """Engineers' rules held against the outcomes."""
+        if self.brief or self.motions.both:
+            return ()
+        checks = check_rules(self.request.objects, self.motions, self.counted)
+        return tuple(checks)
+
+    @cached_property
+    def sliding_fraction(self) -> float:
+        """Fraction of motions at the level that topple it if it may slide [-]; or NaN."""
+        objects = self.request.objects
+        if self._here is None or objects.friction is None:
+            return math.nan
+        return self._here.fraction_with_sliding(objects)
+
+    @cached_property
+    def flip_rate(self) -> float:
+        """Fraction of outcomes in space at the level that differ if the base does by 1e-6 [-]; or NaN."""
+        if self._here is None or not self.motions.both:
+            return math.nan
+        return self._here.flip_rate(self.request.objects)
+
+    @cached_property
+    def effects(self) -> tuple[Moved[float], ...]:
+        """What is estimated with each property smaller and larger."""
+        return tuple(
+            _effect(self.target, self.evidence, name, spread)
+            for name, spread in self.spreads.items()
+        )
+
+    @property
+    def target(self) -> risk.Target:
+        """What is asked for first, as it is estimated."""
+        if self.hazard is not None:
+            return risk.risk_target(self.hazard, self.request.years)
+        if self.level is not None:
+            return risk.fraction_target(self.level.value)
+        return risk.amplitude_target(0.5)
+
+    @cached_property
+    def _here(self) -> Shaking | None:
+        """The motions at the site's level alone; None without one, or where that is left out."""
+        if self.brief or self.level is None:
+            return None
+        level = np.array([self.level.value])
+        return outcomes.scaled_to(level, self.motions, self.measure)
 
     @property
     def main(self) -> Estimate:
@@ -180,6 +250,30 @@ def assess(
     """
     motions = motion_set(request.records, request.place, Path(records))
     return assess_with(request, motions, brief=brief)
+
+
+COMPILING_S = {False: 20, True: 60}
+"""About how long kernels compile once on a machine, in a plane and in space [s]."""
+
+
+def waiting_for(request: Request) -> str:
+    """Say what a first answer on a machine waits for.
+
+    Parameters
+    ----------
+    request : what is asked
+
+    Returns
+    -------
+    A sentence; empty where the kernels are compiled.
+    """
+    in_space = request.objects.in_space
+    entries = [integrate_scales] if in_space else [integrate_blocks]
+    if request.objects.pedestals:
+        entries.append(integrate_stacks)
+    if all(map(is_kept, entries)):
+        return ""
+    return f"compiling once on this machine, about {COMPILING_S[in_space]} s"
 
 
 def assess_with(
@@ -291,13 +385,10 @@ def assessed(request: Request, plan: Plan, shaken: Shaken) -> Assessment:
     exact = measure == PGA and on_ground and not motions.both
     conversion = None
     if level:
-        about = (request.records, level, plan.curves)
-        conversion = find_conversion(
-            counted, motions, *about, by_statics=exact, brief=plan.brief
-        )
+        site = Site(request.records, level, plan.curves)
+        conversion = find_conversion(counted, motions, site, by_statics=exact)
     shaken = _at_site(shaken, plan, conversion)
     arrangements = shaken.arrangements
-    now = next(iter(arrangements.values()))
     evidence = _evidence(objects, shaken, plan, conversion)
     compared = replace(evidence, members=FEW_MEMBERS)
     probability, rocking, fraction, decision = None, None, None, None
@@ -313,14 +404,7 @@ def assessed(request: Request, plan: Plan, shaken: Shaken) -> Assessment:
         name: evidence.mean(target, arrangement)
         for name, arrangement in arrangements.items()
     }
-    at = level.value if level else None
-    brief = plan.brief
     helps = _mitigations(target, compared, shaken)
-    here = (
-        None
-        if brief or at is None
-        else outcomes.scaled_to(np.array([at]), motions, measure)
-    )
     lifts_from = objects.least_uplift if exact else counted.lifts_from().min()
     return Assessment(
         request=request,
@@ -333,29 +417,18 @@ def assessed(request: Request, plan: Plan, shaken: Shaken) -> Assessment:
         rocks_from=float(lifts_from),
         fraction=fraction,
         probability=probability,
-        counts=_counts(counted, level) if now is counted else None,
+        counts=_counts(counted, level),
         amplitudes={p: evidence.estimate(risk.amplitude_target(p)) for p in (0.1, 0.5)},
         by_arrangement=values,
         shown_safer=_shown_safer(shaken, helps),
-        curve=None if brief or now is not counted else fragility_of(now.outcomes()),
-        predicted=evidence.curve(),
+        evidence=evidence,
+        shaking=plan.shaking,
+        brief=plan.brief,
         decision=decision,
         conversion=conversion,
-        directions=None
-        if brief or motions.both or objects.many
-        else outcomes.find_directions(objects, motions, measure, at),
         planar=None if shaken.planar is None else evidence.mean(target, shaken.planar),
         mitigations=helps,
-        effects=tuple(_effect(target, evidence, change) for change in shaken.moved),
-        rules=()
-        if brief or motions.both
-        else tuple(check_rules(objects, motions, counted)),
-        sliding_fraction=math.nan
-        if here is None or objects.friction is None
-        else here.fraction_with_sliding(objects),
-        flip_rate=math.nan
-        if here is None or not motions.both
-        else here.flip_rate(objects),
+        spreads={change.name: change.spread for change in shaken.moved},
     )
 
 
@@ -381,22 +454,22 @@ def _decision(
     value: float, evidence: risk.Evidence, target: risk.Target, request: Request
 ) -> Decision:
     """What to do by a probability; of one in some years by its rate, of which means are taken."""
-    accepted, values = request.accepted, evidence.drawn(target)
+    drawn, accepted = evidence.drawn(target), request.accepted
     if target.is_rate:
-        value, accepted = (
-            -math.log1p(-min(p, 1 - 1e-15)) / request.years for p in (value, accepted)
-        )
+        value, accepted = drawn.middle, rate_of(accepted, request.years)
     left = {name: source.left for name, source in MEASUREMENTS.items()}
-    return decide(value, values, evidence.prediction.sources, left, accepted)
+    return decide(value, drawn.values, drawn.prediction, left, accepted)
 
 
 def _effect(
-    target: risk.Target, evidence: risk.Evidence, change: Moved[ObjectOutcomes]
+    target: risk.Target, evidence: risk.Evidence, name: str, spread: float
 ) -> Moved[float]:
     """What is estimated with a property one standard deviation smaller and larger."""
-    values = target.shown(evidence.drawn(target))
-    lower, upper = evidence.prediction.effect(values, change.name)
-    return Moved(change.name, change.spread, lower, upper)
+    prediction, sides = evidence.prediction, np.zeros(2)
+    place = prediction.sources.index(name)
+    shown = evidence.drawn(target).shown
+    fill_sides(shown, prediction.draws.bins[place], sides)
+    return Moved(name, spread, *sides.tolist())
 
 
 def _at_site(shaken: Shaken, plan: Plan, conversion: Conversion | None) -> Shaken:
@@ -465,10 +538,8 @@ def _counts(now: ObjectOutcomes, level: Level | None) -> tuple[int, int, int] | 
     allowed = levels.allowed[:, at]
     if levels.levels[at] != level.value or not allowed.any():
         return None
-    rocked, fell = (
-        int(what[allowed, at].sum()) for what in (now.rocked, now.overturned)
-    )
-    return int(allowed.sum()), rocked, fell
+    rocked, fell = now.rocked[allowed, at].sum(), now.overturned[allowed, at].sum()
+    return int(allowed.sum()), int(rocked), int(fell)
 
 
 def _moved(
@@ -497,16 +568,12 @@ def _moved(
 
 def _of_quantiles(now: ObjectOutcomes, hazard: HazardCurve) -> dict[str, float]:
     """Standard deviation of ln rate that the quantiles of the hazard stand for."""
-    rates = {
-        q: risk.toppling_rate(now.intensity_levels.levels, now.fractions(), curve)
-        for q, curve in hazard.quantiles.items()
-    }
-    finite = {q: math.log(rate) for q, rate in rates.items() if rate > 0}
-    if len(finite) < 2:
-        return {}
-    low, high = min(finite), max(finite)
-    width = float(special.ndtri(high) - special.ndtri(low))
-    return {"hazard": abs(finite[high] - finite[low]) / width}
+    scores = special.ndtri(np.array(list(hazard.quantiles)))
+    levels, fractions = now.intensity_levels.levels, now.fractions()
+    curves = hazard.quantiles.values()
+    rates = [risk.toppling_rate(levels, fractions, curve) for curve in curves]
+    spread = spread_of_quantiles(scores, np.array(rates))
+    return {} if math.isnan(spread) else {"hazard": float(spread)}
 
 
 def _mitigations(

@@ -20,8 +20,8 @@ class Assumption:
 
 def assume(what: str, *sources: str, **about: Value) -> Assumption:
     """Return an assumption with the values that its two texts hold; see :class:`Assumption`."""
-    short, why = (finding(f"{text}_{what}", **about) for text in ("assumed", "why"))
-    return Assumption(short, why, sources)
+    short = finding(f"assumed_{what}", **about)
+    return Assumption(short, finding(f"why_{what}", **about), sources)
 
 
 T = TypeVar("T")

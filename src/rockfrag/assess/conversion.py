@@ -1,6 +1,6 @@
 """Two measures: what is known of the ground velocity that comes with a level of PGA or Sa at a site.
 
-P(topples | IM, PGV/IM) is fitted to the simulated motions (:func:`rockfrag.fragility.fit_vector`).  A motion whose
+P(topples | IM, PGV/IM) is fitted to the simulated motions (:mod:`rockfrag.assess.core.velocity`).  A motion whose
 PGV/IM is larger by a factor r topples the object at levels of IM smaller by r^w, with w the effect of ln PGV/IM
 over that of ln IM: fractions of motions are still counted.  The spread of ln PGV/IM at a site differs from one
 earthquake to the next and belongs into the fractions; its mean is not known and belongs into the interval.
@@ -14,14 +14,21 @@ import numpy as np
 import pandas as pd
 from scipy import special
 
-from rockfrag.assess.hazard.curve import PGV, VELOCITY_PER_G, HazardCurve
+from rockfrag.assess.core.velocity import (
+    MEMORY,
+    MOST_LEVELS,
+    STATE,
+    fill_moved,
+    fill_wanted,
+    fill_weight,
+    shift_by_velocity,
+    spread_of_mean,
+)
+from rockfrag.assess.hazard.curve import PGV, SA_1S, VELOCITY_PER_G, HazardCurve
 from rockfrag.assess.motions import MotionSet
-from rockfrag.assess.outcomes import ObjectOutcomes
+from rockfrag.assess.outcomes import ObjectOutcomes, earthquake_numbers
 from rockfrag.assess.request import Level, Records
 from rockfrag.base.arrays import Floats
-from rockfrag.base.errors import InputError
-from rockfrag.fragility.intervals import jackknife_error
-from rockfrag.fragility.vector import VectorFragility, fit_vector
 from rockfrag.motions.conditional_velocity import MODELS, ConditionalModel
 from rockfrag.motions.intensity import IntensityMeasure
 
@@ -42,14 +49,9 @@ TOGETHER = 0.25
 """Relative standard deviation of the spread of ln PGV at a given level, which two hazard curves do not say: of
 ours."""
 
-NODES = 11  # Values of equal probability that stand for the spread of ln PGV/IM
-
-OF_DISPLACEMENT = 2.0
-"""Largest weight of ln PGV/IM [-]: a motion stretched in time by r at a given PGA has a PGV larger by r and a
-displacement larger by r²."""
-
-# Levels of a motion that are fitted; tests under one motion depend on each other
-MOST_LEVELS = 8
+_EQUAL = special.ndtri((np.arange(11) + 0.5) / 11)
+NODES: Floats = np.round(_EQUAL / _EQUAL.std(), 12)
+"""Values of equal probability that stand for a standard normal spread of ln PGV/IM."""
 
 
 @dataclass(frozen=True)
@@ -67,26 +69,30 @@ class PublishedVelocity:
     ) -> "PublishedVelocity | None":
         """Return it for what is given of the earthquakes, the rest as in ``PRIOR``; None for other measures."""
         model = MODELS.get(measure.imt)
-        facts = zip(_facts(given), PRIOR.values(), strict=True)
-        magnitude, ln_distance, ln_vs30 = (
-            prior if math.isnan(fact) else fact for fact, prior in facts
-        )
         if model is None:
             return None
-        return cls(model, magnitude, math.exp(ln_distance), math.exp(ln_vs30))
+        known = {
+            name: PRIOR[name] if math.isnan(fact) else fact
+            for name, fact in zip(PRIOR, _facts(given), strict=True)
+        }
+        return cls(
+            model,
+            magnitude=known["magnitude"],
+            distance_km=math.exp(known["ln_distance"]),
+            vs30=math.exp(known["ln_vs30"]),
+        )
 
     @property
     def scatter(self) -> float:
         """Standard deviation of ln PGV about the median [-]."""
         return math.hypot(*self.model.spreads(self.magnitude))
 
-    def log_ratio(self, levels: Floats) -> Floats:
-        """Median of ln (PGV over the measure [s]) at levels of the measure [g], of their shape."""
-        about = self.magnitude, self.distance_km, self.vs30
-        return self.model.log_velocity(levels, *about) - np.log(levels * VELOCITY_PER_G)
+    def lines(self, given: Records) -> Floats:
+        """Lines in ln level: ln (PGV over the measure [s]), and by how much each fact may change it.
 
-    def unknown(self, given: Records, level: float) -> float:
-        """Standard deviation of that median at a level, for what is not known of the site and its earthquakes."""
+        The first row has the median, the others what one standard deviation of magnitude, distance and ground
+        does where they are not given: intercepts at 1 g and slopes, shape (4, 2).
+        """
         moved = {
             "magnitude": lambda by: replace(self, magnitude=self.magnitude + by),
             "ln_distance": lambda by: replace(
@@ -94,14 +100,29 @@ class PublishedVelocity:
             ),
             "ln_vs30": lambda by: replace(self, vs30=self.vs30 * math.exp(by)),
         }
-        at, parts = np.array(level), [OF_THE_SITE * self.scatter**2]
+        found = [self._line()]
         for (name, move), fact in zip(moved.items(), _facts(given), strict=True):
-            if math.isnan(fact):
-                low, high = (
-                    float(move(sign * UNKNOWN[name]).log_ratio(at)) for sign in (-1, 1)
-                )
-                parts.append(((high - low) / 2) ** 2)
-        return math.sqrt(sum(parts))
+            sides = [move(sign * UNKNOWN[name])._line() for sign in (-1, 1)]
+            half = (sides[1] - sides[0]) / 2
+            found.append(half if math.isnan(fact) else np.zeros(2))
+        return np.array(found)
+
+    def _line(self) -> Floats:
+        (at_one,) = self.model.log_velocity(
+            np.ones(1), self.magnitude, self.distance_km, self.vs30
+        )
+        slope = self.model.slope(self.magnitude) - 1
+        return np.array([at_one - math.log(VELOCITY_PER_G), slope])
+
+    @property
+    def within(self) -> float:
+        """Standard deviation of ln PGV from motion to motion of a site [-]."""
+        return math.sqrt(1 - OF_THE_SITE) * self.scatter
+
+    @property
+    def of_site(self) -> float:
+        """Standard deviation of what all motions of a site share about the median [-]."""
+        return math.sqrt(OF_THE_SITE) * self.scatter
 
 
 @dataclass(frozen=True)
@@ -113,8 +134,9 @@ class SiteVelocity:
     constant: float = math.nan
     # Hazard curves of the measure and of PGV, with which it agrees; the spread at a given level is then not known
     curves: tuple[HazardCurve, ...] = ()
-    # Published relation for the earthquakes of the site, at levels of the measure
-    published: "PublishedVelocity | None" = None
+    # Published relation for the earthquakes of the site, and its line in ln level, shape (1, 2); None without one
+    published: PublishedVelocity | None = None
+    line: Floats | None = None
 
     def log_ratio(self, levels: Floats) -> Floats:
         """Mean of ln ratio at levels of the measure, of their shape.
@@ -123,8 +145,10 @@ class SiteVelocity:
         with the exponent k, the level of PGV at a rate lies k s²/2 above the mean of ln PGV at the measure's level
         of that rate.
         """
-        if self.published is not None:
-            return self.published.log_ratio(levels)
+        if self.line is not None:
+            wanted = np.zeros(levels.size)
+            fill_wanted(levels, self.line, wanted)
+            return wanted
         if not self.curves:
             return np.full(levels.shape, self.constant)
         first, velocity = self.curves
@@ -144,10 +168,13 @@ class Conversion:
     """What is known of the velocity at a site whose shaking is given in another measure."""
 
     measure: IntensityMeasure  # The measure that is known
-    # P(topples | ``im``, ``ratio_s``): the measure, and PGV over it
-    fragility: VectorFragility
+    # Of 1, ln measure and ln ratio in the probit of toppling
+    coefficients: tuple[float, ...]
     # Effect of ln ratio over that of ln measure [-]: 0 if PGV says nothing, 1 if all, up to 2 for displacement
     weight: float
+    error: (
+        float  # Its standard error by a jackknife over earthquakes [-]; 0 if not needed
+    )
     logs: Floats  # ln (PGV over the measure [s]) of each motion, shape (motions,)
     known: SiteVelocity | None  # What is known of the site; None if nothing is
     spread: float  # Standard deviation of the mean of ln ratio at the site [-]
@@ -192,135 +219,180 @@ class Conversion:
         known = self.known
         if known is None or not known.curves:
             return None
-        lower, upper = (
-            self._moved(outcomes, replace(known, spread=known.spread * factor))
-            for factor in (1 - TOGETHER, 1 + TOGETHER)
-        )
-        return lower, upper
+        less = replace(known, spread=known.spread * (1 - TOGETHER))
+        more = replace(known, spread=known.spread * (1 + TOGETHER))
+        return self._moved(outcomes, less), self._moved(outcomes, more)
 
     def _moved(self, outcomes: ObjectOutcomes, site: SiteVelocity) -> ObjectOutcomes:
         """Each motion at the level at which it is as strong for the object as with the velocity of the site."""
         intensity_levels = outcomes.intensity_levels
-        x = np.log(intensity_levels.levels)
-        count = NODES if site.spread > 0 else 1
-        nodes = special.ndtri((np.arange(count) + 0.5) / count)
-        nodes *= site.spread / nodes.std() if count > 1 else 0.0
-        wanted = site.log_ratio(intensity_levels.levels) + nodes[:, np.newaxis]
-        # (motions, nodes, levels), then a row for each motion at each node
-        moved = x + self.weight * (wanted - self.logs[:, np.newaxis, np.newaxis])
-        moved = moved.reshape(-1, x.size)
-        row = np.repeat(np.arange(self.logs.size), count)[:, np.newaxis]
-        place = np.rint(np.interp(moved, x, np.arange(x.size))).astype(np.intp)
-        inside = (moved >= x[0]) & (moved <= x[-1])
-        overturned = outcomes.overturned[row, place]
-        rocked = np.repeat(outcomes.rocked, count, axis=0)
-        if self.by_statics:
-            overturned &= rocked
-            # at a level where it does not rock a motion says nothing of one that makes it rock
-            inside &= outcomes.rocked[row, place] | ~rocked
+        levels = intensity_levels.levels
+        nodes = site.spread * NODES if site.spread > 0 else np.zeros(1)
+        shape = self.logs.size * nodes.size, levels.size
+        places = np.zeros(shape, dtype=np.int64)
+        allowed = np.zeros(shape, dtype=np.bool_)
+        overturned, rocked = allowed.copy(), allowed.copy()
+        fill_moved(
+            levels,
+            np.ascontiguousarray(intensity_levels.allowed),
+            np.ascontiguousarray(outcomes.overturned),
+            np.ascontiguousarray(outcomes.rocked),
+            self.logs,
+            site.log_ratio(levels),
+            nodes,
+            self.weight,
+            self.by_statics,
+            np.zeros(levels.size),
+            places,
+            allowed,
+            overturned,
+            rocked,
+        )
+        row = np.repeat(np.arange(self.logs.size), nodes.size)[:, np.newaxis]
         return replace(
             outcomes,
             intensity_levels=replace(
                 intensity_levels,
-                scales=intensity_levels.scales[row, place],
-                allowed=intensity_levels.allowed[row, place] & inside,
+                scales=intensity_levels.scales[row, places],
+                allowed=allowed,
             ),
             overturned=overturned,
-            rocked=rocked | overturned,
-            others={name: cases[row, place] for name, cases in outcomes.others.items()},
-            earthquakes=np.repeat(outcomes.earthquakes, count),
-            lifting=np.repeat(outcomes.lifts_from(), count),
+            rocked=rocked,
+            others={
+                name: cases[row, places] for name, cases in outcomes.others.items()
+            },
+            earthquakes=np.repeat(outcomes.earthquakes, nodes.size),
+            lifting=np.repeat(outcomes.lifts_from(), nodes.size),
         )
 
 
-def find_conversion(
-    outcomes: ObjectOutcomes,
-    motions: MotionSet,
-    given: Records,
-    level: Level,
-    curves: tuple[HazardCurve, ...],
-    *,
-    by_statics: bool,
-    brief: bool,
-) -> Conversion | None:
-    """Fit the fragility in two measures, and gather what is known of the site's velocity; None in PGV or unfitted.
+@dataclass(frozen=True)
+class Site:
+    """What is known of the shaking of a site."""
 
-    ``curves`` are the hazard in the measure and, if known, in PGV; ``brief`` fits without an interaction.
-    """
+    given: Records  # Of its earthquakes and ground
+    level: Level  # Level of shaking
+    curves: tuple[HazardCurve, ...]  # Hazard in the measure and, if known, in PGV
+
+
+def find_conversion(
+    outcomes: ObjectOutcomes, motions: MotionSet, site: Site, *, by_statics: bool
+) -> Conversion | None:
+    """Fit the fragility in two measures, and gather what is known of the velocity; None in PGV or unfitted."""
     measure = outcomes.intensity_levels.measure
     if measure == PGV:
         return None
     logs = motions.log_ratios(measure)
-    fit = _fitted(outcomes, logs, brief)
-    if fit is None:
+    known, spread = _site_velocity(motions, measure, site)
+    weight, error, *coefficients = _weight(outcomes, logs, jackknifes=known is not None)
+    if math.isnan(weight):
         return None
-    middle = float(np.median(logs))
-    weight, error = _weight(fit, middle)
-    if not math.isfinite(weight):
-        return None
-    # what is known of the velocity at the site, and the standard deviation of the mean of ln ratio
-    relation = VelocityRelation.of(
-        motions.about, motions.log_ratios(measure, of_all=True)
+    shift = weight * spread
+    if known is not None:
+        wanted = known.log_ratio(outcomes.intensity_levels.levels)
+        middle = float(np.median(logs))
+        shift = shift_by_velocity(weight, spread, error, wanted, middle)
+    return Conversion(
+        measure=measure,
+        coefficients=tuple(coefficients),
+        weight=weight,
+        error=error,
+        logs=logs,
+        known=known,
+        spread=spread,
+        shift=shift,
+        by_statics=by_statics,
     )
+
+
+def published_velocity(
+    measure: IntensityMeasure, given: Records
+) -> PublishedVelocity | None:
+    """What is published of the velocity with a measure at a site; None for measures and motions that it is not of.
+
+    Motions that a user chose have the velocity of the site, unless something else is said of it.
+    """
+    told = any(map(math.isfinite, _facts(given)))
+    if given.on_floor or (given.paths and not told):
+        return None
+    return PublishedVelocity.of(measure, given)
+
+
+def _site_velocity(
+    motions: MotionSet, measure: IntensityMeasure, site: Site
+) -> tuple[SiteVelocity | None, float]:
+    """What is known of the velocity at the site, and the standard deviation of the mean of ln ratio [-]."""
+    given, level, curves = site.given, site.level, site.curves
+    logs = motions.log_ratios(measure, of_all=True)
+    relation = VelocityRelation.of(motions.about, logs)
     own = math.sqrt(1 - OF_THE_SITE) * relation.scatter
-    known, spread, away = None, 0.0, 0.0
     if len(curves) > 1:
-        known = SiteVelocity(relation.scatter, curves=curves)
-    elif math.isfinite(level.pgv):
+        return SiteVelocity(relation.scatter, curves=curves), 0.0
+    if math.isfinite(level.pgv):
         # of a hazard curve other levels count too, with velocities of their own
         ratio = math.log(level.pgv / level.value / VELOCITY_PER_G)
-        known = SiteVelocity(own if curves else 0.0, ratio)
-    elif math.isnan(given.magnitude) and math.isnan(given.distance_km):
-        # what differs about the relation is in the motions, once
-        spread = relation.unknown(given, of_site=False)
-    elif (published := PublishedVelocity.of(measure, given)) is not None:
-        spread = published.unknown(given, level.value)
-        within = math.sqrt(1 - OF_THE_SITE) * published.scatter
-        known = SiteVelocity(within, published=published)
-    else:
-        spread = relation.unknown(given)
-        known = SiteVelocity(own, relation.mean(given))
-    if known is not None:
-        away = float(
-            np.abs(known.log_ratio(outcomes.intensity_levels.levels) - middle).mean()
+        return SiteVelocity(own if curves else 0.0, ratio), 0.0
+    if math.isfinite(level.sa_1s):
+        spectrum = VelocityBySpectrum.of(motions, measure)
+        within = math.sqrt(1 - OF_THE_SITE) * spectrum.scatter
+        mean = spectrum.mean(level.sa_1s / level.value)
+        return SiteVelocity(within, mean), math.sqrt(OF_THE_SITE) * spectrum.scatter
+    published = published_velocity(measure, given)
+    if published is not None:
+        lines = published.lines(given)
+        spread = spread_of_mean(level.value, published.of_site, lines)
+        known = SiteVelocity(
+            published.within, published=published, line=lines[:1].copy()
         )
-    shift = math.hypot(weight * spread, error * away)
-    return Conversion(measure, fit, weight, logs, known, spread, shift, by_statics)
+        return known, spread
+    if not any(map(math.isfinite, _facts(given))):
+        # what differs about the relation is in the motions, once
+        return None, relation.unknown(given, of_site=False)
+    return SiteVelocity(own, relation.mean(given)), relation.unknown(given)
 
 
-def _fitted(
-    outcomes: ObjectOutcomes, logs: Floats, brief: bool
-) -> VectorFragility | None:
-    intensity_levels = outcomes.intensity_levels
-    step = -(-intensity_levels.levels.size // MOST_LEVELS)
-    motion, level = np.nonzero(intensity_levels.allowed[:, ::step])
-    level *= step
-    table = pd.DataFrame(
-        {
-            "im": intensity_levels.levels[level],
-            "ratio_s": np.exp(logs[motion]),
-            "overturned": outcomes.overturned[motion, level].astype(np.float64),
-            "earthquake": outcomes.earthquakes[motion],
-        }
+def _weight(outcomes: ObjectOutcomes, logs: Floats, *, jackknifes: bool) -> list[float]:
+    """Weight of ln ratio, its standard error, and the coefficients; a weight of NaN where nothing follows."""
+    levels = outcomes.intensity_levels
+    numbers = earthquake_numbers(outcomes.earthquakes).astype(np.int64)
+    tests, found = np.zeros((logs.size * MOST_LEVELS, MEMORY)), np.zeros(5)
+    fill_weight(
+        levels.levels,
+        np.ascontiguousarray(levels.allowed),
+        np.ascontiguousarray(outcomes.overturned),
+        logs,
+        numbers,
+        jackknifes,
+        tests,
+        np.zeros(STATE),
+        found,
     )
-    try:
-        return fit_vector(table, ("im", "ratio_s"), try_interaction=not brief)
-    except InputError:
-        return None
+    values: list[float] = found.tolist()
+    return values
 
 
-def _weight(fit: VectorFragility, log_ratio: float) -> tuple[float, float]:
-    """Effect of ln ratio over that of ln measure at half toppling, within its bounds, and its standard error."""
-    middle, *_ = fit.contour(0.5, math.exp(log_ratio))
-    log_level = float(np.log(middle[0]))
-    # of the fit and of those without an earthquake each
-    c = np.vstack([fit.coefficients, fit.replicates])
-    more = c[:, 3] if c.shape[1] > 3 else 0.0
-    own, *left_out = (c[:, 2] + more * log_level) / (c[:, 1] + more * log_ratio)
-    error = float(jackknife_error(np.array(left_out))) if len(left_out) > 1 else 0.0
-    return float(np.clip(own, 0.0, OF_DISPLACEMENT)), error if math.isfinite(
-        error
-    ) else 0.0
+@dataclass(frozen=True)
+class VelocityBySpectrum:
+    """How ln (PGV over a measure) follows ln of SA(1 s) over it among the records of a set."""
+
+    coefficients: tuple[float, float]  # Of 1 and ln SA(1 s) over the measure
+    scatter: float  # Standard deviation about the relation [-]
+
+    @classmethod
+    def of(cls, motions: MotionSet, measure: IntensityMeasure) -> "VelocityBySpectrum":
+        """Fit it to the motions among which those of a set were chosen."""
+        spectral = motions.log_over(SA_1S, measure)
+        logs = motions.log_ratios(measure, of_all=True)
+        slope, start = (
+            np.polyfit(spectral, logs, 1) if logs.size > 2 else (0.0, logs[0])
+        )
+        rest = logs - start - slope * spectral
+        return cls((float(start), float(slope)), float(rest.std()))
+
+    def mean(self, ratio: float) -> float:
+        """Mean of ln (PGV over the measure [s]) where SA(1 s) over it is known."""
+        start, slope = self.coefficients
+        return start + slope * math.log(ratio)
 
 
 @dataclass(frozen=True)
@@ -390,7 +462,8 @@ class VelocityRelation:
 
 def _facts(given: Records) -> tuple[float, float, float]:
     """Magnitude, ln distance and ln Vs30 of a site; NaN where not known."""
-    return given.magnitude, math.log(max(given.distance_km, 1.0)), math.nan
+    distance = math.log(max(given.distance_km, 1.0))
+    return given.magnitude, distance, math.log(given.vs30)
 
 
 def _number(about: Mapping[str, object], key: str) -> float:

@@ -10,6 +10,7 @@ import numpy as np
 
 from rockfrag import __version__
 from rockfrag.assess.answer import Assessment
+from rockfrag.assess.core.estimates import INSIDE
 from rockfrag.assess.findings import (
     assumptions,
     details,
@@ -18,7 +19,7 @@ from rockfrag.assess.findings import (
     lines_of,
     quality_flags,
 )
-from rockfrag.assess.risk import LEVEL, Estimate
+from rockfrag.assess.risk import Estimate
 from rockfrag.assess.texts import Text
 from rockfrag.fragility.exports import identifiers, model_text
 from rockfrag.fragility.model_error import MODEL_ERRORS
@@ -28,7 +29,16 @@ from rockfrag.words.findings import Finding, as_data, finding, three, two
 
 
 def as_json(found: Assessment) -> str:
-    """Return the answer as JSON, its sentences in English; infinite and unknown numbers are null."""
+    """Return the answer as JSON, its sentences in English; infinite and unknown numbers are null.
+
+    Parameters
+    ----------
+    found : the answer
+
+    Returns
+    -------
+    The text, which ends with a line break.
+    """
     texts = catalogue()
     outcomes = found.outcomes
     request = found.request
@@ -55,7 +65,7 @@ def as_json(found: Assessment) -> str:
         "unit": found.measure.unit,
         "level": None if found.level is None else found.level.value,
         "years": request.years,
-        "interval_level": LEVEL,
+        "interval_level": INSIDE,
         "rocks_from": found.rocks_from,
         "does_not_move": found.does_not_move,
         "accepted": request.accepted,
@@ -117,12 +127,11 @@ def _two_measures(found: Assessment) -> dict[str, Any] | None:
     }
     return {
         "measures": [f"{about.measure.imt} [{about.measure.unit}]", "PGV over it [s]"],
-        "coefficients": about.fragility.coefficients,
-        "covariance": about.fragility.covariance,
+        "coefficients": about.coefficients,
         "weight": about.weight,
+        "standard_error_of_weight": about.error,
         "at_the_site": known,
         "sd_of_mean": about.spread,
-        "warnings": about.fragility.warnings,
     }
 
 

@@ -34,6 +34,7 @@ HARDLY = 0.1  # Fraction of the motions up to which an object hardly rocks
 MOST_SOURCES = 3  # Sources of uncertainty that are named in a line
 LEAST_PART = 0.05  # Part of the variance from which a source is worth naming [-]
 MOST_ASSUMPTIONS = 3  # Assumptions that are named in a line; the page has all
+LEAST_WORTH = 0.05  # Chance of deciding from which a measurement is listed [-]
 MOST_CHANGES = 3  # Changes that are named in a line
 
 # Annual rates between which a level and a hazard fit each other [1/year]
@@ -50,12 +51,32 @@ Titled = dict[Finding, list[Finding]]
 
 
 def lines_of(found: Assessment, language: str = FIRST) -> list[str]:
-    """Return the first screen of an answer in a language, a sentence each."""
+    """Return the first screen of an answer in a language, a sentence each.
+
+    Parameters
+    ----------
+    found : the answer
+    language : of the texts
+
+    Returns
+    -------
+    The lines.
+    """
     return catalogue(language).lines(first_screen(found))
 
 
 def details_of(found: Assessment, language: str = FIRST) -> list[str]:
-    """Return what stands behind the first screen in a language, a line for each title."""
+    """Return what stands behind the first screen in a language, a line for each title.
+
+    Parameters
+    ----------
+    found : the answer
+    language : of the texts
+
+    Returns
+    -------
+    The lines.
+    """
     texts = catalogue(language)
     return [
         f"{texts.sentence(title)}: {texts.paragraph(findings)}"
@@ -215,7 +236,7 @@ def at_level(found: Assessment) -> list[Finding]:
     """What the motions do at the level, and where rocking starts."""
     said = []
     if found.fraction is not None and found.rocking is not None:
-        said.append(counted(found))
+        said += counted(found)
         if not found.does_not_move:
             said.append(between(found.fraction))
     said.append(starts(found))
@@ -230,17 +251,21 @@ def at_level(found: Assessment) -> list[Finding]:
     return said
 
 
-def counted(found: Assessment) -> Finding:
-    """How many motions rock and topple it at the level."""
+def counted(found: Assessment) -> list[Finding]:
+    """How many motions rock and topple it at the level as recorded, and with the velocity of the site."""
     assert found.fraction is not None and found.rocking is not None
-    if found.counts is None:
+    said = []
+    if found.counts is not None:
+        (total, rocked, fell), every = found.counts, len(found.motions.ground)
+        about = {"total": total, "rock": rocked, "topple": fell}
+        text = Text.COUNTED
+        if total < every:
+            text, about["every"] = Text.COUNTED_SOME, every
+        said.append(finding(text, **about))
+    if found.conversion is not None and found.conversion.known is not None:
         rock, topple = percent(found.rocking.value), percent(found.fraction.value)
-        return finding(Text.COUNTED_MOVED, rock=rock, topple=topple)
-    (total, rocked, fell), every = found.counts, len(found.motions.ground)
-    about = {"total": total, "rock": rocked, "topple": fell}
-    if total < every:
-        return finding(Text.COUNTED_SOME, every=every, **about)
-    return finding(Text.COUNTED, **about)
+        said.append(finding(Text.COUNTED_MOVED, rock=rock, topple=topple))
+    return said
 
 
 def between(fraction: Estimate) -> Finding:
@@ -340,11 +365,10 @@ def _reduction(change: Mitigation) -> dict[str, Value]:
     """What a change takes off the risk, or adds to the shaking that the object bears, with its limits."""
     sign = -1.0 if change.factor > 1 else 1.0
     ends = sorted(sign * (1 - factor) for factor in (change.lower, change.upper))
-    low, high = (whole(100 * end) for end in ends)
     return {
         "value": _whole_percent(sign * (1 - change.factor)),
-        "lower": low,
-        "upper": high,
+        "lower": whole(100 * ends[0]),
+        "upper": whole(100 * ends[1]),
     }
 
 
@@ -392,11 +416,28 @@ def uncertainty(found: Assessment) -> list[Finding]:
     return [finding(Text.UNCERTAINTY, sources=listed(named[:MOST_SOURCES]))]
 
 
+def worth_measuring(found: Assessment) -> list[Finding]:
+    """What each measurement would buy: in how many cases it decides, of those that may."""
+    if found.decision is None:
+        return []
+    said = [
+        finding(
+            Text.WORTH_MEASURING,
+            what=finding(f"measurement_{each.source}"),
+            cases=whole(10 * each.chance),
+        )
+        for each in found.decision.measurements
+        if each.chance >= LEAST_WORTH
+    ]
+    return [finding(Text.WORTH, measurements=listed(said))] if said else []
+
+
 def how_sure(found: Assessment) -> list[Finding]:
     """What the answer rests on: the motions, the largest sources of uncertainty, and what was assumed."""
     short = [said.short for said in all_assumed(found) if said.short is not None]
     named, more = short[:MOST_ASSUMPTIONS], len(short[MOST_ASSUMPTIONS:])
     said = [finding(Text.SENTENCE, words=found.motions.about_set), *uncertainty(found)]
+    said += worth_measuring(found)
     if named:
         said.append(finding(Text.ASSUMED, assumptions=listed(named)))
     if more:
@@ -428,6 +469,9 @@ def assumptions(found: Assessment) -> list[Finding]:
     if math.isfinite(found.flip_rate):
         said.append(finding(Text.FLIPS, part=percent(found.flip_rate)))
     said.append(_sliding(found))
+    if found.outcomes.light:
+        strongest = float(found.outcomes.intensity_levels.levels[-1])
+        said.append(finding(Text.STAYS_ON_GROUND, level=_amount(found, strongest)))
     if found.conversion:
         said += _velocity(found)
     if found.hazard:
@@ -465,8 +509,15 @@ def _velocity(found: Assessment) -> list[Finding]:
     factor = three(math.exp(about.spread))
     if about.known is None:
         return [finding(Text.VELOCITY_UNKNOWN, factor=factor, **shared)]
-    here = three(about.at_level(level))
+    here, published = three(about.at_level(level)), about.known.published
     said = [finding(Text.VELOCITY_KNOWN, here=here, **shared)]
+    if published is not None:
+        facts = {
+            "magnitude": three(published.magnitude),
+            "distance": three(published.distance_km),
+            "vs30": three(published.vs30),
+        }
+        said.append(finding(Text.VELOCITY_PUBLISHED, **facts))
     if about.known.spread > 0:
         between_earthquakes = three(math.exp(about.known.spread))
         said.append(finding(Text.VELOCITY_SCATTERS, factor=between_earthquakes))
@@ -479,16 +530,21 @@ def _velocity(found: Assessment) -> list[Finding]:
 
 
 def quality_flags(found: Assessment) -> list[Value]:
-    """What a reader should check."""
+    """What a reader should check.
+
+    Parameters
+    ----------
+    found : the answer
+
+    Returns
+    -------
+    Findings, and texts that stand as they are.
+    """
     said: list[Value] = [*found.request.objects.under.quality_flags]
     said += found.motions.warnings
     said += [*_hazard_flags(found), *_velocity_flags(found)]
     if found.request.objects.in_space and not found.motions.pairs:
         said.append(finding(Text.FLAG_ONE_COMPONENT))
-    if found.outcomes.light:
-        strongest = float(found.outcomes.intensity_levels.levels[-1])
-        level = _amount(found, strongest)
-        said.append(finding(Text.FLAG_LEAVES_GROUND, level=level))
     return [*said, *_influential(found)]
 
 

@@ -42,7 +42,19 @@ def write_inventory(
     pages: bool = False,
     language: str = FIRST,
 ) -> Path:
-    """Write tables, a page, and with ``pages`` a full one of each object; return the path of the ranking."""
+    """Write tables and a page of an inventory.
+
+    Parameters
+    ----------
+    inventory : the objects, assessed
+    folder : into which they are written
+    pages : whether a full page of each object is written too
+    language : of the texts
+
+    Returns
+    -------
+    Path of the page with the ranking.
+    """
     place, joint = Path(folder) / "inventory.csv", inventory.joint
     write_table(inventory_table(inventory), place)
     if joint is not None:
@@ -226,10 +238,9 @@ def numbers_figure(joint: JointRisk, years: float, texts: Catalogue) -> Figure:
     """How probably at least so many topple in one earthquake."""
     numbers = joint.numbers
     at = numbers["at_least"].to_numpy()
-    middle, low, high = (
-        100 * numbers[name].to_numpy()
-        for name in ("probability", "probability_lower", "probability_upper")
-    )
+    middle = 100 * numbers["probability"].to_numpy()
+    low = 100 * numbers["probability_lower"].to_numpy()
+    high = 100 * numbers["probability_upper"].to_numpy()
     bars = [np.maximum(middle - low, 0), np.maximum(high - middle, 0)]
     with panels(COLUMN_WIDTH, 2.5) as (figure, axes):
         axes.errorbar(at, middle, yerr=bars, fmt="o", color=BLUE, capsize=2)

@@ -228,8 +228,16 @@ def assess_inventory(
 ) -> Inventory:
     """Assess every object of a table, whose columns ``docs/assess.md`` lists.
 
-    ``shared`` holds for all, with the keys of ``statue.yaml``; with ``keep_going`` :class:`FaultyRows` is raised
-    only if no row can be used.
+    Parameters
+    ----------
+    path : of the table
+    shared : what holds for all, with the keys of ``statue.yaml``
+    records : folder of fetched records
+    keep_going : whether :class:`FaultyRows` is raised only if no row can be used
+
+    Returns
+    -------
+    The objects with their answers, and what is wrong with the other rows.
     """
     requests, faults = read_inventory(path, shared or {})
     if faults and not (keep_going and requests):
@@ -403,7 +411,17 @@ def best_change(found: Assessment) -> Mitigation | None:
 
 
 def joint_lines(inventory: Inventory, language: str = FIRST) -> list[str]:
-    """What topples together, what is lost, and what helps the object that adds most, a sentence each."""
+    """What topples together, what is lost, and what helps the object that adds most, a sentence each.
+
+    Parameters
+    ----------
+    inventory : the objects, assessed
+    language : of the texts
+
+    Returns
+    -------
+    The lines; none where nothing topples together.
+    """
     return catalogue(language).lines(joint_findings(inventory))
 
 
@@ -436,7 +454,17 @@ def _joint_number(row: Mapping[Any, Any]) -> Finding:
 
 
 def inventory_lines(inventory: Inventory, language: str = FIRST) -> list[str]:
-    """One line an object, the one most at risk first."""
+    """One line an object, the one most at risk first.
+
+    Parameters
+    ----------
+    inventory : the objects, assessed
+    language : of the texts
+
+    Returns
+    -------
+    The lines.
+    """
     texts = catalogue(language)
     longest = max(len(found.request.name) for found in inventory.found)
     fares = [texts.say(fares_of(found)) for found in inventory.found]

@@ -1,14 +1,13 @@
 """What helps: the object changed, as a body, shaken by the same motions, as a factor on the probability."""
 
-import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
 
+from rockfrag.assess.core.estimates import fill_comparison
 from rockfrag.assess.outcomes import ObjectOutcomes
-from rockfrag.assess.risk import LEVEL, Evidence, Target
-from rockfrag.base.arrays import Floats
+from rockfrag.assess.risk import Drawn, Evidence, Target
 from rockfrag.words.findings import Finding
 
 
@@ -39,32 +38,22 @@ def compare(
 
     Limits of the factor are over the earthquakes; a change is shown to help if they leave nothing else open.
     """
-    before, by_weights = _compared(target, evidence, now)
+    drawn = evidence.drawn(target, evidence.of(now))
     found = []
     for change, outcomes in changed.items():
-        after, with_it = _compared(target, evidence, outcomes)
-        factor, limits = math.nan, (math.nan, math.nan)
-        if math.isfinite(before) and before > 0 and math.isfinite(after):
-            factor = after / before
-            both = np.isfinite(by_weights) & np.isfinite(with_it) & (by_weights > 0)
-            ratios = with_it[both] / by_weights[both]
-            ends = [(1 - LEVEL) / 2, (1 + LEVEL) / 2]
-            if ratios.size:
-                low, high = np.quantile(ratios, ends).tolist()
-                limits = min(low, factor), max(high, factor)
+        other = evidence.drawn(target, evidence.of(outcomes))
+        before, after, factor, least, most = _compared(drawn, other)
         helps = after > before if target.is_level else after < before
-        shown = limits[0] > 1 if target.is_level else limits[1] < 1
-        found.append(Mitigation(change, after, factor, *limits, helps, shown))
+        shown = least > 1 if target.is_level else most < 1
+        found.append(Mitigation(change, after, factor, least, most, helps, shown))
     return found
 
 
-def _compared(
-    target: Target, evidence: Evidence, outcomes: ObjectOutcomes
-) -> tuple[float, Floats]:
-    """What is estimated, and by each set of weights of the earthquakes, shape (sets,)."""
-    prediction = evidence.of(outcomes)
-    values = target.shown(evidence.drawn(target, prediction))
-    sets = values.reshape(len(prediction.draws.weights), -1)
-    if target.is_level:
-        return float(np.quantile(values, 0.5, method="lower")), np.median(sets, axis=1)
-    return float(values.mean()), sets.mean(axis=1)
+def _compared(before: Drawn, after: Drawn) -> list[float]:
+    """Both numbers, their ratio and its limits over the earthquakes."""
+    sets = len(before.prediction.draws.weights)
+    work, found = np.zeros((3, before.values.size)), np.zeros(5)
+    kind = before.target.kind
+    fill_comparison(kind, before.shown, after.shown, sets, work, found)
+    values: list[float] = found.tolist()
+    return values

@@ -65,12 +65,14 @@ class MotionSet:
     def log_ratios(self, measure: IntensityMeasure, *, of_all: bool = False) -> Floats:
         """Return ln (PGV over a measure [s]) of each ground motion, or of all among which these were chosen."""
         if of_all and self.library:
-            velocity, other = (
-                self._measured(each, self.library) for each in (PGV, measure)
-            )
-        else:
-            velocity, other = self.values(PGV), self.values(measure)
-        return np.log(velocity / other / VELOCITY_PER_G)
+            return self.log_over(PGV, measure) - math.log(VELOCITY_PER_G)
+        return np.log(self.values(PGV) / self.values(measure) / VELOCITY_PER_G)
+
+    def log_over(self, measure: IntensityMeasure, other: IntensityMeasure) -> Floats:
+        """Return ln of a measure over another, each in its unit, of all among which the motions were chosen."""
+        motions = self.library or self.ground
+        values = [self._measured(each, motions) for each in (measure, other)]
+        return np.asarray(np.log(values[0] / values[1]))
 
     @cached_property
     def earthquakes(self) -> NDArray[np.object_]:
@@ -141,10 +143,12 @@ class MotionSet:
             kept = [i for record in self.records[:count:2] for i in record]
             kept += [i for (i,) in self.records[count:]]
             pairs = tuple((2 * n, 2 * n + 1) for n in range(len(self.pairs[::2])))
-        ground, base = (
-            tuple(motions[i] for i in kept) for motions in (self.ground, self.base)
+        return replace(
+            self,
+            ground=tuple(self.ground[i] for i in kept),
+            base=tuple(self.base[i] for i in kept),
+            pairs=pairs,
         )
-        return replace(self, ground=ground, base=base, pairs=pairs)
 
     def at(self, place: Place) -> "MotionSet":
         """The same motions on another floor; known floors are not shaken again."""
@@ -157,7 +161,18 @@ class MotionSet:
 
 
 def motion_set(records: Records, place: Place, folder: Path) -> MotionSet:
-    """Gather the motions of a request at its place."""
+    """Gather the motions of a request at its place.
+
+    Parameters
+    ----------
+    records : where the motions come from
+    place : the floor on which the object stands
+    folder : of fetched records
+
+    Returns
+    -------
+    The motions on that floor.
+    """
     found = _own(records, folder) if records.paths else _default(records, folder)
     return found.at(place)
 

@@ -2,18 +2,20 @@
 
 import math
 import warnings
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
+from rockfrag.assess.core.fractions import fill_counted, fill_uplifts
+from rockfrag.assess.core.levels import fill_band, fill_scan
 from rockfrag.assess.motions import MotionSet
 from rockfrag.assess.place import Place
 from rockfrag.assess.standing import Standing
 from rockfrag.assess.statics import lifting_in_plane, lifting_in_space
-from rockfrag.base.arrays import Floats
+from rockfrag.base.arrays import Flags, Floats
 from rockfrag.base.plausible import LARGEST_PEAK
 from rockfrag.engines.spatial import run_in_space
 from rockfrag.engines.spatial.body import PERTURBATION
@@ -111,14 +113,18 @@ class ObjectOutcomes:
 
     def lifts_from(self) -> Floats:
         """Level at which each motion lifts the body; infinite where none of the levels does, shape (motions,)."""
-        moved = (self.rocked | self.overturned) & self.intensity_levels.allowed
-        first = np.where(
-            moved.any(axis=1),
-            self.intensity_levels.levels[moved.argmax(axis=1)],
-            np.inf,
+        lifting = self.lifting
+        if lifting is None:
+            lifting = np.full(len(self.overturned), np.inf)
+        found = np.zeros(len(self.overturned))
+        fill_uplifts(
+            self.intensity_levels.levels,
+            *map(np.ascontiguousarray, (self.rocked, self.overturned)),
+            np.ascontiguousarray(self.intensity_levels.allowed),
+            np.ascontiguousarray(lifting, dtype=np.float64),
+            found,
         )
-        # what rocks was lifted, whatever rounding says
-        return first if self.lifting is None else np.minimum(first, self.lifting)
+        return found
 
     def fractions(
         self, weights: Floats | None = None, *, state: str = OVERTURNS
@@ -130,16 +136,15 @@ class ObjectOutcomes:
         (motions,); all alike if None.
         """
         w = np.ones(len(self.overturned)) if weights is None else weights
-        allowed = self.intensity_levels.allowed
-        happened = {OVERTURNS: self.overturned, ROCKS: self.rocked, **self.others}[
-            state
-        ]
-        total = w @ allowed
-        fell = w @ (allowed & happened)
-        known = total > 0
-        at = np.maximum.accumulate(np.where(known, np.arange(total.size), 0))
-        fraction = np.divide(fell, total, out=np.zeros(total.size), where=known)
-        return np.asarray(fraction[at])
+        reached = {OVERTURNS: self.overturned, ROCKS: self.rocked, **self.others}
+        happened, found = reached[state], np.zeros(self.intensity_levels.levels.size)
+        fill_counted(
+            np.ascontiguousarray(happened),
+            np.ascontiguousarray(self.intensity_levels.allowed),
+            np.ascontiguousarray(w, dtype=np.float64),
+            found,
+        )
+        return found
 
     def band(self) -> tuple[Floats, Floats]:
         """Limits of the fraction at each level that as few earthquakes leave open (90 %), shape (levels,) each.
@@ -247,9 +252,8 @@ class Shaking(IntensityLevels):
             return []
         base = self.motions.base
         lifting = [lifting_in_plane(system, base) for system in systems]
-        return self._each_system(
-            *simulated(systems, base, self._factors(base)), lifting=lifting
-        )
+        result, light = simulated(systems, base, self._factors(base))
+        return self._each_system(states_of(result), light, lifting=lifting)
 
     def _from_all_sides(self, systems: Sequence[System]) -> list[ObjectOutcomes]:
         """Outcomes by records, each in its worst direction of half a turn; both components get those."""
@@ -271,7 +275,7 @@ class Shaking(IntensityLevels):
             np.minimum.reduceat(lifting_in_plane(system, shaking), starts)
             for system in systems
         ]
-        return self._each_system(result, light, of_row, lifting=lifting)
+        return self._each_system(states_of(result), light, of_row, lifting=lifting)
 
     def in_space(self, body: System, spread: float) -> ObjectOutcomes:
         """Outcomes of a body in space under both components of each record, where it has two.
@@ -284,13 +288,21 @@ class Shaking(IntensityLevels):
         ]
         first = [record[0] for record in motions.records]
         scales = self._factors([motions.base[i] for i in first], first)
-        result = run_in_space(
-            [body], shaking, scales, spread=spread, threads=checked_threads(None)
-        )
-        lifting = [lifting_in_space(body, shaking)]
-        return self._each_system(result, of_row=np.arange(len(first)), lifting=lifting)[
-            0
-        ]
+        lifting = lifting_in_space(body, shaking)
+
+        def simulate(chosen: Flags) -> dict[str, Flags]:
+            result = run_in_space(
+                [body],
+                shaking,
+                np.where(chosen, scales, AT_REST),
+                spread=spread,
+                threads=checked_threads(None),
+            )
+            return states_of(result)
+
+        states = by_band(scales, lifting, simulate)
+        of_row = np.arange(len(first))
+        return self._each_system(states, of_row=of_row, lifting=[lifting])[0]
 
     def on_pad(
         self, objects: Standing, friction: float
@@ -303,7 +315,7 @@ class Shaking(IntensityLevels):
         base = self.motions.base
         result = overturns(system, base, scales=self._factors(base))
         lifting = [lifting_in_plane(system, base)]
-        (found,) = self._each_system(result, lifting=lifting)
+        (found,) = self._each_system(states_of(result), lifting=lifting)
         return found, result.peak_slip[0, ..., -1]
 
     def _factors(self, shaking: Sequence[Motion], rows: Any = slice(None)) -> Floats:
@@ -313,24 +325,18 @@ class Shaking(IntensityLevels):
 
     def _each_system(
         self,
-        result: Outcomes,
+        states: Mapping[str, Flags],
         light: Sequence[bool] = (False,),
         of_row: NDArray[np.intp] | None = None,
         *,
         lifting: Sequence[Floats],
     ) -> list[ObjectOutcomes]:
-        """Outcomes of each system, which cannot slide.
+        """Outcomes of each system, which cannot slide, of states with the shape (systems, motions, levels).
 
         ``of_row`` is the record of each motion of the result where several may be of one; what happens to a record
         from one side happens. ``lifting`` are the factors on motions, or on these records, that lift each system.
         """
-        # level of each motion as recorded
-        recorded = self.levels[0] / self.scales[:, 0]
-        states = {
-            state.name: state.reached(result)
-            for state in limit_states()
-            if not state.slipping
-        }
+        recorded = self.motions.values(self.measure)
         if of_row is not None:
             place = self.motions.place_of_record()
             lifting = [factors[place] for factors in lifting]
@@ -362,11 +368,10 @@ class Shaking(IntensityLevels):
         solid = objects.solid(objects.body)
         if solid is None or not self.allowed.any():
             return math.nan
-        first, other = (
-            self.in_space(solid, objects.base_spread + more).overturned[self.allowed]
-            for more in (0.0, PERTURBATION)
-        )
-        return float((first != other).mean())
+        first = self.in_space(solid, objects.base_spread)
+        other = self.in_space(solid, objects.base_spread + PERTURBATION)
+        differs = first.overturned != other.overturned
+        return float(differs[self.allowed].mean())
 
     def fraction_with_sliding(self, objects: Standing) -> float:
         """Fraction of the motions at the first level that topple the object if it may slide, which takes long."""
@@ -387,12 +392,49 @@ class Shaking(IntensityLevels):
         return float(fallen[allowed].mean())
 
 
+def earthquake_numbers(earthquakes: NDArray[np.object_]) -> NDArray[np.intp]:
+    """Number of the earthquake of each motion, in the order in which they come, shape (motions,)."""
+    names = list(dict.fromkeys(earthquakes))
+    place = {name: number for number, name in enumerate(names)}
+    return np.array([place[name] for name in earthquakes], dtype=np.intp)
+
+
 def fraction_at(
     level: float, levels: Floats, fractions: Floats, shift: float = 0.0
 ) -> float:
     """Fraction of the motions at a level, between levels by the logarithm; all lie higher by ``shift`` in it."""
     # relative to the asked level: where it is one of the series its logarithm is 0 to the bit
     return float(np.interp(-shift, np.log(levels / level), fractions))
+
+
+def states_of(result: Outcomes) -> dict[str, Flags]:
+    """Which cases reached each limit state that needs no sliding, by its name."""
+    return {
+        state.name: np.asarray(state.reached(result))
+        for state in limit_states()
+        if not state.slipping
+    }
+
+
+def by_band(
+    scales: Floats, lifting: Floats, simulate: Callable[[Flags], dict[str, Flags]]
+) -> dict[str, Flags]:
+    """States of one system at all levels, of a scan and of the band in which they change.
+
+    ``simulate`` gives states of some levels, of shape (1, motions, levels), at rest elsewhere; ``scales`` and
+    ``lifting`` are those of :mod:`rockfrag.assess.core.levels`.
+    """
+    scan, band = np.zeros(scales.shape, bool), np.zeros(scales.shape, bool)
+    sources = np.zeros(scales.shape, np.int64)
+    fill_scan(scales, lifting, scan)
+    found = simulate(scan)
+    fell = np.ascontiguousarray(found[OVERTURNS][0])
+    fill_band(scales, lifting, scan, fell, band, sources)
+    if band.any():
+        more = simulate(band)
+        found = {name: np.where(band, more[name], found[name]) for name in found}
+    rows = np.arange(len(scales))[:, np.newaxis]
+    return {name: cases[:, rows, sources] for name, cases in found.items()}
 
 
 def simulated(
@@ -407,8 +449,12 @@ def simulated(
         if issubclass(warning.category, LightBodies):
             light = True
         else:
-            about = (warning.filename, warning.lineno)
-            warnings.warn_explicit(warning.message, warning.category, *about)
+            warnings.warn_explicit(
+                warning.message,
+                warning.category,
+                filename=warning.filename,
+                lineno=warning.lineno,
+            )
     # more than two bodies leave the ground where they have to
     return result, [light and system.count < 3 for system in systems]
 
@@ -453,11 +499,11 @@ def find_directions(
     by_record = fallen.reshape(len(motions.pairs), len(angles), -1)
     anyhow, worst = by_record.mean(axis=(0, 1)), by_record.any(axis=1).mean(axis=0)
     x = np.log(levels)
-    at = (math.nan if level is None else level, levels)
+    at = math.nan if level is None else level
     return Directions(
         factor=float(np.exp(_half(x, worst) - _half(x, anyhow))),
-        fraction=fraction_at(*at, anyhow),
-        worst_fraction=fraction_at(*at, worst),
+        fraction=fraction_at(at, levels, anyhow),
+        worst_fraction=fraction_at(at, levels, worst),
         records=len(motions.pairs),
     )
 

@@ -58,7 +58,18 @@ FURTHEST = 3.0
 def write_answer(
     found: Assessment, folder: str | os.PathLike[str], language: str = FIRST
 ) -> Path:
-    """Write page, JSON and the fragility for OpenQuake into a folder, and return the path of the page."""
+    """Write page, JSON and the fragility for OpenQuake into a folder.
+
+    Parameters
+    ----------
+    found : the answer
+    folder : into which they are written
+    language : of the page
+
+    Returns
+    -------
+    Path of the page.
+    """
     stem = Path(folder) / file_name(found.request.name)
     write_text(as_json(found), f"{stem}.json")
     write_text(as_nrml(found), f"{stem}.xml")
@@ -440,9 +451,8 @@ def live_of(found: Assessment, texts: Catalogue) -> Markup:
         texts.text(way): objects.system_of(body)
         for way, body in objects.arrangements().items()
     }
-    return live_kernel(
-        bodies, carried([_named(motions, motions.base[i], i) for i in chosen])
-    )
+    shaking = carried([_named(motions, motions.base[i], i) for i in chosen])
+    return live_kernel(bodies, shaking, texts=texts)
 
 
 def _in_space(
@@ -465,15 +475,14 @@ def _in_space(
     for record in dict.fromkeys(records[place[i]] for i in chosen):
         x, *others = motions.components(record)
         shaking.append(GroundMotion(_named(motions, x, record[0]), *others))
-    return live_in_space(bodies, shaking, left_out)
+    return live_in_space(bodies, shaking, left_out, texts)
 
 
 def _named(motions: MotionSet, motion: Motion, i: int) -> Motion:
     """A motion with the name by which a reader knows it: earthquake, station and component."""
     about = motions.ground[i]
-    earthquake, station = (
-        str(about.metadata.get(key, "")) for key in ("earthquake", "station")
-    )
+    earthquake = str(about.metadata.get("earthquake", ""))
+    station = str(about.metadata.get("station", ""))
     known = (
         f"{earthquake}, {station} ({about.name})"
         if earthquake and station

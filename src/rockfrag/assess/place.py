@@ -84,7 +84,7 @@ class Place:
         level = self.building.level(self.floor)
         if level == self.building.storeys:
             return finding(Text.ROOF)
-        europe, america = (Number(n, Form.ORDINAL) for n in (level, level + 1))
+        europe, america = Number(level, Form.ORDINAL), Number(level + 1, Form.ORDINAL)
         return finding(Text.FLOOR_NAME, europe=europe, america=america)
 
     @property
@@ -250,14 +250,15 @@ def _level(floor: str) -> tuple[int, int]:
             f"key floor: expected a level over the number of storeys such as 2/4, found {floor[:40]!r}; level 0 "
             "is the ground, level 2 what Europe calls the second floor and America the third."
         )
-    # no number of storeys has more digits
-    level, storeys = (
-        int(group) if len(group) <= 3 else HIGHEST_BUILDING + 1
-        for group in found.groups()
-    )
+    level, storeys = _storey(found[1]), _storey(found[2])
     if not (level <= storeys and 1 <= storeys <= HIGHEST_BUILDING):
         raise InputError(
             f"key floor: {floor[:40]} does not exist; levels run from 0, the ground, to the number of storeys, "
             f"which is at most {HIGHEST_BUILDING}."
         )
     return level, storeys
+
+
+def _storey(digits: str) -> int:
+    """A number of storeys, none of which has more than three digits."""
+    return int(digits) if len(digits) <= 3 else HIGHEST_BUILDING + 1

@@ -12,6 +12,7 @@ from rockfrag.assess.hazard.curve import (
     HIGHEST,
     PGA,
     PGV,
+    SA_1S,
     HazardCurve,
     curve_of_one_level,
     read_hazard,
@@ -26,7 +27,8 @@ from rockfrag.base.units import quantity
 from rockfrag.base.yaml_file import read_yaml
 from rockfrag.config.schema import checked
 from rockfrag.motions.intensity import IntensityMeasure
-from rockfrag.words.findings import Finding, finding, three
+from rockfrag.system.kinds import kind_named
+from rockfrag.words.findings import Finding, Value, finding, three
 
 LONGEST_PERIOD = 1e6  # Longest return period of a level [year]
 # Time for which the probability is given unless another is asked for [year]
@@ -50,11 +52,16 @@ class Level:
     value: float  # Its value, in its unit
     # Peak velocity with it [cm/s]; NaN if unknown, or the measure itself
     pgv: float = math.nan
+    # Spectral acceleration at 1 s with it [g]; NaN if unknown, or the measure itself
+    sa_1s: float = math.nan
 
     @property
     def amount(self) -> Finding:
-        """Such as ``PGA 0.25 g``, or ``PGA 0.25 g and PGV 20 cm/s``."""
+        """Such as ``PGA 0.25 g``, with PGV or SA(1 s) where that is known too."""
         measure, unit, value = self.measure.imt, self.measure.unit, three(self.value)
+        if math.isfinite(self.sa_1s) and math.isnan(self.pgv):
+            about: dict[str, Value] = {"measure": measure, "value": value, "unit": unit}
+            return finding(Text.AMOUNT_WITH_SA, sa=three(self.sa_1s), **about)
         if math.isnan(self.pgv):
             return finding(Text.AMOUNT, measure=measure, value=value, unit=unit)
         about = {"measure": measure, "unit": unit}
@@ -73,6 +80,9 @@ class Records:
     # Of the earthquakes that matter most to the site; NaN where not known
     magnitude: float = math.nan
     distance_km: float = math.nan
+    vs30: float = (
+        math.nan
+    )  # Velocity of shear waves in the upper 30 m of the site [m/s]
 
 
 @dataclass(frozen=True)
@@ -106,17 +116,19 @@ class Request:
         return finding("the_object") if self.name == UNNAMED else self.name
 
 
-def read_request(path: str | os.PathLike[str]) -> Request:
-    """Read a request from a YAML file.
+def read_request(path: str | os.PathLike[str] | Mapping[str, Any]) -> Request:
+    """Read a request from a YAML file, or take one from a mapping with the same keys.
 
     Parameters
     ----------
-    path : file such as ``statue.yaml``; paths in it are relative to it
+    path : file such as ``statue.yaml``, to which paths in it are relative; or its keys and values
 
     Returns
     -------
     What is asked, for :func:`rockfrag.assess.assess`.
     """
+    if isinstance(path, Mapping):
+        return make_request(path, "read_request")
     return make_request(read_yaml(path), str(path), Path(path).parent)
 
 
@@ -125,9 +137,19 @@ def make_request(
 ) -> Request:
     """Make a request of keys as in ``statue.yaml``, see ``docs/assess.md``.
 
-    ``source`` says in messages where they come from; paths are read from ``folder``, or the present one.
+    Parameters
+    ----------
+    settings : the keys
+    source : where they come from, which messages name
+    folder : from which paths in them are read; the present one if None
+
+    Returns
+    -------
+    What is asked, for :func:`rockfrag.assess.assess`.
     """
     known = checked(settings, "statue", source)
+    if kind := known.pop("kind", None):
+        known = kind_named(kind).settings(known)
     where = folder or Path()
     with errors_of(source):
         return Request(
@@ -143,10 +165,21 @@ def make_request(
 
 
 def _level(settings: Mapping[str, Any]) -> Level | None:
-    found = None
-    for key in [key for key in ("pgv", "pga", "sa") if key in settings]:
-        level = _level_of(key, settings[key])
-        found = level if found is None else replace(level, pgv=found.value)
+    """The level asked about; PGV beside another measure, and SA(1 s) beside PGA, say more of it."""
+    given = [key for key in ("pga", "sa", "pgv") if key in settings]
+    if not given:
+        return None
+    levels = {key: _level_of(key, settings[key]) for key in given}
+    found = levels[given[0]]
+    if "pgv" in levels and found.measure != PGV:
+        found = replace(found, pgv=levels["pgv"].value)
+    if found.measure == PGA and "sa" in levels:
+        if levels["sa"].measure != SA_1S:
+            raise InputError(
+                "key sa: beside a PGA it says how strong long waves are, and needs a period of 1 s; give that, or "
+                "leave the PGA out."
+            )
+        found = replace(found, sa_1s=levels["sa"].value)
     return found
 
 
@@ -213,4 +246,5 @@ def _records(settings: Mapping[str, Any], folder: Path) -> Records:
         dt=given.get("dt_s"),
         magnitude=float(settings.get("magnitude", math.nan)),
         distance_km=float(settings.get("distance_km", math.nan)),
+        vs30=float(settings.get("vs30_m_s", math.nan)),
     )

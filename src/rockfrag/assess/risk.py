@@ -3,55 +3,71 @@
 The rate of toppling is λ = ∫ P(x) |dH(x)|, with P the fraction of motions that topple the object at level x,
 linear in ln x between levels, and H the annual rate at which x is exceeded, a power law: all in closed form.
 
-All that is not known is drawn at once (:mod:`rockfrag.assess.core`). A fraction, or a probability, is the mean
-over the draws; its interval holds the middle 90 % of them and the mean. ``docs/assess.md`` has the sources.
+All that is not known is drawn at once (:mod:`rockfrag.assess.core`, which computes; this module holds it in
+records). A fraction, or a probability, is the mean over the draws; its interval holds the middle 90 % of them and
+the mean. ``docs/assess.md`` has the sources.
 """
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property, lru_cache
 
 import numpy as np
-from numpy.typing import NDArray
 
+from rockfrag.assess.core import estimates
 from rockfrag.assess.core.draws import MEMBERS
-from rockfrag.assess.core.fractions import count_motions
-from rockfrag.assess.core.prediction import Prediction, Shift, predict
-from rockfrag.assess.hazard.curve import HazardCurve, rate_weights
-from rockfrag.assess.outcomes import ObjectOutcomes
+from rockfrag.assess.core.fractions import count_motions, fill_shift
+from rockfrag.assess.core.hazards import fill_rate_weights
+from rockfrag.assess.core.prediction import MOTIONS, Prediction, Shift, predict
+from rockfrag.assess.hazard.curve import HazardCurve
+from rockfrag.assess.outcomes import ObjectOutcomes, earthquake_numbers
 from rockfrag.base.arrays import Floats
 from rockfrag.outcomes.limit_states import OVERTURNS, ROCKS
-
-LEVEL = 0.90  # Confidence of the intervals
-NONE_BELOW = 1e-3  # Fraction of motions that is none where it is a limit
 
 
 def toppling_rate(
     levels: Floats, fractions: Floats, hazard: HazardCurve, shift: float = 0.0
 ) -> float:
-    """Annual rate of toppling [1/year], of the fraction of motions at each of rising levels, shape (n,) both.
+    """Annual rate of toppling of fractions of motions at levels.
 
-    Nothing topples below the first level, and above the last one the last fraction stays. ``shift`` is the
-    logarithm of a factor on all levels: the object bears so much more.
+    Parameters
+    ----------
+    levels : of shaking, rising, shape (n,)
+    fractions : of the motions that topple the object there, shape (n,)
+    hazard : hazard curve of the site
+    shift : logarithm of a factor on all levels: the object bears so much more
+
+    Returns
+    -------
+    The rate [1/year]. Nothing topples below the first level, and above the last one the last fraction stays.
     """
-    return float(fractions @ _rate_weights(levels.tobytes(), hazard, shift))
+    weights, found = _rate_weights(levels.tobytes(), hazard, shift), np.zeros(1)
+    rows = np.ascontiguousarray(fractions, dtype=np.float64)[np.newaxis]
+    return float(estimates.fill_sums(rows, weights, found))
 
 
 @lru_cache(maxsize=512)
-def _rate_weights(levels: bytes, hazard: HazardCurve, shift: float) -> Floats:
-    """The rate of toppling where one level alone topples all, shape (levels,): rates are linear in fractions."""
-    x = np.log(np.frombuffer(levels)) + shift
-    # pieces end at levels of the series of levels and at points of the hazard curve, where its slope changes
-    knots = np.log(hazard.levels)
-    inside = knots[(knots > x[0]) & (knots < x[-1])]
-    ends = np.union1d(x, inside)
-    fraction = np.array([np.interp(ends, x, unit) for unit in np.eye(x.size)])
-    return np.asarray(fraction @ rate_weights(hazard, np.exp(ends)))
+def _rate_weights(levels: bytes, hazard: HazardCurve, shift: float = 0.0) -> Floats:
+    """The rate of toppling where one level alone topples all, shape (levels,)."""
+    x = np.frombuffer(levels).copy()
+    weights = np.zeros(x.size)
+    fill_rate_weights(x, shift, hazard.levels, hazard.rates, weights)
+    return weights
 
 
 def probability_in(rate: float, years: float) -> float:
-    """Probability of one earthquake or more in some years, 1 - exp(-rate × years), in a Poisson process."""
+    """Probability of one earthquake or more in some years, in a Poisson process.
+
+    Parameters
+    ----------
+    rate : mean annual rate [1/year]
+    years : time [year]
+
+    Returns
+    -------
+    1 - exp(-rate × years) [-].
+    """
     return float(-np.expm1(-years * rate))
 
 
@@ -63,7 +79,7 @@ class Estimate:
     # Limits of the interval
     lower: float
     upper: float
-    # Standard deviation that each source alone gives it, on the scale of :attr:`Target.scale`
+    # Standard deviation that each source alone gives it; of levels and rates that of the logarithm
     sources: Mapping[str, float]
     # The number in each draw, shape (draws,); empty where there are none
     draws: Floats = field(
@@ -75,16 +91,51 @@ class Estimate:
 class Target:
     """What is estimated from fractions of motions: a probability in some years, a fraction at a level, a level."""
 
-    # Turns levels and fractions, shape (..., levels), into numbers, shape (...,)
-    of: Callable[[Floats, Floats], Floats]
+    kind: int  # ``FRACTION``, ``RATE`` or ``LEVEL`` of :mod:`rockfrag.assess.core.estimates`
     state: str = OVERTURNS  # Name of the limit state whose fractions they are
-    # Number that is shown, such as a probability of a rate
-    shown: Callable[[Floats], Floats] = np.asarray
-    # Scale on which sources have their parts
-    scale: Callable[[Floats], Floats] = np.asarray
-    is_level: bool = False  # Whether it is a level, of which more is better
-    is_rate: bool = False  # Whether errors of the hazard are in it
-    none_below: float = -math.inf  # Limit that is taken for 0, and 1 less it for 1
+    level: float = math.nan  # Level of a fraction
+    part: float = math.nan  # Fraction of the motions that a level topples
+    hazard: HazardCurve | None = None  # Hazard curve of a probability
+    years: float = 1.0  # Time of a probability [year]
+
+    @property
+    def is_level(self) -> bool:
+        """Whether it is a level, of which more is better."""
+        return self.kind == estimates.LEVEL
+
+    @property
+    def is_rate(self) -> bool:
+        """Whether errors of the hazard are in it."""
+        return self.kind == estimates.RATE
+
+    def of(self, levels: Floats, fractions: Floats) -> Floats:
+        """The numbers of rows of fractions at levels, before they are shown: rates, of probabilities."""
+        return self.with_mean(levels, fractions)[0]
+
+    def with_mean(self, levels: Floats, fractions: Floats) -> tuple[Floats, float]:
+        """The same, and the mean of the rows; of levels NaN."""
+        rows = np.atleast_2d(np.ascontiguousarray(fractions, dtype=np.float64))
+        values, middle = np.zeros(len(rows)), math.nan
+        if self.is_level:
+            estimates.fill_crossings(rows, levels, self.part, values)
+        else:
+            middle = estimates.fill_sums(rows, self._weights(levels), values)
+        return values.reshape(np.shape(fractions)[:-1]), float(middle)
+
+    def _weights(self, levels: Floats) -> Floats:
+        """Weights with which fractions at the levels add up."""
+        if self.hazard is not None:
+            return _rate_weights(levels.tobytes(), self.hazard)
+        weights = np.zeros(levels.size)
+        estimates.fill_place(levels, self.level, weights)
+        return weights
+
+    def shown(self, values: Floats) -> Floats:
+        """Numbers as they are shown: probabilities, of rates."""
+        found = np.zeros(np.size(values))
+        given = np.ascontiguousarray(values, dtype=np.float64).reshape(-1)
+        estimates.fill_shown(self.kind, self.years, given, found)
+        return found.reshape(np.shape(values))
 
     def value(self, outcomes: ObjectOutcomes, weights: Floats | None = None) -> float:
         """The number, of fractions as counted; weights of the motions have the shape (motions,)."""
@@ -94,62 +145,17 @@ class Target:
 
 def risk_target(hazard: HazardCurve, years: float) -> Target:
     """The probability of toppling in some years."""
-
-    def rate(levels: Floats, fractions: Floats) -> Floats:
-        return np.asarray(fractions @ _rate_weights(levels.tobytes(), hazard, 0.0))
-
-    return Target(
-        of=rate,
-        shown=lambda rates: np.asarray(-np.expm1(-years * rates)),
-        scale=_log_of_rates,
-        is_rate=True,
-    )
-
-
-def _log_of_rates(rates: Floats) -> Floats:
-    """Logarithms, of no less than a thousandth of the mean: what hardly adds to it counts alike."""
-    return np.log(np.maximum(rates, max(1e-3 * float(rates.mean()), 1e-300)))
+    return Target(estimates.RATE, hazard=hazard, years=float(years))
 
 
 def fraction_target(level: float, *, state: str = OVERTURNS) -> Target:
     """The fraction of motions that bring the object into a limit state at a level."""
-
-    def fraction(levels: Floats, fractions: Floats) -> Floats:
-        # relative to the level: where it is one of the series its logarithm is 0 to the bit
-        x = np.log(levels / level)
-        at = min(max(int(np.searchsorted(x, 0.0, side="right")) - 1, 0), x.size - 2)
-        along = min(max(-x[at] / (x[at + 1] - x[at]), 0.0), 1.0)
-        low, high = fractions[..., at], fractions[..., at + 1]
-        return np.asarray(np.where(along == 0, low, low + along * (high - low)))
-
-    return Target(of=fraction, state=state, none_below=NONE_BELOW)
+    return Target(estimates.FRACTION, state=state, level=float(level))
 
 
 def amplitude_target(fraction: float) -> Target:
     """The level at which a fraction of the motions topples the object; infinite where none does."""
-
-    def level(levels: Floats, fractions: Floats) -> Floats:
-        reached = fractions >= fraction
-        first = reached.argmax(axis=-1)
-        before = np.maximum(first - 1, 0)
-        low, high = (
-            np.take_along_axis(fractions, at[..., np.newaxis], -1)[..., 0]
-            for at in (before, first)
-        )
-        x = np.log(levels)
-        with np.errstate(divide="ignore", invalid="ignore"):
-            part = np.where(first > 0, (fraction - low) / (high - low), 0.0)
-        found = np.exp(x[before] + part * (x[first] - x[before]))
-        return np.where(reached.any(axis=-1), found, np.inf)
-
-    return Target(of=level, scale=np.log, is_level=True)
-
-
-def earthquake_numbers(earthquakes: NDArray[np.object_]) -> NDArray[np.intp]:
-    """Number of the earthquake of each motion, in the order in which they come, shape (motions,)."""
-    names = list(dict.fromkeys(earthquakes))
-    place = {name: number for number, name in enumerate(names)}
-    return np.array([place[name] for name in earthquakes], dtype=np.intp)
+    return Target(estimates.LEVEL, part=fraction)
 
 
 _ONE_SPREAD = (0.16, 0.84)  # Fractions one standard deviation from the median
@@ -166,6 +172,55 @@ class PredictedCurve:
     # levels do not reach so far
     of_records: float
     of_unknown: float
+
+
+@dataclass(frozen=True)
+class Drawn:
+    """What is estimated, in each draw."""
+
+    target: Target
+    prediction: Prediction
+    middle: float  # Mean without errors of the rate
+    values: Floats  # Before it is shown, shape (draws,)
+
+    @property
+    def shown(self) -> Floats:
+        """The numbers as they are shown, shape (draws,)."""
+        return self.target.shown(self.values)
+
+    @property
+    def value(self) -> float:
+        """Mean over the draws, as it is shown; of a level the median."""
+        if self.target.is_level:
+            return self.estimate().value
+        return float(self.target.shown(np.array(self.middle)))
+
+    def estimate(self) -> Estimate:
+        """Estimate with an interval, which holds the middle of the draws and the number itself."""
+        target, prediction, values = self.target, self.prediction, self.values
+        draws = prediction.draws
+        shown, work = np.zeros(values.size), np.zeros(values.size)
+        found = np.zeros(estimates.MOTIONS + 1 + len(prediction.sources))
+        last, sets = float(prediction.levels[-1]), len(draws.weights)
+        estimates.fill_estimate(
+            target.kind,
+            target.years,
+            self.middle,
+            last,
+            values,
+            shown,
+            work,
+            draws.bins,
+            sets,
+            found,
+        )
+        value, lower, upper, *sources = found.tolist()
+        if draws.weights.shape[1] < 3 and not target.is_level:
+            # one earthquake says nothing of others
+            lower, upper = 0.0, 1.0
+        parts = dict(zip((MOTIONS, *prediction.sources), sources, strict=True))
+        known = parts if any(sources) else {}
+        return Estimate(value, lower, upper, known, shown)
 
 
 @dataclass(frozen=True)
@@ -197,20 +252,19 @@ class Evidence:
         unknown = {**self.shifts, **{name: Shift(0.0, 0.0) for name in self.rates}}
         return predict(levels.levels, counts, unknown, members=self.members)
 
-    def drawn(self, target: Target, prediction: Prediction | None = None) -> Floats:
-        """What is estimated, in each draw, before it is shown, shape (draws,)."""
+    def drawn(self, target: Target, prediction: Prediction | None = None) -> Drawn:
+        """What is estimated, in each draw."""
         found = self.prediction if prediction is None else prediction
         fractions = found.rocking if target.state == ROCKS else found.toppling
-        values = target.of(found.levels, fractions)
-        if target.is_rate:
-            for name, spread in self.rates.items():
-                # a curve is a mean, and stays it
-                values = values * np.exp(spread * found.sources[name] - spread**2 / 2)
-        return values
+        values, middle = target.with_mean(found.levels, fractions)
+        if target.is_rate and self.rates:
+            spreads = np.array([self.rates.get(name, 0.0) for name in found.sources])
+            estimates.fill_errors(values, found.draws.sources, spreads)
+        return Drawn(target, found, middle, values)
 
     def mean(self, target: Target, outcomes: ObjectOutcomes) -> float:
         """The number for other outcomes, the mean over what is not known; of a level the median."""
-        return _middle(target, self.of(outcomes))
+        return self.drawn(target, self.of(outcomes)).value
 
     def curve(self) -> "PredictedCurve":
         """The fraction at each level, the mean over what is not known, with its median and spreads."""
@@ -232,37 +286,7 @@ class Evidence:
 
     def estimate(self, target: Target) -> Estimate:
         """Estimate with an interval, which holds the middle of the draws and the number itself."""
-        values = self.drawn(target)
-        shown = target.shown(values)
-        value = _middle(target, self.prediction)
-        ordered = np.sort(shown)
-        aside = int((1 - LEVEL) / 2 * ordered.size)
-        lower, upper = float(ordered[aside]), float(ordered[-1 - aside])
-        if self.prediction.draws.weights.shape[1] < 3 and not target.is_level:
-            # one earthquake says nothing of others
-            lower, upper = 0.0, 1.0
-        # of fractions less than one in a thousand is none
-        lower = 0.0 if lower < target.none_below else lower
-        upper = 1.0 if upper > 1 - target.none_below else upper
-        limits = min(lower, value), max(upper, value)
-        return Estimate(value, *limits, self._sources(target, values), shown)
-
-    def _sources(self, target: Target, values: Floats) -> dict[str, float]:
-        last = float(self.prediction.levels[-1])
-        scaled = target.scale(np.minimum(values, last) if target.is_level else values)
-        spread = float(scaled.std())
-        parts = self.prediction.parts(scaled)
-        return {name: spread * math.sqrt(part) for name, part in parts.items()}
-
-
-def _middle(target: Target, prediction: Prediction) -> float:
-    """Mean over the draws; of a level the median."""
-    fractions = prediction.rocking if target.state == ROCKS else prediction.toppling
-    if target.is_level:
-        values = target.of(prediction.levels, fractions)
-        return float(np.quantile(values, 0.5, method="lower"))
-    # fractions and rates are linear in fractions
-    return float(target.shown(target.of(prediction.levels, fractions.mean(axis=0))))
+        return self.drawn(target).estimate()
 
 
 def after_uplift(spread: float) -> Shift:
@@ -270,28 +294,16 @@ def after_uplift(spread: float) -> Shift:
     return Shift(0.0, spread)
 
 
-LEAST_SPAN = (
-    0.05  # Of fractions of motions over all levels, below which they say nothing
-)
-
-
 def shift_of(lower: ObjectOutcomes, upper: ObjectOutcomes) -> Shift:
-    """What a property moves at its standard deviation, by outcomes with it on both sides.
-
-    Levels of uplift move by the mean over the motions; those of toppling by the area between both fractions over
-    ln level, which of a curve that is moved is the move times its height.
-    """
-    sides = lower, upper
-    lifts = (_mean_log(upper.lifts_from()) - _mean_log(lower.lifts_from())) / 2
-    low, high = (side.fractions() for side in sides)
-    middle = (low + high) / 2
-    span = float(middle.max() - middle[0])
-    if span < LEAST_SPAN:
-        return Shift(lifts, lifts)
-    x = np.log(lower.intensity_levels.levels)
-    return Shift(lifts, float(np.trapezoid(low - high, x)) / 2 / span)
-
-
-def _mean_log(levels: Floats) -> float:
-    known = levels[np.isfinite(levels)]
-    return float(np.log(known).mean()) if known.size else 0.0
+    """What a property moves at its standard deviation, by outcomes with it on both sides."""
+    found = np.zeros(2)
+    levels = lower.intensity_levels.levels
+    fill_shift(
+        levels,
+        lower.fractions(),
+        upper.fractions(),
+        lower.lifts_from(),
+        upper.lifts_from(),
+        found,
+    )
+    return Shift(*found.tolist())

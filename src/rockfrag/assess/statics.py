@@ -8,7 +8,6 @@ from rockfrag.base.arrays import Floats
 from rockfrag.base.units import GRAVITY
 from rockfrag.records.motion import GroundMotion, Motion
 from rockfrag.system.body import Circle, Polygon
-from rockfrag.system.mesh import outward_normals
 from rockfrag.system.system import System, uplift_ratios
 
 
@@ -28,15 +27,29 @@ def lifting_in_space(system: System, shaking: Sequence[GroundMotion]) -> Floats:
     (body,) = system.bodies
     below, height = np.array(body.centre[:2]), body.centre[2]
     if isinstance(body.base, Circle):
-        aside = float(np.hypot(*(np.array(body.base.centre) - below)))
+        aside = float(_length(np.array(body.base.centre) - below))
         least = GRAVITY * (body.base.radius - aside) / height
-        return np.array([least / np.hypot(*_samples(m)).max() for m in shaking])
+        return np.array([least / _length(_samples(m)).max() for m in shaking])
     assert isinstance(body.base, Polygon)
     corners = np.array(body.base.vertices) - below
-    outward = outward_normals(corners)
-    distances = np.einsum("ni,ni->n", outward, corners)
-    directions = outward / (GRAVITY * distances / height)[:, np.newaxis]
-    return np.array([1 / (-(directions @ _samples(m)).min()) for m in shaking])
+    x, y = corners.T
+    across, along = (np.roll(corners, -1, axis=0) - corners).T
+    side = _length(np.array([across, along]))
+    outward = np.array([along / side, -across / side])
+    distances = outward[0] * x + outward[1] * y
+    directions = (outward / (GRAVITY * distances / height)).T
+    return np.array([1 / _strongest(directions, _samples(m)) for m in shaking])
+
+
+def _length(vectors: Floats) -> Floats:
+    """Length of vectors of shape (2, …), of plain arithmetic: the same bits everywhere."""
+    x, y = vectors
+    return np.asarray(np.sqrt(x * x + y * y))
+
+
+def _strongest(directions: Floats, samples: Floats) -> float:
+    """Largest of the samples, shape (2, n), against any of the directions, shape (m, 2)."""
+    return max(float(-(x * samples[0] + y * samples[1]).min()) for x, y in directions)
 
 
 def _samples(motion: GroundMotion) -> Floats:

@@ -29,7 +29,16 @@ class InputError(ValueError):
 
 @contextmanager
 def errors_of(where: str) -> Iterator[None]:
-    """Begin the messages that come from inside this block with where it is."""
+    """Begin the messages that come from inside this block with where it is.
+
+    Parameters
+    ----------
+    where : what stands before the message, such as a file or a key
+
+    Returns
+    -------
+    A context in which an :class:`InputError` gets those words.
+    """
     try:
         yield
     except InputError as error:

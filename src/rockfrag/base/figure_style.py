@@ -15,6 +15,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 from rockfrag.base.arrays import Floats
+from rockfrag.base.errors import InputError
 from rockfrag.base.files import whole_file
 
 BLACK, ORANGE, SKY, GREEN = "#000000", "#E69F00", "#56B4E9", "#009E73"
@@ -44,13 +45,27 @@ STYLE = {
 
 @contextmanager
 def figure_style() -> Iterator[None]:
-    """Draw and save figures inside this block."""
+    """Draw and save figures inside this block.
+
+    Returns
+    -------
+    A context in which figures are drawn and saved.
+    """
     with mpl.rc_context(STYLE):
         yield
 
 
 def new_figure(width: float = PAGE_WIDTH, height: float = 3.0) -> Figure:
-    """Return an empty figure [in] that belongs to no window and needs no closing."""
+    """Return an empty figure [in] that belongs to no window and needs no closing.
+
+    Parameters
+    ----------
+    width, height : of the figure [in]
+
+    Returns
+    -------
+    The figure.
+    """
     figure = Figure(figsize=(width, height))
     FigureCanvasAgg(figure)
     return figure
@@ -60,14 +75,35 @@ def new_figure(width: float = PAGE_WIDTH, height: float = 3.0) -> Figure:
 def panels(
     width: float, height: float, *shape: int, **shared: Any
 ) -> Iterator[tuple[Figure, Any]]:
-    """Draw an empty figure [in] and its panels inside this block: one, or as ``Figure.subplots`` makes them."""
+    """Draw an empty figure [in] and its panels inside this block: one, or as ``Figure.subplots`` makes them.
+
+    Parameters
+    ----------
+    width, height : of the figure [in]
+    *shape, **shared : as of ``Figure.subplots``
+
+    Returns
+    -------
+    A context that gives the figure and its panels.
+    """
     with figure_style():
         figure = new_figure(width, height)
         yield figure, figure.subplots(*shape, **shared)
 
 
 def draw_history(panel: Axes, time: Floats, values: Floats, **line: Any) -> float:
-    """Draw values over time with zero and a dot at the largest, and return that in magnitude; shapes (n,)."""
+    """Draw values over time with zero and a dot at the largest, and return that in magnitude; shapes (n,).
+
+    Parameters
+    ----------
+    panel : axes
+    time, values : seconds, and values in the unit of the axis, shape (n,)
+    **line : how the line is drawn
+
+    Returns
+    -------
+    The largest magnitude.
+    """
     peak = int(np.abs(values).argmax())
     panel.axhline(0, color=GUIDE, linewidth=0.6, zorder=1)
     panel.plot(time, values, **{"color": BLUE, "linewidth": 0.6, **line})
@@ -76,7 +112,12 @@ def draw_history(panel: Axes, time: Floats, values: Floats, **line: Any) -> floa
 
 
 def plain_log(axes: Axes, which: str) -> None:
-    """Make axes logarithmic, ``x``, ``y`` or ``xy``, with ticks such as 0.1, 0.2, 0.5 instead of powers of ten."""
+    """Make axes logarithmic, ``x``, ``y`` or ``xy``, with ticks such as 0.1, 0.2, 0.5 instead of powers of ten.
+
+    Parameters
+    ----------
+    axes, which : the panel, and which of its axes
+    """
     near = (1.0, 2.0, 3.0, 5.0, 7.0)
     for name in which:
         axes.set(**{f"{name}scale": "log"})
@@ -99,7 +140,13 @@ def plain_log(axes: Axes, which: str) -> None:
 
 
 def letter_panels(axes: Iterable[Axes], size: float = 8.5) -> None:
-    """Name panels (a), (b), … above their upper left corners, where there is more than one."""
+    """Name panels (a), (b), … above their upper left corners, where there is more than one.
+
+    Parameters
+    ----------
+    axes : panels in their order
+    size : of the letters [pt]
+    """
     panels = list(axes)
     for letter, panel in zip(
         "abcdefghijklmnop", panels if len(panels) > 1 else [], strict=False
@@ -108,8 +155,35 @@ def letter_panels(axes: Iterable[Axes], size: float = 8.5) -> None:
         panel.set_title(f"({letter}) {title}".strip(), loc="left", pad=3, fontsize=size)
 
 
+def checked_title(title: object) -> str:
+    """Return the heading of a figure, which is a text.
+
+    Parameters
+    ----------
+    title : heading that a user gave
+
+    Returns
+    -------
+    The heading.
+    """
+    if not isinstance(title, str):
+        raise InputError(
+            f"title: expected a text that heads the figure, got {title!r}."
+        )
+    return title
+
+
 def note_figure(words: str) -> Figure:
-    """Return a figure that says in words why there is nothing to draw."""
+    """Return a figure that says in words why there is nothing to draw.
+
+    Parameters
+    ----------
+    words : the sentence
+
+    Returns
+    -------
+    The figure.
+    """
     with figure_style():
         figure = new_figure(COLUMN_WIDTH, 0.6)
         figure.text(0.5, 0.5, words, ha="center", va="center", wrap=True)
@@ -117,7 +191,12 @@ def note_figure(words: str) -> Figure:
 
 
 def save_figure(figure: Figure, *paths: str | os.PathLike[str]) -> None:
-    """Write a figure to each path, by its ending as ``.svg`` or ``.png``, without dates."""
+    """Write a figure to each path, by its ending as ``.svg`` or ``.png``, without dates.
+
+    Parameters
+    ----------
+    figure, *paths : the figure, and the files to write
+    """
     # matplotlib records its version and the time unless told not to
     options: dict[str, dict[str, Any]] = {
         "svg": {"metadata": {"Date": None, "Creator": None}},

@@ -12,9 +12,16 @@ import numpy as np
 
 from rockfrag.records.motion import Motion
 
+LARGEST_FRICTION = 10.0  # surfaces have less; a contact that needs more parts
+
 
 def _each(values: Iterable[float], form: str) -> str:
     return ", ".join(format(value, form) for value in values)
+
+
+def _friction(demand: float) -> str:
+    """Coefficient of friction that a contact needs [-], as far as any surface has it."""
+    return f"{demand:.3f}" if demand < LARGEST_FRICTION else "none is enough"
 
 
 def lines_in_plane(
@@ -47,7 +54,9 @@ def lines_in_plane(
     if is_loose:
         slips = 1000 * np.abs(response.slip).max(axis=0)
         return [*lines, f"largest slip [mm]: {_each(slips, '.1f')}"]
-    lines.append(f"friction needed: {_each(response.friction_demand, '.3f')}")
+    lines.append(
+        f"friction needed: {', '.join(map(_friction, response.friction_demand))}"
+    )
     lost = response.lost_contact
     if math.isnan(lost):
         lines.append("on smoother ground it slides first; give --friction to let it")

@@ -1,4 +1,8 @@
-"""What a simulation returns."""
+"""What a simulation returns.
+
+In: what an engine has integrated. Out: histories of rotations [rad], slips [m], forces [N], energies [J] and
+contact events. Theory: ``docs/rocking.md``, ``docs/derivation.md``.
+"""
 
 from __future__ import annotations
 

@@ -55,6 +55,16 @@ def read_catalogue(path: str | os.PathLike[str]) -> pd.DataFrame:
 
     Columns are separated by commas, semicolons or tabs; numbers may have a decimal comma. Columns that are missing
     count as empty, ``source`` as ``folder``. Text columns are empty strings where nothing is known, numbers NaN.
+
+    Parameters
+    ----------
+    path
+        Of the file.
+
+    Returns
+    -------
+    DataFrame
+        A row a motion; all that is wrong with the file is one :class:`InputError`.
     """
     return _checked(path)[0]
 
@@ -62,14 +72,40 @@ def read_catalogue(path: str | os.PathLike[str]) -> pd.DataFrame:
 def own_records(
     table: pd.DataFrame, folder: Path, columns: Sequence[str] = ("file",)
 ) -> list[Path]:
-    """Files of the user's own records that columns of a catalogue name, which lies in ``folder``."""
+    """Files of the user's own records that columns of a catalogue name, which lies in ``folder``.
+
+    Parameters
+    ----------
+    table
+        Of :func:`read_catalogue`.
+    folder
+        Of the catalogue.
+    columns
+        That name files.
+
+    Returns
+    -------
+    list
+        Paths, each once, archives for their members.
+    """
     rows = table[table["source"] == "folder"]
     names = (name.partition("#")[0] for column in columns for name in rows[column])
     return list(dict.fromkeys(folder / name for name in names if name))
 
 
 def repeated_motions(table: pd.DataFrame) -> list[str]:
-    """Name the rows of a catalogue that are the same motion as a row above: file, direction and factor."""
+    """Name the rows of a catalogue that are the same motion as a row above: file, direction and factor.
+
+    Parameters
+    ----------
+    table
+        Of :func:`read_catalogue`.
+
+    Returns
+    -------
+    list
+        A phrase each, empty where all motions differ.
+    """
     same = ["source", "file", "direction", "scale_factor"]
     first = table.groupby(same, dropna=False)["name"].transform("first")
     return [
@@ -108,7 +144,18 @@ def _checked(path: str | os.PathLike[str]) -> tuple[pd.DataFrame, list[int]]:
 
 
 def with_numbers(table: pd.DataFrame) -> pd.DataFrame:
-    """Return a catalogue whose columns of numbers hold numbers, NaN where nothing is known."""
+    """Return a catalogue whose columns of numbers hold numbers, NaN where nothing is known.
+
+    Parameters
+    ----------
+    table
+        Of text, a row a motion.
+
+    Returns
+    -------
+    DataFrame
+        A copy; what is no number is an :class:`InputError`.
+    """
     found = {
         name: pd.to_numeric(table[name].replace("", None)).astype(float)
         for name in _NUMBERS
@@ -166,7 +213,18 @@ def _wrong_cells(row: dict[str, str]) -> list[tuple[str, str]]:
 
 
 def numbered_rows(path: str | os.PathLike[str]) -> list[tuple[int, dict[str, Any]]]:
-    """Return the checked rows of a catalogue by column, each behind the number of its line."""
+    """Return the checked rows of a catalogue by column, each behind the number of its line.
+
+    Parameters
+    ----------
+    path
+        Of the catalogue (CSV).
+
+    Returns
+    -------
+    list
+        A pair a row: number of its line, from 1, and cells by column.
+    """
     table, lines = _checked(path)
     rows = (
         {str(c): cell for c, cell in row.items()} for row in table.to_dict("records")
@@ -175,7 +233,22 @@ def numbered_rows(path: str | os.PathLike[str]) -> list[tuple[int, dict[str, Any
 
 
 def load_motion(row: dict[str, Any], folder: Path, records: Path) -> Motion:
-    """Read the motion of one checked row of a catalogue in ``folder``: the component that ``file`` names."""
+    """Read the motion of one checked row of a catalogue in ``folder``: the component that ``file`` names.
+
+    Parameters
+    ----------
+    row
+        Of :func:`read_catalogue`, by column.
+    folder
+        Of the catalogue, from which its files are named.
+    records
+        Where fetched records are kept.
+
+    Returns
+    -------
+    Motion
+        Acceleration in m/s², scaled as the row says.
+    """
     motion = load_component(row, row["file"], folder, records)
     facts = {
         key: value
@@ -189,7 +262,20 @@ def load_motion(row: dict[str, Any], folder: Path, records: Path) -> Motion:
 
 
 def scaled(motion: Motion, row: dict[str, Any]) -> Motion:
-    """Return a motion with the factor of its row."""
+    """Return a motion with the factor of its row.
+
+    Parameters
+    ----------
+    motion
+        As its file holds it.
+    row
+        Of :func:`read_catalogue`, by column.
+
+    Returns
+    -------
+    Motion
+        The same where the row has no factor; the factor is in its provenance.
+    """
     factor = row.get("scale_factor", math.nan)
     if math.isnan(factor) or factor == 1:
         return motion
@@ -199,7 +285,24 @@ def scaled(motion: Motion, row: dict[str, Any]) -> Motion:
 def load_component(
     row: dict[str, Any], file: str, folder: Path, records: Path
 ) -> Motion:
-    """Read one component of a row's record: that of ``file``, of its ``second`` or its ``vertical``."""
+    """Read one component of a row's record: that of ``file``, of its ``second`` or its ``vertical``.
+
+    Parameters
+    ----------
+    row
+        Of :func:`read_catalogue`, by column.
+    file
+        As the row names it: the column ``file``, ``second`` or ``vertical``.
+    folder
+        Of the catalogue, from which its files are named.
+    records
+        Where fetched records are kept.
+
+    Returns
+    -------
+    Motion
+        Acceleration in m/s², scaled as the row says.
+    """
     source = row["source"]
     name, _, channel = file.rpartition("#")
     # what stands behind the only mark of an archive is a member
@@ -249,14 +352,36 @@ def _check_digest(path: Path, digest: str) -> None:
 
 
 def is_catalogue(path: Path) -> bool:
-    """Tell whether a file is a catalogue, by the titles of its first line."""
+    """Tell whether a file is a catalogue, by the titles of its first line.
+
+    Parameters
+    ----------
+    path
+        Of any file.
+
+    Returns
+    -------
+    bool
+        Whether its first line has the titles that a catalogue needs.
+    """
     head = read_head(path).decode("utf-8", errors="replace").removeprefix("\ufeff")
     titles = {title.strip() for title in re.split("[,;\t]", head.partition("\n")[0])}
     return set(NEEDED) <= titles <= set(COLUMNS)
 
 
 def record_files(*paths: str | os.PathLike[str]) -> list[Path]:
-    """Return the files that may be records: those below each folder, in order of name, or the path itself."""
+    """Return the files that may be records: those below each folder, in order of name, or the path itself.
+
+    Parameters
+    ----------
+    paths
+        Of folders, archives and files.
+
+    Returns
+    -------
+    list
+        Paths; hidden files, catalogues and what no record is by its name are passed over.
+    """
     found: list[Path] = []
     for path in map(Path, paths):
         left_out = {file for file, _ in passed_over(path)}
@@ -281,7 +406,18 @@ def _shown_files(folder: Path) -> list[Path]:
 
 
 def listed_problems(problems: list[str]) -> str:
-    """Join what is wrong, as much of it as a message holds, and count the rest."""
+    """Join what is wrong, as much of it as a message holds, and count the rest.
+
+    Parameters
+    ----------
+    problems
+        Sentences, one each.
+
+    Returns
+    -------
+    str
+        One sentence of a length that messages have.
+    """
     sizes = itertools.accumulate(map(len, problems))
     shown = max(1, sum(size <= _MOST_SHOWN for size in sizes))
     more = len(problems) - shown

@@ -27,7 +27,12 @@ _NUMBERED = re.compile(r"^(?P<stem>.+)(?P<name>[123])$")
 _NUMBER = re.compile(r"^(?P<stem>.*?)(?P<number>\d+)$")
 _TAIL = re.compile(
     r"(?i)[-_. ](?P<tail>hor(?:iz\w*)?[-_ ]?\d|up|vert?(?:ical)?|v"
-    r"|acc(?:el\w*)?|raw|cor(?:r\w*)?|filt\w*|proc\w*|scaled|new|copy)$"
+    r"|acc(?:el\w*)?|raw|cor(?:r\w*)?|filt\w*|proc\w*|scaled|new|copy"
+    r"|g|gals?|m?g|[cm]?m_?s2|data?)$"
+)
+_COPY = re.compile(r"(?i)(?:\s*\(\d+\)|[-_ ]+copy)$")
+_BEFORE = re.compile(
+    r"(?i)^(?P<name>E-?W|N-?S|U-?D|[ENZV]|[BEH][NLGH][ENZ123]|UP|VERT)[-_. ](?P<stem>.+)$"
 )
 _UPRIGHT = re.compile(r"(?i)(?:up|v|vert?(?:ical)?)$")
 # a word of its own, with the station before it and the day behind it: STA_HNE_20200101
@@ -44,6 +49,7 @@ def parts_of(name: str) -> tuple[str, str]:
 
     Behind the component there may stand what the record was made into: ``SYL090-hor1``, ``ABC_NS_filtered``.
     """
+    name = _COPY.sub("", name)
     tail = _TAIL.search(name)
     if tail is not None:
         stem, component = _split(name[: tail.start()])
@@ -58,6 +64,9 @@ def parts_of(name: str) -> tuple[str, str]:
     within = _WITHIN.findall(name)
     if len(within) == 1:
         return _WITHIN.sub("", name), within[0]
+    before = _BEFORE.match(name)
+    if before:
+        return before["stem"], before["name"]
     numbered = _NUMBERED.match(name)
     return (numbered["stem"], numbered["name"]) if numbered else (name, "")
 

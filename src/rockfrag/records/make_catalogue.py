@@ -291,13 +291,14 @@ class CatalogueDraft:
         own = [
             PurePosixPath(name.replace("\\", "/")).name.lower() for name in listed.files
         ]
-        first, second, vertical = (by_name.get(name) for name in own)
-        for name, side in zip(listed.files, (first, second), strict=False):
+        found_files = [by_name.get(name) for name in own]
+        vertical = found_files[2]
+        for name, side in zip(listed.files[:2], found_files[:2], strict=True):
             if name and side is None:
                 self.note(
                     f"RSN{listed.number}", f"{name} is listed but not among the files"
                 )
-        there = [component for component in (first, second) if component is not None]
+        there = [component for component in found_files[:2] if component is not None]
         used.update(
             component.file for component in (*there, vertical) if component is not None
         )
@@ -322,11 +323,10 @@ class CatalogueDraft:
                 "give it a row",
             )
         if {component.suffix for component in flat} == {"1", "2"}:
-            first, other = (component.file for component in flat)
             self.note(
-                first,
-                f"taken for a component of one record with {other} by the numbers in their names alone; if they "
-                "are two records, empty the column second",
+                flat[0].file,
+                f"taken for a component of one record with {flat[1].file} by the numbers in their names alone; if "
+                "they are two records, empty the column second",
             )
         return [self._row(component, flat, upright) for component in flat]
 
@@ -457,6 +457,22 @@ def make_catalogue(
     Components of one record are found by PEER's ``_SearchResults.csv`` where there is one, by being in one
     file, by station and time, and by names that differ in the component alone. Each horizontal
     component becomes a row that names the other one as ``second`` and the vertical one.
+
+    Parameters
+    ----------
+    paths
+        Of folders, archives and files.
+    unit
+        Of the samples of files that do not state theirs.
+    dt
+        Sampling interval of files that do not state theirs [s].
+    folder
+        From which the catalogue names its files.
+
+    Returns
+    -------
+    CatalogueDraft
+        The table, a row a horizontal component, and what a person should look at.
     """
     draft = CatalogueDraft(unit, dt, Path(folder))
     paths = list(paths)

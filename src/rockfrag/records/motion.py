@@ -131,6 +131,13 @@ def write_motion_set(motions: Sequence[Motion], path: str | os.PathLike[str]) ->
     """Write motions to one Parquet file, a row per motion.
 
     Columns: ``name``, ``dt_s``, ``npts``, ``acceleration_m_s2`` (list), ``metadata`` and ``provenance`` (JSON).
+
+    Parameters
+    ----------
+    motions
+        Of any lengths and intervals.
+    path
+        Of the file, which appears whole or not at all.
     """
     table = pd.DataFrame(
         {
@@ -156,7 +163,22 @@ def read_motion_set(
     part: tuple[int, int] = (0, 1),
     most: int | None = None,
 ) -> list[Motion]:
-    """Read what :func:`write_motion_set` wrote, or part k of n of it, in order."""
+    """Read what :func:`write_motion_set` wrote, or part k of n of it, in order.
+
+    Parameters
+    ----------
+    path
+        Of the file.
+    part
+        Number of the part, from zero, and of parts.
+    most
+        Motions that are read at most.
+
+    Returns
+    -------
+    list
+        Motions with accelerations in m/s².
+    """
     with pq.ParquetFile(path) as file:
         total, (number, parts) = file.metadata.num_rows, part
         first, last = number * total // parts, (number + 1) * total // parts
@@ -181,7 +203,18 @@ def read_motion_set(
 
 
 def read_motion_metadata(path: str | os.PathLike[str]) -> list[dict[str, Any]]:
-    """Read what is known of each motion of a set, without its samples."""
+    """Read what is known of each motion of a set, without its samples.
+
+    Parameters
+    ----------
+    path
+        Of a file of :func:`write_motion_set`.
+
+    Returns
+    -------
+    list
+        Metadata of each motion, in order.
+    """
     found = pq.read_table(path, columns=["metadata"])["metadata"].to_pylist()
     return [json.loads(line) for line in found]
 
@@ -251,7 +284,22 @@ class GroundMotion:
 
 
 def integrate(acceleration: Floats, dt: float) -> tuple[Floats, Floats]:
-    """Integrate an acceleration that is linear between samples, from rest."""
+    """Integrate an acceleration that is linear between samples, from rest.
+
+    Parameters
+    ----------
+    acceleration
+        Samples, shape (n,) [m/s²].
+    dt
+        Sampling interval [s].
+
+    Returns
+    -------
+    velocity : ndarray
+        At the samples, shape (n,) [m/s].
+    displacement : ndarray
+        Likewise [m].
+    """
     a0, a1 = acceleration[:-1], acceleration[1:]
     velocity = np.concatenate([[0.0], np.cumsum((a0 + a1) * (dt / 2))])
     steps = velocity[:-1] * dt + (2 * a0 + a1) * (dt**2 / 6)
@@ -259,7 +307,20 @@ def integrate(acceleration: Floats, dt: float) -> tuple[Floats, Floats]:
 
 
 def peak_velocity(acceleration: Floats, dt: float) -> float:
-    """Peak absolute velocity [m/s], at samples or where the acceleration crosses zero between them."""
+    """Peak absolute velocity [m/s], at samples or where the acceleration crosses zero between them.
+
+    Parameters
+    ----------
+    acceleration
+        Samples, shape (n,) [m/s²].
+    dt
+        Sampling interval [s].
+
+    Returns
+    -------
+    float
+        In m/s.
+    """
     velocity, _ = integrate(acceleration, dt)
     a0, a1 = acceleration[:-1], acceleration[1:]
     turns = a0 * a1 < 0
@@ -269,7 +330,20 @@ def peak_velocity(acceleration: Floats, dt: float) -> float:
 
 
 def peak_displacement(acceleration: Floats, dt: float) -> float:
-    """Peak absolute displacement [m], at samples or where the velocity crosses zero between them."""
+    """Peak absolute displacement [m], at samples or where the velocity crosses zero between them.
+
+    Parameters
+    ----------
+    acceleration
+        Samples, shape (n,) [m/s²].
+    dt
+        Sampling interval [s].
+
+    Returns
+    -------
+    float
+        In m.
+    """
     velocity, displacement = integrate(acceleration, dt)
     # the velocity has a zero in an interval only if it changes its sign there, or turns
     changes = (velocity[:-1] * velocity[1:] < 0) | (

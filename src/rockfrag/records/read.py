@@ -20,6 +20,8 @@ from rockfrag.records.formats.obspy_native import obspy_channels
 from rockfrag.records.motion import Motion
 from rockfrag.records.parsing import directions, quantities
 from rockfrag.records.parsing.format import Channel
+from rockfrag.records.parsing.peak_in_words import with_checked_peaks
+from rockfrag.records.parsing.stated_peak import StatedPeak
 from rockfrag.records.parsing.text_file import NotAcceleration, check_file
 from rockfrag.records.quality_flags import STRONGEST_G
 from rockfrag.records.sources.archive import is_archive, is_no_record, unpacked
@@ -65,7 +67,22 @@ def read_record(
 
 
 def read_untold(path: Path, dt: float | None) -> tuple[Record, float | None]:
-    """Return what is in a file, and ``dt`` [s] if it was needed, as the file does not state its own."""
+    """Return what is in a file, and ``dt`` [s] if it was needed, as the file does not state its own.
+
+    Parameters
+    ----------
+    path
+        Of the file.
+    dt
+        Sampling interval that the user names for such files [s].
+
+    Returns
+    -------
+    record : Record
+        Its channels, before units are settled.
+    dt : float or None
+        The interval where the file needed it.
+    """
     try:
         return read_record(path), None
     except InputError as error:
@@ -138,6 +155,7 @@ def read_motion(
     unit: str | None = None,
     channel: str | int | None = None,
     dt: float | None = None,
+    *,
     cut_short: bool = False,
     force: bool = False,
 ) -> Motion:
@@ -207,7 +225,24 @@ def choose_channel(record: Record, wanted: str | int | None) -> Channel:
 def motion_of(
     record: Record, channel: Channel, unit: str | None = None, force: bool = False
 ) -> Motion:
-    """Return one channel of a record as a motion in m/s²; ``unit`` and ``force`` as of :func:`read_motion`."""
+    """Return one channel of a record as a motion in m/s²; ``unit`` and ``force`` as of :func:`read_motion`.
+
+    Parameters
+    ----------
+    record
+        Of :func:`read_record`.
+    channel
+        One of its channels.
+    unit
+        Of the samples, where the file does not state it.
+    force
+        Whether a peak above 3 g is taken in that unit.
+
+    Returns
+    -------
+    Motion
+        Acceleration in m/s² with its provenance.
+    """
     if channel.fault:
         raise InputError(f"{record.name}: {channel.fault}.")
     samples = channel.samples
@@ -215,6 +250,10 @@ def motion_of(
     where = f", channel {channel.label or number}" if len(record.channels) > 1 else ""
     told = replace(record, name=f"{record.name}{where}")
     stored = _settled_unit(told, channel, samples, unit)
+    if channel.peaks:
+        peaks = [StatedPeak(number, unit) for number, unit in channel.peaks]
+        found = with_checked_peaks([replace(channel, unit=stored)], peaks, told.name)
+        channel = replace(channel, steps=found[0].steps)
     factor = quantities.to_si(stored)
     acceleration = _in_si(told, samples, factor)
     read = {

@@ -81,7 +81,24 @@ def write_motions(
     format: str,
     unit: str | None = None,
 ) -> list[Path]:
-    """Write each motion into a folder, named as the motion, and return the paths."""
+    """Write each motion into a folder, named as the motion, and return the paths.
+
+    Parameters
+    ----------
+    motions
+        With names that differ.
+    folder
+        Made if it is not there.
+    format
+        A key of :data:`WRITERS`.
+    unit
+        In which numbers are written, else that of the format.
+
+    Returns
+    -------
+    list
+        Paths of the files, in order.
+    """
     name = _format("", format)
     ending = WRITERS[name][0]
     paths: dict[Path, str] = {}
@@ -97,7 +114,18 @@ def write_motions(
 
 
 def motions_of_study(path: str | os.PathLike[str]) -> list[Motion]:
-    """Read the motions that a study keeps in a Parquet file, such as ``motions/floors.parquet``."""
+    """Read the motions that a study keeps in a Parquet file, such as ``motions/floors.parquet``.
+
+    Parameters
+    ----------
+    path
+        Of the Parquet file.
+
+    Returns
+    -------
+    list
+        Motions in m/s².
+    """
     try:
         return read_motion_set(path)
     except (OSError, ValueError, KeyError) as error:
@@ -137,7 +165,12 @@ def _write_mseed(stream: Stream, path: str | os.PathLike[str]) -> None:
     response = Response(instrument_sensitivity=sensitivity)
     # neither place nor depth is known
     channel = Channel(
-        *(codes["channel"], codes["location"], 0, 0, 0, 0),
+        codes["channel"],
+        codes["location"],
+        latitude=0,
+        longitude=0,
+        elevation=0,
+        depth=0,
         sample_rate=1 / stats.delta,
         response=response,
     )

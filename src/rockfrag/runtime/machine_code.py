@@ -19,6 +19,15 @@ def cached_njit(
     file only, and would keep code with an old copy of another function. A file of machine code that is damaged or
     may not be read is made anew, as if it were not there; without a folder for it, or where it may not be written,
     the function is compiled for this process alone.
+
+    Parameters
+    ----------
+    stamp : gives the digest of the sources, None where the function calls no other
+    **options : of ``numba.njit``
+
+    Returns
+    -------
+    A decorator that compiles a function.
     """
 
     def decorate(function: Callable[..., Any]) -> Any:
@@ -41,6 +50,26 @@ def cached_njit(
         return compiled
 
     return decorate
+
+
+def is_kept(function: Any) -> bool:
+    """Whether the machine code of a function is at hand, so that calling it compiles nothing.
+
+    Parameters
+    ----------
+    function : as :func:`cached_njit` has made it
+
+    Returns
+    -------
+    Whether it is, as far as numba says so.
+    """
+    if function.signatures:
+        return True
+    file: Any = getattr(getattr(function, "_cache", None), "_cache_file", None)
+    try:
+        return bool(file._load_index())
+    except Exception:  # a folder that is not there, a damaged file, another numba
+        return False
 
 
 _OF_A_FILE = ("load", "save", "flush", "_dump", "_load_data", "_data_path")

@@ -488,7 +488,7 @@ def _simulated(
         if math.isfinite(curve.theta) and curve.beta > 0:
             coefficients = lognormal_coefficients(curve.theta, curve.beta)
     elif found.conversion:
-        coefficients = found.conversion.fragility.coefficients
+        coefficients = found.conversion.coefficients
     sources = dict(found.amplitudes[0.5].sources)
     if with_velocity:
         sources.pop("conversion", None)

@@ -58,7 +58,7 @@ def build_integrate() -> bytes:
         "integrate": (integrate_call, history),
     }
     constants = {"gravity": GRAVITY, "step": STEP, "free_time": FREE_TIME}
-    return _module(
+    return module_of(
         entries,
         {"call": CALL, "sample": SAMPLE, "event": CONTACT_EVENT},
         constants,
@@ -98,7 +98,7 @@ def build_ensemble(*, fused: bool) -> bytes:
         "pivot": PIVOT,
         "outcome": OUTCOME,
     }
-    return _module(entries, records, constants, fused=fused)
+    return module_of(entries, records, constants, fused=fused)
 
 
 def build_space() -> bytes:
@@ -119,7 +119,7 @@ def build_space() -> bytes:
         "azimuth": spatial.FALL_AZIMUTH, "peak": spatial.PEAK_RATIO, "tilt": spatial.PEAK_TILT,
         "turned": spatial.TURN, "walk": spatial.WALK_X,
     }  # fmt: skip
-    return _module(entries, {"call": SPACE}, constants, fused=None)
+    return module_of(entries, {"call": SPACE}, constants, fused=None)
 
 
 _VECTORS = {None: "", False: ",+simd128", True: ",+simd128,+relaxed-simd"}
@@ -134,19 +134,33 @@ MODULES: Mapping[str, Callable[[], bytes]] = {
 """How each module is made, by its name."""
 
 
-def _module(
+def module_of(
     entries: Entries,
-    records: dict[str, np.dtype[Any]],
-    constants: dict[str, float],
+    records: Mapping[str, np.dtype[Any]],
+    constants: Mapping[str, float],
     *,
     fused: bool | None,
 ) -> bytes:
-    """Compile and link entries, with the layout of records in a section of their own."""
+    """Compile and link entries, with the layout of records in a section of their own.
+
+    Parameters
+    ----------
+    entries : kernels by the names that the page calls, with arguments of the types for which they are compiled
+    records : dtypes of records by name; ``call`` is what the page hands over
+    constants : numbers that the page is told, by name
+    fused : whether multiply-adds are fused; None where there are none
+
+    Returns
+    -------
+    The bytes of the module.
+    """
     llvm.initialize_all_targets()
     llvm.initialize_all_asmprinters()
     objects = [_object(name, *entry, fused) for name, entry in entries.items()]
     layout = {name: _described(dtype) for name, dtype in records.items()}
-    told = json.dumps(layout | {"constants": constants}, separators=(",", ":")).encode()
+    told = json.dumps(
+        layout | {"constants": dict(constants)}, separators=(",", ":")
+    ).encode()
     # a custom section, which has the number 0, its length, and the length of its name
     section = _length(len(b"layout")) + b"layout" + told
     return _linked(objects, list(entries)) + b"\0" + _length(len(section)) + section

@@ -51,8 +51,13 @@ async function rockfragModule(bytes) {
     return [0, 0, BigInt(count), BigInt(size), at, ...shape.map(BigInt), ...strides.map(BigInt)];
   }
 
-  const run = (name, ...parameters) => functions[name](result, result + 8, call, ...parameters);
-  return { memory, layout, call, arrays, reserve, read, write, array, run };
+  // a function by its name; it returns its result, of those that have one
+  function invoke(name, ...parameters) {
+    functions[name](result, result + 8, ...parameters);
+    return view.getFloat64(result, true);
+  }
+  const run = (name, ...parameters) => invoke(name, call, ...parameters);
+  return { memory, layout, call, arrays, reserve, read, write, array, run, invoke };
 }
 
 // numbers of a block that are not given as the kernels know them

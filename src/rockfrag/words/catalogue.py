@@ -26,13 +26,23 @@ SURE, LEAST = 0.995, 1e-5
 
 
 def languages() -> list[str]:
-    """Languages that can be said, the first one first."""
+    """Languages that can be said, the first one first.
+
+    Returns
+    -------
+    Names of the languages, such as ``en``.
+    """
     found = sorted(path.stem for path in TEXTS.glob("*.json"))
     return sorted(found, key=lambda name: name != FIRST)
 
 
 def formatter() -> str:
-    """Return the script that says findings in a page, by the same texts and rules."""
+    """Return the script that says findings in a page, by the same texts and rules.
+
+    Returns
+    -------
+    JavaScript.
+    """
     return Path(__file__).with_name("catalogue.js").read_text(encoding="utf-8")
 
 

@@ -60,42 +60,109 @@ def finding(id: str, /, estimate: Any = None, **values: Value) -> Finding:
     id : id of the text
     estimate : the estimate behind it, for programs
     **values : what stands in the places, by their names
+
+    Returns
+    -------
+    The :class:`Finding`.
     """
     return Finding(str(id), tuple(values.items()), estimate)
 
 
 def percent(value: float) -> Number:
-    """A probability or fraction [-], said in per cent."""
+    """A probability or fraction [-], said in per cent.
+
+    Parameters
+    ----------
+    value : probability or fraction [-]
+
+    Returns
+    -------
+    The number with its form.
+    """
     return Number(float(value), Form.PERCENT)
 
 
 def limit(value: float) -> Number:
-    """A limit of a probability or fraction [-], said in per cent without its sign."""
+    """A limit of a probability or fraction [-], said in per cent without its sign.
+
+    Parameters
+    ----------
+    value : limit of a probability or fraction [-]
+
+    Returns
+    -------
+    The number with its form.
+    """
     return Number(float(value), Form.LIMIT)
 
 
 def two(value: float) -> Number:
-    """A number to two digits."""
+    """A number to two digits.
+
+    Parameters
+    ----------
+    value : number, in any unit
+
+    Returns
+    -------
+    The number with its form.
+    """
     return Number(float(value), Form.TWO)
 
 
 def three(value: float) -> Number:
-    """A number to three digits."""
+    """A number to three digits.
+
+    Parameters
+    ----------
+    value : number, in any unit
+
+    Returns
+    -------
+    The number with its form.
+    """
     return Number(float(value), Form.THREE)
 
 
 def whole(value: float) -> Number:
-    """A number to the next whole one."""
+    """A number to the next whole one.
+
+    Parameters
+    ----------
+    value : number, in any unit
+
+    Returns
+    -------
+    The number with its form.
+    """
     return Number(float(value), Form.WHOLE)
 
 
 def listed(values: Sequence[Value]) -> Listed:
-    """Values that are said one after the other."""
+    """Values that are said one after the other.
+
+    Parameters
+    ----------
+    values : in their order
+
+    Returns
+    -------
+    The list.
+    """
     return Listed(tuple(values))
 
 
 def as_data(value: Value) -> Any:
-    """Return a finding or value as the page and JSON have it: mappings, lists, texts and numbers."""
+    """Return a finding or value as the page and JSON have it: mappings, lists, texts and numbers.
+
+    Parameters
+    ----------
+    value : a finding, or what stands in one
+
+    Returns
+    -------
+    What ``json.dumps`` takes.
+    """
     if isinstance(value, Finding):
         values = {place: as_data(inner) for place, inner in value.values}
         return {"id": value.id, "values": values}

@@ -19,14 +19,33 @@ LONGEST_NAME = 24
 
 
 def number(value: float, decimals: int) -> str:
-    """A number with its decimals and a real minus sign; a dash where there is none."""
+    """A number with its decimals and a real minus sign; a dash where there is none.
+
+    Parameters
+    ----------
+    value, decimals : the number, and how many decimals it has
+
+    Returns
+    -------
+    The text.
+    """
     if not math.isfinite(value):
         return "–"
     return f"{value:.{decimals}f}".replace("-", "−")
 
 
 def decimals_of(value: float, significant: int = 3) -> int:
-    """Decimals that show so many digits of a value: 2 of 1.23, 0 of 123."""
+    """Decimals that show so many digits of a value: 2 of 1.23, 0 of 123.
+
+    Parameters
+    ----------
+    value : the number
+    significant : digits that shall be seen
+
+    Returns
+    -------
+    Number of decimals.
+    """
     if not math.isfinite(value) or value == 0:
         return significant
     return max(0, significant - 1 - math.floor(math.log10(abs(value))))
@@ -38,6 +57,15 @@ def estimate(value: float, lower: float, upper: float, decimals: int) -> str:
     Limits say nothing where there are none, or where they are the same to the decimals shown: a set of steps
     cannot show that something is exactly so. An estimate that is its own upper limit, with none below, is a
     bound: ``≤ 0.04``.
+
+    Parameters
+    ----------
+    value, lower, upper : estimate and limits, in any unit
+    decimals : of all of them
+
+    Returns
+    -------
+    The text.
     """
     if not math.isfinite(value):
         return "–"
@@ -65,6 +93,16 @@ def estimates(
     """Estimates of a table in words, of a column and those of its limits, by default ``_lower`` and ``_upper``.
 
     The decimals are the same for all; by default they show three digits of the smallest value.
+
+    Parameters
+    ----------
+    table, name : table, and column of the estimates
+    decimals : of all; None for three digits of the smallest
+    limits : columns of the limits
+
+    Returns
+    -------
+    A text a row.
     """
     values = table[[name, *(limits or (f"{name}_lower", f"{name}_upper"))]].to_numpy(
         dtype=float
@@ -77,7 +115,17 @@ def estimates(
 
 
 def has_interval(lower: float, upper: float, decimals: int) -> bool:
-    """Whether limits of a positive quantity have a width that the decimals show."""
+    """Whether limits of a positive quantity have a width that the decimals show.
+
+    Parameters
+    ----------
+    lower, upper : limits, in any unit
+    decimals : that are shown
+
+    Returns
+    -------
+    Whether the limits differ as they are shown.
+    """
     if math.isnan(lower) or math.isnan(upper):
         return False
     if lower <= 0 and math.isinf(upper):
@@ -86,21 +134,50 @@ def has_interval(lower: float, upper: float, decimals: int) -> bool:
 
 
 def probability(p: float) -> str:
-    """A p value; those too small to tell apart are bounded, never zero."""
+    """A p value; those too small to tell apart are bounded, never zero.
+
+    Parameters
+    ----------
+    p : the p value [-]
+
+    Returns
+    -------
+    The text.
+    """
     if not math.isfinite(p):
         return "–"
     return "< 0.001" if p < 0.001 else f"{p:.3f}"
 
 
 def counted(n: int, word: str, many: str | None = None) -> str:
-    """``1 record``, ``2 records``, ``no record``."""
+    """``1 record``, ``2 records``, ``no record``.
+
+    Parameters
+    ----------
+    n : number of things
+    word, many : what one is called, and several, else with an s
+
+    Returns
+    -------
+    The text.
+    """
     if n == 0:
         return f"no {word}"
     return f"{n} {word}" if n == 1 else f"{n} {many or word + 's'}"
 
 
 def of_all(n: int, total: int, word: str, many: str | None = None) -> str:
-    """``3 of 12 tests``, ``all 12 tests``, ``none of 12 tests``, ``the only test``, ``no test``."""
+    """``3 of 12 tests``, ``all 12 tests``, ``none of 12 tests``, ``the only test``, ``no test``.
+
+    Parameters
+    ----------
+    n, total : number of things, and of all
+    word, many : what one is called, and several, else with an s
+
+    Returns
+    -------
+    The text.
+    """
     noun = word if total == 1 else many or word + "s"
     if n == 0:
         return f"none of {total} {noun}" if total > 1 else f"no {noun}"
@@ -110,12 +187,31 @@ def of_all(n: int, total: int, word: str, many: str | None = None) -> str:
 
 
 def agree(n: int, total: int, word: str, many: str) -> str:
-    """The verb that goes with :func:`of_all`: ``needs`` of one, of none and of the only one, else ``need``."""
+    """The verb that goes with :func:`of_all`: ``needs`` of one, of none and of the only one, else ``need``.
+
+    Parameters
+    ----------
+    n, total : number of things, and of all
+    word, many : verb of one, and of several
+
+    Returns
+    -------
+    The verb.
+    """
     return word if n in (0, 1) or total == 1 else many
 
 
 def listed(names: Sequence[str]) -> str:
-    """``a``, ``a and b``, ``a, b and c``; of many the first ones and how many more."""
+    """``a``, ``a and b``, ``a, b and c``; of many the first ones and how many more.
+
+    Parameters
+    ----------
+    names : in their order
+
+    Returns
+    -------
+    The text.
+    """
     if len(names) > MOST_LISTED:
         return f"{', '.join(names[:MOST_LISTED])} and {len(names) - MOST_LISTED} more"
     if len(names) < 2:
@@ -127,12 +223,30 @@ LONGEST_LABEL = 40
 
 
 def label(name: str) -> str:
-    """A name that a reader looks up elsewhere, whole wherever a figure has room for it."""
+    """A name that a reader looks up elsewhere, whole wherever a figure has room for it.
+
+    Parameters
+    ----------
+    name : whole
+
+    Returns
+    -------
+    The name, of at most :data:`LONGEST_LABEL` characters.
+    """
     return shortened(name, LONGEST_LABEL)
 
 
 def shortened(name: str, longest: int = LONGEST_NAME) -> str:
-    """A name of at most ``longest`` characters; the middle of a longer one is left out."""
+    """A name of at most ``longest`` characters; the middle of a longer one is left out.
+
+    Parameters
+    ----------
+    name, longest : whole name, and number of characters that it may have
+
+    Returns
+    -------
+    The name, with ``…`` where something is left out.
+    """
     if len(name) <= longest:
         return name
     head = (longest - 1) // 2
@@ -140,7 +254,16 @@ def shortened(name: str, longest: int = LONGEST_NAME) -> str:
 
 
 def amplitude(test: Mapping[Any, Any]) -> str:
-    """The amplitude [g] of a test, or the bound that is known of it: ``0.523``, ``> 2.000``, ``< 0.100``."""
+    """The amplitude [g] of a test, or the bound that is known of it: ``0.523``, ``> 2.000``, ``< 0.100``.
+
+    Parameters
+    ----------
+    test : with ``lower_g``, ``upper_g`` and ``amplitude_g`` [g]
+
+    Returns
+    -------
+    The text.
+    """
     if math.isfinite(test["amplitude_g"]):
         return number(test["amplitude_g"], 3)
     if math.isfinite(test["upper_g"]):
@@ -149,5 +272,14 @@ def amplitude(test: Mapping[Any, Any]) -> str:
 
 
 def sentence(words: str) -> str:
-    """The words with a capital letter first."""
+    """The words with a capital letter first.
+
+    Parameters
+    ----------
+    words : without a capital letter
+
+    Returns
+    -------
+    The words.
+    """
     return words[:1].upper() + words[1:]

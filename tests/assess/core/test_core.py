@@ -1,15 +1,17 @@
 """All that is not known drawn at once: closed forms, statics as a cap, parts of sources, decisions."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from scipy import stats
 
 from rockfrag.assess.core.decisions import Action, decide
 from rockfrag.assess.core.draws import make_draws
+from rockfrag.assess.core.estimates import FRACTION, MOTIONS, fill_estimate
 from rockfrag.assess.core.fractions import count_motions
 from rockfrag.assess.core.likelihood import Likelihood, likelihood_of
-from rockfrag.assess.core.parts import part_of_source
-from rockfrag.assess.core.prediction import Shift, predict
+from rockfrag.assess.core.prediction import Prediction, Shift, predict
 
 LEVELS = np.geomspace(0.02, 4.0, 80)
 MANY = 400
@@ -24,6 +26,12 @@ def predicted(capacities, shifts, uplifts=None, levels=LEVELS):
         levels, fell, np.ones_like(fell), uplifts, np.arange(capacities.size)
     )
     return predict(levels, counts, shifts)
+
+
+def drawn(*sources):
+    """Draws of sources under ten earthquakes, as a prediction of nothing has them."""
+    draws, none = make_draws(len(sources), 10), np.zeros((0, 0))
+    return Prediction(LEVELS, sources, draws, none, none)
 
 
 def lognormal(median, spread):
@@ -74,10 +82,12 @@ def test_parts_are_those_of_a_sum_of_sources():
     sources = {"a": 0.3, "b": 0.2, "c": 0.1}
     draws = make_draws(3, 10)
     values = draws.sources @ np.array(list(sources.values()))
-    total = sum(size**2 for size in sources.values())
-    for column, size in enumerate(sources.values()):
-        part = part_of_source(values, draws.sources[:, column])
-        assert part == pytest.approx(size**2 / total, abs=0.02)
+    work, found = np.zeros((2, values.size)), np.zeros(MOTIONS + 4)
+    given = FRACTION, 1.0, values.mean(), 1.0, values
+    fill_estimate(*given, *work, draws.bins, len(draws.weights), found)
+    total = values.std()
+    for found_part, size in zip(found[-3:], sources.values(), strict=True):
+        assert (found_part / total) ** 2 == pytest.approx(size**2 / total**2, abs=0.02)
 
 
 def test_draws_have_the_moments_of_what_they_stand_for():
@@ -101,9 +111,8 @@ def test_the_interval_of_a_mean_of_few_earthquakes_is_students(count):
 
 
 def test_a_measurement_is_named_where_it_would_turn_the_decision_round():
-    draws = make_draws(2, 10)
-    known, other = draws.sources.T
-    sources = {"velocity": known, "width": other}
+    sources = drawn("velocity", "width")
+    known = sources.draws.sources[:, 0]
     # the probability is 5 or 25 %, as the velocity is low or high
     values = np.where(known > 0.5, 0.25, 0.05)
     found = decide(values.mean(), values, sources, {"width": 0.2, "velocity": 0.0}, 0.1)
@@ -112,7 +121,8 @@ def test_a_measurement_is_named_where_it_would_turn_the_decision_round():
     assert found.otherwise is Action.SECURE
     assert found.chance == pytest.approx(stats.norm.cdf(0.5), abs=0.04)
     # the cheapest of those that would do
-    both = {"velocity": known, "width": known}
+    draws = sources.draws._replace(bins=sources.draws.bins[[0, 0]])
+    both = replace(sources, draws=draws)
     first = decide(values.mean(), values, both, {"width": 0.2, "velocity": 0.0}, 0.1)
     assert first.source == "width"
     # far from what is accepted nothing turns it round
@@ -122,11 +132,10 @@ def test_a_measurement_is_named_where_it_would_turn_the_decision_round():
 
 
 def test_a_measurement_that_leaves_much_decides_less():
-    draws = make_draws(1, 10)
-    z = draws.sources[:, 0]
-    values = stats.norm.cdf(z - 1.0)
+    source = drawn("a")
+    values = stats.norm.cdf(source.draws.sources[:, 0] - 1.0)
     chances = [
-        decide(values.mean(), values, {"a": z}, {"a": left}, 0.1).measurements[0].chance
+        decide(values.mean(), values, source, {"a": left}, 0.1).measurements[0].chance
         for left in (0.0, 0.5, 0.95)
     ]
     assert chances[0] >= chances[1] > chances[2] == 0

@@ -1,8 +1,8 @@
 /* The answer about one object: outcomes of its bodies by motion and level, and what follows from them. */
-const answer = (data) => {
+const answer = (data, core) => {
   "use strict";
   const { constants: { AT_REST, LARGEST_FACTOR, LARGEST_PEAK, GRAVITY, MODEL, SPACE, ACCEPTED_AT_A_LEVEL, ACCEPTED_IN_FIFTY_YEARS }, measures } = data;
-  const judge = risk(data), spatial = inSpace(data), shiftFrom = conversion(data);
+  const judge = risk(data, core), spatial = inSpace(data);
 
   // levels of a run: the asked one among those of the measure
   function levelsOf(request, run) {
@@ -30,7 +30,7 @@ const answer = (data) => {
 
   // a worker's part: outcomes of a run under some of the motions
   function counter(ensemble, motions, space) {
-    const solids = spatial.counter(ensemble, space), floors = new Map();
+    const solids = spatial.counter(ensemble, space, core), floors = new Map();
     let standing = "";
     function shakingOf(place, floor, part) {
       // floors of one place are kept, and the ground
@@ -94,12 +94,14 @@ const answer = (data) => {
     const early = !outcomes[0], now = outcomes[early ? runs.findIndex(({ role }) => role === "first") : 0];
     const level = siteLevel(request), hazard = early ? null : hazardOf(request), { place } = request;
     const exact = request.measure === "PGA" && place.ground && !request.solid;
-    const known = (role) => runs.map((run, i) => ({ ...run, outcomes: outcomes[i] })).filter((run) => run.role === role && run.outcomes);
+    const { ratios } = tableOf(request), velocity = early || !ratios ? null : judge.velocityOf(now, ratios, level, exact);
+    const here = (outcomes) => (velocity?.site ? { ...outcomes, site: velocity.site } : outcomes), atSite = here(now);
+    const known = (role) => runs.map((run, i) => ({ ...run, outcomes: outcomes[i] && here(outcomes[i]) })).filter((run) => run.role === role && run.outcomes);
     const target = hazard ? judge.riskTarget(hazard, 50) : judge.fractionTarget(level);
-    const answer = { level, years: 50, counts: countsOf(now, level), rocksFrom: rocksFrom(request, now, exact, ensemble), shares: judge.fractions(now), levels: now.levels };
-    answer.value = judge.valueOf(judge.fractionTarget(level), now);
-    answer.rockingValue = judge.valueOf(judge.fractionTarget(level, "rocked"), now);
-    answer.probabilityValue = hazard ? judge.valueOf(target, now) : null;
+    const answer = { level, years: 50, counts: countsOf(now, level), rocksFrom: rocksFrom(request, now, exact, ensemble), shares: judge.fractions(atSite), levels: now.levels, moved: Boolean(velocity?.site) };
+    answer.value = judge.valueOf(judge.fractionTarget(level), atSite);
+    answer.rockingValue = judge.valueOf(judge.fractionTarget(level, "rocked"), atSite);
+    answer.probabilityValue = hazard ? judge.valueOf(target, atSite) : null;
     answer.deciding = deciding(now, level);
     answer.earthquakes = judge.groups;
     answer.accepted = hazard ? ACCEPTED_IN_FIFTY_YEARS : ACCEPTED_AT_A_LEVEL;
@@ -108,24 +110,23 @@ const answer = (data) => {
     answer.complete = runs.every((run, i) => run.role !== "moved" || outcomes[i]);
     if (earlier?.complete) for (const name of ESTIMATED) answer[name] = earlier[name];
     else if (answer.complete) {
-      const { ratios } = tableOf(request), fit = ratios ? shiftFrom(now, ratios) : null, { shiftOf, afterUplift } = judge;
+      const { shiftOf, afterUplift } = judge;
       const shifts = [...sides.map(([name, lower, upper]) => shiftOf(name, lower, upper)), afterUplift("model", MODEL)];
       if (!request.solid) shifts.push(afterUplift("space", SPACE));
-      if (fit) shifts.push(afterUplift("conversion", fit.shift));
-      const rates = hazard ? judge.ofQuantiles(now, hazard) : {};
+      if (velocity) shifts.push(afterUplift("conversion", velocity.shift));
+      const rates = hazard ? judge.ofQuantiles(atSite, hazard) : {};
       for (const name of Object.keys(rates)) shifts.push(afterUplift(name, 0));
-      const prediction = judge.predict(now, shifts);
-      const fraction = judge.estimate(judge.fractionTarget(level), prediction, rates);
-      const rocking = judge.estimate(judge.fractionTarget(level, "rocked"), prediction, rates);
-      Object.assign(answer, { fraction, rocking, shifts, rates });
-      if (hazard) answer.probability = judge.estimate(target, prediction, rates);
-      const main = answer.probability ?? fraction, half = judge.estimate(judge.amplitudeTarget(0.5), prediction, rates);
-      Object.assign(answer, { main, half, decision: judge.decision(target, prediction, main, answer.accepted, answer.years) });
+      Object.assign(answer, { shifts, rates }, judge.within(() => {
+        const prediction = judge.predict(atSite, shifts), of = (target) => judge.estimate(target, prediction, rates);
+        const fraction = of(judge.fractionTarget(level)), rocking = of(judge.fractionTarget(level, "rocked")), probability = hazard ? of(target) : null;
+        const decision = judge.decision(target, prediction, rates, answer.accepted);
+        return { fraction, rocking, ...(hazard ? { probability } : {}), main: probability ?? fraction, half: of(judge.amplitudeTarget(0.5)), decision };
+      }));
     }
     const { shifts = [], rates = {} } = answer, meanOf = (outcomes) => (answer.shifts ? judge.meanOf(target, shifts, rates, outcomes) : judge.valueOf(target, outcomes));
-    answer.arrangements = [["on_its_pedestal", answer.main?.value ?? meanOf(now)], ...known("arrangement").map((run) => [run.name, meanOf(run.outcomes)])];
+    answer.arrangements = [["on_its_pedestal", answer.main?.value ?? meanOf(atSite)], ...known("arrangement").map((run) => [run.name, meanOf(run.outcomes)])];
     const [before] = known("before"), [planar] = known("planar");
-    const as = { mitigation: judge.compared(target, shifts, rates, before?.outcomes ?? now), arrangement: judge.compared(target, shifts, rates, now) };
+    const as = { mitigation: judge.compared(target, shifts, rates, before?.outcomes ?? atSite), arrangement: judge.compared(target, shifts, rates, atSite) };
     answer.planar = planar ? meanOf(planar.outcomes) : null;
     const changes = [...known("mitigation"), ...known("arrangement")].filter(({ change }) => change);
     answer.mitigations = changes.map(({ role, change, values, outcomes: with_ }) => ({ name: change, values, ...as[role](with_) }))

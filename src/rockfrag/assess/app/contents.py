@@ -13,16 +13,14 @@ import numpy as np
 from scipy import special
 
 from rockfrag.assess import (
-    conversion,
     findings,
     outcomes,
     place,
     request,
-    risk,
     sources,
 )
-from rockfrag.assess.conversion import VelocityRelation
-from rockfrag.assess.core import decisions, draws, fractions, parts
+from rockfrag.assess.conversion import NODES, VelocityRelation, published_velocity
+from rockfrag.assess.core import decisions, draws
 from rockfrag.assess.core.likelihood import BELOW, UP_TO, Likelihood
 from rockfrag.assess.hazard import curve
 from rockfrag.assess.hazard.curve import PGA, PGV
@@ -34,7 +32,6 @@ from rockfrag.base import plausible, units
 from rockfrag.base.arrays import Floats
 from rockfrag.building.model import ModalDamping, ShearBuilding
 from rockfrag.building.response import find_modes
-from rockfrag.fragility import held_out, vector
 from rockfrag.fragility.model_error import CUT, MODEL_ERRORS
 from rockfrag.motions.intensity import IntensityMeasure
 from rockfrag.motions.response_spectra import oscillator_matrix
@@ -42,10 +39,8 @@ from rockfrag.web import driver_text
 from rockfrag.words.findings import as_data
 
 SCRIPTS = (
-    "statistics",
     "core",
     "risk",
-    "conversion",
     "building",
     "space",
     "objects",
@@ -75,6 +70,7 @@ def data_of(motions: MotionSet, asked: Request | None = None) -> dict[str, Any]:
     ``asked`` says where they were recorded, and has the building and hazard that the form does not tell.
     """
     hazard = asked.hazard if asked else ()
+    given = asked.records if asked else Records()
     level = [asked.level.measure] if asked and asked.level else []
     measures = dict.fromkeys((PGA, PGV, *level, *(each.measure for each in hazard)))
     intervals = sorted({motion.dt for motion in motions.ground})
@@ -88,8 +84,10 @@ def data_of(motions: MotionSet, asked: Request | None = None) -> dict[str, Any]:
         "motions": as_data(motions.about_set),
         "motionsInSpace": as_data(motions.with_both_components().about_set),
         "names": [motion.name for motion in motions.ground],
-        "measures": {measure.imt: _measure(motions, measure) for measure in measures},
-        "both": in_space(motions, measures),
+        "measures": {
+            measure.imt: _measure(motions, measure, given) for measure in measures
+        },
+        "both": in_space(motions, measures, given),
         "onFloor": asked is not None and asked.records.on_floor,
         # curves of the hazard's quantiles, by the standard normal score of each
         "quantiles": [
@@ -120,20 +118,25 @@ def data_of(motions: MotionSet, asked: Request | None = None) -> dict[str, Any]:
     }
 
 
-def _measure(motions: MotionSet, measure: IntensityMeasure) -> dict[str, Any]:
-    levels, few = (
-        outcomes.make_intensity_levels(motions, measure, (), count).levels.tolist()
-        for count in (outcomes.LEVELS, outcomes.FEW_LEVELS)
-    )
+def _measure(
+    motions: MotionSet, measure: IntensityMeasure, given: Records
+) -> dict[str, Any]:
     return {
         "unit": measure.unit,
-        "levels": levels,
-        "few": few,
+        "levels": _levels(motions, measure, outcomes.LEVELS),
+        "few": _levels(motions, measure, outcomes.FEW_LEVELS),
         "values": motions.values(measure).tolist(),
-        "ratios": ratios_of(motions, measure),
+        "ratios": ratios_of(motions, measure, given),
         "highest": curve.HIGHEST[measure.openquake],
         "damaging": curve.DAMAGING[measure.openquake],
     }
+
+
+def _levels(motions: MotionSet, measure: IntensityMeasure, count: int) -> list[float]:
+    """Levels that are tried where none is asked for."""
+    shaking = outcomes.make_intensity_levels(motions, measure, (), count)
+    values: list[float] = shaking.levels.tolist()
+    return values
 
 
 def _with_variants(at: Place, intervals: Sequence[float]) -> dict[str, Any]:
@@ -200,9 +203,12 @@ def _draws(motions: MotionSet) -> dict[str, Any]:
     count = len(set(motions.earthquakes))
     fewer = motions.with_both_components().thinned()
     counts = {count, len(set(fewer.earthquakes))}
+    made = draws.make_draws(SOURCES_DRAWN, count)
     return {
         "columns": SOURCES_DRAWN,
-        "normals": _packed(draws.make_draws(SOURCES_DRAWN, count).sources),
+        "size": draws.BLOCKS * draws.MEMBERS,
+        "normals": _packed(made.sources),
+        "bins": b64encode(made.bins.tobytes()).decode(),
         "weights": {n: _packed(draws.make_draws(0, n).weights) for n in counts},
     }
 
@@ -222,18 +228,11 @@ def _constants() -> dict[str, Any]:
         **_of(units, "GRAVITY"),
         **_of(outcomes, "AT_REST", "LARGEST_FACTOR"),
         **_of(plausible, "LARGEST_PEAK"),
-        **_of(risk, "LEVEL", "NONE_BELOW", "LEAST_SPAN"),
-        **_of(fractions, "CLASSES", "ROUNDING", "LEAST_SPREAD"),
         **_of(draws, "MEMBERS", "FEW_MEMBERS"),
-        "BINS": parts.BINS,
-        "CENTRES": parts.CENTRES.tolist(),
         "FLANK_Z": float(special.ndtri(curve.FLANKS[1])),
         **_of(curve, "EC8_SLOPE", "EC8_SLOPE_SD"),
         "MODEL": MODEL_ERRORS[CUT].beyond,
         **_of(sources, "SPACE"),
-        **_of(conversion, "MOST_LEVELS", "OF_DISPLACEMENT"),
-        **_of(vector, "INTERACTION_LEVEL"),
-        **_of(held_out, "FOLDS", "WORST_SCORE"),
         **_of(plausible, "STONE", "DENSITIES", "DEPTHS"),
         **_of(changes, "WIDER", "PLATE", "STEEL", "LOWER", "BALLAST", "BALLAST_AT"),
         **_of(changes, "PEDESTAL_HEIGHT"),
@@ -241,7 +240,7 @@ def _constants() -> dict[str, Any]:
             place, "PERIOD_FACTORS", "STOREY_HEIGHT", "STOREY_MASS", "HIGHEST_BUILDING"
         ),
         **_of(findings, "HARDLY", "LEAST_PART", "MOST_SOURCES", "MOST_ASSUMPTIONS"),
-        **_of(findings, "MOST_CHANGES"),
+        **_of(findings, "MOST_CHANGES", "LEAST_WORTH"),
         **_of(decisions, "LEAST_CHANCE"),
         "FEWEST_EARTHQUAKES": FEWEST_EARTHQUAKES,
         **_of(request, "ACCEPTED_AT_A_LEVEL", "ACCEPTED_IN_FIFTY_YEARS"),
@@ -257,7 +256,7 @@ def _constants() -> dict[str, Any]:
 
 
 def in_space(
-    motions: MotionSet, measures: Iterable[IntensityMeasure]
+    motions: MotionSet, measures: Iterable[IntensityMeasure], given: Records
 ) -> dict[str, Any]:
     """Return records, levels and constants of bodies in space, of motions one component at a time."""
     both = motions.with_both_components()
@@ -265,18 +264,12 @@ def in_space(
     names = [motion.name for motion in both.ground]
     levels = {}
     for measure in measures:
-        few, fewest = (
-            outcomes.make_intensity_levels(
-                each, measure, (), outcomes.FEW_LEVELS
-            ).levels.tolist()
-            for each in (both, fewer)
-        )
         about = {
-            "levels": few,
-            "fewer": fewest,
+            "levels": _levels(both, measure, outcomes.FEW_LEVELS),
+            "fewer": _levels(fewer, measure, outcomes.FEW_LEVELS),
             "values": both.values(measure).tolist(),
         }
-        levels[measure.imt] = {**about, "ratios": ratios_of(both, measure)}
+        levels[measure.imt] = {**about, "ratios": ratios_of(both, measure, given)}
     turns = [math.radians(angle) for angle in range(0, 180, outcomes.STEP_DEG)]
     return {
         "records": [
@@ -312,16 +305,26 @@ def _times(motions: MotionSet, pair: tuple[int, int]) -> list[dict[str, Any] | N
     return found
 
 
-def ratios_of(motions: MotionSet, measure: IntensityMeasure) -> dict[str, Any] | None:
-    """Return what is known of PGV over a measure in the motions; None of PGV itself."""
+def ratios_of(
+    motions: MotionSet, measure: IntensityMeasure, given: Records
+) -> dict[str, Any] | None:
+    """Return what is known of PGV over a measure in the motions and at the site; None of PGV itself."""
     if measure == PGV:
         return None
     logs = motions.log_ratios(measure)
     relation = VelocityRelation.of(
         motions.about, motions.log_ratios(measure, of_all=True)
     )
+    published, of_site = published_velocity(measure, given), None
+    if published is not None:
+        of_site = {
+            "lines": published.lines(given).tolist(),
+            "ofSite": published.of_site,
+            "nodes": (published.within * NODES).tolist(),
+        }
     return {
         "logs": logs.tolist(),
         "median": float(np.median(logs)),
-        "spread": relation.unknown(Records(), of_site=False),
+        "spread": relation.unknown(given, of_site=False),
+        "published": of_site,
     }

@@ -1,7 +1,7 @@
 /* What the page found, as findings of rockfrag.assess.findings: ids of texts, and the values that stand in them. */
 const findings = (data) => {
   "use strict";
-  const { HARDLY, BELOW, UP_TO, CERTAIN, FEWEST_EARTHQUAKES, LEAST_PART, MOST_SOURCES, MOST_ASSUMPTIONS, MOST_CHANGES } = data.constants;
+  const { HARDLY, BELOW, UP_TO, CERTAIN, FEWEST_EARTHQUAKES, LEAST_PART, MOST_SOURCES, MOST_ASSUMPTIONS, MOST_CHANGES, LEAST_WORTH } = data.constants;
   const finding = (id, values = {}) => ({ id, values });
   const number = (form) => (value) => ({ number: value, form });
   const [percent, limit, two, three, four, whole] = ["percent", "limit", "two", "three", "four", "whole"].map(number);
@@ -67,10 +67,10 @@ const findings = (data) => {
 
     function atLevel() {
       const every = data.earthquakes.length, [total, rock, topple] = counts ?? [];
-      const counted = counts ? finding(total < every ? "counted_some" : "counted", { ...(total < every ? { every } : {}), total, rock, topple })
-        : finding("counted_moved", { rock: percent(found.rockingValue), topple: percent(found.value) });
+      const counted = counts ? [finding(total < every ? "counted_some" : "counted", { ...(total < every ? { every } : {}), total, rock, topple })] : [];
+      if (found.moved) counted.push(finding("counted_moved", { rock: percent(rocks), topple: percent(value) }));
       const starts = Number.isFinite(found.rocksFrom) ? finding("starts_at", { starts: amount(found.rocksFrom) }) : finding("starts_beyond");
-      return [counted, ...(fraction && !atRest ? [between()] : []), starts, ...(request.level === null ? [finding("exceeded_in_475", { level })] : [])];
+      return [...counted, ...(fraction && !atRest ? [between()] : []), starts, ...(request.level === null ? [finding("exceeded_in_475", { level })] : [])];
     }
     function between() {
       if (isOpen(fraction)) return finding("fraction_open");
@@ -115,6 +115,9 @@ const findings = (data) => {
       const ranked = Number.isFinite(total) && total > 0 ? Object.entries(main.sources).map(([name, s]) => [name, (s * s) / total]).sort((a, b) => b[1] - a[1]) : [];
       const named = ranked.filter(([, part]) => part >= LEAST_PART).slice(0, MOST_SOURCES);
       if (named.length) said.push(finding("uncertainty", { sources: listed(named.map(([name, part]) => finding("source_part", { source: finding(`source_${name}`), part: wholePercent(part) }))) }));
+      const worth = (found.decision?.measurements ?? []).filter(({ chance }) => chance >= LEAST_WORTH);
+      const each = worth.map(({ source, chance }) => finding("worth_measuring", { what: finding(`measurement_${source}`), cases: whole(10 * chance) }));
+      if (each.length) said.push(finding("worth", { measurements: listed(each) }));
       const size = (keys) => keys.reduce((sum, key) => sum + (main.sources[key] ?? 0) ** 2, 0);
       const order = assumed(request).map(([id, values, keys], i) => [finding(`assumed_${id}`, values), size(keys), i]).sort((a, b) => b[1] - a[1] || a[2] - b[2]);
       const rest = order.length - MOST_ASSUMPTIONS;

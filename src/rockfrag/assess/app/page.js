@@ -95,7 +95,7 @@ let number = 0, current = null, other = null;
 async function startWorkers() {
   const url = URL.createObjectURL(new Blob([find("computing").textContent], { type: "text/javascript" }));
   const count = Math.max(1, Math.min(4, navigator.hardwareConcurrency ?? 2));
-  const modules = { fused: bytesOf(data.modules.fused), plain: bytesOf(data.modules.plain), space: bytesOf(data.modules.space) }, samples = bytesOf(data.packed);
+  const modules = { fused: bytesOf(data.modules.fused), plain: bytesOf(data.modules.plain), space: bytesOf(data.modules.space), core: bytesOf(data.modules.core) }, samples = bytesOf(data.packed);
   const { packed, modules: _, ...rest } = data;
   return Promise.all(Array.from({ length: count }, () => {
     const worker = { post: started(url), busy: true };

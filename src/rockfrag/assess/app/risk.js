@@ -1,205 +1,179 @@
-/* From outcomes to shares, probabilities and their intervals, as rockfrag.assess.risk and its like have them. */
-const risk = (data) => {
+/* What is estimated of outcomes, by calls of the core in turn; see rockfrag.assess.risk. */
+const risk = (data, core) => {
   "use strict";
-  const { FLANK_Z, LEVEL, NONE_BELOW, LEAST_SPAN, EC8_SLOPE, EC8_SLOPE_SD } = data.constants;
-  const drawn = core(data);
+  const { zeros, put, call, within, constants: { FRACTION, RATE, LEVEL, CLASSES, BINS, MOST_LEVELS, MEMORY, STATE } } = core;
+  const { FLANK_Z, EC8_SLOPE, EC8_SLOPE_SD, LEAST_CHANCE, MEMBERS, FEW_MEMBERS } = data.constants;
+  const bytes = (text) => Uint8Array.from(atob(text), (c) => c.charCodeAt(0)), numbers = (text) => new Float64Array(bytes(text).buffer);
+  const { columns } = data.draws, normals = put(numbers(data.draws.normals), [data.draws.size, columns]), bins = bytes(data.draws.bins);
+  const fewNormals = put(normals.values.slice(0, (data.draws.size / MEMBERS) * FEW_MEMBERS * columns), [(data.draws.size / MEMBERS) * FEW_MEMBERS, columns]);
+  const sets = data.draws.size / MEMBERS;
+  const weights = Object.fromEntries(Object.entries(data.draws.weights).map(([count, text]) => [count, put(numbers(text), [sets, Number(count) + 1])]));
 
-  // numpy's interp, flat beyond the ends
-  function interpolated(x, xs, ys) {
-    if (x <= xs[0]) return ys[0];
-    if (x >= xs.at(-1)) return ys.at(-1);
-    let j = 0;
-    while (xs[j + 1] <= x) j++;
-    return ((ys[j + 1] - ys[j]) / (xs[j + 1] - xs[j])) * (x - xs[j]) + ys[j];
+  // ---- outcomes in the core's memory, those of the motions that were tried
+
+  function placed(outcomes) {
+    const { levels } = outcomes, rows = outcomes.motions ?? data.earthquakes.map((_, m) => m), size = levels.length;
+    const table = (name) => put(Uint8Array.from({ length: rows.length * size }, (_, i) => outcomes[name][rows[Math.floor(i / size)] * size + (i % size)]), [rows.length, size]);
+    const names = [...new Set(rows.map((m) => data.earthquakes[m]))];
+    const made = { levels: put(levels), count: names.length, rows, uplifts: zeros([rows.length]), ones: put(rows.map(() => 1)) };
+    for (const name of ["overturned", "rocked", "allowed"]) made[name] = table(name);
+    made.quakes = put(BigInt64Array.from(rows, (m) => BigInt(names.indexOf(data.earthquakes[m]))));
+    lift(made, rows.map((m) => outcomes.lifting[m]));
+    return outcomes.site ? moved(made, outcomes.site) : made;
   }
-
-  // fraction of the motions in a state ("overturned", "rocked") at each level; `without` leaves out an earthquake
-  function fractions(outcomes, state = "overturned", without = -1) {
-    const { levels, allowed } = outcomes, happened = outcomes[state], found = [];
-    for (let k = 0, last = 0; k < levels.length; k++) {
-      let total = 0, some = 0;
-      for (let m = 0; m < data.earthquakes.length; m++) {
-        const at = m * levels.length + k;
-        if (data.earthquakes[m] === without || !allowed[at]) continue;
-        total += 1;
-        some += happened[at];
-      }
-      if (total > 0) last = some / total;
-      found.push(last);
-    }
+  const lift = (at, lifting) => call("fill_uplifts", at.levels, at.rocked, at.overturned, at.allowed, put(lifting), at.uplifts);
+  // the same with the velocity of a site
+  function moved(at, { logs, weight, lines, nodes, byStatics }) {
+    const wanted = zeros(at.levels.shape), each = (values) => [...values].flatMap((value) => nodes.map(() => value));
+    const rows = each(at.rows), shape = [rows.length, at.levels.shape[0]], [allowed, overturned, rocked] = [1, 2, 3].map(() => zeros(shape, Uint8Array));
+    call("fill_wanted", at.levels, put(lines.flat(), [lines.length, 2]), wanted);
+    call("fill_moved", at.levels, at.allowed, at.overturned, at.rocked, put(at.rows.map((m) => logs[m])), wanted, put(nodes), weight, byStatics ? 1 : 0,
+      zeros(at.levels.shape), zeros(shape, BigInt64Array), allowed, overturned, rocked);
+    const made = { ...at, rows, allowed, overturned, rocked, uplifts: zeros([rows.length]), ones: put(rows.map(() => 1)), quakes: put(BigInt64Array.from(each(at.quakes.values))) };
+    lift(made, each(at.uplifts.values));
+    return made;
+  }
+  function counted(at, state = "overturned") {
+    const found = zeros(at.levels.shape);
+    call("fill_counted", at[state], at.allowed, at.ones, found);
     return found;
   }
+  const fractions = (outcomes) => within(() => [...counted(placed(outcomes)).values]);
+  const liftsFrom = (outcomes) => within(() => [...placed(outcomes).uplifts.values]);
 
-  // ---- hazard: a power law between points
+  // ---- hazard
 
   const curveOf = (levels, rates, quantiles = []) => ({ levels, rates, quantiles });
   function curveOfOneLevel(level, years) {
-    const curve = (k) => curveOf([0.1, 1, 10].map((f) => level * f), [0.1, 1, 10].map((f) => f ** -k / years));
+    const curve = (slope) => within(() => {
+      const levels = zeros([3]), rates = zeros([3]);
+      call("fill_power_law", level, years, slope, levels, rates);
+      return curveOf([...levels.values], [...rates.values]);
+    });
     const flanks = [[-FLANK_Z, EC8_SLOPE + EC8_SLOPE_SD], [FLANK_Z, EC8_SLOPE - EC8_SLOPE_SD]];
-    return { ...curve(EC8_SLOPE), quantiles: flanks.map(([z, k]) => ({ z, ...curve(k) })) };
+    return { ...curve(EC8_SLOPE), quantiles: flanks.map(([z, slope]) => ({ z, ...curve(slope) })) };
   }
-  const slope = ({ levels, rates }, i) => Math.log(rates[i + 1] / rates[i]) / Math.log(levels[i + 1] / levels[i]);
-  function rateOf(curve, level) {
-    let i = 0;
-    while (i < curve.levels.length - 2 && curve.levels[i + 1] < level) i++;
-    return curve.rates[i] * Math.exp(slope(curve, i) * Math.log(level / curve.levels[i]));
+  const levelOf = ({ levels, rates }, rate) => within(() => {
+    const found = zeros([1]);
+    call("fill_level", put(levels), put(rates), rate, found);
+    return found.values[0];
+  });
+  function rateWeights(levels, curve) {
+    const found = zeros(levels.shape);
+    call("fill_rate_weights", levels, 0, put(curve.levels), put(curve.rates), found);
+    return found;
   }
-  function levelOf(curve, rate) {
-    let i = 0;
-    while (i < curve.rates.length - 2 && curve.rates[i + 1] > rate) i++;
-    return curve.levels[i] * Math.exp(Math.log(rate / curve.rates[i]) / slope(curve, i));
-  }
-  function topplingRate(levels, shares, curve, shift) {
-    const x = levels.map((level) => Math.log(level) + shift);
-    const knots = curve.levels.map(Math.log).filter((knot) => knot > x[0] && knot < x.at(-1));
-    const ends = [...new Set([...x, ...knots])].sort((a, b) => a - b);
-    const share = ends.map((end) => interpolated(end, x, shares));
-    const rate = ends.map((end) => rateOf(curve, Math.exp(end)));
-    let sum = share.at(-1) * rate.at(-1);
-    for (let i = 0; i + 1 < ends.length; i++) {
-      const width = ends[i + 1] - ends[i], fall = -Math.log(rate[i + 1] / rate[i]) / width;
-      sum += share[i] * rate[i] - share[i + 1] * rate[i + 1]
-        + (((share[i + 1] - share[i]) / width) * (rate[i] - rate[i + 1])) / fall;
-    }
-    return sum;
-  }
-  const probabilityIn = (rate, years) => -Math.expm1(-years * rate);
+  const row = (values) => values.as([1, values.shape[0]]);
+  const rateOf = (at, curve) => call("fill_sums", row(counted(at)), rateWeights(at.levels, curve), zeros([1]));
 
   // ---- what is estimated
 
-  const { parts, predict, liftsFrom, meansBySet, mean, variance } = drawn;
-  const same = (value) => value;
-  // `of` turns levels and the shares at each into a number, `shown` that into the one that is shown
-  function riskTarget(curve, years) {
-    let known = null, rates = [];
-    const of = (levels, shares) => {
-      if (known !== levels) {
-        known = levels;
-        rates = levels.map((_, k) => topplingRate(levels, levels.map((_, i) => Number(i === k)), curve, 0));
-      }
-      return shares.reduce((sum, share, k) => sum + share * rates[k], 0);
-    };
-    const scale = (values) => values.map((value) => Math.log(Math.max(value, 1e-3 * mean(values), 1e-300)));
-    return { kind: "rate", of, scale, shown: (value) => probabilityIn(value, years), state: "overturned", noneBelow: -Infinity };
-  }
+  const riskTarget = (curve, years) => ({ kind: RATE, years, state: "overturned", weigh: (levels) => rateWeights(levels, curve) });
   const fractionTarget = (level, state = "overturned") => ({
-    kind: "fraction", level, of: (levels, shares) => interpolated(0, levels.map((each) => Math.log(each / level)), shares),
-    scale: same, shown: same, state, noneBelow: NONE_BELOW,
-  });
-  const amplitudeTarget = (part) => ({
-    kind: "level",
-    of: (levels, shares) => {
-      const i = shares.findIndex((share) => share >= part);
-      if (i < 0) return Infinity;
-      if (i === 0) return levels[0];
-      const x = levels.map(Math.log), along = (part - shares[i - 1]) / (shares[i] - shares[i - 1]);
-      return Math.exp(x[i - 1] + along * (x[i] - x[i - 1]));
+    kind: FRACTION, years: 1, state, weigh: (levels) => {
+      const found = zeros(levels.shape);
+      call("fill_place", levels, level, found);
+      return found;
     },
-    scale: (values) => values.map(Math.log), shown: same, state: "overturned", noneBelow: -Infinity,
   });
-  // earthquakes of the motions that were tried
-  const groupsOf = ({ motions }) => [...new Set(motions ? motions.map((m) => data.earthquakes[m]) : data.earthquakes)];
-  // of shares as counted
-  const valueOf = (target, outcomes) => target.shown(target.of(outcomes.levels, fractions(outcomes, target.state)));
+  const amplitudeTarget = (part) => ({ kind: LEVEL, years: 1, state: "overturned", part });
+  function shownOf({ kind, years }, values) {
+    const found = zeros(values.shape);
+    call("fill_shown", BigInt(kind), years, values, found);
+    return found;
+  }
+  const shown = (target, value) => shownOf(target, put([value])).values[0];
+  // of fractions as counted
+  const valueOf = (target, outcomes) => within(() => {
+    const at = placed(outcomes), fractions = row(counted(at, target.state));
+    return shown(target, call("fill_sums", fractions, target.weigh(at.levels), zeros([1])));
+  });
 
-  // ---- what is not known
+  // ---- what is not known: sources with what they move of uplift and of toppling
 
   const afterUplift = (name, spread) => [name, 0, spread];
-  // what a property moves at its standard deviation, by outcomes with it on both sides
-  function shiftOf(name, lower, upper) {
-    const [low, high] = [lower, upper].map((side) => {
-      const known = liftsFrom(side).filter(Number.isFinite);
-      return known.length ? mean(known.map(Math.log)) : 0;
-    });
-    const lifts = (high - low) / 2, { levels } = lower, [below, above] = [lower, upper].map((side) => fractions(side));
-    const middle = below.map((share, k) => (share + above[k]) / 2), span = Math.max(...middle) - middle[0];
-    if (span < LEAST_SPAN) return [name, lifts, lifts];
-    let area = 0;
-    for (let k = 0; k + 1 < levels.length; k++) area += (Math.log(levels[k + 1] / levels[k]) * (below[k] - above[k] + below[k + 1] - above[k + 1])) / 2;
-    return [name, lifts, area / 2 / span];
+  const shiftOf = (name, lower, upper) => within(() => {
+    const [low, high] = [lower, upper].map(placed), found = zeros([2]);
+    call("fill_shift", low.levels, counted(low), counted(high), low.uplifts, high.uplifts, found);
+    return [name, ...found.values];
+  });
+  // what the velocity of the site does: the shift of ln level that it leaves open, and how motions are moved; null where
+  // nothing follows
+  const velocityOf = (outcomes, { logs, median, spread, published }, level, byStatics) => within(() => {
+    const at = placed(outcomes), found = zeros([5]), tests = zeros([at.rows.length * MOST_LEVELS, MEMORY]);
+    call("fill_weight", at.levels, at.allowed, at.overturned, put(at.rows.map((m) => logs[m])), at.quakes, published ? 1 : 0, tests, zeros([STATE]), found);
+    const [weight, error] = found.values;
+    if (Number.isNaN(weight)) return null;
+    if (!published) return { shift: weight * spread, site: null };
+    const { lines, nodes, ofSite } = published, table = put(lines.flat(), [lines.length, 2]), wanted = zeros(at.levels.shape);
+    call("fill_wanted", at.levels, table, wanted);
+    const shift = call("shift_by_velocity", weight, call("spread_of_mean", level, ofSite, table), error, wanted, median);
+    return { shift, site: { logs, weight, lines, nodes, byStatics } };
+  });
+  const ofQuantiles = (outcomes, curve) => within(() => {
+    const at = placed(outcomes), known = curve.quantiles;
+    const spread = call("spread_of_quantiles", put(known.map(({ z }) => z)), put(known.map((each) => rateOf(at, each))));
+    return Number.isNaN(spread) ? {} : { hazard: spread };
+  });
+
+  // ---- under each draw; what these return stands in the core's memory
+
+  function predict(outcomes, shifts, few = false) {
+    const at = placed(outcomes), { count } = at, size = outcomes.levels.length, own = few ? fewNormals : normals, tables = [own.shape[0], size];
+    const counts = [zeros([size]), zeros([count, size, CLASSES + 1]), zeros([count, size]), zeros([count, CLASSES + 1]), zeros([count]), zeros([CLASSES]), zeros([4])];
+    call("fill_counts", at.levels, at.overturned, at.allowed, at.uplifts, at.quakes, zeros([3, at.rows.length]), ...counts);
+    const overturned = zeros(tables), rocked = zeros(tables);
+    call("fill_fractions", ...counts, weights[count], own, put(shifts.flatMap(([, lifts, topples]) => [lifts, topples]), [shifts.length, 2]), overturned, rocked);
+    return { levels: at.levels, overturned, rocked, normals: own, names: shifts.map(([name]) => name) };
   }
-
-  // ---- intervals
-
-  const all = groupsOf({}), groups = all.length;
-  const rowOf = (values, d, size) => Array.from(values.subarray(d * size, (d + 1) * size));
-  // the number in each draw, before it is shown; `rates`: standard deviations of ln rate by source
-  function drawnValues(target, prediction, rates) {
-    const { levels, draws } = prediction, table = target.state === "rocked" ? prediction.rocking : prediction.toppling;
-    const at = target.kind === "fraction" ? levels.indexOf(target.level) : -1;
-    const values = new Float64Array(draws);
-    for (let d = 0; d < draws; d++) values[d] = at < 0 ? target.of(levels, rowOf(table, d, levels.length)) : table[d * levels.length + at];
-    if (target.kind === "rate") for (const [name, spread] of Object.entries(rates)) {
-      const source = drawn.sourceOf(prediction, name);
-      for (let d = 0; d < draws; d++) values[d] *= Math.exp(spread * source[d] - spread ** 2 / 2);
+  function drawn(target, prediction, rates) {
+    const table = prediction[target.state], values = zeros([table.shape[0]]);
+    if (target.kind === LEVEL) {
+      call("fill_crossings", table, prediction.levels, target.part, values);
+      return { values, middle: NaN };
     }
-    return values;
+    const middle = call("fill_sums", table, target.weigh(prediction.levels), values);
+    if (target.kind === RATE && Object.keys(rates).length) call("fill_errors", values, prediction.normals, put(prediction.names.map((name) => rates[name] ?? 0)));
+    return { values, middle };
   }
-  function middleOf(target, prediction, values) {
-    if (target.kind === "level") return [...values].sort((a, b) => a - b)[Math.floor(0.5 * (values.length - 1))];
-    const { levels, draws } = prediction, table = target.state === "rocked" ? prediction.rocking : prediction.toppling;
-    const means = levels.map((_, k) => {
-      let sum = 0;
-      for (let d = 0; d < draws; d++) sum += table[d * levels.length + k];
-      return sum / draws;
+  const rowsOf = (names) => put(bins.slice(0, names.length * data.draws.size), [names.length, data.draws.size]);
+  const all = new Set(data.earthquakes), groups = all.size;
+  const estimate = (target, prediction, rates) => within(() => {
+    const { values, middle } = drawn(target, prediction, rates), { names, levels } = prediction, memory = () => zeros(values.shape);
+    const found = zeros([4 + names.length]);
+    call("fill_estimate", BigInt(target.kind), target.years, middle, levels.values.at(-1), values, memory(), memory(), rowsOf(names), BigInt(sets), found);
+    const [value, ...limits] = found.values, [lower, upper] = groups < 2 && target.kind !== LEVEL ? [0, 1] : limits;
+    const parts = ["motions", ...names].map((name, i) => [name, limits[2 + i]]);
+    return { value, lower, upper, sources: parts.some(([, part]) => part > 0) ? Object.fromEntries(parts) : {} };
+  });
+  // what to do: leave it, secure it, or measure first what would turn that round with a chance, the cheapest first
+  const decision = (target, prediction, rates, accepted) => within(() => {
+    const { values, middle } = drawn(target, prediction, rates), { names } = prediction, found = zeros([2]), means = zeros([BINS]);
+    const limit = target.kind === RATE ? call("rate_of", accepted, target.years) : accepted, otherwise = middle > limit ? "secure" : "leave";
+    const measurements = data.measurements.filter(([source]) => names.includes(source)).map(([source, left]) => {
+      const { size } = data.draws, first = names.indexOf(source) * size;
+      call("fill_turned", values, put(bins.slice(first, first + size)), left, middle, limit, means, found);
+      return { source, chance: found.values[0] };
     });
-    return target.shown(target.of(levels, means));
-  }
-  function estimate(target, prediction, rates) {
-    const values = drawnValues(target, prediction, rates), shown = values.map(target.shown), value = middleOf(target, prediction, values);
-    const ordered = Float64Array.from(shown).sort(), aside = Math.trunc(((1 - LEVEL) / 2) * ordered.length);
-    let lower = ordered[aside], upper = ordered[ordered.length - 1 - aside];
-    if (groups < 2 && target.kind !== "level") [lower, upper] = [0, 1];
-    if (lower < target.noneBelow) lower = 0;
-    if (upper > 1 - target.noneBelow) upper = 1;
-    const last = prediction.levels.at(-1), scaled = target.scale(target.kind === "level" ? values.map((each) => Math.min(each, last)) : values);
-    const spread = Math.sqrt(variance(scaled));
-    const sources = Object.fromEntries(Object.entries(parts(prediction, scaled)).map(([name, part]) => [name, spread * Math.sqrt(part)]));
-    return { value, lower: Math.min(lower, value), upper: Math.max(upper, value), sources, draws: values };
-  }
-  // what to do by a probability; of one in some years by its rate, of which means are taken
-  function decision(target, prediction, { value, draws }, accepted, years) {
-    const rate = (p) => (target.kind === "rate" ? -Math.log1p(-Math.min(p, 1 - 1e-15)) / years : p);
-    return drawn.decide(prediction, rate(value), draws, data.measurements, rate(accepted));
-  }
-  // standard deviation of ln rate that the quantiles of a hazard stand for
-  function ofQuantiles(outcomes, curve) {
-    const known = curve.quantiles.map((each) => [each.z, Math.log(topplingRate(outcomes.levels, fractions(outcomes), each, 0))])
-      .filter(([, value]) => Number.isFinite(value)).sort((a, b) => a[0] - b[0]);
-    if (known.length < 2) return {};
-    return { hazard: Math.abs(known.at(-1)[1] - known[0][1]) / (known.at(-1)[0] - known[0][0]) };
-  }
-
-  // numpy's quantile
-  function quantileOf(values, part) {
-    const ordered = [...values].sort((a, b) => a - b), at = part * (ordered.length - 1), low = Math.floor(at);
-    return ordered[low] + (at - low) * ((ordered[low + 1] ?? ordered[low]) - ordered[low]);
-  }
-  function comparedBy(target, shifts, rates, outcomes) {
-    const prediction = predict(outcomes, shifts, true), values = drawnValues(target, prediction, rates).map(target.shown);
-    return [mean(values), meansBySet(values, prediction.members)];
-  }
-  function meanOf(target, shifts, rates, outcomes) {
-    const prediction = predict(outcomes, shifts);
-    return middleOf(target, prediction, target.kind === "level" ? drawnValues(target, prediction, rates) : null);
-  }
+    const first = measurements.find(({ chance }) => chance >= LEAST_CHANCE);
+    return { otherwise, measurements, ...(first ? { action: "measure", ...first } : { action: otherwise, source: "", chance: 0 }) };
+  });
+  const meanOf = (target, shifts, rates, outcomes) => within(() => shown(target, drawn(target, predict(outcomes, shifts), rates).middle));
   // what changes do with the same errors, with limits of the factor over the earthquakes
   function compared(target, shifts, rates, now) {
-    const [before, bySet] = comparedBy(target, shifts, rates, now);
-    return (changed) => {
-      const [after, withIt] = comparedBy(target, shifts, rates, changed);
-      const found = { value: after, factor: NaN, lower: NaN, upper: NaN, helps: after < before, shown: false };
-      if (!(before > 0)) return found;
-      const factor = after / before, ratios = withIt.map((each, i) => each / bySet[i]).filter((_, i) => bySet[i] > 0);
-      const [low, high] = [(1 - LEVEL) / 2, (1 + LEVEL) / 2].map((end) => quantileOf(ratios, end));
-      const upper = Math.max(high, factor);
-      return { ...found, factor, lower: Math.min(low, factor), upper, shown: upper < 1 };
-    };
+    const with_ = (outcomes) => shownOf(target, drawn(target, predict(outcomes, shifts, true), rates).values);
+    const today = within(() => with_(now).values.slice());
+    return (changed) => within(() => {
+      const before = put(today), after = with_(changed), found = zeros([5]);
+      call("fill_comparison", BigInt(target.kind), before, after, BigInt(sets), zeros([3, before.shape[0]]), found);
+      const [was, value, factor, lower, upper] = found.values;
+      return { value, factor, lower, upper, helps: value < was, shown: upper < 1 };
+    });
   }
 
   return {
-    fractions, curveOf, curveOfOneLevel, rateOf, levelOf, probabilityIn, riskTarget, fractionTarget, amplitudeTarget, valueOf,
-    liftsFrom, estimate, meanOf, shiftOf, afterUplift, predict, decision, ofQuantiles, compared, groups,
+    fractions, curveOf, curveOfOneLevel, levelOf, riskTarget, fractionTarget, amplitudeTarget, valueOf, liftsFrom, estimate, meanOf,
+    shiftOf, velocityOf, afterUplift, predict, decision, ofQuantiles, compared, groups, within,
   };
 };
 if (typeof module !== "undefined") module.exports = risk;

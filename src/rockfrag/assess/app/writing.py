@@ -3,6 +3,7 @@
 import os
 import zlib
 from collections.abc import Mapping, Sequence
+from importlib.resources import files
 from typing import Any
 
 import numpy as np
@@ -43,9 +44,13 @@ def write_app(
 ) -> None:
     """Write the page of motions of the ground; too many for a page are an InputError.
 
-    ``form`` has what stands in the form at first by the names of its fields, ``request`` where the motions were
-    recorded, and the building and hazard that the form does not tell. The page says so if motions were ``made`` by
-    formulas.
+    Parameters
+    ----------
+    motions : that the page computes with
+    form : what stands in the form at first, by the names of its fields
+    path : of the page
+    request : where the motions were recorded, and the building and hazard that the form does not tell
+    made : whether motions were made by formulas, which the page says
     """
     page = page_of(motions, form, request, made=made)
     if (size := len(page.encode())) > MOST_BYTES:
@@ -73,7 +78,8 @@ def page_of(
         "made": made,
         "texts": {language: catalogue(language).texts for language in languages()},
         "modules": {
-            name: zipped_text(module_bytes(of)) for name, of in modules.items()
+            **{name: zipped_text(module_bytes(of)) for name, of in modules.items()},
+            "core": zipped_text((files(__package__) / "core.wasm").read_bytes()),
         },
         "samples": about,
         "packed": base64_text(packed),

@@ -4,7 +4,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import Enum
 
-from rockfrag.assess.core.parts import means_once_known
+import numpy as np
+
+from rockfrag.assess.core.estimates import BINS, fill_turned
+from rockfrag.assess.core.prediction import Prediction
 from rockfrag.base.arrays import Floats
 
 LEAST_CHANCE = (
@@ -59,7 +62,7 @@ class Decision:
 def decide(
     mean: float,
     values: Floats,
-    sources: Mapping[str, Floats],
+    prediction: Prediction,
     left: Mapping[str, float],
     accepted: float,
 ) -> Decision:
@@ -69,7 +72,7 @@ def decide(
     ----------
     mean : of the probability, or rate, over what is not known
     values : the same in each draw, shape (draws,)
-    sources : standard normal values of each source in the draws, shape (draws,) each
+    prediction : whose draws they are
     left : what measuring a source leaves of its standard deviation [-], the cheapest measurement first
     accepted : probability, or rate, that is accepted
 
@@ -77,19 +80,16 @@ def decide(
     -------
     The decision; to measure is named where that would turn it round with a chance of ``LEAST_CHANCE``.
     """
-    tried = tuple(
-        _tried(name, means_once_known(values, sources[name], rest), mean, accepted)
-        for name, rest in left.items()
-        if name in sources
-    )
+    tried = []
+    for source, rest in left.items():
+        if source not in prediction.sources:
+            continue
+        found, means = np.zeros(2), np.zeros(BINS)
+        bins = prediction.draws.bins[prediction.sources.index(source)]
+        fill_turned(values, bins, float(rest), mean, accepted, means, found)
+        tried.append(Measurement(source, *found.tolist()))
     first = next((each for each in tried if each.chance >= LEAST_CHANCE), None)
     otherwise = Action.SECURE if mean > accepted else Action.LEAVE
     if first is None:
-        return Decision(otherwise, otherwise, measurements=tried)
-    return Decision(Action.MEASURE, otherwise, first.source, first.chance, tried)
-
-
-def _tried(source: str, means: Floats, mean: float, accepted: float) -> Measurement:
-    turned = (means > accepted) != (mean > accepted)
-    there = float(means[turned].mean()) if turned.any() else mean
-    return Measurement(source, float(turned.mean()), there)
+        return Decision(otherwise, otherwise, measurements=tuple(tried))
+    return Decision(Action.MEASURE, otherwise, first.source, first.chance, tuple(tried))

@@ -10,9 +10,11 @@ from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy import special, stats
 from scipy.stats import qmc
 
+from rockfrag.assess.core.estimates import BINS
 from rockfrag.base.arrays import Floats
 
 BLOCKS = 256  # Sets of weights
@@ -28,10 +30,12 @@ class Draws(NamedTuple):
     ----------
     sources : standard normal values, shape (draws, sources)
     weights : of each earthquake and of the next one, shape (blocks, earthquakes + 1); each row sums to 1
+    bins : of equally many draws by each rising source, from 0, shape (sources, draws)
     """
 
     sources: Floats
     weights: Floats
+    bins: NDArray[np.uint8]
 
 
 @lru_cache(maxsize=64)
@@ -52,10 +56,10 @@ def make_draws(sources: int, earthquakes: int, members: int = MEMBERS) -> Draws:
     weights /= weights.sum(axis=1, keepdims=True)
     # points that follow each other fill space by themselves: each set of weights has some of these
     normals = special.ndtri(_points(max(sources, 1), BLOCKS * members, 0))
-    found = Draws(normals[:, :sources], weights)
-    for values in found:
-        values.flags.writeable = False
-    return found
+    normals = np.ascontiguousarray(normals[:, :sources])
+    order = np.argsort(np.argsort(normals, axis=0, kind="stable"), axis=0)
+    bins = (order * BINS // len(normals)).T.astype(np.uint8)
+    return Draws(normals, weights, np.ascontiguousarray(bins))
 
 
 def _concentration(earthquakes: int) -> float:

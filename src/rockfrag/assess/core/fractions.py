@@ -1,4 +1,4 @@
-"""Fractions of motions that topple and rock an object, under each draw of what is not known.
+"""Fractions of motions that topple and rock an object, under each draw of what is not known; compiled.
 
 Errors are of two kinds. Those of statics (width, centre of gravity, floor) move the level u at which a motion
 lifts the object and all after it by s of ln level; those after uplift (model, velocity of the site) move by m what
@@ -15,8 +15,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from rockfrag.assess.core.compiled import entry_kernel, kernel
+from rockfrag.assess.core.ordering import sort
 from rockfrag.base.arrays import Flags, Floats
-from rockfrag.runtime.machine_code import cached_njit
+from rockfrag.base.exponentials import log, normal_cdf
 
 CLASSES = 48  # Most levels of uplift that are told apart
 ROUNDING = 1e-9  # Of logarithms of levels
@@ -30,13 +32,13 @@ class Counts(NamedTuple):
     ----------
     log_levels : rising, shape (levels,)
     toppled : motions that topple it and lift it at one of the first c levels of uplift, shape (earthquakes,
-        levels, classes + 1)
+        levels, ``CLASSES`` + 1)
     shaken : motions that can be scaled to the level, shape (earthquakes, levels)
-    lifted : motions that lift it at one of the first c levels of uplift, shape (earthquakes, classes + 1)
+    lifted : motions that lift it at one of the first c levels of uplift, shape (earthquakes, ``CLASSES`` + 1)
     motions : of each earthquake, shape (earthquakes,)
-    log_uplifts : levels of uplift, rising, shape (classes,)
-    topples_next, lifts_next : mean and standard deviation of ln level at which the next earthquake topples it,
-        and of that at which it lifts it, shape (2,) each
+    log_uplifts : levels of uplift, rising, infinite where there are fewer, shape (``CLASSES``,)
+    next_one : mean and standard deviation of ln level at which the next earthquake topples it, and of that at
+        which it lifts it, shape (4,)
     """
 
     log_levels: Floats
@@ -45,8 +47,7 @@ class Counts(NamedTuple):
     lifted: Floats
     motions: Floats
     log_uplifts: Floats
-    topples_next: Floats
-    lifts_next: Floats
+    next_one: Floats
 
 
 def count_motions(
@@ -69,80 +70,153 @@ def count_motions(
     -------
     The counts. Where no motion counts at a level, those of the nearest level below.
     """
-    log_levels = np.log(levels)
-    count, known = int(earthquakes.max()) + 1, allowed.any(axis=0)
-    nearest = np.maximum.accumulate(np.where(known, np.arange(levels.size), 0))
-    with np.errstate(divide="ignore"):
-        log_uplifts = np.log(uplifts)
-    classes = _classes(log_uplifts)
-    place = classes.searchsorted(log_uplifts, side="right")
-    toppled = np.zeros((count, levels.size, classes.size + 1))
-    shaken = np.zeros((count, levels.size))
-    lifted = np.zeros((count, classes.size + 1))
-    np.add.at(shaken, earthquakes, allowed[:, nearest].astype(np.float64))
-    lifts = np.isfinite(log_uplifts)
-    np.add.at(lifted, (earthquakes[lifts], place[lifts]), 1.0)
-    fell = (overturned & allowed)[:, nearest] & lifts[:, np.newaxis]
-    motion, level = np.nonzero(fell)
-    np.add.at(toppled, (earthquakes[motion], level, place[motion]), 1.0)
-    fell_at = _first_levels(log_levels, overturned & allowed, allowed)
-    topples_next = _middle_and_spread(fell_at, log_levels[-1], LEAST_SPREAD)
-    return Counts(
-        log_levels,
-        toppled.cumsum(axis=2),
-        shaken,
-        lifted.cumsum(axis=1),
-        np.bincount(earthquakes, minlength=count).astype(np.float64),
-        classes,
-        topples_next,
-        _middle_and_spread(log_uplifts[lifts], log_levels[-1], 0.0),
+    count = int(earthquakes.max()) + 1
+    found = Counts(
+        log_levels=np.zeros(levels.size),
+        toppled=np.zeros((count, levels.size, CLASSES + 1)),
+        shaken=np.zeros((count, levels.size)),
+        lifted=np.zeros((count, CLASSES + 1)),
+        motions=np.zeros(count),
+        log_uplifts=np.zeros(CLASSES),
+        next_one=np.zeros(4),
     )
+    fell, counts = np.ascontiguousarray(overturned), np.ascontiguousarray(allowed)
+    numbers = np.asarray(earthquakes, dtype=np.int64)
+    work = np.zeros((3, len(uplifts)))
+    fill_counts(levels, fell, counts, uplifts, numbers, work, *found)
+    return found
 
 
-def _classes(log_uplifts: Floats) -> Floats:
-    """Levels of uplift that are told apart: all, or of groups of equally many motions the least."""
-    known = np.unique(log_uplifts[np.isfinite(log_uplifts)])
-    if known.size <= CLASSES:
-        return known
-    return known[np.linspace(0, known.size, CLASSES, endpoint=False).astype(np.intp)]
+@entry_kernel
+def fill_counts(
+    levels, overturned, allowed, uplifts, earthquakes, work, log_levels, toppled,
+    shaken, lifted, motions, log_uplifts, next_one,
+):  # fmt: skip
+    """Fill the arrays of :class:`Counts`, which are zeros; ``work`` has the shape (3, motions)."""
+    for k in range(levels.size):
+        log_levels[k] = log(levels[k])
+    finite = _sorted_logs(uplifts, work[0])
+    _choose_classes(work[0], finite, log_uplifts)
+    _middle_and_spread(work[0], finite, log_levels[-1], 0.0, next_one[2:])
+    fell = 0
+    for m in range(uplifts.size):
+        quake = earthquakes[m]
+        motions[quake] += 1.0
+        lifts_at = _class_of(uplifts[m], log_uplifts)
+        work[2, m] = lifts_at
+        if lifts_at >= 0:
+            lifted[quake, lifts_at] += 1.0
+        first = _first_level(overturned[m], allowed[m])
+        if first >= 0:
+            work[1, fell] = log_levels[first]
+            fell += 1
+    _middle_and_spread(work[1], fell, log_levels[-1], LEAST_SPREAD, next_one[:2])
+    nearest = 0
+    for k in range(levels.size):
+        if _any_allowed(allowed, k):
+            nearest = k
+        for m in range(uplifts.size):
+            if not allowed[m, nearest]:
+                continue
+            quake = earthquakes[m]
+            shaken[quake, k] += 1.0
+            if overturned[m, nearest] and work[2, m] >= 0.0:
+                toppled[quake, k, int(work[2, m])] += 1.0
+    for quake in range(motions.size):
+        _add_up(lifted[quake])
+        for k in range(levels.size):
+            _add_up(toppled[quake, k])
 
 
-def _first_levels(log_levels: Floats, fell: Flags, allowed: Flags) -> Floats:
-    """Ln level at which each motion topples it; where none does, the highest one at which it counts."""
-    last = log_levels.size - 1 - allowed[:, ::-1].argmax(axis=1)
-    place = np.where(fell.any(axis=1), fell.argmax(axis=1), last)
-    return np.asarray(log_levels[place[allowed.any(axis=1)]])
+@kernel
+def _sorted_logs(levels, logs):
+    """Sort the logarithms of finite levels to the front, and return their count."""
+    count = 0
+    for m in range(levels.size):
+        if levels[m] < math.inf:
+            logs[count] = log(levels[m])
+            count += 1
+    sort(logs[:count])
+    return count
 
 
-def _middle_and_spread(logs: Floats, otherwise: float, least: float) -> Floats:
+@kernel
+def _choose_classes(ordered, count, classes):
+    """Take all levels of uplift that differ, or of groups of equally many motions the least."""
+    known = 0
+    for i in range(count):
+        if i == 0 or ordered[i] > ordered[i - 1]:
+            known += 1
+    for place in range(classes.size):
+        classes[place] = math.inf
+    seen, place = 0, 0
+    for i in range(count):
+        if i > 0 and not ordered[i] > ordered[i - 1]:
+            continue
+        wanted = place if known <= classes.size else place * known // classes.size
+        if seen == wanted and place < classes.size:
+            classes[place] = ordered[i]
+            place += 1
+        seen += 1
+
+
+@kernel
+def _class_of(uplift, classes):
+    """How many levels of uplift do not exceed one; -1 where it is infinite."""
+    if not uplift < math.inf:
+        return -1
+    own, place = log(uplift), 0
+    while place < classes.size and classes[place] <= own:
+        place += 1
+    return place
+
+
+@kernel
+def _first_level(overturned, allowed):
+    """First level at which a motion topples the object, else the last one at which it counts, or -1."""
+    last = -1
+    for k in range(allowed.size):
+        if allowed[k]:
+            if overturned[k]:
+                return k
+            last = k
+    return last
+
+
+@kernel
+def _any_allowed(allowed, level):
+    for m in range(allowed.shape[0]):  # noqa: SIM110 (a kernel has no generators)
+        if allowed[m, level]:
+            return True
+    return False
+
+
+@kernel
+def _add_up(row):
+    for i in range(1, row.size):
+        row[i] += row[i - 1]
+
+
+@kernel
+def _middle_and_spread(logs, count, otherwise, least, found):
     """Mean and standard deviation of logarithms, at least ``least``; ``otherwise`` where there are none."""
-    if not logs.size:
-        return np.array([otherwise, max(least, LEAST_SPREAD)])
-    return np.array([logs.mean(), max(float(logs.std()), least)])
+    if count == 0:
+        found[0], found[1] = otherwise, max(least, LEAST_SPREAD)
+        return
+    total, squares = 0.0, 0.0
+    for i in range(count):
+        total += logs[i]
+    middle = total / count
+    for i in range(count):
+        squares += (logs[i] - middle) * (logs[i] - middle)
+    found[0], found[1] = middle, max(math.sqrt(squares / count), least)
 
 
-@cached_njit()
-def _part(value: float, middle_and_spread: Floats) -> float:
-    """Normal distribution function; a step where there is no spread."""
-    above = value - middle_and_spread[0]
-    if middle_and_spread[1] <= 0.0:
-        return 1.0 if above >= -ROUNDING else 0.0
-    return 0.5 * math.erfc(-above / middle_and_spread[1] / math.sqrt(2.0))
+# ---- under each draw
 
 
-@cached_njit()
-def _weighted(counts: Counts, weights: Floats, level: int, lifted: int) -> float:
-    """Fraction of the weighted motions at a level that topple the object and lift it at some of the levels."""
-    fell, total = 0.0, 0.0
-    for e in range(counts.shaken.shape[0]):
-        total += weights[e] * counts.shaken[e, level]
-        fell += weights[e] * counts.toppled[e, level, lifted]
-    return fell / total if total > 0.0 else 0.0
-
-
-@cached_njit()
 def draw_fractions(
-    counts: Counts, weights: Floats, lifts: Floats, topples: Floats
+    counts: Counts, weights: Floats, normals: Floats, shifts: Floats
 ) -> tuple[Floats, Floats]:
     """Fractions of motions under each draw.
 
@@ -150,47 +224,146 @@ def draw_fractions(
     ----------
     counts : what motions do to the object
     weights : of each earthquake and the next one, shape (blocks, earthquakes + 1)
-    lifts, topples : error of ln level of uplift and of toppling in each draw, blocks one after the other, shape
-        (draws,)
+    normals : standard normal values of the sources, shape (draws, sources), blocks one after the other
+    shifts : what each source moves of ln level of uplift and of toppling, shape (sources, 2)
 
     Returns
     -------
     Fraction that topples and that rocks the object at each level, shape (draws, levels); never more topple than
     rock.
     """
-    x = counts.log_levels
-    size, draws = x.size, lifts.size
-    members = draws // weights.shape[0]
-    quakes = counts.shaken.shape[0]
-    toppling = np.zeros((draws, size))
-    rocking = np.zeros((draws, size))
+    toppling = np.zeros((len(normals), counts.log_levels.size))
+    rocking = np.zeros_like(toppling)
+    given = (np.ascontiguousarray(each) for each in (weights, normals, shifts))
+    fill_fractions(*counts, *given, toppling, rocking)
+    return toppling, rocking
+
+
+@entry_kernel
+def fill_fractions(
+    log_levels, toppled, shaken, lifted, motions, log_uplifts, next_one, weights,
+    normals, shifts, toppling, rocking,
+):  # fmt: skip
+    """Fill both tables of :func:`draw_fractions`."""
+    x, size = log_levels, log_levels.size
+    draws, blocks = toppling.shape[0], weights.shape[0]
+    quakes = motions.size
     for d in range(draws):
-        w = weights[d // members]
-        own = w[quakes]
-        at, lifted, total = 0, 0, 0.0
+        w = weights[d * blocks // draws]
+        lifts, topples = 0.0, 0.0
+        for j in range(shifts.shape[0]):
+            lifts += normals[d, j] * shifts[j, 0]
+            topples += normals[d, j] * shifts[j, 1]
+        own, at, place, total = w[quakes], 0, 0, 0.0
         for e in range(quakes):
-            total += w[e] * counts.motions[e]
+            total += w[e] * motions[e]
         for k in range(size):
-            y, v = x[k] - lifts[d], x[k] - topples[d]
-            while lifted < counts.log_uplifts.size and (
-                counts.log_uplifts[lifted] <= y + ROUNDING
-            ):
-                lifted += 1
+            y, v = x[k] - lifts, x[k] - topples
+            while place < log_uplifts.size and log_uplifts[place] <= y + ROUNDING:
+                place += 1
             while at < size - 2 and x[at + 1] <= v:
                 at += 1
             along = 0.0
             if size > 1:
                 along = min(max((v - x[at]) / (x[at + 1] - x[at]), 0.0), 1.0)
-            fell = 0.0
+            fell, rocks = 0.0, 0.0
             if along < 1.0:
-                fell += (1.0 - along) * _weighted(counts, w, at, lifted)
+                fell += (1.0 - along) * _weighted(w, toppled, shaken, at, place)
             if along > 0.0:
-                fell += along * _weighted(counts, w, at + 1, lifted)
-            rocks = 0.0
+                fell += along * _weighted(w, toppled, shaken, at + 1, place)
             for e in range(quakes):
-                rocks += w[e] * counts.lifted[e, lifted]
-            lifts_next = _part(y, counts.lifts_next)
-            falls_next = min(_part(v, counts.topples_next), lifts_next)
+                rocks += w[e] * lifted[e, place]
+            lifts_next = _part(y, next_one[2], next_one[3])
+            falls_next = min(_part(v, next_one[0], next_one[1]), lifts_next)
             rocking[d, k] = (1.0 - own) * rocks / total + own * lifts_next
-            toppling[d, k] = min((1.0 - own) * fell + own * falls_next, rocking[d, k])
-    return toppling, rocking
+            falls = (1.0 - own) * fell + own * falls_next
+            toppling[d, k] = min(falls, rocking[d, k])
+
+
+@kernel
+def _part(value, middle, spread):
+    """Normal distribution function; a step where there is no spread."""
+    if spread <= 0.0:
+        return 1.0 if value - middle >= -ROUNDING else 0.0
+    return normal_cdf((value - middle) / spread)
+
+
+@kernel
+def _weighted(weights, toppled, shaken, level, place):
+    """Fraction of the weighted motions at a level that topple the object and lift it at some of the levels."""
+    fell, total = 0.0, 0.0
+    for e in range(shaken.shape[0]):
+        total += weights[e] * shaken[e, level]
+        fell += weights[e] * toppled[e, level, place]
+    return fell / total if total > 0.0 else 0.0
+
+
+# ---- as counted
+
+
+@entry_kernel
+def fill_uplifts(levels, rocked, overturned, allowed, lifting, uplifts):
+    """Level at which each motion lifts the object: by statics, or the first at which it moves; else infinite.
+
+    What rocks was lifted, whatever rounding says. ``lifting`` and ``uplifts`` have the shape (motions,).
+    """
+    for m in range(uplifts.size):
+        uplifts[m] = lifting[m]
+        for k in range(levels.size):
+            if allowed[m, k] and (rocked[m, k] or overturned[m, k]):
+                uplifts[m] = min(levels[k], lifting[m])
+                break
+
+
+@entry_kernel
+def fill_counted(happened, allowed, weights, fractions):
+    """Fraction of the weighted motions to which something happened at each level, shape (levels,).
+
+    A motion that cannot be scaled so far is left out of a level; where none can, the fraction of the nearest
+    level below is kept, and nothing happens below the lowest level.
+    """
+    last = 0.0
+    for k in range(fractions.size):
+        some, total = 0.0, 0.0
+        for m in range(weights.size):
+            if allowed[m, k]:
+                total += weights[m]
+                if happened[m, k]:
+                    some += weights[m]
+        if total > 0.0:
+            last = some / total
+        fractions[k] = last
+
+
+LEAST_SPAN = 0.05
+"""Span of the fractions of motions over all levels below which they say nothing of shifts [-]."""
+
+
+@entry_kernel
+def fill_shift(levels, lower, upper, lower_uplifts, upper_uplifts, found):
+    """What a property moves at its standard deviation, by fractions and uplifts with it on both sides.
+
+    Levels of uplift move by the mean over the motions; those of toppling by the area between both fractions over
+    ln level, which of a curve that is moved is the move times its height.
+    """
+    found[0] = (_mean_log(upper_uplifts) - _mean_log(lower_uplifts)) / 2
+    found[1] = found[0]
+    most, area = 0.0, 0.0
+    for k in range(levels.size):
+        most = max(most, (lower[k] + upper[k]) / 2)
+        if k > 0:
+            both = lower[k - 1] - upper[k - 1] + lower[k] - upper[k]
+            area += log(levels[k] / levels[k - 1]) * both / 2
+    span = most - (lower[0] + upper[0]) / 2
+    if span >= LEAST_SPAN:
+        found[1] = area / 2 / span
+
+
+@kernel
+def _mean_log(levels):
+    total, count = 0.0, 0
+    for m in range(levels.size):
+        if levels[m] < math.inf:
+            total += log(levels[m])
+            count += 1
+    return total / count if count > 0 else 0.0

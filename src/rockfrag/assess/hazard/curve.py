@@ -17,6 +17,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from rockfrag.assess.core.hazards import fill_level, fill_power_law
 from rockfrag.base.arrays import Floats
 from rockfrag.base.errors import InputError
 from rockfrag.base.short_repr import short_repr
@@ -80,11 +81,9 @@ class HazardCurve:
 
     def level(self, rate: float) -> float:
         """Level that is exceeded with an annual rate [1/year], in the measure's unit."""
-        logs, x = np.log(self.rates), np.log(self.levels)
-        start = int(np.clip(np.searchsorted(-logs, -math.log(rate)) - 1, 0, x.size - 2))
-        return float(
-            np.exp(x[start] + (math.log(rate) - logs[start]) / self._slopes[start])
-        )
+        found = np.zeros(1)
+        fill_level(self.levels, self.rates, float(rate), found)
+        return float(found[0])
 
     @property
     def _slopes(self) -> Floats:
@@ -92,10 +91,19 @@ class HazardCurve:
 
 
 def rate_weights(curve: HazardCurve, levels: Floats) -> Floats:
-    """Weights with which a function linear in ln level is integrated over a hazard curve [1/year], shape (n,).
+    """Weights with which a function linear in ln level is integrated over a hazard curve.
 
-    ∫ P(x) |dν(x)| from the first of n ≥ 2 rising levels on, where ν is a power law between levels and P stays as
-    it is above the last one, is the sum of P at the levels times these weights.
+    ∫ P(x) |dν(x)| from the first level on, where ν is a power law between levels and P stays as it is above the
+    last one, is the sum of P at the levels times these weights.
+
+    Parameters
+    ----------
+    curve : the hazard curve ν [1/year]
+    levels : rising, shape (n,), n ≥ 2
+
+    Returns
+    -------
+    The weights [1/year], shape (n,).
     """
     rate = curve.rate(levels)
     fall = -np.diff(np.log(rate))
@@ -181,9 +189,9 @@ def curve_of_one_level(
     """Continue one level with its mean return period [year] as a power law."""
 
     def curve(k: float, source: str) -> HazardCurve:
-        factors = np.array([0.1, 1.0, 10.0])
-        rates = factors**-k / years
-        return HazardCurve(measure, level * factors, rates, source, is_read=False)
+        levels, rates = np.zeros(3), np.zeros(3)
+        fill_power_law(float(level), float(years), k, levels, rates)
+        return HazardCurve(measure, levels, rates, source, is_read=False)
 
     source = (
         f"{measure.imt} of {level:.3g} {measure.unit} every {years:g} years, continued with the exponent "
@@ -206,11 +214,21 @@ _SA = re.compile(
 
 
 _KNOWN = {measure.openquake: measure for measure in declared()}
-PGA, PGV, SA = (_KNOWN[kind] for kind in ("PGA", "PGV", "SA"))
+PGA, PGV, SA = _KNOWN["PGA"], _KNOWN["PGV"], _KNOWN["SA"]
 
 
 def read_measure(text: str, where: str) -> IntensityMeasure:
-    """Read the name of a measure as hazard models write it: ``PGA``, ``SA(0.3)``, ``SA0P2``, ``PSA-1.0s``."""
+    """Read the name of a measure as hazard models write it.
+
+    Parameters
+    ----------
+    text : ``PGA``, ``SA(0.3)``, ``SA0P2``, ``PSA-1.0s`` or alike
+    where : what messages begin with
+
+    Returns
+    -------
+    The measure.
+    """
     plain = re.sub(r"[\s\-]", "", text).upper()
     if plain in ("PGA", "PGV"):
         return _KNOWN[plain]
@@ -224,8 +242,21 @@ def read_measure(text: str, where: str) -> IntensityMeasure:
     return SA.at(period)
 
 
+SA_1S = read_measure("SA(1)", "SA(1)")
+
+
 def read_level(text: str, measure: IntensityMeasure) -> float:
-    """Read a level with its unit, such as ``0.25 g``; return it in the unit of the measure."""
+    """Read a level with its unit.
+
+    Parameters
+    ----------
+    text : such as ``0.25 g``
+    measure : of which it is a level
+
+    Returns
+    -------
+    The level in the unit of the measure.
+    """
     if measure.openquake == "PGV":
         return quantity(text, "m_s", None) * CENTIMETRES_PER_METRE
     return quantity(text, "m_s2", None) / GRAVITY
@@ -316,6 +347,15 @@ def read_openquake(text: str, path: str) -> Found:
 
     A comment with ``kind``, ``investigation_time`` and ``imt``, a header ``lon,lat,depth,poe-0.0050000,…``
     whose names hold the levels (g; cm/s for PGV), and a row of probabilities of exceedance for each site.
+
+    Parameters
+    ----------
+    text : of the file
+    path : which messages name
+
+    Returns
+    -------
+    The curve and its kind, such as ``mean``.
     """
     try:
         rows = [
@@ -473,10 +513,9 @@ def _of_element(
         f"SA({about.get('saPeriod', '')})" if imt.upper() == "SA" else imt, path
     )
     try:
-        values, fractions, times = (
-            [float(word) for word in words.split()]
-            for words in (levels.text or "", poes[0].text or "", years)
-        )
+        values = [float(word) for word in (levels.text or "").split()]
+        fractions = [float(word) for word in (poes[0].text or "").split()]
+        times = [float(word) for word in years.split()]
     except ValueError as error:
         raise InputError(
             f"{path}: a level or probability is no number ({error})."
@@ -520,8 +559,17 @@ def read_levels(
     """Read a table of levels and rates, as people write it by hand.
 
     Beside the columns ``labels`` it has levels, as ``pga_g``, ``pgv_cm_s`` or ``sa_0_3s_g``, and how often they
-    are exceeded: ``annual_rate``, ``return_period_years`` or such as ``poe_50_years``. Returns the rows, and what
-    makes the curve of some of them, whose messages say where it stands.
+    are exceeded: ``annual_rate``, ``return_period_years`` or such as ``poe_50_years``.
+
+    Parameters
+    ----------
+    path : of the table, which messages name
+    text : of it, where it was read already
+    labels : columns that it has beside
+
+    Returns
+    -------
+    The rows, and what makes the curve of some of them, whose messages say where it stands.
     """
     table = read_table(path, text)
     titles = [_plain(title) for title in table.titles]

@@ -62,9 +62,8 @@ class Box(Standing):
         """The usual ones, and other directions where nobody said how it faces."""
         found = super().variants()
         if self.faces_anywhere:
-            lower, upper = (
-                replace(self, facing_deg=self.facing_deg + by) for by in (-ASIDE, ASIDE)
-            )
+            lower = replace(self, facing_deg=self.facing_deg - ASIDE)
+            upper = replace(self, facing_deg=self.facing_deg + ASIDE)
             found.append(Moved("facing", 0.0, lower, upper))
         return found
 

@@ -26,6 +26,9 @@ from rockfrag.words.findings import Finding, Value
 TOLERANCES = {"width": 0.02, "cg_height": 0.05, "restitution": 0.05, "mass": 0.2}
 """Relative standard deviations of what was measured or assumed, unless stated."""
 
+OF_A_TILT_TEST = 0.01
+"""Relative standard deviation of the width over the height of its centre of gravity that a tilt test gives [-]."""
+
 # Height of a body that is another one than the object, over that of the object
 HIGHER = 1.0 + 1e-9
 
@@ -46,6 +49,8 @@ class Foundation:
     pad_friction: float | None = None
     # Relative standard deviations of width, height of the centre of gravity, restitution and mass
     tolerances: Mapping[str, float] = field(default_factory=dict)
+    # Whether a tilt test says how wide it stands for the height of its centre of gravity
+    tilted: bool = False
     assumed: tuple[Assumption, ...] = ()  # What was not given
     quality_flags: tuple[Value, ...] = ()  # What looks wrong
 
@@ -137,7 +142,10 @@ class Standing(ABC):
         """How each property that is not known exactly is moved by a factor."""
         found: dict[str, Callable[[float], Self]] = {
             "width": lambda factor: self.stretched(width=factor),
-            "cg_height": lambda factor: self.stretched(height=factor),
+            # what a tilt test says goes with the height of the centre of gravity
+            "cg_height": lambda factor: self.stretched(
+                factor if self.under.tilted else 1.0, factor
+            ),
             # of a body in space that of the planar answer
             "restitution": lambda factor: replace(
                 self, livelier=self.livelier * factor
@@ -174,11 +182,8 @@ class Standing(ABC):
     ) -> tuple[float, float]:
         """Ratios of velocities at the right and left pivot, none of which gains energy."""
         e = math.nan if measured is None else measured
-        right, left = (
-            geometry.scaled_restitution(shape, pivot, e, self.livelier)
-            for pivot in (1, -1)
-        )
-        return right, left
+        right = geometry.scaled_restitution(shape, 1, e, self.livelier)
+        return right, geometry.scaled_restitution(shape, -1, e, self.livelier)
 
     @property
     def in_space(self) -> bool:

@@ -1,15 +1,17 @@
 """Sizes of an object and of what it stands on, as they were given, with what was assumed of the rest."""
 
 import math
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
 from rockfrag.assess.assumed import Assumption, assume, tolerances_in
-from rockfrag.assess.standing.contract import TOLERANCES, Foundation
+from rockfrag.assess.standing.contract import OF_A_TILT_TEST, TOLERANCES, Foundation
 from rockfrag.assess.texts import Text
 from rockfrag.base.errors import InputError, errors_of
 from rockfrag.base.plausible import DENSITIES, STONE, check_density, size_warning
+from rockfrag.base.units import GRAVITY, quantity
 from rockfrag.system.blocks import Block, stacked
 from rockfrag.system.system import round_inertia
 from rockfrag.words.findings import (
@@ -54,12 +56,16 @@ def foundation_of(
     The foundation, with what was assumed of it.
     """
     pedestals, assumed = _pedestals(settings)
+    tilted = "tilt_angle_deg" in settings or "tilt_force" in settings
+    if tilted:
+        tolerances = {**tolerances, "width": OF_A_TILT_TEST}
     return Foundation(
         pedestals=pedestals,
         restitution=settings.get("restitution"),
         friction=settings.get("friction"),
         pad_friction=settings.get("pad_friction"),
         tolerances=tolerances_in(settings, tolerances),
+        tilted=tilted,
         assumed=assumed,
     )
 
@@ -159,9 +165,67 @@ def sizes_of(settings: Mapping[str, Any]) -> Sizes:
     inertia = settings.get("inertia_kg_m2", usual)
     offset = float(settings.get("cg_offset_m", 0.0))
     block = Block(width, height, mass, inertia, cg_height=cg_height, cg_offset=offset)
+    block = _as_it_rocks(_as_it_tips(block, settings), settings)
     facing = float(settings.get("facing_deg", 0.0)) + 90.0 * across
-    told = tuple(assumed), tuple(quality_flags)
-    return Sizes(block, plane, depth, facing, *told)
+    return Sizes(block, plane, depth, facing, tuple(assumed), tuple(quality_flags))
+
+
+_FORCE = re.compile(r"\s*(\d+(?:\.\d+)?)\s*(k?N)\s*(?:@|at)\s*(.+)", re.IGNORECASE)
+
+WIDEST_TIPPED = 1.05
+"""Width that a tilt test gives over the measured one, above which both cannot be of one object [-]."""
+
+
+def _as_it_tips(block: Block, settings: Mapping[str, Any]) -> Block:
+    """The block as wide as a tilt test says that it carries.
+
+    On a base tilted by α it tips where tan α = b/h; pulled by a force F at the height z where F z = m g b, with b
+    half of the width and h the height of the centre of gravity.
+    """
+    if "tilt_angle_deg" in settings:
+        key = "tilt_angle"
+        half = block.h * math.tan(math.radians(settings["tilt_angle_deg"]))
+    elif "tilt_force" in settings:
+        key = "tilt_force"
+        half = _moment(settings["tilt_force"]) / (block.mass * GRAVITY)
+    else:
+        return block
+    if 2 * half > WIDEST_TIPPED * block.width:
+        raise InputError(
+            f"key {key}: it would stand on {200 * half:.3g} cm, and its width is {100 * block.width:.3g} cm; "
+            "check both, and the height of the centre of gravity."
+        )
+    return replace(block, width=2 * half, inertia=block.centroidal_inertia)
+
+
+def _moment(given: str) -> float:
+    """Moment of a force at a height, such as 85N@1.1m [N m]."""
+    found = _FORCE.fullmatch(given)
+    if found is None:
+        raise InputError(
+            f"key tilt_force: expected a force at a height such as 85N@1.1m, found {given[:40]!r}."
+        )
+    force = float(found[1]) * (1000.0 if found[2].lower() == "kn" else 1.0)
+    with errors_of("key tilt_force"):
+        height = quantity(found[3], "m", None)
+    if not force * height > 0:
+        raise InputError("key tilt_force: force and height must be above 0.")
+    return force * height
+
+
+def _as_it_rocks(block: Block, settings: Mapping[str, Any]) -> Block:
+    """The block with the inertia of which its free rocking tells: p² = m g R / (I + m R²)."""
+    p = settings.get("frequency_parameter")
+    if p is None:
+        return block
+    arm = math.hypot(block.width / 2, block.h)
+    inertia = block.mass * arm * (GRAVITY / p**2 - arm)
+    if inertia <= 0:
+        raise InputError(
+            f"key frequency_parameter: {p:g} 1/s is more than a body of this size can have, which is "
+            f"{math.sqrt(GRAVITY / arm):.3g}; check the sizes and p."
+        )
+    return replace(block, inertia=inertia)
 
 
 def _pedestals(

@@ -106,12 +106,9 @@ class Scanned(Standing):
         for name in dict.fromkeys((*planar, *bodies)):
             spread_in_space = space.get(name, (0, 0, 0.0))[2]
             low, high, spread = planar.get(name, (0.5, 0.5, spread_in_space))
-            lower, upper = (
-                replace(self, block=self.scan.block(at), scanned=body)
-                for at, body in zip(
-                    (low, high), bodies.get(name, (self.scanned,) * 2), strict=True
-                )
-            )
+            less, more = bodies.get(name, (self.scanned, self.scanned))
+            lower = replace(self, block=self.scan.block(low), scanned=less)
+            upper = replace(self, block=self.scan.block(high), scanned=more)
             found.append(Moved(name, spread, lower, upper))
         return found
 
@@ -143,13 +140,14 @@ class Scanned(Standing):
     def _changed(self, scanned: RigidBody, top: Block) -> RigidBody:
         """The scan in space with what another block differs by from the object's."""
         added = top.centroidal_inertia - self.block.centroidal_inertia
-        factors = (
-            top.width / self.block.width,
-            top.h / self.block.h,
-            top.mass / scanned.mass,
+        stretched = stretched_body(
+            scanned,
+            width=top.width / self.block.width,
+            height=top.h / self.block.h,
+            mass=top.mass / scanned.mass,
         )
         about = checked_tensor(scanned.tensor + np.diag([added, added, 0.0]))
-        return replace(stretched_body(scanned, *factors), inertia=about)
+        return replace(stretched, inertia=about)
 
 
 def stretched_body(

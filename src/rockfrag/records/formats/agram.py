@@ -45,7 +45,7 @@ def _parse(text: TextFile) -> Iterator[Channel]:
         )
         start, component = None, ""
         for match in filter(None, map(_TIME.search, words)):
-            year, day, hour, minute = (int(part) for part in match.groups()[:4])
+            year, day, hour, minute = map(int, match.groups()[:4])
             component = (
                 f"{int(match[6]):03d}" if (match[6] or "").isdigit() else match[6] or ""
             )
@@ -77,7 +77,16 @@ def _section(text: TextFile, line: int, stop: int) -> Channel:
     kind = rate["type"].upper()
     unit, count = units[list(_TYPES).index(kind)], int(size["count"])
     dt = text.interval(1 / float(rate["rate"]) if float(rate["rate"]) else 0.0, line)
-    return section(text, line + 1, stop, count, dt, unit, _WIDTH, _TYPES[kind])
+    return section(
+        text,
+        line + 1,
+        stop,
+        count=count,
+        dt=dt,
+        unit=unit,
+        width=_WIDTH,
+        quantity=_TYPES[kind],
+    )
 
 
 FORMAT = Format("AGRAM", _recognise, _parse)

@@ -173,7 +173,14 @@ def _section(text: TextFile, line: int, stop: int, dt: float) -> form.Channel:
         )
     width = form.field_width(text.line(line).split("ormat", 1)[-1])
     return form.section(
-        text, line, stop, int(match["count"]), dt, unit, width, quantity
+        text,
+        line,
+        stop,
+        count=int(match["count"]),
+        dt=dt,
+        unit=unit,
+        width=width,
+        quantity=quantity,
     )
 
 

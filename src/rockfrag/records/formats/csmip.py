@@ -108,7 +108,14 @@ def _section(text: TextFile, line: int, stop: int) -> form.Channel:
     if stated := _UNIT.search(match["rest"]):
         unit = stated["unit"]
     return form.section(
-        text, line, stop, int(match["count"]), dt, unit, width, quantity
+        text,
+        line,
+        stop,
+        count=int(match["count"]),
+        dt=dt,
+        unit=unit,
+        width=width,
+        quantity=quantity,
     )
 
 

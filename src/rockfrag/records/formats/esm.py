@@ -63,7 +63,8 @@ def _parse(text: TextFile) -> Iterator[Channel]:
         count, dt = int(facts["NDATA"]), float(facts["SAMPLING_INTERVAL_S"])
     except ValueError:
         text.fail("NDATA or SAMPLING_INTERVAL_S is not a number")
-    samples = text.interval(dt, 0), text.numbers(start, count=count)
+    dt = text.interval(dt, 0)
+    samples = text.numbers(start, count=count)
     known = {name: facts.get(key, "") for name, key in _FACTS.items()}
     # the Turkish variant has the name of a place here
     known["location"] = known["location"] if len(known["location"]) <= 2 else ""
@@ -71,7 +72,7 @@ def _parse(text: TextFile) -> Iterator[Channel]:
     known["magnitude"] = facts.get("MAGNITUDE_W") or facts.get("MAGNITUDE_L", "")
     known["earthquake"] = " ".join(facts[key] for key in _EARTHQUAKE if facts.get(key))
     start_time = time_of(facts.get(_SAMPLE_TIME, ""))
-    channel = Channel(count, *samples, unit, start_time=start_time).saying(known)
+    channel = Channel(count, dt, samples, unit, start_time=start_time).saying(known)
     peak = StatedPeak(facts.get("PGA_CM/S^2", ""), "cm/s2")
     yield with_checked_peak(channel, peak, text.name, text.cut_short)
 

@@ -34,7 +34,8 @@ def _component(text: TextFile, first: int) -> Generator[Channel, None, int]:
     words = text.lines(first, first + _TEXT_LINES)
     at_integers = first + _TEXT_LINES
     at_reals = at_integers + _INTEGER_LINES
-    start = line = at_reals + _REAL_LINES
+    start = at_reals + _REAL_LINES
+    line = start
     if start >= len(text):
         text.fail("the header has 26 lines; the file is cut short", len(text) - 1)
     whole = text.integers(at_integers, at_reals, _WIDTH, 40)

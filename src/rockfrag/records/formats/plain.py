@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockfrag.base.errors import InputError
-from rockfrag.base.plausible import LONGEST_STEP, SHORTEST_STEP
+from rockfrag.base.plausible import SHORTEST_STEP
 from rockfrag.records.formats import HEADED
 from rockfrag.records.parsing import number_fields
 from rockfrag.records.parsing.column_titles import (
@@ -26,10 +26,12 @@ from rockfrag.records.parsing.column_titles import (
     column_titles,
     components_of,
 )
+from rockfrag.records.parsing.directions import is_direction
 from rockfrag.records.parsing.encodings import encoding_of
 from rockfrag.records.parsing.format import Channel, Format, text_writer
+from rockfrag.records.parsing.peak_in_words import with_checked_peaks
 from rockfrag.records.parsing.plain_rows import PlainRows, plain_rows, with_plain_rows
-from rockfrag.records.parsing.quantities import quantity_in_name
+from rockfrag.records.parsing.quantities import quantity_in_name, to_si
 from rockfrag.records.parsing.stated_facts import StatedFacts, stated_facts
 from rockfrag.records.parsing.text_file import TextFile, is_remark, last_row
 from rockfrag.records.parsing.time_column import TimeColumn
@@ -48,12 +50,16 @@ _EVENLY = 0.2
 
 # ratio of steps along columns to steps along rows below which columns are channels
 _SMOOTHER = 0.6
+# the same the other way round, from which more than three columns are one series row after row
+_SMOOTHER_IN_ROWS = 0.9
 # part of its peak by which the printed magnitude of components may be off the computed one
 _MOST_COMPONENTS = 8  # columns among which components of a magnitude are looked for
 _LIKE_MAGNITUDE = 1e-3
 _SHOWN = 60
 # significant digits of an interval that stands above samples of more digits
 _LONGEST_ROUND = 3
+# [s] that a number without words can be as an interval; a larger one may be a scale
+_LONGEST_BARE_STEP = 0.1
 
 
 @dataclass
@@ -166,9 +172,23 @@ def _parse(text: TextFile) -> list[Channel]:
     text, rows = with_plain_rows(_decoded(text))
     layout = _layout(text, rows)
     _refuse_by_name(layout)
-    columns = layout.table.columns
+    channels = _read_channels(layout)
+    peaks = layout.facts.peaks
+    if all(channel.unit for channel in channels):
+        return with_checked_peaks(channels, peaks, text.name)
+    # the unit is the user's; of several channels nobody knows whose peak one is
+    if len(peaks) == len(channels):
+        stated = tuple((peak.number, peak.unit) for peak in peaks)
+        return [replace(channel, peaks=stated) for channel in channels]
+    return channels
+
+
+def _read_channels(layout: _Layout) -> list[Channel]:
+    """Return the one series of a file, or its columns, as the samples and what is said of them tell."""
+    text, columns = layout.text, layout.table.columns
     stop = last_row(text, layout.line)
     values, widths = text.rows(layout.line, stop, layout.table.decimal_comma)
+    _check_no_counts(layout, values)
     # only the last row of a series is shorter
     text.check_widths(widths if columns == 1 else widths[:-1], columns, layout.line)
     if columns == 1:
@@ -184,14 +204,26 @@ def _parse(text: TextFile) -> list[Channel]:
     return [_series(layout, values)]
 
 
+def _check_no_counts(layout: _Layout, values: NDArray[np.float64]) -> None:
+    """Refuse whole numbers below words that say what one digit of a recorder is worth."""
+    if layout.facts.digit and not (values % 1).any():
+        layout.text.fail(
+            f"{layout.facts.digit.strip()[:_SHOWN]!r} is a factor that is not applied here: the numbers are "
+            "counts; apply it and take the line out"
+        )
+
+
 def _refuse_by_name(layout: _Layout) -> None:
     """Refuse a file whose name says velocity or displacement, and in which nothing says acceleration."""
     said = [layout.facts.quantity, *(column.quantity for column in layout.titles)]
-    named = quantity_in_name(PurePath(layout.text.name).name)
-    if named and "acceleration" not in said:
+    path = PurePath(layout.text.name)
+    named = quantity_in_name(path.name)
+    whose = "its name" if named else "the name of its folder"
+    quantity = named or quantity_in_name(path.parent.name)
+    if quantity not in ("", "acceleration") and "acceleration" not in said:
         layout.text.refuse(
-            f"its name says {named}, and nothing in it says acceleration; if it holds that, write the word above "
-            "the numbers"
+            f"{whose} says {quantity}, and nothing in it says acceleration; if it holds that, write the word "
+            "above the numbers"
         )
 
 
@@ -314,7 +346,7 @@ def _count_and_step(words: list[str]) -> tuple[int | None, float | None]:
     dt = next(
         (number_fields.number_in(word) for word in words if not _is_whole(word)), None
     )
-    if dt is not None and not SHORTEST_STEP <= dt <= LONGEST_STEP:
+    if dt is not None and not SHORTEST_STEP <= dt <= _LONGEST_BARE_STEP:
         return None, None
     if len(words) == 2 and (npts is None or dt is None):
         return None, None
@@ -354,7 +386,7 @@ def _are_channels(
     down = float(np.median(np.abs(np.diff(rows, axis=0))))
     along = float(np.median(np.abs(np.diff(rows, axis=1))))
     side_by_side = down < _SMOOTHER * along
-    in_rows = along < _SMOOTHER * down or columns > 3
+    in_rows = along < (_SMOOTHER if columns <= 3 else _SMOOTHER_IN_ROWS) * down
     if (side_by_side and columns > 3) or not (side_by_side or in_rows):
         layout.text.fail(
             f"{columns} numbers a row may be {columns} columns side by side or one series row after row; "
@@ -412,6 +444,7 @@ def _without_leading(
     odd = [_notation(word) not in notations for word in first]
     # numbers of as many digits as each needs have every notation
     unlike = odd[0] and len(notations) == 1
+    is_round = _is_interval(words[0], unlike, body)
     count, step = _count_and_step(first) if len(first) == 2 else (None, None)
     skip = 0
     if count == values.size - 2 and step is not None:
@@ -424,7 +457,13 @@ def _without_leading(
         step = float(values[1]) if skip == 2 else None
         if values[0] == 1 and skip == 1:
             _fail_no_sample(layout, words[0])
-    elif _is_interval(words[0], unlike, body) and (unlike or values[0] == dt):
+    elif len(notations) == 1 and not unlike and values[0] == dt and is_round:
+        text.fail(
+            f"{words[0]!r} above the samples may be the interval or a sample; take it out if it is the "
+            f"interval, else write 'dt = {dt:g} s' above it and leave dt= out",
+            layout.line,
+        )
+    elif is_round and (unlike or values[0] == dt):
         skip, count, step = 1, None, float(values[0])
         if len(first) == 2 and whole[1] and odd[1] and values[1] > 1:
             skip, count = 2, int(values[1])
@@ -454,7 +493,7 @@ def _fail_no_sample(layout: _Layout, word: str) -> NoReturn:
 def _is_interval(word: str, odd: bool, body: list[str]) -> bool:
     """Tell whether a number is an interval that recorders have, rounder than the samples below it."""
     value = number_fields.number_in(word)
-    if _is_whole(word) or not SHORTEST_STEP <= value <= LONGEST_STEP:
+    if _is_whole(word) or not SHORTEST_STEP <= value <= _LONGEST_BARE_STEP:
         return False
     digits = [_digits(sample) for sample in body]
     is_round = _digits(word) <= _LONGEST_ROUND
@@ -533,16 +572,23 @@ def _without_magnitude(
 ) -> list[int]:
     """Return the columns that are components: the length of their vector, never negative, is none."""
     positive = [i for i in chosen if table[:, i].min() >= 0 and table[:, i].max() > 0]
-    named = [i for i in positive if columns[i].is_named_magnitude]
+    sizes = [i for i in chosen if columns[i].is_named_magnitude]
+    named = [i for i in sizes if i in positive]
+    directed = [i for i in chosen if is_direction(columns[i].component)]
+    if len(directed) > 2 and not named:
+        # beside three components a length from which gravity has been taken
+        named = [i for i in sizes if i not in directed]
     if named == chosen:
         layout.text.refuse(
             f"column {columns[named[0]].title!r} is the magnitude of components, which has no direction",
             layout.line - 1,
         )
-    if not named:
+    if positive and not named:
         every = [i for i, c in enumerate(columns) if c.quantity in ("", "acceleration")]
+        with np.errstate(over="ignore"):
+            in_si = table * [to_si(column.unit or "m/s2") for column in columns]
         off = {
-            i: _off_magnitude(table, i, [k for k in every if k != i]) for i in positive
+            i: _off_magnitude(in_si, i, [k for k in every if k != i]) for i in positive
         }
         like = [i for i in positive if off[i] < _LIKE_MAGNITUDE]
         named = [i for i in like if off[i] == min(off.values())][-1:]
@@ -616,6 +662,9 @@ def _interval_without_times(
 ) -> float:
     """Return the interval [s] of columns without titled times; a column that may be times must fit it."""
     text, dt = layout.text, layout.interval
+    for i, column in enumerate(columns):
+        if column.quantity == "index":
+            _check_counted(layout, column.title, table[:, i])
     title, first = columns[0].title, table[:, 0]
     steps = np.diff(first)
     rises = columns[0].quantity == "" and steps.size > 1 and steps.min() > 0
@@ -638,6 +687,23 @@ def _interval_without_times(
             layout.line - 1,
         )
     return dt
+
+
+def _check_counted(layout: _Layout, title: str, numbers: NDArray[np.float64]) -> None:
+    """Check that numbers of samples go on evenly: where one is missing a sample is; counters may begin anew."""
+    steps = np.diff(numbers)
+    usual = float(np.median(steps)) if steps.size else 0.0
+    if usual <= 0:
+        return  # the number of a record or of a test
+    begins_anew = (numbers[1:] == numbers.min()) & (numbers[:-1] == numbers.max())
+    odd = np.flatnonzero((steps != usual) & ~begins_anew)
+    if odd.size:
+        first = int(odd[0])
+        layout.text.fail(
+            f"column {title!r} goes from {numbers[first]:.10g} to {numbers[first + 1]:.10g} here, elsewhere by "
+            f"{usual:.6g}: samples are missing, a gap, or there twice; dt= does not close it",
+            layout.line + first + 1,
+        )
 
 
 FORMAT = Format("PLAINTEXT", _recognise, _parse, encoding="latin-1")

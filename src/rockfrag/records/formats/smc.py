@@ -127,14 +127,14 @@ def _width(text: TextFile, start: int, whole: list[int]) -> int:
 
 
 def _start(whole: list[int]) -> UTCDateTime | None:
-    year, day, hour, minute, *rest = whole[_YEAR : _YEAR + 6]
+    year, day, hour, minute, second, millisecond = whole[_YEAR : _YEAR + 6]
     missing = whole[_MISSING]
     if missing in (year, day, hour, minute) or year <= 0:
         return None
-    second, millisecond = (0 if value == missing else value for value in rest)
-    return time_at(
-        second + millisecond / 1000, year=year, julday=day, hour=hour, minute=minute
-    )
+    seconds = 0.0 if second == missing else float(second)
+    if millisecond != missing:
+        seconds += millisecond / 1000
+    return time_at(seconds, year=year, julday=day, hour=hour, minute=minute)
 
 
 def _component(whole: list[int], words: str) -> str:

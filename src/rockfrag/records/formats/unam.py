@@ -97,8 +97,9 @@ def _start(facts: dict[str, str]) -> UTCDateTime | None:
 
     Where the time of the earthquake is not known it is taken to be of that day.
     """
-    clocks = (facts["hora de la primera muestra"], facts["hora epicentro"])
-    start, origin = (time_of(f"{facts['fecha del sismo']} {clock}") for clock in clocks)
+    day = facts["fecha del sismo"]
+    start = time_of(f"{day} {facts['hora de la primera muestra']}")
+    origin = time_of(f"{day} {facts['hora epicentro']}")
     if start is None or origin is None:
         return start
     late = start - origin

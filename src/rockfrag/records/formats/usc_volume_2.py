@@ -66,9 +66,9 @@ def _in_words(text: TextFile, first: int, stop: int) -> form.Channel:
     """Return the acceleration of a file whose words alone state count and interval."""
     start = text.find(_WHOLE_NUMBERS, first, stop)
     words = text.lines(first, start if start >= 0 else first + _MAX_HEADER)
-    count, step, peak = (
-        form.first_match(p, words) for p in (_COUNT_IN_WORDS, _STEP_IN_WORDS, _PEAK)
-    )
+    count = form.first_match(_COUNT_IN_WORDS, words)
+    step = form.first_match(_STEP_IN_WORDS, words)
+    peak = form.first_match(_PEAK, words)
     if start < 0 or count is None or step is None or peak is None:
         text.fail(
             "no number of samples, interval or peak is stated below; the file is cut short",
@@ -114,7 +114,9 @@ def _section(text: TextFile, line: int, stop: int, words: list[str]) -> form.Cha
     unit = _unit(match["unit"] or (peak["unit"] if peak else ""))
     quantity = form.QUANTITIES[match["quantity"].upper()]
     count, dt = int(match["count"]), float(match["dt"])
-    return form.section(text, line, stop, count, dt, unit, _WIDTH, quantity)
+    return form.section(
+        text, line, stop, count=count, dt=dt, unit=unit, width=_WIDTH, quantity=quantity
+    )
 
 
 FORMAT = form.Format("USC2", _recognise, _parse)

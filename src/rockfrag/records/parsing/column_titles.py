@@ -12,7 +12,13 @@ from rockfrag.records.parsing.quantities import (
     looks_like_unit,
     read_unit,
 )
-from rockfrag.records.parsing.vocabulary import folded, spaced, without, words_for
+from rockfrag.records.parsing.vocabulary import (
+    OF_SPECTRA,
+    folded,
+    spaced,
+    without,
+    words_for,
+)
 
 _LETTERS = {"acceleration": "a", "velocity": "v", "displacement": "[du]"}
 """Single letters for quantities, where they stand alone."""
@@ -20,9 +26,7 @@ _LETTERS = {"acceleration": "a", "velocity": "v", "displacement": "[du]"}
 _INDEX = re.compile(
     r"^(?:no|nr|index|idx|i|samples?|points?|steps?|rows?|counter|line)\W*(?:no|nr|number|index|id)?\W*$|^#$"
 )
-_SPECTRUM = re.compile(
-    r"spectr|spettr|spektr|спектр|谱|スヘクトル|\b(?:psa|psv|sa|sv|sd|rotd\d*)\b"
-)
+_SPECTRAL = re.compile(r"\b(?:psa|psv|sa|sv|sd|rotd\d*)\b")
 _LETTERS_OF_UNITS = frozenset("NVACKJW%")
 _NO_QUANTITY = frozenset({"-", ""})
 _AMBIGUOUS = frozenset("vud")
@@ -32,6 +36,10 @@ _WORD = re.compile(r"[^\W_]")
 _BRACKETED = re.compile(r"[\[({](?P<inside>(?:[^\[\](){}]|\([^()]*\))*)[\])}]")
 _UNKNOWN_UNIT = re.compile(r"[^\W\d_]{1,10}[/^²][^\W_^]{0,6}[\^²]?\d?")
 _LIKE_UNIT = re.compile(r"[^\W\d_]\s*[/^²]")
+_BEFORE_UNITS = re.compile(
+    r"(?i)in|of|units?|unit|values?|en|de|unidades|einheiten|unites|fraction|raw|corr?(?:ected)?|filt(?:ered)?|acc\w*"
+)
+_LIKE_ACCELERATION = re.compile(r"/\s*s\w*\s*(?:\^|\*\*)?\s*(?:2|/\s*s)")
 _SEPARATOR = re.compile(r"[\s_.,:/-]+")
 # words that stand in sentences above columns and never in titles
 _SENTENCE = re.compile(
@@ -96,13 +104,13 @@ def column_titles(table: NumberTable, row: str) -> tuple[list[Column], int]:
     above = [words for words in every if _WORD.search(words)]
     if not above:
         return [], 0
-    separators = (
+    separators: list[str] = (
         []
         if table.decimal_comma
         else [mark for mark in (";", ",", "\t") if mark in row]
     )
     for words, units, taken in _places(above, separators, table.columns):
-        for cells in _splits(words, separators, table.columns):
+        for cells in _splits(words, separators, table.columns, row):
             columns = _columns(cells, units)
             if _are_titles(columns, _by_blanks(words, cells)):
                 first = [i for i, line in enumerate(every) if _WORD.search(line)][
@@ -159,7 +167,10 @@ def _are_titles(columns: list[Column], by_blanks: bool) -> bool:
     if len(columns) == 1:
         # above one column any words may stand; with a unit they are its title
         stated = bool(columns[0].unit or columns[0].problem)
-        doubtful = columns[0].problem and _DOUBTFUL.search(columns[0].title)
+        title = columns[0].title
+        doubtful = columns[0].problem and (
+            _DOUBTFUL.search(title) or _LIKE_ACCELERATION.search(folded(title))
+        )
         return bool(doubtful) or (stated and known == ["acceleration"])
     bare_units = [bool(read_unit(column.title).quantity) for column in columns]
     if not by_blanks:
@@ -176,8 +187,13 @@ def _are_titles(columns: list[Column], by_blanks: bool) -> bool:
     )
 
 
-def _splits(words: str, separators: list[str], width: int) -> Iterator[list[str]]:
-    """Yield the ways in which words make as many titles as a row has columns."""
+def _splits(
+    words: str, separators: list[str], width: int, row: str = ""
+) -> Iterator[list[str]]:
+    """Yield the ways in which words make as many titles as a row has columns.
+
+    A last title whose column is empty in the ``row`` below is none of them.
+    """
     if words.startswith("#"):
         # the title of a column of numbers, or else the mark of a comment
         marks = [r"\s{2,}"] if words[1:2] == " " else separators or ["\t"]
@@ -196,6 +212,8 @@ def _splits(words: str, separators: list[str], width: int) -> Iterator[list[str]
         ]
         # tables that programs write number their rows in a column without a title
         cells[0] = cells[0] or "#"
+        if row.rstrip(" ").endswith(tuple(separators)) and len(cells) == width + 1:
+            cells = cells[:-1]
         if len(cells) == width and all(cells):
             yield cells
 
@@ -237,7 +255,12 @@ def _with_doubtful_letters(columns: list[Column]) -> list[Column]:
         replace(c, problem=f"({match[1]}) may be a unit or a direction")
         if match
         and not c.unit
-        and (named == 1 or every.count(match[1]) > 1 or " " in c.component)
+        and (
+            named == 1
+            or every.count(match[1]) > 1
+            or " " in c.component
+            or c.quantity == "velocity"
+        )
         else c
         for c, match in zip(columns, letters, strict=True)
     ]
@@ -284,6 +307,7 @@ def _column(title: str, unit_below: str, first: bool) -> Column:
 
 def _taken_apart(title: str, unit_below: str) -> _Title:
     """Return the words and the unit of a title, and what in it is neither."""
+    title = re.sub(r"\^\{([+-]?\d)\}", r"^\1", title)
     words, unit, problem = title, Unit(""), ""
     for bracketed in _BRACKETED.finditer(title):
         inside = bracketed["inside"].strip()
@@ -291,6 +315,9 @@ def _taken_apart(title: str, unit_below: str) -> _Title:
         is_name = is_direction(inside) and known.quantity in ("", "time")
         if inside and not (is_name and inside == inside.upper()) and known.quantity:
             unit = known
+            words = words.replace(bracketed[0], " ")
+        elif not is_name and _is_part_of_unit(inside):
+            problem = f"{inside!r} is no unit known here"
             words = words.replace(bracketed[0], " ")
         elif is_name or not inside or not looks_like_unit(inside):
             words = words.replace(bracketed[0], f" {inside} ")
@@ -306,6 +333,14 @@ def _taken_apart(title: str, unit_below: str) -> _Title:
     if has_factor(words):
         problem = f"{title!r} has a factor that may be meant either way"
     return _Title(words, unit, problem)
+
+
+def _is_part_of_unit(inside: str) -> bool:
+    """Tell whether words in brackets end with a unit that the words before it change, as in ``sixths of g``."""
+    before, unit = _unit_behind(inside)
+    parts = [part for part in _SEPARATOR.split(before) if part]
+    known = (_BEFORE_UNITS.fullmatch(part) or is_direction(part) for part in parts)
+    return unit.quantity == "acceleration" and not all(known)
 
 
 def _unit_behind(words: str) -> tuple[str, Unit]:
@@ -336,7 +371,8 @@ def _unknown_unit_behind(words: str) -> str:
 
 def _quantity(title: str, bare: str, unit: Unit, first: bool) -> str:
     """Return the quantity that the unit of a title names, else its words, else its direction."""
-    spectrum = words_for("spectrum").match(bare) or _SPECTRUM.search(bare)
+    of_spectra = OF_SPECTRA.search(bare) or _SPECTRAL.search(bare)
+    spectrum = words_for("spectrum").match(bare) or of_spectra
     if bare and spectrum:
         return "spectrum"
     by_unit = "" if unit.quantity == "time" else unit.quantity

@@ -9,7 +9,7 @@ _NAMED |= {"S": 180.0, "SN": 180.0, "W": 270.0}
 _WORDS = {"north": 0.0, "east": 90.0, "south": 180.0, "west": 270.0}
 # the third of 1, 2, 3 is the vertical by the rules of the FDSN, whatever the others are turned by
 _SEED = re.compile(r"^(?!CH\d)[A-Z][HNLG](?P<axis>[NEZ123])\d{0,2}$")
-_VERTICAL = re.compile(r"^(?:V|Z|U|UD|DU|A_?Z|G_?F?Z|[+-][VZU]|[VZU][+-])\d?$", re.I)
+_VERTICAL = re.compile(r"^(?:V|Z|U|D|UD|DU|A_?Z|G_?F?Z|[+-][VZU]|[VZU][+-])\d?$", re.I)
 _AXIS = re.compile(
     r"(?i)^(?:[NSEWUD]-?[NSEWUD]|[NEZUVLTRXYH][+-]?\d?|[+-][NEZUVLTXY]|[ag]F?_?[xyz]|H[12]|FN|FP"
     r"|[xyz][ _-]?axis|axis[ _-]?[xyz]"
@@ -26,7 +26,18 @@ def plain_name(words: str) -> str:
 
 
 def azimuth_of(words: str) -> float | None:
-    """Return the azimuth [degrees from north, clockwise, 0 to 360], or None where none is named."""
+    """Return the azimuth [degrees from north, clockwise, 0 to 360], or None where none is named.
+
+    Parameters
+    ----------
+    words
+        Name of a component: ``090``, ``N35W``, ``EW``, ``HNE``, ``Norte``.
+
+    Returns
+    -------
+    float or None
+        Degrees clockwise from north, 0 to 360.
+    """
     plain = plain_name(words).removesuffix("DEGREES").removesuffix("DEG")
     if re.fullmatch(r"\d{1,3}", plain):
         return float(plain) % 360
@@ -50,7 +61,18 @@ def azimuth_of(words: str) -> float | None:
 
 
 def is_vertical(words: str) -> bool:
-    """Tell whether the name of a component is that of a vertical one."""
+    """Tell whether the name of a component is that of a vertical one.
+
+    Parameters
+    ----------
+    words
+        Name of a component: ``UP``, ``HNZ``, ``comp. V``, ``垂直``.
+
+    Returns
+    -------
+    bool
+        False of names that say nothing.
+    """
     plain = spaced(words).strip()
     seed = _SEED.match(plain_name(plain))
     if seed is not None:

@@ -78,6 +78,8 @@ class Channel:
     counts: bool = False
     # more facts for the metadata: ``station_name``, ``earthquake``, ``title``, …; numbers may be words
     details: Mapping[str, Any] = field(default_factory=dict)
+    # peaks that words state, number and unit, where the unit of the samples is the user's
+    peaks: tuple[tuple[str, str], ...] = ()
     # what was done to the samples, for the provenance
     steps: tuple[Mapping[str, Any], ...] = ()
 
@@ -359,11 +361,12 @@ def section(
     text: text_file.TextFile,
     line: int,
     stop: int,
+    *,
     count: int,
     dt: float,
     unit: str,
     width: int | None,
-    quantity: str = "acceleration",
+    quantity: str,
 ) -> Channel:
     """Return the ``count`` values in the lines below ``line``, which states them, up to ``stop``."""
     dt = text.interval(dt, line)

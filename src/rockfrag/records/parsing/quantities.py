@@ -41,6 +41,8 @@ _METRE = r"m|met(?:er|re)s?|metros?|metri|metr[oy]?|м|метр\w*|米|メート
 _LENGTHS = {"in": 0.0254, "inch": 0.0254, "inches": 0.0254, "ins": 0.0254}
 _LENGTHS |= {"ft": 0.3048, "feet": 0.3048, "foot": 0.3048, "pie": 0.3048}
 _LENGTHS |= {"pies": 0.3048, "cms": 0.01, "mms": 0.001}
+_LENGTHS |= {"zoll": 0.0254, "pouce": 0.0254, "pouces": 0.0254}
+_LENGTHS |= {"pulgada": 0.0254, "pulgadas": 0.0254, "pollici": 0.0254}
 _LENGTHS |= {"厘米": 0.01, "毫米": 0.001, "公分": 0.01}
 _SECOND = (
     r"s|secs?|seconds?|seg|segs|segundos?|sek|sekunden?|secondes?|secondi|sn|saniye"
@@ -60,7 +62,7 @@ _OTHER_UNITS = {
     "voltage": "mv uv μv volt volts kv",
     "current": "ma amp amps ampere",
     "resistance": "ohm ohms kohm mohm ω kω",
-    "frequency": "hz khz mhz",
+    "frequency": "hz khz mhz гц кгц",
     "angle": "deg ° rad mrad rad/s deg/s °/s rad/s2 deg/s2 dps",
     "strain": "με ue microstrain mm/m m/m",
     "mass": "kg lb lbs",
@@ -69,6 +71,7 @@ _OTHER_UNITS = {
     "level": "db dba",
     "raw counts": "counts count cnt cnts lsb digit digits bits adc",
     "magnetic field": "ut μt nt tesla gauss",
+    "a number without a unit": "normalized normalised normiert normalizado au a.u arb arb.units",
 }
 _OTHER_QUANTITIES = {
     unit: name for name, units in _OTHER_UNITS.items() for unit in units.split()
@@ -85,6 +88,7 @@ _REAL = r"\d+(?:[.,]\d*)?(?:e[+-]?\d+)?|[.,]\d+(?:e[+-]?\d+)?"
 _TEN = r"10\s*(?:\^|\*\*)?\s*[({]?\s*(?P<power>[+-]\d{1,2})\s*[)}]?"
 _POWER = r"10\s*(?:\^|\*\*)\s*[({]?\s*\+?(?P<positive>\d{1,2})\s*[)}]?"
 _NUMBER = rf"(?:{_TEN}|{_POWER}|1\s*/\s*(?P<part>\d+)|(?P<plain>{_REAL}))"
+_TEN_TIMES_TOO_MUCH = re.compile(r"10\.?0*e")
 _FACTOR_BEFORE = re.compile(
     rf"^(?P<sign>[x×*]?)\s*{_NUMBER}(?![\w.])\s*[x×*·]?\s*(?P<unit>[^\d\s].*)$"
 )
@@ -127,6 +131,9 @@ def read_unit(words: str) -> Unit:
     if _is_fraction_of_g(plain):
         return _named(_is_fraction_of_g(plain))
     before = _FACTOR_BEFORE.match(plain)
+    if before and _TEN_TIMES_TOO_MUCH.match(before["plain"] or ""):
+        # as many who write 10E-3 mean 10⁻³ as mean 0.01
+        return Unit(plain, "acceleration", factor=plain)
     if before and (found := _without_factor(before["unit"])):
         value = _value(before)
         if found.quantity == "acceleration" and 0 < value < 1:
@@ -152,6 +159,7 @@ def _without_factor(plain: str) -> Unit | None:
 def _plain(words: str) -> str:
     """Return words in the place of a unit without brackets, quotation marks and the signs of LaTeX."""
     plain = folded(words)
+    plain = re.sub(r"^(0?[.,]\d+)(?=[^\W\d_e])", r"\1 ", plain)
     plain = re.sub(r"\\(?:mathrm|text|rm|,|;|cdot|frac)?|\$|[{}]", " ", plain)
     plain = re.sub(r"\s+", " ", plain).strip(" \t\"'.,;:[]")
     while plain.startswith("(") and plain.endswith(")") and plain.count("(") == 1:
@@ -319,6 +327,7 @@ _LONGEST_UNIT = 3
 _REMARKS = frozenset(
     {"raw", "abs", "rel", "top", "mid", "bot", "cor", "eq", "th", "lin"}
 )
+_SQUARE_SECONDS = re.compile(r"(?<![^\W\d_])[^\W\d_]{1,3}s2$")  # fps2
 _SIGNS_OF_UNITS = re.compile(r"[/^%*·²]|\bper\b")
 _FACTOR = re.compile(
     r"(?:×|(?<!\*)\*(?!\*))\s*\d|\d\s*(?:×|\*(?!\*))|\bx\s*(?:10|\d*[.,]\d|\d+e)"
@@ -330,13 +339,15 @@ def has_factor(words: str) -> bool:
     """Tell whether words have a factor in them that numbers may still have to be multiplied by."""
     plain = folded(words)
     named = words_for("factor").search(plain) and re.search(r"\d", plain)
-    return bool(_FACTOR.search(plain) or named)
+    return bool(_FACTOR.search(plain) or named or words_for("part").search(plain))
 
 
 def looks_like_unit(words: str) -> bool:
     """Tell a unit that is not known, such as ``kyd/s2``, from a remark, such as ``corrected`` or ``A1``."""
     plain = folded(words)
     if _SIGNS_OF_UNITS.search(plain) or has_factor(plain):
+        return True
+    if _SQUARE_SECONDS.search(plain):
         return True
     longest = max(map(len, re.findall(r"[^\W\d_]+", plain)), default=0)
     numbered = re.search(r"\d", plain) is not None
@@ -364,7 +375,18 @@ def to_si(unit: str) -> float:
 
 
 def asked_unit(unit: str) -> str:
-    """Check a unit that the user named and return its canonical spelling."""
+    """Check a unit that the user named and return its canonical spelling.
+
+    Parameters
+    ----------
+    unit
+        In any usual writing.
+
+    Returns
+    -------
+    str
+        The one spelling used here, such as ``cm/s2`` for ``gal``.
+    """
     if quantity_of(unit) != "acceleration":
         raise InputError(
             f"unit {unit!r} is not a unit of acceleration known here; give one of {', '.join(ASKED_UNITS)}."
@@ -372,18 +394,31 @@ def asked_unit(unit: str) -> str:
     return canonical_unit(unit)
 
 
-_NAMED_QUANTITIES = {
-    "velocity": re.compile(r"(?i)(?:^|[-_. ])vel(?:o|oc\w*)?(?=[-_. ]|$)|\.vt2\b"),
-    "displacement": re.compile(
-        r"(?i)(?:^|[-_. ])(?:disp|displ|displacement)(?=[-_. ]|$)|\.(?:dis|dsp|dt2)\b"
-    ),
+_ENDINGS = {
+    "acceleration": re.compile(r"\.acc\b"),
+    "velocity": re.compile(r"\.(?:vel|vt2)\b"),
+    "displacement": re.compile(r"\.(?:dis|dsp|dt2)\b"),
 }
-_NAMED_ACCELERATION = re.compile(r"(?i)(?:^|[-_. ])acc(?:el\w*)?(?=[-_. ]|$)")
+_NO_WORDS_OF_NAMES = frozenset({"dis", "weg", "speed"})
+"""Words that in the name of a file may be a part of a place's name."""
 
 
 def quantity_in_name(name: str) -> str:
-    """Return the quantity other than acceleration that the name of a file says it holds, empty if it says none."""
-    if _NAMED_ACCELERATION.search(name):
-        return ""
-    found = (key for key, words in _NAMED_QUANTITIES.items() if words.search(name))
-    return next(found, "")
+    """Return the quantity that the name of a file or of a folder says it holds.
+
+    Parameters
+    ----------
+    name
+        Without the folders before it.
+
+    Returns
+    -------
+    str
+        ``acceleration``, ``velocity`` or ``displacement``; empty if the name says nothing.
+    """
+    plain = folded(name)
+    parts = set(re.split(r"[-_. ]+", plain)) - _NO_WORDS_OF_NAMES
+    for quantity, ending in _ENDINGS.items():
+        if any(map(words_for(quantity).fullmatch, parts)) or ending.search(plain):
+            return quantity
+    return ""

@@ -12,21 +12,45 @@ from rockfrag.base.plausible import LONGEST_STEP, SHORTEST_STEP
 from rockfrag.records.parsing.directions import is_direction
 from rockfrag.records.parsing.format import stated
 from rockfrag.records.parsing.number_fields import number_in
+from rockfrag.records.parsing.peak_in_words import peaks_in_words
 from rockfrag.records.parsing.quantities import (
     Unit,
     has_factor,
     looks_like_unit,
     read_unit,
 )
-from rockfrag.records.parsing.vocabulary import alternatives, folded
+from rockfrag.records.parsing.stated_peak import StatedPeak
+from rockfrag.records.parsing.vocabulary import (
+    OF_SPECTRA,
+    alternatives,
+    folded,
+    words_for,
+)
 
 _VALUE = r"(?:\d+[.,]\d+|\d+\.?|[.,]\d+)(?:[ed][+-]?\d+)?"
 _IS = (
     r"(?:[\s_]+(?P<behind>m?s|m?sec|[uμ]s|k?hz)(?![^\W\d_]))?[\s\"']*(?:\((?P<note>[^)]*)\)|\[(?P<note2>[^\]]*)\])?"
     r"[\s\"',]*(?P<sign>[=:]|\bis\b|\bes\b|\best\b)?[\s\"',]*"
 )
+# one part of a second, as in 1/200; no time of day and no other ratio
+_FRACTION = rf"(?>(?:1\s*/\s*)?{_VALUE})(?!\s*[:/]\s*\d)"
 _UNIT_BEHIND_VALUE = r"\s*(?P<unit>°|[^\W\d_]+(?:\s*/\s*s\w*|\s+p[eo]r\s+s\w*)?)?"
 _NUMBER = re.compile(_VALUE)
+_MULTIPLIED = re.compile(
+    r"\b(?:multipl(?!ex)|moltiplic|multiplik|divi[ds]|dividier|умнож|раздел)\w*"
+)
+# data x 1e-6, 1 unit = 0.001 g
+_TIMES_A_NUMBER = re.compile(
+    rf"\b(?:data|values?|numbers|valores|datos|werte|daten|dati|valori|valeurs|données)\s*[x×*]\s*{_VALUE}"
+    rf"|\b(?:1|one)\s+unit\w*\s*(?:[=:]|is|corresponds to)\s*(?!1\b(?![.,]\d)){_VALUE}"
+)
+# the size of a digit of a recorder: a factor where the samples are whole numbers
+_SIZE_OF_DIGIT = re.compile(
+    rf"\b(?:lsb|digits?|counts?|cnt|bits?)\s*[=:]\s*{_VALUE}"
+    rf"|{_VALUE}\s*\(?[^\W\d_][^\s\d]*\)?\s*(?:/|\bper\b)\s*(?:lsb|digit|count|cnt|bit)\b"
+)
+_LONGEST_IMPERATIVE = 80
+_LONGEST_TITLE = 4  # words, without units
 _LONE_FACTOR = re.compile(r"\W*[x×*]\s*(?:10|0?[.,]\d|\d+e|1\d*)[\d\s^.,+-]*\W*")
 _STEP_BEFORE = re.compile(
     rf"(?P<value>{_VALUE})\s*(?:s|sec\w*)\.?\s+(?:time\s+)?(?:intervals?|steps?|spacing)\b"
@@ -35,6 +59,12 @@ _ENGLISH_COUNT = (
     r"\b(?:no\.?|number|num\.?|nr\.?|total)\s*(?:of\s+)?(?:acc\w*\s+)?"
     r"(?:data\s+|time\s+)?(?:points?|pts|samples?|data|values?|steps?)"
 )
+# words that with a sign and at the end of a statement are a count, where the number is none of a place
+_BARE_COUNT = (
+    r"\bcounts?|(?:\b(?:data|record)\s+)?\blength|(?<![\w.])n|длина(?:\s+записи)?"
+)
+_LARGEST_ANGLE = 360
+_LEAST_FREQUENCY = 50.0  # [Hz] that the word frequency alone states
 _UNSURE_STEP = r"delta|interval(?:l?o)?s?|passo|шаг|步长|步長"
 # for a key that no count of a day or of a place has, and that a message may therefore call impossible
 _OF_SAMPLING = re.compile(
@@ -45,9 +75,7 @@ _SHOWN = 60
 _SHORT_WORDS = re.compile(r"(?!\W*[^\W\d_]+-\d)(?=.*[^\W\d_]).{1,14}")
 _PER_SECOND = re.compile(r"[^\W\d_]+\s*/\s*s[ec]*(?:\^?2|/s)$")
 _IMPERATIVE = re.compile("multipl|divide|divid")
-_QUANTITY_LETTERS = {"acc": "acceleration", "vel": "velocity", "dis": "displacement"}
 _QUANTITY = r"\b(?P<quantity>acc|vel|dis(?=p))(?:[a-z]*\.?)"
-_NAMED_QUANTITY = re.compile(_QUANTITY)
 _IN_UNIT = re.compile(r"(?:\bin\s+|[(\[{]\s*)(?P<rest>[^)\]}]+)")
 _ONE_VALUE = re.compile(
     r"\b(?:pga|pgv|pgd|peak|max\w*|largest|min\w*|full\s*scale|filter|pico|picco|sensitiv\w*)\b"
@@ -79,6 +107,9 @@ class StatedFacts:
     components: tuple[str, ...] = ()
     # a factor that the samples are still to be multiplied by, with its words
     factor: str = ""
+    # what one digit of a recorder is worth, with its words
+    digit: str = ""
+    peaks: tuple[StatedPeak, ...] = ()
     # ``earthquake`` and ``station``
     details: dict[str, str] = field(default_factory=dict)
     # two statements that exclude each other, one that cannot be, or a unit that is not known, in words
@@ -89,7 +120,7 @@ class StatedFacts:
 def _patterns() -> dict[str, re.Pattern[str]]:
     """Return the patterns that are made of the words of all languages."""
     samples = alternatives("samples")
-    is_value = rf"{_IS}(?P<value>{_VALUE}){_UNIT_BEHIND_VALUE}"
+    is_value = rf"{_IS}(?P<value>{_FRACTION}){_UNIT_BEHIND_VALUE}"
     return {
         "step": re.compile(
             rf"(?P<key>{alternatives('interval')}|(?<![\w.])δt|\bintervals?\s+of)"
@@ -100,14 +131,18 @@ def _patterns() -> dict[str, re.Pattern[str]]:
         ),
         "rate": re.compile(rf"(?P<key>{alternatives('rate')}){is_value}"),
         "unsure rate": re.compile(
-            rf"(?P<key>{alternatives('sampling')})(?:\s+at\b)?{is_value}"
+            rf"(?P<key>{alternatives('sampling')})(?:\s+(?:at|every)\b)?{is_value}"
+        ),
+        "frequency": re.compile(
+            rf"\W*(?P<key>{alternatives('frequency')}){is_value}\W*"
         ),
         "rate before": re.compile(
             rf"(?P<value>{_VALUE})\s*(?:sps\b|{samples}\s*(?:/|per|por|al|par|pro)\s*s)"
         ),
         "count": re.compile(
-            rf"(?:{alternatives('count')}|{_ENGLISH_COUNT}|(?P<unsure>\bsamples|\bpoints))"
+            rf"(?:{alternatives('count')}|{_ENGLISH_COUNT}|(?P<unsure>\bsamples|\bpoints)|(?P<bare>{_BARE_COUNT}))"
             rf"{_IS}(?P<count>\d+)(?![\d.,]*\d)(?!\s*(?:hz|s\b|sec|/|per))"
+            rf"(?(bare)\s*(?P<of>{samples})?\s*(?:$|[,;)]))"
         ),
         "counted": re.compile(
             rf"^\s*(?P<count>\d+)\s+(?:data\s+)?{samples}(?!\s*(?:/|per|por))"
@@ -162,6 +197,15 @@ def stated_facts(lines: Sequence[str]) -> StatedFacts:
             (line for line, own in zip(lines, plain, strict=True) if _has_factor(own)),
             "",
         ),
+        digit=next(
+            (
+                line
+                for line, own in zip(lines, plain, strict=True)
+                if _SIZE_OF_DIGIT.search(own)
+            ),
+            "",
+        ),
+        peaks=peaks_in_words(lines),
         details={key: stated(pattern, lines) for key, pattern in _KEYS.items()},
         contradiction=wrong or problem,
     )
@@ -210,6 +254,12 @@ def _close(found: Sequence[float | int | str]) -> bool:
 def _has_factor(line: str) -> bool:
     found = _patterns()["factor"].search(line)
     alone = _LONE_FACTOR.fullmatch(line) is not None
+    numbers = {number_in(word) for word in _NUMBER.findall(line)} - {1.0}
+    in_a_sentence = (
+        _MULTIPLIED.search(line) and numbers and len(line) <= _LONGEST_IMPERATIVE
+    )
+    if in_a_sentence or _TIMES_A_NUMBER.search(line):
+        return True
     return alone or (found is not None and number_in(found["value"]) != 1)
 
 
@@ -222,7 +272,7 @@ def _steps(line: str) -> list[float]:
             stroke = unit.quantity in ("angle", "displacement", "frequency")
             if name == "unsure step" and (not match["sign"] or stroke):
                 continue
-            value = number_in(match["value"])
+            value = _value_in(match)
             if unit.quantity == "frequency":
                 found += _intervals(value, _unit_of(match))
                 continue
@@ -241,16 +291,29 @@ def _steps_of_rates(line: str) -> list[float]:
     found = []
     for name in ("rate", "unsure rate"):
         for match in _patterns()[name].finditer(line):
-            unit, value = _unit_of(match), number_in(match["value"])
+            unit, value = _unit_of(match), _value_in(match)
             seconds = read_unit(unit)
             per_second = re.match(r"k?hz|sps|[^\W\d_]+\s*(?:/|p[eo]r)\s*s", unit)
-            if seconds.quantity == "time" and name == "rate":
+            if seconds.quantity == "time":
                 found.append(float(f"{value * seconds.to_si:.12g}"))
             elif per_second or name == "rate" or unit in ("samples", "pts", "points"):
                 found += _intervals(value, unit)
     for match in _patterns()["rate before"].finditer(line):
         found += _intervals(number_in(match["value"]), "")
+    bare = _patterns()["frequency"].fullmatch(line)
+    # that of a filter, of a machine or of an instrument is another one, and mostly lower
+    if bare and read_unit(_unit_of(bare)).quantity == "frequency":
+        steps = _intervals(_value_in(bare), _unit_of(bare))
+        found += [step for step in steps if step <= 1 / _LEAST_FREQUENCY]
     return [step for step in found if SHORTEST_STEP <= step <= LONGEST_STEP]
+
+
+def _value_in(match: re.Match[str]) -> float:
+    """Return the value of a match, which may be a part of a second such as 1/200."""
+    numbers = [number_in(word) for word in _NUMBER.findall(match["value"])]
+    if len(numbers) == 1:
+        return numbers[0]
+    return 1 / numbers[1] if numbers[1] else 0.0
 
 
 def _unit_of(match: re.Match[str]) -> str:
@@ -272,7 +335,10 @@ def _intervals(rate: float, unit: str) -> list[float]:
 def _counts(line: str) -> list[int]:
     """Return the numbers of samples that a folded line states."""
     found = [
-        m for m in _patterns()["count"].finditer(line) if m["sign"] or not m["unsure"]
+        m
+        for m in _patterns()["count"].finditer(line)
+        if (m["sign"] or m["of"] or not (m["unsure"] or m["bare"]))
+        and (int(m["count"]) > _LARGEST_ANGLE or not m["bare"])
     ]
     counted = _patterns()["counted"].match(line)
     every = (*found, *([counted] if counted else []))
@@ -338,16 +404,39 @@ def _quantity_and_unit(lines: Sequence[str]) -> tuple[str, str, str]:
         quantity, unit, problem = _of_named_quantity(line)
         if quantity or problem:
             return quantity, unit, problem
-    last = [m["quantity"] for line in lines[-1:] if (m := _NAMED_QUANTITY.match(line))]
-    everywhere = any(
-        m["quantity"] == "acc" for x in lines for m in _NAMED_QUANTITY.finditer(x)
-    )
-    return (_QUANTITY_LETTERS[last[0]] if last and not everywhere else ""), "", ""
+    if any(words_for("acceleration").search(line) for line in lines):
+        return "acceleration", "", ""
+    return next(filter(None, map(_other_quantity, lines[::-1])), ""), "", ""
+
+
+def _other_quantity(line: str) -> str:
+    """Return the quantity other than acceleration that a folded line is the title of, or nothing.
+
+    A title has few words, and no value: ``Velocity time history``, ``Kraft [kN]``, ``Скорость, см/с``.
+    """
+    if _ONE_VALUE.search(line) or _VALUE_OF.search(line):
+        return ""
+    if OF_SPECTRA.search(line):
+        return "spectrum"
+    words = re.split(r"[\s_:;,()\[\]]+", line.strip(" _:;,()[].\"'"))
+    units = {read_unit(word).quantity for word in words[1:]} - {"", "time"}
+    has_value = any(map(_NUMBER.match, words))
+    if has_value or len(words) - len(units) > _LONGEST_TITLE or "acceleration" in units:
+        return ""
+    # as in vitesse du sol, and in ground velocity
+    named = words[0] if len(words) - len(units) != 2 else " ".join(words[:2])
+    for quantity in ("velocity", "displacement"):
+        if words_for(quantity).search(named):
+            return quantity
+    other = words_for("other").match(words[0])
+    return other[0] if other and (units or len(words) == 1) else ""
 
 
 def _problem_of_unit(line: str, explicit: re.Match[str], units: list[Unit]) -> str:
     """Return why the unit of a line that has the word unit cannot be used, or nothing."""
     stated_so = explicit["sign"] or explicit["colon"]
+    # a number before a unit is no word of a sentence
+    stated_so = stated_so or re.match(r"\s*[\d.]", explicit["rest"])
     unknown = _unknown_unit(explicit["rest"]) if stated_so and not units else ""
     if explicit["colon"] and not units and _SHORT_WORDS.fullmatch(explicit["rest"]):
         unknown = explicit["rest"].strip()

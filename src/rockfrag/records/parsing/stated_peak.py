@@ -38,13 +38,12 @@ def with_checked_peak(
     that of a file that is ``cut_short`` may stand in the part that is not there. ``name`` is the file's.
     """
     stated, last_place = _number(peak.number)
-    factor, own_factor = TO_SI.get(canonical_unit(peak.unit)), TO_SI.get(channel.unit)
-    samples, unit = channel.samples, peak.unit
-    if not 0 < stated < _NOT_KNOWN or not factor or not own_factor or not samples.size:
+    factor, unit = TO_SI.get(canonical_unit(peak.unit)), peak.unit
+    if not 0 < stated < _NOT_KNOWN or not factor or channel.unit not in TO_SI:
         return channel
-    ratio = factor / own_factor
-    extremes = np.array([samples.min(), samples.max()])
-    held = np.abs(np.array([extremes, extremes - samples.mean()])).max(axis=1) / ratio
+    if not channel.samples.size:
+        return channel
+    held = np.array(peaks_of(channel)) / factor
     nearest = float(held[np.abs(held - stated).argmin()])
     # a peak of few digits is rounded
     off = max(0.0, abs(nearest - stated) - 0.5 * last_place)
@@ -59,6 +58,15 @@ def with_checked_peak(
     said = f"its peak is {nearest:.4g} {unit}, that of its header {stated:g} {unit}"
     step = {"step": "compare with the stated peak", SAID: said}
     return replace(channel, steps=(*channel.steps, step))
+
+
+def peaks_of(channel: Channel) -> tuple[float, float]:
+    """Return the largest size of the samples of a channel as they are and about their mean [m/s²]."""
+    samples = channel.samples
+    extremes = np.array([samples.min(), samples.max()])
+    sizes = np.abs(np.array([extremes, extremes - samples.mean()])).max(axis=1)
+    as_they_are, about_mean = sizes * TO_SI[channel.unit]
+    return float(as_they_are), float(about_mean)
 
 
 def _number(words: str) -> tuple[float, float]:

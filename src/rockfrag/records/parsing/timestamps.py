@@ -53,6 +53,7 @@ def clock_time(
     day: str,
     hour: str,
     minute: str,
+    *,
     second: str,
     zone: str = "UTC",
 ) -> UTCDateTime | None:
@@ -130,7 +131,7 @@ def time_of(words: str) -> UTCDateTime | None:
     if not month.isdigit():
         month = _number_of_month(month)
     second = match["s"] or "0"
-    return clock_time(year, month, day, hour, minute, second) if month else None
+    return clock_time(year, month, day, hour, minute, second=second) if month else None
 
 
 def _number_of_month(name: str) -> str:

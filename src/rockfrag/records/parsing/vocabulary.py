@@ -14,6 +14,8 @@ from importlib import resources
 _LIKE = {"ı": "i", "−": "-", "‐": "-", "‑": "-", "–": "-", "—": "-", "’": "'", "′": "'"}
 _LIKE |= {"⋅": "·", "∙": "·", "•": "·", "・": "·", "⁄": "/", "∕": "/", "✕": "×"}
 _TABLE = str.maketrans(_LIKE)
+OF_SPECTRA = re.compile(r"spe[ck]tr|spettr|спектр|谱|スヘクトル|\bfourier")
+"""How words for spectra are spelled in all languages, to be searched in folded words."""
 # scripts that are written without blanks between the words
 _UNSPACED = re.compile(r"[\u1100-\u11ff\u3040-\u30ff\u3400-\u9fff\uac00-\ud7af]")
 

@@ -14,6 +14,15 @@ def fetch_url(url: str, sha256: str, path: str | os.PathLike[str]) -> None:
     """Put what an address gives at ``path``, if its SHA-256 is the one wanted.
 
     A file that is there is left alone, without network; one with another digest is an error.
+
+    Parameters
+    ----------
+    url
+        Address of one file.
+    sha256
+        Digest that it must have, in hexadecimal digits.
+    path
+        Where the file appears, whole or not at all.
     """
     file = Path(path)
     if not url.startswith(("http://", "https://")):

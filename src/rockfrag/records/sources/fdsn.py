@@ -78,7 +78,20 @@ def parse_request(words: str) -> FdsnRequest:
 
 
 def fetch_fdsn(words: str, records: Path) -> Path:
-    """Put what a request gives into ``records/fdsn/…``, if it is not there, and return the MiniSEED file."""
+    """Put what a request gives into ``records/fdsn/…``, if it is not there, and return the MiniSEED file.
+
+    Parameters
+    ----------
+    words
+        Data centre, channels and times, as a catalogue names them.
+    records
+        Folder of fetched records.
+
+    Returns
+    -------
+    Path
+        Of the MiniSEED file; its StationXML lies beside it.
+    """
     request = parse_request(words)
     digest = hashlib.sha256(" ".join(words.split()).encode()).hexdigest()[:12]
     place = f"{request.codes['network']}.{request.codes['station']}-{digest}"

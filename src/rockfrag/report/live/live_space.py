@@ -10,12 +10,13 @@ from markupsafe import Markup
 
 from rockfrag.base.units import GRAVITY
 from rockfrag.records.motion import GroundMotion
-from rockfrag.report.live import samples_text
+from rockfrag.report.live import live_texts, samples_text
 from rockfrag.report.page import TEMPLATES, json_text, scripts_of, zipped_text
 from rockfrag.system.blocks import Block
 from rockfrag.system.body import Circle, RigidBody
 from rockfrag.system.system import System
 from rockfrag.web import driver_text, module_bytes
+from rockfrag.words.catalogue import Catalogue, catalogue
 
 AMPLITUDES_G = tuple(np.geomspace(0.05, 2.0, 60).tolist())
 """Amplitudes [g] that are tried in the page."""
@@ -36,6 +37,7 @@ def live_in_space(
     bodies: Mapping[str, Standing],
     motions: Sequence[GroundMotion],
     left_out: Sequence[str] = (),
+    texts: Catalogue | None = None,
 ) -> Markup:
     """Element of a page in which bodies in space rock under motions, live; one to a page.
 
@@ -46,6 +48,7 @@ def live_in_space(
     ----------
     bodies, motions : by the names that the page shows, and what shakes them
     left_out : names of bodies that are not shown
+    texts : of the page's language, the first one if None
 
     Returns
     -------
@@ -53,7 +56,10 @@ def live_in_space(
     """
     total = np.cumsum([motion.x.acceleration.size for motion in motions])
     kept = motions[: max(1, int((total <= MOST_SAMPLES).sum()))]
+    say = live_texts(texts or catalogue())
+    missing = say["not_in_space"].format(names=", ".join(left_out)) if left_out else ""
     data = {
+        "texts": say,
         "module": zipped_text(module_bytes("space")),
         "bodies": [_body(name, body) for name, body in bodies.items()],
         "motions": [_motion(motion) for motion in kept],
@@ -61,7 +67,8 @@ def live_in_space(
     }
     return Markup(
         TEMPLATES.get_template("live_space.html.j2").render(
-            left_out=left_out,
+            say=say,
+            left_out=missing,
             pedestal=any(body.pedestal for body in bodies.values()),
             data=json_text(data),
             driver=Markup(driver_text("space")),

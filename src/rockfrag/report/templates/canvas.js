@@ -16,3 +16,8 @@ function rockfragSized(canvas) {
   context.font = "12px system-ui, sans-serif";
   return [context, width, height];
 }
+// what says texts with values in their places
+function rockfragSayer(texts) {
+  "use strict";
+  return (id, values = {}) => texts[id].replace(/\{(\w+)\}/g, (_, place) => values[place]);
+}

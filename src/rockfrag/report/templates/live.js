@@ -4,7 +4,8 @@ const root = document.getElementById("live");
 const find = (name) => root.querySelector("." + name);
 const data = JSON.parse(document.getElementById("live-data").textContent);
 const CHEAP = 60; // amplitudes of a bar that is not of the study's table
-const SIZES = [["width", "Width", "cm"], ["height", "Height", "cm"], ["cgHeight", "Centre of gravity", "cm"], ["mass", "Mass", "kg"]];
+const say = rockfragSayer(data.texts);
+const SIZES = [["width", "width", "cm"], ["height", "height", "cm"], ["cgHeight", "cg_height", "cm"], ["mass", "mass", "kg"]];
 
 function bytesOf(text) {
   const found = atob(text);
@@ -102,13 +103,12 @@ function pose(theta1, theta2) {
 // ---- words
 function contacts(c1, c2) {
   const side = (c) => (c > 0 ? "right" : "left");
-  if (!outline.pedestal) return c2 === 0 ? "at rest" : `rocks on its ${side(c2)} edge`;
-  if (c1 === 0 && c2 === 0) return "at rest";
-  if (c1 === 0) return `the object rocks on its ${side(c2)} edge, the pedestal stands`;
-  if (c2 === 0) return `both rock as one on the pedestal’s ${side(c1)} edge`;
-  return `the object rocks on its ${side(c2)} edge on a pedestal that rocks on its ${side(c1)} edge`;
+  if (c2 === 0 && (!outline.pedestal || c1 === 0)) return say("at_rest");
+  if (!outline.pedestal) return say(`rocks_${side(c2)}`);
+  if (c1 === 0) return say(`object_${side(c2)}`);
+  return say(c2 === 0 ? `whole_${side(c1)}` : `both_${side(c2)}_${side(c1)}`);
 }
-const shown = (value, digits) => value.toFixed(digits).replace(/^-(?=[0.]*$)/, "").replace("-", "−");
+const shown = (value, digits) => value.toFixed(digits).replace(/^-(?=[0.]*$)/, "").replace("-", "−").replace(".", data.texts.decimal);
 
 function outcomeOfTable() {
   if (changed()) return null;
@@ -117,20 +117,17 @@ function outcomeOfTable() {
   if (place >= 0) return row[place] === "1";
   return null;
 }
-const words = (fell) => `<strong class="${fell ? "falls" : "stands"}">${fell ? "overturns" : "stands"}</strong>`;
+const words = (fell) => `<strong class="${fell ? "falls" : "stands"}">${say(fell ? "overturns" : "stands")}</strong>`;
 
 function tell() {
   const fell = response.fallen > 0;
   const table = outcomeOfTable();
-  let text = `Live: ${words(fell)}`;
-  if (fell) text += ` at ${shown(response.fallTime, 2)} s`;
-  text += `, ${peaks.length} impacts. `;
-  if (table !== null) text += table === fell
-    ? `The table of ${data.source}: ${words(table)}. Equal.`
-    : `The table of ${data.source}: ${words(table)}. Not equal: within rounding of the edge between both.`;
-  else text += `${changed() ? "Changed: not" : "This amplitude is not"} in the table of ${data.source}.`;
-  find("outcomes").innerHTML = text; // of numbers and fixed words alone
-  find("peak").textContent = `${shown(chosen.amplitude, 3)} g` + (chosen.amplitude === motion().pga_g ? ", as recorded" : "");
+  const source = say(data.source), known = changed() ? "changed" : "not_in_table";
+  const here = { what: words(fell), impacts: peaks.length, time: fell ? shown(response.fallTime, 2) : "" };
+  const beside = table === null ? say(known, { source }) : say(table === fell ? "table_equal" : "table_differs", { source, what: words(table) });
+  find("outcomes").innerHTML = `${say(fell ? "here_fell" : "here_stood", here)} ${beside}`; // of numbers and fixed words alone
+  const peak = shown(chosen.amplitude, 3);
+  find("peak").textContent = chosen.amplitude === motion().pga_g ? say("as_recorded", { peak }) : `${peak} g`;
 }
 
 // ---- drawing
@@ -196,16 +193,15 @@ function drawScene() {
   context.stroke();
   context.fillText(length === 1 ? "1 m" : `${length * 100} cm`, 12, 34);
   const strike = peaks.some((one) => Math.abs(one - time) < 0.04);
-  if (strike) context.fillText("impact", 12, 54);
+  if (strike) context.fillText(say("impact"), 12, 54);
   find("state").textContent = happening(index);
   find("clock").textContent = `${shown(time, 2)} s`;
   find("time").value = String(duration() ? time / duration() : 0);
 }
 function happening(index) {
   if (response.fallen > 0 && time >= response.fallTime - 1e-9)
-    return response.fallen === 1 ? "The pedestal has fallen, and the object with it." : "It has fallen.";
-  const text = contacts(response.c1[index], response.c2[index]);
-  return text[0].toUpperCase() + text.slice(1) + ".";
+    return say(response.fallen === 1 ? "both_fell" : "fell");
+  return contacts(response.c1[index], response.c2[index]);
 }
 function arrow(context, x, y, length) {
   context.strokeStyle = context.fillStyle = colours.accent;
@@ -267,14 +263,14 @@ function drawHistory() {
   for (let k = 0; k < Math.min(samples.length, response.done); k += step)
     context.lineTo(x(k * motion().dt), base - (samples[k] / motion().pga) * reach);
   context.stroke();
-  context.fillText("ground", 2, base + 4);
+  context.fillText(say("ground"), 2, base + 4);
   context.fillText("0", left, height - 4);
   context.fillText(`${shown(end, 1)} s`, width - 42, height - 4);
   Object.assign(drawnHistory, { width: canvas.width, height: canvas.height });
   if (hasPixels(canvas)) drawnHistory.getContext("2d").drawImage(canvas, 0, 0);
   drawTime();
   canvas.setAttribute("aria-label",
-    `Rotation over ${shown(end, 1)} s with ${peaks.length} impacts; ${response.fallen > 0 ? "it overturns" : "it stays up"}.`);
+    say(response.fallen > 0 ? "history_fell" : "history_stood", { end: shown(end, 1), impacts: peaks.length }));
 }
 function drawTime() {
   if (!response) return;
@@ -317,8 +313,7 @@ function drawBar() {
   context.lineWidth = 1;
   const fell = [...row].filter((one) => one === "1").length;
   find("bar").setAttribute("aria-label", fell
-    ? `${fell} of ${row.length} amplitudes of the table overturn, the least ${shown(data.amplitudes[row.indexOf("1")], 3)} g.`
-    : `None of ${row.length} amplitudes of the table overturns.`);
+    ? say("bar_some", { fell, count: row.length, least: shown(data.amplitudes[row.indexOf("1")], 3) }) : say("bar_none", { count: row.length }));
 }
 // outcomes of changed dimensions over the amplitudes, a few in each idle moment
 let computing = 0;
@@ -360,7 +355,7 @@ function fillSizes() {
         if (!(value > 0)) return;
         resize((sizes) => { sizes[part][key] = value; });
       });
-      label.append(`${part === "pedestal" ? "Pedestal: " + title.toLowerCase() : title} [${unit}]`, input);
+      label.append(`${part === "pedestal" ? say("of_pedestal", { size: say(title).toLowerCase() }) : say(title)} [${unit}]`, input);
       box.append(label);
     }
   }
@@ -399,7 +394,7 @@ function setPeak(peak) {
 }
 function stop() {
   playing = false;
-  find("play").textContent = "Play";
+  find("play").textContent = say("play");
 }
 function frame(now) {
   if (!playing) return;
@@ -422,7 +417,7 @@ function play() {
   find("play").dataset.begun = "1";
   playing = true;
   before = 0;
-  find("play").textContent = "Pause";
+  find("play").textContent = say("pause");
   requestAnimationFrame(frame);
 }
 function move(to) {

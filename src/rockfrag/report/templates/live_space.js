@@ -3,13 +3,14 @@
 const root = document.getElementById("live");
 const find = (name) => root.querySelector("." + name);
 const data = JSON.parse(document.getElementById("live-data").textContent);
-const SIZES = [["width", "Width", "cm"], ["depth", "Depth", "cm"], ["height", "Height", "cm"], ["cgHeight", "Centre of gravity", "cm"], ["mass", "Mass", "kg"]];
+const say = rockfragSayer(data.texts);
+const SIZES = [["width", "width", "cm"], ["depth", "depth", "cm"], ["height", "height", "cm"], ["cgHeight", "cg_height", "cm"], ["mass", "mass", "kg"]];
 const bytesOf = (text) => Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
 const unpacked = async (text) =>
   new Uint8Array(await new Response(new Blob([bytesOf(text)]).stream().pipeThrough(new DecompressionStream("deflate"))).arrayBuffer());
 const numbers = (text) => new Float64Array(bytesOf(text).buffer);
 const motions = data.motions.map((one) => ({ ...one, samples: one.samples.map(numbers) }));
-const shown = (value, digits) => value.toFixed(digits).replace(/^-(?=[0.]*$)/, "").replace("-", "−");
+const shown = (value, digits) => value.toFixed(digits).replace(/^-(?=[0.]*$)/, "").replace("-", "−").replace(".", data.texts.decimal);
 const degrees = (angle) => `${shown((angle * 180) / Math.PI, 1)}°`;
 
 // ---- what is shown: the case, and its response
@@ -41,7 +42,8 @@ function update() {
     find("state").textContent = error.message;
     return;
   }
-  find("peak").textContent = `${shown(chosen.peak, 3)} g${chosen.peak === motion().peak_g ? ", as recorded" : ""}`;
+  const peak = shown(chosen.peak, 3);
+  find("peak").textContent = chosen.peak === motion().peak_g ? say("as_recorded", { peak }) : `${peak} g`;
   time = Math.min(time, duration());
   find("state").textContent = said();
   redraw();
@@ -50,10 +52,10 @@ function said() {
   const { overturned, certainTime, fallDirection, peakTilt, turn, walk } = response;
   if (overturned) {
     const over = (((fallDirection * 180) / Math.PI + 360) % 360).toFixed(0);
-    return `It falls: certain at ${shown(certainTime, 2)} s, towards ${over}° from the first component to the second. The simulation ends there.`;
+    return say("falls_space", { time: shown(certainTime, 2), over });
   }
-  if (!(peakTilt > 0)) return "It stays at rest.";
-  return `It stands: tilted up to ${degrees(peakTilt)}, turned by ${degrees(turn)} and moved by ${shown(100 * Math.hypot(...walk), 1)} cm.`;
+  if (!(peakTilt > 0)) return say("rests_space");
+  return say("stands_space", { tilt: degrees(peakTilt), turn: degrees(turn), walk: shown(100 * Math.hypot(...walk), 1) });
 }
 
 // ---- drawing
@@ -74,7 +76,7 @@ function drawScene() {
     place: [x, y, z], attitude: rest.slice(0, 4), ground, pedestal: given().pedestal, trace,
   }, colours);
   context.fillStyle = colours.soft;
-  context.fillText(`a square of the ground: ${step < 1 ? `${100 * step} cm` : `${step} m`}`, 10, height - 10);
+  context.fillText(say("square", { size: step < 1 ? `${100 * step} cm` : `${step} m` }), 10, height - 10);
   find("clock").textContent = `${shown(time, 2)} s`;
   find("time").value = String(duration() ? time / duration() : 0);
 }
@@ -111,7 +113,7 @@ function drawHistory() {
   context.stroke();
   context.fillStyle = colours.soft;
   context.fillText("tilt", left + 4, 12);
-  context.fillText("axis from above", width - plan - 4, 12);
+  context.fillText(say("axis"), width - plan - 4, 12);
   context.textAlign = "right";
   context.fillText(degrees(most), left - 4, 24);
   context.fillText("0", left - 4, bottom);
@@ -133,8 +135,8 @@ function drawBar() {
   context.strokeRect(x(chosen.peak), 0, 0.1, height - 15);
   context.lineWidth = 1;
   const fell = [...bar].filter((one) => one === "1").length;
-  find("bar").setAttribute("aria-label", fell ? `${fell} of ${bar.length} amplitudes overturn it, the least ${shown(data.amplitudes[bar.indexOf("1")], 3)} g.`
-    : `None of ${bar.length} amplitudes overturns it.`);
+  find("bar").setAttribute("aria-label", fell
+    ? say("bar_some", { fell, count: bar.length, least: shown(data.amplitudes[bar.indexOf("1")], 3) }) : say("bar_none", { count: bar.length }));
 }
 function redraw() { drawScene(); drawHistory(); drawBar(); }
 // outcomes over the amplitudes, a few in each idle moment
@@ -164,7 +166,7 @@ function fillSizes() {
     const label = document.createElement("label"), input = document.createElement("input"), factor = unit === "cm" ? 100 : 1;
     Object.assign(input, { type: "number", step: "any", value: String(+(((chosen.sizes ?? own.sizes)[key]) * factor).toPrecision(6)) });
     input.addEventListener("input", () => { if (Number(input.value) > 0) resize(key, Number(input.value) / factor); });
-    label.append(`${own.round && key === "width" ? "Diameter" : title} [${unit}]`, input);
+    label.append(`${say(own.round && key === "width" ? "diameter" : title)} [${unit}]`, input);
     box.append(label);
   }
 }
@@ -201,7 +203,7 @@ function edge(first) {
 }
 function stop() {
   playing = false;
-  find("play").textContent = "Play";
+  find("play").textContent = say("play");
 }
 function frame(now) {
   if (!playing) return;
@@ -220,7 +222,7 @@ function play() {
   find("play").dataset.begun = "1";
   playing = true;
   before = 0;
-  find("play").textContent = "Pause";
+  find("play").textContent = say("pause");
   requestAnimationFrame(frame);
 }
 async function begin() {
@@ -264,5 +266,5 @@ async function begin() {
   refresh();
   root.dataset.ready = "1";
 }
-begin().catch((error) => { root.querySelector("p").textContent = `The simulation cannot run in this browser: ${error.message}`; });
+begin().catch((error) => { root.querySelector("p").textContent = say("cannot_run", { why: error.message }); });
 })();

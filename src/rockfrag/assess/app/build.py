@@ -1,0 +1,87 @@
+"""Make the module of the core that the page computes with: ``python -m rockfrag.assess.app.build``.
+
+It is built as those of the kernels are (:mod:`rockfrag.web.build`), of the functions that Python calls too.
+"""
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from rockfrag.assess.core import estimates, fractions, hazards, levels, velocity
+from rockfrag.engines.compile.jit import kernel
+from rockfrag.web.build import module_of
+
+PATH = Path(__file__).with_name("core.wasm")
+
+_FLOAT, _WHOLE = 0.0, 0
+_ROW, _TABLE, _CUBE = np.zeros(1), np.zeros((1, 1)), np.zeros((1, 1, 1))
+_NUMBERS, _BIN, _BINS = (
+    np.zeros(1, np.int64),
+    np.zeros(1, np.uint8),
+    np.zeros((1, 1), np.uint8),
+)
+_FLAGS = np.zeros((1, 1), np.bool_)
+_COUNTS = (_ROW, _CUBE, _TABLE, _TABLE, _ROW, _ROW, _ROW)
+
+ENTRIES: dict[Any, tuple[Any, ...]] = {
+    fractions.fill_counts: (_ROW, _FLAGS, _FLAGS, _ROW, _NUMBERS, _TABLE, *_COUNTS),
+    fractions.fill_fractions: (*_COUNTS, *(_TABLE,) * 5),
+    fractions.fill_uplifts: (_ROW, _FLAGS, _FLAGS, _FLAGS, _ROW, _ROW),
+    fractions.fill_counted: (_FLAGS, _FLAGS, _ROW, _ROW),
+    fractions.fill_shift: (_ROW,) * 6,
+    levels.fill_scan: (_TABLE, _ROW, _FLAGS),
+    levels.fill_band: (_TABLE, _ROW, *(_FLAGS,) * 3, np.zeros((1, 1), np.int64)),
+    estimates.fill_place: (_ROW, _FLOAT, _ROW),
+    estimates.fill_sums: (_TABLE, _ROW, _ROW),
+    estimates.fill_crossings: (_TABLE, _ROW, _FLOAT, _ROW),
+    estimates.fill_errors: (_ROW, _TABLE, _ROW),
+    estimates.rate_of: (_FLOAT, _FLOAT),
+    estimates.fill_shown: (_WHOLE, _FLOAT, _ROW, _ROW),
+    estimates.fill_estimate: (
+        *(_WHOLE, _FLOAT, _FLOAT, _FLOAT), *(_ROW,) * 3, _BINS, _WHOLE, _ROW,
+    ),
+    estimates.fill_turned: (_ROW, _BIN, *(_FLOAT,) * 3, _ROW, _ROW),
+    estimates.fill_comparison: (_WHOLE, _ROW, _ROW, _WHOLE, _TABLE, _ROW),
+    hazards.fill_rate_weights: (_ROW, _FLOAT, *(_ROW,) * 3),
+    hazards.fill_level: (_ROW, _ROW, _FLOAT, _ROW),
+    hazards.fill_power_law: (*(_FLOAT,) * 3, _ROW, _ROW),
+    hazards.spread_of_quantiles: (_ROW, _ROW),
+    velocity.fill_weight: (
+        *(_ROW, _FLAGS, _FLAGS, _ROW, _NUMBERS, False), _TABLE, _ROW, _ROW,
+    ),
+    velocity.fill_wanted: (_ROW, _TABLE, _ROW),
+    velocity.spread_of_mean: (_FLOAT, _FLOAT, _TABLE),
+    velocity.shift_by_velocity: (*(_FLOAT,) * 3, _ROW, _FLOAT),
+    velocity.fill_moved: (
+        *(_ROW, *(_FLAGS,) * 3, *(_ROW,) * 3, _FLOAT, False, _ROW),
+        *(np.zeros((1, 1), np.int64), *(_FLAGS,) * 3),
+    ),
+}  # fmt: skip
+"""Functions of the module, with arguments of their types."""
+
+
+def build_core() -> bytes:
+    """Return the bytes of the module."""
+    entries = {
+        entry.__name__: (kernel(entry.py_func), arguments)
+        for entry, arguments in ENTRIES.items()
+    }
+    constants: dict[str, float] = {
+        "FRACTION": estimates.FRACTION,
+        "RATE": estimates.RATE,
+        "LEVEL": estimates.LEVEL,
+        "CLASSES": fractions.CLASSES,
+        "BINS": estimates.BINS,
+        "MOST_LEVELS": velocity.MOST_LEVELS,
+        "MEMORY": velocity.MEMORY,
+        "STATE": velocity.STATE,
+    }
+    # of what a page hands over all stands in arrays
+    records = {"call": np.dtype([("nothing", np.float64)])}
+    return module_of(entries, records, constants, fused=None)
+
+
+if __name__ == "__main__":
+    PATH.write_bytes(build_core())
+    print(f"{PATH}: {PATH.stat().st_size} bytes")

@@ -1,0 +1,40 @@
+"""How functions of the core are compiled: as kernels of engines are, for Python and for the page alike.
+
+Their arithmetic is plain (:mod:`rockfrag.base.exponentials`), so that command and page have the same bits. They
+allocate nothing: what they leave stands in arrays that are handed to them. Machine code is kept until one of
+their sources changes.
+"""
+
+import hashlib
+from collections.abc import Callable
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+from rockfrag.base import exponentials
+from rockfrag.engines.compile.jit import KNOWN, kernel, share_with_kernels
+from rockfrag.runtime.machine_code import cached_njit
+
+__all__ = ["entry_kernel", "kernel"]
+
+share_with_kernels(exponentials)
+
+
+@cache
+def _digest() -> str:
+    """Digest of all sources of the core."""
+    digest = hashlib.sha256()
+    own = sorted(Path(__file__).parent.glob("*.py"))
+    for path in [*own, Path(exponentials.__file__)]:
+        digest.update(path.read_bytes())
+    return digest.hexdigest()
+
+
+_OPTIONS: dict[str, Any] = {"nogil": True, "error_model": "numpy", "_nrt": False}
+if KNOWN:
+    from rockfrag.engines.compile._numba import WholeCompiler
+
+    _OPTIONS["pipeline_class"] = WholeCompiler
+
+entry_kernel: Callable[..., Any] = cached_njit(_digest, **_OPTIONS)
+"""Compile a function of the core that Python and the page call."""

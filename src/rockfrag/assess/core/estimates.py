@@ -1,0 +1,291 @@
+"""From fractions under each draw to a number with its interval, and to parts of its sources; compiled.
+
+Three kinds of numbers are estimated: a fraction of the motions at a level and the rate of toppling, both linear in
+the fractions at the levels, and the level that topples a part of the motions. The interval holds the middle 90 %
+of the draws. Parts are first-order sensitivity indices: the variance of the means over what a source is not, over
+the variance (Sobol' 1993), from the draws that are there (Plischke, Borgonovo and Smith 2013, Eur. J. Oper. Res.
+226: 536).
+"""
+
+import math
+
+import numpy as np
+from scipy import special
+
+from rockfrag.assess.core.compiled import entry_kernel, kernel
+from rockfrag.assess.core.ordering import mean, quantile, sort, variance
+from rockfrag.base.exponentials import exp, expm1, log, log1p
+
+FRACTION, RATE, LEVEL = 0, 1, 2  # Kinds of what is estimated
+INSIDE = 0.90  # Part of the draws that intervals hold
+NONE_BELOW = 1e-3  # Fraction of motions that is none where it is a limit
+
+BINS = 32  # Of equally many draws, by which a source is known
+
+_EDGES = special.ndtri(np.linspace(0, 1, BINS + 1))
+CENTRES = tuple(
+    round(float(centre), 12)
+    for centre in -BINS * np.diff(np.exp(-0.5 * _EDGES**2)) / np.sqrt(2 * np.pi)
+)
+"""Mean of a standard normal source in each bin, in as many digits as all machines agree on."""
+
+_ONE_AWAY = (5, 26)
+"""Bins about one standard deviation to both sides: 16 and 84 % of 32."""
+
+VALUE, LOWER, UPPER, MOTIONS = range(4)
+"""Places in what :func:`fill_estimate` leaves: the number, its limits, and the part of the motions."""
+
+
+@entry_kernel
+def fill_place(levels, level, weights):
+    """Weights of the levels that interpolate at one by the logarithm; the ends are continued level."""
+    at = 0
+    while at < levels.size - 2 and levels[at + 1] <= level:
+        at += 1
+    for k in range(levels.size):
+        weights[k] = 0.0
+    along = log(level / levels[at]) / log(levels[at + 1] / levels[at])
+    along = min(max(along, 0.0), 1.0)
+    weights[at] = 1.0 - along
+    weights[at + 1] = along
+
+
+@entry_kernel
+def fill_sums(table, weights, values):
+    """Sum of the weighted numbers of each row, shape (rows,); returns the mean of the sums."""
+    for d in range(values.size):
+        values[d] = 0.0
+        for k in range(weights.size):
+            if weights[k] != 0.0:
+                values[d] += weights[k] * table[d, k]
+    return mean(values)
+
+
+@entry_kernel
+def fill_crossings(table, levels, part, values):
+    """Level at which each row reaches a part, linear in the logarithm; infinite where it does not."""
+    for d in range(values.size):
+        values[d] = math.inf
+        for k in range(levels.size):
+            if table[d, k] < part:
+                continue
+            values[d] = levels[k]
+            if k > 0:
+                low = table[d, k - 1]
+                along = (part - low) / (table[d, k] - low)
+                width = log(levels[k] / levels[k - 1])
+                values[d] = levels[k - 1] * exp(along * width)
+            break
+
+
+@entry_kernel
+def fill_errors(values, normals, spreads):
+    """Multiply rates by errors of ln rate, by source; the rate is a mean, and stays it."""
+    for d in range(values.size):
+        away = 0.0
+        for j in range(spreads.size):
+            away += spreads[j] * normals[d, j] - spreads[j] * spreads[j] / 2
+        values[d] *= exp(away)
+
+
+@kernel
+def shown_of(kind, value, years):
+    """The number that is shown: of a rate the probability in some years, in a Poisson process."""
+    return -expm1(-years * value) if kind == RATE else value
+
+
+@entry_kernel
+def rate_of(probability, years):
+    """Annual rate of which a probability in some years follows [1/year]."""
+    return -log1p(-min(probability, 1.0 - 1e-15)) / years
+
+
+@entry_kernel
+def fill_shown(kind, years, values, shown):
+    """The numbers that are shown of values."""
+    for d in range(values.size):
+        shown[d] = shown_of(kind, values[d], years)
+
+
+@entry_kernel
+def fill_estimate(
+    kind, years, middle, last_level, values, shown, work, bins, sets, found
+):
+    """Estimate with an interval, and the standard deviation that each source gives it.
+
+    Parameters
+    ----------
+    kind : ``FRACTION``, ``RATE`` or ``LEVEL``
+    years : of a probability
+    middle : mean of the values without errors of the rate
+    last_level : beyond which levels say nothing
+    values : of each draw, shape (draws,)
+    shown, work : what is shown of them, and working memory, shape (draws,) each
+    bins : of each draw by each source, shape (sources, draws)
+    sets : sets of weights of the earthquakes; the draws of one follow each other
+    found : number, limits, and standard deviations by the motions and by each source, shape (4 + sources,)
+    """
+    for d in range(values.size):
+        shown[d] = shown_of(kind, values[d], years)
+        work[d] = shown[d]
+    sort(work)
+    aside = int((1.0 - INSIDE) / 2 * values.size)
+    lower, upper = work[aside], work[values.size - 1 - aside]
+    if kind == FRACTION:
+        lower = 0.0 if lower < NONE_BELOW else lower
+        upper = 1.0 if upper > 1.0 - NONE_BELOW else upper
+    value = shown_of(kind, middle, years)
+    if kind == LEVEL:
+        value = work[(values.size - 1) // 2]
+    found[VALUE] = value
+    found[LOWER], found[UPPER] = min(lower, value), max(upper, value)
+    _scale(kind, last_level, values, work)
+    total = variance(work)
+    for place in range(MOTIONS, found.size):
+        found[place] = 0.0
+    if not total > 0.0:
+        return
+    found[MOTIONS] = math.sqrt(_variance_of_sets(work, sets))
+    for j in range(bins.shape[0]):
+        found[MOTIONS + 1 + j] = math.sqrt(_variance_of_bins(work, bins[j]))
+
+
+@kernel
+def _scale(kind, last_level, values, scaled):
+    """Values on the scale on which sources have their parts: logarithms of rates and of levels.
+
+    Of rates no less than a thousandth of the mean: what hardly adds to it counts alike.
+    """
+    least = max(1e-3 * mean(values), 1e-300) if kind == RATE else 0.0
+    for d in range(values.size):
+        scaled[d] = values[d]
+        if kind == RATE:
+            scaled[d] = log(max(values[d], least))
+        elif kind == LEVEL:
+            scaled[d] = log(min(values[d], last_level))
+
+
+@kernel
+def _variance_of_sets(values, sets):
+    """Variance of the means under each set of weights."""
+    members, total, squares = values.size // sets, 0.0, 0.0
+    middle = mean(values)
+    for b in range(sets):
+        total = 0.0
+        for i in range(b * members, (b + 1) * members):
+            total += values[i]
+        squares += (total / members - middle) * (total / members - middle)
+    return squares / sets
+
+
+@kernel
+def _variance_of_bins(values, bins):
+    """Variance of the means in bins of equally many draws."""
+    middle, squares = mean(values), 0.0
+    for b in range(BINS):
+        away = _mean_of_bin(values, bins, b) - middle
+        squares += away * away
+    return squares / BINS
+
+
+@kernel
+def _mean_of_bin(values, bins, wanted):
+    total = 0.0
+    for d in range(values.size):
+        if bins[d] == wanted:
+            total += values[d]
+    return total / (values.size // BINS)
+
+
+@entry_kernel
+def fill_sides(values, bins, found):
+    """Mean of the values with a source one standard deviation low and high, shape (2,)."""
+    for side in range(2):
+        total = 0.0
+        for b in range(_ONE_AWAY[side] - 1, _ONE_AWAY[side] + 2):
+            total += _mean_of_bin(values, bins, b)
+        found[side] = total / 3.0
+
+
+@entry_kernel
+def fill_turned(values, bins, left, middle, accepted, means, found):
+    """Chance that measuring a source turns a decision round, and the mean where it does, shape (2,).
+
+    ``left`` is what the measurement leaves of the source's standard deviation; what it says and what is left are
+    both normal. Where it never turns it, the mean is that of today. ``means`` is memory, shape (``BINS``,).
+    """
+    turned, total = 0, 0.0
+    for b in range(BINS):
+        means[b] = _mean_of_bin(values, bins, b)
+    for said in range(BINS):
+        mean_then = _mean_once_said(means, left, said)
+        if (mean_then > accepted) != (middle > accepted):
+            turned += 1
+            total += mean_then
+    found[0] = turned / BINS
+    found[1] = total / turned if turned > 0 else middle
+
+
+@kernel
+def _mean_once_said(means, left, said):
+    """Mean of the values after one of ``BINS`` equally likely results of a measurement, of those of the bins."""
+    if left <= 0.0:
+        return means[said]
+    measured = math.sqrt(1.0 - left * left) * CENTRES[said]
+    total, weights = 0.0, 0.0
+    for b in range(BINS):
+        z = (CENTRES[b] - measured) / left
+        weight = exp(-0.5 * z * z)
+        weights += weight
+        total += weight * means[b]
+    return total / weights
+
+
+BEFORE, AFTER, FACTOR, LEAST, MOST = range(5)
+"""Places in what :func:`fill_comparison` leaves: both numbers, their ratio and its limits."""
+
+
+@entry_kernel
+def fill_comparison(kind, before, after, sets, work, found):
+    """Compare shown numbers of the same draws without and with a change, shape (draws,) both.
+
+    Limits of the factor are over the sets of weights of the earthquakes; NaN where there are none. Levels are
+    compared by their medians, all else by means. ``work`` has the shape (3, draws).
+    """
+    for place in range(5):
+        found[place] = math.nan
+    members, count = before.size // sets, 0
+    for b in range(-1, sets):
+        # all draws first, then those of each set
+        first, end = (0, before.size) if b < 0 else (b * members, (b + 1) * members)
+        centres = found[BEFORE : AFTER + 1] if b < 0 else work[2, :2]
+        for side in range(2):
+            values = before if side == 0 else after
+            centres[side] = _centre(kind, values[first:end], work[0, : end - first])
+        if not (0.0 < centres[0] < math.inf and centres[1] < math.inf):
+            if b < 0:
+                return
+            continue
+        if b < 0:
+            found[FACTOR] = centres[1] / centres[0]
+        else:
+            work[1, count] = centres[1] / centres[0]
+            count += 1
+    if count > 0:
+        ratios = work[1, :count]
+        sort(ratios)
+        found[LEAST] = quantile(ratios, count, (1.0 - INSIDE) / 2)
+        found[MOST] = quantile(ratios, count, (1.0 + INSIDE) / 2)
+        found[LEAST] = min(found[LEAST], found[FACTOR])
+        found[MOST] = max(found[MOST], found[FACTOR])
+
+
+@kernel
+def _centre(kind, values, work):
+    """Mean of values; of levels the median, the lower of two."""
+    if kind != LEVEL:
+        return mean(values)
+    for i in range(values.size):
+        work[i] = values[i]
+    sort(work)
+    return work[(values.size - 1) // 2]

@@ -1,0 +1,101 @@
+"""What a user measured and says beside the sizes: tilt tests, free rocking, spectra and the ground of the site."""
+
+import math
+
+import numpy as np
+import pytest
+
+from rockfrag.assess.conversion import PRIOR, VelocityBySpectrum, published_velocity
+from rockfrag.assess.hazard.curve import PGA, SA_1S, VELOCITY_PER_G
+from rockfrag.assess.motions import MotionSet
+from rockfrag.assess.request import Records
+from rockfrag.base.errors import InputError
+from rockfrag.base.units import GRAVITY
+from rockfrag.motions.conditional_velocity import BY_PGA
+
+from .conftest import asked
+
+SIZES = {"width": "35 cm", "height": "1.2 m", "mass": "200 kg", "pga": "0.3 g"}
+
+
+def test_an_angle_and_a_force_say_from_which_acceleration_it_rocks():
+    angle = math.degrees(math.atan(0.27))
+    tilted = asked(**SIZES, tilt_angle_deg=angle).objects
+    assert tilted.least_uplift == pytest.approx(0.27)
+    # of a force F at the height z: F z = m g b
+    force = 200 * GRAVITY * 0.27 * 0.6 / 1.1
+    pulled = asked(**SIZES, tilt_force=f"{force:.6f} N @ 1.1 m").objects
+    assert pulled.least_uplift == pytest.approx(0.27, rel=1e-5)
+    # which is known better than sizes are, and stays where only the centre is higher
+    (width, *_), moved = tilted.variants(), tilted.moves()["cg_height"](1.1)
+    assert width.spread == 0.01 and moved.least_uplift == pytest.approx(0.27)
+
+
+@pytest.mark.parametrize(
+    ("more", "words"),
+    [
+        ({"tilt_angle_deg": 30}, "it would stand on"),
+        ({"tilt_force": "85"}, "expected a force at a height such as 85N@1.1m"),
+        ({"tilt_force": "85N@1.1"}, "without a unit"),
+        ({"tilt_angle_deg": 10, "tilt_force": "85N@1.1m"}, "both given"),
+        ({"frequency_parameter": 9.0}, "more than a body of this size can have"),
+    ],
+)
+def test_what_cannot_be_is_refused(more, words):
+    with pytest.raises(InputError, match=words):
+        asked(**SIZES, **more)
+
+
+def test_a_force_needs_the_mass():
+    sizes = {key: value for key, value in SIZES.items() if key != "mass"}
+    with pytest.raises(InputError, match="give key mass too"):
+        asked(**sizes, tilt_force="85N@1.1m")
+
+
+def test_free_rocking_says_the_inertia():
+    usual = asked(**SIZES).objects.block
+    arm = math.hypot(0.175, 0.6)
+    p = math.sqrt(3 * GRAVITY / (4 * arm))
+    assert asked(**SIZES, frequency_parameter=p).objects.block.centroidal_inertia == (
+        pytest.approx(usual.centroidal_inertia)
+    )
+
+
+def test_the_velocity_is_that_of_the_prior_unless_something_is_said():
+    levels, given = np.array([0.1, 0.2, 0.4]), Records()
+    for records, facts in (
+        (given, PRIOR),
+        (Records(magnitude=6.0), {**PRIOR, "magnitude": 6.0}),
+        (Records(vs30=760.0), {**PRIOR, "ln_vs30": math.log(760.0)}),
+    ):
+        found = published_velocity(PGA, records)
+        about = (
+            facts["magnitude"],
+            *(math.exp(facts[f]) for f in ("ln_distance", "ln_vs30")),
+        )
+        exact = BY_PGA.log_velocity(levels, *about) - np.log(levels * VELOCITY_PER_G)
+        line = found.lines(records)[0]
+        assert line[0] + line[1] * np.log(levels) == pytest.approx(exact)
+    # what is said is known, what is not leaves the mean open
+    assert (
+        not published_velocity(PGA, Records(vs30=760.0))
+        .lines(Records(vs30=760.0))[3]
+        .any()
+    )
+    assert found.lines(given)[1:].any(axis=1).all()
+    # motions that a user chose have the velocity of the site
+    own = Records(paths=("own.csv",))
+    assert published_velocity(PGA, own) is None
+    assert published_velocity(PGA, Records(paths=("own.csv",), magnitude=6.0))
+
+
+def test_a_spectral_acceleration_beside_pga_narrows_the_velocity(motions: MotionSet):
+    found = VelocityBySpectrum.of(motions, PGA)
+    assert found.scatter < motions.log_ratios(PGA).std()
+    # the line goes through the means
+    mean = motions.log_over(SA_1S, PGA).mean()
+    assert found.mean(math.exp(mean)) == pytest.approx(motions.log_ratios(PGA).mean())
+    level = asked(**SIZES, sa=["1 s", "0.2 g"]).level
+    assert (level.measure, level.value, level.sa_1s) == (PGA, 0.3, 0.2)
+    with pytest.raises(InputError, match="period of 1 s"):
+        asked(**SIZES, sa=["0.3 s", "0.2 g"])
