@@ -11,6 +11,7 @@ In: a scan or sizes [m], ranges of what is unknown, a seed. Out: systems, one a 
 import math
 import warnings
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from typing import Any
 
@@ -21,9 +22,11 @@ from scipy.stats import norm, qmc
 
 from rockfrag.base.errors import InputError
 from rockfrag.base.short_repr import short_repr
+from rockfrag.engines.spatial import run_in_space
 from rockfrag.fragility.model_error import CUT, SCAN
 from rockfrag.records.motion import GroundMotion, Motion
 from rockfrag.simulation.ensemble import LightBodies, overturns
+from rockfrag.simulation.inputs import checked_threads
 from rockfrag.simulation.options import system_of
 from rockfrag.system import geometry
 from rockfrag.system.blocks import Block, Column
@@ -185,6 +188,57 @@ def simulate_tests(
         overturned.append(result.overturned[:, :, 0])
         rocked.append((result.peak_rotation[:, :, 0] > 0).any(axis=-1))
     return np.hstack(overturned), np.hstack(rocked)
+
+
+def simulate_in_space(
+    systems: Sequence[System],
+    motions: Sequence[Motion],
+    scales: Sequence[float] = (1.0,),
+    threads: int | None = None,
+) -> NDArray[np.bool_]:
+    """Whether bodies in space overturn under one horizontal component.
+
+    Parameters
+    ----------
+    systems, motions : a system an arrangement, and a motion a test
+    scales : factors on the motions
+    threads : threads to use; outcomes do not depend on it
+
+    Returns
+    -------
+    Whether each overturns, shape (systems, tests, scales).
+    """
+    shaking = [
+        GroundMotion(motion, motion.after("still", np.zeros_like(motion.acceleration)))
+        for motion in motions
+    ]
+    cores = checked_threads(threads)
+    return run_in_space(systems, shaking, scales, threads=cores).overturned
+
+
+def solids_of(thing: Shape, arrangements: Trials, count: int) -> list[System]:
+    """A scanned object in space on the points that carry, which nothing lets slide, in several arrangements.
+
+    Parameters
+    ----------
+    thing, arrangements, count : the object, how it may stand, and how many of these at most
+
+    Returns
+    -------
+    The systems; those in which it could stand in a plane alone are left out.
+    """
+    found: list[System] = []
+    for guess in arrangements.table.to_dict("records"):
+        tolerance, retreat = (
+            guess["contact_tolerance_mm"] / 1e3,
+            guess["edge_retreat_mm"] / 1e3,
+        )
+        with suppress(InputError):
+            body = thing.body(guess["direction_deg"], tolerance, retreat)
+            found.append(System((body,), (Contact(),)))
+        if len(found) == count:
+            break
+    return found
 
 
 def _in_plane(planar: Block | Column, guess: Mapping[str, float]) -> System:
