@@ -30,8 +30,9 @@ from rockfrag.simulation.inputs import checked_threads
 from rockfrag.simulation.options import system_of
 from rockfrag.system import geometry
 from rockfrag.system.blocks import Block, Column
+from rockfrag.system.body import Polygon, RigidBody
 from rockfrag.system.contact import Contact, Friction
-from rockfrag.system.mesh import Shape
+from rockfrag.system.mesh import Shape, edge_distances
 from rockfrag.system.system import System
 
 UNKNOWNS = (
@@ -216,6 +217,14 @@ def simulate_in_space(
     return run_in_space(systems, shaking, scales, threads=cores).overturned
 
 
+def least_angle_deg(body: RigidBody) -> float:
+    """Least critical angle of a body in space on a polygon, towards any side [degrees]."""
+    assert isinstance(body.base, Polygon)
+    corners = np.array(body.base.vertices) - np.array(body.centre[:2])
+    nearest = float(edge_distances(corners).min())
+    return math.degrees(math.atan2(nearest, body.centre[2]))
+
+
 def solids_of(thing: Shape, arrangements: Trials, count: int) -> list[System]:
     """A scanned object in space on the points that carry, which nothing lets slide, in several arrangements.
 
@@ -225,7 +234,8 @@ def solids_of(thing: Shape, arrangements: Trials, count: int) -> list[System]:
 
     Returns
     -------
-    The systems; those in which it could stand in a plane alone are left out.
+    The systems; those in which it would not have been set up, since it falls too easily towards some side, are
+    left out.
     """
     found: list[System] = []
     for guess in arrangements.table.to_dict("records"):
@@ -235,7 +245,8 @@ def solids_of(thing: Shape, arrangements: Trials, count: int) -> list[System]:
         )
         with suppress(InputError):
             body = thing.body(guess["direction_deg"], tolerance, retreat)
-            found.append(System((body,), (Contact(),)))
+            if least_angle_deg(body) >= LEAST_ANGLE_DEG:
+                found.append(System((body,), (Contact(),)))
         if len(found) == count:
             break
     return found

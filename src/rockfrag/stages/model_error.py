@@ -36,7 +36,7 @@ from rockfrag.study.loading import load_any
 from rockfrag.system.mesh import Shape
 
 ARRANGEMENTS = 512  # guesses of how an object stands
-SOLID = 48  # of them, in which a scan is simulated in space, as it is answered
+SOLID = 16  # of them, in which a scan is simulated in space, as it is answered
 
 _LOG = logging.getLogger(__name__)
 LEVEL = 0.90  # confidence of intervals
