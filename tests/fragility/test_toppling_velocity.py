@@ -26,11 +26,11 @@ def kaneko(width, height):
 
 
 @pytest.mark.parametrize("standing", ["plane", "square", "oblong"])
-def test_medians_are_kanekos_times_a_constant_in_size_and_slenderness(standing):
+def test_medians_follow_kaneko_within_a_tenth_over_size_and_slenderness(standing):
     medians, _ = toppling_velocity(WIDTHS, HEIGHTS, standing=standing)
     slender = INSIDE & (HEIGHTS / WIDTHS >= 2)
     ratio = np.log(medians / kaneko(WIDTHS, HEIGHTS))[slender]
-    assert ratio.std() < 0.07
+    assert ratio.std() < 0.1
     assert np.abs(ratio - ratio.mean()).max() < 0.25
 
 

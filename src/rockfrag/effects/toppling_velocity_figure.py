@@ -70,6 +70,8 @@ def _draw_heights(panel: Axes, surface: Surface, pieces: pd.DataFrame) -> None:
     panel.plot([], [], "--", color=style.BLACK, linewidth=0.9, label="Kaneko")
     panel.set(xlabel="Height [m]", ylabel="Median velocity that topples [cm/s]")
     panel.set_title("by height, for four widths", loc="left")
+    # room for the legend under the lines
+    panel.set_ylim(bottom=1.5)
     style.plain_log(panel, "xy")
     panel.legend(loc="lower left")
 
