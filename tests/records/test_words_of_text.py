@@ -85,6 +85,7 @@ def test_other_numbers_are_no_count(write, words):
         *("Vitesse (m/s)", "Скорость, см/с", "速度(cm/s)", "Desplazamiento (cm)"),
         *("Spostamento in mm", "変位 (cm)", "Response spectrum", "Fourier amplitude"),
         *("Force (kN)", "Pressure [kPa]", "Rotation (rad)", "Hız (cm/s)"),
+        *("Kiihtyvyys (mV)", "Kiihtyvyys [kN*1000]", "Data (mm)", "Record 3 (cm/s)"),
     ],
 )  # fmt: skip
 def test_a_title_of_another_quantity_is_refused_whatever_the_user_says(write, words):

@@ -33,11 +33,11 @@ def errors_of(where: str) -> Iterator[None]:
 
     Parameters
     ----------
-    where : what stands before the message, such as a file or a key
+    where : file, line, key or argument, without a colon
 
     Returns
     -------
-    A context in which an :class:`InputError` gets those words.
+    A context in which each :class:`InputError` is raised anew with ``where`` in front.
     """
     try:
         yield

@@ -49,7 +49,7 @@ def figure_style() -> Iterator[None]:
 
     Returns
     -------
-    A context in which figures are drawn and saved.
+    A context in which matplotlib draws with :data:`STYLE`.
     """
     with mpl.rc_context(STYLE):
         yield
@@ -64,7 +64,7 @@ def new_figure(width: float = PAGE_WIDTH, height: float = 3.0) -> Figure:
 
     Returns
     -------
-    The figure.
+    The figure, drawn by Agg.
     """
     figure = Figure(figsize=(width, height))
     FigureCanvasAgg(figure)
@@ -80,11 +80,12 @@ def panels(
     Parameters
     ----------
     width, height : of the figure [in]
-    *shape, **shared : as of ``Figure.subplots``
+    shape : rows and columns of panels; one panel without them
+    **shared : keywords of ``Figure.subplots``, such as ``sharex``
 
     Returns
     -------
-    A context that gives the figure and its panels.
+    A context that gives the figure, and its panel or an array of panels.
     """
     with figure_style():
         figure = new_figure(width, height)
@@ -96,13 +97,13 @@ def draw_history(panel: Axes, time: Floats, values: Floats, **line: Any) -> floa
 
     Parameters
     ----------
-    panel : axes
-    time, values : seconds, and values in the unit of the axis, shape (n,)
-    **line : how the line is drawn
+    panel : axes to draw in
+    time, values : of the samples, shape (n,)
+    **line : keywords of the line, in the place of those that all histories have
 
     Returns
     -------
-    The largest magnitude.
+    The largest magnitude of the values, in their unit.
     """
     peak = int(np.abs(values).argmax())
     panel.axhline(0, color=GUIDE, linewidth=0.6, zorder=1)
@@ -116,7 +117,8 @@ def plain_log(axes: Axes, which: str) -> None:
 
     Parameters
     ----------
-    axes, which : the panel, and which of its axes
+    axes : that have their data already
+    which : ``x``, ``y`` or ``xy``
     """
     near = (1.0, 2.0, 3.0, 5.0, 7.0)
     for name in which:
@@ -144,8 +146,8 @@ def letter_panels(axes: Iterable[Axes], size: float = 8.5) -> None:
 
     Parameters
     ----------
-    axes : panels in their order
-    size : of the letters [pt]
+    axes : panels in the order of their letters
+    size : of the letters [points]
     """
     panels = list(axes)
     for letter, panel in zip(
@@ -178,11 +180,11 @@ def note_figure(words: str) -> Figure:
 
     Parameters
     ----------
-    words : the sentence
+    words : one sentence
 
     Returns
     -------
-    The figure.
+    The figure, one column wide.
     """
     with figure_style():
         figure = new_figure(COLUMN_WIDTH, 0.6)
@@ -195,7 +197,8 @@ def save_figure(figure: Figure, *paths: str | os.PathLike[str]) -> None:
 
     Parameters
     ----------
-    figure, *paths : the figure, and the files to write
+    figure : that is drawn ready
+    paths : of the files; their folders are made
     """
     # matplotlib records its version and the time unless told not to
     options: dict[str, dict[str, Any]] = {

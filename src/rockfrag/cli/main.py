@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from rockfrag.simulation.options import FrictionInput
     from rockfrag.system.blocks import Block, Body
 
-# lines of the pattern history that are printed unless all are asked for
+# lines of the history of rocking modes that are printed unless all are asked for
 MOST_CONTACT_EVENTS = 30
 
 

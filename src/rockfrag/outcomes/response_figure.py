@@ -124,4 +124,4 @@ def _rocking_modes(panel: Axes, response: "Response") -> None:
         )
     panel.set_yticks(range(len(seen)), seen)
     panel.set_ylim(-0.6, max(len(seen), 1) - 0.4)
-    panel.set_ylabel("Pattern")
+    panel.set_ylabel("Rocking mode")

@@ -141,7 +141,7 @@ def _strongest_and_weakest(rows: pd.DataFrame, decimals: int) -> str:
     names = list(weakest["configuration"])
     if least == most:
         return f"A {measure} of {of[least]} {unit} overturns {listed(names)} with 50 % probability"
-    if not told_apart(weakest, strongest):
+    if not do_not_overlap(weakest, strongest):
         all_names = listed(list(rows["configuration"]))
         return (
             f"A {measure} of {of[least]} to {of[most]} {unit} overturns {all_names} with 50 % probability; "
@@ -156,7 +156,7 @@ def _strongest_and_weakest(rows: pd.DataFrame, decimals: int) -> str:
     )
 
 
-def told_apart(weaker: pd.DataFrame, stronger: pd.DataFrame) -> bool:
+def do_not_overlap(weaker: pd.DataFrame, stronger: pd.DataFrame) -> bool:
     """Whether the intervals of some medians lie below those of others; unknown where one has no interval.
 
     Parameters

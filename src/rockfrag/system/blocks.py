@@ -442,7 +442,16 @@ SystemLike = Body | System  # what stands, as it may be written
 
 
 def is_system(thing: object) -> TypeGuard[SystemLike]:
-    """Whether a thing is a system, or writes one."""
+    """Whether a thing is a system, or writes one.
+
+    Parameters
+    ----------
+    thing : anything
+
+    Returns
+    -------
+    Whether every door takes it.
+    """
     return isinstance(thing, (System, Block, Stack, Column))
 
 
@@ -465,7 +474,16 @@ def as_system(thing: SystemLike) -> System:
 
 
 def stacked(blocks: Sequence[Block]) -> Body:
-    """Return blocks that stand on each other, from below, as a block, a stack or a column."""
+    """Return blocks that stand on each other, from below, as a block, a stack or a column.
+
+    Parameters
+    ----------
+    blocks : from below, at least one
+
+    Returns
+    -------
+    A block, a stack of two, or a column of more.
+    """
     if len(blocks) == 1:
         return blocks[0]
     return Stack(blocks[0], blocks[1]) if len(blocks) == 2 else Column(tuple(blocks))

@@ -50,6 +50,7 @@ _SIZE_OF_DIGIT = re.compile(
     rf"|{_VALUE}\s*\(?[^\W\d_][^\s\d]*\)?\s*(?:/|\bper\b)\s*(?:lsb|digit|count|cnt|bit)\b"
 )
 _LONGEST_IMPERATIVE = 80
+_LAST_BRACKET = re.compile(r"[(\[](?P<inside>[^()\[\]]+)[)\]]\s*$")
 _LONGEST_TITLE = 4  # words, without units
 _LONE_FACTOR = re.compile(r"\W*[x×*]\s*(?:10|0?[.,]\d|\d+e|1\d*)[\d\s^.,+-]*\W*")
 _STEP_BEFORE = re.compile(
@@ -418,6 +419,10 @@ def _other_quantity(line: str) -> str:
         return ""
     if OF_SPECTRA.search(line):
         return "spectrum"
+    ending = _LAST_BRACKET.search(line)
+    unit = read_unit(ending["inside"]) if ending else Unit("")
+    if unit.quantity not in ("", "time", "acceleration"):
+        return unit.quantity
     words = re.split(r"[\s_:;,()\[\]]+", line.strip(" _:;,()[].\"'"))
     units = {read_unit(word).quantity for word in words[1:]} - {"", "time"}
     has_value = any(map(_NUMBER.match, words))
