@@ -441,12 +441,15 @@ def fraction_at(
 
 
 def states_of(result: Outcomes) -> dict[str, Flags]:
-    """Which cases reached each limit state that needs no sliding, by its name."""
-    return {
+    """Which cases reached each limit state that needs no sliding, by its name, and which rocked :data:`FAR`."""
+    found = {
         state.name: np.asarray(state.reached(result))
         for state in limit_states()
         if not (state.slipping or state.held)
     }
+    with np.errstate(invalid="ignore"):
+        found[STEPS] = np.asarray((result.peak_rotation > FAR).any(axis=-1))
+    return found
 
 
 def simulated(
@@ -469,6 +472,11 @@ def simulated(
             )
     # more than two bodies leave the ground where they have to
     return result, [light and system.count < 3 for system in systems]
+
+
+FAR, STEPS = 1 / 3, "rocks_a_third_of_the_way"
+"""Rotation over the critical angle beyond which edges chip and an object steps aside (after D'Angela et al., 2026,
+whose limit states are rotations), and the name of that state.  In space it is told of the levels of the scan."""
 
 
 @dataclass(frozen=True)

@@ -51,6 +51,7 @@ class Text(StrEnum):
     COUNTED = auto()
     COUNTED_SOME = auto()
     COUNTED_MOVED = auto()
+    SHORT_OF_A_FALL = auto()
     FRACTION_BETWEEN = auto()
     FRACTION_AT_MOST = auto()
     FRACTION_AT_LEAST = auto()

@@ -139,6 +139,14 @@ SINGLE = PureRocking(
 )
 """One or two bodies, case by case (``kernels.single``)."""
 
+STEPPED = PureRocking(
+    "jumps of the velocity",
+    _STANDING | {Wish.START, Wish.FORCES, Wish.HISTORY, Wish.STEPS},
+    "rockfrag.engines.pure_rocking.velocity_steps:run",
+    "rockfrag.engines.pure_rocking.velocity_steps:history",
+)
+"""One body on a base whose velocity jumps, by single histories between the jumps."""
+
 PLANAR = PlanarEngine(
     "planar contact",
     _STANDING
@@ -167,5 +175,5 @@ SPATIAL = SpatialEngine(
 )
 """One body in space."""
 
-BUILT_IN = (LONE_BLOCKS, TWO_BLOCKS, SINGLE, PLANAR, SPATIAL)
+BUILT_IN = (LONE_BLOCKS, TWO_BLOCKS, SINGLE, STEPPED, PLANAR, SPATIAL)
 """In the order in which they are asked."""
