@@ -3,7 +3,7 @@
 # make report-pdf  the report of STUDY on paper, by a browser of the Chromium family
 # make test     the tests; make validate the long ones; make coverage what they reach; make lint the checks of form
 # make torture  a small study killed, starved and misused; make fuzz damaged inputs
-#               (INPUTS=10000 for fewer), random requests of assess (REQUESTS=200) and studies (STUDIES=20)
+#               (INPUTS=10000 for fewer), random requests of assess (REQUESTS=200), studies (STUDIES=20), calls (CALLS=50)
 # make mutants  one line changed of what computes, MUTANTS=100 times: do the quick tests notice (SEED=1)
 # make docs     the documentation as a site, docs/_build/index.html
 # make bench    speed against other programs, and what a user waits for
@@ -18,6 +18,7 @@ STUDY ?= config/thesis.yaml
 INPUTS ?= 1000000
 REQUESTS ?= 2000
 STUDIES ?= 500
+CALLS ?= 200
 MUTANTS ?= 100
 SEED ?= 1
 # one line a stage; all that Snakemake says with VERBOSE=1
@@ -70,6 +71,7 @@ fuzz: .venv/installed
 	@$(RUN) tests.fuzz --inputs $(INPUTS)
 	@$(RUN) tests.fuzz --only requests --inputs $(REQUESTS)
 	@$(RUN) tests.fuzz --only studies --inputs $(STUDIES)
+	@$(RUN) tests.fuzz --only commands --inputs $(CALLS)
 
 torture: .venv/installed
 	@$(RUN) tests.fault_injection

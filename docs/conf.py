@@ -51,7 +51,10 @@ sphinx_gallery_conf = {
     "filename_pattern": r"/plot_",
     "within_subsection_order": "FileNameSortKey",
     "reset_modules": ("gallery_style.journal",),
-    "image_scrapers": ("matplotlib", "gallery_style.kept_figures"),
+    # figures that pyplot does not know come first: what it has saved and closed looks like one of them
+    "image_scrapers": ("gallery_style.kept_figures", "matplotlib"),
+    # a script prints what it wants to be read
+    "capture_repr": (),
     "abort_on_example_error": True,
     "download_all_examples": False,
     "show_signature": False,

@@ -8,6 +8,7 @@ is a stronger motion that the statue survives: more shaking does not always mean
 
 import matplotlib.pyplot as plt
 import numpy as np
+from matplotlib.patches import Patch
 
 from rockfrag import Block, Stack, overturns
 from rockfrag.motions import evolutionary, scale_to_pga
@@ -47,3 +48,8 @@ for panel, title, outcomes in zip(
     )
     panel.set(title=title, xlabel="peak ground acceleration [g]")
 panels[0].set(ylabel="synthetic motion", yticks=range(1, 11))
+handles = [
+    Patch(facecolor=plt.get_cmap("Blues")(1 / 1.3), label="overturns"),
+    Patch(facecolor="white", edgecolor="0.5", label="stands"),
+]
+figure.legend(handles=handles, loc="outside lower center", ncols=2)

@@ -17,7 +17,7 @@ blocks = [Block(width=h / 4, height=h, mass=2500 * h**3 / 16) for h in heights]
 periods = (0.5, 1.0, 2.0)
 motions = [one_sine(amplitude=1.0, period=period) for period in periods]
 found = find_thresholds(
-    blocks, motions, None, highest=45.0, tolerance=0.02, narrowest_resurrection=0.25
+    blocks, motions, highest=45.0, tolerance=0.02, narrowest_resurrection=0.25
 ).table
 
 # %%

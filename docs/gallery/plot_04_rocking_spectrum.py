@@ -30,10 +30,10 @@ for angle, rotation in zip(angles, spectrum.rotation, strict=True):
         markersize=5,
         color=axes.lines[-1].get_color(),
     )
-axes.text(4.0, 1.03, "ticks: overturned", fontsize=8)
+axes.text(4.3, 1.03, "ticks: overturned", fontsize=8)
 axes.set(
     xlabel="size of the block, 2π/p [s]",
-    ylabel="largest rotation over α [-]",
+    ylabel="largest rotation over α",
     ylim=(0, 1.2),
 )
-axes.legend(fontsize=8, loc="upper right")
+axes.legend(fontsize=8, loc="center right")

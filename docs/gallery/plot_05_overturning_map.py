@@ -10,6 +10,7 @@ survived.
 
 import matplotlib.pyplot as plt
 import numpy as np
+from matplotlib.patches import Patch
 
 from rockfrag import Block, overturns
 from rockfrag.motions import one_sine
@@ -34,8 +35,10 @@ axes.pcolormesh(
 line = np.array([one_sine_pulse(ratio * p, p) for ratio in ratios])
 axes.plot(ratios, line, color="#D55E00", label="no impact, closed form")
 axes.set(
-    xlabel="frequency of the pulse, ω/p [-]",
-    ylabel="amplitude, a/(α g) [-]",
+    xlabel="frequency of the pulse, ω/p",
+    ylabel="amplitude, a/(α g)",
     ylim=(1, 14),
 )
-axes.legend(loc="upper left", fontsize=8)
+shade = Patch(facecolor=plt.get_cmap("Blues")(1 / 1.5), label="overturns, simulated")
+handles = [shade, *axes.get_legend_handles_labels()[0]]
+axes.legend(handles=handles, loc="upper left", fontsize=8, framealpha=1.0)

@@ -40,5 +40,5 @@ axes.plot(
     label="work of the ground",
 )
 axes.set(xlabel="time [s]", ylabel="energy [J]", xlim=(0, 5))
-axes.legend(fontsize=8, loc="upper left")
+figure.legend(fontsize=8, loc="outside lower center", ncols=3)
 print(f"largest residual: {energy['residual'].abs().max():.1e} J")

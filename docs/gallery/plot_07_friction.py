@@ -8,6 +8,7 @@ friction of dry stone, 0.5 to 0.7, lets slender objects rock and squat ones slid
 
 import matplotlib.pyplot as plt
 import numpy as np
+from matplotlib.colors import ListedColormap
 
 from rockfrag import Block, overturns
 from rockfrag.motions import one_sine
@@ -29,17 +30,17 @@ fell = found.overturned[:, 0, 0].reshape(shape)
 
 kind = np.where(fell, 3, np.where(rocked & slid, 2, np.where(rocked, 1, 0)))
 figure, axes = plt.subplots(figsize=(5.4, 3.6))
-colours = plt.matplotlib.colors.ListedColormap(
-    ["#E69F00", "#56B4E9", "#009E73", "#444444"]
-)
+colours = ListedColormap(["#E69F00", "#56B4E9", "#009E73", "#444444"])
 mesh = axes.pcolormesh(
     frictions, slenderness, kind, cmap=colours, vmin=-0.5, vmax=3.5, shading="nearest"
 )
 axes.plot(frictions, 1 / frictions, "k--", linewidth=1)
 axes.set(
-    xlabel="coefficient of friction [-]",
-    ylabel="height over width [-]",
+    xlabel="coefficient of friction",
+    ylabel="height over width",
     ylim=(1.2, 6.0),
 )
 bar = figure.colorbar(mesh, ticks=range(4))
-bar.ax.set_yticklabels(["slides", "rocks", "rocks and slides", "overturns"], fontsize=8)
+names = ["slides", "rocks", "rocks and slides", "overturns"]
+bar.ax.set_yticklabels(names, fontsize=8)
+axes.text(0.42, 2.7, "friction = width / height", fontsize=8, color="white")

@@ -24,5 +24,5 @@ for label, ratio in (
         block, nothing, 0.01, theta0=0.5 * block.alpha, restitution=ratio
     )
     axes.plot(response.time, response.theta[:, 0] / block.alpha, label=label)
-axes.set(xlabel="time [s]", ylabel="rotation over the critical angle [-]", xlim=(0, 7))
+axes.set(xlabel="time [s]", ylabel="rotation over the critical angle", xlim=(0, 7))
 axes.legend(fontsize=8)

@@ -50,14 +50,14 @@ print(
 
 figure, axes = plt.subplots(figsize=(5, 3.4))
 at = np.geomspace(10, 250, 200)
-axes.plot(at, fit.probability(at), color="#0072B2", label="lognormal fit")
-axes.axvspan(
-    *limits.theta, color="#56B4E9", alpha=0.35, label="90 % interval of the median"
+axes.fill_between(
+    at, *limits.band(at), color="#56B4E9", alpha=0.35, lw=0, label="90 % band"
 )
+axes.plot(at, fit.probability(at), color="#0072B2", label="lognormal fit")
 axes.plot(pgv, fallen.mean(axis=0), "ko", markersize=4, label="fraction of 60 motions")
 axes.set(
     xlabel="peak ground velocity [cm/s]",
-    ylabel="probability of overturning [-]",
+    ylabel="probability of overturning",
     xscale="log",
 )
 axes.set_xticks([10, 20, 50, 100, 200], ["10", "20", "50", "100", "200"])

@@ -32,4 +32,6 @@ axes.plot(
     color="#D55E00",
     markersize=14,
 )
-axes.set_title("least scale of the record that overturns [-]", fontsize=10)
+# the numbers of the circles away from the star
+axes.set_rlabel_position((found.angle_deg + 100) % 360)
+axes.set_title("least scale of the record that overturns", fontsize=10)

@@ -9,7 +9,7 @@ vertical component of six tenths. Single cases change either way; the median har
 import matplotlib.pyplot as plt
 import numpy as np
 
-from rockfrag import Block, overturns
+from rockfrag import Block, find_thresholds
 from rockfrag.motions import evolutionary, scale_to_pga
 
 statue = Block(width=0.35, height=1.20, mass=180.0)
@@ -30,13 +30,20 @@ up = [
 count = min(motion.acceleration.size for motion in (*flat, *up))
 horizontal = [motion.acceleration[:count] for motion in flat]
 vertical = [motion.acceleration[:count] for motion in up]
-scales = np.linspace(0.25, 0.80, 56)
 
 
 def first_overturning(**options):
     """Least scale of each motion that overturns, NaN if none does."""
-    fallen = overturns(statue, horizontal, flat[0].dt, scales, **options).overturned[0]
-    return np.where(fallen.any(axis=1), scales[fallen.argmax(axis=1)], np.nan)
+    found = find_thresholds(
+        statue,
+        horizontal,
+        flat[0].dt,
+        highest=0.8,
+        tolerance=0.001,
+        narrowest_resurrection=0.01,
+        **options,
+    )
+    return found.table["first_overturning"].to_numpy()
 
 
 without, with_it = first_overturning(), first_overturning(vertical=vertical)

@@ -30,7 +30,7 @@ measures = {
     "peak ground velocity [cm/s]": 100 * np.array([pgv(motion) for motion in motions]),
 }
 
-figure, panels = plt.subplots(1, 2, figsize=(7, 2.6), sharey=True)
+figure, panels = plt.subplots(1, 2, figsize=(7, 3.0), sharey=True)
 names = np.array([f"motion {number}" for number in range(100)], dtype=object)
 height = np.random.default_rng(0).uniform(-0.25, 0.25, 100)
 for panel, (name, values) in zip(panels, measures.items(), strict=True):
@@ -44,6 +44,4 @@ for panel, (name, values) in zip(panels, measures.items(), strict=True):
         )
     panel.set(xlabel=name, yticks=[0, 1], yticklabels=["stands", "overturns"])
     outcomes = Observations(values, fallen.astype(float), np.ones(100), names, names)
-    panel.set_title(
-        f"area under the ROC curve {area_under_curve(outcomes):.2f}", fontsize=9
-    )
+    panel.set_title(f"area under the ROC curve {area_under_curve(outcomes):.2f}")

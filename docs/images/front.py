@@ -47,7 +47,11 @@ def draw_rocking(axes: plt.Axes) -> None:
                 )
             )
         axes.text(
-            1.15 * place, -0.16, f"{time - first:+.2f} s", ha="center", fontsize=8
+            1.15 * place,
+            -0.16,
+            f"{time - first:+.2f} s".replace("-", "\N{MINUS SIGN}"),
+            ha="center",
+            fontsize=8,
         )
     axes.axhline(0, color="black", linewidth=1)
     axes.set(xlim=(-0.6, 5.6), ylim=(-0.35, 2.5), aspect="equal")
@@ -83,7 +87,7 @@ def draw_fragility(axes: plt.Axes) -> None:
         fit = fit_lognormal(Observations(*tests, names, names, "PGV", "cm/s"))
         axes.plot(at, fit.probability(at), color=colour, label=label)
         axes.plot(PGV, outcomes.mean(axis=0), mark, color=colour, markersize=4)
-    axes.set(xlabel="peak ground velocity [cm/s]", ylabel="probability of falling [-]")
+    axes.set(xlabel="peak ground velocity [cm/s]", ylabel="probability of falling")
     axes.set(xscale="log", ylim=(0, 1.02))
     axes.set_xticks([25, 50, 100, 200], ["25", "50", "100", "200"])
     axes.minorticks_off()

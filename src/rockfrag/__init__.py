@@ -27,6 +27,7 @@ assess       one object at one place: what ``rockfrag assess`` does
 ===========  ======================================================================
 """
 
+import difflib
 from typing import Any
 
 import lazy_loader
@@ -59,4 +60,6 @@ def __getattr__(name: str) -> Any:
                 raise AttributeError(
                     f"module 'rockfrag' has no attribute '{name}'; it is rockfrag.{package}.{name}"
                 )
-    raise AttributeError(f"module 'rockfrag' has no attribute '{name}'")
+    near = difflib.get_close_matches(name, __all__, n=1)
+    meant = f"; did you mean {near[0]}?" if near else ""
+    raise AttributeError(f"module 'rockfrag' has no attribute '{name}'{meant}")

@@ -8,7 +8,10 @@ import numpy as np
 import pytest
 
 import rockfrag
-from rockfrag.cli.main import main
+from rockfrag.cli.main import main, with_negative_sizes
+from rockfrag.cli.simulated import _friction, contact_event_lines
+
+from ..workflow.conftest import write_example, write_synthetic
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -212,3 +215,49 @@ def test_a_record_below_zero_throughout_takes_its_vertical_component_along(
     )
     body = ("--body", "30cm", "90cm", "--pga", "0.5", "--vertical", str(path))
     assert "peak 0.5000 g" in simulated(*body, path=path).out
+
+
+def test_a_peak_is_said_with_its_unit_or_as_a_number_of_g(simulated):
+    body = ("--body", "5cm", "50cm", "3kg")
+    plain = simulated(*body, "--pga", "0.6").out
+    assert simulated(*body, "--pga", "0.6g").out == plain
+    assert simulated(*body, "--pga", "5.886 m/s2").out == plain
+    said = simulated(*body, "--pga", "0.6 kg", status=2).err
+    assert said.startswith("--pga: ") and said.count("\n") == 1
+
+
+def test_a_negative_size_behind_an_option_is_no_option():
+    given = ["assess", "--cg-offset", "-2cm", "--width=35cm", "--pga", "-.3g", "--json"]
+    assert with_negative_sizes(given) == [
+        *("assess", "--cg-offset=-2cm", "--width=35cm", "--pga=-.3g", "--json"),
+    ]
+
+
+def test_a_number_that_is_none_is_refused_in_plain_words(capsys):
+    with pytest.raises(SystemExit):
+        main(["simulate", "x.txt", "--body", "1", "2", "--dt", "soon"])
+    assert "--dt: expected a number, got 'soon'" in capsys.readouterr().err
+
+
+def test_friction_that_no_surface_has_is_said_in_words():
+    lines = [_friction(value) for value in (0.3512, 1e6, float("inf"), float("nan"))]
+    assert lines == ["0.351", *["none is enough"] * 3]
+
+
+def test_a_table_of_tests_is_looked_into_before_it_is_called_right(tmp_path, capsys):
+    write_synthetic(tmp_path)
+    path = write_example(tmp_path, "synthetic.csv")
+    assert main(["check-config", str(path)]) == 0
+    table = tmp_path / "synthetic.csv"
+    rows = table.read_text().splitlines()
+    rows[3] = rows[3].rpartition(",")[0] + ",collapsed"
+    table.write_text("\n".join(rows) + "\n")
+    assert main(["check-config", str(path)]) == 2
+    assert "'collapsed'" in capsys.readouterr().err
+
+
+def test_names_of_rocking_modes_are_explained():
+    row = {"time": 1.0, "kind": "opening", "from": "rest", "to": "4a"}
+    assert contact_event_lines([row], 5)[-1].startswith("1: both bodies rock")
+    column = {**row, "to": "0 1 0 -1"}
+    assert len(contact_event_lines([column], 5)) == 2

@@ -3,6 +3,7 @@
 Used by ``test_foreign_studies.py`` for a few studies, by ``tests/fuzz/inputs.py`` for hundreds.
 """
 
+import json
 import random
 from pathlib import Path
 from typing import Any
@@ -135,7 +136,41 @@ def _tables(results: Path) -> list[str]:
     known = np.isfinite(ends).all(axis=1)
     if not (np.diff(ends[known], axis=1) >= 0).all():
         wrong.append("tests: an amplitude outside its bracket")
+    return wrong + _lost(results) + _falls_before_rocking(results)
+
+
+def _lost(results: Path) -> list[str]:
+    """Records of which nothing is in the results, and no reason why."""
+    left_out = set(pd.read_parquet(results / "left_out.parquet")["motion"])
+    scaling = pd.read_parquet(results / "scaling.parquet")
+    about = pd.read_parquet(results / "motions" / "ground.parquet")["metadata"]
+    used = {json.loads(words)["ground_motion"] for words in _floors(results)}
+    wrong = [] if len(about) == len(used) else ["a ground motion shakes no floor"]
+    if used & left_out:
+        wrong.append("a motion is used and left out")
+    if not (scaling["factor_lowest"] <= scaling["factor_highest"]).all():
+        wrong.append("scaling: the lowest amplitude has the largest factor")
     return wrong
+
+
+def _floors(results: Path) -> pd.Series:
+    return pd.read_parquet(results / "motions" / "floors.parquet")["metadata"]
+
+
+def _falls_before_rocking(results: Path) -> list[str]:
+    """Medians of overturning in peak acceleration below where rocking starts, without friction."""
+    curves = pd.read_parquet(results / "fragility_floors.parquet")
+    if curves.empty or "state" not in curves:
+        return []
+    peak = curves[curves["im"].isin(["PGA", "PFA"])].dropna(subset=["theta"])
+    table = peak.pivot_table(
+        index=["configuration", "floor"], columns="state", values="theta"
+    )
+    if not {"rocks", "overturns"} <= set(table.columns):
+        return []
+    both = table.dropna(subset=["rocks", "overturns"])
+    bad = both["overturns"] < both["rocks"] * (1 - 1e-6)
+    return [f"{name}: falls before it rocks" for name in both.index[bad]]
 
 
 def wrong_limits(table: pd.DataFrame) -> list[str]:

@@ -91,6 +91,15 @@ def test_stripes_without_motions_speak_of_tests():
     assert any("based on only 3 motions" in words for words in said)
 
 
+@pytest.mark.parametrize(("motions", "few"), [(9, True), (10, False)])
+def test_ten_motions_are_no_longer_few(motions, few):
+    fell = np.array([0, 0, 0, 1, 0, 1, 0, 1, 1, 1])[:motions]
+    levels, names = np.linspace(0.2, 1.1, 10)[:motions], list("abcdefghij")[:motions]
+    table = pd.DataFrame({"pga_g": levels, "overturned": fell, "motion": names})
+    said = fit_cloud(table, "pga_g").warnings
+    assert any(f"based on only {motions} motions" in words for words in said) == few
+
+
 @pytest.mark.parametrize("limit", [np.inf, 0.4])
 def test_step_protocols_recover_the_parameters_also_when_a_third_is_censored(limit):
     tests = step_tests(capacities(800, 4), 0.10, limit)

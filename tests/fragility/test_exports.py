@@ -11,7 +11,12 @@ import pytest
 from scipy import stats
 
 from rockfrag.base.errors import InputError
-from rockfrag.fragility.exports import write_nrml, write_simcenter
+from rockfrag.fragility.exports import (
+    STEP,
+    spread_points,
+    write_nrml,
+    write_simcenter,
+)
 from rockfrag.fragility.ida_curves import (
     fragility_table,
     record_set_hash,
@@ -64,13 +69,13 @@ def synthetic_ida():
     return pd.concat(parts, ignore_index=True)
 
 
-def written(folder, curves, fractions=None):
+def written(folder, curves, fractions=None, *, model_error=False):
     """What both files say of curves, which are left in the folder."""
     model, csv, story = (
         folder / name for name in ("model.xml", "damage.csv", "damage.json")
     )
-    write_nrml(curves, model, fractions=fractions)
-    write_simcenter(curves, csv, story, fractions=fractions)
+    write_nrml(curves, model, fractions=fractions, model_error=model_error)
+    write_simcenter(curves, csv, story, fractions=fractions, model_error=model_error)
     root = ElementTree.parse(model).getroot()
     return SimpleNamespace(
         text=model.read_text(),
@@ -119,6 +124,41 @@ def levels_of(function):
         item.get("ls"): np.array(item.text.split(), dtype=float)
         for item in function.findall("n:poes", SPACE)
     }
+
+
+def test_a_written_curve_holds_the_errors_of_estimate_and_model(tmp_path):
+    """β of motions, estimate and model add as squares; the median and where rocking starts stay."""
+    curves = CURVES.assign(beta_statistical=[0.1, np.nan])
+    found = written(tmp_path, curves, model_error=True)
+    blind = MODEL_ERRORS[CUT].blind
+    for name, theta, parts in (
+        ("T1", 0.5, (0.4, 0.1, blind)),
+        ("P_T1", 30.0, (0.5, blind)),
+    ):
+        params = found.functions[name].find("n:params", SPACE)
+        mean, deviation = float(params.get("mean")), float(params.get("stddev"))
+        sigma = np.sqrt(np.log1p((deviation / mean) ** 2))
+        assert sigma == pytest.approx(np.sqrt(np.square(parts).sum()))
+        assert mean / np.exp(sigma**2 / 2) == pytest.approx(theta)
+    assert "The curve as written holds all three" in found.text
+    both = written(tmp_path, OF_TWO_STATES, model_error=True).rows
+    assert both.loc["ROCKFRAG.bust", "LS1-Theta_1"] == STEP
+    assert both.loc["ROCKFRAG.bust", "LS2-Theta_1"] == pytest.approx(
+        np.hypot(0.35, blind)
+    )
+
+
+def test_points_of_a_rejected_curve_are_those_of_levels_known_to_a_factor():
+    x, fraction = (POINTS_OF_URN[name].to_numpy() for name in ("x", "fraction"))
+    levels, chance = spread_points(x, fraction, 0.3)
+    assert (np.diff(chance) >= 0).all() and chance[0] < 1e-3 and chance[-1] > 0.999
+    factors = np.exp(0.3 * stats.norm.ppf((np.arange(20_000) + 0.5) / 20_000))
+    at, known = np.log([0.15, *x, 1.4]), [0.0, *fraction, 1.0]
+    for level in (0.25, 0.5, 0.9):
+        expected = np.interp(np.log(level * factors), at, known).mean()
+        found = np.interp(np.log(level), np.log(levels), chance)
+        assert found == pytest.approx(expected, abs=0.01)
+    assert spread_points(x, fraction, 0.0) == (x, fraction)
 
 
 @pytest.mark.parametrize("sigmas", [np.log(0.25 / 0.4) / 0.4, -3.24])
@@ -281,7 +321,12 @@ def test_openquake_reads_levels_and_lognormal_functions(tmp_path):
     )
     from openquake.hazardlib import nrml
 
-    write_nrml(OF_TWO_STATES, tmp_path / "curves.xml", fractions=POINTS_OF_URN)
+    write_nrml(
+        OF_TWO_STATES,
+        tmp_path / "curves.xml",
+        fractions=POINTS_OF_URN,
+        model_error=False,
+    )
     model = nrml.to_python(str(tmp_path / "curves.xml"))
     functions = {item.id: item for item in model.values()}
     # the lognormal curve of the bust would overturn what does not rock
@@ -302,7 +347,7 @@ def test_pelicun_draws_as_many_overturned_as_the_curves_say(tmp_path):
         "pelicun.assessment", reason="pelicun is not installed", exc_type=ImportError
     )
     paths = tmp_path / "curves.csv", tmp_path / "curves.json"
-    write_simcenter(OF_TWO_STATES, *paths, fractions=POINTS_OF_URN)
+    write_simcenter(OF_TWO_STATES, *paths, fractions=POINTS_OF_URN, model_error=False)
     draws, level = 20_000, 0.45
     run = assessment.Assessment({"PrintLog": False, "Seed": 1, "Verbose": False})
     index = ["Units", *range(draws)]

@@ -1,5 +1,7 @@
 """Confidence limits by resampling whole motions."""
 
+import math
+
 import numpy as np
 import pandas as pd
 import pytest
@@ -9,7 +11,12 @@ from rockfrag.fragility.censored import Brackets, _fit_weighted, bracket_interva
 from rockfrag.fragility.empirical import TableIda
 from rockfrag.fragility.estimators import fit_cloud
 from rockfrag.fragility.ida_curves import fragility_table, tables_of_ida_curves
-from rockfrag.fragility.intervals import interval_over_motions, outcome_fitter
+from rockfrag.fragility.intervals import (
+    Interval,
+    interval_over_motions,
+    outcome_fitter,
+    step_limits,
+)
 from rockfrag.fragility.lognormal import fit_lognormal
 from rockfrag.fragility.observations import observations_from_table
 
@@ -94,6 +101,29 @@ def test_capacities_in_one_step_give_limits_of_the_step_and_a_beta_from_zero():
     assert row["beta_lower"] == 0 < row["beta"] <= row["beta_upper"] < 0.3
     assert row["interval_method"] == "common step"
     assert "in one step of the amplitude" in row["warnings"]
+
+
+def test_limits_of_a_step_replace_the_reason_for_none_and_keep_all_else_that_was_said():
+    said = (
+        "Motions come from 4 earthquakes.",
+        "Two are alike.",
+        "There are no limits.",
+    )
+    nothing = Interval(
+        theta=(math.nan, math.nan),
+        beta=(math.nan, math.nan),
+        level=0.9,
+        method="none",
+        groups=4,
+        over="motion",
+        estimate=(0.0, 5.0),
+        replicates=np.zeros((0, 2)),
+        warnings=said,
+    )
+    found = step_limits(nothing, 0.2, 0.3)
+    assert found.warnings[:2] == said[:2]
+    assert len(found.warnings) == 3
+    assert "in one step of the amplitude" in found.warnings[2]
 
 
 def test_beta_lies_within_its_limits_under_separation_too():

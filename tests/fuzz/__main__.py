@@ -6,8 +6,8 @@
 
 Each must be used, or refused with an :class:`InputError` of one line and at most 500 characters, within five
 seconds of processor time and one gibibyte. All processors work. Prints how many there were of each kind, and
-what went wrong; the first inputs that did are kept. Exit status 1 if anything did. Requests and studies are
-drawn only if they are asked for: each must be answered without a contradiction, or refused, within a minute.
+what went wrong; the first inputs that did are kept. Exit status 1 if anything did. Commands, requests and studies
+are drawn only if they are asked for: each must be answered without a contradiction, or refused, within a minute.
 """
 
 import argparse
@@ -31,6 +31,7 @@ from rockfrag.base.errors import LONGEST_MESSAGE, InputError
 from rockfrag.runtime.processes import in_processes
 
 from . import inputs
+from .commands import commands
 from .damage import Attempt
 from .records import records
 from .texts import texts
@@ -61,6 +62,7 @@ KINDS: Mapping[str, Kind] = {
     "statues and inventories": Kind(inputs.objects, 0.1),
     "numbers": Kind(inputs.numbers, 0.08),
     "texts that state what they hold": Kind(texts, 0.02, least_used=0.3),
+    "commands": Kind(commands, most_seconds=60, chunk=20, least_used=0.8),
     "requests": Kind(
         inputs.requests, most_seconds=60, most_bytes=2**33, chunk=50, least_used=0.25
     ),

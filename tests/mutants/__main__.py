@@ -22,29 +22,56 @@ from .plain import load_libraries
 from .trials import SOURCE, Group, Mutant, noticed_by, quick_tests
 
 GROUPS = (
-    Group(("engines/planar",), ("engines/planar", "engines/test_contract.py"), True),
-    Group(("engines/spatial",), ("engines/spatial",), True),
+    Group(
+        ("engines/planar",),
+        (
+            "engines/planar/test_balance.py",
+            "engines/planar/test_closed_forms.py",
+            "engines/planar/test_laws.py",
+            "engines/planar/test_routh.py",
+            "engines/planar/test_search.py",
+            "engines/test_contract.py",
+        ),
+        True,
+    ),
+    Group(
+        ("engines/spatial",),
+        (
+            "engines/spatial/test_balance.py",
+            "engines/spatial/test_impacts.py",
+            "engines/spatial/test_physics.py",
+            "engines/spatial/test_spin.py",
+        ),
+        True,
+    ),
     Group(
         ("engines/pure_rocking",),
-        ("engines/pure_rocking", "simulation", "engines/planar/test_pure_rocking.py"),
+        (
+            "engines/pure_rocking/test_balance.py",
+            "engines/pure_rocking/test_restitution_laws.py",
+            "engines/pure_rocking/test_taylor.py",
+            "engines/pure_rocking/test_vertical.py",
+            "simulation/test_closed_forms.py",
+        ),
         True,
     ),
     Group(
         ("laws", "system"),
         (
-            *("system", "engines/planar/test_laws.py", "simulation/test_shapes.py"),
-            *(
-                "engines/pure_rocking/test_restitution_laws.py",
-                "engines/test_contract.py",
-            ),
-            *("simulation/test_closed_forms.py", "engines/planar/test_closed_forms.py"),
+            "system",
+            "engines/planar/test_laws.py",
+            "engines/pure_rocking/test_balance.py",
+            "engines/pure_rocking/test_restitution_laws.py",
+            "engines/test_contract.py",
+            "simulation/test_closed_forms.py",
+            "simulation/test_shapes.py",
         ),
         True,
     ),
     Group(("assess",), ("assess",), False),
     Group(("fragility",), ("fragility",), False),
 )
-"""What is changed, and the quick tests that are asked."""
+"""What is changed, and the quick tests that are asked: of kernels, those that are quick as plain Python too."""
 
 WORDS_ALONE = {
     # words, pages and figures are not statistics

@@ -25,7 +25,7 @@ from .changes import Change
 ROOT = Path(__file__).resolve().parents[2]
 SOURCE = ROOT / "src" / "rockfrag"
 
-LONGEST_TEST_S = 6.0  # of the processor; slower tests are not asked
+LONGEST_TEST_S = 3.0  # of the processor; slower tests are not asked
 LONGEST_TRIAL_S = 20.0
 """Time of the processor that all tests of a mutant may take that does not change them."""
 

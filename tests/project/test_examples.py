@@ -124,7 +124,12 @@ RESULTS = {
     "Response of a stack": lambda: simulate(STACK, 4 * PULSE, 0.01),
     "Outcomes": lambda: overturns([STATUE, STACK], PULSE, 0.01, np.arange(2.5, 8, 0.1)),
     "Thresholds": lambda: find_thresholds(
-        [STATUE] * 9, PULSE, 0.01, 8.0, tolerance=0.1, narrowest_resurrection=0.5
+        [STATUE] * 9,
+        PULSE,
+        0.01,
+        highest=8.0,
+        tolerance=0.1,
+        narrowest_resurrection=0.5,
     ),
     "RockingSpectrum": lambda: rockfrag.rocking_spectrum(
         Motion(4 * PULSE, 0.01), [1, 2, 3], 0.2
@@ -171,7 +176,7 @@ def test_a_file_name_in_place_of_a_motion_is_answered_with_how_to_read_it():
         lambda: overturns(STATUE, motion),
         lambda: overturns(STATUE, [motion, motion], 0.01),
         lambda: find_thresholds(
-            STATUE, motion, None, 8.0, tolerance=0.1, narrowest_resurrection=0.5
+            STATUE, motion, highest=8.0, tolerance=0.1, narrowest_resurrection=0.5
         ),
     ):
         with pytest.raises(InputError, match=r"rockfrag\.read_motion") as caught:
@@ -202,7 +207,7 @@ def test_accelerations_in_g_are_warned_of_by_what_they_would_lift(body, peak):
         # in g it would lift nothing either
         *(lambda f=f: simulate(STATUE, f * PULSE, 0.01) for f in (0.2, 0.0)),
         lambda: find_thresholds(
-            STATUE, PULSE, 0.01, 8.0, tolerance=0.01, narrowest_resurrection=0.5
+            STATUE, PULSE, 0.01, highest=8.0, tolerance=0.01, narrowest_resurrection=0.5
         ),
     ],
 )

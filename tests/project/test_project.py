@@ -1,6 +1,7 @@
 """What the project says about itself is the same everywhere."""
 
 import importlib
+import json
 import re
 import shutil
 import subprocess
@@ -42,6 +43,28 @@ def test_version_is_one():
         (ROOT / "thesis" / "pyproject.toml").read_text(encoding="utf-8")
     )
     assert thesis["project"]["version"] == rockfrag.__version__
+    described = json.loads((ROOT / "codemeta.json").read_text(encoding="utf-8"))
+    assert described["version"] == rockfrag.__version__
+    assert described["keywords"] == PROJECT["project"]["keywords"]
+    assert described["description"] == PROJECT["project"]["description"]
+
+
+OF_CONDA = {"matplotlib": "matplotlib-base", "lazy_loader": "lazy-loader"}
+"""Names under which conda-forge has packages."""
+
+
+def test_the_recipe_of_conda_asks_for_what_the_package_asks_for():
+    path = ROOT / "maintenance" / "conda" / "meta.yaml"
+    text = path.read_text(encoding="utf-8")
+    assert f'set version = "{rockfrag.__version__}"' in text
+    lines = [line for line in text.splitlines() if not line.startswith(("{%", "#"))]
+    recipe = yaml.safe_load("\n".join(lines).replace("{{", "").replace("}}", ""))
+    python = f"python {PROJECT['project']['requires-python']}"
+    asked = {python}
+    for each in PROJECT["project"]["dependencies"]:
+        name, bound = re.fullmatch(r"([a-z0-9_]+)(>=.*)", each).groups()
+        asked.add(f"{OF_CONDA.get(name, name)} {bound}")
+    assert set(recipe["requirements"]["run"]) == asked
 
 
 @pytest.mark.slow

@@ -26,7 +26,7 @@ def test_the_survival_window_of_a_sine_pulse_between_its_two_modes_of_overturnin
     def searched(highest: float, narrowest: float):
         spacing = {"tolerance": 1e-3, "narrowest_resurrection": narrowest}
         return find_thresholds(
-            uniform(p, alpha), pulse, dt, highest, **spacing, restitution=[0.9]
+            uniform(p, alpha), pulse, dt, highest=highest, **spacing, restitution=[0.9]
         )
 
     found = searched(9.0, 0.25)
@@ -56,7 +56,12 @@ def test_thresholds_are_those_of_the_grid(ensemble):
     # the first power of two that makes it no wider than the tolerance
     width = spacing / 16
     found = find_thresholds(
-        bodies, motions, DT, 1.2, tolerance=tolerance, narrowest_resurrection=spacing
+        bodies,
+        motions,
+        DT,
+        highest=1.2,
+        tolerance=tolerance,
+        narrowest_resurrection=spacing,
     )
     grid = spacing * np.arange(1, 61)
     fallen = overturns(bodies, motions, DT, grid).overturned
@@ -85,7 +90,7 @@ def test_thresholds_are_those_of_the_grid(ensemble):
 def test_both_ends_of_every_window_survive_and_it_overturns_just_outside(ensemble):
     bodies, motions = ensemble
     found = find_thresholds(
-        bodies, motions, DT, 1.5, tolerance=0.004, narrowest_resurrection=0.01
+        bodies, motions, DT, highest=1.5, tolerance=0.004, narrowest_resurrection=0.01
     )
     assert len(found.resurrections) > 3
     width = 0.01 / 4

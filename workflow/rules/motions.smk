@@ -23,8 +23,7 @@ rule motions:
         STUDY.fetched_records("resources/records"),
     output:
         motions=read("motions/records", "motions/ground", "motions/floors", *VERTICAL),
-        measures=table("measures"),
-        left_out=table("left_out") if STUDY.keep_going else [],
+        measures=table("measures", "scaling", "left_out"),
         written=(
             [directory(f"{RESULTS}/motions/written")] if STUDY.write_motions else []
         ),
@@ -41,7 +40,7 @@ rule motions:
         stage="rockfrag.stages.motions:run",
         study=study_file,
         settings=settings(
-            *("motions", "building", "write_motions", "keep_going", "vertical"),
+            *("motions", "building", "write_motions", "keep_going", "vertical", "amplitudes"),
             files=STUDY.motion_files,
         ),
     script:

@@ -157,7 +157,9 @@ def how_far(found: Assessment) -> Finding:
     """The level at which half of the motions topple it."""
     half = found.amplitudes[0.5]
     if not math.isfinite(half.value):
-        return finding(Text.HOW_FAR_BEYOND, half)
+        strongest = float(found.outcomes.intensity_levels.levels[-1])
+        most = finding(Text.QUANTITY, value=two(strongest), unit=found.measure.unit)
+        return finding(Text.HOW_FAR_BEYOND, half, most=most)
     unit, lower = found.measure.unit, two(half.lower)
     middle = finding(Text.QUANTITY, value=two(half.value), unit=unit)
     if not math.isfinite(half.upper):

@@ -27,6 +27,7 @@ from rockfrag.base.units import quantity
 from rockfrag.base.yaml_file import read_yaml
 from rockfrag.config.schema import checked
 from rockfrag.motions.intensity import IntensityMeasure
+from rockfrag.system.kinds import kind_named
 from rockfrag.words.findings import Finding, Value, finding, three
 
 LONGEST_PERIOD = 1e6  # Longest return period of a level [year]
@@ -115,17 +116,19 @@ class Request:
         return finding("the_object") if self.name == UNNAMED else self.name
 
 
-def read_request(path: str | os.PathLike[str]) -> Request:
-    """Read a request from a YAML file.
+def read_request(path: str | os.PathLike[str] | Mapping[str, Any]) -> Request:
+    """Read a request from a YAML file, or take one from a mapping with the same keys.
 
     Parameters
     ----------
-    path : file such as ``statue.yaml``; paths in it are relative to it
+    path : file such as ``statue.yaml``, to which paths in it are relative; or its keys and values
 
     Returns
     -------
     What is asked, for :func:`rockfrag.assess.assess`.
     """
+    if isinstance(path, Mapping):
+        return make_request(path, "read_request")
     return make_request(read_yaml(path), str(path), Path(path).parent)
 
 
@@ -145,6 +148,8 @@ def make_request(
     What is asked, for :func:`rockfrag.assess.assess`.
     """
     known = checked(settings, "statue", source)
+    if kind := known.pop("kind", None):
+        known = kind_named(kind).settings(known)
     where = folder or Path()
     with errors_of(source):
         return Request(

@@ -25,6 +25,7 @@ from rockfrag.config.schema import checked
 from rockfrag.motions.intensity import pgv
 from rockfrag.motions.response_spectra import response_spectrum
 from rockfrag.records.motion import Motion
+from rockfrag.runtime.progress import Progress
 from rockfrag.simulation.closed_forms import housner_velocity
 from rockfrag.system.blocks import Block
 
@@ -124,17 +125,21 @@ def check_rules(
     return found
 
 
-def rules_study(path: str | os.PathLike[str], records: str | Path) -> pd.DataFrame:
+def rules_study(
+    path: str | os.PathLike[str],
+    records: str | Path,
+    progress: Progress | None = None,
+) -> pd.DataFrame:
     """Hold engineers' rules against simulations of the objects of a file, under the default motions.
 
     Parameters
     ----------
-    path : of the file, such as ``config/rules-of-thumb.yaml``
-    records : folder of fetched records
+    path, records : file of the objects, and folder of fetched records
+    progress : called with the number of objects done and of all
 
     Returns
     -------
-    A row, a :class:`RuleCheck`, for each rule and object.
+    pandas.DataFrame: a row, a :class:`RuleCheck`, for each rule and object.
     """
     given = checked(read_yaml(path), "rules_of_thumb", str(path))
     requests = [
@@ -144,11 +149,13 @@ def rules_study(path: str | os.PathLike[str], records: str | Path) -> pd.DataFra
     motions = motion_set(Records(), Place(), Path(records))
     shaking = make_intensity_levels(motions, PGA)
     rows = []
-    for request in requests:
+    for done, request in enumerate(requests, start=1):
         objects = request.objects
         (outcomes,) = shaking.outcomes_of([objects])
         rows += [
             {"object": request.name, **vars(check)}
             for check in check_rules(objects, motions, outcomes)
         ]
+        if progress is not None:
+            progress(done, len(requests))
     return pd.DataFrame(rows)

@@ -42,7 +42,16 @@ _HALF_PI_3, _HALF_PI_4 = 2.0222662487111665e-21, 8.4784276603689e-32
 
 
 def sin_cos(x: float) -> tuple[float, float]:
-    """Sine and cosine of an angle [rad]."""
+    """Sine and cosine of an angle [rad].
+
+    Parameters
+    ----------
+    x : angle, at most 1e6 in magnitude [rad]
+
+    Returns
+    -------
+    Sine and cosine [-]; NaN beyond that.
+    """
     if abs(x) <= QUARTER:
         return _sine(x, 0.0), _cosine(x, 0.0)
     if not abs(x) <= LARGEST_ANGLE:
@@ -65,12 +74,30 @@ def sin_cos(x: float) -> tuple[float, float]:
 
 
 def sin(x: float) -> float:
-    """Sine of an angle [rad]."""
+    """Sine of an angle [rad].
+
+    Parameters
+    ----------
+    x : angle, at most 1e6 in magnitude [rad]
+
+    Returns
+    -------
+    The sine [-]; NaN beyond that.
+    """
     return sin_cos(x)[0]
 
 
 def cos(x: float) -> float:
-    """Cosine of an angle [rad]."""
+    """Cosine of an angle [rad].
+
+    Parameters
+    ----------
+    x : angle, at most 1e6 in magnitude [rad]
+
+    Returns
+    -------
+    The cosine [-]; NaN beyond that.
+    """
     return sin_cos(x)[1]
 
 
@@ -116,14 +143,32 @@ _UP, _DOWN = 2.0**600, 2.0**-600
 
 
 def atan2(y: float, x: float) -> float:
-    """Angle of the direction (x, y), from -π to π [rad]."""
+    """Angle of the direction (x, y), from -π to π [rad].
+
+    Parameters
+    ----------
+    y, x : of one unit, of any size
+
+    Returns
+    -------
+    The angle [rad]; NaN if one of both is.
+    """
     if math.isnan(x) or math.isnan(y):
         return math.nan
     return _direction(abs(y), 0.0, x, y)
 
 
 def acos(x: float) -> float:
-    """Angle from 0 to π with this cosine [rad]."""
+    """Angle from 0 to π with this cosine [rad].
+
+    Parameters
+    ----------
+    x : cosine, from -1 to 1 [-]
+
+    Returns
+    -------
+    The angle [rad]; NaN beyond that.
+    """
     if not abs(x) <= 1.0:
         return math.nan
     square, low = _product(x, x)
@@ -193,7 +238,16 @@ def _octant(
 
 
 def hypot(x: float, y: float) -> float:
-    """Length of (x, y), by a square root and one correction (Borges 2019)."""
+    """Length of (x, y), by a square root and one correction (Borges 2019).
+
+    Parameters
+    ----------
+    x, y : of one unit, of any size
+
+    Returns
+    -------
+    The length, in that unit.
+    """
     big, small = max(abs(x), abs(y)), min(abs(x), abs(y))
     if abs(x) == math.inf or abs(y) == math.inf:
         return math.inf

@@ -29,7 +29,16 @@ class InputError(ValueError):
 
 @contextmanager
 def errors_of(where: str) -> Iterator[None]:
-    """Begin the messages that come from inside this block with where it is."""
+    """Begin the messages that come from inside this block with where it is.
+
+    Parameters
+    ----------
+    where : file, line, key or argument, without a colon
+
+    Returns
+    -------
+    A context in which each :class:`InputError` is raised anew with ``where`` in front.
+    """
     try:
         yield
     except InputError as error:

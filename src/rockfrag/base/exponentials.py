@@ -34,7 +34,16 @@ def _beyond(x: float) -> float:
 
 
 def exp(x: float) -> float:
-    """Exponential."""
+    """Exponential.
+
+    Parameters
+    ----------
+    x : the exponent [-]
+
+    Returns
+    -------
+    e to the power of x: inf above 709.8, 0 below -745.1.
+    """
     if not x <= _LARGEST:
         return math.inf if x > 0.0 else math.nan
     if x < _LEAST:
@@ -57,7 +66,16 @@ def exp(x: float) -> float:
 
 
 def expm1(x: float) -> float:
-    """Return exp(x) - 1, exact to its own last digits about 0."""
+    """Exponential less one, exact to its own last digits about 0.
+
+    Parameters
+    ----------
+    x : the exponent [-]
+
+    Returns
+    -------
+    exp(x) - 1.
+    """
     if -0.35 < x < 0.35:
         return x + x * x * _beyond(x)
     return exp(x) - 1.0
@@ -67,7 +85,16 @@ def expm1(x: float) -> float:
 
 
 def log(x: float) -> float:
-    """Natural logarithm; -inf of 0 and NaN below."""
+    """Natural logarithm.
+
+    Parameters
+    ----------
+    x : a positive number
+
+    Returns
+    -------
+    Its natural logarithm; -inf of 0 and NaN below.
+    """
     if not x > 0.0:
         return -math.inf if x == 0.0 else math.nan
     if x == math.inf:
@@ -103,7 +130,16 @@ def log(x: float) -> float:
 
 
 def log1p(x: float) -> float:
-    """Return ln(1 + x), exact to its own last digits about 0."""
+    """Logarithm of one more, exact to its own last digits about 0.
+
+    Parameters
+    ----------
+    x : a number above -1
+
+    Returns
+    -------
+    ln(1 + x).
+    """
     total = 1.0 + x
     if total == 1.0 or total == math.inf:
         return x
@@ -177,7 +213,16 @@ def _bell(x: float) -> float:
 
 
 def normal_cdf(x: float) -> float:
-    """Normal distribution function."""
+    """Normal distribution function.
+
+    Parameters
+    ----------
+    x : in standard deviations [-]
+
+    Returns
+    -------
+    The probability of a smaller value.
+    """
     z = abs(x) / _ROOT_TWO
     if z <= 0.46875:
         return 0.5 * (1.0 + _near_erf(x / _ROOT_TWO))
@@ -186,7 +231,16 @@ def normal_cdf(x: float) -> float:
 
 
 def log_normal_cdf(x: float) -> float:
-    """Logarithm of the normal distribution function."""
+    """Logarithm of the normal distribution function.
+
+    Parameters
+    ----------
+    x : in standard deviations [-]
+
+    Returns
+    -------
+    The logarithm of the probability of a smaller value.
+    """
     z = abs(x) / _ROOT_TWO
     if z <= 0.46875:
         return log(0.5 * (1.0 + _near_erf(x / _ROOT_TWO)))

@@ -15,6 +15,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 from rockfrag.base.arrays import Floats
+from rockfrag.base.errors import InputError
 from rockfrag.base.files import whole_file
 
 BLACK, ORANGE, SKY, GREEN = "#000000", "#E69F00", "#56B4E9", "#009E73"
@@ -44,13 +45,27 @@ STYLE = {
 
 @contextmanager
 def figure_style() -> Iterator[None]:
-    """Draw and save figures inside this block."""
+    """Draw and save figures inside this block.
+
+    Returns
+    -------
+    A context in which matplotlib draws with :data:`STYLE`.
+    """
     with mpl.rc_context(STYLE):
         yield
 
 
 def new_figure(width: float = PAGE_WIDTH, height: float = 3.0) -> Figure:
-    """Return an empty figure [in] that belongs to no window and needs no closing."""
+    """Return an empty figure [in] that belongs to no window and needs no closing.
+
+    Parameters
+    ----------
+    width, height : of the figure [in]
+
+    Returns
+    -------
+    The figure, drawn by Agg.
+    """
     figure = Figure(figsize=(width, height))
     FigureCanvasAgg(figure)
     return figure
@@ -60,14 +75,36 @@ def new_figure(width: float = PAGE_WIDTH, height: float = 3.0) -> Figure:
 def panels(
     width: float, height: float, *shape: int, **shared: Any
 ) -> Iterator[tuple[Figure, Any]]:
-    """Draw an empty figure [in] and its panels inside this block: one, or as ``Figure.subplots`` makes them."""
+    """Draw an empty figure [in] and its panels inside this block: one, or as ``Figure.subplots`` makes them.
+
+    Parameters
+    ----------
+    width, height : of the figure [in]
+    shape : rows and columns of panels; one panel without them
+    **shared : keywords of ``Figure.subplots``, such as ``sharex``
+
+    Returns
+    -------
+    A context that gives the figure, and its panel or an array of panels.
+    """
     with figure_style():
         figure = new_figure(width, height)
         yield figure, figure.subplots(*shape, **shared)
 
 
 def draw_history(panel: Axes, time: Floats, values: Floats, **line: Any) -> float:
-    """Draw values over time with zero and a dot at the largest, and return that in magnitude; shapes (n,)."""
+    """Draw values over time with zero and a dot at the largest, and return that in magnitude; shapes (n,).
+
+    Parameters
+    ----------
+    panel : axes to draw in
+    time, values : of the samples, shape (n,)
+    **line : keywords of the line, in the place of those that all histories have
+
+    Returns
+    -------
+    The largest magnitude of the values, in their unit.
+    """
     peak = int(np.abs(values).argmax())
     panel.axhline(0, color=GUIDE, linewidth=0.6, zorder=1)
     panel.plot(time, values, **{"color": BLUE, "linewidth": 0.6, **line})
@@ -76,7 +113,13 @@ def draw_history(panel: Axes, time: Floats, values: Floats, **line: Any) -> floa
 
 
 def plain_log(axes: Axes, which: str) -> None:
-    """Make axes logarithmic, ``x``, ``y`` or ``xy``, with ticks such as 0.1, 0.2, 0.5 instead of powers of ten."""
+    """Make axes logarithmic, ``x``, ``y`` or ``xy``, with ticks such as 0.1, 0.2, 0.5 instead of powers of ten.
+
+    Parameters
+    ----------
+    axes : that have their data already
+    which : ``x``, ``y`` or ``xy``
+    """
     near = (1.0, 2.0, 3.0, 5.0, 7.0)
     for name in which:
         axes.set(**{f"{name}scale": "log"})
@@ -99,7 +142,13 @@ def plain_log(axes: Axes, which: str) -> None:
 
 
 def letter_panels(axes: Iterable[Axes], size: float = 8.5) -> None:
-    """Name panels (a), (b), … above their upper left corners, where there is more than one."""
+    """Name panels (a), (b), … above their upper left corners, where there is more than one.
+
+    Parameters
+    ----------
+    axes : panels in the order of their letters
+    size : of the letters [points]
+    """
     panels = list(axes)
     for letter, panel in zip(
         "abcdefghijklmnop", panels if len(panels) > 1 else [], strict=False
@@ -108,8 +157,35 @@ def letter_panels(axes: Iterable[Axes], size: float = 8.5) -> None:
         panel.set_title(f"({letter}) {title}".strip(), loc="left", pad=3, fontsize=size)
 
 
+def checked_title(title: object) -> str:
+    """Return the heading of a figure, which is a text.
+
+    Parameters
+    ----------
+    title : heading that a user gave
+
+    Returns
+    -------
+    The heading.
+    """
+    if not isinstance(title, str):
+        raise InputError(
+            f"title: expected a text that heads the figure, got {title!r}."
+        )
+    return title
+
+
 def note_figure(words: str) -> Figure:
-    """Return a figure that says in words why there is nothing to draw."""
+    """Return a figure that says in words why there is nothing to draw.
+
+    Parameters
+    ----------
+    words : one sentence
+
+    Returns
+    -------
+    The figure, one column wide.
+    """
     with figure_style():
         figure = new_figure(COLUMN_WIDTH, 0.6)
         figure.text(0.5, 0.5, words, ha="center", va="center", wrap=True)
@@ -117,7 +193,13 @@ def note_figure(words: str) -> Figure:
 
 
 def save_figure(figure: Figure, *paths: str | os.PathLike[str]) -> None:
-    """Write a figure to each path, by its ending as ``.svg`` or ``.png``, without dates."""
+    """Write a figure to each path, by its ending as ``.svg`` or ``.png``, without dates.
+
+    Parameters
+    ----------
+    figure : that is drawn ready
+    paths : of the files; their folders are made
+    """
     # matplotlib records its version and the time unless told not to
     options: dict[str, dict[str, Any]] = {
         "svg": {"metadata": {"Date": None, "Creator": None}},

@@ -20,7 +20,16 @@ _RESERVED = {"con", "prn", "aux", "nul", *_DEVICES}  # devices, not files, on Wi
 
 
 def is_file(path: Path) -> bool:
-    """Whether there is such a file; there is none where the name is too long for one."""
+    """Whether there is such a file; there is none where the name is too long for one.
+
+    Parameters
+    ----------
+    path : of any length
+
+    Returns
+    -------
+    Whether a file stands there; False for a folder.
+    """
     try:
         return path.is_file()
     except OSError:
@@ -28,13 +37,27 @@ def is_file(path: Path) -> bool:
 
 
 def sha256_of(path: Path) -> str:
-    """Return the SHA-256 of a file, 64 hexadecimal digits in lower case."""
+    """Return the SHA-256 of a file, 64 hexadecimal digits in lower case.
+
+    Parameters
+    ----------
+    path : of a file that exists
+
+    Returns
+    -------
+    The digest.
+    """
     with path.open("rb") as file:
         return hashlib.file_digest(file, "sha256").hexdigest()
 
 
 def check_name(name: str) -> None:
-    """Check that a name which a user gave can stand in tables, figures and file names."""
+    """Check that a name which a user gave can stand in tables, figures and file names.
+
+    Parameters
+    ----------
+    name : as the user gave it
+    """
     if (
         len(name) > LONGEST_NAME
         or not name.isprintable()
@@ -55,6 +78,14 @@ def file_name(name: str) -> str:
 
     ASCII letters, digits, ``-``, ``_`` and ``.`` stay, other characters become ``-``; a digest follows
     where letters of other scripts or what is too long were lost, so that such names stay different.
+
+    Parameters
+    ----------
+    name : any text
+
+    Returns
+    -------
+    A name without folder, of at most 88 characters.
     """
     plain = "".join(
         c if c.isascii() and (c.isalnum() or c in "-_.") else "-" for c in name
@@ -76,7 +107,13 @@ def file_name(name: str) -> str:
 def distinct_file_names(
     names: Iterable[str], found: dict[str, str] | None = None
 ) -> None:
-    """Check that names, and those ``found`` before, can be used and make files that stay apart in any case."""
+    """Check that names, and those ``found`` before, can be used and make files that stay apart in any case.
+
+    Parameters
+    ----------
+    names : to be checked, in their order
+    found : names met so far by their folded file names; those of ``names`` are added
+    """
     found = {} if found is None else found
     for name in names:
         check_name(name)
@@ -87,7 +124,16 @@ def distinct_file_names(
 
 @contextmanager
 def whole_file(path: str | os.PathLike[str]) -> Iterator[Path]:
-    """Give a temporary path beside ``path`` that replaces it when the block ends without error."""
+    """Give a temporary path beside ``path`` that replaces it when the block ends without error.
+
+    Parameters
+    ----------
+    path : of the file; its folder is made
+
+    Returns
+    -------
+    A context that gives the temporary path to write to.
+    """
     target = Path(path)
     target.parent.mkdir(parents=True, exist_ok=True)
     handle, name = tempfile.mkstemp(
@@ -107,13 +153,28 @@ def whole_file(path: str | os.PathLike[str]) -> Iterator[Path]:
 
 
 def write_text(text: str, path: str | os.PathLike[str]) -> None:
-    """Write ``text`` as UTF-8 with Unix line ends, whole or not at all."""
+    """Write ``text`` as UTF-8 with Unix line ends, whole or not at all.
+
+    Parameters
+    ----------
+    text : of the whole file
+    path : of the file; its folder is made
+    """
     with whole_file(path) as part:
         part.write_bytes(text.encode("utf-8"))
 
 
 def csv_text(table: pd.DataFrame) -> str:
-    """Text of a table as CSV with Unix line ends; what a spreadsheet would take for a formula becomes text."""
+    """Text of a table as CSV with Unix line ends; what a spreadsheet would take for a formula becomes text.
+
+    Parameters
+    ----------
+    table : with columns of numbers, texts or dates
+
+    Returns
+    -------
+    The text, with a header line, without the index.
+    """
     safe = table.copy(deep=False)
     for column in table.select_dtypes(exclude=["number", "bool", "datetime"]):
         if any(_as_text(value) is not value for value in table[column].unique()):
@@ -136,7 +197,13 @@ def _as_text(value: Any) -> Any:
 
 
 def write_table(table: pd.DataFrame, *paths: str | os.PathLike[str]) -> None:
-    """Write a table to each path, by its ending as ``.csv`` or ``.parquet``, without the index."""
+    """Write a table to each path, by its ending as ``.csv`` or ``.parquet``, without the index.
+
+    Parameters
+    ----------
+    table : with columns of numbers, texts or dates
+    paths : of the files, that end in ``.csv`` or ``.parquet``; their folders are made
+    """
     for path in paths:
         ending = Path(path).suffix
         with whole_file(path) as part:

@@ -15,23 +15,65 @@ _LONGEST_SHOWN = 60
 
 
 def shown(value: object) -> str:
-    """Return a value as a message quotes it: in one short line."""
+    """Return a value as a message quotes it: in one short line.
+
+    Parameters
+    ----------
+    value : anything
+
+    Returns
+    -------
+    At most 61 characters.
+    """
     text = " ".join(repr(value).split())
     return text if len(text) <= _LONGEST_SHOWN else text[:_LONGEST_SHOWN] + "…"
 
 
 def real_number(name: str, value: object, unit: str = "") -> float:
-    """Return a finite number as it is, or say in one sentence why it is none."""
+    """Return a finite number as it is, or say in one sentence why it is none.
+
+    Parameters
+    ----------
+    name : of the argument or key, with which a message begins
+    value : anything
+    unit : in which it is given; empty where it has none
+
+    Returns
+    -------
+    The number, in the unit in which it was given.
+    """
     return _checked(name, value, f"a finite number{_of(unit)}", lambda _: True)
 
 
 def positive_number(name: str, value: object, unit: str = "") -> float:
-    """Return a finite number above 0, or say in one sentence why it is none."""
+    """Return a finite number above 0, or say in one sentence why it is none.
+
+    Parameters
+    ----------
+    name : of the argument or key, with which a message begins
+    value : anything
+    unit : in which it is given; empty where it has none
+
+    Returns
+    -------
+    The number, in the unit in which it was given.
+    """
     return _checked(name, value, f"a positive number{_of(unit)}", lambda x: x > 0)
 
 
 def number_from_zero(name: str, value: object, unit: str = "") -> float:
-    """Return a finite number that is 0 or more, or say in one sentence why it is none."""
+    """Return a finite number that is 0 or more, or say in one sentence why it is none.
+
+    Parameters
+    ----------
+    name : of the argument or key, with which a message begins
+    value : anything
+    unit : in which it is given; empty where it has none
+
+    Returns
+    -------
+    The number, in the unit in which it was given.
+    """
     wanted = f"a number{_of(unit)} that is not negative"
     return _checked(name, value, wanted, lambda x: x >= 0)
 
@@ -52,14 +94,35 @@ def _checked(
 
 
 def whole_number(name: str, value: object) -> int:
-    """Return a whole number, or say in one sentence why it is none; True and False are none."""
+    """Return a whole number, or say in one sentence why it is none; True and False are none.
+
+    Parameters
+    ----------
+    name : of the argument or key, with which a message begins
+    value : anything
+
+    Returns
+    -------
+    The number.
+    """
     if isinstance(value, bool) or not isinstance(value, (int, np.integer)):
         raise InputError(f"{name}: expected a whole number, got {shown(value)}.")
     return int(value)
 
 
 def whole_within(owner: str, name: str, value: Any, least: int, most: int) -> int:
-    """Return ``value`` as an int if it is a whole number from ``least`` to ``most``."""
+    """Return ``value`` as an int if it is a whole number from ``least`` to ``most``.
+
+    Parameters
+    ----------
+    owner, name : of what the argument belongs to, and of the argument itself
+    value : anything
+    least, most : that are allowed, both included
+
+    Returns
+    -------
+    The number.
+    """
     if (
         real_number(f"{owner}: {name}", value) != int(value)
         or not least <= value <= most
@@ -75,7 +138,18 @@ def _of(unit: str) -> str:
 
 
 def real_array(name: str, data: object, unit: str = "") -> NDArray[np.float64]:
-    """Return data as an array of floats, or say in one sentence why they cannot be used."""
+    """Return data as an array of floats, or say in one sentence why they cannot be used.
+
+    Parameters
+    ----------
+    name : of the argument, with which a message begins
+    data : anything that ``np.asarray`` takes, of any shape
+    unit : in which the numbers are given; empty where they have none
+
+    Returns
+    -------
+    The numbers, contiguous, of the shape of ``data``; NaN and infinity are kept.
+    """
     wanted = f"{name}: expected numbers{f' [{unit}]' if unit else ''}"
     if isinstance(data, np.ma.MaskedArray):
         raise InputError(f"{wanted}, got a masked array; fill its gaps first.")

@@ -18,7 +18,16 @@ class UnknownKeyword(InputError, TypeError):
 
 
 def named_keywords(function: Called) -> Called:
-    """Let a function answer a wrong keyword with the right one, or with all there are (a decorator)."""
+    """Let a function answer a wrong keyword with the right one, or with all there are (a decorator).
+
+    Parameters
+    ----------
+    function : that is public
+
+    Returns
+    -------
+    The function, which raises :class:`UnknownKeyword` for a keyword that it lacks.
+    """
     known = _names_of(function)
     names = frozenset(known)
 
@@ -40,7 +49,16 @@ def named_keywords(function: Called) -> Called:
 
 
 def named_fields(of: type[Made]) -> type[Made]:
-    """Let a class answer a wrong keyword likewise (a decorator)."""
+    """Let a class answer a wrong keyword likewise (a decorator).
+
+    Parameters
+    ----------
+    of : a class with an ``__init__``, such as a dataclass
+
+    Returns
+    -------
+    The class itself.
+    """
     of.__init__ = named_keywords(of.__init__)  # type: ignore[method-assign]
     return of
 
@@ -61,12 +79,31 @@ _FORCED = " with force=True or in the file"
 
 
 def for_command_line(message: object, force: bool = True) -> str:
-    """Return a message that names arguments of functions with the options of ``rockfrag`` instead."""
+    """Return a message that names arguments of functions with the options of ``rockfrag`` instead.
+
+    Parameters
+    ----------
+    message : of an :class:`InputError`
+    force : whether the command has an option ``--force``
+
+    Returns
+    -------
+    The message with ``--cut-short`` in the place of ``cut_short=``.
+    """
     words = str(message) if force else str(message).replace(_FORCED, " in the file")
     return _OPTION.sub(lambda found: f"--{found[1].replace('_', '-')}", words)
 
 
 def for_catalogue(message: object) -> str:
-    """Return a message that names arguments of functions with the columns of a catalogue instead."""
+    """Return a message that names arguments of functions with the columns of a catalogue instead.
+
+    Parameters
+    ----------
+    message : of an :class:`InputError`
+
+    Returns
+    -------
+    The message with ``the column unit`` in the place of ``unit=``.
+    """
     words = str(message).replace(_FORCED, " in the file")
     return _OPTION.sub(lambda found: f"the column {found[1]}", words)

@@ -40,7 +40,13 @@ LEAST_PEAK = 0.05  # a motion whose peak is below this [m/s²] moves nothing tha
 
 
 def check_density(width: float, height: float, mass: float) -> None:
-    """Refuse a block [m, m, kg] that no solid can have at any depth within ``DEPTHS``, which is not known."""
+    """Refuse a block [m, m, kg] that no solid can have at any depth within ``DEPTHS``, which is not known.
+
+    Parameters
+    ----------
+    width, height : of the block [m]
+    mass : of the block [kg]
+    """
     thin, thick = DEPTHS[0] * width, DEPTHS[1] * max(width, height)
 
     def density(depth: float) -> float:
@@ -64,7 +70,18 @@ def check_density(width: float, height: float, mass: float) -> None:
 
 
 def block_warning(width: float, height: float, mass: float, inertia: float) -> str:
-    """Say that a block is a giant lighter than air, or its inertia [kg m²] that of another body, or nothing."""
+    """Say that a block is a giant lighter than air, or its inertia [kg m²] that of another body, or nothing.
+
+    Parameters
+    ----------
+    width, height : of the block [m]
+    mass : of the block [kg]
+    inertia : about its centre of gravity [kg m²]
+
+    Returns
+    -------
+    A sentence without a full stop, empty if nothing is odd.
+    """
     # the depth is not known; the thinnest that is admitted
     densest = mass / width / width / height / DEPTHS[0]
     if max(width, height) > LARGEST_SIZE and densest < AIR:
@@ -80,7 +97,16 @@ def block_warning(width: float, height: float, mass: float, inertia: float) -> s
 
 
 def size_warning(width: float, height: float) -> str:
-    """Say that a block is unusually large, or return an empty text."""
+    """Say that a block is unusually large, or return an empty text.
+
+    Parameters
+    ----------
+    width, height : of the block [m]
+
+    Returns
+    -------
+    A sentence without a full stop, empty if nothing is odd.
+    """
     if max(width, height) <= LARGEST_SIZE:
         return ""
     return f"a block {width:g} m wide and {height:g} m high is unusually large; check the unit"
@@ -91,6 +117,15 @@ def peak_warning(peak: float, least_uplift: float | None = None) -> str:
 
     A motion that falls short of the least acceleration at which any of the bodies starts to rock, and would not
     if it were in g, is doubtful too.
+
+    Parameters
+    ----------
+    peak : largest acceleration of the motion [m/s²]
+    least_uplift : acceleration at which the first body starts to rock [m/s²]; None if it is not known
+
+    Returns
+    -------
+    A sentence without a full stop, empty if nothing is odd.
     """
     if peak > LARGEST_PEAK:
         return (

@@ -11,7 +11,16 @@ FEW = 6  # arrays of so many numbers are shown whole
 
 
 def short_repr(result: object) -> str:
-    """Return a text that fits a screen, a line for each field of a dataclass."""
+    """Return a text that fits a screen, a line for each field of a dataclass.
+
+    Parameters
+    ----------
+    result : an instance of a dataclass
+
+    Returns
+    -------
+    Lines of at most 100 characters.
+    """
     fields = [field.name for field in dataclasses.fields(result) if field.repr]  # type: ignore[arg-type]
     lines = [f"    {name}={_shown(getattr(result, name))}" for name in fields]
     lines = [

@@ -128,6 +128,18 @@ def read_rows(
     Cells are separated by commas, semicolons or tabulators. Columns among ``quantities`` may be given in any
     unit: ``width_m`` stands for ``width_cm`` too, or for ``width`` with the unit in each cell. A row with too few
     or too many cells adds a sentence to ``faults`` and is left out; without that list the table is refused.
+
+    Parameters
+    ----------
+    path : of the file
+    required, optional : usual names of the columns that must, and that may, be there
+    quantities : names among them that end in a unit
+    least : number of rows that there must be
+    faults : takes the sentences on rows that are left out
+
+    Returns
+    -------
+    The rows, in the order of the file.
     """
     needed, known = list(required), [*required, *optional]
     table = read_table(path)
@@ -162,7 +174,17 @@ def _with_point(cell: str) -> str:
 
 
 def read_table(path: str | os.PathLike[str], text: str | None = None) -> TextTable:
-    """Read the cells of a CSV file, or of its text; empty lines and comments are left out."""
+    """Read the cells of a CSV file, or of its text; empty lines and comments are left out.
+
+    Parameters
+    ----------
+    path : of the file, which messages name
+    text : what the file holds, if that has been read; None: it is read
+
+    Returns
+    -------
+    The :class:`TextTable`.
+    """
     content = read_text(path, MOST_BYTES) if text is None else text
     numbered = [
         (number, line)
@@ -193,6 +215,14 @@ def join_rows(tables: "Sequence[pd.DataFrame]") -> "pd.DataFrame":
 
     A table without rows has columns without types, which columns of numbers would take over; it counts only if
     none has any.
+
+    Parameters
+    ----------
+    tables : with the same columns, at least one
+
+    Returns
+    -------
+    The table with the rows of all, whose index is 0, 1, …
     """
     import pandas as pd
 

@@ -16,13 +16,31 @@ _UNFIT = re.compile(
 
 
 def unfit_character(text: str) -> str:
-    """First character that no line of a page or a table can show, or an empty text."""
+    """First character that no line of a page or a table can show, or an empty text.
+
+    Parameters
+    ----------
+    text : of any length
+
+    Returns
+    -------
+    The character.
+    """
     found = _UNFIT.search(text)
     return found[0] if found else ""
 
 
 def printable(text: str) -> str:
-    """Text with a replacement character for each that no line of a terminal or a table can show."""
+    """Text with a replacement character for each that no line of a terminal or a table can show.
+
+    Parameters
+    ----------
+    text : of any length
+
+    Returns
+    -------
+    The text, of the same length.
+    """
     return (
         text
         if text.isprintable()
@@ -31,7 +49,17 @@ def printable(text: str) -> str:
 
 
 def read_text(path: str | os.PathLike[str], most_bytes: int) -> str:
-    """Read a file of text in UTF-8, or in UTF-16 with a byte order mark."""
+    """Read a file of text in UTF-8, or in UTF-16 with a byte order mark.
+
+    Parameters
+    ----------
+    path : of the file
+    most_bytes : size above which it is refused
+
+    Returns
+    -------
+    The text, without a byte order mark.
+    """
     file = Path(path)
     try:
         if file.exists() and not file.is_file():
@@ -74,7 +102,16 @@ def refuse_workbook(start: bytes, where: str) -> None:
 
 
 def table_encoding(path: str | os.PathLike[str]) -> str:
-    """Tell the encoding of a long table from its first bytes: UTF-8, UTF-16 or Western European."""
+    """Tell the encoding of a long table from its first bytes: UTF-8, UTF-16 or Western European.
+
+    Parameters
+    ----------
+    path : of the file, of any size
+
+    Returns
+    -------
+    The name of the encoding, as ``open`` takes it.
+    """
     source = Path(path).name
     try:
         with open(path, "rb") as file:

@@ -67,7 +67,17 @@ def dimension_of(unit: str) -> str:
 
 
 def convert(value: float, unit: str, to: str) -> float:
-    """Express a value in another unit of the same dimension."""
+    """Express a value in another unit of the same dimension.
+
+    Parameters
+    ----------
+    value : in ``unit``
+    unit, to : of the same dimension, as they stand in :data:`DIMENSIONS`
+
+    Returns
+    -------
+    The value in the unit ``to``.
+    """
     if unit == to:
         return value
     units = DIMENSIONS[dimension_of(to)]
@@ -80,6 +90,16 @@ def quantity(given: object, to: str, unit: str | None) -> float:
 
     ``unit`` is that of a number without one, or None where it must stand beside the number. A message is to be
     put behind the place where the number was found.
+
+    Parameters
+    ----------
+    given : a number, or a text of a number and a unit
+    to : unit of the number that is returned
+    unit : of a number without one; None where it must be written
+
+    Returns
+    -------
+    The number, in the unit ``to``.
     """
     dimension = dimension_of(to)
     units = DIMENSIONS[dimension]
@@ -121,6 +141,14 @@ def other_names(name: str) -> dict[str, str | None]:
     """Names under which a quantity such as ``width_cm`` may be given, and the unit that each states.
 
     ``{"width": None, "width_m": "m", "width_cm": "cm", …}``; None where the unit stands beside the number.
+
+    Parameters
+    ----------
+    name : of a key or column that ends in a unit
+
+    Returns
+    -------
+    The unit by the name that states it.
     """
     stem, unit = split_name(name)
     units = DIMENSIONS[dimension_of(unit)]
@@ -128,7 +156,16 @@ def other_names(name: str) -> dict[str, str | None]:
 
 
 def split_name(name: str) -> tuple[str, str]:
-    """Split a name such as ``inertia_kg_m2`` into what it names and its unit."""
+    """Split a name such as ``inertia_kg_m2`` into what it names and its unit.
+
+    Parameters
+    ----------
+    name : of a key or column that ends in a unit of length, mass or moment of inertia
+
+    Returns
+    -------
+    The name without its unit, and the unit.
+    """
     for dimension in ("moment of inertia", "mass", "length"):
         for unit in DIMENSIONS[dimension]:
             if name.endswith(f"_{unit}"):

@@ -104,7 +104,16 @@ for _name, _pattern, _first in (
 
 
 def read_yaml(path: str | os.PathLike[str]) -> dict[str, Any]:
-    """Read a YAML file whose top level is a mapping."""
+    """Read a YAML file whose top level is a mapping.
+
+    Parameters
+    ----------
+    path : of the file
+
+    Returns
+    -------
+    The mapping: keys are texts, values numbers, texts, booleans, None, lists or such mappings.
+    """
     text = read_text(path, MOST_BYTES)
     try:
         content = yaml.load(text, Loader=_StrictLoader)

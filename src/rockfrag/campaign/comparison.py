@@ -2,6 +2,9 @@
 
 Trials that agree with the tests of four folds about as well as the best one vote on the fifth.  The best trial
 alone would follow the noise of the choice (``docs/campaigns.md``).
+
+In: outcomes of trials × tests, simulated and measured. Out: agreement by fold, votes, ratios of medians θ [-] with
+intervals. Theory: ``docs/campaigns.md``, "What is compared".
 """
 
 from collections.abc import Iterator, Mapping

@@ -1,4 +1,8 @@
-"""What a laboratory hands over: the table of tests, and the motion of the table in each, checked against it."""
+"""What a laboratory hands over: the table of tests, and the motion of the table in each, checked against it.
+
+In: a CSV file of tests and the files of the table's motions. Out: tests with motions in m/s², and what disagrees.
+Docs: ``docs/campaigns.md``.
+"""
 
 import os
 import zipfile

@@ -3,6 +3,9 @@
 A scan says where the surface is, not which of its points carry, where the object faces or what its impacts take.
 A campaign study gives a range for each unknown, and its tests judge the trials that fill the ranges; where there
 are no tests, each has a distribution.
+
+In: a scan or sizes [m], ranges of what is unknown, a seed. Out: systems, one a trial. Theory:
+``docs/campaigns.md``, ``docs/definitions.md``.
 """
 
 import math

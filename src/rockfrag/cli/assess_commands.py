@@ -197,6 +197,8 @@ def _one(options: argparse.Namespace, given: dict[str, Any]) -> int:
     found = assess(request, options.records)
     if not options.json:
         _print_lines(found, options)
+    if options.kind:
+        print(_usual_words(options.kind, given), file=sys.stderr)
     # what looks wrong stands behind the answer, and what a page alone shows is computed after both
     for quality_flag in texts.lines(quality_flags(found)):
         print(f"warning: {quality_flag}", file=sys.stderr)
@@ -224,6 +226,25 @@ def _print_lines(found: Any, options: argparse.Namespace) -> None:
         width = max(shutil.get_terminal_size().columns, 40)
         lines = [textwrap.fill(line, width, subsequent_indent="    ") for line in lines]
     print("\n".join(lines), flush=True)
+
+
+def _usual_words(kind: str, given: Mapping[str, Any]) -> str:
+    """Say what a usual thing of a kind is, and that measures make the answer one about the thing at hand."""
+    from rockfrag.system.kinds import kind_named
+
+    usual = kind_named(kind)
+    sizes = {"width": usual.width_m, "height": usual.height_m}
+    taken = [
+        f"{name} {100 * size:g} cm" for name, size in sizes.items() if name not in given
+    ]
+    if "mass" not in given:
+        taken.append(f"{usual.density:g} kg/m³")
+    if "cg_height" not in given:
+        taken.append(
+            f"a centre of gravity at {100 * usual.cg_fraction:g} % of its height"
+        )
+    words = f"a usual {usual.title} is taken: {', '.join(taken)}"
+    return f"{words}; give what you measured." if taken else f"a {usual.title}."
 
 
 def _request(options: argparse.Namespace, given: dict[str, Any]) -> Any:
@@ -322,8 +343,9 @@ def _inventory(options: argparse.Namespace, shared: dict[str, Any]) -> int:
 def _rules(options: argparse.Namespace) -> int:
     from rockfrag.assess.rules import rules_study
     from rockfrag.base.files import write_table
+    from rockfrag.runtime.progress import progress_line
 
-    table = rules_study(options.file, options.records)
+    table = rules_study(options.file, options.records, progress_line("objects"))
     print(table.to_string(index=False, float_format=lambda value: f"{value:.2f}"))
     if options.output:
         write_table(table, options.output)

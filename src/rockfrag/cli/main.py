@@ -2,11 +2,12 @@
 
 import argparse
 import os
+import re
 import sys
 import warnings
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NoReturn
 
 from rockfrag import __version__
 from rockfrag.base.errors import InputError, errors_of
@@ -26,7 +27,7 @@ if TYPE_CHECKING:
     from rockfrag.simulation.options import FrictionInput
     from rockfrag.system.blocks import Block, Body
 
-# lines of the pattern history that are printed unless all are asked for
+# lines of the history of rocking modes that are printed unless all are asked for
 MOST_CONTACT_EVENTS = 30
 
 
@@ -40,7 +41,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
         try:
             if arguments is None:
                 speak_utf8()
-            options = make_parser().parse_args(arguments)
+            words = sys.argv[1:] if arguments is None else arguments
+            options = make_parser().parse_args(with_negative_sizes(words))
             status = int(options.run(options))
             sys.stdout.flush()
         except InputError as error:
@@ -53,9 +55,47 @@ def main(arguments: Sequence[str] | None = None) -> int:
     return status
 
 
+_NEGATIVE = re.compile(r"-(?:\d|\.\d)")
+
+
+def with_negative_sizes(words: Sequence[str]) -> list[str]:
+    """Join an option and a negative number behind it, such as ``--cg-offset -2cm``, which is no option itself.
+
+    Parameters
+    ----------
+    words : of a command line
+
+    Returns
+    -------
+    The words, ``--cg-offset=-2cm`` for two of them.
+    """
+    joined: list[str] = []
+    for word in words:
+        is_value = joined and joined[-1].startswith("--") and "=" not in joined[-1]
+        if is_value and _NEGATIVE.match(word):
+            joined[-1] = f"{joined[-1]}={word}"
+        else:
+            joined.append(word)
+    return joined
+
+
+class _Parser(argparse.ArgumentParser):
+    """A parser that says what is wrong with an option in a sentence."""
+
+    def error(self, message: str) -> NoReturn:
+        """End with what is wrong, in words that say what is expected."""
+        found = re.fullmatch(
+            r"argument (\S+?)(?:/\S+)?: invalid (float|int) value: (.*)", message
+        )
+        if found:
+            kind = "a number" if found[2] == "float" else "a whole number"
+            message = f"{found[1]}: expected {kind}, got {found[3]}"
+        super().error(message)
+
+
 def make_parser() -> argparse.ArgumentParser:
     """Return the parser of the whole command line."""
-    parser = argparse.ArgumentParser(
+    parser = _Parser(
         prog="rockfrag", description="Rocking and overturning of free-standing objects."
     )
     parser.add_argument(
@@ -72,7 +112,9 @@ def make_parser() -> argparse.ArgumentParser:
     command = commands.add_parser("simulate", help="shake one body by one record")
     _add_case(command)
     command.add_argument(
-        "--pga", type=float, metavar="G", help="scale the record to this peak [g]"
+        "--pga",
+        metavar="LEVEL",
+        help="scale the record to this peak, as 0.6g or a number of g",
     )
     command.add_argument(
         "--restitution", type=float, help="measured ratio of angular velocities"
@@ -158,6 +200,20 @@ def _add_constrain(commands: Any) -> None:
 
 # each command imports what it needs when it runs: `rockfrag --help` should not wait for numba
 def _simulate(options: argparse.Namespace) -> int:
+    from rockfrag.runtime.progress import sign_of_life
+
+    words = (
+        "still simulating; kernels are compiled once a machine, and many bodies, friction or a body in space take "
+        "longer than blocks that only rock"
+    )
+    with sign_of_life(words):
+        lines = _simulated(options)
+    print("\n".join(lines))
+    return 0
+
+
+def _simulated(options: argparse.Namespace) -> list[str]:
+    """Simulate what the options tell, draw it if asked for, and return the lines to print."""
     from rockfrag.cli.simulated import (
         contact_event_lines,
         lines_in_plane,
@@ -206,13 +262,12 @@ def _simulate(options: argparse.Namespace) -> int:
         )
         contact_events = response.contact_events.to_dict("records")
         lines += contact_event_lines(contact_events, most)
-    print("\n".join(lines))
     if options.plot:
         from rockfrag.base.figure_style import save_figure
 
         save_figure(response.plot(title), options.plot)
-        print(f"drawn in {options.plot}")
-    return 0
+        lines.append(f"drawn in {options.plot}")
+    return lines
 
 
 def _factor(options: argparse.Namespace, motion: "Motion") -> float:
@@ -221,9 +276,12 @@ def _factor(options: argparse.Namespace, motion: "Motion") -> float:
 
     if options.pga is None:
         return 1.0
-    if options.pga <= 0:
+    with errors_of("--pga"):
+        # a bare number is one of g
+        peak_g = quantity(options.pga, "m_s2", "g") / GRAVITY
+    if not peak_g > 0:
         raise InputError(f"--pga: expected a number of g above 0, got {options.pga}.")
-    return float(scale_to_pga(motion, options.pga).provenance[-1]["factor"])
+    return float(scale_to_pga(motion, peak_g).provenance[-1]["factor"])
 
 
 def _friction(options: argparse.Namespace) -> "FrictionInput | None":
@@ -347,11 +405,12 @@ def _constrain(options: argparse.Namespace) -> int:
 
 def _check_config(options: argparse.Namespace) -> int:
     from rockfrag.stages.running import results_folder
-    from rockfrag.study.loading import check_records, load_any
+    from rockfrag.study.loading import check_records, check_tables, load_any
     from rockfrag.study.study import Study
 
     study = load_any(options.file)
     folder = results_folder(study)
+    check_tables(study)
     if isinstance(study, Study):
         for quality_flag in (*study.quality_flags(), *check_records(study)):
             print(f"warning: {quality_flag}", file=sys.stderr)

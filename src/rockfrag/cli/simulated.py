@@ -12,9 +12,23 @@ import numpy as np
 
 from rockfrag.records.motion import Motion
 
+OF_TWO_BODIES = ("1a", "1b", "2a", "2b", "3a", "3b", "4a", "4b")
+MEANING = (
+    "1: both bodies rock to one side, 2: to opposite sides, 3: as one body, 4: the upper one alone; a: to the "
+    "right, b: to the left"
+)
+"""What names of rocking modes mean."""
+
+LARGEST_FRICTION = 10.0  # surfaces have less; a contact that needs more parts
+
 
 def _each(values: Iterable[float], form: str) -> str:
     return ", ".join(format(value, form) for value in values)
+
+
+def _friction(demand: float) -> str:
+    """Coefficient of friction that a contact needs [-], as far as any surface has it."""
+    return f"{demand:.3f}" if demand < LARGEST_FRICTION else "none is enough"
 
 
 def lines_in_plane(
@@ -47,7 +61,9 @@ def lines_in_plane(
     if is_loose:
         slips = 1000 * np.abs(response.slip).max(axis=0)
         return [*lines, f"largest slip [mm]: {_each(slips, '.1f')}"]
-    lines.append(f"friction needed: {_each(response.friction_demand, '.3f')}")
+    lines.append(
+        f"friction needed: {', '.join(map(_friction, response.friction_demand))}"
+    )
     lost = response.lost_contact
     if math.isnan(lost):
         lines.append("on smoother ground it slides first; give --friction to let it")
@@ -73,13 +89,15 @@ def contact_event_lines(contact_events: Sequence[Any], most: int) -> list[str]:
     """
     if not contact_events:
         return ["it never rocked"]
-    lines = ["pattern history:"]
+    lines = ["rocking modes:"]
     for row in contact_events[:most]:
         lines.append(
             f"{row['time']:9.4f} s  {row['kind']:<10} {row['from']:>4} → {row['to']}"
         )
     if len(contact_events) > most:
         lines.append(f"… and {len(contact_events) - most} more (--all-contact-events)")
+    if any(row["to"] in OF_TWO_BODIES for row in contact_events):
+        lines.append(MEANING)
     return lines
 
 

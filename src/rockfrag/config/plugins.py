@@ -40,7 +40,16 @@ def plugins() -> dict[str, Plugin]:
 
 
 def plugins_asked(content: Mapping[str, Any]) -> dict[str, Plugin]:
-    """Return the plugins of which a study's configuration holds a key."""
+    """Return the plugins of which a study's configuration holds a key.
+
+    Parameters
+    ----------
+    content : a study's configuration
+
+    Returns
+    -------
+    The :class:`Plugin` of each name.
+    """
     return {
         name: plugin
         for name, plugin in plugins().items()
@@ -49,5 +58,14 @@ def plugins_asked(content: Mapping[str, Any]) -> dict[str, Plugin]:
 
 
 def plugins_of(study: Any) -> list[Plugin]:
-    """Return the plugins that a study of any kind has."""
+    """Return the plugins that a study of any kind has.
+
+    Parameters
+    ----------
+    study : of any kind
+
+    Returns
+    -------
+    Its plugins, in the order of their names.
+    """
     return [plugins()[name] for name in getattr(study, "added", ())]

@@ -28,7 +28,16 @@ _Schema = Mapping[str, Any]
 
 @cache
 def read_schema(name: str) -> dict[str, Any]:
-    """Read the schema of one kind of file, such as ``building``; of a ``study`` with the keys of plugins."""
+    """Read the schema of one kind of file, such as ``building``; of a ``study`` with the keys of plugins.
+
+    Parameters
+    ----------
+    name : of the kind of file
+
+    Returns
+    -------
+    The JSON schema, a new copy for each name once.
+    """
     text = files("rockfrag.config").joinpath("schema.json").read_text(encoding="utf-8")
     schema: dict[str, Any] = json.loads(text)["$defs"][name]
     if name == "study":
@@ -44,6 +53,15 @@ def checked(content: object, name: str, where: str) -> dict[str, Any]:
 
     In the schema the ``description`` of a key says in words what is expected, a key with ``quantity`` may be
     given in any unit of its dimension, and a rule between keys ``says`` what is wrong where it is broken.
+
+    Parameters
+    ----------
+    content : what the file holds, as YAML reads it
+    name, where : kind of file, and what messages call the file
+
+    Returns
+    -------
+    The content with quantities under their usual keys (``width_m``), in their units.
     """
     schema = read_schema(name)
     with errors_of(where):

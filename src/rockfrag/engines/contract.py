@@ -190,7 +190,18 @@ def engines() -> tuple[Engine, ...]:
 
 
 def engine_for(system: System, motion: GroundMotion, request: Request) -> Engine:
-    """Return the first engine that supports what is wanted; refuse with the wishes that clash."""
+    """Return the first engine that supports what is wanted; refuse with the wishes that clash.
+
+    Parameters
+    ----------
+    system : to be integrated
+    motion : of the ground, one to three components [m/s²]
+    request : what else is wanted
+
+    Returns
+    -------
+    The engine.
+    """
     for engine in engines():
         if engine.supports(system, motion, request):
             return engine
@@ -215,7 +226,16 @@ def refusal(system: System, motion: GroundMotion, request: Request) -> str:
 
 
 def run_cases(cases: Cases) -> Outcomes:
-    """Let the engines answer, each for the systems and motions that it is the first to support."""
+    """Let the engines answer, each for the systems and motions that it is the first to support.
+
+    Parameters
+    ----------
+    cases : systems × motions × scales
+
+    Returns
+    -------
+    The outcomes of all, shape (systems, motions, scales).
+    """
     if not cases.motions or not cases.systems or not cases.scales.size:
         return empty_outcomes(cases.names, cases.scales)
     chosen = cases.answering

@@ -20,7 +20,17 @@ MOST_SAMPLES = 20_000_000
 
 
 def fastest_frequency(system: System | Body, g: float) -> float:
-    """Largest frequency parameter p of the bodies [1/s]."""
+    """Largest frequency parameter p of the bodies [1/s].
+
+    Parameters
+    ----------
+    system : planar
+    g : acceleration of gravity [m/s²]
+
+    Returns
+    -------
+    The largest p [1/s].
+    """
     return max(
         geometry.frequency(shape, pivot, g)
         for shape in as_system(system).carried
@@ -50,7 +60,19 @@ def free_samples(system: System | Body, dt: ArrayLike, g: float) -> NDArray[np.i
 def step_count(
     system: System | Body, dt: ArrayLike, g: float, step: float
 ) -> NDArray[np.int64]:
-    """Return the steps per sample for which p h does not exceed ``step``, for every sampling interval."""
+    """Return the steps per sample for which p h does not exceed ``step``, for every sampling interval.
+
+    Parameters
+    ----------
+    system : planar
+    dt : sampling intervals [s], shape (motions,) or a number
+    g : acceleration of gravity [m/s²]
+    step : largest p h of a step [-]
+
+    Returns
+    -------
+    The steps, of the shape of ``dt``.
+    """
     frequency = fastest_frequency(system, g)
     steps = np.ceil(frequency * np.asarray(dt) / step - 1e-9)
     if steps.max(initial=0) > 10_000:

@@ -24,7 +24,7 @@ from scipy import constants, special
 from rockfrag.base.errors import InputError
 from rockfrag.base.files import write_table, write_text
 from rockfrag.fragility.check_notes import REJECTION
-from rockfrag.fragility.curve_facts import curve_facts
+from rockfrag.fragility.curve_facts import curve_facts, total_beta
 from rockfrag.fragility.observations import Floats
 from rockfrag.motions.intensity import declared, measure_labelled
 from rockfrag.outcomes.limit_states import OVERTURNS, limit_state_named, limit_states
@@ -71,6 +71,15 @@ class StateCurve:
     # points of the non-parametric fragility function; empty where the lognormal one stands
     levels: Floats
     fraction: Floats
+    # σ of ln level that the curve holds beside the motions' scatter: of estimate and model [-]; 0 for the motions'
+    added: float = 0.0
+
+    @property
+    def holds(self) -> str:
+        """Sentence on what the written curve holds, empty where there is no doubt."""
+        if not self.added:
+            return ""
+        return "The curve as written holds all three, around the median of the motions."
 
 
 @dataclass(frozen=True)
@@ -83,7 +92,12 @@ class Naming:
 
 
 def curves_by_name(
-    table: pd.DataFrame, by: str, fractions: pd.DataFrame | None, naming: Naming
+    table: pd.DataFrame,
+    by: str,
+    fractions: pd.DataFrame | None,
+    naming: Naming,
+    *,
+    model_error: bool = False,
 ) -> dict[str, dict[str, StateCurve]]:
     """Curves of a fragility table by the identifier of column ``by`` and by limit state, the milder first."""
     export = naming.export
@@ -114,14 +128,49 @@ def curves_by_name(
                 fractions["state"] == state
             )
             points = fractions.loc[own, ["x", "fraction"]].to_numpy(dtype=np.float64)
-        states[state] = StateCurve(
-            row, theta, max(beta, STEP), points[:, 0], points[:, 1]
-        )
+        added = 0.0
+        if model_error and state == OVERTURNS:
+            # where rocking starts is statics, which the model does not err in
+            added = total_beta(0.0, float(row.get("beta_statistical", math.nan)))
+        levels, fraction = spread_points(points[:, 0], points[:, 1], added)
+        beta = math.hypot(max(beta, STEP), added)
+        states[state] = StateCurve(row, theta, beta, levels, fraction, added)
     order = [state.name for state in limit_states()]
     return {
         name: {state: states[state] for state in order if state in states}
         for name, states in curves.items()
     }
+
+
+_NODES, _WEIGHTS = np.polynomial.hermite_e.hermegauss(41)
+
+
+def spread_points(
+    levels: Floats, fraction: Floats, added: float
+) -> tuple[Floats, Floats]:
+    """Points of a non-parametric fragility function whose levels are not known to a factor.
+
+    The probability at x is the mean of that at x exp(σ Z), Z standard normal. Below the first level nothing
+    overturns from that over :data:`BEYOND` on, and beyond the last everything does at :data:`BEYOND` times it.
+
+    Parameters
+    ----------
+    levels, fraction : points, rising, shape (n,), in the unit of the measure and [-]
+    added : σ of ln level [-]
+
+    Returns
+    -------
+    Points likewise, more of them; the same where there are none or σ is 0.
+    """
+    if not levels.size or added == 0.0:
+        return levels, fraction
+    ends = np.log([levels[0] / BEYOND, levels[-1] * BEYOND])
+    at = np.concatenate([ends[:1], np.log(levels), ends[1:]])
+    known = np.concatenate([[0.0], fraction, [1.0]])
+    x = np.linspace(ends[0] - 4 * added, ends[1] + 4 * added, 61)
+    each = np.interp(x[:, np.newaxis] + added * _NODES, at, known)
+    mean = each @ (_WEIGHTS / _WEIGHTS.sum())
+    return np.exp(x), np.clip(np.maximum.accumulate(mean), 0.0, 1.0)
 
 
 CROSSING = 1e-9
@@ -162,6 +211,7 @@ def write_nrml(
     identifier: str = "rockfrag",
     by: str = "configuration",
     fractions: pd.DataFrame | None = None,
+    model_error: bool = True,
 ) -> None:
     """Write rows of a fragility table as an NRML 0.5 fragility model, with its facts and warnings in words.
 
@@ -178,9 +228,13 @@ def write_nrml(
         Points of the non-parametric fragility function (:func:`rockfrag.fragility.ida_curves.fraction_points`),
         with columns ``by`` and ``state``. A function that has such points is written as discrete levels; so is
         one whose lognormal curves would make a state more probable than the one that comes before it.
+    model_error
+        Whether curves of overturning hold the errors of estimate and model beside the scatter of the motions,
+        added as squares: what a program that samples nothing else of them needs.
     """
     # OpenQuake takes letters, digits, "_", "-" and ":" in a name
-    curves = curves_by_name(table, by, fractions, Naming("NRML", "_:-"))
+    naming = Naming("NRML", "_:-")
+    curves = curves_by_name(table, by, fractions, naming, model_error=model_error)
     used = {state for states in curves.values() for state in states}
     known = [state.name for state in limit_states() if state.name in used]
     functions: list[dict[str, object]] = []
@@ -194,7 +248,8 @@ def write_nrml(
                 )
         said = []
         for state, curve in curves[name].items():
-            said.append(f"{state}: {curve_facts({**curve.row, 'warnings': ''})}")
+            facts = curve_facts({**curve.row, "warnings": ""})
+            said.append(f"{state}: {facts} {curve.holds}".rstrip())
             # without what is said of a single rejected curve
             note = REJECTION.sub("", str(curve.row.get("warnings") or "")).strip()
             sentences += re.split(r"(?<=\.)\s+(?=[A-Z])", note)
@@ -337,6 +392,7 @@ def write_simcenter(
     *,
     by: str = "configuration",
     fractions: pd.DataFrame | None = None,
+    model_error: bool = True,
 ) -> None:
     """Write rows of a fragility table as a damage model.
 
@@ -349,6 +405,7 @@ def write_simcenter(
     fractions
         As of :func:`write_nrml`; a state that has such points is written with the family
         ``multilinear_CDF``.
+    model_error : as of :func:`write_nrml`
     """
     about = {
         "ShortName": "rockfrag",
@@ -358,7 +415,8 @@ def write_simcenter(
     notes: dict[str, object] = {"_GeneralInformation": about}
     rows = []
     naming = Naming("SimCenter", "_", prefix="ROCKFRAG.")
-    for name, states in curves_by_name(table, by, fractions, naming).items():
+    curves = curves_by_name(table, by, fractions, naming, model_error=model_error)
+    for name, states in curves.items():
         line, notes[name] = _component(name, states, by)
         rows.append(line)
     write_table(pd.DataFrame(rows).sort_values("ID", ignore_index=True), csv_path)
@@ -398,7 +456,7 @@ def _component(
         facts = curve_facts(row)
         if levels.size and fraction[-1] < 1.0:
             facts += f" Beyond {levels[-1]:.4g} {unit} nothing was tried: all is put at {BEYOND:g} times it."
-        said.append(f"{words}: {facts}")
+        said.append(f"{words}: {facts} {curve.holds}".rstrip())
     if len(demands) > 1:
         raise InputError(
             f"SimCenter: the limit states of {identifier} have two demands; choose one."

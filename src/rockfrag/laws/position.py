@@ -12,7 +12,18 @@ NUMBER = BUILT_IN.index("position")
 
 
 def tell(shape: Shape, restitution: float, pivot: int) -> Told:
-    """Return the place of the impulse, or the couple that brakes."""
+    """Return the place of the impulse, or the couple that brakes.
+
+    Parameters
+    ----------
+    shape : the block that comes down, as it stands
+    restitution : measured ratio of the rates after and before its impact [-]
+    pivot : on which it comes down, +1 right, -1 left
+
+    Returns
+    -------
+    Number of the law, and the place over half the width or the multiple [-].
+    """
     # one way out: Numba takes the numbers of two returns for constants, and keeps one of them for both
     number, value = NUMBER, impulse_position(shape, restitution, pivot)
     if restitution < momentum_restitution(shape, pivot):

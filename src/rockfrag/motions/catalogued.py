@@ -1,4 +1,7 @@
-"""All horizontal motions of a folder, an archive, a record or a catalogue, with both components of each record."""
+"""All horizontal motions of a folder, an archive, a record or a catalogue, with both components of each record.
+
+In: a path. Out: motions [m/s²], and what was left out and why. Docs: ``docs/formats.md``.
+"""
 
 import os
 import warnings

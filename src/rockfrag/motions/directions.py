@@ -1,4 +1,8 @@
-"""The motion that a row of a catalogue asks for: one component, or a direction of two."""
+"""The motion that a row of a catalogue asks for: one component, or a direction of two.
+
+In: a checked row. Out: its motion [m/s²], and behind it the vertical one. Theory: ``docs/motions.md``,
+"Processing by named steps".
+"""
 
 import re
 from collections.abc import Mapping, Sequence

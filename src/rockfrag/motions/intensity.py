@@ -8,6 +8,8 @@ with the peaks between samples.  The integrals of a² and |a| follow custom inst
 samples, so that they can be held against published values; the trapezoidal sum of a² is also the exact energy of
 the band-limited signal that was sampled (Parseval).  Spectra and SciPy are loaded where they are computed with:
 numba takes most of a second, and steps that scale to a measure are named long before they are taken.
+
+In: a :class:`Motion` [m/s²]. Out: a number in SI units. Theory: ``docs/motions.md``, "Intensity measures".
 """
 
 from __future__ import annotations

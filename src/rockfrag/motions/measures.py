@@ -1,4 +1,8 @@
-"""Tables of intensity measures, a row per motion, with the unit in the name of each column."""
+"""Tables of intensity measures, a row per motion, with the unit in the name of each column.
+
+In: motions [m/s²]. Out: a table, a column a measure in its unit. Theory: ``docs/motions.md``, "Intensity
+measures".
+"""
 
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any

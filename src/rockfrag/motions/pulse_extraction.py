@@ -3,6 +3,9 @@
 The even and the odd pulse, (1 + cos φ/γ)/2 times cos φ and sin φ with φ = 2πt/T, are sums of three harmonics,
 whose products with a window of the velocity follow from those one sample earlier (a sliding discrete Fourier
 transform). No pulse explains more than lies in its window: places whose window holds less need no look.
+
+In: a velocity [m/s]. Out: period [s], amplitude [m/s], cycles and phase. Theory: ``docs/motions.md``, "The
+strongest pulse".
 """
 
 import math

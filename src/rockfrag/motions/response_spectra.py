@@ -381,11 +381,20 @@ def _checked_periods(periods: ArrayLike | Sequence[float]) -> Floats:
     return checked
 
 
+# fraction of critical damping beyond which a number is one of percent
+MOST_DAMPED = 3.0
+
+
 def checked_damping(damping: float) -> float:
     """Return a damping that is a fraction of critical, zero or more; InputError otherwise."""
     if not (math.isfinite(damping) and damping >= 0):
         raise InputError(
             f"response spectrum: damping is a fraction of critical, zero or more, not {damping}."
+        )
+    if damping > MOST_DAMPED:
+        raise InputError(
+            f"response spectrum: a damping of {damping:g} is {100 * damping:g} % of critical; give the fraction, "
+            f"such as {damping / 100:g} for {damping:g} %."
         )
     return float(damping)
 

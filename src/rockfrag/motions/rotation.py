@@ -1,4 +1,8 @@
-"""Components of one record: common times, rotation, and measures that do not depend on how the sensor stood."""
+"""Components of one record: common times, rotation, and measures that do not depend on how the sensor stood.
+
+In: two components [m/s²], perhaps a vertical one. Out: the same at common times, turned by an angle, or RotD
+measures. Theory: ``docs/motions.md``; Boore (2010).
+"""
 
 import math
 from collections.abc import Callable, Collection, Sequence

@@ -2,6 +2,9 @@
 
 The same seed and parameters give the same motion.  The metadata say that a motion is synthetic, by
 which model and with which seed.
+
+In: parameters and a seed, or a spectrum [m/s²]. Out: motions [m/s²]. Theory: ``docs/motions.md``, "Synthetic
+motions".
 """
 
 from __future__ import annotations

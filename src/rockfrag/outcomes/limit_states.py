@@ -1,6 +1,8 @@
 """Limit states: what may become of an object, each declared once.
 
 IDA curves have a column for each that is counted; curves, exports, figures and assessments read them by name.
+
+In: :class:`rockfrag.outcomes.Outcomes`. Out: whether each case has reached a state. Docs: ``docs/definitions.md``.
 """
 
 from collections.abc import Callable

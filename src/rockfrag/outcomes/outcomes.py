@@ -1,17 +1,24 @@
-"""Outcomes of systems × motions × scales, as arrays, and as three tidy tables (``docs/definitions.md``)."""
+"""Outcomes of systems × motions × scales, as arrays, and as three tidy tables (``docs/definitions.md``).
+
+In: arrays that engines fill. Out: tables and a figure. Systems, motions and scales are the three axes everywhere.
+"""
 
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field, fields
 from functools import cache
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal, get_args
 
 import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
 from rockfrag.base.arrays import Flags, Floats
+from rockfrag.base.errors import InputError
 from rockfrag.base.short_repr import short_repr
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 Whole = NDArray[np.int64]
 Small = NDArray[np.int8]
@@ -70,6 +77,8 @@ class Outcomes:
     scales : factors on the motions, shape (motions, scales)
     engines : names of those that answered
     engine : which of them answered each case
+    systems, motions : names of systems and motions, empty where one has none; no names at all if not known
+    peaks : peak accelerations of the unscaled motions along x [m/s²], shape (motions,), NaN where not known
     """
 
     names: tuple[tuple[str, ...], ...]
@@ -120,6 +129,9 @@ class Outcomes:
     friction_demand: Floats = column(table="contacts")
     # least normal force until the fall was due; NaN not told
     least_normal_force: Floats = column(unit="N", table="contacts")
+    systems: tuple[str, ...] = field(default=(), repr=False)
+    motions: tuple[str, ...] = field(default=(), repr=False)
+    peaks: tuple[float, ...] = field(default=(), repr=False)
 
     __repr__ = short_repr
 
@@ -164,6 +176,25 @@ class Outcomes:
                 found[name] = values[..., k].ravel()
         return found
 
+    def plot(self, title: str = "") -> "Figure":
+        """Draw the incremental dynamic analysis: peak rotations over the peak of the motion, and who falls.
+
+        Parameters
+        ----------
+        title : heading of the figure
+
+        Returns
+        -------
+        matplotlib.figure.Figure
+            A panel a system: of each motion the peak rotation of the uppermost body over its critical angle [-]
+            and a cross where it overturns, over the peak of the scaled motion [g]; below the fraction of the
+            motions that overturn it.
+        """
+        # matplotlib is loaded only by those who draw
+        from rockfrag.outcomes.outcomes_figure import outcomes_figure
+
+        return outcomes_figure(self, title)
+
     def table(
         self, which: Table = "cases", columns_of: Sequence[str] | None = None
     ) -> pd.DataFrame:
@@ -177,10 +208,14 @@ class Outcomes:
         Returns
         -------
         A row per case, or per body or contact of a case: ``system``, ``motion`` (positions in the lists given),
-        ``scale``, in tables of bodies and contacts ``body`` or ``contact`` (from below, from 1; contact k lies
-        under body k) and ``name`` of that body, and the columns of :func:`columns`, with their units in the names;
-        of cases ``engine`` too.
+        ``system_name``, ``motion_name`` (empty where they have none), ``scale``, in tables of bodies and contacts
+        ``body`` or ``contact`` (from below, from 1; contact k lies under body k) and ``name`` of that body, and
+        the columns of :func:`columns`, with their units in the names; of cases ``engine`` too.
         """
+        if which not in get_args(Table):
+            raise InputError(
+                f"table: expected one of {', '.join(get_args(Table))}, got {which!r}."
+            )
         chosen = [
             known
             for known in columns(which)
@@ -195,6 +230,10 @@ class Outcomes:
         made: dict[str, Any] = {
             "system": np.arange(systems)[:, np.newaxis, np.newaxis, np.newaxis],
             "motion": np.arange(motions)[:, np.newaxis, np.newaxis],
+            "system_name": _names(self.systems, systems)[
+                :, np.newaxis, np.newaxis, np.newaxis
+            ],
+            "motion_name": _names(self.motions, motions)[:, np.newaxis, np.newaxis],
             "scale": self.scales[..., np.newaxis],
         }
         if not whole:
@@ -215,6 +254,11 @@ class Outcomes:
         return pd.DataFrame(
             {name: np.broadcast_to(a, full).ravel()[rows] for name, a in made.items()}
         )
+
+
+def _names(names: Sequence[str], count: int) -> Words:
+    """Names as an array, shape (count,), empty ones where none are known."""
+    return np.array(list(names) or [""] * count, dtype=object)
 
 
 @cache
@@ -252,7 +296,7 @@ def empty_outcomes(
     """
     shape = (len(names), *scales.shape)
     most = max((len(each) for each in names), default=0)
-    arrays = {
+    arrays: dict[str, Any] = {
         known.name: np.full(
             shape if known.table == "cases" else (*shape, most),
             known.empty,

@@ -1,4 +1,8 @@
-"""What a simulation returns."""
+"""What a simulation returns.
+
+In: what an engine has integrated. Out: histories of rotations [rad], slips [m], forces [N], energies [J] and
+contact events. Theory: ``docs/rocking.md``, ``docs/derivation.md``.
+"""
 
 from __future__ import annotations
 
@@ -199,13 +203,11 @@ def contact_event_table(
     kind: Sequence[str],
     states: tuple[Ints, Ints],
     omega: tuple[Floats, Floats],
+    *,
     theta: Floats,
     kinetic: tuple[Floats, Floats],
 ) -> pd.DataFrame:
     """Columns of ``Response.contact_events`` of a response without friction.
-
-    ``states`` and ``omega`` [rad/s] are those before and after, each of shape (n, contacts), ``kinetic`` energies
-    before and after [J], each of shape (n,).
 
     Parameters
     ----------
@@ -268,21 +270,19 @@ def energy_table(
     kinetic: Floats,
     potential: Floats,
     work: Floats,
-    losses: tuple[Floats, Ints, Floats],
-    friction: Floats | None = None,
     *,
     contacts: int,
+    losses: tuple[Floats, Ints, Floats],
+    friction: Floats | None = None,
 ) -> pd.DataFrame:
     """Balance of energy by cause over time [J], with the columns of ``Response.energy``.
-
-    ``losses`` are of each impact its time [s], its contact from 0 and what it lost [J]; ``friction`` is what
-    friction has taken so far [J], shape (n,), None where nothing slides.
 
     Parameters
     ----------
     time, kinetic, potential, work : instants [s] and energies [J], shape (n,) each
-    losses : instants [s], contacts from 0 and losses [J] of the impacts
-    friction, contacts : work against friction so far [J], shape (n,), and number of contacts
+    contacts : number of contacts
+    losses : of each impact its instant [s], its contact from 0 and what it lost [J]
+    friction : what friction has taken so far [J], shape (n,); None where nothing slides
 
     Returns
     -------

@@ -1,4 +1,7 @@
-"""Figure of one response of planar bodies: motion, rotations, slip and rocking mode over time."""
+"""Figure of one response of planar bodies: motion, rotations, slip and rocking mode over time.
+
+In: a response. Out: a figure with rotations over the critical angle [-] and slips [mm]. Docs: ``docs/rocking.md``.
+"""
 
 from typing import TYPE_CHECKING, Any
 
@@ -39,7 +42,7 @@ def response_figure(response: "Response", title: str) -> Figure:
         acceleration = response.ground_acceleration / GRAVITY
         ground.plot(response.time, acceleration, color=style.BLACK, lw=0.5)
         ground.set_ylabel("Ground [g]")
-        ground.set_title(title, loc="left")
+        ground.set_title(style.checked_title(title), loc="left")
         for i, name in enumerate(names):
             turned = response.theta[:, i] / critical[i]
             rotation.plot(response.time, turned, color=colours[i], lw=0.8, label=name)
@@ -62,7 +65,7 @@ def response_figure(response: "Response", title: str) -> Figure:
             label="impact",
         )
         if not single or len(impacts):
-            rotation.legend(loc="upper right", ncols=3)
+            _legend_above(rotation)
         if response.overturned:
             for panel in panels:
                 panel.axvline(response.overturning_time, color=style.RED, lw=0.8)
@@ -74,6 +77,18 @@ def response_figure(response: "Response", title: str) -> Figure:
         return figure
 
 
+def _legend_above(panel: Axes) -> None:
+    """Put the legend between a panel and the one above it, where it hides no curve."""
+    panel.legend(
+        loc="lower right",
+        bbox_to_anchor=(1.0, 1.0),
+        ncols=4,
+        borderaxespad=0.1,
+        handlelength=1.2,
+        columnspacing=0.8,
+    )
+
+
 def _slips(panel: Axes, response: "Response", colours: list[str]) -> None:
     """Draw how far each interface has slid."""
     names = ["ground", *(f"under {name}" for name in response.system.names[1:])]
@@ -83,7 +98,7 @@ def _slips(panel: Axes, response: "Response", colours: list[str]) -> None:
         )
     panel.set_ylabel("Slip [mm]")
     if len(colours) > 1:
-        panel.legend(loc="upper right", ncols=2)
+        _legend_above(panel)
 
 
 def _rocking_modes(panel: Axes, response: "Response") -> None:
@@ -109,4 +124,4 @@ def _rocking_modes(panel: Axes, response: "Response") -> None:
         )
     panel.set_yticks(range(len(seen)), seen)
     panel.set_ylim(-0.6, max(len(seen), 1) - 0.4)
-    panel.set_ylabel("Pattern")
+    panel.set_ylabel("Rocking mode")

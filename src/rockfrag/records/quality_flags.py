@@ -58,6 +58,7 @@ def foreign_kind(head: bytes) -> str:
 STRONGEST_G = 3.0  # peak [g] that hardly any record of an earthquake exceeds
 # sampling interval [s] above which 20 Hz, which rocking bodies feel, are lost
 _COARSEST = 0.025
+DRIFT = "a drift"  # how the flag of a record that drifts begins
 # fraction of the peak velocity that is left at the end of a record with a drift
 _DRIFT = 0.5
 # fraction of the peak velocity above which the mean of the last fifth of a record is a drift
@@ -107,10 +108,10 @@ def quality_flags(motion: Motion) -> list[str]:
     left = left / fastest if fastest else 0.0
     if left > _DRIFT:
         found.append(
-            f"a drift: {100 * left:.0f} % of the peak velocity is left at the end"
+            f"{DRIFT}: {100 * left:.0f} % of the peak velocity is left at the end"
         )
     elif _drifts_on(velocity):
-        found.append("a drift: its displacement still goes on at the end")
+        found.append(f"{DRIFT}: its displacement still goes on at the end")
     edges = np.flatnonzero(
         np.diff(np.abs(a) >= peak * (1 - 1e-9), prepend=False, append=False)
     )

@@ -59,7 +59,7 @@ def study_answer(results: Results) -> Answer:
         sentences=found,
         figure=figure,
         advice=advice(results),
-        rests_on=_rests_on(results.study, _earthquakes(results)),
+        rests_on=_rests_on(results),
         could_change=could_change(results),
         questions=_questions(results.study),
     )
@@ -77,8 +77,9 @@ def _question(names: Sequence[str], study: Study) -> str:
     return f"How strong must shaking be to overturn {objects}{sides}?"
 
 
-def _rests_on(study: Study, earthquakes: int) -> list[str]:
+def _rests_on(results: Results) -> list[str]:
     """Model and motions on which the results of a study rest, a sentence or two each."""
+    study, earthquakes = results.study, _earthquakes(results)
     if study.slides:
         model = "Rigid blocks that rock, slide and fly in the plane of the motion; impacts follow Coulomb's law."
     else:
@@ -90,7 +91,7 @@ def _rests_on(study: Study, earthquakes: int) -> list[str]:
         model += " The vertical components of the records act too."
     amplitudes = study.amplitudes
     motions = (
-        f"{counted(len(study.catalogue), 'record')} of {counted(earthquakes, 'earthquake')}, each scaled to "
+        f"{counted(len(results.records), 'record')} of {counted(earthquakes, 'earthquake')}, each scaled to "
         f"{counted(len(amplitudes.values_g), 'amplitude')} from {amplitudes.lowest_g:g} to "
         f"{amplitudes.highest_g:g} g."
     )
@@ -181,7 +182,7 @@ def _needs_friction(results: Results) -> bool:
 
 
 def _earthquakes(results: Results) -> int:
-    return int(results.study.catalogue["earthquake"].nunique())
+    return len({about["earthquake"] for about in results.records})
 
 
 MOST_ROWS = 24  # more configurations than this are not legible; the first are drawn
@@ -261,6 +262,7 @@ def could_change(results: Results) -> list[str]:
         _sliding(results),
         _flight(int((ratios < LIGHT).sum()), ratios.size),
         _few(_earthquakes(results)),
+        findings.scaled_far(results.table("scaling"), results.tests),
     ]
     if survived:
         counts = of_all(survived, len(fallen), "analysis", "analyses")

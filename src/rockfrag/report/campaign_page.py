@@ -254,7 +254,11 @@ def _tests(study: CampaignStudy, tables: Tables) -> Section:
         column("near_critical", "Near-critical"),
     ]
     parts.append(table_html(wrong, columns, "Tests predicted wrong."))
-    words = "Votes are the fraction of plausible ways to set up the object under which it overturns."
+    words = (
+        "Votes are the fraction of plausible ways to set up the object under which it overturns. Here each test "
+        "has one answer, by the votes of all repeats together; the fraction on the first page is a mean over "
+        "repeats, so that its counts may differ by a test or two."
+    )
     return Section("tests", "Where the simulation is right", message, [words], parts)
 
 

@@ -7,6 +7,7 @@ Docs: ``docs/report.md``, "How it is told"; theory of what is said: ``docs/fragi
 """
 
 import math
+import re
 from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
@@ -16,6 +17,7 @@ import pandas as pd
 from rockfrag.fragility.curve_facts import Compared, compared_curves
 from rockfrag.report.part import Finding
 from rockfrag.shaketable.definitions import DEFINITION
+from rockfrag.study.scaling import LARGEST_FACTOR
 from rockfrag.study.study import Study
 from rockfrag.words import sentences as wording
 from rockfrag.words.sentences import agree, counted, listed, number, of_all, sentence
@@ -122,22 +124,50 @@ def strength_found(curves: pd.DataFrame, level: str) -> Finding | None:
 
 
 def _strongest_and_weakest(rows: pd.DataFrame, decimals: int) -> str:
-    """Headline on the configurations with the least and the largest median of a fragility table."""
+    """Headline on the configurations with the least and the largest median of a fragility table, with limits."""
     measure, unit = rows["im"].iloc[0], rows["unit"].iloc[0]
     printed = rows["theta"].map(lambda value: number(value, decimals))
+    # words on the first screen, brackets behind a click
+    said = [
+        re.sub(r"\[(.*), (.*)\]", r"(\1 to \2)", text)
+        for text in wording.estimates(rows, "theta", decimals)
+    ]
+    of = dict(zip(printed, said, strict=True))
     least = number(rows["theta"].min(), decimals)
     most = number(rows["theta"].max(), decimals)
     # what differs in no digit that is shown is named together
-    weakest = list(rows.loc[printed == least, "configuration"])
-    strongest = list(rows.loc[printed == most, "configuration"])
+    weakest = rows[printed == least]
+    strongest = rows[printed == most]
+    names = list(weakest["configuration"])
     if least == most:
-        return f"A {measure} of {least} {unit} overturns {listed(weakest)} with 50 % probability"
+        return f"A {measure} of {of[least]} {unit} overturns {listed(names)} with 50 % probability"
+    if not do_not_overlap(weakest, strongest):
+        all_names = listed(list(rows["configuration"]))
+        return (
+            f"A {measure} of {of[least]} to {of[most]} {unit} overturns {all_names} with 50 % probability; "
+            "their intervals overlap, so that none is shown to be the most fragile"
+        )
     is_one = len(weakest) == 1
     return (
-        f"{listed(weakest)} {'is' if is_one else 'are'} the most fragile: a {measure} of {least} {unit} "
-        f"overturns {'it' if is_one else 'them'} with 50 % probability, while {listed(strongest)} "
-        f"{'needs' if len(strongest) == 1 else 'need'} {most} {unit}"
+        f"{listed(names)} {'is' if is_one else 'are'} the most fragile: a {measure} of {of[least]} {unit} "
+        f"overturns {'it' if is_one else 'them'} with 50 % probability, while "
+        f"{listed(list(strongest['configuration']))} {'needs' if len(strongest) == 1 else 'need'} {of[most]} "
+        f"{unit}"
     )
+
+
+def do_not_overlap(weaker: pd.DataFrame, stronger: pd.DataFrame) -> bool:
+    """Whether the intervals of some medians lie below those of others; unknown where one has no interval.
+
+    Parameters
+    ----------
+    weaker, stronger : rows with ``theta_upper`` and ``theta_lower``, in one unit
+
+    Returns
+    -------
+    Whether none of them overlap.
+    """
+    return bool(weaker["theta_upper"].max() < stronger["theta_lower"].min())
 
 
 def _medians(named: Sequence[str], unit: str, level: str) -> str:
@@ -694,4 +724,33 @@ def sliding_found(sliding: pd.DataFrame) -> Finding:
         f"Bodies slide in {_analyses(slid, cases)}",
         text,
         f"The largest slip is {slip} cm ({farthest['configuration']}); {flies}.",
+    )
+
+
+def scaled_far(scaling: pd.DataFrame, tests: pd.DataFrame) -> str:
+    """Sentence on the tests that overturn under a motion scaled by more than :data:`LARGEST_FACTOR`.
+
+    Parameters
+    ----------
+    scaling : peak of each motion as recorded or felt, ``pga_g`` [g], by ``motion``
+    tests : a row a test, with ``motion`` and ``upper_g``, the amplitude that overturned [g]
+
+    Returns
+    -------
+    The sentence, empty if there is no such test.
+    """
+    fallen = tests.dropna(subset=["upper_g"])
+    if fallen.empty:
+        return ""
+    factors = fallen["upper_g"] / fallen["motion"].map(
+        scaling.set_index("motion")["pga_g"]
+    )
+    far = factors > LARGEST_FACTOR
+    if not far.any():
+        return ""
+    motions = list(dict.fromkeys(fallen.loc[far, "motion"]))
+    return (
+        f"Scaling: {of_all(int(far.sum()), len(fallen), 'test')} that overturned needed more than "
+        f"{LARGEST_FACTOR:g} times the motion (at most {factors.max():.3g} times: {listed(motions)}); small "
+        "earthquakes scaled so far are not large ones."
     )

@@ -13,6 +13,15 @@ def locked(path: Path, patience_s: float = 0.0) -> Iterator[bool]:
 
     The system frees it when its process ends, however it ends; what the file holds is nobody's. Tells whether no
     other process holds the lock; also true where the system or the folder knows no locks (on some network drives).
+
+    Parameters
+    ----------
+    path : file of the lock
+    patience_s : time for which another process is waited for [s]
+
+    Returns
+    -------
+    A context that gives whether no other process holds the lock.
     """
     # imported here: it takes longer than what most locks are for
     from filelock import FileLock, Timeout

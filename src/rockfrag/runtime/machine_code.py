@@ -19,6 +19,15 @@ def cached_njit(
     file only, and would keep code with an old copy of another function. A file of machine code that is damaged or
     may not be read is made anew, as if it were not there; without a folder for it, or where it may not be written,
     the function is compiled for this process alone.
+
+    Parameters
+    ----------
+    stamp : gives the digest of the sources, None where the function calls no other
+    **options : of ``numba.njit``
+
+    Returns
+    -------
+    A decorator that compiles a function.
     """
 
     def decorate(function: Callable[..., Any]) -> Any:

@@ -27,6 +27,15 @@ def in_processes(
 
     The function may be a local one. Results should be small: a process that was killed while it handed over more
     than a pipe takes at once would leave this one waiting; one killed otherwise raises ``BrokenProcessPool``.
+
+    Parameters
+    ----------
+    function, things : what is called, and with what, one thing each
+    processes : number of processes; 1 calls in this one
+
+    Returns
+    -------
+    The results, in the order of the things.
     """
     if processes == 1 or "fork" not in multiprocessing.get_all_start_methods():
         return [function(thing) for thing in things]
@@ -55,7 +64,12 @@ def speak_utf8() -> None:
 
 
 def end_with(process: int) -> None:
-    """End this process as soon as its parent, or another process of that number on the same machine, has ended."""
+    """End this process as soon as its parent, or another process of that number on the same machine, has ended.
+
+    Parameters
+    ----------
+    process : number of the process whose end is this one's
+    """
     threading.Thread(target=_watch, args=(process, os.getppid()), daemon=True).start()
 
 

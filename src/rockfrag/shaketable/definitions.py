@@ -3,6 +3,8 @@
 A file of an IDA curve has a row per motion and amplitude, motion after motion, each raised through the same
 amplitudes. The step protocol of the laboratory, the first overturning and the amplitude above which the specimen
 always overturns are three different figures; between the last two lie structural resurrections.
+
+In: files or tables of IDA curves. Out: tables of tests, amplitudes [g]. Theory: ``docs/definitions.md``.
 """
 
 import math

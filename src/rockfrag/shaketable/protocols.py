@@ -1,4 +1,8 @@
-"""Test protocols: amplitudes raised level by level to the first overturning or the limit, shown by instruments."""
+"""Test protocols: amplitudes raised level by level to the first overturning or the limit, shown by instruments.
+
+In: first level, step and limit [g]. Out: levels, bounds and what an instrument shows of them [g]. Theory:
+``docs/shaketable.md``.
+"""
 
 import math
 from collections.abc import Mapping

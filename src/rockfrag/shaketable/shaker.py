@@ -1,6 +1,9 @@
 """The shaking table: what it can do, what a motion asks of it, and what it would really have produced.
 
 Displacements, at the samples, come from integrating the acceleration exactly, linear between samples, from rest.
+
+In: limits of a table (stroke [m], velocity [m/s], force [N], band [Hz]) and motions. Out: the peak up to which
+each is reproduced [g], and the motion produced. Theory: ``docs/shaketable.md``.
 """
 
 import os

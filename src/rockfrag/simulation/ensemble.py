@@ -1,4 +1,8 @@
-"""Many bodies × motions × amplitudes at once."""
+"""Many bodies × motions × amplitudes at once.
+
+In: systems, motions [m/s²] and scales [-]. Out: :class:`rockfrag.outcomes.Outcomes`. Theory: ``docs/rocking.md``,
+``docs/definitions.md``; who answers: :mod:`rockfrag.engines.contract`.
+"""
 
 from __future__ import annotations
 
@@ -20,6 +24,7 @@ from rockfrag.engines.contract import Cases, Request, run_cases
 from rockfrag.engines.steps import STEP
 from rockfrag.outcomes.outcomes import Outcomes
 from rockfrag.simulation import inputs
+from rockfrag.simulation.inputs import SystemsInput
 from rockfrag.simulation.options import (
     FrictionInput,
     Restitution,
@@ -27,7 +32,6 @@ from rockfrag.simulation.options import (
     systems_of,
 )
 from rockfrag.system import geometry
-from rockfrag.system.blocks import SystemLike
 from rockfrag.system.system import System, rocking_shapes
 
 Index = NDArray[np.int64]
@@ -67,7 +71,7 @@ class Options(TypedDict, total=False):
 
 @named_keywords
 def overturns(
-    bodies: SystemLike | Sequence[SystemLike],
+    bodies: SystemsInput,
     motions: inputs.MotionLike | Sequence[inputs.MotionLike],
     dt: float | Sequence[float] | None = None,
     scales: ArrayLike = (1.0,),
@@ -87,7 +91,7 @@ def overturns(
 
     Parameters
     ----------
-    bodies : blocks, stacks, columns and systems
+    bodies : blocks, stacks, columns and systems: one, a list, or a mapping of names to them
     motions
         Motions, ground motions, or horizontal accelerations [m/s²], each of shape (n,), linear between samples and
         zero one sample after the last.
@@ -155,7 +159,7 @@ def overturns(
 
 
 def prepared(
-    bodies: SystemLike | Sequence[SystemLike],
+    bodies: SystemsInput,
     motions: inputs.MotionLike | Sequence[inputs.MotionLike],
     dt: float | Sequence[float] | None,
     scales: ArrayLike,
@@ -187,7 +191,12 @@ def prepared(
 
 def shaken(cases: Cases) -> Outcomes:
     """Run cases, add the weight that the ground leaves, and warn where pure rocking may be no answer."""
-    outcomes = run_cases(cases)
+    outcomes = replace(
+        run_cases(cases),
+        systems=tuple(system.name for system in cases.systems),
+        motions=tuple(motion.name for motion in cases.motions),
+        peaks=tuple(motion.x.pga for motion in cases.motions),
+    )
     if not outcomes.overturned.size:
         return outcomes
     if any(motion.z is not None for motion in cases.motions):

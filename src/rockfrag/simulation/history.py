@@ -1,4 +1,8 @@
-"""One body, one motion, everything about the response."""
+"""One body, one motion, everything about the response.
+
+In: a body, a motion [m/s²], options. Out: a :class:`rockfrag.outcomes.Response`. Theory: ``docs/rocking.md``,
+``docs/contact.md``.
+"""
 
 from __future__ import annotations
 

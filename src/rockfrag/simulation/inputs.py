@@ -1,10 +1,15 @@
-"""Checks of what users give, and the step sizes that follow from it."""
+"""Checks of what users give, and the step sizes that follow from it.
+
+In: anything. Out: lists of systems, :class:`GroundMotion` and scales, or one sentence on what is wrong. Docs:
+``docs/rocking.md``, "What a response says about itself".
+"""
 
 import math
 import numbers
 import os
 import warnings
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -16,7 +21,7 @@ from rockfrag.base.input_checks import positive_number, real_array, shown, whole
 from rockfrag.engines.contract import Cases
 from rockfrag.engines.steps import MOST_SAMPLES, STEP, step_count
 from rockfrag.records.motion import GroundMotion, Motion
-from rockfrag.system.blocks import SystemLike, is_system
+from rockfrag.system.blocks import SystemLike, as_system, is_system
 from rockfrag.system.system import uplift_ratios
 
 MOST_CASES = 50_000_000  # cases of an ensemble whose results are held in memory
@@ -24,10 +29,17 @@ STRONGEST = 1e4  # peak acceleration [m/s²] beyond any earthquake
 MotionLike = Motion | GroundMotion | ArrayLike
 """A motion, or the accelerations of its horizontal component [m/s²], shape (n,)."""
 
+SystemsInput = SystemLike | Sequence[SystemLike] | Mapping[str, SystemLike]
+"""One body or system, a list of them, or a mapping of names, which stand in tables and figures, to them."""
+
 
 def _checked_motion(motion: Any, dt: float | None, name: str) -> Motion:
     """Return a motion, or the one that accelerations [m/s²] at a sampling interval [s] are."""
     _refuse_file_name(name, motion)
+    if is_system(motion):
+        raise InputError(
+            f"{name}: expected a motion, got a {type(motion).__name__}; the body stands before it."
+        )
     if isinstance(motion, Motion):
         if dt is not None:
             raise InputError(
@@ -85,9 +97,17 @@ def _checked_vertical(vertical: MotionLike, horizontal: Motion, name: str) -> Mo
 
 
 def listed_bodies(bodies: object) -> list[SystemLike]:
-    """Return the bodies as a list."""
+    """Return the bodies as a list; those of a mapping bear its names."""
     if is_system(bodies):
         return [bodies]
+    if isinstance(bodies, (Motion, GroundMotion)):
+        raise InputError(
+            "bodies: expected bodies first, then motions, got a Motion; exchange them."
+        )
+    if isinstance(bodies, Mapping):
+        return [
+            replace(as_system(body), name=str(name)) for name, body in bodies.items()
+        ]
     if not isinstance(bodies, (Sequence, np.ndarray)) or isinstance(
         bodies, (str, bytes)
     ):
@@ -166,6 +186,10 @@ def _refuse_file_name(name: str, motion: object) -> None:
 
 def _listed_motions(motions: Any, name: str = "motions") -> list[MotionLike]:
     _refuse_file_name(name, motions)
+    if is_system(motions):
+        raise InputError(
+            f"{name}: expected motions, got a {type(motions).__name__}; bodies stand before them."
+        )
     if isinstance(motions, (Motion, GroundMotion)):
         return [motions]
     if (
@@ -291,6 +315,10 @@ def warn_of_units(cases: Cases, given: object, stacklevel: int = 5) -> None:
     )
     longest = max(motion.dt for motion in cases.motions)
     flags = [plausible.peak_warning(peak, least)]
+    if (cases.scales < 0).any():
+        flags.append(
+            "scales: a negative factor turns the motion round; give 0 and above"
+        )
     if g > plausible.LARGEST_GRAVITY:
         planet = f"an acceleration of gravity of {g:g} m/s² is that of no planet"
         flags.append(f"{planet}; if it is in cm/s², divide it by 100")

@@ -1,4 +1,8 @@
-"""Options of every door as people write them, and the system that they make of a body."""
+"""Options of every door as people write them, and the system that they make of a body.
+
+In: friction, restitution and starts, in all forms that people use. Out: a system with them. Theory:
+``docs/contact.md``, ``docs/restitution.md``.
+"""
 
 import math
 import numbers

@@ -1,4 +1,8 @@
-"""Ensembles larger than memory: outcomes, peaks or whole histories straight into a Parquet file."""
+"""Ensembles larger than memory: outcomes, peaks or whole histories straight into a Parquet file.
+
+In: as for :func:`rockfrag.simulation.overturns`. Out: a file whose bytes do not depend on threads. Docs:
+``docs/reliability.md``.
+"""
 
 from __future__ import annotations
 
@@ -26,8 +30,7 @@ from rockfrag.outcomes.outcomes import Table
 from rockfrag.outcomes.outcomes import columns as columns_of
 from rockfrag.outcomes.response import SPATIAL_COLUMNS
 from rockfrag.simulation.ensemble import Options, prepared, shaken
-from rockfrag.simulation.inputs import MotionLike
-from rockfrag.system.blocks import SystemLike
+from rockfrag.simulation.inputs import MotionLike, SystemsInput
 
 ROWS = 262_144  # most cases that are in memory at a time, and most rows of a row group
 PLACE = {"system": pa.int32(), "motion": pa.int32(), "scale": pa.float64()}
@@ -41,7 +44,7 @@ USUAL = ("overturned", "overturned_body")
 
 @named_keywords
 def stream_overturns(
-    bodies: SystemLike | Sequence[SystemLike],
+    bodies: SystemsInput,
     motions: MotionLike | Sequence[MotionLike],
     dt: float | Sequence[float] | None,
     scales: ArrayLike,
@@ -141,7 +144,7 @@ IN_PLANE = {"theta_rad": pa.float64(), "omega_rad_s": pa.float64(), "state": pa.
 
 @named_keywords
 def stream_histories(
-    bodies: SystemLike | Sequence[SystemLike],
+    bodies: SystemsInput,
     motions: MotionLike | Sequence[MotionLike],
     dt: float | Sequence[float] | None,
     scales: ArrayLike,

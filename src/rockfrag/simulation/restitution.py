@@ -3,6 +3,9 @@
 A block that rocks freely loses energy at impacts only.  With x the square of the angular velocity just
 after an impact, e² x is that after the next (Housner, 1963), and x gives both the peak between them and
 the time between them.  So peaks, impact times and whole histories all speak about e.
+
+In: peaks [rad], times [s] or a history of free rocking. Out: e with its interval [-]. Theory:
+``docs/restitution.md``.
 """
 
 from __future__ import annotations

@@ -2,6 +2,9 @@
 
 Whether a rocking body falls depends on its motion and its dimensions without end in detail, and no number of one
 history predicts how a neighbouring one ends.  So neighbours are simulated.
+
+In: a case, and how little its numbers are known. Out: fraction of neighbours that end otherwise [-]. Theory:
+``docs/definitions.md``.
 """
 
 from __future__ import annotations

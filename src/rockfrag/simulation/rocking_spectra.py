@@ -2,6 +2,8 @@
 
 As a response spectrum shows oscillators of one damping over their period, a rocking spectrum shows blocks
 of one slenderness over 2π/p (Makris and Konstantinidis 2003, Earthquake Eng. Struct. Dyn. 32, 265-289).
+
+In: a motion, periods 2π/p [s] and angles [rad]. Out: rotations over the critical angle and velocities over p.
 """
 
 from __future__ import annotations
@@ -9,6 +11,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -26,6 +29,9 @@ from rockfrag.simulation.ensemble import overturns
 from rockfrag.simulation.inputs import MotionLike
 from rockfrag.simulation.options import FrictionInput, Restitution
 from rockfrag.system.blocks import Block
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 
 @dataclass(frozen=True)
@@ -45,6 +51,24 @@ class RockingSpectrum:
     def overturned(self) -> NDArray[np.bool_]:
         """Whether the block overturns, shape (j, k)."""
         return np.isinf(self.rotation)
+
+    def plot(self, title: str = "") -> Figure:
+        """Draw peak rotations and angular velocities over 2π/p, a line an angle, and where blocks overturn.
+
+        Parameters
+        ----------
+        title : heading of the figure
+
+        Returns
+        -------
+        matplotlib.figure.Figure
+            Rotation over the critical angle [-] above, angular velocity over p [rad] below; a cross at the upper
+            edge marks a block that overturns.
+        """
+        # matplotlib is loaded only by those who draw
+        from rockfrag.simulation.figures import spectrum_figure
+
+        return spectrum_figure(self, title)
 
 
 def uniform_block(alpha: float, period: float, g: float = GRAVITY) -> Block:

@@ -3,6 +3,8 @@
 More shaking does not always mean overturning: above the first overturning amplitude there can be windows
 in which the body survives again (``docs/derivation.md``).  A coarse grid finds every window that is at
 least as wide as its spacing, and bisection puts both ends of what it finds to a tolerance.
+
+In: bodies, motions, the highest scale. Out: a table of scales and of peaks [g]. Theory: ``docs/definitions.md``.
 """
 
 from __future__ import annotations
@@ -10,7 +12,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Unpack
+from typing import TYPE_CHECKING, Unpack
 
 import numpy as np
 import pandas as pd
@@ -25,8 +27,11 @@ from rockfrag.base.units import GRAVITY
 from rockfrag.motions.rotation import common_time, rotate
 from rockfrag.records.motion import Motion
 from rockfrag.simulation.ensemble import Options, overturned_cases, prepared, shaken
-from rockfrag.simulation.inputs import MotionLike
-from rockfrag.system.blocks import Body, SystemLike
+from rockfrag.simulation.inputs import MotionLike, SystemsInput
+from rockfrag.system.blocks import Body
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 MOST_GRID_CASES = 5_000_000
 
@@ -38,7 +43,8 @@ class Thresholds:
     Attributes
     ----------
     table : a row per body and motion
-        ``body``, ``motion`` (positions in the lists given), ``first_overturning`` (least scale found that
+        ``body``, ``motion`` (positions in the lists given), ``body_name``, ``motion_name`` (empty where they have
+        none), ``first_overturning`` (least scale found that
         overturns), ``always_overturning`` (from here to the highest scale every outcome found is overturning),
         both also as peak accelerations ``first_overturning_pga_g`` and ``always_overturning_pga_g``, and
         ``resurrections``, the number of structural resurrections above the first overturning.  NaN if the body
@@ -56,17 +62,36 @@ class Thresholds:
     resurrections: pd.DataFrame
     narrowest_resurrection: float
     tolerance: float
+    highest: float = math.nan  # largest scale that was looked at
 
     __repr__ = short_repr
+
+    def plot(self, title: str = "") -> Figure:
+        """Draw from which peak on each motion overturns each body, and where the body is survived again.
+
+        Parameters
+        ----------
+        title : heading of the figure
+
+        Returns
+        -------
+        matplotlib.figure.Figure
+            A row a motion and body: a bar from the first overturning on, gaps where stronger shaking is survived
+            [g]; rows without a bar survive all scales.
+        """
+        # matplotlib is loaded only by those who draw
+        from rockfrag.simulation.figures import thresholds_figure
+
+        return thresholds_figure(self, title)
 
 
 @named_keywords
 def find_thresholds(
-    bodies: SystemLike | Sequence[SystemLike],
+    bodies: SystemsInput,
     motions: MotionLike | Sequence[MotionLike],
-    dt: float | Sequence[float] | None,
-    highest: float,
+    dt: float | Sequence[float] | None = None,
     *,
+    highest: float,
     tolerance: float,
     narrowest_resurrection: float,
     **options: Unpack[Options],
@@ -95,7 +120,7 @@ def find_thresholds(
     >>> from rockfrag.motions import one_sine
     >>> motion = one_sine(1.0, period=1.0)
     >>> upper = Block(width=0.3, height=1.2, mass=180.0)
-    >>> found = find_thresholds(upper, motion, None, highest=8.0, tolerance=0.01, narrowest_resurrection=0.1)
+    >>> found = find_thresholds(upper, motion, highest=8.0, tolerance=0.01, narrowest_resurrection=0.1)
     >>> found.table["first_overturning"].round(2).tolist()
     [2.95]
     """
@@ -131,13 +156,16 @@ def find_thresholds(
             mine = (body == i) & (motion == j)
             row, survived = _read(low[mine], high[mine], falls[mine], highest)
             peak = shaking.x.pga / cases.request.g
-            table.append((i, j, *row, *(peak * scale for scale in row), len(survived)))
+            names = cases.systems[i].name, shaking.name
+            table.append(
+                (i, j, *names, *row, *(peak * scale for scale in row), len(survived))
+            )
             resurrections += [(i, j, lower, upper) for lower, upper in survived]
     return Thresholds(
         table=pd.DataFrame(
             table,
             columns=[
-                "body", "motion", "first_overturning", "always_overturning",
+                "body", "motion", "body_name", "motion_name", "first_overturning", "always_overturning",
                 "first_overturning_pga_g", "always_overturning_pga_g", "resurrections",
             ],
         ),
@@ -146,6 +174,7 @@ def find_thresholds(
         ),
         narrowest_resurrection=highest / intervals,
         tolerance=tolerance,
+        highest=highest,
     )  # fmt: skip
 
 
@@ -223,8 +252,7 @@ def worst_direction(
     found = find_thresholds(
         body,
         motions,
-        None,
-        highest,
+        highest=highest,
         tolerance=TOLERANCE,
         narrowest_resurrection=NARROWEST,
     ).table

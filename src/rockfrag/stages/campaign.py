@@ -1,4 +1,7 @@
-"""The tables of a campaign on a shake table, from the table of tests to comparisons."""
+"""The tables of a campaign on a shake table, from the table of tests to comparisons.
+
+In: a campaign study. Out: the tables that ``results/README.md`` lists for it. Theory: ``docs/campaigns.md``.
+"""
 
 import logging
 from collections.abc import Mapping

@@ -1,4 +1,8 @@
-"""Fragility: curves of every configuration and floor, the measure that predicts overturning best, exports."""
+"""Fragility: curves of every configuration and floor, the measure that predicts overturning best, exports.
+
+In: IDA curves and measures of the motions. Out: tables of curves with θ in the unit of the measure and β [-], and
+files for other programs. Theory: ``docs/fragility.md``.
+"""
 
 import re
 from collections import defaultdict
@@ -60,7 +64,10 @@ def run(job: Job[Study]) -> Results:
     yield "fragility_floors_fractions", floor_fractions
     exports = job.folder / "exports"
     exports.mkdir(parents=True, exist_ok=True)
-    exported = ", ".join(export_curves(by_floor, exports, floor_fractions))
+    written = export_curves(
+        by_floor, exports, floor_fractions, model_error=settings.model_error
+    )
+    exported = ", ".join(written)
     job.log.info("exported %s", exported or "no curve")
     best = ", ".join(best_of(choice, columns)) or "none stands out"
     job.log.info(
@@ -269,13 +276,18 @@ def floor_curves(
 
 
 def export_curves(
-    curves: pd.DataFrame, folder: Path, fractions: pd.DataFrame
+    curves: pd.DataFrame,
+    folder: Path,
+    fractions: pd.DataFrame,
+    *,
+    model_error: bool = True,
 ) -> list[str]:
     """Write the curves for OpenQuake and SimCenter; return the names of the files.
 
     One file per measure and floor, as both formats take one curve per object. OpenQuake knows motions of
     the ground only. Configurations without a curve are left out, and a measure without any has no file. Of
     rejected curves the points of the non-parametric function are written, as far as ``fractions`` has them.
+    Curves of overturning hold the errors of estimate and model unless ``model_error`` is False.
     """
     written = []
     for (floor, height, column), rows in curves.groupby(
@@ -302,9 +314,17 @@ def export_curves(
         )
         if height == 0:
             # the formats know the ground by an empty floor, whatever its user calls it
-            write_nrml(usable.assign(floor=""), xml, identifier=stem, fractions=points)
+            write_nrml(
+                usable.assign(floor=""),
+                xml,
+                identifier=stem,
+                fractions=points,
+                model_error=model_error,
+            )
             written.append(xml.name)
         if column in floor_measures(1):
-            write_simcenter(usable, csv, json, fractions=points)
+            write_simcenter(
+                usable, csv, json, fractions=points, model_error=model_error
+            )
             written += [csv.name, json.name]
     return written

@@ -1,4 +1,8 @@
-"""A job: one rule of the workflow at work on one study."""
+"""A job: one rule of the workflow at work on one study.
+
+In: a study, paths that the rule declares. Out: tables and motions read and written whole. Docs:
+``docs/reliability.md``.
+"""
 
 import hashlib
 import logging

@@ -1,4 +1,7 @@
-"""Logs of the workflow's jobs: what each found, how long it took, one sentence if it failed."""
+"""Logs of the workflow's jobs: what each found, how long it took, one sentence if it failed.
+
+In: what happens in a job. Out: a log file, one sentence on the screen. Docs: ``docs/reliability.md``.
+"""
 
 import errno
 import logging

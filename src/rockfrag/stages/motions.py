@@ -1,4 +1,9 @@
-"""Motions: records read, processed, felt by the floors of a building, and measured."""
+"""Motions of a study: records read, processed, felt by the floors of a building, and measured.
+
+In: the catalogue of a study and its records. Out: motions as read, on the ground and on every floor [m/s²], their
+intensity measures, by how much they are scaled, and which were left out and why. Theory: ``docs/motions.md``,
+``docs/building.md``.
+"""
 
 from collections import defaultdict
 from dataclasses import replace
@@ -16,9 +21,11 @@ from rockfrag.records.motion import Motion
 from rockfrag.records.sources.wheel import NotFetched
 from rockfrag.records.write import write_motions
 from rockfrag.stages.job import Job, Results
+from rockfrag.study.scaling import scaling_table, too_weak
 from rockfrag.study.study import GROUND, RECORDS_FOLDER, Study
 
-LEFT_OUT = "left_out"  # Table of what a study that keeps going has left out
+LEFT_OUT = "left_out"  # Table of the motions that a study has left out, and why
+MOST_SAID = 3  # So many of them are named on the screen
 
 WRITTEN = "motions/written"
 """Folder of the motions of all floors in the format that a study asks for."""
@@ -30,8 +37,8 @@ def run(job: Job[Study]) -> Results:
     rows, felt, left_out = _felt(job)
     floors = felt["floors"]
     yield from ((f"motions/{name}", motions) for name, motions in felt.items())
-    if study.keep_going:
-        yield LEFT_OUT, pd.DataFrame(left_out, columns=["motion", "reason"], dtype=str)
+    yield LEFT_OUT, pd.DataFrame(left_out, columns=["motion", "reason"], dtype=str)
+    yield "scaling", scaling_table(study, felt["ground"], floors)
     if study.write_motions is not None:
         write_motions(floors, job.folder / WRITTEN, study.write_motions)
     table = measure_motions(floors, processes=job.threads)
@@ -46,7 +53,12 @@ def run(job: Job[Study]) -> Results:
         pairs = pairs.assign(name=pairs["name"].map(grounds)).dropna(subset="name")
         table = table.merge(pairs, on="name", how="left")
     yield "measures", table
-    missing = f", {len(left_out)} left out" if left_out else ""
+    missing = "".join(
+        f", left out: {row['motion']}, {row['reason'].rstrip('.')}"
+        for row in left_out[:MOST_SAID]
+    )
+    if len(left_out) > MOST_SAID:
+        missing += f", and {len(left_out) - MOST_SAID} more"
     job.log.info(
         "records: %d%s, motions of floors: %d", len(rows), missing, len(floors)
     )
@@ -85,6 +97,10 @@ def _felt(
                 found["vertical"] = _floors(
                     study, process(up[0], study.processing), vertical=True
                 )
+            if weak := too_weak(study, found["floors"]):
+                left_out.append({"motion": str(named["name"]), "reason": f"{weak}."})
+                job.log.warning("left out: %s: %s", named["name"], weak)
+                continue
             for kind, motions in found.items():
                 felt[kind] += motions
             rows.append(named)

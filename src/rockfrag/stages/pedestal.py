@@ -1,4 +1,7 @@
-"""The pedestal's effect, for each definition of the tests and of a laboratory's, which stand beside them."""
+"""The pedestal's effect, for each definition of the tests and of a laboratory's, which stand beside them.
+
+In: tables of tests. Out: ratios of amplitudes P/NP with intervals. Theory: ``docs/pedestal.md``.
+"""
 
 from collections.abc import Mapping
 

@@ -1,4 +1,8 @@
-"""Running a study's stages as the workflow does: what comes before the first job, and one job."""
+"""Running a study's stages as the workflow does: what comes before the first job, and one job.
+
+In: a configuration and the paths of a rule. Out: the results of one stage, and a lock of the study. Docs:
+``docs/reliability.md``.
+"""
 
 import os
 import platform

@@ -1,6 +1,8 @@
 """Stage of a study of bodies in space: medians of overturning under both components, over those of planar rocking.
 
 The level of a record is the geometric mean of the peaks of its two components, whatever the body feels of them.
+
+In: a study of bodies in space. Out: the table of medians [g]. Theory: ``docs/space.md``.
 """
 
 import math

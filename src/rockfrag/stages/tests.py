@@ -1,4 +1,8 @@
-"""Tests: the IDA curves read as a laboratory would and in two other ways, within the limits of a shaker."""
+"""Tests: the IDA curves read as a laboratory would and in two other ways, within the limits of a shaker.
+
+In: IDA curves, motions [m/s²], a shaker. Out: tables of tests with amplitudes [g], forces and bodies. Theory:
+``docs/definitions.md``, ``docs/shaketable.md``.
+"""
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace

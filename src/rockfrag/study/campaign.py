@@ -1,4 +1,8 @@
-"""Studies of somebody's tests: a campaign whose tests are simulated and compared, or a table with its measures."""
+"""Studies of somebody's tests: a campaign whose tests are simulated and compared, or a table with its measures.
+
+In: a checked YAML file. Out: :class:`CampaignStudy` or :class:`MeasuredTable`. Docs: ``config/README.md``,
+``docs/campaigns.md``.
+"""
 
 import os
 from collections.abc import Mapping

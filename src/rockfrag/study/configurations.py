@@ -1,4 +1,8 @@
-"""The bodies of a study: a table of blocks and a table of which block stands on which."""
+"""The bodies of a study: a table of blocks and a table of which block stands on which.
+
+In: two CSV files, sizes in any unit. Out: blocks [m, kg] by name, systems, and with what each is compared. Docs:
+``config/README.md``; the mechanics: ``docs/rocking.md``.
+"""
 
 import os
 from collections.abc import Mapping, Sequence

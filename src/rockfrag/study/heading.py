@@ -1,4 +1,7 @@
-"""What studies of every kind say: their heading, files that lie beside them, lists of processing steps."""
+"""What studies of every kind say: their heading, files that lie beside them, lists of processing steps.
+
+In: a checked configuration. Out: paths that exist, steps that are known. Docs: ``config/README.md``.
+"""
 
 import os
 from collections.abc import Mapping, Sequence

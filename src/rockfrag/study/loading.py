@@ -1,5 +1,10 @@
-"""Reading a study before anything runs, with every check that can be made beforehand."""
+"""Reading a study before anything runs, with every check that can be made beforehand.
 
+In: a YAML file and what it names. Out: a study of any kind, or one sentence on what is wrong; warnings on records.
+Docs: ``config/README.md``.
+"""
+
+import math
 import os
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
@@ -8,12 +13,16 @@ from typing import Any, cast
 
 from rockfrag.base.errors import InputError, errors_of
 from rockfrag.base.files import distinct_file_names, file_name, is_file
-from rockfrag.base.plausible import peak_warning
+from rockfrag.base.plausible import LARGEST_PEAK, peak_warning
+from rockfrag.base.units import GRAVITY
 from rockfrag.base.yaml_file import read_yaml
 from rockfrag.building.settings import read_building
 from rockfrag.config.plugins import plugins_asked
 from rockfrag.config.schema import checked
+from rockfrag.motions.processing import process
 from rockfrag.records.catalogue import own_records, read_catalogue, repeated_motions
+from rockfrag.records.motion import Motion
+from rockfrag.records.quality_flags import DRIFT, quality_flags
 from rockfrag.shaketable.shaker import read_shaker
 from rockfrag.study import configurations as arrangements
 from rockfrag.study.campaign import (
@@ -25,8 +34,10 @@ from rockfrag.study.campaign import (
     measured_table_from,
 )
 from rockfrag.study.heading import check_file, checked_steps, existing_file, heading_of
+from rockfrag.study.scaling import LARGEST_FACTOR, too_weak
 from rockfrag.study.space import SPACE_KEY, SpaceStudy, space_study_from
 from rockfrag.study.study import RECORDS_FOLDER, Amplitudes, FragilitySettings, Study
+from rockfrag.words.sentences import listed
 
 AnyStudy = Study | MeasuredTable | CampaignStudy | SpaceStudy
 
@@ -122,8 +133,10 @@ def _study(content: Mapping[str, Any], source: Path) -> Study:
                 (pair[0], pair[1]) for pair in measures if isinstance(pair, list)
             ),
             confidence=content["fragility"]["confidence"],
+            model_error=content["fragility"].get("model_error", True),
         ),
         keep_going=content.get("keep_going", False),
+        largest_factor=_largest_factor(motions),
         slides="friction" in content,
         vertical=content.get("vertical", False),
         write_motions=content.get("write_motions"),
@@ -147,6 +160,12 @@ def _study(content: Mapping[str, Any], source: Path) -> Study:
         _check_measured_tests(study, study.measured_tests)
     _check_vertical(study)
     return study
+
+
+def _largest_factor(motions: Mapping[str, Any]) -> float:
+    """Largest factor that the key ``motions`` allows, infinite where it lifts the limit."""
+    given = motions.get("largest_factor", LARGEST_FACTOR)
+    return math.inf if given is None else float(given)
 
 
 def _used(
@@ -204,6 +223,26 @@ def _check_measured_tests(study: Study, path: Path) -> None:
             )
 
 
+def check_tables(study: AnyStudy) -> None:
+    """Read the tests of a measured table or a campaign, so that what is wrong in them is said beforehand.
+
+    Parameters
+    ----------
+    study : of any kind; a table that is still to be fetched is not looked at
+    """
+    # statistics load what a study of simulations need not wait for
+    if isinstance(study, MeasuredTable):
+        from rockfrag.fragility.tests_file import read_tests
+
+        read_tests(study.table, study.measures, **study.columns)
+    elif isinstance(study, CampaignStudy) and is_file(study.tests):
+        from rockfrag.campaign.laboratory import read_campaign
+
+        codes = study.other_codes
+        known = codes if codes is not None and is_file(codes) else None
+        read_campaign(study.tests, study.columns, study.measures, known)
+
+
 _FOUND: dict[tuple[object, ...], list[str]] = {}
 """What was found of the records as they are: a run is checked by itself and by Snakemake, in one process."""
 
@@ -245,8 +284,10 @@ def _read_all(study: Study) -> list[str]:
     warnings = [
         f"{study.catalogue_file}: {line}" for line in repeated_motions(study.catalogue)
     ]
+    warnings += seconds_not_shaken(study)
     folder = study.catalogue_file.parent
     own = study.catalogue[study.catalogue["source"] == "folder"]
+    read: list[Motion] = []
     for row in cast("list[dict[str, Any]]", own.to_dict("records")):
         where = f"{study.catalogue_file}, motion {row['name']}"
         try:
@@ -260,6 +301,65 @@ def _read_all(study: Study) -> list[str]:
                 raise InputError(f"{where}: {error}") from None
             warnings.append(f"{where} will be left out: {error}")
             continue
-        if quality_flag := peak_warning(motion.pga):
-            warnings.append(f"{where}: {quality_flag}.")
-    return warnings
+        read.append(motion)
+        warnings += [
+            f"{where}: {quality_flag}."
+            for quality_flag in _quality_flags(study, motion)
+        ]
+    return warnings + _scaled_far(study, read)
+
+
+def _quality_flags(study: Study, record: Motion) -> list[str]:
+    """What is doubtful in a record: its unit, its drift, its strength."""
+    ground = process(record, study.processing)
+    found = [flag for flag in quality_flags(ground) if DRIFT in flag]
+    weak = "" if study.building else too_weak(study, [ground])
+    if weak:
+        found.append(f"will be left out: {weak}")
+    unit_stated = record.provenance[0].get("unit_stated", False)
+    # a unit that the file states is not to be doubted because the motion is weak
+    if not (unit_stated and record.pga < LARGEST_PEAK):
+        found.append(peak_warning(record.pga))
+    return [flag for flag in found if flag]
+
+
+def _scaled_far(study: Study, records: Sequence[Motion]) -> list[str]:
+    """Say how many records the highest amplitude scales too far, if any."""
+    highest = float(study.amplitudes.values_g[-1]) * GRAVITY
+    factors = {motion.name: highest / motion.pga for motion in records}
+    far = {name: factor for name, factor in factors.items() if factor > LARGEST_FACTOR}
+    if not far or study.building is not None:
+        return []
+    farthest = max(far, key=far.__getitem__)
+    return [
+        f"{study.catalogue_file}: the highest amplitude scales {len(far)} of {len(factors)} motions by more than "
+        f"{LARGEST_FACTOR:g}, {farthest} by {far[farthest]:.3g}; the report says which tests need such factors."
+    ]
+
+
+def seconds_not_shaken(study: Study) -> list[str]:
+    """Say which rows name a second component that has no row of its own, and so shakes nothing by itself.
+
+    Parameters
+    ----------
+    study : the study
+
+    Returns
+    -------
+    A sentence, or nothing.
+    """
+    rows = cast("list[dict[str, Any]]", study.catalogue.to_dict("records"))
+    own = {(row["source"], row["file"]) for row in rows}
+    alone = [
+        row["name"]
+        for row in rows
+        if row["second"]
+        and not row["direction"]
+        and (row["source"], row["second"]) not in own
+    ]
+    if not alone:
+        return []
+    return [
+        f"{study.catalogue_file}: the second component of {listed(alone)} has no row of its own: it is measured, "
+        "and shakes nothing; give it a row to test it too."
+    ]

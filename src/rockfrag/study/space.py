@@ -1,4 +1,8 @@
-"""A study of bodies in space beside planar ones."""
+"""A study of bodies in space beside planar ones.
+
+In: a checked configuration. Out: bodies with base and height [m], records of two components, amplitudes. Theory:
+``docs/space.md``.
+"""
 
 from collections.abc import Mapping
 from dataclasses import dataclass

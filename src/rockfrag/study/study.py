@@ -1,4 +1,8 @@
-"""A study: what its configuration says, read once, checked, and as the stages need it."""
+"""A study: what its configuration says, read once, checked, and as the stages need it.
+
+In: what :mod:`rockfrag.study.loading` has read. Out: amplitudes [g], jobs, names of files. Docs:
+``config/README.md``.
+"""
 
 import math
 from collections.abc import Mapping
@@ -66,6 +70,8 @@ class FragilitySettings:
     measures: tuple[str, ...]
     pairs: tuple[tuple[str, str], ...]
     confidence: float
+    # Whether exported curves hold the errors of estimate and model beside the scatter of the motions
+    model_error: bool = True
 
 
 @dataclass(frozen=True)
@@ -92,6 +98,8 @@ class Study(Heading):
     fragility: FragilitySettings  # Settings of the fragility curves
     # Whether records that cannot be used are left out, and said to be, instead of ending the study
     keep_going: bool
+    # Largest factor that the lowest amplitude may need, beyond which a motion is left out; infinite for any
+    largest_factor: float
     slides: bool  # Whether friction is limited, so that bodies slide and fly
     vertical: bool  # Whether the vertical components of the records shake too
     # Format in which the motions of all floors are written too, or None

@@ -16,6 +16,11 @@ from .contact import (
     Friction as Friction,
     ImpactLaw as ImpactLaw,
 )
+from .kinds import (
+    Kind as Kind,
+    block_of_kind as block_of_kind,
+    kind_named as kind_named,
+)
 from .mesh import (
     Shape as Shape,
     read_shape as read_shape,

@@ -10,7 +10,7 @@ import warnings
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any, TypeGuard
+from typing import TYPE_CHECKING, Any, TypeGuard
 
 from rockfrag.base.errors import InputError
 from rockfrag.base.input_checks import positive_number, real_number, shown
@@ -267,6 +267,14 @@ class Stack:
             if not isinstance(block, Block):
                 raise InputError(f"Stack: {name} must be a Block, got {shown(block)}.")
         real_number("Stack: offset", self.offset, "metres")
+        if self._is_upside_down:
+            warnings.warn(
+                f"Stack: a block of {self.upper.width:g} m × {self.upper.height:g} m on one of "
+                f"{self.lower.width:g} m × {self.lower.height:g} m seems to stand upside down; the lower block "
+                "comes first.",
+                UnlikelyBlock,
+                stacklevel=4,
+            )
         pile, failed = self.pile, geometry.failed_stability_check(self.pile)
         if failed == geometry.STANDS:
             return
@@ -285,6 +293,13 @@ class Stack:
             "contacts are not modelled.",
         }
         raise InputError(f"Stack: {wrong[failed]}")
+
+    @property
+    def _is_upside_down(self) -> bool:
+        """Whether a squat, wider and heavier block stands on a slender one, as no statue does on its pedestal."""
+        lower, upper = self.lower, self.upper
+        wider, heavier = upper.width > lower.width, upper.mass > lower.mass
+        return wider and heavier and lower.slenderness > 2 > upper.slenderness
 
     @property
     def blocks(self) -> tuple[Block, ...]:
@@ -333,7 +348,18 @@ class Column:
     blocks: tuple[Block, ...]
     offsets: tuple[float, ...] | None = None
 
+    if TYPE_CHECKING:
+        # a list is taken as well, and kept as a tuple
+        def __init__(
+            self, blocks: Sequence[Block], offsets: Sequence[float] | None = None
+        ) -> None: ...
+
     def __post_init__(self) -> None:
+        if not isinstance(self.blocks, Sequence):
+            raise InputError(
+                "Column: expected a list of blocks from below, such as Column([base, statue]), got "
+                f"{shown(self.blocks)}."
+            )
         object.__setattr__(self, "blocks", tuple(self.blocks))
         for block in self.blocks:
             if not isinstance(block, Block):
@@ -416,7 +442,16 @@ SystemLike = Body | System  # what stands, as it may be written
 
 
 def is_system(thing: object) -> TypeGuard[SystemLike]:
-    """Whether a thing is a system, or writes one."""
+    """Whether a thing is a system, or writes one.
+
+    Parameters
+    ----------
+    thing : anything
+
+    Returns
+    -------
+    Whether every door takes it.
+    """
     return isinstance(thing, (System, Block, Stack, Column))
 
 
@@ -439,7 +474,16 @@ def as_system(thing: SystemLike) -> System:
 
 
 def stacked(blocks: Sequence[Block]) -> Body:
-    """Return blocks that stand on each other, from below, as a block, a stack or a column."""
+    """Return blocks that stand on each other, from below, as a block, a stack or a column.
+
+    Parameters
+    ----------
+    blocks : from below, at least one
+
+    Returns
+    -------
+    A block, a stack of two, or a column of more.
+    """
     if len(blocks) == 1:
         return blocks[0]
     return Stack(blocks[0], blocks[1]) if len(blocks) == 2 else Column(tuple(blocks))

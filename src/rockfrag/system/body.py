@@ -163,7 +163,16 @@ def interval_of(outline: Outline, along: tuple[float, float]) -> Interval:
 
 
 def checked_tensor(given: object) -> Tensor:
-    """Return a tensor of inertia as three rows; it must be symmetric and that of a body."""
+    """Return a tensor of inertia as three rows; it must be symmetric and that of a body.
+
+    Parameters
+    ----------
+    given : a tensor about the centre of mass, shape (3, 3) [kg m²]
+
+    Returns
+    -------
+    Its rows [kg m²].
+    """
     values = real_array("RigidBody: inertia", given, "kg m²")
     if values.shape != (3, 3) or not np.isfinite(values).all():
         raise InputError(

@@ -69,7 +69,17 @@ class Contact:
 
 
 def checked_friction(name: str, value: object) -> Friction | None:
-    """Return the friction of a contact of a coefficient, a pair (static, kinetic), a Friction or None."""
+    """Return the friction of a contact of a coefficient, a pair (static, kinetic), a Friction or None.
+
+    Parameters
+    ----------
+    name : of the argument, with which a message begins
+    value : as said above; None: it never slides
+
+    Returns
+    -------
+    The coefficients (static, kinetic) [-], or None.
+    """
     if value is None:
         return None
     if isinstance(value, np.ndarray) and value.ndim == 0:

@@ -46,7 +46,17 @@ once the pedestal's lean is counted; the statue could touch the ground before an
 
 
 def turned(x: float, y: float, angle: float) -> tuple[float, float]:
-    """Turn a vector clockwise by ``angle`` [rad]."""
+    """Turn a vector clockwise by ``angle`` [rad].
+
+    Parameters
+    ----------
+    x, y : of one unit, to the right and up
+    angle : clockwise [rad]
+
+    Returns
+    -------
+    Both components, in that unit.
+    """
     s, c = sin_cos(angle)
     return x * c + y * s, -x * s + y * c
 
@@ -54,14 +64,34 @@ def turned(x: float, y: float, angle: float) -> tuple[float, float]:
 def turned_in_plan(
     x: float, y: float, sine: float, cosine: float
 ) -> tuple[float, float]:
-    """Turn a vector about the vertical, from x towards y."""
+    """Turn a vector about the vertical, from x towards y.
+
+    Parameters
+    ----------
+    x, y : of one unit
+    sine, cosine : of the angle from x towards y [-]
+
+    Returns
+    -------
+    Both components, in that unit.
+    """
     return cosine * x - sine * y, sine * x + cosine * y
 
 
 def turned_moments(
     xx: float, xy: float, yy: float, sine: float, cosine: float
 ) -> tuple[float, float, float]:
-    """Turn the part of a tensor in the plan likewise: xx, xy and yy."""
+    """Turn the part of a tensor in the plan likewise: xx, xy and yy.
+
+    Parameters
+    ----------
+    xx, xy, yy : of the tensor, of one unit
+    sine, cosine : of the angle from x towards y [-]
+
+    Returns
+    -------
+    The three, in that unit.
+    """
     aside = 2 * cosine * sine * xy
     return (
         cosine * cosine * xx - aside + sine * sine * yy,
@@ -73,7 +103,20 @@ def turned_moments(
 def shape_of(
     width: float, height: float, mass: float, inertia: float, cg_height: float, cg_offset: float, lean: float
 ) -> Shape:  # fmt: skip
-    """Return a block as it stands; NaN stands for an inertia or a height of the centre that is not given."""
+    """Return a block as it stands; NaN stands for an inertia or a height of the centre that is not given.
+
+    Parameters
+    ----------
+    width, height : of the block [m]
+    mass : [kg]
+    inertia : about the centre of gravity [kg m²]
+    cg_height, cg_offset : of the centre of gravity over the base, and to the right of its middle [m]
+    lean : of the base, clockwise [rad]
+
+    Returns
+    -------
+    The :class:`Shape`.
+    """
     own = (
         mass * (width * width + height * height) / 12
         if math.isnan(inertia)
@@ -85,37 +128,97 @@ def shape_of(
 
 
 def arm(shape: Shape, pivot: int) -> tuple[float, float]:
-    """Vector from the pivot to the centre of gravity [m]."""
+    """Vector from the pivot to the centre of gravity [m].
+
+    Parameters
+    ----------
+    shape : a block as it stands
+    pivot : +1 right, -1 left
+
+    Returns
+    -------
+    Both components [m].
+    """
     return shape.x - pivot * shape.b, shape.y
 
 
 def critical_angle(shape: Shape, pivot: int) -> float:
-    """Rotation about the pivot at which the block balances on it [rad]."""
+    """Rotation about the pivot at which the block balances on it [rad].
+
+    Parameters
+    ----------
+    shape : a block as it stands
+    pivot : +1 right, -1 left
+
+    Returns
+    -------
+    The angle [rad], not above 0 where the block cannot stand.
+    """
     x, y = arm(shape, pivot)
     return atan2(-pivot * x, y)
 
 
 def radius(shape: Shape, pivot: int) -> float:
-    """Distance from the pivot to the centre of gravity [m]."""
+    """Distance from the pivot to the centre of gravity [m].
+
+    Parameters
+    ----------
+    shape : a block as it stands
+    pivot : +1 right, -1 left
+
+    Returns
+    -------
+    The distance R [m].
+    """
     x, y = arm(shape, pivot)
     return hypot(x, y)
 
 
 def pivot_inertia(shape: Shape, pivot: int) -> float:
-    """Moment of inertia about the pivot [kg m²]."""
+    """Moment of inertia about the pivot [kg m²].
+
+    Parameters
+    ----------
+    shape : a block as it stands
+    pivot : +1 right, -1 left
+
+    Returns
+    -------
+    The moment of inertia [kg m²].
+    """
     x, y = arm(shape, pivot)
     return shape.inertia + shape.mass * (x * x + y * y)
 
 
 def frequency(shape: Shape, pivot: int, g: float) -> float:
-    """Frequency parameter p [1/s]."""
+    """Frequency parameter p [1/s].
+
+    Parameters
+    ----------
+    shape : a block as it stands
+    pivot : +1 right, -1 left
+    g : acceleration of gravity [m/s²]
+
+    Returns
+    -------
+    The parameter p = √(m g R / I) [1/s] (Housner 1963).
+    """
     return math.sqrt(
         shape.mass * g * radius(shape, pivot) / pivot_inertia(shape, pivot)
     )
 
 
 def can_stand(shape: Shape) -> bool:
-    """Whether the centre of gravity is above the base."""
+    """Whether the centre of gravity is above the base.
+
+    Parameters
+    ----------
+    shape : a block as it stands
+
+    Returns
+    -------
+    Whether it is to both sides.
+    """
     return critical_angle(shape, 1) > 0.0 and critical_angle(shape, -1) > 0.0
 
 
@@ -126,7 +229,17 @@ def _product(shape: Shape, pivot: int) -> float:
 
 
 def momentum_restitution(shape: Shape, pivot: int) -> float:
-    """Ratio of the rates after and before an impact on this pivot that conserves momentum [-]."""
+    """Ratio of the rates after and before an impact on this pivot that conserves momentum [-].
+
+    Parameters
+    ----------
+    shape : a block as it stands
+    pivot : +1 right, -1 left
+
+    Returns
+    -------
+    The ratio, which is below 0 where the block is squat (Housner 1963).
+    """
     (x1, y1), (x2, y2) = arm(shape, -pivot), arm(shape, pivot)
     return (shape.inertia + shape.mass * (x1 * x2 + y1 * y2)) / pivot_inertia(
         shape, pivot
@@ -134,20 +247,53 @@ def momentum_restitution(shape: Shape, pivot: int) -> float:
 
 
 def largest_restitution(shape: Shape, pivot: int) -> float:
-    """Largest ratio with which no impact on this pivot gains energy [-]."""
+    """Largest ratio with which no impact on this pivot gains energy [-].
+
+    Parameters
+    ----------
+    shape : a block as it stands
+    pivot : +1 right, -1 left
+
+    Returns
+    -------
+    The ratio.
+    """
     return math.sqrt(pivot_inertia(shape, -pivot) / pivot_inertia(shape, pivot))
 
 
 def scaled_restitution(
     shape: Shape, pivot: int, measured: float, factor: float
 ) -> float:
-    """Ratio of an impact on this pivot, measured or else of momentum, times a factor [-]; none gains energy."""
+    """Ratio of an impact on this pivot, measured or else of momentum, times a factor [-]; none gains energy.
+
+    Parameters
+    ----------
+    shape : a block as it stands
+    pivot : +1 right, -1 left
+    measured : ratio of the rates [-]; NaN where there is none
+    factor : of either [-]
+
+    Returns
+    -------
+    The ratio, from 0 to the largest.
+    """
     e = momentum_restitution(shape, pivot) if math.isnan(measured) else measured
     return min(max(e, 0.0) * factor, largest_restitution(shape, pivot))
 
 
 def impulse_position(shape: Shape, restitution: float, pivot: int) -> float:
-    """Where the impulse acts if the block comes off with this ratio, from the middle (0) to the new pivot (1)."""
+    """Where the impulse acts if the block comes off with this ratio, from the middle (0) to the new pivot (1).
+
+    Parameters
+    ----------
+    shape : a block as it stands
+    restitution : ratio of the rates after and before the impact [-]
+    pivot : +1 right, -1 left, on which it comes down
+
+    Returns
+    -------
+    The place over half the width [-] (``docs/restitution.md``, eq. 4).
+    """
     old, new = arm(shape, -pivot)[0], arm(shape, pivot)[0]
     excess = _product(shape, -pivot) - restitution * _product(shape, pivot)
     return excess / (shape.mass * pivot * shape.b * (old - restitution * new))
@@ -156,7 +302,19 @@ def impulse_position(shape: Shape, restitution: float, pivot: int) -> float:
 def pile_of(
     lower: Shape, upper: Shape, height: float, lean: float, offset: float
 ) -> Pile:
-    """Return a statue as it stands on a pedestal of this height [m], lean [rad] and offset [m]."""
+    """Return a statue as it stands on a pedestal of this height [m], lean [rad] and offset [m].
+
+    Parameters
+    ----------
+    lower, upper : each as it stands by itself
+    height : of the pedestal [m]
+    lean : of the pedestal's top, clockwise [rad]
+    offset : of the middle of the statue's base from the middle of that top [m]
+
+    Returns
+    -------
+    The :class:`Pile`.
+    """
     low = max(-lower.b, offset - upper.b)
     high = min(lower.b, offset + upper.b)
     middle, on_contact = offset, upper
@@ -175,19 +333,49 @@ def pile_of(
 
 
 def reach(pile: Pile, ground_pivot: int, upper_pivot: int) -> tuple[float, float]:
-    """Vector from the pedestal's pivot to the statue's pivot [m]."""
+    """Vector from the pedestal's pivot to the statue's pivot [m].
+
+    Parameters
+    ----------
+    pile : a statue on a pedestal
+    ground_pivot, upper_pivot : of the pedestal and of the statue, +1 right, -1 left
+
+    Returns
+    -------
+    Both components [m].
+    """
     x, y = pile.right if upper_pivot > 0 else pile.left
     return x - ground_pivot * pile.lower.b, y
 
 
 def upper_arm(pile: Pile, pivot: int) -> tuple[float, float]:
-    """Vector from the statue's pivot to its centre of gravity, as it stands on the pedestal [m]."""
+    """Vector from the statue's pivot to its centre of gravity, as it stands on the pedestal [m].
+
+    Parameters
+    ----------
+    pile : a statue on a pedestal
+    pivot : of the statue, +1 right, -1 left
+
+    Returns
+    -------
+    Both components [m].
+    """
     x, y = arm(pile.upper, pivot)
     return turned(x, y, pile.lean)
 
 
 def common_arm(pile: Pile, pivot: int) -> tuple[float, float]:
-    """Vector from the pedestal's pivot to the common centre of gravity [m]."""
+    """Vector from the pedestal's pivot to the common centre of gravity [m].
+
+    Parameters
+    ----------
+    pile : a statue on a pedestal
+    pivot : of the pedestal, +1 right, -1 left
+
+    Returns
+    -------
+    Both components [m].
+    """
     m1, m2 = pile.lower.mass, pile.upper.mass
     x1, y1 = arm(pile.lower, pivot)
     dx, dy = reach(pile, pivot, 1)
@@ -198,7 +386,16 @@ def common_arm(pile: Pile, pivot: int) -> tuple[float, float]:
 
 
 def joined(pile: Pile) -> Shape:
-    """Return the two as one rigid block, which is what rocks in pattern 3."""
+    """Return the two as one rigid block, which is what rocks in pattern 3.
+
+    Parameters
+    ----------
+    pile : a statue on a pedestal
+
+    Returns
+    -------
+    The :class:`Shape` of both, on the pedestal's base.
+    """
     first, two = pile.lower, pile.upper
     m1, m2 = first.mass, two.mass
     dx, dy = reach(pile, 1, 1)
@@ -226,7 +423,16 @@ def lowest_edge(pile: Pile, pivot: int) -> float:
 
 
 def failed_stability_check(pile: Pile) -> int:
-    """Whether a statue stands on its pedestal, or why not; each is known to stand by itself."""
+    """Whether a statue stands on its pedestal, or why not; each is known to stand by itself.
+
+    Parameters
+    ----------
+    pile : a statue on a pedestal
+
+    Returns
+    -------
+    ``STANDS``, or the number of the check that fails first.
+    """
     if pile.low >= pile.high:
         return BESIDE
     if not pile.low < pile.offset + pile.above.x < pile.high:
@@ -245,7 +451,13 @@ def failed_stability_check(pile: Pile) -> int:
 
 
 def fill_block(body: Any, block: Shape) -> None:
-    """Fill the geometry of a lone block into its record: block 2, on a support that cannot move."""
+    """Fill the geometry of a lone block into its record: block 2, on a support that cannot move.
+
+    Parameters
+    ----------
+    body : record ``pure_rocking.kernels.equations.BODY``, changed in place
+    block : as it stands
+    """
     # the support's numbers never matter
     body.m1, body.i1, body.b1, body.c1x, body.c1y = 1.0, 1.0, 1.0, 0.0, 0.0
     body.tx, body.ty, body.ex, body.ey = 0.0, 0.0, 1.0, 0.0
@@ -260,6 +472,17 @@ def pivot_constants(
     """What lanes know of a block on a pivot (``kernels.lanes.block.PIVOT``), with p² where p² dt² belongs.
 
     ``restitution`` is that of the impact that ends rocking on this pivot and comes down on the other.
+
+    Parameters
+    ----------
+    shape : a block as it stands
+    pivot : +1 right, -1 left
+    restitution : as said above [-]
+    g : acceleration of gravity [m/s²]
+
+    Returns
+    -------
+    Eight numbers, in the order of the record ``PIVOT``: angles [rad], ratios [-] and p² [1/s²].
     """
     alpha, (x, y), p = (
         critical_angle(shape, pivot),
@@ -281,7 +504,13 @@ def pivot_constants(
 
 
 def fill_pile(body: Any, pile: Pile) -> None:
-    """Fill the geometry of a stack into its record."""
+    """Fill the geometry of a stack into its record.
+
+    Parameters
+    ----------
+    body : record ``pure_rocking.kernels.equations.BODY``, changed in place
+    pile : a statue on a pedestal
+    """
     first, two = pile.lower, pile.upper
     body.m1, body.i1, body.b1 = first.mass, first.inertia, first.b
     body.c1x, body.c1y = first.x, first.y

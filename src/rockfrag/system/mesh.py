@@ -173,14 +173,32 @@ class Shape:
 
 
 def outward_normals(corners: Floats) -> Floats:
-    """Unit normals of the edges of a convex polygon in order, shape (n, 2)."""
+    """Unit normals of the edges of a convex polygon in order, shape (n, 2).
+
+    Parameters
+    ----------
+    corners : of the polygon, anticlockwise, shape (n, 2) [m]
+
+    Returns
+    -------
+    The normals [-], that of the edge from each corner to the next.
+    """
     edges = np.roll(corners, -1, axis=0) - corners
     lengths = np.hypot(*edges.T)[:, np.newaxis]
     return np.asarray(np.column_stack([edges[:, 1], -edges[:, 0]]) / lengths)
 
 
 def edge_distances(corners: Floats) -> Floats:
-    """Distances of a convex polygon's edges from the origin, negative where that is outside [m], shape (n,)."""
+    """Distances of a convex polygon's edges from the origin, negative where that is outside [m], shape (n,).
+
+    Parameters
+    ----------
+    corners : of the polygon, anticlockwise, shape (n, 2) [m]
+
+    Returns
+    -------
+    The distances [m], shape (n,).
+    """
     return np.asarray(np.einsum("ni,ni->n", outward_normals(corners), corners))
 
 

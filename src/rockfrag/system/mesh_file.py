@@ -96,7 +96,16 @@ def load_mesh(path: Path) -> Any:
 
 
 def files_of_mesh(path: Path) -> list[Path]:
-    """The file of a mesh, and those with its vertices and triangles that a glTF file names."""
+    """The file of a mesh, and those with its vertices and triangles that a glTF file names.
+
+    Parameters
+    ----------
+    path : of the mesh
+
+    Returns
+    -------
+    The paths, whether or not there are such files.
+    """
     if path.suffix.lower() != ".gltf":
         return [path]
     try:

@@ -171,6 +171,14 @@ def uplift_ratios(system: System) -> tuple[float, ...]:
     """Least horizontal acceleration over g that opens each contact of a planar system at rest, from below.
 
     The pivot is the one whose overturning moment first exceeds the weight's (Kirkpatrick, 1927; Psycharis, 1990).
+
+    Parameters
+    ----------
+    system : planar
+
+    Returns
+    -------
+    The accelerations over g [-], one a contact from below.
     """
     if system.count == 1:
         arms = [tuple(geometry.arm(system.shapes[0], pivot) for pivot in (+1, -1))]
@@ -194,6 +202,17 @@ def each_contact(
 
     It is a mapping with ``ground`` and ``interface``, the latter one value for all contacts above the ground or a
     list with one for each; or one value for all, or, of several where it is said what is ``wanted``, one for each.
+
+    Parameters
+    ----------
+    name : of the argument, with which a message begins
+    given : as said above
+    count : of the contacts
+    wanted : what a list of several would hold; empty where one value is meant for all
+
+    Returns
+    -------
+    A value for each contact, from the ground up.
     """
     if not isinstance(given, dict):
         if count == 1 or not wanted:
@@ -249,12 +268,32 @@ def cylinder(
 
 
 def round_inertia(diameter: float, height: float, mass: float) -> float:
-    """Moment of inertia of a uniform cylinder about an axis across it through its centre [kg m²]."""
+    """Moment of inertia of a uniform cylinder about an axis across it through its centre [kg m²].
+
+    Parameters
+    ----------
+    diameter, height : of the cylinder [m]
+    mass : [kg]
+
+    Returns
+    -------
+    The moment of inertia [kg m²].
+    """
     return mass * (0.75 * diameter * diameter + height * height) / 12
 
 
 def turned_about_vertical(system: System, angle_deg: float) -> System:
-    """Return one body in space on a polygon, turned about the vertical [degrees]."""
+    """Return one body in space on a polygon, turned about the vertical [degrees].
+
+    Parameters
+    ----------
+    system : of one body on a polygon
+    angle_deg : from x towards y [degrees]
+
+    Returns
+    -------
+    The system, turned.
+    """
     if not angle_deg % 360:
         return system
     (body,) = system.bodies
@@ -312,7 +351,16 @@ def common_centre(system: System, lowest: int = 0) -> tuple[float, float]:
 
 
 def rocking_shapes(system: System) -> list[geometry.Shape]:
-    """Shapes that rock: those of the bodies, the lower of two joined with what it carries."""
+    """Shapes that rock: those of the bodies, the lower of two joined with what it carries.
+
+    Parameters
+    ----------
+    system : planar, of one body or more
+
+    Returns
+    -------
+    The shapes, from below.
+    """
     shapes = list(system.carried)
     if system.count == 2:
         shapes[0] = geometry.joined(system.pile)

@@ -26,11 +26,11 @@ SURE, LEAST = 0.995, 1e-5
 
 
 def languages() -> list[str]:
-    """Languages that can be said.
+    """Languages that can be said, the first one first.
 
     Returns
     -------
-    Their names, the first language first.
+    Names of the languages, such as ``en``.
     """
     found = sorted(path.stem for path in TEXTS.glob("*.json"))
     return sorted(found, key=lambda name: name != FIRST)
@@ -41,7 +41,7 @@ def formatter() -> str:
 
     Returns
     -------
-    Its text.
+    JavaScript.
     """
     return Path(__file__).with_name("catalogue.js").read_text(encoding="utf-8")
 

@@ -63,7 +63,7 @@ def finding(id: str, /, estimate: Any = None, **values: Value) -> Finding:
 
     Returns
     -------
-    The finding; equal ones are said alike.
+    The :class:`Finding`.
     """
     return Finding(str(id), tuple(values.items()), estimate)
 
@@ -73,7 +73,7 @@ def percent(value: float) -> Number:
 
     Parameters
     ----------
-    value : the probability or fraction [-]
+    value : probability or fraction [-]
 
     Returns
     -------
@@ -87,7 +87,7 @@ def limit(value: float) -> Number:
 
     Parameters
     ----------
-    value : the limit [-]
+    value : limit of a probability or fraction [-]
 
     Returns
     -------
@@ -101,7 +101,7 @@ def two(value: float) -> Number:
 
     Parameters
     ----------
-    value : the number
+    value : number, in any unit
 
     Returns
     -------
@@ -115,7 +115,7 @@ def three(value: float) -> Number:
 
     Parameters
     ----------
-    value : the number
+    value : number, in any unit
 
     Returns
     -------
@@ -129,7 +129,7 @@ def whole(value: float) -> Number:
 
     Parameters
     ----------
-    value : the number
+    value : number, in any unit
 
     Returns
     -------
@@ -153,15 +153,15 @@ def listed(values: Sequence[Value]) -> Listed:
 
 
 def as_data(value: Value) -> Any:
-    """Turn a finding or value into what the page and JSON have: mappings, lists, texts and numbers.
+    """Return a finding or value as the page and JSON have it: mappings, lists, texts and numbers.
 
     Parameters
     ----------
-    value : what was found
+    value : a finding, or what stands in one
 
     Returns
     -------
-    Plain data.
+    What ``json.dumps`` takes.
     """
     if isinstance(value, Finding):
         values = {place: as_data(inner) for place, inner in value.values}

@@ -23,12 +23,11 @@ def number(value: float, decimals: int) -> str:
 
     Parameters
     ----------
-    value : the number
-    decimals : that are shown
+    value, decimals : the number, and how many decimals it has
 
     Returns
     -------
-    The words.
+    The text.
     """
     if not math.isfinite(value):
         return "–"
@@ -41,11 +40,11 @@ def decimals_of(value: float, significant: int = 3) -> int:
     Parameters
     ----------
     value : the number
-    significant : digits to be shown
+    significant : digits that shall be seen
 
     Returns
     -------
-    The number of decimals.
+    Number of decimals.
     """
     if not math.isfinite(value) or value == 0:
         return significant
@@ -61,12 +60,12 @@ def estimate(value: float, lower: float, upper: float, decimals: int) -> str:
 
     Parameters
     ----------
-    value, lower, upper : the estimate and its limits
-    decimals : that are shown
+    value, lower, upper : estimate and limits, in any unit
+    decimals : of all of them
 
     Returns
     -------
-    The words; a dash where there is no estimate.
+    The text.
     """
     if not math.isfinite(value):
         return "–"
@@ -97,14 +96,13 @@ def estimates(
 
     Parameters
     ----------
-    table : a row an estimate
-    name : column of the estimates
-    decimals : that are shown
+    table, name : table, and column of the estimates
+    decimals : of all; None for three digits of the smallest
     limits : columns of the limits
 
     Returns
     -------
-    The words of each row.
+    A text a row.
     """
     values = table[[name, *(limits or (f"{name}_lower", f"{name}_upper"))]].to_numpy(
         dtype=float
@@ -121,12 +119,12 @@ def has_interval(lower: float, upper: float, decimals: int) -> bool:
 
     Parameters
     ----------
-    lower, upper : the limits
+    lower, upper : limits, in any unit
     decimals : that are shown
 
     Returns
     -------
-    Whether they have one.
+    Whether the limits differ as they are shown.
     """
     if math.isnan(lower) or math.isnan(upper):
         return False
@@ -144,7 +142,7 @@ def probability(p: float) -> str:
 
     Returns
     -------
-    The words; a dash where there is none.
+    The text.
     """
     if not math.isfinite(p):
         return "–"
@@ -152,16 +150,16 @@ def probability(p: float) -> str:
 
 
 def counted(n: int, word: str, many: str | None = None) -> str:
-    """A count with its noun: ``1 record``, ``2 records``, ``no record``.
+    """``1 record``, ``2 records``, ``no record``.
 
     Parameters
     ----------
-    n : the count
-    word, many : the noun of one and of several, by default with an s
+    n : number of things
+    word, many : what one is called, and several, else with an s
 
     Returns
     -------
-    The words.
+    The text.
     """
     if n == 0:
         return f"no {word}"
@@ -169,16 +167,16 @@ def counted(n: int, word: str, many: str | None = None) -> str:
 
 
 def of_all(n: int, total: int, word: str, many: str | None = None) -> str:
-    """How many of all: ``3 of 12 tests``, ``all 12 tests``, ``none of 12 tests``, ``the only test``, ``no test``.
+    """``3 of 12 tests``, ``all 12 tests``, ``none of 12 tests``, ``the only test``, ``no test``.
 
     Parameters
     ----------
-    n, total : the counts
-    word, many : the noun of one and of several, by default with an s
+    n, total : number of things, and of all
+    word, many : what one is called, and several, else with an s
 
     Returns
     -------
-    The words.
+    The text.
     """
     noun = word if total == 1 else many or word + "s"
     if n == 0:
@@ -193,8 +191,8 @@ def agree(n: int, total: int, word: str, many: str) -> str:
 
     Parameters
     ----------
-    n, total : the counts that :func:`of_all` says
-    word, many : the verb of one and of several
+    n, total : number of things, and of all
+    word, many : verb of one, and of several
 
     Returns
     -------
@@ -204,7 +202,7 @@ def agree(n: int, total: int, word: str, many: str) -> str:
 
 
 def listed(names: Sequence[str]) -> str:
-    """Names one after the other: ``a``, ``a and b``, ``a, b and c``.
+    """``a``, ``a and b``, ``a, b and c``; of many the first ones and how many more.
 
     Parameters
     ----------
@@ -212,7 +210,7 @@ def listed(names: Sequence[str]) -> str:
 
     Returns
     -------
-    The words; of many the first ones and how many more.
+    The text.
     """
     if len(names) > MOST_LISTED:
         return f"{', '.join(names[:MOST_LISTED])} and {len(names) - MOST_LISTED} more"
@@ -229,11 +227,11 @@ def label(name: str) -> str:
 
     Parameters
     ----------
-    name : such as that of a motion
+    name : whole
 
     Returns
     -------
-    The name, cut in the middle where it is longer.
+    The name, of at most :data:`LONGEST_LABEL` characters.
     """
     return shortened(name, LONGEST_LABEL)
 
@@ -243,12 +241,11 @@ def shortened(name: str, longest: int = LONGEST_NAME) -> str:
 
     Parameters
     ----------
-    name : to be cut
-    longest : letters that it may have
+    name, longest : whole name, and number of characters that it may have
 
     Returns
     -------
-    The name.
+    The name, with ``…`` where something is left out.
     """
     if len(name) <= longest:
         return name
@@ -261,11 +258,11 @@ def amplitude(test: Mapping[Any, Any]) -> str:
 
     Parameters
     ----------
-    test : with ``amplitude_g`` and its bounds ``lower_g`` and ``upper_g``
+    test : with ``lower_g``, ``upper_g`` and ``amplitude_g`` [g]
 
     Returns
     -------
-    The words; a dash where nothing is known.
+    The text.
     """
     if math.isfinite(test["amplitude_g"]):
         return number(test["amplitude_g"], 3)
@@ -279,10 +276,10 @@ def sentence(words: str) -> str:
 
     Parameters
     ----------
-    words : which may be none
+    words : without a capital letter
 
     Returns
     -------
-    The same words.
+    The words.
     """
     return words[:1].upper() + words[1:]

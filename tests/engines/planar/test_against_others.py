@@ -9,9 +9,10 @@ import pandas as pd
 import pytest
 
 from rockfrag import read_motion
+from rockfrag.engines.planar.engine import closing_of
 from rockfrag.outcomes.response import Response
 from rockfrag.records.motion import Motion
-from rockfrag.system import Block, Body, Column
+from rockfrag.system import Block, Body, Column, as_system
 
 from ...oracle.contact_reference import simulate_reference
 from ...oracle.time_stepping import time_stepping
@@ -117,11 +118,13 @@ def test_histories_are_those_of_the_reference(bodies, cases, seed, least):
 def beside_stepping(cases: list[Case], step: float) -> pd.DataFrame:
     """Whether each case falls and does not in time stepping, and what turns [rad] and slips [m] differ by.
 
-    Slips are those left of what stands, turns those up to the fourth contact event.
+    Outcomes are with the closing speed that users get.  Slips are those left of what stands, turns those up to the
+    fourth contact event; both with hardly any closing.
     """
     rows = []
     for case in cases:
         fast = case.history()
+        falls = case.history(closing=closing_of(as_system(case.body))).overturned
         fell, _, _, stepped = case.stepped(step)
         n = min(drawn.samples_until(fast, 3), len(stepped), len(fast.time))
         turn = np.abs(
@@ -131,8 +134,8 @@ def beside_stepping(cases: list[Case], step: float) -> pd.DataFrame:
         moved = stepped[-1, start] - stepped[0, start] - fast.slip[-1].sum()
         rows.append(
             (
-                fast.overturned,
-                fell != fast.overturned,
+                falls,
+                fell != falls,
                 turn,
                 abs(moved) if stands else None,
             )
@@ -152,15 +155,20 @@ def beside_stepping(cases: list[Case], step: float) -> pd.DataFrame:
         pytest.param((3, 4) * 100, 8, 2e-4, 4, (50, 150), marks=pytest.mark.slow),
         pytest.param((8,) * 50, 8, 2e-4, 3, (12, 47), marks=pytest.mark.slow),
         pytest.param(
-            (4, 5, 6, 7, 8) * 100, 9, 2e-5, 5, (100, 450), marks=pytest.mark.slow
+            (4, 5, 6, 7, 8) * 100, 9, 2e-5, 12, (100, 450), marks=pytest.mark.slow
         ),
     ],
     ids=lambda value: f"{len(value)} of {value[0]}" if isinstance(value, tuple) else "",
 )
 def test_outcomes_are_those_of_time_stepping(bodies, seed, step, differing, falls):
     rng = np.random.default_rng(seed)
-    found = beside_stepping([random_case(rng, n) for n in bodies], step)
+    cases = [random_case(rng, n) for n in bodies]
+    found = beside_stepping(cases, step)
     assert found["differs"].sum() <= differing
+    if bodies[0] > 3:
+        # no step is short enough for columns that rock for long: what differs hangs on a hundredth of the motion
+        differ = np.flatnonzero(found["differs"])
+        assert all(cases[number].is_critical() for number in differ)
     assert falls[0] <= found["falls"].sum() <= falls[1]
     # some graze: there the time of a contact event hangs on a root, and the stepping's error is as large
     assert found["turn"].median() < step / 2

@@ -130,7 +130,6 @@ def test_the_usual_doors_answer_in_space_under_two_components():
     thresholds = find_thresholds(
         BLOCKS[1],
         motions[0],
-        None,
         highest=0.6,
         tolerance=0.01,
         narrowest_resurrection=0.2,

@@ -154,8 +154,8 @@ def test_energy_never_grows_and_its_balance_closes(
 @pytest.mark.parametrize(
     ("seed", "slenderness", "level", "friction", "slidings", "most"),
     [
-        # tips and lies down many times; each tilt from flat is work of the ground's motion
-        (398, 2.8799544853579295, 1.7204253993757883, 0.346057166250694, 20, 1e-6),
+        # tips and lies down some thousand times; each tilt from flat is work of the ground's motion
+        (1154, 2.636856627300966, 1.7005496773449769, 0.3781804236765124, 1000, 1e-6),
         # after a thousand short steps of a slip that hardly begins, it sticks and passes at a tilt of 1e-4 rad
         (74, 3.201039286321903, 3.377270681190125, 0.4938438887579878, 0, 1e-7),
     ],

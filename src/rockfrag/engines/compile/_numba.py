@@ -175,7 +175,17 @@ class WholeCompiler(_KernelCompiler):
 
 
 def whole_ir(kernel: Any, types: tuple[Any, ...]) -> tuple[str, str]:
-    """Return the code of a kernel for arguments of numba's ``types``, not optimised, and its name there."""
+    """Return the code of a kernel for arguments of numba's ``types``, not optimised, and its name there.
+
+    Parameters
+    ----------
+    kernel : an entry kernel
+    types : of its arguments
+
+    Returns
+    -------
+    The code as LLVM's text, and the name of the kernel in it.
+    """
     kernel.compile(types)
     (compiled,) = kernel.overloads.values()
     entry = compiled.fndesc.llvm_func_name

@@ -59,7 +59,13 @@ def _field(
 
 @extending.intrinsic
 def referred(typing_context, values):  # type: ignore[no-untyped-def]
-    """Return a reference to a named tuple that a kernel has made itself, for as long as that kernel runs."""
+    """Return a reference to a named tuple that a kernel has made itself, for as long as that kernel runs.
+
+    Parameters
+    ----------
+    typing_context : numba's
+    values : a named tuple of a class that is marked by :func:`by_reference`
+    """
 
     def generate(context, builder, signature, arguments):  # type: ignore[no-untyped-def]
         return cgutils.alloca_once_value(builder, arguments[0])

@@ -74,7 +74,12 @@ inlined_kernel: Callable[..., Any] = numba.njit(**_EVERY, **_PART, forceinline=T
 
 
 def share_with_kernels(module: ModuleType) -> None:
-    """Let kernels call the functions of a module, plain Python, as if they were some of them."""
+    """Let kernels call the functions of a module, plain Python, as if they were some of them.
+
+    Parameters
+    ----------
+    module : of plain functions of numbers and records
+    """
     for function in list(vars(module).values()):
         if (
             isinstance(function, FunctionType)
@@ -102,7 +107,13 @@ def compiling_alone(entry: Any) -> Iterator[None]:
 
 @intrinsic
 def fma(typing_context, a, b, c):  # type: ignore[no-untyped-def]
-    """Return a b + c, rounded once: everywhere the same, unlike multiply-adds that a compiler chooses."""
+    """Return a b + c, rounded once: everywhere the same, unlike multiply-adds that a compiler chooses.
+
+    Parameters
+    ----------
+    typing_context : numba's
+    a, b, c : numbers
+    """
 
     def generate(context, builder, signature, arguments):  # type: ignore[no-untyped-def]
         return builder.fma(*arguments)

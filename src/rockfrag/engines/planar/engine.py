@@ -87,7 +87,8 @@ def _write(
     fell = left["overturned_body"]
     into.engine[place] = 0
     into.overturned[place] = fell > 0
-    into.certain_time[place] = into.unstable_distance[place] = np.nan
+    into.certain_time[place] = np.nan
+    into.unstable_distance[place] = np.nan
     into.flights[place] = flights[other]
     for name in _OF_CASES:
         getattr(into, name)[place] = left[name]
@@ -132,7 +133,17 @@ def without_slip(response: Response) -> Response:
 def contact_outcomes(
     grid: Cases, wanted: NDArray[np.bool_] | None = None
 ) -> NDArray[np.void]:
-    """Integrate the ``wanted`` cases of systems × motions × scales, all if None; others are left zero."""
+    """Integrate the ``wanted`` cases of systems × motions × scales, all if None; others are left zero.
+
+    Parameters
+    ----------
+    grid : systems × motions × scales
+    wanted : of them, shape (systems, motions, scales)
+
+    Returns
+    -------
+    Records ``OUTCOME``, shape (systems, motions, scales).
+    """
     g, step = grid.request.g, grid.request.step
     dts = np.array([motion.dt for motion in grid.motions])
     described = [_described(system, g) for system in grid.systems]
@@ -215,12 +226,9 @@ class ContactRun:
         )
         values, ground = case.scale * case.motion.x.acceleration, np.zeros(done)
         ground[: values.size] = values[:done]
-        centres, speeds = (
-            history[name][:, : 3 * count].reshape(done, count, 3) for name in "qv"
-        )
-        slips, normal, shear, alpha = (
-            history[name][:, :count] for name in ("slip", "normal", "shear", "alpha")
-        )
+        centres = history["q"][:, : 3 * count].reshape(done, count, 3)
+        speeds = history["v"][:, : 3 * count].reshape(done, count, 3)
+        normal, shear = history["normal"][:, :count], history["shear"][:, :count]
         state, slides = _modes(history["mode"], count)
         table = _contact_events(self.contact_events, count)
         meets = np.array(
@@ -234,10 +242,10 @@ class ContactRun:
             position=centres[:, :, :2],
             theta=centres[:, :, 2],
             omega=speeds[:, :, 2],
-            alpha=alpha,
+            alpha=history["alpha"][:, :count],
             state=state,
             slides=slides,
-            slip=slips,
+            slip=history["slip"][:, :count],
             contact_events=table,
             overturned=fallen > 0,
             overturned_body=("", *case.system.names)[fallen],
@@ -264,14 +272,19 @@ class ContactRun:
         lost = struck["energy_before"] - struck["energy_after"]
         lost[~np.isin(struck["kind"], (contact.IMPACT, contact.PARADOX))] = 0.0
         # the lowest contact whose mode changes as it comes down, or the uppermost
-        opened, closed = (
-            _modes(struck[name], count)[0] for name in ("before", "after")
-        )
+        opened, _ = _modes(struck["before"], count)
+        closed, _ = _modes(struck["after"], count)
         closes = (opened != 0) & (opened != closed)
         closes[:, -1] = True
-        losses = struck["time"], closes.argmax(axis=1), lost
-        balance = kinetic, potential, history["work"], losses, history["rubbed"]
-        return responses.energy_table(time, *balance, contacts=count)
+        return responses.energy_table(
+            time,
+            kinetic,
+            potential,
+            history["work"],
+            contacts=count,
+            losses=(struck["time"], closes.argmax(axis=1), lost),
+            friction=history["rubbed"],
+        )
 
 
 def _modes(numbers: Ints, blocks: int) -> tuple[Ints, Ints]:
@@ -285,18 +298,20 @@ def _contact_events(found: NDArray[Any], blocks: int) -> pd.DataFrame:
     before, slid = _modes(found["before"], blocks)
     after, slides = _modes(found["after"], blocks)
     slip = found["slip"][:, :blocks]
-    theta, old, new = (
-        found[name][:, 2 : 3 * blocks : 3] for name in ("q", "v_before", "v_after")
-    )
+    turns = slice(2, 3 * blocks, 3)
     kinds = [
         _KINDS.get(kind) or _kind_of_change(*change)
         for kind, *change in zip(
             found["kind"].tolist(), before, after, slid, slides, strict=True
         )
     ]
-    energies = found["energy_before"], found["energy_after"]
     table = responses.contact_event_table(
-        found["time"], kinds, (before, after), (old, new), theta, energies
+        found["time"],
+        kinds,
+        (before, after),
+        (found["v_before"][:, turns], found["v_after"][:, turns]),
+        theta=found["q"][:, turns],
+        kinetic=(found["energy_before"], found["energy_after"]),
     )
     return responses.with_slips(table, after, slides, slip)
 

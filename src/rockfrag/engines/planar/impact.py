@@ -90,7 +90,9 @@ def settle(p, w, ah, av, exclude):
     """Find the mode in which touching ends go on, not the old one on ``exclude``; False if there is none."""
     all_touch = True
     for k in range(p.count):
-        w.against[k] = w.along[k] = p.static[k]
+        static = p.static[k]
+        w.against[k] = static
+        w.along[k] = static
         for end in range(2):
             if w.touching[k, end] == 1 and approach(p, w, k, end) >= STILL * p.speed:
                 w.touching[k, end] = 0

@@ -169,7 +169,17 @@ def _extremes(
 
 
 def refined(values: Floats, times: int) -> Floats:
-    """Sample a piecewise linear motion that ends in zero ``times`` as densely, up to that zero at least."""
+    """Sample a piecewise linear motion that ends in zero ``times`` as densely, up to that zero at least.
+
+    Parameters
+    ----------
+    values : samples [any unit], shape (n,)
+    times : by how much denser, at least 1
+
+    Returns
+    -------
+    The samples, shape (n times + 1,).
+    """
     closed = np.append(values, 0.0)
     at = np.arange((closed.size - 1) * times + 1) / times
     return np.asarray(np.interp(at, np.arange(closed.size), closed))

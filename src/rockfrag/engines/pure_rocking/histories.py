@@ -231,8 +231,8 @@ class SingleRun:
             [kinds[kind] for kind in found["kind"].tolist()],
             (self.of("c", before), self.of("c", after)),
             (self.of("omega", before), self.of("omega", after)),
-            self.of("theta", after),
-            (found["energy_before"], found["energy_after"]),
+            theta=self.of("theta", after),
+            kinetic=(found["energy_before"], found["energy_after"]),
         )
 
     def _energies(self) -> pd.DataFrame:
@@ -256,7 +256,7 @@ class SingleRun:
         )
         work = self.history["work"]
         return energy_table(
-            self.time, kinetic, potential, work, losses, contacts=self.count
+            self.time, kinetic, potential, work, losses=losses, contacts=self.count
         )
 
 

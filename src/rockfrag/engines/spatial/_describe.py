@@ -12,7 +12,17 @@ FEET = 32  # points of a rim of which four carry a round body that slides flat
 
 
 def fill_body(body: Any, g: float) -> bool:
-    """Complete the record of a body, which has its inertia, height, friction and plan; whether it can stand."""
+    """Complete the record of a body, which has its inertia, height, friction and plan; whether it can stand.
+
+    Parameters
+    ----------
+    body : record ``BODY``, changed in place
+    g : acceleration of gravity [m/s²]
+
+    Returns
+    -------
+    Whether the centre of mass is above the base.
+    """
     _invert(body.inertia, body.inverse)
     if body.rim > 0:
         _fill_rim(body)
@@ -58,20 +68,19 @@ def _reach_of_polygon(body: Any) -> None:
         along, across = body.points[j, 0] - x, body.points[j, 1] - y
         length = hypot(along, across)
         edge = (across * x - along * y) / length
-        moment += edge * _distances_of_edge(
-            edge, x, y, along / length, across / length, length
-        )
+        start = x * (along / length) + y * (across / length)
+        moment += edge * _distances_of_edge(edge, start, length)
         area += edge * length / 2
         body.nearest = min(body.nearest, edge)
         body.furthest = max(body.furthest, hypot(x, y))
     body.twist = moment / area
 
 
-def _distances_of_edge(
-    far: float, x: float, y: float, e: float, f: float, length: float
-) -> float:
-    """Integral of distances over the triangle between an edge and the origin, over its height ``far`` [m²]."""
-    start = x * e + y * f
+def _distances_of_edge(far: float, start: float, length: float) -> float:
+    """Integral of distances over the triangle between an edge and the origin, over its height ``far`` [m²].
+
+    The edge goes along a line from ``start``, as seen from the foot of the height, for a ``length`` [m].
+    """
     end = start + length
     first, last = hypot(far, start), hypot(far, end)
     logarithm = _logarithm((end + last) / (start + first))
@@ -99,6 +108,7 @@ def _invert(of: Any, into: Any) -> None:
         (a * f - c * c) * scale,
         (a * d - b * b) * scale,
     )
-    into[0, 1] = into[1, 0] = q * scale
-    into[0, 2] = into[2, 0] = s * scale
-    into[1, 2] = into[2, 1] = (b * c - a * e) * scale
+    xy, xz, yz = q * scale, s * scale, (b * c - a * e) * scale
+    into[0, 1], into[1, 0] = xy, xy
+    into[0, 2], into[2, 0] = xz, xz
+    into[1, 2], into[2, 1] = yz, yz

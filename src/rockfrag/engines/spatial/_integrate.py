@@ -142,7 +142,8 @@ def add_edge(body, y, rows, pull, i, j, small, s):
         return
     if s.count == 0:
         s.closed[0], s.closed[1] = i, j
-        s.slides[0] = s.slides[1] = forces.STICKS
+        s.slides[0] = forces.STICKS
+        s.slides[1] = forces.STICKS
         s.count = 2
     else:
         shared = i if i in (s.closed[0], s.closed[1]) else j
@@ -621,10 +622,15 @@ def integrate_scales(
     counts,
     s,
 ):
-    """Integrate one analysis after the other, at each of ``scales``, as :func:`integrate` does.
+    """Integrate one analysis after the other, at each of several scales, as :func:`integrate` does.
 
-    ``ends``, shape (scales, SIZE), holds the states to begin with and then those at the end, ``outs`` and
-    ``counts`` take outcomes and counters, shapes (scales, OUTCOME) and (scales, COUNTERS).
+    Parameters
+    ----------
+    body, acceleration, peaks, dt, g, extra, tolerance, cut, history, s : as there
+    scales : of the motion, shape (scales,) [-]
+    ends : states to begin with, and then those at the end, shape (scales, SIZE)
+    outs : takes the outcomes, shape (scales, OUTCOME)
+    counts : takes the counters, shape (scales, COUNTERS)
     """
     for k in range(scales.shape[0]):
         integrate(
@@ -658,14 +664,23 @@ def rests_on(body, peaks, k, scale, g):
 def integrate(
     body, acceleration, peaks, scale, dt, g, extra, tolerance, cut, y, history, out, s
 ):
-    """Integrate one analysis of a BODY from the state ``y`` into ``out``, shape (OUTCOME,).
+    """Integrate one analysis of a body from the state ``y``; it ends ``extra`` intervals after the motion at most.
 
-    ``acceleration`` of the ground (x, y, up), shape (n, 3) [m/s²], is linear between samples and counts times
-    ``scale``; ``peaks``, shape (n, 4), are its largest horizontal and vertical ones from each sample on, and those
-    of the next WINDOW intervals. The
-    analysis ends ``extra`` intervals after the motion at the latest. ``tolerance`` and ``cut`` are as
-    ``outcome.TOLERANCE`` and ``CUT_OFF``; ``history``, shape (m, COLUMNS), m ≥ 0, takes a sample of each interval;
-    ``s`` is a CASE to work in, whose counters tell the contact events afterwards.
+    Parameters
+    ----------
+    body : record ``BODY``
+    acceleration : of the ground (x, y, up), linear between samples, shape (n, 3) [m/s²]
+    peaks : largest horizontal and vertical ones from each sample on, and of the next WINDOW, shape (n, 4)
+    scale : of both [-]
+    dt : interval of the samples [s]
+    g : acceleration of gravity [m/s²]
+    extra : intervals after the motion at most
+    tolerance : error of a step [m, m/s, rad/s]
+    cut : energy at which a body rests, over what a fall takes [-]
+    y : state, shape (SIZE,), changed in place
+    history : takes a sample of each interval, as many as fit, shape (m, COLUMNS)
+    out : takes the outcome, shape (OUTCOME,)
+    s : record ``CASE`` to work in, whose counters tell the contact events afterwards
     """
     for i in range(OUTCOME):
         out[i] = 0.0

@@ -211,11 +211,12 @@ def run_scales(
         np.tile(begins, (len(scales), 1)),
     )
     rows = np.empty((0, kernel.COLUMNS)) if history is None else history
-    steps = dt, g, math.ceil(AFTER / dt), tolerance, CUT_OFF
+    extra = math.ceil(AFTER / dt)
     case: Any = np.zeros(1, CASE)[0]
     with compiling_alone(kernel.integrate_scales):
         kernel.integrate_scales(
-            body, acceleration, later, scales, *steps, found.ends, rows, found.outs, found.counts, case
+            body, acceleration, later, scales, dt, g, extra, tolerance, CUT_OFF,
+            found.ends, rows, found.outs, found.counts, case,
         )  # fmt: skip
     return found
 

@@ -24,7 +24,7 @@ def spatial_figure(
     with style.panels(style.COLUMN_WIDTH, 6.0, 2) as (figure, (axis, plan)):
         figure.suptitle(title, x=0.02, ha="left")
         _path_of_axis(axis, outcome, history)
-        _plan(plan, history, outline)
+        _plan(plan, history, outline, outcome.turn)
         return figure
 
 
@@ -49,7 +49,10 @@ def _path_of_axis(
     panel.set_ylabel("Tilt of the axis along y [rad]")
 
 
-def _plan(panel: Axes, history: pd.DataFrame, outline: NDArray[np.float64]) -> None:
+def _plan(
+    panel: Axes, history: pd.DataFrame, outline: NDArray[np.float64], turned: float
+) -> None:
+    """Draw the base at the start and at the end, and how far it has ``turned`` about the vertical [rad]."""
     closed = np.vstack([outline, outline[:1]])
     corners = []
     for row, colour, name in (
@@ -68,7 +71,8 @@ def _plan(panel: Axes, history: pd.DataFrame, outline: NDArray[np.float64]) -> N
         label="path of its middle",
     )
     corners.append(history[["base_x_m", "base_y_m"]].to_numpy())
-    turn = round(float(np.degrees(history.turn_rad.iloc[-1])), 1) + 0.0
+    # of the outcome: a history goes on until its last sample, beyond the end of the motion
+    turn = round(float(np.degrees(turned)), 1) + 0.0
     panel.set_title(f"Turned by {turn:.1f}°".replace("-", "−"), loc="left")
     _square(panel, np.vstack(corners).T, 1.1)
     panel.set_xlabel("x [m]")

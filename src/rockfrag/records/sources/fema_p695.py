@@ -62,6 +62,11 @@ def read_set(path: str | os.PathLike[str]) -> list[tuple[Motion, Motion]]:
         A pair of motions a record, in m/s².
     """
     file, pairs = Path(path), []
+    if file.is_dir():
+        raise InputError(
+            f"{file}: is a folder; give one of its files, such as farfield.hdf5, or read the motions of any "
+            "folder with rockfrag.read_motions."
+        )
     with _opened(file, "is not a readable set of FEMA P695") as stored:
         digest = sha256_of(file)
         for row in stored["records/table"][()]:

@@ -276,9 +276,13 @@ def floor_curves(results: Results) -> Section | None:
     weakest = min(fallen, key=lambda row: float(row["theta"]), default=None)
     message = "No floor has a curve of overturning: too few objects overturned on a single one."
     if weakest is not None:
+        others = [row["theta_lower"] for row in fallen if row is not weakest]
+        word = "is the most fragile"
+        if others and not weakest["theta_upper"] < min(others):
+            word = "has the least median, but intervals overlap"
         message = (
-            f"{weakest['configuration']} on {weakest['floor']} is the most fragile: the median of its lognormal "
-            f"curve is {weakest['theta_text']} g."
+            f"{weakest['configuration']} on {weakest['floor']} {word}: the median of its lognormal curve is "
+            f"{weakest['theta_text']} g."
         )
     words = [
         "Each floor by itself, as a function of the peak acceleration of that floor. Curves in other measures "

@@ -66,11 +66,30 @@ def shown_effects(effects: pd.DataFrame) -> pd.DataFrame:
     known = np.array([has_interval(low, high, 3) for low, high in limits], dtype=bool)
     return effects.assign(
         scope=effects["scope"].replace(_SCOPES),
-        level=effects["level"].str.replace("/", ", "),
+        level=[
+            level_in_words(level, scope)
+            for level, scope in zip(effects["level"], effects["scope"], strict=True)
+        ],
         within=np.where(known & effects["equivalent"].astype(bool), "yes", "–"),
         detectable_ratio=effects["detectable_ratio"].where(known),
         p_holm=effects["p_holm"].where(known),
     )
+
+
+def level_in_words(level: str, scope: str) -> str:
+    """Name of a level of a scope; a slash parts floor and object, and stands in names of earthquakes as it is.
+
+    Parameters
+    ----------
+    level, scope : as the table of effects has them
+
+    Returns
+    -------
+    The name.
+    """
+    if level == "all":
+        return "all pairs"
+    return level.replace("/", ", ") if scope == "cell" else level
 
 
 def pedestal(results: Results) -> Section | None:
@@ -167,10 +186,12 @@ def forest_figure(effects: pd.DataFrame, sides: Sides = WITH_PEDESTAL) -> Figure
     place = np.arange(len(effects)) + 0.7 * np.cumsum(
         np.r_[False, scope[1:] != scope[:-1]]
     )
-    names = ["level", "units", "unit"]
+    names = ["level", "scope", "units", "unit"]
     labels = [
-        _label(level, units, unit)
-        for level, units, unit in effects[names].itertuples(index=False, name=None)
+        f"{shortened(level_in_words(level, scope), 30)} ({counted(int(units), unit)})"
+        for level, scope, units, unit in effects[names].itertuples(
+            index=False, name=None
+        )
     ]
     columns = ["lower", "ratio", "upper", "p_holm"]
     figures = effects[columns].to_numpy(dtype=float)
@@ -203,11 +224,6 @@ def forest_figure(effects: pd.DataFrame, sides: Sides = WITH_PEDESTAL) -> Figure
             handles=handles, loc="outside upper center", ncols=3, handlelength=1.4
         )
     return figure
-
-
-def _label(level: str, units: int, unit: str) -> str:
-    name = "all pairs" if level == "all" else shortened(level.replace("/", ", "), 30)
-    return f"{name} ({counted(int(units), unit)})"
 
 
 def ratio_axis(

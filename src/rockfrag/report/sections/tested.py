@@ -1,7 +1,7 @@
 """Bodies, motions and shaking table that were tested, validity of the model, and records left out.
 
 In: the results of a study (tables ``bodies``, ``measures``, ``shaker``, ``validity``, ``sliding``,
-``left_out``). Out: sections of the report with their tables and figures.
+``scaling``, ``left_out``). Out: sections of the report with their tables and figures.
 
 Docs: ``docs/report.md``; the model's assumptions: ``docs/rocking.md``, "What a response says about itself".
 """
@@ -12,6 +12,7 @@ from itertools import cycle
 
 import numpy as np
 import pandas as pd
+from markupsafe import Markup
 from matplotlib.artist import Artist
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
@@ -20,12 +21,14 @@ from rockfrag.base import figure_style as style
 from rockfrag.base.units import CENTIMETRES_PER_METRE, GRAVITY
 from rockfrag.motions.intensity import intensity_measures
 from rockfrag.records.motion import Motion
+from rockfrag.records.quality_flags import DRIFT
 from rockfrag.report.figures import GREY, MARKERS, drawn_tests
 from rockfrag.report.findings import model_allowed, sliding_found
 from rockfrag.report.page import Column, column, table_html
 from rockfrag.report.part import FigureSpec, Results, Section, chapter
 from rockfrag.report.sections.amplitudes import MOST_ROWS
 from rockfrag.stages.tests import LIMITED, MOST_TESTED
+from rockfrag.study.scaling import LARGEST_FACTOR
 from rockfrag.words.sentences import (
     counted,
     label,
@@ -39,7 +42,8 @@ from rockfrag.words.sentences import (
 
 def left_out(results: Results) -> Section | None:
     """Records that a study went on without."""
-    if not results.study.keep_going or (table := results.table("left_out")).empty:
+    table = results.table("left_out")
+    if table.empty:
         return None
     columns = [
         column("motion", "Record"),
@@ -151,7 +155,74 @@ def motions(results: Results) -> Section:
             f"The motions of {counted(len(floors), 'floor')} ({listed(floors)}) are computed with a building "
             f"model ({building.name})."
         )
-    return Section("motions", "Motions", message, [], [table, figure])
+    scaling = results.table("scaling")
+    words = [scaling_words(scaling), drift_words(scaling)]
+    return Section(
+        "motions",
+        "Motions",
+        message,
+        [text for text in words if text],
+        [table, figure, _scaling_html(scaling)],
+    )
+
+
+def scaling_words(scaling: pd.DataFrame) -> str:
+    """Sentence on the factors by which motions are scaled.
+
+    Parameters
+    ----------
+    scaling : table of the factors, a row a motion
+
+    Returns
+    -------
+    The sentence.
+    """
+    least, most = scaling["factor_lowest"].min(), scaling["factor_highest"].max()
+    words = (
+        f"The amplitudes scale the motions by factors from {least:.2g} to {most:.3g}."
+    )
+    far = int((scaling["factor_highest"] > LARGEST_FACTOR).sum())
+    if far:
+        words += (
+            f" At the highest amplitude {of_all(far, len(scaling), 'motion')} "
+            f"{'is' if far == 1 else 'are'} scaled by more than {LARGEST_FACTOR:g}."
+        )
+    return words
+
+
+def drift_words(scaling: pd.DataFrame) -> str:
+    """Sentence on the motions that drift, empty if none does.
+
+    Parameters
+    ----------
+    scaling : with ``motion`` and ``quality_flags``
+
+    Returns
+    -------
+    The sentence.
+    """
+    drifting = scaling["quality_flags"].str.contains(DRIFT, regex=False)
+    names = list(scaling.loc[drifting, "motion"])
+    if not names:
+        return ""
+    return (
+        f"{sentence(of_all(len(names), len(scaling), 'motion'))} ({_first_names(names)}) "
+        f"{'ends' if len(names) == 1 else 'end'} with a drift, which topples what the earthquake may not have; "
+        "a step of processing such as baseline or bandpass takes it away."
+    )
+
+
+def _scaling_html(scaling: pd.DataFrame) -> Markup:
+    columns = [
+        column("motion"),
+        column("pga_g", "Peak [g]", decimals=3),
+        column("factor_lowest", "Factor at the lowest amplitude", decimals=2),
+        column("factor_highest", "at the highest", decimals=2),
+    ]
+    if (scaling["quality_flags"] != "").any():
+        columns.append(column("quality_flags", "What looks wrong"))
+    caption = "By how much each motion is scaled."
+    return table_html(scaling, columns, caption, "scaling.csv")
 
 
 def bodies(results: Results) -> Section:
@@ -312,32 +383,36 @@ def shaker_limits(limits: pd.DataFrame, tests: pd.DataFrame) -> Figure:
         return figure
 
 
+TWO_COLUMNS = 4  # so many motions are drawn in two columns
 MOST_PANELS = 8  # more motions than this do not fit one figure; the first are drawn
 
 
 def acceleration_histories(motions: Sequence[Motion]) -> Figure:
     """Draw the acceleration of ``MOST_PANELS`` motions over time with its peak, a panel a motion, on one scale."""
     shown = motions[:MOST_PANELS]
-    with style.panels(
-        style.COLUMN_WIDTH,
-        0.5 + 0.95 * len(shown),
-        nrows=len(shown),
-        sharex=True,
-        sharey=True,
-        squeeze=False,
-    ) as (figure, grid):
-        panels = grid[:, 0]
+    columns = 1 if len(shown) < TWO_COLUMNS else 2
+    rows = -(-len(shown) // columns)
+    width = style.COLUMN_WIDTH if columns == 1 else style.PAGE_WIDTH
+    shape = {"nrows": rows, "ncols": columns, "sharex": True, "sharey": True}
+    with style.panels(width, 0.5 + 1.05 * rows, squeeze=False, **shape) as (
+        figure,
+        grid,
+    ):
+        panels = list(grid.ravel())
         highest = 1.12 * max(motion.pga for motion in shown) / GRAVITY
-        for panel, motion in zip(panels, shown, strict=True):
+        for panel, motion in zip(panels, shown, strict=False):
             values = motion.acceleration / GRAVITY
             peak = style.draw_history(panel, motion.time, values, linewidth=0.5)
             panel.set_ylim(-highest, highest)
             name, earthquake = motion.name, str(motion.metadata.get("earthquake") or "")
             if earthquake.casefold() not in name.casefold():
                 name = f"{earthquake}, {name}"
-            panel.set_title(f"{shortened(name, 44)}: {peak:.2f} g", loc="left")
-        style.letter_panels(panels, size=6.5)
-        panels[-1].set_xlabel("Time [s]")
-        panels[-1].set_xlim(0, max(motion.time[-1] for motion in shown))
+            panel.set_title(f"{shortened(name, 40)}: {peak:.2g} g", loc="left")
+        for panel in panels[len(shown) :]:
+            panel.set_visible(False)
+        style.letter_panels(panels[: len(shown)], size=6.5)
+        for panel in grid[-1]:
+            panel.set_xlabel("Time [s]")
+        panels[0].set_xlim(0, max(motion.time[-1] for motion in shown))
         figure.supylabel("Acceleration [g]", fontsize=8)
         return figure

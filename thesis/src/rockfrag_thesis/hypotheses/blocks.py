@@ -1,4 +1,7 @@
-"""C1, C3 to C8 and C20: the single block."""
+"""C1, C3 to C8 and C20: the single block.
+
+In: the setting of the thesis. Out: an outcome a hypothesis. Theory: ``docs/hypotheses.md``, ``docs/rocking.md``.
+"""
 
 import itertools
 import math

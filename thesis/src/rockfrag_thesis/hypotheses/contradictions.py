@@ -2,6 +2,8 @@
 
 Most need no data: the sentences exclude each other.  Where a table of tests is at hand it says which
 of the two holds there, if either.
+
+In: the statements, and a table of tests. Out: an outcome a pair. Docs: ``docs/hypotheses.md``.
 """
 
 from collections.abc import Callable, Mapping

@@ -1,4 +1,8 @@
-"""Contrasts and slopes of amplitudes and of the pedestal's effect, and what their design could have shown."""
+"""Contrasts and slopes of amplitudes and of the pedestal's effect, and what their design could have shown.
+
+In: amplitudes [g] of tests. Out: differences of ln amplitude with intervals. Theory: ``docs/hypotheses.md``,
+``docs/pedestal.md``.
+"""
 
 import math
 

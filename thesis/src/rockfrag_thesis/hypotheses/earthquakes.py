@@ -1,4 +1,7 @@
-"""C45 to C48, C52: what the earthquakes do."""
+"""C45 to C48, C52: what the earthquakes do.
+
+In: tables of tests. Out: an outcome a hypothesis. Theory: ``docs/hypotheses.md``.
+"""
 
 import math
 from collections.abc import Mapping

@@ -1,4 +1,7 @@
-"""What the hypotheses about the experiment are tested on, brought into the forms that the tests need."""
+"""What the hypotheses about the experiment are tested on, brought into the forms that the tests need.
+
+In: results of a study. Out: tests by tower, floor and earthquake, amplitudes [g]. Docs: ``docs/hypotheses.md``.
+"""
 
 from collections.abc import Mapping
 from dataclasses import dataclass

@@ -1,6 +1,8 @@
 """C34 to C44, C50, C51: what the floors do.
 
 Most say something about orders: a function returns differences that are positive if it is so.
+
+In: amplitudes [g] of tests on floors. Out: an outcome a hypothesis. Theory: ``docs/hypotheses.md``.
 """
 
 import math

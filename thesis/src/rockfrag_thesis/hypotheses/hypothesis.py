@@ -1,4 +1,7 @@
-"""What a hypothesis of the thesis is: its words, its kind, the rule that tests it, and what came out."""
+"""What a hypothesis of the thesis is: its words, its kind, the rule that tests it, and what came out.
+
+In: words of ``statements.yaml`` and a function. Out: a row of the table. Docs: ``docs/hypotheses.md``.
+"""
 
 import math
 from collections.abc import Callable

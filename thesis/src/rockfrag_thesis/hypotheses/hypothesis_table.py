@@ -1,4 +1,7 @@
-"""The table of hypotheses: every hypothesis with its kind, its rule, what came out, and the word for it."""
+"""The table of hypotheses: every hypothesis with its kind, its rule, what came out, and the word for it.
+
+In: all hypotheses and the results of a study. Out: one table. Docs: ``docs/hypotheses.md``.
+"""
 
 import warnings
 from collections.abc import Iterable, Mapping, Sequence

@@ -2,6 +2,8 @@
 
 A hypothesis such as "the mean increases on the ground floor" or "the 3rd floor is lowest" is a function from
 tests to named differences, entered with `order_hypothesis`; `rockfrag_thesis.hypotheses.outcomes` has the rule.
+
+In: tests. Out: differences [-] with intervals. Theory: ``docs/hypotheses.md``.
 """
 
 import math

@@ -1,4 +1,8 @@
-"""C55 to C58: how the figures were obtained, and what was assumed not to happen."""
+"""C55 to C58: how the figures were obtained, and what was assumed not to happen.
+
+In: the protocol, masses [kg] and tests. Out: an outcome a hypothesis. Theory: ``docs/hypotheses.md``,
+``docs/shaketable.md``.
+"""
 
 import numpy as np
 

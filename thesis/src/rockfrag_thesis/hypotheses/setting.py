@@ -1,4 +1,7 @@
-"""What the hypotheses about theory are tested on, and what several of them share."""
+"""What the hypotheses about theory are tested on, and what several of them share.
+
+In: a study's bodies and motions. Out: what the functions of several groups share. Docs: ``docs/hypotheses.md``.
+"""
 
 import math
 from collections.abc import Callable, Mapping, Sequence

@@ -1,4 +1,8 @@
-"""C25 to C33, C49, C53, C54: what the towers' slenderness and the pedestal do."""
+"""C25 to C33, C49, C53, C54: what the towers' slenderness and the pedestal do.
+
+In: amplitudes [g] of tests with and without the pedestal. Out: an outcome a hypothesis. Theory:
+``docs/hypotheses.md``, ``docs/pedestal.md``.
+"""
 
 import itertools
 import math

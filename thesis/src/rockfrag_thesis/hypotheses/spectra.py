@@ -1,4 +1,7 @@
-"""C14 to C19: response spectra and rocking spectra of the ground motions."""
+"""C14 to C19: response spectra and rocking spectra of the ground motions.
+
+In: ground motions [m/s²]. Out: an outcome a hypothesis. Theory: ``docs/hypotheses.md``, ``docs/motions.md``.
+"""
 
 import itertools
 import math

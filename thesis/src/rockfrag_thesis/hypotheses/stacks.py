@@ -1,4 +1,8 @@
-"""C2, C9 to C13 and C21 to C24: how a stack starts, changes its pattern and loses energy."""
+"""C2, C9 to C13 and C21 to C24: how a stack starts, changes its pattern and loses energy.
+
+In: the setting of the thesis. Out: an outcome a hypothesis. Theory: ``docs/hypotheses.md``,
+``docs/derivation.md``.
+"""
 
 import math
 from collections import Counter

@@ -73,8 +73,14 @@ SCRATCH = np.dtype(
 def integrate(body, shaking, initial, history, contact_events, summary, work):
     """Integrate one body through its shaking and, after it, free rocking; the number of samples done.
 
-    Angles and rates of ``initial``, a STATE, count; ``history`` and ``contact_events`` take as many SAMPLEs and
-    CONTACT_EVENTs as fit; ``summary`` is a SUMMARY, ``work`` a SCRATCH.
+    Parameters
+    ----------
+    body : record ``BODY``
+    shaking : a :class:`Shaking`: samples [m/s²], interval [s], steps
+    initial : record ``STATE``, of which angles and rates count
+    history, contact_events : take as many records ``SAMPLE`` and ``CONTACT_EVENT`` as fit
+    summary : record ``SUMMARY``, changed in place
+    work : record ``SCRATCH`` to work in
     """
     state = work.state
     record.copy_state(initial, state)

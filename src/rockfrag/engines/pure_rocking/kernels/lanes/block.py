@@ -153,7 +153,15 @@ def _advance(lane, upward):
 
 @entry_kernel
 def integrate_blocks(ensemble, motions, worker, outcomes):
-    """Integrate an ensemble of lone blocks, factors over g, a worker a thread; steps of lanes, in a tuple."""
+    """Integrate an ensemble of lone blocks, factors over g, a worker a thread; steps of lanes, in a tuple.
+
+    Parameters
+    ----------
+    ensemble : an :class:`Ensemble` of bodies, scales and steps
+    motions : a :class:`Motions`, accelerations over g
+    worker : named tuple of records, the memory of one thread
+    outcomes : records ``OUTCOME`` of all cases, changed in place
+    """
     lane, tallies = worker.lane, worker.tallies
     upward = motions.vertical.size > 0
     busy = 0

@@ -16,7 +16,15 @@ from rockfrag.engines.pure_rocking.kernels.lanes.case import (
 
 @entry_kernel
 def integrate_stacks(ensemble, motions, worker, outcomes):
-    """Integrate the cases of an ensemble of stacks, a worker a thread; steps of one rotation and of two."""
+    """Integrate the cases of an ensemble of stacks, a worker a thread; steps of one rotation and of two.
+
+    Parameters
+    ----------
+    ensemble : an :class:`Ensemble` of bodies, scales and steps
+    motions : a :class:`Motions`, accelerations over g
+    worker : named tuple of records, the memory of one thread
+    outcomes : records ``OUTCOME`` of all cases, changed in place
+    """
     g = ensemble.bodies[0].gravity
     upward = motions.vertical.size > 0
     stack_case.begin(worker)

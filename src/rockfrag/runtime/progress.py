@@ -1,0 +1,118 @@
+"""Progress of what takes long: how much is done and how many seconds are left, on the error stream.
+
+In: a number done and one of all, as often as a computation likes, or a block that lasts. Out: lines on the error
+stream, none for what ends within :data:`QUIET` seconds; standard output holds the answer alone. A terminal shows
+one line that is written over, a file or a pipe a line every :data:`EVERY` seconds. Docs: ``docs/reliability.md``.
+"""
+
+import sys
+import threading
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import TextIO
+
+QUIET = 3.0  # seconds that pass before anything is said
+EVERY = 10.0  # seconds between two lines of a file or a pipe
+SILENT = 15.0  # seconds after which what cannot be counted gives its first sign
+OFTEN = 0.5  # seconds between two states of the line of a terminal
+
+Progress = Callable[[int, int], None]
+"""What a long computation calls with the number done and that of all."""
+
+
+def progress_line(
+    what: str,
+    stream: TextIO | None = None,
+    clock: Callable[[], float] = time.monotonic,
+) -> Progress:
+    """Make a function that says how much is done and how long the rest takes.
+
+    Parameters
+    ----------
+    what : what is counted, such as ``objects``
+    stream : where to say it, the error stream if None
+    clock : seconds of a clock that never goes back
+
+    Returns
+    -------
+    The function, to be called with the number done and that of all.
+    """
+    to = sys.stderr if stream is None else stream
+    shown = to.isatty()
+    begun = clock()
+    said = begun + QUIET - (OFTEN if shown else EVERY)
+
+    def say(done: int, total: int) -> None:
+        nonlocal said
+        now = clock()
+        finished = done >= total
+        if now - begun < QUIET or (
+            not finished and now - said < (OFTEN if shown else EVERY)
+        ):
+            return
+        said = now
+        left = (now - begun) * (total - done) / done if done else float("nan")
+        words = f"{done} of {total} {what}, {in_words(now - begun)}"
+        if not finished and done:
+            words += f", about {in_words(left)} left"
+        print(
+            f"\r\x1b[K{words}" if shown else words,
+            end="\n" if finished or not shown else "",
+            file=to,
+            flush=True,
+        )
+
+    return say
+
+
+def in_words(seconds: float) -> str:
+    """Return a time that a person waits: ``8 s``, ``2 min``, ``1 h 20 min``.
+
+    Parameters
+    ----------
+    seconds : the time [s]
+
+    Returns
+    -------
+    The words.
+    """
+    if seconds < 100:
+        return f"{seconds:.0f} s"
+    minutes = round(seconds / 60)
+    if minutes < 100:
+        return f"{minutes} min"
+    return f"{minutes // 60} h {minutes % 60} min"
+
+
+@contextmanager
+def sign_of_life(words: str, stream: TextIO | None = None) -> Iterator[None]:
+    """Say after :data:`SILENT` seconds, and again at ever longer intervals, that a block is still at work.
+
+    Parameters
+    ----------
+    words : what it does, and what would be quicker
+    stream : where to say it, the error stream if None
+
+    Returns
+    -------
+    A context that lasts as long as the block.
+    """
+    to = sys.stderr if stream is None else stream
+    ended = threading.Event()
+    begun = time.monotonic()
+
+    def speak() -> None:
+        wait = SILENT
+        while not ended.wait(wait):
+            so_far = in_words(time.monotonic() - begun)
+            print(f"{words} ({so_far} so far)", file=to, flush=True)
+            wait = max(EVERY, 2 * wait)
+
+    speaker = threading.Thread(target=speak, daemon=True)
+    speaker.start()
+    try:
+        yield
+    finally:
+        ended.set()
+        speaker.join()

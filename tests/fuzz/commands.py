@@ -1,0 +1,161 @@
+"""Random calls of ``info``, ``catalogue``, ``write`` and ``simulate``, and what their answers may not say.
+
+Each call is made in this process with files of its own. Oracles share nothing with what answers: nothing rocks
+below b/h, what falls has rocked, a record written and read again has its peak, and every file of a folder is in
+the list or named with a reason.
+"""
+
+import contextlib
+import csv
+import io
+import random
+import re
+from collections.abc import Callable
+from pathlib import Path
+from tempfile import mkdtemp
+
+import numpy as np
+
+from rockfrag.base.errors import InputError
+from rockfrag.cli.main import main
+
+from .damage import Attempt
+
+GRAVITY = 9.81
+
+
+def called(*words: object) -> tuple[int, str, str]:
+    """Status, output and error stream of a call."""
+    out, err = io.StringIO(), io.StringIO()
+    with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
+        try:
+            status = main([str(word) for word in words])
+        except SystemExit as error:
+            status = int(error.code or 0)
+    return status, out.getvalue(), err.getvalue()
+
+
+def record(rng: random.Random, path: Path) -> float:
+    """Write a record of seconds and g, and return its peak [g]."""
+    count, dt = rng.randint(200, 900), rng.choice((0.005, 0.01, 0.02))
+    time = np.arange(count) * dt
+    waves = sum(
+        rng.uniform(0.2, 1) * np.sin(2 * np.pi * rng.uniform(0.3, 5) * time + k)
+        for k in range(6)
+    )
+    values = waves * np.sin(np.pi * np.arange(count) / (count - 1)) ** 2
+    values *= rng.uniform(0.05, 0.9) / np.abs(values).max()
+    rows = [f"{t:.3f} {a:.6f}" for t, a in zip(time, values, strict=True)]
+    path.write_text("\n".join(rows) + "\n")
+    return float(np.abs(np.round(values, 6)).max())
+
+
+def simulated(rng: random.Random, folder: Path) -> list[str]:
+    """Shake a block or a stack, perhaps with friction; return what its answer contradicts."""
+    file = folder / "record.txt"
+    record(rng, file)
+    width, height = rng.uniform(0.1, 0.8), rng.uniform(0.5, 2.5)
+    pga = rng.uniform(0.05, 1.2)
+    words = ["simulate", file, "--unit", "g", "--pga", f"{pga:.4f}"]
+    words += ["--body", f"{100 * width:.2f}cm", f"{height:.3f}m"]
+    stacked = rng.random() < 0.4
+    if stacked:
+        words += ["--pedestal", f"{1.5 * width:.3f}m", "0.4m"]
+    if loose := rng.random() < 0.3:
+        words += ["--friction", f"{rng.uniform(0.2, 1.0):.2f}"]
+    if drawn := rng.random() < 0.1:
+        words += ["--plot", folder / "drawn.png"]
+    status, out, err = called(*words)
+    if status:
+        raise InputError(err.strip())
+    wrong = []
+    fell = "\noverturned" in out
+    never = "it never rocked" in out
+    # the pedestal is squatter; with it the statue alone is the most slender of all
+    starts = width / height
+    if pga < 0.999 * starts and not never and not loose:
+        wrong.append(f"rocks at {pga:.4f} g below b/h = {starts:.4f}")
+    if fell and never:
+        wrong.append("falls without rocking")
+    if fell and pga < starts and not loose:
+        wrong.append("falls below b/h")
+    largest = [
+        float(x) for x in re.findall(r"rotation \[rad\]: (.*)", out)[0].split(",")
+    ]
+    if not fell and max(largest) > np.pi / 2:
+        wrong.append("lies on its side and stands")
+    if re.search(r"\binf\b|1000000", out):
+        wrong.append("prints a number that is none")
+    if drawn and (folder / "drawn.png").stat().st_size < 5000:
+        wrong.append("draws nothing")
+    return wrong
+
+
+def written_and_read(rng: random.Random, folder: Path) -> list[str]:
+    """Write a record in a format and look into it again."""
+    file = folder / "record.txt"
+    peak = record(rng, file)
+    ending = rng.choice(("AT2", "csv", "mseed"))
+    form = {"AT2": "AT2", "csv": "CSV", "mseed": "MSEED"}[ending]
+    target = folder / f"again.{ending}"
+    status, _, err = called("write", file, target, "--unit", "g", "--format", form)
+    if status:
+        raise InputError(err.strip())
+    unit = ["--unit", "m/s2"] if form == "MSEED" else []
+    status, out, err = called("info", target, "--format", "csv", *unit)
+    if status:
+        return [f"cannot read what it wrote: {err.strip()[:200]}"]
+    (row,) = csv.DictReader(io.StringIO(out))
+    found = next(float(v) for k, v in row.items() if k.startswith("pga"))
+    near = abs(found - peak) < 1e-3 * peak or abs(found - peak * GRAVITY) < 1e-2 * peak
+    return [] if near else [f"a peak of {peak} g became {found}"]
+
+
+def listed(rng: random.Random, folder: Path) -> list[str]:
+    """Make the catalogue of a folder of records and of things that are none."""
+    inside = folder / "mine"
+    inside.mkdir()
+    for k in range(rng.randint(1, 4)):
+        record(rng, inside / f"station{k}.txt")
+    others = {
+        "notes.txt": "We put the sensor beside the vase.\n",
+        "cut.AT2": "PEER\nEvent\nACCELERATION TIME SERIES IN UNITS OF G\nNPTS= 500, DT= .01 SEC\n 1 2 3\n",
+        "paper.pdf": "%PDF-1.4\n",
+        "empty.dat": "",
+        "site.xml": "<?xml version='1.0'?><a/>",
+    }
+    for name in rng.sample(sorted(others), rng.randint(0, 3)):
+        (inside / name).write_text(others[name])
+    target = folder / "list.csv"
+    _, _, err = called("catalogue", inside, "--unit", "g", "--output", target)
+    text = target.read_text(encoding="utf-8") if target.exists() else ""
+    rows = list(csv.DictReader(io.StringIO(text)))
+    told = " ".join(row["file"] for row in rows) + err
+    return [
+        f"{file.name} is lost without a word"
+        for file in sorted(inside.iterdir())
+        if file.name not in told
+    ]
+
+
+CALLS: tuple[Callable[[random.Random, Path], list[str]], ...] = (
+    simulated,
+    simulated,
+    written_and_read,
+    listed,
+)
+
+
+def commands(folder: Path) -> Callable[[random.Random], Attempt]:
+    """Return what makes random calls of commands, each in a folder of its own."""
+
+    def draw(rng: random.Random) -> Attempt:
+        call, seed = rng.choice(CALLS), rng.random()
+
+        def attempt() -> None:
+            wrong = call(random.Random(seed), Path(mkdtemp(dir=folder)))
+            assert not wrong, f"{call.__name__} ({seed}): {'; '.join(wrong)}"
+
+        return folder / call.__name__, attempt
+
+    return draw
