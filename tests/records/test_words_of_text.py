@@ -142,7 +142,7 @@ def test_a_part_of_a_unit_is_a_unit(write, words):
     "unit",
     [
         *("thousandths of g", "promille g", "10E-3 g", "fps2", "ips2", "normalized"),
-        *("V/g", "arb. u.", "sixths of g", "m/s2 RMS"),
+        *("0.001 V", "0.5 N", "V/g", "arb. u.", "sixths of g", "m/s2 RMS"),
     ],
 )  # fmt: skip
 def test_a_unit_that_other_words_change_is_no_unit(write, unit):
@@ -150,6 +150,13 @@ def test_a_unit_that_other_words_change_is_no_unit(write, unit):
     for given in (None, "m/s2", "g"):
         with pytest.raises(InputError):
             read_motion(path, unit=given)
+
+
+def test_a_title_whose_letters_cannot_be_read_states_no_unit(write):
+    path = write("Time (s);NS [см/с2]", TIMES, WAVE, mark=";")
+    path.write_bytes(path.read_text(encoding="utf-8").encode("cp932"))
+    with pytest.raises(InputError, match="cannot be read; save the file as UTF-8"):
+        read_motion(path, unit="g")
 
 
 def test_an_unknown_unit_of_an_unknown_word_above_one_column_is_stated(write):
