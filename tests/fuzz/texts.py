@@ -380,8 +380,11 @@ def _written(draft: Draft, scale: Scale) -> bytes:
     if rng.random() < 0.2:
         lines = [f"# {line}" for line in lines]
     text = "\n".join([*lines, *rows]) + "\n"
+    encoding = rng.choice(draft.language.encodings)
+    if "м" in scale.writing and "cp1251" not in draft.language.encodings:
+        encoding = "utf-8"  # nobody writes a Russian unit in a Japanese encoding
     try:
-        return text.encode(rng.choice(draft.language.encodings))
+        return text.encode(encoding)
     except UnicodeEncodeError:
         return text.encode()
 

@@ -35,6 +35,8 @@ from rockfrag.records.parsing.vocabulary import (
     words_for,
 )
 
+# motions that were fitted to a spectrum
+_OF_MATCHED = re.compile(r"compat|match|target|design|consist|adjust|fitted|scaled")
 _LAST_BRACKET = re.compile(r"[(\[](?P<inside>[^()\[\]]+)[)\]]\s*$")
 _LONGEST_TITLE = 4  # words, without units
 _STEP_BEFORE = re.compile(
@@ -384,17 +386,17 @@ def _other_quantity(line: str) -> str:
     """
     if _ONE_VALUE.search(line) or _VALUE_OF.search(line):
         return ""
-    if OF_SPECTRA.search(line):
-        return "spectrum"
-    ending = _LAST_BRACKET.search(line)
-    unit = read_unit(ending["inside"]) if ending else Unit("")
-    if unit.quantity not in ("", "time", "acceleration"):
-        return unit.quantity
     words = re.split(r"[\s_:;,()\[\]]+", line.strip(" _:;,()[].\"'"))
     units = {read_unit(word).quantity for word in words[1:]} - {"", "time"}
     has_value = any(map(NUMBER.match, words))
     if has_value or len(words) - len(units) > _LONGEST_TITLE or "acceleration" in units:
         return ""
+    if OF_SPECTRA.search(line):
+        return "" if _OF_MATCHED.search(line) else "spectrum"
+    ending = _LAST_BRACKET.search(line)
+    unit = read_unit(ending["inside"]) if ending else Unit("")
+    if unit.quantity not in ("", "time", "frequency", "acceleration"):
+        return unit.quantity
     # as in vitesse du sol, and in ground velocity
     named = words[0] if len(words) - len(units) != 2 else " ".join(words[:2])
     for quantity in ("velocity", "displacement"):
