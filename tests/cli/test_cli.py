@@ -9,7 +9,7 @@ import pytest
 
 import rockfrag
 from rockfrag.cli.main import main, with_negative_sizes
-from rockfrag.cli.simulated import _friction
+from rockfrag.cli.simulated import _friction, contact_event_lines
 
 from ..workflow.conftest import write_example, write_synthetic
 
@@ -104,6 +104,27 @@ def test_a_vertical_component_shakes_too(simulated, record):
     case = ("--body", "0.2", "0.8", "60", "--pga", "0.3")
     both = simulated(*case, "--vertical", str(record), "--friction", "0.6")
     assert both.out != simulated(*case).out
+
+
+HELD = {
+    "--wall": (("0.02", "0.05"), "wall 1: largest force"),
+    "--kerb": (("0.01", "0.1"), "wall 1: largest force"),
+    "--putty": (("40",), "bond 1: largest force 40 N; broke at"),
+    "--cord": (("1e5", "0.002"), "tie 2: largest force"),
+    "--bracket": (("1e6",), "tie 1: largest force"),
+    "--pendulum": (("2", "0.05", "0.2"), "support: largest force 0 N; stroke"),
+}
+
+
+def test_what_holds_a_body_is_told_with_what_it_had_to_bear(simulated):
+    case = ("--body", "0.2", "0.8", "60", "--pga", "0.45", "--friction", "0.5")
+    for option, (numbers, says) in HELD.items():
+        assert says in simulated(*case, option, *numbers).out
+    free = simulated(*case, "--casters", "free").out
+    assert "never rocked" in free or "slide" in free
+    assert simulated(*case, "--casters", "locked").out == simulated(*case).out
+    wrong = simulated(*case, "--pendulum", "2", status=2)
+    assert wrong.err.startswith("--pendulum: expected 2 to 4 numbers, got 1.")
 
 
 def test_a_column_is_given_from_above(simulated, record, capsys):
@@ -254,3 +275,10 @@ def test_a_table_of_tests_is_looked_into_before_it_is_called_right(tmp_path, cap
     table.write_text("\n".join(rows) + "\n")
     assert main(["check-config", str(path)]) == 2
     assert "'collapsed'" in capsys.readouterr().err
+
+
+def test_names_of_rocking_modes_are_explained():
+    row = {"time": 1.0, "kind": "opening", "from": "rest", "to": "4a"}
+    assert contact_event_lines([row], 5)[-1].startswith("1: both bodies rock")
+    column = {**row, "to": "0 1 0 -1"}
+    assert len(contact_event_lines([column], 5)) == 2

@@ -85,6 +85,7 @@ def test_other_numbers_are_no_count(write, words):
         *("Vitesse (m/s)", "Скорость, см/с", "速度(cm/s)", "Desplazamiento (cm)"),
         *("Spostamento in mm", "変位 (cm)", "Response spectrum", "Fourier amplitude"),
         *("Force (kN)", "Pressure [kPa]", "Rotation (rad)", "Hız (cm/s)"),
+        *("Kiihtyvyys (mV)", "Kiihtyvyys [kN*1000]", "Data (mm)", "Record 3 (cm/s)"),
     ],
 )  # fmt: skip
 def test_a_title_of_another_quantity_is_refused_whatever_the_user_says(write, words):
@@ -185,6 +186,12 @@ def test_a_peak_in_words_is_held_against_the_samples(write, words):
 def test_peaks_of_sensors_and_targets_are_not_those_of_the_samples(write, words):
     path = write(f"{words}\ndt = 0.01\nAcceleration in m/s2", WAVE)
     assert read_motion(path).pga == pytest.approx(1.9, rel=1e-6)
+
+
+def test_a_peak_is_held_against_samples_in_a_part_of_a_unit(write):
+    titles = "PGA = 3.80 m/s2\nTime (s);Acc (10^-3 dm/s2)"
+    with pytest.raises(InputError, match=r"states a peak of 3\.8 m/s2"):
+        read_motion(write(titles, TIMES, 1e4 * WAVE, mark=";"))
 
 
 def test_peaks_of_several_components_fit_in_any_order(write):
