@@ -51,6 +51,8 @@ def check_contact(column, found, k, number, force, moment) -> str:
     assert pressed > -2e-3 * unit
     assert found.normal_force[k, number] == pytest.approx(pressed, abs=2e-3 * unit)
     assert found.friction_force[k, number] == pytest.approx(along, abs=2e-3 * unit)
+    if pressed > 0.1 * unit:
+        assert found.friction_demand[number] >= abs(along) / pressed - 0.05
     arms = [end.point[0] * force[1] - end.point[1] * force[0] for end in closed]
     turned = [moment + arm for arm in arms]
     small = 2e-3 * unit * column.size

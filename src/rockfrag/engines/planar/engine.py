@@ -281,9 +281,8 @@ class ContactRun:
         speeds = history["v"][:, 3 * first : 3 * (first + count)]
         speeds = speeds.reshape(done, count, 3)
         normal, shear = history["normal"][:, above], history["shear"][:, above]
-        state, slides = (
-            each[:, above] for each in _modes(history["mode"], first + count)
-        )
+        states, slips = _modes(history["mode"], first + count)
+        state, slides = states[:, above], slips[:, above]
         table = _contact_events(self.contact_events, first, count)
         meets = np.array(
             [np.abs(np.diff([0.0, *w])).max() for w in table["omega_before"]]
@@ -364,8 +363,10 @@ def _modes(numbers: Ints, blocks: int) -> tuple[Ints, Ints]:
 def _contact_events(found: NDArray[Any], first: int, blocks: int) -> pd.DataFrame:
     """Make the table of contact events of a response, of the bodies from the ``first`` on."""
     above = slice(first, first + blocks)
-    before, slid = (each[:, above] for each in _modes(found["before"], first + blocks))
-    after, slides = (each[:, above] for each in _modes(found["after"], first + blocks))
+    old_states, old_slips = _modes(found["before"], first + blocks)
+    new_states, new_slips = _modes(found["after"], first + blocks)
+    before, slid = old_states[:, above], old_slips[:, above]
+    after, slides = new_states[:, above], new_slips[:, above]
     slip = found["slip"][:, above]
     turns = slice(3 * first + 2, 3 * (first + blocks), 3)
     kinds = [
