@@ -486,7 +486,16 @@ def rocking_shapes(system: System) -> list[geometry.Shape]:
 
 
 def standing_centres(system: System) -> list[tuple[float, float]]:
-    """Centres of gravity of planar bodies as they stand on each other [m]."""
+    """Centres of gravity of planar bodies as they stand on each other [m].
+
+    Parameters
+    ----------
+    system : of planar bodies
+
+    Returns
+    -------
+    Place (x, y) of each centre from the middle of the lowest base [m], from below.
+    """
     found = []
     for (angle, (x, y), body), shape in zip(_bases(system), system.shapes, strict=True):
         dx, dy = geometry.turned(body.ends[0].middle + shape.x, shape.y, angle)
