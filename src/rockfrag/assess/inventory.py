@@ -192,6 +192,7 @@ def _correlation(fell: Flags, allowed: Flags, per_level: Floats) -> Floats:
 
 
 SIZES = ("width_m", "height_m", "depth_m", "mass_kg", "cg_height_m")
+HELD_BY = ("wall_m", "isolator_m")  # Lengths of what holds it
 PEDESTAL = (
     "pedestal_width_m",
     "pedestal_height_m",
@@ -205,6 +206,8 @@ COORDINATES = {"latitude": 90, "longitude": 360}
 YES, NO = ("yes", "true", "1", "x"), ("no", "false", "0")
 
 MOST_OBJECTS = 10_000  # Rows of an inventory
+# Rows up to which what may hold an object is tried, which takes seconds for each
+MOST_HELD = 25
 
 
 @dataclass(frozen=True, eq=False)
@@ -289,9 +292,10 @@ def assess_each(requests: Sequence[Request], motions: MotionSet) -> list[Assessm
         measure = level and level.measure
         groups.setdefault((*kind, alone, measure), []).append(i)
     found: dict[int, Assessment] = {}
+    holds = len(requests) <= MOST_HELD
     for rows in groups.values():
         same = [requests[i] for i in rows]
-        plan = plan_for(same[0], motions.at(same[0].place), brief=True)
+        plan = plan_for(same[0], motions.at(same[0].place), brief=True, holds=holds)
         for i, request, shaken in zip(rows, same, shake_all(same, plan), strict=True):
             # a level between those that were tried lies between their fractions
             own = plan if request.level is None else replace(plan, level=request.level)
@@ -327,8 +331,8 @@ def read_inventory(
     if is_export(path):
         rows = _exported_rows(path, order, faults)
     else:
-        others = [*SIZES[2:], *PEDESTAL, *OTHERS, *also]
-        needed, quantities = ["name", *SIZES[:2]], (*SIZES, *PEDESTAL)
+        others = [*SIZES[2:], *PEDESTAL, *HELD_BY, *OTHERS, *also]
+        needed, quantities = ["name", *SIZES[:2]], (*SIZES, *PEDESTAL, *HELD_BY)
         rows = read_rows(path, needed, others, quantities=quantities, faults=faults)
     if len(rows) > MOST_OBJECTS:
         raise InputError(
@@ -389,6 +393,7 @@ def _own_name(row: Row, taken: dict[str, str]) -> str:
 def _request(row: Row, name: str, shared: Mapping[str, Any]) -> Request:
     own: dict[str, Any] = {"name": name}
     own |= {key: row.quantity(key, above=0) for key in SIZES if row.has(key)}
+    own |= {key: row.quantity(key) for key in HELD_BY if row.has(key)}
     pedestals = _pedestals(row)
     if pedestals:
         own["pedestal"] = pedestals if len(pedestals) > 1 else pedestals[0]
@@ -443,6 +448,7 @@ _above_0 = partial(Row.number, above=0)
 OTHERS: Mapping[str, Callable[[Row, str], Any]] = {
     "floor": Row.text, "restitution": _above_0, "round": _yes, "value": _above_0,
     "latitude": Row.number, "longitude": Row.number,
+    "casters": Row.text, "putty_n": _above_0, "bracket_n": _above_0, "cord_n": _above_0,
 }  # fmt: skip
 """What else a column may say, and how it is read."""
 

@@ -111,6 +111,8 @@ class Request:
     accept: float | None = None
     # Latitude and longitude [degrees]; None where not given
     coordinates: tuple[float, float] | None = None
+    # What ways to hold it cost, by their keys, in any unit
+    costs: Mapping[str, float] = field(default_factory=dict)
 
     @property
     def accepted(self) -> float:
@@ -172,6 +174,7 @@ def make_request(
             hazard=_hazard(known, where),
             years=float(known.get("years", YEARS)),
             accept=known.get("accept"),
+            costs=known.get("costs", {}),
             records=_records(known, where),
         )
 

@@ -16,7 +16,7 @@ from rockfrag.base.units import convert, quantity
 from rockfrag.config.schema import read_schema
 
 _INVENTORY = ".csv"
-_UNITS = re.compile("_(kg_m2|years|km|kg|deg|m|s)$")
+_UNITS = re.compile("_(kg_m2|years|km|kg|deg|m|n|s)$")
 
 
 class _Once(argparse.Action):

@@ -21,6 +21,12 @@ from rockfrag.cli.assess_commands import (
 from rockfrag.cli.collection_commands import add_collection_command
 from rockfrag.cli.constrain_command import add_constrain_command
 from rockfrag.cli.export_command import add_export_command
+from rockfrag.cli.held import (
+    add_holding_options,
+    held,
+    is_held,
+    lines_on_holding,
+)
 from rockfrag.cli.record_commands import add_record_commands, read_as_asked
 from rockfrag.runtime.processes import speak_utf8
 
@@ -127,6 +133,7 @@ def make_parser() -> argparse.ArgumentParser:
         "--friction", nargs="+", type=float, metavar="MU",
         help="coefficient of friction of all contacts, or of each from the ground up",
     )  # fmt: skip
+    add_holding_options(command)
     words = "file with the vertical component of the record"
     command.add_argument("--vertical", metavar="RECORD", help=words)
     command.add_argument(
@@ -209,6 +216,7 @@ def _simulated(options: argparse.Namespace) -> list[str]:
     from rockfrag.motions.processing import scale
     from rockfrag.records.motion import GroundMotion
     from rockfrag.simulation import simulate
+    from rockfrag.simulation.options import system_of
 
     if options.plot is not None and not options.plot.endswith((".png", ".svg")):
         raise InputError(
@@ -224,6 +232,10 @@ def _simulated(options: argparse.Namespace) -> list[str]:
     given = {"restitution": restitution, "friction": _friction(options)}
     response: Any
     if options.second is not None:
+        if is_held(options):
+            raise InputError(
+                "--second: what holds a body is told of one in its plane here; leave it out."
+            )
         block, components = _case_in_space(options, body, motion, options.vertical)
         components = [scale(component, factor) for component in components]
         response = simulate(block, GroundMotion(*components), **given)
@@ -237,16 +249,18 @@ def _simulated(options: argparse.Namespace) -> list[str]:
         with warnings.catch_warnings():
             # what `simulate` doubts of the acceleration has been said
             warnings.simplefilter("ignore", UserWarning)
-            response = simulate(
-                body, scaled.acceleration, motion.dt, vertical=up, **given
-            )
+            system = system_of(body, **given)
+            if is_held(options):
+                system = held(options, system)
+            response = simulate(system, scaled.acceleration, motion.dt, vertical=up)
         peak = scaled.pga / GRAVITY
         most = sys.maxsize if options.all_contact_events else MOST_CONTACT_EVENTS
         title = f"{motion.name}, peak {peak:.3f} g"
-        is_loose = options.friction is not None
+        is_loose = options.friction is not None or is_held(options)
         lines = lines_in_plane(
             options.record, motion, peak, response, is_loose=is_loose
         )
+        lines += lines_on_holding(response)
         contact_events = response.contact_events.to_dict("records")
         lines += contact_event_lines(contact_events, most)
     if options.plot:

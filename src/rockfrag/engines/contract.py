@@ -25,6 +25,7 @@
 9. **What is not told** is NaN, never zero.  What cannot happen (a slip where nothing slides) is zero.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from enum import Enum
 from functools import cached_property
@@ -38,7 +39,8 @@ from rockfrag.base.errors import InputError
 from rockfrag.base.units import GRAVITY
 from rockfrag.engines.steps import STEP
 from rockfrag.outcomes.outcomes import Outcomes, empty_outcomes, merge_outcomes
-from rockfrag.records.motion import GroundMotion
+from rockfrag.records.motion import GroundMotion, Motion
+from rockfrag.system.constraints import Tie, Wall
 from rockfrag.system.system import System
 
 
@@ -56,6 +58,12 @@ class Wish(Enum):
     FORCES = "forces"
     HISTORY = "the history"
     TILT = "an uneven base in space"
+    WALL = "a wall"
+    TIE = "a tie"
+    BOND = "a bond"
+    SUPPORT = "an isolator"
+    PLACE = "bodies where an earlier response left them"
+    STEPS = "jumps of the velocity"
 
 
 @dataclass(frozen=True)
@@ -98,14 +106,30 @@ class Cases:
 
     @cached_property
     def answering(self) -> list["Engine"]:
-        """Engine of each system under all motions: the one with most components decides."""
-        richest = max(self.motions, key=lambda motion: len(motion.components))
+        """Engine of each system under all motions: one for what any of them has."""
+        richest = with_all_components(self.motions)
         return [engine_for(system, richest, self.request) for system in self.systems]
 
     @cached_property
     def names(self) -> list[tuple[str, ...]]:
         """Names of the bodies of each system."""
         return [system.names for system in self.systems]
+
+    @cached_property
+    def holding(self) -> list[tuple[str, ...]]:
+        """Names of what holds the bodies of each system."""
+        return [system.holding for system in self.systems]
+
+
+def with_all_components(motions: Sequence[GroundMotion]) -> GroundMotion:
+    """A still ground with the components, and the jumps of the velocity, that any of the motions has."""
+    still = Motion(np.zeros(1), 1.0)
+    return GroundMotion(
+        still,
+        y=still if any(motion.y is not None for motion in motions) else None,
+        z=still if any(motion.z is not None for motion in motions) else None,
+        steps=next((motion.steps for motion in motions if motion.steps), None),
+    )
 
 
 @dataclass(frozen=True)
@@ -157,6 +181,12 @@ def wishes(system: System, motion: GroundMotion, request: Request) -> frozenset[
         Wish.HISTORY: request.history,
         Wish.TILT: motion.y is not None
         and any(contact.tilt for contact in system.contacts),
+        Wish.WALL: any(isinstance(each, Wall) for each in system.constraints),
+        Wish.TIE: any(isinstance(each, Tie) for each in system.constraints),
+        Wish.BOND: len(system.bonds) > 0,
+        Wish.SUPPORT: system.support is not None,
+        Wish.PLACE: start is not None and start.position is not None,
+        Wish.STEPS: motion.steps is not None,
     }
     return frozenset(wish for wish, there in made.items() if there)
 
@@ -237,7 +267,7 @@ def run_cases(cases: Cases) -> Outcomes:
     The outcomes of all, shape (systems, motions, scales).
     """
     if not cases.motions or not cases.systems or not cases.scales.size:
-        return empty_outcomes(cases.names, cases.scales)
+        return empty_outcomes(cases.names, cases.scales, holding=cases.holding)
     chosen = cases.answering
     if all(engine is chosen[0] for engine in chosen):
         return chosen[0].run(cases)
@@ -248,7 +278,9 @@ def run_cases(cases: Cases) -> Outcomes:
         parts.append((rows, engine.run(some)))
     # an engine may have asked others
     used = dict.fromkeys(name for _, found in parts for name in found.engines)
-    result = empty_outcomes(cases.names, cases.scales, tuple(used))
+    result = empty_outcomes(
+        cases.names, cases.scales, tuple(used), holding=cases.holding
+    )
     for rows, found in parts:
         merge_outcomes(result, rows, found)
     return result

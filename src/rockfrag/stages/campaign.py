@@ -17,14 +17,17 @@ from rockfrag.base.units import GRAVITY
 from rockfrag.campaign import comparison, laboratory
 from rockfrag.campaign.comparison import HALF, NEAR_CRITICAL, MeasuredTests
 from rockfrag.campaign.laboratory import MEASURED, Campaign, read_campaign
-from rockfrag.campaign.standing import sample_trials, simulate_tests
+from rockfrag.campaign.standing import Trials, sample_trials, simulate_tests
 from rockfrag.fragility.vector import vector_tables
 from rockfrag.motions.processing import process, scale_to_pga
 from rockfrag.motions.pulses import commanded_cosine
-from rockfrag.records.motion import Motion
+from rockfrag.records.motion import GroundMotion, Motion
 from rockfrag.records.sources.download import fetch_url
+from rockfrag.records.velocity_steps import bump_and_stop
+from rockfrag.simulation.inputs import STEPPED
 from rockfrag.stages.job import Job, Results
-from rockfrag.study.campaign import PULSE_MEASURES, CampaignStudy
+from rockfrag.study.campaign import PULSE_MEASURES, STEP_MEASURES, CampaignStudy
+from rockfrag.study.holding import held_as_stated
 from rockfrag.system.blocks import Block, Column
 from rockfrag.system.mesh import Shape, read_shape
 
@@ -76,7 +79,7 @@ def run(job: Job[CampaignStudy]) -> Results:
 
 def campaign_with_motions(
     study: CampaignStudy, log: logging.Logger
-) -> tuple[Campaign, list[Motion]]:
+) -> tuple[Campaign, list[Motion | GroundMotion]]:
     """Read the tests and the motion of each, scaled where the table says so; log how many are left out."""
     for public in study.fetch:
         fetch_url(*public)
@@ -102,19 +105,25 @@ def campaign_with_motions(
             "chosen by the tests of some and judged by those of others."
         )
     motions = _motions(study, campaign, study.conditioning)
+    measured = [motion for motion in motions if isinstance(motion, Motion)]
     if not campaign.measures:
-        tests = campaign.tests.join(laboratory.measured_peaks(motions))
+        tests = campaign.tests.join(laboratory.measured_peaks(measured))
         campaign = replace(campaign, tests=tests, measures=("pga_g", "pgv_cm_s"))
-    elif not study.pulse_cycles and campaign.tests["amplitude_g"].isna().all():
-        laboratory.check_peaks(campaign.tests, motions, study.motions)
+    elif study.motions and campaign.tests["amplitude_g"].isna().all():
+        laboratory.check_peaks(campaign.tests, measured, study.motions)
     return campaign, motions
 
 
 def _motions(
     study: CampaignStudy, campaign: Campaign, conditioning: Any
-) -> list[Motion]:
+) -> list[Motion | GroundMotion]:
     """Motion of the table in each test, conditioned, and scaled where the table of tests says so."""
     tests = campaign.tests
+    if study.is_stepped:
+        jumps = [bump_and_stop(*pair) for pair in tests[list(STEP_MEASURES)].to_numpy()]
+        return [
+            GroundMotion(Motion(np.zeros(2), STEPPED), steps=each) for each in jumps
+        ]
     if study.pulse_cycles:
         settings = tests[list(PULSE_MEASURES)].to_numpy()
         recorded = [
@@ -140,6 +149,17 @@ def standing_object(study: CampaignStudy) -> Shape | Block | Column:
     return Column(
         tuple(map(_block, (*reversed(study.object["pedestal"]), study.object)))
     )
+
+
+def trials_of(
+    thing: Shape | Block | Column, study: CampaignStudy, count: int
+) -> Trials:
+    """Return trials that fill the study's ranges, held as the study says."""
+    trials = sample_trials(thing, study.unknowns, count, study.seed)
+    if "held" not in study.object:
+        return trials
+    systems = (held_as_stated(each, study.object["held"]) for each in trials.systems)
+    return replace(trials, systems=tuple(systems))
 
 
 def object_of(study: CampaignStudy) -> Shape | Block:
@@ -186,9 +206,7 @@ class _Simulated:
         self.job, study = job, job.study
         self.campaign, self.motions = campaign_with_motions(study, job.log)
         self.thing = standing_object(study)
-        self.trials = sample_trials(
-            self.thing, study.unknowns, study.trials, study.seed
-        )
+        self.trials = trials_of(self.thing, study, study.trials)
         # whether the object overturned, and whether anything rocked, shape (trials, tests)
         self.outcomes, self.rocked = simulate_tests(
             self.trials.systems, self.motions, job.threads
@@ -305,7 +323,7 @@ class _Simulated:
         as_configured = measured.agreement("as configured", self.votes >= HALF)
         rows = [as_configured | {"trials": study.trials}]
         fewer = max(16, study.trials // VARIED_FRACTION)
-        trials = sample_trials(self.thing, study.unknowns, fewer, study.seed)
+        trials = trials_of(self.thing, study, fewer)
         for name, steps in {
             "as configured, fewer trials": study.conditioning,
             **study.varied_conditioning,
