@@ -212,6 +212,30 @@ def test_a_sequence_is_both_motions_with_quiet_time_between_them(made_motions):
         one_after_the_other(first, second[:1])
 
 
+def test_a_second_record_fells_what_the_first_left_standing(
+    place, own_records, made_motions
+):
+    motion = made_motions(12)[0]
+    strong = own_records / f"{motion.name.replace(' ', '')}.txt"
+    weak = place / "weak.txt"
+    rows = zip(motion.time, 0.02 * motion.acceleration / 9.81, strict=True)
+    weak.write_text("".join(f"{t:.2f} {a:.7f}\n" for t, a in rows))
+    (place / "rows.csv").write_text(
+        "name,width,height\nslender,4 cm,120 cm\nstout,2 m,1 m\n"
+    )
+    arguments = ["after", str(place / "rows.csv"), "--unit", "g"]
+    arguments += ["--record", str(own_records / "catalogue.csv")]
+    arguments += ["--output", str(place / "out"), "--station", str(weak)]
+    assert main([*arguments, "--then-station", str(strong)]) == 0
+    with (place / "out" / "after.csv").open(newline="") as file:
+        rows = {row["name"]: row for row in csv.DictReader(file)}
+    slender = rows["slender"]
+    assert slender["under_the_record"] == "fell in the second shock"
+    first = float(slender["probability_fell_in_the_first"])
+    assert first < 0.1 < 0.5 < float(slender["probability_fell"])
+    assert rows["stout"]["under_the_record"] == "stood"
+
+
 def test_hostile_names_stay_text_and_pages_speak_italian(place, records):
     rows = INVENTORY.splitlines()
     (place / "hostile.csv").write_text(

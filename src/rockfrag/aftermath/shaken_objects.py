@@ -7,6 +7,7 @@ over all that the level may have been; out comes a list, the most likely fallen 
 
 import math
 import os
+import warnings
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -28,6 +29,7 @@ from rockfrag.assess.request import Request
 from rockfrag.assess.risk import Estimate
 from rockfrag.base.errors import InputError
 from rockfrag.records.motion import Motion
+from rockfrag.simulation.inputs import UnitWarning
 from rockfrag.words.catalogue import catalogue
 
 Ground = Callable[[tuple[float, float] | None], GroundShaking | None]
@@ -229,7 +231,10 @@ def _fate(request: Request, recorded: Sequence[Motion]) -> str:
     as_recorded = np.ones((len(recorded), 1))
     counted = np.ones(as_recorded.shape, dtype=np.bool_)
     shaking = Shaking(PGA, np.ones(1), as_recorded, counted, motions)
-    (found,) = shaking.at(request.place).outcomes_of([request.objects])
+    with warnings.catch_warnings():
+        # the unit of a weak record has been read from its file
+        warnings.simplefilter("ignore", UnitWarning)
+        (found,) = shaking.at(request.place).outcomes_of([request.objects])
     if found.overturned.any():
         return "after_record_fell"
     return "after_record_rocked" if found.rocked.any() else "after_record_stood"
