@@ -177,10 +177,11 @@ def simulated_in_space(
 
 def said_by_rules(tests: Tests, arrangements: Trials) -> Iterator[tuple[str, Floats]]:
     """Yield for each rule its probability of each test, a mean over arrangements."""
-    chosen = arrangements.table.iloc[
-        :: max(1, len(arrangements.table) // RULED)
-    ].to_dict("records")
-    blocks = [body_of(tests.thing, guess).blocks[-1] for guess in chosen]
+    table = arrangements.table
+    blocks = []
+    for _, row in table.iloc[:: max(1, len(table) // RULED)].iterrows():
+        guess = {str(name): float(value) for name, value in row.items()}
+        blocks.append(body_of(tests.thing, guess).blocks[-1])
     motions = tests.ruled
     for name, rule in RULES.items():
         factors = np.array(
