@@ -1,6 +1,7 @@
 """Tests of a campaign and motions of its table: read, commanded and conditioned, or refused in one sentence."""
 
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pandas as pd
@@ -13,7 +14,10 @@ from rockfrag.campaign.laboratory import read_campaign, table_motions
 from rockfrag.motions.processing import process
 from rockfrag.motions.pulses import commanded_cosine
 from rockfrag.report.campaign_findings import campaign_findings
+from rockfrag.stages.campaign import trials_of
 from rockfrag.study.loading import load_any
+from rockfrag.system import mounts
+from rockfrag.system.blocks import Block
 
 COLUMNS = {"test": "test", "motion": "motion", "group": "input", "overturned": "fell"}
 BRACKETED = {"test": "test", "motion": "motion", "lower_g": "low", "upper_g": "high"}
@@ -284,3 +288,17 @@ def test_the_ceiling_is_no_rival():
             words in finding.headline
             for words, finding in zip(said, found, strict=True)
         )
+
+
+def test_the_trials_of_a_held_object_are_held():
+    held = {"wall_m": 0.02, "putty_n": 50.0}
+    study = SimpleNamespace(
+        object={"held": held},
+        unknowns={"edge_retreat_mm": (0.0, 5.0), "restitution": (0.8, 1.0)},
+        seed=1,
+    )
+    found = trials_of(Block(0.3, 1.2, 100.0), study, 8)
+    assert {each.holding for each in found.systems} == {("wall 1", "bond 1")}
+    for each in found.systems:
+        gap = each.constraints[0].distance - mounts.reach(each, 1)
+        assert gap == pytest.approx(0.02)

@@ -106,6 +106,27 @@ def test_a_vertical_component_shakes_too(simulated, record):
     assert both.out != simulated(*case).out
 
 
+HELD = {
+    "--wall": (("0.02", "0.05"), "wall 1: largest force"),
+    "--kerb": (("0.01", "0.1"), "wall 1: largest force"),
+    "--putty": (("40",), "bond 1: largest force 40 N; broke at"),
+    "--cord": (("1e5", "0.002"), "tie 2: largest force"),
+    "--bracket": (("1e6",), "tie 1: largest force"),
+    "--pendulum": (("2", "0.05", "0.2"), "support: largest force 0 N; stroke"),
+}
+
+
+def test_what_holds_a_body_is_told_with_what_it_had_to_bear(simulated):
+    case = ("--body", "0.2", "0.8", "60", "--pga", "0.45", "--friction", "0.5")
+    for option, (numbers, says) in HELD.items():
+        assert says in simulated(*case, option, *numbers).out
+    free = simulated(*case, "--casters", "free").out
+    assert "never rocked" in free or "slide" in free
+    assert simulated(*case, "--casters", "locked").out == simulated(*case).out
+    wrong = simulated(*case, "--pendulum", "2", status=2)
+    assert wrong.err.startswith("--pendulum: expected 2 to 4 numbers, got 1.")
+
+
 def test_a_column_is_given_from_above(simulated, record, capsys):
     body = (*STATUE, "--pedestal", "0.2", "0.1", "9", "--pedestal", "0.3", "0.1", "20")
     slides = ("--pga", "0.6", "--friction", "0.6", "0.5", "0.4", "--restitution", "0.9")

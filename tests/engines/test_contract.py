@@ -1,6 +1,6 @@
 """Behind one contract the first engine that supports a wish answers; at every door, or a sentence says why not.
 
-What it answers are three tidy tables whose columns are declared once, and limit states that are read off them.
+What it answers are four tidy tables whose columns are declared once, and limit states that are read off them.
 """
 
 import itertools
@@ -29,6 +29,7 @@ from rockfrag.outcomes.outcomes import empty_outcomes
 from rockfrag.records.motion import GroundMotion, Motion
 from rockfrag.simulation.options import system_of
 from rockfrag.simulation.parquet import stream_histories, stream_overturns
+from rockfrag.system import Bond, SlidingPendulum, Tie, Wall, hold
 
 BLOCK = Block(0.3, 1.0, 50.0)
 STACK = Stack(Block(0.5, 0.3, 50.0), BLOCK)
@@ -212,3 +213,29 @@ def test_built_in_states(shaken):
     held, loose = BLOCK.system(), rough(BLOCK, 0.5)
     assert [slides.counted(item) for item in (held, loose)] == [False, True]
     assert limit_state_named("overturns").reached(shaken).sum() == 1
+
+
+HOLDING = {
+    "a wall": lambda system: hold(system, Wall(1.0)),
+    "a tie": lambda system: hold(system, Tie((0, 0, 1), (1, 0, 1), 1e4)),
+    "a bond": lambda system: hold(system, bonds=Bond(10.0, 10.0, 0.1)),
+    "an isolator": lambda system: hold(system, support=SlidingPendulum(mass=5.0)),
+}
+
+
+@pytest.mark.parametrize("name", list(HOLDING))
+def test_what_holds_a_body_is_computed_in_its_plane_or_refused_in_one_sentence(name):
+    held = HOLDING[name](BLOCK.system())
+    engine = contract.engine_for(held, motion(x=np.ones(3), z=np.ones(3)), Request())
+    assert engine.name == "planar contact"
+    said = f"cannot be had together with {name}|{name} cannot be had together with"
+    for request in (Request(linear=True), Request(forces=True)):
+        with pytest.raises(InputError, match=said):
+            contract.engine_for(held, motion(x=np.ones(3)), request)
+
+
+def test_what_leads_out_of_the_plane_is_refused_there():
+    column = Column((BLOCK, BLOCK)).system()
+    askew = Tie((0, 0, 1), (1, 0.5, 1), 1e4)
+    with pytest.raises(InputError, match="a tie leads out of the plane of motion"):
+        contract.engine_for(hold(column, askew), motion(x=np.ones(3)), Request())

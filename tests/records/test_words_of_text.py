@@ -188,6 +188,12 @@ def test_peaks_of_sensors_and_targets_are_not_those_of_the_samples(write, words)
     assert read_motion(path).pga == pytest.approx(1.9, rel=1e-6)
 
 
+def test_a_peak_is_held_against_samples_in_a_part_of_a_unit(write):
+    titles = "PGA = 3.80 m/s2\nTime (s);Acc (10^-3 dm/s2)"
+    with pytest.raises(InputError, match=r"states a peak of 3\.8 m/s2"):
+        read_motion(write(titles, TIMES, 1e4 * WAVE, mark=";"))
+
+
 def test_peaks_of_several_components_fit_in_any_order(write):
     titles = "Time (s);NS (m/s2);EW (m/s2)"
     peaks = [np.abs(wave).max() for wave in (WAVE, OTHER)]

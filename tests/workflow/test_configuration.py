@@ -24,9 +24,12 @@ from rockfrag.motions.directions import motions_of_row
 from rockfrag.motions.measures import measure_motion
 from rockfrag.records.catalogue import read_catalogue
 from rockfrag.records.motion import Motion
-from rockfrag.study.configurations import read_specimens
+from rockfrag.study.configurations import read_configurations, read_specimens
+from rockfrag.study.holding import read_isolators
 from rockfrag.study.loading import any_study, load_any
+from rockfrag.system.blocks import Block
 from rockfrag.system.contact import BY_MOMENTUM, ImpactLaw
+from rockfrag.system.mounts import ROLLING
 
 from ..case_tables import case_tables
 from .conftest import (
@@ -293,6 +296,57 @@ def test_what_a_study_leaves_out_is_the_plain_case(study_folder: Path):
     assert (study.slides, study.vertical) == (False, False)
     (on,) = study.configurations[0].contacts
     assert on.friction is None and on.law == BY_MOMENTUM
+
+
+ISOLATORS = """name,mass_kg,radius_cm,friction,stroke_cm,stiffness_n_m,strength_n
+isolator,15,200,0.05,12,,
+springs,20,,,10,3000,50
+"""
+ARRANGEMENTS = """name,object,wall_cm,wall_height,putty_n,putty_spread,cord_n_m,cord_slack_mm,bracket_n_m,casters
+bare,venus,,,,,,,,
+niche,venus | plinth,4,,,,,,,
+kerb,venus,20,10 cm,,,,,,free
+wax,venus | plinth,,,120,,,,,
+cord,venus,,,,,100000,5,,
+bracket,venus,6,,,,,,1e6,
+isolated,venus | plinth | isolator,,,,,,,,
+sprung,venus | springs,,,,,,,,
+"""
+
+
+def test_arrangements_say_what_holds_the_bodies(tmp_path: Path):
+    (tmp_path / "isolators.csv").write_text(ISOLATORS)
+    table = tmp_path / "arrangements.csv"
+    table.write_text(ARRANGEMENTS)
+    blocks = {"venus": Block(0.3, 1.2, 100.0), "plinth": Block(0.5, 0.4, 200.0)}
+    isolators = read_isolators(tmp_path / "isolators.csv")
+    systems, _ = read_configurations(table, blocks, isolators)
+    found = {system.name: system for system in systems}
+    assert {name: system.holding for name, system in found.items()} == {
+        **{"bare": (), "niche": ("wall 1",), "kerb": ("wall 1",)},
+        **{"wax": ("bond 2",), "cord": ("tie 1", "tie 2")},
+        **{"bracket": ("wall 1", "tie 2"), "isolated": ("support",)},
+        "sprung": ("support",),
+    }
+    assert found["niche"].constraints[0].distance == pytest.approx(0.25 + 0.04)
+    assert found["kerb"].constraints[0].height == pytest.approx(0.1)
+    assert found["kerb"].contacts[0].friction == ROLLING
+    (bond,) = (bond for _, bond in found["wax"].bonds)
+    assert (bond.tension, bond.shear, bond.spread[0]) == (120.0, 120.0, 0.15)
+    left, right = found["cord"].constraints
+    assert (left.anchor[0], right.anchor[0]) == (-1.15, 1.15)
+    assert right.slack == pytest.approx(0.005)
+    pendulum, springs = found["isolated"].support, found["sprung"].support
+    assert (pendulum.radius, pendulum.stroke, pendulum.friction.static) == (
+        2,
+        0.12,
+        0.05,
+    )
+    assert (springs.stiffness, springs.strength) == (3000.0, 50.0)
+    assert found["isolated"].names == ("plinth", "venus")
+    table.write_text("name,object\nA,venus | cellar\n")
+    with pytest.raises(InputError, match="venus, plinth, isolator, springs, found cel"):
+        read_configurations(table, blocks, isolators)
 
 
 def contacts(**keys: Any) -> dict[str, list]:

@@ -343,12 +343,14 @@ def _grows(found: Assessment) -> bool:
 def moves(found: Assessment) -> list[Finding]:
     """How the object moves: in one plane or in space."""
     objects = found.request.objects
+    there = [holder.called() for holder in objects.under.holders]
+    held = [finding(Text.HELD_AS_IT_STANDS, holders=listed(there))] if there else []
     if not found.motions.both:
-        return [objects.plane]
+        return [objects.plane, *held]
     said = [finding(objects.in_space_text)]
     if found.planar is not None:
         said.append(finding(Text.IN_ONE_PLANE, value=value_of(found, found.planar)))
-    return said
+    return [*said, *held]
 
 
 def helps(found: Assessment) -> list[Finding]:

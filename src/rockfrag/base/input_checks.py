@@ -78,6 +78,16 @@ def number_from_zero(name: str, value: object, unit: str = "") -> float:
     return _checked(name, value, wanted, lambda x: x >= 0)
 
 
+def positive_or_infinite(name: str, value: object, unit: str = "") -> float:
+    """Return a number above 0 or infinity, or say in one sentence why it is neither."""
+    return math.inf if value == math.inf else positive_number(name, value, unit)
+
+
+def ratio_to_one(name: str, value: object) -> float:
+    """Return a number from 0 to 1, or say in one sentence why it is none."""
+    return _checked(name, value, "a ratio from 0 to 1", lambda x: 0 <= x <= 1)
+
+
 def _checked(
     name: str, value: object, wanted: str, allowed: Callable[[float], bool]
 ) -> float:

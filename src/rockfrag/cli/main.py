@@ -13,12 +13,20 @@ from rockfrag import __version__
 from rockfrag.base.errors import InputError, errors_of
 from rockfrag.base.plausible import STONE, check_density, peak_warning, size_warning
 from rockfrag.base.units import GRAVITY, quantity
+from rockfrag.cli.after_commands import add_after_command
 from rockfrag.cli.assess_commands import (
     add_app_command,
     add_assess_commands,
-    add_records_option,
 )
 from rockfrag.cli.collection_commands import add_collection_command
+from rockfrag.cli.constrain_command import add_constrain_command
+from rockfrag.cli.export_command import add_export_command
+from rockfrag.cli.held import (
+    add_holding_options,
+    held,
+    is_held,
+    lines_on_holding,
+)
 from rockfrag.cli.record_commands import add_record_commands, read_as_asked
 from rockfrag.runtime.processes import speak_utf8
 
@@ -105,7 +113,9 @@ def make_parser() -> argparse.ArgumentParser:
 
     add_assess_commands(commands)
     add_app_command(commands)
-    _add_constrain(commands)
+    add_after_command(commands)
+    add_export_command(commands)
+    add_constrain_command(commands)
     add_record_commands(commands)
     add_collection_command(commands)
 
@@ -123,6 +133,7 @@ def make_parser() -> argparse.ArgumentParser:
         "--friction", nargs="+", type=float, metavar="MU",
         help="coefficient of friction of all contacts, or of each from the ground up",
     )  # fmt: skip
+    add_holding_options(command)
     words = "file with the vertical component of the record"
     command.add_argument("--vertical", metavar="RECORD", help=words)
     command.add_argument(
@@ -181,23 +192,6 @@ def _add_case(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--channel", help="channel, where the record has several")
 
 
-def _add_constrain(commands: Any) -> None:
-    parser = commands.add_parser(
-        "constrain",
-        help="reweight hazard branches by objects that still stand",
-        description="A site with the branches of its hazard, and objects that have stood there for "
-        "known times.",
-    )
-    parser.add_argument("file", help="the site, such as site.yaml")
-    words = "where page, JSON and tables are written"
-    parser.add_argument("--output", metavar="FOLDER", default="constrained", help=words)
-    add_records_option(
-        parser, "folder of fetched records, for objects that are simulated"
-    )
-    parser.add_argument("--json", action="store_true", help="print the answer as JSON")
-    parser.set_defaults(run=_constrain)
-
-
 # each command imports what it needs when it runs: `rockfrag --help` should not wait for numba
 def _simulate(options: argparse.Namespace) -> int:
     from rockfrag.runtime.progress import sign_of_life
@@ -222,6 +216,7 @@ def _simulated(options: argparse.Namespace) -> list[str]:
     from rockfrag.motions.processing import scale
     from rockfrag.records.motion import GroundMotion
     from rockfrag.simulation import simulate
+    from rockfrag.simulation.options import system_of
 
     if options.plot is not None and not options.plot.endswith((".png", ".svg")):
         raise InputError(
@@ -237,6 +232,10 @@ def _simulated(options: argparse.Namespace) -> list[str]:
     given = {"restitution": restitution, "friction": _friction(options)}
     response: Any
     if options.second is not None:
+        if is_held(options):
+            raise InputError(
+                "--second: what holds a body is told of one in its plane here; leave it out."
+            )
         block, components = _case_in_space(options, body, motion, options.vertical)
         components = [scale(component, factor) for component in components]
         response = simulate(block, GroundMotion(*components), **given)
@@ -250,16 +249,18 @@ def _simulated(options: argparse.Namespace) -> list[str]:
         with warnings.catch_warnings():
             # what `simulate` doubts of the acceleration has been said
             warnings.simplefilter("ignore", UserWarning)
-            response = simulate(
-                body, scaled.acceleration, motion.dt, vertical=up, **given
-            )
+            system = system_of(body, **given)
+            if is_held(options):
+                system = held(options, system)
+            response = simulate(system, scaled.acceleration, motion.dt, vertical=up)
         peak = scaled.pga / GRAVITY
         most = sys.maxsize if options.all_contact_events else MOST_CONTACT_EVENTS
         title = f"{motion.name}, peak {peak:.3f} g"
-        is_loose = options.friction is not None
+        is_loose = options.friction is not None or is_held(options)
         lines = lines_in_plane(
             options.record, motion, peak, response, is_loose=is_loose
         )
+        lines += lines_on_holding(response)
         contact_events = response.contact_events.to_dict("records")
         lines += contact_event_lines(contact_events, most)
     if options.plot:
@@ -386,21 +387,6 @@ def _warn_of_unit(record: str, peak: float, body: "Body") -> None:
 
     if quality_flag := peak_warning(peak, GRAVITY * min(uplift_ratios(body.system()))):
         print(f"warning: {record}: {quality_flag}", file=sys.stderr)
-
-
-def _constrain(options: argparse.Namespace) -> int:
-    from rockfrag.survival.constrained_page import json_of, lines_of, write_constrained
-    from rockfrag.survival.reweight import constrain
-    from rockfrag.survival.site import read_site
-
-    found = constrain(read_site(options.file, options.records))
-    place = write_constrained(found, options.output)
-    if options.json:
-        print(json_of(found), end="")
-    else:
-        print("\n".join(lines_of(found)))
-    print(place, file=sys.stderr)
-    return 0
 
 
 def _check_config(options: argparse.Namespace) -> int:

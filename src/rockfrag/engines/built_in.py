@@ -3,6 +3,7 @@
 These are loaded, and the kernels with them, when one is first called.
 """
 
+import math
 from dataclasses import dataclass, replace
 from pkgutil import resolve_name
 from typing import Any
@@ -11,6 +12,8 @@ from rockfrag.engines.contract import Case, Cases, Engine, Request, Support, Wis
 from rockfrag.outcomes.outcomes import Outcomes
 from rockfrag.records.motion import GroundMotion
 from rockfrag.system import geometry
+from rockfrag.system.body import Polygon
+from rockfrag.system.constraints import Tie, Wall
 from rockfrag.system.system import System
 
 
@@ -59,6 +62,26 @@ class PureRocking(BuiltIn):
         )
 
 
+class PlanarEngine(BuiltIn):
+    """Planar bodies with all contact events, and what holds them in their plane (``docs/contact.md``)."""
+
+    def supports(
+        self, system: System, motion: GroundMotion, request: Request
+    ) -> Support:
+        """Say whether it computes this system under this motion as requested, and if not, why."""
+        found = super().supports(system, motion, request)
+        if not found:
+            return found
+        for constraint in system.constraints:
+            if isinstance(constraint, Wall) and constraint.side == 0:
+                return Support(reason="a wall stands askew to the plane of motion")
+            if isinstance(constraint, Tie) and (
+                constraint.point[1] != constraint.anchor[1]
+            ):
+                return Support(reason="a tie leads out of the plane of motion")
+        return found
+
+
 class SpatialEngine(BuiltIn):
     """One rigid body on a polygon or a circle, contact event by contact event (``docs/space.md``)."""
 
@@ -74,7 +97,22 @@ class SpatialEngine(BuiltIn):
             return Support(
                 reason="a planar body moves in its own plane only; give its depth"
             )
-        return found
+        return _beside_walls(system) if found else found
+
+
+def _beside_walls(system: System) -> Support:
+    """Say whether the walls beside a body in space are such that it may meet: upright faces, and corners."""
+    walls = [each for each in system.constraints if isinstance(each, Wall)]
+    if any(wall.height < math.inf for wall in walls):
+        return Support(
+            reason="a kerb is met in a plane only; leave out the depth or the second component"
+        )
+    outlines = system.bodies[0].base, system.bodies[0].face
+    if walls and not all(isinstance(outline, Polygon) for outline in outlines):
+        return Support(
+            reason="beside a wall in space stand bodies with corners only, with a base and a face"
+        )
+    return Support()
 
 
 _STANDING = frozenset({Wish.VERTICAL, Wish.RESTITUTION})
@@ -109,10 +147,11 @@ STEPPED = PureRocking(
 )
 """One body on a base whose velocity jumps, by single histories between the jumps."""
 
-PLANAR = BuiltIn(
+PLANAR = PlanarEngine(
     "planar contact",
     _STANDING
-    | {Wish.TWO_BODIES, Wish.MANY_BODIES, Wish.FRICTION, Wish.START, Wish.HISTORY},
+    | {Wish.TWO_BODIES, Wish.MANY_BODIES, Wish.FRICTION, Wish.START, Wish.HISTORY}
+    | {Wish.WALL, Wish.TIE, Wish.BOND, Wish.SUPPORT, Wish.PLACE},
     "rockfrag.engines.planar.engine:run",
     "rockfrag.engines.planar.engine:history",
 )
@@ -120,7 +159,17 @@ PLANAR = BuiltIn(
 
 SPATIAL = SpatialEngine(
     "space",
-    frozenset({Wish.SPACE, Wish.VERTICAL, Wish.FRICTION, Wish.HISTORY}),
+    frozenset(
+        {
+            Wish.SPACE,
+            Wish.VERTICAL,
+            Wish.FRICTION,
+            Wish.HISTORY,
+            Wish.TIE,
+            Wish.BOND,
+            Wish.WALL,
+        }
+    ),
     "rockfrag.engines.spatial.engine:run",
     "rockfrag.engines.spatial.engine:history",
 )

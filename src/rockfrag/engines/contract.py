@@ -40,6 +40,7 @@ from rockfrag.base.units import GRAVITY
 from rockfrag.engines.steps import STEP
 from rockfrag.outcomes.outcomes import Outcomes, empty_outcomes, merge_outcomes
 from rockfrag.records.motion import GroundMotion, Motion
+from rockfrag.system.constraints import Tie, Wall
 from rockfrag.system.system import System
 
 
@@ -57,6 +58,11 @@ class Wish(Enum):
     FORCES = "forces"
     HISTORY = "the history"
     TILT = "an uneven base in space"
+    WALL = "a wall"
+    TIE = "a tie"
+    BOND = "a bond"
+    SUPPORT = "an isolator"
+    PLACE = "bodies where an earlier response left them"
     STEPS = "jumps of the velocity"
 
 
@@ -108,6 +114,11 @@ class Cases:
     def names(self) -> list[tuple[str, ...]]:
         """Names of the bodies of each system."""
         return [system.names for system in self.systems]
+
+    @cached_property
+    def holding(self) -> list[tuple[str, ...]]:
+        """Names of what holds the bodies of each system."""
+        return [system.holding for system in self.systems]
 
 
 def with_all_components(motions: Sequence[GroundMotion]) -> GroundMotion:
@@ -170,6 +181,11 @@ def wishes(system: System, motion: GroundMotion, request: Request) -> frozenset[
         Wish.HISTORY: request.history,
         Wish.TILT: motion.y is not None
         and any(contact.tilt for contact in system.contacts),
+        Wish.WALL: any(isinstance(each, Wall) for each in system.constraints),
+        Wish.TIE: any(isinstance(each, Tie) for each in system.constraints),
+        Wish.BOND: len(system.bonds) > 0,
+        Wish.SUPPORT: system.support is not None,
+        Wish.PLACE: start is not None and start.position is not None,
         Wish.STEPS: motion.steps is not None,
     }
     return frozenset(wish for wish, there in made.items() if there)
@@ -251,7 +267,7 @@ def run_cases(cases: Cases) -> Outcomes:
     The outcomes of all, shape (systems, motions, scales).
     """
     if not cases.motions or not cases.systems or not cases.scales.size:
-        return empty_outcomes(cases.names, cases.scales)
+        return empty_outcomes(cases.names, cases.scales, holding=cases.holding)
     chosen = cases.answering
     if all(engine is chosen[0] for engine in chosen):
         return chosen[0].run(cases)
@@ -262,7 +278,9 @@ def run_cases(cases: Cases) -> Outcomes:
         parts.append((rows, engine.run(some)))
     # an engine may have asked others
     used = dict.fromkeys(name for _, found in parts for name in found.engines)
-    result = empty_outcomes(cases.names, cases.scales, tuple(used))
+    result = empty_outcomes(
+        cases.names, cases.scales, tuple(used), holding=cases.holding
+    )
     for rows, found in parts:
         merge_outcomes(result, rows, found)
     return result

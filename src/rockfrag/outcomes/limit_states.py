@@ -37,6 +37,7 @@ class LimitState:
     damage, repair : what it means for the object, and what is done then, for models of damage
     exact : whether it is reached at a peak acceleration that is known exactly, so that IDA curves do not count it
     slipping : whether only systems with friction reach it
+    held : whether only systems with walls or ties reach it
     """
 
     name: str
@@ -47,6 +48,7 @@ class LimitState:
     repair: str = ""
     exact: bool = False
     slipping: bool = False
+    held: bool = False
 
     @property
     def column(self) -> str:
@@ -55,7 +57,10 @@ class LimitState:
 
     def counted(self, system: System) -> bool:
         """Whether the IDA curve of a system has a column for it."""
-        return not self.exact and (system.loose or not self.slipping)
+        possible = (system.loose or not self.slipping) and (
+            len(system.constraints) > 0 or not self.held
+        )
+        return not self.exact and possible
 
 
 _STATES: dict[str, LimitState] = {}
@@ -148,6 +153,18 @@ def _slides(outcomes: Outcomes) -> NDArray[np.bool_]:
             np.asarray((outcomes.peak_slip > VISIBLE).any(axis=-1))
             | outcomes.overturned
         )
+
+
+@limit_state(
+    "leans",
+    60,
+    "leaning",
+    damage="Leans against a wall or hangs in a tie",
+    repair=_PUT_BACK,
+    held=True,
+)
+def _leans(outcomes: Outcomes) -> NDArray[np.bool_]:
+    return np.asarray(outcomes.leaning | outcomes.overturned)
 
 
 @limit_state(

@@ -1,4 +1,4 @@
-"""Outcomes of systems × motions × scales, as arrays, and as three tidy tables (``docs/definitions.md``).
+"""Outcomes of systems × motions × scales, as arrays, and as four tidy tables (``docs/definitions.md``).
 
 In: arrays that engines fill. Out: tables and a figure. Systems, motions and scales are the three axes everywhere.
 """
@@ -24,10 +24,16 @@ Whole = NDArray[np.int64]
 Small = NDArray[np.int8]
 Words = NDArray[np.object_]
 
-Table = Literal["cases", "bodies", "contacts"]
-"""The three tables of outcomes: a row per case, per body of a case, per contact of a case."""
+Table = Literal["cases", "bodies", "contacts", "constraints"]
+"""The four tables of outcomes: a row per case, and per body, contact and constraint of a case."""
 
-SUFFIXES = {"": "", "s": "_s", "rad": "_rad", "rad/s": "_rad_s", "m": "_m", "N": "_n"}
+ROW_OF = {"bodies": "body", "contacts": "contact", "constraints": "constraint"}
+"""What a row is of, in the tables that have several of a case."""
+
+SUFFIXES = {
+    **{"": "", "s": "_s", "rad": "_rad", "rad/s": "_rad_s", "m": "_m", "N": "_n"},
+    "N s": "_n_s",
+}
 """What a unit adds to the name of a column."""
 
 
@@ -58,9 +64,17 @@ class Column:
         )
 
 
-def column(empty: Any = math.nan, unit: str = "", table: Table = "cases") -> Any:
+def column(
+    empty: Any = math.nan,
+    unit: str = "",
+    table: Table = "cases",
+    *,
+    shown: bool = True,
+) -> Any:
     """Declare a column as a field of :class:`rockfrag.outcomes.Outcomes`; NaN where an engine does not tell."""
-    return field(metadata={"table": table, "unit": unit, "empty": empty})
+    about = {"table": table, "unit": unit, "empty": empty}
+    # at the prompt, a result fits a screen
+    return field(metadata=about, repr=shown and table != "constraints")
 
 
 @dataclass(frozen=True)
@@ -74,6 +88,7 @@ class Outcomes:
     Attributes
     ----------
     names : of the bodies of each system, from below
+    holding : names of what holds the bodies of each system: its constraints, bonds and support
     scales : factors on the motions, shape (motions, scales)
     engines : names of those that answered
     engine : which of them answered each case
@@ -82,6 +97,7 @@ class Outcomes:
     """
 
     names: tuple[tuple[str, ...], ...]
+    holding: tuple[tuple[str, ...], ...] = field(repr=False)
     scales: Floats
     engines: tuple[str, ...]
     engine: Small
@@ -99,6 +115,8 @@ class Outcomes:
     given_way: Whole = column(np.int64(0))
     # number from below, from 1, of the contact open furthest under what fell; 0: no fall, or not told
     parted_contact: Small = column(np.int8(0))
+    # whether a body that has not fallen rests turned, against a wall or in a tie
+    leaning: Flags = column(False, shown=False)
     # times that more than one mode of contact was found consistent
     several_modes: Whole = column(np.int64(0))
     # times that no mode of contact was consistent
@@ -129,6 +147,16 @@ class Outcomes:
     friction_demand: Floats = column(table="contacts")
     # least normal force until the fall was due; NaN not told
     least_normal_force: Floats = column(unit="N", table="contacts")
+    # times that a body hit a wall, a tie became taut, an isolator met its stop
+    hits: Whole = column(np.int64(0), table="constraints")
+    # largest impulse, of a hit
+    largest_impulse: Floats = column(unit="N s", table="constraints")
+    # largest force; of a bond what its most loaded side had to bear against being pulled off
+    largest_force: Floats = column(unit="N", table="constraints")
+    # instant of breaking; NaN if it held, or cannot break
+    breaking_time: Floats = column(unit="s", table="constraints")
+    # largest displacement of the plate of an isolator; NaN of all else
+    stroke: Floats = column(unit="m", table="constraints")
     systems: tuple[str, ...] = field(default=(), repr=False)
     motions: tuple[str, ...] = field(default=(), repr=False)
     peaks: tuple[float, ...] = field(default=(), repr=False)
@@ -145,6 +173,10 @@ class Outcomes:
     def counts(self) -> tuple[int, ...]:
         """Number of bodies of each system."""
         return tuple(len(names) for names in self.names)
+
+    def rows_of(self, table: Table) -> tuple[tuple[str, ...], ...]:
+        """Return the names of the rows that each system has in a table of bodies, contacts or constraints."""
+        return self.holding if table == "constraints" else self.names
 
     def of_top(self, name: str) -> NDArray[Any]:
         """Return a column of bodies or contacts of the uppermost one, shape (systems, motions, scales)."""
@@ -170,8 +202,8 @@ class Outcomes:
             if known.table == "cases":
                 found[known.title] = values.ravel()
                 continue
-            part = "body" if known.table == "bodies" else "contact"
-            for k in range(self.counts[system]):
+            part = ROW_OF[known.table]
+            for k in range(len(self.rows_of(known.table)[system])):
                 name = f"{known.name}_{part}_{k + 1}{SUFFIXES[known.unit]}"
                 found[name] = values[..., k].ravel()
         return found
@@ -198,19 +230,20 @@ class Outcomes:
     def table(
         self, which: Table = "cases", columns_of: Sequence[str] | None = None
     ) -> pd.DataFrame:
-        """Return one of the three tables, the scale running fastest, then bodies or contacts from below.
+        """Return one of the four tables, the scale running fastest, then bodies or contacts from below.
 
         Parameters
         ----------
-        which : ``"cases"``, ``"bodies"`` or ``"contacts"``
+        which : ``"cases"``, ``"bodies"``, ``"contacts"`` or ``"constraints"``
         columns_of : attributes that become columns; all of the table if None
 
         Returns
         -------
         A row per case, or per body or contact of a case: ``system``, ``motion`` (positions in the lists given),
         ``system_name``, ``motion_name`` (empty where they have none), ``scale``, in tables of bodies and contacts
-        ``body`` or ``contact`` (from below, from 1; contact k lies under body k) and ``name`` of that body, and
-        the columns of :func:`columns`, with their units in the names; of cases ``engine`` too.
+        ``body`` or ``contact`` (from below, from 1; contact k lies under body k) and ``name`` of that body, in
+        that of constraints ``constraint`` (from 1) and its ``name`` (``"wall 1"``, ``"bond 2"``, ``"support"``),
+        and the columns of :func:`columns`, with their units in the names; of cases ``engine`` too.
         """
         if which not in get_args(Table):
             raise InputError(
@@ -222,10 +255,10 @@ class Outcomes:
             if columns_of is None or known.name in columns_of
         ]
         whole = which == "cases"
-        (systems, motions, _), most = (
-            self.shape,
-            1 if whole else max(self.counts, default=0),
-        )
+        systems, motions, _ = self.shape
+        names = self.rows_of(which)
+        counts = [1 if whole else len(each) for each in names]
+        most = max(counts, default=0)
         full = (*self.shape, most)
         made: dict[str, Any] = {
             "system": np.arange(systems)[:, np.newaxis, np.newaxis, np.newaxis],
@@ -237,9 +270,11 @@ class Outcomes:
             "scale": self.scales[..., np.newaxis],
         }
         if not whole:
-            made["body" if which == "bodies" else "contact"] = np.arange(1, most + 1)
-            padded = [[*names, *[""] * (most - len(names))] for names in self.names]
-            made["name"] = np.array(padded, dtype=object)[:, np.newaxis, np.newaxis, :]
+            made[ROW_OF[which]] = np.arange(1, most + 1)
+            padded = np.full((systems, 1, 1, most), "", dtype=object)
+            for i, each in enumerate(names):
+                padded[i, 0, 0, : len(each)] = each
+            made["name"] = padded
         made |= {
             known.title: getattr(self, known.name).reshape(full) for known in chosen
         }
@@ -248,7 +283,7 @@ class Outcomes:
             made["engine"] = engines[self.engine][..., np.newaxis]
         there = (
             np.arange(most)
-            < np.array(self.counts)[:, np.newaxis, np.newaxis, np.newaxis]
+            < np.array(counts, dtype=np.int64)[:, np.newaxis, np.newaxis, np.newaxis]
         )
         rows = np.broadcast_to(there, full).ravel()
         return pd.DataFrame(
@@ -263,7 +298,7 @@ def _names(names: Sequence[str], count: int) -> Words:
 
 @cache
 def columns(table: Table | None = None) -> tuple[Column, ...]:
-    """Columns of a table of outcomes, or of all three, in their order.
+    """Columns of a table of outcomes, or of all four, in their order.
 
     Parameters
     ----------
@@ -281,7 +316,11 @@ def columns(table: Table | None = None) -> tuple[Column, ...]:
 
 
 def empty_outcomes(
-    names: Sequence[Sequence[str]], scales: Floats, engines: Sequence[str] = ()
+    names: Sequence[Sequence[str]],
+    scales: Floats,
+    engines: Sequence[str] = (),
+    *,
+    holding: Sequence[Sequence[str]] = (),
 ) -> Outcomes:
     """Outcomes for an engine to write into.
 
@@ -289,23 +328,26 @@ def empty_outcomes(
     ----------
     names, scales : names of the bodies of each system, and factors, shape (motions, scales)
     engines : names of the engines
+    holding : names of what holds the bodies of each system; empty: nothing holds any
 
     Returns
     -------
     The :class:`Outcomes`, of shape (systems, motions, scales).
     """
     shape = (len(names), *scales.shape)
+    holding = holding or ((),) * len(names)
     most = max((len(each) for each in names), default=0)
+    rows = {
+        **{"cases": (), "bodies": (most,), "contacts": (most,)},
+        "constraints": (max((len(each) for each in holding), default=0),),
+    }
     arrays: dict[str, Any] = {
-        known.name: np.full(
-            shape if known.table == "cases" else (*shape, most),
-            known.empty,
-            known.dtype,
-        )
+        known.name: np.full((*shape, *rows[known.table]), known.empty, known.dtype)
         for known in columns()
     }
     return Outcomes(
         names=tuple(tuple(each) for each in names),
+        holding=tuple(tuple(each) for each in holding),
         scales=scales,
         engines=tuple(engines),
         engine=np.zeros(shape, np.int8),

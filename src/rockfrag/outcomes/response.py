@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -16,8 +16,9 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from rockfrag.base.arrays import Floats
+from rockfrag.base.errors import InputError
 from rockfrag.base.short_repr import short_repr
-from rockfrag.system.system import System
+from rockfrag.system.system import Start, System
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -30,6 +31,7 @@ ROCKING_MODES = {
 }  # fmt: skip
 """Names of the contact states (ground, interface): the modes of Psycharis (1990) to both sides."""
 
+AT_REST = 1e-3  # angular velocity below which what is left of a response rests [rad/s]
 FLIGHT = 2  # contact state of an interface that is open at both ends
 
 MODES = {0: "stands", +1: "rocks right", -1: "rocks left", FLIGHT: "flies"}
@@ -101,7 +103,11 @@ class Response:
     energy : table over time [J]
         ``kinetic``, ``potential``, ``input`` (work of the ground so far), ``lost_contact_1`` and on (in impacts of
         each contact so far, the ground's first), with friction ``lost_friction``, and ``residual``, which is zero
-        but for rounding.
+        but for rounding.  Where something holds the bodies also ``lost_walls`` (in impacts at walls) and ``held``
+        (given to ties and isolators so far: what their springs store, and what they have lost).
+    plate : displacement of the plate of an isolator [m], shape (n,); None without one
+    constraints : table, a row per wall, tie, bond and isolator, as in :class:`rockfrag.outcomes.Outcomes`; None
+        where nothing holds the bodies
     normal_force, friction_force : of each interface on the block above it [N], shape (n, blocks)
         Across and along the face that carries; after a fall those of the mode in which it fell.
     friction_demand : largest |T| / N that the response asked of each interface [-], shape (blocks,)
@@ -149,6 +155,8 @@ class Response:
     forced: int = 0
     given_way: int
     unstable_distance: float = math.nan
+    constraints: pd.DataFrame | None = field(default=None, repr=False)
+    plate: Floats | None = field(default=None, repr=False)
 
     __repr__ = short_repr
 
@@ -158,6 +166,48 @@ class Response:
         from rockfrag.outcomes.response_figure import response_figure
 
         return response_figure(self, title)
+
+    def system_after(self) -> System:
+        """Return the system as this response left it: where its bodies stand or lean, without what has broken.
+
+        A response to what follows is that to both motions with quiet time between them.
+
+        Raises
+        ------
+        InputError
+            If a body has fallen, or still moves at the last sample.
+        """
+        system = self.system
+        if self.overturned:
+            raise InputError(
+                f"system_after: the {self.overturned_body} has fallen; nothing is left to be shaken again."
+            )
+        if np.abs(self.omega[-1]).max() > AT_REST:
+            raise InputError(
+                "system_after: the bodies still move at the end; let quiet time follow the motion."
+            )
+        broken = set()
+        if self.constraints is not None:
+            fallen = self.constraints["breaking_time_s"].notna()
+            broken = set(self.constraints["name"][fallen])
+        contacts = tuple(
+            replace(contact, bond=None) if f"bond {k}" in broken else contact
+            for k, contact in enumerate(system.contacts, 1)
+        )
+        kept = zip(system.constraints, system.holding, strict=False)
+        left = replace(
+            system,
+            contacts=contacts,
+            constraints=tuple(each for each, name in kept if name not in broken),
+            start=None,
+        )
+        plate = 0.0 if self.plate is None else float(self.plate[-1])
+        if not (self.slip[-1].any() or self.theta[-1].any() or plate):
+            return left
+        still = (0.0,) * system.count
+        places = tuple((x, z) for x, z in self.position[-1].tolist())
+        start = Start(tuple(self.theta[-1].tolist()), still, places, plate)
+        return replace(left, start=start)
 
     def samples(self) -> dict[str, NDArray[Any]]:
         """Return the columns of a row per sample and body, the bodies running fastest (from below, from 1)."""
@@ -274,6 +324,7 @@ def energy_table(
     contacts: int,
     losses: tuple[Floats, Ints, Floats],
     friction: Floats | None = None,
+    held: Floats | None = None,
 ) -> pd.DataFrame:
     """Balance of energy by cause over time [J], with the columns of ``Response.energy``.
 
@@ -283,6 +334,8 @@ def energy_table(
     contacts : number of contacts
     losses : of each impact its instant [s], its contact from 0 and what it lost [J]
     friction : what friction has taken so far [J], shape (n,); None where nothing slides
+    held : energy given to ties and isolators so far [J], shape (n,); None where nothing holds the bodies
+        A contact beyond the last is then a wall.
 
     Returns
     -------
@@ -290,12 +343,14 @@ def energy_table(
     """
     when, contact, lost = losses
     at = np.searchsorted(time, when - 1e-12 * max(1.0, time[-1]))
-    by_sample = np.zeros((contacts, time.size + 1))
+    by_sample = np.zeros((contacts + (held is not None), time.size + 1))
     np.add.at(by_sample, (contact, at), lost)
     so_far = np.cumsum(by_sample, axis=1)[:, : time.size]
     total = kinetic + potential
     for each in so_far:
         total = total + each
+    if held is not None:
+        total = total + held
     residual = (
         total - work - total[0]
         if friction is None
@@ -307,7 +362,8 @@ def energy_table(
             "kinetic": kinetic,
             "potential": potential,
             "input": work,
-            **{f"lost_contact_{k + 1}": values for k, values in enumerate(so_far)},
+            **{f"lost_contact_{k + 1}": so_far[k] for k in range(contacts)},
+            **({} if held is None else {"lost_walls": so_far[-1], "held": held}),
             **({} if friction is None else {"lost_friction": friction}),
             "residual": residual,
         }

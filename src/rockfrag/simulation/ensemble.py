@@ -117,7 +117,7 @@ def overturns(
     Returns
     -------
     Outcomes
-        Arrays of shape (bodies, motions, scales), and three tidy tables; who answered stands in ``engine``.
+        Arrays of shape (bodies, motions, scales), and four tidy tables; who answered stands in ``engine``.
 
     Warns
     -----

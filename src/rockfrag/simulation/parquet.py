@@ -38,6 +38,7 @@ WITHIN: dict[Table, dict[str, pa.DataType]] = {
     "cases": {},
     "bodies": {"body": pa.int32(), "name": pa.string()},
     "contacts": {"contact": pa.int32(), "name": pa.string()},
+    "constraints": {"constraint": pa.int32(), "name": pa.string()},
 }
 USUAL = ("overturned", "overturned_body")
 
@@ -58,14 +59,14 @@ def stream_overturns(
 ) -> int:
     """Write the outcome of every body × motion × scale to a Parquet file, in memory that stays flat.
 
-    The file is one of the three tables of :class:`rockfrag.outcomes.Outcomes`, as its ``table`` gives it, the
+    The file is one of the four tables of :class:`rockfrag.outcomes.Outcomes`, as its ``table`` gives it, the
     scale running fastest, then bodies or contacts from below.  It appears whole or not at all, and its bytes do
     not depend on the number of threads.
 
     Parameters
     ----------
     bodies, motions, dt, scales : as in :func:`overturns`
-    path, table : the file to write, of "cases", "bodies" or "contacts"
+    path, table : the file to write, of "cases", "bodies", "contacts" or "constraints"
     columns
         Columns beside those that say which case it is, named as the attributes of the outcomes; None takes
         ``overturned`` and ``overturned_body`` of cases, and all of bodies and contacts.

@@ -17,7 +17,7 @@ from rockfrag.base.units import GRAVITY
 from rockfrag.campaign import comparison, laboratory
 from rockfrag.campaign.comparison import HALF, NEAR_CRITICAL, MeasuredTests
 from rockfrag.campaign.laboratory import MEASURED, Campaign, read_campaign
-from rockfrag.campaign.standing import sample_trials, simulate_tests
+from rockfrag.campaign.standing import Trials, sample_trials, simulate_tests
 from rockfrag.fragility.vector import vector_tables
 from rockfrag.motions.processing import process, scale_to_pga
 from rockfrag.motions.pulses import commanded_cosine
@@ -27,6 +27,7 @@ from rockfrag.records.velocity_steps import bump_and_stop
 from rockfrag.simulation.inputs import STEPPED
 from rockfrag.stages.job import Job, Results
 from rockfrag.study.campaign import PULSE_MEASURES, STEP_MEASURES, CampaignStudy
+from rockfrag.study.holding import held_as_stated
 from rockfrag.system.blocks import Block, Column
 from rockfrag.system.mesh import Shape, read_shape
 
@@ -150,6 +151,17 @@ def standing_object(study: CampaignStudy) -> Shape | Block | Column:
     )
 
 
+def trials_of(
+    thing: Shape | Block | Column, study: CampaignStudy, count: int
+) -> Trials:
+    """Return trials that fill the study's ranges, held as the study says."""
+    trials = sample_trials(thing, study.unknowns, count, study.seed)
+    if "held" not in study.object:
+        return trials
+    systems = (held_as_stated(each, study.object["held"]) for each in trials.systems)
+    return replace(trials, systems=tuple(systems))
+
+
 def object_of(study: CampaignStudy) -> Shape | Block:
     """Return the object: a shape from its mesh, or the planar block given by hand."""
     given = study.object
@@ -194,9 +206,7 @@ class _Simulated:
         self.job, study = job, job.study
         self.campaign, self.motions = campaign_with_motions(study, job.log)
         self.thing = standing_object(study)
-        self.trials = sample_trials(
-            self.thing, study.unknowns, study.trials, study.seed
-        )
+        self.trials = trials_of(self.thing, study, study.trials)
         # whether the object overturned, and whether anything rocked, shape (trials, tests)
         self.outcomes, self.rocked = simulate_tests(
             self.trials.systems, self.motions, job.threads
@@ -313,7 +323,7 @@ class _Simulated:
         as_configured = measured.agreement("as configured", self.votes >= HALF)
         rows = [as_configured | {"trials": study.trials}]
         fewer = max(16, study.trials // VARIED_FRACTION)
-        trials = sample_trials(self.thing, study.unknowns, fewer, study.seed)
+        trials = trials_of(self.thing, study, fewer)
         for name, steps in {
             "as configured, fewer trials": study.conditioning,
             **study.varied_conditioning,

@@ -260,7 +260,7 @@ def floor_curves(
             own = ida_curves.get(state.name, {}).get((name, floor))
             if own is not None:
                 found = fragility_of(own.outcomes(column), level=level)
-            elif state.exact and rocks_at_once:
+            elif state.exact and rocks_at_once and not systems[name].holding:
                 found = fit_uplift(at_uplift, column, level=level)
             else:
                 continue

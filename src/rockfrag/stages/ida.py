@@ -48,6 +48,7 @@ RECORDED = (
 
 # Columns of outcomes in IDA curves with friction
 SLID = ("flights", "slip", "peak_slip")
+HELD = ("hits", "largest_impulse", "largest_force", "breaking_time", "stroke")
 ROWS_AT_ONCE = 131_072  # Histories in memory at a time, and of a row group of a file
 FEWEST_AT_ONCE = 12  # Motions shaken at a time are no fewer, to keep every core busy
 
@@ -191,6 +192,8 @@ def ida_table(
         ),
         **result.wide(0, RECORDED),
     }
+    if configuration.holding:
+        made |= result.wide(0, HELD)
     if configuration.loose:
         rough = _shaken(configuration.held(), motions, scales, threads)
         made["peak_slip_m"] = result.of_any("peak_slip")[0].ravel()

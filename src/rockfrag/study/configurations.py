@@ -7,6 +7,7 @@ In: two CSV files, sizes in any unit. Out: blocks [m, kg] by name, systems, and 
 import os
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from types import MappingProxyType
 from typing import Any
 
 from rockfrag.base.errors import InputError, errors_of
@@ -15,7 +16,9 @@ from rockfrag.base.plausible import check_density
 from rockfrag.base.tabular import Row, read_rows
 from rockfrag.laws import law_names
 from rockfrag.simulation.options import MeasuredRestitution, system_of
+from rockfrag.study import holding
 from rockfrag.system.blocks import Block, stacked
+from rockfrag.system.support import Support
 from rockfrag.system.system import System
 
 
@@ -58,19 +61,28 @@ def _block(row: Row) -> Block:
 
 
 def read_configurations(
-    path: str | os.PathLike[str], blocks: Mapping[str, Block]
+    path: str | os.PathLike[str],
+    blocks: Mapping[str, Block],
+    isolators: Mapping[str, Support] = MappingProxyType({}),
 ) -> tuple[list[System], dict[str, str]]:
     """Read which block stands on which; a system has the configuration's name, and its bodies those of the blocks.
 
     Columns: ``name``, ``object`` and ``pedestal``, which is empty or absent where there is none. Several blocks
     under an object are named from above, ``base|plinth``; they may stand behind the object too,
-    ``venus|base|plinth``. ``counterpart`` is the arrangement with which one is compared, where that is not its
-    object alone on the floor; these are returned by name behind the systems.
+    ``venus|base|plinth``, and the lowest may be an isolator. What holds it stands in the columns of
+    :mod:`rockfrag.study.holding`: ``wall_m``, ``putty_n``, ``cord_n_m`` and others. ``counterpart`` is the
+    arrangement with which one is compared, where that is not its object alone on the floor; these are returned by
+    name behind the systems.
     """
     found: dict[str, System] = {}
     checked: dict[str, str] = {}
     counterparts: dict[str, str] = {}
-    rows = read_rows(path, ["name", "object"], ["pedestal", "counterpart"])
+    rows = read_rows(
+        path,
+        ["name", "object"],
+        ["pedestal", "counterpart", *holding.COLUMNS],
+        quantities=holding.LENGTHS,
+    )
     for row in rows:
         name = row.text("name")
         object_name, *behind = names_from_above(row.text("object")) or ("",)
@@ -80,21 +92,24 @@ def read_configurations(
                 "pedestal", "what stands under the object is named behind it already"
             )
         below = tuple(behind) or under
+        isolator = below[-1] if below and below[-1] in isolators else ""
+        below = below[:-1] if isolator else below
         for column, block in (
             ("object", object_name),
             *(("pedestal", name) for name in below),
         ):
             if block not in blocks:
-                known = ", ".join(blocks)
+                known = ", ".join((*blocks, *isolators))
                 raise row.error(
                     column, f"expected one of the specimens {known}, found {block}"
                 )
         if name in found:
             raise row.error("name", f"{name} is given twice")
         with errors_of(f"{row.path}, line {row.line}"):
-            found[name] = configuration_of(
-                name, (*reversed(below), object_name), blocks
-            )
+            system = configuration_of(name, (*reversed(below), object_name), blocks)
+            support = isolators[isolator] if isolator else None
+            stated = holding.stated_by(row)
+            found[name] = holding.held_as_stated(system, stated, support)
             distinct_file_names([name], checked)
         if row.has("counterpart"):
             other = row.text("counterpart")

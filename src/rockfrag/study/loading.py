@@ -34,6 +34,7 @@ from rockfrag.study.campaign import (
     measured_table_from,
 )
 from rockfrag.study.heading import check_file, checked_steps, existing_file, heading_of
+from rockfrag.study.holding import read_isolators
 from rockfrag.study.scaling import LARGEST_FACTOR, too_weak
 from rockfrag.study.space import SPACE_KEY, SpaceStudy, space_study_from
 from rockfrag.study.study import RECORDS_FOLDER, Amplitudes, FragilitySettings, Study
@@ -89,8 +90,12 @@ def _study(content: Mapping[str, Any], source: Path) -> Study:
     if "configurations" in bodies:
         name = bodies["configurations"]
         configurations_file = existing_file(source, "bodies.configurations", name)
+        isolators = {}
+        if "isolators" in bodies:
+            table = existing_file(source, "bodies.isolators", bodies["isolators"])
+            isolators = read_isolators(table)
         known, counterparts = arrangements.read_configurations(
-            configurations_file, specimens
+            configurations_file, specimens, isolators
         )
 
     def optional_file(key: str) -> Path | None:
@@ -137,7 +142,7 @@ def _study(content: Mapping[str, Any], source: Path) -> Study:
         ),
         keep_going=content.get("keep_going", False),
         largest_factor=_largest_factor(motions),
-        slides="friction" in content,
+        slides="friction" in content or any(each.loose for each in configurations),
         vertical=content.get("vertical", False),
         write_motions=content.get("write_motions"),
         shaker_file=shaker_file,

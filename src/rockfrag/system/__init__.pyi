@@ -11,6 +11,8 @@ from .body import (
     Polygon as Polygon,
     RigidBody as RigidBody,
 )
+from .bond import Bond as Bond
+from .constraints import Tie as Tie, Wall as Wall
 from .contact import (
     Contact as Contact,
     Friction as Friction,
@@ -25,7 +27,12 @@ from .mesh import (
     Shape as Shape,
     read_shape as read_shape,
 )
+from .support import (
+    BilinearIsolator as BilinearIsolator,
+    SlidingPendulum as SlidingPendulum,
+)
 from .system import (
     Start as Start,
     System as System,
+    hold as hold,
 )

@@ -9,6 +9,7 @@ import numpy as np
 
 from rockfrag.base.errors import InputError
 from rockfrag.base.input_checks import real_number, shown
+from rockfrag.system.bond import Bond
 
 ROUGHEST = 1e6
 """Larger coefficients, infinite ones too, are taken as this one: a contact that is about to lift off while it
@@ -55,17 +56,21 @@ class Contact:
     law : of its impacts
     tilt : angle by which an uneven base turns the body clockwise on the face below [rad]
     offset : of the origin of the body's base from that of the face below (x, y) [m]; of no effect on the ground
+    bond : that keeps it shut until it breaks; None: none
     """
 
     friction: Friction | None = None
     law: ImpactLaw = BY_MOMENTUM
     tilt: float = 0.0
     offset: tuple[float, float] = (0.0, 0.0)
+    bond: Bond | None = None
 
     def __post_init__(self) -> None:
         real_number("Contact: tilt", self.tilt, "radians")
         for value in self.offset:
             real_number("Contact: offset", value, "metres")
+        if not (self.bond is None or isinstance(self.bond, Bond)):
+            raise InputError(f"Contact: bond: expected a Bond, got {shown(self.bond)}.")
 
 
 def checked_friction(name: str, value: object) -> Friction | None:

@@ -1,6 +1,7 @@
 """What is shaken: bodies that stand on each other, the contacts between them, and how they begin."""
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
@@ -12,7 +13,10 @@ from rockfrag.base.errors import InputError
 from rockfrag.base.input_checks import shown
 from rockfrag.system import geometry
 from rockfrag.system.body import Circle, Polygon, RigidBody, Vector3
+from rockfrag.system.bond import Bond
+from rockfrag.system.constraints import Constraint, Tie, Wall
 from rockfrag.system.contact import Contact
+from rockfrag.system.support import Support
 
 MOST_BODIES = 12  # bodies of a column
 
@@ -26,10 +30,15 @@ class Start:
     rotation : of each body from below, from how it stands: clockwise [rad] of planar bodies, a rotation vector
         (x, y, z) [rad] of bodies in space
     velocity : angular velocity of each body, likewise [rad/s]
+    position : of each centre of gravity of planar bodies (x, z) [m], as an earlier response left it; None: they
+        stand as they were set
+    plate : displacement of the plate of an isolator [m]
     """
 
     rotation: tuple[Any, ...]
     velocity: tuple[Any, ...]
+    position: tuple[tuple[float, float], ...] | None = None
+    plate: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -42,12 +51,16 @@ class System:
     contacts : contact k lies under body k; the first is the ground's
     start : rotations and velocities at the start; None: at rest
     name : for tables and messages
+    constraints : walls and ties between one body and the ground
+    support : isolator under the lowest body; None: it stands on the ground
     """
 
     bodies: tuple[RigidBody, ...]
     contacts: tuple[Contact, ...]
     start: Start | None = None
     name: str = ""
+    constraints: tuple[Constraint, ...] = ()
+    support: Support | None = None
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "bodies", tuple(self.bodies))
@@ -74,6 +87,13 @@ class System:
         ):
             raise InputError(
                 f"System: expected {count} rotation(s) and velocities at the start, got {shown(start)}."
+            )
+        object.__setattr__(self, "constraints", tuple(self.constraints))
+        for constraint in self.constraints:
+            _check_constraint(constraint, self)
+        if not (self.support is None or isinstance(self.support, Support)):
+            raise InputError(
+                f"System: support: expected an isolator, got {shown(self.support)}."
             )
 
     @property
@@ -105,6 +125,32 @@ class System:
     def names(self) -> tuple[str, ...]:
         """Name of each body from below: its own, or its number."""
         return tuple(body.name or f"body {k + 1}" for k, body in enumerate(self.bodies))
+
+    @property
+    def bonds(self) -> tuple[tuple[int, Bond], ...]:
+        """Bonds of contacts, each with the number of its contact from below, from 0."""
+        found = enumerate(contact.bond for contact in self.contacts)
+        return tuple((k, bond) for k, bond in found if bond is not None)
+
+    @property
+    def holding(self) -> tuple[str, ...]:
+        """Names of all that holds the bodies: constraints in their order, bonds from below, the support."""
+        walls_and_ties = [
+            f"{type(constraint).__name__.lower()} {number}"
+            for number, constraint in enumerate(self.constraints, 1)
+        ]
+        bonds = [f"bond {k + 1}" for k, _ in self.bonds]
+        support = [] if self.support is None else ["support"]
+        return (*walls_and_ties, *bonds, *support)
+
+    def free(self) -> "System":
+        """Return the system with nothing that holds its bodies but the ground and each other."""
+        return replace(
+            self,
+            contacts=tuple(replace(contact, bond=None) for contact in self.contacts),
+            constraints=(),
+            support=None,
+        )
 
     def held(self) -> "System":
         """Return the system with contacts that never slide."""
@@ -165,6 +211,72 @@ class System:
                 )
             )
         return tuple(found)
+
+
+def _check_constraint(constraint: object, system: System) -> None:
+    """Refuse what is no constraint, one in the way of a body as it stands, or of a body that is not there."""
+    if not isinstance(constraint, (Wall, Tie)):
+        raise InputError(
+            f"System: constraints: expected walls and ties, got {shown(constraint)}."
+        )
+    if isinstance(constraint, Tie):
+        if not -system.count <= constraint.body < system.count:
+            raise InputError(
+                f"Tie: body {constraint.body} is none of {system.count} from below; count from 0."
+            )
+        return
+    if not system.planar:
+        return
+    if constraint.side == 0:
+        raise InputError(
+            "Wall: a wall beside planar bodies stands to the right or the left; give the direction 0 or π."
+        )
+    reach = max(
+        constraint.side * x for x, z in corners(system) if z < constraint.height
+    )
+    if constraint.distance < reach - 1e-9:
+        raise InputError(
+            f"Wall: at {constraint.distance:g} m it stands where the bodies are; they reach to {reach:.6g} m."
+        )
+
+
+def hold(
+    system: System,
+    *constraints: Constraint,
+    bonds: Sequence[Bond | None] | Bond | None = None,
+    support: Support | None = None,
+) -> System:
+    """Add walls, ties, bonds and an isolator to a system.
+
+    Parameters
+    ----------
+    system : to which they are added
+    *constraints : walls and ties
+    bonds : one for each contact from below, None where there is none; one Bond: of the uppermost contact
+    support : isolator under the lowest body
+
+    Returns
+    -------
+    The system with them.
+    """
+    contacts = list(system.contacts)
+    if isinstance(bonds, Bond):
+        bonds = [*[contact.bond for contact in contacts[:-1]], bonds]
+    if bonds is not None:
+        if len(bonds) != len(contacts):
+            raise InputError(
+                f"bonds: expected one entry for each of {len(contacts)} contacts, got {len(bonds)}."
+            )
+        contacts = [
+            replace(contact, bond=bond)
+            for contact, bond in zip(contacts, bonds, strict=True)
+        ]
+    return replace(
+        system,
+        contacts=tuple(contacts),
+        constraints=(*system.constraints, *constraints),
+        support=system.support if support is None else support,
+    )
 
 
 def uplift_ratios(system: System) -> tuple[float, ...]:
@@ -298,24 +410,30 @@ def turned_about_vertical(system: System, angle_deg: float) -> System:
         return system
     (body,) = system.bodies
     sine, cosine = sin_cos(math.radians(angle_deg))
-    assert isinstance(body.base, Polygon)
     (xx, xy, xz), (_, yy, yz), (*_, zz) = body.tensor.tolist()
     xx, xy, yy = geometry.turned_moments(xx, xy, yy, sine, cosine)
     xz, yz = geometry.turned_in_plan(xz, yz, sine, cosine)
     x, y, z = body.centre
+    base, face = body.base, body.face
+    assert isinstance(base, Polygon)
+    assert face is None or isinstance(face, Polygon)
     turned = replace(
         body,
         inertia=((xx, xy, xz), (xy, yy, yz), (xz, yz, zz)),
         centre=(*geometry.turned_in_plan(x, y, sine, cosine), z),
-        base=Polygon(
-            tuple(
-                geometry.turned_in_plan(east, north, sine, cosine)
-                for east, north in body.base.vertices
-            )
-        ),
-        face=None,
+        base=_turned_outline(base, sine, cosine),
+        face=face and _turned_outline(face, sine, cosine),
     )
     return replace(system, bodies=(turned,))
+
+
+def _turned_outline(outline: Polygon, sine: float, cosine: float) -> Polygon:
+    return Polygon(
+        tuple(
+            geometry.turned_in_plan(east, north, sine, cosine)
+            for east, north in outline.vertices
+        )
+    )
 
 
 def stands(system: System) -> bool:
@@ -373,6 +491,50 @@ def standing_centres(system: System) -> list[tuple[float, float]]:
     for (angle, (x, y), body), shape in zip(_bases(system), system.shapes, strict=True):
         dx, dy = geometry.turned(body.ends[0].middle + shape.x, shape.y, angle)
         found.append((x + dx, y + dy))
+    return found
+
+
+def standing_points(
+    system: System, k: int, points: Sequence[tuple[float, float]]
+) -> list[tuple[float, float]]:
+    """Points of a planar body, from its frame, which an uneven base turns, to where they stand.
+
+    Parameters
+    ----------
+    system, k : the system, and the number of the body from below, from 0
+    points : (x, z) in the frame of the body [m]
+
+    Returns
+    -------
+    (x, z) of each, from the origin of the lowest base [m].
+    """
+    angle, (x, y), body = _bases(system)[k]
+    middle, found = body.ends[0].middle, []
+    for across, up in points:
+        dx, dy = geometry.turned(across - middle, up, system.contacts[k].tilt)
+        dx, dy = geometry.turned(middle + dx, dy, angle)
+        found.append((x + dx, y + dy))
+    return found
+
+
+def corners(system: System) -> list[tuple[float, float]]:
+    """Corners of planar bodies as they stand.
+
+    Parameters
+    ----------
+    system : the bodies
+
+    Returns
+    -------
+    (x, z) [m] of the left side of each body from below, then of its right one.
+    """
+    found = []
+    for k, (angle, (x, y), body) in enumerate(_bases(system)):
+        base, face = body.ends
+        tops = standing_points(system, k, [(end, body.height) for end in face])
+        for end, top in zip(base, tops, strict=True):
+            dx, dy = geometry.turned(end, 0.0, angle)
+            found += [(x + dx, y + dy), top]
     return found
 
 

@@ -10,11 +10,12 @@ from rockfrag.engines.compile.jit import entry_kernel
 from rockfrag.engines.planar.records import MOST, posed, system_record, working_memory
 from rockfrag.engines.planar.search import (
     CONSISTENT,
+    NONE,
     Trial,
     mode_number,
     prepare,
     search,
-    take_number,
+    take_mode,
     try_mode,
 )
 from rockfrag.engines.planar.solve import look_at, solve, solve_generally
@@ -132,7 +133,7 @@ def try_all(p, w, trial, numbers, margins):
     look_at(p, w, w.q)
     prepare(p, w, trial)
     for i in range(numbers.size):
-        take_number(p, w, numbers[i])
+        take_mode(p, w, (numbers[i], 0))
         margins[i] = try_mode(p, w, trial)
 
 
@@ -140,7 +141,7 @@ def try_all(p, w, trial, numbers, margins):
 def search_quickly(p, w, trial):
     """Number of the mode that the package takes."""
     look_at(p, w, w.q)
-    search(p, w, trial, -1)
+    search(p, w, trial, NONE)
     return mode_number(p, w.closed, w.slides)
 
 

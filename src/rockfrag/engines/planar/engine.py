@@ -17,11 +17,17 @@ from rockfrag.engines.built_in import PLANAR
 from rockfrag.engines.contract import Case, Cases, Engine, Request, engines, run_cases
 from rockfrag.engines.planar import integrate as contact
 from rockfrag.engines.planar import records
+from rockfrag.engines.planar.holding import THIN, with_plate
 from rockfrag.engines.pure_rocking.histories import shaking_of
 from rockfrag.engines.pure_rocking.kernels.single import GRAZING_SPEED
 from rockfrag.engines.steps import free_samples, step_count
 from rockfrag.outcomes import response as responses
-from rockfrag.outcomes.outcomes import Outcomes, empty_outcomes, merge_outcomes
+from rockfrag.outcomes.outcomes import (
+    Outcomes,
+    columns,
+    empty_outcomes,
+    merge_outcomes,
+)
 from rockfrag.outcomes.response import FLIGHT, ROCKING_MODES, Response
 from rockfrag.records.motion import GroundMotion
 from rockfrag.system.system import System
@@ -39,6 +45,9 @@ _KINDS = {
     contact.PARADOX: "paradox",
     contact.FALLEN: "fall",
     contact.PASSING: "edge",
+    contact.AT_WALL: "wall",
+    contact.TIED: "tie",
+    contact.BROKEN: "break",
 }
 _STATES = np.array([FLIGHT, -1, +1, 0])
 """Contact state of an interface whose closed ends are the bits (left, right) of a number."""
@@ -49,10 +58,17 @@ _OF_CASES = (
 )
 """Columns of cases that the kernels tell under the same names."""
 
+_OF_CONSTRAINTS = (
+    *("hits", "largest_impulse", "largest_force", "breaking_time", "stroke"),
+)
+"""Columns of constraints likewise."""
+
 
 def run(cases: Cases) -> Outcomes:
     """Return the outcomes of cases."""
-    outcomes = empty_outcomes(cases.names, cases.scales, (PLANAR.name,))
+    outcomes = empty_outcomes(
+        cases.names, cases.scales, (PLANAR.name,), holding=cases.holding
+    )
     richest = max(cases.motions, key=lambda motion: len(motion.components))
     stuck = [system.held() for system in cases.systems]
     pure = [_pure(system, richest, cases.request) for system in stuck]
@@ -62,17 +78,39 @@ def run(cases: Cases) -> Outcomes:
         outcomes = replace(outcomes, engines=(PLANAR.name, *held.engines))
         merge_outcomes(outcomes, rocking, held)
     found = contact_outcomes(cases)
-    for i, count in enumerate(outcomes.counts):
-        _write(outcomes, i, count, found[i], everything=i not in rocking)
+    for i, system in enumerate(cases.systems):
+        own = without_plate(found[i], system)
+        _write(outcomes, i, system.count, own, everything=i not in rocking)
     return outcomes
 
 
 def _pure(system: System, motion: GroundMotion, request: Request) -> Engine | None:
-    """Engine of pure rocking of a system, if there is one."""
+    """Engine of pure rocking of a system that nothing holds, if there is one."""
+    if system.holding:
+        return None
     others = (engine for engine in engines() if engine is not PLANAR)
     return next(
         (other for other in others if other.supports(system, motion, request)), None
     )
+
+
+_OF_BODIES = (
+    *("peak_rotation", "peak_velocity", "peak_slip", "slip", "slid", "flights"),
+)
+"""What is told of each body or the contact under it."""
+
+
+def without_plate(told: NDArray[np.void], system: System) -> NDArray[np.void]:
+    """Outcomes of a system, of whose lowest body nothing is told if it is the plate of an isolator."""
+    if system.support is None:
+        return told
+    own = told.copy()
+    for name in _OF_BODIES:
+        own[name] = np.roll(told[name], -1, axis=-1)
+        own[name][..., -1] = 0
+    for name in ("overturned_body", "parted_contact"):
+        own[name] = np.maximum(told[name] - 1, 0)
+    return own
 
 
 def _write(
@@ -90,6 +128,7 @@ def _write(
     into.certain_time[place] = np.nan
     into.unstable_distance[place] = np.nan
     into.flights[place] = flights[other]
+    into.leaning[place] = left["leaning"] > 0
     for name in _OF_CASES:
         getattr(into, name)[place] = left[name]
     own, first = (
@@ -98,6 +137,9 @@ def _write(
     )
     for name in ("peak_velocity", "slip", "peak_slip"):
         getattr(into, name)[own] = left[name][:, :count]
+    held = (*place, slice(0, len(into.holding[i])))
+    for name in _OF_CONSTRAINTS:
+        getattr(into, name)[held] = left[name][:, : len(into.holding[i])]
     into.peak_rotation[own] = np.where(first, np.inf, left["peak_rotation"][:, :count])
 
 
@@ -189,10 +231,14 @@ def closing_of(system: System) -> float:
 
 def _described(system: System, g: float) -> tuple[np.void, Array]:
     """Record ``BODY`` of a system, and the coordinates and velocities that it starts with."""
-    body, start = records.system_record(system, g), system.start
-    zeros = (0.0,) * system.count
+    body, start = records.system_record(system, g), with_plate(system).start
+    zeros = (0.0,) * int(body["count"])
     pose = (zeros, zeros) if start is None else (start.rotation, start.velocity)
-    return body, records.posed(body, *pose)
+    placed = records.posed(body, *pose)
+    if start is not None and start.position is not None:
+        for k, at in enumerate(start.position):
+            placed[0, 3 * k : 3 * k + 2] = at
+    return body, placed
 
 
 class ContactRun:
@@ -218,19 +264,27 @@ class ContactRun:
 
     def response(self) -> Response:
         """Return the response that the contact kernels wrote."""
-        case, told, history = self.case, self.work["told"], self.history
+        case, history = self.case, self.history
+        told = without_plate(np.array(self.work["told"]), case.system)
         done, count, fallen = (
             len(history),
             case.system.count,
             int(told["overturned_body"]),
         )
+        # the lowest body of an isolated system is the plate
+        first = int(self.body["count"]) - count
         values, ground = case.scale * case.motion.x.acceleration, np.zeros(done)
         ground[: values.size] = values[:done]
-        centres = history["q"][:, : 3 * count].reshape(done, count, 3)
-        speeds = history["v"][:, : 3 * count].reshape(done, count, 3)
-        normal, shear = history["normal"][:, :count], history["shear"][:, :count]
-        state, slides = _modes(history["mode"], count)
-        table = _contact_events(self.contact_events, count)
+        above = slice(first, first + count)
+        centres = history["q"][:, 3 * first : 3 * (first + count)]
+        centres = centres.reshape(done, count, 3)
+        speeds = history["v"][:, 3 * first : 3 * (first + count)]
+        speeds = speeds.reshape(done, count, 3)
+        normal, shear = history["normal"][:, above], history["shear"][:, above]
+        state, slides = (
+            each[:, above] for each in _modes(history["mode"], first + count)
+        )
+        table = _contact_events(self.contact_events, first, count)
         meets = np.array(
             [np.abs(np.diff([0.0, *w])).max() for w in table["omega_before"]]
         )
@@ -239,18 +293,20 @@ class ContactRun:
             system=case.system,
             time=time,
             ground_acceleration=ground,
-            position=centres[:, :, :2],
+            position=centres[:, :, :2] - (0.0, THIN if first else 0.0),
             theta=centres[:, :, 2],
             omega=speeds[:, :, 2],
-            alpha=history["alpha"][:, :count],
+            alpha=history["alpha"][:, above],
             state=state,
             slides=slides,
-            slip=history["slip"][:, :count],
+            slip=history["slip"][:, above],
             contact_events=table,
             overturned=fallen > 0,
             overturned_body=("", *case.system.names)[fallen],
             overturning_time=float(told["overturning_time"]),
             energy=self._energies(time),
+            constraints=self._constraints(),
+            plate=history["q"][:, 0].copy() if first else None,
             normal_force=normal,
             friction_force=shear,
             friction_demand=responses.sampled_demand(normal, shear),
@@ -260,10 +316,18 @@ class ContactRun:
             **{name: int(told[name]) for name in ("impacts", "paradoxes", "given_way")},
         )
 
+    def _constraints(self) -> pd.DataFrame:
+        """Make the table of what holds the bodies."""
+        names, told = self.case.system.holding, self.work["told"]
+        table = {"constraint": np.arange(1, len(names) + 1), "name": list(names)}
+        for column in columns("constraints"):
+            table[column.title] = told[column.name][: len(names)].copy()
+        return pd.DataFrame(table)
+
     def _energies(self, time: Array) -> pd.DataFrame:
         """Balance of energy by cause over time [J]."""
         p, history, struck = self.body, self.history, self.contact_events
-        count = self.case.system.count
+        count = int(self.body["count"])
         inertia, at = 1.0 / p["inverse"][: 3 * count], slice(1, 3 * count, 3)
         kinetic = (inertia * history["v"][:, : 3 * count] ** 2).sum(axis=1) / 2
         potential = float(p["g"]) * (p["mass"][:count] * history["q"][:, at]).sum(
@@ -276,14 +340,18 @@ class ContactRun:
         closed, _ = _modes(struck["after"], count)
         closes = (opened != 0) & (opened != closed)
         closes[:, -1] = True
+        own = self.case.system.count
+        contact_of = np.maximum(closes.argmax(axis=1) - (count - own), 0)
+        contact_of[struck["at_wall"] > 0] = own
         return responses.energy_table(
             time,
             kinetic,
             potential,
             history["work"],
-            contacts=count,
-            losses=(struck["time"], closes.argmax(axis=1), lost),
+            contacts=own,
+            losses=(struck["time"], contact_of, lost),
             friction=history["rubbed"],
+            held=history["tied"] if self.case.system.holding else None,
         )
 
 
@@ -293,12 +361,13 @@ def _modes(numbers: Ints, blocks: int) -> tuple[Ints, Ints]:
     return _STATES[digits & 3], (digits >> 2) - 1
 
 
-def _contact_events(found: NDArray[Any], blocks: int) -> pd.DataFrame:
-    """Make the table of contact events of a response."""
-    before, slid = _modes(found["before"], blocks)
-    after, slides = _modes(found["after"], blocks)
-    slip = found["slip"][:, :blocks]
-    turns = slice(2, 3 * blocks, 3)
+def _contact_events(found: NDArray[Any], first: int, blocks: int) -> pd.DataFrame:
+    """Make the table of contact events of a response, of the bodies from the ``first`` on."""
+    above = slice(first, first + blocks)
+    before, slid = (each[:, above] for each in _modes(found["before"], first + blocks))
+    after, slides = (each[:, above] for each in _modes(found["after"], first + blocks))
+    slip = found["slip"][:, above]
+    turns = slice(3 * first + 2, 3 * (first + blocks), 3)
     kinds = [
         _KINDS.get(kind) or _kind_of_change(*change)
         for kind, *change in zip(

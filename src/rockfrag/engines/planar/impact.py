@@ -5,13 +5,15 @@ An impact has impulses at touching ends, Coulomb's law on them, and each contact
 
 from rockfrag.base.elementary import sin_cos
 from rockfrag.engines.compile.jit import kernel
+from rockfrag.engines.planar.bonds import break_pulled
 from rockfrag.engines.planar.routh import contact_alone, strike_alone
 from rockfrag.engines.planar.search import (
+    NONE,
     Trial,
-    mode_number,
     search,
-    take_number,
+    take_mode,
     try_mode,
+    whole_mode,
 )
 from rockfrag.engines.planar.solve import (
     bias,
@@ -22,6 +24,7 @@ from rockfrag.engines.planar.solve import (
     solve,
     standing_bodies,
 )
+from rockfrag.engines.planar.walls import any_closed, note_impulses
 from rockfrag.engines.pure_rocking.kernels.laws import moves_impulse, scales_momentum
 from rockfrag.engines.pure_rocking.kernels.laws import rate as lawful_rate
 from rockfrag.laws.momentum import NUMBER as MOMENTUM
@@ -30,6 +33,7 @@ NO_GAIN = 1e-12  # fraction of the kinetic energy below which a gain is rounding
 HALVINGS = 40  # halvings of the interval in which a law that gives way keeps the energy
 CROWD = 100
 """Contact events within a sample after which speeds below the closing speed count as none, whatever pulls."""
+PULLS = 1e-9  # acceleration over g towards a wall above which it is none of rounding
 UNREACHED = 1e-7  # violation above which an impact has no outcome under a law
 STILL = 1e-11  # fraction of √(g b) below which a speed is rounding
 
@@ -39,6 +43,9 @@ def project(p, w):
     """Take away what rounding and integration have left at the closed contacts of ``q`` and ``v``."""
     q, v = w.q, w.v
     look_at(p, w, q)
+    if any_closed(p, w):
+        _project_jointly(p, w)
+        return
     for k in range(p.count):
         if not w.closed[k].any():
             continue
@@ -66,6 +73,25 @@ def project(p, w):
 
 
 @kernel
+def _project_jointly(p, w):
+    """What :func:`project` does where walls close a chain of contacts: the least change that shuts all at once."""
+    w.resting = 0
+    for k in range(p.contacts):
+        for end in range(2):
+            if w.closed[k, end] == 1:
+                _, _, _, _, gap, _, _ = end_of(p, w, w.q, k, end, w.kind[k, end])
+                w.back[k, end] = -gap
+    solved = solve(p, w, w.q, w.zero, 0.0, 0.0, True, False)
+    w.back[:] = 0.0
+    if solved:
+        for d in range(3 * p.count):
+            w.q[d] += w.out[d]
+        look_at(p, w, w.q)
+    if solve(p, w, w.q, w.v, 0.0, 0.0, True, False):
+        copy(p, w.out, w.v)
+
+
+@kernel
 def slip_speed(p, w, v, k, trial):
     """Speed along interface k at its first closed (or, on ``trial``, touching) end; 0 if it is rounding."""
     ends = w.touching[k] if trial else w.closed[k]
@@ -89,28 +115,29 @@ def approach(p, w, k, end):
 def settle(p, w, ah, av, exclude):
     """Find the mode in which touching ends go on, not the old one on ``exclude``; False if there is none."""
     all_touch = True
-    for k in range(p.count):
+    for k in range(p.contacts):
         static = p.static[k]
         w.against[k] = static
         w.along[k] = static
         for end in range(2):
-            if w.touching[k, end] == 1 and approach(p, w, k, end) >= STILL * p.speed:
+            parts = w.whole[k] == 0 and w.touching[k, end] == 1
+            if parts and approach(p, w, k, end) >= STILL * p.speed:
                 w.touching[k, end] = 0
             all_touch = all_touch and w.old_closed[k, end] <= w.touching[k, end]
         speed = slip_speed(p, w, w.v, k, True)
         w.moves[k] = 1 if speed > 0.0 else (-1 if speed < 0.0 else 0)
-    old = mode_number(p, w.old_closed, w.old_slides)
+    old = whole_mode(p, w.old_closed, w.old_slides)
     trial = Trial(ah, av, False, p.weight, p.g)
-    wrong = search(p, w, trial, old if exclude else -1)
+    wrong = search(p, w, trial, old if exclude else NONE)
     if exclude and wrong > 1e-7 and all_touch:
         # nothing else is better: the old mode failed by rounding only
-        found = mode_number(p, w.closed, w.slides)
-        take_number(p, w, old)
+        found = whole_mode(p, w.closed, w.slides)
+        take_mode(p, w, old)
         again = max(0.0, -try_mode(p, w, trial))
         if again < wrong:
             wrong = again
         else:
-            take_number(p, w, found)
+            take_mode(p, w, found)
     solve(p, w, w.q, w.v, ah, av, False)
     remember_slides(p, w)
     project(p, w)
@@ -142,12 +169,13 @@ def strike(p, w, ah, av, closing, push):
     """
     before = kinetic_energy(p, w.v)
     lawful = _read_laws(p, w, push)
-    for k in range(p.count):
+    for k in range(p.contacts):
         slip = slip_speed(p, w, w.v, k, True)
         w.moves[k], w.slid[k] = 0, 1 if slip > 0.0 else (-1 if slip < 0.0 else 0)
         w.along[k] = p.static[k]
         w.against[k] = p.static[k] if slip == 0.0 else p.kinetic[k]
-        if push:
+    if push:
+        for k in range(p.count):
             w.v[3 * k + 1] -= 1e-7 * p.speed
     scale = 1e-300
     mass = 0.0
@@ -157,18 +185,15 @@ def strike(p, w, ah, av, closing, push):
             scale, abs(w.v[3 * k]), abs(w.v[3 * k + 1]), p.size * abs(w.v[3 * k + 2])
         )
     trial = Trial(ah, av, True, mass * scale, scale)
-    search(p, w, trial, -1)
-    solve(p, w, w.q, w.v, ah, av, True)
-    if lawful:
-        _obey(p, w, trial)
-    else:
-        k, end = contact_alone(p, w)
-        if k >= 0:
-            strike_alone(p, w, k, end)
+    _find_impulses(p, w, trial, lawful)
+    while p.is_held == 1 and break_pulled(p, w, trial.force):
+        _find_impulses(p, w, trial, lawful)
+    note_impulses(p, w)
+    _let_bounce(p, w)
     lift_laws(p, w)
     remember_slides(p, w)
     copy(p, w.out, w.v)
-    for k in range(p.count):
+    for k in range(p.contacts):
         read_slip(p, w, k, 0.0)
     while _shut_weak(p, w, ah, av, closing):
         solve(p, w, w.q, w.v, ah, av, True, False)
@@ -180,9 +205,31 @@ def strike(p, w, ah, av, closing, push):
 
 
 @kernel
+def _find_impulses(p, w, trial, lawful):
+    """Impulses and velocities after an impact, plastic or as far as its laws have an outcome."""
+    search(p, w, trial, NONE)
+    solve(p, w, w.q, w.v, trial.ah, trial.av, True)
+    if lawful:
+        _obey(p, w, trial)
+        return
+    k, end = contact_alone(p, w)
+    if k >= 0:
+        strike_alone(p, w, k, end)
+
+
+@kernel
+def _let_bounce(p, w):
+    """Open the ends at walls that leave with a speed."""
+    for k in range(p.count, p.contacts):
+        for end in range(2):
+            if w.back[k, end] > 0.0:
+                w.closed[k, end] = 0
+
+
+@kernel
 def touch_closed(p, w):
     """Let the ends that are closed be those that touch."""
-    for k in range(p.count):
+    for k in range(p.contacts):
         for end in range(2):
             w.touching[k, end] = w.closed[k, end]
 
@@ -191,6 +238,7 @@ def touch_closed(p, w):
 def lift_laws(p, w):
     """Let impulses be plastic."""
     w.fraction[:] = 0.0
+    w.back[:] = 0.0
     w.drive[:] = -1
 
 
@@ -209,6 +257,12 @@ def _read_laws(p, w, push):
                 w.falls[k] = end
                 w.goal[k, 1] = -speed
                 lawful = True
+    for k in range(p.count, p.contacts):
+        for end in range(2):
+            w.came[k, end] = 0.0
+            if w.touching[k, end] == 1 and not push:
+                w.came[k, end] = max(0.0, -approach(p, w, k, end))
+                lawful = lawful or w.came[k, end] * p.bounce[k] > 0.0
     return lawful
 
 
@@ -257,7 +311,10 @@ def _outcome(p, w, trial, part, before):
             w.drive[k] = 1 - end
             w.depart[k] = w.goal[k, 0] + part * (w.goal[k, 1] - w.goal[k, 0])
             w.closed[k, end], w.closed[k, 1 - end] = 1, 0
-    wrong = search(p, w, trial, -1)
+    for k in range(p.count, p.contacts):
+        for end in range(2):
+            w.back[k, end] = part * p.bounce[k] * w.came[k, end]
+    wrong = search(p, w, trial, NONE)
     solve(p, w, w.q, w.v, trial.ah, trial.av, True)
     return wrong <= UNREACHED and kinetic_energy(p, w.out) <= before * (1.0 + NO_GAIN)
 
@@ -280,17 +337,19 @@ def _shut_weak(p, w, ah, av, closing):
     Slow ends close where they fall back, and in a crowd whatever pulls.  What pulls depends on the sign of a slip,
     so that slow slips and slow ends would call forth each other without an end.
     """
-    crowd = w.met > CROWD
     found = False
     solve(p, w, w.q, w.v, ah, av, False)
-    for k in range(p.count):
+    for k in range(p.contacts):
+        # what a wall and a face both ask for must not be asked twice: it must pull there
+        crowd = w.met > CROWD and k < p.count
+        least = 0.0 if k < p.count else -PULLS * p.g
         was_open = not w.closed[k].any()
         for end in range(2):
             if w.touching[k, end] == 1 and w.closed[k, end] == 0:
                 x, y, tx, ty, _, _, kind = end_of(p, w, w.q, k, end, w.kind[k, end])
                 pull = rate(p, w.q, w.out, k, x, y, -ty, tx)
-                pull += bias(w.q, w.v, k, x, y, -ty, tx, kind)
-                if (pull < 0.0 or crowd) and approach(p, w, k, end) < closing:
+                pull += bias(p, w.q, w.v, k, x, y, -ty, tx, kind)
+                if (pull < least or crowd) and approach(p, w, k, end) < closing:
                     w.closed[k, end] = 1
                     found = True
         if was_open or w.slides[k] != 0:

@@ -10,9 +10,24 @@ from rockfrag.base.arrays import fields, whole
 from rockfrag.engines.compile.jit import entry_kernel, kernel
 from rockfrag.engines.planar import impact
 from rockfrag.engines.planar import step as stepping
+from rockfrag.engines.planar.bonds import (
+    count_broken,
+    fill_rest_margins,
+    note_breaking,
+    note_loads,
+    note_rest_loads,
+)
 from rockfrag.engines.planar.records import MOST
-from rockfrag.engines.planar.search import mode_number
+from rockfrag.engines.planar.search import BONDED, mode_number, wall_number
 from rockfrag.engines.planar.solve import copy, end_of, look_at, solve
+from rockfrag.engines.planar.support import GUIDED, change_spring, note_stroke, slope
+from rockfrag.engines.planar.ties import (
+    change_ties,
+    is_any_taut,
+    least_tie_margin,
+    note_tensions,
+)
+from rockfrag.engines.planar.walls import any_closed, note_forces
 from rockfrag.engines.planar.witness import breaks_a_law
 from rockfrag.engines.pure_rocking.kernels.single import Shaking
 from rockfrag.laws.momentum import NUMBER as MOMENTUM
@@ -28,6 +43,8 @@ MOST_JOLTS = 60
 LARGEST_FAILURE = 1e-3
 BURST = 100.0  # margin at the end of a step beyond which a shorter one is taken [-] ...
 LEAST_STEP = 1e-9  # ... down to this part of a sample
+# what leans has turned by more [rad], and is slower over √(g b) [-]
+TURNED, AT_REST = 1e-6, 1e-3
 
 
 SAMPLE = np.dtype(
@@ -35,7 +52,7 @@ SAMPLE = np.dtype(
         *fields("q v", 3 * MOST),  # coordinates of the bodies and their rates
         # of each interface and, α = θ'', of each body
         *fields("slip normal shear alpha", MOST),
-        *fields("work rubbed struck"),  # ledgers so far, as in WORK [J]
+        *fields("work rubbed struck tied"),  # ledgers so far, as in WORK [J]
         *whole("mode"),
     ]
 )
@@ -44,7 +61,8 @@ SAMPLE = np.dtype(
 CONTACT_EVENT = np.dtype(
     [
         *fields("time"),
-        *whole("kind before after"),  # its kind, and the modes before and after
+        # its kind, the modes before and after, and whether a wall gave an impulse
+        *whole("kind before after at_wall"),
         *fields("energy_before energy_after"),
         *fields("slip", MOST),
         # coordinates of the bodies, and their rates before and after
@@ -54,7 +72,12 @@ CONTACT_EVENT = np.dtype(
 """What is kept of a contact event."""
 
 CHANGE, IMPACT, PARADOX, FALLEN, PASSING = 0, 1, 2, 3, 4
-"""Kinds of contact events: the last is a corner that passes an edge while nothing else changes."""
+AT_WALL, TIED, BROKEN = 5, 6, 7
+"""Kinds of contact events.
+
+PASSING is a corner that passes an edge while nothing else changes, AT_WALL a change without an impulse at a wall
+alone, TIED a tie that gets taut or slack, BROKEN a tie or a bond that breaks.
+"""
 
 
 Array = NDArray[np.float64]
@@ -153,6 +176,7 @@ def integrate(p, shaking, start, closing, kept, w):
                     known_rest = True
                 tau = _rest_ends(p, w, tau, now, late)
                 if tau > 1.0:
+                    note_rest_loads(p, w, late)
                     break
                 known_rest = False
                 fresh = True
@@ -160,7 +184,11 @@ def integrate(p, shaking, start, closing, kept, w):
                 instant = Instant((i + tau) * dt, ah, av)
                 # what fails is that all rests
                 w.fails[:] = 0
-                _handle(p, w, instant, closing, True, kept)
+                w.tie_fails[:] = w.spring_fails = 0
+                first = w.row_of_rest // 4
+                broken = w.whole[first] == BONDED
+                w.fails[first, stepping.BREAK] = 1 if broken else 0
+                _handle(p, w, instant, closing, not broken, kept)
                 w.met += 1
                 if w.resting == 1:
                     # it failed by rounding only
@@ -178,7 +206,7 @@ def integrate(p, shaking, start, closing, kept, w):
                 stretch = stepping.Stretch(
                     step * dt, ah, av, step * sample.rise_h, step * sample.rise_v
                 )
-                work, rubbed = stepping.take_step(p, w, stretch, energy_balance)
+                work, rubbed, tied = stepping.take_step(p, w, stretch, energy_balance)
                 error = stepping.step_error(p, w, stretch.length)
                 if step < stepping.SHORTEST or error <= stepping.ERROR:
                     break
@@ -188,7 +216,7 @@ def integrate(p, shaking, start, closing, kept, w):
                 # sliding that jams: forces grow faster than the step sees
                 step *= 0.125
                 stretch = stepping.beginning(stretch, 0.125)
-                work, rubbed = stepping.take_step(p, w, stretch, energy_balance)
+                work, rubbed, tied = stepping.take_step(p, w, stretch, energy_balance)
                 at_end = stepping.least_margin(p, w, w.q1, w.v1, True)
             when = 2.0
             if idle <= MOST_IDLE or at_end < -LARGEST_FAILURE:
@@ -212,6 +240,8 @@ def integrate(p, shaking, start, closing, kept, w):
                 copy(p, w.a1, w.a)
                 fresh = False
                 jolts = 0
+                if p.is_held == 1:
+                    _note_holding(p, w)
                 impact.project(p, w)
                 tau += step
                 if 1.0 - tau < 1e-12:
@@ -219,7 +249,7 @@ def integrate(p, shaking, start, closing, kept, w):
             else:
                 if energy_balance:
                     shorter = stepping.beginning(stretch, when)
-                    work, rubbed = stepping.take_step(p, w, shorter, True)
+                    work, rubbed, tied = stepping.take_step(p, w, shorter, True)
                 impact.project(p, w)
                 tau += when * step
                 idle = idle + 1 if when < 1e-9 else 0
@@ -236,6 +266,7 @@ def integrate(p, shaking, start, closing, kept, w):
                     tau = 1.0
             w.work += work
             w.rubbed += rubbed
+            w.tied += tied
             _track(p, w)
             if w.told.overturned_body > 0:
                 w.told.overturning_time = (i + tau) * dt
@@ -246,9 +277,49 @@ def integrate(p, shaking, start, closing, kept, w):
             _keep(p, w, kept.history[i + 1], now)
         if w.told.overturned_body > 0:
             break
-        if i >= n - 1 and w.resting == 1:
+        if i >= n - 1 and (w.resting == 1 or (not fresh and _lies_still(p, w))):
             break
+    w.told.leaning = 1 if _leans(p, w) else 0
     return done
+
+
+@kernel
+def _note_holding(p, w):
+    """Keep the largest forces of walls, bonds and ties."""
+    note_forces(p, w)
+    note_loads(p, w)
+    note_tensions(p, w)
+
+
+@kernel
+def _fastest(p, w):
+    """Largest rate of the bodies."""
+    fastest = 0.0
+    for d in range(3 * p.count):
+        fastest = max(fastest, abs(w.v[d]))
+    return fastest
+
+
+@kernel
+def _lies_still(p, w):
+    """Whether walls or ties hold what neither moves nor accelerates."""
+    largest = 0.0
+    for d in range(3 * p.count):
+        largest = max(largest, abs(w.a[d]))
+    still = _fastest(p, w) < 1e-9 * p.speed and largest < 1e-9 * p.g
+    return p.is_held == 1 and still
+
+
+@kernel
+def _leans(p, w):
+    """Whether bodies that have not fallen are at rest, turned, against a wall or in a tie."""
+    if p.is_held == 0 or w.resting == 1 or w.told.overturned_body > 0:
+        return False
+    turned = 0.0
+    for k in range(p.count):
+        turned = max(turned, abs(w.q[3 * k + 2]))
+    held = is_any_taut(p, w) or any_closed(p, w)
+    return held and turned > TURNED and _fastest(p, w) < AT_REST * p.speed
 
 
 @kernel
@@ -269,13 +340,27 @@ def _begin(p, w, start):
     copy(p, start[1], w.v)
     look_at(p, w, w.q)
     impact.lift_laws(p, w)
-    w.slides[:] = w.touching[:] = w.fails[:] = 0
-    for k in range(p.count):
+    w.slides[:] = w.touching[:] = w.fails[:] = w.whole[:] = 0
+    w.taut[:] = w.tie_fails[:] = w.row_of_rest = 0
+    for k in range(p.contacts):
         for end in range(2):
             _, _, _, _, gap, _, w.kind[k, end] = end_of(p, w, w.q, k, end, -1)
             w.closed[k, end] = 1 if gap < 1e-11 * p.size else 0
-    w.work = w.rubbed = w.struck = 0.0
+    w.work = w.rubbed = w.struck = w.tied = 0.0
     told = w.told
+    told.leaning = 0
+    told.hits[:] = 0
+    told.largest_impulse[:] = told.largest_force[:] = 0.0
+    told.breaking_time[:] = told.stroke[:] = math.nan
+    for k in range(p.count):
+        w.whole[k] = p.is_bonded[k] * w.closed[k, 0] * w.closed[k, 1]
+    if p.is_supported == 1:
+        w.whole[0] = GUIDED
+        told.stroke[p.support_number] = 0.0
+    w.yields = w.spring_fails = 0
+    w.plastic = 0.0
+    note_breaking(p, w, 0.0)
+    least_tie_margin(p, w, w.q, w.v)
     told.peak_rotation[:] = told.peak_velocity[:] = told.peak_slip[:] = 0.0
     told.slid[:] = told.flights[:] = 0
     told.impacts = told.paradoxes = told.overturned_body = told.parted_contact = 0
@@ -285,7 +370,8 @@ def _begin(p, w, start):
 
 @kernel
 def _track(p, w):
-    """Keep the largest rotations, angular velocities and slips."""
+    """Keep the largest rotations, angular velocities and slips, and the stroke of an isolator."""
+    note_stroke(p, w)
     for k in range(p.count):
         theta = w.q[3 * k + 2]
         limit = p.critical[k, 1] if theta > 0.0 else p.critical[k, 0]
@@ -304,7 +390,7 @@ def _contact_event_in_step(p, w, at_end, stretch):
     """
     high, at_high = 1.0 if at_end < 0.0 else 2.0, at_end
     by_force = stepping.force_fails(p, w)
-    near = stepping.comes_near(p, w)
+    near = stepping.comes_near(p, w, stretch.length)
     for tau in (0.25, 0.5, 0.75):
         looks = tau == 0.5 and at_end < 0.02
         if near or looks:
@@ -325,16 +411,23 @@ def _handle(p, w, now, closing, exclude, kept):
     ``exclude``: the old mode is known to fail.
     """
     _remember(p, w)
-    for k in range(p.count):
+    for k in range(p.contacts):
         if w.fails[k, stepping.FALL] == 1:
-            w.told.overturned_body = k + 1
-            w.told.parted_contact = _parted(w, k)
+            w.told.overturned_body = p.upper[k] + 1
+            w.told.parted_contact = _parted(w, p.upper[k])
             _note(p, w, now.time, FALLEN, kept)
             return
     look_at(p, w, w.q)
+    broken = count_broken(p, w)
+    is_tied = change_ties(p, w, now.time)
+    change_spring(p, w)
     passes = False
-    for k in range(p.count):
+    for k in range(p.contacts):
         leaves = -1
+        if w.fails[k, stepping.BREAK] == 1 and w.whole[k] == BONDED:
+            solve(p, w, w.q, w.v, now.ah, now.av, False)
+            note_loads(p, w)
+            w.whole[k] = 0
         for end in range(2):
             if w.closed[k, end] == 1 and w.fails[k, stepping.GAP + end] == 1:
                 exclude = True
@@ -361,10 +454,12 @@ def _handle(p, w, now, closing, exclude, kept):
                     w.touching[k, end], w.kind[k, end] = 1, kind
         if leaves >= 0:
             w.touching[k, leaves] = 0
+        if w.fails[k, stepping.BREAK] == 1 and k >= p.count:
+            w.touching[k, :] = 0
     _shut(p, w)
-    kind = PASSING if passes else CHANGE
+    kind = PASSING if passes else (TIED if is_tied else CHANGE)
     hit = False
-    for k in range(p.count):
+    for k in range(p.contacts):
         for end in range(2):
             if (
                 w.touching[k, end] == 1
@@ -382,6 +477,9 @@ def _handle(p, w, now, closing, exclude, kept):
         kind = PARADOX
     if kind == IMPACT and _is_unlawful(p, w, closing):
         w.told.paradoxes += 1
+    note_breaking(p, w, now.time)
+    if count_broken(p, w) > broken and kind != IMPACT and kind != PARADOX:
+        kind = BROKEN
     for k in range(p.count):
         w.told.flights[k] += w.old_closed[k].any() and not w.closed[k].any()
     _note(p, w, now.time, kind, kept)
@@ -393,6 +491,8 @@ def _is_unlawful(p, w, closing):
     plastic = True
     for k in range(p.count):
         plastic = plastic and p.law[k, 0] == MOMENTUM and p.law[k, 1] == MOMENTUM
+    for k in range(p.count, p.contacts):
+        plastic = plastic and p.bounce[k] == 0.0
     return breaks_a_law(p, w, closing, plastic)
 
 
@@ -406,6 +506,7 @@ def _jolt(p, w, now, closing, kept):
     look_at(p, w, w.q)
     impact.strike(p, w, now.ah, now.av, closing * p.speed, True)
     impact.settle(p, w, now.ah, now.av, False)
+    note_breaking(p, w, now.time)
     w.met += 1
     _note(p, w, now.time, PARADOX, kept)
 
@@ -414,7 +515,9 @@ def _jolt(p, w, now, closing, kept):
 def _remember(p, w):
     """Keep velocities and mode as they are before a contact event."""
     copy(p, w.v, w.old_v)
-    for k in range(p.count):
+    w.hit[:] = 0.0
+    w.hit_shear[:] = 0.0
+    for k in range(p.contacts):
         w.old_slides[k] = w.slides[k]
         for end in range(2):
             w.old_closed[k, end] = w.closed[k, end]
@@ -434,7 +537,22 @@ def _shut(p, w):
         for body in range(k, p.count):
             w.q[3 * body] += gap * ty
             w.q[3 * body + 1] -= gap * tx
+    for k in range(p.count, p.contacts):
+        _keep_out(p, w, k)
     look_at(p, w, w.q)
+
+
+@kernel
+def _keep_out(p, w, k):
+    """Shift a body that touches a wall, and what stands on it, out of the wall."""
+    look_at(p, w, w.q)
+    for end in range(2):
+        if w.touching[k, end] == 1:
+            _, _, tx, ty, gap, _, _ = end_of(p, w, w.q, k, end, w.kind[k, end])
+            if gap < 0.0:
+                for body in range(p.upper[k], p.count):
+                    w.q[3 * body] += gap * ty
+                    w.q[3 * body + 1] -= gap * tx
 
 
 @kernel
@@ -446,13 +564,20 @@ def _rest_margins(p, w):
         av = 1.0 if load == 2 else 0.0
         solve(p, w, w.q, w.v, ah, av, False)
         for k in range(p.count):
+            if w.whole[k] == BONDED:
+                fill_rest_margins(p, w, k, load)
+                continue
             pressed = w.normal[k, 0] + w.normal[k, 1]
             hold = p.static[k] * pressed
+            w.shear[k] += slope(p, w, w.q, k) * pressed
             unit = 1.0 / (p.weight * max(p.static[k], 1.0))
             w.rest[4 * k, load] = w.normal[k, 0] / p.weight
             w.rest[4 * k + 1, load] = w.normal[k, 1] / p.weight
             w.rest[4 * k + 2, load] = (hold - w.shear[k]) * unit
             w.rest[4 * k + 3, load] = (hold + w.shear[k]) * unit
+            if w.whole[k] == GUIDED:
+                # a plate is never lifted off
+                w.rest[4 * k, load] = w.rest[4 * k + 1, load] = 1.0
     for row in range(4 * p.count):
         w.rest[row, 1] -= w.rest[row, 0]
         w.rest[row, 2] -= w.rest[row, 0]
@@ -468,8 +593,9 @@ def _rest_ends(p, w, tau, early, late):
             slope = w.rest[row, 1] * (late.ah - early.ah) + w.rest[row, 2] * (
                 late.av - early.av
             )
-            if slope < 0.0:
-                when = min(when, max(tau, 1.0 - margin / slope))
+            if slope < 0.0 and max(tau, 1.0 - margin / slope) < when:
+                when = max(tau, 1.0 - margin / slope)
+                w.row_of_rest = row
     return when
 
 
@@ -478,11 +604,17 @@ def _note(p, w, time, kind, kept):
     """Count a contact event, and write it if there is room."""
     before = mode_number(p, w.old_closed, w.old_slides)
     after = mode_number(p, w.closed, w.slides)
+    at_walls = wall_number(p, w.old_closed, w.old_slides) != wall_number(
+        p, w.closed, w.slides
+    )
     if kind == CHANGE and before == after:
-        return
+        if not at_walls:
+            return
+        kind = AT_WALL
     if w.noted < kept.contact_events.shape[0]:
         found = kept.contact_events[w.noted]
         found.time, found.kind, found.before, found.after = time, kind, before, after
+        found.at_wall = 1 if w.hit.any() else 0
         found.energy_before = impact.kinetic_energy(p, w.old_v)
         found.energy_after = impact.kinetic_energy(p, w.v)
         copy(p, w.q, found.q)
@@ -533,4 +665,5 @@ def _keep(p, w, sample, now):
         sample.normal[k] = w.normal[k, 0] + w.normal[k, 1]
         sample.alpha[k] = w.out[3 * k + 2]
     sample.work, sample.rubbed, sample.struck = w.work, w.rubbed, w.struck
+    sample.tied = w.tied
     sample.mode = mode_number(p, w.closed, w.slides)

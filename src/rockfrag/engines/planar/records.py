@@ -1,6 +1,7 @@
 """From a body and its friction to the records of numbers that the contact kernels read and write.
 
-Bodies are numbered from below; interface k lies under body k.  Ends of an interface are 0 (left) and 1 (right).
+Bodies are numbered from below; contact k lies under body k.  Ends of a contact are 0 (left) and 1 (right).
+Contacts of bodies with walls follow those of bodies with each other (``walls.py``).
 """
 
 import math
@@ -11,6 +12,7 @@ from numpy.typing import NDArray
 
 from rockfrag.base.arrays import fields, whole
 from rockfrag.base.elementary import atan2, sin_cos
+from rockfrag.engines.planar.holding import fill_holding, with_plate
 from rockfrag.engines.pure_rocking.ensembles import after_impact
 from rockfrag.system import geometry
 from rockfrag.system.contact import ROUGHEST
@@ -19,7 +21,16 @@ from rockfrag.system.system import System
 Array = NDArray[np.float64]
 
 MOST = 12  # bodies of the longest column
+MOST_WALLED = 12  # contacts of bodies with walls
+ALL = MOST + MOST_WALLED  # contacts
+# contacts that share a body with one: the one below, itself, the one above, and those of both bodies with walls
+NEAR = 3 + 2 * 4
+MOST_TIES = 8
+MOST_CONSTRAINTS = 16
 TRIES = 1024  # modes that a search tries at most: more than three interfaces have
+AT_EDGE = 1e-9
+"""A corner counts as over the face until it is this fraction of the half width beyond the edge: bases as wide as
+their face stand on it and not on its edges."""
 
 BODY = np.dtype(
     [
@@ -33,8 +44,38 @@ BODY = np.dtype(
         *fields("face", MOST, 2),
         # [interface] half width of the face below; infinite for the ground
         *fields("half", MOST),
-        # [interface] tilt of face and base as all stand, coefficients of friction
-        *fields("tilt_cos tilt_sin static kinetic", MOST),
+        # [interface] tilt of face and base as all stand
+        *fields("tilt_cos tilt_sin", MOST),
+        # contacts: of bodies with each other, and with walls
+        *whole("contacts"),
+        # [contact] bodies above and below it, -1: the ground; those that share a body with it, -1: none
+        *whole("upper lower", ALL),
+        *whole("near", ALL, NEAR),
+        *whole("reach"),  # how many of these there are to look at
+        # [contact] coefficients of friction
+        *fields("static kinetic", ALL),
+        # whether walls, ties, bonds or an isolator hold the bodies
+        *whole("is_held"),
+        # [contact with a wall] the wall and its side of the bodies; where it stands and ends, its ratio of
+        # velocities; corners of the body that may meet it from its centre, in the order of their ends, and the
+        # way between them
+        *whole("wall side is_stop", ALL),
+        *fields("wall_x wall_top bounce", ALL),
+        *fields("edge", ALL, 2, 2),
+        *fields("flank", ALL, 2),
+        # ties: number, body, number among the constraints, whether it pushes too; points on body (from its centre)
+        # and ground, natural length to pull and to push, stiffness, damping, strength
+        *whole("ties"),
+        *whole("tie_body tie_number is_bracket", MOST_TIES),
+        *fields("tie_point tie_anchor", MOST_TIES, 2),
+        *fields("tie_long tie_short tie_stiffness tie_damping tie_strength", MOST_TIES),
+        # whether the lowest body is the plate of an isolator, its number among what holds the bodies, radius of
+        # its dish; whether a bilinear spring pulls at it: after yielding, before it, and what yields
+        *whole("is_supported support_number is_sprung"),
+        *fields("dish_radius spring_stiffness spring_rise spring_strength"),
+        # [interface] whether it is bonded; half the distance of its pads, capacity of each, and in shear
+        *whole("is_bonded bond_number", MOST),
+        *fields("bond_spread bond_tension bond_shear", MOST),
         # [interface, corner that comes down] law of the impact ...
         *whole("law", MOST, 2),
         *fields("number", MOST, 2),  # ... and its number
@@ -61,6 +102,12 @@ OUTCOME = np.dtype(
         # from 1 below, 0 none: the body that fell first, and the interface that is open furthest as it falls
         *whole("overturned_body parted_contact"),
         *fields("overturning_time"),  # [s], NaN without a fall
+        *whole(
+            "leaning"
+        ),  # whether what has not fallen rests against a wall or in a tie beyond its balance
+        # of each constraint
+        *whole("hits", MOST_CONSTRAINTS),
+        *fields("largest_impulse largest_force breaking_time stroke", MOST_CONSTRAINTS),
     ]
 )
 """What is told of a case."""
@@ -69,66 +116,80 @@ WORK = np.dtype(
     [
         # x, y, θ of each body relative to the ground, and their rates
         *fields("q v a", 3 * MOST),
-        *whole("closed", MOST, 2),  # [interface, end] the mode: closed ends ...
-        *whole("slides", MOST),  # ... and the sign of slip, 0 where an interface sticks
+        *whole("closed", ALL, 2),  # [contact, end] the mode: closed ends ...
+        *whole("slides", ALL),  # ... and the sign of slip, 0 where a contact sticks
         # of closed ends: 1 a corner on the face, 0 the edge of the face on the base
-        *whole("kind", MOST, 2),
-        *fields("normal", MOST, 2),  # forces, or impulses
-        *fields("shear", MOST),
+        *whole("kind", ALL, 2),
+        *fields("normal", ALL, 2),  # forces, or impulses
+        *fields("shear", ALL),
         *fields("out", 3 * MOST),  # accelerations, or velocities after an impact
         *fields("cos sin", MOST),  # of the configuration that was looked at last
         # one row per closed end and per interface that sticks: what it takes of the body below (3) and above (3)
-        *fields("row column", 3 * MOST, 6),
+        *fields("row column", 3 * ALL, 6),
         *fields("light", 6),
-        *fields("matrix", 3 * MOST, 3 * MOST),
-        *fields("right", 3 * MOST),
+        *fields("matrix", 3 * ALL, 3 * ALL),
+        *fields("right largest", 3 * ALL),
         *whole(
-            "owner", 3 * MOST
+            "owner", 3 * ALL
         ),  # of each unknown: 4 k + end, or 4 k + 2 for shear, 4 k + 3 for a couple
-        *whole("upto", MOST + 2),  # number of unknowns of the interfaces up to this one
+        *whole("upto", ALL + 2),  # number of unknowns of the contacts up to this one
         # a step: start, end, stages
         *fields("q0 v0 a0 q1 v1 a1", 3 * MOST),
         *fields("kv ka", 3 * MOST, 7),
         # speeds at which open ends part at the start of a step
-        *fields("early", MOST, 2),
-        *whole("fails", MOST, 6),  # [interface, channel] what has become negative
+        *fields("early", ALL, 2),
+        *whole("fails", ALL, 7),  # [contact, channel] what has become negative
         # of each interface normal and tangent of its left and its right end, and a couple: motion per coordinate
         # of the bodies below and above, motion without forces [interface, row], and motion for a unit force of the
         # interface below, of this one and of the one above [interface, whose, row, force]
-        *fields("basis", MOST, 5, 6),
-        *fields("free", MOST, 4),
-        *fields("felt", MOST, 3, 4, 5),
-        # of each unknown its forces, and of each interface the forces of a mode
-        *fields("force", 3 * MOST, 5),
-        *fields("given", MOST, 5),
+        *fields("basis", ALL, 5, 6),
+        *fields("free", ALL, 4),
+        *fields("felt", ALL, NEAR, 4, 5),
+        # of each unknown its forces, and of each contact the forces of a mode
+        *fields("force", 3 * ALL, 5),
+        *fields("given", ALL, 5),
         # search for a mode
-        *whole("touching", MOST, 2),
-        *whole("moves", MOST),
+        *whole("touching", ALL, 2),
+        *whole("moves", ALL),
         # of a contact that sticks: coefficients for a shear against its slip before an impact and for one
         # along it, and the sign of that slip
-        *fields("against along", MOST),
-        *whole("slid", MOST),
+        *fields("against along", ALL),
+        *whole("slid", ALL),
         *fields("old_v", 3 * MOST),
-        *whole("old_closed", MOST, 2),
-        *whole("old_slides", MOST),
-        # interface, what and how: the change that mends the worst of a mode
+        *whole("old_closed", ALL, 2),
+        *whole("old_slides", ALL),
+        # contact, what and how: the change that mends the worst of a mode
         *whole("flip", 3),
         *whole("count"),  # of the modes that a search has tried ...
-        *whole("tried", TRIES),  # ... their numbers ...
+        # ... their numbers, of contacts of bodies with each other and with walls ...
+        *whole("tried", TRIES, 2),
         *fields("wrong", TRIES),  # ... and how far each is from consistent
         # laws of an impact: fraction of an end's impulse that the other end gets too, end that leaves at a given
         # speed (-1: none), and that speed
-        *fields("fraction", MOST, 2),
-        *whole("drive", MOST),
-        *fields("depart", MOST),
+        *fields("fraction", ALL, 2),
+        *whole("drive", ALL),
+        *fields("depart", ALL),
+        # speeds at which ends that are pushed leave, those at which they came, and impulses that walls have given
+        *fields("back came hit", ALL, 2),
+        *fields("hit_shear", ALL),
+        *fields("zero", 3 * MOST),
+        # accelerations by ties, their states, which of them fail, and how fast they lengthen as a step begins
+        *fields("drift", 3 * MOST),
+        *whole("taut tie_fails", MOST_TIES),
+        *fields("tie_early", MOST_TIES),
+        *whole("whole", ALL),  # [contact] whether it is shut whatever its force
+        *whole("row_of_rest"),  # which margin of rest fails first
+        # of a bilinear spring the way in which it yields, 0: none, whether that changes, and where it is at rest
+        *whole("yields spring_fails"),
+        *fields("plastic"),
         # end that comes down while the other is closed, -1: none
         *whole("falls", MOST),
         # speed at which the other end departs: without the law, with it
         *fields("goal", MOST, 2),
         # margins of rest, linear in the two accelerations
         *fields("rest", 4 * MOST, 3),
-        # ledgers [J]: of the ground, lost to friction, lost in impacts
-        *fields("work rubbed struck"),
+        # ledgers [J]: of the ground, lost to friction, lost in impacts, given to ties
+        *fields("work rubbed struck tied"),
         *fields("told", of=OUTCOME),
         # forced, resting; contact events: met within the sample, noted in all
         *whole("forced resting met noted"),
@@ -191,6 +252,7 @@ def system_record(system: System, g: float) -> np.void:
     """Return the record ``BODY`` of a planar system; a contact without friction is as rough as can be."""
     p: np.void = np.zeros(1, BODY)[0]
     p["g"] = g
+    whole_system, system = system, with_plate(system)
     fill_geometry(p, system)
     for k, (contact, shape) in enumerate(
         zip(system.contacts, system.carried, strict=True)
@@ -200,6 +262,7 @@ def system_record(system: System, g: float) -> np.void:
             p["law"][k, end], p["number"][k, end] = after_impact(
                 contact.law, shape, pivot
             )
+    fill_holding(p, whole_system)
     return p
 
 

@@ -14,7 +14,7 @@ from rockfrag.engines.planar.solve import copy, end_of, fill_row, rate
 def contact_alone(p, w):
     """Interface and end of the only closed end of the mode in ``w``; -1 if there are none or more."""
     at = -1
-    for k in range(p.count):
+    for k in range(p.contacts):
         for end in range(2):
             if w.closed[k, end] == 1:
                 if at >= 0:
@@ -26,9 +26,9 @@ def contact_alone(p, w):
 @kernel
 def _felt(p, k, pushed, felt):
     """Velocity along the row ``felt`` for a unit impulse along ``pushed``."""
-    total = 0.0
-    for d in range(3 if k == 0 else 0, 6):
-        total += pushed[d] * p.inverse[3 * k - 3 + d] * felt[d]
+    total, base = 0.0, 3 * p.upper[k] - 3
+    for d in range(3 if p.lower[k] < 0 else 0, 6):
+        total += pushed[d] * p.inverse[base + d] * felt[d]
     return total
 
 
@@ -41,8 +41,8 @@ def strike_alone(p, w, k, end):
     """
     x, y, tx, ty, _, _, _ = end_of(p, w, w.q, k, end, w.kind[k, end])
     across, along = w.row[0], w.row[1]
-    fill_row(w.q, k, x, y, -ty, tx, across)
-    fill_row(w.q, k, x, y, tx, ty, along)
+    fill_row(p, w.q, k, x, y, -ty, tx, across)
+    fill_row(p, w.q, k, x, y, tx, ty, along)
     own, both, shear = (
         _felt(p, k, across, across),
         _felt(p, k, across, along),
@@ -71,7 +71,9 @@ def strike_alone(p, w, k, end):
         normal += more
         tangential -= hold * more
     w.slides[k] = way
+    w.normal[k, end], w.shear[k] = normal, tangential
     copy(p, w.v, w.out)
-    for d in range(3 if k == 0 else 0, 6):
+    base = 3 * p.upper[k] - 3
+    for d in range(3 if p.lower[k] < 0 else 0, 6):
         push = across[d] * normal + along[d] * tangential
-        w.out[3 * k - 3 + d] += p.inverse[3 * k - 3 + d] * push
+        w.out[base + d] += p.inverse[base + d] * push

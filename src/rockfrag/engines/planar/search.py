@@ -21,6 +21,8 @@ from rockfrag.engines.planar.solve import (
     fill_row,
     rate,
 )
+from rockfrag.engines.planar.support import rubbing, slope
+from rockfrag.engines.planar.ties import pull
 
 # violation below which a mode is consistent: forces over the weight, accelerations over g [-].  Less than the
 # slack of contact events, so that a mode that has just failed is not
@@ -31,6 +33,8 @@ ROUNDING = 1e-10  # violation up to which a mode is taken where none is consiste
 FAILS, SEEN = -1, -2  # what a mode that is tried is, unless it is consistent
 # what changes between modes: whether the end 0 or 1 is closed, or how an interface slides
 SLIP = 2
+NONE = (-1, -1)  # no mode
+BONDED = 1  # what a contact is that neither opens nor slides
 
 
 class Trial(NamedTuple):
@@ -46,7 +50,9 @@ class Trial(NamedTuple):
 @kernel
 def prepare(p, w, trial):
     """Fill what all modes of the ends that touch share: motion without forces, and motion for unit forces."""
-    for k in range(p.count):
+    if p.ties + p.is_sprung > 0 and not trial.impact:
+        pull(p, w, w.q, w.v)
+    for k in range(p.contacts):
         for end in range(2):
             if w.touching[k, end] == 0:
                 continue
@@ -54,19 +60,21 @@ def prepare(p, w, trial):
             for along in range(2):
                 dx, dy = (tx, ty) if along == 1 else (-ty, tx)
                 row = 2 * end + along
-                fill_row(w.q, k, x, y, dx, dy, w.basis[k, row])
+                fill_row(p, w.q, k, x, y, dx, dy, w.basis[k, row])
                 if trial.impact:
                     w.free[k, row] = rate(p, w.q, w.v, k, x, y, dx, dy)
                     continue
-                w.free[k, row] = bias(w.q, w.v, k, x, y, dx, dy, kind)
-                if k == 0:
+                w.free[k, row] = bias(p, w.q, w.v, k, x, y, dx, dy, kind)
+                if p.lower[k] < 0:
                     w.free[k, row] -= dx * trial.ah + dy * (p.g + trial.av)
+                if p.ties + p.is_sprung > 0:
+                    w.free[k, row] += _drift_along(p, w, k, w.basis[k, row])
         w.basis[k, 4, :] = 0.0
-        w.basis[k, 4, 5], w.basis[k, 4, 2] = 1.0, -1.0 if k > 0 else 0.0
-    for k in range(p.count):
-        for whose in range(3):
-            other = k + whose - 1
-            if other < 0 or other >= p.count:
+        w.basis[k, 4, 5], w.basis[k, 4, 2] = 1.0, -1.0 if p.lower[k] >= 0 else 0.0
+    for k in range(p.contacts):
+        for whose in range(p.reach):
+            other = p.near[k, whose]
+            if other < 0:
                 continue
             for row in range(4):
                 if w.touching[k, row // 2] == 1:
@@ -74,17 +82,26 @@ def prepare(p, w, trial):
 
 
 @kernel
+def _drift_along(p, w, k, row):
+    """Motion of contact k that the accelerations by ties bring about."""
+    total, base = 0.0, 3 * p.upper[k] - 3
+    for d in range(3 if p.lower[k] < 0 else 0, 6):
+        total += row[d] * w.drift[base + d]
+    return total
+
+
+@kernel
 def _fill_felt(p, w, k, whose, row):
-    """Fill motion of a row of interface k for unit forces of the interface below, the same or the one above."""
-    other = k + whose - 1
-    shift = 3 * (whose - 1)
+    """Fill motion of a row of contact k for unit forces of one that is near."""
+    other = p.near[k, whose]
+    base, shift = 3 * p.upper[k] - 3, 3 * (p.upper[other] - p.upper[k])
     for force in range(5):
         if force < 4 and w.touching[other, force // 2] == 0:
             continue
         total = 0.0
         # both move the bodies between them alone
-        for d in range(max(3 if k == 0 else 0, shift), min(6, 6 + shift)):
-            light = p.inverse[3 * k - 3 + d] * w.basis[k, row, d]
+        for d in range(max(3 if p.lower[k] < 0 else 0, shift), min(6, 6 + shift)):
+            light = p.inverse[base + d] * w.basis[k, row, d]
             total += light * w.basis[other, force, d - shift]
         w.felt[k, whose, row, force] = total
 
@@ -93,8 +110,8 @@ def _fill_felt(p, w, k, whose, row):
 def _list_unknowns(p, w, impact):
     """Number the unknowns of the mode in ``w`` and fill the forces that each stands for; their number."""
     m = 0
-    for k in range(p.count):
-        friction = w.slides[k] * p.kinetic[k]
+    for k in range(p.contacts):
+        friction = rubbing(p, w, w.q, k)
         first = True
         for end in range(2):
             if w.closed[k, end] == 0:
@@ -136,21 +153,28 @@ def _solve_mode(p, w, impact):
         w.right[i] = -w.free[k, row]
         if what == COUPLE:
             w.right[i] += w.depart[k]
-        low = w.upto[k - 2] if k - 2 >= 0 else 0
-        high = w.upto[k + 1] if k + 1 < p.count else m
+        elif what < SHEAR and impact:
+            w.right[i] += w.back[k, what]
+        low, high = 0, m
+        if w.upto[p.count - 1] == m:
+            low = w.upto[k + 1] if k + 1 < p.count else m
+            high = w.upto[k + 2] if k + 2 < p.count else m
         for j in range(low, high):
-            whose = w.owner[j] // 4 - k + 1
-            total = 0.0
-            for force in range(5):
-                if w.force[j, force] != 0.0:
-                    total += w.force[j, force] * w.felt[k, whose, row, force]
-            w.matrix[i, j] = total
-        for j in range(high, w.upto[k + 2] if k + 2 < p.count else m):
             # room for what elimination fills in
             w.matrix[i, j] = 0.0
+        for whose in range(p.reach):
+            other = p.near[k, whose]
+            if other < 0:
+                continue
+            for j in range(w.upto[other - 1] if other > 0 else 0, w.upto[other]):
+                total = 0.0
+                for force in range(5):
+                    if w.force[j, force] != 0.0:
+                        total += w.force[j, force] * w.felt[k, whose, row, force]
+                w.matrix[i, j] = total
     if not eliminate(p, w, m, 0):
         return False
-    for k in range(p.count):
+    for k in range(p.contacts):
         for force in range(5):
             w.given[k, force] = 0.0
     for i in range(m):
@@ -163,9 +187,9 @@ def _solve_mode(p, w, impact):
 def _motion_of(p, w, k, row):
     """Relative motion of interface k under the mode that was solved, along a row of its basis."""
     found = w.free[k, row]
-    for whose in range(3):
-        other = k + whose - 1
-        if 0 <= other < p.count and w.closed[other].any():
+    for whose in range(p.reach):
+        other = p.near[k, whose]
+        if other >= 0 and w.closed[other].any():
             for force in range(5):
                 if w.given[other, force] != 0.0:
                     found += w.felt[k, whose, row, force] * w.given[other, force]
@@ -189,7 +213,7 @@ def try_mode(p, w, trial):
         return -math.inf
     worst = math.inf
     at = 0
-    for k in range(p.count):
+    for k in range(p.contacts):
         pressed, shear = 0.0, 0.0
         slides = w.slides[k]
         closed = -1
@@ -197,6 +221,8 @@ def try_mode(p, w, trial):
             if w.touching[k, end] == 0:
                 continue
             apart = _motion_of(p, w, k, 2 * end)
+            if trial.impact:
+                apart -= w.back[k, end]
             if w.closed[k, end] == 0:
                 if w.drive[k] != end:
                     worst = _note_worst(w, worst, apart / trial.motion, k, end, 1)
@@ -206,7 +232,8 @@ def try_mode(p, w, trial):
                 return -math.inf
             # a force that friction multiplies counts as the shear that it brings about
             push = w.right[at] * (max(1.0, p.kinetic[k]) if slides != 0 else 1.0)
-            worst = _note_worst(w, worst, push / trial.force, k, end, 0)
+            if w.whole[k] == 0:
+                worst = _note_worst(w, worst, push / trial.force, k, end, 0)
             pressed += w.right[at] * (1.0 + w.fraction[k, end])
             at += 1
             if closed < 0:
@@ -218,9 +245,10 @@ def try_mode(p, w, trial):
             at += 1
             if closed < 0:
                 return -math.inf
-        if closed < 0:
+        if closed < 0 or w.whole[k] == BONDED:
             continue
         if slides == 0:
+            shear += slope(p, w, w.q, k) * pressed
             limit = w.along[k] if w.slid[k] * shear >= 0.0 else w.against[k]
             margin = (limit * pressed - abs(shear)) / max(limit, 1.0)
             worst = _note_worst(
@@ -252,7 +280,7 @@ def _digit(closed, slides, k):
 
 @kernel
 def mode_number(p, closed, slides):
-    """Mode as one number, a digit an interface."""
+    """Mode of the contacts of bodies with each other as one number, a digit each."""
     number = 0
     for k in range(p.count):
         number += _digit(closed, slides, k) << (4 * k)
@@ -260,50 +288,74 @@ def mode_number(p, closed, slides):
 
 
 @kernel
-def take_number(p, w, number):
-    """Set the mode in ``w`` to that of a number."""
-    for k in range(p.count):
-        digit = (number >> (4 * k)) & 15
+def wall_number(p, closed, slides):
+    """Mode of the contacts with walls as one number, 0 if there are none."""
+    number = 0
+    for k in range(p.count, p.contacts):
+        number += _digit(closed, slides, k) << (4 * (k - p.count))
+    return number
+
+
+@kernel
+def whole_mode(p, closed, slides):
+    """Mode of all contacts as two numbers: of bodies with each other, and with walls."""
+    return mode_number(p, closed, slides), wall_number(p, closed, slides)
+
+
+@kernel
+def take_mode(p, w, mode):
+    """Set the mode in ``w`` to that of two numbers."""
+    for k in range(p.contacts):
+        number, place = (mode[0], k) if k < p.count else (mode[1], k - p.count)
+        digit = (number >> (4 * place)) & 15
         w.closed[k, 0] = digit & 1
         w.closed[k, 1] = (digit >> 1) & 1
         w.slides[k] = (digit >> 2) - 1
 
 
 @kernel
-def _closed_ends(p, w, number):
-    """Number of closed ends of a mode, to which that of ``w`` is set."""
-    take_number(p, w, number)
-    return w.closed[: p.count].sum()
+def _take_tried(p, w, place):
+    """Set the mode in ``w`` to one of the list of those that have been tried."""
+    take_mode(p, w, (w.tried[place, 0], w.tried[place, 1]))
 
 
 @kernel
-def _place_of(w, number):
-    """Place of a mode in the list of those that have been tried, -1 if it is not there."""
+def _closed_ends(p, w, place):
+    """Number of closed ends of a mode that was tried, to which that of ``w`` is set."""
+    _take_tried(p, w, place)
+    return w.closed[: p.contacts].sum()
+
+
+@kernel
+def _is_listed(w, mode):
+    """Whether a mode has been tried."""
+    listed = False
     for i in range(w.count):
-        if w.tried[i] == number:
-            return i
-    return -1
+        listed = listed or (w.tried[i, 0] == mode[0] and w.tried[i, 1] == mode[1])
+    return listed
 
 
 @kernel
 def _try_anew(p, w, trial, exclude):
-    """Try the mode in ``w`` and list it; its number if it is consistent, FAILS, or SEEN if it was tried before.
+    """Try the mode in ``w`` and list it; its place if it is consistent, FAILS, or SEEN if it was tried before.
 
-    ``exclude``: number of a mode that is known to fail.  A full list takes no more.
+    ``exclude``: a mode that is known to fail.  A full list takes no more.
     """
-    number = mode_number(p, w.closed, w.slides)
-    if w.count == w.tried.size or _place_of(w, number) >= 0:
+    mode = whole_mode(p, w.closed, w.slides)
+    if w.count == w.wrong.size or _is_listed(w, mode):
         return SEEN
     margin = try_mode(p, w, trial)
-    w.tried[w.count] = number
-    w.wrong[w.count] = math.inf if number == exclude else max(0.0, -margin)
+    fails = mode[0] == exclude[0] and mode[1] == exclude[1]
+    place = w.count
+    w.tried[place, 0], w.tried[place, 1] = mode
+    w.wrong[place] = math.inf if fails else max(0.0, -margin)
     w.count += 1
-    return number if margin >= -CONSISTENT and number != exclude else FAILS
+    return place if margin >= -CONSISTENT and not fails else FAILS
 
 
 @kernel
 def _descend(p, w, trial, exclude):
-    """Mend the worst of the mode in ``w`` until none is left, its number, or a mode comes back."""
+    """Mend the worst of the mode in ``w`` until none is left, its place, or a mode comes back."""
     found = _try_anew(p, w, trial, exclude)
     while found == FAILS and w.flip[0] >= 0:
         change(w, w.flip[0], w.flip[1], w.flip[2], trial.impact)
@@ -316,9 +368,11 @@ def _try_neighbours(p, w, trial, exclude):
     """Try all that differs in one thing from what has been tried, and so on; as :func:`_descend`."""
     at = 0
     while at < w.count:
-        for k in range(p.count):
+        for k in range(p.contacts):
             for what in range(5):
-                take_number(p, w, w.tried[at])
+                _take_tried(p, w, at)
+                if w.whole[k] == BONDED or (w.whole[k] != 0 and what < SLIP):
+                    continue
                 if what < SLIP:
                     if w.touching[k, what] == 0 or w.drive[k] >= 0:
                         continue
@@ -338,7 +392,7 @@ def _try_neighbours(p, w, trial, exclude):
 @kernel
 def _only_touching(p, w, trial):
     """Open what does not touch, and let what touches slide as it moves."""
-    for k in range(p.count):
+    for k in range(p.contacts):
         for end in range(2):
             w.closed[k, end] *= w.touching[k, end]
         if not w.closed[k].any():
@@ -351,19 +405,19 @@ def _only_touching(p, w, trial):
 def _try_slips(p, w, trial, found):
     """Try the other ways to slide of a consistent mode; the one to take, and whether more were consistent."""
     several = False
-    for k in range(p.count):
-        take_number(p, w, found)
+    for k in range(p.contacts):
+        _take_tried(p, w, found)
         slides = w.slides[k]
         lasts = _digit(w.closed, w.slides, k) == _digit(w.old_closed, w.old_slides, k)
         is_given = not trial.impact and w.moves[k] != 0
-        if lasts or is_given or not w.closed[k].any():
+        if lasts or is_given or not w.closed[k].any() or w.whole[k] == BONDED:
             continue
         for way in range(-1, 2):
             if way == slides:
                 continue
-            take_number(p, w, found)
+            _take_tried(p, w, found)
             w.slides[k] = way
-            other = _try_anew(p, w, trial, -1)
+            other = _try_anew(p, w, trial, NONE)
             several = several or other >= 0
             # sticking goes before sliding
             if other >= 0 and way == 0:
@@ -374,10 +428,11 @@ def _try_slips(p, w, trial, found):
 @kernel
 def _set_all(p, w, closed):
     """Open all ends, or close and let stick all that touch, but for what a given speed of an end needs."""
-    for k in range(p.count):
+    for k in range(p.contacts):
         w.slides[k] = 0
         for end in range(2):
-            w.closed[k, end] = closed * w.touching[k, end]
+            stays = 1 if w.whole[k] != 0 else closed
+            w.closed[k, end] = stays * w.touching[k, end]
         if closed == 1 and w.touching[k, 0] + w.touching[k, 1] > 0:
             w.slides[k] = w.moves[k]
         if w.drive[k] >= 0:
@@ -389,8 +444,8 @@ def _set_all(p, w, closed):
 def search(p, w, trial, exclude):
     """Set the mode of ``w`` to a consistent one that its touching ends allow, or the least violated; by how much.
 
-    The mode in ``w`` is where the search starts.  ``w.moves``: signs of slip that are given.  ``exclude``: number
-    of a mode that has just failed, -1 for none.
+    The mode in ``w`` is where the search starts.  ``w.moves``: signs of slip that are given.  ``exclude``: a mode
+    that has just failed, or ``NONE``.
     """
     prepare(p, w, trial)
     _only_touching(p, w, trial)
@@ -414,6 +469,6 @@ def search(p, w, trial, exclude):
     if found < 0 and w.wrong[np.argmin(w.wrong[: w.count])] > ROUNDING:
         found = _try_neighbours(p, w, trial, exclude)
     if found < 0:
-        found = w.tried[np.argmin(w.wrong[: w.count])]
-    take_number(p, w, found)
-    return w.wrong[_place_of(w, found)]
+        found = np.argmin(w.wrong[: w.count])
+    _take_tried(p, w, found)
+    return w.wrong[found]

@@ -4,14 +4,17 @@ import math
 
 from rockfrag.base.elementary import sin_cos
 from rockfrag.engines.compile.jit import inlined_kernel, kernel
+from rockfrag.engines.planar.records import AT_EDGE
+from rockfrag.engines.planar.support import rubbing
+from rockfrag.engines.planar.ties import is_any_taut, pull
+from rockfrag.engines.planar.walls import any_closed, wall_end
 
 SHEAR, COUPLE = (
     2,
     3,
 )  # what an unknown of an interface is, besides the normal force at its ends 0 and 1
-AT_EDGE = 1e-9
-"""A corner counts as over the face until it is this fraction of the half width beyond the edge: bases as wide as
-their face stand on it and not on its edges."""
+SINGULAR = 1e-9
+"""Pivot over the largest coefficient of its equation below which equations with walls say the same thing twice."""
 
 
 @inlined_kernel
@@ -43,6 +46,8 @@ def end_of(p, w, q, k, end, kind):
     ``kind``: 1 a corner on the face, 0 the face's edge against the base, -1 whichever it is.  Returned are point
     (x, y), tangent (tx, ty), gap [m], how far the corner is beyond the edge [m], and the kind.
     """
+    if k >= p.count:
+        return wall_end(p, w, q, k, end, kind)
     x, y = corner_of(p, w, q, k, end)
     if k == 0:
         return x, y, 1.0, 0.0, y, -math.inf, 1
@@ -68,30 +73,32 @@ def end_of(p, w, q, k, end, kind):
 
 @inlined_kernel
 def rate(p, q, v, k, x, y, dx, dy):
-    """Velocity of body k relative to what is below at (x, y) along (dx, dy) [m/s], or of accelerations."""
-    found = dx * (v[3 * k] + v[3 * k + 2] * (y - q[3 * k + 1]))
-    found += dy * (v[3 * k + 1] - v[3 * k + 2] * (x - q[3 * k]))
-    if k > 0:
-        found -= dx * (v[3 * k - 3] + v[3 * k - 1] * (y - q[3 * k - 2]))
-        found -= dy * (v[3 * k - 2] - v[3 * k - 1] * (x - q[3 * k - 3]))
+    """Velocity at contact k relative to what is below at (x, y) along (dx, dy) [m/s], or of accelerations."""
+    b = 3 * p.upper[k]
+    found = dx * (v[b] + v[b + 2] * (y - q[b + 1]))
+    found += dy * (v[b + 1] - v[b + 2] * (x - q[b]))
+    if p.lower[k] >= 0:
+        found -= dx * (v[b - 3] + v[b - 1] * (y - q[b - 2]))
+        found -= dy * (v[b - 2] - v[b - 1] * (x - q[b - 3]))
     return found
 
 
 @inlined_kernel
-def bias(q, v, k, x, y, dx, dy, kind):
+def bias(p, q, v, k, x, y, dx, dy, kind):
     """Relative acceleration at (x, y) along (dx, dy), seen from the face, where all accelerations vanish."""
-    turn = v[3 * k + 2]
-    rx, ry = x - q[3 * k], y - q[3 * k + 1]
+    b = 3 * p.upper[k]
+    turn = v[b + 2]
+    rx, ry = x - q[b], y - q[b + 1]
     ax, ay = -turn * turn * rx, -turn * turn * ry
-    ux, uy = v[3 * k] + turn * ry, v[3 * k + 1] - turn * rx
+    ux, uy = v[b] + turn * ry, v[b + 1] - turn * rx
     owner = 0.0 if kind == 1 else turn
-    if k > 0:
-        below = v[3 * k - 1]
-        rx, ry = x - q[3 * k - 3], y - q[3 * k - 2]
+    if p.lower[k] >= 0:
+        below = v[b - 1]
+        rx, ry = x - q[b - 3], y - q[b - 2]
         ax += below * below * rx
         ay += below * below * ry
-        ux -= v[3 * k - 3] + below * ry
-        uy -= v[3 * k - 2] - below * rx
+        ux -= v[b - 3] + below * ry
+        uy -= v[b - 2] - below * rx
         if kind == 1:
             owner = below
     ax -= 2.0 * owner * uy
@@ -100,16 +107,17 @@ def bias(q, v, k, x, y, dx, dy, kind):
 
 
 @inlined_kernel
-def fill_row(q, k, x, y, dx, dy, row):
-    """Motion of body k relative to what is below it, at (x, y) along (dx, dy), per coordinate of both bodies."""
+def fill_row(p, q, k, x, y, dx, dy, row):
+    """Motion at contact k relative to what is below at (x, y) along (dx, dy), per coordinate of both bodies."""
+    b = 3 * p.upper[k]
     row[3] = dx
     row[4] = dy
-    row[5] = dx * (y - q[3 * k + 1]) - dy * (x - q[3 * k])
+    row[5] = dx * (y - q[b + 1]) - dy * (x - q[b])
     row[0] = row[1] = row[2] = 0.0
-    if k > 0:
+    if p.lower[k] >= 0:
         row[0] = -dx
         row[1] = -dy
-        row[2] = dy * (x - q[3 * k - 3]) - dx * (y - q[3 * k - 2])
+        row[2] = dy * (x - q[b - 3]) - dx * (y - q[b - 2])
 
 
 @kernel
@@ -120,6 +128,8 @@ def solve(p, w, q, v, ah, av, impact, rough=True):
     keep the mode.  Normal forces (impulses) of closed ends go to ``w.normal``, shear of interfaces to ``w.shear``.
     ``look_at`` must have been called with ``q``.
     """
+    if p.is_held == 1 and (any_closed(p, w) or (is_any_taut(p, w) and not impact)):
+        return solve_generally(p, w, q, v, ah, av, impact, rough, 0)
     standing = 0 if impact else standing_bodies(p, w)
     if p.count < 3:
         if not impact and (p.count == 1 or standing == 1):
@@ -146,37 +156,43 @@ def standing_bodies(p, w):
 def _fill_equations(p, w, q, v, impact, rough, standing):
     """Rows, columns and right-hand sides of the mode of the bodies above those that stand; their number."""
     m = 0
-    for k in range(standing, p.count):
-        friction = w.slides[k] * p.kinetic[k] if rough else 0.0
+    for k in range(standing, p.contacts):
+        friction = rubbing(p, w, q, k) if rough else 0.0
         first = True
         for end in range(2):
             if w.closed[k, end] == 0:
                 continue
             x, y, tx, ty, _, _, kind = end_of(p, w, q, k, end, w.kind[k, end])
-            fill_row(q, k, x, y, -ty, tx, w.row[m])
+            fill_row(p, q, k, x, y, -ty, tx, w.row[m])
             w.owner[m] = 4 * k + end
-            w.right[m] = 0.0 if impact else -bias(q, v, k, x, y, -ty, tx, kind)
-            fill_row(q, k, x, y, -ty - friction * tx, tx - friction * ty, w.column[m])
+            w.right[m] = (
+                w.back[k, end] if impact else -bias(p, q, v, k, x, y, -ty, tx, kind)
+            )
+            fill_row(
+                p, q, k, x, y, -ty - friction * tx, tx - friction * ty, w.column[m]
+            )
             if impact and w.fraction[k, end] > 0.0:
                 # what the impulse brings about at the other end
                 xo, yo, to, no, _, _, _ = end_of(
                     p, w, q, k, 1 - end, w.kind[k, 1 - end]
                 )
-                fill_row(q, k, xo, yo, -no - friction * to, to - friction * no, w.light)
+                fill_row(
+                    p, q, k, xo, yo, -no - friction * to, to - friction * no, w.light
+                )
                 for d in range(6):
                     w.column[m, d] += w.fraction[k, end] * w.light[d]
             m += 1
             if first and w.slides[k] == 0:
-                fill_row(q, k, x, y, tx, ty, w.row[m])
-                fill_row(q, k, x, y, tx, ty, w.column[m])
+                fill_row(p, q, k, x, y, tx, ty, w.row[m])
+                fill_row(p, q, k, x, y, tx, ty, w.column[m])
                 w.owner[m] = 4 * k + SHEAR
-                w.right[m] = 0.0 if impact else -bias(q, v, k, x, y, tx, ty, kind)
+                w.right[m] = 0.0 if impact else -bias(p, q, v, k, x, y, tx, ty, kind)
                 m += 1
             first = False
         if impact and w.drive[k] >= 0:
             end = w.drive[k]
             x, y, tx, ty, _, _, _ = end_of(p, w, q, k, end, w.kind[k, end])
-            fill_row(q, k, x, y, -ty, tx, w.row[m])
+            fill_row(p, q, k, x, y, -ty, tx, w.row[m])
             # a couple turns body k, and what is below it the other way
             w.column[m, :] = 0.0
             w.column[m, 5], w.column[m, 2] = 1.0, -1.0 if k > 0 else 0.0
@@ -196,20 +212,29 @@ def solve_generally(p, w, q, v, ah, av, impact, rough, standing):
             w.out[d] = v[d] if impact else 0.0
         if not impact and k >= standing:
             w.out[3 * k], w.out[3 * k + 1] = -ah, -(p.g + av)
+    for k in range(p.contacts):
         w.normal[k, 0] = w.normal[k, 1] = w.shear[k] = 0.0
+    if p.ties + p.is_sprung > 0 and not impact:
+        pull(p, w, q, v)
+        for d in range(3 * p.count):
+            w.out[d] += w.drift[d]
     for i in range(m):
         k = w.owner[i] // 4
         total = w.right[i]
-        begin = 3 if k == standing else 0
+        begin, base = 0, 3 * p.upper[k] - 3
+        if k == standing or p.lower[k] < 0:
+            begin = 3
         for d in range(begin, 6):
-            total -= w.row[i, d] * w.out[3 * k - 3 + d]
-            w.light[d] = w.row[i, d] * p.inverse[3 * k - 3 + d]
+            total -= w.row[i, d] * w.out[base + d]
+            w.light[d] = w.row[i, d] * p.inverse[base + d]
         w.right[i] = total
-        low = w.upto[k - 2] if k - 2 >= standing else 0
-        high = w.upto[k + 2] if k + 2 < p.count else m
+        low, high = 0, m
+        if w.upto[p.count - 1] == m:
+            low = w.upto[k - 2] if k - 2 >= standing else 0
+            high = w.upto[k + 2] if k + 2 < p.count else m
         for j in range(low, high):
             # both move the bodies between them alone
-            total, shift = 0.0, 3 * (w.owner[j] // 4 - k)
+            total, shift = 0.0, 3 * (p.upper[w.owner[j] // 4] - p.upper[k])
             for d in range(max(begin, shift), min(6, 6 + shift)):
                 total += w.light[d] * w.column[j, d - shift]
             w.matrix[i, j] = total
@@ -223,9 +248,12 @@ def solve_generally(p, w, q, v, ah, av, impact, rough, standing):
             fraction = w.fraction[k, end] if impact else 0.0
             w.normal[k, end] += force
             w.normal[k, 1 - end] += fraction * force
-            w.shear[k] -= w.slides[k] * p.kinetic[k] * (force + fraction * force)
-        for d in range(3 if k == standing else 0, 6):
-            w.out[3 * k - 3 + d] += p.inverse[3 * k - 3 + d] * w.column[i, d] * force
+            w.shear[k] -= rubbing(p, w, q, k) * (force + fraction * force)
+        begin, base = 0, 3 * p.upper[k] - 3
+        if k == standing or p.lower[k] < 0:
+            begin = 3
+        for d in range(begin, 6):
+            w.out[base + d] += p.inverse[base + d] * w.column[i, d] * force
     return True
 
 
@@ -297,13 +325,13 @@ def _solve_top(p, w, q, v, ah, av):
         else:
             across = light + first * first * slow
             both = first * two * slow
-            need = ty * fx - tx * fy - bias(q, v, k, x, y, -ty, tx, kind)
+            need = ty * fx - tx * fy - bias(p, q, v, k, x, y, -ty, tx, kind)
             if w.slides[k] != 0:
                 push = need / (across + rubs * both)
                 shear = rubs * push
             else:
                 along = light + two * two * slow
-                also = -tx * fx - ty * fy - bias(q, v, k, x, y, tx, ty, kind)
+                also = -tx * fx - ty * fy - bias(p, q, v, k, x, y, tx, ty, kind)
                 whole = across * along - both * both
                 push = (need * along - also * both) / whole
                 shear = (also * across - need * both) / whole
@@ -325,25 +353,46 @@ def _solve_top(p, w, q, v, ah, av):
 
 
 @kernel
+def _note_largest(w, m):
+    """Note the largest coefficient of each equation."""
+    for i in range(m):
+        w.largest[i] = 0.0
+        for j in range(m):
+            w.largest[i] = max(w.largest[i], abs(w.matrix[i, j]))
+
+
+@kernel
 def eliminate(p, w, m, standing):
-    """Solve m banded equations in place, those of each interface up to ``w.upto``; False if singular."""
+    """Solve m equations in place, those of each contact up to ``w.upto``; False if singular.
+
+    Their matrix is banded but where contacts with walls, which touch any body, are among them.
+    """
     a, right = w.matrix, w.right
+    banded = w.upto[p.count - 1] == m
+    if not banded:
+        _note_largest(w, m)
     k = standing
     for i in range(m):
-        while w.upto[k] <= i:
-            k += 1
-        rows = w.upto[k + 1] if k + 1 < p.count else m
-        columns = w.upto[k + 2] if k + 2 < p.count else m
+        rows = columns = m
+        if banded:
+            while w.upto[k] <= i:
+                k += 1
+            rows = w.upto[k + 1] if k + 1 < p.count else m
+            columns = w.upto[k + 2] if k + 2 < p.count else m
         best = i
         for j in range(i + 1, rows):
             if abs(a[j, i]) > abs(a[best, i]):
                 best = j
         if a[best, i] == 0.0:
             return False
+        if not banded and abs(a[best, i]) < SINGULAR * w.largest[best]:
+            # walls and faces may ask for the same thing twice
+            return False
         if best != i:
             for j in range(i, columns):
                 a[i, j], a[best, j] = a[best, j], a[i, j]
             right[i], right[best] = right[best], right[i]
+            w.largest[i], w.largest[best] = w.largest[best], w.largest[i]
         pivot = 1.0 / a[i, i]
         for j in range(i + 1, rows):
             factor = a[j, i] * pivot
@@ -353,9 +402,11 @@ def eliminate(p, w, m, standing):
                 right[j] -= factor * right[i]
     k = p.count - 1
     for i in range(m - 1, -1, -1):
-        while k > standing and w.upto[k - 1] > i:
-            k -= 1
-        columns = w.upto[k + 2] if k + 2 < p.count else m
+        columns = m
+        if banded:
+            while k > standing and w.upto[k - 1] > i:
+                k -= 1
+            columns = w.upto[k + 2] if k + 2 < p.count else m
         total = right[i]
         for j in range(i + 1, columns):
             total -= a[i, j] * right[j]

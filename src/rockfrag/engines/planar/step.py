@@ -4,7 +4,17 @@ import math
 from typing import NamedTuple
 
 from rockfrag.engines.compile.jit import kernel
+from rockfrag.engines.planar.bonds import bond_margin
+from rockfrag.engines.planar.search import BONDED
 from rockfrag.engines.planar.solve import AT_EDGE, copy, end_of, look_at, rate, solve
+from rockfrag.engines.planar.support import GUIDED, least_support_margin, slope
+from rockfrag.engines.planar.ties import (
+    least_tie_margin,
+    power,
+    start_ties,
+    turns_back,
+)
+from rockfrag.engines.planar.walls import climbs, is_above
 from rockfrag.engines.pure_rocking.kernels.dormand_prince import INSTANTS, WEIGHTS
 
 # slack before a contact event is seen, so that what has just begun is not taken for its end [-]: forces over
@@ -19,7 +29,8 @@ HANGING = 1e-6
 WIDTH = 1e-12  # fraction of a step to which the time of a contact event is found
 # channels of an interface: its two ends (gap or pressure), their edges, ...
 GAP, EDGE = 0, 2
-FRICTION, FALL = 4, 5  # ... stick or slip, and the fall of the body above it
+# ... stick or slip, the fall of the body above it, and the bond; of a wall, that it is left upwards
+FRICTION, FALL, BREAK = 4, 5, 6
 
 
 class Stretch(NamedTuple):
@@ -51,7 +62,8 @@ def start_step(p, w):
     copy(p, w.q, w.q0)
     copy(p, w.v, w.v0)
     copy(p, w.a, w.a0)
-    for k in range(p.count):
+    start_ties(p, w)
+    for k in range(p.contacts):
         for end in range(2):
             w.early[k, end] = 0.0
             if w.closed[k, end] == 0:
@@ -61,19 +73,23 @@ def start_step(p, w):
 
 @kernel
 def take_step(p, w, stretch, energy_balance):
-    """Go on from q0, v0, a0 to q1, v1, a1 by Dormand and Prince's pair of order 5; work of ground and friction."""
+    """Go on from q0, v0, a0 to q1, v1, a1 by Dormand and Prince's pair of order 5.
+
+    Returned are the work of the ground, what friction and what ties have taken of it [J].
+    """
     h = stretch.length
     size = 3 * p.count
     for d in range(size):
         w.kv[d, 0] = w.v0[d]
         w.ka[d, 0] = w.a0[d]
-    work, rubbed = 0.0, 0.0
+    work, rubbed, tied = 0.0, 0.0, 0.0
     if energy_balance:
         look_at(p, w, w.q0)
         solve(p, w, w.q0, w.v0, stretch.ah, stretch.av, False)
-        first, two = _powers(p, w, w.q0, w.v0, stretch.ah, stretch.av)
+        first, two, three = _powers(p, w, w.q0, w.v0, stretch.ah, stretch.av)
         work += WEIGHTS[6, 0] * first
         rubbed += WEIGHTS[6, 0] * two
+        tied += WEIGHTS[6, 0] * three
     for stage in range(1, 7):
         for d in range(size):
             if stage == 1:
@@ -95,11 +111,12 @@ def take_step(p, w, stretch, energy_balance):
             w.kv[d, stage] = w.v1[d]
             w.ka[d, stage] = w.out[d]
         if energy_balance and 2 <= stage <= 5:
-            first, two = _powers(p, w, w.q1, w.v1, ah, av)
+            first, two, three = _powers(p, w, w.q1, w.v1, ah, av)
             work += WEIGHTS[6, stage] * first
             rubbed += WEIGHTS[6, stage] * two
+            tied += WEIGHTS[6, stage] * three
     copy(p, w.out, w.a1)
-    return work * h, rubbed * h
+    return work * h, rubbed * h, tied * h
 
 
 @kernel
@@ -123,16 +140,21 @@ def step_error(p, w, h):
 
 @kernel
 def _powers(p, w, q, v, ah, av):
-    """Power of the ground, and power lost to friction, with the shear in ``w`` [W]."""
-    work = 0.0
-    lost = 0.0
-    for k in range(p.count):
-        work -= p.mass[k] * (ah * v[3 * k] + av * v[3 * k + 1])
+    """Power of the ground, and power lost to friction and given to ties, with the shear in ``w`` [W]."""
+    work, lost, held = 0.0, 0.0, 0.0
+    for k in range(p.contacts):
+        if k < p.count:
+            work -= p.mass[k] * (ah * v[3 * k] + av * v[3 * k + 1])
         if w.slides[k] != 0:
             end = 0 if w.closed[k, 0] == 1 else 1
             x, y, tx, ty, _, _, _ = end_of(p, w, q, k, end, w.kind[k, end])
-            lost -= w.shear[k] * rate(p, q, v, k, x, y, tx, ty)
-    return work, lost
+            speed = rate(p, q, v, k, x, y, tx, ty)
+            dish = 0.0
+            if w.whole[k] == GUIDED:
+                dish = slope(p, w, q, k) * (w.normal[k, 0] + w.normal[k, 1])
+            held += dish * speed
+            lost -= (w.shear[k] + dish) * speed
+    return work, lost, held + power(p, w, q, v)
 
 
 @kernel
@@ -142,9 +164,10 @@ def least_margin(p, w, q, v, forces):
     With ``forces`` those in ``w`` count, without them motions alone do: gaps, edges, slips and falls.
     """
     least = math.inf
-    for k in range(p.count):
+    for k in range(p.contacts):
         pressed = 0.0
         some = False
+        edged = k > 0 and (k < p.count or p.wall_top[k] < math.inf)
         w.fails[k, FALL] = 0
         for end in range(2):
             w.fails[k, GAP + end] = w.fails[k, EDGE + end] = 0
@@ -153,14 +176,15 @@ def least_margin(p, w, q, v, forces):
                 pressed += w.normal[k, end]
                 stiff = max(1.0, p.kinetic[k]) if w.slides[k] != 0 else 1.0
                 margin = math.inf
-                if forces:
+                if forces and w.whole[k] == 0:
                     margin = stiff * w.normal[k, end] / p.weight + SLACK
-                if k > 0 and w.slides[k] != 0:
+                if edged and w.slides[k] != 0:
                     _, _, _, _, _, beyond, _ = end_of(p, w, q, k, end, w.kind[k, end])
                     inside = AT_EDGE - beyond / p.size
                     inside = (inside if w.kind[k, end] == 1 else -inside) + TOUCH
                     if inside < 0.0:
                         w.fails[k, EDGE + end] = 1
+                    if inside < 0.0 and k < p.count:
                         _, _, _, _, over, _, _ = end_of(p, w, q, k, end, 1)
                         if over < -HANGING * p.size:
                             w.fails[k, FALL] = 1
@@ -168,7 +192,7 @@ def least_margin(p, w, q, v, forces):
             else:
                 _, _, _, _, gap, beyond, _ = end_of(p, w, q, k, end, -1)
                 margin = gap / p.size + TOUCH
-                if beyond < -2.0 * p.half[k]:
+                if k < p.count and beyond < -2.0 * p.half[k]:
                     least = min(least, (2.0 * p.half[k] + beyond) / p.size)
             if margin < 0.0:
                 w.fails[k, GAP + end] = 1
@@ -179,14 +203,17 @@ def least_margin(p, w, q, v, forces):
                 end = 0 if w.closed[k, 0] == 1 else 1
                 x, y, tx, ty, _, _, _ = end_of(p, w, q, k, end, w.kind[k, end])
                 margin = w.slides[k] * rate(p, q, v, k, x, y, tx, ty) / p.speed + TOUCH
-            elif forces:
-                margin = p.static[k] * pressed - abs(w.shear[k])
+            elif forces and w.whole[k] != BONDED:
+                shear = w.shear[k] + slope(p, w, q, k) * pressed
+                margin = p.static[k] * pressed - abs(shear)
                 margin = margin / (p.weight * max(p.static[k], 1.0)) + SLACK
             else:
                 margin = math.inf
             if margin < 0.0:
                 w.fails[k, FRICTION] = 1
             least = min(least, margin)
+        if k >= p.count:
+            continue
         turned = abs(q[3 * k + 2])
         if k > 0:
             turned = max(turned, abs(q[3 * k + 2] - q[3 * k - 1]))
@@ -196,6 +223,28 @@ def least_margin(p, w, q, v, forces):
         if margin < 0.0:
             w.fails[k, FALL] = 1
         least = min(least, margin)
+    if p.is_held == 1:
+        least = min(least, _least_of_holding(p, w, q, v, forces))
+    return least
+
+
+@kernel
+def _least_of_holding(p, w, q, v, forces):
+    """Least margin of ties, whole bonds, and sides of bodies that pass a low wall's edge."""
+    least = min(least_tie_margin(p, w, q, v), least_support_margin(p, w, q, v))
+    for k in range(p.contacts):
+        w.fails[k, BREAK] = 0
+        if forces and w.whole[k] == BONDED:
+            margin = bond_margin(p, w, k)
+            w.fails[k, BREAK] = 1 if margin < 0.0 else 0
+            least = min(least, margin)
+        if k >= p.count and w.closed[k].any() and is_above(p, w, q, k):
+            # it has left the wall upwards
+            w.fails[k, BREAK] = 1
+            least = -TOUCH
+        if k >= p.count and climbs(p, w, q, k):
+            w.fails[k, FALL] = 1
+            least = -TOUCH
     return least
 
 
@@ -212,7 +261,9 @@ def off_the_edge(p, w, q, k):
 @kernel
 def force_fails(p, w):
     """Whether one of the failing channels in ``w.fails`` is of a force."""
-    for k in range(p.count):
+    for k in range(p.contacts):
+        if w.fails[k, BREAK] == 1 and w.whole[k] == BONDED:
+            return True
         if w.fails[k, FRICTION] == 1 and w.slides[k] == 0:
             return True
         for end in range(2):
@@ -305,12 +356,17 @@ def _root(p, w, bracket, stretch, forces):
 
 
 @kernel
-def comes_near(p, w):
-    """Whether a gap narrowed at the start of the step and widens at its end, after ``look_at`` with ``w.q1``."""
-    for k in range(p.count):
+def comes_near(p, w, length):
+    """Whether in a step a gap first narrowed and widens as it ends, after ``look_at`` with ``w.q1``."""
+    if p.ties > 0 and turns_back(p, w):
+        return True
+    for k in range(p.contacts):
         for end in range(2):
             if w.early[k, end] < 0.0:
-                x, y, tx, ty, _, _, _ = end_of(p, w, w.q1, k, end, -1)
+                x, y, tx, ty, gap, _, _ = end_of(p, w, w.q1, k, end, -1)
+                if k >= p.count and gap > -w.early[k, end] * length:
+                    # it cannot have come as far as the wall
+                    continue
                 if rate(p, w.q1, w.v1, k, x, y, -ty, tx) > 0.0:
                     return True
     return False

@@ -9,6 +9,7 @@ from typing import NamedTuple
 
 from rockfrag.base.elementary import sin_cos
 from rockfrag.engines.compile.jit import kernel
+from rockfrag.engines.planar.support import GUIDED
 
 SHUT = 30.0
 """What shutting slow ends asks of impulses at most, over mass and closing speed [-]."""
@@ -85,7 +86,63 @@ def breaks_a_law(p, w, closing, plastic):
         spin = (w.v[3 * k + 2] - w.old_v[3 * k + 2]) * p.inertia[k]
         push_x, push_y = push_x + jump_x, push_y + jump_y
         turn += spin + jump_x * w.q[3 * k + 1] - jump_y * w.q[3 * k]
-        broken = broken or _contact_breaks(p, w, k, (push_x, push_y, turn), limits)
+        if p.contacts > p.count:
+            wall_x, wall_y, wall_turn = _given_by_walls(p, w, k)
+            push_x, push_y, turn = push_x - wall_x, push_y - wall_y, turn - wall_turn
+        if w.whole[k] != GUIDED:
+            resultant = push_x, push_y, turn
+            broken = broken or _contact_breaks(p, w, k, resultant, limits)
+    for k in range(p.count, p.contacts):
+        broken = broken or _wall_breaks(p, w, k, limits)
+    return broken
+
+
+@kernel
+def _wall_tangent(p, w, k, end):
+    """Point and tangent of end ``end`` of contact k with a wall, from the corners of the body's side."""
+    body = p.upper[k]
+    x, y = _turned(p.edge[k, end, 0], p.edge[k, end, 1], w.q[3 * body + 2])
+    x, y = x + w.q[3 * body], y + w.q[3 * body + 1]
+    if p.side[k] * (x - p.wall_x[k]) > -TOUCHES * p.size and y <= p.wall_top[k]:
+        return x, y, 0.0, float(p.side[k])
+    # the wall's edge is against the side
+    tx, ty = _turned(p.flank[k, 0], p.flank[k, 1], w.q[3 * body + 2])
+    return p.wall_x[k], p.wall_top[k], tx, ty
+
+
+@kernel
+def _given_by_walls(p, w, body):
+    """Impulse (x, y) and moment about the origin that walls have given to a body."""
+    push_x = push_y = turn = 0.0
+    for k in range(p.count, p.contacts):
+        if p.upper[k] != body:
+            continue
+        shear = w.hit_shear[k]
+        for end in range(2):
+            if w.hit[k, end] == 0.0:
+                continue
+            x, y, tx, ty = _wall_tangent(p, w, k, end)
+            along, shear = shear, 0.0
+            jump_x = along * tx - w.hit[k, end] * ty
+            jump_y = along * ty + w.hit[k, end] * tx
+            push_x, push_y = push_x + jump_x, push_y + jump_y
+            turn += jump_x * y - jump_y * x
+    return push_x, push_y, turn
+
+
+@kernel
+def _wall_breaks(p, w, k, limits):
+    """Whether what a wall has given breaks a law: it pulls, rubs too much, or lets a corner through."""
+    pressed = w.hit[k, 0] + w.hit[k, 1]
+    broken = min(w.hit[k, 0], w.hit[k, 1]) < -limits.impulse
+    broken = broken or abs(w.hit_shear[k]) > p.static[k] * pressed + limits.impulse
+    for end in range(2):
+        if w.hit[k, end] > 0.0:
+            x, y, tx, ty = _wall_tangent(p, w, k, end)
+            body = 3 * p.upper[k]
+            speed = -ty * (w.v[body] + w.v[body + 2] * (y - w.q[body + 1]))
+            speed += tx * (w.v[body + 1] - w.v[body + 2] * (x - w.q[body]))
+            broken = broken or speed < -limits.speed
     return broken
 
 

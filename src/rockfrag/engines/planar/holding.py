@@ -1,0 +1,198 @@
+"""From what holds a system to the numbers that the contact kernels read: walls, ties and bonds of a ``BODY``.
+
+Places are those of ``docs/holding.md``: from the origin of the lowest base; kernels count from its middle.
+"""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+
+from rockfrag.base.errors import InputError
+from rockfrag.system.body import Interval, RigidBody
+from rockfrag.system.constraints import Tie, Wall
+from rockfrag.system.contact import Contact, Friction
+from rockfrag.system.support import BilinearIsolator, SlidingPendulum
+from rockfrag.system.system import (
+    MOST_BODIES,
+    Start,
+    System,
+    corners,
+    standing_centres,
+    standing_points,
+)
+
+SMOOTH = Friction(0.0, 0.0)
+ALL = 24  # contacts of a record, as in ``records``
+MOST_CONSTRAINTS = 16
+PLATE = 100.0  # width of the plate of an isolator, wide enough [m] ...
+THIN = 2.0**-20  # ... and its height, too small to matter [m]
+
+
+def with_plate(system: System) -> System:
+    """Return a planar system whose lowest body is the plate of its isolator, if it has one."""
+    support = system.support
+    if support is None:
+        return system
+    if system.count == MOST_BODIES:
+        raise InputError(
+            f"System: an isolator carries at most {MOST_BODIES - 1} bodies, not {system.count}."
+        )
+    ends = Interval(-PLATE / 2, PLATE / 2)
+    plate = RigidBody(support.mass, support.mass, (0.0, 0.0, 0.0), ends, THIN, ends)
+    friction = support.friction if isinstance(support, SlidingPendulum) else None
+    first = replace(system.contacts[0], offset=(0.0, 0.0))
+    start = system.start
+    if start is not None:
+        at = start.position
+        if at is not None:
+            raised = ((x, z + THIN) for x, z in at)
+            at = ((start.plate, 0.0), *raised)
+        start = Start((0.0, *start.rotation), (0.0, *start.velocity), at, start.plate)
+    return System(
+        (plate, *system.in_plane().bodies),
+        (Contact(friction or SMOOTH), first, *system.contacts[1:]),
+        start,
+        system.name,
+    )
+
+
+def fill_holding(p: np.void, system: System) -> None:
+    """Fill what holds a system into the record of a planar one, whose bodies are there already."""
+    count = int(p["count"])
+    p["contacts"], p["reach"] = count, 3
+    p["upper"][:count] = np.arange(count)
+    p["lower"][:count] = np.arange(count) - 1
+    p["near"] = -1
+    for k in range(count):
+        p["near"][k, :3] = k - 1, k, (k + 1 if k + 1 < count else -1)
+    p["is_held"] = len(system.holding) > 0
+    if not system.holding:
+        return
+    if len(system.holding) > MOST_CONSTRAINTS:
+        raise InputError(
+            f"System: more than {MOST_CONSTRAINTS} walls, ties and bonds are not computed."
+        )
+    shift = 0 if system.support is None else 1
+    _fill_walls(p, system, shift)
+    _fill_ties(p, system, shift)
+    _fill_bonds(p, system, shift)
+    _fill_support(p, system)
+    if p["contacts"] > count:
+        _note_neighbours(p)
+
+
+def _fill_walls(p: np.void, system: System, shift: int) -> None:
+    """Append a contact for each body and wall, and note which contacts share a body."""
+    standing, centres = corners(system), standing_centres(system)
+    middle = _origin(system)
+    for number, wall in enumerate(system.constraints):
+        if not isinstance(wall, Wall) or wall.distance == math.inf:
+            continue
+        for body in range(system.count):
+            k = _new_contact(p, body + shift, number, wall.side)
+            p["wall_top"][k], p["bounce"][k] = wall.height, wall.restitution
+            p["wall_x"][k] = wall.side * wall.distance - middle
+            p["static"][k], p["kinetic"][k] = wall.friction or SMOOTH
+            first = 4 * body + (2 if wall.side > 0 else 0)
+            flank = np.array(standing[first : first + 2]) - centres[body]
+            # in the order in which the wall's tangent meets them
+            flank = flank if wall.side > 0 else flank[::-1]
+            p["edge"][k] = flank
+            p["flank"][k] = (flank[1] - flank[0]) / np.hypot(*(flank[1] - flank[0]))
+
+
+def _origin(system: System) -> float:
+    """Where kernels begin to count x, from the origin of the lowest base [m]: its middle, or that of a plate."""
+    return 0.0 if system.support else system.in_plane().bodies[0].ends[0].middle
+
+
+def _new_contact(p: np.void, body: int, number: int, side: int) -> int:
+    """Append a contact of a body with a wall; its number."""
+    k = int(p["contacts"])
+    if k == ALL:
+        raise InputError(
+            "Wall: more than 12 pairs of a body and a wall are not computed; join bodies."
+        )
+    p["contacts"] = k + 1
+    p["upper"][k], p["lower"][k], p["wall"][k] = body, -1, number
+    p["side"][k] = side
+    return k
+
+
+def _fill_support(p: np.void, system: System) -> None:
+    """Fill the isolator whose plate is the lowest body: dish or spring, and its stops."""
+    support = system.support
+    if support is None:
+        return
+    row = len(system.holding) - 1
+    p["is_supported"], p["support_number"], p["dish_radius"] = 1, row, math.inf
+    if isinstance(support, SlidingPendulum):
+        p["dish_radius"] = support.radius
+    elif isinstance(support, BilinearIsolator):
+        p["is_sprung"], p["spring_stiffness"] = 1, support.stiffness
+        p["spring_strength"] = support.strength
+        p["spring_rise"] = support.strength / support.yield_displacement
+    if support.stroke == math.inf:
+        return
+    for side in (-1, 1):
+        k = _new_contact(p, 0, row, side)
+        p["is_stop"][k], p["wall_top"][k] = 1, math.inf
+        p["bounce"][k] = support.restitution
+        p["wall_x"][k] = float(p["standing"][0]) + side * support.stroke
+
+
+def _note_neighbours(p: np.void) -> None:
+    """Note of each contact which others share a body with it; the first three as in a column without walls."""
+    p["reach"] = p["near"].shape[1]
+    contacts, count = int(p["contacts"]), int(p["count"])
+    for k in range(contacts):
+        mine = {int(p["upper"][k]), int(p["lower"][k])} - {-1}
+        if k >= count:
+            p["near"][k, 1] = k
+        others = [
+            other
+            for other in range(contacts)
+            if other not in p["near"][k, :3].tolist()
+            and mine & ({int(p["upper"][other]), int(p["lower"][other])} - {-1})
+        ]
+        if len(others) > p["reach"] - 3:
+            raise InputError("Wall: more than four walls are not computed.")
+        p["near"][k, 3 : 3 + len(others)] = others
+
+
+def _fill_ties(p: np.void, system: System, shift: int) -> None:
+    """Fill points, lengths and strengths of ties."""
+    middle = _origin(system)
+    centres = standing_centres(system)
+    for number, tie in enumerate(system.constraints):
+        if not isinstance(tie, Tie) or tie.slack == math.inf:
+            continue
+        t = int(p["ties"])
+        if t == p["tie_body"].shape[0]:
+            raise InputError("Tie: more than 8 ties are not computed.")
+        p["ties"] = t + 1
+        body = tie.body % system.count
+        x, z = standing_points(system, body, [(tie.point[0], tie.point[2])])[0]
+        ax, az = tie.anchor[0], tie.anchor[2]
+        p["tie_body"][t], p["tie_number"][t] = body + shift, number
+        p["is_bracket"][t] = tie.bracket
+        p["tie_point"][t] = x - centres[body][0], z - centres[body][1]
+        p["tie_anchor"][t] = ax - middle, az
+        length = math.hypot(ax - x, az - z)
+        if length == 0.0:
+            raise InputError(
+                f"Tie: point and anchor of tie {number + 1} are one place."
+            )
+        p["tie_long"][t], p["tie_short"][t] = length + tie.slack, length - tie.slack
+        p["tie_stiffness"][t], p["tie_damping"][t] = tie.stiffness, tie.damping
+        p["tie_strength"][t] = tie.strength
+
+
+def _fill_bonds(p: np.void, system: System, shift: int) -> None:
+    """Fill what bonds bear."""
+    for row, (contact, bond) in enumerate(system.bonds, len(system.constraints)):
+        k = contact + shift
+        p["is_bonded"][k], p["bond_number"][k] = 1, row
+        p["bond_spread"][k] = bond.spread[0]
+        p["bond_tension"][k], p["bond_shear"][k] = bond.tension / 2, bond.shear

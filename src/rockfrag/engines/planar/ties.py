@@ -1,0 +1,163 @@
+"""Ties of bodies to the ground: what they pull, when they get taut, slacken and break (``docs/holding.md``, 3).
+
+A tie is a spring with a dashpot; that it becomes taut or slack ends a step, so within one its force is smooth.
+"""
+
+import math
+
+from rockfrag.engines.compile.jit import kernel
+from rockfrag.engines.planar.support import spring_force
+
+SLACK, TAUT, PUSHED, BROKEN = 0, 1, -1, 2
+"""States of a tie."""
+JUST = 1e-13  # slack before a change is seen: of lengths over b, forces over the weight [-]
+
+
+@kernel
+def _stretched(p, w, q, v, t):
+    """Point of tie t on its body from the centre, direction towards its other end, length and its rate."""
+    b = 3 * p.tie_body[t]
+    c, s = w.cos[p.tie_body[t]], w.sin[p.tie_body[t]]
+    px, py = p.tie_point[t, 0], p.tie_point[t, 1]
+    rx, ry = px * c + py * s, -px * s + py * c
+    ex, ey = p.tie_anchor[t, 0] - q[b] - rx, p.tie_anchor[t, 1] - q[b + 1] - ry
+    length = math.sqrt(ex * ex + ey * ey)
+    if length > 0.0:
+        ex, ey = ex / length, ey / length
+    speed = -ex * (v[b] + v[b + 2] * ry) - ey * (v[b + 1] - v[b + 2] * rx)
+    return rx, ry, ex, ey, length, speed
+
+
+@kernel
+def tension(p, w, q, v, t):
+    """Force of tie t in its state, positive as it pulls [N], and the rate of its length [m/s]."""
+    _, _, _, _, length, speed = _stretched(p, w, q, v, t)
+    if w.taut[t] == TAUT:
+        natural = p.tie_long[t]
+    elif w.taut[t] == PUSHED:
+        natural = p.tie_short[t]
+    else:
+        return 0.0, speed
+    return p.tie_stiffness[t] * (length - natural) + p.tie_damping[t] * speed, speed
+
+
+@kernel
+def is_any_taut(p, w):
+    """Whether a tie or the spring of an isolator pulls or pushes."""
+    taut = p.is_sprung == 1
+    for t in range(p.ties):
+        taut = taut or w.taut[t] == TAUT or w.taut[t] == PUSHED
+    return taut
+
+
+@kernel
+def pull(p, w, q, v):
+    """Accelerations by ties and the spring of an isolator into ``w.drift``, after ``look_at`` with ``q``."""
+    for d in range(3 * p.count):
+        w.drift[d] = 0.0
+    if p.is_sprung == 1:
+        w.drift[0] -= spring_force(p, w, q) * p.inverse[0]
+    for t in range(p.ties):
+        if w.taut[t] == SLACK or w.taut[t] == BROKEN:
+            continue
+        force, _ = tension(p, w, q, v, t)
+        rx, ry, ex, ey, _, _ = _stretched(p, w, q, v, t)
+        b = 3 * p.tie_body[t]
+        w.drift[b] += force * ex * p.inverse[b]
+        w.drift[b + 1] += force * ey * p.inverse[b + 1]
+        w.drift[b + 2] += force * (ex * ry - ey * rx) * p.inverse[b + 2]
+
+
+@kernel
+def power(p, w, q, v):
+    """Power that ties and a spring take from the bodies [W]."""
+    taken = spring_force(p, w, q) * v[0] if p.is_sprung == 1 else 0.0
+    for t in range(p.ties):
+        force, speed = tension(p, w, q, v, t)
+        taken += force * speed
+    return taken
+
+
+@kernel
+def start_ties(p, w):
+    """Note the rates of lengths at the start of a step."""
+    for t in range(p.ties):
+        _, _, _, _, _, w.tie_early[t] = _stretched(p, w, w.q0, w.v0, t)
+
+
+@kernel
+def turns_back(p, w):
+    """Whether a slack tie lengthened at the start of a step and shortens at its end, or the other way round."""
+    for t in range(p.ties):
+        if w.taut[t] == SLACK:
+            _, _, _, _, _, speed = _stretched(p, w, w.q1, w.v1, t)
+            if w.tie_early[t] * speed < 0.0:
+                return True
+    return False
+
+
+@kernel
+def least_tie_margin(p, w, q, v):
+    """Least of all that must stay positive lest a tie change its state; ``w.tie_fails`` says which do."""
+    least = math.inf
+    for t in range(p.ties):
+        margin = math.inf
+        if w.taut[t] == SLACK:
+            margin = _slack_margin(p, w, q, v, t)
+        elif w.taut[t] != BROKEN:
+            force, _ = tension(p, w, q, v, t)
+            margin = w.taut[t] * force / p.weight
+            margin = min(margin, (p.tie_strength[t] - abs(force)) / p.weight) + JUST
+        w.tie_fails[t] = 1 if margin < 0.0 else 0
+        least = min(least, margin)
+    return least
+
+
+@kernel
+def _slack_margin(p, w, q, v, t):
+    """Margin of a slack tie: its length within its natural ones, or no force if the dashpot held it."""
+    _, _, _, _, length, speed = _stretched(p, w, q, v, t)
+    k, c = p.tie_stiffness[t], p.tie_damping[t]
+    longer = length - p.tie_long[t]
+    margin = max(-longer / p.size, -(k * longer + c * speed) / p.weight)
+    if p.is_bracket[t] == 1:
+        shorter = p.tie_short[t] - length
+        free = max(-shorter / p.size, -(k * shorter - c * speed) / p.weight)
+        margin = min(margin, free)
+    return margin + JUST
+
+
+@kernel
+def change_ties(p, w, time):
+    """Let the ties that fail get taut, slacken or break; whether any does."""
+    changed = False
+    for t in range(p.ties):
+        if w.tie_fails[t] == 0:
+            continue
+        changed = True
+        w.tie_fails[t] = 0
+        at = p.tie_number[t]
+        if w.taut[t] == SLACK:
+            _, _, _, _, length, _ = _stretched(p, w, w.q, w.v, t)
+            middle = 0.5 * (p.tie_long[t] + p.tie_short[t])
+            longer = p.is_bracket[t] == 0 or length > middle
+            w.taut[t] = TAUT if longer else PUSHED
+            w.told.hits[at] += 1
+            continue
+        force, _ = tension(p, w, w.q, w.v, t)
+        w.told.largest_force[at] = max(w.told.largest_force[at], abs(force))
+        if abs(force) >= p.tie_strength[t] * (1.0 - 1e-9):
+            w.taut[t] = BROKEN
+            w.told.breaking_time[at] = time
+        else:
+            w.taut[t] = SLACK
+    return changed
+
+
+@kernel
+def note_tensions(p, w):
+    """Keep the largest forces of ties in the state ``w.q``, ``w.v``."""
+    for t in range(p.ties):
+        force, _ = tension(p, w, w.q, w.v, t)
+        at = p.tie_number[t]
+        w.told.largest_force[at] = max(w.told.largest_force[at], abs(force))

@@ -1,0 +1,178 @@
+"""What holds the bodies of an arrangement, as a study's tables write it (``docs/holding.md``).
+
+In: columns of ``arrangements.csv`` beside what stands on what, and a table of isolators.  Out: systems with walls,
+ties, bonds and isolators.
+"""
+
+import math
+import os
+from collections.abc import Mapping
+from typing import Any
+
+from rockfrag.base.errors import errors_of
+from rockfrag.base.tabular import Row, read_rows
+from rockfrag.system import mounts
+from rockfrag.system.constraints import Constraint, Wall
+from rockfrag.system.contact import Friction
+from rockfrag.system.support import BilinearIsolator, SlidingPendulum, Support
+from rockfrag.system.system import System, hold
+
+LENGTHS = (
+    *("wall_m", "wall_left_m", "wall_height_m", "putty_spread_m"),
+    *("cord_slack_m", "bracket_slack_m"),
+)
+"""Columns of lengths, whose unit may stand in the name."""
+COLUMNS = (
+    *LENGTHS,
+    *("wall_friction", "wall_restitution", "putty_n", "putty_shear_n"),
+    *("cord_n_m", "cord_n", "bracket_n_m", "bracket_n", "casters"),
+)
+"""Columns of an arrangement that say what holds it."""
+_ISOLATOR_LENGTHS = ("radius_m", "stroke_m", "yield_m")
+_ISOLATOR = (
+    *_ISOLATOR_LENGTHS,
+    *("friction", "restitution", "stiffness_n_m", "strength_n"),
+)
+
+
+def read_isolators(path: str | os.PathLike[str]) -> dict[str, Support]:
+    """Read a table of isolators.
+
+    Parameters
+    ----------
+    path : CSV file with ``name``, ``mass_kg`` of the plate, ``stroke_m`` to its stop and ``restitution`` there;
+        of a sliding pendulum ``radius_m`` (empty: flat) and ``friction``, of a bilinear one ``stiffness_n_m``
+        after yielding, ``strength_n`` and ``yield_m``
+
+    Returns
+    -------
+    The isolators by name.
+    """
+    found: dict[str, Support] = {}
+    quantities = ("mass_kg", *_ISOLATOR_LENGTHS)
+    for row in read_rows(path, ["name", "mass_kg"], _ISOLATOR, quantities=quantities):
+        name = row.text("name")
+        if name in found:
+            raise row.error("name", f"{name} is given twice")
+        with errors_of(f"{row.path}, line {row.line}"):
+            found[name] = _isolator(row)
+    return found
+
+
+def _isolator(row: Row) -> Support:
+    """Return the isolator of a row."""
+    mass = row.quantity("mass_kg", above=0)
+    stroke = _length(row, "stroke_m", math.inf)
+    restitution = _number(row, "restitution", 0.0)
+    if row.has("stiffness_n_m"):
+        for column in ("radius_m", "friction"):
+            if row.has(column):
+                raise row.error(column, "a bilinear isolator has none; leave it empty")
+        return BilinearIsolator(
+            mass=mass,
+            stroke=stroke,
+            restitution=restitution,
+            stiffness=row.number("stiffness_n_m"),
+            strength=_number(row, "strength_n", 0.0),
+            yield_displacement=_length(row, "yield_m", 0.001),
+        )
+    return SlidingPendulum(
+        mass=mass,
+        stroke=stroke,
+        restitution=restitution,
+        radius=_length(row, "radius_m", math.inf),
+        friction=_friction(row, "friction"),
+    )
+
+
+def stated_by(row: Row) -> dict[str, float | str]:
+    """Read what a row of ``arrangements.csv`` says that holds it.
+
+    Parameters
+    ----------
+    row : of the arrangement
+
+    Returns
+    -------
+    Values in SI units by the names of :data:`COLUMNS`, of those that are not empty.
+    """
+    stated: dict[str, float | str] = {}
+    for column in COLUMNS:
+        if not row.has(column):
+            continue
+        if column == "casters":
+            stated[column] = row.text(column)
+        elif column in LENGTHS:
+            stated[column] = row.quantity(column)
+        else:
+            stated[column] = row.number(column)
+    return stated
+
+
+def held_as_stated(
+    system: System, stated: Mapping[str, Any], support: Support | None = None
+) -> System:
+    """System with what is stated that holds it.
+
+    Parameters
+    ----------
+    system, stated : what stands there, and values in SI units by the names of :data:`COLUMNS`
+    support : isolator under it; None: it stands on the ground
+
+    Returns
+    -------
+    The system with its walls, ties, bonds and isolator.
+    """
+    constraints: list[Constraint] = [
+        _wall(system, stated, column, side)
+        for column, side in (("wall_m", 1), ("wall_left_m", -1))
+        if column in stated
+    ]
+    if "cord_n_m" in stated:
+        constraints += mounts.cords_at_top(system, *_springs(stated, "cord"))
+    if "bracket_n_m" in stated:
+        gap, springs = stated.get("wall_m", 0.0), _springs(stated, "bracket")
+        constraints.append(mounts.bracket_at_top(system, *springs, length=gap))
+    if "casters" in stated:
+        system = mounts.on_casters(system, stated["casters"])
+    bond = None
+    if "putty_n" in stated:
+        bond = mounts.putty_under(
+            system,
+            stated["putty_n"],
+            stated.get("putty_shear_n"),
+            stated.get("putty_spread_m"),
+        )
+    return hold(system, *constraints, bonds=bond, support=support)
+
+
+def _wall(system: System, stated: Mapping[str, Any], column: str, side: int) -> Wall:
+    """Return the wall that a column names, on the right (+1) or the left side."""
+    mu = stated.get("wall_friction", 0.0)
+    return mounts.wall_beside(
+        system,
+        stated[column],
+        side,
+        height=stated.get("wall_height_m", math.inf),
+        friction=Friction(mu, mu) if mu else None,
+        restitution=stated.get("wall_restitution", 0.0),
+    )
+
+
+def _springs(stated: Mapping[str, Any], name: str) -> tuple[float, float, float]:
+    """Return stiffness [N/m], slack [m] and strength [N] of cords or a bracket."""
+    slack, strength = stated.get(f"{name}_slack_m", 0.0), stated.get(f"{name}_n")
+    return stated[f"{name}_n_m"], slack, math.inf if strength is None else strength
+
+
+def _length(row: Row, column: str, default: float) -> float:
+    return row.quantity(column) if row.has(column) else default
+
+
+def _number(row: Row, column: str, default: float) -> float:
+    return row.number(column) if row.has(column) else default
+
+
+def _friction(row: Row, column: str) -> Friction | None:
+    mu = _number(row, column, 0.0)
+    return Friction(mu, mu) if mu else None

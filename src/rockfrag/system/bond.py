@@ -1,0 +1,58 @@
+"""Wax, putty, mortar and pins: what keeps a contact shut until it breaks (``docs/holding.md``)."""
+
+from dataclasses import dataclass
+from typing import Any
+
+from rockfrag.base.errors import InputError
+from rockfrag.base.input_checks import number_from_zero, positive_number
+
+
+@dataclass(frozen=True)
+class Bond:
+    """Wax, putty, mortar or pins in a contact: whole, it stays shut whatever the sign of its force.
+
+    It is one of pads at ± ``spread``, each with its part of the tensile capacity.  Of several pads in space there
+    are four, at (± x, ± y), each of a quarter.  It breaks once and for ever.
+
+    Attributes
+    ----------
+    tension : tensile capacity of all pads [N]
+    shear : force that it bears along the contact beside friction [N]
+    spread : half the distance of the pads along x and along y [m]
+    """
+
+    tension: float
+    shear: float
+    spread: tuple[float, float]
+
+    def __post_init__(self) -> None:
+        number_from_zero("Bond: tension", self.tension, "newtons")
+        number_from_zero("Bond: shear", self.shear, "newtons")
+        spread: Any = self.spread
+        pair = tuple(spread) if isinstance(spread, (tuple, list)) else (spread, spread)
+        if len(pair) != 2:
+            raise InputError(
+                f"Bond: spread: expected (x, y) in metres, got {spread!r}."
+            )
+        for value in pair:
+            positive_number("Bond: spread", value, "metres")
+        object.__setattr__(self, "spread", pair)
+
+    @classmethod
+    def of_layer(
+        cls, width: float, depth: float, strength: float, shear: float
+    ) -> "Bond":
+        """Return the bond of a whole layer of a tensile strength that breaks where its edge first reaches it.
+
+        Parameters
+        ----------
+        width, depth : of the layer along x and y [m]
+        strength, shear : tensile and shear strength [Pa]
+
+        Returns
+        -------
+        The bond whose pads, at a sixth of the sides, are overloaded at the same instant: with σ = N/(w d) ±
+        6 M/(w² d) ≥ -f_t, N/2 ± 3 M/w ≥ -f_t w d/2 (pads at w/6).
+        """
+        area = width * depth
+        return cls(strength * area, shear * area, (width / 6, depth / 6))

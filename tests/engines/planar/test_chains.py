@@ -1,0 +1,73 @@
+"""What a response leaves behind is what the next motion finds."""
+
+import math
+
+import numpy as np
+import pytest
+
+from rockfrag import Block, Stack, simulate
+from rockfrag.base.errors import InputError
+from rockfrag.system import Bond, SlidingPendulum, Tie, Wall, as_system, hold
+
+from ...simulation.reference_bodies import random_motion
+from .cases import DT, run
+
+BLOCK = Block(0.4, 1.0, 100.0)
+QUIET = np.zeros(1500)
+
+
+def chained(body, first, second, **options):
+    """Response to the second motion after the first, and that to both with quiet time between them."""
+    before = run(body, first, friction=0.45, **options)
+    after = run(before.system_after(), second, **options)
+    whole = run(body, np.concatenate([first, QUIET, second]), friction=0.45, **options)
+    return before, after, whole
+
+
+@pytest.mark.parametrize("body", [BLOCK, Stack(Block(0.5, 0.3, 150.0), BLOCK)])
+def test_a_chain_is_the_response_to_all_with_quiet_time(body) -> None:
+    first, second = (
+        0.8 * random_motion(np.random.default_rng(seed))[:400] for seed in (5, 6)
+    )
+    before, after, whole = chained(body, first, second)
+    at = first.size + QUIET.size
+    assert not before.overturned
+    assert np.abs(before.slip[-1]).max() > 1e-4
+    samples = min(len(after.theta), len(whole.theta) - at)
+    assert samples > 100
+    assert np.array_equal(after.theta[:samples], whole.theta[at : at + samples])
+    assert np.array_equal(after.slip[:samples], whole.slip[at : at + samples])
+
+
+def test_what_has_broken_is_gone_and_what_has_slid_is_nearer_to_its_wall() -> None:
+    motion = 0.8 * random_motion(np.random.default_rng(5))[:400]
+    cord = Tie((0.0, 0.0, 1.0), (1.0, 0.0, 1.0), 1e5, strength=50.0)
+    held = hold(as_system(BLOCK), Wall(0.4), cord, bonds=Bond(10.0, 10.0, 0.1))
+    before = run(held, motion, friction=0.45)
+    assert before.constraints["breaking_time_s"].notna().tolist() == [False, True, True]
+    after = before.system_after()
+    assert after.holding == ("wall 1",)
+    assert run(after, motion).slip[0] == pytest.approx(before.slip[-1], abs=1e-12)
+
+
+def test_an_isolator_begins_where_it_was_left() -> None:
+    support = SlidingPendulum(mass=20.0, radius=2.0, friction=0.1)
+    held = hold(as_system(Block(0.6, 1.2, 100.0)), support=support)
+    motion = 3 * random_motion(np.random.default_rng(5))[:300]
+    before, after, whole = chained(held, motion, motion)
+    at = motion.size + QUIET.size
+    assert abs(before.plate[-1]) > 1e-3
+    samples = min(len(after.plate), len(whole.plate) - at)
+    assert np.array_equal(after.plate[:samples], whole.plate[at : at + samples])
+
+
+def test_what_fell_is_not_shaken_again() -> None:
+    pushed = simulate(BLOCK, np.full(200, 6.0), DT, friction=0.8)
+    assert pushed.overturned
+    with pytest.raises(InputError, match="the block has fallen"):
+        pushed.system_after()
+
+
+def test_what_never_slid_is_the_system_that_it_was() -> None:
+    found = simulate(BLOCK, 4.5 * np.sin(2 * math.pi * np.arange(0, 1, DT)), DT)
+    assert found.system_after() == as_system(BLOCK)

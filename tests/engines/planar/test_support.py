@@ -1,0 +1,149 @@
+"""Isolators: period, loss and stroke in closed form, what stands on them, and their stops."""
+
+import math
+
+import numpy as np
+import pytest
+
+from rockfrag import Block, Stack
+from rockfrag.system import BilinearIsolator, SlidingPendulum, as_system, hold
+
+from ...simulation.reference_bodies import random_motion
+from .cases import DT, G, run
+
+B, H, M = 0.3, 0.6, 100.0  # half width, half height [m], mass [kg]
+BLOCK = Block(2 * B, 2 * H, M)
+PULSE = np.concatenate([np.full(11, 2.0), np.zeros(400)])  # ends at 2 · 0.1 m/s
+
+
+def isolated(support, body=BLOCK):
+    return hold(as_system(body), support=support)
+
+
+def turning_points(plate: np.ndarray) -> np.ndarray:
+    """Displacements at which a plate turns round [m]."""
+    speed = np.diff(plate)
+    turns = np.flatnonzero(speed[1:] * speed[:-1] < 0) + 1
+    # of the parabola through three samples
+    left, middle, right = plate[turns - 1], plate[turns], plate[turns + 1]
+    return middle - (right - left) ** 2 / (8 * (right - 2 * middle + left))
+
+
+@pytest.mark.parametrize("mass", [50.0, 500.0])
+@pytest.mark.parametrize("radius", [0.5, 2.0])
+def test_a_pendulum_swings_with_the_period_of_its_dish_whatever_it_carries(
+    mass: float, radius: float
+) -> None:
+    """2π√(R/g)."""
+    support = SlidingPendulum(mass=20.0, radius=radius)
+    found = run(isolated(support, Block(2 * B, 2 * H, mass)), PULSE, friction=0.9)
+    plate, frequency = found.plate, math.sqrt(G / radius)
+    after = found.time > 0.12
+    time = found.time[after] - found.time[after][0]
+    rate = np.gradient(plate, DT)[after][0]
+    expected = plate[after][0] * np.cos(frequency * time)
+    expected += rate / frequency * np.sin(frequency * time)
+    assert np.abs(found.theta).max() == 0.0
+    size = np.abs(expected).max()
+    assert plate[after][:300] == pytest.approx(expected[:300], abs=3e-4 * size)
+
+
+@pytest.mark.parametrize("mu", [0.01, 0.03])
+def test_a_pendulum_loses_twice_its_friction_times_its_radius_in_half_a_cycle(
+    mu: float,
+) -> None:
+    support = SlidingPendulum(mass=20.0, radius=1.0, friction=mu)
+    motion = np.concatenate([np.full(11, 6.0), np.zeros(400)])
+    found = run(isolated(support), motion, friction=0.9)
+    turns = np.abs(turning_points(found.plate))
+    losses = turns[:-1] - turns[1:]
+    assert losses.size >= 2
+    assert losses == pytest.approx(2 * mu * 1.0, rel=1e-3)
+    assert found.constraints["stroke_m"][0] == pytest.approx(turns[0], rel=1e-4)
+
+
+def test_a_flat_plate_slides_as_newmark_says() -> None:
+    """R → ∞: V²/(2 µ g) (1 - µ g/A)."""
+    pulse = np.concatenate([np.full(101, 3.0), np.zeros(600)])
+    support = SlidingPendulum(mass=20.0, friction=0.1)
+    found = run(isolated(support), pulse, 0.001, friction=0.9)
+    speed, brake = 3.0 * 0.1005, 0.1 * G
+    expected = speed**2 / (2 * brake) * (1 - brake / 3.0)
+    assert found.constraints["stroke_m"][0] == pytest.approx(expected, rel=1e-3)
+    assert abs(found.plate[-1]) == pytest.approx(expected, rel=1e-3)
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_nothing_rocks_before_the_stop_where_the_isolator_pushes_less(
+    seed: int,
+) -> None:
+    """µ + U/R < b/h, whatever the vertical motion."""
+    rng = np.random.default_rng(seed)
+    motion, up = 3 * random_motion(rng), 0.8 * random_motion(rng)
+    support = SlidingPendulum(mass=20.0, radius=1.0, friction=0.08)
+    body = Stack(Block(0.8, 0.3, 200.0), BLOCK)
+    found = run(isolated(support, body), motion, friction=0.95, vertical=up)
+    arms = 0.08 + found.constraints["stroke_m"][0] / 1.0
+    assert arms < B / H
+    assert np.abs(found.theta).max() == 0.0
+    assert np.abs(run(body, motion, friction=0.95, vertical=up).theta).max() > 0.01
+    assert found.energy["residual"].abs().max() < 1e-8 * found.energy["potential"][0]
+
+
+def stopped(speed: float):
+    """Response of a block on a smooth plate that meets its stop at a speed."""
+    # it ends by a ramp of one sample
+    pulse = np.concatenate([np.full(21, -speed / 0.205), np.zeros(60)])
+    support = SlidingPendulum(mass=1e-3, stroke=0.5 * 0.2 * speed + 0.05 * speed)
+    return run(isolated(support), pulse, friction=math.inf, closing=1e-6)
+
+
+def test_the_stop_topples_what_comes_at_the_critical_speed() -> None:
+    """ω⁺ = m h V/I_O, of a plate without mass, and V_c of a kerb at the base."""
+    radius = math.hypot(B, H)
+    inertia = BLOCK.pivot_inertia()
+    critical = math.sqrt(2 * G * (radius - H) * inertia / M) / H
+    stays, topples = stopped(0.999 * critical), stopped(1.001 * critical)
+    assert stays.constraints["hits"][0] > 0
+    assert stays.omega.max() == pytest.approx(
+        M * H * 0.999 * critical / inertia, rel=1e-2
+    )
+    assert (stays.overturned, topples.overturned) == (False, True)
+
+
+def test_a_bilinear_isolator_is_a_spring_until_it_yields_and_its_loop_is_lost() -> None:
+    stiffness, strength, yields = 2000.0, 100.0, 0.005
+    support = BilinearIsolator(
+        mass=20.0, stiffness=stiffness, strength=strength, yield_displacement=yields
+    )
+    weak = np.concatenate([np.full(11, 0.3), np.zeros(200)])
+    found = run(isolated(support), weak, friction=0.9)
+    frequency = math.sqrt((stiffness + strength / yields) / (M + 20.0))
+    # from rest under a constant acceleration
+    early = found.time <= 0.1
+    expected = -0.3 / frequency**2 * (1 - np.cos(frequency * found.time[early]))
+    assert np.abs(found.plate).max() < yields
+    assert found.plate[early] == pytest.approx(expected, abs=1e-6)
+    strong = run(isolated(support), 3 * PULSE, friction=0.9)
+    turns = np.abs(turning_points(strong.plate))
+    assert turns[0] > 5 * yields
+    assert turns[1] < turns[0]
+    assert strong.energy["held"].iloc[-1] > 0.0
+    for each in (found, strong):
+        assert each.energy["residual"].abs().max() < 1e-7 * M * G * H
+
+
+def test_the_mirror_image_of_an_isolated_stack_moves_as_its_mirror_image() -> None:
+    motion = 3 * random_motion(np.random.default_rng(5))
+    support = SlidingPendulum(mass=30.0, radius=1.5, friction=0.05, stroke=0.06)
+    body = Stack(Block(0.6, 0.3, 200.0), Block(0.3, 1.2, 100.0))
+    right, left = (
+        run(isolated(support, body), side * motion, friction=0.6) for side in (1, -1)
+    )
+    assert right.constraints["hits"][0] > 0
+    assert np.abs(right.theta).max() > 0.0
+    until = right.contact_events["time"].iloc[min(8, len(right.contact_events) - 1)]
+    early = right.time[: min(len(right.time), len(left.time))] < until
+    assert right.theta[: early.size][early] == pytest.approx(
+        -left.theta[: early.size][early], abs=1e-7
+    )

@@ -1,0 +1,216 @@
+"""Walls and kerbs: closed forms of leaning, hitting and tripping, symmetry, and walls that are not met."""
+
+import math
+
+import numpy as np
+import pytest
+
+from rockfrag import Block, Column, Stack
+from rockfrag.engines.contract import Case, Request
+from rockfrag.engines.planar.engine import ContactRun
+from rockfrag.simulation.inputs import ground_motion
+from rockfrag.simulation.options import system_of
+from rockfrag.system import Wall, as_system, hold
+from rockfrag.system.mounts import on_casters
+
+from ...simulation.reference_bodies import random_motion
+from .cases import DT, G, random_column, run, with_contacts
+
+B, H, M = 0.15, 0.6, 100.0  # half width, half height [m], mass [kg]
+BLOCK = Block(2 * B, 2 * H, M)
+STILL = np.zeros(200)
+LEFT = math.pi
+
+
+def walled(body, *walls):
+    return hold(as_system(body), *walls)
+
+
+def touching(theta: float) -> float:
+    """Distance of the wall that the upper right corner of the block touches, turned on its right corner [m]."""
+    return B + 2 * H * math.sin(theta)
+
+
+def leaning(theta: float, mu: float):
+    """Response of a block that leans against a smooth wall from the start."""
+    start = system_of(walled(BLOCK, Wall(touching(theta))), mu, theta0=theta)
+    return ContactRun(Case(start, ground_motion(STILL, DT), request=Request()))
+
+
+@pytest.mark.parametrize("theta", [0.3, 0.5, 0.8])
+def test_a_block_leans_where_friction_at_its_foot_reaches_its_arm_over_its_height(
+    theta: float,
+) -> None:
+    """µ ≥ |r_x|/z and N_w = m g |r_x|/z."""
+    arm = H * math.sin(theta) - B * math.cos(theta)
+    needed = arm / (2 * H * math.cos(theta))
+    holds, slides = leaning(theta, 1.0001 * needed), leaning(theta, 0.9999 * needed)
+    assert holds.work["told"]["leaning"] == 1
+    assert np.ptp(holds.history["q"][:, :3], axis=0) == pytest.approx(0.0, abs=1e-9)
+    force = holds.response().constraints["largest_force_n"][0]
+    assert force == pytest.approx(M * G * needed, rel=1e-9)
+    assert slides.work["told"]["leaning"] == 0
+    assert slides.response().overturned
+
+
+def shaken_block(*walls, scale=2.0, seed=3, body=BLOCK):
+    """Response of a block between walls under a random motion."""
+    motion = scale * random_motion(np.random.default_rng(seed))
+    return run(walled(body, *walls), motion, friction=0.6, closing=1e-4)
+
+
+@pytest.mark.parametrize("body", [BLOCK, Stack(Block(0.6, 0.3, 200.0), BLOCK)])
+@pytest.mark.parametrize("distance", [math.inf, 40.0])
+def test_a_wall_that_is_not_met_leaves_every_bit(body, distance: float) -> None:
+    free = shaken_block(body=body)
+    walled_in = shaken_block(Wall(distance), Wall(distance, LEFT), body=body)
+    assert len(free.contact_events) > 10
+    assert np.array_equal(free.theta, walled_in.theta)
+    assert np.array_equal(free.normal_force, walled_in.normal_force)
+
+
+def test_the_mirror_image_of_a_walled_block_moves_as_its_mirror_image() -> None:
+    wall = {"friction": 0.3, "restitution": 0.4}
+    motion = 2 * random_motion(np.random.default_rng(5))
+    right = run(walled(BLOCK, Wall(0.3, **wall)), motion, friction=0.6)
+    left = run(walled(BLOCK, Wall(0.3, LEFT, **wall)), -motion, friction=0.6)
+    assert right.constraints["hits"][0] > 3
+    assert np.array_equal(right.theta, -left.theta)
+
+
+def test_between_two_smooth_walls_at_no_distance_nothing_turns() -> None:
+    found = shaken_block(Wall(B), Wall(B, LEFT), scale=4.0)
+    assert np.abs(found.theta).max() < 1e-13
+    assert found.constraints["largest_force_n"].min() > 0.1 * M * G
+
+
+@pytest.mark.parametrize("ratio", [0.0, 0.5])
+def test_a_rocking_block_that_hits_a_smooth_wall_is_thrown_up_at_its_foot(
+    ratio: float,
+) -> None:
+    """P = (1 + e) z ω/(1/m + ρ²/I_C), ρ = z - r_y; the foot leaves at -r_x P ρ/I_C."""
+    system = walled(BLOCK, Wall(touching(0.1), restitution=ratio))
+    start = system_of(system, 0.8, omega0=1.6)
+    found = ContactRun(
+        Case(start, ground_motion(np.zeros(8), DT), request=Request(g=G))
+    )
+    event = found.contact_events[found.contact_events["kind"] == 1][0]
+    theta, omega = event["q"][2], event["v_before"][2]
+    z = 2 * H * math.cos(theta)
+    # the centre of gravity from the foot
+    r_x = H * math.sin(theta) - B * math.cos(theta)
+    r_y = H * math.cos(theta) + B * math.sin(theta)
+    inertia, rho = BLOCK.centroidal_inertia, z - r_y
+    impulse = (1 + ratio) * z * omega / (1 / M + rho**2 / inertia)
+    _, v_y, after = event["v_after"][:3]
+    assert theta == pytest.approx(0.1, abs=1e-9)
+    told = found.work["told"]["largest_impulse"]
+    assert told[0] == pytest.approx(impulse, rel=1e-9)
+    assert after == pytest.approx(omega - impulse * rho / inertia, rel=1e-9)
+    foot = v_y + after * r_x
+    assert foot == pytest.approx(-r_x * impulse * rho / inertia, rel=1e-9)
+    assert event["after"] == 4  # all open, nothing slides
+
+
+def tripping(height: float, speed: float):
+    """Response of a block that slides at a speed into a kerb that it cannot slide along."""
+    # it ends by a ramp of one sample
+    pulse = np.full(21, -speed / 0.205)
+    motion = np.concatenate([pulse, np.zeros(20)])
+    kerb = Wall(B + 0.5 * speed * 0.2 + 0.05 * speed, height=height, friction=math.inf)
+    return run(walled(BLOCK, kerb), motion, friction=0.0, closing=1e-6)
+
+
+@pytest.mark.parametrize("height", [0.02, 0.1, 0.3])
+def test_a_block_that_slides_into_a_kerb_topples_from_the_critical_speed_on(
+    height: float,
+) -> None:
+    """ω⁺ = m (h - z_k) V/I_K; it topples if V ≥ V_c (West's speed where z_k = 0)."""
+    above = H - height
+    radius = math.hypot(B, above)
+    inertia = BLOCK.centroidal_inertia + M * radius**2
+    critical = math.sqrt(2 * G * (radius - above) * inertia / M) / above
+    stays, topples = (
+        tripping(height, 0.999 * critical),
+        tripping(height, 1.001 * critical),
+    )
+    event = stays.contact_events[stays.contact_events["kind"] == "impact"].iloc[0]
+    assert event["omega_after"][0] == pytest.approx(
+        M * above * 0.999 * critical / inertia, rel=1e-6
+    )
+    assert (stays.overturned, topples.overturned) == (False, True)
+
+
+def walled_columns(rng: np.random.Generator, bodies: int):
+    """Random column between two walls, with friction and restitution, static above kinetic."""
+    kinetic = rng.uniform(0.15, 0.8, bodies)
+    static = kinetic * rng.choice([1.0, 1.4], bodies)
+    frictions = list(zip(static.tolist(), kinetic.tolist(), strict=True))
+    system = with_contacts(random_column(rng, bodies), frictions)
+    reach = max(wall.width / 2 + abs(wall.ends[0].middle) for wall in system.bodies)
+    walls = [
+        Wall(
+            reach * rng.uniform(1.1, 1.6) + 0.05,
+            direction,
+            friction=rng.uniform(0.0, 0.6),
+            restitution=rng.choice([0.0, rng.uniform(0.1, 0.9)]),
+        )
+        for direction in (0.0, LEFT)
+    ]
+    return hold(system, *walls)
+
+
+@pytest.mark.parametrize(
+    ("impacts", "most"), [(300, 2), pytest.param(10_000, 4, marks=pytest.mark.slow)]
+)
+def test_no_impact_at_walls_gains_energy(impacts: int, most: int) -> None:
+    """Of random columns, walls with friction and restitution; what has no outcome is counted and nothing else."""
+    rng, seen, hits, unlawful = np.random.default_rng(8), 0, 0, 0
+    while seen < impacts:
+        system = walled_columns(rng, int(rng.integers(1, most)))
+        motion = 2 * random_motion(rng)[:400]
+        case = Case(system, ground_motion(motion, DT), request=Request(g=G))
+        found = ContactRun(case)
+        events = found.contact_events[found.contact_events["kind"] == 1]
+        before, after = events["energy_before"], events["energy_after"]
+        unit = system.mass * G * system.height
+        assert (after <= before + 1e-12 * unit).all()
+        unlawful += int(found.work["told"]["paradoxes"])
+        hits += int((events["at_wall"] > 0).sum())
+        seen += events.size
+    assert hits > 0.05 * seen
+    assert unlawful < 0.002 * seen
+
+
+def test_the_balance_of_energy_closes_between_walls() -> None:
+    for seed in range(3):
+        found = shaken_block(
+            Wall(0.3, friction=0.3, restitution=0.5),
+            Wall(0.25, LEFT, height=0.5),
+            seed=seed,
+        )
+        energy = found.energy
+        assert energy["lost_walls"].iloc[-1] > 0.0
+        assert energy["residual"].abs().max() < 2e-8 * energy["potential"][0]
+
+
+def test_the_third_body_of_a_column_that_leans_over_is_held_by_the_wall() -> None:
+    column = Column((Block(0.5, 0.3, 100.0), Block(0.45, 0.3, 80.0), BLOCK))
+    motion = 6.0 * np.sin(2 * np.pi * np.arange(0, 1, DT))
+    free = run(column, motion, friction=0.7)
+    held = run(walled(column, Wall(0.27), Wall(0.27, LEFT)), motion, friction=0.7)
+    assert (free.overturned, held.overturned) == (True, False)
+
+
+def test_a_cart_on_free_casters_never_rocks_until_it_meets_the_kerb() -> None:
+    motion = 2 * random_motion(np.random.default_rng(3))
+    cart = on_casters(as_system(BLOCK), "free")
+    rolls = run(cart, motion)
+    gap = 0.5 * rolls.slip.max()
+    held = hold(cart, Wall(B + gap, height=0.1, friction=0.5))
+    meets = run(held, motion)
+    hit = meets.contact_events["time"][meets.contact_events["kind"] == "impact"].iloc[0]
+    assert np.abs(rolls.theta).max() == 0.0
+    assert np.abs(meets.theta[meets.time < hit]).max() == 0.0
+    assert np.abs(meets.theta[meets.time > hit]).max() > 0.0
+    assert meets.constraints["hits"][0] > 0
