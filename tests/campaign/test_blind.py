@@ -145,15 +145,14 @@ def test_the_stated_model_error_is_what_the_command_prints(said_of_granite):
     )
     stated = MODEL_ERRORS[SCAN]
     assert (float(said[1]), float(said[2])) == (stated.blind, stated.beyond)
-    assert MODEL_ERRORS[CUT].blind == stated.blind
-    assert "no campaign of a cut block" in MODEL_ERRORS[CUT].words
+    assert "published" in MODEL_ERRORS[CUT].words or "Kaneko" in MODEL_ERRORS[CUT].words
 
 
 @pytest.mark.slow
 def test_the_blind_interval_of_the_granite_rock_holds_what_was_measured(
     said_of_granite,
 ):
-    """Seen: 17.9 cm/s (8.46 to 31.5) against 13.9 measured."""
+    """Seen in space: 11.7 cm/s (8.49 to 15.2) against 13.9 measured."""
     numbers = r"([\d.]+) blind \(([\d.]+) to ([\d.]+), without model error\), ([\d.]+) measured"
     median, low, high, measured = map(
         float, re.search(numbers, said_of_granite).groups()

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from rockfrag import InputError
+from rockfrag.fragility.model_error import BIASES
 from rockfrag.fragility.toppling_velocity import (
     LIMITS,
     MEASURES,
@@ -40,6 +41,17 @@ def test_medians_over_those_of_p58_are_flat_within_a_tenth(standing):
     medians, _ = toppling_velocity(0.321, heights, standing=standing)
     ratio = medians / np.array(list(P58.values()))
     assert np.abs(ratio / ratio.mean() - 1).max() < 0.1
+
+
+@pytest.mark.parametrize("standing", ["plane", "square"])
+def test_the_stated_bias_of_cut_blocks_is_that_of_the_surface(standing):
+    heights = np.array(list(P58))
+    medians, _ = toppling_velocity(0.321, heights, standing=standing)
+    published = kaneko(0.321, heights), np.array(list(P58.values()))
+    logs = [np.log(medians / each).mean() for each in published]
+    stated = BIASES[standing]
+    assert stated.bias == pytest.approx(np.mean(logs), abs=0.03)
+    assert stated.error > abs(logs[1] - logs[0]) / 2 - 0.01
 
 
 def test_both_forms_of_kaneko_meet_at_the_boundary_frequency():

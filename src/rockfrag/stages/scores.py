@@ -12,7 +12,6 @@ import sys
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -178,9 +177,11 @@ def simulated_in_space(
 
 def said_by_rules(tests: Tests, arrangements: Trials) -> Iterator[tuple[str, Floats]]:
     """Yield for each rule its probability of each test, a mean over arrangements."""
-    step = max(1, len(arrangements.table) // RULED)
-    chosen: list[dict[Any, Any]] = arrangements.table.iloc[::step].to_dict("records")
-    blocks = [body_of(tests.thing, guess).blocks[-1] for guess in chosen]
+    table = arrangements.table
+    blocks = []
+    for _, row in table.iloc[:: max(1, len(table) // RULED)].iterrows():
+        guess = {str(name): float(value) for name, value in row.items()}
+        blocks.append(body_of(tests.thing, guess).blocks[-1])
     motions = tests.ruled
     for name, rule in RULES.items():
         factors = np.array(
