@@ -12,6 +12,7 @@ import sys
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -177,9 +178,8 @@ def simulated_in_space(
 
 def said_by_rules(tests: Tests, arrangements: Trials) -> Iterator[tuple[str, Floats]]:
     """Yield for each rule its probability of each test, a mean over arrangements."""
-    chosen = arrangements.table.iloc[
-        :: max(1, len(arrangements.table) // RULED)
-    ].to_dict("records")
+    step = max(1, len(arrangements.table) // RULED)
+    chosen: list[dict[Any, Any]] = arrangements.table.iloc[::step].to_dict("records")
     blocks = [body_of(tests.thing, guess).blocks[-1] for guess in chosen]
     motions = tests.ruled
     for name, rule in RULES.items():
