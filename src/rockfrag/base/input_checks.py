@@ -79,12 +79,31 @@ def number_from_zero(name: str, value: object, unit: str = "") -> float:
 
 
 def positive_or_infinite(name: str, value: object, unit: str = "") -> float:
-    """Return a number above 0 or infinity, or say in one sentence why it is neither."""
+    """Return a number above 0 or infinity, or say in one sentence why it is neither.
+
+    Parameters
+    ----------
+    name, value : what it is called in a message, and what was given
+    unit : of the number, in words
+
+    Returns
+    -------
+    The number.
+    """
     return math.inf if value == math.inf else positive_number(name, value, unit)
 
 
 def ratio_to_one(name: str, value: object) -> float:
-    """Return a number from 0 to 1, or say in one sentence why it is none."""
+    """Return a number from 0 to 1, or say in one sentence why it is none.
+
+    Parameters
+    ----------
+    name, value : what it is called in a message, and what was given
+
+    Returns
+    -------
+    The number.
+    """
     return _checked(name, value, "a ratio from 0 to 1", lambda x: 0 <= x <= 1)
 
 
