@@ -486,7 +486,16 @@ def rocking_shapes(system: System) -> list[geometry.Shape]:
 
 
 def standing_centres(system: System) -> list[tuple[float, float]]:
-    """Centres of gravity of planar bodies as they stand on each other [m]."""
+    """Centres of gravity of planar bodies as they stand on each other.
+
+    Parameters
+    ----------
+    system : of planar bodies
+
+    Returns
+    -------
+    (x, z) of each body, from below [m].
+    """
     found = []
     for (angle, (x, y), body), shape in zip(_bases(system), system.shapes, strict=True):
         dx, dy = geometry.turned(body.ends[0].middle + shape.x, shape.y, angle)
