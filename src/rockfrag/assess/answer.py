@@ -285,7 +285,7 @@ def assess_with(
     request: Request, motions: MotionSet, *, brief: bool = False
 ) -> Assessment:
     """Assess one object with motions that are at hand; ``brief`` leaves out as :func:`assess` does."""
-    plan = plan_for(request, motions, brief=brief)
+    plan = plan_for(request, motions, brief=brief, holds=not brief)
     return assessed(request, plan, shake_all([request], plan)[0])
 
 

@@ -207,7 +207,7 @@ YES, NO = ("yes", "true", "1", "x"), ("no", "false", "0")
 
 MOST_OBJECTS = 10_000  # Rows of an inventory
 # Rows up to which what may hold an object is tried, which takes seconds for each
-MOST_HELD = 25
+MOST_HELD = 5
 
 
 @dataclass(frozen=True, eq=False)
