@@ -351,7 +351,8 @@ def _begin(p, w, start):
     told.leaning = 0
     told.hits[:] = 0
     told.largest_impulse[:] = told.largest_force[:] = 0.0
-    told.breaking_time[:] = told.stroke[:] = math.nan
+    told.breaking_time[:] = math.nan
+    told.stroke[:] = math.nan
     for k in range(p.count):
         w.whole[k] = p.is_bonded[k] * w.closed[k, 0] * w.closed[k, 1]
     if p.is_supported == 1:
