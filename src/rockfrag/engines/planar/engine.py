@@ -281,8 +281,7 @@ class ContactRun:
         speeds = history["v"][:, 3 * first : 3 * (first + count)]
         speeds = speeds.reshape(done, count, 3)
         normal, shear = history["normal"][:, above], history["shear"][:, above]
-        states, slips = _modes(history["mode"], first + count)
-        state, slides = states[:, above], slips[:, above]
+        state, slides = _modes(history["mode"], count, first)
         table = _contact_events(self.contact_events, first, count)
         meets = np.array(
             [np.abs(np.diff([0.0, *w])).max() for w in table["omega_before"]]
@@ -354,19 +353,18 @@ class ContactRun:
         )
 
 
-def _modes(numbers: Ints, blocks: int) -> tuple[Ints, Ints]:
-    """Contact states and signs of slip in the numbers that the kernels keep, each of shape (n, blocks)."""
-    digits = (numbers[:, np.newaxis] >> (4 * np.arange(blocks))) & 15
+def _modes(numbers: Ints, blocks: int, first: int = 0) -> tuple[Ints, Ints]:
+    """Contact states and signs of slip of bodies from the ``first`` on, each of shape (n, blocks)."""
+    places = 4 * np.arange(first, first + blocks)
+    digits = (numbers[:, np.newaxis] >> places) & 15
     return _STATES[digits & 3], (digits >> 2) - 1
 
 
 def _contact_events(found: NDArray[Any], first: int, blocks: int) -> pd.DataFrame:
     """Make the table of contact events of a response, of the bodies from the ``first`` on."""
     above = slice(first, first + blocks)
-    old_states, old_slips = _modes(found["before"], first + blocks)
-    new_states, new_slips = _modes(found["after"], first + blocks)
-    before, slid = old_states[:, above], old_slips[:, above]
-    after, slides = new_states[:, above], new_slips[:, above]
+    before, slid = _modes(found["before"], blocks, first)
+    after, slides = _modes(found["after"], blocks, first)
     slip = found["slip"][:, above]
     turns = slice(3 * first + 2, 3 * (first + blocks), 3)
     kinds = [
