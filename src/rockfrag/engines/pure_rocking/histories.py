@@ -146,10 +146,9 @@ class SingleRun:
             least_normal_force=np.array([demand["normal" + block] for block in blocks]),
             lost_contact=float(summary["lost_contact"]),
             unstable_distance=float(summary["unstable_distance"]),
-            **{
-                name: int(summary[name])
-                for name in ("impacts", "grazings", "given_way")
-            },
+            impacts=int(summary["impacts"]),
+            grazings=int(summary["grazings"]),
+            given_way=int(summary["given_way"]),
         )
 
     def _links(self, theta: Floats, state: NDArray[Any]) -> tuple[Floats, list[Link]]:
