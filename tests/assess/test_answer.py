@@ -22,6 +22,7 @@ from rockfrag.assess.findings import (
     details,
     details_of,
     estimate_of,
+    how_sure,
     lines_of,
     quality_flags,
 )
@@ -595,3 +596,15 @@ def test_the_page_says_it_all_without_false_digits_and_loads_nothing(
     for period in periods:
         digits = period.replace(" ", "").strip("0").replace(".", "")
         assert period == "beyond the hazard" or len(digits) <= 2, period
+
+
+def test_the_details_say_how_many_motions_rock_it_a_third_of_the_way(few):
+    found = assess_with(asked(width="30 cm", height="120 cm", pga="0.3 g"), few)
+    levels = found.outcomes.intensity_levels.levels
+    far = found.outcomes.fractions(state="rocks_a_third_of_the_way")
+    rocking = found.outcomes.fractions(state="rocks")
+    assert (far >= found.outcomes.fractions()).all()
+    assert (far <= rocking).all()
+    part = np.interp(0.3, levels, far)
+    said = " ".join(catalogue().lines(how_sure(found)))
+    assert ("a third of the way" in said) == (part > 0)

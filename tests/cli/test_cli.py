@@ -9,7 +9,7 @@ import pytest
 
 import rockfrag
 from rockfrag.cli.main import main, with_negative_sizes
-from rockfrag.cli.simulated import _friction
+from rockfrag.cli.simulated import _friction, contact_event_lines
 
 from ..workflow.conftest import write_example, write_synthetic
 
@@ -275,3 +275,10 @@ def test_a_table_of_tests_is_looked_into_before_it_is_called_right(tmp_path, cap
     table.write_text("\n".join(rows) + "\n")
     assert main(["check-config", str(path)]) == 2
     assert "'collapsed'" in capsys.readouterr().err
+
+
+def test_names_of_rocking_modes_are_explained():
+    row = {"time": 1.0, "kind": "opening", "from": "rest", "to": "4a"}
+    assert contact_event_lines([row], 5)[-1].startswith("1: both bodies rock")
+    column = {**row, "to": "0 1 0 -1"}
+    assert len(contact_event_lines([column], 5)) == 2

@@ -5,7 +5,11 @@ import pytest
 from rockfrag.assess.inventory import read_inventory
 from rockfrag.base.errors import InputError
 from rockfrag.cli.main import main
-from rockfrag.collections.exported_table import inventory_table, read_export
+from rockfrag.collections.exported_table import (
+    inventory_table,
+    is_export,
+    read_export,
+)
 
 EXPORT = """\
 Title,Artist,Medium,Dimensions,ObjectID
@@ -79,3 +83,26 @@ def test_what_cannot_be_read_is_said_with_its_line(tmp_path, text, says):
     path.write_text(text, encoding="utf-8")
     with pytest.raises(InputError, match=says):
         read_export(path)
+
+
+def test_assess_and_after_read_a_museums_table_as_it_was_exported(
+    export, tmp_path, own_records, capsys
+):
+    shaken = ["--record", str(own_records / "catalogue.csv"), "--pga", "0.3 g"]
+    shaken += ["--output", str(tmp_path / "out")]
+    assert main(["assess", str(export), *shaken]) == 2
+    assert "line 6, Untitled: which length is the height" in capsys.readouterr().err
+    assert main(["assess", str(export), *shaken, "--keep-going"]) == 0
+    assert "Vase, two handles" in capsys.readouterr().out
+    assert main(["after", str(export), *shaken, "--order", "HWD"]) == 0
+    assert capsys.readouterr().out.count("rocked and stands") == 5
+
+
+def test_an_inventory_is_no_export_and_an_export_is_no_inventory(export, tmp_path):
+    assert is_export(export)
+    path = tmp_path / "inventory.csv"
+    path.write_text("name,width,height\na,30 cm,90 cm\n")
+    assert not is_export(path)
+    path.write_text("Title,Height (cm),Width (cm)\na,90,30\n")
+    assert is_export(path)
+    assert not is_export(tmp_path / "nowhere.csv")

@@ -166,6 +166,10 @@ MAGNITUDES = (
     "Resultant",
     "Foo",
 )
+PEAKS = (
+    *("PGA = {} {}", "Peak acceleration: {} {}", "Max. acc. {} {} at 0.2 s"),
+    *("Aceleración máxima: {} {}", "最大加速度: {} {}", "Maximum value ({1}): {0}"),
+)
 INTERVALS = (0.005, 0.01, 0.02, 0.004, 0.0025, 0.002)
 
 
@@ -185,6 +189,7 @@ class Draft:
     # whether all that must be known stands there, in words that are known and meant one way
     is_plain: bool = True
     has_another: bool = False  # whether a column is no acceleration
+    contradiction: str = ""  # what is stated in two ways that exclude each other
 
     def column(
         self, title: str, unit: str, numbers: Iterable[float], form: str
@@ -226,6 +231,8 @@ def draw(rng: random.Random) -> tuple[bytes, Draft]:
         title = scale.title(words, rng)
         form = rng.choice(("{:.7e}", "{:.9g}"))
         draft.column(title, scale.writing, wave * scale.per_m_s2, form)
+    if rng.random() < 0.15:
+        _add_peak(draft)
     if k == 3 and rng.random() < 0.3:
         title = scale.title(rng.choice(MAGNITUDES), rng)
         length = np.sqrt(((draft.truth * scale.per_m_s2) ** 2).sum(axis=0))
@@ -233,6 +240,20 @@ def draw(rng: random.Random) -> tuple[bytes, Draft]:
     elif rng.random() < 0.3:
         _add_another(draft)
     return _written(draft, scale), draft
+
+
+def _add_peak(draft: Draft) -> None:
+    """Say the largest peak in words, in a unit of its own, or another one."""
+    rng, unit = draft.rng, draft.rng.choice(("g", "gal", "m/s2", "cm/s/s"))
+    peak = float(np.abs(draft.truth).max()) / UNITS[unit]
+    is_true = rng.random() < 0.6
+    words = rng.choice(PEAKS).format(f"{peak if is_true else 3 * peak:.6g}", unit)
+    draft.header.append(words)
+    # the unit of the samples is not always known, and of several channels it may be another's
+    if not is_true:
+        draft.is_plain = False
+        if len(draft.truth) == 1:
+            draft.contradiction = "another peak"
 
 
 def _waves(rng: random.Random, k: int, count: int) -> NDArray[np.float64]:
@@ -305,10 +326,14 @@ def _add_times(draft: Draft) -> None:
         # the user says something else
         draft.asked["dt"] = rng.choice((2 * dt, dt / 2))
         draft.is_plain = False
+        if words is not UNHEARD:
+            draft.contradiction = "another interval of the user"
     if rng.random() < 0.2:
         off = rng.choice((0, 0, 7))
         draft.header.append(f"{words.count}: {numbers.size + off}")
         draft.is_plain = draft.is_plain and not off
+        if off and words is not UNHEARD:
+            draft.contradiction = "another count"
 
 
 def _add_another(draft: Draft) -> None:
@@ -355,8 +380,11 @@ def _written(draft: Draft, scale: Scale) -> bytes:
     if rng.random() < 0.2:
         lines = [f"# {line}" for line in lines]
     text = "\n".join([*lines, *rows]) + "\n"
+    encoding = rng.choice(draft.language.encodings)
+    if "м" in scale.writing and "cp1251" not in draft.language.encodings:
+        encoding = "utf-8"  # nobody writes a Russian unit in a Japanese encoding
     try:
-        return text.encode(rng.choice(draft.language.encodings))
+        return text.encode(encoding)
     except UnicodeEncodeError:
         return text.encode()
 
@@ -377,6 +405,8 @@ def wrong_in(path: Path, draft: Draft) -> str:
         ]
         if min(off) > 1e-4 * np.abs(draft.truth).max():
             return f"{channel.component!r} is none of the components"
+        if draft.contradiction:
+            return f"{draft.contradiction} is passed over"
         is_third = len(draft.truth) == 3 and int(np.argmin(off)) == 2
         if is_named(channel.component) and is_vertical(channel.component) != is_third:
             return f"{channel.component!r} is taken for another direction"

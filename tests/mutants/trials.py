@@ -180,6 +180,9 @@ def _run_here(
     watch = _Watch()
     options = ["-q", "-p", "no:cacheprovider", "-m", "not slow", "--hypothesis-seed=1"]
     options += ["--continue-on-collection-errors"]
+    if plain:
+        # threads of their own know nothing of numpy.seterr
+        options += ["-W", "ignore::RuntimeWarning"]
     stop = ["-x"] if mutant else []
     status = pytest.main([*options, *stop, *names], plugins=[watch])
     failed = next(iter(watch.failed), "")

@@ -60,6 +60,9 @@ def test_the_gallery_shows_a_picture_beside_each_script(site):
         assert re.search(rf"_images/sphx_glr_{script.stem}_001\S*\.png", page), (
             script.name
         )
+        # once, and nothing that a script did not print
+        assert f"sphx_glr_{script.stem}_002" not in page, script.name
+        assert "object at 0x" not in page, script.name
         assert "rockfrag" in page
 
 

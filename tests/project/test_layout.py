@@ -17,7 +17,7 @@ SUBPACKAGES = (
     *("records", "motions", "system", "laws", "outcomes", "config", "building"),
     *("engines", "simulation", "web", "shaketable"),
     *("fragility", "campaign", "effects"),
-    *("study", "stages", "report", "assess", "survival", "cli"),
+    *("study", "stages", "report", "assess", "aftermath", "survival", "cli"),
 )
 """From left to right; a room imports from those before it."""
 

@@ -58,7 +58,7 @@ def test_the_recipe_of_conda_asks_for_what_the_package_asks_for():
     text = path.read_text(encoding="utf-8")
     assert f'set version = "{rockfrag.__version__}"' in text
     lines = [line for line in text.splitlines() if not line.startswith(("{%", "#"))]
-    recipe = yaml.safe_load("\n".join(lines).replace("{{", "'").replace("}}", "'"))
+    recipe = yaml.safe_load("\n".join(lines).replace("{{", "").replace("}}", ""))
     python = f"python {PROJECT['project']['requires-python']}"
     asked = {python}
     for each in PROJECT["project"]["dependencies"]:

@@ -85,6 +85,7 @@ def test_other_numbers_are_no_count(write, words):
         *("Vitesse (m/s)", "Скорость, см/с", "速度(cm/s)", "Desplazamiento (cm)"),
         *("Spostamento in mm", "変位 (cm)", "Response spectrum", "Fourier amplitude"),
         *("Force (kN)", "Pressure [kPa]", "Rotation (rad)", "Hız (cm/s)"),
+        *("Kiihtyvyys (mV)", "Kiihtyvyys [kN*1000]", "Data (mm)", "Record (cm/s)"),
     ],
 )  # fmt: skip
 def test_a_title_of_another_quantity_is_refused_whatever_the_user_says(write, words):
@@ -96,13 +97,18 @@ def test_a_title_of_another_quantity_is_refused_whatever_the_user_says(write, wo
 @pytest.mark.parametrize(
     "words",
     [
+        *("spectrum-compatible motion", "Spectrally matched record", "Drift corrected"),
+        *("Rupture velocity 2.5 (km/s)", "Distance 12 (km)", "Sampling rate 100 (Hz)"),
         *("Shear wave velocity: 300 m/s", "Rupture velocity 2.5 km/s", "Station Speed"),
         *("Acceleration and velocity of test 3", "Force balance sensor, test of a wall"),
     ],
 )  # fmt: skip
 def test_remarks_on_other_quantities_do_not_refuse_a_record(write, words):
-    path = write(f"{words}\nAcceleration in m/s2\ndt = 0.01", WAVE)
+    path = write(f"{words}\nUnits: m/s2\ndt = 0.01", WAVE)
     assert read_motion(path).pga == pytest.approx(1.9, rel=1e-6)
+    if " (" in words:
+        path = write(f"{words}\ndt = 0.01", WAVE)
+        assert read_motion(path, unit="m/s2").pga == pytest.approx(1.9, rel=1e-6)
 
 
 FACTORS = (
@@ -136,7 +142,7 @@ def test_a_part_of_a_unit_is_a_unit(write, words):
     "unit",
     [
         *("thousandths of g", "promille g", "10E-3 g", "fps2", "ips2", "normalized"),
-        *("V/g", "arb. u.", "sixths of g", "m/s2 RMS"),
+        *("0.001 V", "0.5 N", "V/g", "arb. u.", "sixths of g", "m/s2 RMS"),
     ],
 )  # fmt: skip
 def test_a_unit_that_other_words_change_is_no_unit(write, unit):
@@ -144,6 +150,13 @@ def test_a_unit_that_other_words_change_is_no_unit(write, unit):
     for given in (None, "m/s2", "g"):
         with pytest.raises(InputError):
             read_motion(path, unit=given)
+
+
+def test_a_title_whose_letters_cannot_be_read_states_no_unit(write):
+    path = write("Time (s);NS [см/с2]", TIMES, WAVE, mark=";")
+    path.write_bytes(path.read_text(encoding="utf-8").encode("cp932"))
+    with pytest.raises(InputError, match="cannot be read; save the file as UTF-8"):
+        read_motion(path, unit="g")
 
 
 def test_an_unknown_unit_of_an_unknown_word_above_one_column_is_stated(write):
@@ -185,6 +198,12 @@ def test_a_peak_in_words_is_held_against_the_samples(write, words):
 def test_peaks_of_sensors_and_targets_are_not_those_of_the_samples(write, words):
     path = write(f"{words}\ndt = 0.01\nAcceleration in m/s2", WAVE)
     assert read_motion(path).pga == pytest.approx(1.9, rel=1e-6)
+
+
+def test_a_peak_is_held_against_samples_in_a_part_of_a_unit(write):
+    titles = "PGA = 3.80 m/s2\nTime (s);Acc (10^-3 dm/s2)"
+    with pytest.raises(InputError, match=r"states a peak of 3\.8 m/s2"):
+        read_motion(write(titles, TIMES, 1e4 * WAVE, mark=";"))
 
 
 def test_peaks_of_several_components_fit_in_any_order(write):

@@ -17,6 +17,7 @@ from rockfrag.report.findings import (
     resurrections_found,
     strength_found,
 )
+from rockfrag.report.sections.pedestal import level_in_words
 
 from ..case_tables import case_tables
 
@@ -189,3 +190,10 @@ def test_motions_as_recorded_say_what_overturns_and_which_outcomes_are_sensitive
     found = recorded_found(table.assign(overturned=overturned))
     assert found.headline == f"At recorded strength {headline}"
     assert sure in found.text
+
+
+def test_a_slash_parts_floor_and_object_and_stays_in_the_name_of_an_earthquake():
+    name = "Loma Prieta, 10/18/1989"
+    assert level_in_words(name, "earthquake") == name
+    assert level_in_words("hall/vase", "cell") == "hall, vase"
+    assert level_in_words("all", "whole") == "all pairs"

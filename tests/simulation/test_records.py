@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 
 from rockfrag import Block, simulate
-from rockfrag.assess.rules import RULES, asce_43, static
 from rockfrag.base.errors import InputError
 from rockfrag.motions import half_sine, scale_to_pga
 from rockfrag.records.motion import GroundMotion, Motion
 from rockfrag.simulation.ensemble import overturns
 from rockfrag.simulation.rocking_spectra import rocking_spectrum, uniform_block
+from rockfrag.simulation.rules_of_thumb import RULES, asce_43, static
 from rockfrag.simulation.thresholds import worst_direction
 
 from ..conftest import shaking

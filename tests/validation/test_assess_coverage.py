@@ -25,7 +25,6 @@ from rockfrag.assess.outcomes import ObjectOutcomes, make_intensity_levels
 from rockfrag.assess.place import Place
 from rockfrag.assess.request import Request, make_request
 from rockfrag.assess.risk import Estimate, amplitude_target, fraction_target
-from rockfrag.assess.rules import asce_43, static
 from rockfrag.assess.scan import make_scan
 from rockfrag.assess.sources import SPACE
 from rockfrag.assess.standing import Standing
@@ -36,6 +35,7 @@ from rockfrag.fragility.model_error import CUT, MODEL_ERRORS, SCAN
 from rockfrag.motions import scale_to_pga
 from rockfrag.motions.processing import bandpass
 from rockfrag.records.motion import Motion
+from rockfrag.simulation.rules_of_thumb import asce_43, static
 from rockfrag.system.mesh import Shape
 
 EARTHQUAKES, OF_A_SET, COMPONENTS, COUNT = 240, 14, 2, 600

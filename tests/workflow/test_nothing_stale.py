@@ -1,16 +1,16 @@
 """Results follow the bytes of the user's files, whatever the times of these are."""
 
+import io
 import os
 import random
 import re
 import shutil
 import subprocess
-import sys
 import tarfile
 import time
 import zipfile
 from collections.abc import Callable
-from contextlib import suppress
+from contextlib import redirect_stderr, redirect_stdout, suppress
 from pathlib import Path
 
 import pytest
@@ -104,17 +104,14 @@ def reruns(folder: Path) -> set[str]:
 def _planned(folder: Path) -> set[str]:
     from snakemake.cli import main
 
-    said = folder.parent / "planned.txt"
-    with said.open("wb") as file:
-        os.dup2(file.fileno(), 1)
-        os.dup2(file.fileno(), 2)
+    said = io.StringIO()
     study = ["--directory", str(folder), "--configfile", str(folder / "study.yaml")]
-    try:
-        main(["--snakefile", SNAKEFILE, *study, "--dry-run"])
-    except SystemExit as end:
-        assert not end.code, said.read_text()
-    sys.stdout.flush()
-    planned = re.findall(r"^(\w+) +(\d+)$", said.read_text(), re.MULTILINE)
+    with redirect_stdout(said), redirect_stderr(io.StringIO()):
+        try:
+            main(["--snakefile", SNAKEFILE, *study, "--dry-run"])
+        except SystemExit as end:
+            assert not end.code, said.getvalue()
+    planned = re.findall(r"^(\w+) +(\d+)$", said.getvalue(), re.MULTILINE)
     return {name for name, _ in planned if name not in ("all", "total")}
 
 

@@ -40,7 +40,14 @@ rule motions:
         stage="rockfrag.stages.motions:run",
         study=study_file,
         settings=settings(
-            *("motions", "building", "write_motions", "keep_going", "vertical", "amplitudes"),
+            *(
+                "motions",
+                "building",
+                "write_motions",
+                "keep_going",
+                "vertical",
+                "amplitudes",
+            ),
             files=STUDY.motion_files,
         ),
     script:

@@ -1,7 +1,7 @@
 """The answer: one object at one place, assessed."""
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
@@ -18,6 +18,7 @@ from rockfrag.assess.core.estimates import fill_sides, rate_of
 from rockfrag.assess.core.hazards import spread_of_quantiles
 from rockfrag.assess.core.likelihood import Likelihood, likelihood_of
 from rockfrag.assess.hazard.curve import PGA, PGV, HazardCurve
+from rockfrag.assess.holding import Trial, try_holders
 from rockfrag.assess.mitigations import Mitigation, compare
 from rockfrag.assess.motions import MotionSet, motion_set
 from rockfrag.assess.outcomes import Directions, ObjectOutcomes, Shaking
@@ -36,7 +37,7 @@ from rockfrag.engines.spatial._integrate import integrate_scales
 from rockfrag.fragility.estimators import Fragility, fragility_of
 from rockfrag.fragility.model_error import MODEL_ERRORS
 from rockfrag.motions.intensity import IntensityMeasure
-from rockfrag.outcomes.limit_states import ROCKS
+from rockfrag.outcomes.limit_states import OVERTURNS, ROCKS
 from rockfrag.runtime.machine_code import is_kept
 from rockfrag.system.blocks import Body
 from rockfrag.words.findings import Finding, finding, two
@@ -173,7 +174,7 @@ class Assessment:
         if self.hazard is not None:
             return risk.risk_target(self.hazard, self.request.years)
         if self.level is not None:
-            return risk.fraction_target(self.level.value)
+            return _fraction_at(self.level)
         return risk.amplitude_target(0.5)
 
     @cached_property
@@ -204,6 +205,8 @@ class Plan:
     brief: bool
     # Whether changes are compared by few motions: briefly, of columns, in space
     compares_few: bool
+    # Whether what may hold objects is tried
+    holds: bool = True
 
     @property
     def hazard(self) -> HazardCurve | None:
@@ -227,6 +230,8 @@ class Shaken:
     changed: Mapping[Finding, ObjectOutcomes]
     # Mitigations that give one of the arrangements, and its name
     alike: Mapping[Finding, str]
+    # What may hold it, tried
+    trials: Sequence[Trial] = ()
     # Whether the object slides off what it stands on, on the pad that is tried
     slides_off: bool = False
     # Outcomes with less and more spread of velocities at a given level; None where that is not open
@@ -280,12 +285,17 @@ def assess_with(
     request: Request, motions: MotionSet, *, brief: bool = False
 ) -> Assessment:
     """Assess one object with motions that are at hand; ``brief`` leaves out as :func:`assess` does."""
-    plan = plan_for(request, motions, brief=brief)
+    plan = plan_for(request, motions, brief=brief, holds=not brief)
     return assessed(request, plan, shake_all([request], plan)[0])
 
 
-def plan_for(request: Request, motions: MotionSet, *, brief: bool) -> Plan:
-    """Return under which levels of which motions an object is shaken; ``brief`` takes few motions and levels."""
+def plan_for(
+    request: Request, motions: MotionSet, *, brief: bool, holds: bool = True
+) -> Plan:
+    """Return under which levels of which motions an object is shaken.
+
+    ``brief`` takes few motions and levels; ``holds`` tries what may hold it.
+    """
     objects = request.objects
     if objects.from_all_sides or (objects.in_space and motions.pairs):
         motions = motions.with_both_components()
@@ -302,7 +312,7 @@ def plan_for(request: Request, motions: MotionSet, *, brief: bool) -> Plan:
     least = outcomes.FEWEST_LEVELS if coarse else outcomes.FEW_LEVELS
     shaking = outcomes.make_intensity_levels(motions, measure, asked, count)
     compared = outcomes.make_intensity_levels(fewer, measure, asked, least)
-    return Plan(curves, level, shaking, compared, brief, compares_few=few)
+    return Plan(curves, level, shaking, compared, brief, compares_few=few, holds=holds)
 
 
 def shake_all(requests: Sequence[Request], plan: Plan) -> list[Shaken]:
@@ -346,8 +356,22 @@ def shake_all(requests: Sequence[Request], plan: Plan) -> list[Shaken]:
         planar = None
         if plan.shaking.motions.both and not plan.brief:
             (planar,) = plan.shaking.outcomes_of([object_.in_plane()])
-        found.append(Shaken(way, sides, before, planar, change, known, slides_off))
+        trials = _trials(object_, plan)
+        shaken = Shaken(way, sides, before, planar, change, known, trials, slides_off)
+        found.append(shaken)
     return found
+
+
+def _trials(objects: Standing, plan: Plan) -> list[Trial]:
+    """What may hold an object, tried under few motions at few levels, as each simulation takes milliseconds."""
+    if not plan.holds:
+        return []
+    motions = plan.fewer.motions if plan.compares_few else plan.fewer.motions.thinned()
+    asked = [plan.level.value] if plan.level else []
+    few = outcomes.make_intensity_levels(
+        motions, plan.shaking.measure, asked, outcomes.FEWEST_LEVELS
+    )
+    return try_holders(objects, plan.shaking, few, plan.level)
 
 
 _AS_IT_STANDS = finding("as_it_stands")
@@ -377,12 +401,13 @@ def assessed(request: Request, plan: Plan, shaken: Shaken) -> Assessment:
     hazard = plan.hazard
     measure = plan.shaking.measure
     counted = next(iter(shaken.arrangements.values()))
-    target = risk.fraction_target(level.value) if level else risk.amplitude_target(0.5)
+    target = _fraction_at(level) if level else risk.amplitude_target(0.5)
     if hazard:
         target = risk.risk_target(hazard, request.years)
     # rocking starts where the measure passes a number: a peak acceleration of what it stands on
     on_ground = request.place.shakes_as_ground or request.records.on_floor
     exact = measure == PGA and on_ground and not motions.both
+    exact = exact and not objects.under.holders
     conversion = None
     if level:
         site = Site(request.records, level, plan.curves)
@@ -393,8 +418,8 @@ def assessed(request: Request, plan: Plan, shaken: Shaken) -> Assessment:
     compared = replace(evidence, members=FEW_MEMBERS)
     probability, rocking, fraction, decision = None, None, None, None
     if level:
-        rocking = evidence.estimate(risk.fraction_target(level.value, state=ROCKS))
-        fraction = evidence.estimate(risk.fraction_target(level.value))
+        rocking = evidence.estimate(_fraction_at(level, state=ROCKS))
+        fraction = evidence.estimate(_fraction_at(level))
     if hazard:
         probability = evidence.estimate(risk.risk_target(hazard, request.years))
     main = probability or fraction
@@ -404,7 +429,7 @@ def assessed(request: Request, plan: Plan, shaken: Shaken) -> Assessment:
         name: evidence.mean(target, arrangement)
         for name, arrangement in arrangements.items()
     }
-    helps = _mitigations(target, compared, shaken)
+    helps = _mitigations(target, compared, shaken, request.costs)
     lifts_from = objects.least_uplift if exact else counted.lifts_from().min()
     return Assessment(
         request=request,
@@ -430,6 +455,12 @@ def assessed(request: Request, plan: Plan, shaken: Shaken) -> Assessment:
         mitigations=helps,
         spreads={change.name: change.spread for change in shaken.moved},
     )
+
+
+def _fraction_at(level: Level, *, state: str = OVERTURNS) -> risk.Target:
+    """The fraction of motions at a level, over all that it may be where it is not known exactly."""
+    spread = level.spread.value if level.spread else 0.0
+    return risk.fraction_target(level.value, state=state, spread=spread)
 
 
 def _evidence(
@@ -492,7 +523,21 @@ def _at_site(shaken: Shaken, plan: Plan, conversion: Conversion | None) -> Shake
         changed={
             name: compared.at_site(changed) for name, changed in shaken.changed.items()
         },
+        trials=[trial.turned(_at_site_of(conversion)) for trial in shaken.trials],
     )
+
+
+def _at_site_of(
+    conversion: Conversion,
+) -> Callable[[ObjectOutcomes], ObjectOutcomes]:
+    """Turn outcomes under any motions of a set into those with the velocity of the site."""
+
+    def turn(found: ObjectOutcomes) -> ObjectOutcomes:
+        shaking = found.intensity_levels
+        assert isinstance(shaking, Shaking)
+        return conversion.of(shaking.motions).at_site(found)
+
+    return turn
 
 
 def _governing(request: Request, motions: MotionSet) -> tuple[HazardCurve, ...]:
@@ -577,7 +622,10 @@ def _of_quantiles(now: ObjectOutcomes, hazard: HazardCurve) -> dict[str, float]:
 
 
 def _mitigations(
-    target: risk.Target, evidence: risk.Evidence, shaken: Shaken
+    target: risk.Target,
+    evidence: risk.Evidence,
+    shaken: Shaken,
+    costs: Mapping[str, float],
 ) -> tuple[Mitigation, ...]:
     """What each change does, the most helpful first."""
     ways = shaken.arrangements
@@ -586,6 +634,10 @@ def _mitigations(
         *compare(target, evidence, shaken.before, shaken.changed),
         *compare(target, evidence, evidence.outcomes, known),
     ]
+    for trial in shaken.trials:
+        cost = costs.get(trial.key, math.nan)
+        tried = compare(target, evidence, trial.before, {trial.change: trial.after})
+        found += [replace(each, cost=cost) for each in tried]
     if shaken.slides_off:
         pads = (Text.PAD, Text.PAD_SLIDES)
         found = [

@@ -132,11 +132,31 @@ class SiteVelocity:
     spread: float  # Its standard deviation from one earthquake to the next [-]
     # Its mean, the same at all levels, where no curves are known
     constant: float = math.nan
+    # By how much it grows with ln of the measure [-], and the level at which it is ``constant``
+    slope: float = 0.0
+    at: float = 1.0
     # Hazard curves of the measure and of PGV, with which it agrees; the spread at a given level is then not known
     curves: tuple[HazardCurve, ...] = ()
     # Published relation for the earthquakes of the site, and its line in ln level, shape (1, 2); None without one
     published: PublishedVelocity | None = None
     line: Floats | None = None
+
+    @classmethod
+    def given(cls, level: Level, between_earthquakes: float) -> "SiteVelocity":
+        """PGV that is given with a level; of levels that are not known exactly that which comes with each.
+
+        Of two normal logarithms the one has, where the other is known, a mean that is linear in it and a smaller
+        spread.
+        """
+        ratio = math.log(level.pgv / level.value / VELOCITY_PER_G)
+        about = level.spread
+        if about is None:
+            return cls(between_earthquakes, ratio)
+        slope = 0.0
+        if about.value > 0:
+            slope = about.correlation * about.pgv / about.value - 1.0
+        left = about.pgv * math.sqrt(1.0 - about.correlation**2)
+        return cls(math.hypot(between_earthquakes, left), ratio, slope, level.value)
 
     def log_ratio(self, levels: Floats) -> Floats:
         """Mean of ln ratio at levels of the measure, of their shape.
@@ -150,7 +170,7 @@ class SiteVelocity:
             fill_wanted(levels, self.line, wanted)
             return wanted
         if not self.curves:
-            return np.full(levels.shape, self.constant)
+            return self.constant + self.slope * np.log(levels / self.at)
         first, velocity = self.curves
         rates = first.rate(levels)
         logs = [
@@ -330,8 +350,7 @@ def _site_velocity(
         return SiteVelocity(relation.scatter, curves=curves), 0.0
     if math.isfinite(level.pgv):
         # of a hazard curve other levels count too, with velocities of their own
-        ratio = math.log(level.pgv / level.value / VELOCITY_PER_G)
-        return SiteVelocity(own if curves else 0.0, ratio), 0.0
+        return SiteVelocity.given(level, own if curves else 0.0), 0.0
     if math.isfinite(level.sa_1s):
         spectrum = VelocityBySpectrum.of(motions, measure)
         within = math.sqrt(1 - OF_THE_SITE) * spectrum.scatter

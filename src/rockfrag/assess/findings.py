@@ -12,7 +12,7 @@ from rockfrag.assess.core.decisions import Action
 from rockfrag.assess.core.likelihood import likelihood_of
 from rockfrag.assess.mitigations import Mitigation
 from rockfrag.assess.motions import FEWEST_EARTHQUAKES
-from rockfrag.assess.outcomes import LARGEST_FACTOR
+from rockfrag.assess.outcomes import LARGEST_FACTOR, STEPS, fraction_at
 from rockfrag.assess.risk import Estimate
 from rockfrag.assess.sources import SOURCES, parts_of
 from rockfrag.assess.texts import Text
@@ -157,7 +157,9 @@ def how_far(found: Assessment) -> Finding:
     """The level at which half of the motions topple it."""
     half = found.amplitudes[0.5]
     if not math.isfinite(half.value):
-        return finding(Text.HOW_FAR_BEYOND, half)
+        strongest = float(found.outcomes.intensity_levels.levels[-1])
+        most = finding(Text.QUANTITY, value=two(strongest), unit=found.measure.unit)
+        return finding(Text.HOW_FAR_BEYOND, half, most=most)
     unit, lower = found.measure.unit, two(half.lower)
     middle = finding(Text.QUANTITY, value=two(half.value), unit=unit)
     if not math.isfinite(half.upper):
@@ -341,12 +343,14 @@ def _grows(found: Assessment) -> bool:
 def moves(found: Assessment) -> list[Finding]:
     """How the object moves: in one plane or in space."""
     objects = found.request.objects
+    there = [holder.called() for holder in objects.under.holders]
+    held = [finding(Text.HELD_AS_IT_STANDS, holders=listed(there))] if there else []
     if not found.motions.both:
-        return [objects.plane]
+        return [objects.plane, *held]
     said = [finding(objects.in_space_text)]
     if found.planar is not None:
         said.append(finding(Text.IN_ONE_PLANE, value=value_of(found, found.planar)))
-    return said
+    return [*said, *held]
 
 
 def helps(found: Assessment) -> list[Finding]:
@@ -438,11 +442,22 @@ def how_sure(found: Assessment) -> list[Finding]:
     named, more = short[:MOST_ASSUMPTIONS], len(short[MOST_ASSUMPTIONS:])
     said = [finding(Text.SENTENCE, words=found.motions.about_set), *uncertainty(found)]
     said += worth_measuring(found)
+    said += short_of_a_fall(found)
     if named:
         said.append(finding(Text.ASSUMED, assumptions=listed(named)))
     if more:
         said.append(finding(Text.MORE_ASSUMED, n=more))
     return said
+
+
+def short_of_a_fall(found: Assessment) -> list[Finding]:
+    """How many motions rock it so far that its edges chip and it steps aside, those that topple it included."""
+    if found.level is None or STEPS not in found.outcomes.others:
+        return []
+    levels = found.outcomes.intensity_levels.levels
+    parts = found.outcomes.fractions(state=STEPS)
+    part = fraction_at(found.level.value, levels, parts)
+    return [finding(Text.SHORT_OF_A_FALL, part=percent(part))] if part > 0 else []
 
 
 def all_assumed(found: Assessment) -> list[Assumption]:

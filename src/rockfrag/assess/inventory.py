@@ -34,6 +34,11 @@ from rockfrag.base.arrays import Flags, Floats
 from rockfrag.base.errors import InputError
 from rockfrag.base.files import check_name, file_name
 from rockfrag.base.tabular import Row, read_rows
+from rockfrag.collections.exported_table import (
+    inventory_cells,
+    is_export,
+    read_export,
+)
 from rockfrag.fragility.model_error import CUT, MODEL_ERRORS
 from rockfrag.words.catalogue import FIRST, catalogue
 from rockfrag.words.findings import (
@@ -187,16 +192,22 @@ def _correlation(fell: Flags, allowed: Flags, per_level: Floats) -> Floats:
 
 
 SIZES = ("width_m", "height_m", "depth_m", "mass_kg", "cg_height_m")
+HELD_BY = ("wall_m", "isolator_m")  # Lengths of what holds it
 PEDESTAL = (
     "pedestal_width_m",
     "pedestal_height_m",
     "pedestal_depth_m",
     "pedestal_mass_kg",
 )
+COORDINATES = {"latitude": 90, "longitude": 360}
+"""Columns of coordinates [degrees], with the largest that they hold."""
+
 # What says whether a base is round
 YES, NO = ("yes", "true", "1", "x"), ("no", "false", "0")
 
 MOST_OBJECTS = 10_000  # Rows of an inventory
+# Rows up to which what may hold an object is tried, which takes seconds for each
+MOST_HELD = 5
 
 
 @dataclass(frozen=True, eq=False)
@@ -225,25 +236,27 @@ def assess_inventory(
     records: str | Path = RECORDS,
     *,
     keep_going: bool = False,
+    order: str = "",
 ) -> Inventory:
     """Assess every object of a table, whose columns ``docs/assess.md`` lists.
 
     Parameters
     ----------
-    path : of the table
+    path : of the table, which may be a museum's
     shared : what holds for all, with the keys of ``statue.yaml``
     records : folder of fetched records
     keep_going : whether :class:`FaultyRows` is raised only if no row can be used
+    order : of lengths that a museum's table does not name, such as ``HWD``
 
     Returns
     -------
     The objects with their answers, and what is wrong with the other rows.
     """
-    requests, faults = read_inventory(path, shared or {})
+    requests, faults = read_inventory(path, shared or {}, order=order)
     if faults and not (keep_going and requests):
         raise FaultyRows(faults)
     motions = motion_set(requests[0].records, requests[0].place, Path(records))
-    found = _all_assessed(requests, motions)
+    found = assess_each(requests, motions)
     joint = joint_risk(found)
     losses: dict[Any, float] = {}
     if joint is not None:
@@ -259,36 +272,71 @@ def assess_inventory(
     return Inventory(found, motions, joint, faults)
 
 
-def _all_assessed(requests: Sequence[Request], motions: MotionSet) -> list[Assessment]:
-    """Assess objects, those in places that shake alike at once."""
-    groups: dict[object, list[Request]] = {}
-    for request in requests:
-        about = request.objects
+def assess_each(requests: Sequence[Request], motions: MotionSet) -> list[Assessment]:
+    """Assess objects, those in places that shake alike at once, each at its own level.
+
+    Parameters
+    ----------
+    requests, motions : the objects, and the ground motions by which they are shaken
+
+    Returns
+    -------
+    An assessment each, in their order.
+    """
+    groups: dict[object, list[int]] = {}
+    for i, request in enumerate(requests):
+        about, level = request.objects, request.level
         kind = request.place.key, type(about), about.in_space, about.many
         # of several curves the one that counts may differ from object to object
         alone = request.name if len(request.hazard) > 2 else ""
-        groups.setdefault((*kind, alone), []).append(request)
-    found = {}
-    for same in groups.values():
-        plan = plan_for(same[0], motions.at(same[0].place), brief=True)
-        for request, shaken in zip(same, shake_all(same, plan), strict=True):
-            found[request.name] = assessed(request, plan, shaken)
-    return [found[request.name] for request in requests]
+        measure = level and level.measure
+        groups.setdefault((*kind, alone, measure), []).append(i)
+    found: dict[int, Assessment] = {}
+    holds = len(requests) <= MOST_HELD
+    for rows in groups.values():
+        same = [requests[i] for i in rows]
+        plan = plan_for(same[0], motions.at(same[0].place), brief=True, holds=holds)
+        for i, request, shaken in zip(rows, same, shake_all(same, plan), strict=True):
+            # a level between those that were tried lies between their fractions
+            own = plan if request.level is None else replace(plan, level=request.level)
+            found[i] = assessed(request, own, shaken)
+    return [found[i] for i in range(len(requests))]
 
 
 def read_inventory(
-    path: str | os.PathLike[str], shared: Mapping[str, Any]
+    path: str | os.PathLike[str],
+    shared: Mapping[str, Any],
+    *,
+    also: Sequence[str] = (),
+    order: str = "",
+    cells: dict[str, Mapping[str, str]] | None = None,
 ) -> tuple[list[Request], list[str]]:
-    """Read the objects of a table: those that can be used, and what is wrong with the others."""
+    """Read the objects of a table: those that can be used, and what is wrong with the others.
+
+    Parameters
+    ----------
+    path : the table
+    shared : keys of ``statue.yaml`` that hold for all
+    also : columns that it may have beside those of an inventory
+    order : of lengths that a museum's table does not name, such as ``HWD``
+    cells : takes the cells of each row, by the name of its object
+
+    Returns
+    -------
+    The objects, and a sentence on each row that was left out.
+    """
     if "friction" in shared:
         raise InputError("key friction: sliding takes long; assess the object alone.")
-    needed = ["name", *SIZES[:2]]
     faults: list[str] = []
-    others, quantities = [*SIZES[2:], *PEDESTAL, *OTHERS], (*SIZES, *PEDESTAL)
-    rows = read_rows(path, needed, others, quantities=quantities, faults=faults)
+    if is_export(path):
+        rows = _exported_rows(path, order, faults)
+    else:
+        others = [*SIZES[2:], *PEDESTAL, *HELD_BY, *OTHERS, *also]
+        needed, quantities = ["name", *SIZES[:2]], (*SIZES, *PEDESTAL, *HELD_BY)
+        rows = read_rows(path, needed, others, quantities=quantities, faults=faults)
     if len(rows) > MOST_OBJECTS:
         raise InputError(
-            f"{path}: {len(rows)} objects are more than the {MOST_OBJECTS} allowed."
+            f"{path}: {len(rows)} objects are more than the {MOST_OBJECTS} allowed; --coarse takes them all."
         )
     requests: list[Request] = []
     taken = {"inventory": "the page of the gallery"}
@@ -296,6 +344,8 @@ def read_inventory(
         try:
             name = _own_name(row, taken)
             requests.append(_request(row, name, shared))
+            if cells is not None:
+                cells[name] = row.cells
         except InputError as error:
             faults.append(str(error))
     without = [request.name for request in requests if math.isnan(request.value)]
@@ -304,6 +354,20 @@ def read_inventory(
             f"{path}: {without[0]} has no value; give that of all objects or of none."
         )
     return requests, faults
+
+
+def _exported_rows(
+    path: str | os.PathLike[str], order: str, faults: list[str]
+) -> list[Row]:
+    """Rows of a museum's table that say all that is needed; what has to be asked of others goes to ``faults``."""
+    rows = []
+    for collected in read_export(path, order):
+        if collected.question:
+            where = f"{path}, line {collected.line}, {collected.name}"
+            faults.append(f"{where}: {collected.question}.")
+            continue
+        rows.append(Row(str(path), collected.line, inventory_cells(collected)))
+    return rows
 
 
 def _own_name(row: Row, taken: dict[str, str]) -> str:
@@ -329,19 +393,34 @@ def _own_name(row: Row, taken: dict[str, str]) -> str:
 def _request(row: Row, name: str, shared: Mapping[str, Any]) -> Request:
     own: dict[str, Any] = {"name": name}
     own |= {key: row.quantity(key, above=0) for key in SIZES if row.has(key)}
+    own |= {key: row.quantity(key) for key in HELD_BY if row.has(key)}
     pedestals = _pedestals(row)
     if pedestals:
         own["pedestal"] = pedestals if len(pedestals) > 1 else pedestals[0]
     own |= {key: read(row, key) for key, read in OTHERS.items() if row.has(key)}
-    worth = own.pop("value", math.nan)
+    worth, place = own.pop("value", math.nan), _coordinates(row, own)
     where = f"{row.path}, line {row.line}"
     try:
-        return replace(make_request({**shared, **own}, where), value=worth)
+        request = make_request({**shared, **own}, where)
+        return replace(request, value=worth, coordinates=place)
     except InputError as error:
         # columns instead of keys, of what stands in the row
         words = re.sub(rf"\bkey ({'|'.join(own)})\b", r"column \1", str(error))
         words = re.sub(r"column pedestal(\[\d+\])?\.", "column pedestal_", words)
         raise InputError(words) from None
+
+
+def _coordinates(row: Row, own: dict[str, Any]) -> tuple[float, float] | None:
+    """Latitude and longitude of a row, taken out of what is known of its object; None where neither is given."""
+    given = [key for key in COORDINATES if key in own]
+    if not given:
+        return None
+    for key, largest in COORDINATES.items():
+        if key not in own:
+            raise row.error(key, "expected degrees, as the other coordinate is given")
+        if abs(own[key]) > largest:
+            raise row.error(key, f"expected degrees from -{largest} to {largest}")
+    return own.pop("latitude"), own.pop("longitude")
 
 
 def _pedestals(row: Row) -> list[dict[str, float]]:
@@ -367,7 +446,9 @@ def _yes(row: Row, column: str) -> bool:
 
 _above_0 = partial(Row.number, above=0)
 OTHERS: Mapping[str, Callable[[Row, str], Any]] = {
-    "floor": Row.text, "restitution": _above_0, "round": _yes, "value": _above_0
+    "floor": Row.text, "restitution": _above_0, "round": _yes, "value": _above_0,
+    "latitude": Row.number, "longitude": Row.number,
+    "casters": Row.text, "putty_n": _above_0, "bracket_n": _above_0, "cord_n": _above_0,
 }  # fmt: skip
 """What else a column may say, and how it is read."""
 

@@ -1,5 +1,6 @@
 """What helps: the object changed, as a body, shaken by the same motions, as a factor on the probability."""
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 
@@ -26,6 +27,8 @@ class Mitigation:
     helps: bool
     # Whether the motions show that it is, beyond what one earthquake decides
     shown: bool
+    # What it costs, in the user's unit; NaN where that was not stated
+    cost: float = math.nan
 
 
 def compare(

@@ -2,7 +2,7 @@
 
 import math
 import warnings
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any, TypeVar
 
@@ -10,7 +10,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockfrag.assess.core.fractions import fill_counted, fill_uplifts
-from rockfrag.assess.core.levels import fill_band, fill_scan
 from rockfrag.assess.motions import MotionSet
 from rockfrag.assess.place import Place
 from rockfrag.assess.standing import Standing
@@ -76,7 +75,18 @@ def make_intensity_levels(
     asked: Sequence[float] = (),
     count: int = LEVELS,
 ) -> "Shaking":
-    """Make ``count`` levels for a set of motions, and those that are asked for exactly, in the measure's unit."""
+    """Make levels for a set of motions, a constant factor apart, and those that are asked for exactly.
+
+    Parameters
+    ----------
+    motions, measure : the set, and the measure of the levels
+    asked : further levels, in the measure's unit
+    count : number of levels
+
+    Returns
+    -------
+    The motions at their levels.
+    """
     middle = motions.median(measure)
     levels = np.geomspace(RANGE[0] * middle, RANGE[1] * middle, count)
     levels = np.unique(np.append(levels, list(asked)))
@@ -230,10 +240,14 @@ class Shaking(IntensityLevels):
         On a pedestal that may lift both answers count: what falls in either falls. Planar answers of round bases
         are those of the worst direction of each record.
         """
-        systems = [object_.system_of(body) for object_, body in every]
+        systems = [object_.held(object_.system_of(body)) for object_, body in every]
         if not self.motions.both:
             return self._in_plane(systems)
-        solids = [object_.solid(body) for object_, body in every]
+        solids = [
+            solid and object_.held(solid)
+            for object_, body in every
+            for solid in [object_.solid(body)]
+        ]
         planar = [
             i for i, solid in enumerate(solids) if solid is None or systems[i].count > 1
         ]
@@ -282,27 +296,46 @@ class Shaking(IntensityLevels):
 
         Corners of its base lie elsewhere by ``spread`` over its extent, and it is turned by up to as many radians.
         """
+        shaking, scales = self._records()
+        lifting = lifting_in_space(body, shaking)
+        threads = checked_threads(None)
+        result = run_in_space([body], shaking, scales, spread=spread, threads=threads)
+        states = states_of(result)
+        of_row = np.arange(len(scales))
+        return self._each_system(states, of_row=of_row, lifting=[lifting])[0]
+
+    def _records(self) -> tuple[list[GroundMotion], Floats]:
+        """All components of each record, and the factors on them, shape (records, levels)."""
         motions = self.motions
         shaking = [
             GroundMotion(*motions.components(record)) for record in motions.records
         ]
         first = [record[0] for record in motions.records]
-        scales = self._factors([motions.base[i] for i in first], first)
-        lifting = lifting_in_space(body, shaking)
+        return shaking, self._factors([motions.base[i] for i in first], first)
 
-        def simulate(chosen: Flags) -> dict[str, Flags]:
-            result = run_in_space(
-                [body],
-                shaking,
-                np.where(chosen, scales, AT_REST),
-                spread=spread,
-                threads=checked_threads(None),
-            )
-            return states_of(result)
+    def outcomes_of_system(self, system: System) -> tuple[ObjectOutcomes, Outcomes]:
+        """Outcomes of one system, and all that its simulation says.
 
-        states = by_band(scales, lifting, simulate)
-        of_row = np.arange(len(first))
-        return self._each_system(states, of_row=of_row, lifting=[lifting])[0]
+        Parameters
+        ----------
+        system : shaken by both components where it is known in space, else by one
+
+        Returns
+        -------
+        What becomes of it, and the outcomes of the system under motions, or records, at the levels.
+        """
+        if system.planar:
+            base = self.motions.base
+            result, light = simulated([system], base, self._factors(base))
+            lifting = [lifting_in_plane(system, base)]
+            found = self._each_system(states_of(result), light, lifting=lifting)
+            return found[0], result
+        shaking, scales = self._records()
+        result = run_in_space([system], shaking, scales, threads=checked_threads(None))
+        lifting = [lifting_in_space(system, shaking)]
+        rows = np.arange(len(scales))
+        found = self._each_system(states_of(result), of_row=rows, lifting=lifting)
+        return found[0], result
 
     def on_pad(
         self, objects: Standing, friction: float
@@ -408,33 +441,15 @@ def fraction_at(
 
 
 def states_of(result: Outcomes) -> dict[str, Flags]:
-    """Which cases reached each limit state that needs no sliding, by its name."""
-    return {
+    """Which cases reached each limit state that needs no sliding, by its name, and which rocked :data:`FAR`."""
+    found = {
         state.name: np.asarray(state.reached(result))
         for state in limit_states()
         if not (state.slipping or state.held)
     }
-
-
-def by_band(
-    scales: Floats, lifting: Floats, simulate: Callable[[Flags], dict[str, Flags]]
-) -> dict[str, Flags]:
-    """States of one system at all levels, of a scan and of the band in which they change.
-
-    ``simulate`` gives states of some levels, of shape (1, motions, levels), at rest elsewhere; ``scales`` and
-    ``lifting`` are those of :mod:`rockfrag.assess.core.levels`.
-    """
-    scan, band = np.zeros(scales.shape, bool), np.zeros(scales.shape, bool)
-    sources = np.zeros(scales.shape, np.int64)
-    fill_scan(scales, lifting, scan)
-    found = simulate(scan)
-    fell = np.ascontiguousarray(found[OVERTURNS][0])
-    fill_band(scales, lifting, scan, fell, band, sources)
-    if band.any():
-        more = simulate(band)
-        found = {name: np.where(band, more[name], found[name]) for name in found}
-    rows = np.arange(len(scales))[:, np.newaxis]
-    return {name: cases[:, rows, sources] for name, cases in found.items()}
+    with np.errstate(invalid="ignore"):
+        found[STEPS] = np.asarray((result.peak_rotation > FAR).any(axis=-1))
+    return found
 
 
 def simulated(
@@ -457,6 +472,11 @@ def simulated(
             )
     # more than two bodies leave the ground where they have to
     return result, [light and system.count < 3 for system in systems]
+
+
+FAR, STEPS = 1 / 3, "rocks_a_third_of_the_way"
+"""Rotation over the critical angle beyond which edges chip and an object steps aside (after D'Angela et al., 2026,
+whose limit states are rotations), and the name of that state.  In space it is told of the levels of the scan."""
 
 
 @dataclass(frozen=True)

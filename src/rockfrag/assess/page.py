@@ -179,11 +179,15 @@ class _Layout:
 
     def _helps(self) -> Section:
         found = self.found
-        rows = [
+        rows: list[tuple[Value, ...]] = [
             (each.change, value_of(found, each.value), mitigation_cell(found, each))
             for each in found.mitigations
         ]
         titles = [Text.COLUMN_CHANGE, Text.COLUMN_WITH_IT, Text.COLUMN_DOES]
+        if found.request.costs:
+            costs = [_cost(each.cost) for each in found.mitigations]
+            rows = [(*row, cost) for row, cost in zip(rows, costs, strict=True)]
+            titles.append(Text.COLUMN_COST)
         told = (Text.HELPS_ANCHORS, Text.HELPS_ISOLATION, Text.HELPS_PAD)
         return Section(
             "mitigations",
@@ -431,6 +435,11 @@ def _years(period: float) -> str:
     """A return period to two digits: 475 years stand for some 480."""
     rounded = float(f"{period:.2g}")
     return f"{rounded:,.0f}".replace(",", " ") if rounded >= 10 else f"{rounded:g}"
+
+
+def _cost(cost: float) -> Value:
+    """What a change costs, as the user stated it."""
+    return said.three(cost) if math.isfinite(cost) else "–"
 
 
 LIVE = (0.0, 0.1, 0.25, 0.5, 0.75)

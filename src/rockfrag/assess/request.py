@@ -45,15 +45,25 @@ UNNAMED = "the object"  # Name of an object that was given none
 
 
 @dataclass(frozen=True)
+class LevelSpread:
+    """How well a level of shaking is known: the logarithms of its value and of its PGV are normal."""
+
+    value: float  # Standard deviation of ln value [-]
+    pgv: float = 0.0  # That of ln PGV [-]
+    correlation: float = 0.0  # Between the two [-]
+
+
+@dataclass(frozen=True)
 class Level:
     """A level of shaking of the ground."""
 
     measure: IntensityMeasure  # The intensity measure
-    value: float  # Its value, in its unit
+    value: float  # Its value, in its unit; the median where it is not known exactly
     # Peak velocity with it [cm/s]; NaN if unknown, or the measure itself
     pgv: float = math.nan
     # Spectral acceleration at 1 s with it [g]; NaN if unknown, or the measure itself
     sa_1s: float = math.nan
+    spread: LevelSpread | None = None  # How well they are known; None if exactly
 
     @property
     def amount(self) -> Finding:
@@ -99,6 +109,10 @@ class Request:
     value: float = math.nan  # What the object is worth, in any unit; NaN if not given
     # Probability of toppling that is accepted; None for the usual one
     accept: float | None = None
+    # Latitude and longitude [degrees]; None where not given
+    coordinates: tuple[float, float] | None = None
+    # What ways to hold it cost, by their keys, in any unit
+    costs: Mapping[str, float] = field(default_factory=dict)
 
     @property
     def accepted(self) -> float:
@@ -160,6 +174,7 @@ def make_request(
             hazard=_hazard(known, where),
             years=float(known.get("years", YEARS)),
             accept=known.get("accept"),
+            costs=known.get("costs", {}),
             records=_records(known, where),
         )
 

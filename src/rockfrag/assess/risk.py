@@ -14,6 +14,7 @@ from dataclasses import dataclass, field
 from functools import cached_property, lru_cache
 
 import numpy as np
+from scipy import special
 
 from rockfrag.assess.core import estimates
 from rockfrag.assess.core.draws import MEMBERS
@@ -94,6 +95,7 @@ class Target:
     kind: int  # ``FRACTION``, ``RATE`` or ``LEVEL`` of :mod:`rockfrag.assess.core.estimates`
     state: str = OVERTURNS  # Name of the limit state whose fractions they are
     level: float = math.nan  # Level of a fraction
+    spread: float = 0.0  # Standard deviation of its logarithm [-]
     part: float = math.nan  # Fraction of the motions that a level topples
     hazard: HazardCurve | None = None  # Hazard curve of a probability
     years: float = 1.0  # Time of a probability [year]
@@ -126,6 +128,8 @@ class Target:
         """Weights with which fractions at the levels add up."""
         if self.hazard is not None:
             return _rate_weights(levels.tobytes(), self.hazard)
+        if self.spread > 0:
+            return _weights_of_normal(np.log(levels / self.level), self.spread)
         weights = np.zeros(levels.size)
         estimates.fill_place(levels, self.level, weights)
         return weights
@@ -148,9 +152,31 @@ def risk_target(hazard: HazardCurve, years: float) -> Target:
     return Target(estimates.RATE, hazard=hazard, years=float(years))
 
 
-def fraction_target(level: float, *, state: str = OVERTURNS) -> Target:
-    """The fraction of motions that bring the object into a limit state at a level."""
-    return Target(estimates.FRACTION, state=state, level=float(level))
+def fraction_target(
+    level: float, *, state: str = OVERTURNS, spread: float = 0.0
+) -> Target:
+    """The fraction of motions that bring the object into a limit state at a level.
+
+    ``spread`` is the standard deviation of ln level where it is lognormal; the fraction is then the mean over it,
+    exactly, as it is linear in ln level between levels and that of the nearest one beyond them.
+    """
+    level, spread = float(level), float(spread)
+    return Target(estimates.FRACTION, state=state, level=level, spread=spread)
+
+
+def _weights_of_normal(x: Floats, spread: float) -> Floats:
+    """Weights of rising points in the mean of what is linear between them, over a normal value about 0."""
+    z = x / spread
+    below = special.ndtr(z)
+    # integral of the value times its density up to each point
+    moment = -spread * np.exp(-0.5 * z**2) / math.sqrt(2 * math.pi)
+    part, first, step = np.diff(below), np.diff(moment), np.diff(x)
+    weights = np.zeros(x.size)
+    weights[:-1] += (x[1:] * part - first) / step
+    weights[1:] += (first - x[:-1] * part) / step
+    weights[0] += below[0]
+    weights[-1] += 1.0 - below[-1]
+    return weights
 
 
 def amplitude_target(fraction: float) -> Target:
@@ -295,7 +321,16 @@ def after_uplift(spread: float) -> Shift:
 
 
 def shift_of(lower: ObjectOutcomes, upper: ObjectOutcomes) -> Shift:
-    """What a property moves at its standard deviation, by outcomes with it on both sides."""
+    """What a property moves at its standard deviation, by outcomes with it on both sides.
+
+    Parameters
+    ----------
+    lower, upper : outcomes with the property a standard deviation smaller and larger
+
+    Returns
+    -------
+    Shifts of ln level [-].
+    """
     found = np.zeros(2)
     levels = lower.intensity_levels.levels
     fill_shift(

@@ -1,4 +1,7 @@
-"""Statics: the factor on each motion from which it lifts an object, by its own components."""
+"""Statics: the factor on each motion from which it lifts an object, by its own components.
+
+Of an object that something holds, or that may slide, only simulation says: the factor is infinite.
+"""
 
 from collections.abc import Sequence
 
@@ -13,6 +16,8 @@ from rockfrag.system.system import System, uplift_ratios
 
 def lifting_in_plane(system: System, shaking: Sequence[Motion]) -> Floats:
     """Factor on each motion from which it opens a contact of a planar system at rest, shape (motions,)."""
+    if system.holding or system.loose:
+        return np.full(len(shaking), np.inf)
     least = min(uplift_ratios(system)) * GRAVITY
     return np.array([least / motion.pga for motion in shaking])
 
@@ -24,6 +29,8 @@ def lifting_in_space(system: System, shaking: Sequence[GroundMotion]) -> Floats:
     from it of g d/h; over a rim of radius r in any direction of g r/h. A centre that is not above the middle of a
     rim lifts it earlier towards the near side, by its distance.
     """
+    if system.holding or system.loose:
+        return np.full(len(shaking), np.inf)
     (body,) = system.bodies
     below, height = np.array(body.centre[:2]), body.centre[2]
     if isinstance(body.base, Circle):

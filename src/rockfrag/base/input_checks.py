@@ -79,12 +79,33 @@ def number_from_zero(name: str, value: object, unit: str = "") -> float:
 
 
 def positive_or_infinite(name: str, value: object, unit: str = "") -> float:
-    """Return a number above 0 or infinity, or say in one sentence why it is neither."""
+    """Return a number above 0 or infinity, or say in one sentence why it is neither.
+
+    Parameters
+    ----------
+    name : of the argument or key, with which a message begins
+    value : anything
+    unit : in which it is given; empty where it has none
+
+    Returns
+    -------
+    The number, in the unit in which it was given, or infinity.
+    """
     return math.inf if value == math.inf else positive_number(name, value, unit)
 
 
 def ratio_to_one(name: str, value: object) -> float:
-    """Return a number from 0 to 1, or say in one sentence why it is none."""
+    """Return a number from 0 to 1, or say in one sentence why it is none.
+
+    Parameters
+    ----------
+    name : of the argument or key, with which a message begins
+    value : anything
+
+    Returns
+    -------
+    The ratio [-].
+    """
     return _checked(name, value, "a ratio from 0 to 1", lambda x: 0 <= x <= 1)
 
 

@@ -11,6 +11,7 @@ In: a scan or sizes [m], ranges of what is unknown, a seed. Out: systems, one a 
 import math
 import warnings
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from typing import Any
 
@@ -21,14 +22,17 @@ from scipy.stats import norm, qmc
 
 from rockfrag.base.errors import InputError
 from rockfrag.base.short_repr import short_repr
+from rockfrag.engines.spatial import run_in_space
 from rockfrag.fragility.model_error import CUT, SCAN
 from rockfrag.records.motion import GroundMotion, Motion
 from rockfrag.simulation.ensemble import LightBodies, overturns
+from rockfrag.simulation.inputs import checked_threads
 from rockfrag.simulation.options import system_of
 from rockfrag.system import geometry
 from rockfrag.system.blocks import Block, Column
+from rockfrag.system.body import Polygon, RigidBody
 from rockfrag.system.contact import Contact, Friction
-from rockfrag.system.mesh import Shape
+from rockfrag.system.mesh import Shape, edge_distances
 from rockfrag.system.system import System
 
 UNKNOWNS = (
@@ -37,11 +41,12 @@ UNKNOWNS = (
     "edge_retreat_mm",
     "restitution",
     "friction",
+    "size",
 )
 """What may be given as a range: direction of shaking from the mesh's x axis, height above the lowest point up
 to which points carry, distance by which edges lie further in, and in the plane the ratio of angular velocities in
 an impact (values above the one that conserves momentum stand for that); in space, and of blocks on each other, the
-coefficient of friction."""
+coefficient of friction; of a block by hand its size over that given."""
 
 # quantile function of something that nobody measured
 Quantile = Callable[[float], float]
@@ -64,7 +69,16 @@ class Trials:
 
 
 def uniform(low: float, high: float) -> Quantile:
-    """Quantile function of a uniform distribution."""
+    """Quantile function of a uniform distribution.
+
+    Parameters
+    ----------
+    low, high : its ends
+
+    Returns
+    -------
+    A function of probabilities [-].
+    """
     return lambda fraction: low + (high - low) * fraction
 
 
@@ -144,7 +158,9 @@ def sample_trials(
 
 
 def simulate_tests(
-    systems: Sequence[System], motions: Sequence[Motion], threads: int | None = None
+    systems: Sequence[System],
+    motions: Sequence[Motion | GroundMotion],
+    threads: int | None = None,
 ) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
     """Whether a body overturns, and whether any rocks, shape (trials, tests).
 
@@ -163,11 +179,77 @@ def simulate_tests(
         with warnings.catch_warnings():
             # a guess may be squat where the object is not
             warnings.simplefilter("ignore", LightBodies)
-            shaking = batch if systems[0].planar else list(map(GroundMotion, batch))
+            shaking = [
+                each
+                if systems[0].planar or isinstance(each, GroundMotion)
+                else GroundMotion(each)
+                for each in batch
+            ]
             result = overturns(systems, shaking, threads=threads)
         overturned.append(result.overturned[:, :, 0])
         rocked.append((result.peak_rotation[:, :, 0] > 0).any(axis=-1))
     return np.hstack(overturned), np.hstack(rocked)
+
+
+def simulate_in_space(
+    systems: Sequence[System],
+    motions: Sequence[Motion],
+    scales: Sequence[float] = (1.0,),
+    threads: int | None = None,
+) -> NDArray[np.bool_]:
+    """Whether bodies in space overturn under one horizontal component.
+
+    Parameters
+    ----------
+    systems, motions : a system an arrangement, and a motion a test
+    scales : factors on the motions
+    threads : threads to use; outcomes do not depend on it
+
+    Returns
+    -------
+    Whether each overturns, shape (systems, tests, scales).
+    """
+    shaking = [
+        GroundMotion(motion, motion.after("still", np.zeros_like(motion.acceleration)))
+        for motion in motions
+    ]
+    cores = checked_threads(threads)
+    return run_in_space(systems, shaking, scales, threads=cores).overturned
+
+
+def least_angle_deg(body: RigidBody) -> float:
+    """Least critical angle of a body in space on a polygon, towards any side [degrees]."""
+    assert isinstance(body.base, Polygon)
+    corners = np.array(body.base.vertices) - np.array(body.centre[:2])
+    nearest = float(edge_distances(corners).min())
+    return math.degrees(math.atan2(nearest, body.centre[2]))
+
+
+def solids_of(thing: Shape, arrangements: Trials, count: int) -> list[System]:
+    """A scanned object in space on the points that carry, which nothing lets slide, in several arrangements.
+
+    Parameters
+    ----------
+    thing, arrangements, count : the object, how it may stand, and how many of these at most
+
+    Returns
+    -------
+    The systems; those in which it would not have been set up, since it falls too easily towards some side, are
+    left out.
+    """
+    found: list[System] = []
+    for guess in arrangements.table.to_dict("records"):
+        tolerance, retreat = (
+            guess["contact_tolerance_mm"] / 1e3,
+            guess["edge_retreat_mm"] / 1e3,
+        )
+        with suppress(InputError):
+            body = thing.body(guess["direction_deg"], tolerance, retreat)
+            if least_angle_deg(body) >= LEAST_ANGLE_DEG:
+                found.append(System((body,), (Contact(),)))
+        if len(found) == count:
+            break
+    return found
 
 
 def _in_plane(planar: Block | Column, guess: Mapping[str, float]) -> System:
@@ -248,7 +330,23 @@ def body_of(
         return thing.block(
             guess["direction_deg"], guess["contact_tolerance_mm"] / 1e3, retreat
         )
+    if "size" in guess:
+        (block,) = thing.blocks
+        return _of_size(block, guess["size"]).narrowed(retreat)
     return thing.narrowed(retreat)
+
+
+def _of_size(block: Block, factor: float) -> Block:
+    """A planar block with all its lengths times a factor, of the same material."""
+    assert isinstance(block.cg_height, float) and isinstance(block.inertia, float)
+    return Block(
+        factor * block.width,
+        factor * block.height,
+        factor**3 * block.mass,
+        factor**5 * block.inertia,
+        cg_height=factor * block.cg_height,
+        cg_offset=factor * block.cg_offset,
+    )
 
 
 def possible_restitution(block: Block, restitution: float) -> float | None:

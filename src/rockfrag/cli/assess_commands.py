@@ -16,7 +16,7 @@ from rockfrag.base.units import convert, quantity
 from rockfrag.config.schema import read_schema
 
 _INVENTORY = ".csv"
-_UNITS = re.compile("_(kg_m2|years|km|kg|deg|m|s)$")
+_UNITS = re.compile("_(kg_m2|years|km|kg|deg|m|n|s)$")
 
 
 class _Once(argparse.Action):
@@ -66,6 +66,12 @@ def add_assess_commands(commands: Any) -> None:
     )
     words = "of an inventory: rank the rows that are right, and list what is wrong with the others"
     out.add_argument("--keep-going", action="store_true", help=words)
+    words = "of a museum's table: order of lengths that it does not name, such as HWD"
+    out.add_argument("--order", default="", help=words)
+    words = "of a large inventory, .csv or .parquet: between simulated blocks, then the worst simulated"
+    out.add_argument("--coarse", action="store_true", help=words)
+    words = "of --coarse: how many of the worst are simulated"
+    out.add_argument("--worst", metavar="N", type=int, default=1000, help=words)
     parser.set_defaults(run=_assess)
     words = "hold engineers' rules against simulations of objects"
     rules = commands.add_parser("rules-of-thumb", help=words)
@@ -147,6 +153,8 @@ def _assess(options: argparse.Namespace) -> int:
     given = settings_of(options)
     _refuse_unused(options)
     try:
+        if options.coarse:
+            return _coarse(options, given)
         if _is_inventory(options):
             return _inventory(options, given)
         return _one(options, given)
@@ -170,7 +178,9 @@ def _is_inventory(options: argparse.Namespace) -> bool:
 
 def _refuse_unused(options: argparse.Namespace) -> None:
     """Refuse options that would have no effect."""
-    listed = _is_inventory(options)
+    listed = _is_inventory(options) or bool(options.coarse and options.file)
+    if options.coarse and not options.file:
+        raise InputError("--coarse needs an inventory, a .csv or .parquet file.")
     for name in ("pages", "keep_going") if not listed else ("pdf", "json", "details"):
         if getattr(options, name):
             needed = (
@@ -327,7 +337,11 @@ def _inventory(options: argparse.Namespace, shared: dict[str, Any]) -> int:
     if unfit:
         raise InputError(f"--{unfit[0]}: is of one object; put it into {options.file}.")
     found = assess_inventory(
-        options.file, shared, options.records, keep_going=options.keep_going
+        options.file,
+        shared,
+        options.records,
+        keep_going=options.keep_going,
+        order=options.order,
     )
     for fault in found.faults:
         print(f"warning: left out: {fault}", file=sys.stderr)
@@ -336,6 +350,25 @@ def _inventory(options: argparse.Namespace, shared: dict[str, Any]) -> int:
     place = write_inventory(
         found, options.output, pages=options.pages, language=language
     )
+    print(f"{place}", file=sys.stderr)
+    return 0
+
+
+def _coarse(options: argparse.Namespace, shared: dict[str, Any]) -> int:
+    from rockfrag.assess.coarse import coarse_inventory, coarse_lines
+    from rockfrag.base.files import write_table
+
+    unfit = [key for key in ("name", "width", "height", "mesh") if key in shared]
+    if unfit:
+        raise InputError(f"--{unfit[0]}: is of one object; put it into {options.file}.")
+    if options.worst < 0:
+        raise InputError(f"--worst: expected 0 or more, got {options.worst}.")
+    found = coarse_inventory(
+        options.file, shared, options.records, worst=options.worst, order=options.order
+    )
+    place = Path(options.output) / "coarse.parquet"
+    write_table(found.table, place)
+    print("\n".join(coarse_lines(found)))
     print(f"{place}", file=sys.stderr)
     return 0
 

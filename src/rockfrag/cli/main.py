@@ -13,12 +13,14 @@ from rockfrag import __version__
 from rockfrag.base.errors import InputError, errors_of
 from rockfrag.base.plausible import STONE, check_density, peak_warning, size_warning
 from rockfrag.base.units import GRAVITY, quantity
+from rockfrag.cli.after_commands import add_after_command
 from rockfrag.cli.assess_commands import (
     add_app_command,
     add_assess_commands,
-    add_records_option,
 )
 from rockfrag.cli.collection_commands import add_collection_command
+from rockfrag.cli.constrain_command import add_constrain_command
+from rockfrag.cli.export_command import add_export_command
 from rockfrag.cli.held import (
     add_holding_options,
     held,
@@ -33,7 +35,7 @@ if TYPE_CHECKING:
     from rockfrag.simulation.options import FrictionInput
     from rockfrag.system.blocks import Block, Body
 
-# lines of the pattern history that are printed unless all are asked for
+# lines of the history of rocking modes that are printed unless all are asked for
 MOST_CONTACT_EVENTS = 30
 
 
@@ -111,7 +113,9 @@ def make_parser() -> argparse.ArgumentParser:
 
     add_assess_commands(commands)
     add_app_command(commands)
-    _add_constrain(commands)
+    add_after_command(commands)
+    add_export_command(commands)
+    add_constrain_command(commands)
     add_record_commands(commands)
     add_collection_command(commands)
 
@@ -186,23 +190,6 @@ def _add_case(parser: argparse.ArgumentParser) -> None:
         "--dt", type=float, help="sampling interval [s] of a record without one"
     )
     parser.add_argument("--channel", help="channel, where the record has several")
-
-
-def _add_constrain(commands: Any) -> None:
-    parser = commands.add_parser(
-        "constrain",
-        help="reweight hazard branches by objects that still stand",
-        description="A site with the branches of its hazard, and objects that have stood there for "
-        "known times.",
-    )
-    parser.add_argument("file", help="the site, such as site.yaml")
-    words = "where page, JSON and tables are written"
-    parser.add_argument("--output", metavar="FOLDER", default="constrained", help=words)
-    add_records_option(
-        parser, "folder of fetched records, for objects that are simulated"
-    )
-    parser.add_argument("--json", action="store_true", help="print the answer as JSON")
-    parser.set_defaults(run=_constrain)
 
 
 # each command imports what it needs when it runs: `rockfrag --help` should not wait for numba
@@ -400,21 +387,6 @@ def _warn_of_unit(record: str, peak: float, body: "Body") -> None:
 
     if quality_flag := peak_warning(peak, GRAVITY * min(uplift_ratios(body.system()))):
         print(f"warning: {record}: {quality_flag}", file=sys.stderr)
-
-
-def _constrain(options: argparse.Namespace) -> int:
-    from rockfrag.survival.constrained_page import json_of, lines_of, write_constrained
-    from rockfrag.survival.reweight import constrain
-    from rockfrag.survival.site import read_site
-
-    found = constrain(read_site(options.file, options.records))
-    place = write_constrained(found, options.output)
-    if options.json:
-        print(json_of(found), end="")
-    else:
-        print("\n".join(lines_of(found)))
-    print(place, file=sys.stderr)
-    return 0
 
 
 def _check_config(options: argparse.Namespace) -> int:

@@ -12,6 +12,13 @@ import numpy as np
 
 from rockfrag.records.motion import Motion
 
+OF_TWO_BODIES = ("1a", "1b", "2a", "2b", "3a", "3b", "4a", "4b")
+MEANING = (
+    "1: both bodies rock to one side, 2: to opposite sides, 3: as one body, 4: the upper one alone; a: to the "
+    "right, b: to the left"
+)
+"""What names of rocking modes mean."""
+
 LARGEST_FRICTION = 10.0  # surfaces have less; a contact that needs more parts
 
 
@@ -82,13 +89,15 @@ def contact_event_lines(contact_events: Sequence[Any], most: int) -> list[str]:
     """
     if not contact_events:
         return ["it never rocked"]
-    lines = ["pattern history:"]
+    lines = ["rocking modes:"]
     for row in contact_events[:most]:
         lines.append(
             f"{row['time']:9.4f} s  {row['kind']:<10} {row['from']:>4} → {row['to']}"
         )
     if len(contact_events) > most:
         lines.append(f"… and {len(contact_events) - most} more (--all-contact-events)")
+    if any(row["to"] in OF_TWO_BODIES for row in contact_events):
+        lines.append(MEANING)
     return lines
 
 

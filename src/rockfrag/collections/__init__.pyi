@@ -5,6 +5,8 @@ from .dimension_text import (
 )
 from .exported_table import (
     CollectedObject as CollectedObject,
+    inventory_cells as inventory_cells,
     inventory_table as inventory_table,
+    is_export as is_export,
     read_export as read_export,
 )

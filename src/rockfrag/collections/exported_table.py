@@ -67,6 +67,37 @@ class CollectedObject:
         return ""
 
 
+def is_export(path: str | os.PathLike[str]) -> bool:
+    """Whether a table is a museum's: it has a text of dimensions, or heights under a title such as Height (cm).
+
+    Parameters
+    ----------
+    path : CSV file with a header line; an inventory of ``rockfrag assess`` is none
+
+    Returns
+    -------
+    Whether :func:`read_export` is to read it.
+    """
+    if Path(path).suffix.lower() != ".csv" or not Path(path).is_file():
+        return False
+    try:
+        titles, _ = _cells(path)
+    except InputError:
+        return False
+    named = {title.strip().casefold() for title in titles}
+    if "name" in named and any(_OF_INVENTORY.fullmatch(title) for title in named):
+        return False
+    columns = {_plain_title(title): i for i, title in enumerate(titles)}
+    if _first(columns, TEXTS) is not None:
+        return True
+    # without a title of its objects it is nobody's export
+    return _first(columns, NAMES) is not None and "height" in _columns_of_sides(columns)
+
+
+_OF_INVENTORY = re.compile(r"width(_[a-z]+)?")
+"""Title of a column that every inventory has."""
+
+
 def read_export(path: str | os.PathLike[str], order: str = "") -> list[CollectedObject]:
     """Read the objects of an exported table.
 
@@ -118,8 +149,6 @@ def read_export(path: str | os.PathLike[str], order: str = "") -> list[Collected
 def inventory_table(objects: Sequence[CollectedObject]) -> pd.DataFrame:
     """Make the inventory of objects of which nothing has to be asked, as ``rockfrag assess`` reads it.
 
-    Of a range the height is its upper limit and a side its lower one: what topples first.
-
     Parameters
     ----------
     objects : objects of an export
@@ -128,28 +157,38 @@ def inventory_table(objects: Sequence[CollectedObject]) -> pd.DataFrame:
     -------
     A row an object: ``name``, ``width_m``, ``height_m``, ``depth_m``, ``mass_kg``, ``round``.
     """
-    rows = []
-    for collected in objects:
-        size = collected.dimensions
-        if collected.question or size.height is None:
-            continue
-        width = size.width or size.diameter
-        assert width is not None
-        rows.append(
-            {
-                "name": collected.name,
-                "width_m": _written(width.low),
-                "height_m": _written(size.height.high),
-                "depth_m": _written(size.depth.low) if size.depth else "",
-                "mass_kg": "" if size.mass is None else _written(size.mass),
-                "round": "" if size.width else "yes",
-            }
-        )
+    rows = [inventory_cells(each) for each in objects if not each.question]
     columns = ["name", "width_m", "height_m", "depth_m", "mass_kg", "round"]
     table = pd.DataFrame(rows, columns=columns)
     return table[
         [name for name in columns if (table[name] != "").any() or name in columns[:3]]
     ]
+
+
+def inventory_cells(collected: CollectedObject) -> dict[str, str]:
+    """Cells of an object in an inventory.
+
+    Of a range the height is its upper limit and a side its lower one: what topples first.
+
+    Parameters
+    ----------
+    collected : an object of which nothing has to be asked
+
+    Returns
+    -------
+    Texts by column; empty where nothing is stated.
+    """
+    size = collected.dimensions
+    width = size.width or size.diameter
+    assert width is not None and size.height is not None
+    return {
+        "name": collected.name,
+        "width_m": _written(width.low),
+        "height_m": _written(size.height.high),
+        "depth_m": _written(size.depth.low) if size.depth else "",
+        "mass_kg": "" if size.mass is None else _written(size.mass),
+        "round": "" if size.width else "yes",
+    }
 
 
 def _written(value: float) -> str:

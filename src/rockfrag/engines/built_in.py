@@ -3,6 +3,7 @@
 These are loaded, and the kernels with them, when one is first called.
 """
 
+import math
 from dataclasses import dataclass, replace
 from pkgutil import resolve_name
 from typing import Any
@@ -11,6 +12,7 @@ from rockfrag.engines.contract import Case, Cases, Engine, Request, Support, Wis
 from rockfrag.outcomes.outcomes import Outcomes
 from rockfrag.records.motion import GroundMotion
 from rockfrag.system import geometry
+from rockfrag.system.body import Polygon
 from rockfrag.system.constraints import Tie, Wall
 from rockfrag.system.system import System
 
@@ -95,7 +97,22 @@ class SpatialEngine(BuiltIn):
             return Support(
                 reason="a planar body moves in its own plane only; give its depth"
             )
-        return found
+        return _beside_walls(system) if found else found
+
+
+def _beside_walls(system: System) -> Support:
+    """Say whether the walls beside a body in space are such that it may meet: upright faces, and corners."""
+    walls = [each for each in system.constraints if isinstance(each, Wall)]
+    if any(wall.height < math.inf for wall in walls):
+        return Support(
+            reason="a kerb is met in a plane only; leave out the depth or the second component"
+        )
+    outlines = system.bodies[0].base, system.bodies[0].face
+    if walls and not all(isinstance(outline, Polygon) for outline in outlines):
+        return Support(
+            reason="beside a wall in space stand bodies with corners only, with a base and a face"
+        )
+    return Support()
 
 
 _STANDING = frozenset({Wish.VERTICAL, Wish.RESTITUTION})
@@ -122,6 +139,14 @@ SINGLE = PureRocking(
 )
 """One or two bodies, case by case (``kernels.single``)."""
 
+STEPPED = PureRocking(
+    "jumps of the velocity",
+    _STANDING | {Wish.START, Wish.FORCES, Wish.HISTORY, Wish.STEPS},
+    "rockfrag.engines.pure_rocking.velocity_steps:run",
+    "rockfrag.engines.pure_rocking.velocity_steps:history",
+)
+"""One body on a base whose velocity jumps, by single histories between the jumps."""
+
 PLANAR = PlanarEngine(
     "planar contact",
     _STANDING
@@ -134,11 +159,21 @@ PLANAR = PlanarEngine(
 
 SPATIAL = SpatialEngine(
     "space",
-    frozenset({Wish.SPACE, Wish.VERTICAL, Wish.FRICTION, Wish.HISTORY}),
+    frozenset(
+        {
+            Wish.SPACE,
+            Wish.VERTICAL,
+            Wish.FRICTION,
+            Wish.HISTORY,
+            Wish.TIE,
+            Wish.BOND,
+            Wish.WALL,
+        }
+    ),
     "rockfrag.engines.spatial.engine:run",
     "rockfrag.engines.spatial.engine:history",
 )
 """One body in space."""
 
-BUILT_IN = (LONE_BLOCKS, TWO_BLOCKS, SINGLE, PLANAR, SPATIAL)
+BUILT_IN = (LONE_BLOCKS, TWO_BLOCKS, SINGLE, STEPPED, PLANAR, SPATIAL)
 """In the order in which they are asked."""

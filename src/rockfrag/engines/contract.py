@@ -25,6 +25,7 @@
 9. **What is not told** is NaN, never zero.  What cannot happen (a slip where nothing slides) is zero.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from enum import Enum
 from functools import cached_property
@@ -38,7 +39,7 @@ from rockfrag.base.errors import InputError
 from rockfrag.base.units import GRAVITY
 from rockfrag.engines.steps import STEP
 from rockfrag.outcomes.outcomes import Outcomes, empty_outcomes, merge_outcomes
-from rockfrag.records.motion import GroundMotion
+from rockfrag.records.motion import GroundMotion, Motion
 from rockfrag.system.constraints import Tie, Wall
 from rockfrag.system.system import System
 
@@ -62,6 +63,7 @@ class Wish(Enum):
     BOND = "a bond"
     SUPPORT = "an isolator"
     PLACE = "bodies where an earlier response left them"
+    STEPS = "jumps of the velocity"
 
 
 @dataclass(frozen=True)
@@ -104,8 +106,8 @@ class Cases:
 
     @cached_property
     def answering(self) -> list["Engine"]:
-        """Engine of each system under all motions: the one with most components decides."""
-        richest = max(self.motions, key=lambda motion: len(motion.components))
+        """Engine of each system under all motions: one for what any of them has."""
+        richest = with_all_components(self.motions)
         return [engine_for(system, richest, self.request) for system in self.systems]
 
     @cached_property
@@ -117,6 +119,17 @@ class Cases:
     def holding(self) -> list[tuple[str, ...]]:
         """Names of what holds the bodies of each system."""
         return [system.holding for system in self.systems]
+
+
+def with_all_components(motions: Sequence[GroundMotion]) -> GroundMotion:
+    """A still ground with the components, and the jumps of the velocity, that any of the motions has."""
+    still = Motion(np.zeros(1), 1.0)
+    return GroundMotion(
+        still,
+        y=still if any(motion.y is not None for motion in motions) else None,
+        z=still if any(motion.z is not None for motion in motions) else None,
+        steps=next((motion.steps for motion in motions if motion.steps), None),
+    )
 
 
 @dataclass(frozen=True)
@@ -173,6 +186,7 @@ def wishes(system: System, motion: GroundMotion, request: Request) -> frozenset[
         Wish.BOND: len(system.bonds) > 0,
         Wish.SUPPORT: system.support is not None,
         Wish.PLACE: start is not None and start.position is not None,
+        Wish.STEPS: motion.steps is not None,
     }
     return frozenset(wish for wish, there in made.items() if there)
 

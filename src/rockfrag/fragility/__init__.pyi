@@ -23,6 +23,9 @@ from .observations import (
     Observations as Observations,
     observations_from_table as observations_from_table,
 )
+from .toppling_velocity import (
+    toppling_velocity as toppling_velocity,
+)
 from .exports import (
     write_nrml as write_nrml,
     write_simcenter as write_simcenter,

@@ -42,7 +42,8 @@ def curve_facts(row: Mapping[Hashable, Any]) -> str:
 
     Parameters
     ----------
-    row : columns of the fragility table by name; any of them may be absent
+    row : columns of the fragility table by name; any of them may be absent. ``beta_holds_all`` says that β holds
+        what is not known too
 
     Returns
     -------
@@ -64,7 +65,7 @@ def curve_facts(row: Mapping[Hashable, Any]) -> str:
         )
     elif "theta_lower" in row:
         facts.append("No confidence limits.")
-    if "beta" in known:
+    if "beta" in known and not row.get("beta_holds_all"):
         facts.append(_parts_of_beta(row))
     if "p_fit" in known:
         facts.append(f"Goodness of fit p = {row['p_fit']:.3f}.")

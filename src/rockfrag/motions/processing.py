@@ -331,7 +331,17 @@ def resample(motion: Motion, dt_s: float) -> Motion:
 
 
 def interpolate(motion: Motion, dt_s: float) -> Motion:
-    """Sample the straight lines between samples more finely; the motion itself stays the same."""
+    """Sample the straight lines between samples more finely; the motion itself stays the same.
+
+    Parameters
+    ----------
+    motion : the motion [m/s²]
+    dt_s : its new interval, a whole fraction of its own [s]
+
+    Returns
+    -------
+    The motion with more samples [m/s²].
+    """
     dt_s = positive_number("step interpolate: dt_s", dt_s, "seconds")
     parts = round(motion.dt / dt_s)
     if not 1 <= parts <= 1000 or abs(parts * dt_s / motion.dt - 1) > 1e-9:

@@ -64,11 +64,17 @@ class Column:
         )
 
 
-def column(empty: Any = math.nan, unit: str = "", table: Table = "cases") -> Any:
+def column(
+    empty: Any = math.nan,
+    unit: str = "",
+    table: Table = "cases",
+    *,
+    shown: bool = True,
+) -> Any:
     """Declare a column as a field of :class:`rockfrag.outcomes.Outcomes`; NaN where an engine does not tell."""
     about = {"table": table, "unit": unit, "empty": empty}
     # at the prompt, a result fits a screen
-    return field(metadata=about, repr=table != "constraints")
+    return field(metadata=about, repr=shown and table != "constraints")
 
 
 @dataclass(frozen=True)
@@ -110,9 +116,7 @@ class Outcomes:
     # number from below, from 1, of the contact open furthest under what fell; 0: no fall, or not told
     parted_contact: Small = column(np.int8(0))
     # whether a body that has not fallen rests turned, against a wall or in a tie
-    leaning: Flags = field(
-        metadata={"table": "cases", "unit": "", "empty": False}, repr=False
-    )
+    leaning: Flags = column(False, shown=False)
     # times that more than one mode of contact was found consistent
     several_modes: Whole = column(np.int64(0))
     # times that no mode of contact was consistent

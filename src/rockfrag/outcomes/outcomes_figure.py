@@ -70,7 +70,7 @@ def outcomes_figure(outcomes: "Outcomes", title: str) -> Figure:
 def _rotations(
     axes: Axes, levels: Floats, rotation: Floats, names: tuple[str, ...]
 ) -> None:
-    """Draw a line a motion up to its fall, and crosses on the line of 1.1 where it overturns."""
+    """Draw a line a motion up to its fall, and a row of crosses above where it overturns."""
     few = len(rotation) <= MOST_NAMED
     for j, values in enumerate(rotation):
         order = np.argsort(levels[j], kind="stable")
@@ -81,7 +81,9 @@ def _rotations(
         label = name if few and len(rotation) > 1 else None
         axes.plot(x, stands, ".-", ms=3, lw=0.8, color=colour, label=label)
         fallen = x[np.isinf(y)]
-        axes.plot(fallen, np.full(fallen.size, 1.1), "x", ms=4, mew=0.8, color=colour)
+        # rows of crosses, so that those of few motions do not hide each other
+        row = np.full(fallen.size, 1.1 + (0.05 * j if few else 0.0))
+        axes.plot(fallen, row, "x", ms=3.5, mew=0.8, color=colour)
     axes.axhline(1, color=style.GUIDE, lw=0.6, ls="--")
     axes.annotate(
         "crosses: overturned",
@@ -90,11 +92,13 @@ def _rotations(
         fontsize=6.5,
         va="top",
     )
-    axes.set_ylim(0, 1.35)
+    axes.set_ylim(0, 1.3 + 0.05 * (len(rotation) if few else 1))
 
 
 def _fractions(axes: Axes, levels: Floats, overturned: Floats) -> None:
     """Draw the fraction of motions that overturn the system, at common levels or over the scales."""
+    # equal peaks of several motions differ by rounding
+    levels = np.round(levels, 9)
     order = np.argsort(levels, axis=1)
     levels = np.take_along_axis(levels, order, axis=1)
     fallen = np.take_along_axis(np.asarray(overturned, dtype=float), order, axis=1)

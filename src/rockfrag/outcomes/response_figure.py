@@ -51,7 +51,7 @@ def response_figure(response: "Response", title: str) -> Figure:
         # a body that never rocked has a panel, too
         largest = float(np.abs(response.theta / critical).max()) or 1.0
         rotation.set_ylim(-min(1.6, 1.15 * largest), min(1.6, 1.15 * largest))
-        rotation.set_ylabel("Rotation / critical [-]")
+        rotation.set_ylabel("Rotation / critical")
         impacts = response.contact_events.loc[
             response.contact_events["kind"] == "impact", "time"
         ]
@@ -124,4 +124,4 @@ def _rocking_modes(panel: Axes, response: "Response") -> None:
         )
     panel.set_yticks(range(len(seen)), seen)
     panel.set_ylim(-0.6, max(len(seen), 1) - 0.4)
-    panel.set_ylabel("Pattern")
+    panel.set_ylabel("Rocking mode")

@@ -504,7 +504,7 @@ def make_catalogue(
         )
     _name_uniquely(rows)
     draft.note_names_of_one_day(rows)
-    draft.table = pd.DataFrame(rows, columns=list(COLUMNS)).fillna("")
+    draft.table = pd.DataFrame(rows, columns=list(COLUMNS), dtype=object).fillna("")
     return draft
 
 

@@ -21,6 +21,7 @@ from rockfrag.base.errors import InputError
 from rockfrag.base.files import whole_file
 from rockfrag.base.short_repr import short_repr
 from rockfrag.base.units import GRAVITY
+from rockfrag.records.velocity_steps import VelocitySteps
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -230,11 +231,13 @@ class GroundMotion:
     x : horizontal component along the x axis of the bodies, the plane of planar ones
     y : horizontal component across that plane; None where it is not given
     z : vertical component, upwards; None where it is not given
+    steps : jumps of the velocity of ground or floor beside its accelerations; None for none
     """
 
     x: Motion
     y: Motion | None = None
     z: Motion | None = None
+    steps: VelocitySteps | None = field(default=None, kw_only=True)
 
     def __post_init__(self) -> None:
         for name, other in (("y", self.y), ("z", self.z)):

@@ -51,7 +51,7 @@ def run(job: Job[CampaignStudy]) -> Results:
     pair = VectorTables(tables["two_measures"], tables["contours"], tables["cells"])
     both = two_measures_section(pair, study.confidence)
     # whether the motions were measured on the table, or follow from its command
-    motion = "commanded of" if study.pulse_cycles else "measured on"
+    motion = "measured on" if study.motions else "commanded of"
     found, level = campaign_findings(tables), f"{100 * study.confidence:g} %"
     sections = [_agreement(tables, found[0], level), _fragility(tables, level)]
     sections += [both] if both else []

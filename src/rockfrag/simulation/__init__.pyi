@@ -1,4 +1,4 @@
-from . import closed_forms as closed_forms
+from . import closed_forms as closed_forms, holding as holding
 from .ensemble import (
     LightBodies as LightBodies,
     overturns as overturns,

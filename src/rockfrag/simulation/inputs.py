@@ -21,13 +21,16 @@ from rockfrag.base.input_checks import positive_number, real_array, shown, whole
 from rockfrag.engines.contract import Cases
 from rockfrag.engines.steps import MOST_SAMPLES, STEP, step_count
 from rockfrag.records.motion import GroundMotion, Motion
+from rockfrag.records.velocity_steps import VelocitySteps
 from rockfrag.system.blocks import SystemLike, as_system, is_system
 from rockfrag.system.system import uplift_ratios
 
 MOST_CASES = 50_000_000  # cases of an ensemble whose results are held in memory
 STRONGEST = 1e4  # peak acceleration [m/s²] beyond any earthquake
-MotionLike = Motion | GroundMotion | ArrayLike
-"""A motion, or the accelerations of its horizontal component [m/s²], shape (n,)."""
+MotionLike = Motion | GroundMotion | VelocitySteps | ArrayLike
+"""A motion, jumps of the velocity, or the accelerations of the horizontal component [m/s²], shape (n,)."""
+
+STEPPED = 0.005  # sampling interval of a base that moves by jumps alone [s]
 
 SystemsInput = SystemLike | Sequence[SystemLike] | Mapping[str, SystemLike]
 """One body or system, a list of them, or a mapping of names, which stand in tables and figures, to them."""
@@ -161,6 +164,8 @@ def ground_motion(
     vertical_name: str = "vertical",
 ) -> GroundMotion:
     """Return the checked ground motion of a horizontal and perhaps a vertical component."""
+    if isinstance(motion, VelocitySteps):
+        motion = GroundMotion(Motion(np.zeros(2), STEPPED), steps=motion)
     if isinstance(motion, GroundMotion):
         if vertical is not None or dt is not None:
             raise InputError(
@@ -190,7 +195,7 @@ def _listed_motions(motions: Any, name: str = "motions") -> list[MotionLike]:
         raise InputError(
             f"{name}: expected motions, got a {type(motions).__name__}; bodies stand before them."
         )
-    if isinstance(motions, (Motion, GroundMotion)):
+    if isinstance(motions, (Motion, GroundMotion, VelocitySteps)):
         return [motions]
     if (
         isinstance(motions, np.ndarray)
@@ -304,7 +309,7 @@ def warn_of_units(cases: Cases, given: object, stacklevel: int = 5) -> None:
         for motion, scale in zip(cases.motions, largest, strict=True)
     ]
     peak = max(peaks)
-    own = (Motion, GroundMotion)
+    own = (Motion, GroundMotion, VelocitySteps)
     plain = any(not isinstance(motion, own) for motion in _listed_motions(given))
     # a stronger motion is hardly one in g, and needs no look at the bodies
     doubtful = plain and 0 < peak <= plausible.LARGEST_IN_G

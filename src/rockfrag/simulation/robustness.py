@@ -242,8 +242,9 @@ def _doubled(motion: GroundMotion) -> GroundMotion:
             dt=component.dt / 2,
         )
 
-    return GroundMotion(
-        dense(motion.x),
-        None if motion.y is None else dense(motion.y),
-        None if motion.z is None else dense(motion.z),
+    return replace(
+        motion,
+        x=dense(motion.x),
+        y=None if motion.y is None else dense(motion.y),
+        z=None if motion.z is None else dense(motion.z),
     )

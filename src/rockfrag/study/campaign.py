@@ -19,6 +19,9 @@ from rockfrag.study.heading import Heading, Steps, beside, checked_steps, headin
 PULSE_MEASURES = ("pga_g", "pgv_over_pga_s")
 """Measures from which the motion of a commanded pulse follows."""
 
+STEP_MEASURES = ("velocity_m_s", "distance_m")
+"""Measures from which the jumps of a base that is hit and stopped follow."""
+
 CAMPAIGN_KEY = "campaign"  # key that only a study of a campaign has
 
 
@@ -36,6 +39,8 @@ class CampaignStudy(Heading):
     # Cycles of the cosine that the table was told to make, where ``motions`` is empty because PGA
     # and PGV/PGA of each test tell its motion; 0 for measured motions
     pulse_cycles: int
+    # Whether the base was hit and stopped, as velocity and distance of each test tell
+    is_stepped: bool
     # What the files of motions do not state: unit, step [s] and channel
     unstated: tuple[str | None, float | None, str | None]
     # Whether tests without a motion are left out; otherwise they are refused
@@ -114,9 +119,14 @@ def campaign_from(content: Mapping[str, Any], source: Path) -> CampaignStudy:
         name: checked_steps(source, f"varied_conditioning.{name}", steps)
         for name, steps in content.get("varied_conditioning", {}).items()
     }
-    motions, pulse_cycles = "", 0
+    if "size" in content["unknowns"] and not {"mesh", "pedestal"}.isdisjoint(thing):
+        raise InputError(
+            f"{source}: key unknowns.size: is of a block by hand that stands alone; leave it out."
+        )
+    motions, pulse_cycles, is_stepped = "", 0, False
     if isinstance(campaign["motions"], Mapping):
-        pulse_cycles = campaign["motions"].get("cycles", 1)
+        is_stepped = "steps" in campaign["motions"]
+        pulse_cycles = 0 if is_stepped else campaign["motions"].get("cycles", 1)
     else:
         motions = str(beside(source, campaign["motions"]))
     if motions.endswith(".npz"):
@@ -134,6 +144,7 @@ def campaign_from(content: Mapping[str, Any], source: Path) -> CampaignStudy:
         other_codes=None if other is None else existing("campaign.other_codes", other),
         motions=motions,
         pulse_cycles=pulse_cycles,
+        is_stepped=is_stepped,
         unstated=(campaign.get("unit"), campaign.get("dt_s"), campaign.get("channel")),
         leave_out=campaign.get("without_motion", "refuse") == "leave_out",
         measures={

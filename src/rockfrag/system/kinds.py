@@ -16,17 +16,26 @@ from rockfrag.system.blocks import Block
 
 @dataclass(frozen=True)
 class Kind:
-    """A kind of thing: usual sizes and weight."""
+    """A kind of thing: usual sizes and weight.
+
+    Attributes
+    ----------
+    title : in words
+    width_m, depth_m, height_m : across the direction in which it topples most easily, along it, and upwards [m]
+    density : mass over the volume of its outline [kg/m³]
+    cg_fraction : height of the centre of gravity over its own [-]
+    friction : usual coefficient of friction on what it stands on [-]
+    round : whether base and outline are round
+    """
 
     title: str
-    # across the direction in which it topples most easily, along it, and upwards [m]
     width_m: float
     depth_m: float
     height_m: float
-    density: float  # mass over the volume of its outline [kg/m³]
-    cg_fraction: float  # height of the centre of gravity over its own [-]
-    friction: float  # usual coefficient of friction on what it stands on [-]
-    round: bool = False  # whether base and outline are round
+    density: float
+    cg_fraction: float
+    friction: float
+    round: bool = False
 
     def settings(self, given: Mapping[str, Any]) -> dict[str, Any]:
         """Complete what is given of a thing by what is usual.

@@ -410,24 +410,30 @@ def turned_about_vertical(system: System, angle_deg: float) -> System:
         return system
     (body,) = system.bodies
     sine, cosine = sin_cos(math.radians(angle_deg))
-    assert isinstance(body.base, Polygon)
     (xx, xy, xz), (_, yy, yz), (*_, zz) = body.tensor.tolist()
     xx, xy, yy = geometry.turned_moments(xx, xy, yy, sine, cosine)
     xz, yz = geometry.turned_in_plan(xz, yz, sine, cosine)
     x, y, z = body.centre
+    base, face = body.base, body.face
+    assert isinstance(base, Polygon)
+    assert face is None or isinstance(face, Polygon)
     turned = replace(
         body,
         inertia=((xx, xy, xz), (xy, yy, yz), (xz, yz, zz)),
         centre=(*geometry.turned_in_plan(x, y, sine, cosine), z),
-        base=Polygon(
-            tuple(
-                geometry.turned_in_plan(east, north, sine, cosine)
-                for east, north in body.base.vertices
-            )
-        ),
-        face=None,
+        base=_turned_outline(base, sine, cosine),
+        face=face and _turned_outline(face, sine, cosine),
     )
     return replace(system, bodies=(turned,))
+
+
+def _turned_outline(outline: Polygon, sine: float, cosine: float) -> Polygon:
+    return Polygon(
+        tuple(
+            geometry.turned_in_plan(east, north, sine, cosine)
+            for east, north in outline.vertices
+        )
+    )
 
 
 def stands(system: System) -> bool:
@@ -480,7 +486,16 @@ def rocking_shapes(system: System) -> list[geometry.Shape]:
 
 
 def standing_centres(system: System) -> list[tuple[float, float]]:
-    """Centres of gravity of planar bodies as they stand on each other [m]."""
+    """Centres of gravity of planar bodies as they stand on each other [m].
+
+    Parameters
+    ----------
+    system : planar, of one body or more
+
+    Returns
+    -------
+    Places (x, y) from the middle of the lowest base [m], from below.
+    """
     found = []
     for (angle, (x, y), body), shape in zip(_bases(system), system.shapes, strict=True):
         dx, dy = geometry.turned(body.ends[0].middle + shape.x, shape.y, angle)

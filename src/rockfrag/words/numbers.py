@@ -5,6 +5,14 @@ def significant(value: float, digits: int) -> str:
     """A number to so many digits, without zeros at its end: ``0.25``, ``1230``.
 
     Halves go to the even digit, as in the page.
+
+    Parameters
+    ----------
+    value, digits : the number, and to how many digits
+
+    Returns
+    -------
+    The text.
     """
     if value == 0:
         return "0"

@@ -155,15 +155,20 @@ def beside_stepping(cases: list[Case], step: float) -> pd.DataFrame:
         pytest.param((3, 4) * 100, 8, 2e-4, 4, (50, 150), marks=pytest.mark.slow),
         pytest.param((8,) * 50, 8, 2e-4, 3, (12, 47), marks=pytest.mark.slow),
         pytest.param(
-            (4, 5, 6, 7, 8) * 100, 9, 2e-5, 5, (100, 450), marks=pytest.mark.slow
+            (4, 5, 6, 7, 8) * 100, 9, 2e-5, 12, (100, 450), marks=pytest.mark.slow
         ),
     ],
     ids=lambda value: f"{len(value)} of {value[0]}" if isinstance(value, tuple) else "",
 )
 def test_outcomes_are_those_of_time_stepping(bodies, seed, step, differing, falls):
     rng = np.random.default_rng(seed)
-    found = beside_stepping([random_case(rng, n) for n in bodies], step)
+    cases = [random_case(rng, n) for n in bodies]
+    found = beside_stepping(cases, step)
     assert found["differs"].sum() <= differing
+    if bodies[0] > 3:
+        # no step is short enough for columns that rock for long: what differs hangs on a hundredth of the motion
+        differ = np.flatnonzero(found["differs"])
+        assert all(cases[number].is_critical() for number in differ)
     assert falls[0] <= found["falls"].sum() <= falls[1]
     # some graze: there the time of a contact event hangs on a root, and the stepping's error is as large
     assert found["turn"].median() < step / 2

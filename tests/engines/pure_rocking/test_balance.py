@@ -16,7 +16,7 @@ from rockfrag.system import as_system, geometry
 
 from ...oracle import witness
 from ..planar.cases import G, random_block, random_stack
-from ..planar.test_balance import STEP, check_contact, pushes_of
+from ..sample_balance import STEP, check_contact, pushes_of
 
 DT = 0.01
 

@@ -242,6 +242,17 @@ def test_forces_that_friction_allows_balance_the_motion(begins, modes):
     assert seen["between"] < 0.2 * seen.total()
 
 
+def test_a_turn_in_the_air_is_spin_times_time_and_counts_whole_turns():
+    body, spin, dt = uneven_box(np.random.default_rng(1), 0.5), 25.0, 0.04
+    body["inertia"] = body["inverse"] = np.eye(3)
+    start = placed(np.eye(3), np.zeros(3), np.array([0.0, 0.0, -spin]), np.zeros(3))
+    start[2] = 20.0
+    outcome, history = run_case(body, np.zeros((16, 3)), dt, start=start, samples=16)
+    np.testing.assert_allclose(history[:, 13], -spin * dt * np.arange(16), atol=1e-6)
+    assert outcome.peak_velocity == pytest.approx(spin)
+    assert outcome.flights == 0 and outcome.impacts == 0
+
+
 def sticking(points, inertia, before, friction):
     """Velocities after an impact in which the fewest of some points stick and push while the others part.
 

@@ -30,7 +30,7 @@ const answer = (data, core) => {
 
   // a worker's part: outcomes of a run under some of the motions
   function counter(ensemble, motions, space) {
-    const solids = spatial.counter(ensemble, space, core), floors = new Map();
+    const solids = spatial.counter(ensemble, space), floors = new Map();
     let standing = "";
     function shakingOf(place, floor, part) {
       // floors of one place are kept, and the ground

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from rockfrag.assess.core import estimates, fractions, hazards, levels, velocity
+from rockfrag.assess.core import estimates, fractions, hazards, velocity
 from rockfrag.engines.compile.jit import kernel
 from rockfrag.web.build import module_of
 
@@ -30,8 +30,6 @@ ENTRIES: dict[Any, tuple[Any, ...]] = {
     fractions.fill_uplifts: (_ROW, _FLAGS, _FLAGS, _FLAGS, _ROW, _ROW),
     fractions.fill_counted: (_FLAGS, _FLAGS, _ROW, _ROW),
     fractions.fill_shift: (_ROW,) * 6,
-    levels.fill_scan: (_TABLE, _ROW, _FLAGS),
-    levels.fill_band: (_TABLE, _ROW, *(_FLAGS,) * 3, np.zeros((1, 1), np.int64)),
     estimates.fill_place: (_ROW, _FLOAT, _ROW),
     estimates.fill_sums: (_TABLE, _ROW, _ROW),
     estimates.fill_crossings: (_TABLE, _ROW, _FLOAT, _ROW),

@@ -42,7 +42,7 @@ const findings = (data) => {
       return percent(value);
     }
     function howFar({ value, lower, upper }) {
-      if (!Number.isFinite(value)) return finding("how_far_beyond");
+      if (!Number.isFinite(value)) return finding("how_far_beyond", { most: finding("quantity", { value: two(found.levels.at(-1)), unit }) });
       const about = { half: finding("quantity", { value: two(value), unit }), lower: two(lower) };
       return Number.isFinite(upper) ? finding("how_far", { ...about, upper: two(upper) }) : finding("how_far_from", about);
     }

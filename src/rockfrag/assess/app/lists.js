@@ -70,9 +70,26 @@ const lists_ = (data, fields) => {
     }
     return [form];
   }
+  // a museum's table: a title, sides in columns such as Height (cm), and whatever else it keeps
+  const SIDES = /^(height|width|depth|diameter)[ _]*\(?(mm|cm|m|in|ft)\.?\)?$/i, NAMES = ["title", "object name", "name", "titel", "titre"];
+  const WORDS = /^(dimensions?|size|maße|abmessungen|afmetingen)$/i;
+  function ofMuseum(titles, rows, say) {
+    const sides = titles.map((title) => SIDES.exec(title.trim())), at = (side) => sides.findIndex((found) => found?.[1].toLowerCase() === side);
+    if (at("height") < 0) throw new Error(say("file_in_words"));
+    const named = NAMES.map((name) => titles.findIndex((title) => title.trim().toLowerCase() === name)).find((i) => i >= 0);
+    const length = (row, side) => (at(side) >= 0 && row[at(side)]?.trim() ? `${row[at(side)].trim()} ${sides[at(side)][2].toLowerCase()}` : "");
+    return rows.map((row, i) => {
+      const form = { name: row[named]?.trim() || String(i + 1), width: length(row, "width") || length(row, "diameter"), height: length(row, "height") };
+      if (length(row, "depth")) form.depth = length(row, "depth");
+      if (!length(row, "width") && length(row, "diameter")) form.round = "true";
+      return form;
+    });
+  }
   function read(name, text, say) {
     if (!/\.csv$/i.test(name)) return ofYaml(text, say);
     const [titles, ...rows] = rowsOf(text.replace(/^\ufeff/, ""), say);
+    const isMuseums = (titles ?? []).some((title) => WORDS.test(title.trim()) || SIDES.test(title.trim()));
+    if (isMuseums && !titles.includes("width") && rows.length && rows.length <= MOST_ROWS) return ofMuseum(titles, rows, say);
     const unknown = (titles ?? []).find((title) => !fields.includes(title.trim()));
     if (unknown !== undefined) throw new Error(say("file_keys", { key: unknown.trim().slice(0, 40) }));
     if (!rows.length) throw new Error(say("file_no_rows"));

@@ -88,7 +88,7 @@ const inSpace = (data) => {
 
   // a worker's part: outcomes of a run under motions first to last - 1; `shaken` gives a motion on the run's floor, and
   // `scalesOf` levels, factors on motions and which are allowed
-  function counter(ensemble, space, core) {
+  function counter(ensemble, space) {
     return function count(run, first, last, shaken, scalesOf) {
       const kept = Array.from({ length: last - first }, (_, i) => first + i).filter((m) => !run.fewer || inFewer[m]);
       const { levels, allowed, scales } = scalesOf(kept), each = levels.length;
@@ -116,31 +116,15 @@ const inSpace = (data) => {
           for (const side of sides) lift(m, liftingInPlane(ensemble.bodyOf(run.body), side));
           if (run.solid) lift(m, liftingInSpace(space.bodyOf(run.solid), pairOf(record, shaken)));
         }
-        if (run.solid) add(solidOutcomes(run.solid, record, shaken, own.scales));
+        if (run.solid) add(solidOutcomes(run.solid, record, shaken, own.scales, stands()));
         if (sides.length > some.length) add(planarOutcomes(run.body, sides.filter((_, i) => i % across), own, stands()));
       }
       return found;
     };
-    // a scan of the levels, and those between which outcomes change
-    function solidOutcomes(solid, record, shaken, scales) {
-      const body = space.bodyOf(solid), pair = pairOf(record, shaken), [one, other] = pair;
-      return core.within(() => {
-        const size = scales.length, table = core.put(scales, [1, size]), lifting = core.put([liftingInSpace(body, pair)]);
-        const [scan, fell, band] = [1, 2, 3].map(() => core.zeros([1, size], Uint8Array)), sources = core.zeros([1, size], BigInt64Array);
-        const found = { overturned: new Uint8Array(size), rocked: new Uint8Array(size) };
-        const simulate = (chosen) => chosen.values.forEach((wanted, k) => {
-          if (!wanted) return;
-          const { overturned, peak } = space.integrate({ body, x: one.samples, y: other?.samples ?? null, dt: one.dt, scale: scales[k] });
-          [found.overturned[k], found.rocked[k]] = [overturned, peak > 0];
-        });
-        core.call("fill_scan", table, lifting, scan);
-        simulate(scan);
-        fell.values.set(found.overturned);
-        core.call("fill_band", table, lifting, scan, fell, band, sources);
-        simulate(band);
-        const of = (values) => Uint8Array.from(sources.values, (k) => values[Number(k)]);
-        return { overturned: of(found.overturned), rocked: of(found.rocked) };
-      });
+    function solidOutcomes(solid, record, shaken, scales, stands) {
+      const body = space.bodyOf(solid), [one, other] = pairOf(record, shaken);
+      const told = Array.from(scales, (scale, k) => (stands[k] ? space.integrate({ body, x: one.samples, y: other?.samples ?? null, dt: one.dt, scale }) : { overturned: 0, peak: 0 }));
+      return { overturned: Uint8Array.from(told, (each) => each.overturned), rocked: Uint8Array.from(told, (each) => each.peak > 0) };
     }
     // a record in all directions
     function sidesOf(record, shaken) {

@@ -14,6 +14,7 @@ from typing import Any, ClassVar, Self
 
 from rockfrag.assess.assumed import Assumption, Moved, moved_to_both_sides
 from rockfrag.assess.standing.changes import usual_changes
+from rockfrag.assess.standing.holders import Holder, holders_beside
 from rockfrag.assess.texts import Text
 from rockfrag.base.errors import InputError
 from rockfrag.fragility.model_error import CUT
@@ -51,6 +52,8 @@ class Foundation:
     tolerances: Mapping[str, float] = field(default_factory=dict)
     # Whether a tilt test says how wide it stands for the height of its centre of gravity
     tilted: bool = False
+    # What holds it beside what it stands on
+    holders: tuple[Holder, ...] = ()
     assumed: tuple[Assumption, ...] = ()  # What was not given
     quality_flags: tuple[Value, ...] = ()  # What looks wrong
 
@@ -110,8 +113,8 @@ class Standing(ABC):
 
     @property
     def many(self) -> bool:
-        """Whether more than two bodies stand on each other, each of whose simulations takes milliseconds."""
-        return len(self.pedestals) > 1
+        """Whether a simulation takes milliseconds: more than two bodies on each other, or something that holds."""
+        return len(self.pedestals) > 1 or bool(self.under.holders)
 
     @property
     def least_uplift(self) -> float:
@@ -166,7 +169,17 @@ class Standing(ABC):
             under=replace(self.under, pedestals=pedestals),
         )
 
+    def holders_to_try(self) -> list[Holder]:
+        """What may hold it, or what it may do without."""
+        return holders_beside(self.under.holders)
+
     # ---- what is simulated
+
+    def held(self, system: System) -> System:
+        """A system of it with what holds it."""
+        for holder in self.under.holders:
+            system = holder.on(system)
+        return system
 
     def system_of(self, body: Body) -> System:
         """Return what is shaken in a plane: a body whose impacts lose what was measured or assumed."""

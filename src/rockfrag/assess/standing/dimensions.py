@@ -8,6 +8,7 @@ from typing import Any
 
 from rockfrag.assess.assumed import Assumption, assume, tolerances_in
 from rockfrag.assess.standing.contract import OF_A_TILT_TEST, TOLERANCES, Foundation
+from rockfrag.assess.standing.holders import holders_of
 from rockfrag.assess.texts import Text
 from rockfrag.base.errors import InputError, errors_of
 from rockfrag.base.plausible import DENSITIES, STONE, check_density, size_warning
@@ -66,6 +67,7 @@ def foundation_of(
         pad_friction=settings.get("pad_friction"),
         tolerances=tolerances_in(settings, tolerances),
         tilted=tilted,
+        holders=holders_of(settings),
         assumed=assumed,
     )
 

@@ -1,5 +1,6 @@
 """Engine of single histories in pure rocking: one or two bodies, every impact, everything about the response."""
 
+from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from typing import Any
 
@@ -28,34 +29,56 @@ from rockfrag.outcomes.response import Response, contact_event_table, energy_tab
 from rockfrag.system import geometry
 from rockfrag.system.system import System
 
+VELOCITY_STEP = 4  # a jump of the base's velocity, of which the kernels know nothing
+KINDS = {
+    kept.OPENING: "opening",
+    kept.CLOSING: "impact",
+    kept.CHATTER: "chatter",
+    kept.LIFTING: "lift-off",
+    VELOCITY_STEP: "velocity step",
+}
+"""Kinds of contact events in words."""
+
 Records = NDArray[np.void]
 Link = tuple[Floats, ...]
 
 
 def run(cases: Cases) -> Outcomes:
     """Return the outcomes of cases, whose histories are not kept."""
+    no_samples = np.empty(0, kept.SAMPLE)
+    no_contact_events = np.empty(0, kept.CONTACT_EVENT)
+
+    def summary_of(case: Case, record: np.void, start: np.void) -> np.void:
+        shaking = shaking_of(case, case.request.g)
+        return run_integration(record, shaking, start, no_samples, no_contact_events)[1]
+
+    return summarised(cases, SINGLE.name, summary_of)
+
+
+def summarised(
+    cases: Cases, name: str, summary_of: Callable[[Case, np.void, np.void], np.void]
+) -> Outcomes:
+    """Return the outcomes of cases by an engine of a name, from the SUMMARY of each.
+
+    ``summary_of`` takes a case, the record of its body and the STATE that it begins with.
+    """
     records = [
         body_record(system, cases.request.linear, cases.request.g)
         for system in cases.systems
     ]
     starts = [initial_state(system) for system in cases.systems]
     summaries = np.zeros(cases.shape, kept.SUMMARY)
-    no_samples = np.empty(0, kept.SAMPLE)
-    no_contact_events = np.empty(0, kept.CONTACT_EVENT)
 
     def work(place: tuple[int, int, int]) -> None:
         i, j, k = place
         case = Case(
             cases.systems[i], cases.motions[j], float(cases.scales[j, k]), cases.request
         )
-        shaking = shaking_of(case, case.request.g)
-        _, summaries[place] = run_integration(
-            records[i], shaking, starts[i], no_samples, no_contact_events
-        )
+        summaries[place] = summary_of(case, records[i], starts[i])
 
     with ThreadPoolExecutor(cases.threads) as pool:
         list(pool.map(work, np.ndindex(*cases.shape)))
-    outcomes = empty_outcomes(cases.names, cases.scales, (SINGLE.name,))
+    outcomes = empty_outcomes(cases.names, cases.scales, (name,))
     write_rocking(outcomes, summaries, "ratio")
     outcomes.overturning_time[:] = summaries["fall_time"]
     for rows, k, number in blocks_of(outcomes):
@@ -118,10 +141,9 @@ class SingleRun:
         )
         theta, state, n = self.of("theta"), self.of("c"), len(self.history)
         fallen = int(summary["fallen"])
-        samples, ground = self.shaking.samples * self.shaking.scale, np.zeros(n)
-        ground[: samples.size] = samples[:n]
+        ground, upward = self.ground(n)
         position, links = self._links(theta, state)
-        normal, friction = self._forces(ground, links)
+        normal, friction = self._forces(ground, upward, links)
         return Response(
             system=self.system,
             time=self.time,
@@ -150,6 +172,15 @@ class SingleRun:
             grazings=int(summary["grazings"]),
             given_way=int(summary["given_way"]),
         )
+
+    def ground(self, count: int) -> tuple[Floats, Floats]:
+        """Acceleration of the ground at the first samples [m/s²], and upwards over gravity, (count,) each."""
+        found = np.zeros((2, count))
+        for row, samples in zip(
+            found, (self.shaking.samples, self.shaking.vertical), strict=True
+        ):
+            row[: samples.size] = self.shaking.scale * samples[:count]
+        return found[0], found[1]
 
     def _links(self, theta: Floats, state: NDArray[Any]) -> tuple[Floats, list[Link]]:
         """Centres of gravity relative to the ground [m], (n, blocks, 2), and the links between pivots and them.
@@ -195,11 +226,12 @@ class SingleRun:
         position[..., 0] += lower.x - arm[:, :1]
         return position, links
 
-    def _forces(self, ground: Floats, links: list[Link]) -> tuple[Floats, Floats]:
+    def _forces(
+        self, ground: Floats, upward: Floats, links: list[Link]
+    ) -> tuple[Floats, Floats]:
         """Normal and friction force of each interface, across and along the face that carries [N], (n, blocks)."""
-        gravity = np.full(ground.size, float(self.record["gravity"]))
-        up = self.shaking.scale * self.shaking.vertical[: ground.size]
-        gravity[: up.size] += gravity[: up.size] * up
+        still = float(self.record["gravity"])
+        gravity = still + still * upward
         mass, (_, _, ax, ay) = self.system.shapes[0].mass, links[0]
         normal, friction = mass * (gravity + ay), mass * (ground + ax)
         if self.count == 1:
@@ -219,15 +251,9 @@ class SingleRun:
         """Make the table of contact events."""
         found = self.contact_events
         before, after = found["before"], found["after"]
-        kinds = {
-            kept.OPENING: "opening",
-            kept.CLOSING: "impact",
-            kept.CHATTER: "chatter",
-            kept.LIFTING: "lift-off",
-        }
         return contact_event_table(
             found["time"],
-            [kinds[kind] for kind in found["kind"].tolist()],
+            [KINDS[kind] for kind in found["kind"].tolist()],
             (self.of("c", before), self.of("c", after)),
             (self.of("omega", before), self.of("omega", after)),
             theta=self.of("theta", after),
@@ -293,9 +319,15 @@ def run_integration(
     initial: np.void,
     history: Records,
     contact_events: Records,
+    *,
+    memory: np.void | None = None,
 ) -> tuple[int, np.void]:
-    """Integrate one system; return the number of samples done and the summary."""
-    summary, work = np.zeros(1, kept.SUMMARY)[0], np.zeros(1, SCRATCH)[0]
+    """Integrate one system; return the number of samples done and the summary.
+
+    ``memory`` is a SCRATCH that holds the last state afterwards.
+    """
+    summary = np.zeros(1, kept.SUMMARY)[0]
+    work = np.zeros(1, SCRATCH)[0] if memory is None else memory
     with compiling_alone(integrate):
         done = integrate(
             record, shaking, initial, history, contact_events, summary, work

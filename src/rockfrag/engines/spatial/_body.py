@@ -9,11 +9,25 @@ import numpy as np
 
 from rockfrag.base.arrays import fields, whole
 from rockfrag.engines.compile.jit import kernel
-from rockfrag.engines.spatial._algebra import cross, dot, norm, plus, times, to_world
+from rockfrag.engines.spatial._algebra import (
+    cross,
+    dot,
+    minus,
+    norm,
+    plus,
+    times,
+    to_world,
+)
 
 SIZE = 15
 WORK, FRICTION = 13, 14
 MOST_VERTICES = 64
+MOST_CONSTRAINTS = 8  # walls and ties
+BOND = MOST_CONSTRAINTS  # row of a bond among what holds a body
+HOLDERS = MOST_CONSTRAINTS + 1
+MOST_CORNERS = 2 * MOST_VERTICES  # of base and face, that may touch walls
+# number of a contact from which it is one of a corner with a wall: those of a wall follow each other
+WALLS = 1000
 
 BODY = np.dtype(
     [
@@ -35,6 +49,26 @@ BODY = np.dtype(
         *fields("points", MOST_VERTICES, 3),  # vertices, anticlockwise [m]
         # tensor about each vertex [m²]
         *fields("about about_inverse", MOST_VERTICES, 3, 3),
+        # a bond: whether there is one; what it holds in tension and shear, for a unit of mass [N/kg]; half the
+        # distances of its pads, and the centre of mass from between them [m]
+        *whole("bonded"),
+        *fields("tension shear"),
+        *fields("pads aside", 2),
+        # walls and ties: how many; of each whether it is a tie
+        *whole("constraints"),
+        *whole("ties", MOST_CONSTRAINTS),
+        # of a tie: where it is fastened, from the centre of mass; where it ends, from where that is at first, on
+        # the ground [m]; stiffness, damping and strength for a unit of mass; natural length [m]; the length below
+        # which it pushes, 0 of a cord [m]
+        *fields("knot anchor", MOST_CONSTRAINTS, 3),
+        *fields("stiffness damping strength natural shortest", MOST_CONSTRAINTS),
+        # of a wall: the direction away from it in the plan, its distance from the origin against that direction
+        # [m], coefficients of friction and ratio of speeds after and before an impact [-]
+        *fields("away", MOST_CONSTRAINTS, 2),
+        *fields("distance wall_static wall_kinetic ratio", MOST_CONSTRAINTS),
+        # corners of base and face that may touch walls, from the centre of mass [m]
+        *whole("walls corners"),
+        *fields("corner", MOST_CORNERS, 3),
     ],
     align=True,
 )
@@ -57,8 +91,17 @@ def rim_direction(up):
 
 
 @kernel
+def wall_of(i):
+    """Number of the wall of a contact."""
+    return (i - WALLS) // MOST_CORNERS
+
+
+@kernel
 def arm(body, up, i):
     """Point i from the centre of mass, in the body, where ``up`` is the vertical as the body sees it."""
+    if i >= WALLS:
+        k = (i - WALLS) % MOST_CORNERS
+        return (body.corner[k, 0], body.corner[k, 1], body.corner[k, 2])
     if i == rim_contact(body):
         u, _ = rim_direction(up)
         return (
@@ -97,6 +140,72 @@ def gap(body, y, up, i):
 
 
 @kernel
+def gap_of(body, y, rows, i):
+    """Distance of contact i from the ground or its wall."""
+    if i < WALLS:
+        return gap(body, y, rows[2], i)
+    w = wall_of(i)
+    at = to_world(rows, arm(body, rows[2], i))
+    x, z = y[0] + at[0], y[1] + at[1]
+    return body.distance[w] + body.away[w, 0] * x + body.away[w, 1] * z
+
+
+@kernel
+def in_frame(body, i, u):
+    """Components of a vector of the world along contact i, twice, and away from the ground or its wall."""
+    if i < WALLS:
+        return u
+    a, b = body.away[wall_of(i), 0], body.away[wall_of(i), 1]
+    return (a * u[1] - b * u[0], u[2], a * u[0] + b * u[1])
+
+
+@kernel
+def from_frame(body, i, u):
+    """Vector of the world of components along contact i, twice, and away from the ground or its wall."""
+    if i < WALLS:
+        return u
+    a, b = body.away[wall_of(i), 0], body.away[wall_of(i), 1]
+    return (a * u[2] - b * u[0], a * u[0] + b * u[2], u[1])
+
+
+@kernel
+def approach_of(body, y, rows, i):
+    """Velocity of contact i away from the ground or its wall."""
+    return in_frame(body, i, velocity_of(body, y, rows, i))[2]
+
+
+@kernel
+def static_of(body, i):
+    """Coefficient of static friction of contact i."""
+    return body.static if i < WALLS else body.wall_static[wall_of(i)]
+
+
+@kernel
+def kinetic_of(body, i):
+    """Coefficient of kinetic friction of contact i."""
+    return body.kinetic if i < WALLS else body.wall_kinetic[wall_of(i)]
+
+
+@kernel
+def is_smooth(body, i):
+    """Whether contact i has no friction at all, so that it slips whichever way."""
+    return i >= WALLS and body.wall_static[wall_of(i)] == 0.0
+
+
+@kernel
+def wall_candidates(body):
+    """Numbers of the contacts of walls that come before and after all there may be; none without a wall."""
+    return range(WALLS, WALLS + MOST_CORNERS * (body.constraints if body.walls else 0))
+
+
+@kernel
+def may_meet(body, i):
+    """Whether contact i of a wall is of a corner and a wall that there are."""
+    there = (i - WALLS) % MOST_CORNERS < body.corners
+    return there and not body.ties[wall_of(i)]
+
+
+@kernel
 def omega_of(y):
     """Angular velocity in the body."""
     return (y[10], y[11], y[12])
@@ -116,21 +225,25 @@ def velocity_of(body, y, rows, i):
 
 
 @kernel
-def energy(body, y, g):
-    """Kinetic energy and the energy of height over rest [J/kg]."""
+def kinetic_energy(body, y):
+    """Energy of motion [J/kg]."""
     omega = omega_of(y)
-    kinetic = 0.5 * (
+    return 0.5 * (
         y[7] ** 2 + y[8] ** 2 + y[9] ** 2 + dot(omega, times(body.inertia, omega))
     )
-    return kinetic + g * (y[2] - body.height)
 
 
 @kernel
-def free_spin(body, omega):
-    """Angular acceleration without any moment, in the body."""
-    moment = cross(omega, times(body.inertia, omega))
-    turned = times(body.inverse, moment)
-    return (-turned[0], -turned[1], -turned[2])
+def energy(body, y, g):
+    """Kinetic energy and the energy of height over rest [J/kg]."""
+    return kinetic_energy(body, y) + g * (y[2] - body.height)
+
+
+@kernel
+def free_spin(body, omega, moment):
+    """Angular acceleration under a moment other than those of contacts, in the body."""
+    left = minus(moment, cross(omega, times(body.inertia, omega)))
+    return times(body.inverse, left)
 
 
 @kernel

@@ -40,7 +40,9 @@ CASE = np.dtype(
         # numbers of the closed points, and which of them slide ...
         *whole("closed slides", MOST),
         *fields("direction anchor", MOST, 2),  # ... and where to, or where they stick
-        *fields("lam", MOST, 3),  # contact forces or impulses in the world
+        *fields(
+            "lam", MOST, 3
+        ),  # contact forces or impulses, along each contact and across it
         # effective gravity at the beginning of the interval, its rate, and gravity on ground at rest
         *fields("field", 7),
         # a small system: contacts, whether and which way of slip is given; whether they slipped before an impact,
@@ -68,10 +70,28 @@ CASE = np.dtype(
         *fields("beyond"),
         # velocity after an impact below which a point that touches stays closed [m/s]
         *fields("close"),
+        # force and moment of the ties, in the body, for a unit of mass
+        *fields("pulled twisted", 3),
+        # whether a bond is whole; of each constraint whether it has broken, and whether a tie is taut; how often
+        # it was hit, the largest impulse and force for a unit of mass, and when it broke [s]
+        # time at the beginning of an interval [s]
+        *whole("bonded"),
+        *fields("began"),
+        *whole("broken taut", solid.MOST_CONSTRAINTS),
+        *fields("hits impact force breaks", solid.HOLDERS),
     ],
     align=True,
 )
 """What an analysis changes in place; its record goes through all kernels."""
+
+
+@kernel
+def at_wall(s):
+    """Whether a closed point is at a wall."""
+    found = False
+    for k in range(s.count):
+        found = found or s.closed[k] >= solid.WALLS
+    return found
 
 
 @kernel
@@ -82,6 +102,8 @@ def kind_of(s):
         return REST
     if n == 0:
         return FLIGHT
+    if at_wall(s):
+        return GENERAL
     if n == 1:
         return PIVOT if s.slides[0] == STICKS else SLIDER
     if n == 2 and s.slides[0] == STICKS and s.slides[1] == STICKS:
@@ -100,9 +122,74 @@ def pull_at(field, tau):
 
 
 @kernel
-def response(body, rows, p, q, axis):
-    """Velocity in the world of point p after a unit impulse along a world axis at point q."""
-    push = rows[axis]
+def stretch_of(body, y, rows, i):
+    """Direction in the world from a tie's knot to its anchor, its length, and how fast that grows."""
+    p = (body.knot[i, 0], body.knot[i, 1], body.knot[i, 2])
+    at, u = to_world(rows, p), solid.point_velocity(y, rows, p)
+    x, z, up = (
+        body.anchor[i, 0] - y[0] - at[0],
+        body.anchor[i, 1] - y[1] - at[1],
+        body.anchor[i, 2] - y[2] - at[2],
+    )
+    length = math.sqrt(x * x + z * z + up * up)
+    way = (x / length, z / length, up / length)
+    return way, length, -dot(way, u)
+
+
+@kernel
+def tie_margin(body, length, rate, i):
+    """How far a tie is from its other state [m]: positive where it pulls, or a bracket pushes."""
+    k, c = body.stiffness[i], body.damping[i]
+    long = length - body.natural[i]
+    pulls = min(long, long + c * rate / k)
+    short = body.shortest[i] - length
+    pushes = min(short, short - c * rate / k)
+    return max(pulls, pushes) if body.shortest[i] > 0.0 else pulls
+
+
+@kernel
+def tie_force(body, length, rate, i):
+    """Force with which a tie pulls, for a unit of mass; negative of a bracket that pushes."""
+    k, c = body.stiffness[i], body.damping[i]
+    if length > body.natural[i]:
+        return max(k * (length - body.natural[i]) + c * rate, 0.0)
+    if length < body.shortest[i]:
+        return min(k * (length - body.shortest[i]) + c * rate, 0.0)
+    return 0.0
+
+
+@kernel
+def pull_ties(body, y, rows, s):
+    """Fill in force and moment of the ties that have not broken, in the body."""
+    for k in range(3):
+        s.pulled[k] = s.twisted[k] = 0.0
+    for i in range(body.constraints):
+        if not body.ties[i] or s.broken[i]:
+            continue
+        way, length, rate = stretch_of(body, y, rows, i)
+        force = scaled(tie_force(body, length, rate, i), to_body(rows, way))
+        turned = cross((body.knot[i, 0], body.knot[i, 1], body.knot[i, 2]), force)
+        for k in range(3):
+            s.pulled[k] += force[k]
+            s.twisted[k] += turned[k]
+
+
+@kernel
+def push_along(body, rows, i, axis):
+    """Unit impulse along an axis of contact i, as the body sees it."""
+    if i < solid.WALLS:
+        return rows[axis]
+    unit = (
+        1.0 if axis == 0 else 0.0,
+        1.0 if axis == 1 else 0.0,
+        1.0 if axis == 2 else 0.0,
+    )
+    return to_body(rows, solid.from_frame(body, i, unit))
+
+
+@kernel
+def response(body, rows, p, q, push):
+    """Velocity in the world of point p after an impulse, as the body sees it, at point q."""
     turn = times(body.inverse, cross(q, push))
     return to_world(rows, plus(push, cross(turn, p)))
 
@@ -114,7 +201,7 @@ def twist_of(body, s):
     Pressed evenly, a face that spins is held by µ N times the mean distance of its points from the centre
     (``docs/space.md``), which is less than the distance of the points that carry it here.
     """
-    if s.count < 3:
+    if s.count < 3 or at_wall(s):
         return 1.0
     total = 0.0
     for k in range(s.count):
@@ -125,16 +212,16 @@ def twist_of(body, s):
 
 @kernel
 def slip_of(body, y, rows, k, s):
-    """Velocity in the world of where the friction of the closed point number k acts."""
+    """Velocity of where the friction of the closed point number k acts, along its contact and across."""
     p = solid.arm(body, rows[2], s.closed[k])
     if s.count >= 3:
         p = solid.towards_centre(body, p, twist_of(body, s))
-    return solid.point_velocity(y, rows, p)
+    return solid.in_frame(body, s.closed[k], solid.point_velocity(y, rows, p))
 
 
 @kernel
 def fill_delassus(body, rows, which, n, delassus, twist=1.0):
-    """Fill in what impulses at the contacts do to their velocities, in world components.
+    """Fill in what impulses at the contacts do to their velocities, along each contact and across it.
 
     Along the ground they act, and velocities are, at the part ``twist`` of the contacts' distance from the centre.
     """
@@ -144,13 +231,15 @@ def fill_delassus(body, rows, which, n, delassus, twist=1.0):
         rubs = solid.towards_centre(body, q, twist)
         for axis in range(3):
             at = q if axis == 2 else rubs
+            push = push_along(body, rows, which[j], axis)
             for i in range(n):
                 p = solid.arm(body, up, which[i])
-                u = response(body, rows, p, at, axis)
+                u = response(body, rows, p, at, push)
                 if twist != 1.0:
                     p = solid.towards_centre(body, p, twist)
-                    flat = response(body, rows, p, at, axis)
+                    flat = response(body, rows, p, at, push)
                     u = (flat[0], flat[1], u[2])
+                u = solid.in_frame(body, which[i], u)
                 for k in range(3):
                     delassus[3 * i + k, 3 * j + axis] = u[k]
 
@@ -160,7 +249,7 @@ def fill_velocities(body, y, rows, which, n, out, twist=1.0):
     """Fill in the velocities of contacts."""
     for i in range(n):
         p = solid.arm(body, rows[2], which[i])
-        u = solid.point_velocity(y, rows, p)
+        u = solid.in_frame(body, which[i], solid.point_velocity(y, rows, p))
         out[3 * i], out[3 * i + 1], out[3 * i + 2] = u
         if twist != 1.0:
             p = solid.towards_centre(body, p, twist)
@@ -168,14 +257,15 @@ def fill_velocities(body, y, rows, which, n, out, twist=1.0):
 
 
 @kernel
-def fill_accelerations(body, y, rows, weight, which, n, out, twist=1.0):
-    """Fill in the accelerations of contacts without contact forces, with ``weight`` as the body sees it."""
-    omega = solid.omega_of(y)
-    spin = solid.free_spin(body, omega)
-    for i in range(n):
+def fill_accelerations(body, y, rows, weight, s, twist):
+    """Fill in the accelerations of closed points without contact forces, with ``weight`` as the body sees it."""
+    omega, out, which = solid.omega_of(y), s.free, s.closed
+    spin = solid.free_spin(body, omega, twist_by_ties(s))
+    for i in range(s.count):
         p = solid.arm(body, rows[2], which[i])
         b = solid.bias(body, rows[2], omega, p, which[i])
         u = to_world(rows, plus(plus(weight, cross(spin, p)), b))
+        u = solid.in_frame(body, which[i], u)
         out[3 * i], out[3 * i + 1], out[3 * i + 2] = u
         if twist != 1.0:
             p = solid.towards_centre(body, p, twist)
@@ -194,12 +284,26 @@ def slip_direction(s, i, u, v):
 
 
 @kernel
-def pivot_acceleration(body, up, omega, weight, i):
+def twist_by_ties(s):
+    """Moment of the ties in the body, for a unit of mass."""
+    return (s.twisted[0], s.twisted[1], s.twisted[2])
+
+
+@kernel
+def load_on(body, y, rows, pull, s):
+    """Effective gravity and the force of the ties, in the body, for a unit of mass; their moment is kept."""
+    pull_ties(body, y, rows, s)
+    weight = to_body(rows, pull)
+    return plus(weight, (s.pulled[0], s.pulled[1], s.pulled[2]))
+
+
+@kernel
+def pivot_acceleration(body, up, omega, weight, i, s):
     """Angular acceleration about a sticking point, the force at it, both in the body."""
     p = solid.arm(body, up, i)
     load = plus(solid.bias(body, up, omega, p, i), weight)
-    gyroscopic = scaled(-1.0, cross(omega, times(body.inertia, omega)))
-    return stop_point(body, up, i, load, gyroscopic)
+    moment = minus(twist_by_ties(s), cross(omega, times(body.inertia, omega)))
+    return stop_point(body, up, i, load, moment)
 
 
 @kernel
@@ -261,7 +365,7 @@ def slider_force(body, y, rows, omega, spin, weight, s):
 
 
 @kernel
-def hinge_acceleration(body, rows, omega, weight, i, j):
+def hinge_acceleration(body, rows, omega, weight, i, j, s):
     """Angular acceleration about the edge from point i to j, force at both ends, and the edge's direction."""
     p, q = solid.arm(body, rows[2], i), solid.arm(body, rows[2], j)
     edge = minus(q, p)
@@ -270,7 +374,7 @@ def hinge_acceleration(body, rows, omega, weight, i, j):
     b = solid.bias(body, rows[2], omega, p, i)
     load = plus(b, weight)
     gyroscopic = cross(omega, times(body.inertia, omega))
-    moment = minus(scaled(-1.0, gyroscopic), cross(p, load))
+    moment = minus(minus(twist_by_ties(s), gyroscopic), cross(p, load))
     alpha = scaled(dot(e, moment) / dot(e, times(body.about[i], e)), e)
     return alpha, scaled(-1.0, plus(cross(alpha, p), load)), e
 
@@ -282,7 +386,7 @@ def share_force(body, rows, omega, alpha, force, e, s):
         solid.arm(body, rows[2], s.closed[0]),
         solid.arm(body, rows[2], s.closed[1]),
     )
-    gyroscopic = cross(omega, times(body.inertia, omega))
+    gyroscopic = minus(cross(omega, times(body.inertia, omega)), twist_by_ties(s))
     # but for its part along the edge, the force at the far end follows from the moment about the near one
     left = minus(plus(times(body.inertia, alpha), gyroscopic), cross(p, force))
     far = to_world(rows, scaled(1.0 / dot(minus(q, p), e), cross(left, e)))
@@ -359,13 +463,15 @@ def spread(s, n, mask):
 
 
 @kernel
-def solve_general(body, y, rows, n, friction, s):
-    """Solve for the forces (or impulses) that undo s.free in a mode; fill ``lam`` in world components."""
+def solve_general(body, y, rows, n, rubs, s):
+    """Solve for the forces (or impulses, without friction) that undo s.free in a mode; fill ``lam``."""
     fill_delassus(body, rows, s.closed, n, s.delassus, twist_of(body, s))
     for i in range(n):
         u = slip_of(body, y, rows, i, s)
         s.way[i, 0], s.way[i, 1] = slip_direction(s, i, u[0], u[1])
-        s.given[i], s.friction[i] = s.slides[i], friction
+        s.given[i], s.friction[i] = s.slides[i], 0.0
+        if rubs:
+            s.friction[i] = solid.kinetic_of(body, s.closed[i])
     stick_together(s, n, (1 << n) - 1, SOFTNESS * largest_compliance(s, n))
     for i in range(n):
         for k in range(3):
@@ -391,45 +497,49 @@ def rates(body, tau, y, dy, s, share=True):
     rows = rotation(y)
     omega = solid.omega_of(y)
     pull = pull_at(s.field, tau)
-    weight = to_body(rows, pull)
+    weight = load_on(body, y, rows, pull, s)
+    tied = (s.pulled[0], s.pulled[1], s.pulled[2])
+    load = plus(pull, to_world(rows, tied))
     kind = kind_of(s)
     lost = 0.0
     if kind == PIVOT:
-        alpha, force = pivot_acceleration(body, rows[2], omega, weight, s.closed[0])
+        alpha, force = pivot_acceleration(body, rows[2], omega, weight, s.closed[0], s)
         pushed = to_world(rows, force)
         s.lam[0, 0], s.lam[0, 1], s.lam[0, 2] = pushed
-        acceleration = plus(pull, pushed)
+        acceleration = plus(load, pushed)
     elif kind == HINGE:
         i, j = s.closed[0], s.closed[1]
-        alpha, force, e = hinge_acceleration(body, rows, omega, weight, i, j)
+        alpha, force, e = hinge_acceleration(body, rows, omega, weight, i, j, s)
         if share:
             share_force(body, rows, omega, alpha, force, e, s)
-        acceleration = plus(pull, to_world(rows, force))
+        acceleration = plus(load, to_world(rows, force))
     elif kind == SLIDER:
-        spin = solid.free_spin(body, omega)
+        spin = solid.free_spin(body, omega, twist_by_ties(s))
         force, p, u = slider_force(body, y, rows, omega, spin, weight, s)
         pushed = to_world(rows, force)
         s.lam[0, 0], s.lam[0, 1], s.lam[0, 2] = pushed
-        acceleration = plus(pull, pushed)
+        acceleration = plus(load, pushed)
         alpha = plus(spin, times(body.inverse, cross(p, force)))
         lost = -pushed[0] * u[0] - pushed[1] * u[1]
     else:
-        alpha = solid.free_spin(body, omega)
-        acceleration = pull
+        alpha = solid.free_spin(body, omega, twist_by_ties(s))
+        acceleration = load
         n = s.count
         if n > 0:
             twist = twist_of(body, s)
-            fill_accelerations(body, y, rows, weight, s.closed, n, s.free, twist)
-            solve_general(body, y, rows, n, body.kinetic, s)
+            fill_accelerations(body, y, rows, weight, s, twist)
+            solve_general(body, y, rows, n, True, s)
             for i in range(n):
                 push = (s.lam[i, 0], s.lam[i, 1], s.lam[i, 2])
-                acceleration = plus(acceleration, push)
-                alpha = plus(alpha, turned_by(body, rows, s.closed[i], push, twist))
                 if s.slides[i]:
                     u = slip_of(body, y, rows, i, s)
                     lost -= push[0] * u[0] + push[1] * u[1]
+                push = solid.from_frame(body, s.closed[i], push)
+                acceleration = plus(acceleration, push)
+                alpha = plus(alpha, turned_by(body, rows, s.closed[i], push, twist))
     fill_rates(y, omega, alpha, acceleration, dy)
-    dy[13] = pull[0] * y[7] + pull[1] * y[8] + (pull[2] + s.field[6]) * y[9]
+    dy[13] = load[0] * y[7] + load[1] * y[8] + (load[2] + s.field[6]) * y[9]
+    dy[13] += dot(twist_by_ties(s), omega)
     dy[14] = lost
 
 
@@ -461,7 +571,8 @@ def turned_by(body, rows, i, push, twist):
 
 @kernel
 def push_at(body, y, rows, i, impulse, twist=1.0):
-    """Change the velocities in ``y`` by an impulse [N s], in axes of the ground, at contact i."""
+    """Change the velocities in ``y`` by an impulse for a unit of mass, along contact i and across it."""
+    impulse = solid.from_frame(body, i, impulse)
     turned = turned_by(body, rows, i, impulse, twist)
     for k in range(3):
         y[7 + k] += impulse[k]

@@ -36,15 +36,18 @@ RATTLE = 1e-3
 # energy of a wobble at which a round body lies down, over that at which a body rests after an impact: rolling
 # loses nothing, so that it would go on for ever, by micrometres
 LEAST_WOBBLE = 100.0
+# intervals on ground at rest in which a body that walls or ties hold hardly moves, after which it is at rest
+STILL = 20
 # intervals that a body at rest passes at once where the ground cannot move it
 WINDOW = 16
 
-OUTCOME = 17
+OUTCOME = 18 + 4 * solid.HOLDERS
 (
     FELL, FALL_AZIMUTH, FALL_FIRST, FALL_SECOND, PEAK_RATIO, PEAK_TILT, PEAK_SPEED, WALK_X, WALK_Y, TURN, STEPS,
     LOST, ENERGY_BALANCE, CERTAIN_TIME, CONTACT_EVENTS, GAINED,
-    BEYOND,
-) = range(OUTCOME)  # fmt: skip
+    BEYOND, LEANS, HELD,
+) = range(19)  # fmt: skip
+"""Outcomes; from HELD on four of each constraint and the bond: hits, impulse, force, instant of breaking."""
 
 COLUMNS = 17
 """Columns of a history: y[0:13], turn about the vertical, number of closed points, and the first two of them."""
@@ -63,26 +66,27 @@ def set_field(field, acceleration, k, scale, dt, g):
 
 
 @kernel
-def rest_ends(body, y, field, tau, dt):
+def rest_ends(body, y, s, tau, dt):
     """When the ground no longer carries the body at rest, -1 if it does: concave margins need only ends."""
+    field = s.field
     pull = forces.pull_at(field, dt)
     level = algebra.norm(pull[0], pull[1])
     upright = level * body.height < -pull[2] * body.nearest * (1 - 1e-9)
-    if upright and level < -body.static * pull[2]:
+    if upright and level < -body.static * pull[2] and not s.bonded:
         # a flat body rests whichever way it is pulled
         return -1.0
     rows = algebra.rotation(y)
-    below = modes.rest_margin(body, y, rows, pull)
+    below = modes.rest_margin(body, y, rows, pull, s)
     if below >= 0:
         return -1.0
-    above = modes.rest_margin(body, y, rows, forces.pull_at(field, tau))
+    above = modes.rest_margin(body, y, rows, forces.pull_at(field, tau), s)
     if above <= 0:
         return tau
     bracket = (tau, above, dt, below, 0)
     for _ in range(100):
         low, above, high, below, _ = bracket
         middle = (low * below - high * above) / (below - above)
-        value = modes.rest_margin(body, y, rows, forces.pull_at(field, middle))
+        value = modes.rest_margin(body, y, rows, forces.pull_at(field, middle), s)
         bracket = narrowed(bracket, middle, value)
         if abs(value) < 1e-14:
             return middle
@@ -99,7 +103,7 @@ def leave_rest(body, y, tau, s):
     small = 1e-9 * s.field[6]
     level = algebra.norm(pull[0], pull[1])
     s.rests = 0
-    whole = modes.rest_margin(body, y, rows, pull)
+    whole = modes.rest_margin(body, y, rows, pull, s)
     if -body.static * pull[2] - level < small or whole < -small:
         slide_or_jump(body, y, tau, s, pull, level, whole < -small)
         return
@@ -218,28 +222,33 @@ def rise(body, y, u, rate, s):
 
 @kernel
 def lowest_open(body, y, s):
-    """Number of the lowest open point."""
-    up = algebra.rotation(y)[2]
+    """Number of the open point that is nearest to the ground or its wall."""
+    rows = algebra.rotation(y)
     lowest, found = 1e300, 0
     for i in solid.candidates(body):
         if not step.is_closed(s, i):
-            height = solid.gap(body, y, up, i)
+            height = solid.gap(body, y, rows[2], i)
             if height < lowest:
+                lowest, found = height, i
+    for i in solid.wall_candidates(body):
+        if solid.may_meet(body, i) and not step.is_closed(s, i):
+            height = solid.gap_of(body, y, rows, i)
+            if height < lowest and solid.approach_of(body, y, rows, i) < 0.0:
                 lowest, found = height, i
     return found
 
 
 @kernel
 def rising(body, y, i):
-    """Velocity upwards of point i."""
-    return solid.velocity_of(body, y, algebra.rotation(y), i)[2]
+    """Velocity of point i away from the ground or its wall."""
+    return solid.approach_of(body, y, algebra.rotation(y), i)
 
 
 @kernel
 def guess_landing(body, h, y, below, s):
     """When in a step the point that is lowest after it lands, by the cubic through gaps and velocities."""
     i = lowest_open(body, s.new, s)
-    above, fall = solid.gap(body, y, algebra.rotation(y)[2], i), h * rising(body, y, i)
+    above, fall = solid.gap_of(body, y, algebra.rotation(y), i), h * rising(body, y, i)
     end = h * rising(body, s.new, i)
     square = 3.0 * (below - above) - 2.0 * fall - end
     cube = 2.0 * (above - below) + fall + end
@@ -301,7 +310,8 @@ def stop_slips(body, y, s):
     for i in range(s.count):
         if s.slides[i] == forces.SLIDES:
             u = forces.slip_of(body, y, rows, i, s)
-            if algebra.norm(u[0], u[1]) < 2 * modes.AT_REST:
+            slow = algebra.norm(u[0], u[1]) < 2 * modes.AT_REST
+            if slow and not solid.is_smooth(body, s.closed[i]):
                 s.slides[i] = forces.STICKS
     modes.hold(body, y, rows, s)
 
@@ -395,11 +405,15 @@ def happen(body, what, tau, y, cut, stuck, s):
             # the points that open begin with no gap, not with one of rounding
             modes.lay_flat(body, y)
         left = solid.energy(body, y, g)
-        carried = modes.rest_margin(body, y, rows, pull) >= 0
+        carried = modes.rest_margin(body, y, rows, pull, s) >= 0
         if carried and (left < cut * body.barrier or rattle_ends(body, left, s)):
             modes.come_to_rest(body, y, s)
     elif what == modes.SLIP_ENDS:
         stop_slips(body, y, s)
+    elif what == modes.TIE_TURNS:
+        turn_ties(body, y, tau, False, s)
+    elif what == modes.TIE_BREAKS:
+        turn_ties(body, y, tau, True, s)
     if what == modes.OPENS and body.rim > 0 and s.count >= 3:
         x, z = modes.pressure_centre(body, s)
         tip_over_rim(body, y, x, z, forces.SLIDES, pull, s)
@@ -426,14 +440,7 @@ def note_peaks(body, y, start, out):
     sine = algebra.norm(up[0], up[1])
     if sine > 1e-9:
         # tangent of the tilt at which the centre of mass is over the base's outline in the direction of the tilt
-        u, _ = solid.rim_direction(up)
-        if body.rim > 0:
-            reach = body.rim + body.centre[0] * u[0] + body.centre[1] * u[1]
-        else:
-            reach = 0.0
-            for i in range(body.count):
-                reach = max(reach, body.points[i, 0] * u[0] + body.points[i, 1] * u[1])
-        critical = reach / body.height
+        critical = reach_towards_tilt(body, rows) / body.height
         # x / (1 + x²) < arc tangent of x < x, so most states need no arc tangent
         if sine * (1 + critical * critical) > out[PEAK_RATIO] * critical * up[2]:
             tilt = atan2(sine, up[2])
@@ -446,6 +453,26 @@ def note_peaks(body, y, start, out):
     foot = solid.position_of_base(y, rows, (0.0, 0.0, -body.height))
     out[WALK_X], out[WALK_Y] = foot[0] - start[0], foot[1] - start[1]
     return up[2]
+
+
+@kernel
+def is_beyond(body, y):
+    """Whether the centre of mass of a body is beyond the outline of its base."""
+    rows = algebra.rotation(y)
+    sine = algebra.norm(rows[2][0], rows[2][1])
+    return reach_towards_tilt(body, rows) * rows[2][2] < sine * body.height
+
+
+@kernel
+def reach_towards_tilt(body, rows):
+    """How far the base reaches in the direction in which the body tilts, from below its centre of mass [m]."""
+    u, _ = solid.rim_direction(rows[2])
+    if body.rim > 0:
+        return body.rim + body.centre[0] * u[0] + body.centre[1] * u[1]
+    reach = 0.0
+    for i in range(body.count):
+        reach = max(reach, body.points[i, 0] * u[0] + body.points[i, 1] * u[1])
+    return reach
 
 
 @kernel
@@ -467,6 +494,9 @@ def note_turn(y, before, out):
 @kernel
 def fall_is_certain(body, y, peaks, scale, g):
     """Whether the body leans further over its furthest point than the steepest effective gravity to come."""
+    if body.constraints > 0:
+        # what holds it may catch it
+        return False
     rows = algebra.rotation(y)
     up = rows[2]
     sine = algebra.norm(up[0], up[1])
@@ -518,7 +548,7 @@ def small_rim(body, y, tau, cut, s):
     if tilting + 0.5 * y[9] ** 2 + lift >= small:
         return
     if (
-        modes.rest_margin(body, y, rows, pull) >= 0
+        modes.rest_margin(body, y, rows, pull, s) >= 0
         and solid.energy(body, y, s.field[6]) < small
     ):
         modes.come_to_rest(body, y, s)
@@ -569,6 +599,8 @@ def advance(body, tau, dt, next_step, y, tolerance, cut, stuck, s, out):
     for i in range(solid.SIZE):
         y[i] = s.new[i]
     algebra.normalise(y)
+    if body.constraints > 0:
+        note_forces(body, y, s)
     if what != modes.NOTHING:
         out[CONTACT_EVENTS] += 1
         note_loss(happen(body, what, tau + h, y, cut, stuck, s), out)
@@ -690,36 +722,51 @@ def integrate(
     before = heading(y)
     s.count = s.rests = s.jammed = s.goes_on = 0
     s.beyond = 0.0
+    begin_holding(body, y, s)
     for i in range(modes.COUNTERS):
         s.counters[i] = 0
-    modes.choose_mode(body, 0.0, y, s)
-    rim_instead_of_feet(body, y, forces.pull_at(s.field, 0.0), s)
+    if s.bonded:
+        modes.come_to_rest(body, y, s)
+    else:
+        modes.choose_mode(body, 0.0, y, s)
+        rim_instead_of_feet(body, y, forces.pull_at(s.field, 0.0), s)
     modes.anchor_all(body, y, s)
     out[CERTAIN_TIME] = math.nan
     last = acceleration.shape[0] - 1
-    stuck = lost_track = 0
+    stuck = lost_track = still = 0
     ahead = dt
     k = 0
     while k <= last + extra:
-        if s.rests == 1 and k + WINDOW <= last and rests_on(body, peaks, k, scale, g):
+        skips = s.rests == 1 and s.bonded == 0 and k + WINDOW <= last
+        if skips and rests_on(body, peaks, k, scale, g):
             for _ in range(WINDOW):
                 record(history, k, y, out, s)
                 k += 1
             continue
         set_field(s.field, acceleration, k, scale, dt, g)
+        s.began = k * dt
         note_soon(s, peaks, k, scale, dt)
         record(history, k, y, out, s)
-        if k > last and (s.rests == 1 or solid.energy(body, y, g) < body.barrier):
-            # on a ground at rest it stands, or has too little energy left to fall
+        free = body.constraints == 0 and solid.energy(body, y, g) < body.barrier
+        still = still + 1 if k > last and hardly_moves(body, y, cut) else 0
+        if k > last and (s.rests == 1 or free or still > STILL):
+            # on a ground at rest it stands, has too little energy left to fall, or leans and does not move
             break
+        if s.bonded:
+            note_bond(body, y, 0.0, s)
         tau = 0.0
         many, seen = 0, out[CONTACT_EVENTS]
         s.close = modes.CLOSE
         while dt - tau > 1e-12 * dt:
             if forces.kind_of(s) == forces.REST:
-                tau = rest_ends(body, y, s.field, tau, dt)
+                tau = rest_ends(body, y, s, tau, dt)
                 if tau < 0:
                     break
+                if s.bonded:
+                    note_bond(body, y, tau, s)
+                    # what is left is an ordinary contact
+                    s.bonded, s.breaks[solid.BOND] = 0, s.began + tau
+                    continue
                 s.goes_on = 0
                 standing = solid.energy(body, y, g) - y[solid.WORK]
                 leave_rest(body, y, tau, s)
@@ -761,6 +808,11 @@ def integrate(
     if out[FELL] == 0.0:
         record(history, k, y, out, s)
     out[BEYOND] = s.beyond
+    out[LEANS] = out[FELL] == 0.0 and body.constraints > 0 and is_beyond(body, y)
+    for i in range(solid.HOLDERS):
+        at = HELD + 4 * i
+        out[at], out[at + 1] = s.hits[i], s.impact[i]
+        out[at + 2], out[at + 3] = s.force[i], s.breaks[i]
     out[ENERGY_BALANCE] = (
         solid.energy(body, y, g)
         - started
@@ -768,6 +820,75 @@ def integrate(
         + y[solid.FRICTION]
         + out[LOST]
     )
+
+
+@kernel
+def hardly_moves(body, y, cut):
+    """Whether a body that walls or ties hold has less energy of motion than is followed."""
+    return body.constraints > 0 and solid.kinetic_energy(body, y) < cut * body.barrier
+
+
+@kernel
+def begin_holding(body, y, s):
+    """Let all that holds the body be whole, and ties as they are at first."""
+    s.bonded = body.bonded
+    rows = algebra.rotation(y)
+    for i in range(solid.HOLDERS):
+        s.hits[i] = s.impact[i] = s.force[i] = 0.0
+        s.breaks[i] = math.nan
+    for i in range(body.constraints):
+        s.broken[i] = s.taut[i] = 0
+        if body.ties[i]:
+            _, length, rate = forces.stretch_of(body, y, rows, i)
+            s.taut[i] = forces.tie_margin(body, length, rate, i) > 0.0
+
+
+@kernel
+def note_bond(body, y, tau, s):
+    """Keep by how much a side of the bond is pulled at most."""
+    rows = algebra.rotation(y)
+    pulled = modes.bond_pull(body, rows, forces.pull_at(s.field, tau))
+    s.force[solid.BOND] = max(s.force[solid.BOND], min(pulled, 0.5 * body.tension))
+
+
+@kernel
+def note_forces(body, y, s):
+    """Keep the largest force of each wall and tie."""
+    rows = algebra.rotation(y)
+    for i in range(body.constraints):
+        if not body.ties[i]:
+            pressed = 0.0
+            for k in range(s.count):
+                at = s.closed[k]
+                if at >= solid.WALLS and solid.wall_of(at) == i:
+                    pressed += s.lam[k, 2]
+            s.force[i] = max(s.force[i], pressed)
+            continue
+        if s.broken[i]:
+            continue
+        _, length, rate = forces.stretch_of(body, y, rows, i)
+        s.force[i] = max(s.force[i], abs(forces.tie_force(body, length, rate, i)))
+
+
+@kernel
+def turn_ties(body, y, tau, breaks, s):
+    """Let ties that have come to their other state be in it, or break those that bear all they can."""
+    rows = algebra.rotation(y)
+    for i in range(body.constraints):
+        if not body.ties[i] or s.broken[i]:
+            continue
+        _, length, rate = forces.stretch_of(body, y, rows, i)
+        value = forces.tie_margin(body, length, rate, i)
+        if breaks:
+            force = abs(forces.tie_force(body, length, rate, i))
+            if force >= body.strength[i] * (1.0 - 1e-6):
+                s.broken[i], s.breaks[i] = 1, s.began + tau
+                s.force[i] = body.strength[i]
+        elif s.taut[i] == 1 and value < 0.0:
+            s.taut[i] = 0
+        elif s.taut[i] == 0 and value > 0.0:
+            s.taut[i] = 1
+            s.hits[i] += 1.0
 
 
 @kernel

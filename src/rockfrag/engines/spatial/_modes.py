@@ -23,7 +23,8 @@ LEAVES = 1e-8
 FASTEST_HOP, SLOWING, CHATTER = 1e-2, 0.05, 1e-6
 # impulse beyond friction, for a unit of mass, that points which slip or leave slowly are stopped by unseen [m/s]
 BEYOND = 1e-3
-LANDS, OPENS, LEAVES_CONE, SLIP_ENDS, NOTHING = 1, 2, 3, 4, 0
+LANDS, OPENS, LEAVES_CONE, SLIP_ENDS, TIE_TURNS, TIE_BREAKS = 1, 2, 3, 4, 5, 6
+NOTHING = 0
 
 COUNTERS = 6
 IMPACTS, AMBIGUOUS, UNSOLVED, SLIDINGS, FLIGHTS, JAMS = range(COUNTERS)
@@ -50,7 +51,36 @@ def touching(body, y, rows, s):
                 last = k
         if u < speed[last] - 1e-14:
             s.which[last], speed[last] = i, u
+    for i in solid.wall_candidates(body):
+        n = add_wall_contact(body, y, rows, i, n, s)
     return n
+
+
+@kernel
+def add_wall_contact(body, y, rows, i, n, s):
+    """Add a contact of a wall to those that touch, if it does; return how many there are."""
+    if not solid.may_meet(body, i) or solid.gap_of(body, y, rows, i) > TOUCH:
+        return n
+    speed, u = s.vector, solid.approach_of(body, y, rows, i)
+    if n < forces.MOST:
+        s.which[n], speed[n] = i, u
+        return n + 1
+    last = 0
+    for k in range(1, forces.MOST):
+        if speed[k] > speed[last]:
+            last = k
+    if u < speed[last] - 1e-14:
+        s.which[last], speed[last] = i, u
+    return n
+
+
+@kernel
+def picks_wall(n, s):
+    """Whether one of the contacts s.which is of a wall."""
+    found = False
+    for k in range(n):
+        found = found or s.which[k] >= solid.WALLS
+    return found
 
 
 @kernel
@@ -79,6 +109,9 @@ def fill_edges(body, y, rows, which, n, s):
     for i in range(n):
         p = solid.position_of_base(y, rows, solid.arm(body, rows[2], which[i]))
         for j in range(n):
+            if which[i] >= solid.WALLS or which[j] >= solid.WALLS:
+                along_wall(body, y, rows, which, i, j, s)
+                continue
             q = solid.position_of_base(y, rows, solid.arm(body, rows[2], which[j]))
             length = max(algebra.norm(q[0] - p[0], q[1] - p[1]), 1e-300)
             s.edge[i, j, 0] = (q[0] - p[0]) / length
@@ -86,8 +119,24 @@ def fill_edges(body, y, rows, which, n, s):
 
 
 @kernel
+def along_wall(body, y, rows, which, i, j, s):
+    """Fill in the direction between two contacts of one wall along it; of others, which share nothing, none."""
+    s.edge[i, j, 0] = s.edge[i, j, 1] = 0.0
+    first, second = which[i], which[j]
+    walls = first >= solid.WALLS and second >= solid.WALLS
+    if not walls or solid.wall_of(first) != solid.wall_of(second):
+        return
+    p, q = solid.arm(body, rows[2], first), solid.arm(body, rows[2], second)
+    way = solid.in_frame(body, first, algebra.to_world(rows, algebra.minus(q, p)))
+    length = max(algebra.norm(way[0], way[1]), 1e-300)
+    s.edge[i, j, 0], s.edge[i, j, 1] = way[0] / length, way[1] / length
+
+
+@kernel
 def kind_of_mode(s):
     """Kind of a mode of which only what sticks matters: a point, an edge, or any other."""
+    if forces.at_wall(s):
+        return forces.GENERAL
     if s.rests == 0 and s.count == 1 and s.slides[0] == forces.STICKS:
         return forces.PIVOT
     if s.rests == 0 and s.count == 2 and s.slides[0] + s.slides[1] == 0:
@@ -125,7 +174,7 @@ def hold(body, y, rows, s):
         return
     twist = forces.twist_of(body, s)
     forces.fill_velocities(body, y, rows, s.closed, n, s.free, twist)
-    forces.solve_general(body, y, rows, n, 0.0, s)
+    forces.solve_general(body, y, rows, n, False, s)
     for i in range(n):
         push = (s.lam[i, 0], s.lam[i, 1], s.lam[i, 2])
         forces.push_at(body, y, rows, s.closed[i], push, twist)
@@ -138,6 +187,9 @@ def impact(body, y, pull, least, s):
     before = (y[7], y[8], y[9])
     n = touching(body, y, rows, s)
     momentum = stick.fill_velocities(body, y, rows, n, s)
+    if picks_wall(n, s):
+        impact_at_wall(body, y, rows, pull, n, least, s)
+        return
     note_slips(body, n, s)
     found, ways = solve(body, y, rows, n, least, momentum, s)
     s.counters[IMPACTS] += 1
@@ -159,6 +211,76 @@ def impact(body, y, pull, least, s):
 
 
 @kernel
+def impact_at_wall(body, y, rows, pull, n, least, s):
+    """Solve an impact at walls, and what it asks of the ground, with the ratios of the walls.
+
+    Newton's ratio and friction together may gain energy; then all ratios are halved until they do not.
+    """
+    came = (y[7], y[8], y[9], y[10], y[11], y[12])
+    before = solid.energy(body, y, s.field[6])
+    part = 1.0
+    for _ in range(40):
+        for k in range(6):
+            y[7 + k] = came[k]
+        found, ways = bounce(body, y, rows, n, least, part, s)
+        if found < 0:
+            break
+        gained = solid.energy(body, y, s.field[6]) - before
+        if gained <= 1e-12 * (before + s.field[6] * body.height):
+            break
+        part *= 0.5
+    s.counters[IMPACTS] += 1
+    s.counters[AMBIGUOUS] += ways > 1
+    s.jammed = 0
+    if found < 0:
+        s.counters[UNSOLVED] += 1
+        for i in range(n):
+            smooth = solid.is_smooth(body, s.which[i])
+            s.slides[i] = forces.SLIDES if smooth else forces.STICKS
+            s.closed[i] = s.which[i]
+        s.count, s.rests = n, 0
+        hold(body, y, rows, s)
+        return
+    note_impulses(body, n, found, s)
+    keep_slow_contacts(body, y, rows, pull, n, found, s)
+
+
+@kernel
+def bounce(body, y, rows, n, least, part, s):
+    """Push with the impulses at the contacts s.which that part of the walls' ratios ask for; return the set."""
+    forces.fill_velocities(body, y, rows, s.which, n, s.free)
+    note_slips(body, n, s)
+    for i in range(n):
+        if s.which[i] >= solid.WALLS:
+            ratio = part * body.ratio[solid.wall_of(s.which[i])]
+            s.free[3 * i + 2] += ratio * min(s.free[3 * i + 2], 0.0)
+    forces.fill_delassus(body, rows, s.which, n, s.delassus)
+    fill_edges(body, y, rows, s.which, n, s)
+    found, ways = solve_cones(s, n, least)
+    for i in range(n if found >= 0 else 0):
+        push = (s.impulse[3 * i], s.impulse[3 * i + 1], s.impulse[3 * i + 2])
+        forces.push_at(body, y, rows, s.which[i], push)
+    if found >= 0:
+        # how contacts really part: those of a wall by its ratio too
+        forces.fill_velocities(body, y, rows, s.which, n, s.after)
+    return found, ways
+
+
+@kernel
+def note_impulses(body, n, found, s):
+    """Count hits at walls, and keep their largest impulse."""
+    for w in range(body.constraints):
+        whole = 0.0
+        for i in range(n):
+            at_this = s.which[i] >= solid.WALLS and solid.wall_of(s.which[i]) == w
+            if at_this and forces.in_set(found, i):
+                whole += s.impulse[3 * i + 2]
+        if whole > 0.0:
+            s.hits[w] += 1.0
+            s.impact[w] = max(s.impact[w], whole)
+
+
+@kernel
 def witness(body, y, before, s):
     """Note, and count, what the whole change of momentum asks of friction beyond what it can give."""
     shear = algebra.norm(y[7] - before[0], y[8] - before[1])
@@ -170,7 +292,7 @@ def witness(body, y, before, s):
 @kernel
 def solve(body, y, rows, n, least, moment, s):
     """Find the impulses (or forces) at the contacts s.which; return the set that pushes, and how many would do."""
-    plain = True
+    plain = not picks_wall(n, s)
     for i in range(n):
         regains = s.slid[i] and s.friction[i] < s.holds[i]
         plain = plain and not (s.given[i] or regains)
@@ -192,7 +314,17 @@ def note_slips(body, n, s):
         s.given[i], s.slid[i] = 0, speed > AT_REST
         if s.slid[i]:
             s.came[i, 0], s.came[i, 1] = u / speed, v / speed
-        s.friction[i], s.holds[i] = body.kinetic, body.static
+        s.friction[i] = solid.kinetic_of(body, s.which[i])
+        s.holds[i] = solid.static_of(body, s.which[i])
+        if solid.is_smooth(body, s.which[i]):
+            let_slip(i, s)
+
+
+@kernel
+def let_slip(i, s):
+    """Let contact i of a small system slip: without friction its direction is of no effect."""
+    s.given[i], s.slid[i] = 1, 0
+    s.way[i, 0], s.way[i, 1] = 1.0, 0.0
 
 
 @kernel
@@ -206,9 +338,9 @@ def chatters(body, y, rows, pull, i, k, leaving, s):
     if leaving > FASTEST_HOP:
         return False
     up, omega = rows[2], solid.omega_of(y)
-    weight = algebra.to_body(rows, pull)
+    weight = forces.load_on(body, y, rows, pull, s)
     here, there = s.which[i], s.which[k]
-    alpha, force = forces.pivot_acceleration(body, up, omega, weight, here)
+    alpha, force = forces.pivot_acceleration(body, up, omega, weight, here, s)
     p, q = solid.arm(body, up, here), solid.arm(body, up, there)
     free = algebra.plus(weight, solid.bias(body, up, omega, q, there))
     free = algebra.plus(free, algebra.plus(force, algebra.cross(alpha, q)))
@@ -244,7 +376,9 @@ def keep_slow_contacts(body, y, rows, pull, n, found, s):
     """Close, together with those that pushed, the contacts that leave more slowly than CLOSE, or chatter."""
     count = 0
     slow = False
-    hops = hopping(body, y, rows, pull, n, found, s)
+    hops = -1
+    if not picks_wall(n, s):
+        hops = hopping(body, y, rows, pull, n, found, s)
     for i in range(n):
         leaving = s.after[3 * i + 2]
         if forces.in_set(found, i) or leaving < s.close or i == hops:
@@ -252,6 +386,7 @@ def keep_slow_contacts(body, y, rows, pull, n, found, s):
             s.closed[count] = s.which[i]
             slip = algebra.norm(s.after[3 * i], s.after[3 * i + 1])
             slides = slip > max(s.close, AT_REST) and i != hops
+            slides = slides or solid.is_smooth(body, s.which[i])
             s.slides[count] = forces.SLIDES if slides else forces.STICKS
             count += 1
     s.count, s.rests = count, 0
@@ -260,8 +395,39 @@ def keep_slow_contacts(body, y, rows, pull, n, found, s):
 
 
 @kernel
-def rest_margin(body, y, rows, pull):
+def bond_margin(body, rows, pull):
+    """Margin by which a bond holds [N/kg], against tension at a pad and against shear (``docs/holding.md``)."""
+    weight = -pull[2]
+    shear = body.shear + body.static * weight - algebra.norm(pull[0], pull[1])
+    return min(2.0 * (0.5 * body.tension - bond_pull(body, rows, pull)), shear)
+
+
+@kernel
+def bond_pull(body, rows, pull):
+    """Force by which one side of a bond is pulled, for a unit of mass; negative where it is pressed."""
+    flat = algebra.to_body(rows, (pull[0], pull[1], 0.0))
+    whole = pull[2]
+    for k in range(2):
+        moment = body.height * flat[k] - pull[2] * body.aside[k]
+        whole += abs(moment) / body.pads[k]
+    return 0.5 * whole
+
+
+@kernel
+def pulled_by_ties(body, y, rows, s):
+    """Whether a tie pulls at a body as it stands."""
+    forces.pull_ties(body, y, rows, s)
+    pulled = abs(s.pulled[0]) + abs(s.pulled[1]) + abs(s.pulled[2])
+    return pulled > 1e-9 * s.field[6]
+
+
+@kernel
+def rest_margin(body, y, rows, pull, s):
     """Least margin of acceleration by which the body rests: over the edges of its base, and of friction."""
+    if s.bonded:
+        return bond_margin(body, rows, pull)
+    if body.constraints > 0 and pulled_by_ties(body, y, rows, s):
+        return -1.0
     level = algebra.norm(pull[0], pull[1])
     margin = -body.static * pull[2] - level
     if body.rim > 0:
@@ -272,13 +438,42 @@ def rest_margin(body, y, rows, pull):
         if solid.gap(body, y, rows[2], i) > TOUCH:
             continue
         if last >= 0:
-            margin = min(margin, edge_margin(body, y, rows, pull, last, i))
+            margin = min(margin, tipping_margin(body, y, rows, pull, last, i))
         else:
             first = i
         last = i
     if first == last:
         return -1.0
-    return min(margin, edge_margin(body, y, rows, pull, last, first))
+    return min(margin, tipping_margin(body, y, rows, pull, last, first))
+
+
+@kernel
+def tipping_margin(body, y, rows, pull, i, j):
+    """Margin of rest against tipping over an edge; none is needed where a wall stands against it."""
+    if body.walls and backed_by_wall(body, y, rows, i, j):
+        return 1e300
+    return edge_margin(body, y, rows, pull, i, j)
+
+
+@kernel
+def backed_by_wall(body, y, rows, i, j):
+    """Whether a wall touches a body all along its side over the edge from point i to j."""
+    p, q = solid.arm(body, rows[2], i), solid.arm(body, rows[2], j)
+    edge = algebra.to_world(rows, algebra.minus(q, p))
+    length = algebra.norm(edge[0], edge[1])
+    outward = (edge[1] / length, -edge[0] / length)
+    for w in range(body.constraints):
+        along = outward[0] * body.away[w, 0] + outward[1] * body.away[w, 1]
+        if body.ties[w] or along > -1.0 + 1e-9:
+            continue
+        touch = 0
+        for k in range(body.corners):
+            at = solid.WALLS + w * solid.MOST_CORNERS + k
+            high = body.corner[k, 2] > 0.0
+            touch += high and solid.gap_of(body, y, rows, at) <= TOUCH
+        if touch >= 2:
+            return True
+    return False
 
 
 @kernel
@@ -303,6 +498,16 @@ def lies_flat(body, y, rows):
         return False
     turns = algebra.norm(y[10], y[11]) > LEAVES / body.furthest
     return not turns and abs(y[2] - body.height) < TOUCH
+
+
+@kernel
+def meets_wall(body, y, rows):
+    """Whether a corner touches a wall."""
+    found = False
+    for i in solid.wall_candidates(body):
+        if not found and solid.may_meet(body, i):
+            found = solid.gap_of(body, y, rows, i) <= TOUCH
+    return found
 
 
 @kernel
@@ -419,14 +624,14 @@ def choose_mode(body, tau, y, s):
     if (
         still
         and count_touching(body, y, rows) >= 3
-        and rest_margin(body, y, rows, pull) >= 0
+        and rest_margin(body, y, rows, pull, s) >= 0
     ):
         come_to_rest(body, y, s)
         return True
     was_flying = s.count == 0
-    if lies_flat(body, y, rows):
+    if lies_flat(body, y, rows) and not meets_wall(body, y, rows):
         slip = algebra.norm(y[7], y[8]) + body.furthest * abs(y[12])
-        stands = rest_margin(body, y, rows, pull) >= 0
+        stands = rest_margin(body, y, rows, pull, s) >= 0
         slides = slip >= 2 * AT_REST or pulled_off(body, pull) or body.rim > 0
         if slides and carried_flat(body, tau, y, rows, pull, s):
             if slip < 2 * AT_REST and stands:
@@ -460,6 +665,7 @@ def pick_closed(body, y, rows, slow, s):
     kept, slipping = 0, 0
     for i in range(n):
         u = solid.velocity_of(body, y, rows, s.which[i])
+        u = solid.in_frame(body, s.which[i], u)
         if u[2] > LEAVES:
             continue
         s.which[kept] = s.which[i]
@@ -469,7 +675,10 @@ def pick_closed(body, y, rows, slow, s):
         if s.given[kept]:
             s.way[kept, 0], s.way[kept, 1] = u[0] / speed, u[1] / speed
         s.slid[kept] = 0
-        s.friction[kept], s.holds[kept] = body.kinetic, body.static
+        s.friction[kept] = solid.kinetic_of(body, s.which[kept])
+        s.holds[kept] = solid.static_of(body, s.which[kept])
+        if solid.is_smooth(body, s.which[kept]):
+            let_slip(kept, s)
         kept += 1
     return kept, slipping
 
@@ -477,8 +686,13 @@ def pick_closed(body, y, rows, slow, s):
 @kernel
 def solve_forces(body, y, rows, pull, n, s):
     """Solve for the forces at the contacts s.which; return the set that pushes, and how many would do."""
-    weight = algebra.to_body(rows, pull)
+    weight = forces.load_on(body, y, rows, pull, s)
     moment = stick.fill_accelerations(body, y, rows, weight, n, s)
+    if picks_wall(n, s):
+        for i in range(n):
+            u = (s.free[3 * i], s.free[3 * i + 1], s.free[3 * i + 2])
+            u = solid.in_frame(body, s.which[i], u)
+            s.free[3 * i], s.free[3 * i + 1], s.free[3 * i + 2] = u
     return solve(body, y, rows, n, 0, moment, s)
 
 
@@ -515,7 +729,8 @@ def insist(body, what, s):
     worst, value = 0, 1e300
     for i in range(s.count):
         shear = algebra.norm(s.lam[i, 0], s.lam[i, 1])
-        here = s.lam[i, 2] if what == OPENS else body.static * s.lam[i, 2] - shear
+        grip = solid.static_of(body, s.closed[i])
+        here = s.lam[i, 2] if what == OPENS else grip * s.lam[i, 2] - shear
         if here < value and (what == OPENS or s.slides[i] == forces.STICKS):
             worst, value = i, here
     if what == OPENS:
@@ -538,7 +753,8 @@ def insist(body, what, s):
 def jam(body, y, s):
     """Let all that is closed stick without a look at the cones (Painlevé), until one opens or one lands."""
     for i in range(s.count):
-        s.slides[i] = forces.STICKS
+        if not solid.is_smooth(body, s.closed[i]):
+            s.slides[i] = forces.STICKS
     s.jammed = 1
     anchor_all(body, y, s)
     hold(body, y, algebra.rotation(y), s)
@@ -581,6 +797,9 @@ def settle(body, y, s):
 def close_gaps(body, y, rows, s):
     """Move the body by what its closed points are off the ground."""
     n = s.count
+    if forces.at_wall(s):
+        close_gaps_at_wall(body, y, rows, s)
+        return
     if n >= 3:
         lay_flat(body, y)
         return
@@ -594,6 +813,37 @@ def close_gaps(body, y, rows, s):
     whole = a * c - b * b
     lift_at(body, y, rows, s.closed[0], -(c * first - b * second) / whole)
     lift_at(body, y, rows, s.closed[1], -(a * second - b * first) / whole)
+
+
+@kernel
+def close_gaps_at_wall(body, y, rows, s):
+    """Move the body by what its closed points are off the ground and the walls."""
+    n = s.count
+    forces.fill_delassus(body, rows, s.closed, n, s.delassus)
+    soft = forces.SOFTNESS * forces.largest_compliance(s, n)
+    for i in range(n):
+        for j in range(n):
+            s.matrix[i, j] = s.delassus[3 * i + 2, 3 * j + 2]
+        s.matrix[i, i] += soft
+        s.vector[i] = -solid.gap_of(body, y, rows, s.closed[i])
+    if not algebra.factor(s.matrix, s.order, n):
+        return
+    algebra.substitute(s.matrix, s.order, n, s.vector)
+    moved = (0.0, 0.0, 0.0)
+    turned = (0.0, 0.0, 0.0)
+    for i in range(n):
+        p = solid.arm(body, rows[2], s.closed[i])
+        push = algebra.scaled(
+            s.vector[i], forces.push_along(body, rows, s.closed[i], 2)
+        )
+        moved = algebra.plus(moved, push)
+        turned = algebra.plus(
+            turned, algebra.times(body.inverse, algebra.cross(p, push))
+        )
+    moved = algebra.to_world(rows, moved)
+    for k in range(3):
+        y[k] += moved[k]
+    algebra.turn(y, turned)
 
 
 @kernel

@@ -5,7 +5,16 @@ from rockfrag.engines.pure_rocking.kernels.dormand_prince import INSTANTS, WEIGH
 from rockfrag.engines.spatial import _body as solid
 from rockfrag.engines.spatial import _modes as modes
 from rockfrag.engines.spatial._algebra import norm, normalise, rotation
-from rockfrag.engines.spatial._forces import SLIDES, STAGES, rates, slip_of
+from rockfrag.engines.spatial._forces import (
+    SLIDES,
+    STAGES,
+    at_wall,
+    rates,
+    slip_of,
+    stretch_of,
+    tie_force,
+    tie_margin,
+)
 
 BACKWARD = 1e-8  # slip against its own direction that is rounding [m/s]
 NEAR_FLAT = 1e-6  # tilt below which a rim that rolls goes on to roll [rad]
@@ -100,7 +109,7 @@ def face_slip(body, y, rows, s):
 @kernel
 def slides_flat(s):
     """Whether a body slides on its face."""
-    found = s.count >= 3
+    found = s.count >= 3 and not at_wall(s)
     for i in range(s.count):
         found = found and s.slides[i] == SLIDES
     return found
@@ -120,13 +129,24 @@ def margin(body, y, s):
                 value += modes.TOUCH
             if value < least:
                 least, what = value, modes.LANDS
+    for i in solid.wall_candidates(body):
+        if not solid.may_meet(body, i) or is_closed(s, i):
+            continue
+        value = solid.gap_of(body, y, rows, i) + 0.5 * modes.TOUCH
+        meets = solid.approach_of(body, y, rows, i) < -1e-10
+        if value < 0.5 * modes.TOUCH and not meets:
+            value += modes.TOUCH
+        if value < least:
+            least, what = value, modes.LANDS
     small = LEAST_FORCE * s.field[6]
     # a rim that passes near flat is pushed as by an impact, of which the cone is not asked
     passes = body.rim > 0 and norm(rows[2][0], rows[2][1]) < NEAR_FLAT
     on_face = slides_flat(s)
     if on_face:
         # where the centre of pressure leaves a face, it tips
-        least, what = modes.pressure_margin(body, s) + 1e-12, modes.OPENS
+        value = modes.pressure_margin(body, s) + 1e-12
+        if value < least or not body.walls:
+            least, what = value, modes.OPENS
         value = face_slip(body, y, rows, s)
         if value < least:
             least, what = value, modes.SLIP_ENDS
@@ -134,6 +154,8 @@ def margin(body, y, s):
         value = s.lam[i, 2] + small
         if value < least:
             least, what = value, modes.OPENS
+        if solid.is_smooth(body, s.closed[i]):
+            continue
         if s.slides[i] == SLIDES:
             value = slip_along(body, y, rows, i, s) + (
                 -modes.AT_REST if s.armed[i] else BACKWARD
@@ -141,9 +163,33 @@ def margin(body, y, s):
             if value < least:
                 least, what = value, modes.SLIP_ENDS
         elif not (s.jammed or passes):
-            value = body.static * s.lam[i, 2] - norm(s.lam[i, 0], s.lam[i, 1]) + small
+            grip = solid.static_of(body, s.closed[i])
+            value = grip * s.lam[i, 2] - norm(s.lam[i, 0], s.lam[i, 1]) + small
             if value < least:
                 least, what = value, modes.LEAVES_CONE
+    if body.constraints > 0:
+        value, tie = ties_margin(body, y, rows, s)
+        if value < least:
+            least, what = value, tie
+    return least, what
+
+
+@kernel
+def ties_margin(body, y, rows, s):
+    """Least margin of the ties that have not broken, and whether that one breaks, or else turns taut or slack."""
+    least, what = 1e300, modes.NOTHING
+    for i in range(body.constraints):
+        if not body.ties[i] or s.broken[i]:
+            continue
+        _, length, rate = stretch_of(body, y, rows, i)
+        value = tie_margin(body, length, rate, i)
+        value = 0.5 * modes.TOUCH + (value if s.taut[i] else -value)
+        if value < least:
+            least, what = value, modes.TIE_TURNS
+        force = abs(tie_force(body, length, rate, i))
+        value = (body.strength[i] - force) / body.stiffness[i]
+        if value < least:
+            least, what = value, modes.TIE_BREAKS
     return least, what
 
 
@@ -153,14 +199,22 @@ def dips(body, y, h, s):
     new = s.new
     before, after = rotation(y), rotation(new)
     for i in solid.candidates(body):
-        if is_closed(s, i):
-            continue
-        sinking = solid.velocity_of(body, y, before, i)[2]
-        rising = solid.velocity_of(body, new, after, i)[2]
-        if sinking < 0 < rising:
-            lowest = solid.gap(body, y, before[2], i) - 0.5 * h * sinking**2 / (
-                rising - sinking
-            )
-            if lowest - 0.02 * h * (rising - sinking) < -0.5 * modes.TOUCH:
-                return True
+        if not is_closed(s, i) and point_dips(body, y, new, h, (before, after), i):
+            return True
+    for i in solid.wall_candidates(body):
+        meets = solid.may_meet(body, i) and not is_closed(s, i)
+        if meets and point_dips(body, y, new, h, (before, after), i):
+            return True
     return False
+
+
+@kernel
+def point_dips(body, y, new, h, rows, i):
+    """Whether point i, open at both ends of a step, may have touched inside it."""
+    sinking = solid.approach_of(body, y, rows[0], i)
+    rising = solid.approach_of(body, new, rows[1], i)
+    if not sinking < 0 < rising:
+        return False
+    lowest = solid.gap_of(body, y, rows[0], i)
+    lowest -= 0.5 * h * sinking**2 / (rising - sinking)
+    return lowest - 0.02 * h * (rising - sinking) < -0.5 * modes.TOUCH

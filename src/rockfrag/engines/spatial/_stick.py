@@ -10,13 +10,14 @@ from rockfrag.engines.spatial import _body as solid
 from rockfrag.engines.spatial._algebra import (
     cross,
     dot,
+    minus,
     plus,
     scaled,
     times,
     to_body,
     to_world,
 )
-from rockfrag.engines.spatial._forces import stop_edge, stop_point
+from rockfrag.engines.spatial._forces import stop_edge, stop_point, twist_by_ties
 
 NOTHING = (0.0, 0.0, 0.0)
 
@@ -42,7 +43,7 @@ def fill_velocities(body, y, rows, n, s):
 def fill_accelerations(body, y, rows, weight, n, s):
     """Fill in how the contacts s.which accelerate without forces; return the moment that turns the body."""
     omega = solid.omega_of(y)
-    moment = scaled(-1.0, cross(omega, times(body.inertia, omega)))
+    moment = minus(twist_by_ties(s), cross(omega, times(body.inertia, omega)))
     spin = times(body.inverse, moment)
     for k in range(n):
         p = solid.arm(body, rows[2], s.which[k])

@@ -8,10 +8,17 @@ import numpy as np
 from rockfrag.base.arrays import Floats
 from rockfrag.base.errors import InputError
 from rockfrag.base.units import GRAVITY
-from rockfrag.engines.spatial._body import BODY, MOST_VERTICES, SIZE
+from rockfrag.engines.spatial._body import (
+    BODY,
+    MOST_CONSTRAINTS,
+    MOST_VERTICES,
+    SIZE,
+)
 from rockfrag.engines.spatial._describe import fill_body
 from rockfrag.engines.spatial._integrate import WINDOW
-from rockfrag.system.body import Circle, Polygon
+from rockfrag.system.body import Circle, Polygon, RigidBody
+from rockfrag.system.bond import Bond
+from rockfrag.system.constraints import Tie, Wall
 from rockfrag.system.system import System
 
 # size of the perturbation that tells how robust an outcome is: of vertices over the width of the base, of the
@@ -52,7 +59,94 @@ def kernel_body(system: System, g: float = GRAVITY) -> np.void:
         raise InputError(
             "base: the centre of mass is not above the base, so the body cannot stand."
         )
+    if contact.bond is not None:
+        _fill_bond(body, given, contact.bond)
+    _fill_constraints(body, system)
     return body
+
+
+def acting(system: System) -> list[int]:
+    """Return which constraints of a system may ever act: walls and ties within reach, by their numbers."""
+    reach = [
+        each.distance if isinstance(each, Wall) else each.slack
+        for each in system.constraints
+    ]
+    return [i for i, length in enumerate(reach) if length < math.inf]
+
+
+def _fill_constraints(body: np.void, system: System) -> None:
+    """Describe walls and ties."""
+    given, known = system.bodies[0], acting(system)
+    if len(known) > MOST_CONSTRAINTS:
+        raise InputError(
+            f"System: {len(known)} constraints are more than the {MOST_CONSTRAINTS} that a body in space may "
+            "have; leave some out."
+        )
+    body["constraints"] = len(known)
+    for i, number in enumerate(known):
+        constraint = system.constraints[number]
+        if isinstance(constraint, Tie):
+            _fill_tie(body, i, given, constraint)
+        else:
+            _fill_wall(body, i, given, constraint)
+
+
+def _fill_wall(body: np.void, i: int, given: RigidBody, wall: Wall) -> None:
+    """Describe a wall, and the corners that may meet it."""
+    corners = _corners(given)
+    body["walls"] = 1
+    body["corners"], body["corner"][: len(corners)] = len(corners), corners
+    away = -np.array([math.cos(wall.direction), math.sin(wall.direction)])
+    body["away"][i] = away
+    body["distance"][i] = wall.distance + float(away @ given.centre[:2])
+    gaps = body["distance"][i] + corners[:, :2] @ away
+    if gaps.min() < -1e-9:
+        raise InputError(
+            f"Wall: at {wall.distance:g} m it stands where the body is, which reaches to "
+            f"{wall.distance - gaps.min():.6g} m."
+        )
+    # what touches by rounding touches
+    body["distance"][i] += max(-float(gaps.min()), 0.0)
+    static, kinetic = wall.friction or (0.0, 0.0)
+    body["wall_static"][i] = min(static, NEVER_SLIDES)
+    body["wall_kinetic"][i] = min(kinetic, NEVER_SLIDES)
+    body["ratio"][i] = wall.restitution
+
+
+def _corners(given: RigidBody) -> Floats:
+    """Corners of base and face from the centre of mass [m], shape (corners, 3)."""
+    found = []
+    for outline, height in ((given.base, 0.0), (given.face, given.height)):
+        assert isinstance(outline, Polygon)
+        found += [(x, y, height) for x, y in outline.vertices]
+    return np.asarray(np.array(found) - np.array(given.centre))
+
+
+def _fill_bond(body: np.void, given: RigidBody, bond: Bond) -> None:
+    """Describe a bond under a body, for a unit of mass."""
+    body["bonded"], body["pads"] = 1, bond.spread
+    body["tension"], body["shear"] = bond.tension / given.mass, bond.shear / given.mass
+    # the pads lie around the origin of the base
+    body["aside"] = given.centre[:2]
+
+
+def _fill_tie(body: np.void, i: int, given: RigidBody, tie: Tie) -> None:
+    """Describe a tie, for a unit of mass; the body's centre of mass stands over the origin of the ground."""
+    x, y, _ = given.centre
+    knot, anchor = np.array(tie.point), np.array(tie.anchor)
+    length = float(np.linalg.norm(anchor - knot))
+    if length == 0.0:
+        raise InputError(
+            "Tie: point and anchor are one place; give an anchor some way off, which says where it pulls."
+        )
+    body["ties"][i] = 1
+    body["knot"][i], body["anchor"][i] = knot - given.centre, anchor - (x, y, 0.0)
+    body["stiffness"][i] = tie.stiffness / given.mass
+    body["damping"][i] = tie.damping / given.mass
+    body["strength"][i] = tie.strength / given.mass
+    body["natural"][i] = length + tie.slack
+    if tie.bracket:
+        body["shortest"][i] = max(length - tie.slack, 1e-300)
 
 
 def standing(body: np.void, turned: float = 0.0) -> Floats:

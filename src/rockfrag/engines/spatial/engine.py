@@ -18,8 +18,15 @@ from rockfrag.engines.compile.jit import compiling_alone
 from rockfrag.engines.contract import Case, Cases, Request
 from rockfrag.engines.spatial import _integrate as kernel
 from rockfrag.engines.spatial import _modes as modes
+from rockfrag.engines.spatial._body import BOND
 from rockfrag.engines.spatial._forces import CASE
-from rockfrag.engines.spatial.body import kernel_body, later_peaks, perturbed, standing
+from rockfrag.engines.spatial.body import (
+    acting,
+    kernel_body,
+    later_peaks,
+    perturbed,
+    standing,
+)
 from rockfrag.outcomes.outcomes import Outcomes, empty_outcomes
 from rockfrag.records.motion import GroundMotion
 from rockfrag.system.blocks import Block, as_system
@@ -104,7 +111,9 @@ class SpatialResponse:
 
 def run(cases: Cases, spread: float = 0.0, seed: int = 0) -> Outcomes:
     """Return the outcomes of cases that it supports; spread and seed are those of :func:`run_in_space`."""
-    result = empty_outcomes(cases.names, cases.scales, [ENGINE.name])
+    result = empty_outcomes(
+        cases.names, cases.scales, [ENGINE.name], holding=cases.holding
+    )
     g = cases.request.g
     bodies = [kernel_body(system, g) for system in cases.systems]
     tasks = [(i, j) for i in range(len(bodies)) for j in range(len(cases.motions))]
@@ -127,6 +136,7 @@ def run(cases: Cases, spread: float = 0.0, seed: int = 0) -> Outcomes:
             1.0 + scales * float(ground[:, 2].min()) / g
         )
         _write(result, (i, j), body, found)
+        _write_holding(result, (i, j), cases.systems[i], found)
 
     with ThreadPoolExecutor(cases.threads) as pool:
         list(pool.map(run_pair, tasks))
@@ -297,6 +307,7 @@ def _write(
     result.paradoxes[case] = counts[:, modes.UNSOLVED] + counts[:, modes.JAMS]
     result.several_modes[case] = counts[:, modes.AMBIGUOUS]
     result.unstable_distance[case] = math.nan
+    result.leaning[case] = outs[:, kernel.LEANS] > 0
     peaks = np.where(fell, math.inf, outs[:, kernel.PEAK_RATIO])
     directions = np.where(fell, outs[:, kernel.FALL_AZIMUTH], math.nan)
     result.peak_rotation[case][:, 0] = peaks
@@ -306,6 +317,22 @@ def _write(
     for k, out in enumerate(outs):
         result.fell_over[case][k, 0] = _named(body, out) if fell[k] else ""
         result.walk[case][k, 0] = math.hypot(out[kernel.WALK_X], out[kernel.WALK_Y])
+
+
+def _write_holding(
+    result: Outcomes, case: tuple[int, int], system: System, found: Found
+) -> None:
+    """Write what held a body had to bear under a motion, at all scales, into the outcomes of all."""
+    rows = {row: holder for holder, row in enumerate(acting(system))}
+    if system.bonds:
+        rows[len(system.constraints)] = BOND
+    mass = system.bodies[0].mass
+    for row, holder in rows.items():
+        hits, impact, force, breaks = found.outs[:, kernel.HELD + 4 * holder :].T[:4]
+        result.hits[case][:, row] = hits
+        result.largest_impulse[case][:, row] = mass * impact
+        result.largest_force[case][:, row] = mass * force
+        result.breaking_time[case][:, row] = breaks
 
 
 def run_in_space(

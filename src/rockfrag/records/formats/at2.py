@@ -13,12 +13,12 @@ from rockfrag.records.parsing.format import (
     Channel,
     Format,
     stated,
-    text_writer,
 )
 from rockfrag.records.parsing.number_fields import number_in
 from rockfrag.records.parsing.quantities import canonical_unit, quantity_of
 from rockfrag.records.parsing.stated_facts import factor_beside_unit
 from rockfrag.records.parsing.text_file import TextFile, last_row
+from rockfrag.records.parsing.writing import Written, text_writer
 
 _NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[EeDd][+-]?\d+)?"
 _COUNT = re.compile(rf"\bNPTS\s*[=:]\s*(?P<npts>{_NUMBER})", re.I)
@@ -165,5 +165,21 @@ def _facts(header: list[str]) -> dict[str, str]:
 
 
 FORMAT = Format("AT2", _recognise, _parse)
-write = text_writer("at2")
+
+
+def _text(trace: Written) -> str:
+    earthquake = trace.said("earthquake", otherwise="UNKNOWN EARTHQUAKE")
+    station = trace.said("station", otherwise="UNKNOWN STATION")
+    component = trace.said("component", "channel", otherwise="UNKNOWN")
+    header = [
+        "PEER STRONG MOTION DATABASE RECORD. WRITTEN BY ROCKFRAG.",
+        f"{earthquake}, {station}, {component}",
+        f"ACCELERATION TIME SERIES IN UNITS OF {trace.unit.upper()}",
+        f"NPTS= {len(trace.samples):6d}, DT= {trace.dt:.12g} SEC",
+    ]
+    rows = ["".join(f"{value:24.16E}" for value in row) for row in trace.rows(5)]
+    return "\n".join([*header, *rows, ""])
+
+
+write = text_writer(_text)
 """Write one trace of acceleration as an AT2 file that reads back to the same samples."""

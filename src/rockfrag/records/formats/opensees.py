@@ -13,10 +13,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockfrag.base.errors import InputError
-from rockfrag.records.parsing.format import Channel, Format, headed, text_writer
+from rockfrag.records.parsing.format import Channel, Format, headed
 from rockfrag.records.parsing.number_fields import NumberError, parse_separated
 from rockfrag.records.parsing.quantities import TO_SI, canonical_unit
 from rockfrag.records.parsing.text_file import TextFile, read_text
+from rockfrag.records.parsing.writing import Written, text_writer
 
 _SERIES = re.compile(r"^[^#]*?(?:\btimeSeries\s+[\"']?Path\b|[{\"]\s*Series\s+-)", re.I)
 _UNIT = re.compile(
@@ -115,5 +116,16 @@ def _number(text: TextFile, line: int, script: str, name: str) -> float | None:
 
 
 FORMAT = Format("OPENSEES", headed(None, _SERIES, within=200), _parse)
-write = text_writer("opensees")
+
+
+def _text(trace: Written) -> str:
+    header = [
+        f"# acceleration in {trace.unit}, {len(trace.samples)} samples",
+        f"timeSeries Path 1 -dt {trace.dt} -values {{",
+    ]
+    rows = [" ".join(map(str, row)) for row in trace.rows(5)]
+    return "\n".join([*header, *rows, "}", ""])
+
+
+write = text_writer(_text)
 """Write one trace as a Path series with its unit in a comment; OpenSees can ``source`` the file."""

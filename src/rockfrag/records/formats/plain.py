@@ -28,13 +28,14 @@ from rockfrag.records.parsing.column_titles import (
 )
 from rockfrag.records.parsing.directions import is_direction
 from rockfrag.records.parsing.encodings import encoding_of
-from rockfrag.records.parsing.format import Channel, Format, text_writer
+from rockfrag.records.parsing.format import Channel, Format
 from rockfrag.records.parsing.peak_in_words import with_checked_peaks
 from rockfrag.records.parsing.plain_rows import PlainRows, plain_rows, with_plain_rows
 from rockfrag.records.parsing.quantities import quantity_in_name, to_si
 from rockfrag.records.parsing.stated_facts import StatedFacts, stated_facts
 from rockfrag.records.parsing.text_file import TextFile, is_remark, last_row
 from rockfrag.records.parsing.time_column import TimeColumn
+from rockfrag.records.parsing.writing import Written, text_writer
 
 _OF_OBSPY = re.compile(
     r"\s*(?:Origin Time|TIMESERIES |WID[12]\b|BEGIN (?:GSE|IMS)|XW01|DELTA\s*:)", re.I
@@ -707,5 +708,13 @@ def _check_counted(layout: _Layout, title: str, numbers: NDArray[np.float64]) ->
 
 
 FORMAT = Format("PLAINTEXT", _recognise, _parse, encoding="latin-1")
-write = text_writer("csv", with_unit=False)
+
+
+def _csv(trace: Written) -> str:
+    unit = f" [{trace.unit}]" if trace.unit else ""
+    rows = [f"{time},{value}" for time, value in trace.timed()]
+    return "\n".join([f"Time [s],Acceleration{unit}", *rows, ""])
+
+
+write = text_writer(_csv, with_unit=False)
 """Write one trace as CSV, time and acceleration, that read back to the same samples."""

@@ -3,10 +3,11 @@
 import re
 from collections.abc import Iterator
 
-from rockfrag.records.parsing.format import Channel, Format, header_keys, text_writer
+from rockfrag.records.parsing.format import Channel, Format, header_keys
 from rockfrag.records.parsing.quantities import canonical_unit, quantity_of
 from rockfrag.records.parsing.text_file import TextFile
 from rockfrag.records.parsing.time_column import TimeColumn
+from rockfrag.records.parsing.writing import Written, text_writer
 
 _COLUMNS = re.compile(
     r"(?i)^\s*time\s*[\[(]\s*(?:s|sec|seconds)\s*[\])][\s,;]+"
@@ -63,5 +64,21 @@ def _parse(text: TextFile) -> Iterator[Channel]:
 
 
 FORMAT = Format("SEISMOSOFT", _recognise, _parse)
-write = text_writer("seismosoft")
+
+
+def _text(trace: Written) -> str:
+    component = trace.facts.get("component") or trace.facts.get("channel")
+    header = [
+        trace.said("earthquake", otherwise="Unknown earthquake"),
+        f"Source: {trace.said('source', otherwise='rockfrag')}",
+        f"Recording station: {trace.said('station', otherwise='unknown')}"
+        + (f"({component})" if component else ""),
+        "Frequency range: not stated",
+        f"Time[s]\tAccel[{trace.unit}]",
+    ]
+    rows = [f"{time}\t{value}" for time, value in trace.timed()]
+    return "\n".join([*header, *rows, ""])
+
+
+write = text_writer(_text)
 """Write one trace as a SeismoSoft accelerogram that reads back to the same samples."""

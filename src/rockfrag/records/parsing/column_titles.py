@@ -40,6 +40,7 @@ _BEFORE_UNITS = re.compile(
     r"(?i)in|of|units?|unit|values?|en|de|unidades|einheiten|unites|fraction|raw|corr?(?:ected)?|filt(?:ered)?|acc\w*"
 )
 _LIKE_ACCELERATION = re.compile(r"/\s*s\w*\s*(?:\^|\*\*)?\s*(?:2|/\s*s)")
+_UNREADABLE = re.compile("[\x80-\x9f\ufffd]")  # of an encoding that was not known
 _SEPARATOR = re.compile(r"[\s_.,:/-]+")
 # words that stand in sentences above columns and never in titles
 _SENTENCE = re.compile(
@@ -330,6 +331,8 @@ def _taken_apart(title: str, unit_below: str) -> _Title:
         words, unit = _unit_behind(words)
     if not unit.name and not problem and (unknown := _unknown_unit_behind(words)):
         problem = f"{unknown!r} is no unit known here"
+    if not unit.name and _UNREADABLE.search(title):
+        problem = "some of its letters cannot be read; save the file as UTF-8"
     if has_factor(words):
         problem = f"{title!r} has a factor that may be meant either way"
     return _Title(words, unit, problem)

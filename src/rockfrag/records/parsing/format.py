@@ -1,11 +1,10 @@
 """A record format as ObsPy wants it: a test for it, a reader of its channels, a writer, and what headers share."""
 
-import os
 import re
 from collections import defaultdict
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field, replace
-from functools import cache, lru_cache
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -14,11 +13,10 @@ from obspy import Stream, Trace, UTCDateTime
 from obspy.core import AttribDict
 
 from rockfrag.base.errors import InputError
-from rockfrag.base.files import write_text
 from rockfrag.base.plausible import LONGEST_STEP, SHORTEST_STEP
 from rockfrag.base.text_files import printable
 from rockfrag.records.parsing import text_file
-from rockfrag.records.parsing.quantities import TO_SI, canonical_unit
+from rockfrag.records.parsing.quantities import canonical_unit
 
 _FIRST, _LAST = UTCDateTime(1900, 1, 1), UTCDateTime(2100, 1, 1)
 
@@ -256,62 +254,6 @@ def _lines_of(head: bytes) -> tuple[str, ...]:
         # the last line of a head is cut anywhere
         lines = lines[:-1]
     return tuple(line[:_LONGEST].rstrip() for line in lines)
-
-
-def text_writer(template: str, with_unit: bool = True) -> Callable[..., None]:
-    """Return what writes one trace of a stream to a file, ``(stream, filename)``, as ObsPy wants it.
-
-    ``template`` is one of ``formats/written`` without its suffix: ``facts`` in it are of ObsPy's stats and
-    ``stats.rockfrag``, ``samples`` are numbers in ``unit``, ``timed`` has them with their times; times and ``dt`` are
-    in seconds. A writer ``with_unit`` needs a unit of acceleration.
-    """
-
-    def write(stream: Stream, filename: str | os.PathLike[str], **_: Any) -> None:
-        if len(stream) != 1:
-            raise InputError(
-                f"{filename}: a file holds one trace, not {len(stream)}; choose one."
-            )
-        stats, samples = stream[0].stats, np.asarray(stream[0].data, dtype=np.float64)
-        if samples.size == 0 or not np.isfinite(samples).all():
-            raise InputError(
-                f"{filename}: a record needs at least one sample, and all of them finite."
-            )
-        facts = {
-            **stats.get("rockfrag", {}),
-            "station": stats.station,
-            "channel": stats.channel,
-        }
-        unit = str(facts.get("unit") or "")
-        if with_unit and unit not in TO_SI:
-            raise InputError(
-                f"{filename}: the trace does not state a unit of acceleration; set stats.rockfrag = "
-                "{'unit': 'g'} (or 'cm/s2', 'm/s2', …) once it is known."
-            )
-        dt = float(f"{stats.delta:.12g}")
-        text = _templates().get_template(f"{template}.j2")
-        values = {
-            "facts": facts,
-            "samples": samples.tolist(),
-            "timed": [(k * dt, value) for k, value in enumerate(samples.tolist())],
-            "unit": unit,
-            "dt": dt,
-        }
-        write_text(text.render(values), filename)
-
-    return write
-
-
-@cache
-def _templates() -> Any:
-    # imported when something is written, which most programs never do
-    from jinja2 import Environment, PackageLoader
-
-    loader = PackageLoader("rockfrag.records.formats", "written")
-    found = Environment(
-        loader=loader, trim_blocks=True, lstrip_blocks=True, keep_trailing_newline=True
-    )
-    found.filters["one_line"] = lambda words: " ".join(str(words).split())
-    return found
 
 
 CHANNEL_END = re.compile(r"^\s*/&")

@@ -4,6 +4,7 @@ In go lines of words, out come numbers with their units, which samples in a know
 without a unit beside it, of a sensor's range or of a target is none of the samples'.
 """
 
+import math
 import re
 from collections.abc import Sequence
 
@@ -11,7 +12,7 @@ import numpy as np
 
 from rockfrag.base.errors import InputError
 from rockfrag.records.parsing.format import Channel
-from rockfrag.records.parsing.quantities import TO_SI, read_unit
+from rockfrag.records.parsing.quantities import read_unit, to_si
 from rockfrag.records.parsing.stated_peak import (
     REFUSED,
     StatedPeak,
@@ -87,7 +88,7 @@ def with_checked_peaks(
     list
         The channels, a single one with a note of a small difference.
     """
-    if not peaks or not all(channel.unit in TO_SI for channel in channels):
+    if not peaks or not all(math.isfinite(to_si(c.unit)) for c in channels):
         return channels
     if len(channels) == 1 and len(peaks) == 1:
         return [with_checked_peak(channels[0], peaks[0], name)]

@@ -328,6 +328,7 @@ _REMARKS = frozenset(
     {"raw", "abs", "rel", "top", "mid", "bot", "cor", "eq", "th", "lin"}
 )
 _SQUARE_SECONDS = re.compile(r"(?<![^\W\d_])[^\W\d_]{1,3}s2$")  # fps2
+_PART_OF_LETTERS = re.compile(r"\W*\d*[.,]\d+\s*[^\W\d_]{1,3}")  # 0.001 V
 _SIGNS_OF_UNITS = re.compile(r"[/^%*·²]|\bper\b")
 _FACTOR = re.compile(
     r"(?:×|(?<!\*)\*(?!\*))\s*\d|\d\s*(?:×|\*(?!\*))|\bx\s*(?:10|\d*[.,]\d|\d+e)"
@@ -347,7 +348,7 @@ def looks_like_unit(words: str) -> bool:
     plain = folded(words)
     if _SIGNS_OF_UNITS.search(plain) or has_factor(plain):
         return True
-    if _SQUARE_SECONDS.search(plain):
+    if _SQUARE_SECONDS.search(plain) or _PART_OF_LETTERS.fullmatch(plain):
         return True
     longest = max(map(len, re.findall(r"[^\W\d_]+", plain)), default=0)
     numbered = re.search(r"\d", plain) is not None

@@ -10,6 +10,7 @@ from functools import cache
 
 from rockfrag.base.plausible import LONGEST_STEP, SHORTEST_STEP
 from rockfrag.records.parsing.directions import is_direction
+from rockfrag.records.parsing.factor_words import states_factor, states_size_of_digit
 from rockfrag.records.parsing.format import stated
 from rockfrag.records.parsing.number_fields import number_in
 from rockfrag.records.parsing.peak_in_words import peaks_in_words
@@ -20,6 +21,13 @@ from rockfrag.records.parsing.quantities import (
     read_unit,
 )
 from rockfrag.records.parsing.stated_peak import StatedPeak
+from rockfrag.records.parsing.statements import (
+    FRACTION,
+    IS,
+    NUMBER,
+    UNIT_BEHIND_VALUE,
+    VALUE,
+)
 from rockfrag.records.parsing.vocabulary import (
     OF_SPECTRA,
     alternatives,
@@ -27,33 +35,12 @@ from rockfrag.records.parsing.vocabulary import (
     words_for,
 )
 
-_VALUE = r"(?:\d+[.,]\d+|\d+\.?|[.,]\d+)(?:[ed][+-]?\d+)?"
-_IS = (
-    r"(?:[\s_]+(?P<behind>m?s|m?sec|[uμ]s|k?hz)(?![^\W\d_]))?[\s\"']*(?:\((?P<note>[^)]*)\)|\[(?P<note2>[^\]]*)\])?"
-    r"[\s\"',]*(?P<sign>[=:]|\bis\b|\bes\b|\best\b)?[\s\"',]*"
-)
-# one part of a second, as in 1/200; no time of day and no other ratio
-_FRACTION = rf"(?>(?:1\s*/\s*)?{_VALUE})(?!\s*[:/]\s*\d)"
-_UNIT_BEHIND_VALUE = r"\s*(?P<unit>°|[^\W\d_]+(?:\s*/\s*s\w*|\s+p[eo]r\s+s\w*)?)?"
-_NUMBER = re.compile(_VALUE)
-_MULTIPLIED = re.compile(
-    r"\b(?:multipl(?!ex)|moltiplic|multiplik|divi[ds]|dividier|умнож|раздел)\w*"
-)
-# data x 1e-6, 1 unit = 0.001 g
-_TIMES_A_NUMBER = re.compile(
-    rf"\b(?:data|values?|numbers|valores|datos|werte|daten|dati|valori|valeurs|données)\s*[x×*]\s*{_VALUE}"
-    rf"|\b(?:1|one)\s+unit\w*\s*(?:[=:]|is|corresponds to)\s*(?!1\b(?![.,]\d)){_VALUE}"
-)
-# the size of a digit of a recorder: a factor where the samples are whole numbers
-_SIZE_OF_DIGIT = re.compile(
-    rf"\b(?:lsb|digits?|counts?|cnt|bits?)\s*[=:]\s*{_VALUE}"
-    rf"|{_VALUE}\s*\(?[^\W\d_][^\s\d]*\)?\s*(?:/|\bper\b)\s*(?:lsb|digit|count|cnt|bit)\b"
-)
-_LONGEST_IMPERATIVE = 80
+# motions that were fitted to a spectrum
+_OF_MATCHED = re.compile(r"compat|match|target|design|consist|adjust|fitted|scaled")
+_LAST_BRACKET = re.compile(r"[(\[](?P<inside>[^()\[\]]+)[)\]]\s*$")
 _LONGEST_TITLE = 4  # words, without units
-_LONE_FACTOR = re.compile(r"\W*[x×*]\s*(?:10|0?[.,]\d|\d+e|1\d*)[\d\s^.,+-]*\W*")
 _STEP_BEFORE = re.compile(
-    rf"(?P<value>{_VALUE})\s*(?:s|sec\w*)\.?\s+(?:time\s+)?(?:intervals?|steps?|spacing)\b"
+    rf"(?P<value>{VALUE})\s*(?:s|sec\w*)\.?\s+(?:time\s+)?(?:intervals?|steps?|spacing)\b"
 )
 _ENGLISH_COUNT = (
     r"\b(?:no\.?|number|num\.?|nr\.?|total)\s*(?:of\s+)?(?:acc\w*\s+)?"
@@ -82,11 +69,6 @@ _ONE_VALUE = re.compile(
 )
 _VALUE_OF = re.compile(r"[=:]\s*[-+]?\.?\d")
 _LIST = r"^\W*(?:components?|channels?|directions?|orientations?|componentes?|canales)\s*[=:]\s*(.+)$"
-# a scale of these is no factor of the samples, nor is a ratio such as 1:50
-_OTHER_SCALE = (
-    r"(?<!full )(?<!full-)(?<!time )(?<!length )(?<!richter )(?<!magnitude )(?<!quality )(?<!q )(?<!safety )"
-    r"(?<!damping )(?<!intensity )(?<!full_)"
-)
 _KEYS = {
     "earthquake": r"^\W*(?:event|earthquake|evento|sismo|terremoto)\b[^:=]*[:=]\s*(\S.*)$",
     "station": r"^\W*(?:recording\s+)?(?:station|estaci[oó]n|stazione|istasyon)\b[^:=]*[:=]\s*(\S.*)$",
@@ -120,7 +102,7 @@ class StatedFacts:
 def _patterns() -> dict[str, re.Pattern[str]]:
     """Return the patterns that are made of the words of all languages."""
     samples = alternatives("samples")
-    is_value = rf"{_IS}(?P<value>{_FRACTION}){_UNIT_BEHIND_VALUE}"
+    is_value = rf"{IS}(?P<value>{FRACTION}){UNIT_BEHIND_VALUE}"
     return {
         "step": re.compile(
             rf"(?P<key>{alternatives('interval')}|(?<![\w.])δt|\bintervals?\s+of)"
@@ -137,11 +119,11 @@ def _patterns() -> dict[str, re.Pattern[str]]:
             rf"\W*(?P<key>{alternatives('frequency')}){is_value}\W*"
         ),
         "rate before": re.compile(
-            rf"(?P<value>{_VALUE})\s*(?:sps\b|{samples}\s*(?:/|per|por|al|par|pro)\s*s)"
+            rf"(?P<value>{VALUE})\s*(?:sps\b|{samples}\s*(?:/|per|por|al|par|pro)\s*s)"
         ),
         "count": re.compile(
             rf"(?:{alternatives('count')}|{_ENGLISH_COUNT}|(?P<unsure>\bsamples|\bpoints)|(?P<bare>{_BARE_COUNT}))"
-            rf"{_IS}(?P<count>\d+)(?![\d.,]*\d)(?!\s*(?:hz|s\b|sec|/|per))"
+            rf"{IS}(?P<count>\d+)(?![\d.,]*\d)(?!\s*(?:hz|s\b|sec|/|per))"
             rf"(?(bare)\s*(?P<of>{samples})?\s*(?:$|[,;)]))"
         ),
         "counted": re.compile(
@@ -154,10 +136,6 @@ def _patterns() -> dict[str, re.Pattern[str]]:
         "quantity in": re.compile(
             rf"(?:{_QUANTITY}|{alternatives('acceleration')})[^,;:(\[=\d]{{0,40}}?"
             r"(?:\b(?:in|en|em)\s+(?:units?\s+(?:of\s+)?)?|[:(\[,=_]\s*)(?P<rest>.+)$"
-        ),
-        "factor": re.compile(
-            rf"{_OTHER_SCALE}{alternatives('factor')}{_IS}"
-            rf"(?:by|of|con|with|mit|por|per|par)?\s*(?P<value>[+-]?{_VALUE})(?!\s*:\s*\d)"
         ),
     }
 
@@ -194,14 +172,18 @@ def stated_facts(lines: Sequence[str]) -> StatedFacts:
         quantity="acceleration" if units else quantity,
         components=tuple(re.findall(r"[^\s,;]+", stated(_LIST, lines))),
         factor=next(
-            (line for line, own in zip(lines, plain, strict=True) if _has_factor(own)),
+            (
+                line
+                for line, own in zip(lines, plain, strict=True)
+                if states_factor(own)
+            ),
             "",
         ),
         digit=next(
             (
                 line
                 for line, own in zip(lines, plain, strict=True)
-                if _SIZE_OF_DIGIT.search(own)
+                if states_size_of_digit(own)
             ),
             "",
         ),
@@ -229,7 +211,7 @@ def factor_beside_unit(line: str) -> str:
     units = _units_in(unit["rest"]) if unit else []
     of_motion = [u for u in units if u.quantity == "acceleration"]
     # a factor elsewhere in a header may tell how the record was made
-    if _IMPERATIVE.search(plain) and _has_factor(plain):
+    if _IMPERATIVE.search(plain) and states_factor(plain):
         return f"{line.strip()[:_SHOWN]!r} is a factor that is not applied here"
     return _problem_of_factor(plain, of_motion[0]) if of_motion else ""
 
@@ -249,18 +231,6 @@ def _close(found: Sequence[float | int | str]) -> bool:
     return len(numbers) == len(found) and max(numbers) - min(numbers) <= 1e-4 * max(
         numbers
     )
-
-
-def _has_factor(line: str) -> bool:
-    found = _patterns()["factor"].search(line)
-    alone = _LONE_FACTOR.fullmatch(line) is not None
-    numbers = {number_in(word) for word in _NUMBER.findall(line)} - {1.0}
-    in_a_sentence = (
-        _MULTIPLIED.search(line) and numbers and len(line) <= _LONGEST_IMPERATIVE
-    )
-    if in_a_sentence or _TIMES_A_NUMBER.search(line):
-        return True
-    return alone or (found is not None and number_in(found["value"]) != 1)
 
 
 def _steps(line: str) -> list[float]:
@@ -310,7 +280,7 @@ def _steps_of_rates(line: str) -> list[float]:
 
 def _value_in(match: re.Match[str]) -> float:
     """Return the value of a match, which may be a part of a second such as 1/200."""
-    numbers = [number_in(word) for word in _NUMBER.findall(match["value"])]
+    numbers = [number_in(word) for word in NUMBER.findall(match["value"])]
     if len(numbers) == 1:
         return numbers[0]
     return 1 / numbers[1] if numbers[1] else 0.0
@@ -355,7 +325,7 @@ def _units_in(words: str) -> list[Unit]:
             ends = range(len(tokens), start, -1)
             every = ((read_unit(" ".join(tokens[start:end])), end) for end in ends)
             known = next((pair for pair in every if pair[0].quantity), None)
-            if known and start and _NUMBER.fullmatch(tokens[start - 1]):
+            if known and start and NUMBER.fullmatch(tokens[start - 1]):
                 # a number before a unit is a factor that was not understood
                 words = " ".join(tokens[start - 1 : known[1]])
                 known = Unit(words, known[0].quantity, factor=words), known[1]
@@ -416,13 +386,17 @@ def _other_quantity(line: str) -> str:
     """
     if _ONE_VALUE.search(line) or _VALUE_OF.search(line):
         return ""
-    if OF_SPECTRA.search(line):
-        return "spectrum"
     words = re.split(r"[\s_:;,()\[\]]+", line.strip(" _:;,()[].\"'"))
     units = {read_unit(word).quantity for word in words[1:]} - {"", "time"}
-    has_value = any(map(_NUMBER.match, words))
+    has_value = any(map(NUMBER.match, words))
     if has_value or len(words) - len(units) > _LONGEST_TITLE or "acceleration" in units:
         return ""
+    if OF_SPECTRA.search(line):
+        return "" if _OF_MATCHED.search(line) else "spectrum"
+    ending = _LAST_BRACKET.search(line)
+    unit = read_unit(ending["inside"]) if ending else Unit("")
+    if unit.quantity not in ("", "time", "frequency", "acceleration"):
+        return unit.quantity
     # as in vitesse du sol, and in ground velocity
     named = words[0] if len(words) - len(units) != 2 else " ".join(words[:2])
     for quantity in ("velocity", "displacement"):

@@ -1,5 +1,6 @@
 """The largest acceleration that a header states, held against the samples."""
 
+import math
 import re
 from dataclasses import dataclass, replace
 
@@ -7,7 +8,7 @@ import numpy as np
 
 from rockfrag.base.errors import InputError
 from rockfrag.records.parsing.format import SAID, Channel
-from rockfrag.records.parsing.quantities import TO_SI, canonical_unit
+from rockfrag.records.parsing.quantities import to_si
 
 REFUSED = 0.25
 """Fraction of the stated peak by which that of the samples may differ: networks state it before a correction."""
@@ -38,10 +39,9 @@ def with_checked_peak(
     that of a file that is ``cut_short`` may stand in the part that is not there. ``name`` is the file's.
     """
     stated, last_place = _number(peak.number)
-    factor, unit = TO_SI.get(canonical_unit(peak.unit)), peak.unit
-    if not 0 < stated < _NOT_KNOWN or not factor or channel.unit not in TO_SI:
-        return channel
-    if not channel.samples.size:
+    factor, unit = to_si(peak.unit), peak.unit
+    is_known = math.isfinite(factor) and math.isfinite(to_si(channel.unit))
+    if not 0 < stated < _NOT_KNOWN or not is_known or not channel.samples.size:
         return channel
     held = np.array(peaks_of(channel)) / factor
     nearest = float(held[np.abs(held - stated).argmin()])
@@ -65,7 +65,7 @@ def peaks_of(channel: Channel) -> tuple[float, float]:
     samples = channel.samples
     extremes = np.array([samples.min(), samples.max()])
     sizes = np.abs(np.array([extremes, extremes - samples.mean()])).max(axis=1)
-    as_they_are, about_mean = sizes * TO_SI[channel.unit]
+    as_they_are, about_mean = sizes * to_si(channel.unit)
     return float(as_they_are), float(about_mean)
 
 

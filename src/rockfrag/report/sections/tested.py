@@ -411,8 +411,10 @@ def acceleration_histories(motions: Sequence[Motion]) -> Figure:
         for panel in panels[len(shown) :]:
             panel.set_visible(False)
         style.letter_panels(panels[: len(shown)], size=6.5)
-        for panel in grid[-1]:
+        # the lowest panel of each column, which the right one may have a row higher
+        for panel in panels[len(shown) - columns : len(shown)]:
             panel.set_xlabel("Time [s]")
+            panel.tick_params(labelbottom=True)
         panels[0].set_xlim(0, max(motion.time[-1] for motion in shown))
         figure.supylabel("Acceleration [g]", fontsize=8)
         return figure

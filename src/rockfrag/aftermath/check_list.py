@@ -1,0 +1,219 @@
+"""The list of objects after an earthquake, to be printed and ticked off: lines, a page, a table and JSON.
+
+In: :class:`rockfrag.aftermath.shaken_objects.ShakenCollection`. Words are those of the catalogue of a language.
+"""
+
+import json
+import math
+import os
+from collections.abc import Sequence
+from pathlib import Path
+
+from jinja2 import Environment, PackageLoader, StrictUndefined, select_autoescape
+from markupsafe import Markup
+
+from rockfrag import __version__
+from rockfrag.aftermath.shaken_ground import GroundShaking
+from rockfrag.aftermath.shaken_objects import (
+    ShakenCollection,
+    ShakenObject,
+    shaken_table,
+)
+from rockfrag.base.files import write_table, write_text
+from rockfrag.report.page import TEMPLATES, framed
+from rockfrag.words.catalogue import FIRST, Catalogue, catalogue
+from rockfrag.words.findings import Finding, finding, percent, two
+
+_TEMPLATES = Environment(
+    loader=PackageLoader("rockfrag.aftermath", ""),
+    autoescape=select_autoescape(default=True),
+    undefined=StrictUndefined,
+    trim_blocks=True,
+    lstrip_blocks=True,
+)
+
+
+def write_after(
+    collection: ShakenCollection,
+    folder: str | os.PathLike[str],
+    language: str = FIRST,
+) -> Path:
+    """Write ``after.html``, ``after.csv`` and ``after.json`` into a folder.
+
+    Parameters
+    ----------
+    collection : the objects after the earthquake
+    folder, language : where files go, and the language of the page
+
+    Returns
+    -------
+    Path of the page.
+    """
+    place = Path(folder) / "after.html"
+    write_table(shaken_table(collection), place.with_suffix(".csv"))
+    write_text(after_json(collection), place.with_suffix(".json"))
+    write_text(after_page(collection, language), place)
+    return place
+
+
+def after_lines(collection: ShakenCollection, language: str = FIRST) -> list[str]:
+    """Say the answer, then a line an object.
+
+    Parameters
+    ----------
+    collection, language : the objects after the earthquake, and the language
+
+    Returns
+    -------
+    The lines.
+    """
+    texts = catalogue(language)
+    longest = max(len(each.request.name) for each in collection.objects)
+    lines = texts.lines(_answer(collection))
+    for rank, each in enumerate(collection.objects, start=1):
+        said = finding(
+            "after_line",
+            fell=percent(each.fell),
+            moved=percent(each.moved),
+            look=finding(each.what_to_do),
+            where=each.request.place.where,
+        )
+        lines.append(f"{rank:4d}  {each.request.name:<{longest}}  {texts.say(said)}")
+    return lines
+
+
+def after_json(collection: ShakenCollection) -> str:
+    """Return all numbers as JSON; what is not known is null.
+
+    Parameters
+    ----------
+    collection : the objects after the earthquake
+
+    Returns
+    -------
+    JSON.
+    """
+    table = shaken_table(collection)
+    answer = {
+        "rockfrag": __version__,
+        "expected_falls": collection.expected_falls,
+        "ground": [_ground_data(each.ground) for each in collection.objects],
+        "objects": json.loads(table.to_json(orient="records", double_precision=15)),
+        "beyond_the_map": list(collection.beyond),
+        "faults": list(collection.faults),
+        "said": catalogue().lines(_answer(collection)),
+    }
+    return json.dumps(answer, indent=2, ensure_ascii=False, allow_nan=False) + "\n"
+
+
+def _ground_data(ground: GroundShaking) -> dict[str, object]:
+    numbers = {
+        name: None if math.isnan(value) else value
+        for name, value in vars(ground).items()
+        if name != "source"
+    }
+    return {**numbers, "source": catalogue().say(ground.source)}
+
+
+def _answer(collection: ShakenCollection) -> list[Finding]:
+    """What is said first: whom to look at, how many fell, by what shaking."""
+    objects = collection.objects
+    first = [each for each in objects if each.what_to_do == "after_look_first"]
+    said = [finding("after_none_first")]
+    if first:
+        said = [finding("after_first", name=first[0].request.name, n=len(first))]
+    expected, count = two(collection.expected_falls), len(objects)
+    said.append(finding("after_expected", expected=expected, count=count))
+    said.append(_ground_said(objects))
+    if collection.beyond:
+        names = ", ".join(collection.beyond[:5])
+        said.append(finding("after_beyond", n=len(collection.beyond), names=names))
+    if collection.faults:
+        said.append(finding("after_faults", n=len(collection.faults)))
+    return said
+
+
+def _ground_said(objects: Sequence[ShakenObject]) -> Finding:
+    """The shaking of the places, from the weakest to the strongest in the measure that is known of all."""
+    grounds = [each.ground for each in objects]
+    measures = (
+        ("PGA", "g", [each.pga for each in grounds], grounds[0].pga_spread),
+        ("PGV", "cm/s", [each.pgv for each in grounds], grounds[0].pgv_spread),
+    )
+    name, unit, values, spread = next(
+        each for each in measures if all(math.isfinite(value) for value in each[2])
+    )
+    text = "after_shaking" if max(values) > min(values) else "after_shaking_one"
+    return finding(
+        text,
+        source=grounds[0].source,
+        measure=name,
+        unit=unit,
+        low=two(min(values)),
+        high=two(max(values)),
+        # one standard deviation of ln as a factor up and down
+        factor=two(math.exp(spread)),
+    )
+
+
+def after_page(collection: ShakenCollection, language: str = FIRST) -> str:
+    """Return the page as HTML, which loads nothing from outside.
+
+    Parameters
+    ----------
+    collection, language : the objects after the earthquake, and the language
+
+    Returns
+    -------
+    HTML.
+    """
+    texts = catalogue(language)
+    count = len(collection.objects)
+    recorded = any(each.under_record for each in collection.objects)
+    head = [
+        (texts.text("after_column_done"), "short"),
+        (texts.text("after_column_object"), "short"),
+        (texts.text("after_column_fell"), "number"),
+        (texts.text("after_column_moved"), "number"),
+        (texts.text("after_column_look"), "short"),
+        (texts.text("after_column_seen"), "short"),
+    ]
+    rows = [
+        _row(rank, each, texts) for rank, each in enumerate(collection.objects, start=1)
+    ]
+    if recorded:
+        head.insert(4, (texts.text("after_column_record"), "short"))
+        for row, each in zip(rows, collection.objects, strict=True):
+            row.insert(4, texts.text(each.under_record))
+    return _TEMPLATES.get_template("check_list.html.j2").render(
+        language=texts.language,
+        title=texts.say(finding("after_title", n=count)),
+        answer=texts.lines(_answer(collection)),
+        how=[texts.text("after_how"), texts.text("after_without")],
+        style=Markup(TEMPLATES.get_template("style.css").render()),
+        table=framed(texts.text("after_caption"), head, rows, 5),
+        note=texts.text("after_note"),
+        made=f"rockfrag {__version__}",
+    )
+
+
+_BOX = Markup('<input type="checkbox" aria-label="{}">')
+_ROW_NAME = Markup("<div><strong>{}</strong><br><small>{}</small></div>")
+
+
+def _row(rank: int, each: ShakenObject, texts: Catalogue) -> list[str | Markup]:
+    """Cells of an object, with boxes to tick."""
+    name = each.request.name
+    seen = ("after_seen_fell", "after_seen_moved", "after_seen_stands")
+    boxes = Markup(" ").join(
+        Markup("<label>{} {}</label>").format(_BOX.format(name), texts.text(id))
+        for id in seen
+    )
+    return [
+        Markup("<div>{} {}</div>").format(_BOX.format(name), rank),
+        _ROW_NAME.format(name, texts.say(each.request.place.where)),
+        texts.say(percent(each.fell)),
+        texts.say(percent(each.moved)),
+        texts.text(each.what_to_do),
+        Markup("<div>{}</div>").format(boxes),
+    ]

@@ -1,0 +1,290 @@
+"""The objects of an inventory after an earthquake: how probably each fell, and how probably it rocked and stands.
+
+In goes the inventory that ``rockfrag assess`` reads, with coordinates or all at one place, and what shook the
+ground (:mod:`rockfrag.aftermath.shaken_ground`). Each object is assessed at its level as ``rockfrag assess`` does,
+over all that the level may have been; out comes a list, the most likely fallen first. Theory: ``docs/after.md``.
+"""
+
+import math
+import os
+import warnings
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from rockfrag.aftermath.sequence import in_either, one_after_the_other
+from rockfrag.aftermath.shaken_ground import GroundShaking, level_of
+from rockfrag.assess.answer import RECORDS, Assessment
+from rockfrag.assess.core.estimates import INSIDE
+from rockfrag.assess.hazard.curve import PGA
+from rockfrag.assess.inventory import FaultyRows, assess_each, read_inventory
+from rockfrag.assess.motions import MotionSet, motion_set
+from rockfrag.assess.outcomes import Shaking
+from rockfrag.assess.request import Request
+from rockfrag.assess.risk import Estimate
+from rockfrag.base.errors import InputError
+from rockfrag.records.motion import Motion
+from rockfrag.simulation.inputs import UnitWarning
+from rockfrag.words.catalogue import catalogue
+
+Ground = Callable[[tuple[float, float] | None], GroundShaking | None]
+"""What shook a place by its coordinates, which are None where all objects are in one place; None where nothing is
+known."""
+
+LOOK_FIRST = 0.5  # Probability of a fall from which an object is looked at first
+LOOK_AT_FEET = 0.5  # Probability of having moved from which its feet are looked at
+NOT_TOUCHED = 0.05  # Probability of having moved at all below which it can wait
+
+
+@dataclass(frozen=True, eq=False)
+class ShakenObject:
+    """An object after an earthquake.
+
+    Attributes
+    ----------
+    found : its assessment at the level that shook its place
+    ground : what shook its place
+    under_record : id of the text that says what the record itself does to it; empty without one
+    then : its assessment at the level of a second shock; None without one
+    """
+
+    found: Assessment
+    ground: GroundShaking
+    under_record: str = ""
+    then: Assessment | None = None
+
+    @property
+    def request(self) -> Request:
+        """What the object is, and where."""
+        return self.found.request
+
+    @cached_property
+    def falls(self) -> tuple[float, float, float]:
+        """Probability that it fell, with its limits for what is not known of object and model (90 %) [-]."""
+        return _in_all(self.found.fraction, self.then.fraction if self.then else None)
+
+    @property
+    def fell(self) -> float:
+        """Probability that it fell [-]."""
+        return self.falls[0]
+
+    @property
+    def limits(self) -> tuple[float, float]:
+        """Limits of that probability [-]."""
+        return self.falls[1:]
+
+    @cached_property
+    def moved(self) -> float:
+        """Probability that it rocked, or walked as it did, and still stands [-]."""
+        rocked, *_ = _in_all(
+            self.found.rocking, self.then.rocking if self.then else None
+        )
+        return max(rocked - self.fell, 0.0)
+
+    @property
+    def what_to_do(self) -> str:
+        """Id of the text that says what to look at."""
+        if self.fell >= LOOK_FIRST:
+            return "after_look_first"
+        if self.fell + self.moved >= LOOK_AT_FEET:
+            return "after_look_at_feet"
+        if self.fell + self.moved >= NOT_TOUCHED:
+            return "after_look_later"
+        return "after_can_wait"
+
+
+def _in_all(
+    first: Estimate | None, then: Estimate | None
+) -> tuple[float, float, float]:
+    """A probability in one shock, or in either of two, with its limits."""
+    assert first is not None
+    if then is None:
+        return first.value, first.lower, first.upper
+    draws = in_either(first.draws, then.draws)
+    value = float(draws.mean())
+    low, high = np.quantile(draws, [(1 - INSIDE) / 2, (1 + INSIDE) / 2]).tolist()
+    return value, min(low, value), max(high, value)
+
+
+@dataclass(frozen=True, eq=False)
+class ShakenCollection:
+    """Objects after an earthquake.
+
+    Attributes
+    ----------
+    objects : the most likely fallen first, then the most likely moved
+    motions : the ground motions by which they were assessed
+    beyond : names of the objects in places of which the map says nothing
+    faults : what is wrong with the rows that were left out, a sentence each
+    """
+
+    objects: Sequence[ShakenObject]
+    motions: MotionSet
+    beyond: Sequence[str] = ()
+    faults: Sequence[str] = ()
+
+    @property
+    def expected_falls(self) -> float:
+        """Mean number of objects that fell."""
+        return sum(each.fell for each in self.objects)
+
+
+def after_earthquake(
+    path: str | os.PathLike[str],
+    ground: Ground,
+    shared: Mapping[str, Any] | None = None,
+    records: str | Path = RECORDS,
+    *,
+    recorded: Sequence[Motion] = (),
+    then: Ground | None = None,
+    then_recorded: Sequence[Motion] = (),
+    keep_going: bool = False,
+    order: str = "",
+) -> ShakenCollection:
+    """Say of each object of an inventory how probably an earthquake felled it, and rocked it.
+
+    Parameters
+    ----------
+    path : table of objects as of ``rockfrag assess``; ``latitude`` and ``longitude`` say where each is
+    ground : what shook a place
+    shared : keys of ``statue.yaml`` that hold for all, such as ``floor``
+    records : folder of fetched records
+    recorded : components of the record of the place, if there is one: what it does to each is said too
+    then, then_recorded : the same of a second shock; None and empty without one
+    keep_going : list the rows that are right where others are not
+    order : of lengths that a museum's table does not name, such as ``HWD``
+
+    Returns
+    -------
+    The objects, the most likely fallen first.
+
+    Raises
+    ------
+    InputError
+        If a row is wrong, or nothing is known of the shaking of any object.
+    """
+    requests, faults = read_inventory(path, shared or {}, order=order)
+    if faults and not (keep_going and requests):
+        raise FaultyRows(faults)
+    shaken, beyond = [], []
+    for request in requests:
+        here = ground(request.coordinates)
+        if here is None:
+            beyond.append(request.name)
+        else:
+            shaken.append((_asked(request, here), here))
+    if not shaken:
+        raise InputError(
+            f"{path}: nothing is known of the shaking of any object; the map does not reach their coordinates."
+        )
+    motions = motion_set(requests[0].records, requests[0].place, Path(records))
+    found = assess_each([request for request, _ in shaken], motions)
+    again = _again([request for request, _ in shaken], then, motions)
+    both = one_after_the_other(recorded, then_recorded) if then_recorded else ()
+    objects = [
+        ShakenObject(each, here, _under_record(each.request, recorded, both), later)
+        for each, (_, here), later in zip(found, shaken, again, strict=True)
+    ]
+    objects.sort(key=lambda each: (each.fell, each.moved), reverse=True)
+    return ShakenCollection(objects, motions, beyond, faults)
+
+
+def _again(
+    requests: Sequence[Request], then: Ground | None, motions: MotionSet
+) -> Sequence[Assessment | None]:
+    """Assess objects at the levels of a second shock; None each without one, and where nothing is known of it."""
+    grounds = [then(each.coordinates) if then else None for each in requests]
+    known = [i for i, ground in enumerate(grounds) if ground is not None]
+    asked = [
+        _asked(requests[i], ground) for i in known if (ground := grounds[i]) is not None
+    ]
+    found = dict(zip(known, assess_each(asked, motions), strict=True))
+    return [found.get(i) for i in range(len(requests))]
+
+
+def _under_record(
+    request: Request, recorded: Sequence[Motion], both: Sequence[Motion]
+) -> str:
+    """Id of the text that says what the record of the place does to an object; empty without one."""
+    if not recorded:
+        return ""
+    alone = _fate(request, recorded)
+    if not both or alone == "after_record_fell":
+        return alone
+    in_sequence = _fate(request, both)
+    return (
+        "after_record_fell_then" if in_sequence == "after_record_fell" else in_sequence
+    )
+
+
+def _fate(request: Request, recorded: Sequence[Motion]) -> str:
+    """What a record does to an object, as the id of its text."""
+    pairs = ((0, 1),) if len(recorded) == 2 else ()
+    motions = MotionSet(tuple(recorded), tuple(recorded), pairs, "")
+    if request.objects.in_space and pairs:
+        motions = motions.with_both_components()
+    as_recorded = np.ones((len(recorded), 1))
+    counted = np.ones(as_recorded.shape, dtype=np.bool_)
+    shaking = Shaking(PGA, np.ones(1), as_recorded, counted, motions)
+    with warnings.catch_warnings():
+        # the unit of a weak record has been read from its file
+        warnings.simplefilter("ignore", UnitWarning)
+        (found,) = shaking.at(request.place).outcomes_of([request.objects])
+    if found.overturned.any():
+        return "after_record_fell"
+    return "after_record_rocked" if found.rocked.any() else "after_record_stood"
+
+
+def _asked(request: Request, ground: GroundShaking) -> Request:
+    """An object at the level that shook its place; where PGV is not known the earthquake says more of it."""
+    records = request.records
+    if math.isnan(ground.pgv) and math.isnan(records.magnitude):
+        records = replace(
+            records, magnitude=ground.magnitude, distance_km=ground.distance_km
+        )
+    return replace(request, level=level_of(ground), hazard=(), records=records)
+
+
+def shaken_table(collection: ShakenCollection) -> pd.DataFrame:
+    """Make a row an object, in the order in which they are looked at.
+
+    Parameters
+    ----------
+    collection : the objects after the earthquake
+
+    Returns
+    -------
+    Columns ``rank``, ``name``, ``place``, ``latitude``, ``longitude`` [degrees], ``pga_g``, ``pgv_cm_s``,
+    ``probability_fell`` with its limits, ``probability_rocked_and_stands`` [-], ``look`` and, where a record was
+    given, ``under_the_record``.
+    """
+    texts = catalogue()
+    rows = []
+    for rank, each in enumerate(collection.objects, start=1):
+        latitude, longitude = each.request.coordinates or (math.nan, math.nan)
+        lower, upper = each.limits
+        row: dict[str, Any] = {
+            "rank": rank,
+            "name": each.request.name,
+            "place": texts.say(each.request.place.where),
+            "latitude": latitude,
+            "longitude": longitude,
+            "pga_g": each.ground.pga,
+            "pgv_cm_s": each.ground.pgv,
+            "probability_fell": each.fell,
+            "probability_fell_lower": lower,
+            "probability_fell_upper": upper,
+            "probability_rocked_and_stands": each.moved,
+            "look": texts.text(each.what_to_do),
+        }
+        if each.then is not None and each.found.fraction is not None:
+            row["probability_fell_in_the_first"] = each.found.fraction.value
+        if each.under_record:
+            row["under_the_record"] = texts.text(each.under_record)
+        rows.append(row)
+    return pd.DataFrame(rows).dropna(axis="columns", how="all")

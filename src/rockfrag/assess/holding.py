@@ -1,0 +1,148 @@
+"""What holds an object, tried by itself: what it must bear, and what that buys.
+
+Each holder (:mod:`rockfrag.assess.standing.holders`) is tried twice.  So strong that nothing breaks it, under the
+motions at the level of the site, it shows what it must bear; as strong as ``PART`` of these motions ask, under all
+levels, it is compared with the object as it stands.  A holder that no engine can simulate with the object in space
+is tried in a plane, beside the object in that plane; what cannot be simulated there either is not tried.
+"""
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from rockfrag.assess.outcomes import ObjectOutcomes, Shaking, scaled_to
+from rockfrag.assess.request import Level
+from rockfrag.assess.standing import Standing
+from rockfrag.assess.standing.holders import Holder
+from rockfrag.assess.texts import Text
+from rockfrag.base.arrays import Floats
+from rockfrag.base.errors import InputError
+from rockfrag.engines.contract import Request, engine_for
+from rockfrag.records.motion import GroundMotion
+from rockfrag.system.system import System
+from rockfrag.words.findings import Finding, finding
+
+PART = 0.95
+"""Part of the motions at the level in which a holder that is tried holds [-]."""
+
+
+@dataclass(frozen=True, eq=False)
+class Trial:
+    """A way to hold an object that was tried.
+
+    Attributes
+    ----------
+    change : what it is, what it bears, and in how many motions
+    key : of its cost, where a user states costs
+    before, after : outcomes without and with it, under the same motions
+    """
+
+    change: Finding
+    key: str
+    before: ObjectOutcomes
+    after: ObjectOutcomes
+
+    def turned(self, change: Callable[[ObjectOutcomes], ObjectOutcomes]) -> "Trial":
+        """Return it with both outcomes changed."""
+        return replace(self, before=change(self.before), after=change(self.after))
+
+
+def try_holders(
+    objects: Standing, shaking: Shaking, few: Shaking, level: Level | None
+) -> list[Trial]:
+    """Try what may hold an object, or what it may do without.
+
+    Parameters
+    ----------
+    objects : the object as it stands
+    shaking : all motions, of which those at the level say what a holder must bear
+    few : motions at the levels by which it is compared
+    level : of the site; without one nothing is tried, as nothing is asked of a holder
+
+    Returns
+    -------
+    What was tried.
+    """
+    if level is None:
+        return []
+    at_level = scaled_to(np.array([level.value]), shaking.motions, shaking.measure)
+    systems = [
+        system
+        for system in _systems(objects, shaking)
+        if _can_be_simulated(system, shaking)
+    ]
+    before: dict[int, ObjectOutcomes] = {}
+    found = []
+    for holder in objects.holders_to_try():
+        for k, system in enumerate(systems):
+            if not _can_be_simulated(holder.on(system), shaking):
+                continue
+            enough, change = holder, holder.called()
+            if holder.demand:
+                demands = demands_of(holder, system, at_level)
+                enough = holder.bearing(_asked(demands))
+                held = int((demands <= enough.bears * (1 + 1e-9)).sum())
+                counts = {"held": held, "total": demands.size}
+                change = finding(
+                    Text.HOLDS, change=enough.called(), level=level.amount, **counts
+                )
+                if not demands.any():
+                    break
+            if k not in before:
+                before[k] = few.outcomes_of_system(system)[0]
+            after = few.outcomes_of_system(enough.on(system))[0]
+            found.append(Trial(change, holder.key, before[k], after))
+            break
+    return found
+
+
+def demands_of(holder: Holder, system: System, at_level: Shaking) -> Floats:
+    """Return what each motion at a level asks of a holder that nothing breaks.
+
+    Parameters
+    ----------
+    holder : with a demand
+    system : that it holds
+    at_level : motions at one level
+
+    Returns
+    -------
+    The demands of the motions that can be scaled so, shape (motions,) [N or m].
+    """
+    _, outcomes = at_level.outcomes_of_system(holder.on(system))
+    demands = getattr(outcomes, holder.demand)[0, :, 0]
+    largest = holder.times * np.nanmax(demands, axis=-1)
+    if len(largest) != len(at_level.allowed):
+        largest = largest[at_level.motions.place_of_record()]
+    return np.asarray(largest[at_level.allowed[:, 0]])
+
+
+def _asked(demands: Floats) -> float:
+    """The least demand that is enough for ``PART`` of the motions."""
+    if not demands.size:
+        return 0.0
+    return float(np.quantile(demands, PART, method="higher"))
+
+
+def _systems(objects: Standing, shaking: Shaking) -> Iterator[System]:
+    """The object as it stands, in space where both components shake it, then in a plane."""
+    body = objects.body
+    solid = objects.solid(body) if shaking.motions.both else None
+    if solid is not None:
+        yield objects.held(solid)
+    planar = objects.in_plane()
+    yield planar.held(planar.system_of(body))
+
+
+def _can_be_simulated(system: System, shaking: Shaking) -> bool:
+    """Whether an engine simulates a system under such motions."""
+    motions: Sequence[GroundMotion] = [GroundMotion(shaking.motions.base[0])]
+    if not system.planar:
+        first = shaking.motions.components(shaking.motions.records[0])
+        motions = [GroundMotion(*first)]
+    try:
+        engine_for(system, motions[0], Request())
+    except InputError:
+        return False
+    return True

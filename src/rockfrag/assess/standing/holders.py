@@ -1,0 +1,421 @@
+"""What may hold an object, a class each: what it adds to the system that is shaken, and what it must bear.
+
+A holder is part of how an object stands, or is tried by itself as a mitigation (:mod:`rockfrag.assess.holding`):
+first so strong that nothing breaks it, which says what it must bear, then as strong as that.  What each does is
+derived in ``docs/holding.md``; sizes that nobody stated are those of the constants below, and are said.
+"""
+
+import math
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any, ClassVar, Self
+
+from rockfrag.assess.texts import Text
+from rockfrag.base.units import GRAVITY
+from rockfrag.system.body import Circle, Interval, Outline, Polygon
+from rockfrag.system.bond import Bond
+from rockfrag.system.constraints import Tie, Wall
+from rockfrag.system.contact import Friction
+from rockfrag.system.support import SlidingPendulum
+from rockfrag.system.system import System, hold
+from rockfrag.words.findings import Finding, finding, two
+
+UNBROKEN = 1e9  # Strength of what is tried before it is known what it must bear [N]
+PADS_AT = 0.8  # Distance of pads from the middle of the base, over that of its edge [-]
+FASTENED_AT = 0.8  # Height of a bracket or cord over that of the object [-]
+# Length of a bracket or cord, from the object's middle beyond its edge [m]
+REACH = 0.1
+# What a bracket and a cord give under a force as large as the object's weight [m]
+BRACKET_GIVES, CORD_GIVES = 0.001, 0.01
+DAMPED = 0.05  # Part of critical damping of a bracket, as it swings with the object [-]
+RADIUS, SLIDES_AT = 1.0, 0.05  # Of a sliding pendulum [m], and of its friction [-]
+PLATE = 0.1  # Mass of its plate over that of what stands on it [-]
+ROLLS_AT, LOCKED_AT = (
+    0.03,
+    0.5,
+)  # Coefficients of casters that roll, and that are locked [-]
+
+
+@dataclass(frozen=True)
+class Holder(ABC):
+    """Something that holds an object."""
+
+    # Its key in ``statue.yaml``, and in what a user states costs of
+    key: ClassVar[str]
+    # Column of outcomes that says what it must bear, and how often that is to be taken; empty where nothing
+    demand: ClassVar[str] = ""
+    times: ClassVar[float] = 1.0
+
+    @abstractmethod
+    def on(self, system: System) -> System:
+        """Return a system with it."""
+
+    @abstractmethod
+    def called(self) -> Finding:
+        """What it is called, with what it bears."""
+
+    @property
+    def bears(self) -> float:
+        """What it bears [N or m]; infinite where that is not asked."""
+        return math.inf
+
+    def bearing(self, demand: float) -> Self:
+        """Return it as strong as it must be, rounded up to two digits."""
+        return self
+
+
+@dataclass(frozen=True)
+class Putty(Holder):
+    """Wax or putty under the object, in pads near the corners of its base.
+
+    Attributes
+    ----------
+    pull : that all pads hold together [N]
+    """
+
+    pull: float = UNBROKEN
+    key: ClassVar[str] = "putty"
+    demand: ClassVar[str] = "largest_force"
+    times: ClassVar[float] = 2.0  # of each of two sides
+
+    def on(self, system: System) -> System:
+        """Bond the uppermost body to what it stands on."""
+        spread = pads_of(system.bodies[-1].base)
+        return hold(system, bonds=Bond(self.pull, UNBROKEN, spread))
+
+    def called(self) -> Finding:
+        """Such as putty that holds 120 N."""
+        return finding(Text.HOLD_PUTTY, force=two(self.pull))
+
+    @property
+    def bears(self) -> float:
+        """What it bears."""
+        return self.pull
+
+    def bearing(self, demand: float) -> Self:
+        """As strong as the pull on all pads."""
+        return replace(self, pull=rounded_up(demand))
+
+
+@dataclass(frozen=True)
+class Bracket(Holder):
+    """A bracket between the object and a wall that stands like the ground: it holds both ways, without slack.
+
+    Attributes
+    ----------
+    strength : at which it breaks [N]
+    """
+
+    strength: float = UNBROKEN
+    key: ClassVar[str] = "bracket"
+    demand: ClassVar[str] = "largest_force"
+
+    def on(self, system: System) -> System:
+        """Fasten the uppermost body in the direction of its narrower side."""
+        made = fastened(system, BRACKET_GIVES, self.strength)
+        bracket = replace(made[0], bracket=True, damping=_damping(system, made[0]))
+        return hold(system, bracket)
+
+    def called(self) -> Finding:
+        """Such as a bracket that bears 300 N."""
+        return finding(Text.HOLD_BRACKET, force=two(self.strength), **_height())
+
+    @property
+    def bears(self) -> float:
+        """What it bears."""
+        return self.strength
+
+    def bearing(self, demand: float) -> Self:
+        """As strong as its largest force."""
+        return replace(self, strength=rounded_up(demand))
+
+
+@dataclass(frozen=True)
+class Cords(Holder):
+    """Cords to both sides of the object, without slack.
+
+    Attributes
+    ----------
+    strength : at which each breaks [N]
+    """
+
+    strength: float = UNBROKEN
+    key: ClassVar[str] = "cord"
+    demand: ClassVar[str] = "largest_force"
+
+    def on(self, system: System) -> System:
+        """Fasten the uppermost body to both sides in the direction of its narrower side."""
+        return hold(system, *fastened(system, CORD_GIVES, self.strength))
+
+    def called(self) -> Finding:
+        """Such as cords that bear 300 N each."""
+        return finding(Text.HOLD_CORDS, force=two(self.strength), **_height())
+
+    @property
+    def bears(self) -> float:
+        """What it bears."""
+        return self.strength
+
+    def bearing(self, demand: float) -> Self:
+        """As strong as the larger of their largest forces."""
+        return replace(self, strength=rounded_up(demand))
+
+
+@dataclass(frozen=True)
+class Isolator(Holder):
+    """A sliding pendulum under all that stands there.
+
+    Attributes
+    ----------
+    stroke : at which it meets its stop [m]
+    """
+
+    stroke: float = math.inf
+    key: ClassVar[str] = "isolator"
+    demand: ClassVar[str] = "stroke"
+
+    def on(self, system: System) -> System:
+        """Put a plate under the lowest body."""
+        friction = Friction(SLIDES_AT, SLIDES_AT)
+        dish = SlidingPendulum(
+            mass=PLATE * system.mass,
+            stroke=self.stroke,
+            radius=RADIUS,
+            friction=friction,
+        )
+        return hold(system, support=dish)
+
+    def called(self) -> Finding:
+        """Such as an isolator with 18 cm to both sides."""
+        about = {"radius": two(RADIUS), "friction": two(SLIDES_AT)}
+        return finding(Text.HOLD_ISOLATOR, stroke=two(100 * self.stroke), **about)
+
+    @property
+    def bears(self) -> float:
+        """What it bears."""
+        return self.stroke
+
+    def bearing(self, demand: float) -> Self:
+        """With its stop where it is not met."""
+        return replace(self, stroke=rounded_up(demand))
+
+
+@dataclass(frozen=True)
+class Beside(Holder):
+    """A wall behind the object.
+
+    Attributes
+    ----------
+    distance : from its base [m]
+    """
+
+    distance: float = math.inf
+    key: ClassVar[str] = "wall"
+
+    def on(self, system: System) -> System:
+        """Set a wall beside the lowest body, in the direction of its narrower side."""
+        base = system.bodies[0].base
+        east, north = narrow_direction(base)
+        wall = Wall(reach_of(base) + self.distance, math.atan2(north, east))
+        return hold(system, wall)
+
+    def called(self) -> Finding:
+        """Such as a wall 5 cm behind it."""
+        return finding(Text.HOLD_WALL, distance=two(100 * self.distance))
+
+
+@dataclass(frozen=True)
+class Casters(Holder):
+    """Casters under all that stands there.
+
+    Attributes
+    ----------
+    locked : whether they are
+    """
+
+    locked: bool = False
+    key: ClassVar[str] = "casters"
+
+    def on(self, system: System) -> System:
+        """Let the ground's contact roll, or slide on what is locked."""
+        grip = LOCKED_AT if self.locked else ROLLS_AT
+        ground, *others = system.contacts
+        ground = replace(ground, friction=Friction(grip, grip))
+        return replace(system, contacts=(ground, *others))
+
+    def called(self) -> Finding:
+        """Casters that are locked, or free."""
+        if self.locked:
+            return finding(Text.HOLD_CASTERS_LOCKED, friction=two(LOCKED_AT))
+        return finding(Text.HOLD_CASTERS_FREE, friction=two(ROLLS_AT))
+
+
+@dataclass(frozen=True)
+class WithoutWall(Holder):
+    """The object moved away from the wall that it stands at."""
+
+    key: ClassVar[str] = "wall"
+
+    def on(self, system: System) -> System:
+        """Take all walls away."""
+        ties = [each for each in system.constraints if isinstance(each, Tie)]
+        return replace(system, constraints=tuple(ties))
+
+    def called(self) -> Finding:
+        """Away from the wall."""
+        return finding(Text.HOLD_OFF_WALL)
+
+
+GIVEN: Mapping[str, Callable[[Any], Holder]] = {
+    "putty_n": Putty,
+    "bracket_n": Bracket,
+    "cord_n": Cords,
+    "isolator_m": Isolator,
+    "wall_m": Beside,
+    "casters": lambda word: Casters(word == "locked"),
+}
+"""Keys of ``statue.yaml`` that say what holds an object as it stands, and the holder of what they give."""
+
+
+def holders_of(settings: Mapping[str, Any]) -> tuple[Holder, ...]:
+    """Make what holds an object of checked keys of ``statue.yaml``.
+
+    Parameters
+    ----------
+    settings : checked keys
+
+    Returns
+    -------
+    The holders, in the order of ``GIVEN``.
+    """
+    return tuple(make(settings[key]) for key, make in GIVEN.items() if key in settings)
+
+
+def holders_beside(there: Sequence[Holder]) -> list[Holder]:
+    """Holders that may be tried beside those that are there.
+
+    Parameters
+    ----------
+    there : what holds the object as it stands
+
+    Returns
+    -------
+    Those of other kinds, and what may be done about a wall and about casters that roll.
+    """
+    kinds = {holder.key for holder in there}
+    usual: list[Holder] = [Putty(), Bracket(), Cords(), Isolator()]
+    found = [holder for holder in usual if holder.key not in kinds]
+    if "wall" in kinds:
+        found.append(WithoutWall())
+    if any(isinstance(holder, Casters) and not holder.locked for holder in there):
+        found.append(Casters(locked=True))
+    return found
+
+
+def rounded_up(value: float) -> float:
+    """Return a positive number rounded up to two digits; what is not finite stays."""
+    if not 0.0 < value < math.inf:
+        return value
+    step = 10.0 ** (math.floor(math.log10(value)) - 1)
+    return float(f"{math.ceil(value / step - 1e-9) * step:.6g}")
+
+
+def pads_of(base: Outline) -> tuple[float, float]:
+    """Half the distances of four pads under a base along its axes [m]."""
+    if isinstance(base, Interval):
+        half = PADS_AT * (base.right - base.left) / 2
+        return half, half
+    if isinstance(base, Circle):
+        half = PADS_AT * base.radius * math.sqrt(0.5)
+        return half, half
+    sides = [max(abs(vertex[k]) for vertex in base.vertices) for k in (0, 1)]
+    if len(base.vertices) == 4 and all(
+        abs(abs(x) - sides[0]) + abs(abs(y) - sides[1]) < 1e-9 for x, y in base.vertices
+    ):
+        return PADS_AT * sides[0], PADS_AT * sides[1]
+    # within the circle that touches the nearest edge
+    half = PADS_AT * nearest_edge(base)[0] * math.sqrt(0.5)
+    return half, half
+
+
+def nearest_edge(base: Polygon) -> tuple[float, tuple[float, float]]:
+    """Distance of a polygon's nearest edge from its origin [m], and the direction across it, outwards."""
+    found = []
+    ends = zip(base.vertices, (*base.vertices[1:], base.vertices[0]), strict=True)
+    for (x, y), (east, north) in ends:
+        length = math.hypot(east - x, north - y)
+        across = ((north - y) / length, -(east - x) / length)
+        found.append((across[0] * x + across[1] * y, across))
+    # of two alike the first, whatever rounding says
+    least = min(distance for distance, _ in found)
+    return next(each for each in found if each[0] <= least * (1 + 1e-9))
+
+
+def narrow_direction(base: Outline) -> tuple[float, float]:
+    """Direction in the plan across the narrower side of a base; along x of a planar or round one."""
+    return nearest_edge(base)[1] if isinstance(base, Polygon) else (1.0, 0.0)
+
+
+def reach_of(base: Outline) -> float:
+    """How far a base reaches from its origin in its narrow direction [m]."""
+    if isinstance(base, Interval):
+        return base.right
+    if isinstance(base, Circle):
+        return base.radius + base.centre[0]
+    east, north = narrow_direction(base)
+    return max(east * x + north * y for x, y in base.vertices)
+
+
+def fastened(system: System, gives: float, strength: float) -> tuple[Tie, Tie]:
+    """Ties of the uppermost body to both sides, along its narrower side, a given way up.
+
+    Parameters
+    ----------
+    system : whose uppermost body is held
+    gives : what a tie gives under a force as large as that body's weight [m]
+    strength : at which each breaks [N]
+
+    Returns
+    -------
+    The tie towards the narrow direction, and that against it.
+    """
+    top = system.bodies[-1]
+    below = sum(body.height for body in system.bodies[:-1])
+    east, north = narrow_direction(top.base)
+    height, far = FASTENED_AT * top.height, reach_of(top.base) + REACH
+    aside = sum(contact.offset[0] for contact in system.contacts[1:])
+    x, y, _ = top.centre
+    found = []
+    for way in (1.0, -1.0):
+        ends = (
+            x + aside + way * far * east,
+            y + way * far * north,
+            below + height,
+        )
+        found.append(
+            Tie(
+                (x, y, height),
+                ends,
+                top.mass * GRAVITY / gives,
+                strength=strength,
+            )
+        )
+    return found[0], found[1]
+
+
+def _damping(system: System, tie: Tie) -> float:
+    """Damping of a bracket that swings with the uppermost body about its base [N s/m]."""
+    top = system.bodies[-1]
+    inertia = top.inertia
+    across = (
+        inertia
+        if isinstance(inertia, int | float)
+        else max(inertia[0][0], inertia[1][1])
+    )
+    swinging = (across + top.mass * top.centre[2] ** 2) / tie.point[2] ** 2
+    return 2 * DAMPED * math.sqrt(tie.stiffness * swinging)
+
+
+def _height() -> dict[str, Finding]:
+    return {"height": finding("whole_percent", value=two(100 * FASTENED_AT))}

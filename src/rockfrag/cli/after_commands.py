@@ -1,0 +1,212 @@
+"""The command ``rockfrag after``: which objects of a collection to look at first after an earthquake."""
+
+import argparse
+import math
+import sys
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+from rockfrag.base.errors import InputError
+from rockfrag.cli.assess_commands import (
+    add_request_options,
+    on_command_line,
+    settings_of,
+)
+
+if TYPE_CHECKING:
+    from rockfrag.aftermath.shaken_ground import GroundShaking
+    from rockfrag.aftermath.shaken_objects import Ground
+    from rockfrag.records.motion import Motion
+
+UNUSED = ("name", "width", "height", "depth", "mesh", "sa", "hazard", "return_period")
+"""Keys of ``statue.yaml`` that are of one object, or of earthquakes to come."""
+
+
+def add_after_command(commands: Any) -> None:
+    """Add ``after`` to the parsers of a command line."""
+    command = commands.add_parser(
+        "after",
+        help="list which objects to look at first after an earthquake",
+        usage="rockfrag after INVENTORY.csv (--shakemap grid.xml | --station RECORD … | --pga LEVEL --pgv LEVEL); "
+        "rockfrag after --help lists all options",
+        description="Objects of an inventory, with latitude and longitude or all at one place, after an "
+        "earthquake that happened.",
+    )
+    words = "inventory with an object a row, or a table as a museum exports it"
+    command.add_argument("file", metavar="INVENTORY.csv", help=words)
+    ground = command.add_argument_group("what shook the ground")
+    words = "grid.xml of a ShakeMap, or its zip file"
+    ground.add_argument("--shakemap", metavar="GRID", help=words)
+    words = "uncertainty.xml of the same map, or its zip file"
+    ground.add_argument("--map-uncertainty", metavar="GRID", help=words)
+    words = "record of a station: one file, or one of each horizontal component"
+    ground.add_argument("--station", metavar="RECORD", nargs="+", help=words)
+    words = "distance of the station from the objects [km]"
+    ground.add_argument(
+        "--station-km", metavar="KM", type=float, default=0.0, help=words
+    )
+    words = "grid.xml of a second shock, which found the objects as the first left them"
+    ground.add_argument("--then-shakemap", metavar="GRID", help=words)
+    words = "record of a second shock, with as many files as --station"
+    ground.add_argument("--then-station", metavar="RECORD", nargs="+", help=words)
+    words = "place of objects without coordinates of their own [degrees]"
+    ground.add_argument(
+        "--at", metavar=("LATITUDE", "LONGITUDE"), nargs=2, type=float, help=words
+    )
+    words = "standard deviation of ln of typed --pga and --pgv [-]"
+    ground.add_argument("--sd-ln", metavar="S", type=float, default=0.0, help=words)
+    add_request_options(command)
+    out = command.add_argument_group("the list")
+    words = "where page, table and JSON are written"
+    out.add_argument("--output", metavar="FOLDER", default="after", help=words)
+    out.add_argument("--json", action="store_true", help="print the list as JSON")
+    out.add_argument("--language", default="en", help="of the list, such as it")
+    words = "list the rows that are right, and say what is wrong with the others"
+    out.add_argument("--keep-going", action="store_true", help=words)
+    words = "order of lengths that a museum's table does not name, such as HWD"
+    out.add_argument("--order", default="", help=words)
+    command.set_defaults(run=_after)
+
+
+# imported when it runs: `rockfrag --help` should not wait for numba
+def _after(options: argparse.Namespace) -> int:
+    from rockfrag.aftermath.check_list import after_json, after_lines, write_after
+    from rockfrag.aftermath.shaken_objects import after_earthquake
+    from rockfrag.assess.inventory import FaultyRows
+
+    about_station = {"unit": options.unit, "dt": options.dt}
+    if options.station:
+        # the unit of its files, not of records by which objects are shaken
+        options.unit = options.dt = None
+    given = settings_of(options)
+    unfit = [key for key in UNUSED if key in given]
+    if unfit:
+        raise InputError(
+            f"--{unfit[0].replace('_', '-')}: says nothing of an earthquake that happened, or is of one object; "
+            "leave it out."
+        )
+    typed: dict[str, Any] = {
+        key: given.pop(key) for key in ("pga", "pgv") if key in given
+    }
+    try:
+        ground, recorded = _ground_of(options, typed, about_station)
+        then, then_recorded = _then_of(options, about_station)
+        found = after_earthquake(
+            options.file,
+            ground,
+            given,
+            options.records,
+            recorded=recorded,
+            then=then,
+            then_recorded=then_recorded,
+            keep_going=options.keep_going,
+            order=options.order,
+        )
+    except FaultyRows as error:
+        for fault in error.faults:
+            print(on_command_line(fault, given), file=sys.stderr)
+        print(
+            "nothing was listed; --keep-going lists the rows that are right.",
+            file=sys.stderr,
+        )
+        return 2
+    for fault in found.faults:
+        print(f"warning: left out: {fault}", file=sys.stderr)
+    place = write_after(found, options.output, options.language)
+    if options.json:
+        print(after_json(found), end="")
+    else:
+        print("\n".join(after_lines(found, options.language)))
+    print(place, file=sys.stderr)
+    return 0
+
+
+def _ground_of(
+    options: argparse.Namespace, typed: dict[str, Any], about_station: dict[str, Any]
+) -> "tuple[Ground, tuple[Motion, ...]]":
+    """What shook a place, by the one way that the command line gives, and the record if that is one."""
+    ways = [options.shakemap, options.station, typed]
+    if sum(bool(way) for way in ways) != 1:
+        raise InputError(
+            "give what shook the ground in one way: --shakemap, --station, or --pga with --pgv."
+        )
+    if options.shakemap:
+        return _by_map(options), ()
+    if typed:
+        ground = _typed(options, typed)
+        return lambda _: ground, ()
+    recorded, motions = _of_station(options, about_station)
+    return lambda _: recorded, motions
+
+
+def _then_of(
+    options: argparse.Namespace, about_station: dict[str, Any]
+) -> "tuple[Ground | None, tuple[Motion, ...]]":
+    """What shook a place a second time, and the record if that is one."""
+    if options.then_shakemap and options.then_station:
+        raise InputError("give the second shock by --then-shakemap or --then-station.")
+    if options.then_shakemap:
+        second = argparse.Namespace(**vars(options))
+        second.shakemap, second.map_uncertainty = options.then_shakemap, None
+        return _by_map(second), ()
+    if not options.then_station:
+        return None, ()
+    if not options.station:
+        raise InputError(
+            "--then-station needs --station, the record of the first shock."
+        )
+    second = argparse.Namespace(**vars(options))
+    second.station = options.then_station
+    recorded, motions = _of_station(second, about_station)
+    return lambda _: recorded, motions
+
+
+def _by_map(options: argparse.Namespace) -> "Ground":
+    from rockfrag.aftermath.shakemap import read_shakemap
+    from rockfrag.aftermath.shaken_ground import mapped_ground
+
+    shakemap = read_shakemap(options.shakemap, options.map_uncertainty)
+
+    def ground(at: tuple[float, float] | None) -> "GroundShaking | None":
+        place = at or options.at
+        if place is None:
+            raise InputError(
+                f"{options.file}: the map needs the place of each object; give columns latitude and longitude, "
+                "or --at for all."
+            )
+        return mapped_ground(shakemap, *place)
+
+    return ground
+
+
+def _of_station(
+    options: argparse.Namespace, about: dict[str, Any]
+) -> "tuple[GroundShaking, tuple[Motion, ...]]":
+    from rockfrag.aftermath.shaken_ground import recorded_ground
+
+    if not 0 <= options.station_km < math.inf:
+        raise InputError(
+            f"--station-km: expected kilometres, got {options.station_km}."
+        )
+    return recorded_ground(options.station, options.station_km, **about)
+
+
+def _typed(options: argparse.Namespace, typed: dict[str, Any]) -> "GroundShaking":
+    from rockfrag.aftermath.shaken_ground import GroundShaking
+    from rockfrag.assess.request import make_request
+    from rockfrag.words.findings import finding
+
+    if not 0 <= options.sd_ln < 3:
+        raise InputError(
+            f"--sd-ln: expected a number from 0 to 3, got {options.sd_ln}."
+        )
+    # read and checked as those of one object are
+    about = {"width": "1 m", "height": "2 m", **typed}
+    level = make_request(about, "rockfrag after").level
+    assert level is not None
+    found = GroundShaking(
+        math.nan, math.nan, options.sd_ln, options.sd_ln, source=finding("after_typed")
+    )
+    if "pga" not in typed:
+        return replace(found, pgv=level.value)
+    return replace(found, pga=level.value, pgv=level.pgv)

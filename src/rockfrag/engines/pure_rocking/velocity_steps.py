@@ -1,0 +1,332 @@
+"""Engine of one body on a base whose velocity jumps: single histories between the jumps, and the jumps.
+
+In: cases whose motion has ``steps``. Out: outcomes, or a response with a contact event ``velocity step`` for each
+jump. Theory: ``docs/velocity-steps.md``: a jump (Δu, Δw) of the base changes the rate about the pivot by
+m (x Δw - z Δu) / I_O, with the centre of gravity at (x, z) from it.
+"""
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import NamedTuple
+
+import numpy as np
+
+from rockfrag.base.arrays import Floats
+from rockfrag.engines.built_in import STEPPED
+from rockfrag.engines.contract import Case, Cases
+from rockfrag.engines.pure_rocking.ensembles import body_record
+from rockfrag.engines.pure_rocking.histories import (
+    VELOCITY_STEP,
+    Records,
+    SingleRun,
+    initial_state,
+    run_integration,
+    summarised,
+)
+from rockfrag.engines.pure_rocking.kernels import record as kept
+from rockfrag.engines.pure_rocking.kernels.single import SCRATCH, Shaking
+from rockfrag.engines.steps import free_samples, step_count
+from rockfrag.outcomes.outcomes import Outcomes
+from rockfrag.outcomes.response import Response
+from rockfrag.records.motion import Motion
+from rockfrag.system import geometry
+
+INSTANT = 1e-12  # part of a sampling interval below which none has passed
+LEVEL = 1e-12  # rotation below which a block stands on its base [rad]
+
+
+def run(cases: Cases) -> Outcomes:
+    """Return the outcomes of cases, whose histories are not kept."""
+
+    def summary_of(case: Case, record: np.void, start: np.void) -> np.void:
+        return SteppedCase(case, record).follow(start, keeps=False).summary
+
+    return summarised(cases, STEPPED.name, summary_of)
+
+
+def history(case: Case) -> Response:
+    """Return the response of a case."""
+    return SteppedRun(case).response()
+
+
+class Jump(NamedTuple):
+    """A jump of the base's velocity [m/s]."""
+
+    right: float
+    up: float
+
+
+@dataclass(frozen=True)
+class Piece:
+    """A part of the motion between two jumps, on even samples."""
+
+    begin: float  # instant of its first sample [s]
+    dt: float  # sampling interval [s]
+    ground: Floats  # acceleration of the ground [m/s²], shape (n,)
+    upward: Floats  # upwards, over gravity [-], shape (n,)
+    jump: Jump | None  # what comes before it
+    free: int  # samples of free rocking after it
+
+
+class Followed(NamedTuple):
+    """What a case has come to: summary, samples, their instants, contact events and the ground."""
+
+    summary: np.void
+    samples: Records
+    time: Floats
+    contact_events: Records
+    ground: Floats
+    upward: Floats
+
+
+class SteppedCase:
+    """A case that goes from jump to jump."""
+
+    def __init__(self, case: Case, record: np.void) -> None:
+        self.case, self.record = case, record
+        self.shape = case.system.shapes[0]
+        self.work = np.zeros(1, SCRATCH)[0]
+
+    def pieces(self) -> Iterator[Piece]:
+        """Parts of the motion: between jumps, from sample to sample, and what is left of samples at both ends."""
+        case, motion = self.case, self.case.motion
+        assert motion.steps is not None
+        dt = motion.dt
+        times, right, up = motion.steps.scaled(case.scale)
+        jumps = [Jump(*pair) for pair in zip(right.tolist(), up.tolist(), strict=True)]
+        ends = [*times.tolist(), max(float(times[-1]), motion.x.acceleration.size * dt)]
+        now: float = 0.0
+        jump: Jump | None = None
+        for number, end in enumerate(ends):
+            for begin, until in self._between(now, end):
+                yield self._piece(begin, until, jump, 0)
+                jump = None
+            now = end
+            if number < len(jumps):
+                jump = jumps[number]
+        free = int(free_samples(case.system, dt, case.request.g))
+        yield self._piece(now, now + dt, jump, free)
+
+    def _between(self, now: float, end: float) -> Iterator[tuple[float, float]]:
+        """Parts of an interval: up to the next sample, whole samples, and what is left."""
+        dt = self.case.motion.dt
+        first, last = math.ceil(now / dt - INSTANT), math.floor(end / dt + INSTANT)
+        within = [] if first > last else [first * dt, last * dt]
+        for begin, until in pairwise([now, *within, end]):
+            if until - begin > INSTANT * dt:
+                yield begin, until
+
+    def _piece(self, begin: float, end: float, jump: Jump | None, free: int) -> Piece:
+        """A part of the motion; more than one sampling interval holds whole samples."""
+        case, motion = self.case, self.case.motion
+        count = max(1, round((end - begin) / motion.dt))
+        at = np.linspace(begin, end, count + 1)
+        ground = case.scale * _at(motion.x, at)
+        upward = np.zeros_like(at)
+        if motion.z is not None:
+            upward = case.scale * _at(motion.z, at) / case.request.g
+        return Piece(begin, (end - begin) / count, ground, upward, jump, free)
+
+    def follow(self, start: np.void, *, keeps: bool) -> Followed:
+        """Go through all parts; ``keeps`` samples and contact events."""
+        state, whole, work = start, blank_summary(start), 0.0
+        parts: list[Followed] = []
+        for piece in self.pieces():
+            if piece.jump is not None:
+                state, opening = self._jumped(state, piece, whole)
+                # what the jump adds is work of the base, not a loss of the contact
+                work += float(opening[0]["energy_after"] - opening[0]["energy_before"])
+                opening["energy_before"] = opening["energy_after"]
+                whole["contact_events"] += 1
+                parts.append(_jump_part(opening, is_first=not parts))
+            found = self._through(piece, state, keeps=keeps)
+            found.contact_events["time"] += piece.begin
+            found.samples["work"] += work
+            work += float(found.summary["work"])
+            parts.append(found)
+            state = self.work["state"].copy()
+            add_summary(whole, found.summary, piece.begin)
+            if whole["fallen"]:
+                break
+        whole["work"] = work
+        joined = map(np.concatenate, zip(*(part[1:] for part in parts), strict=True))
+        return Followed(whole, *joined)
+
+    def _through(self, piece: Piece, state: np.void, *, keeps: bool) -> Followed:
+        """Integrate a part of the motion."""
+        system, request = self.case.system, self.case.request
+        steps = step_count(system, piece.dt, request.g, request.step)
+        shaking = Shaking(
+            samples=piece.ground,
+            vertical=piece.upward,
+            scale=1.0,
+            dt=piece.dt,
+            substeps=int(steps),
+            free_samples=piece.free,
+        )
+        samples = np.zeros(
+            (piece.ground.size + piece.free) if keeps else 0, kept.SAMPLE
+        )
+        room, count = 0, 1024 if keeps else 0
+        while True:
+            room, found = count, np.zeros(count, kept.CONTACT_EVENT)
+            done, summary = run_integration(
+                self.record, shaking, state, samples, found, memory=self.work
+            )
+            count = int(summary["contact_events"])
+            if count <= room or not keeps:
+                break
+        ground, upward = np.zeros((2, done))
+        ground[: piece.ground.size] = piece.ground[:done]
+        upward[: piece.upward.size] = piece.upward[:done]
+        time = piece.begin + piece.dt * np.arange(done, dtype=np.float64)
+        return Followed(summary, samples[:done], time, found[:count], ground, upward)
+
+    def _jumped(
+        self, state: np.void, piece: Piece, summary: np.void
+    ) -> tuple[np.void, Records]:
+        """The state after a jump of the base, and its contact event; note what it asked of the contact."""
+        assert piece.jump is not None
+        theta, omega = float(state["theta2"]), float(state["omega2"])
+        pivot, rate = jumped_rate(self.shape, theta, omega, piece.jump)
+        after = state.copy()
+        after["omega2"], after["c2"] = rate, pivot if rate or theta else 0
+        if pivot:
+            self._ask(pivot, theta, rate - omega, piece, summary)
+        opening = np.zeros(1, kept.CONTACT_EVENT)
+        opening["time"], opening["kind"] = piece.begin, VELOCITY_STEP
+        opening["before"], opening["after"] = state, after
+        opening["energy_before"] = self._energy(int(state["c2"]), omega)
+        opening["energy_after"] = self._energy(pivot, rate)
+        return after, opening
+
+    def _energy(self, pivot: int, omega: float) -> float:
+        """Kinetic energy relative to the base [J]."""
+        if not pivot:
+            return 0.0
+        return 0.5 * geometry.pivot_inertia(self.shape, pivot) * omega**2
+
+    def _ask(
+        self, pivot: int, theta: float, change: float, piece: Piece, summary: np.void
+    ) -> None:
+        """Note the friction that a jump asks, and a pull of the pivot, which pure rocking gives."""
+        assert piece.jump is not None
+        x, z = geometry.turned(*geometry.arm(self.shape, pivot), theta)
+        along = z * change + piece.jump.right
+        normal = -x * change + piece.jump.up
+        asked = abs(along) / normal if normal > 0 else math.inf
+        demand = summary["demand"]
+        if along or normal:
+            demand["friction2"] = max(float(demand["friction2"]), asked)
+        if normal < 0 and math.isnan(summary["lost_contact"]):
+            summary["lost_contact"] = piece.begin
+
+
+def jumped_rate(
+    shape: geometry.Shape, theta: float, omega: float, jump: Jump
+) -> tuple[int, float]:
+    """Pivot and angular velocity after a jump of the base [rad/s]; pivot 0 if the block stays on its base.
+
+    Parameters
+    ----------
+    shape, theta, omega : the block, its rotation [rad] and angular velocity [rad/s]
+    jump : of the base's velocity
+
+    Returns
+    -------
+    Pivot +1 or -1, and the angular velocity.
+    """
+
+    def rate(pivot: int, before: float) -> float:
+        x, z = geometry.turned(*geometry.arm(shape, pivot), theta)
+        moment = shape.mass * (x * jump.up - z * jump.right)
+        return before + moment / geometry.pivot_inertia(shape, pivot)
+
+    if abs(theta) > LEVEL:
+        pivot = 1 if theta > 0 else -1
+        return pivot, rate(pivot, omega)
+    if omega:
+        pivot = 1 if omega > 0 else -1
+        after = rate(pivot, omega)
+        if pivot * after > 0:
+            return pivot, after
+        # the base takes it over to the other pivot, which is an impact
+        left = geometry.momentum_restitution(shape, -pivot) * omega
+        after = rate(-pivot, left)
+        return (-pivot, after) if -pivot * after > 0 else (0, 0.0)
+    rates = {pivot: rate(pivot, 0.0) for pivot in (+1, -1)}
+    best = max(rates, key=lambda pivot: pivot * rates[pivot])
+    return (best, rates[best]) if best * rates[best] > 0 else (0, 0.0)
+
+
+def _at(motion: Motion, times: Floats) -> Floats:
+    """Acceleration at instants, zero from one sample after the last on."""
+    values = np.append(motion.acceleration, 0.0)
+    return np.asarray(np.interp(times / motion.dt, np.arange(values.size), values))
+
+
+_LARGEST = ("speed2", "ratio1", "ratio2")
+_COUNTED = ("impacts", "grazings", "given_way", "contact_events")
+
+
+def blank_summary(start: np.void) -> np.void:
+    """Summary of a history that has not moved yet."""
+    found: np.void = np.zeros(1, kept.SUMMARY)[0]
+    for name in ("fall_time", "lost_contact"):
+        found[name] = math.nan
+    for name in ("normal1", "normal2"):
+        found["demand"][name] = math.inf
+    found["unstable_distance"] = math.inf
+    found["speed2"] = abs(float(start["omega2"]))
+    return found
+
+
+def _jump_part(opening: Records, *, is_first: bool) -> Followed:
+    """What a jump adds: its contact event and, before everything else, the sample that it begins with."""
+    sample = np.zeros(1 if is_first else 0, kept.SAMPLE)
+    for name in ("theta2", "omega2", "c2"):
+        sample[name] = opening["before"][name][: sample.size]
+    none = np.zeros(sample.size)
+    summary = blank_summary(opening["before"][0])
+    return Followed(summary, sample, none, opening, none, none)
+
+
+def add_summary(whole: np.void, part: np.void, begin: float) -> None:
+    """Add the summary of a part that begins at an instant [s] to that of what came before."""
+    for name in _LARGEST:
+        whole[name] = max(whole[name], part[name])
+    for name in _COUNTED:
+        whole[name] += part[name]
+    whole["unstable_distance"] = min(
+        whole["unstable_distance"], part["unstable_distance"]
+    )
+    whole["fallen"] = part["fallen"]
+    whole["fall_time"] = begin + part["fall_time"]
+    if math.isnan(whole["lost_contact"]):
+        whole["lost_contact"] = begin + part["lost_contact"]
+    demand, more = whole["demand"], part["demand"]
+    for body in "12":
+        asked, normal = f"friction{body}", f"normal{body}"
+        demand[asked] = max(demand[asked], more[asked])
+        demand[normal] = min(demand[normal], more[normal])
+
+
+class SteppedRun(SingleRun):
+    """A case with jumps, with all its contact events."""
+
+    def __init__(self, case: Case) -> None:
+        self.system, self.count = case.system, case.system.count
+        self.record = body_record(case.system, g=case.request.g)
+        found = SteppedCase(case, self.record).follow(
+            initial_state(case.system), keeps=True
+        )
+        self.summary, self.history = found.summary, found.samples
+        self.contact_events, self.time = found.contact_events, found.time
+        self._ground = found.ground, found.upward
+
+    def ground(self, count: int) -> tuple[Floats, Floats]:
+        """Acceleration of the ground at the samples [m/s²], and upwards over gravity."""
+        right, up = self._ground
+        return right[:count], up[:count]

@@ -1,0 +1,340 @@
+"""Blind probabilities of every test of campaigns, scored beside engineers' rules and others' measured curves.
+
+    python -m rockfrag.stages.scores config/granite.yaml … --page docs/scores.md
+
+prints a table for each campaign and writes a page that says which rule is better and which is not. No outcome of a
+campaign is used for what is said of it, but for the curves of others.
+"""
+
+import argparse
+import logging
+import sys
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+from scipy.stats import norm
+
+from rockfrag.base.arrays import Floats
+from rockfrag.base.errors import InputError
+from rockfrag.base.files import whole_file
+from rockfrag.campaign.comparison import MeasuredTests
+from rockfrag.campaign.scores import said_of_arrangements, scores_table
+from rockfrag.campaign.standing import (
+    BATCH,
+    Trials,
+    body_of,
+    draw_arrangements,
+    kind_of,
+    simulate_in_space,
+    solids_of,
+    uniform,
+    unknowns_of,
+)
+from rockfrag.fragility.lognormal import fit_lognormal
+from rockfrag.fragility.model_error import MODEL_ERRORS
+from rockfrag.fragility.observations import Observations
+from rockfrag.motions.intensity import pgv
+from rockfrag.records.motion import GroundMotion, Motion
+from rockfrag.records.velocity_steps import VelocitySteps
+from rockfrag.simulation.ensemble import overturns
+from rockfrag.simulation.rules_of_thumb import (
+    Rule,
+    asce_43,
+    kaneko,
+    peak_velocity,
+    static,
+)
+from rockfrag.stages.campaign import campaign_with_motions, measured_tests, object_of
+from rockfrag.study.campaign import CampaignStudy
+from rockfrag.study.loading import load_any
+from rockfrag.system.blocks import Block
+from rockfrag.system.mesh import Shape
+
+OURS = "rockfrag, in the plane"
+WITHOUT_ERROR = "rockfrag, without error of the model"
+IN_SPACE = "rockfrag, in space"
+RULES: Mapping[str, Rule] = {
+    "ASCE 43-05": asce_43,
+    "Kaneko": kaneko,
+    "peak velocity g α/p": peak_velocity,
+    "static b/h": static,
+}
+"""Rules by name; each says a median, about which β is taken as :data:`BETA`."""
+
+BETA = 0.4
+ARRANGEMENTS = 128  # in which an object may stand
+RULED = 12  # of them, that rules are asked about
+# errors of the model [standard deviations], at equal probabilities
+NODES = norm.ppf((np.arange(5) + 0.5) / 5)
+SHORT = (
+    5e-4  # half the duration of the accelerations that stand for a jump, for rules [s]
+)
+
+_LOG = logging.getLogger(__name__)
+
+
+@dataclass(frozen=True)
+class Tests:
+    """Tests of a campaign with their motions, and what rules look at."""
+
+    study: CampaignStudy
+    thing: Shape | Block
+    motions: Sequence[Motion | GroundMotion]
+    measured: MeasuredTests
+    count: int  # arrangements that are drawn
+
+    @property
+    def ruled(self) -> list[Motion]:
+        """Motions as accelerations."""
+        return [as_accelerations(motion) for motion in self.motions]
+
+    def arrangements(self) -> Trials:
+        """Arrangements in which the object may stand, by what was assumed before any outcome was used."""
+        return arrangements_of(self.study, self.thing, self.count)
+
+
+def arrangements_of(study: CampaignStudy, thing: Shape | Block, count: int) -> Trials:
+    """Arrangements in which the object of a campaign may stand, before any of its outcomes is used.
+
+    Parameters
+    ----------
+    study, thing, count : the campaign, its object, and how many are drawn
+
+    Returns
+    -------
+    The :class:`rockfrag.campaign.standing.Trials`.
+    """
+    unknowns = unknowns_of(kind_of(thing), study.object.get("scan_tolerance_mm"))
+    if "size" in study.unknowns:
+        # a block of which nobody wrote down the size: that, and no more, is not known
+        ranges = {name: study.unknowns[name] for name in ("size", "edge_retreat_mm")}
+        unknowns |= {name: uniform(*ends) for name, ends in ranges.items()}
+    return draw_arrangements(thing, unknowns, count, study.seed)
+
+
+def as_accelerations(motion: Motion | GroundMotion) -> Motion:
+    """A motion without jumps: each becomes a triangle of a millisecond."""
+    if isinstance(motion, Motion):
+        return motion
+    if motion.steps is None:
+        return motion.x
+    return _triangles(motion.steps)
+
+
+def _triangles(steps: VelocitySteps) -> Motion:
+    """Accelerations of jumps on a still ground, with a second after them."""
+    places = np.rint(steps.times / SHORT).astype(int) + 1
+    samples = np.zeros(int(places[-1]) + round(1 / SHORT))
+    np.add.at(samples, places, steps.horizontal / SHORT)
+    return Motion(samples, SHORT)
+
+
+def simulated(tests: Tests, arrangements: Trials, error: float) -> Floats:
+    """Probability of each test by planar simulation, with an error of the model of ln level [-].
+
+    Parameters
+    ----------
+    tests, arrangements, error : the tests, arrangements, and standard deviation [-]
+
+    Returns
+    -------
+    Probabilities, shape (tests,).
+    """
+    scales = np.exp(-error * NODES) if error > 0 else np.ones(1)
+    parts = []
+    for first in range(0, len(tests.motions), BATCH):
+        batch = tests.motions[first : first + BATCH]
+        fell = overturns(
+            arrangements.systems, batch, scales=scales, threads=1
+        ).overturned
+        parts.append(np.moveaxis(fell, 2, 1).reshape(-1, len(batch)))
+    return said_of_arrangements(np.hstack(parts))
+
+
+def simulated_in_space(
+    tests: Tests, arrangements: Trials, count: int, error: float
+) -> Floats:
+    """Probability of each test in space, of the first so many arrangements, with an error of the model.
+
+    Parameters
+    ----------
+    tests, arrangements, count, error : the tests, arrangements, how many of them, and standard deviation [-]
+
+    Returns
+    -------
+    Probabilities, shape (tests,).
+    """
+    assert isinstance(tests.thing, Shape)
+    systems = solids_of(tests.thing, arrangements, count)
+    nodes = NODES[::2] if error > 0 else np.zeros(1)
+    scales = np.exp(-error * nodes).tolist()
+    fell = simulate_in_space(systems, tests.ruled, scales, threads=1)
+    return said_of_arrangements(np.moveaxis(fell, 2, 1).reshape(-1, fell.shape[1]))
+
+
+def said_by_rules(tests: Tests, arrangements: Trials) -> Iterator[tuple[str, Floats]]:
+    """Yield for each rule its probability of each test, a mean over arrangements."""
+    table = arrangements.table
+    blocks = []
+    for _, row in table.iloc[:: max(1, len(table) // RULED)].iterrows():
+        guess = {str(name): float(value) for name, value in row.items()}
+        blocks.append(body_of(tests.thing, guess).blocks[-1])
+    motions = tests.ruled
+    for name, rule in RULES.items():
+        factors = np.array(
+            [[rule(block, motion) for motion in motions] for block in blocks]
+        )
+        yield name, norm.cdf(-np.log(factors) / BETA).mean(axis=0)
+
+
+def curve_of(tests: Tests) -> tuple[float, float]:
+    """Measured median PGV [m/s] and dispersion of a campaign."""
+    peaks = np.array([pgv(motion) for motion in tests.ruled])
+    groups = tests.measured.groups.astype(object)
+    fell = tests.measured.overturned.astype(float)
+    outcomes = Observations(peaks, fell, np.ones(fell.size), groups, groups)
+    fit = fit_lognormal(outcomes)
+    return fit.theta, fit.beta
+
+
+def said_of(
+    name: str, campaigns: Mapping[str, Tests], in_space: int
+) -> dict[str, Floats]:
+    """What everybody says of the tests of a campaign, ours first.
+
+    Parameters
+    ----------
+    name, campaigns : the campaign, and all of them by name
+    in_space : arrangements that are simulated in space; 0 for none
+
+    Returns
+    -------
+    Probabilities by who says them, shape (tests,) each.
+    """
+    tests = campaigns[name]
+    arrangements, error = (
+        tests.arrangements(),
+        MODEL_ERRORS[kind_of(tests.thing)].beyond,
+    )
+    said = {OURS: simulated(tests, arrangements, error)}
+    said[WITHOUT_ERROR] = simulated(tests, arrangements, 0.0)
+    if in_space and isinstance(tests.thing, Shape):
+        said[IN_SPACE] = simulated_in_space(tests, arrangements, in_space, error)
+    said |= dict(said_by_rules(tests, arrangements))
+    peaks = np.array([pgv(motion) for motion in tests.ruled])
+    for other, others in campaigns.items():
+        if other != name:
+            theta, beta = curve_of(others)
+            said[f"measured curve of {other}"] = norm.cdf(np.log(peaks / theta) / beta)
+    return said
+
+
+def who_is_better(table: pd.DataFrame) -> str:
+    """Sentence on who is better than our simulation, who is worse, and of whom that is not known."""
+    others = table[~table["who"].str.startswith("rockfrag")]
+    better = others[others["worse_upper"] < 0]["who"]
+    worse = others[others["worse_lower"] > 0]["who"]
+    open_ = others[(others["worse_lower"] <= 0) & (others["worse_upper"] >= 0)]["who"]
+    parts = []
+    if len(better):
+        parts.append(f"**Better than the simulation: {', '.join(better)}.**")
+    if len(worse):
+        parts.append(f"Worse: {', '.join(worse)}.")
+    if len(open_):
+        parts.append(f"Not told apart by these tests: {', '.join(open_)}.")
+    return " ".join(parts)
+
+
+def page_of(tables: Mapping[str, pd.DataFrame]) -> str:
+    """The page, in Markdown.
+
+    Parameters
+    ----------
+    tables : scores by campaign
+
+    Returns
+    -------
+    The text.
+    """
+    lines = [HEAD]
+    for name, table in tables.items():
+        lines += [f"\n## {name}: {table['tests'].iloc[0]} tests\n", TITLES, RULER]
+        for row in table.to_dict("records"):
+            worse = f"{row['worse']:+.3f} ({row['worse_lower']:+.3f} to {row['worse_upper']:+.3f})"
+            worse = "" if row["who"] == OURS else worse
+            lines.append(
+                f"| {row['who']} | {row['log']:.3f} | {row['brier']:.3f} | {100 * row['right']:.0f} % | {worse} |"
+            )
+        lines.append(f"\n{who_is_better(table)}")
+    return "\n".join(lines) + "\n"
+
+
+TITLES = "| who says it | log score | Brier | right | log score above ours (90 %) |"
+RULER = "|---|--:|--:|--:|---|"
+HEAD = f"""# Scores: what was said blind, and what happened
+
+<!-- written by python -m rockfrag.stages.scores -->
+
+Each test of each campaign at hand gets a probability of overturning before any of its outcomes is used, and
+the probability is scored: minus its logarithm (natural; a coin has 0.693), and its squared error (Brier; a coin
+has 0.25); less is better. *rockfrag* draws what nobody measured ({ARRANGEMENTS} arrangements,
+[campaigns](campaigns.md#blind-the-model-error)), simulates the test's own motion in each and adds the model error
+of the kind of body. Rules get the same arrangements and a dispersion of {BETA:g} about what they say: ASCE 43-05
+(appendix A), Kaneko's curve, the peak velocity g α/p, and b/h. The measured curve of another object is what one
+has who tests one object and speaks of another. Intervals
+are over input motions."""
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Print the scores of campaigns, and write the page where it is named."""
+    parser = argparse.ArgumentParser(
+        prog="python -m rockfrag.stages.scores",
+        description="Score blind probabilities of every test of campaigns beside engineers' rules.",
+    )
+    parser.add_argument(
+        "studies", nargs="+", metavar="STUDY", help="configurations of campaigns"
+    )
+    words = "arrangements in which an object may stand"
+    parser.add_argument(
+        "--arrangements", type=int, default=ARRANGEMENTS, metavar="N", help=words
+    )
+    parser.add_argument("--page", metavar="FILE", help="write the page here")
+    words = "arrangements of scans that are simulated in space as well"
+    parser.add_argument("--in-space", type=int, default=0, metavar="N", help=words)
+    given = parser.parse_args(arguments)
+    try:
+        read = [_read(path, given.arrangements) for path in given.studies]
+        campaigns = {tests.study.name: tests for tests in read}
+        tables = {}
+        for name, tests in campaigns.items():
+            said = said_of(name, campaigns, given.in_space)
+            tables[name] = scores_table(
+                said, tests.measured.overturned, tests.measured.groups
+            )
+            print(f"{name}\n{tables[name].round(3).to_string(index=False)}")
+    except InputError as error:
+        print(error, file=sys.stderr)
+        return 2
+    if given.page:
+        with whole_file(Path(given.page)) as path:
+            path.write_text(page_of(tables), encoding="utf-8")
+    return 0
+
+
+def _read(path: str, count: int) -> Tests:
+    """A campaign with the motion of each test, and so many arrangements."""
+    study = load_any(path)
+    if not isinstance(study, CampaignStudy) or "pedestal" in study.object:
+        raise InputError(
+            f"{path}: is no campaign of an object that stands alone; give one with the key campaign."
+        )
+    campaign, motions = campaign_with_motions(study, _LOG)
+    measured = measured_tests(study, campaign)
+    return Tests(study, object_of(study), motions, measured, count)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

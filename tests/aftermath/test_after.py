@@ -1,0 +1,296 @@
+"""After an earthquake: what is said of each object is the mean over the shaking that its place may have had."""
+
+import csv
+import json
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from rockfrag.aftermath.check_list import after_lines, after_page
+from rockfrag.aftermath.sequence import one_after_the_other
+from rockfrag.aftermath.shakemap import read_shakemap
+from rockfrag.aftermath.shaken_ground import GroundShaking, level_of, mapped_ground
+from rockfrag.aftermath.shaken_objects import after_earthquake, shaken_table
+from rockfrag.assess.answer import assess_with
+from rockfrag.assess.hazard.curve import PGA
+from rockfrag.assess.motions import motion_set
+from rockfrag.assess.request import Level, LevelSpread, make_request
+from rockfrag.assess.risk import fraction_target
+from rockfrag.base.errors import InputError
+from rockfrag.cli.main import main
+from rockfrag.simulation import overturns
+from rockfrag.system.blocks import Block
+
+from .grids import write_grids
+
+INVENTORY = """\
+name,width,height,latitude,longitude,floor
+near,30 cm,120 cm,35.0,134.9,
+far,30 cm,120 cm,35.0,135.9,
+stout,90 cm,100 cm,35.0,134.9,
+upstairs,30 cm,120 cm,35.0,135.4,3/4
+"""
+
+
+@pytest.fixture(scope="module")
+def records(own_records):
+    return {"records": {"paths": [str(own_records / "catalogue.csv")]}}
+
+
+@pytest.fixture
+def place(tmp_path):
+    write_grids(tmp_path)
+    (tmp_path / "inventory.csv").write_text(INVENTORY)
+    return tmp_path
+
+
+@pytest.fixture
+def collection(place, records):
+    shakemap = read_shakemap(place / "grid.xml", place / "uncertainty.xml")
+    return after_earthquake(
+        place / "inventory.csv", lambda at: mapped_ground(shakemap, *at), records
+    )
+
+
+def test_the_mean_over_levels_is_that_of_a_fraction_linear_in_ln_level():
+    levels = np.geomspace(0.05, 2.0, 9)
+    fractions = np.array([0, 0, 0.1, 0.3, 0.35, 0.8, 0.8, 0.95, 1.0])
+    found = fraction_target(0.3, spread=0.5).of(levels, fractions)
+    rng = np.random.default_rng(1)
+    drawn = np.log(0.3) + 0.5 * rng.standard_normal(400_000)
+    mean = np.interp(drawn, np.log(levels), fractions).mean()
+    assert found == pytest.approx(mean, abs=1e-3)
+    # of a level that is known all but exactly it is the fraction there
+    exact = fraction_target(0.3).of(levels, fractions)
+    assert fraction_target(0.3, spread=1e-6).of(levels, fractions) == pytest.approx(
+        exact
+    )
+
+
+@pytest.mark.slow
+def test_what_is_said_under_a_map_is_the_mean_of_what_is_said_at_each_level(records):
+    """Exact levels drawn from the joint distribution of PGA and PGV, one assessment each, against one in all."""
+    request = make_request({"width": "30 cm", "height": "120 cm", **records}, "test")
+    motions = motion_set(request.records, request.place, ".")
+    ground = GroundShaking(0.35, 40.0, 0.4, 0.5)
+    level = level_of(ground)
+    asked = replace(request, level=level)
+    found = assess_with(asked, motions, brief=True)
+    rng = np.random.default_rng(3)
+    first, other = rng.standard_normal((2, 24))
+    along = level.spread.correlation
+    fell, rocked = [], []
+    for a, b in zip(first, other, strict=True):
+        pga = 0.35 * math.exp(0.4 * a)
+        mixed = along * a + math.sqrt(1 - along**2) * b
+        exact = Level(PGA, pga, 40.0 * math.exp(0.5 * mixed))
+        each = assess_with(replace(request, level=exact), motions, brief=True)
+        fell.append(each.fraction.value)
+        rocked.append(each.rocking.value)
+    for estimate, drawn in ((found.fraction, fell), (found.rocking, rocked)):
+        error = np.std(drawn) / math.sqrt(len(drawn))
+        assert abs(estimate.value - np.mean(drawn)) < 2.5 * error + 0.01
+
+
+def test_a_level_that_is_less_well_known_leaves_more_open(records):
+    request = make_request({"width": "30 cm", "height": "120 cm", **records}, "test")
+    motions = motion_set(request.records, request.place, ".")
+
+    def said(median: float, spread: float) -> float:
+        level = Level(PGA, median, spread=LevelSpread(spread))
+        found = assess_with(replace(request, level=level), motions, brief=True)
+        return found.fraction.value
+
+    assert said(0.12, 0.1) < said(0.12, 0.8) < 0.5
+
+
+def test_objects_are_listed_by_how_probably_they_fell(collection):
+    table = shaken_table(collection).set_index("name")
+    chances = table["probability_fell"]
+    assert chances.is_monotonic_decreasing
+    assert chances["near"] > chances["far"] and chances["stout"] < 0.02
+    both = chances + table["probability_rocked_and_stands"]
+    assert (both <= 1 + 1e-12).all() and both["near"] > both["far"]
+    assert collection.expected_falls == pytest.approx(chances.sum())
+    assert (table["probability_fell_lower"] <= chances).all()
+    assert table["place"]["upstairs"] == "on level 3 of 4"
+
+
+def test_at_one_place_an_object_is_as_in_a_group_of_its_own(place, records):
+    ground = GroundShaking(0.3, 35.0, 0.3, 0.3)
+    rows = INVENTORY.splitlines()
+    (place / "one.csv").write_text("\n".join([rows[0], rows[1]]) + "\n")
+    (place / "two.csv").write_text("\n".join([*rows[:2], rows[3]]) + "\n")
+    alone, all_ = (
+        after_earthquake(place / name, lambda _: ground, records)
+        for name in ("one.csv", "two.csv")
+    )
+    found = {each.request.name: each.fell for each in all_.objects}
+    assert alone.objects[0].fell == pytest.approx(found["near"], abs=1e-3)
+
+
+def test_the_command_writes_a_page_to_tick_off_a_table_and_json(
+    place, own_records, capsys
+):
+    out = place / "out"
+    arguments = ["after", str(place / "inventory.csv"), "--output", str(out)]
+    arguments += ["--shakemap", str(place / "grid.xml")]
+    arguments += ["--record", str(own_records / "catalogue.csv")]
+    assert main(arguments) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert sum(" fell " in line and "rocked" in line for line in lines) == 4
+    page = (out / "after.html").read_text(encoding="utf-8")
+    # done, and seen to have fallen, moved or neither
+    assert page.count('<input type="checkbox"') == 4 * 4
+    assert "http" not in page.replace("http-equiv", "")
+    with (out / "after.csv").open(newline="") as file:
+        rows = list(csv.DictReader(file))
+    answer = json.loads((out / "after.json").read_text())
+    assert [row["name"] for row in rows] == [each["name"] for each in answer["objects"]]
+    assert answer["objects"][0]["probability_fell"] == pytest.approx(
+        float(rows[0]["probability_fell"])
+    )
+    assert len(answer["ground"]) == 4 and answer["ground"][0]["pga_spread"] == 0.4
+
+
+def test_the_record_of_the_place_shakes_each_object_itself(
+    place, own_records, made_motions, capsys
+):
+    (place / "rows.csv").write_text(
+        "name,width,height,depth\nslender,4 cm,120 cm,4 cm\nstout,2 m,1 m,\nplate,12 cm,60 cm,\n"
+    )
+    pair = [
+        str(own_records / f"{motion.name.replace(' ', '')}.txt")
+        for motion in made_motions(12)[:2]
+    ]
+    arguments = ["--station", *pair, "--unit", "g", "--output", str(place / "out")]
+    arguments += ["--records", str(own_records)]
+    arguments += ["--record", str(own_records / "catalogue.csv")]
+    assert main(["after", str(place / "rows.csv"), *arguments]) == 0
+    with (place / "out" / "after.csv").open(newline="") as file:
+        rows = {row["name"]: row["under_the_record"] for row in csv.DictReader(file)}
+    assert rows["slender"] == "fell" and rows["stout"] == "stood"
+    assert "Under the record" in (place / "out" / "after.html").read_text()
+
+
+def test_two_shocks_fell_more_than_one_and_errors_of_an_object_are_its_own(
+    place, records
+):
+    ground = GroundShaking(0.25, 30.0, 0.2, 0.2)
+
+    def found(then) -> dict:
+        collection = after_earthquake(
+            place / "inventory.csv", lambda _: ground, records, then=then
+        )
+        return {each.request.name: each for each in collection.objects}
+
+    once, twice = found(None), found(lambda _: ground)
+    for name, each in twice.items():
+        first = once[name].fell
+        # what survived a shock is stronger than others: less than of two that know nothing of each other
+        assert first <= each.fell <= 1 - (1 - first) ** 2 + 1e-9
+        assert each.fell + each.moved <= 1 + 1e-9
+    assert twice["upstairs"].fell > once["upstairs"].fell + 0.01
+
+
+def test_a_sequence_is_both_motions_with_quiet_time_between_them(made_motions):
+    first, second = made_motions(4)[:2], made_motions(4)[2:]
+    joined = one_after_the_other(first, second, quiet=20.0)
+    body = Block(0.12, 0.6, 20.0)
+    for motion, alone, after in zip(joined, first, second, strict=True):
+        assert motion.pga == max(alone.pga, after.pga)
+        # without friction a block that stands is where it was: falls are those of either shock
+        scales = np.geomspace(0.1, 3, 12)[np.newaxis]
+        fell = [
+            overturns(body, each, scales=scales).overturned[0, 0]
+            for each in (motion, alone, after)
+        ]
+        assert (fell[0] == (fell[1] | fell[2])).all() and fell[0].any()
+    with pytest.raises(InputError, match="components"):
+        one_after_the_other(first, second[:1])
+
+
+def test_a_second_record_fells_what_the_first_left_standing(
+    place, own_records, made_motions
+):
+    motion = made_motions(12)[0]
+    strong = own_records / f"{motion.name.replace(' ', '')}.txt"
+    weak = place / "weak.txt"
+    rows = zip(motion.time, 0.02 * motion.acceleration / 9.81, strict=True)
+    weak.write_text("".join(f"{t:.2f} {a:.7f}\n" for t, a in rows))
+    (place / "rows.csv").write_text(
+        "name,width,height\nslender,4 cm,120 cm\nstout,2 m,1 m\n"
+    )
+    arguments = ["after", str(place / "rows.csv"), "--unit", "g"]
+    arguments += ["--record", str(own_records / "catalogue.csv")]
+    arguments += ["--output", str(place / "out"), "--station", str(weak)]
+    assert main([*arguments, "--then-station", str(strong)]) == 0
+    with (place / "out" / "after.csv").open(newline="") as file:
+        rows = {row["name"]: row for row in csv.DictReader(file)}
+    slender = rows["slender"]
+    assert slender["under_the_record"] == "fell in the second shock"
+    first = float(slender["probability_fell_in_the_first"])
+    assert first < 0.1 < 0.5 < float(slender["probability_fell"])
+    assert rows["stout"]["under_the_record"] == "stood"
+
+
+def test_hostile_names_stay_text_and_pages_speak_italian(place, records):
+    rows = INVENTORY.splitlines()
+    (place / "hostile.csv").write_text(
+        f'{rows[0]}\n"<b>&{{{{7*7}}}}",30 cm,90 cm,35,135,\n'
+    )
+    ground = GroundShaking(0.3, 35.0)
+    found = after_earthquake(place / "hostile.csv", lambda _: ground, records)
+    page = after_page(found, "it")
+    assert "&lt;b&gt;&amp;{{7*7}}" in page and "<b>&" not in page
+    assert 'lang="it"' in page and "Dopo il terremoto: 1 oggetto" in page
+    assert "caduto" in after_lines(found, "it")[-1]
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        ([], "in one way"),
+        (["--pga", "0.2 g", "--shakemap", "grid.xml"], "in one way"),
+        (["--pga", "0.2 g", "--hazard", "curve.csv"], "--hazard"),
+        (["--pga", "0.2 g", "--sd-ln", "-1"], "--sd-ln"),
+        (["--pgv", "20 cm/s", "--width", "3 m"], "--width"),
+        (["--station", "nowhere.txt", "--station-km", "-3"], "--station-km"),
+    ],
+)
+def test_a_wrong_question_is_refused_in_one_sentence(
+    options, words, place, capsys, monkeypatch
+):
+    monkeypatch.chdir(place)
+    assert main(["after", "inventory.csv", *options]) == 2
+    said = capsys.readouterr().err
+    assert words in said and said.count("\n") == 1
+
+
+def test_places_that_are_missing_wrong_or_beyond_the_map_are_named(
+    place, records, capsys, monkeypatch
+):
+    monkeypatch.chdir(place)
+    shakemap = read_shakemap("grid.xml")
+
+    def found(text: str):
+        (place / "rows.csv").write_text(text)
+        return after_earthquake(
+            "rows.csv", lambda at: mapped_ground(shakemap, *at), records
+        )
+
+    head = "name,width,height,latitude,longitude\n"
+    beyond = found(f"{head}here,30 cm,90 cm,35,135\nthere,30 cm,90 cm,50,135\n")
+    assert beyond.beyond == ["there"] and len(beyond.objects) == 1
+    assert any("beyond the map: there" in line for line in after_lines(beyond))
+    with pytest.raises(InputError, match="does not reach"):
+        found(f"{head}there,30 cm,90 cm,50,135\n")
+    with pytest.raises(InputError, match="from -90 to 90"):
+        found(f"{head}here,30 cm,90 cm,135,35\n")
+    with pytest.raises(InputError, match="longitude: expected degrees"):
+        found(f"{head}here,30 cm,90 cm,35,\n")
+    (place / "bare.csv").write_text("name,width,height\na,30 cm,90 cm\n")
+    assert main(["after", "bare.csv", "--shakemap", "grid.xml"]) == 2
+    assert "--at" in capsys.readouterr().err

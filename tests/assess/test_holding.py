@@ -1,0 +1,140 @@
+"""What holds an object is tried by itself: with what it must bear, in how many motions, and what that buys."""
+
+import json
+import math
+
+import numpy as np
+import pytest
+
+from rockfrag.assess.answer import assess_with
+from rockfrag.assess.export import as_json
+from rockfrag.assess.findings import details_of
+from rockfrag.assess.page import page_of
+from rockfrag.assess.standing.holders import (
+    PADS_AT,
+    Bracket,
+    Casters,
+    Cords,
+    Putty,
+    holders_beside,
+    nearest_edge,
+    pads_of,
+    rounded_up,
+)
+from rockfrag.assess.texts import Text
+from rockfrag.base.errors import InputError
+from rockfrag.base.units import GRAVITY
+from rockfrag.system.body import Circle, Interval, Polygon
+
+from .conftest import asked
+
+BOX = {"width": "35 cm", "depth": "50 cm", "height": "120 cm", "mass": "180 kg"}
+TRIED = (Text.HOLD_PUTTY, Text.HOLD_BRACKET, Text.HOLD_CORDS)
+
+
+@pytest.fixture(scope="module")
+def found(few):
+    costs = {"putty": 5, "bracket": 80}
+    return assess_with(asked(**BOX, facing_deg=0, pga="0.6 g", costs=costs), few)
+
+
+def tried(found):
+    """Mitigations by the id of what holds the object."""
+    return {
+        each.change["change"].id: each
+        for each in found.mitigations
+        if each.change.id == Text.HOLDS
+    }
+
+
+def test_putty_must_bear_what_the_motions_pull_at_its_pads(found, few):
+    change = tried(found)[Text.HOLD_PUTTY].change
+    x, y = PADS_AT * 0.35 / 2, PADS_AT * 0.5 / 2
+    asked_for = []
+    for i, j in few.pairs:
+        first, second = few.base[i], few.base[j]
+        scale = 0.6 * GRAVITY / math.sqrt(first.pga * second.pga)
+        a, b = scale * np.abs([first.acceleration, second.acceleration])
+        pull = 180.0 * (0.6 * (a / x + b / y) - GRAVITY)
+        asked_for += 2 * [pull.max()]
+    enough = rounded_up(np.quantile(asked_for, 0.95, method="higher"))
+    assert change["change"]["force"].value == pytest.approx(enough)
+    assert change["total"] == len(asked_for)
+    assert change["held"] == sum(np.array(asked_for) <= enough)
+
+
+def test_each_is_tried_and_what_holds_in_all_motions_topples_in_none(found):
+    each = tried(found)
+    assert set(TRIED) <= set(each)
+    for mitigation in each.values():
+        held, total = mitigation.change["held"], mitigation.change["total"]
+        assert 0.95 <= held / total <= 1
+        assert mitigation.value < found.fraction.value
+        assert mitigation.helps
+
+
+def test_page_and_file_say_what_it_bears_before_and_after_and_what_it_costs(found):
+    answer = json.loads(as_json(found))
+    words = [each["change"]["words"] for each in answer["mitigations"]]
+    assert any(word.startswith("wax or putty that holds a pull of") for word in words)
+    costs = {each["cost"] for each in answer["mitigations"]}
+    assert {5.0, 80.0} <= costs
+    page = page_of(found)
+    assert "bracket to the wall that bears" in page
+    assert "<th" in page and "Cost" in page
+    italian = page_of(found, "it")
+    assert "cera o mastice" in italian and "Costo" in italian
+
+
+def test_an_object_may_be_held_as_it_stands(few):
+    def fell(**holding):
+        given = asked(**BOX, facing_deg=0, pga="0.6 g", **holding)
+        return assess_with(given, few, brief=True)
+
+    free, weak, strong = fell(), fell(putty_n=1.0), fell(putty_n=1e6)
+    assert strong.counts[1] == strong.counts[2] == 0
+    assert weak.counts[1:] == pytest.approx(free.counts[1:], abs=1)
+    assert "It is held as it stands: wax or putty" in " ".join(details_of(strong))
+    # what is there is not tried once more
+    kinds = [holder.key for holder in strong.request.objects.holders_to_try()]
+    assert "putty" not in kinds and "bracket" in kinds
+
+
+def test_a_wall_can_be_left_and_casters_be_locked():
+    objects = asked(
+        width="40 cm", height="120 cm", wall="5 cm", casters="free", pga="0.3 g"
+    ).objects
+    names = [holder.called().id for holder in objects.holders_to_try()]
+    assert Text.HOLD_OFF_WALL in names and Text.HOLD_CASTERS_LOCKED in names
+    system = objects.held(objects.system_of(objects.body))
+    assert system.contacts[0].friction.kinetic < 0.1
+    (wall,) = system.constraints
+    assert wall.distance == pytest.approx(0.25)
+    locked = Casters(locked=True).on(system)
+    assert locked.contacts[0].friction.kinetic > 0.3
+    with pytest.raises(InputError, match="casters"):
+        asked(width="40 cm", height="120 cm", casters="loose", pga="0.3 g")
+
+
+def test_pads_lie_within_the_base_whichever_way_it_is_turned():
+    assert pads_of(Interval(-0.2, 0.2)) == pytest.approx((0.16, 0.16))
+    assert max(pads_of(Circle(0.2))) * math.sqrt(2) == pytest.approx(0.16)
+    x, y, turn = 0.2, 0.3, math.radians(30)
+    corners = np.array([(-x, -y), (x, -y), (x, y), (-x, y)])
+    straight = Polygon(tuple(map(tuple, corners.tolist())))
+    assert pads_of(straight) == pytest.approx((0.16, 0.24))
+    c, s = math.cos(turn), math.sin(turn)
+    aslant = Polygon(tuple(map(tuple, (corners @ [[c, s], [-s, c]]).tolist())))
+    assert max(pads_of(aslant)) * math.sqrt(2) == pytest.approx(0.16)
+    distance, (east, north) = nearest_edge(aslant)
+    assert distance == pytest.approx(0.2)
+    assert abs(east * c + north * s) == pytest.approx(1)
+
+
+def test_strengths_are_rounded_up_to_two_digits():
+    assert rounded_up(121.0) == 130.0
+    assert rounded_up(120.0) == 120.0
+    assert rounded_up(0.1801) == pytest.approx(0.19)
+    assert rounded_up(0.0) == 0.0
+    kinds = holders_beside([Putty(100.0)])
+    assert [type(each) for each in kinds][:2] == [Bracket, Cords]
