@@ -97,7 +97,7 @@ class Outcomes:
     """
 
     names: tuple[tuple[str, ...], ...]
-    holding: tuple[tuple[str, ...], ...] = field(repr=False)
+    holding: tuple[tuple[str, ...], ...]
     scales: Floats
     engines: tuple[str, ...]
     engine: Small
