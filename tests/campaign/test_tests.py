@@ -220,7 +220,7 @@ def test_a_table_of_pulses_is_a_campaign_whose_tests_of_one_setting_share_a_moti
     ("old", "new", "sentence"),
     [
         ("    pgv_over_pga_s: [pgv_over_pga_s]\n", "", "pgv_over_pga_s is missing"),
-        ("  motions: {pulse: cosine}", "  motions: {pulse: square}", "cosine"),
+        ("  motions: {pulse: cosine}", "  motions: {pulse: square}", "motions.pulse"),
         (
             "  motions: {pulse: cosine}",
             "  motions: {pulse: cosine}\n  unit: g",

@@ -249,4 +249,4 @@ def test_what_an_addition_costs_stands_where_the_table_says():
         encoding="utf-8"
     )
     known = importlib.import_module("rockfrag.outcomes.limit_states").limit_states()
-    assert states.count("\n@limit_state(") == len(known) == 3
+    assert states.count("\n@limit_state(") == len(known) == 4

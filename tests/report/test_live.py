@@ -74,7 +74,7 @@ def test_bodies_in_space_stand_in_a_small_page_with_both_components():
     # what the simulation takes of the page
     assert (
         len(live_in_space(bodies, [both])) - len(data["motions"][0]["samples"]) * 6400
-        < 100_000
+        < 130_000
     )
 
 

@@ -91,7 +91,7 @@ def test_outcomes_have_a_row_for_all_that_holds_and_none_where_nothing_does():
     found = empty_outcomes(names, np.ones((1, 2)), ("an engine",), holding=holding)
     table = found.table("constraints")
     assert list(table["name"]) == ["wall 1", "bond 1"] * 2
-    assert list(table.columns[3:]) == [
+    assert list(table.columns[5:]) == [
         *("constraint", "name", "hits", "largest_impulse_n_s", "largest_force_n"),
         *("breaking_time_s", "stroke_m"),
     ]

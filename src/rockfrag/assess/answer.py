@@ -285,7 +285,8 @@ def assess_with(
     request: Request, motions: MotionSet, *, brief: bool = False
 ) -> Assessment:
     """Assess one object with motions that are at hand; ``brief`` leaves out as :func:`assess` does."""
-    plan = plan_for(request, motions, brief=brief, holds=not brief)
+    holds = bool(request.costs) and not brief
+    plan = plan_for(request, motions, brief=brief, holds=holds)
     return assessed(request, plan, shake_all([request], plan)[0])
 
 
@@ -363,7 +364,10 @@ def shake_all(requests: Sequence[Request], plan: Plan) -> list[Shaken]:
 
 
 def _trials(objects: Standing, plan: Plan) -> list[Trial]:
-    """What may hold an object, tried under few motions at few levels, as each simulation takes milliseconds."""
+    """What may hold an object, tried under few motions at few levels, as each simulation takes milliseconds.
+
+    It is tried where what it costs is stated.
+    """
     if not plan.holds:
         return []
     motions = plan.fewer.motions if plan.compares_few else plan.fewer.motions.thinned()

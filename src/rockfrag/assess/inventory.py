@@ -292,7 +292,7 @@ def assess_each(requests: Sequence[Request], motions: MotionSet) -> list[Assessm
         measure = level and level.measure
         groups.setdefault((*kind, alone, measure), []).append(i)
     found: dict[int, Assessment] = {}
-    holds = len(requests) <= MOST_HELD
+    holds = len(requests) <= MOST_HELD and any(each.costs for each in requests)
     for rows in groups.values():
         same = [requests[i] for i in rows]
         plan = plan_for(same[0], motions.at(same[0].place), brief=True, holds=holds)

