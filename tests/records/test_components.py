@@ -217,6 +217,17 @@ def test_of_three_numbered_components_the_third_is_the_vertical_and_said(tmp_pat
     assert any("HN3 is taken for the vertical" in line for line in draft.warnings)
 
 
+def test_of_titles_that_are_numbers_the_third_is_the_vertical_and_said(tmp_path):
+    titles = "Time (s),1 (m/s2),2 (m/s2),3 (m/s2)\n"
+    samples = [",".join(f"{k * value:.5f}" for k in (1, 2, 3)) for value in WAVE]
+    rows = [f"{k * 0.01:.2f},{row}\n" for k, row in enumerate(samples)]
+    (tmp_path / "logger.csv").write_text(titles + "".join(rows))
+    draft = make_catalogue([tmp_path], folder=tmp_path)
+    assert draft.table["component"].tolist() == ["1", "2"]
+    assert set(draft.table["vertical"]) == {"logger.csv#3"}
+    assert any("3 is taken for the vertical" in line for line in draft.warnings)
+
+
 def test_a_channel_is_chosen_by_a_whole_number_too(tmp_path):
     path = build("geonet_v1a", tmp_path).path
     by_word, by_number = (read_motion(path, channel=two) for two in ("2", 2))

@@ -6,7 +6,7 @@ import os
 import re
 from collections import defaultdict
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from itertools import dropwhile, takewhile
 from pathlib import Path, PurePosixPath
 from typing import Any
@@ -33,7 +33,7 @@ from rockfrag.records.sources.archive import is_archive, is_no_record, unpacked
 # degrees by which two components may be off a right angle and still be a pair
 _PERPENDICULAR = 5.0
 
-_THIRD = re.compile(r"^[A-Z]{2}3")
+_THIRD = re.compile(r"^(?:[A-Z]{2})?3")
 _OF_KNET = re.compile(r"\.(?:EW|NS|UD)\d?$")
 _AMERICAN_DATE = re.compile(r"\b(?P<m>\d{1,2})/(?P<d>\d{1,2})/(?P<y>\d{4}|\d{2})\b")
 _ISO_DATE = re.compile(r"\b(\d{4})[-/](\d{2})[-/](\d{2})(?!\d)")
@@ -512,9 +512,25 @@ def _horizontal(group: Sequence[Component]) -> list[Component]:
     return [component for component in group if not component.is_vertical]
 
 
+def _with_third_upright(components: Sequence[Component]) -> list[Component]:
+    """Take the third of a file's 1, 2 and 3 for the vertical, as FDSN numbers components; none is an azimuth."""
+    names: dict[object, set[str]] = {}
+    for component in components:
+        file = component.shared_by_a_record[0]
+        names.setdefault(file, set()).add(str(component.row["component"]))
+    numbered = {file for file, found in names.items() if found == {"1", "2", "3"}}
+    return [
+        replace(each, azimuth=None, is_vertical=each.row["component"] == "3")
+        if each.shared_by_a_record[0] in numbered - {None}
+        else each
+        for each in components
+    ]
+
+
 def _records_of(components: Sequence[Component]) -> list[list[Component]]:
     """Group components of one record, in the ways of :data:`_WAYS`."""
     groups: list[list[Component]] = []
+    components = _with_third_upright(components)
     left = list(components)
     numbered = _numbered(components)
     for way in range(len(_WAYS)):
