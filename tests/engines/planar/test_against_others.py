@@ -155,7 +155,7 @@ def beside_stepping(cases: list[Case], step: float) -> pd.DataFrame:
         pytest.param((3, 4) * 100, 8, 2e-4, 4, (50, 150), marks=pytest.mark.slow),
         pytest.param((8,) * 50, 8, 2e-4, 3, (12, 47), marks=pytest.mark.slow),
         pytest.param(
-            (4, 5, 6, 7, 8) * 100, 9, 2e-5, 12, (100, 450), marks=pytest.mark.slow
+            (4, 5, 6, 7, 8) * 100, 9, 2e-5, 5, (100, 450), marks=pytest.mark.slow
         ),
     ],
     ids=lambda value: f"{len(value)} of {value[0]}" if isinstance(value, tuple) else "",
@@ -166,7 +166,8 @@ def test_outcomes_are_those_of_time_stepping(bodies, seed, step, differing, fall
     found = beside_stepping(cases, step)
     assert found["differs"].sum() <= differing
     if bodies[0] > 3:
-        # no step is short enough for columns that rock for long: what differs hangs on a hundredth of the motion
+        # no step is short enough for columns that rock for long: what differs may only
+        # hang on a hundredth of the motion
         differ = np.flatnonzero(found["differs"])
         assert all(cases[number].is_critical() for number in differ)
     assert falls[0] <= found["falls"].sum() <= falls[1]
