@@ -139,7 +139,8 @@ def find_thresholds(
             "give a wider one, a lower highest scale, or fewer bodies at a time."
         )
     grid = np.linspace(0.0, highest, intervals + 1)
-    factors = np.array(np.broadcast_to(grid, (len(cases.motions), grid.size)))
+    # a copy of the broadcast grid would run in columns, for which kernels are compiled anew
+    factors = np.tile(grid, (len(cases.motions), 1))
     fallen = shaken(replace(cases, scales=factors)).overturned
     body, motion, left = np.nonzero(fallen[..., 1:] != fallen[..., :-1])
     low, high = grid[left], grid[left + 1]

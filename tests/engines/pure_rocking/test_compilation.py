@@ -31,15 +31,13 @@ MOTION = 6.0 * np.sin(np.arange(300) * 0.06)
     ("body", "entry"), [(BLOCK, integrate_blocks), (STACK, integrate_stacks)]
 )
 def test_one_compilation_serves_every_ensemble(body, entry):
-    # other tests of the process may have compiled it for arguments of other kinds
-    before = set(entry.signatures)
     for motions, scales in (
         (1, [1.0]),
         (2, np.ones((2, 3))),
         (1, np.linspace(0, 1, 5)),
     ):
         overturns([body] * motions, [MOTION] * motions, 0.01, scales)
-    assert len(set(entry.signatures) - before) <= 1
+    assert len(entry.signatures) == 1
 
 
 KERNELS = Path(jit.__file__).parents[1] / "pure_rocking" / "kernels"
