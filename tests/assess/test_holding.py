@@ -24,17 +24,9 @@ from rockfrag.assess.standing.holders import (
 from rockfrag.assess.texts import Text
 from rockfrag.base.errors import InputError
 from rockfrag.base.units import GRAVITY
-from rockfrag.engines.built_in import PLANAR
-from rockfrag.engines.contract import Wish
 from rockfrag.system.body import Circle, Interval, Polygon
 
 from .conftest import asked
-
-pytestmark = pytest.mark.skipif(
-    Wish.WALL not in PLANAR.meets,
-    reason="the planar engine refuses what holds a body: not all of these closed forms hold yet",
-)
-
 
 BOX = {"width": "35 cm", "depth": "50 cm", "height": "120 cm", "mass": "180 kg"}
 TRIED = (Text.HOLD_PUTTY, Text.HOLD_BRACKET, Text.HOLD_CORDS)

@@ -6,18 +6,14 @@ import numpy as np
 import pytest
 
 from rockfrag import Block, overturns
-from rockfrag.engines.built_in import PLANAR
-from rockfrag.engines.contract import Wish
 from rockfrag.system import Bond, Tie, Wall, as_system, hold
 
+from ...holding_in_the_plane import NEEDS_PLANAR_HOLDING
 from ...oracle.held_stepping import Held, outcome
 from ...simulation.reference_bodies import random_motion
 from .cases import DT
 
-pytestmark = pytest.mark.skipif(
-    Wish.WALL not in PLANAR.meets,
-    reason="the planar engine refuses what holds a body: not all of these closed forms hold yet",
-)
+pytestmark = NEEDS_PLANAR_HOLDING
 
 
 NONE = np.zeros((0, 5))

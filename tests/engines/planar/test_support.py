@@ -6,17 +6,13 @@ import numpy as np
 import pytest
 
 from rockfrag import Block, Stack
-from rockfrag.engines.built_in import PLANAR
-from rockfrag.engines.contract import Wish
 from rockfrag.system import BilinearIsolator, SlidingPendulum, as_system, hold
 
+from ...holding_in_the_plane import NEEDS_PLANAR_HOLDING
 from ...simulation.reference_bodies import random_motion
 from .cases import DT, G, run
 
-pytestmark = pytest.mark.skipif(
-    Wish.WALL not in PLANAR.meets,
-    reason="the planar engine refuses what holds a body: not all of these closed forms hold yet",
-)
+pytestmark = NEEDS_PLANAR_HOLDING
 
 
 B, H, M = 0.3, 0.6, 100.0  # half width, half height [m], mass [kg]

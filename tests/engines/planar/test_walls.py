@@ -6,21 +6,18 @@ import numpy as np
 import pytest
 
 from rockfrag import Block, Column, Stack
-from rockfrag.engines.built_in import PLANAR
-from rockfrag.engines.contract import Case, Request, Wish
+from rockfrag.engines.contract import Case, Request
 from rockfrag.engines.planar.engine import ContactRun
 from rockfrag.simulation.inputs import ground_motion
 from rockfrag.simulation.options import system_of
 from rockfrag.system import Wall, as_system, hold
 from rockfrag.system.mounts import on_casters
 
+from ...holding_in_the_plane import NEEDS_PLANAR_HOLDING
 from ...simulation.reference_bodies import random_motion
 from .cases import DT, G, random_column, run, with_contacts
 
-pytestmark = pytest.mark.skipif(
-    Wish.WALL not in PLANAR.meets,
-    reason="the planar engine refuses what holds a body: not all of these closed forms hold yet",
-)
+pytestmark = NEEDS_PLANAR_HOLDING
 
 
 B, H, M = 0.15, 0.6, 100.0  # half width, half height [m], mass [kg]
