@@ -3,13 +3,14 @@
 import argparse
 import math
 import sys
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from rockfrag.base.errors import InputError
 from rockfrag.cli.assess_commands import (
     add_request_options,
-    on_command_line,
+    print_faults,
     settings_of,
 )
 
@@ -103,13 +104,11 @@ def _after(options: argparse.Namespace) -> int:
             order=options.order,
         )
     except FaultyRows as error:
-        for fault in error.faults:
-            print(on_command_line(fault, given), file=sys.stderr)
-        print(
+        return print_faults(
+            error,
+            given,
             "nothing was listed; --keep-going lists the rows that are right.",
-            file=sys.stderr,
         )
-        return 2
     for fault in found.faults:
         print(f"warning: left out: {fault}", file=sys.stderr)
     place = write_after(found, options.output, options.language)
@@ -131,11 +130,11 @@ def _ground_of(
             "give what shook the ground in one way: --shakemap, --station, or --pga with --pgv."
         )
     if options.shakemap:
-        return _by_map(options), ()
+        return _by_map(options, options.shakemap, options.map_uncertainty), ()
     if typed:
         ground = _typed(options, typed)
         return lambda _: ground, ()
-    recorded, motions = _of_station(options, about_station)
+    recorded, motions = _of_station(options, options.station, about_station)
     return lambda _: recorded, motions
 
 
@@ -146,26 +145,24 @@ def _then_of(
     if options.then_shakemap and options.then_station:
         raise InputError("give the second shock by --then-shakemap or --then-station.")
     if options.then_shakemap:
-        second = argparse.Namespace(**vars(options))
-        second.shakemap, second.map_uncertainty = options.then_shakemap, None
-        return _by_map(second), ()
+        return _by_map(options, options.then_shakemap), ()
     if not options.then_station:
         return None, ()
     if not options.station:
         raise InputError(
             "--then-station needs --station, the record of the first shock."
         )
-    second = argparse.Namespace(**vars(options))
-    second.station = options.then_station
-    recorded, motions = _of_station(second, about_station)
+    recorded, motions = _of_station(options, options.then_station, about_station)
     return lambda _: recorded, motions
 
 
-def _by_map(options: argparse.Namespace) -> "Ground":
+def _by_map(
+    options: argparse.Namespace, grid: str, uncertainty: str | None = None
+) -> "Ground":
     from rockfrag.aftermath.shakemap import read_shakemap
     from rockfrag.aftermath.shaken_ground import mapped_ground
 
-    shakemap = read_shakemap(options.shakemap, options.map_uncertainty)
+    shakemap = read_shakemap(grid, uncertainty)
 
     def ground(at: tuple[float, float] | None) -> "GroundShaking | None":
         place = at or options.at
@@ -180,7 +177,7 @@ def _by_map(options: argparse.Namespace) -> "Ground":
 
 
 def _of_station(
-    options: argparse.Namespace, about: dict[str, Any]
+    options: argparse.Namespace, records: Sequence[str], about: dict[str, Any]
 ) -> "tuple[GroundShaking, tuple[Motion, ...]]":
     from rockfrag.aftermath.shaken_ground import recorded_ground
 
@@ -188,7 +185,7 @@ def _of_station(
         raise InputError(
             f"--station-km: expected kilometres, got {options.station_km}."
         )
-    return recorded_ground(options.station, options.station_km, **about)
+    return recorded_ground(records, options.station_km, **about)
 
 
 def _typed(options: argparse.Namespace, typed: dict[str, Any]) -> "GroundShaking":

@@ -9,11 +9,14 @@ from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from itertools import groupby
 from operator import attrgetter
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from rockfrag.base.errors import InputError, errors_of
 from rockfrag.base.units import convert, quantity
 from rockfrag.config.schema import read_schema
+
+if TYPE_CHECKING:
+    from rockfrag.assess.inventory import FaultyRows
 
 _INVENTORY = ".csv"
 _UNITS = re.compile("_(kg_m2|years|km|kg|deg|m|n|s)$")
@@ -159,17 +162,34 @@ def _assess(options: argparse.Namespace) -> int:
             return _inventory(options, given)
         return _one(options, given)
     except FaultyRows as error:
-        for fault in error.faults:
-            print(on_command_line(fault, given), file=sys.stderr)
-        print(
+        return print_faults(
+            error,
+            given,
             "nothing was assessed; --keep-going ranks the rows that are right.",
-            file=sys.stderr,
         )
-        return 2
     except InputError as error:
         # a message about a file names its keys, one about an option the option
         words = on_command_line(str(error), given if options.file else None)
         raise InputError(words) from error
+
+
+def print_faults(error: "FaultyRows", given: Mapping[str, Any], outcome: str) -> int:
+    """Say what is wrong with the rows of an inventory, and what that leaves undone.
+
+    Parameters
+    ----------
+    error : names the rows
+    given : keys of ``statue.yaml`` that options state
+    outcome : sentence that ends it
+
+    Returns
+    -------
+    Status of the command.
+    """
+    for fault in error.faults:
+        print(on_command_line(fault, given), file=sys.stderr)
+    print(outcome, file=sys.stderr)
+    return 2
 
 
 def _is_inventory(options: argparse.Namespace) -> bool:
