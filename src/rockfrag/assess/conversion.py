@@ -332,8 +332,8 @@ def published_velocity(
 
     Motions that a user chose have the velocity of the site, unless something else is said of it.
     """
-    told = any(map(math.isfinite, _facts(given)))
-    if given.on_floor or (given.paths and not told):
+    stated = any(map(math.isfinite, _facts(given)))
+    if given.on_floor or (given.paths and not stated):
         return None
     return PublishedVelocity.of(measure, given)
 

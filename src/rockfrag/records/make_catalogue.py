@@ -517,11 +517,12 @@ def _with_third_upright(components: Sequence[Component]) -> list[Component]:
     names: dict[object, set[str]] = {}
     for component in components:
         file = component.shared_by_a_record[0]
-        names.setdefault(file, set()).add(str(component.row["component"]))
+        if file is not None:
+            names.setdefault(file, set()).add(str(component.row["component"]))
     numbered = {file for file, found in names.items() if found == {"1", "2", "3"}}
     return [
         replace(each, azimuth=None, is_vertical=each.row["component"] == "3")
-        if each.shared_by_a_record[0] in numbered - {None}
+        if each.shared_by_a_record[0] in numbered
         else each
         for each in components
     ]

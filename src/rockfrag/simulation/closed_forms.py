@@ -77,13 +77,9 @@ def critical_double_impulse(width: float, height: float, g: float = GRAVITY) -> 
     -------
     The velocity V [m/s].
     """
-    b = positive_number("width", width, "m") / 2
-    h = positive_number("height", height, "m") / 2
-    alpha, radius = math.atan2(b, h), math.hypot(b, h)
-    left = 1 - 1.5 * math.sin(alpha) ** 2
-    rate = critical_rate(alpha, radius, g)
-    # m h / I_O of a uniform block is 3 h / 4 R²
-    return rate * 4 * radius**2 / (3 * h * (1 + left))
+    alone = critical_jump(width, height, g)
+    left = 1 - 1.5 * math.sin(math.atan2(width, height)) ** 2
+    return alone / (1 + left)
 
 
 def critical_jump(width: float, height: float, g: float = GRAVITY) -> float:
@@ -103,6 +99,7 @@ def critical_jump(width: float, height: float, g: float = GRAVITY) -> float:
     b = positive_number("width", width, "m") / 2
     h = positive_number("height", height, "m") / 2
     alpha, radius = math.atan2(b, h), math.hypot(b, h)
+    # m h / I_O of a uniform block is 3 h / 4 R²
     return critical_rate(alpha, radius, g) * 4 * radius**2 / (3 * h)
 
 

@@ -11,6 +11,7 @@ import logging
 import sys
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 
 import numpy as np
@@ -86,7 +87,7 @@ class Tests:
     measured: MeasuredTests
     count: int  # arrangements that are drawn
 
-    @property
+    @cached_property
     def ruled(self) -> list[Motion]:
         """Motions as accelerations."""
         return [as_accelerations(motion) for motion in self.motions]

@@ -162,5 +162,19 @@ def on_casters(system: System, word: str) -> System:
         raise InputError(f"casters: expected locked or free, got {word!r}.")
     if word == "locked":
         return system
-    lowest = replace(system.contacts[0], friction=ROLLING)
+    return with_ground_friction(system, ROLLING)
+
+
+def with_ground_friction(system: System, friction: Friction) -> System:
+    """System whose lowest body meets the ground with a friction.
+
+    Parameters
+    ----------
+    system, friction : the system, and static and kinetic coefficient [-]
+
+    Returns
+    -------
+    The system.
+    """
+    lowest = replace(system.contacts[0], friction=friction)
     return replace(system, contacts=(lowest, *system.contacts[1:]))

@@ -17,6 +17,7 @@ from rockfrag.system.body import Circle, Interval, Outline, Polygon
 from rockfrag.system.bond import Bond
 from rockfrag.system.constraints import Tie, Wall
 from rockfrag.system.contact import Friction
+from rockfrag.system.mounts import ROLLING, with_ground_friction
 from rockfrag.system.support import SlidingPendulum
 from rockfrag.system.system import System, hold
 from rockfrag.words.findings import Finding, finding, two
@@ -31,10 +32,7 @@ BRACKET_GIVES, CORD_GIVES = 0.001, 0.01
 DAMPED = 0.05  # Part of critical damping of a bracket, as it swings with the object [-]
 RADIUS, SLIDES_AT = 1.0, 0.05  # Of a sliding pendulum [m], and of its friction [-]
 PLATE = 0.1  # Mass of its plate over that of what stands on it [-]
-ROLLS_AT, LOCKED_AT = (
-    0.03,
-    0.5,
-)  # Coefficients of casters that roll, and that are locked [-]
+LOCKED_AT = 0.5  # Coefficient of friction of casters that are locked [-]
 
 
 @dataclass(frozen=True)
@@ -99,27 +97,16 @@ class Putty(Holder):
 
 
 @dataclass(frozen=True)
-class Bracket(Holder):
-    """A bracket between the object and a wall that stands like the ground: it holds both ways, without slack.
+class Fastener(Holder):
+    """What is fastened to the object and to what stands like the ground, and breaks at a strength.
 
     Attributes
     ----------
-    strength : at which it breaks [N]
+    strength : at which each breaks [N]
     """
 
     strength: float = UNBROKEN
-    key: ClassVar[str] = "bracket"
     demand: ClassVar[str] = "largest_force"
-
-    def on(self, system: System) -> System:
-        """Fasten the uppermost body in the direction of its narrower side."""
-        made = fastened(system, BRACKET_GIVES, self.strength)
-        bracket = replace(made[0], bracket=True, damping=_damping(system, made[0]))
-        return hold(system, bracket)
-
-    def called(self) -> Finding:
-        """Such as a bracket that bears 300 N."""
-        return finding(Text.HOLD_BRACKET, force=two(self.strength), **_height())
 
     @property
     def bears(self) -> float:
@@ -132,17 +119,27 @@ class Bracket(Holder):
 
 
 @dataclass(frozen=True)
-class Cords(Holder):
-    """Cords to both sides of the object, without slack.
+class Bracket(Fastener):
+    """A bracket between the object and a wall that stands like the ground: it holds both ways, without slack."""
 
-    Attributes
-    ----------
-    strength : at which each breaks [N]
-    """
+    key: ClassVar[str] = "bracket"
 
-    strength: float = UNBROKEN
+    def on(self, system: System) -> System:
+        """Fasten the uppermost body in the direction of its narrower side."""
+        made = fastened(system, BRACKET_GIVES, self.strength)
+        bracket = replace(made[0], bracket=True, damping=_damping(system, made[0]))
+        return hold(system, bracket)
+
+    def called(self) -> Finding:
+        """Such as a bracket that bears 300 N."""
+        return finding(Text.HOLD_BRACKET, force=two(self.strength), **_height())
+
+
+@dataclass(frozen=True)
+class Cords(Fastener):
+    """Cords to both sides of the object, without slack."""
+
     key: ClassVar[str] = "cord"
-    demand: ClassVar[str] = "largest_force"
 
     def on(self, system: System) -> System:
         """Fasten the uppermost body to both sides in the direction of its narrower side."""
@@ -151,15 +148,6 @@ class Cords(Holder):
     def called(self) -> Finding:
         """Such as cords that bear 300 N each."""
         return finding(Text.HOLD_CORDS, force=two(self.strength), **_height())
-
-    @property
-    def bears(self) -> float:
-        """What it bears."""
-        return self.strength
-
-    def bearing(self, demand: float) -> Self:
-        """As strong as the larger of their largest forces."""
-        return replace(self, strength=rounded_up(demand))
 
 
 @dataclass(frozen=True)
@@ -239,16 +227,15 @@ class Casters(Holder):
 
     def on(self, system: System) -> System:
         """Let the ground's contact roll, or slide on what is locked."""
-        grip = LOCKED_AT if self.locked else ROLLS_AT
-        ground, *others = system.contacts
-        ground = replace(ground, friction=Friction(grip, grip))
-        return replace(system, contacts=(ground, *others))
+        return with_ground_friction(
+            system, Friction(LOCKED_AT, LOCKED_AT) if self.locked else ROLLING
+        )
 
     def called(self) -> Finding:
         """Casters that are locked, or free."""
         if self.locked:
             return finding(Text.HOLD_CASTERS_LOCKED, friction=two(LOCKED_AT))
-        return finding(Text.HOLD_CASTERS_FREE, friction=two(ROLLS_AT))
+        return finding(Text.HOLD_CASTERS_FREE, friction=two(ROLLING.kinetic))
 
 
 @dataclass(frozen=True)
