@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from rockfrag.base.errors import InputError
+from rockfrag.base.units import GRAVITY
 from rockfrag.records.make_catalogue import make_catalogue
 from rockfrag.records.parsing.text_file import NotAcceleration
 from rockfrag.records.read import read_motion
@@ -116,7 +117,18 @@ FACTORS = (
     *("Divide all values by 1000", "facteur multiplicatif : 0.01", "Data x 1e-6 g"),
     "Values must be multiplied with 0.01 to get m/s2",
     *("Acceleration in thousandths of g", "Beschleunigung in tausendstel g"),
+    *("Values in thousandths of g", "thousandths of g", "# tenths of gal"),
 )  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    "words", ["Values in mg", "240 samples in milli g", "Werte in mg"]
+)
+def test_values_in_a_unit_are_the_samples_whatever_a_user_says(write, words):
+    path = write(f"{words}\ndt = 0.01", WAVE)
+    assert read_motion(path).pga == pytest.approx(np.abs(WAVE).max() * GRAVITY / 1000)
+    with pytest.raises(InputError):
+        read_motion(path, unit="g")
 
 
 @pytest.mark.parametrize("unit", [None, "g"])

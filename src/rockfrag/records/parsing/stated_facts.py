@@ -441,12 +441,14 @@ def _of_named_quantity(line: str) -> tuple[str, str, str]:
     """Return quantity, unit of acceleration and what is wrong of a line such as ``Acceleration in m/s2``."""
     match = _patterns()["quantity in"].search(line) or _IN_UNIT.search(line)
     if not match:
-        unit = _sure_unit(line)
+        unit = _sure_unit(line) or _lone_unit_with_factor(line)
         if unit is None:
             return "", "", ""
         return "acceleration", unit.name, _problem_of_factor(line, unit)
     units = _units_in(match["rest"])
-    named = match.re is not _IN_UNIT
+    # values in mg are the samples, whose unit that is as well as where a quantity is named
+    of_samples = words_for("samples").search(line[: match.start()])
+    named = match.re is not _IN_UNIT or of_samples is not None
     first = units[0] if units else Unit("")
     if first.quantity == "acceleration":
         if named or first.name not in ("g", "mg"):
@@ -459,6 +461,13 @@ def _of_named_quantity(line: str) -> tuple[str, str, str]:
         problem = f"the header states the unit {unknown!r}, which is not known here"
         return ("", "", problem) if is_unit else ("", "", "")
     return "", "", ""
+
+
+def _lone_unit_with_factor(line: str) -> Unit | None:
+    """Return the unit of acceleration of a line that is that and a factor, such as ``thousandths of g``."""
+    if len(line.split()) > _LONGEST_TITLE or not has_factor(line):
+        return None
+    return next((u for u in _units_in(line) if u.quantity == "acceleration"), None)
 
 
 def _sure_unit(line: str) -> Unit | None:
