@@ -100,6 +100,12 @@ def test_an_object_may_be_held_as_it_stands(few):
     assert "putty" not in kinds and "bracket" in kinds
 
 
+def test_a_held_object_has_a_whole_answer_in_space(few):
+    found = assess_with(asked(**BOX, facing_deg=0, pga="0.6 g", putty_n=1e6), few)
+    assert found.counts[2] == 0 and found.planar is None
+    assert "It is held as it stands" in page_of(found)
+
+
 def test_a_wall_can_be_left_and_casters_be_locked():
     objects = asked(
         width="40 cm", height="120 cm", wall="5 cm", casters="free", pga="0.3 g"

@@ -18,7 +18,7 @@ from rockfrag.assess.core.estimates import fill_sides, rate_of
 from rockfrag.assess.core.hazards import spread_of_quantiles
 from rockfrag.assess.core.likelihood import Likelihood, likelihood_of
 from rockfrag.assess.hazard.curve import PGA, PGV, HazardCurve
-from rockfrag.assess.holding import Trial, try_holders
+from rockfrag.assess.holding import Trial, can_be_simulated, try_holders
 from rockfrag.assess.mitigations import Mitigation, compare
 from rockfrag.assess.motions import MotionSet, motion_set
 from rockfrag.assess.outcomes import Directions, ObjectOutcomes, Shaking
@@ -354,13 +354,21 @@ def shake_all(requests: Sequence[Request], plan: Plan) -> list[Shaken]:
             far = _slip_at(slip, plan.level, under)
             change[_pad(object_.under.pad_friction, far, plan.level)] = on_it
             slides_off = far > object_.block.width / 2
-        planar = None
-        if plan.shaking.motions.both and not plan.brief:
-            (planar,) = plan.shaking.outcomes_of([object_.in_plane()])
+        planar = _in_one_plane(object_, plan)
         trials = _trials(object_, plan)
         shaken = Shaken(way, sides, before, planar, change, known, trials, slides_off)
         found.append(shaken)
     return found
+
+
+def _in_one_plane(objects: Standing, plan: Plan) -> ObjectOutcomes | None:
+    """The outcomes in one plane beside those in space; None where no engine simulates it in a plane."""
+    if plan.brief or not plan.shaking.motions.both:
+        return None
+    flat = objects.in_plane()
+    if not can_be_simulated(flat.held(flat.system_of(flat.body)), plan.shaking):
+        return None
+    return plan.shaking.outcomes_of([flat])[0]
 
 
 def _trials(objects: Standing, plan: Plan) -> list[Trial]:

@@ -70,13 +70,13 @@ def try_holders(
     systems = [
         system
         for system in _systems(objects, shaking)
-        if _can_be_simulated(system, shaking)
+        if can_be_simulated(system, shaking)
     ]
     before: dict[int, ObjectOutcomes] = {}
     found = []
     for holder in objects.holders_to_try():
         for k, system in enumerate(systems):
-            if not _can_be_simulated(holder.on(system), shaking):
+            if not can_be_simulated(holder.on(system), shaking):
                 continue
             enough, change = holder, holder.called()
             if holder.demand:
@@ -135,8 +135,17 @@ def _systems(objects: Standing, shaking: Shaking) -> Iterator[System]:
     yield planar.held(planar.system_of(body))
 
 
-def _can_be_simulated(system: System, shaking: Shaking) -> bool:
-    """Whether an engine simulates a system under such motions."""
+def can_be_simulated(system: System, shaking: Shaking) -> bool:
+    """Whether an engine simulates a system under such motions.
+
+    Parameters
+    ----------
+    system, shaking : what is shaken, and by what
+
+    Returns
+    -------
+    Whether one does.
+    """
     motions: Sequence[GroundMotion] = [GroundMotion(shaking.motions.base[0])]
     if not system.planar:
         first = shaking.motions.components(shaking.motions.records[0])
