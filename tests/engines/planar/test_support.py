@@ -10,7 +10,7 @@ from rockfrag.system import BilinearIsolator, SlidingPendulum, as_system, hold
 
 from ...holding_in_the_plane import NEEDS_PLANAR_HOLDING
 from ...simulation.reference_bodies import random_motion
-from .cases import DT, G, run
+from .cases import G, run
 
 pytestmark = NEEDS_PLANAR_HOLDING
 
@@ -44,12 +44,10 @@ def test_a_pendulum_swings_with_the_period_of_its_dish_whatever_it_carries(
     plate, frequency = found.plate, math.sqrt(G / radius)
     after = found.time > 0.12
     time = found.time[after] - found.time[after][0]
-    rate = np.gradient(plate, DT)[after][0]
-    expected = plate[after][0] * np.cos(frequency * time)
-    expected += rate / frequency * np.sin(frequency * time)
+    waves = np.stack([np.cos(frequency * time), np.sin(frequency * time)], axis=1)
+    parts, *_ = np.linalg.lstsq(waves, plate[after])
     assert np.abs(found.theta).max() == 0.0
-    size = np.abs(expected).max()
-    assert plate[after][:300] == pytest.approx(expected[:300], abs=3e-4 * size)
+    assert plate[after] == pytest.approx(waves @ parts, abs=1e-7 * np.abs(parts).max())
 
 
 @pytest.mark.parametrize("mu", [0.01, 0.03])
@@ -77,21 +75,22 @@ def test_a_flat_plate_slides_as_newmark_says() -> None:
     assert abs(found.plate[-1]) == pytest.approx(expected, rel=1e-3)
 
 
-@pytest.mark.parametrize("seed", range(3))
-def test_nothing_rocks_before_the_stop_where_the_isolator_pushes_less(
-    seed: int,
-) -> None:
+def test_nothing_rocks_before_the_stop_where_the_isolator_pushes_less() -> None:
     """µ + U/R < b/h, whatever the vertical motion."""
-    rng = np.random.default_rng(seed)
-    motion, up = 3 * random_motion(rng), 0.8 * random_motion(rng)
+    body, seen = Stack(Block(0.8, 0.3, 200.0), BLOCK), 0
     support = SlidingPendulum(mass=20.0, radius=1.0, friction=0.08)
-    body = Stack(Block(0.8, 0.3, 200.0), BLOCK)
-    found = run(isolated(support, body), motion, friction=0.95, vertical=up)
-    arms = 0.08 + found.constraints["stroke_m"][0] / 1.0
-    assert arms < B / H
-    assert np.abs(found.theta).max() == 0.0
-    assert np.abs(run(body, motion, friction=0.95, vertical=up).theta).max() > 0.01
-    assert found.energy["residual"].abs().max() < 1e-8 * found.energy["potential"][0]
+    for seed in range(12):
+        rng = np.random.default_rng(seed)
+        motion, up = 1.5 * random_motion(rng), 0.5 * random_motion(rng)
+        found = run(isolated(support, body), motion, friction=0.95, vertical=up)
+        if 0.08 + found.constraints["stroke_m"][0] >= B / H:
+            continue
+        assert np.abs(found.theta).max() == 0.0
+        energy = found.energy
+        assert energy["residual"].abs().max() < 1e-8 * energy["potential"][0]
+        free = run(body, motion, friction=0.95, vertical=up)
+        seen += np.abs(free.theta).max() > 0.01
+    assert seen >= 3
 
 
 def stopped(speed: float):
@@ -109,9 +108,9 @@ def test_the_stop_topples_what_comes_at_the_critical_speed() -> None:
     critical = math.sqrt(2 * G * (radius - H) * inertia / M) / H
     stays, topples = stopped(0.999 * critical), stopped(1.001 * critical)
     assert stays.constraints["hits"][0] > 0
-    assert stays.omega.max() == pytest.approx(
-        M * H * 0.999 * critical / inertia, rel=1e-2
-    )
+    events = stays.contact_events
+    after = max(omega for (omega,) in events["omega_after"])
+    assert after == pytest.approx(M * H * 0.999 * critical / inertia, rel=1e-4)
     assert (stays.overturned, topples.overturned) == (False, True)
 
 

@@ -72,7 +72,7 @@ def test_a_tied_block_rocks_at_the_frequency_of_its_cord_less_its_own() -> None:
     time = found.time[found.time < until]
     expected = middle * (1 - np.cos(frequency * time))
     expected += omega / frequency * np.sin(frequency * time)
-    assert time.size > 40
+    assert time.size > 20
     assert found.theta[: time.size, 0] == pytest.approx(
         expected, abs=2e-3 * np.abs(expected).max()
     )
@@ -94,7 +94,9 @@ def test_cords_store_half_of_stiffness_times_stretch_squared() -> None:
         stored += stiffness / 2 * np.maximum(0.0, length - 0.81) ** 2
     assert found.constraints["hits"].min() > 1
     assert stored.max() > 1.0
-    assert found.energy["held"] == pytest.approx(stored, abs=1e-5 * stored.max())
+    assert found.energy["held"].to_numpy() == pytest.approx(
+        stored, abs=1e-5 * stored.max()
+    )
     assert found.energy["residual"].abs().max() < 1e-7 * M * G * H
 
 
@@ -128,7 +130,7 @@ def test_stiff_ties_without_slack_hold_as_if_fixed() -> None:
 
 
 def test_a_bracket_holds_both_ways_beyond_its_slack() -> None:
-    motion = 3 * random_motion(np.random.default_rng(6))[:400]
+    motion = 6.0 * np.sin(2 * np.pi * np.arange(0, 2, DT))
     bracket = Tie((0.0, 0.0, TOP), (0.5, 0.0, TOP), 1e6, slack=0.01, bracket=True)
     found = run(hold(as_system(BLOCK), bracket), motion, friction=0.8)
     top = found.position[:, 0, 0] + H * np.sin(found.theta[:, 0])

@@ -228,10 +228,12 @@ def _let_bounce(p, w):
 
 @kernel
 def touch_closed(p, w):
-    """Let the ends that are closed be those that touch."""
+    """Let the ends that are closed be those that touch, beside walls also those that touched and do not part."""
     for k in range(p.contacts):
         for end in range(2):
-            w.touching[k, end] = w.closed[k, end]
+            stays = p.contacts > p.count and w.touching[k, end] == 1
+            if not stays or approach(p, w, k, end) >= STILL * p.speed:
+                w.touching[k, end] = w.closed[k, end]
 
 
 @kernel

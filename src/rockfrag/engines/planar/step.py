@@ -358,7 +358,7 @@ def _root(p, w, bracket, stretch, forces):
 @kernel
 def comes_near(p, w, length):
     """Whether in a step a gap first narrowed and widens as it ends, after ``look_at`` with ``w.q1``."""
-    if p.ties > 0 and turns_back(p, w):
+    if p.ties > 0 and turns_back(p, w, length):
         return True
     for k in range(p.contacts):
         for end in range(2):

@@ -86,12 +86,16 @@ def start_ties(p, w):
 
 
 @kernel
-def turns_back(p, w):
-    """Whether a slack tie lengthened at the start of a step and shortens at its end, or the other way round."""
+def turns_back(p, w, time):
+    """Whether a slack tie that lengthens and then shortens, or the reverse, may get taut in a step [s]."""
     for t in range(p.ties):
         if w.taut[t] == SLACK:
-            _, _, _, _, _, speed = _stretched(p, w, w.q1, w.v1, t)
-            if w.tie_early[t] * speed < 0.0:
+            _, _, _, _, length, speed = _stretched(p, w, w.q1, w.v1, t)
+            reach = abs(w.tie_early[t]) * time
+            may = length + reach > p.tie_long[t]
+            if p.is_bracket[t] == 1:
+                may = may or length - reach < p.tie_short[t]
+            if may and w.tie_early[t] * speed < 0.0:
                 return True
     return False
 
