@@ -157,6 +157,16 @@ PLANAR = PlanarEngine(
 )
 """Planar bodies that stick, slide, rock, fly and land (``docs/contact.md``)."""
 
+JUMPED = PlanarEngine(
+    "planar contact between jumps",
+    _STANDING
+    | {Wish.TWO_BODIES, Wish.MANY_BODIES, Wish.FRICTION, Wish.START, Wish.HISTORY}
+    | {Wish.PLACE, Wish.STEPS},
+    "rockfrag.engines.planar.velocity_steps:run",
+    "rockfrag.engines.planar.velocity_steps:history",
+)
+"""Planar bodies that stick, slide, rock, fly and land on a base whose velocity jumps."""
+
 SPATIAL = SpatialEngine(
     "space",
     frozenset(
@@ -175,5 +185,5 @@ SPATIAL = SpatialEngine(
 )
 """One body in space."""
 
-BUILT_IN = (LONE_BLOCKS, TWO_BLOCKS, SINGLE, STEPPED, PLANAR, SPATIAL)
+BUILT_IN = (LONE_BLOCKS, TWO_BLOCKS, SINGLE, STEPPED, PLANAR, JUMPED, SPATIAL)
 """In the order in which they are asked."""

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from rockfrag import Block, GroundMotion, InputError, Motion, Stack, overturns, simulate
+from rockfrag import Block, GroundMotion, InputError, Motion, overturns, simulate
 from rockfrag.motions import one_sine
 from rockfrag.records.velocity_steps import VelocitySteps, bump_and_stop, landing
 from rockfrag.simulation.closed_forms import (
@@ -125,16 +125,11 @@ def test_a_stop_before_the_block_has_come_back_needs_a_pivot_that_pulls():
     assert found.lost_contact == pytest.approx(0.005 / 0.3)
 
 
-@pytest.mark.parametrize(
-    ("body", "options", "words"),
-    [
-        (BLOCK, {"friction": 0.5}, "friction|jumps of the velocity"),
-        (Stack(Block(0.4, 0.3, 50.0), Block(0.3, 1.2, 100.0)), {}, "two bodies"),
-    ],
-)
-def test_what_no_engine_computes_is_refused(body, options, words):
-    with pytest.raises(InputError, match=words):
-        simulate(body, VelocitySteps([0.0], [0.2]), **options)
+def test_a_second_horizontal_component_is_refused():
+    still = Motion(np.zeros(5), 0.01)
+    both = GroundMotion(still, y=still, steps=VelocitySteps([0.0], [0.2]))
+    with pytest.raises(InputError, match="second horizontal component"):
+        simulate(Block(0.02, 0.09, 1.0, depth=0.02), both)
 
 
 @pytest.mark.parametrize(

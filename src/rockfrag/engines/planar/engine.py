@@ -13,7 +13,7 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from rockfrag.engines.built_in import PLANAR
+from rockfrag.engines.built_in import PLANAR, PlanarEngine
 from rockfrag.engines.contract import Case, Cases, Engine, Request, engines, run_cases
 from rockfrag.engines.planar import integrate as contact
 from rockfrag.engines.planar import records
@@ -34,6 +34,8 @@ from rockfrag.system.system import System
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
+Records = NDArray[np.void]
+VELOCITY_STEP = 8  # a jump of the base's velocity, of which the kernels know nothing
 
 # speed over √(g b) below which a contact stays closed and slips no more after an impact [-]: of one or two bodies,
 # and of columns, in which every impact calls forth others (docs/columns.md, "Speed")
@@ -48,6 +50,7 @@ _KINDS = {
     contact.AT_WALL: "wall",
     contact.TIED: "tie",
     contact.BROKEN: "break",
+    VELOCITY_STEP: "velocity step",
 }
 _STATES = np.array([FLIGHT, -1, +1, 0])
 """Contact state of an interface whose closed ends are the bits (left, right) of a number."""
@@ -80,7 +83,7 @@ def run(cases: Cases) -> Outcomes:
     found = contact_outcomes(cases)
     for i, system in enumerate(cases.systems):
         own = without_plate(found[i], system)
-        _write(outcomes, i, system.count, own, everything=i not in rocking)
+        write_contact(outcomes, i, system.count, own, everything=i not in rocking)
     return outcomes
 
 
@@ -88,7 +91,7 @@ def _pure(system: System, motion: GroundMotion, request: Request) -> Engine | No
     """Engine of pure rocking of a system that nothing holds, if there is one."""
     if system.holding:
         return None
-    others = (engine for engine in engines() if engine is not PLANAR)
+    others = (each for each in engines() if not isinstance(each, PlanarEngine))
     return next(
         (other for other in others if other.supports(system, motion, request)), None
     )
@@ -113,10 +116,17 @@ def without_plate(told: NDArray[np.void], system: System) -> NDArray[np.void]:
     return own
 
 
-def _write(
+def write_contact(
     into: Outcomes, i: int, count: int, found: NDArray[np.void], everything: bool
 ) -> None:
-    """Write what became of one system over what pure rocking has found, where it slid or flew."""
+    """Write what became of one system over what pure rocking has found, where it slid or flew.
+
+    Parameters
+    ----------
+    into, i : outcomes, and number of the system
+    count, found : of its bodies, and records ``OUTCOME``, shape (motions, scales)
+    everything : whether pure rocking has found nothing
+    """
     flights = found["flights"].sum(axis=-1)
     other = (found["slid"].max(axis=-1) > 0) | (flights > 0) | (found["paradoxes"] > 0)
     other |= everything
@@ -188,12 +198,12 @@ def contact_outcomes(
     """
     g, step = grid.request.g, grid.request.step
     dts = np.array([motion.dt for motion in grid.motions])
-    described = [_described(system, g) for system in grid.systems]
+    given = [described(system, g) for system in grid.systems]
     ups = [motion.z.acceleration for motion in grid.motions if motion.z is not None]
     sizes = [motion.x.acceleration.size for motion in grid.motions]
     cases = contact.Cases(
-        bodies=np.array([body for body, _ in described], records.BODY),
-        starts=np.array([start for _, start in described]),
+        bodies=np.array([body for body, _ in given], records.BODY),
+        starts=np.array([start for _, start in given]),
         horizontal=np.concatenate([motion.x.acceleration for motion in grid.motions]),
         vertical=np.concatenate(ups) if ups else np.zeros(0),
         offsets=np.concatenate([[0], np.cumsum(sizes)]),
@@ -229,8 +239,17 @@ def closing_of(system: System) -> float:
     return CLOSING if system.count < 3 else CLOSING_OF_COLUMNS
 
 
-def _described(system: System, g: float) -> tuple[np.void, Array]:
-    """Record ``BODY`` of a system, and the coordinates and velocities that it starts with."""
+def described(system: System, g: float) -> tuple[np.void, Array]:
+    """Record ``BODY`` of a system, and the coordinates and velocities that it starts with.
+
+    Parameters
+    ----------
+    system, g : the bodies, and the acceleration of gravity [m/s²]
+
+    Returns
+    -------
+    The record, and coordinates and velocities, shape (2, 3 MOST).
+    """
     body, start = records.system_record(system, g), with_plate(system).start
     zeros = (0.0,) * int(body["count"])
     pose = (zeros, zeros) if start is None else (start.rotation, start.velocity)
@@ -247,7 +266,7 @@ class ContactRun:
     def __init__(self, case: Case, closing: float | None = None) -> None:
         closing = closing_of(case.system) if closing is None else closing
         self.case, self.work = case, records.working_memory()
-        self.body, start = _described(case.system, case.request.g)
+        self.body, start = described(case.system, case.request.g)
         shaking = shaking_of(case, 1.0)
         history = np.zeros(shaking.samples.size + shaking.free_samples, contact.SAMPLE)
         most = 4096
@@ -261,6 +280,12 @@ class ContactRun:
                 break
             most = found
         self.history, self.contact_events = history[:done], kept.contact_events[:found]
+        values = case.scale * case.motion.x.acceleration
+        self.time: Array = np.arange(done, dtype=np.float64) * case.motion.dt
+        self.ground: Array = np.zeros(done)
+        self.ground[: values.size] = values[:done]
+        # of samples and of contact events, for which comes before which
+        self.clock, self.event_clock = self.time, self.contact_events["time"]
 
     def response(self) -> Response:
         """Return the response that the contact kernels wrote."""
@@ -273,8 +298,6 @@ class ContactRun:
         )
         # the lowest body of an isolated system is the plate
         first = int(self.body["count"]) - count
-        values, ground = case.scale * case.motion.x.acceleration, np.zeros(done)
-        ground[: values.size] = values[:done]
         above = slice(first, first + count)
         centres = history["q"][:, 3 * first : 3 * (first + count)]
         centres = centres.reshape(done, count, 3)
@@ -286,11 +309,10 @@ class ContactRun:
         meets = np.array(
             [np.abs(np.diff([0.0, *w])).max() for w in table["omega_before"]]
         )
-        time = np.arange(done, dtype=np.float64) * case.motion.dt
         return Response(
             system=case.system,
-            time=time,
-            ground_acceleration=ground,
+            time=self.time,
+            ground_acceleration=self.ground,
             position=centres[:, :, :2] - (0.0, THIN if first else 0.0),
             theta=centres[:, :, 2],
             omega=speeds[:, :, 2],
@@ -302,7 +324,7 @@ class ContactRun:
             overturned=fallen > 0,
             overturned_body=("", *case.system.names)[fallen],
             overturning_time=float(told["overturning_time"]),
-            energy=self._energies(time),
+            energy=self._energies(),
             constraints=self._constraints(),
             plate=history["q"][:, 0].copy() if first else None,
             normal_force=normal,
@@ -322,7 +344,7 @@ class ContactRun:
             table[column.title] = told[column.name][: len(names)].copy()
         return pd.DataFrame(table)
 
-    def _energies(self, time: Array) -> pd.DataFrame:
+    def _energies(self) -> pd.DataFrame:
         """Balance of energy by cause over time [J]."""
         p, history, struck = self.body, self.history, self.contact_events
         count = int(self.body["count"])
@@ -341,16 +363,18 @@ class ContactRun:
         own = self.case.system.count
         contact_of = np.maximum(closes.argmax(axis=1) - (count - own), 0)
         contact_of[struck["at_wall"] > 0] = own
-        return responses.energy_table(
-            time,
+        table = responses.energy_table(
+            self.clock,
             kinetic,
             potential,
             history["work"],
             contacts=own,
-            losses=(struck["time"], contact_of, lost),
+            losses=(self.event_clock, contact_of, lost),
             friction=history["rubbed"],
             held=history["tied"] if self.case.system.holding else None,
         )
+        table["time"] = self.time
+        return table
 
 
 def _modes(numbers: Ints, blocks: int, first: int = 0) -> tuple[Ints, Ints]:

@@ -6,9 +6,6 @@ m (x Δw - z Δu) / I_O, with the centre of gravity at (x, z) from it.
 """
 
 import math
-from collections.abc import Iterator
-from dataclasses import dataclass
-from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -27,13 +24,12 @@ from rockfrag.engines.pure_rocking.histories import (
 )
 from rockfrag.engines.pure_rocking.kernels import record as kept
 from rockfrag.engines.pure_rocking.kernels.single import SCRATCH, Shaking
-from rockfrag.engines.steps import free_samples, step_count
+from rockfrag.engines.steps import step_count
+from rockfrag.engines.velocity_pieces import Jump, Piece, pieces_of
 from rockfrag.outcomes.outcomes import Outcomes
 from rockfrag.outcomes.response import Response
-from rockfrag.records.motion import Motion
 from rockfrag.system import geometry
 
-INSTANT = 1e-12  # part of a sampling interval below which none has passed
 LEVEL = 1e-12  # rotation below which a block stands on its base [rad]
 
 
@@ -49,25 +45,6 @@ def run(cases: Cases) -> Outcomes:
 def history(case: Case) -> Response:
     """Return the response of a case."""
     return SteppedRun(case).response()
-
-
-class Jump(NamedTuple):
-    """A jump of the base's velocity [m/s]."""
-
-    right: float
-    up: float
-
-
-@dataclass(frozen=True)
-class Piece:
-    """A part of the motion between two jumps, on even samples."""
-
-    begin: float  # instant of its first sample [s]
-    dt: float  # sampling interval [s]
-    ground: Floats  # acceleration of the ground [m/s²], shape (n,)
-    upward: Floats  # upwards, over gravity [-], shape (n,)
-    jump: Jump | None  # what comes before it
-    free: int  # samples of free rocking after it
 
 
 class Followed(NamedTuple):
@@ -89,51 +66,11 @@ class SteppedCase:
         self.shape = case.system.shapes[0]
         self.work = np.zeros(1, SCRATCH)[0]
 
-    def pieces(self) -> Iterator[Piece]:
-        """Parts of the motion: between jumps, from sample to sample, and what is left of samples at both ends."""
-        case, motion = self.case, self.case.motion
-        assert motion.steps is not None
-        dt = motion.dt
-        times, right, up = motion.steps.scaled(case.scale)
-        jumps = [Jump(*pair) for pair in zip(right.tolist(), up.tolist(), strict=True)]
-        ends = [*times.tolist(), max(float(times[-1]), motion.x.acceleration.size * dt)]
-        now: float = 0.0
-        jump: Jump | None = None
-        for number, end in enumerate(ends):
-            for begin, until in self._between(now, end):
-                yield self._piece(begin, until, jump, 0)
-                jump = None
-            now = end
-            if number < len(jumps):
-                jump = jumps[number]
-        free = int(free_samples(case.system, dt, case.request.g))
-        yield self._piece(now, now + dt, jump, free)
-
-    def _between(self, now: float, end: float) -> Iterator[tuple[float, float]]:
-        """Parts of an interval: up to the next sample, whole samples, and what is left."""
-        dt = self.case.motion.dt
-        first, last = math.ceil(now / dt - INSTANT), math.floor(end / dt + INSTANT)
-        within = [] if first > last else [first * dt, last * dt]
-        for begin, until in pairwise([now, *within, end]):
-            if until - begin > INSTANT * dt:
-                yield begin, until
-
-    def _piece(self, begin: float, end: float, jump: Jump | None, free: int) -> Piece:
-        """A part of the motion; more than one sampling interval holds whole samples."""
-        case, motion = self.case, self.case.motion
-        count = max(1, round((end - begin) / motion.dt))
-        at = np.linspace(begin, end, count + 1)
-        ground = case.scale * _at(motion.x, at)
-        upward = np.zeros_like(at)
-        if motion.z is not None:
-            upward = case.scale * _at(motion.z, at) / case.request.g
-        return Piece(begin, (end - begin) / count, ground, upward, jump, free)
-
     def follow(self, start: np.void, *, keeps: bool) -> Followed:
         """Go through all parts; ``keeps`` samples and contact events."""
         state, whole, work = start, blank_summary(start), 0.0
         parts: list[Followed] = []
-        for piece in self.pieces():
+        for piece in pieces_of(self.case):
             if piece.jump is not None:
                 state, opening = self._jumped(state, piece, whole)
                 # what the jump adds is work of the base, not a loss of the contact
@@ -160,7 +97,7 @@ class SteppedCase:
         steps = step_count(system, piece.dt, request.g, request.step)
         shaking = Shaking(
             samples=piece.ground,
-            vertical=piece.upward,
+            vertical=piece.upward / request.g,
             scale=1.0,
             dt=piece.dt,
             substeps=int(steps),
@@ -180,7 +117,7 @@ class SteppedCase:
                 break
         ground, upward = np.zeros((2, done))
         ground[: piece.ground.size] = piece.ground[:done]
-        upward[: piece.upward.size] = piece.upward[:done]
+        upward[: piece.upward.size] = piece.upward[:done] / request.g
         time = piece.begin + piece.dt * np.arange(done, dtype=np.float64)
         return Followed(summary, samples[:done], time, found[:count], ground, upward)
 
@@ -259,12 +196,6 @@ def jumped_rate(
     rates = {pivot: rate(pivot, 0.0) for pivot in (+1, -1)}
     best = max(rates, key=lambda pivot: pivot * rates[pivot])
     return (best, rates[best]) if best * rates[best] > 0 else (0, 0.0)
-
-
-def _at(motion: Motion, times: Floats) -> Floats:
-    """Acceleration at instants, zero from one sample after the last on."""
-    values = np.append(motion.acceleration, 0.0)
-    return np.asarray(np.interp(times / motion.dt, np.arange(values.size), values))
 
 
 _LARGEST = ("speed2", "ratio1", "ratio2")

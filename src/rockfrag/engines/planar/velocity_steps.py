@@ -1,0 +1,223 @@
+"""Engine of planar bodies on a base whose velocity jumps: contact kernels between the jumps, and at them.
+
+In: cases whose motion has ``steps``, of bodies that may slide, rock and fly. Out: outcomes, or a response with a
+contact event ``velocity step`` for each jump. Theory: ``docs/velocity-steps.md``: seen from the base every body
+gets the velocity (-Δu, -Δw) at once; what the contacts make of it is an impact, by their laws and their static
+friction.
+"""
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from itertools import product
+
+import numpy as np
+
+from rockfrag.base.arrays import Floats
+from rockfrag.engines.built_in import JUMPED
+from rockfrag.engines.contract import Case, Cases
+from rockfrag.engines.planar import integrate as contact
+from rockfrag.engines.planar import records
+from rockfrag.engines.planar.engine import (
+    VELOCITY_STEP,
+    ContactRun,
+    Records,
+    closing_of,
+    described,
+    write_contact,
+)
+from rockfrag.engines.pure_rocking.kernels.single import Shaking
+from rockfrag.engines.steps import step_count
+from rockfrag.engines.velocity_pieces import Jump, Piece, pieces_of
+from rockfrag.outcomes.outcomes import Outcomes, empty_outcomes
+from rockfrag.outcomes.response import Response
+
+LEDGERS = ("work", "rubbed", "struck", "tied")
+_LARGEST = ("peak_rotation", "peak_velocity", "peak_slip", "slid")
+_COUNTED = ("flights", "impacts", "paradoxes", "several_modes", "given_way")
+_LAST = ("overturned_body", "parted_contact", "leaning")
+ROOM = 256  # contact events of one instant
+
+
+def run(cases: Cases) -> Outcomes:
+    """Return the outcomes of cases, whose histories are not kept."""
+    outcomes = empty_outcomes(cases.names, cases.scales, (JUMPED.name,))
+    found = np.zeros(cases.shape, records.OUTCOME)
+    numbers = product(*map(range, cases.shape))
+    for i, m, s in numbers:
+        scale = float(cases.scales[m, s])
+        case = Case(cases.systems[i], cases.motions[m], scale, cases.request)
+        steps = Between(case)
+        for _ in steps.parts(keeps=False):
+            pass
+        found[i, m, s] = steps.told
+    for i, system in enumerate(cases.systems):
+        write_contact(outcomes, i, system.count, found[i], everything=True)
+    return outcomes
+
+
+def history(case: Case) -> Response:
+    """Return the response of a case."""
+    return JumpedRun(case).response()
+
+
+@dataclass
+class Part:
+    """What a part of the motion adds to a response."""
+
+    time: Floats  # [s], shape (n,)
+    ground: Floats  # acceleration of the ground [m/s²], shape (n,)
+    samples: Records  # SAMPLE, shape (n,)
+    contact_events: Records  # CONTACT_EVENT
+    rows: Floats  # samples, from the first of this part on, at which they happen
+
+
+@dataclass
+class Between:
+    """A case that goes from jump to jump, and what is told of it so far."""
+
+    case: Case
+    work: np.void = field(default_factory=records.working_memory)
+    told: np.void = field(default_factory=lambda: np.zeros(1, records.OUTCOME)[0])
+    forced: int = 0
+    spent: dict[str, float] = field(default_factory=lambda: dict.fromkeys(LEDGERS, 0.0))
+
+    def __post_init__(self) -> None:
+        """Describe the system; at a jump what stands is held by its static friction."""
+        self.body, self.state = described(self.case.system, self.case.request.g)
+        self.closing = closing_of(self.case.system)
+        self.at_jump = self.body.copy()
+        self.at_jump["kinetic"] = self.body["static"]
+        self.told["overturning_time"] = math.nan
+
+    def parts(self, *, keeps: bool) -> Iterator[Part]:
+        """Go through all parts; ``keeps`` samples and contact events."""
+        is_first = True
+        for piece in pieces_of(self.case):
+            if piece.jump is not None:
+                yield self._jump(piece, piece.jump, is_first=is_first)
+            is_first = False
+            yield self._through(piece, keeps=keeps)
+            if self.told["overturned_body"]:
+                break
+        self.told["slip"] = self._look(self.body, 0.0, 0.0).samples["slip"][0]
+
+    def _look(self, body: np.void, ah: float, av: float) -> Part:
+        """Let contacts take up the state as it is, and no time pass."""
+        still = Shaking(
+            np.full(1, ah), np.full(1, av), 1.0, 1.0, substeps=1, free_samples=0
+        )
+        return self._integrate(body, still, rows=1, room=ROOM)
+
+    def _integrate(
+        self, body: np.void, shaking: Shaking, *, rows: int, room: int
+    ) -> Part:
+        """Integrate from the state on, and keep so many samples and contact events."""
+        while True:
+            kept = contact.Kept(
+                np.zeros(rows, contact.SAMPLE), np.zeros(room, contact.CONTACT_EVENT)
+            )
+            done = contact.integrate(
+                body, shaking, self.state, self.closing, kept, self.work
+            )
+            noted = int(self.work["noted"])
+            if noted <= room or rows == 0:
+                break
+            room = noted
+        self.state = np.array([self.work["q"], self.work["v"]])
+        for name in LEDGERS if rows else ():
+            kept.history[name] += self.spent[name]
+        time = shaking.dt * np.arange(done, dtype=np.float64)
+        ground = np.zeros(done)
+        ground[: shaking.samples.size] = shaking.samples[:done]
+        changes = kept.contact_events[:noted]
+        at = changes["time"] / shaking.dt
+        return Part(time, ground, kept.history[:done], changes, at)
+
+    def _through(self, piece: Piece, *, keeps: bool) -> Part:
+        """Integrate a part of the motion."""
+        request = self.case.request
+        steps = step_count(self.case.system, piece.dt, request.g, request.step)
+        shaking = Shaking(
+            piece.ground, piece.upward, 1.0, piece.dt, int(steps), piece.free
+        )
+        rows = piece.ground.size + piece.free if keeps else 0
+        part = self._integrate(self.body, shaking, rows=rows, room=1024 if keeps else 0)
+        self._add(piece.begin)
+        return self._placed(part, piece.begin)
+
+    def _jump(self, piece: Piece, jump: Jump, *, is_first: bool) -> Part:
+        """Give all bodies the velocity of a jump, and let their contacts answer."""
+        ah, av = float(piece.ground[0]), float(piece.upward[0])
+        before = self._look(self.body, ah, av).samples if is_first else None
+        count, old = int(self.body["count"]), self.state[1].copy()
+        self.state[1, 0 : 3 * count : 3] -= jump.right
+        self.state[1, 1 : 3 * count : 3] -= jump.up
+        shifted = self.state[1].copy()
+        part = self._look(self.at_jump, ah, av)
+        struck = part.contact_events
+        jammed = struck["kind"] == contact.PARADOX
+        # what a jump jams has an impulse, which is its answer and no paradox
+        struck["kind"][jammed] = contact.IMPACT
+        opening = np.zeros(1, contact.CONTACT_EVENT)
+        opening["kind"], opening["q"] = VELOCITY_STEP, self.state[0]
+        opening["before"] = opening["after"] = part.samples["mode"][0]
+        opening["v_before"], opening["v_after"] = old, shifted
+        opening["slip"] = part.samples["slip"][0]
+        # what a jump adds is work of the base
+        brought = self._kinetic(shifted) - self._kinetic(old)
+        opening["energy_before"] = opening["energy_after"] = self._kinetic(shifted)
+        self.spent["work"] += brought
+        self.work["told"]["paradoxes"] -= int(jammed.sum())
+        self._add(piece.begin)
+        part.contact_events = np.concatenate([opening, struck])
+        part.samples = part.samples[:0] if before is None else before
+        size = part.samples.size
+        part.time, part.ground = part.time[:size], part.ground[:size]
+        # all of it comes after the sample before the jump, and before the next one
+        part.rows = np.full(part.contact_events.size, float(size))
+        return self._placed(part, piece.begin)
+
+    def _kinetic(self, velocities: Floats) -> float:
+        """Kinetic energy relative to the base [J]."""
+        free = 3 * int(self.body["count"])
+        inertia = 1.0 / self.body["inverse"][:free]
+        return float(0.5 * (inertia * velocities[:free] ** 2).sum())
+
+    def _placed(self, part: Part, begin: float) -> Part:
+        """A part that begins at an instant [s]."""
+        part.time = part.time + begin
+        part.contact_events["time"] += begin
+        return part
+
+    def _add(self, begin: float) -> None:
+        """Add what the kernels told of a part that begins at an instant [s]."""
+        told, more = self.told, self.work["told"]
+        for name in _LARGEST:
+            told[name] = np.maximum(told[name], more[name])
+        for name in _COUNTED:
+            told[name] += more[name]
+        for name in _LAST:
+            told[name] = more[name]
+        told["overturning_time"] = begin + float(more["overturning_time"])
+        self.forced += int(self.work["forced"])
+        for name in LEDGERS:
+            self.spent[name] += float(self.work[name])
+
+
+class JumpedRun(ContactRun):
+    """A case with jumps, with all its contact events."""
+
+    def __init__(self, case: Case) -> None:
+        steps = Between(case)
+        parts = list(steps.parts(keeps=True))
+        self.case, self.work, self.body = case, steps.work, steps.body
+        self.history = np.concatenate([part.samples for part in parts])
+        self.contact_events = np.concatenate([part.contact_events for part in parts])
+        self.time = np.concatenate([part.time for part in parts])
+        self.ground = np.concatenate([part.ground for part in parts])
+        self.clock = np.arange(self.time.size, dtype=np.float64)
+        firsts = np.cumsum([0, *(part.time.size for part in parts)])
+        rows = [first + part.rows for first, part in zip(firsts, parts, strict=False)]
+        self.event_clock = np.concatenate(rows)
+        self.work["told"], self.work["forced"] = steps.told, steps.forced
