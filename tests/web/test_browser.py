@@ -13,12 +13,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from rockfrag import Block, Stack, overturns, simulate
+from rockfrag import Block, GroundMotion, Motion, Stack, overturns, simulate
 from rockfrag.base.units import GRAVITY
 from rockfrag.engines.pure_rocking.ensembles import body_record
 from rockfrag.engines.spatial.body import kernel_body
 from rockfrag.engines.spatial.engine import AFTER, run_case
 from rockfrag.engines.steps import STEP, free_samples, step_count
+from rockfrag.records.velocity_steps import bump_and_stop
 from rockfrag.simulation.options import system_of
 from rockfrag.system.body import Polygon, RigidBody
 from rockfrag.system.contact import Contact, Friction
@@ -43,7 +44,9 @@ HISTORY = [
 ]
 
 
-def in_node(folder: Path, module: str, cases: object, motion: np.ndarray) -> tuple:
+def in_node(
+    folder: Path, module: str, cases: object, motion: np.ndarray, script: str = ""
+) -> tuple:
     """Run cases in Node; what it says of each, and the numbers that it writes."""
     files = {
         name: folder / name
@@ -52,8 +55,10 @@ def in_node(folder: Path, module: str, cases: object, motion: np.ndarray) -> tup
     files["module.wasm"].write_bytes(module_bytes(module))
     files["cases.json"].write_text(json.dumps(cases))
     files["motions"].write_bytes(motion.tobytes())
-    script = Path(__file__).parent / "node_scripts" / f"{module}.js"
-    (folder / "run.cjs").write_text(f"{driver_text(module)}\n{script.read_text()}")
+    text = (
+        Path(__file__).parent / "node_scripts" / f"{script or module}.js"
+    ).read_text()
+    (folder / "run.cjs").write_text(f"{driver_text(module)}\n{text}")
     done = subprocess.run(
         [NODE, folder / "run.cjs", *files.values()], capture_output=True, text=True
     )
@@ -73,6 +78,31 @@ def told(body: Block | Stack, **more):
         return {"statue": given(body), **more}
     both = {"statue": given(body.upper), "pedestal": given(body.lower)}
     return {**both, "offset": body.offset, **more}
+
+
+@pytest.mark.filterwarnings("ignore:.*left the ground")
+@needs_node
+def test_a_base_that_is_hit_and_stopped_does_in_the_page_what_it_does_in_simulate(
+    tmp_path,
+):
+    block = Block(0.02, 0.09, 1.0, cg_offset=0.001)
+    velocities = [0.1, 0.2, 0.36, 0.37, 0.45, 0.6]
+    bumps = [{"velocity": each, "distance": 0.025} for each in velocities]
+    cases = [{"statue": given(block), **bump} for bump in bumps]
+    told, numbers = in_node(tmp_path, "integrate", cases, np.zeros(1), "bump")
+    rotations, first = np.frombuffer(numbers), 0
+    for case, bump in zip(told, bumps, strict=True):
+        still = Motion(np.zeros(2), case["dt"])
+        shaken = GroundMotion(still, steps=bump_and_stop(**bump))
+        expected = simulate(block, shaken)
+        assert bool(case["fallen"]) == expected.overturned
+        # the package tells the state before each jump, and after it
+        theta = expected.theta[1:, 0]
+        theta = theta[np.append(True, np.diff(expected.time[1:]) > 1e-12)]
+        shown = rotations[first : first + min(case["done"], theta.size)]
+        assert shown == pytest.approx(theta[: shown.size], abs=1e-12)
+        first += case["done"]
+    assert {bool(case["fallen"]) for case in told} == {False, True}
 
 
 @pytest.mark.filterwarnings("ignore::rockfrag.simulation.ensemble.LightBodies")

@@ -246,6 +246,63 @@ def momentum_restitution(shape: Shape, pivot: int) -> float:
     )
 
 
+STANDS_FLAT = 1e-12  # rotation below which a block stands on its base [rad]
+
+
+def kicked(
+    shape: Shape, pivot: int, theta: float, omega: float, right: float, up: float
+) -> float:
+    """Rate about a pivot after a jump of the base's velocity (``docs/velocity-steps.md``) [rad/s].
+
+    Parameters
+    ----------
+    shape, pivot : a block as it stands, and +1 right or -1 left
+    theta, omega : rotation [rad] and rate before the jump [rad/s], clockwise
+    right, up : jump of the base's velocity [m/s]
+
+    Returns
+    -------
+    The rate; angular momentum about the pivot is kept.
+    """
+    x, z = arm(shape, pivot)
+    x, z = turned(x, z, theta)
+    return omega + shape.mass * (x * up - z * right) / pivot_inertia(shape, pivot)
+
+
+def jumped(
+    shape: Shape, theta: float, omega: float, right: float, up: float
+) -> tuple[int, float]:
+    """Pivot and rate after a jump of the base's velocity; pivot 0 if the block stays on its base.
+
+    Parameters
+    ----------
+    shape : a block as it stands
+    theta, omega : rotation [rad] and rate before the jump [rad/s], clockwise
+    right, up : jump of the base's velocity [m/s]
+
+    Returns
+    -------
+    Pivot +1 or -1, and the rate [rad/s].
+    """
+    if abs(theta) > STANDS_FLAT:
+        pivot = 1 if theta > 0.0 else -1
+        return pivot, kicked(shape, pivot, theta, omega, right, up)
+    if omega != 0.0:
+        pivot = 1 if omega > 0.0 else -1
+        after = kicked(shape, pivot, theta, omega, right, up)
+        if pivot * after > 0.0:
+            return pivot, after
+        # the base takes it over to the other pivot, which is an impact
+        left = momentum_restitution(shape, -pivot) * omega
+        after = kicked(shape, -pivot, theta, left, right, up)
+        return (-pivot, after) if -pivot * after > 0.0 else (0, 0.0)
+    clockwise = kicked(shape, 1, theta, 0.0, right, up)
+    other = kicked(shape, -1, theta, 0.0, right, up)
+    if clockwise > 0.0 and clockwise >= -other:
+        return 1, clockwise
+    return (-1, other) if other < 0.0 else (0, 0.0)
+
+
 def largest_restitution(shape: Shape, pivot: int) -> float:
     """Largest ratio with which no impact on this pivot gains energy [-].
 

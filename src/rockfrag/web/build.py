@@ -31,7 +31,7 @@ from rockfrag.engines.spatial.body import NEVER_SLIDES
 from rockfrag.engines.spatial.engine import AFTER, CUT_OFF, RESTS, TOLERANCE
 from rockfrag.engines.steps import FREE_TIME, STACK_STEP, STEP
 from rockfrag.web import ensemble_entry as ensemble
-from rockfrag.web.entry import CALL, describe, integrate_call
+from rockfrag.web.entry import CALL, describe, integrate_call, jump_call
 from rockfrag.web.space_entry import SPACE, describe_solid, integrate_solid
 
 TRIPLE = "wasm32-unknown-unknown"
@@ -56,6 +56,7 @@ def build_integrate() -> bytes:
     entries: Entries = {
         "describe": (describe, (call,)),
         "integrate": (integrate_call, history),
+        "jump": (jump_call, (call,)),
     }
     constants = {"gravity": GRAVITY, "step": STEP, "free_time": FREE_TIME}
     return module_of(

@@ -34,6 +34,7 @@ CALL = np.dtype(
         *fields("body", of=BODY),
         *fields("initial", of=STATE),
         *fields("scale dt"),
+        *fields("right up"),  # jump of the base's velocity [m/s]
         *whole("substeps free_samples"),
         *fields("summary", of=SUMMARY),
         *whole("done"),
@@ -129,6 +130,17 @@ def _check_restitution(call, block, restitution):
     )
     if call.fault == geometry.STANDS and not 0.0 <= restitution <= largest:
         call.fault = GAINS_ENERGY
+
+
+@kernel
+def jump_call(call):
+    """Let the base's velocity jump under the lone block that was described last: its state follows."""
+    state = call.initial
+    pivot, rate = geometry.jumped(
+        shape_of(call.statue), state.theta2, state.omega2, call.right, call.up
+    )
+    state.omega2 = rate
+    state.c2 = pivot if rate != 0.0 or state.theta2 != 0.0 else 0
 
 
 @kernel

@@ -4,6 +4,7 @@
  *   const kernel = await rockfragKernel(bytes);            // of integrate.wasm, a Uint8Array
  *   const body = kernel.bodyOf({statue: {width: 0.3, height: 1.2, mass: 200}});
  *   const response = kernel.integrate({body, samples, dt: 0.01, scale: 1.5});
+ *   const hit = kernel.bump({statue: {width: 0.02, height: 0.09, mass: 1}, velocity: 0.3, distance: 0.025});
  *
  * Everything that is computed about a body is computed by the module, which is made from the kernels that
  * rockfrag.simulate runs: a history has its bits.
@@ -117,6 +118,27 @@ async function rockfragKernel(bytes) {
     };
   }
 
+  // a lone block on a base that is hit, runs a distance and is stopped at once; the jumps are the module's
+  function bump({ statue, velocity, distance, dt = 0.005 }) {
+    const body = bodyOf({ statue });
+    const time = distance / velocity;
+    const count = Math.max(1, Math.ceil(time / dt - 1e-9));
+    const motion = { body, dt: time / count, scale: 1 };
+    const jumped = (state, right) => {
+      write(layout.call, call, { initial: { c1: 0, c2: 0, theta1: 0, omega1: 0, theta2: 0, omega2: 0, ...state }, right, up: 0 });
+      run("jump");
+      return read(layout.call, call).initial;
+    };
+    const { substeps, freeSamples } = shakingOf(body, motion.dt);
+    const runs = runIntegration({ ...motion, samples: new Float64Array(count + 1), substeps, freeSamples: 0, initial: jumped({}, velocity) });
+    if (runs.fallen) return { ...runs, dt: motion.dt };
+    const [theta2, omega2, c2] = ["theta2", "omega2", "c2"].map((name) => runs[name][runs.done - 1]);
+    // bodyOf has not been called since: the block is still the one described
+    const rests = runIntegration({ ...motion, samples: new Float64Array(2), substeps, freeSamples, initial: jumped({ theta2, omega2, c2 }, -velocity) });
+    const joined = Float64Array.from([...runs.theta2, ...rests.theta2.subarray(1)]);
+    return { fallen: rests.fallen, dt: motion.dt, done: joined.length, theta2: joined };
+  }
+
   function columns(at, done) {
     const view = new DataView(memory.buffer);
     const found = {};
@@ -139,5 +161,5 @@ async function rockfragKernel(bytes) {
     });
   }
 
-  return { bodyOf, shakingOf, integrate: runIntegration, restitution: true };
+  return { bodyOf, shakingOf, integrate: runIntegration, bump, restitution: true };
 }

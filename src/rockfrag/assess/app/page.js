@@ -342,6 +342,24 @@ function describe(deciding, measure) {
   scene.words = () => say("scene_words", { motion: data.names[deciding.motion], level: level(), what: say(fallen ? "falls" : "stays") });
   const turned = history ? ` ${say("turn_view")}` : "";
   scene.title = () => say(deciding.falls ? "scene" : "scene_other");
+  find("bump").hidden = Boolean(scene.pedestal);
+  titled(turned);
+}
+// a base that is hit, runs a distance and is stopped: no record of accelerations holds that
+function hit(event) {
+  event.preventDefault();
+  const [velocity, millimetres] = ["velocity", "distance"].map((name) => Number(find(`bump-${name}`).value));
+  if (!(velocity > 0 && millimetres > 0)) return;
+  const response = kernel.bump({ statue: scene.statue, velocity, distance: millimetres / 1000 });
+  Object.assign(scene, { response, dt: response.dt, at: 0 });
+  const local = (value) => new Intl.NumberFormat(document.documentElement.lang, { maximumSignificantDigits: 3 }).format(value);
+  scene.words = () => say("bump_words", { velocity: local(velocity), distance: local(millimetres), what: say(response.fallen ? "falls" : "stays") });
+  scene.title = () => say("bump_title");
+  titled();
+  if (scene.timer) play();
+  play();
+}
+function titled(turned = "") {
   find("scene-words").textContent = scene.words() + turned;
   find("scene-title").textContent = scene.title();
   find("scene").setAttribute("aria-label", scene.words() + turned);
@@ -514,6 +532,7 @@ async function begin() {
   find("language").value = data.texts[wanted] ? wanted : "en";
   find("language").addEventListener("change", () => { translate(); });
   find("play").addEventListener("click", play);
+  find("bump").addEventListener("submit", hit);
   addEventListener("beforeprint", drawSheets);
   form.addEventListener("submit", (event) => event.preventDefault());
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => paint());

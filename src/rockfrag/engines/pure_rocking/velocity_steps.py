@@ -25,12 +25,10 @@ from rockfrag.engines.pure_rocking.histories import (
 from rockfrag.engines.pure_rocking.kernels import record as kept
 from rockfrag.engines.pure_rocking.kernels.single import SCRATCH, Shaking
 from rockfrag.engines.steps import step_count
-from rockfrag.engines.velocity_pieces import Jump, Piece, pieces_of
+from rockfrag.engines.velocity_pieces import Piece, pieces_of
 from rockfrag.outcomes.outcomes import Outcomes
 from rockfrag.outcomes.response import Response
 from rockfrag.system import geometry
-
-LEVEL = 1e-12  # rotation below which a block stands on its base [rad]
 
 
 def run(cases: Cases) -> Outcomes:
@@ -127,7 +125,7 @@ class SteppedCase:
         """The state after a jump of the base, and its contact event; note what it asked of the contact."""
         assert piece.jump is not None
         theta, omega = float(state["theta2"]), float(state["omega2"])
-        pivot, rate = jumped_rate(self.shape, theta, omega, piece.jump)
+        pivot, rate = geometry.jumped(self.shape, theta, omega, *piece.jump)
         after = state.copy()
         after["omega2"], after["c2"] = rate, pivot if rate or theta else 0
         if pivot:
@@ -159,43 +157,6 @@ class SteppedCase:
             demand["friction2"] = max(float(demand["friction2"]), asked)
         if normal < 0 and math.isnan(summary["lost_contact"]):
             summary["lost_contact"] = piece.begin
-
-
-def jumped_rate(
-    shape: geometry.Shape, theta: float, omega: float, jump: Jump
-) -> tuple[int, float]:
-    """Pivot and angular velocity after a jump of the base [rad/s]; pivot 0 if the block stays on its base.
-
-    Parameters
-    ----------
-    shape, theta, omega : the block, its rotation [rad] and angular velocity [rad/s]
-    jump : of the base's velocity
-
-    Returns
-    -------
-    Pivot +1 or -1, and the angular velocity.
-    """
-
-    def rate(pivot: int, before: float) -> float:
-        x, z = geometry.turned(*geometry.arm(shape, pivot), theta)
-        moment = shape.mass * (x * jump.up - z * jump.right)
-        return before + moment / geometry.pivot_inertia(shape, pivot)
-
-    if abs(theta) > LEVEL:
-        pivot = 1 if theta > 0 else -1
-        return pivot, rate(pivot, omega)
-    if omega:
-        pivot = 1 if omega > 0 else -1
-        after = rate(pivot, omega)
-        if pivot * after > 0:
-            return pivot, after
-        # the base takes it over to the other pivot, which is an impact
-        left = geometry.momentum_restitution(shape, -pivot) * omega
-        after = rate(-pivot, left)
-        return (-pivot, after) if -pivot * after > 0 else (0, 0.0)
-    rates = {pivot: rate(pivot, 0.0) for pivot in (+1, -1)}
-    best = max(rates, key=lambda pivot: pivot * rates[pivot])
-    return (best, rates[best]) if best * rates[best] > 0 else (0, 0.0)
 
 
 _LARGEST = ("speed2", "ratio1", "ratio2")
