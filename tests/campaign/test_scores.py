@@ -1,5 +1,7 @@
 """Scores of what was said blind: proper, clustered, and a page that says who is better."""
 
+from pathlib import Path
+
 import numpy as np
 import pandas as pd
 import pytest
@@ -18,12 +20,16 @@ from rockfrag.records.motion import GroundMotion, Motion
 from rockfrag.records.velocity_steps import bump_and_stop
 from rockfrag.simulation.rules_of_thumb import kaneko, peak_velocity, static
 from rockfrag.stages.scores import (
+    HEAD,
     OURS,
     as_accelerations,
+    bare_tests,
     main,
+    nodes,
     page_of,
     who_is_better,
 )
+from rockfrag.study.loading import load_any
 
 from .conftest import configured
 
@@ -75,6 +81,39 @@ def test_the_page_says_that_a_rule_is_better_where_it_is():
     page = page_of({"made": table_of(1.0)})
     assert "## made: 600 tests" in page
     assert "**Better than the simulation: rule.**" in page
+
+
+@pytest.mark.parametrize("count", [3, 5])
+def test_errors_of_the_model_are_spread_as_a_normal_one(count):
+    assert nodes(count).mean() == pytest.approx(0, abs=1e-12)
+    assert nodes(count).std() == pytest.approx(1)
+
+
+def test_tests_without_an_object_are_said_by_the_curves_of_others_alone(
+    tmp_path, laboratory, capsys
+):
+    file = tmp_path / "bare.csv"
+    rows = [f"{peak},{ratio},{'yes' if peak * ratio > 0.02 else 'no'}"
+            for peak in (0.05, 0.2, 0.5) for ratio in (0.03, 0.1, 0.3)]  # fmt: skip
+    file.write_text("\n".join(["pga_g,pgv_over_pga_s,toppled", *rows]))
+    assert bare_tests(str(file)).peaks.max() == pytest.approx(0.15 * 9.81)
+    study, page = str(configured(tmp_path, laboratory)), tmp_path / "scores.md"
+    given = [study, "--tests", str(file), "--page", str(page), "--arrangements", "4"]
+    assert main(given) == 0
+    name = load_any(study).name
+    own, bare = page.read_text().split("## ")[1:]
+    assert "measured curve of bare" in own
+    assert f"measured curve of {name}" in bare
+    assert "a coin | 0.693 | 0.250" in bare
+    assert "Nobody wrote down shape or size" in bare
+
+
+def test_the_page_in_the_docs_is_of_all_campaigns_and_of_the_errors_that_stand():
+    page = (Path(__file__).parents[2] / "docs" / "scores.md").read_text()
+    for name in ("granite: 490 tests", "oxford: 45 tests", "shakebot: 83 tests"):
+        assert f"## {name}" in page
+    assert page.startswith(HEAD)
+    assert "rockfrag, in space |" in page
 
 
 def test_rules_see_a_jump_as_a_velocity():

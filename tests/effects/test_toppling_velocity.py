@@ -1,8 +1,20 @@
 """Medians over size from simulations: weights of earthquakes, fits, and the surface against other sizes."""
 
+import re
+from pathlib import Path
+
 import numpy as np
 import pytest
 
+from rockfrag import InputError
+from rockfrag.effects.shaken_records import Records
+from rockfrag.effects.toppling_causes import (
+    BOOKCASES,
+    CAUSES,
+    ShakenPieces,
+    cause_named,
+    causes_table,
+)
 from rockfrag.effects.toppling_velocity import (
     Shaken,
     earthquake_weights,
@@ -18,7 +30,9 @@ from rockfrag.fragility.toppling_velocity import LIMITS, terms_of, toppling_velo
 from rockfrag.motions import one_sine
 from rockfrag.motions.intensity import pgv
 from rockfrag.simulation.closed_forms import kaneko_velocity
-from rockfrag.stages.toppling_velocity import Records, records_of
+from rockfrag.stages.toppling_velocity import cause_lines, pieces_of, records_of
+
+NAMES = [cause.name for cause in CAUSES]
 
 
 def made(median: float, dispersion: float, records: int = 400) -> Shaken:
@@ -39,9 +53,56 @@ def test_the_fit_finds_median_and_dispersion_of_lognormal_capacities():
 def test_another_measure_moves_the_median_by_its_factor():
     shaken = made(0.8, 0.4)
     fell, levels = shaken.reached[-1, 0], shaken.levels[0]
-    one, _ = medians_by(fell, levels, np.ones(400))
-    twice, _ = medians_by(fell, levels, np.full(400, 2.0))
+    whole = np.ones((1, 400))
+    one, _ = medians_by(fell, levels, np.ones(400), whole)
+    twice, _ = medians_by(fell, levels, np.full(400, 2.0), whole)
     assert twice == pytest.approx(2 * one, rel=1e-6)
+    # by the measure of the levels themselves it is the fit of all sizes
+    assert one == pytest.approx(shaken.fits(whole)[0][0], rel=1e-6)
+
+
+CAUSE_ROW = re.compile(r"^\| ([a-z0-9.-]+) \|.*\|$", re.MULTILINE)
+
+
+def documented_causes() -> dict[str, str]:
+    """Rows of the table of causes in docs/toppling-velocity.md by their names."""
+    page = (Path(__file__).parents[2] / "docs" / "toppling-velocity.md").read_text()
+    rows = {found[1]: found[0] for found in CAUSE_ROW.finditer(page)}
+    return {name: row for name, row in rows.items() if name in NAMES}
+
+
+def test_the_page_has_a_row_for_every_cause():
+    assert list(documented_causes()) == NAMES
+
+
+def assert_documented(records: Records, *names: str) -> None:
+    shaken = ShakenPieces(records, BOOKCASES)
+    table = causes_table(shaken, [cause_named(name) for name in names])
+    _, _, *rows = cause_lines(table)
+    for name, row in zip(names, rows, strict=True):
+        assert documented_causes()[name] == row
+
+
+def test_the_page_says_of_two_causes_what_the_command_prints(records):
+    assert_documented(records, "own-component", "pulse")
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", NAMES)
+def test_the_page_says_of_each_cause_what_the_command_prints(records, name):
+    assert_documented(records, name)
+
+
+def test_a_cause_that_nobody_knows_is_refused_with_those_that_are():
+    with pytest.raises(InputError, match="own-component, geometric-mean"):
+        cause_named("wind")
+
+
+def test_pieces_of_ones_own_are_held_against_both_curves(tmp_path):
+    file = tmp_path / "own.csv"
+    file.write_text("width_cm,height,fema_p58_m_s\n32.1,0.737 m,0.724\n")
+    (piece,) = pieces_of(str(file)).to_dict("records")
+    assert piece == pytest.approx(BOOKCASES.iloc[0].to_dict())
 
 
 def test_records_of_an_earthquake_count_together():

@@ -62,8 +62,9 @@ class Shaken:
         steps = np.log(self.relative)
         trials = np.repeat(weights.sum(axis=1), sizes)[:, np.newaxis] * np.ones(levels)
         median, dispersion = _curves(steps, fell.reshape(-1, levels), trials)
-        away = np.abs(steps - median[:, np.newaxis])
-        near = ~(away > NEAR * dispersion[:, np.newaxis])
+        # a steep curve still needs levels on both sides
+        least = float(steps[1] - steps[0]) if levels > 1 else 0.0
+        near = _near(steps, median, np.maximum(dispersion, least))
         median, dispersion = _curves(
             steps, fell.reshape(-1, levels) * near, trials * near
         )
@@ -75,6 +76,12 @@ class Shaken:
     def relative(self) -> Floats:
         """Levels over the lowest, the same for all sizes, shape (levels,)."""
         return np.asarray(self.levels[0] / self.levels[0, 0])
+
+
+def _near(steps: Floats, median: Floats, dispersion: Floats) -> Flags:
+    """Whether logarithms of levels are within :data:`NEAR` dispersions of medians; all are where none is known."""
+    away = np.abs(steps - median[:, np.newaxis])
+    return np.asarray(~(away > NEAR * dispersion[:, np.newaxis]))
 
 
 def _curves(steps: Floats, fell: Floats, trials: Floats) -> tuple[Floats, Floats]:
@@ -262,23 +269,30 @@ def earthquake_weights(
     return np.asarray(counts[:, of_record], dtype=np.float64)
 
 
-def medians_by(reached: Flags, levels: Floats, factors: Floats) -> tuple[float, float]:
-    """Median and dispersion of one size by another measure, ``factors`` times the level of each record.
+def medians_by(
+    reached: Flags, levels: Floats, factors: Floats, weights: Floats
+) -> tuple[Floats, Floats]:
+    """Medians and dispersions of one size by another measure, ``factors`` times the level of each record.
+
+    As in :meth:`Shaken.fits` what is far from the median takes no part.
 
     Parameters
     ----------
     reached : shape (records, levels)
     levels, factors : shapes (levels,) and (records,)
+    weights : how often each record counts, shape (replicates, records)
 
     Returns
     -------
-    Median in the unit of the levels, and dispersion [-].
+    Medians in the unit of the levels, and dispersions [-], shape (replicates,) each.
     """
-    values = np.log(np.multiply.outer(factors, levels)).ravel()
-    design = np.column_stack([np.ones(values.size), values])
-    fell = reached.reshape(1, -1).astype(float)
-    (found,) = fit_batch(design, fell, np.ones_like(fell)).coefficients
-    return float(np.exp(-found[0] / found[1])), float(1 / found[1])
+    steps = np.log(np.multiply.outer(factors, levels)).ravel()
+    trials = np.repeat(weights, levels.size, axis=1)
+    fell = reached.ravel() * trials
+    median, dispersion = _curves(steps, fell, trials)
+    near = _near(steps, median, dispersion)
+    median, dispersion = _curves(steps, fell * near, trials * near)
+    return np.exp(median), dispersion
 
 
 def surface_coefficients(sizes: Floats, values: Floats) -> Floats:

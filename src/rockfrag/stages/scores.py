@@ -1,9 +1,10 @@
 """Blind probabilities of every test of campaigns, scored beside engineers' rules and others' measured curves.
 
-    python -m rockfrag.stages.scores config/granite.yaml … --page docs/scores.md
+    python -m rockfrag.stages.scores config/granite.yaml … --tests shakebot.csv --page docs/scores.md
 
 prints a table for each campaign and writes a page that says which rule is better and which is not. No outcome of a
-campaign is used for what is said of it, but for the curves of others.
+campaign is used for what is said of it, but for the curves of others. Tests of an object of which nobody wrote
+down shape or size (``--tests``) can be predicted by the curves of others alone.
 """
 
 import argparse
@@ -21,6 +22,8 @@ from scipy.stats import norm
 from rockfrag.base.arrays import Floats
 from rockfrag.base.errors import InputError
 from rockfrag.base.files import whole_file
+from rockfrag.base.tabular import read_rows
+from rockfrag.base.units import GRAVITY
 from rockfrag.campaign.comparison import MeasuredTests
 from rockfrag.campaign.scores import said_of_arrangements, scores_table
 from rockfrag.campaign.standing import (
@@ -55,8 +58,9 @@ from rockfrag.system.blocks import Block
 from rockfrag.system.mesh import Shape
 
 OURS = "rockfrag, in the plane"
-WITHOUT_ERROR = "rockfrag, without error of the model"
+WITHOUT_ERROR = "rockfrag, in the plane, without error of the model"
 IN_SPACE = "rockfrag, in space"
+IN_SPACE_WITHOUT = "rockfrag, in space, without error of the model"
 RULES: Mapping[str, Rule] = {
     "ASCE 43-05": asce_43,
     "Kaneko": kaneko,
@@ -67,9 +71,8 @@ RULES: Mapping[str, Rule] = {
 
 BETA = 0.4
 ARRANGEMENTS = 128  # in which an object may stand
+SOLID = 6  # of them, in which a scan is simulated in space
 RULED = 12  # of them, that rules are asked about
-# errors of the model [standard deviations], at equal probabilities
-NODES = norm.ppf((np.arange(5) + 0.5) / 5)
 SHORT = (
     5e-4  # half the duration of the accelerations that stand for a jump, for rules [s]
 )
@@ -92,9 +95,20 @@ class Tests:
         """Motions as accelerations."""
         return [as_accelerations(motion) for motion in self.motions]
 
+    @property
+    def peaks(self) -> Floats:
+        """PGV of the motions [m/s]."""
+        return np.array([pgv(motion) for motion in self.ruled])
+
     def arrangements(self) -> Trials:
         """Arrangements in which the object may stand, by what was assumed before any outcome was used."""
         return arrangements_of(self.study, self.thing, self.count)
+
+
+def nodes(count: int) -> Floats:
+    """Errors of the model of equal probability, which have mean 0 and standard deviation 1."""
+    found = norm.ppf((np.arange(count) + 0.5) / count)
+    return np.asarray(found / found.std())
 
 
 def arrangements_of(study: CampaignStudy, thing: Shape | Block, count: int) -> Trials:
@@ -144,7 +158,7 @@ def simulated(tests: Tests, arrangements: Trials, error: float) -> Floats:
     -------
     Probabilities, shape (tests,).
     """
-    scales = np.exp(-error * NODES) if error > 0 else np.ones(1)
+    scales = np.exp(-error * nodes(5)) if error > 0 else np.ones(1)
     parts = []
     for first in range(0, len(tests.motions), BATCH):
         batch = tests.motions[first : first + BATCH]
@@ -157,8 +171,8 @@ def simulated(tests: Tests, arrangements: Trials, error: float) -> Floats:
 
 def simulated_in_space(
     tests: Tests, arrangements: Trials, count: int, error: float
-) -> Floats:
-    """Probability of each test in space, of the first so many arrangements, with an error of the model.
+) -> tuple[Floats, Floats]:
+    """Probability of each test in space, in some arrangements, with an error of the model and without.
 
     Parameters
     ----------
@@ -166,14 +180,16 @@ def simulated_in_space(
 
     Returns
     -------
-    Probabilities, shape (tests,).
+    Probabilities, shape (tests,) each.
     """
     assert isinstance(tests.thing, Shape)
     systems = solids_of(tests.thing, arrangements, count)
-    nodes = NODES[::2] if error > 0 else np.zeros(1)
-    scales = np.exp(-error * nodes).tolist()
+    errors = nodes(3)
+    scales = np.exp(-error * errors).tolist()
     fell = simulate_in_space(systems, tests.ruled, scales, threads=1)
-    return said_of_arrangements(np.moveaxis(fell, 2, 1).reshape(-1, fell.shape[1]))
+    all_errors = np.moveaxis(fell, 2, 1).reshape(-1, fell.shape[1])
+    # the middle one is no error
+    return said_of_arrangements(all_errors), said_of_arrangements(fell[..., 1])
 
 
 def said_by_rules(tests: Tests, arrangements: Trials) -> Iterator[tuple[str, Floats]]:
@@ -191,50 +207,141 @@ def said_by_rules(tests: Tests, arrangements: Trials) -> Iterator[tuple[str, Flo
         yield name, norm.cdf(-np.log(factors) / BETA).mean(axis=0)
 
 
-def curve_of(tests: Tests) -> tuple[float, float]:
-    """Measured median PGV [m/s] and dispersion of a campaign."""
-    peaks = np.array([pgv(motion) for motion in tests.ruled])
-    groups = tests.measured.groups.astype(object)
-    fell = tests.measured.overturned.astype(float)
-    outcomes = Observations(peaks, fell, np.ones(fell.size), groups, groups)
-    fit = fit_lognormal(outcomes)
+def curve_of(peaks: Floats, measured: MeasuredTests) -> tuple[float, float]:
+    """Measured median PGV and dispersion of a campaign.
+
+    Parameters
+    ----------
+    peaks, measured : PGV of the tests [m/s], and their outcomes
+
+    Returns
+    -------
+    Median [m/s] and dispersion [-].
+    """
+    groups = measured.groups.astype(object)
+    fell = measured.overturned.astype(float)
+    fit = fit_lognormal(Observations(peaks, fell, np.ones(fell.size), groups, groups))
     return fit.theta, fit.beta
 
 
 def said_of(
-    name: str, campaigns: Mapping[str, Tests], in_space: int
+    name: str,
+    campaigns: Mapping[str, Tests],
+    in_space: int,
+    bare: Mapping[str, tuple[float, float]],
 ) -> dict[str, Floats]:
     """What everybody says of the tests of a campaign, ours first.
 
     Parameters
     ----------
     name, campaigns : the campaign, and all of them by name
-    in_space : arrangements that are simulated in space; 0 for none
+    in_space : arrangements in which scans are simulated in space; 0 for none
+    bare : median PGV [m/s] and dispersion of objects without shape or size, by name
 
     Returns
     -------
     Probabilities by who says them, shape (tests,) each.
     """
     tests = campaigns[name]
-    arrangements, error = (
-        tests.arrangements(),
-        MODEL_ERRORS[kind_of(tests.thing)].beyond,
-    )
-    said = {OURS: simulated(tests, arrangements, error)}
-    said[WITHOUT_ERROR] = simulated(tests, arrangements, 0.0)
+    arrangements = tests.arrangements()
+    error = MODEL_ERRORS[kind_of(tests.thing)].beyond
+    said: dict[str, Floats] = {}
     if in_space and isinstance(tests.thing, Shape):
-        said[IN_SPACE] = simulated_in_space(tests, arrangements, in_space, error)
+        found = simulated_in_space(tests, arrangements, in_space, error)
+        said[IN_SPACE], said[IN_SPACE_WITHOUT] = found
+    said[OURS] = simulated(tests, arrangements, error)
+    said[WITHOUT_ERROR] = simulated(tests, arrangements, 0.0)
     said |= dict(said_by_rules(tests, arrangements))
-    peaks = np.array([pgv(motion) for motion in tests.ruled])
-    for other, others in campaigns.items():
-        if other != name:
-            theta, beta = curve_of(others)
-            said[f"measured curve of {other}"] = norm.cdf(np.log(peaks / theta) / beta)
-    return said
+    curves = {
+        other: curve_of(others.peaks, others.measured)
+        for other, others in campaigns.items()
+        if other != name
+    }
+    return said | said_by_curves(tests.peaks, {**curves, **bare})
+
+
+def said_by_curves(
+    peaks: Floats, curves: Mapping[str, tuple[float, float]]
+) -> dict[str, Floats]:
+    """What measured curves of other objects say of tests, by whose they are.
+
+    Parameters
+    ----------
+    peaks, curves : PGV of the tests [m/s], and medians and dispersions by name
+
+    Returns
+    -------
+    Probabilities, shape (tests,) each.
+    """
+    return {
+        f"measured curve of {name}": norm.cdf(np.log(peaks / theta) / beta)
+        for name, (theta, beta) in curves.items()
+    }
+
+
+@dataclass(frozen=True)
+class BareTests:
+    """Tests of an object of which nobody wrote down shape or size.
+
+    Attributes
+    ----------
+    peaks, measured : PGV of each test [m/s], and what was seen
+    """
+
+    peaks: Floats
+    measured: MeasuredTests
+
+
+def bare_tests(file: str) -> BareTests:
+    """Tests of a table with ``pga_g``, ``pgv_over_pga_s`` and ``toppled``; those of one motion belong together.
+
+    Parameters
+    ----------
+    file : its name
+
+    Returns
+    -------
+    The :class:`BareTests`.
+    """
+    rows = read_rows(file, ["pga_g", "pgv_over_pga_s", "toppled"], ["time"])
+    each = [
+        (row.number("pga_g", 0.0), row.number("pgv_over_pga_s", 0.0)) for row in rows
+    ]
+    fell = np.array([row.text("toppled").lower() in ("yes", "1") for row in rows])
+    groups = pd.factorize(pd.MultiIndex.from_tuples(each))[0]
+    peaks = GRAVITY * np.array(each).prod(axis=1)
+    return BareTests(peaks, MeasuredTests(fell, groups.astype(np.int64), seed=1))
+
+
+def tables_of(
+    campaigns: Mapping[str, Tests], bare: Mapping[str, BareTests], in_space: int
+) -> Iterator[tuple[str, pd.DataFrame]]:
+    """Yield the scores of each campaign, and of tests without an object.
+
+    Parameters
+    ----------
+    campaigns, bare : tests by name, of objects that are known and of others
+    in_space : arrangements in which scans are simulated in space; 0 for none
+    """
+    curves = {name: curve_of(each.peaks, each.measured) for name, each in bare.items()}
+    for name, tests in campaigns.items():
+        said = said_of(name, campaigns, in_space, curves)
+        seen = tests.measured
+        yield name, scores_table(said, seen.overturned, seen.groups)
+    known = {
+        name: curve_of(each.peaks, each.measured) for name, each in campaigns.items()
+    }
+    for name, others in bare.items():
+        said = said_by_curves(others.peaks, known)
+        said["a coin"] = np.full(others.peaks.size, 0.5)
+        seen = others.measured
+        yield name, scores_table(said, seen.overturned, seen.groups)
 
 
 def who_is_better(table: pd.DataFrame) -> str:
     """Sentence on who is better than our simulation, who is worse, and of whom that is not known."""
+    if not table["who"].iloc[0].startswith("rockfrag"):
+        return "Nobody wrote down shape or size, so that neither a simulation nor a rule can say anything."
     others = table[~table["who"].str.startswith("rockfrag")]
     better = others[others["worse_upper"] < 0]["who"]
     worse = others[others["worse_lower"] > 0]["who"]
@@ -263,9 +370,9 @@ def page_of(tables: Mapping[str, pd.DataFrame]) -> str:
     lines = [HEAD]
     for name, table in tables.items():
         lines += [f"\n## {name}: {table['tests'].iloc[0]} tests\n", TITLES, RULER]
-        for row in table.to_dict("records"):
+        for number, row in enumerate(table.to_dict("records")):
             worse = f"{row['worse']:+.3f} ({row['worse_lower']:+.3f} to {row['worse_upper']:+.3f})"
-            worse = "" if row["who"] == OURS else worse
+            worse = worse if number else ""
             lines.append(
                 f"| {row['who']} | {row['log']:.3f} | {row['brier']:.3f} | {100 * row['right']:.0f} % | {worse} |"
             )
@@ -273,7 +380,9 @@ def page_of(tables: Mapping[str, pd.DataFrame]) -> str:
     return "\n".join(lines) + "\n"
 
 
-TITLES = "| who says it | log score | Brier | right | log score above ours (90 %) |"
+TITLES = (
+    "| who says it | log score | Brier | right | log score above the first (90 %) |"
+)
 RULER = "|---|--:|--:|--:|---|"
 HEAD = f"""# Scores: what was said blind, and what happened
 
@@ -285,8 +394,14 @@ has 0.25); less is better. *rockfrag* draws what nobody measured ({ARRANGEMENTS}
 [campaigns](campaigns.md#blind-the-model-error)), simulates the test's own motion in each and adds the model error
 of the kind of body. Rules get the same arrangements and a dispersion of {BETA:g} about what they say: ASCE 43-05
 (appendix A), Kaneko's curve, the peak velocity g α/p, and b/h. The measured curve of another object is what one
-has who tests one object and speaks of another. Intervals
-are over input motions."""
+has who tests one object and speaks of another. A scan is answered in space ({SOLID} of the arrangements, of which
+`--in-space` takes more), a cut block, which one component along its side moves in its own plane, in that.
+Intervals are over input motions.
+
+Errors of the model: {", ".join(f"{each.beyond:.3f} of a {kind}" for kind, each in MODEL_ERRORS.items())}
+(standard deviations of ln level, [campaigns](campaigns.md#blind-the-model-error)). That of scans rests on the
+granite rock itself: a score of it with that error is blind to each test, not to the campaign, and stands beside
+the score without."""
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -303,19 +418,21 @@ def main(arguments: Sequence[str] | None = None) -> int:
         "--arrangements", type=int, default=ARRANGEMENTS, metavar="N", help=words
     )
     parser.add_argument("--page", metavar="FILE", help="write the page here")
-    words = "arrangements of scans that are simulated in space as well"
-    parser.add_argument("--in-space", type=int, default=0, metavar="N", help=words)
+    words = "arrangements of scans that are simulated in space as well; 0: none"
+    parser.add_argument("--in-space", type=int, default=SOLID, metavar="N", help=words)
+    words = "tests of an object without shape or size: pga_g, pgv_over_pga_s, toppled"
+    parser.add_argument(
+        "--tests", action="append", default=[], metavar="FILE", help=words
+    )
     given = parser.parse_args(arguments)
+    tables: dict[str, pd.DataFrame] = {}
     try:
         read = [_read(path, given.arrangements) for path in given.studies]
         campaigns = {tests.study.name: tests for tests in read}
-        tables = {}
-        for name, tests in campaigns.items():
-            said = said_of(name, campaigns, given.in_space)
-            tables[name] = scores_table(
-                said, tests.measured.overturned, tests.measured.groups
-            )
-            print(f"{name}\n{tables[name].round(3).to_string(index=False)}")
+        bare = {Path(file).stem: bare_tests(file) for file in given.tests}
+        for name, table in tables_of(campaigns, bare, given.in_space):
+            tables[name] = table
+            print(f"{name}\n{table.round(3).to_string(index=False)}", flush=True)
     except InputError as error:
         print(error, file=sys.stderr)
         return 2

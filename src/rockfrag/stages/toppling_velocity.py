@@ -4,6 +4,10 @@
 
 shakes uniform blocks by the default records, in the plane and in space, and writes tables and the figure of
 docs/toppling-velocity.md; ``--surface FILE`` writes the coefficients that the package looks up.
+
+    python -m rockfrag.stages.toppling_velocity --cause pulse --pieces own.csv
+
+prints one row of the table of causes, of the bookcases of FEMA P-58 or of other pieces, and stops there.
 """
 
 import argparse
@@ -12,7 +16,6 @@ import logging
 import sys
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from functools import cached_property
 from pathlib import Path
 from typing import Any
 
@@ -23,19 +26,19 @@ from rockfrag.base import figure_style as style
 from rockfrag.base.arrays import Floats
 from rockfrag.base.errors import InputError
 from rockfrag.base.files import whole_file, write_table
-from rockfrag.base.units import GRAVITY
+from rockfrag.base.tabular import read_rows
+from rockfrag.effects.shaken_records import SEED, Records
+from rockfrag.effects.toppling_causes import (
+    BOOKCASES,
+    CAUSES,
+    ShakenPieces,
+    cause_named,
+    causes_table,
+)
 from rockfrag.effects.toppling_velocity import (
-    Pair,
-    Shaken,
-    acceleration_levels,
-    earthquake_weights,
     grid_of_sizes,
-    medians_by,
     random_sizes,
-    shaken_in_plane,
-    shaken_in_space,
     surface_coefficients,
-    velocity_levels,
 )
 from rockfrag.effects.toppling_velocity_figure import draw_toppling_velocity
 from rockfrag.fragility.toppling_velocity import (
@@ -45,26 +48,8 @@ from rockfrag.fragility.toppling_velocity import (
     surface_from,
     terms_of,
 )
-from rockfrag.motions.intensity import pgv
-from rockfrag.records.motion import Motion
 from rockfrag.simulation.closed_forms import kaneko_velocity
 from rockfrag.stages.space_study import RECORDS, wide_set
-
-PIECES = pd.DataFrame(
-    {
-        "width_m": 0.321,
-        "height_m": [0.737, 1.041, 1.422, 1.803, 2.064],
-        "fema_p58_m_s": [0.724, 0.493, 0.361, 0.290, 0.251],
-    }
-)
-"""Unanchored bookcases of FEMA P-58 (E2022.102a to 106a): depth that rocks, height, median peak floor velocity;
-by calculation and judgement, β = 0.5 throughout."""
-
-VELOCITIES = np.geomspace(0.06, 6.0, 45)  # levels over Kaneko's velocity
-ACCELERATIONS = np.geomspace(0.8, 40.0, 45)  # levels over uplift
-FEWER = np.geomspace(0.15, 3.5, 16)  # likewise, in space and with friction
-FRICTION = 0.3  # of furniture on a smooth floor
-SEED = 55
 
 _LOG = logging.getLogger(__name__)
 
@@ -84,63 +69,37 @@ QUICK = Extent((4, 5), (3, 4), 3, 10)
 """What the study shakes, and a tenth of it, which shows that it runs."""
 
 
-@dataclass(frozen=True)
-class Records:
-    """Both components of records, and their earthquakes."""
-
-    pairs: Sequence[Pair]
-    earthquakes: Sequence[str]
-
-    @cached_property
-    def motions(self) -> list[Motion]:
-        """Components one after the other, shape (2 × records,)."""
-        return [motion for pair in self.pairs for motion in pair]
-
-    @cached_property
-    def velocities(self) -> Floats:
-        """PGV of both components of each record, shape (records, 2) [m/s]."""
-        return np.array([[pgv(motion) for motion in pair] for pair in self.pairs])
-
-    @cached_property
-    def accelerations(self) -> Floats:
-        """PGA likewise [g]."""
-        peaks = [[motion.pga for motion in pair] for pair in self.pairs]
-        return np.array(peaks) / GRAVITY
-
-    def peaks(self, measure: str) -> Floats:
-        """Peaks of both components in a measure, shape (records, 2)."""
-        return self.velocities if measure == MEASURES[0] else self.accelerations
-
-    def weights(self, standing: str) -> Floats:
-        """How often each motion, or each record of bodies in space, counts if earthquakes are drawn anew."""
-        of_records = earthquake_weights(self.earthquakes, seed=SEED)
-        return np.repeat(of_records, 2, axis=1) if standing == "plane" else of_records
-
-    def shake(self, sizes: Floats, standing: str, measure: str) -> Shaken:
-        """Shake blocks of sizes at levels of a measure."""
-        peaks = self.peaks(measure)
-        if standing != "plane":
-            levels = velocity_levels(sizes, FEWER)
-            mean = np.sqrt(peaks.prod(axis=1))
-            return shaken_in_space(sizes, standing, self.pairs, mean, levels)
-        if measure == MEASURES[0]:
-            levels = velocity_levels(sizes, VELOCITIES)
-        else:
-            levels = acceleration_levels(sizes, ACCELERATIONS)
-        return shaken_in_plane(sizes, self.motions, peaks.ravel(), levels)
-
-
 def records_of(every: int, folder: Path) -> Records:
     """Both components of every so many of the default records."""
     pairs, earthquakes = wide_set(every, folder)
     return Records(pairs, earthquakes)
 
 
+def kept_surfaces(
+    records: Records, extent: Extent, folder: Path
+) -> Iterator[tuple[pd.DataFrame, list[dict[str, Any]]]]:
+    """Yield for each standing its medians and surfaces; those that an earlier run has left are read."""
+    for standing in STANDINGS:
+        table_at = folder / f"medians-{standing}.csv"
+        rows_at = folder / f"surfaces-{standing}.json"
+        if not (table_at.exists() and rows_at.exists()):
+            ((table, rows),) = medians_and_surfaces(records, extent, [standing])
+            write_table(table, table_at)
+            _write_json(rows, rows_at)
+        rows = json.loads(rows_at.read_text(encoding="utf-8"))
+        yield pd.read_csv(table_at), rows
+
+
+def _write_json(content: Any, file: Path) -> None:
+    with whole_file(file) as path:
+        path.write_text(json.dumps(content, indent=1) + "\n", encoding="utf-8")
+
+
 def medians_and_surfaces(
-    records: Records, extent: Extent
+    records: Records, extent: Extent, standings: Sequence[str] = STANDINGS
 ) -> Iterator[tuple[pd.DataFrame, list[dict[str, Any]]]]:
     """Yield for each standing its medians and surfaces, judged by sizes that the fit has not seen."""
-    for standing in STANDINGS:
+    for standing in standings:
         grid = extent.plane if standing == "plane" else extent.space
         sizes = grid_of_sizes(*grid)
         others = random_sizes(extent.held_out, SEED)
@@ -216,12 +175,15 @@ def _table(sizes: Floats, medians: Floats, dispersions: Floats) -> pd.DataFrame:
     )
 
 
-def pieces_table(records: Records) -> pd.DataFrame:
-    """Pieces of FEMA P-58 with Kaneko's medians and simulated ones, and their ratios over both."""
-    sizes = PIECES[["width_m", "height_m"]].to_numpy()
-    table = PIECES.assign(kaneko_m_s=[kaneko_velocity(*x) for x in sizes.tolist()])
-    for standing in STANDINGS:
-        found = records.shake(sizes, standing, MEASURES[0])
+def pieces_table(
+    shaken: ShakenPieces, standings: Sequence[str] = STANDINGS
+) -> pd.DataFrame:
+    """Pieces of furniture with published medians and simulated ones, and their ratios over both."""
+    records = shaken.records
+    kaneko = [kaneko_velocity(*size) for size in shaken.sizes.tolist()]
+    table = shaken.pieces.assign(kaneko_m_s=kaneko)
+    for standing in standings:
+        found = shaken.standing(standing)
         medians, dispersions = found.fits(records.weights(standing))
         logs = np.log(medians)
         table[standing] = medians[0]
@@ -230,64 +192,6 @@ def pieces_table(records: Records) -> pd.DataFrame:
         table[f"{standing}_over_kaneko"] = medians[0] / table["kaneko_m_s"]
         table[f"{standing}_over_p58"] = medians[0] / table["fema_p58_m_s"]
     return table
-
-
-def causes_table(records: Records) -> pd.DataFrame:
-    """What moves the planar median of the pieces: ratio over Kaneko, mean and spread over the pieces.
-
-    Each row changes one thing: the definition of velocity, the motions, or the model; two are of bodies in space.
-    """
-    sizes = PIECES[["width_m", "height_m"]].to_numpy()
-    plane = records.shake(sizes, "plane", MEASURES[0])
-    square = records.shake(sizes, "square", MEASURES[0])
-    both = records.velocities
-    mean = np.sqrt(both.prod(axis=1))
-    ones = np.ones((1, len(records.motions)))
-    rows: list[dict[str, Any]] = []
-
-    def add(what: str, part: str, medians: Floats) -> None:
-        kaneko = velocity_levels(sizes, np.ones(1))[:, 0]
-        # what is too squat for the friction slides and has no median
-        logs = np.log(medians / kaneko)
-        ratio, spread = float(np.exp(np.nanmean(logs))), float(np.nanstd(logs))
-        rows.append({"part": part, "what": what, "ratio": ratio, "spread": spread})
-
-    def by(found: Shaken, factors: Floats) -> Floats:
-        each = zip(found.reached[-1], found.levels, strict=True)
-        return np.array([medians_by(fell, steps, factors)[0] for fell, steps in each])
-
-    own = both.ravel()
-    add("PGV of the component that shakes it", "definition", plane.fits(ones)[0][0])
-    add("geometric mean of both", "definition", by(plane, np.repeat(mean, 2) / own))
-    largest = both.max(axis=1)
-    add("larger of both", "definition", by(plane, np.repeat(largest, 2) / own))
-    sets = np.array([str(motion.metadata["set"]) for motion in records.motions])
-    for name in np.unique(sets):
-        words = f"{name.replace('_', ' ')} motions alone"
-        add(
-            words, "motions", plane.fits((sets == name)[np.newaxis].astype(float))[0][0]
-        )
-    steps = velocity_levels(sizes, FEWER)
-    slides = shaken_in_plane(sizes, records.motions, own, steps, friction=FRICTION)
-    words = f"friction of {FRICTION:g}, slides and flies; those that topple"
-    add(words, "model", slides.fits(ones)[0][0])
-    for ratio in (0.9, 1.02):
-        bounces = shaken_in_plane(sizes, records.motions, own, steps, restitution=ratio)
-        words = f"restitution {ratio:g} times that of momentum"
-        add(words, "model", bounces.fits(ones)[0][0])
-    for number in (5, 7):
-        words = f"rocks to {LIMITS[number]:g} of the critical angle"
-        add(words, "limit", plane.fits(ones, number)[0][0])
-    whole = np.ones((1, len(records.pairs)))
-    add(
-        "square base, both components, by their mean", "space", square.fits(whole)[0][0]
-    )
-    add(
-        "square base, both components, by the larger",
-        "space",
-        by(square, largest / mean),
-    )
-    return pd.DataFrame(rows)
 
 
 def flatness_table(medians: pd.DataFrame) -> pd.DataFrame:
@@ -308,20 +212,23 @@ def flatness_table(medians: pd.DataFrame) -> pd.DataFrame:
     return table.rename_axis("standing").reset_index()
 
 
-def study(records: Records, extent: Extent) -> tuple[Mapping[str, pd.DataFrame], Any]:
+def study(
+    records: Records, extent: Extent, folder: Path
+) -> tuple[Mapping[str, pd.DataFrame], Any]:
     """All tables by name, and the rows of the surfaces."""
     tables, rows = [], []
-    for table, some in medians_and_surfaces(records, extent):
+    for table, some in kept_surfaces(records, extent, folder):
         tables.append(table)
         rows += some
     medians = pd.concat(tables, ignore_index=True)
-    pieces = pieces_table(records)
+    shaken = ShakenPieces(records, BOOKCASES)
+    pieces = pieces_table(shaken)
     found = {
         "medians": medians,
         "flatness": flatness_table(medians),
         "pieces": pieces,
         "bias": bias_table(pieces),
-        "causes": causes_table(records),
+        "causes": causes_table(shaken),
         "surfaces": pd.DataFrame(rows).drop(columns=["median", "dispersion"]),
     }
     return found, rows
@@ -362,13 +269,7 @@ def page_tables(tables: Mapping[str, pd.DataFrame]) -> str:
             f"| {NAMES[row['standing']]} | {row['sizes']} | {row['ratio']:.2f} | {row['spread']:.3f} | "
             f"{row['least']:.2f} | {row['most']:.2f} | {row['dispersion']:.2f} |"
         )
-    lines += [
-        "",
-        "| what | over Kaneko | spread of ln over the pieces |",
-        "|---|--:|--:|",
-    ]
-    for row in causes.to_dict("records"):
-        lines.append(f"| {row['what']} | {row['ratio']:.2f} | {row['spread']:.3f} |")
+    lines += ["", *flat_lines(pieces), "", *cause_lines(causes)]
     lines += [
         "",
         "| cut blocks | bias of ln median | standard error |",
@@ -380,19 +281,50 @@ def page_tables(tables: Mapping[str, pd.DataFrame]) -> str:
         )
     lines += [
         "",
-        "| surface | limit | held-out sizes, ln | largest | earthquakes, ln |",
-        "|---|--:|--:|--:|--:|",
+        "| surface | by | limit | held-out sizes, ln | largest | earthquakes, ln |",
+        "|---|---|--:|--:|--:|--:|",
     ]
-    velocities = tables["surfaces"]
-    velocities = velocities[velocities["measure"] == MEASURES[0]]
-    for row in velocities[velocities["limit"].isin((1.0, 0.3, 0.01))].to_dict(
-        "records"
-    ):
+    surfaces = tables["surfaces"]
+    for row in surfaces[surfaces["limit"].isin((1.0, 0.3, 0.01))].to_dict("records"):
+        measure = "PGV" if row["measure"] == MEASURES[0] else "PGA"
         lines.append(
-            f"| {NAMES[row['standing']]} | {row['limit']:g} | {row['residual']:.3f} | {row['largest']:.3f} | "
-            f"{row['earthquakes']:.3f} |"
+            f"| {NAMES[row['standing']]} | {measure} | {row['limit']:g} | {row['residual']:.3f} | "
+            f"{row['largest']:.3f} | {row['earthquakes']:.3f} |"
         )
     return "\n".join(lines)
+
+
+def flat_lines(pieces: pd.DataFrame) -> list[str]:
+    """Table in Markdown of how flat the ratios of the pieces are over published medians."""
+    lines = [
+        f"| over {len(pieces)} pieces | mean | least | most | furthest from the mean |",
+        "|---|--:|--:|--:|--:|",
+    ]
+    for standing in ("plane", "square"):
+        for name, words in (("kaneko", "Kaneko"), ("p58", "P-58")):
+            ratio = pieces[f"{standing}_over_{name}"]
+            away = (ratio / ratio.mean() - 1).abs().max()
+            lines.append(
+                f"| {NAMES[standing]} over {words} | {ratio.mean():.2f} | {ratio.min():.2f} | {ratio.max():.2f} | "
+                f"{100 * away:.0f} % |"
+            )
+    return lines
+
+
+def cause_lines(causes: pd.DataFrame) -> list[str]:
+    """Table of causes in Markdown."""
+    lines = [
+        "| `--cause` | what is changed | over Kaneko | ± | spread over pieces | takes off, of the difference "
+        "to Kaneko | over P-58 | takes off, of that to P-58 |",
+        "|---|---|--:|--:|--:|--:|--:|--:|",
+    ]
+    for row in causes.to_dict("records"):
+        lines.append(
+            f"| {row['cause']} | {row['what']} | {row['ratio']:.2f} | {100 * row['error']:.0f} % | "
+            f"{row['spread']:.3f} | {100 * row['of_kaneko']:.0f} % | {row['over_p58']:.2f} | "
+            f"{100 * row['of_p58']:.0f} % |"
+        )
+    return lines
 
 
 def bias_table(pieces: pd.DataFrame) -> pd.DataFrame:
@@ -422,6 +354,30 @@ def write_page(page: Path, tables: Mapping[str, pd.DataFrame]) -> None:
         )
 
 
+def pieces_of(file: str) -> pd.DataFrame:
+    """Pieces of furniture of a file, with sizes [m] and the medians of FEMA P-58 [m/s]."""
+    *sizes, published = BOOKCASES.columns
+    rows = read_rows(file, [*sizes, published], quantities=sizes)
+    return pd.DataFrame(
+        [
+            {name: row.quantity(name, 0.0) for name in sizes}
+            | {published: row.number(published, 0.0)}
+            for row in rows
+        ]
+    )
+
+
+def print_pieces(shaken: ShakenPieces, causes: Sequence[str]) -> None:
+    """Print rows of the table of causes or, of no causes, what pieces do beside published medians."""
+    if causes:
+        table = causes_table(shaken, [cause_named(name) for name in causes])
+        print("\n".join(cause_lines(table)))
+        return
+    pieces = pieces_table(shaken, ("plane", "square"))
+    print(pieces.round(3).to_string(index=False))
+    print("\n".join(flat_lines(pieces)))
+
+
 def main(arguments: Sequence[str] | None = None) -> int:
     """Write tables and figure, and the surfaces where a file is named."""
     parser = argparse.ArgumentParser(
@@ -435,23 +391,34 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("--surface", metavar="FILE", help="write the coefficients here")
     parser.add_argument("--page", metavar="FILE", help="write tables and figure here")
     parser.add_argument("--quick", action="store_true", help="a few sizes and records")
+    words = "take up a run that was interrupted, by what it left in the folder"
+    parser.add_argument("--resume", action="store_true", help=words)
+    words = f"print this row of the causes alone: {', '.join(c.name for c in CAUSES)}"
+    parser.add_argument("--cause", metavar="NAME", action="append", help=words)
+    words = "pieces of your own: width_m (that rocks), height_m, fema_p58_m_s; print their ratios alone"
+    parser.add_argument("--pieces", metavar="FILE", help=words)
     given = parser.parse_args(arguments)
     logging.basicConfig(level=logging.INFO, format="%(message)s")
     extent = QUICK if given.quick else WHOLE
     try:
         records = records_of(extent.every, Path(given.records))
-        tables, rows = study(records, extent)
+        if given.cause or given.pieces:
+            own = pieces_of(given.pieces) if given.pieces else BOOKCASES
+            print_pieces(ShakenPieces(records, own), given.cause or ())
+            return 0
+        folder = Path(given.output)
+        folder.mkdir(parents=True, exist_ok=True)
+        if not given.resume:
+            for file in folder.glob("surfaces-*.json"):
+                file.unlink()
+        tables, rows = study(records, extent, folder)
     except InputError as error:
         print(error, file=sys.stderr)
         return 2
-    folder = Path(given.output)
-    folder.mkdir(parents=True, exist_ok=True)
     for name, table in tables.items():
         write_table(table, folder / f"{name}.csv")
     if given.surface:
-        text = json.dumps({"surfaces": rows}, indent=1) + "\n"
-        with whole_file(Path(given.surface)) as path:
-            path.write_text(text, encoding="utf-8")
+        _write_json({"surfaces": rows}, Path(given.surface))
     page = Path(given.page) if given.page else None
     figures = [folder] if page is None else [folder, page.parent / "images"]
     if page is not None:
