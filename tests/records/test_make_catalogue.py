@@ -46,6 +46,19 @@ PAIRS = {
 """Names of two horizontal components, and of their vertical one."""
 
 
+@pytest.mark.parametrize("name", ["STA_{0}_{1}.txt", "STA_{0}.{1}"])
+def test_of_one_record_in_three_quantities_one_is_taken(tmp_path, name):
+    for seed, letter in enumerate("avd"):
+        write(tmp_path / name.format("NS", letter), 2 * seed)
+        write(tmp_path / name.format("EW", letter), 2 * seed + 1)
+    draft = make_catalogue([tmp_path], unit="g", folder=tmp_path)
+    assert len(draft.table) == 2
+    assert sorted({why.split()[0] for _, why in draft.left_out}) == [
+        "displacement",
+        "velocity",
+    ]
+
+
 @pytest.mark.parametrize("prefix", ["", "RSN173_IMPVALL.H_"])
 def test_names_that_differ_in_the_component_are_of_one_record(tmp_path, prefix):
     names = [

@@ -72,6 +72,31 @@ def test_a_count_in_words_must_be_that_of_the_samples(write, words):
 
 
 @pytest.mark.parametrize(
+    "words",
+    [
+        *("Duration: 2.4 s", "DURATION (sec) = 2.39", "Record duration: 2 s", "Dauer: 2,40 s"),
+        *("Durée : 2400 ms", "duración del registro = 2.4", "记录时间: 2.4 s", "Süre 2,4 sn"),
+    ],
+)  # fmt: skip
+def test_a_duration_in_words_is_held_against_the_user(write, words):
+    path = write(words, WAVE)
+    assert read_motion(path, unit="m/s2", dt=DT).acceleration.size == N
+    with pytest.raises(InputError, match=r"4\.8 s long, but the header states a dur"):
+        read_motion(path, unit="m/s2", dt=2 * DT)
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        *("Significant duration: 0.8 s", "Duration D5-95: 1.1 s", "Duration: 00:40:00"),
+        *("Event duration 40 s (felt)", "duration magnitude: 4.1", "Duration 12 km"),
+    ],
+)
+def test_other_durations_are_not_that_of_the_record(write, words):
+    assert read_motion(write(words, WAVE), unit="m/s2", dt=DT).acceleration.size == N
+
+
+@pytest.mark.parametrize(
     "words", ["n = 4", "Butterworth, n = 4", "Counts: 12 tests", "Length: 400 m"]
 )
 def test_other_numbers_are_no_count(write, words):

@@ -62,9 +62,12 @@ def test_every_id_has_a_text_and_every_text_an_id_that_something_names():
     assert {str(id) for id in Text} <= set(english)
     files = [path for end in ("py", "js", "j2") for path in SOURCE.rglob(f"*.{end}")]
     said = "\n".join(path.read_text(encoding="utf-8") for path in files)
-    for id in set(english) - {str(id) for id in Text}:
-        named = re.search(rf"[\"'`._]{re.escape(id)}\b|\b{re.escape(id)}:", said)
-        assert named or re.fullmatch(FAMILIES, id) or id.endswith("_refused"), id
+    others = set(english) - {str(id) for id in Text}
+    every = "|".join(sorted(others, key=lambda id: (-len(id), id)))
+    named = {*re.findall(rf"(?<=[\"'`._])(?=({every})\b)", said)}
+    named |= {*re.findall(rf"\b(?=({every}):)", said)}
+    for id in others - named:
+        assert re.fullmatch(FAMILIES, id) or id.endswith("_refused"), id
     for id in Text:
         assert f"Text.{id.name}" in said or re.fullmatch(FAMILIES, id), id
 

@@ -4,7 +4,7 @@ import itertools
 import math
 import os
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
@@ -18,7 +18,7 @@ from rockfrag.base.keywords import for_catalogue
 from rockfrag.base.plausible import LONGEST_STEP, SHORTEST_STEP
 from rockfrag.base.tabular import read_rows
 from rockfrag.records.motion import Motion
-from rockfrag.records.parsing.quantities import asked_unit
+from rockfrag.records.parsing.quantities import asked_unit, others_of_three
 from rockfrag.records.parsing.text_file import read_head
 from rockfrag.records.sources.archive import is_hidden, is_no_record
 from rockfrag.records.sources.download import fetch_url
@@ -391,12 +391,19 @@ def record_files(*paths: str | os.PathLike[str]) -> list[Path]:
 
 
 def passed_over(folder: Path) -> list[tuple[Path, str]]:
-    """Return the files below a folder that are no records by their name or first line, and what they are."""
-    return [
-        (file, "a catalogue" if is_catalogue(file) else "no record by its name")
-        for file in _shown_files(folder)
-        if is_no_record(file.name) or is_catalogue(file)
-    ]
+    """Return the files below a folder that are no records by name or first line, and what they are."""
+    files = _shown_files(folder)
+    others = others_of_three(map(str, files))
+    return [(file, why) for file in files if (why := _why_no_record(file, others))]
+
+
+def _why_no_record(file: Path, others: Mapping[str, str]) -> str:
+    """Return what a file is that is no record, by its name or first line, or among others of three quantities."""
+    if str(file) in others:
+        return f"{others[str(file)]} by its name, beside the acceleration"
+    if is_no_record(file.name):
+        return "no record by its name"
+    return "a catalogue" if is_catalogue(file) else ""
 
 
 def _shown_files(folder: Path) -> list[Path]:

@@ -106,6 +106,16 @@ class _Layout:
             (self.dt if dt is None else dt),
         )
 
+    def _check_duration(self, length: float, step: float) -> None:
+        """Refuse samples that are not as long [s] as the words of the header say, but for its rounding."""
+        stated = self.facts.duration
+        if stated is None or abs(length - stated) <= self.facts.rounding + 2 * step:
+            return
+        self.text.fail(
+            f"the samples are {length:g} s long, but the header states a duration of {stated:g} s; mend what is "
+            "wrong: the interval, the header or the end of the file"
+        )
+
     def channel(
         self,
         samples: NDArray[np.float64],
@@ -115,6 +125,7 @@ class _Layout:
         title: str,
     ) -> Channel:
         """Return samples that are ``step`` seconds apart as a channel with what the file says of it."""
+        self._check_duration(samples.size * step, step)
         stated = self.facts.unit
         if column.problem:
             self.text.fail(

@@ -7,7 +7,7 @@ a unit that is not known is told from one that is not stated.
 
 import math
 import re
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -423,3 +423,30 @@ def quantity_in_name(name: str) -> str:
         if any(map(words_for(quantity).fullmatch, parts)) or ending.search(plain):
             return quantity
     return ""
+
+
+_OF_THREE = re.compile(r"(?P<stem>.+[-_. ])(?P<letter>[avd])(?P<ending>\.\w+)?", re.I)
+_LETTERS = {"v": "velocity", "d": "displacement"}
+
+
+def others_of_three(names: Iterable[str]) -> dict[str, str]:
+    """Return the files of velocity and displacement that lie beside one of acceleration.
+
+    Parameters
+    ----------
+    names
+        Of files with their folders. ``X.a``, ``X.v`` and ``X.d`` are one record in three quantities, and so are
+        ``X_a.txt``, ``X_v.txt`` and ``X_d.txt``; a ``v`` without a ``d`` may be a direction.
+
+    Returns
+    -------
+    dict
+        ``velocity`` or ``displacement`` by the name of the file.
+    """
+    sets: dict[tuple[str, str], dict[str, str]] = {}
+    for name in names:
+        if parts := _OF_THREE.fullmatch(name):
+            key = parts["stem"].lower(), (parts["ending"] or "").lower()
+            sets.setdefault(key, {})[parts["letter"].lower()] = name
+    whole = [found for found in sets.values() if found.keys() == {"a", "v", "d"}]
+    return {found[letter]: _LETTERS[letter] for found in whole for letter in "vd"}

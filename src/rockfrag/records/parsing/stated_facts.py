@@ -81,6 +81,8 @@ class StatedFacts:
 
     npts: int | None = None  # number of samples
     dt: float | None = None  # interval [s]
+    duration: float | None = None  # of the whole record [s]
+    rounding: float = 0.0  # one unit of the duration's last digit [s]
     unit: str = ""  # canonical unit of acceleration
     other_unit: str = ""  # unit of another quantity, where a line says unit
     # what the samples are, where words say so: ``acceleration``, ``velocity``, ``force``, …
@@ -129,6 +131,8 @@ def _patterns() -> dict[str, re.Pattern[str]]:
         "counted": re.compile(
             rf"^\s*(?P<count>\d+)\s+(?:data\s+)?{samples}(?!\s*(?:/|per|por))"
         ),
+        # that of strong or felt shaking is another one, and has more words
+        "duration": re.compile(rf"\W*{alternatives('duration')}{is_value}\W*"),
         "unit": re.compile(
             rf"{alternatives('unit')}(?:\s*\([^)]*\))?\s*"
             r"(?P<sign>of|are|is|in|for\s+\w+)?\s*(?P<colon>[=:])?(?P<rest>.*)$"
@@ -164,9 +168,12 @@ def stated_facts(lines: Sequence[str]) -> StatedFacts:
         statements = {"intervals of": steps, "counts of": counts, "units of": units}
         wrong = next(filter(None, map(_two_of, statements.items())), "")
     quantity, unit, problem = _quantity_and_unit(plain)
+    duration, rounding = next(filter(None, map(_duration, plain)), (None, 0.0))
     return StatedFacts(
         npts=counts[0] if counts else None,
         dt=steps[0] if steps else None,
+        duration=duration,
+        rounding=rounding,
         unit=units[0] if units else unit,
         other_unit=next(iter(others), ""),
         quantity="acceleration" if units else quantity,
@@ -276,6 +283,20 @@ def _steps_of_rates(line: str) -> list[float]:
         steps = _intervals(_value_in(bare), _unit_of(bare))
         found += [step for step in steps if step <= 1 / _LEAST_FREQUENCY]
     return [step for step in found if SHORTEST_STEP <= step <= LONGEST_STEP]
+
+
+def _duration(line: str) -> tuple[float, float] | None:
+    """Return the duration [s] that a folded line states and one unit of its last digit [s], if it states one."""
+    match = _patterns()["duration"].fullmatch(line)
+    if match is None:
+        return None
+    unit = read_unit(_unit_of(match))
+    if unit.quantity not in ("", "time") or not (match["sign"] or unit.quantity):
+        return None
+    seconds = unit.to_si if unit.quantity == "time" else 1.0
+    decimals = re.search(r"[.,](\d+)", match["value"])
+    digit = 10.0 ** -len(decimals[1]) if decimals else 1.0
+    return _value_in(match) * seconds, digit * seconds
 
 
 def _value_in(match: re.Match[str]) -> float:
