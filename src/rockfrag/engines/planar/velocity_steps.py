@@ -161,13 +161,13 @@ class Between:
         struck["kind"][jammed] = contact.IMPACT
         opening = np.zeros(1, contact.CONTACT_EVENT)
         opening["kind"], opening["q"] = VELOCITY_STEP, self.state[0]
-        opening["before"] = opening["after"] = part.samples["mode"][0]
+        mode, kinetic = part.samples["mode"][0], self._kinetic(shifted)
+        opening["before"], opening["after"] = mode, mode
         opening["v_before"], opening["v_after"] = old, shifted
         opening["slip"] = part.samples["slip"][0]
         # what a jump adds is work of the base
-        brought = self._kinetic(shifted) - self._kinetic(old)
-        opening["energy_before"] = opening["energy_after"] = self._kinetic(shifted)
-        self.spent["work"] += brought
+        opening["energy_before"], opening["energy_after"] = kinetic, kinetic
+        self.spent["work"] += kinetic - self._kinetic(old)
         self.work["told"]["paradoxes"] -= int(jammed.sum())
         self._add(piece.begin)
         part.contact_events = np.concatenate([opening, struck])
