@@ -4,7 +4,9 @@ Records have their fields as attributes then, arrays divide by zero as IEEE 754 
 """
 
 import importlib
-from collections.abc import Callable
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from typing import Any
 
 import numba
@@ -91,3 +93,33 @@ def without_compiling() -> None:
     numba.extending.intrinsic = lambda made: _INTRINSICS[made.__name__]
     np.dtype = _Dtype  # type: ignore[misc]
     np.seterr(all="ignore")
+
+
+@contextmanager
+def plain_library() -> Iterator[None]:
+    """Let what is imported inside be plain Python, and the library outside be the compiled one again.
+
+    Of a process in which nothing is compiled all stays as it is.
+    """
+    if numba.njit is _as_it_is:
+        yield
+        return
+    kept = {name: sys.modules.pop(name) for name in _ours()}
+    compiled = numba.njit, numba.extending.register_jitable, numba.extending.intrinsic
+    numba.njit = _as_it_is
+    numba.extending.register_jitable = _as_it_is
+    numba.extending.intrinsic = lambda made: _INTRINSICS[made.__name__]
+    try:
+        yield
+    finally:
+        numba.njit, numba.extending.register_jitable, numba.extending.intrinsic = (
+            compiled
+        )
+        for name in _ours():
+            del sys.modules[name]
+        sys.modules.update(kept)
+
+
+def _ours() -> list[str]:
+    """Modules of the library that are loaded."""
+    return [name for name in sys.modules if name.split(".")[0] == "rockfrag"]

@@ -161,6 +161,11 @@ def beside_stepping(cases: list[Case], step: float) -> pd.DataFrame:
     ids=lambda value: f"{len(value)} of {value[0]}" if isinstance(value, tuple) else "",
 )
 def test_outcomes_are_those_of_time_stepping(bodies, seed, step, differing, falls):
+    """Those of columns of four to eight differ more often than is asked, which is open.
+
+    Of 500 ten differ at 20 µs and ten at 200 µs, five of them the same: in ten the stepping changes
+    its own outcome with its step.  Numbers 71 and 151 differ at 200, 100 and 20 µs, and at 10 µs end as here.
+    """
     rng = np.random.default_rng(seed)
     cases = [random_case(rng, n) for n in bodies]
     found = beside_stepping(cases, step)
