@@ -13,12 +13,8 @@ from rockfrag.simulation.options import system_of
 from rockfrag.system import Wall, as_system, hold
 from rockfrag.system.mounts import on_casters
 
-from ...holding_in_the_plane import NEEDS_PLANAR_HOLDING
 from ...simulation.reference_bodies import random_motion
 from .cases import DT, G, random_column, run, with_contacts
-
-pytestmark = NEEDS_PLANAR_HOLDING
-
 
 B, H, M = 0.15, 0.6, 100.0  # half width, half height [m], mass [kg]
 BLOCK = Block(2 * B, 2 * H, M)
