@@ -35,7 +35,9 @@ found = overturns(held, motions, scales=scales, friction=0.7)
 fractions = found.overturned.mean(axis=1)
 
 figure, axes = plt.subplots(figsize=(5.4, 3.4))
-for line, (name, fraction) in zip(("-", "--", ":"), zip(pulls, fractions)):
+for line, (name, fraction) in zip(
+    ("-", "--", ":"), zip(pulls, fractions, strict=True), strict=True
+):
     axes.plot(levels, fraction, line, label=name)
 axes.set(xlabel="peak ground acceleration [g]", ylabel="fraction that topples [-]")
 axes.legend(frameon=False, fontsize=8)

@@ -2,8 +2,8 @@
 What does an isolator ask for?
 ==============================
 
-A showcase on sliding pendulums moves slowly while the ground shakes fast, and does not rock. What it needs is way: at
-a stop that comes too early the plate is halted with all its speed, and that topples what the isolator saved.
+A showcase on sliding pendulums moves slowly while the ground shakes fast, and does not rock. What it needs is way:
+at a stop that comes too early the plate is halted with all its speed, and that topples what the isolator saved.
 """
 
 import matplotlib.pyplot as plt
@@ -34,7 +34,7 @@ responses["on the ground"] = simulate(showcase, motion, friction=0.6)
 # The plate below, and how far the showcase turns above it.
 
 figure, (plates, turns) = plt.subplots(2, 1, figsize=(5.4, 4.4), sharex=True)
-for line, (name, response) in zip(("-", "--", ":"), responses.items()):
+for line, (name, response) in zip(("-", "--", ":"), responses.items(), strict=True):
     if response.plate is not None:
         plates.plot(response.time, 100 * response.plate, line, label=name)
     turns.plot(response.time, np.degrees(response.theta[:, 0]), line, label=name)

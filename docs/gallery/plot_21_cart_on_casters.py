@@ -2,8 +2,8 @@
 Should casters be locked?
 =========================
 
-A cart on free casters rolls and never rocks by itself; locked, it rocks. What free casters cost is way, and a wall at
-the end of it.
+A cart on free casters rolls and never rocks by itself; locked, it rocks. What free casters cost is way, and a wall
+at the end of it.
 """
 
 import matplotlib.pyplot as plt
@@ -29,7 +29,7 @@ responses = {
 # How far it rolls, and how far it turns.
 
 figure, (ways, turns) = plt.subplots(2, 1, figsize=(5.4, 4.4), sharex=True)
-for line, (name, response) in zip(("-", "--", ":"), responses.items()):
+for line, (name, response) in zip(("-", "--", ":"), responses.items(), strict=True):
     ways.plot(response.time, 100 * response.slip[:, 0], line, label=name)
     turns.plot(response.time, np.degrees(response.theta[:, 0]), line)
 ways.axhline(30, color="0.5", lw=0.8)
