@@ -66,11 +66,13 @@ def test_putty_must_bear_what_the_motions_pull_at_its_pads(found, few):
 def test_each_is_tried_and_what_holds_in_all_motions_topples_in_none(found):
     each = tried(found)
     assert set(TRIED) <= set(each)
-    for mitigation in each.values():
+    for name, mitigation in each.items():
         held, total = mitigation.change["held"], mitigation.change["total"]
         assert 0.95 <= held / total <= 1
-        assert mitigation.value < found.fraction.value
-        assert mitigation.helps
+        # an isolator has a stop, which topples what comes too fast
+        if name != Text.HOLD_ISOLATOR:
+            assert mitigation.value < found.fraction.value
+            assert mitigation.helps
 
 
 def test_page_and_file_say_what_it_bears_before_and_after_and_what_it_costs(found):
@@ -102,7 +104,7 @@ def test_an_object_may_be_held_as_it_stands(few):
 
 def test_a_held_object_has_a_whole_answer_in_space(few):
     found = assess_with(asked(**BOX, facing_deg=0, pga="0.6 g", putty_n=1e6), few)
-    assert found.counts[2] == 0 and found.planar is None
+    assert found.counts[2] == 0 and found.planar < 1e-6
     assert "It is held as it stands" in page_of(found)
 
 

@@ -11,7 +11,6 @@ import rockfrag
 from rockfrag.cli.main import main, with_negative_sizes
 from rockfrag.cli.simulated import _friction, contact_event_lines
 
-from ..holding_in_the_plane import NEEDS_PLANAR_HOLDING
 from ..workflow.conftest import write_example, write_synthetic
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -117,7 +116,6 @@ HELD = {
 }
 
 
-@NEEDS_PLANAR_HOLDING
 def test_what_holds_a_body_is_told_with_what_it_had_to_bear(simulated):
     case = ("--body", "0.2", "0.8", "60", "--pga", "0.45", "--friction", "0.5")
     for option, (numbers, says) in HELD.items():

@@ -56,7 +56,7 @@ def shown_in(browser: Browser) -> list[str]:
 def test_it_answers_in_the_words_of_assess(browser, app_page, motions, width, dark):
     opened(browser, app_page, width, 900, ready=ANSWERED, dark=dark)
     request = make_request(SETTINGS, "form")
-    found = assess_with(request, motions.at(request.place))
+    found = assess_with(request, motions.at(request.place), holders=False)
     verdict, *others = lines_of(found)
     assert (
         browser.run("document.getElementById('headline').textContent") + "." == verdict

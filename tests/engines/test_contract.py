@@ -31,8 +31,6 @@ from rockfrag.simulation.options import system_of
 from rockfrag.simulation.parquet import stream_histories, stream_overturns
 from rockfrag.system import Bond, SlidingPendulum, Tie, Wall, hold
 
-from ..holding_in_the_plane import NEEDS_PLANAR_HOLDING
-
 BLOCK = Block(0.3, 1.0, 50.0)
 STACK = Stack(Block(0.5, 0.3, 50.0), BLOCK)
 
@@ -227,7 +225,6 @@ HOLDING = {
 }
 
 
-@NEEDS_PLANAR_HOLDING
 @pytest.mark.parametrize("name", list(HOLDING))
 def test_what_holds_a_body_is_computed_in_its_plane_or_refused_in_one_sentence(name):
     held = HOLDING[name](BLOCK.system())
@@ -239,7 +236,6 @@ def test_what_holds_a_body_is_computed_in_its_plane_or_refused_in_one_sentence(n
             contract.engine_for(held, motion(x=np.ones(3)), request)
 
 
-@NEEDS_PLANAR_HOLDING
 def test_what_leads_out_of_the_plane_is_refused_there():
     column = Column((BLOCK, BLOCK)).system()
     askew = Tie((0, 0, 1), (1, 0.5, 1), 1e4)

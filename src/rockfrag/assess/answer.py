@@ -73,6 +73,7 @@ class Assessment:
     planar : what is estimated in one plane, beside the answer in space, which counts; None where there is none
     mitigations : what helps, most helpful first
     spreads : relative standard deviation of each property that was moved
+    holders_tried : whether what may hold it was tried
     """
 
     request: Request
@@ -97,6 +98,7 @@ class Assessment:
     planar: float | None
     mitigations: tuple[Mitigation, ...]
     spreads: Mapping[str, float]
+    holders_tried: bool = False
 
     __repr__ = short_repr
 
@@ -257,6 +259,9 @@ def assess(
     return assess_with(request, motions, brief=brief)
 
 
+LEVELS_OF_HOLDERS = 8
+"""Levels of shaking at which what may hold an object is compared with the object as it stands."""
+
 COMPILING_S = {False: 20, True: 60}
 """About how long kernels compile once on a machine, in a plane and in space [s]."""
 
@@ -282,11 +287,21 @@ def waiting_for(request: Request) -> str:
 
 
 def assess_with(
-    request: Request, motions: MotionSet, *, brief: bool = False
+    request: Request, motions: MotionSet, *, brief: bool = False, holders: bool = True
 ) -> Assessment:
-    """Assess one object with motions that are at hand; ``brief`` leaves out as :func:`assess` does."""
-    holds = bool(request.costs) and not brief
-    plan = plan_for(request, motions, brief=brief, holds=holds)
+    """Assess one object with motions that are at hand.
+
+    Parameters
+    ----------
+    request, motions : what is asked, and by what
+    brief : leave out as :func:`assess` does
+    holders : try what may hold the object, as the one-file page cannot
+
+    Returns
+    -------
+    The :class:`Assessment`.
+    """
+    plan = plan_for(request, motions, brief=brief, holds=holders and not brief)
     return assessed(request, plan, shake_all([request], plan)[0])
 
 
@@ -372,16 +387,14 @@ def _in_one_plane(objects: Standing, plan: Plan) -> ObjectOutcomes | None:
 
 
 def _trials(objects: Standing, plan: Plan) -> list[Trial]:
-    """What may hold an object, tried under few motions at few levels, as each simulation takes milliseconds.
-
-    It is tried where what it costs is stated.
-    """
-    if not plan.holds:
+    """What may hold an object, tried under few motions at few levels, as each simulation takes milliseconds."""
+    if not plan.holds or plan.level is None:
         return []
-    motions = plan.fewer.motions if plan.compares_few else plan.fewer.motions.thinned()
-    asked = [plan.level.value] if plan.level else []
+    motions = plan.fewer.motions
+    if not plan.compares_few:
+        motions = motions.thinned().thinned()
     few = outcomes.make_intensity_levels(
-        motions, plan.shaking.measure, asked, outcomes.FEWEST_LEVELS
+        motions, plan.shaking.measure, [plan.level.value], LEVELS_OF_HOLDERS
     )
     return try_holders(objects, plan.shaking, few, plan.level)
 
@@ -466,6 +479,7 @@ def assessed(request: Request, plan: Plan, shaken: Shaken) -> Assessment:
         planar=None if shaken.planar is None else evidence.mean(target, shaken.planar),
         mitigations=helps,
         spreads={change.name: change.spread for change in shaken.moved},
+        holders_tried=plan.holds and level is not None,
     )
 
 

@@ -2,8 +2,9 @@
 
 Each holder (:mod:`rockfrag.assess.standing.holders`) is tried twice.  So strong that nothing breaks it, under the
 motions at the level of the site, it shows what it must bear; as strong as ``PART`` of these motions ask, under all
-levels, it is compared with the object as it stands.  A holder that no engine can simulate with the object in space
-is tried in a plane, beside the object in that plane; what cannot be simulated there either is not tried.
+levels, it is compared with the object as it stands.  A holder that no engine can simulate with the object in
+space, or not soon enough, is tried in a plane, beside the object in that plane; what cannot be simulated there
+either is not tried.
 """
 
 from collections.abc import Callable, Iterator, Sequence
@@ -56,7 +57,7 @@ def try_holders(
     Parameters
     ----------
     objects : the object as it stands
-    shaking : all motions, of which those at the level say what a holder must bear
+    shaking : all motions; at the level they, or every second one, say what a holder must bear
     few : motions at the levels by which it is compared
     level : of the site; without one nothing is tried, as nothing is asked of a holder
 
@@ -66,7 +67,14 @@ def try_holders(
     """
     if level is None:
         return []
-    at_level = scaled_to(np.array([level.value]), shaking.motions, shaking.measure)
+    at_level = {
+        slow: scaled_to(
+            np.array([level.value]),
+            shaking.motions.thinned() if slow else shaking.motions,
+            shaking.measure,
+        )
+        for slow in (False, True)
+    }
     systems = [
         system
         for system in _systems(objects, shaking)
@@ -76,11 +84,13 @@ def try_holders(
     found = []
     for holder in objects.holders_to_try():
         for k, system in enumerate(systems):
+            if holder.slow and not system.planar:
+                continue
             if not can_be_simulated(holder.on(system), shaking):
                 continue
             enough, change = holder, holder.called()
             if holder.demand:
-                demands = demands_of(holder, system, at_level)
+                demands = demands_of(holder, system, at_level[holder.slow])
                 enough = holder.bearing(_asked(demands))
                 held = int((demands <= enough.bears * (1 + 1e-9)).sum())
                 counts = {"held": held, "total": demands.size}

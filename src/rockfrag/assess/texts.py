@@ -106,6 +106,7 @@ class Text(StrEnum):
     HOLD_CASTERS_LOCKED = auto()
     HOLD_CASTERS_FREE = auto()
     HOLDS = auto()
+    HOLDERS_NOT_TRIED = auto()
     HELD_AS_IT_STANDS = auto()
     REDUCES = auto()
     NONE_LEFT = auto()

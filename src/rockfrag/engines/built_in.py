@@ -151,7 +151,7 @@ PLANAR = PlanarEngine(
     "planar contact",
     _STANDING
     | {Wish.TWO_BODIES, Wish.MANY_BODIES, Wish.FRICTION, Wish.START, Wish.HISTORY}
-    | {Wish.PLACE},
+    | {Wish.WALL, Wish.TIE, Wish.BOND, Wish.SUPPORT, Wish.PLACE},
     "rockfrag.engines.planar.engine:run",
     "rockfrag.engines.planar.engine:history",
 )

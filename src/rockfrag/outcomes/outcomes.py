@@ -115,7 +115,8 @@ class Outcomes:
     given_way: Whole = column(np.int64(0))
     # number from below, from 1, of the contact open furthest under what fell; 0: no fall, or not told
     parted_contact: Small = column(np.int8(0))
-    # whether a body that has not fallen rests turned, against a wall or in a tie
+    # whether a body that has not fallen rests beyond its balance, against a wall or
+    # in a tie
     leaning: Flags = column(False, shown=False)
     # times that more than one mode of contact was found consistent
     several_modes: Whole = column(np.int64(0))

@@ -8,12 +8,8 @@ import pytest
 from rockfrag import Block, Stack
 from rockfrag.system import Bond, as_system, hold
 
-from ...holding_in_the_plane import NEEDS_PLANAR_HOLDING
 from ...simulation.reference_bodies import random_motion
 from .cases import DT, G, run
-
-pytestmark = NEEDS_PLANAR_HOLDING
-
 
 B, H, M = 0.15, 0.6, 100.0  # half width, half height [m], mass [kg]
 BLOCK = Block(2 * B, 2 * H, M)

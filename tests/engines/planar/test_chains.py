@@ -9,7 +9,6 @@ from rockfrag import Block, Stack, simulate
 from rockfrag.base.errors import InputError
 from rockfrag.system import Bond, Friction, SlidingPendulum, Tie, Wall, as_system, hold
 
-from ...holding_in_the_plane import NEEDS_PLANAR_HOLDING
 from ...simulation.reference_bodies import random_motion
 from .cases import DT, run
 
@@ -41,7 +40,6 @@ def test_a_chain_is_the_response_to_all_with_quiet_time(body) -> None:
     assert np.array_equal(after.slip[:samples], whole.slip[at : at + samples])
 
 
-@NEEDS_PLANAR_HOLDING
 def test_what_has_broken_is_gone_and_what_has_slid_is_nearer_to_its_wall() -> None:
     motion = 0.8 * random_motion(np.random.default_rng(5))[:400]
     cord = Tie((0.0, 0.0, 1.0), (1.0, 0.0, 1.0), 1e5, strength=50.0)
@@ -53,7 +51,6 @@ def test_what_has_broken_is_gone_and_what_has_slid_is_nearer_to_its_wall() -> No
     assert run(after, motion).slip[0] == pytest.approx(before.slip[-1], abs=1e-12)
 
 
-@NEEDS_PLANAR_HOLDING
 def test_an_isolator_begins_where_it_was_left() -> None:
     support = SlidingPendulum(mass=20.0, radius=2.0, friction=0.1)
     held = hold(as_system(Block(0.6, 1.2, 100.0)), support=support)

@@ -8,13 +8,9 @@ import pytest
 from rockfrag import Block, overturns
 from rockfrag.system import Bond, Tie, Wall, as_system, hold
 
-from ...holding_in_the_plane import NEEDS_PLANAR_HOLDING
 from ...oracle.held_stepping import Held, outcome
 from ...simulation.reference_bodies import random_motion
 from .cases import DT
-
-pytestmark = NEEDS_PLANAR_HOLDING
-
 
 NONE = np.zeros((0, 5))
 NO_CORDS = np.zeros((0, 8))

@@ -106,8 +106,10 @@ const findings = (data) => {
       if (!main) return [];
       if (main.value === 0 || (atRest && !probability)) return [finding("no_change_needed")];
       const shown = found.mitigations.filter((each) => each.shown).slice(0, MOST_CHANGES);
-      if (!shown.length) return [finding("no_change_shown")];
-      return shown.map((each) => (each.factor === 0 ? finding("none_left", { change: changeOf(each) }) : finding("reduces", { change: changeOf(each), ...reduction(each) })));
+      // what may hold it needs an engine that a page has not
+      const leftOut = finding("holders_not_tried");
+      if (!shown.length) return [finding("no_change_shown"), leftOut];
+      return [...shown.map((each) => (each.factor === 0 ? finding("none_left", { change: changeOf(each) }) : finding("reduces", { change: changeOf(each), ...reduction(each) }))), leftOut];
     }
     function howSure() {
       if (!main) return [];

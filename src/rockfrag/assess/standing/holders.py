@@ -44,6 +44,9 @@ class Holder(ABC):
     # Column of outcomes that says what it must bear, and how often that is to be taken; empty where nothing
     demand: ClassVar[str] = ""
     times: ClassVar[float] = 1.0
+    # Whether a simulation of it takes long: it is tried in one plane then, also of an object that is shaken in
+    # space, where one of stiff ties takes a second, and asked by every second motion what it must bear
+    slow: ClassVar[bool] = False
 
     @abstractmethod
     def on(self, system: System) -> System:
@@ -107,6 +110,7 @@ class Fastener(Holder):
 
     strength: float = UNBROKEN
     demand: ClassVar[str] = "largest_force"
+    slow: ClassVar[bool] = True
 
     @property
     def bears(self) -> float:
@@ -162,6 +166,7 @@ class Isolator(Holder):
     stroke: float = math.inf
     key: ClassVar[str] = "isolator"
     demand: ClassVar[str] = "stroke"
+    slow: ClassVar[bool] = True
 
     def on(self, system: System) -> System:
         """Put a plate under the lowest body."""

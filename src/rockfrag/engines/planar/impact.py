@@ -322,14 +322,22 @@ def _outcome(p, w, trial, part, before):
 
 
 @kernel
+def _is_solvable(p, w):
+    """Whether no two of the closed contacts ask for the same thing, as walls and faces may."""
+    return not any_closed(p, w) or solve(p, w, w.q, w.v, 0.0, 0.0, True, False)
+
+
+@kernel
 def read_slip(p, w, k, still):
     """Let closed contact k slide as it moves, and stick only if it slips no faster than ``still`` [m/s].
 
     After an impact nothing else decides between the two: what sticks is held by shear without a bound where ends
-    are shut, so what slips may never be called stuck.
+    are shut, so what slips may never be called stuck.  What a wall stops goes on as what slides.
     """
-    speed = slip_speed(p, w, w.v, k, False)
+    speed, slid = slip_speed(p, w, w.v, k, False), w.slides[k]
     w.slides[k] = 0 if abs(speed) <= still else (1 if speed > 0.0 else -1)
+    if slid != 0 and w.slides[k] == 0 and not _is_solvable(p, w):
+        w.slides[k] = slid
 
 
 @kernel
@@ -337,14 +345,15 @@ def _shut_weak(p, w, ah, av, closing):
     """Close the ends that part, and end the slips that are, too slow after an impact; whether there are any.
 
     Slow ends close where they fall back, and in a crowd whatever pulls.  What pulls depends on the sign of a slip,
-    so that slow slips and slow ends would call forth each other without an end.
+    so that slow slips and slow ends would call forth each other without an end.  At walls ends close one by one,
+    so that none is closed that the others hold already.
     """
     found = False
     solve(p, w, w.q, w.v, ah, av, False)
     for k in range(p.contacts):
-        # what a wall and a face both ask for must not be asked twice: it must pull there
-        crowd = w.met > CROWD and k < p.count
-        least = 0.0 if k < p.count else -PULLS * p.g
+        at_wall = k >= p.count or any_closed(p, w)
+        crowd = w.met > CROWD and not at_wall
+        least = -PULLS * p.g if at_wall else 0.0
         was_open = not w.closed[k].any()
         for end in range(2):
             if w.touching[k, end] == 1 and w.closed[k, end] == 0:
@@ -353,7 +362,18 @@ def _shut_weak(p, w, ah, av, closing):
                 pull += bias(p, w.q, w.v, k, x, y, -ty, tx, kind)
                 if (pull < least or crowd) and approach(p, w, k, end) < closing:
                     w.closed[k, end] = 1
-                    found = True
+                    if not any_closed(p, w):
+                        found = True
+                        continue
+                    if was_open:
+                        read_slip(p, w, k, closing)
+                    if w.slides[k] == 0 and not _is_solvable(p, w):
+                        # a face holds it along the wall
+                        w.slides[k] = 1
+                    if _is_solvable(p, w):
+                        return True
+                    w.closed[k, end] = 0
+                    solve(p, w, w.q, w.v, ah, av, False)
         if was_open or w.slides[k] != 0:
             slid = w.slides[k] != 0
             read_slip(p, w, k, closing)

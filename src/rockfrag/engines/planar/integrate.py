@@ -43,8 +43,7 @@ MOST_JOLTS = 60
 LARGEST_FAILURE = 1e-3
 BURST = 100.0  # margin at the end of a step beyond which a shorter one is taken [-] ...
 LEAST_STEP = 1e-9  # ... down to this part of a sample
-# what leans has turned by more [rad], and is slower over √(g b) [-]
-TURNED, AT_REST = 1e-6, 1e-3
+AT_REST = 1e-3  # speed over √(g b) below which what leans is at rest [-]
 SPRUNG = 0.01  # error of a step with a taut tie over that of others [-]
 
 
@@ -317,14 +316,20 @@ def _lies_still(p, w):
 
 @kernel
 def _leans(p, w):
-    """Whether bodies that have not fallen are at rest, turned, against a wall or in a tie."""
+    """Whether a body that has not fallen rests beyond its balance, against a wall or in a tie."""
     if p.is_held == 0 or w.resting == 1 or w.told.overturned_body > 0:
         return False
-    turned = 0.0
+    beyond = False
     for k in range(p.count):
-        turned = max(turned, abs(w.q[3 * k + 2]))
+        beyond = beyond or abs(w.q[3 * k + 2]) > _critical(p, w, k)
     held = is_any_taut(p, w) or any_closed(p, w)
-    return held and turned > TURNED and _fastest(p, w) < AT_REST * p.speed
+    return held and beyond and _fastest(p, w) < AT_REST * p.speed
+
+
+@kernel
+def _critical(p, w, k):
+    """Angle of body k beyond which it falls to the side to which it is turned [rad]."""
+    return p.critical[k, 1] if w.q[3 * k + 2] > 0.0 else p.critical[k, 0]
 
 
 @kernel
@@ -379,11 +384,10 @@ def _track(p, w):
     """Keep the largest rotations, angular velocities and slips, and the stroke of an isolator."""
     note_stroke(p, w)
     for k in range(p.count):
-        theta = w.q[3 * k + 2]
-        limit = p.critical[k, 1] if theta > 0.0 else p.critical[k, 0]
         if not (w.closed[k, 0] and w.closed[k, 1]):
             # a body on its whole base is carried along
-            w.told.peak_rotation[k] = max(w.told.peak_rotation[k], abs(theta) / limit)
+            part = abs(w.q[3 * k + 2]) / _critical(p, w, k)
+            w.told.peak_rotation[k] = max(w.told.peak_rotation[k], part)
         w.told.peak_velocity[k] = max(w.told.peak_velocity[k], abs(w.v[3 * k + 2]))
         w.told.peak_slip[k] = max(w.told.peak_slip[k], abs(slip(p, w, k)))
 
