@@ -5,7 +5,13 @@ import math
 import numpy as np
 import pytest
 
-from rockfrag.assess.conversion import PRIOR, VelocityBySpectrum, published_velocity
+from rockfrag.assess.conversion import (
+    PRIOR,
+    VelocityBySpectrum,
+    published_velocity,
+    usual_distance,
+)
+from rockfrag.assess.core.velocity import spread_of_mean
 from rockfrag.assess.hazard.curve import PGA, SA_1S, VELOCITY_PER_G
 from rockfrag.assess.motions import MotionSet
 from rockfrag.assess.request import Records
@@ -63,17 +69,18 @@ def test_free_rocking_says_the_inertia():
 
 def test_the_velocity_is_that_of_the_prior_unless_something_is_said():
     levels, given = np.array([0.1, 0.2, 0.4]), Records()
-    for records, facts in (
-        (given, PRIOR),
-        (Records(magnitude=6.0), {**PRIOR, "magnitude": 6.0}),
-        (Records(vs30=760.0), {**PRIOR, "ln_vs30": math.log(760.0)}),
+    for records, magnitude, distance, vs30 in (
+        (
+            Records(magnitude=6.0, distance_km=20.0),
+            6.0,
+            20.0,
+            math.exp(PRIOR["ln_vs30"]),
+        ),
+        (Records(distance_km=9.0, vs30=760.0), PRIOR["magnitude"], 9.0, 760.0),
     ):
         found = published_velocity(PGA, records)
-        about = (
-            facts["magnitude"],
-            *(math.exp(facts[f]) for f in ("ln_distance", "ln_vs30")),
-        )
-        exact = BY_PGA.log_velocity(levels, *about) - np.log(levels * VELOCITY_PER_G)
+        exact = BY_PGA.log_velocity(levels, magnitude, distance, vs30)
+        exact -= np.log(levels * VELOCITY_PER_G)
         line = found.lines(records)[0]
         assert line[0] + line[1] * np.log(levels) == pytest.approx(exact)
     # what is said is known, what is not leaves the mean open
@@ -82,11 +89,59 @@ def test_the_velocity_is_that_of_the_prior_unless_something_is_said():
         .lines(Records(vs30=760.0))[3]
         .any()
     )
-    assert found.lines(given)[1:].any(axis=1).all()
+    assert published_velocity(PGA, given).lines(given)[1:].any(axis=1).all()
     # motions that a user chose have the velocity of the site
     own = Records(paths=("own.csv",))
     assert published_velocity(PGA, own) is None
     assert published_velocity(PGA, Records(paths=("own.csv",), magnitude=6.0))
+
+
+def test_the_velocity_of_pga_alone_is_the_mean_over_earthquakes_that_have_it():
+    """Beside a mixture drawn from the relation itself: magnitudes 5.5 to 8, distances of the level, ground."""
+    random, count = np.random.default_rng(5), 4000
+    given = Records()
+    line, *_ = lines = published_velocity(PGA, given).lines(given)
+    for level in (0.1, 0.25, 0.45):
+        ratios = []
+        for magnitude, away, ground, rest in zip(
+            random.uniform(5.5, 8.0, count),
+            *random.standard_normal((3, count)),
+            strict=True,
+        ):
+            distance = usual_distance(level, magnitude) * math.exp(0.7 * away)
+            vs30 = 400.0 * math.exp(0.45 * ground)
+            (log,) = BY_PGA.log_velocity(np.array([level]), magnitude, distance, vs30)
+            spread = math.hypot(*BY_PGA.spreads(magnitude))
+            ratios.append(float(log) + spread * rest - math.log(level))
+        ours = line[0] + line[1] * math.log(level) + math.log(VELOCITY_PER_G)
+        assert ours == pytest.approx(np.mean(ratios), abs=0.06)
+        spread = math.hypot(
+            published_velocity(PGA, given).within,
+            spread_of_mean(level, published_velocity(PGA, given).of_site, lines),
+        )
+        assert spread == pytest.approx(np.std(ratios), rel=0.1)
+
+
+def test_the_velocity_of_pga_alone_lies_among_published_ratios():
+    """PGV/PGA [cm/s per g]: 61 of rock to 122 of alluvium (Mohraz 1976; Newmark and Hall 1982: 91 and 122).
+
+    Of intensities: where PGA and PGV say the same one, 88 to 95 in California (Wald et al. 1999).
+    """
+    given = Records()
+    at_one, slope = published_velocity(PGA, given).lines(given)[0]
+    for level in (0.1, 0.25, 0.45):
+        ratio = VELOCITY_PER_G * math.exp(at_one + slope * math.log(level))
+        of_intensity = 10 ** ((3.66 * math.log10(981 * level) - 1.66 - 2.35) / 3.47)
+        assert 61 < ratio < 122
+        assert ratio == pytest.approx(of_intensity / level, rel=0.2)
+
+
+def test_the_usual_distance_gives_the_level_back():
+    for magnitude, level in ((6.5, 0.25), (7.5, 0.1), (7.0, 0.3)):
+        slant = math.hypot(usual_distance(level, magnitude), 7.3)
+        log = -1.02 + 0.249 * magnitude - math.log10(slant) - 0.00255 * slant
+        assert 10**log == pytest.approx(level)
+    assert usual_distance(3.0, 5.5) == 1.0
 
 
 def test_a_spectral_acceleration_beside_pga_narrows_the_velocity(motions: MotionSet):

@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import pandas as pd
-from scipy import special
+from scipy import optimize, special
 
 from rockfrag.assess.core.velocity import (
     MEMORY,
@@ -32,12 +32,19 @@ from rockfrag.base.arrays import Floats
 from rockfrag.motions.conditional_velocity import MODELS, ConditionalModel
 from rockfrag.motions.intensity import IntensityMeasure
 
-UNKNOWN = {"magnitude": 0.5, "ln_distance": 0.7, "ln_vs30": 0.45}
-"""Standard deviations of what is not known of the earthquakes and the ground of a site: estimates of ours, half a
-magnitude, a factor of two in distance, and a class of ground (EN 1998-1: 180, 360, 800 m/s)."""
+UNKNOWN = {"magnitude": 0.75, "ln_distance": 0.7, "ln_vs30": 0.45}
+"""Standard deviations of what is not known of the earthquakes and the ground of a site.
 
-PRIOR = {"magnitude": 6.5, "ln_distance": math.log(15.0), "ln_vs30": math.log(400.0)}
-"""What is taken where only a part is given of the earthquakes and the ground of a site: estimates of ours."""
+Estimates of ours: magnitudes of 5.5 to 8 alike (2.5 / √12), a factor of two in distance, which is about the
+scatter of Joyner and Boore (1981), and a class of ground (EN 1998-1: 180, 360, 800 m/s).
+"""
+
+PRIOR = {"magnitude": 6.75, "ln_vs30": math.log(400.0)}
+"""Middle of what is taken where nothing is given of the magnitude and the ground of a site: an estimate of ours.
+The distance follows from the magnitude and the level (:func:`usual_distance`)."""
+
+USUAL_LEVELS = (0.1, 0.5)
+"""Levels of design [g] through which the line of the velocity goes where the distance is not given."""
 
 OF_THE_SITE = 0.5
 """Part of the variance about the relation that all motions of a site share [-]: an estimate of ours."""
@@ -54,33 +61,59 @@ NODES: Floats = np.round(_EQUAL / _EQUAL.std(), 12)
 """Values of equal probability that stand for a standard normal spread of ln PGV/IM."""
 
 
+def usual_distance(level: float, magnitude: float) -> float:
+    """Distance at which an earthquake of a magnitude has a PGA as its median, at least 1 km.
+
+    W. B. Joyner, D. M. Boore (1981), Bulletin of the Seismological Society of America 71: 2011, eq. 7. A strong
+    shaking is thus that of a near and large earthquake, and a weak one that of a distant or small one.
+
+    Parameters
+    ----------
+    level : PGA [g]; SA(1 s) is about as large on ground of 400 m/s
+    magnitude : moment magnitude
+
+    Returns
+    -------
+    Distance to the rupture [km].
+    """
+    of_source = -1.02 + 0.249 * magnitude - math.log10(level)
+    slant = optimize.brentq(
+        lambda r: of_source - math.log10(r) - 0.00255 * r, 1e-3, 1e4
+    )
+    return math.sqrt(max(slant**2 - 7.3**2, 1.0))
+
+
 @dataclass(frozen=True)
 class PublishedVelocity:
     """PGV that comes with levels of PGA or SA(1 s) by Abrahamson and Bhasin (2020), for earthquakes of a site."""
 
     model: ConditionalModel
     magnitude: float
-    distance_km: float
+    distance_km: float  # NaN where it is the usual one of each level
     vs30: float
+    farther: float = 1.0  # Factor on the usual distance [-]
 
     @classmethod
     def of(
         cls, measure: IntensityMeasure, given: Records
     ) -> "PublishedVelocity | None":
-        """Return it for what is given of the earthquakes, the rest as in ``PRIOR``; None for other measures."""
+        """Return it for what is given of the earthquakes, the rest usual; None for other measures."""
         model = MODELS.get(measure.imt)
         if model is None:
             return None
-        known = {
-            name: PRIOR[name] if math.isnan(fact) else fact
-            for name, fact in zip(PRIOR, _facts(given), strict=True)
-        }
+        magnitude, ln_distance, ln_vs30 = _facts(given)
         return cls(
             model,
-            magnitude=known["magnitude"],
-            distance_km=math.exp(known["ln_distance"]),
-            vs30=math.exp(known["ln_vs30"]),
+            magnitude=PRIOR["magnitude"] if math.isnan(magnitude) else magnitude,
+            distance_km=math.exp(ln_distance),
+            vs30=math.exp(PRIOR["ln_vs30"] if math.isnan(ln_vs30) else ln_vs30),
         )
+
+    def distance(self, level: float) -> float:
+        """Distance that is taken at a level of the measure [km]."""
+        if math.isfinite(self.distance_km):
+            return self.distance_km
+        return usual_distance(level, self.magnitude) * self.farther
 
     @property
     def scatter(self) -> float:
@@ -95,9 +128,7 @@ class PublishedVelocity:
         """
         moved = {
             "magnitude": lambda by: replace(self, magnitude=self.magnitude + by),
-            "ln_distance": lambda by: replace(
-                self, distance_km=self.distance_km * math.exp(by)
-            ),
+            "ln_distance": lambda by: replace(self, farther=math.exp(by)),
             "ln_vs30": lambda by: replace(self, vs30=self.vs30 * math.exp(by)),
         }
         found = [self._line()]
@@ -108,11 +139,18 @@ class PublishedVelocity:
         return np.array(found)
 
     def _line(self) -> Floats:
-        (at_one,) = self.model.log_velocity(
-            np.ones(1), self.magnitude, self.distance_km, self.vs30
+        """Intercept at 1 g and slope of the straight line through the usual levels."""
+        logs = np.log(USUAL_LEVELS)
+        ratios = [self._log_ratio(level) for level in USUAL_LEVELS]
+        slope = (ratios[1] - ratios[0]) / (logs[1] - logs[0])
+        return np.array([ratios[0] - slope * logs[0], slope])
+
+    def _log_ratio(self, level: float) -> float:
+        """Ln (PGV over the measure [s]) at a level, from the relation itself."""
+        (log,) = self.model.log_velocity(
+            np.array([level]), self.magnitude, self.distance(level), self.vs30
         )
-        slope = self.model.slope(self.magnitude) - 1
-        return np.array([at_one - math.log(VELOCITY_PER_G), slope])
+        return float(log) - math.log(level * VELOCITY_PER_G)
 
     @property
     def within(self) -> float:

@@ -530,7 +530,7 @@ def _velocity(found: Assessment) -> list[Finding]:
     if published is not None:
         facts = {
             "magnitude": three(published.magnitude),
-            "distance": three(published.distance_km),
+            "distance": three(published.distance(level.value)),
             "vs30": three(published.vs30),
         }
         said.append(finding(Text.VELOCITY_PUBLISHED, **facts))
