@@ -25,6 +25,7 @@ from rockfrag.assess.sources import SPACE
 from rockfrag.base.arrays import Floats
 from rockfrag.base.errors import InputError
 from rockfrag.fragility.model_error import MODEL_ERRORS
+from rockfrag.runtime.progress import Progress
 from rockfrag.survival.directions_of_falls import FallDirection, fall_direction
 from rockfrag.survival.shaking_posterior import (
     Falls,
@@ -188,6 +189,7 @@ def constrain_shaking(
     groups: Sequence[Observed],
     knowledge: Knowledge | None = None,
     records: str | Path = RECORDS,
+    progress: Progress | None = None,
 ) -> FallenPlace:
     """Say how strongly the ground shook, by what fell and what stands.
 
@@ -196,6 +198,7 @@ def constrain_shaking(
     groups : what fell and what stands, all at one place
     knowledge : what is known beside it
     records : folder of fetched records
+    progress : called with the number of groups that were shaken and of all
 
     Returns
     -------
@@ -211,7 +214,11 @@ def constrain_shaking(
     known = knowledge or Knowledge()
     first = groups[0].request
     motions = motion_set(first.records, first.place, Path(records))
-    shaken = [_shaken(group, motions, known) for group in groups]
+    shaken = []
+    for group in groups:
+        shaken.append(_shaken(group, motions, known))
+        if progress is not None:
+            progress(len(shaken), len(groups))
     falls = [each.falls for each in shaken]
     shared = _shared(groups, shaken, known)
     about = shaken[0]
