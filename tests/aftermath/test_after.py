@@ -15,6 +15,7 @@ from rockfrag.aftermath.shaken_ground import GroundShaking, level_of, mapped_gro
 from rockfrag.aftermath.shaken_objects import after_earthquake, shaken_table
 from rockfrag.assess.answer import assess_with
 from rockfrag.assess.hazard.curve import PGA
+from rockfrag.assess.inventory import read_inventory
 from rockfrag.assess.motions import motion_set
 from rockfrag.assess.request import Level, LevelSpread, make_request
 from rockfrag.assess.risk import fraction_target
@@ -294,3 +295,49 @@ def test_places_that_are_missing_wrong_or_beyond_the_map_are_named(
     (place / "bare.csv").write_text("name,width,height\na,30 cm,90 cm\n")
     assert main(["after", "bare.csv", "--shakemap", "grid.xml"]) == 2
     assert "--at" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("table", "words"),
+    [
+        ("name,width_m,height_m\nA,30,120\n", "check the unit"),
+        ("name;width_mm;height_mm\nA;1.300;2.200\n", "check the unit"),
+        (
+            "name,width_m,height_m,latitude,longitude\nA,.3,1.2,3929000,384000\n",
+            "latitude: expected degrees",
+        ),
+        (
+            "name,width_m,height_m,latitude,longitude\nA,.3,1.2,35°06',134°54'\n",
+            "latitude: expected a number",
+        ),
+        ("name,width_m,height_m,x,y\nA,.3,1.2,384000,3929000\n", "column 'x'"),
+        (
+            "name,width_m,height_m,latitude,longitude\nA,.3,1.2,35,\n",
+            "as the other coordinate is given",
+        ),
+        ("name,width_m,height_m\nA,.3,1.2\nA,.3,1.2\n", "is there twice"),
+        ('name,width_m,height_m\nA,"0,3","1,2"\n', "decimals with a point"),
+    ],
+)
+def test_inventories_of_other_makes_are_refused_in_one_sentence(table, words, tmp_path):
+    path = tmp_path / "inventory.csv"
+    path.write_text(table, encoding="utf-8")
+    with pytest.raises(InputError, match=words):
+        after_earthquake(path, lambda _: GroundShaking(0.3, 30.0))
+
+
+@pytest.mark.parametrize(
+    "table",
+    [
+        "\ufeffname,width_m,height_m,latitude,longitude\nA,0.3,1.2,35.1,134.9\n",
+        "name;width_m;height_m;latitude;longitude\r\nA;0,3;1,2;35,1;134,9\r\n",
+        "name\twidth_cm\theight_cm\tlatitude\tlongitude\nA\t30\t120\t35.1\t134.9\n",
+    ],
+)
+def test_inventories_of_other_makes_are_read(table, tmp_path):
+    path = tmp_path / "inventory.csv"
+    path.write_text(table, encoding="utf-8")
+    (request,), faults = read_inventory(path, {})
+    assert not faults and request.coordinates == (35.1, 134.9)
+    block = request.objects.block
+    assert (block.width, block.height) == pytest.approx((0.3, 1.2))

@@ -29,6 +29,7 @@ from rockfrag.assess.request import Request
 from rockfrag.assess.risk import Estimate
 from rockfrag.base.errors import InputError
 from rockfrag.records.motion import Motion
+from rockfrag.runtime.progress import Progress
 from rockfrag.simulation.inputs import UnitWarning
 from rockfrag.words.catalogue import catalogue
 
@@ -145,6 +146,7 @@ def after_earthquake(
     then_recorded: Sequence[Motion] = (),
     keep_going: bool = False,
     order: str = "",
+    progress: Progress | None = None,
 ) -> ShakenCollection:
     """Say of each object of an inventory how probably an earthquake felled it, and rocked it.
 
@@ -158,6 +160,7 @@ def after_earthquake(
     then, then_recorded : the same of a second shock; None and empty without one
     keep_going : list the rows that are right where others are not
     order : of lengths that a museum's table does not name, such as ``HWD``
+    progress : called with the number of objects done and of all, in each shock
 
     Returns
     -------
@@ -183,8 +186,9 @@ def after_earthquake(
             f"{path}: nothing is known of the shaking of any object; the map does not reach their coordinates."
         )
     motions = motion_set(requests[0].records, requests[0].place, Path(records))
-    found = assess_each([request for request, _ in shaken], motions)
-    again = _again([request for request, _ in shaken], then, motions)
+    standing = [request for request, _ in shaken]
+    found = assess_each(standing, motions, progress)
+    again = _again(standing, then, motions, progress)
     both = one_after_the_other(recorded, then_recorded) if then_recorded else ()
     objects = [
         ShakenObject(each, here, _under_record(each.request, recorded, both), later)
@@ -195,7 +199,10 @@ def after_earthquake(
 
 
 def _again(
-    requests: Sequence[Request], then: Ground | None, motions: MotionSet
+    requests: Sequence[Request],
+    then: Ground | None,
+    motions: MotionSet,
+    progress: Progress | None,
 ) -> Sequence[Assessment | None]:
     """Assess objects at the levels of a second shock; None each without one, and where nothing is known of it."""
     grounds = [then(each.coordinates) if then else None for each in requests]
@@ -203,7 +210,7 @@ def _again(
     asked = [
         _asked(requests[i], ground) for i in known if (ground := grounds[i]) is not None
     ]
-    found = dict(zip(known, assess_each(asked, motions), strict=True))
+    found = dict(zip(known, assess_each(asked, motions, progress), strict=True))
     return [found.get(i) for i in range(len(requests))]
 
 
