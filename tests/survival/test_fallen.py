@@ -101,6 +101,8 @@ def test_the_command_writes_page_json_and_table_and_takes_a_map_as_prior(
     limits = answer["pgv_cm_s"]
     assert limits["lower"] < limits["median"] < limits["upper"]
     assert answer["direction"]["count"] == 7
+    # the made motions have one component each
+    assert answer["axis"] is None
     page = (tmp_path / "out" / "shaking.html").read_text()
     assert "http" not in page.replace("http-equiv", "").replace("http://www.w3.org", "")
     assert (tmp_path / "out" / "shaking.csv").read_text().startswith("pgv_cm_s,")

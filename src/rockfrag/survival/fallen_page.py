@@ -33,6 +33,19 @@ LIMITS = (
 """Texts of the limits of every answer, a sentence each."""
 
 
+AXIS_IS_OPEN = 60.0  # Half of an interval from which no axis is said [degrees]
+VELOCITY = ("fallen_velocity", "fallen_velocity_at_least", "fallen_velocity_at_most")
+PEAK = ("fallen_peak", "fallen_peak_at_least", "fallen_peak_at_most")
+"""Texts of a level: with its interval, and with one limit."""
+
+SHARES = {
+    "model": "fallen_share_model",
+    "second component": "fallen_share_second_component",
+    "slenderness": "fallen_share_slenderness",
+}
+"""Texts of what all objects share."""
+
+
 def write_fallen(
     found: FallenPlace, folder: str | os.PathLike[str], language: str = FIRST
 ) -> Path:
@@ -102,6 +115,7 @@ def fallen_json(found: FallenPlace) -> str:
         ),
         "shared_sd_ln": dict(found.shared),
         "direction": found.direction and _direction_data(found.direction),
+        "axis": found.axis and dict(vars(found.axis)),
         "motions": len(found.motions.ground),
         "limits": [catalogue().text(id) for id in LIMITS],
     }
@@ -130,7 +144,7 @@ def fallen_lines(found: FallenPlace, language: str = FIRST) -> list[str]:
         "fallen_head_evidence": [_evidence(found)],
     }
     if found.direction is not None:
-        said["fallen_head_direction"] = [_direction(found.direction)]
+        said["fallen_head_direction"] = _directions(found, found.direction)
     said["fallen_head_hangs_on"] = [_hangs_on(found)]
     said["fallen_head_limits"] = [finding(id) for id in LIMITS]
     heads = [texts.text(id) for id in said]
@@ -146,21 +160,24 @@ def _velocity(found: FallenPlace) -> Said:
     about = found.posterior
     if about.open_above and about.open_below:
         return finding("fallen_velocity_open")
-    return _level("fallen_velocity", about.pgv(), found)
+    return _level(VELOCITY, about.pgv(), found)
 
 
 def _acceleration(found: FallenPlace) -> Said:
-    return _level("fallen_peak", found.posterior.pga(), found)
+    return _level(PEAK, found.posterior.pga(), found)
 
 
-def _level(id: str, level: tuple[float, float, float], found: FallenPlace) -> Said:
+def _level(
+    texts: tuple[str, str, str], level: tuple[float, float, float], found: FallenPlace
+) -> Said:
     """A level with its interval, or with its one limit where the other is open."""
     middle, low, high = map(two, level)
+    both, at_least, at_most = texts
     if found.posterior.open_above:
-        return finding(f"{id}_at_least", low=low)
+        return finding(at_least, low=low)
     if found.posterior.open_below:
-        return finding(f"{id}_at_most", high=high)
-    return finding(id, middle=middle, low=low, high=high)
+        return finding(at_most, high=high)
+    return finding(both, middle=middle, low=low, high=high)
 
 
 def _evidence(found: FallenPlace) -> Said:
@@ -171,6 +188,15 @@ def _evidence(found: FallenPlace) -> Said:
         bit=two(max(found.posterior.information_bit, 0.0)),
         n=len(found.motions.ground),
     )
+
+
+def _directions(found: FallenPlace, falls: FallDirection) -> list[Value]:
+    """Where falls point, and along which axis the ground shook most, if that can be said."""
+    said: list[Value] = [_direction(falls)]
+    if found.axis is not None and found.axis.within < AXIS_IS_OPEN:
+        azimuth, within = whole(found.axis.azimuth), whole(found.axis.within)
+        said.append(finding("fallen_axis", azimuth=azimuth, within=within))
+    return said
 
 
 def _direction(found: FallDirection) -> Said:
@@ -186,7 +212,7 @@ def _direction(found: FallDirection) -> Said:
 
 def _hangs_on(found: FallenPlace) -> Said:
     shared = [
-        finding(f"fallen_share_{name.replace(' ', '_')}", spread=two(spread))
+        finding(SHARES[name], spread=two(spread))
         for name, spread in found.shared.items()
     ]
     return finding("fallen_hangs_on", shared=listed(shared), own=two(max(found.own)))
@@ -282,7 +308,8 @@ def _sections(found: FallenPlace, texts: Catalogue) -> list[Section]:
     ]
     if found.direction is not None:
         title = texts.text("fallen_directions")
-        where = Section("direction", title, texts.say(_direction(found.direction)))
+        said = " ".join(map(texts.say, _directions(found, found.direction)))
+        where = Section("direction", title, said)
         sections.insert(1, where)
     return sections
 
