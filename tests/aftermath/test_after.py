@@ -11,8 +11,17 @@ import pytest
 from rockfrag.aftermath.check_list import after_lines, after_page
 from rockfrag.aftermath.sequence import one_after_the_other
 from rockfrag.aftermath.shakemap import read_shakemap
-from rockfrag.aftermath.shaken_ground import GroundShaking, level_of, mapped_ground
-from rockfrag.aftermath.shaken_objects import after_earthquake, shaken_table
+from rockfrag.aftermath.shaken_ground import (
+    GroundShaking,
+    level_of,
+    mapped_ground,
+    recorded_ground,
+)
+from rockfrag.aftermath.shaken_objects import (
+    ShakenObject,
+    after_earthquake,
+    shaken_table,
+)
 from rockfrag.assess.answer import assess_with
 from rockfrag.assess.hazard.curve import PGA
 from rockfrag.assess.inventory import read_inventory
@@ -21,6 +30,8 @@ from rockfrag.assess.request import Level, LevelSpread, make_request
 from rockfrag.assess.risk import fraction_target
 from rockfrag.base.errors import InputError
 from rockfrag.cli.main import main
+from rockfrag.engines.spatial import run_in_space
+from rockfrag.records.motion import GroundMotion
 from rockfrag.simulation import overturns
 from rockfrag.system.blocks import Block
 
@@ -211,6 +222,34 @@ def test_a_sequence_is_both_motions_with_quiet_time_between_them(made_motions):
         assert (fell[0] == (fell[1] | fell[2])).all() and fell[0].any()
     with pytest.raises(InputError, match="components"):
         one_after_the_other(first, second[:1])
+
+
+def test_an_aftershock_finds_an_object_in_space_where_the_main_shock_left_it(
+    place, own_records
+):
+    """One record twice: what it turned the first time it turns further."""
+    table = place / "rows.csv"
+    table.write_text("name,width,depth,height\nbust,19 cm,20.9 cm,80 cm\n")
+    files = [str(own_records / f"motion{i}.txt") for i in (6, 7)]
+    ground, recorded = recorded_ground(files, unit="g")
+    own = {"records": {"paths": [str(own_records / "catalogue.csv")]}}
+
+    def found(then) -> ShakenObject:
+        collection = after_earthquake(
+            table, lambda _: ground, own, recorded=recorded, then_recorded=then
+        )
+        assert "rocked, turned" in after_page(collection)
+        assert shaken_table(collection)["moved_cm"].item() > 0
+        return collection.objects[0]
+
+    once, twice = found(()), found(recorded)
+    sequence = one_after_the_other(recorded, recorded)
+    shaking = [GroundMotion(*pair) for pair in (recorded, sequence)]
+    solid = once.request.objects.solid(once.request.objects.body)
+    turned = np.degrees(run_in_space([solid], shaking).turn[0, :, 0, 0])
+    assert once.left.turned_deg == pytest.approx(abs(turned[0]))
+    assert twice.left.turned_deg == pytest.approx(abs(turned[1]))
+    assert twice.left.turned_deg > 1.5 * once.left.turned_deg > 0
 
 
 def test_a_second_record_fells_what_the_first_left_standing(

@@ -193,3 +193,29 @@ def test_coverage_under_recorded_motions_of_earthquakes_that_are_left_out(stones
         _, low, high = posterior.pgv()
         held += math.log(low) <= pgv <= math.log(high)
     assert 0.86 <= held / worlds <= 0.94
+
+
+def test_the_axis_of_shaking_turns_with_the_azimuths_of_the_falls(
+    own_records, tmp_path
+):
+    names = [f"motion{i}.txt" for i in range(8)]
+    pairs = zip(names[::2], names[1::2], strict=True)
+    rows = [
+        f"pair {i},event {i},{own_records / a},{own_records / b},g"
+        for i, (a, b) in enumerate(pairs)
+    ]
+    catalogue_path = tmp_path / "pairs.csv"
+    catalogue_path.write_text("\n".join(["name,earthquake,file,second,unit", *rows]))
+    own = {"records": {"paths": [str(catalogue_path)]}}
+    found = []
+    for turn in (0, 52):
+        azimuths = "|".join(str(turn + angle) for angle in (10, 20, 30, 24, 16, 22))
+        path = tmp_path / "rows.csv"
+        row = f"stones,15 cm,90 cm,8 of 12,{azimuths}"
+        path.write_text(f"name,width,height,fell,azimuths\n{row}\n")
+        found.append(constrain_shaking(read_fallen(path, own)))
+    first, turned = (place.axis for place in found)
+    assert first.within == pytest.approx(turned.within)
+    assert (turned.azimuth - first.azimuth) % 180 == pytest.approx(52)
+    said = " ".join(fallen_lines(found[0]))
+    assert ("most along" in said) == (first.within < 60)

@@ -33,6 +33,7 @@ from rockfrag.collections.exported_table import (
     is_export,
     read_export,
 )
+from rockfrag.fragility.toppling_velocity import toppling_velocity
 from rockfrag.motions.intensity import IntensityMeasure
 from rockfrag.runtime.progress import Progress
 
@@ -49,6 +50,7 @@ PLANAR, BOX, ROUND = "planar", "box", "round"
 NODES = {PLANAR: (8, 9), BOX: (5, 6), ROUND: (5, 6)}
 """Heights and slendernesses that are simulated; in space fewer, as each takes longer."""
 
+M_TO_CM = 100.0
 BEYOND = 1.5  # Median that stands for one above the highest level, over that level
 NORMAL_TENTH = 1.2816  # Standard deviations from a median to its tenth
 SEED = 58  # Of the objects that are drawn at random
@@ -66,6 +68,7 @@ class Surface:
     log_medians, betas : shape (heights, slendernesses)
     level : of shaking that was asked about, in the measure's unit
     hazard : curve of the measure; None if none was given
+    published : whether medians are those of :mod:`rockfrag.fragility.toppling_velocity` where it knows the size
     """
 
     measure: IntensityMeasure
@@ -75,6 +78,7 @@ class Surface:
     betas: Floats
     level: float
     hazard: HazardCurve | None
+    published: bool = False
 
     def curves(self, heights: Floats, widths: Floats) -> tuple[Floats, Floats]:
         """Median and β of blocks; beyond the grid those of its edge.
@@ -95,8 +99,11 @@ class Surface:
             )
         ]
         points = np.column_stack(inside)
-        logs = RegularGridInterpolator(axes, self.log_medians)(points)
-        return np.exp(logs), RegularGridInterpolator(axes, self.betas)(points)
+        medians = np.exp(RegularGridInterpolator(axes, self.log_medians)(points))
+        if self.published:
+            known, _ = toppling_velocity(widths, heights)
+            medians = np.where(np.isfinite(known), M_TO_CM * known, medians)
+        return medians, RegularGridInterpolator(axes, self.betas)(points)
 
     def fractions(self, medians: Floats, betas: Floats) -> Floats:
         """Probability of toppling at the level, shape (n,)."""
@@ -324,7 +331,16 @@ def tabulate(
         betas=betas,
         level=level.value,
         hazard=hazard,
+        published=_is_published(found[0], kind),
     )
+
+
+def _is_published(found: Assessment, kind: str) -> bool:
+    """Whether the published surface answers the same: PGV of the ground, in a plane, by the usual motions."""
+    request = found.request
+    usual = not request.records.paths and math.isnan(request.records.magnitude)
+    asked = found.measure.imt == "PGV" and request.place.shakes_as_ground
+    return kind == PLANAR and usual and asked
 
 
 def _of_kind(kind: str, width: float) -> dict[str, Any]:

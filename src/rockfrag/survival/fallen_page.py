@@ -38,7 +38,7 @@ VELOCITY = ("fallen_velocity", "fallen_velocity_at_least", "fallen_velocity_at_m
 PEAK = ("fallen_peak", "fallen_peak_at_least", "fallen_peak_at_most")
 """Texts of a level: with its interval, and with one limit."""
 
-SHARES = {
+COMMON_ERRORS = {
     "model": "fallen_share_model",
     "second component": "fallen_share_second_component",
     "slenderness": "fallen_share_slenderness",
@@ -212,7 +212,7 @@ def _direction(found: FallDirection) -> Said:
 
 def _hangs_on(found: FallenPlace) -> Said:
     shared = [
-        finding(SHARES[name], spread=two(spread))
+        finding(COMMON_ERRORS[name], spread=two(spread))
         for name, spread in found.shared.items()
     ]
     return finding("fallen_hangs_on", shared=listed(shared), own=two(max(found.own)))

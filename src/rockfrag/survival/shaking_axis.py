@@ -28,7 +28,7 @@ from rockfrag.records.motion import GroundMotion, Motion
 from rockfrag.survival.shaking_posterior import INTERVAL, smoothed
 from rockfrag.system.blocks import Block
 
-STEP = 4  # Between angles of the densities [degrees]
+STEP = 2  # Between angles of the densities [degrees]
 ANGLES = np.radians(np.arange(0, 360, STEP))  # Shape (angles,)
 FACINGS = (
     0.0,
@@ -103,11 +103,9 @@ def _turned(components: Sequence[Motion], angle: float) -> GroundMotion:
 
 def _fastest(motion: GroundMotion) -> float:
     """Direction in which the ground was fastest, from the first component towards the second [rad]."""
-    x, y = (
-        np.cumsum(part.acceleration) * part.dt
-        for part in (motion.x, motion.y)
-        if part is not None
-    )
+    assert motion.y is not None
+    x = np.cumsum(motion.x.acceleration)
+    y = np.cumsum(motion.y.acceleration)
     at = int(np.argmax(x**2 + y**2))
     return math.atan2(y[at], x[at])
 
@@ -153,12 +151,13 @@ def shaking_axis(
     """
     logs = np.zeros((ANGLES.size, *weights.shape))
     for azimuths, density in falls:
+        mixed = (1 - OWN_REASONS) * density + OWN_REASONS / (2 * math.pi)
+        log_density = np.log(mixed)
         for azimuth in azimuths:
             # the angle of a fall from each axis is one of the angles, turned
             away = (math.radians(azimuth) - ANGLES) % (2 * math.pi)
             place = np.rint(away / math.radians(STEP)).astype(int) % ANGLES.size
-            part = (1 - OWN_REASONS) * density[place] + OWN_REASONS / (2 * math.pi)
-            logs += np.log(part)
+            logs += log_density[place]
     with np.errstate(divide="ignore"):
         total = special.logsumexp(logs + np.log(weights), axis=(1, 2))
     chance = np.exp(total - total.max())
