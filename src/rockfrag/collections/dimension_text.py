@@ -97,6 +97,7 @@ def _any_of(words: Sequence[str]) -> str:
     return "|".join(re.escape(word) for word in sorted(words, key=len, reverse=True))
 
 
+_WAY = _any_of([*DIRECTION_OF])
 _ORDER = _any_of([*DIRECTION_OF, *WEIGHT_WORDS])
 _UNIT = _any_of([*METRES, *KILOGRAMS])
 _PART = _any_of([*WITHOUT_BASE, *WITH_BASE, *PIECES_OF_IT, *EACH])
@@ -114,7 +115,7 @@ _TERM = re.compile(
 )
 _UNIT_ALONE = re.compile(rf"(?:all )?(?:in )?({_any_of([*METRES])})\.?")
 _ORDER_ALONE = re.compile(
-    rf"(?<!\w)((?:{_ORDER})\.?(?:\s*[×/,]\s*(?:{_ORDER})\.?)+)(?!\w)\s*[:=]?"
+    rf"(?<!\w)((?:{_WAY})\.?(?:\s*[×/,]\s*(?:{_WAY})\.?)+)(?!\w)\s*[:=]?"
 )
 
 
@@ -268,8 +269,9 @@ def read_dimensions(text: str, order: str = "") -> Dimensions:
             about, question="no length is stated; give height, width and depth"
         )
     part = min((phrase.part for phrase in measured), key=_rank_of_part)
-    own = [phrase for phrase in measured if phrase.part == part]
-    others = [phrase.text for phrase in measured if phrase.part != part]
+    kept = {part, ""} if _names_all(measured, part) else {part}
+    own = [phrase for phrase in measured if phrase.part in kept]
+    others = [phrase.text for phrase in measured if phrase.part not in kept]
     about = replace(about, part=part, others=tuple(others))
     if part in PIECES_OF_IT:
         return replace(
@@ -294,7 +296,7 @@ def _plain(text: str) -> str:
     text = _LARGEST.sub("", _APPROXIMATE.sub("", text))
     text = re.sub(r"\(\s*\)", " ", text)
     # .60 m, but not H.60 cm
-    text = re.sub(r"(?<=[\s×(])\.(?=\d)", "0.", _plain_masses(text))
+    text = re.sub(r"(?:^|(?<=[\s×x(,;:]))\.(?=\d)", "0.", _plain_masses(text))
     # height with base: 180 cm; rim diameter 20 cm: a part of its own
     text = re.sub(
         rf"(?<!\w)({_ORDER})\.?\s+({_WITH_OR_WITHOUT})[\s:.]*(?=\d)",
@@ -376,6 +378,16 @@ def _split_part(words: str) -> tuple[str | None, str]:
             continue
         return part if stands_for is None else stands_for, rest.strip(" .,:")
     return None, words
+
+
+def _names_all(phrases: Sequence[_Phrase], part: str) -> bool:
+    """Whether a part that is named last is that of all: H 180 cm; W 60 cm (with base)."""
+    named = [each.word for phrase in phrases if phrase.part for each in phrase.lengths]
+    before = [
+        each.word for phrase in phrases if not phrase.part for each in phrase.lengths
+    ]
+    of_whole = {phrase.part for phrase in phrases} == {"", part} and part not in EACH
+    return of_whole and part not in PIECES_OF_IT and not set(named) & set(before)
 
 
 def _rank_of_part(part: str) -> int:
