@@ -30,7 +30,6 @@ from rockfrag.assess.request import Level, LevelSpread, make_request
 from rockfrag.assess.risk import fraction_target
 from rockfrag.base.errors import InputError
 from rockfrag.cli.main import main
-from rockfrag.engines.spatial import run_in_space
 from rockfrag.records.motion import GroundMotion
 from rockfrag.simulation import overturns
 from rockfrag.system.blocks import Block
@@ -246,7 +245,7 @@ def test_an_aftershock_finds_an_object_in_space_where_the_main_shock_left_it(
     sequence = one_after_the_other(recorded, recorded)
     shaking = [GroundMotion(*pair) for pair in (recorded, sequence)]
     solid = once.request.objects.solid(once.request.objects.body)
-    turned = np.degrees(run_in_space([solid], shaking).turn[0, :, 0, 0])
+    turned = np.degrees(overturns([solid], shaking).turn[0, :, 0, 0])
     assert once.left.turned_deg == pytest.approx(abs(turned[0]))
     assert twice.left.turned_deg == pytest.approx(abs(turned[1]))
     assert twice.left.turned_deg > 1.5 * once.left.turned_deg > 0

@@ -22,9 +22,9 @@ from rockfrag.assess.hazard.curve import PGV
 from rockfrag.assess.motions import MotionSet
 from rockfrag.assess.outcomes import AT_REST, FEW_LEVELS, make_intensity_levels
 from rockfrag.base.arrays import Floats
-from rockfrag.engines.spatial import run_in_space
 from rockfrag.motions.rotation import rotate
 from rockfrag.records.motion import GroundMotion, Motion
+from rockfrag.simulation.ensemble import overturns
 from rockfrag.survival.shaking_posterior import INTERVAL, smoothed
 from rockfrag.system.blocks import Block
 
@@ -90,7 +90,7 @@ def predicted_falls(block: Block, motions: MotionSet) -> PredictedFalls:
     found = []
     for facing in FACINGS:
         turned = [_turned(both.components(record), facing) for record in pairs]
-        outcomes = run_in_space([solid], turned, scales)
+        outcomes = overturns([solid], turned, scales=scales)
         fastest = np.array([_fastest(motion) for motion in turned])
         found.append(outcomes.fall_direction[0, ..., 0] - fastest[:, np.newaxis])
     return PredictedFalls(shaking.levels, np.concatenate(found))
