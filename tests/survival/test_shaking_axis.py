@@ -32,7 +32,7 @@ def world(rng, stones: int) -> tuple[float, float]:
     truth, level = rng.uniform(0, 360), rng.integers(7, 12)
     angles = own.angles[0, rng.integers(level - 1, min(level + 2, 12), stones)]
     azimuths = truth + np.degrees(angles) + rng.normal(0, 10, stones)
-    about = made_falls(rng, 25)
+    about = made_falls(rng, 60)
     weights = np.zeros(about.angles.shape)
     weights[:, 6:] = 1 / weights[:, 6:].size
     found = shaking_axis([(azimuths % 360, fall_density(about, 0.2))], weights)
