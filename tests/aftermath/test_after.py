@@ -11,15 +11,26 @@ import pytest
 from rockfrag.aftermath.check_list import after_lines, after_page
 from rockfrag.aftermath.sequence import one_after_the_other
 from rockfrag.aftermath.shakemap import read_shakemap
-from rockfrag.aftermath.shaken_ground import GroundShaking, level_of, mapped_ground
-from rockfrag.aftermath.shaken_objects import after_earthquake, shaken_table
+from rockfrag.aftermath.shaken_ground import (
+    GroundShaking,
+    level_of,
+    mapped_ground,
+    recorded_ground,
+)
+from rockfrag.aftermath.shaken_objects import (
+    ShakenObject,
+    after_earthquake,
+    shaken_table,
+)
 from rockfrag.assess.answer import assess_with
 from rockfrag.assess.hazard.curve import PGA
+from rockfrag.assess.inventory import read_inventory
 from rockfrag.assess.motions import motion_set
 from rockfrag.assess.request import Level, LevelSpread, make_request
 from rockfrag.assess.risk import fraction_target
 from rockfrag.base.errors import InputError
 from rockfrag.cli.main import main
+from rockfrag.records.motion import GroundMotion
 from rockfrag.simulation import overturns
 from rockfrag.system.blocks import Block
 
@@ -212,6 +223,34 @@ def test_a_sequence_is_both_motions_with_quiet_time_between_them(made_motions):
         one_after_the_other(first, second[:1])
 
 
+def test_an_aftershock_finds_an_object_in_space_where_the_main_shock_left_it(
+    place, own_records
+):
+    """One record twice: what it turned the first time it turns further."""
+    table = place / "rows.csv"
+    table.write_text("name,width,depth,height\nbust,19 cm,20.9 cm,80 cm\n")
+    files = [str(own_records / f"motion{i}.txt") for i in (6, 7)]
+    ground, recorded = recorded_ground(files, unit="g")
+    own = {"records": {"paths": [str(own_records / "catalogue.csv")]}}
+
+    def found(then) -> ShakenObject:
+        collection = after_earthquake(
+            table, lambda _: ground, own, recorded=recorded, then_recorded=then
+        )
+        assert "rocked, turned" in after_page(collection)
+        assert shaken_table(collection)["moved_cm"].item() > 0
+        return collection.objects[0]
+
+    once, twice = found(()), found(recorded)
+    sequence = one_after_the_other(recorded, recorded)
+    shaking = [GroundMotion(*pair) for pair in (recorded, sequence)]
+    solid = once.request.objects.solid(once.request.objects.body)
+    turned = np.degrees(overturns([solid], shaking).turn[0, :, 0, 0])
+    assert once.left.turned_deg == pytest.approx(abs(turned[0]))
+    assert twice.left.turned_deg == pytest.approx(abs(turned[1]))
+    assert twice.left.turned_deg > 1.5 * once.left.turned_deg > 0
+
+
 def test_a_second_record_fells_what_the_first_left_standing(
     place, own_records, made_motions
 ):
@@ -294,3 +333,49 @@ def test_places_that_are_missing_wrong_or_beyond_the_map_are_named(
     (place / "bare.csv").write_text("name,width,height\na,30 cm,90 cm\n")
     assert main(["after", "bare.csv", "--shakemap", "grid.xml"]) == 2
     assert "--at" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("table", "words"),
+    [
+        ("name,width_m,height_m\nA,30,120\n", "check the unit"),
+        ("name;width_mm;height_mm\nA;1.300;2.200\n", "check the unit"),
+        (
+            "name,width_m,height_m,latitude,longitude\nA,.3,1.2,3929000,384000\n",
+            "latitude: expected degrees",
+        ),
+        (
+            "name,width_m,height_m,latitude,longitude\nA,.3,1.2,35°06',134°54'\n",
+            "latitude: expected a number",
+        ),
+        ("name,width_m,height_m,x,y\nA,.3,1.2,384000,3929000\n", "column 'x'"),
+        (
+            "name,width_m,height_m,latitude,longitude\nA,.3,1.2,35,\n",
+            "as the other coordinate is given",
+        ),
+        ("name,width_m,height_m\nA,.3,1.2\nA,.3,1.2\n", "is there twice"),
+        ('name,width_m,height_m\nA,"0,3","1,2"\n', "decimals with a point"),
+    ],
+)
+def test_inventories_of_other_makes_are_refused_in_one_sentence(table, words, tmp_path):
+    path = tmp_path / "inventory.csv"
+    path.write_text(table, encoding="utf-8")
+    with pytest.raises(InputError, match=words):
+        after_earthquake(path, lambda _: GroundShaking(0.3, 30.0))
+
+
+@pytest.mark.parametrize(
+    "table",
+    [
+        "\ufeffname,width_m,height_m,latitude,longitude\nA,0.3,1.2,35.1,134.9\n",
+        "name;width_m;height_m;latitude;longitude\r\nA;0,3;1,2;35,1;134,9\r\n",
+        "name\twidth_cm\theight_cm\tlatitude\tlongitude\nA\t30\t120\t35.1\t134.9\n",
+    ],
+)
+def test_inventories_of_other_makes_are_read(table, tmp_path):
+    path = tmp_path / "inventory.csv"
+    path.write_text(table, encoding="utf-8")
+    (request,), faults = read_inventory(path, {})
+    assert not faults and request.coordinates == (35.1, 134.9)
+    block = request.objects.block
+    assert (block.width, block.height) == pytest.approx((0.3, 1.2))

@@ -15,8 +15,17 @@ from rockfrag.aftermath.shaken_ground import (
 )
 from rockfrag.assess.hazard.curve import PGA, PGV
 from rockfrag.base.errors import InputError
+from rockfrag.base.units import GRAVITY
 
-from .grids import FIELDS, LATITUDES, LONGITUDES, grid_text, logs, write_grids
+from .grids import (
+    FIELDS,
+    LATITUDES,
+    LONGITUDES,
+    grid_text,
+    logs,
+    of_grid,
+    write_grids,
+)
 
 PLACE = 35.123, 135.456
 
@@ -90,6 +99,61 @@ def test_a_zip_file_an_order_from_south_and_columns_in_another_order_say_the_sam
     assert read_shakemap(other).at(*PLACE).values == pytest.approx(usual)
 
 
+def _rows_changed(change) -> str:
+    """A grid whose points are changed as a list of lists of words."""
+    head, _, rest = grid_text().partition("<grid_data>\n")
+    rows, _, end = rest.partition("\n</grid_data>")
+    changed = change([line.split() for line in rows.splitlines()])
+    lines = "\n".join(" ".join(words) for words in changed)
+    return f"{head}<grid_data>\n{lines}\n</grid_data>{end}"
+
+
+def test_points_in_any_order_round_180_degrees_and_without_a_stated_number_say_the_same(
+    grids, tmp_path
+):
+    usual = read_shakemap(grids[0]).at(*PLACE).values
+    path = tmp_path / "other.xml"
+    by_column = _rows_changed(
+        lambda rows: sorted(rows, key=lambda row: (float(row[0]), float(row[1])))
+    )
+    rng = np.random.default_rng(58)
+    shuffled = _rows_changed(lambda rows: rng.permutation(rows).tolist())
+    unstated = grid_text().replace('nlon="16"', "").replace('nlat="11"', "")
+    marked = "\ufeff" + grid_text()
+    for text in (by_column, shuffled, unstated, marked):
+        path.write_text(text, encoding="utf-8")
+        assert read_shakemap(path).at(*PLACE).values == pytest.approx(usual)
+    # 44.7 degrees further east the map crosses 180 degrees
+
+    def eastward(rows):
+        east = [(float(row[0]) + 44.7 + 180) % 360 - 180 for row in rows]
+        return [[f"{x:.4f}", *row[1:]] for x, row in zip(east, rows, strict=True)]
+
+    path.write_text(_rows_changed(eastward))
+    found = read_shakemap(path)
+    for longitude in (PLACE[1] + 44.7, PLACE[1] + 44.7 - 360):
+        assert found.at(PLACE[0], longitude).values == pytest.approx(usual)
+
+
+@pytest.mark.parametrize(
+    ("unit", "factor"), [("g", 1.0), ("%g", 0.01), ("Gal", 0.01 / GRAVITY)]
+)
+def test_accelerations_are_read_in_the_unit_that_the_grid_states(
+    unit, factor, tmp_path
+):
+    path = tmp_path / "grid.xml"
+
+    def values(longitude: float, latitude: float) -> list[float]:
+        first, *others = of_grid(longitude, latitude)
+        return [0.01 * first / factor, *others]
+
+    text = grid_text(values=values)
+    path.write_text(text.replace('"PGA" units="pctg"', f'"PGA" units="{unit}"'))
+    pga, _ = logs(PLACE[1], PLACE[0])
+    found = read_shakemap(path).at(*PLACE).values["PGA"]
+    assert found == pytest.approx(math.exp(pga) / 100 / LARGER_OF_TWO, rel=1e-4)
+
+
 def test_points_without_shaking_do_not_count(tmp_path):
     path = tmp_path / "grid.xml"
     lines = grid_text().splitlines()
@@ -109,6 +173,30 @@ def test_points_without_shaking_do_not_count(tmp_path):
         (lambda text: text.replace(" 300\n", "\n", 1), "downloaded whole"),
         (lambda text: text.replace(" 300\n", " stone\n", 1), "no number"),
         (lambda text: text.replace('units="pctg"', 'units="furlongs"'), "furlongs"),
+        # an acceleration in g that says % g, and the other way round
+        (
+            lambda text: text.replace('"PGA" units="pctg"', '"PGA" units="g"'),
+            "no earth",
+        ),
+        (
+            lambda text: text.replace('"PGA" units="pctg"', '"PGA" units="cms"'),
+            "in cms",
+        ),
+        (
+            lambda text: text.replace('"PGV" units="cms"', '"PGV" units="m/s"'),
+            "no earth",
+        ),
+        (lambda text: text.replace('"PGV" units="cms"', '"PGV" units=""'), "no unit"),
+        # a projected place, a point that stands twice, a decimal comma
+        (
+            lambda text: text.replace("134.5 35.5 ", "384000.5 3929000 ", 1),
+            "no degrees",
+        ),
+        (
+            lambda text: text.replace("134.5 35.5 ", "134.6 35.5 ", 1),
+            "rows and columns",
+        ),
+        (lambda text: text.replace("134.5 35.5 ", "134,5 35.5 ", 1), "no number"),
         (lambda text: text.replace("shakemap_grid", "grid"), "no grid of a ShakeMap"),
         (lambda text: text.replace('name="LON"', 'name="X"'), "no columns LON"),
         (lambda text: text.replace('index="3"', 'index="4"'), "numbered from 1"),

@@ -11,11 +11,13 @@ from rockfrag.assess.inventory import FaultyRows
 from rockfrag.assess.motions import motion_set
 from rockfrag.assess.outcomes import make_intensity_levels
 from rockfrag.assess.request import make_request
+from rockfrag.base.errors import InputError
 from rockfrag.cli.main import main
 from rockfrag.survival import fallen
 from rockfrag.survival.fallen import Knowledge, constrain_shaking, read_fallen
-from rockfrag.survival.fallen_page import LIMITS, fallen_lines
+from rockfrag.survival.fallen_page import LIMITS, fallen_lines, fallen_page
 from rockfrag.survival.shaking_posterior import Falls, Prior, shaking_posterior
+from rockfrag.words.catalogue import catalogue
 
 from ..aftermath.grids import write_grids
 
@@ -94,14 +96,28 @@ def test_the_command_writes_page_json_and_table_and_takes_a_map_as_prior(
     assert main(["constrain", str(table), *place, "--output", "out"]) == 0
     said = capsys.readouterr().out
     assert "32 of 73 objects fell" in said and "PGV was about" in said
-    assert "from north" in said and LIMITS[0] in said
+    assert "from north" in said and catalogue().text(LIMITS[0]) in said
     answer = json.loads((tmp_path / "out" / "shaking.json").read_text())
     limits = answer["pgv_cm_s"]
     assert limits["lower"] < limits["median"] < limits["upper"]
     assert answer["direction"]["count"] == 7
+    # the made motions have one component each
+    assert answer["axis"] is None
     page = (tmp_path / "out" / "shaking.html").read_text()
     assert "http" not in page.replace("http-equiv", "").replace("http://www.w3.org", "")
     assert (tmp_path / "out" / "shaking.csv").read_text().startswith("pgv_cm_s,")
+
+
+def test_lines_and_page_speak_italian(table, own, tmp_path):
+    found = fallen.constrain_shaking(fallen.read_fallen(table, own))
+    lines = fallen_lines(found, "it")
+    assert lines[0].startswith("Velocità") and "La PGV è stata" in lines[0]
+    page = fallen_page(found, "it")
+    assert '<html lang="it"' in page and "Dove puntano le cadute" in page
+    for english in ("What fell", "It hangs on", "per unit of", "at least"):
+        assert english not in page
+    with pytest.raises(InputError, match="xx"):
+        fallen_lines(found, "xx")
 
 
 def test_a_prior_pulls_and_open_ends_are_said(tmp_path, own):
@@ -177,3 +193,29 @@ def test_coverage_under_recorded_motions_of_earthquakes_that_are_left_out(stones
         _, low, high = posterior.pgv()
         held += math.log(low) <= pgv <= math.log(high)
     assert 0.86 <= held / worlds <= 0.94
+
+
+def test_the_axis_of_shaking_turns_with_the_azimuths_of_the_falls(
+    own_records, tmp_path
+):
+    names = [f"motion{i}.txt" for i in range(8)]
+    pairs = zip(names[::2], names[1::2], strict=True)
+    rows = [
+        f"pair {i},event {i},{own_records / a},{own_records / b},g"
+        for i, (a, b) in enumerate(pairs)
+    ]
+    catalogue_path = tmp_path / "pairs.csv"
+    catalogue_path.write_text("\n".join(["name,earthquake,file,second,unit", *rows]))
+    own = {"records": {"paths": [str(catalogue_path)]}}
+    found = []
+    for turn in (0, 52):
+        azimuths = "|".join(str(turn + angle) for angle in (10, 20, 30, 24, 16, 22))
+        path = tmp_path / "rows.csv"
+        row = f"stones,15 cm,90 cm,8 of 12,{azimuths}"
+        path.write_text(f"name,width,height,fell,azimuths\n{row}\n")
+        found.append(constrain_shaking(read_fallen(path, own)))
+    first, turned = (place.axis for place in found)
+    assert first.within == pytest.approx(turned.within)
+    assert (turned.azimuth - first.azimuth) % 180 == pytest.approx(52)
+    said = " ".join(fallen_lines(found[0]))
+    assert ("most along" in said) == (first.within < 60)

@@ -184,7 +184,7 @@ def after_page(collection: ShakenCollection, language: str = FIRST) -> str:
     if recorded:
         head.insert(4, (texts.text("after_column_record"), "short"))
         for row, each in zip(rows, collection.objects, strict=True):
-            row.insert(4, texts.text(each.under_record))
+            row.insert(4, texts.say(_under_record(each)))
     return _TEMPLATES.get_template("check_list.html.j2").render(
         language=texts.language,
         title=texts.say(finding("after_title", n=count)),
@@ -194,6 +194,17 @@ def after_page(collection: ShakenCollection, language: str = FIRST) -> str:
         table=framed(texts.text("after_caption"), head, rows, 5),
         note=texts.text("after_note"),
         made=f"rockfrag {__version__}",
+    )
+
+
+def _under_record(each: ShakenObject) -> Finding:
+    """What the record does to an object, and where it leaves one that rocked."""
+    if each.left is None:
+        return finding(each.under_record)
+    return finding(
+        "after_record_left",
+        turned=two(each.left.turned_deg),
+        moved=two(each.left.moved_cm),
     )
 
 

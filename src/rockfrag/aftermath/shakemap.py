@@ -22,14 +22,25 @@ import numpy as np
 
 from rockfrag.base.arrays import Floats
 from rockfrag.base.errors import InputError
+from rockfrag.base.units import GRAVITY
 
 LARGER_OF_TWO = 1.1
 """Larger of two horizontal components over their geometric mean, of PGA and PGV [-] (Beyer and Bommer 2006, Bull.
 Seismol. Soc. Am. 96: 1512)."""
 
 MOST_BYTES = 512 * 2**20  # Of a grid as text
-UNITS = {"pctg": 0.01, "%g": 0.01, "g": 1.0, "cms": 1.0, "cm/s": 1.0}
+OF_ACCELERATION = {
+    **dict.fromkeys(("pctg", "%g", "pct g", "percent g"), 0.01),
+    "g": 1.0,
+    **dict.fromkeys(("gal", "cm/s2", "cm/s^2", "cm/s²"), 0.01 / GRAVITY),
+    **dict.fromkeys(("m/s2", "m/s^2", "m/s²"), 1.0 / GRAVITY),
+}
+OF_VELOCITY = {**dict.fromkeys(("cms", "cm/s", "cm/sec"), 1.0), "m/s": 100.0}
 """Factors to g and cm/s."""
+
+RATIO = (0.0015, 0.15)
+"""Least and largest PGA over PGV of a map, in the middle of its points [g s/cm]; beyond, a unit is not what it is
+said to be."""
 
 MEASURES = ("PGA", "PGV", "PSA03", "PSA10", "PSA30")
 
@@ -149,6 +160,7 @@ def read_shakemap(
         raise InputError(
             f"{path}: the grid has neither PGA nor PGV; give grid.xml of the ShakeMap."
         )
+    _check_units(layers, path)
     source = next(_named(root, "event"), ET.Element("event"))
     if uncertainty is not None:
         other_root, others, *place = _read_grid(str(uncertainty))
@@ -198,7 +210,7 @@ def _read_grid(path: str) -> tuple[ET.Element, dict[str, Floats], Floats, Floats
     names = set(columns)
     if not {"LON", "LAT"} <= names:
         raise InputError(f"{path}: the grid has no columns LON and LAT.")
-    lattice = _shape(root, rows, path)
+    rows, lattice = _in_order(root, rows, (columns["LON"][0], columns["LAT"][0]), path)
     placed = {name: rows[:, at].reshape(lattice) for name, (at, _) in columns.items()}
     longitudes = placed.pop("LON").mean(axis=0)
     latitudes = placed.pop("LAT").mean(axis=1)
@@ -209,9 +221,27 @@ def _read_grid(path: str) -> tuple[ET.Element, dict[str, Floats], Floats, Floats
             continue
         if name == measure:
             with np.errstate(divide="ignore", invalid="ignore"):
-                layer = np.log(layer * _factor(columns[name][1], f"{path}: {name}"))
-        layers[name] = layer[::-1] if latitudes[0] > latitudes[-1] else layer
-    return root, layers, longitudes, np.sort(latitudes)
+                layer = np.log(layer * _factor(name, columns[name][1], path))
+        elif "log10" in columns[name][1].lower():
+            layer = layer * math.log(10.0)
+        layers[name] = layer
+    return root, layers, longitudes, latitudes
+
+
+def _check_units(layers: Mapping[str, Floats], path: str | os.PathLike[str]) -> None:
+    """Hold accelerations against velocities: a map in g that says % g is not believed."""
+    if not {"PGA", "PGV"} <= set(layers):
+        return
+    ratios = layers["PGA"] - layers["PGV"]
+    known = ratios[np.isfinite(ratios)]
+    if (
+        known.size
+        and not RATIO[0] <= (middle := math.exp(np.median(known))) <= RATIO[1]
+    ):
+        raise InputError(
+            f"{path}: PGA is {middle:.2g} g for each cm/s of PGV, which no earthquake has; the unit of one "
+            "is not what the grid says."
+        )
 
 
 def _text_of(path: str) -> str:
@@ -248,9 +278,9 @@ def _points(root: ET.Element, path: str) -> tuple[dict[str, tuple[int, str]], Fl
     """Column and unit of each field, and all points, shape (points, fields)."""
     try:
         fields = {
-            each.get("name", "").upper(): (
+            each.get("name", "").strip().upper(): (
                 int(each.get("index", "")) - 1,
-                each.get("units", ""),
+                each.get("units", "").strip(),
             )
             for each in _named(root, "grid_field")
         }
@@ -275,23 +305,51 @@ def _points(root: ET.Element, path: str) -> tuple[dict[str, tuple[int, str]], Fl
     return fields, numbers.reshape(-1, len(fields))
 
 
-def _shape(root: ET.Element, rows: Floats, path: str) -> tuple[int, int]:
-    """Rows and columns of the grid, which its points must fill."""
+def _in_order(
+    root: ET.Element, rows: Floats, at: tuple[int, int], path: str
+) -> tuple[Floats, tuple[int, int]]:
+    """Points from south to north and in each row from west to east, with the numbers of rows and columns.
+
+    They may stand in any order, and a map across 180° may count from -180° on again; they must fill a lattice.
+    """
     about = next(_named(root, "grid_specification"), ET.Element("none"))
-    columns, lines = _number(about, "nlon"), _number(about, "nlat")
-    if not columns * lines == len(rows) or min(columns, lines) < 2:
+    places = rows[:, list(at)]
+    if not (np.isfinite(places).all() and (abs(places) <= (360, 90)).all()):
         raise InputError(
-            f"{path}: expected {columns:g} × {lines:g} points, found {len(rows)}; was it downloaded whole?"
+            f"{path}: LON and LAT are no degrees; give a grid in longitude and latitude."
         )
-    return int(lines), int(columns)
+    if np.ptp(places[:, 0]) > 180:
+        rows = rows.copy()
+        rows[:, at[0]] %= 360.0
+    # how finely points are written, far below the distance between two of them
+    longitudes, latitudes = rows[:, list(at)].round(4).T
+    shape = np.unique(latitudes).size, np.unique(longitudes).size
+    stated = _number(about, "nlat"), _number(about, "nlon")
+    if (
+        shape[0] * shape[1] != len(rows)
+        or min(shape) < 2
+        or (math.isfinite(sum(stated)) and stated != shape)
+    ):
+        raise InputError(
+            f"{path}: expected {stated[1]:g} × {stated[0]:g} points, found {len(rows)} that make {shape[1]} × "
+            f"{shape[0]}; was it downloaded whole?"
+        )
+    order = np.lexsort((longitudes, latitudes))
+    along = (longitudes[order].reshape(shape), latitudes[order].reshape(shape).T)
+    if any(np.ptp(places, axis=0).max() > 0 for places in along):
+        raise InputError(
+            f"{path}: the points of the grid do not fill rows and columns."
+        )
+    return rows[order], shape
 
 
-def _factor(unit: str, where: str) -> float:
-    if unit.lower() not in UNITS:
+def _factor(measure: str, unit: str, path: str) -> float:
+    units = OF_VELOCITY if measure == "PGV" else OF_ACCELERATION
+    if unit.lower() not in units:
         raise InputError(
-            f"{where} is in {unit or 'no unit'}; expected {', '.join(UNITS)}."
+            f"{path}: {measure} is in {unit or 'no unit'}; expected one of {', '.join(units)}."
         )
-    return UNITS[unit.lower()]
+    return units[unit.lower()]
 
 
 def _named(root: ET.Element, name: str) -> Iterator[ET.Element]:

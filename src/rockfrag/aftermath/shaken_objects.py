@@ -29,6 +29,7 @@ from rockfrag.assess.request import Request
 from rockfrag.assess.risk import Estimate
 from rockfrag.base.errors import InputError
 from rockfrag.records.motion import Motion
+from rockfrag.runtime.progress import Progress
 from rockfrag.simulation.inputs import UnitWarning
 from rockfrag.words.catalogue import catalogue
 
@@ -41,6 +42,14 @@ LOOK_AT_FEET = 0.5  # Probability of having moved from which its feet are looked
 NOT_TOUCHED = 0.05  # Probability of having moved at all below which it can wait
 
 
+@dataclass(frozen=True)
+class WhereLeft:
+    """Where a record left an object that stands: turned about the vertical [degrees], and moved [cm]."""
+
+    turned_deg: float
+    moved_cm: float
+
+
 @dataclass(frozen=True, eq=False)
 class ShakenObject:
     """An object after an earthquake.
@@ -51,12 +60,14 @@ class ShakenObject:
     ground : what shook its place
     under_record : id of the text that says what the record itself does to it; empty without one
     then : its assessment at the level of a second shock; None without one
+    left : where the record, or both, left an object in space that stands; None where that is not known
     """
 
     found: Assessment
     ground: GroundShaking
     under_record: str = ""
     then: Assessment | None = None
+    left: WhereLeft | None = None
 
     @property
     def request(self) -> Request:
@@ -145,6 +156,7 @@ def after_earthquake(
     then_recorded: Sequence[Motion] = (),
     keep_going: bool = False,
     order: str = "",
+    progress: Progress | None = None,
 ) -> ShakenCollection:
     """Say of each object of an inventory how probably an earthquake felled it, and rocked it.
 
@@ -158,6 +170,7 @@ def after_earthquake(
     then, then_recorded : the same of a second shock; None and empty without one
     keep_going : list the rows that are right where others are not
     order : of lengths that a museum's table does not name, such as ``HWD``
+    progress : called with the number of objects done and of all, in each shock
 
     Returns
     -------
@@ -183,11 +196,12 @@ def after_earthquake(
             f"{path}: nothing is known of the shaking of any object; the map does not reach their coordinates."
         )
     motions = motion_set(requests[0].records, requests[0].place, Path(records))
-    found = assess_each([request for request, _ in shaken], motions)
-    again = _again([request for request, _ in shaken], then, motions)
+    standing = [request for request, _ in shaken]
+    found = assess_each(standing, motions, progress)
+    again = _again(standing, then, motions, progress)
     both = one_after_the_other(recorded, then_recorded) if then_recorded else ()
     objects = [
-        ShakenObject(each, here, _under_record(each.request, recorded, both), later)
+        _shaken_object(each, here, later, (recorded, both))
         for each, (_, here), later in zip(found, shaken, again, strict=True)
     ]
     objects.sort(key=lambda each: (each.fell, each.moved), reverse=True)
@@ -195,7 +209,10 @@ def after_earthquake(
 
 
 def _again(
-    requests: Sequence[Request], then: Ground | None, motions: MotionSet
+    requests: Sequence[Request],
+    then: Ground | None,
+    motions: MotionSet,
+    progress: Progress | None,
 ) -> Sequence[Assessment | None]:
     """Assess objects at the levels of a second shock; None each without one, and where nothing is known of it."""
     grounds = [then(each.coordinates) if then else None for each in requests]
@@ -203,8 +220,23 @@ def _again(
     asked = [
         _asked(requests[i], ground) for i in known if (ground := grounds[i]) is not None
     ]
-    found = dict(zip(known, assess_each(asked, motions), strict=True))
+    found = dict(zip(known, assess_each(asked, motions, progress), strict=True))
     return [found.get(i) for i in range(len(requests))]
+
+
+def _shaken_object(
+    found: Assessment,
+    ground: GroundShaking,
+    then: Assessment | None,
+    records: tuple[Sequence[Motion], Sequence[Motion]],
+) -> ShakenObject:
+    """An object with what the record of the place did to it, or that of both shocks in a row."""
+    first, both = records
+    fate = _under_record(found.request, first, both)
+    left = None
+    if fate == "after_record_rocked":
+        left = _where_left(found.request, both or first)
+    return ShakenObject(found, ground, fate, then, left)
 
 
 def _under_record(
@@ -224,6 +256,17 @@ def _under_record(
 
 def _fate(request: Request, recorded: Sequence[Motion]) -> str:
     """What a record does to an object, as the id of its text."""
+    with warnings.catch_warnings():
+        # the unit of a weak record has been read from its file
+        warnings.simplefilter("ignore", UnitWarning)
+        (found,) = _as_recorded(request, recorded).outcomes_of([request.objects])
+    if found.overturned.any():
+        return "after_record_fell"
+    return "after_record_rocked" if found.rocked.any() else "after_record_stood"
+
+
+def _as_recorded(request: Request, recorded: Sequence[Motion]) -> Shaking:
+    """A record as it is, at the place of an object."""
     pairs = ((0, 1),) if len(recorded) == 2 else ()
     motions = MotionSet(tuple(recorded), tuple(recorded), pairs, "")
     if request.objects.in_space and pairs:
@@ -231,13 +274,20 @@ def _fate(request: Request, recorded: Sequence[Motion]) -> str:
     as_recorded = np.ones((len(recorded), 1))
     counted = np.ones(as_recorded.shape, dtype=np.bool_)
     shaking = Shaking(PGA, np.ones(1), as_recorded, counted, motions)
+    return shaking.at(request.place)
+
+
+def _where_left(request: Request, recorded: Sequence[Motion]) -> WhereLeft | None:
+    """Where a record of two components leaves an object that is known in space; None of others."""
+    shaking, objects = _as_recorded(request, recorded), request.objects
+    solid = objects.solid(objects.body)
+    if solid is None or not shaking.motions.both:
+        return None
     with warnings.catch_warnings():
-        # the unit of a weak record has been read from its file
         warnings.simplefilter("ignore", UnitWarning)
-        (found,) = shaking.at(request.place).outcomes_of([request.objects])
-    if found.overturned.any():
-        return "after_record_fell"
-    return "after_record_rocked" if found.rocked.any() else "after_record_stood"
+        _, found = shaking.outcomes_of_system(objects.held(solid))
+    turn, walk = found.turn[0, 0, 0, 0], found.walk[0, 0, 0, 0]
+    return WhereLeft(abs(math.degrees(turn)), 100 * float(walk))
 
 
 def _asked(request: Request, ground: GroundShaking) -> Request:
@@ -261,7 +311,7 @@ def shaken_table(collection: ShakenCollection) -> pd.DataFrame:
     -------
     Columns ``rank``, ``name``, ``place``, ``latitude``, ``longitude`` [degrees], ``pga_g``, ``pgv_cm_s``,
     ``probability_fell`` with its limits, ``probability_rocked_and_stands`` [-], ``look`` and, where a record was
-    given, ``under_the_record``.
+    given, ``under_the_record``, in space with ``turned_deg`` and ``moved_cm``.
     """
     texts = catalogue()
     rows = []
@@ -286,5 +336,8 @@ def shaken_table(collection: ShakenCollection) -> pd.DataFrame:
             row["probability_fell_in_the_first"] = each.found.fraction.value
         if each.under_record:
             row["under_the_record"] = texts.text(each.under_record)
+        if each.left is not None:
+            row["turned_deg"] = each.left.turned_deg
+            row["moved_cm"] = each.left.moved_cm
         rows.append(row)
     return pd.DataFrame(rows).dropna(axis="columns", how="all")

@@ -16,6 +16,7 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
+from numpy.typing import NDArray
 from scipy import special
 from scipy.interpolate import RegularGridInterpolator
 
@@ -32,7 +33,9 @@ from rockfrag.collections.exported_table import (
     is_export,
     read_export,
 )
+from rockfrag.fragility.toppling_velocity import toppling_velocity
 from rockfrag.motions.intensity import IntensityMeasure
+from rockfrag.runtime.progress import Progress
 
 LOWEST, HIGHEST = 0.1, 8.0  # Of the simulated blocks [m]
 SLENDEREST, STOUTEST = 0.06, 1.2  # Width over height of them [-]
@@ -47,8 +50,10 @@ PLANAR, BOX, ROUND = "planar", "box", "round"
 NODES = {PLANAR: (8, 9), BOX: (5, 6), ROUND: (5, 6)}
 """Heights and slendernesses that are simulated; in space fewer, as each takes longer."""
 
+M_TO_CM = 100.0
 BEYOND = 1.5  # Median that stands for one above the highest level, over that level
 NORMAL_TENTH = 1.2816  # Standard deviations from a median to its tenth
+SEED = 58  # Of the objects that are drawn at random
 USUAL_BETA = 0.5  # β where too few motions topple a block to say
 
 
@@ -63,6 +68,7 @@ class Surface:
     log_medians, betas : shape (heights, slendernesses)
     level : of shaking that was asked about, in the measure's unit
     hazard : curve of the measure; None if none was given
+    published : whether medians are those of :mod:`rockfrag.fragility.toppling_velocity` where it knows the size
     """
 
     measure: IntensityMeasure
@@ -72,6 +78,7 @@ class Surface:
     betas: Floats
     level: float
     hazard: HazardCurve | None
+    published: bool = False
 
     def curves(self, heights: Floats, widths: Floats) -> tuple[Floats, Floats]:
         """Median and β of blocks; beyond the grid those of its edge.
@@ -92,8 +99,11 @@ class Surface:
             )
         ]
         points = np.column_stack(inside)
-        logs = RegularGridInterpolator(axes, self.log_medians)(points)
-        return np.exp(logs), RegularGridInterpolator(axes, self.betas)(points)
+        medians = np.exp(RegularGridInterpolator(axes, self.log_medians)(points))
+        if self.published:
+            known, _ = toppling_velocity(widths, heights)
+            medians = np.where(np.isfinite(known), M_TO_CM * known, medians)
+        return medians, RegularGridInterpolator(axes, self.betas)(points)
 
     def fractions(self, medians: Floats, betas: Floats) -> Floats:
         """Probability of toppling at the level, shape (n,)."""
@@ -111,6 +121,20 @@ class Surface:
         return np.asarray(special.ndtr(scores / betas[:, np.newaxis]) @ weights)
 
 
+@dataclass(frozen=True)
+class Simulated:
+    """How many objects of a large table are simulated.
+
+    Attributes
+    ----------
+    worst : of those that topple most probably
+    at_random : of the others, which say how true the coarse answers are
+    """
+
+    worst: int = WORST
+    at_random: int = 0
+
+
 @dataclass(frozen=True, eq=False)
 class CoarseInventory:
     """A table of objects, each with its coarse answer, and the worst of them simulated.
@@ -120,7 +144,10 @@ class CoarseInventory:
     table : the rows with ``fraction`` and, with a hazard, ``probability``, ``median`` and ``beta`` of the curve,
         ``simulated`` (NaN where it was not) and ``fault`` (empty where a row could be used)
     worst : assessments of the worst objects, the worst first
-    bias, scatter : mean and standard deviation of ln (coarse over simulated median) of these [-]; NaN without
+    bias, scatter : mean and standard deviation of ln (coarse over simulated median) [-], of those drawn at random
+        if there are any; NaN without
+    fraction_off : by how much nine of ten of their fractions are off at most [-]; NaN without
+    compared : number of these
     faults : number of rows that could not be used
     """
 
@@ -128,6 +155,8 @@ class CoarseInventory:
     worst: Sequence[Assessment]
     bias: float
     scatter: float
+    fraction_off: float
+    compared: int
     faults: int
 
 
@@ -136,8 +165,9 @@ def coarse_inventory(
     shared: Mapping[str, Any],
     records: str | Path = RECORDS,
     *,
-    worst: int = WORST,
+    simulated: Simulated | None = None,
     order: str = "",
+    progress: Progress | None = None,
 ) -> CoarseInventory:
     """Answer for each object of a large table between simulated blocks, then simulate the worst.
 
@@ -147,8 +177,9 @@ def coarse_inventory(
         ``floor``, ``value``, ``latitude``, ``longitude``; or a museum's table
     shared : keys of ``statue.yaml`` that hold for all, with a level or a hazard
     records : folder of fetched records
-    worst : how many are simulated
+    simulated : how many are simulated; None for the worst thousand
     order : of lengths that a museum's table does not name, such as ``HWD``
+    progress : called with the number of blocks and objects simulated and of all
 
     Returns
     -------
@@ -166,15 +197,33 @@ def coarse_inventory(
             f"{path}: --coarse needs what shakes the place; give --pgv, --pga or a hazard."
         )
     motions = motion_set(first.records, first.place, Path(records))
-    for (floor, kind), rows in table[table["fault"] == ""].groupby(["floor", "kind"]):
-        surface = tabulate(shared, str(floor), str(kind), motions)
+    usable = table[table["fault"] == ""]
+    count = simulated or Simulated()
+    groups = list(usable.groupby(["floor", "kind"]))
+    nodes = [math.prod(NODES[str(kind)]) for (_, kind), _ in groups]
+    objects = min(count.worst + count.at_random, len(usable))
+    done, total = 0, sum(nodes) + objects
+    for ((floor, kind), rows), size in zip(groups, nodes, strict=True):
+        said = _further(progress, done, total)
+        surface = tabulate(shared, str(floor), str(kind), motions, said)
+        done += size
         for start in range(0, len(rows), AT_ONCE):
             part = rows.index[start : start + AT_ONCE]
             _fill(table, part, surface, first.years)
-    order = "probability" if "probability" in table else "fraction"
-    worst_rows = table[order].nlargest(worst).index
-    found = assess_each([_request(table.loc[i], shared) for i in worst_rows], motions)
-    return _joined(table, worst_rows, found)
+    ranked = "probability" if "probability" in table else "fraction"
+    worst = table[ranked].nlargest(count.worst).index
+    others = usable.index.difference(worst)
+    drawn = np.random.default_rng(SEED).permutation(others)[: count.at_random]
+    asked = [_request(table.loc[i], shared) for i in (*worst, *drawn)]
+    found = assess_each(asked, motions, _further(progress, done, total))
+    return _joined(table, worst, drawn, found)
+
+
+def _further(progress: Progress | None, before: int, total: int) -> Progress | None:
+    """Progress of a part, counted with what was done before it."""
+    if progress is None:
+        return None
+    return lambda done, _: progress(before + done, total)
 
 
 def _read(path: str | os.PathLike[str], order: str) -> pd.DataFrame:
@@ -241,7 +290,11 @@ def _with_faults(table: pd.DataFrame, path: str | os.PathLike[str]) -> pd.DataFr
 
 
 def tabulate(
-    shared: Mapping[str, Any], floor: str, kind: str, motions: MotionSet
+    shared: Mapping[str, Any],
+    floor: str,
+    kind: str,
+    motions: MotionSet,
+    progress: Progress | None = None,
 ) -> Surface:
     """Simulate blocks on the grid of sizes.
 
@@ -250,6 +303,7 @@ def tabulate(
     shared : keys of ``statue.yaml`` that hold for all, with a level or a hazard
     floor, kind : where they stand, empty for what ``shared`` says, and how
     motions : the ground motions
+    progress : called with the number of blocks done and of all
 
     Returns
     -------
@@ -264,7 +318,7 @@ def tabulate(
         make_request({**shared, **place, **_of_kind(kind, w), "height": f"{h} m"}, kind)
         for h, w in sizes
     ]
-    found = assess_each(requests, motions)
+    found = assess_each(requests, motions, progress)
     curves = np.array([_curve(each) for each in found])
     medians, betas = curves.T.reshape(2, high, wide)
     level, hazard = found[0].level, found[0].hazard
@@ -277,7 +331,16 @@ def tabulate(
         betas=betas,
         level=level.value,
         hazard=hazard,
+        published=_is_published(found[0], kind),
     )
+
+
+def _is_published(found: Assessment, kind: str) -> bool:
+    """Whether the published surface answers the same: PGV of the ground, in a plane, by the usual motions."""
+    request = found.request
+    usual = not request.records.paths and math.isnan(request.records.magnitude)
+    asked = found.measure.imt == "PGV" and request.place.shakes_as_ground
+    return kind == PLANAR and usual and asked
 
 
 def _of_kind(kind: str, width: float) -> dict[str, Any]:
@@ -327,25 +390,42 @@ def _request(row: pd.Series, shared: Mapping[str, Any]) -> Request:
 
 
 def _joined(
-    table: pd.DataFrame, rows: pd.Index, found: Sequence[Assessment]
+    table: pd.DataFrame,
+    worst: pd.Index,
+    drawn: NDArray[np.int64],
+    found: Sequence[Assessment],
 ) -> CoarseInventory:
     """Put simulated answers beside the coarse ones, and say how far apart they are."""
+    rows = [*worst, *drawn]
     main = [each.main.value for each in found]
     table["simulated"] = math.nan
     table.loc[rows, "simulated"] = main
-    exact = np.array([_curve(each)[0] for each in found])
-    medians = [each.predicted.median for each in found]
-    reached = np.isfinite(np.array(medians, dtype=np.float64))
-    ratio = np.log(table.loc[rows, "median"].to_numpy() / exact)[reached]
-    bias, scatter = (
-        (float(ratio.mean()), float(ratio.std()))
-        if ratio.size
-        else (math.nan, math.nan)
+    first = len(worst) if len(drawn) else 0
+    compared = [each for each in found[first:] if math.isfinite(each.predicted.median)]
+    names = [
+        row
+        for row, each in zip(rows[first:], found[first:], strict=True)
+        if math.isfinite(each.predicted.median)
+    ]
+    exact = np.array([each.predicted.median for each in compared])
+    ratio = np.log(table.loc[names, "median"].to_numpy() / exact)
+    off = [
+        abs(coarse - each.fraction.value)
+        for coarse, each in zip(
+            table.loc[rows[first:], "fraction"], found[first:], strict=True
+        )
+        if each.fraction is not None
+    ]
+    ranked = sorted(found[: len(worst)], key=lambda each: each.main.value, reverse=True)
+    return CoarseInventory(
+        table=table.drop(columns="kind"),
+        worst=ranked,
+        bias=float(ratio.mean()) if ratio.size else math.nan,
+        scatter=float(ratio.std()) if ratio.size else math.nan,
+        fraction_off=float(np.quantile(off, 0.9)) if off else math.nan,
+        compared=len(compared),
+        faults=int((table["fault"] != "").sum()),
     )
-    pairs = sorted(zip(main, range(len(found)), strict=True), reverse=True)
-    worst = [found[i] for _, i in pairs]
-    faults = int((table["fault"] != "").sum())
-    return CoarseInventory(table.drop(columns="kind"), worst, bias, scatter, faults)
 
 
 def coarse_lines(found: CoarseInventory) -> list[str]:
@@ -370,8 +450,9 @@ def coarse_lines(found: CoarseInventory) -> list[str]:
         lines.append(f"{found.faults} rows could not be used; column fault says which.")
     if math.isfinite(found.scatter):
         lines.append(
-            f"Of {len(found.worst)} simulated objects the coarse median is off by {100 * found.bias:+.1f} % in "
-            f"the mean and by {100 * found.scatter:.1f} % from one to the next."
+            f"Of {found.compared} simulated objects the coarse median is off by {100 * found.bias:+.1f} % in the "
+            f"mean and by {100 * found.scatter:.1f} % from one to the next, nine of ten fractions by at most "
+            f"{100 * found.fraction_off:.1f} points."
         )
     for rank, each in enumerate(found.worst[:10], start=1):
         lines.append(f"{rank:4d}  {each.request.name}  {100 * each.main.value:.2g} %")

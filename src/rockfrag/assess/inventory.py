@@ -33,6 +33,7 @@ from rockfrag.assess.texts import Text
 from rockfrag.base.arrays import Flags, Floats
 from rockfrag.base.errors import InputError
 from rockfrag.base.files import check_name, file_name
+from rockfrag.base.plausible import LARGEST_SIZE
 from rockfrag.base.tabular import Row, read_rows
 from rockfrag.collections.exported_table import (
     inventory_cells,
@@ -40,6 +41,7 @@ from rockfrag.collections.exported_table import (
     read_export,
 )
 from rockfrag.fragility.model_error import CUT, MODEL_ERRORS
+from rockfrag.runtime.progress import Progress
 from rockfrag.words.catalogue import FIRST, catalogue
 from rockfrag.words.findings import (
     Finding,
@@ -206,6 +208,8 @@ COORDINATES = {"latitude": 90, "longitude": 360}
 YES, NO = ("yes", "true", "1", "x"), ("no", "false", "0")
 
 MOST_OBJECTS = 10_000  # Rows of an inventory
+SMALLEST_SIZE = 0.005  # Of an object in a list [m]
+AT_ONCE = 50  # Objects that are shaken before it is said how many are done
 # Rows up to which what may hold an object is tried, which takes seconds for each
 MOST_HELD = 5
 
@@ -237,6 +241,7 @@ def assess_inventory(
     *,
     keep_going: bool = False,
     order: str = "",
+    progress: Progress | None = None,
 ) -> Inventory:
     """Assess every object of a table, whose columns ``docs/assess.md`` lists.
 
@@ -247,6 +252,7 @@ def assess_inventory(
     records : folder of fetched records
     keep_going : whether :class:`FaultyRows` is raised only if no row can be used
     order : of lengths that a museum's table does not name, such as ``HWD``
+    progress : called with the number of objects done and of all
 
     Returns
     -------
@@ -256,7 +262,7 @@ def assess_inventory(
     if faults and not (keep_going and requests):
         raise FaultyRows(faults)
     motions = motion_set(requests[0].records, requests[0].place, Path(records))
-    found = assess_each(requests, motions)
+    found = assess_each(requests, motions, progress)
     joint = joint_risk(found)
     losses: dict[Any, float] = {}
     if joint is not None:
@@ -272,12 +278,17 @@ def assess_inventory(
     return Inventory(found, motions, joint, faults)
 
 
-def assess_each(requests: Sequence[Request], motions: MotionSet) -> list[Assessment]:
+def assess_each(
+    requests: Sequence[Request],
+    motions: MotionSet,
+    progress: Progress | None = None,
+) -> list[Assessment]:
     """Assess objects, those in places that shake alike at once, each at its own level.
 
     Parameters
     ----------
     requests, motions : the objects, and the ground motions by which they are shaken
+    progress : called with the number of objects done and of all
 
     Returns
     -------
@@ -296,10 +307,16 @@ def assess_each(requests: Sequence[Request], motions: MotionSet) -> list[Assessm
     for rows in groups.values():
         same = [requests[i] for i in rows]
         plan = plan_for(same[0], motions.at(same[0].place), brief=True, holds=holds)
-        for i, request, shaken in zip(rows, same, shake_all(same, plan), strict=True):
-            # a level between those that were tried lies between their fractions
-            own = plan if request.level is None else replace(plan, level=request.level)
-            found[i] = assessed(request, own, shaken)
+        for start in range(0, len(rows), AT_ONCE):
+            part = same[start : start + AT_ONCE]
+            shaken = shake_all(part, plan)
+            for i, request, outcome in zip(rows[start:], part, shaken, strict=False):
+                # a level between those that were tried lies between their fractions
+                level = request.level
+                own = plan if level is None else replace(plan, level=level)
+                found[i] = assessed(request, own, outcome)
+            if progress is not None:
+                progress(len(found), len(requests))
     return [found[i] for i in range(len(requests))]
 
 
@@ -402,6 +419,7 @@ def _request(row: Row, name: str, shared: Mapping[str, Any]) -> Request:
     where = f"{row.path}, line {row.line}"
     try:
         request = make_request({**shared, **own}, where)
+        _check_size(request, where)
         return replace(request, value=worth, coordinates=place)
     except InputError as error:
         # columns instead of keys, of what stands in the row
@@ -421,6 +439,17 @@ def _coordinates(row: Row, own: dict[str, Any]) -> tuple[float, float] | None:
         if abs(own[key]) > largest:
             raise row.error(key, f"expected degrees from -{largest} to {largest}")
     return own.pop("latitude"), own.pop("longitude")
+
+
+def _check_size(request: Request, where: str) -> None:
+    """Refuse a size of no object in a collection: one odd row among thousands is not seen."""
+    block = request.objects.block
+    sides = (block.width, block.height)
+    if min(sides) < SMALLEST_SIZE or max(sides) > LARGEST_SIZE:
+        raise InputError(
+            f"{where}: {request.name} would be {block.width:g} m wide and {block.height:g} m high; check the unit "
+            "of its columns, or assess it alone."
+        )
 
 
 def _pedestals(row: Row) -> list[dict[str, float]]:

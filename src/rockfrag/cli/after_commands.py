@@ -74,6 +74,7 @@ def _after(options: argparse.Namespace) -> int:
     from rockfrag.aftermath.check_list import after_json, after_lines, write_after
     from rockfrag.aftermath.shaken_objects import after_earthquake
     from rockfrag.assess.inventory import FaultyRows
+    from rockfrag.runtime.progress import progress_line
 
     about_station = {"unit": options.unit, "dt": options.dt}
     if options.station:
@@ -102,6 +103,7 @@ def _after(options: argparse.Namespace) -> int:
             then_recorded=then_recorded,
             keep_going=options.keep_going,
             order=options.order,
+            progress=progress_line("objects"),
         )
     except FaultyRows as error:
         return print_faults(

@@ -75,6 +75,8 @@ def add_assess_commands(commands: Any) -> None:
     out.add_argument("--coarse", action="store_true", help=words)
     words = "of --coarse: how many of the worst are simulated"
     out.add_argument("--worst", metavar="N", type=int, default=1000, help=words)
+    words = "of --coarse: how many others, drawn at random, are simulated, to say how true it is"
+    out.add_argument("--at-random", metavar="N", type=int, default=0, help=words)
     parser.set_defaults(run=_assess)
     words = "hold engineers' rules against simulations of objects"
     rules = commands.add_parser("rules-of-thumb", help=words)
@@ -352,6 +354,7 @@ def _pedestals(given: Sequence[Sequence[str]]) -> Any:
 def _inventory(options: argparse.Namespace, shared: dict[str, Any]) -> int:
     from rockfrag.assess.gallery import write_inventory
     from rockfrag.assess.inventory import assess_inventory, inventory_lines, joint_lines
+    from rockfrag.runtime.progress import progress_line
 
     unfit = [key for key in ("name", "width", "height", "mesh") if key in shared]
     if unfit:
@@ -362,6 +365,7 @@ def _inventory(options: argparse.Namespace, shared: dict[str, Any]) -> int:
         options.records,
         keep_going=options.keep_going,
         order=options.order,
+        progress=progress_line("objects"),
     )
     for fault in found.faults:
         print(f"warning: left out: {fault}", file=sys.stderr)
@@ -375,16 +379,26 @@ def _inventory(options: argparse.Namespace, shared: dict[str, Any]) -> int:
 
 
 def _coarse(options: argparse.Namespace, shared: dict[str, Any]) -> int:
-    from rockfrag.assess.coarse import coarse_inventory, coarse_lines
+    from rockfrag.assess.coarse import Simulated, coarse_inventory, coarse_lines
     from rockfrag.base.files import write_table
+    from rockfrag.runtime.progress import progress_line
 
     unfit = [key for key in ("name", "width", "height", "mesh") if key in shared]
     if unfit:
         raise InputError(f"--{unfit[0]}: is of one object; put it into {options.file}.")
-    if options.worst < 0:
-        raise InputError(f"--worst: expected 0 or more, got {options.worst}.")
+    for name in ("worst", "at_random"):
+        if getattr(options, name) < 0:
+            option = f"--{name.replace('_', '-')}"
+            raise InputError(
+                f"{option}: expected 0 or more, got {getattr(options, name)}."
+            )
     found = coarse_inventory(
-        options.file, shared, options.records, worst=options.worst, order=options.order
+        options.file,
+        shared,
+        options.records,
+        simulated=Simulated(options.worst, options.at_random),
+        order=options.order,
+        progress=progress_line("blocks and objects"),
     )
     place = Path(options.output) / "coarse.parquet"
     write_table(found.table, place)

@@ -50,12 +50,14 @@ def add_constrain_command(commands: Any) -> None:
     fell.add_argument("--shared-sd", metavar="S", type=float, help=words)
     words = "standard deviation of ln level from one of like objects to the next"
     fell.add_argument("--own-sd", metavar="S", type=float, help=words)
+    words = "of page and lines, such as it"
+    fell.add_argument("--language", help=words)
     parser.set_defaults(run=_constrain)
 
 
 OF_FALLEN = (
     *("shakemap", "map_uncertainty", "at", "prior_pgv", "prior_pga"),
-    *("slenderness_sd", "shared_sd", "own_sd"),
+    *("slenderness_sd", "shared_sd", "own_sd", "language"),
 )
 """Options that say something of ``fallen.csv`` only."""
 
@@ -81,6 +83,7 @@ def _constrain(options: argparse.Namespace) -> int:
 
 
 def _shaking(options: argparse.Namespace) -> int:
+    from rockfrag.runtime.progress import progress_line
     from rockfrag.survival.fallen import (
         FROM_ONE_TO_THE_NEXT,
         Knowledge,
@@ -88,6 +91,7 @@ def _shaking(options: argparse.Namespace) -> int:
         read_fallen,
     )
     from rockfrag.survival.fallen_page import fallen_json, fallen_lines, write_fallen
+    from rockfrag.words.catalogue import FIRST
 
     for name in ("slenderness_sd", "shared_sd", "own_sd"):
         _spread(name, getattr(options, name))
@@ -97,9 +101,16 @@ def _shaking(options: argparse.Namespace) -> int:
         slenderness_spread=options.slenderness_sd or 0.0,
         shared_spread=options.shared_sd,
     )
-    found = constrain_shaking(read_fallen(options.file), knowledge, options.records)
-    place = write_fallen(found, options.output)
-    print(fallen_json(found) if options.json else "\n".join(fallen_lines(found)))
+    found = constrain_shaking(
+        read_fallen(options.file),
+        knowledge,
+        options.records,
+        progress_line("groups"),
+    )
+    language = options.language or FIRST
+    place = write_fallen(found, options.output, language)
+    lines = fallen_lines(found, language)
+    print(fallen_json(found) if options.json else "\n".join(lines))
     print(place, file=sys.stderr)
     return 0
 

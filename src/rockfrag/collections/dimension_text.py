@@ -32,10 +32,20 @@ METRES = {
     "feet": 0.3048,
     "foot": 0.3048,
     "'": 0.3048,
+    **dict.fromkeys(("mms", "millimetre", "millimetres", "millimeters"), 1e-3),
+    **dict.fromkeys(("cms", "centimetre", "centimetres", "centimeters"), 1e-2),
+    **dict.fromkeys(("metre", "metres", "meter", "meters"), 1.0),
 }
 """Metres of each unit of length."""
 
-KILOGRAMS = {"kg": 1.0, "g": 1e-3, "lb": 0.45359237, "lbs": 0.45359237, "t": 1000.0}
+POUND = 0.45359237  # [kg]
+KILOGRAMS = {
+    **dict.fromkeys(("kg", "kgs", "kilogram", "kilograms", "kilo"), 1.0),
+    **dict.fromkeys(("g", "gram", "grams"), 1e-3),
+    **dict.fromkeys(("lb", "lbs", "pounds"), POUND),
+    **dict.fromkeys(("oz", "ounces"), POUND / 16),
+    "t": 1000.0,
+}
 """Kilograms of each unit of mass."""
 
 SAME = 0.02
@@ -46,22 +56,35 @@ ROUNDED_M = 3e-3  # and the largest difference [m] that rounding alone explains
 WITH_BASE = (
     *("with base", "including base", "incl. base", "overall", "installed"),
     *("mit sockel", "gesamt", "gesamtmaß", "avec socle", "hors tout"),
-    *("con base", "complessivo", "total", "met sokkel", "totaal"),
+    *("con base", "complessivo", "total", "totale", "met sokkel", "totaal", "com base"),
+    *("with stand", "with plinth", "with pedestal", "including stand"),
+    *("including plinth", "including pedestal", "inkl. sockel", "con peana"),
 )
 WITHOUT_BASE = (
     *("without base", "excluding base", "ohne sockel", "sans socle"),
-    *("senza base", "sin base", "zonder sokkel"),
+    *("senza base", "sin base", "zonder sokkel", "sem base", "sin peana"),
+    *("without stand", "without plinth", "without pedestal"),
+    *("excluding stand", "excluding plinth", "excluding pedestal"),
 )
 OBJECT = ("object", "sculpture", "figure", "statue", "objekt", "objet", "objeto")
+FEET = (
+    *("base", "plinth", "sockel", "standfläche", "fuß", "socle", "pied"),
+    *("zoccolo", "piede", "sokkel", "voet"),
+)
+"""What an object stands on, by itself or of one piece with it."""
 PIECES_OF_IT = (
-    *("base", "plinth", "pedestal", "sockel", "socle", "zoccolo", "sokkel"),
-    *("frame", "framed", "unframed", "image", "sheet", "lid", "case", "head"),
-    *("rahmen", "cadre", "cornice", "marco", "lijst", "deckel", "couvercle"),
+    *FEET,
+    *("rim", "mouth", "lip", "seat", "mündung", "orlo", "bocca", "embouchure"),
+    *("pedestal", "frame", "framed", "unframed", "image", "sheet", "lid", "case"),
+    *("head", "rahmen", "cadre", "cornice", "marco", "lijst", "deckel", "couvercle"),
 )
 EACH = ("each", "jeweils", "je", "chacun", "chacune", "ciascuno", "cada uno", "elk")
 
 _APPROXIMATE = re.compile(
     r"\b(?:approximately|approx|about|circa|ca|c|etwa|ungefähr|environ|env|aprox|ongeveer)\b\.?\s*"
+)
+_LARGEST = re.compile(
+    r"\b(?:max|maximum|maximal|maximale|massim[oa]|máxim[oa])\b\.?\s*"
 )
 _FRACTIONS = {
     mark: unicodedata.normalize("NFKC", mark).replace("⁄", "/")
@@ -74,20 +97,43 @@ def _any_of(words: Sequence[str]) -> str:
     return "|".join(re.escape(word) for word in sorted(words, key=len, reverse=True))
 
 
+_WAY = _any_of([*DIRECTION_OF])
 _ORDER = _any_of([*DIRECTION_OF, *WEIGHT_WORDS])
 _UNIT = _any_of([*METRES, *KILOGRAMS])
 _PART = _any_of([*WITHOUT_BASE, *WITH_BASE, *PIECES_OF_IT, *EACH])
-_NUMBER = r"\d+(?:[.,]\d+)?(?:(?:\s+|-)\d+/\d+)?"
+_WITH_OR_WITHOUT = _any_of([*WITHOUT_BASE, *WITH_BASE])
+_PIECE = _any_of(PIECES_OF_IT)
+_METRIC = "cm|mm|m|kg"  # Units that Italian catalogues write before the number
+_NUMBER = r"\d+(?:[.,]\d+)?(?:(?:\s+|-)\d+/\d+)?(?!\d)"
 _ANY_NUMBER = rf"(?:\d+/\d+|{_NUMBER})"
 _TERM = re.compile(
     rf"(?:(?<!\w)(?P<before>{_ORDER})(?![^\W\d_])[.:=\s]*)?"
+    rf"(?:(?<!\w)(?P<first>{_METRIC})\.?\s*)?"
     rf"(?P<low>{_ANY_NUMBER})(?:\s*(?:-|\bto\b|\bbis\b|à)\s*(?P<high>{_ANY_NUMBER}))?"
-    rf"\s*(?P<unit>{_UNIT})?(?![^\W\d_])\.?"
+    rf"(?:\s*(?P<unit>{_UNIT})(?![^\W\d_])\.?)?"
     rf"(?:\s*(?P<after>{_ORDER})(?![^\W\d_])\.?(?:\s*(?P<last>{_UNIT})(?![^\W\d_]))?)?"
 )
+_UNIT_ALONE = re.compile(rf"(?:all )?(?:in )?({_any_of([*METRES])})\.?")
 _ORDER_ALONE = re.compile(
-    rf"(?<!\w)((?:{_ORDER})\.?(?:\s*[×/,]\s*(?:{_ORDER})\.?)+)(?!\w)\s*[:=]?"
+    rf"(?<!\w)((?:{_WAY})\.?(?:\s*[×/,]\s*(?:{_WAY})\.?)+)(?!\w)\s*[:=]?"
 )
+
+
+_NAMED = [
+    (
+        re.compile(rf"(?:{_any_of(names)})(?!\w)"),
+        re.compile(rf"\d.*[\s,]({_any_of(names)})$"),
+        stands_for,
+    )
+    for names, stands_for in (
+        (WITHOUT_BASE, "without base"),
+        (WITH_BASE, "with base"),
+        (OBJECT, ""),
+        (EACH, "each"),
+        (PIECES_OF_IT, None),
+    )
+]
+"""Patterns of the parts that a piece names first or last, and what they stand for; None for themselves."""
 
 
 @dataclass(frozen=True)
@@ -181,6 +227,13 @@ class _Phrase:
     mass: float | None = None
     unit_missing: bool = False
 
+    @property
+    def is_foot(self) -> bool:
+        """Whether it measures on what the object stands, and no piece of its own."""
+        words = {DIRECTION_OF.get(length.word) for length in self.lengths}
+        flat = len(self.lengths) < 3 and Direction.HEIGHT not in words
+        return self.part in FEET and flat
+
 
 def read_dimensions(text: str, order: str = "") -> Dimensions:
     """Read the size of an object out of a sentence.
@@ -204,7 +257,7 @@ def read_dimensions(text: str, order: str = "") -> Dimensions:
             raise InputError(
                 f"order: expected letters of height, width, depth or length such as HWD, got {order!r}."
             )
-    phrases = list(_phrases(_plain(text)))
+    phrases = _with_stated_unit(list(_phrases(_plain(text))))
     masses = [phrase.mass for phrase in phrases if phrase.mass is not None]
     about = Dimensions(
         mass=masses[0] if masses else None,
@@ -216,13 +269,17 @@ def read_dimensions(text: str, order: str = "") -> Dimensions:
             about, question="no length is stated; give height, width and depth"
         )
     part = min((phrase.part for phrase in measured), key=_rank_of_part)
-    own = [phrase for phrase in measured if phrase.part == part]
-    others = [phrase.text for phrase in measured if phrase.part != part]
+    kept = {part, ""} if _names_all(measured, part) else {part}
+    own = [phrase for phrase in measured if phrase.part in kept]
+    others = [phrase.text for phrase in measured if phrase.part not in kept]
     about = replace(about, part=part, others=tuple(others))
     if part in PIECES_OF_IT:
         return replace(
             about, question=f"only the {part} is measured; give the size of the whole"
         )
+    if foot := next((phrase for phrase in measured if phrase.is_foot), None):
+        asked = f"“{foot.text}” is said of its {foot.part}; give the sides on which it stands"
+        return replace(about, question=asked)
     return _joined(about, own)
 
 
@@ -234,7 +291,19 @@ def _plain(text: str) -> str:
     text = re.sub("[′’‘]", "'", text)
     text = re.sub("[–—−]", "-", text)
     text = re.sub(r"[✕✖*]", "×", text).replace("⌀", "ø").replace("\u00a0", " ")
-    text = _APPROXIMATE.sub("", text.casefold())
+    # of ß there is no small letter to be made
+    text = text.replace("ß", "\x00").casefold().replace("\x00", "ß")
+    text = _LARGEST.sub("", _APPROXIMATE.sub("", text))
+    text = re.sub(r"\(\s*\)", " ", text)
+    # .60 m, but not H.60 cm
+    text = re.sub(r"(?:^|(?<=[\s×x(,;:]))\.(?=\d)", "0.", _plain_masses(text))
+    # height with base: 180 cm; rim diameter 20 cm: a part of its own
+    text = re.sub(
+        rf"(?<!\w)({_ORDER})\.?\s+({_WITH_OR_WITHOUT})[\s:.]*(?=\d)",
+        r"; \2: \1 ",
+        text,
+    )
+    text = re.sub(rf"(?<=[\s,])({_PIECE})\s+(?=(?:{_ORDER})(?!\w))", r"; \1 ", text)
     # 180 (H) x 60 (W): a word in brackets is the word of the number before it
     text = re.sub(rf"\(\s*({_ORDER})\.?\s*\)", r" \1 ", text)
     # H 180 cm (with base): a part in brackets is what the lengths before it are of
@@ -251,6 +320,43 @@ def _plain(text: str) -> str:
     return re.sub(r"\bby\b", "×", text)
 
 
+def _plain_masses(text: str) -> str:
+    """Text whose masses have no sign between thousands; one that may be such a sign or a decimal one says nothing.
+
+    Which it is shows in the other numbers: 1.250 kg beside 2,10 m is more than a ton.
+    """
+    marks = set(re.findall(r"\d([.,])(?:\d{1,2}|\d{4,})(?!\d)", text))
+    mass = r"(?<![\d.,])(\d{1,3})([.,])(\d{3})(\s*(?:kg|kgs|kilograms?|lbs?|g))(?!\w)"
+
+    def without_sign(found: re.Match[str]) -> str:
+        if marks == {found[2]}:
+            return found[0]
+        american = found[2] == "," and found[4].strip().startswith("lb")
+        return f"{found[1]}{found[3]}{found[4]}" if len(marks) == 1 or american else ""
+
+    return re.sub(mass, without_sign, text)
+
+
+def _with_stated_unit(phrases: list[_Phrase]) -> list[_Phrase]:
+    """Give phrases without a unit the one that stands alone: H x W (cm): 180 x 60."""
+    alone = {
+        found[1] for each in phrases if (found := _UNIT_ALONE.fullmatch(each.text))
+    }
+    if len(alone) != 1:
+        return phrases
+    (unit,) = alone
+    return [
+        replace(
+            each,
+            lengths=tuple(replace(length, unit=unit) for length in each.lengths),
+            unit_missing=False,
+        )
+        if each.unit_missing
+        else each
+        for each in phrases
+    ]
+
+
 def _phrases(text: str) -> Iterator[_Phrase]:
     """Yield the pieces of a text, each with its lengths and the part of the object that it is of."""
     part = ""
@@ -263,20 +369,25 @@ def _phrases(text: str) -> Iterator[_Phrase]:
 
 def _split_part(words: str) -> tuple[str | None, str]:
     """Part of the object that a piece names first or last, None without one, and the rest of the piece."""
-    for names, stands_for in (
-        (WITHOUT_BASE, "without base"),
-        (WITH_BASE, "with base"),
-        (OBJECT, ""),
-        (EACH, "each"),
-        (PIECES_OF_IT, None),
-    ):
-        for name in sorted(names, key=len, reverse=True):
-            part = name if stands_for is None else stands_for
-            if re.match(rf"{re.escape(name)}(?!\w)", words):
-                return part, words[len(name) :].strip(" .,:")
-            if re.search(rf"\d.*[\s,]{re.escape(name)}$", words):
-                return part, words[: -len(name)].strip(" .,:")
+    for first, last, stands_for in _NAMED:
+        if found := first.match(words):
+            part, rest = found[0], words[found.end() :]
+        elif found := last.search(words):
+            part, rest = found[1], words[: found.start(1)]
+        else:
+            continue
+        return part if stands_for is None else stands_for, rest.strip(" .,:")
     return None, words
+
+
+def _names_all(phrases: Sequence[_Phrase], part: str) -> bool:
+    """Whether a part that is named last is that of all: H 180 cm; W 60 cm (with base)."""
+    named = [each.word for phrase in phrases if phrase.part for each in phrase.lengths]
+    before = [
+        each.word for phrase in phrases if not phrase.part for each in phrase.lengths
+    ]
+    of_whole = {phrase.part for phrase in phrases} == {"", part} and part not in EACH
+    return of_whole and part not in PIECES_OF_IT and not set(named) & set(before)
 
 
 def _rank_of_part(part: str) -> int:
@@ -296,20 +407,24 @@ def _read_phrase(words: str, part: str) -> _Phrase:
     side = "before" if terms and terms[0]["before"] else "after"
     lengths: list[_Stated] = []
     mass = None
+    stated = [term["unit"] or term["last"] or term["first"] or "" for term in terms]
+    of_lengths = next((unit for unit in stated if unit in METRES), "")
     for i, term in enumerate(terms):
-        unit = term["unit"] or term["last"] or ""
-        low = _number(term["low"], unit)
-        high = _number(term["high"], unit) if term["high"] else low
+        unit = stated[i]
+        low = _number(term["low"], unit or of_lengths)
+        high = _number(term["high"], unit or of_lengths) if term["high"] else low
         word = term[side] or ""
         if side == "before" and not word and i and terms[i - 1]["after"]:
             # the word between two numbers belongs to the second
             word = terms[i - 1]["after"]
         if word in WEIGHT_WORDS or unit in KILOGRAMS:
-            mass = KILOGRAMS.get(unit, 1.0) * 0.5 * (low + high)
+            ounces = KILOGRAMS.get(unit) == KILOGRAMS["oz"]
+            weight = KILOGRAMS.get(unit, 1.0) * 0.5 * (low + high)
+            mass = weight + (mass or 0.0 if ounces else 0.0)
         elif lengths and _continues(
-            lengths[-1], unit, words[terms[i - 1].end() : term.start()]
+            lengths[-1], unit, _between(words, terms[i - 1], term)
         ):
-            joined = _feet_and_inches(lengths[-1], low, unit)
+            joined = _in_the_smaller(lengths[-1], low, unit)
             lengths[-1] = replace(joined, word=joined.word or word)
         else:
             lengths.append(_Stated(low, high, unit, word))
@@ -321,17 +436,24 @@ def _read_phrase(words: str, part: str) -> _Phrase:
     )
 
 
+def _between(words: str, before: re.Match[str], term: re.Match[str]) -> str:
+    """Text between two numbers with their units, words beside them included."""
+    start = before.end("unit") if before["unit"] else before.end()
+    return words[start : term.start("low")]
+
+
 def _continues(before: _Stated, unit: str, between: str) -> bool:
-    """Whether inches go on what feet began: 6 ft 2 in."""
-    feet = METRES.get(before.unit) == METRES["ft"]
-    return feet and METRES.get(unit) == METRES["in"] and not between.strip(" .")
+    """Whether a smaller unit goes on what a larger one began: 6 ft 2 in., 1 m 20 cm."""
+    pair = METRES.get(before.unit), METRES.get(unit)
+    known = pair in ((METRES["ft"], METRES["in"]), (METRES["m"], METRES["cm"]))
+    return known and not between.strip(" .-")
 
 
-def _feet_and_inches(feet: _Stated, inches: float, unit: str) -> _Stated:
-    """One length of feet and inches, in inches."""
-    return replace(
-        feet, low=12 * feet.low + inches, high=12 * feet.high + inches, unit=unit
-    )
+def _in_the_smaller(larger: _Stated, value: float, unit: str) -> _Stated:
+    """One length of feet and inches in inches, or of metres and centimetres in centimetres."""
+    times = METRES[larger.unit] / METRES[unit]
+    low, high = times * larger.low + value, times * larger.high + value
+    return replace(larger, low=low, high=high, unit=unit)
 
 
 def _with_units(lengths: Sequence[_Stated]) -> list[_Stated]:
@@ -349,8 +471,8 @@ def _number(text: str, unit: str) -> float:
     whole, _, fraction = text.replace("-", " ").rpartition(" ")
     if "/" not in fraction:
         whole, fraction = fraction, ""
-    if re.fullmatch(r"\d{1,3},\d{3}", whole) and unit == "mm":
-        whole = whole.replace(",", "")
+    if re.fullmatch(r"\d{1,3}[.,]\d{3}", whole) and METRES.get(unit) == METRES["mm"]:
+        whole = re.sub("[.,]", "", whole)
     value = float(whole.strip().replace(",", ".")) if whole.strip() else 0.0
     if fraction:
         above, below = fraction.split("/")
@@ -410,6 +532,10 @@ def _restates(kept: Sequence[_Stated], more: Sequence[_Stated]) -> list[_Stated]
     """
     if not kept:
         return list(more)
+    named, bare = all(each.word for each in more), not any(each.word for each in kept)
+    if named and bare and len(kept) == len(more):
+        same = all(map(_same, kept, more))
+        return list(more) if same else None
     known = {length.word: length for length in kept if length.word}
     added = [length for length in more if length.word and length.word not in known]
     if len(added) == len(more):

@@ -1,8 +1,9 @@
 """Words by which catalogues say which way a length lies, in the languages of museums.
 
-English, German, French, Italian, Spanish and Dutch. A letter may mean different things in different languages:
-L is *length* beside a width (L × W × H), and *largeur* or *larghezza* where depth is P (H × L × P). Which it is
-follows from the letters beside it (:func:`directions`), never from the language, which a table does not state.
+English, German, French, Italian, Spanish, Portuguese, Dutch and the languages of Scandinavia. A letter may
+mean different things in different languages: L is *length* beside a width (L × W × H), and *largeur* or
+*larghezza* where depth is P (H × L × P). Which it is follows from the letters beside it (:func:`directions`),
+never from the language, which a table does not state.
 """
 
 from collections.abc import Sequence
@@ -24,23 +25,27 @@ _WORDS = {
         *("h", "ht", "hgt", "height", "high", "tall"),
         *("höhe", "hoehe", "hoch", "hauteur", "haut"),
         *("altezza", "alt", "altura", "alto", "hoogte", "hoog"),
+        *("gesamthöhe", "højde", "höjd", "høyde"),
     ),
     Direction.WIDTH: (
         *("w", "wd", "width", "wide", "b", "br", "breite", "breit", "largeur", "larg"),
         *("larghezza", "largh", "ancho", "anchura", "breedte", "breed"),
+        *("gesamtbreite", "largura", "bredde", "bredd"),
     ),
     Direction.DEPTH: (
         *("d", "dp", "depth", "deep", "t", "tiefe", "tief", "p", "prof", "profondeur"),
         *("profondità", "profundidad", "fondo", "diepte", "diep", "thickness", "thick"),
-        *("dicke", "épaisseur", "spessore", "grosor", "dikte"),
+        *("dicke", "épaisseur", "spessore", "grosor", "dikte", "ép", "spess"),
+        *("pr", "gesamttiefe", "profundidade", "espessura", "dybde", "djup"),
     ),
     Direction.LENGTH: (
         *("l", "lg", "length", "long", "länge", "laenge", "lang", "longueur"),
         *("lunghezza", "lungh", "longitud", "largo", "lengte"),
+        *("gesamtlänge", "comprimento", "længde", "längd", "lengde"),
     ),
     Direction.DIAMETER: (
         *("ø", "⌀", "diam", "dia", "dm", "diameter", "durchmesser", "diamètre"),
-        *("diametro", "diámetro", "doorsnede"),
+        *("diametro", "diámetro", "doorsnede", "durchm", "diâmetro"),
     ),
 }
 
@@ -48,7 +53,10 @@ DIRECTION_OF = {word: way for way, words in _WORDS.items() for word in words}
 """Direction of each word, in small letters."""
 
 WEIGHT_WORDS = frozenset(
-    ("wt", "weight", "mass", "gewicht", "poids", "peso", "masse", "massa")
+    (
+        *("wt", "weight", "mass", "gewicht", "gew", "poids", "peso", "masse"),
+        *("massa", "vægt", "vikt", "vekt"),
+    )
 )
 """Words before a mass."""
 

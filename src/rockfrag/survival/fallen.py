@@ -25,7 +25,14 @@ from rockfrag.assess.sources import SPACE
 from rockfrag.base.arrays import Floats
 from rockfrag.base.errors import InputError
 from rockfrag.fragility.model_error import MODEL_ERRORS
+from rockfrag.runtime.progress import Progress
 from rockfrag.survival.directions_of_falls import FallDirection, fall_direction
+from rockfrag.survival.shaking_axis import (
+    ShakingAxis,
+    fall_density,
+    predicted_falls,
+    shaking_axis,
+)
 from rockfrag.survival.shaking_posterior import (
     Falls,
     Prior,
@@ -91,6 +98,7 @@ class FallenPlace:
     shared : that of what all share [-], by what it comes from
     motions : the ground motions of which one is taken to be like that of the earthquake
     direction : where falls point; None where too few were measured
+    axis : along which the ground shook most; None where falls point nowhere, or no record has both components
     """
 
     groups: Sequence[Observed]
@@ -101,6 +109,7 @@ class FallenPlace:
     shared: Mapping[str, float]
     motions: MotionSet
     direction: FallDirection | None = None
+    axis: ShakingAxis | None = None
 
     @property
     def fallen(self) -> int:
@@ -188,6 +197,7 @@ def constrain_shaking(
     groups: Sequence[Observed],
     knowledge: Knowledge | None = None,
     records: str | Path = RECORDS,
+    progress: Progress | None = None,
 ) -> FallenPlace:
     """Say how strongly the ground shook, by what fell and what stands.
 
@@ -196,6 +206,7 @@ def constrain_shaking(
     groups : what fell and what stands, all at one place
     knowledge : what is known beside it
     records : folder of fetched records
+    progress : called with the number of groups that were shaken and of all
 
     Returns
     -------
@@ -211,7 +222,11 @@ def constrain_shaking(
     known = knowledge or Knowledge()
     first = groups[0].request
     motions = motion_set(first.records, first.place, Path(records))
-    shaken = [_shaken(group, motions, known) for group in groups]
+    shaken = []
+    for group in groups:
+        shaken.append(_shaken(group, motions, known))
+        if progress is not None:
+            progress(len(shaken), len(groups))
     falls = [each.falls for each in shaken]
     shared = _shared(groups, shaken, known)
     about = shaken[0]
@@ -227,17 +242,49 @@ def constrain_shaking(
             allowed=about.allowed,
         )
 
+    posterior = by(falls)
     azimuths = [azimuth for group in groups for azimuth in group.azimuths]
+    direction = fall_direction(azimuths)
+    axis = None
+    if direction is not None and direction.points_somewhere:
+        axis = _axis(groups, shaken, motions, posterior)
     return FallenPlace(
         groups=groups,
         knowledge=known,
-        posterior=by(falls),
+        posterior=posterior,
         alone=[by([each]).pgv() for each in falls],
         own=[each.spread for each in falls],
         shared=shared,
         motions=motions,
-        direction=fall_direction(azimuths),
+        direction=direction,
+        axis=axis,
     )
+
+
+def _axis(
+    groups: Sequence[Observed],
+    shaken: Sequence["_Shaken"],
+    motions: MotionSet,
+    posterior: ShakingPosterior,
+) -> ShakingAxis | None:
+    """Axis along which the ground shook most, by the azimuths of falls and where motions let stones fall."""
+    measured, levels = [], None
+    for group, each in zip(groups, shaken, strict=True):
+        here = motions.at(group.request.place)
+        if not group.azimuths or not here.pairs:
+            continue
+        predicted = predicted_falls(group.request.objects.block, here)
+        density = fall_density(predicted, each.falls.spread)
+        measured.append((group.azimuths, density))
+        levels = predicted.levels
+    if levels is None:
+        return None
+    # all records alike at a level; a level stands for what lies about it
+    x = np.log(posterior.levels)
+    by_level = np.interp(np.log(levels), x, posterior.probability, left=0, right=0)
+    _, density = measured[0]
+    weights = np.broadcast_to(by_level, density.shape[1:])
+    return shaking_axis(measured, weights / weights.sum())
 
 
 @dataclass(frozen=True, eq=False)

@@ -20,26 +20,41 @@ from rockfrag.report.page import Page, column, table_html
 from rockfrag.report.part import Answer, FigureSpec, Finding, Section
 from rockfrag.survival.directions_of_falls import FallDirection
 from rockfrag.survival.fallen import FallenPlace
-from rockfrag.words.numbers import significant
+from rockfrag.words.catalogue import FIRST, Catalogue, catalogue
+from rockfrag.words.findings import Finding as Said
+from rockfrag.words.findings import Value, finding, listed, two, whole
 
 LIMITS = (
-    "What all objects share, the motion of this one earthquake and the error of the model, does not average out: "
-    "more stones of one kind soon say no more.",
-    "Objects that all fell say only that shaking was at least so strong, and objects that all stand that it was "
-    "at most so strong; objects of several sizes bracket it.",
-    "Stones that are mortared or pinned, that slide, lean or stand on soft ground, or that something else struck, "
-    "are other objects; leave them out.",
-    "PGV and PGA are those of the ground at the place, as the geometric mean of two components, and no intensity.",
+    "fallen_limit_shared",
+    "fallen_limit_one_sided",
+    "fallen_limit_others",
+    "fallen_limit_place",
 )
-"""Limits of every answer, a sentence each."""
+"""Texts of the limits of every answer, a sentence each."""
 
 
-def write_fallen(found: FallenPlace, folder: str | os.PathLike[str]) -> Path:
+AXIS_IS_OPEN = 60.0  # Half of an interval from which no axis is said [degrees]
+VELOCITY = ("fallen_velocity", "fallen_velocity_at_least", "fallen_velocity_at_most")
+PEAK = ("fallen_peak", "fallen_peak_at_least", "fallen_peak_at_most")
+"""Texts of a level: with its interval, and with one limit."""
+
+COMMON_ERRORS = {
+    "model": "fallen_share_model",
+    "second component": "fallen_share_second_component",
+    "slenderness": "fallen_share_slenderness",
+}
+"""Texts of what all objects share."""
+
+
+def write_fallen(
+    found: FallenPlace, folder: str | os.PathLike[str], language: str = FIRST
+) -> Path:
     """Write ``shaking.html``, ``shaking.json`` and ``shaking.csv`` into a folder.
 
     Parameters
     ----------
-    found, folder : the place, and where files go
+    found : the place
+    folder, language : where files go, and the language of the page
 
     Returns
     -------
@@ -48,7 +63,7 @@ def write_fallen(found: FallenPlace, folder: str | os.PathLike[str]) -> Path:
     page = Path(folder) / "shaking.html"
     write_table(posterior_table(found), page.with_suffix(".csv"))
     write_text(fallen_json(found), page.with_suffix(".json"))
-    write_text(fallen_page(found), page)
+    write_text(fallen_page(found, language), page)
     return page
 
 
@@ -95,11 +110,14 @@ def fallen_json(found: FallenPlace) -> str:
         "information_bit": found.posterior.information_bit,
         "fallen": found.fallen,
         "count": found.count,
-        "groups": json.loads(_group_table(found).to_json(orient="records")),
+        "groups": json.loads(
+            _group_table(found, catalogue()).to_json(orient="records")
+        ),
         "shared_sd_ln": dict(found.shared),
         "direction": found.direction and _direction_data(found.direction),
+        "axis": found.axis and dict(vars(found.axis)),
         "motions": len(found.motions.ground),
-        "limits": list(LIMITS),
+        "limits": [catalogue().text(id) for id in LIMITS],
     }
     return json.dumps(content, indent=2, ensure_ascii=False, allow_nan=False) + "\n"
 
@@ -108,79 +126,99 @@ def _direction_data(found: FallDirection) -> dict[str, float | int]:
     return dict(vars(found))
 
 
-def fallen_lines(found: FallenPlace) -> list[str]:
+def fallen_lines(found: FallenPlace, language: str = FIRST) -> list[str]:
     """Say the answer in lines for a screen.
 
     Parameters
     ----------
-    found : the place
+    found, language : the place, and the language
 
     Returns
     -------
     The lines.
     """
-    lines = [
-        f"Velocity   {_velocity(found)}",
-        f"Peak       {_acceleration(found)}",
-        f"Evidence   {_evidence(found)}",
-    ]
+    texts = catalogue(language)
+    said: dict[str, list[Value]] = {
+        "fallen_head_velocity": [_velocity(found)],
+        "fallen_head_peak": [_acceleration(found)],
+        "fallen_head_evidence": [_evidence(found)],
+    }
     if found.direction is not None:
-        lines.append(f"Direction  {_direction(found.direction)}")
-    return [*lines, f"Hangs on   {_hangs_on(found)}", f"Limits     {' '.join(LIMITS)}"]
+        said["fallen_head_direction"] = _directions(found, found.direction)
+    said["fallen_head_hangs_on"] = [_hangs_on(found)]
+    said["fallen_head_limits"] = [finding(id) for id in LIMITS]
+    heads = [texts.text(id) for id in said]
+    longest = max(map(len, heads))
+    words = [" ".join(map(texts.say, values)) for values in said.values()]
+    return [
+        f"{head:<{longest}}  {line}" for head, line in zip(heads, words, strict=True)
+    ]
 
 
-def _two(value: float) -> str:
-    return significant(value, 2)
-
-
-def _velocity(found: FallenPlace) -> str:
+def _velocity(found: FallenPlace) -> Said:
     """What PGV was, with its interval, or its one limit where the other is open."""
-    middle, low, high = found.posterior.pgv()
-    if found.posterior.open_above and found.posterior.open_below:
-        return "PGV stays open: the falls say nothing of it."
+    about = found.posterior
+    if about.open_above and about.open_below:
+        return finding("fallen_velocity_open")
+    return _level(VELOCITY, about.pgv(), found)
+
+
+def _acceleration(found: FallenPlace) -> Said:
+    return _level(PEAK, found.posterior.pga(), found)
+
+
+def _level(
+    texts: tuple[str, str, str], level: tuple[float, float, float], found: FallenPlace
+) -> Said:
+    """A level with its interval, or with its one limit where the other is open."""
+    middle, low, high = map(two, level)
+    both, at_least, at_most = texts
     if found.posterior.open_above:
-        return f"PGV was at least {_two(low)} cm/s; how much more stays open."
+        return finding(at_least, low=low)
     if found.posterior.open_below:
-        return f"PGV was at most {_two(high)} cm/s; how much less stays open."
-    return f"PGV was about {_two(middle)} cm/s ({_two(low)} to {_two(high)} cm/s with 90 %)."
+        return finding(at_most, high=high)
+    return finding(both, middle=middle, low=low, high=high)
 
 
-def _acceleration(found: FallenPlace) -> str:
-    middle, low, high = found.posterior.pga()
-    if found.posterior.open_above:
-        return f"PGA was at least {_two(low)} g."
-    if found.posterior.open_below:
-        return f"PGA was at most {_two(high)} g."
-    interval = f"{_two(low)} to {_two(high)} g with 90 %"
-    return f"PGA was about {_two(middle)} g ({interval}), by the motions that have such a PGV."
-
-
-def _evidence(found: FallenPlace) -> str:
-    return (
-        f"{found.fallen} of {found.count} objects fell; that narrows PGV by "
-        f"{max(found.posterior.information_bit, 0.0):.1f} bit under {len(found.motions.ground)} motions."
+def _evidence(found: FallenPlace) -> Said:
+    return finding(
+        "fallen_evidence",
+        fallen=found.fallen,
+        count=found.count,
+        bit=two(max(found.posterior.information_bit, 0.0)),
+        n=len(found.motions.ground),
     )
 
 
-def _direction(found: FallDirection) -> str:
+def _directions(found: FallenPlace, falls: FallDirection) -> list[Value]:
+    """Where falls point, and along which axis the ground shook most, if that can be said."""
+    said: list[Value] = [_direction(falls)]
+    if found.axis is not None and found.axis.within < AXIS_IS_OPEN:
+        azimuth, within = whole(found.axis.azimuth), whole(found.axis.within)
+        said.append(finding("fallen_axis", azimuth=azimuth, within=within))
+    return said
+
+
+def _direction(found: FallDirection) -> Said:
     if not found.points_somewhere:
-        return f"{found.count} measured falls point nowhere in common (p = {found.p_value:.2g})."
-    return (
-        f"{found.count} measured falls point to {found.azimuth:.0f}° from north, within {found.within:.0f}° with "
-        "90 %; square stones only fall over their edges."
+        return finding("fallen_nowhere", n=found.count, p=two(found.p_value))
+    return finding(
+        "fallen_towards",
+        n=found.count,
+        azimuth=whole(found.azimuth),
+        within=whole(found.within),
     )
 
 
-def _hangs_on(found: FallenPlace) -> str:
-    parts = ", ".join(f"{name} {spread:.2g}" for name, spread in found.shared.items())
-    own = max(found.own)
-    return (
-        f"what all share, as standard deviations of ln PGV ({parts}), and what differs from stone to stone "
-        f"({own:.2g})."
-    )
+def _hangs_on(found: FallenPlace) -> Said:
+    shared = [
+        finding(COMMON_ERRORS[name], spread=two(spread))
+        for name, spread in found.shared.items()
+    ]
+    return finding("fallen_hangs_on", shared=listed(shared), own=two(max(found.own)))
 
 
-def _group_table(found: FallenPlace) -> pd.DataFrame:
+def _group_table(found: FallenPlace, texts: Catalogue) -> pd.DataFrame:
     rows = []
     for group, own, (middle, low, high) in zip(
         found.groups, found.own, found.alone, strict=True
@@ -191,7 +229,9 @@ def _group_table(found: FallenPlace) -> pd.DataFrame:
                 "name": group.request.name,
                 "width_cm": 100 * block.width,
                 "height_cm": 100 * block.height,
-                "fell": f"{group.fallen} of {group.count}",
+                "fell": texts.say(
+                    finding("fallen_of", fallen=group.fallen, count=group.count)
+                ),
                 "fraction": group.fallen / group.count,
                 "own_sd_ln": own,
                 "alone": middle,
@@ -202,76 +242,84 @@ def _group_table(found: FallenPlace) -> pd.DataFrame:
     return pd.DataFrame(rows)
 
 
-def fallen_page(found: FallenPlace) -> str:
+def fallen_page(found: FallenPlace, language: str = FIRST) -> str:
     """Return the page as HTML, which loads nothing from outside.
 
     Parameters
     ----------
-    found : the place
+    found, language : the place, and the language
 
     Returns
     -------
     HTML.
     """
+    texts = catalogue(language)
+    caption = texts.text("fallen_figure")
     drawn = FigureSpec(
         name="shaking",
-        alt=f"Probability of PGV before and after the falls. {_velocity(found)}",
-        caption="PGV of the ground before (dashed) and after (solid) the falls were looked at.",
-        draw=lambda: shaking_figure(found),
+        alt=f"{caption} {texts.say(_velocity(found))}",
+        caption=caption,
+        draw=lambda: shaking_figure(found, texts),
     )
-    groups = table_html(
-        _group_table(found),
-        (
-            column("name", "Objects"),
-            column("width_cm", "Width [cm]", decimals=0),
-            column("height_cm", "Height [cm]", decimals=0),
-            column("fell", "Fell", numeric=True),
-            column("alone", "PGV by these alone [cm/s]", decimals=0),
-            column("alone_lower", "At least [cm/s]", decimals=0),
-            column("alone_upper", "At most [cm/s]", decimals=0),
-        ),
-        "What fell and what stands, and what each kind says by itself (90 %).",
-        "shaking.csv",
-    )
-    said = [
-        Finding(_velocity(found).rstrip(".")),
-        Finding(_acceleration(found).rstrip(".")),
-        Finding(_evidence(found).rstrip(".")),
-    ]
-    sections = [
-        Section("objects", "What fell and what stands", _evidence(found), (), [groups]),
-        Section(
-            "hangs-on",
-            "What it hangs on",
-            f"It hangs on {_hangs_on(found)}",
-            LIMITS,
-        ),
-    ]
-    if found.direction is not None:
-        sections.insert(
-            1,
-            Section("direction", "Where falls point", _direction(found.direction)),
-        )
+    said = texts.lines([_velocity(found), _acceleration(found), _evidence(found)])
+    limits = [texts.text(id) for id in LIMITS]
+    count = finding("fallen_title", fallen=found.fallen, count=found.count)
+    lead = finding("fallen_lead", n=len(found.motions.ground))
     return Page(
-        title=f"How strongly the ground shook: {found.fallen} of {found.count} fell",
-        lead=f"What fell and what stands, under {len(found.motions.ground)} motions.",
+        title=texts.say(count),
+        lead=texts.say(lead),
         answer=Answer(
-            asked="How strongly did the ground shake, if so many fell and so many stand?",
-            sentences=said,
+            asked=texts.text("fallen_asked"),
+            sentences=[Finding(sentence.rstrip(".")) for sentence in said],
             figure=drawn,
-            rests_on=LIMITS[:2],
+            rests_on=limits[:2],
         ),
-        sections=sections,
-        provenance={"Program": f"rockfrag {version('rockfrag')}"},
+        sections=_sections(found, texts),
+        provenance={
+            texts.text("provenance_program"): f"rockfrag {version('rockfrag')}"
+        },
+        language=texts.language,
     ).html()
 
 
-def shaking_figure(found: FallenPlace) -> Figure:
+def _sections(found: FallenPlace, texts: Catalogue) -> list[Section]:
+    """Chapters: the objects, where they fell, and on what the answer hangs."""
+    columns = (
+        column("name", texts.text("fallen_column_name")),
+        column("width_cm", texts.text("fallen_column_width"), decimals=0),
+        column("height_cm", texts.text("fallen_column_height"), decimals=0),
+        column("fell", texts.text("fallen_column_fell"), numeric=True),
+        column("alone", texts.text("fallen_column_alone"), decimals=0),
+        column("alone_lower", texts.text("fallen_column_lower"), decimals=0),
+        column("alone_upper", texts.text("fallen_column_upper"), decimals=0),
+    )
+    caption = texts.text("fallen_table")
+    table = table_html(_group_table(found, texts), columns, caption, "shaking.csv")
+    limits = [texts.text(id) for id in LIMITS]
+    title = texts.text("fallen_objects")
+    sections = [
+        Section("objects", title, texts.say(_evidence(found)), (), [table]),
+        Section(
+            "hangs-on",
+            texts.text("fallen_head_hangs_on"),
+            texts.sentence(_hangs_on(found)),
+            limits,
+        ),
+    ]
+    if found.direction is not None:
+        title = texts.text("fallen_directions")
+        said = " ".join(map(texts.say, _directions(found, found.direction)))
+        where = Section("direction", title, said)
+        sections.insert(1, where)
+    return sections
+
+
+def shaking_figure(found: FallenPlace, texts: Catalogue) -> Figure:
     """Density of ln PGV before and after the falls.
 
     Parameters
     ----------
-    found : the place
+    found, texts : the place, and the texts of a language
 
     Returns
     -------
@@ -281,13 +329,17 @@ def shaking_figure(found: FallenPlace) -> Figure:
     step = math.log(about.levels[1] / about.levels[0])
     with style.panels(style.COLUMN_WIDTH, 2.6) as (figure, axes):
         axes.plot(
-            about.levels, about.prior / step, "--", color=style.ORANGE, label="before"
+            about.levels,
+            about.prior / step,
+            "--",
+            color=style.ORANGE,
+            label=texts.text("fallen_figure_before"),
         )
         axes.plot(
             about.levels,
             about.probability / step,
             color=style.BLUE,
-            label="after the falls",
+            label=texts.text("fallen_figure_after"),
         )
         _, low, high = about.pgv()
         inside = (about.levels >= low) & (about.levels <= high)
@@ -300,8 +352,8 @@ def shaking_figure(found: FallenPlace) -> Figure:
         )
         axes.set(
             xscale="log",
-            xlabel="PGV of the ground [cm/s]",
-            ylabel="Probability per unit of ln PGV [-]",
+            xlabel=texts.text("fallen_figure_axis"),
+            ylabel=texts.text("fallen_figure_density"),
             ylim=(0, None),
         )
         style.plain_log(axes, "x")
