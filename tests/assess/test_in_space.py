@@ -54,6 +54,13 @@ def test_without_a_depth_or_with_a_measured_restitution_it_is_planar(few):
         assert "space" in answer.main.sources
 
 
+@pytest.mark.parametrize("key", ["facing_deg", "base_spread"])
+def test_what_acts_in_space_alone_is_refused_with_records_of_one_component(few, key):
+    lone = replace(few, pairs=())
+    with pytest.raises(InputError, match=f"key {key}: no record has two components"):
+        assess_with(asked(**BOX, pga="0.4 g", **{key: 0.05}), lone, brief=True)
+
+
 def test_the_sides_may_be_given_either_way_round_and_the_object_may_face_anywhere():
     def solid_of(**settings):
         objects = asked(**settings).objects

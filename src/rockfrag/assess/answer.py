@@ -315,6 +315,11 @@ def plan_for(
     objects = request.objects
     if objects.from_all_sides or (objects.in_space and motions.pairs):
         motions = motions.with_both_components()
+    elif objects.matters_in_space:
+        raise InputError(
+            f"key {objects.matters_in_space[0]}: no record has two components, so the object is answered in "
+            "one plane, which has no use for it; leave it out, or give records of two components."
+        )
     curves = _governing(request, motions)
     hazard = curves[0] if curves else None
     level = _site_level(request, hazard)

@@ -227,7 +227,10 @@ def _tests(study: CampaignStudy, tables: Tables) -> Section:
         ends = zip(shown[f"{name}_from"], shown[f"{name}_to"], strict=True)
         shown[name] = [f"{low:.3g} to {high:.3g}" for low, high in ends]
     wrong = tests[~tests["right"]].assign(votes=lambda t: 100 * t["votes_to_overturn"])
-    message = f"{int(tests['right'].sum())} of {len(tests)} tests are predicted as they happened."
+    message = (
+        f"{int(tests['right'].sum())} of {len(tests)} tests are predicted as they happened, each by the majority "
+        "of all repeats."
+    )
     parts: list[Markup | FigureSpec] = []
     if len(names) == 2:
         x, y = names

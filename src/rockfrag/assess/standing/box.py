@@ -79,6 +79,12 @@ class Box(Standing):
         plain = self.under.restitution is None and self.livelier == 1.0
         return plain and self.under.pad_friction is None
 
+    @property
+    def matters_in_space(self) -> tuple[str, ...]:
+        """How it faces the shaking too, if somebody said it."""
+        facing = () if self.faces_anywhere else ("facing_deg",)
+        return (*facing, *super().matters_in_space)
+
     def in_plane(self) -> Planar:
         """The object as it rocks across its narrower side."""
         return Planar(self.block, self.plane, self.under, self.livelier)

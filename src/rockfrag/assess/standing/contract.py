@@ -121,6 +121,11 @@ class Standing(ABC):
         """Least peak acceleration of what it stands on at which any contact opens [g]: b/h of a uniform block."""
         return min(uplift_ratios(self.body.system()))
 
+    @property
+    def matters_in_space(self) -> tuple[str, ...]:
+        """Keys that were given and change nothing where it rocks in one plane."""
+        return ("base_spread",) if self.base_spread else ()
+
     # ---- what is asked of every kind
 
     def arrangements(self) -> dict[str, Body]:
