@@ -108,10 +108,10 @@ def test_a_vertical_component_shakes_too(simulated, record):
 
 
 HELD = {
-    "--wall": (("0.02", "0.05"), "wall 1: largest force"),
+    "--wall": (("2cm", "0.05"), "wall 1: largest force"),
     "--kerb": (("0.01", "0.1"), "wall 1: largest force"),
-    "--putty": (("40",), "bond 1: largest force 40 N; broke at"),
-    "--cord": (("1e5", "0.002"), "tie 2: largest force"),
+    "--putty": (("0.04kN",), "bond 1: largest force 40 N; broke at"),
+    "--cord": (("100kN/m", "2 mm"), "tie 2: largest force"),
     "--bracket": (("1e6",), "tie 1: largest force"),
     "--pendulum": (("2", "0.05", "0.2"), "support: largest force 0 N; stroke"),
 }
@@ -127,6 +127,8 @@ def test_what_holds_a_body_is_told_with_what_it_had_to_bear(simulated):
     assert simulated(*case, "--casters", "locked").out == simulated(*case).out
     wrong = simulated(*case, "--pendulum", "2", status=2)
     assert wrong.err.startswith("--pendulum: expected 2 to 4 numbers, got 1.")
+    wrong = simulated(*case, "--cord", "5kN", status=2)
+    assert "expected a stiffness such as 50 kN/m in one of the units N/m" in wrong.err
 
 
 def test_a_column_is_given_from_above(simulated, record, capsys):

@@ -319,7 +319,7 @@ def test_random_bodies_in_space_have_the_bits_of_the_package(tmp_path, bodies):
     ("name", "largest"),
     [
         ("integrate", 60_000),
-        ("space", 140_000),
+        ("space", 150_000),
         ("ensemble", 270_000),
         ("ensemble-fused", 132_000),
     ],

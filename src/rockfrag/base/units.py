@@ -39,6 +39,8 @@ DIMENSIONS: Mapping[str, Mapping[str, tuple[float, float]]] = {
     },
     "velocity": {"m_s": (1.0, 1.0), "cm_s": (1.0, 100.0), "mm_s": (1.0, 1000.0)},
     "time": {"s": (1.0, 1.0), "ms": (1.0, 1000.0)},
+    "force": {"N": (1.0, 1.0), "kN": (1000.0, 1.0), "lbf": (4.4482216152605, 1.0)},
+    "stiffness": {"N_m": (1.0, 1.0), "kN_m": (1000.0, 1.0), "N_mm": (1000.0, 1.0)},
 }
 """Of each dimension its units, and of each unit the factor and the divisor that lead to SI.
 
@@ -52,6 +54,8 @@ EXAMPLES: Mapping[str, str] = {
     "acceleration": "an acceleration such as 0.25 g",
     "velocity": "a velocity such as 20 cm/s",
     "time": "a time such as 0.3 s",
+    "force": "a force such as 120 N",
+    "stiffness": "a stiffness such as 50 kN/m",
 }
 """What a message names as an example of each dimension: a size that people meet."""
 
@@ -128,8 +132,8 @@ def quantity(given: object, to: str, unit: str | None) -> float:
     if found is None:
         raise InputError(f"{expected}, found {given!r:.60} without a unit.")
     if found not in units:
-        # m_s2 is written m/s²
-        known = ", ".join(re.sub(r"_s(2?)$", r"/s\1", unit) for unit in units)
+        # m_s2 is written m/s², and N_m N/m
+        known = ", ".join(re.sub(r"_(s2?|(?<=N_)mm?)$", r"/\1", unit) for unit in units)
         known = known.replace("_", " ").replace("2", "²")
         raise InputError(
             f"{expected} in one of the units {known}, found {given!r:.60}."

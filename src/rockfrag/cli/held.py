@@ -8,11 +8,22 @@ import math
 from typing import TYPE_CHECKING, Any
 
 from rockfrag.base.errors import InputError
+from rockfrag.base.units import quantity
 
 if TYPE_CHECKING:
     from rockfrag.system.system import System
 
-OPTIONS = ("wall", "kerb", "putty", "cord", "bracket", "pendulum", "casters")
+RATIO = ""
+# least number of values of each option, and the unit of each value without one
+UNITS: dict[str, tuple[int, tuple[str, ...]]] = {
+    "wall": (1, ("m", "m")),
+    "kerb": (2, ("m", "m")),
+    "putty": (1, ("N", "N", "m")),
+    "cord": (1, ("N_m", "m", "N")),
+    "bracket": (1, ("N_m", "m", "N")),
+    "pendulum": (2, ("m", RATIO, "m", "kg")),
+}
+OPTIONS = (*UNITS, "casters")
 
 
 def add_holding_options(command: argparse.ArgumentParser) -> None:
@@ -22,32 +33,32 @@ def add_holding_options(command: argparse.ArgumentParser) -> None:
     ----------
     command : parser of the command
     """
-    numbers: dict[str, Any] = {"nargs": "+", "type": float}
+    several: dict[str, Any] = {"nargs": "+"}
     command.add_argument(
-        "--wall", **numbers, metavar="M",
-        help="gap to a wall on the right, and perhaps to one on the left [m]",
+        "--wall", **several, metavar="GAP",
+        help="gap to a wall on the right, and perhaps to one on the left, such as 2cm",
     )  # fmt: skip
     command.add_argument(
-        "--kerb", nargs=2, type=float, metavar="M",
-        help="gap to a kerb on the right, and its height [m]",
+        "--kerb", nargs=2, metavar="SIZE",
+        help="gap to a kerb on the right, and its height, such as 1cm 10cm",
     )  # fmt: skip
     command.add_argument(
-        "--putty", **numbers, metavar="N",
-        help="tensile capacity of putty under the uppermost body [N], perhaps its capacity in shear [N] and half "
-        "the distance of its pads [m]",
+        "--putty", **several, metavar="PULL",
+        help="pull that putty under the uppermost body bears, such as 120N, perhaps what it bears in shear, and "
+        "half the distance of its pads, such as 12cm",
     )  # fmt: skip
     for name, words in (
         ("cord", "two cords from its top to both sides"),
         ("bracket", "a bracket from its top to a wall"),
     ):
         command.add_argument(
-            f"--{name}", **numbers, metavar="K",
-            help=f"stiffness of {words} [N/m], perhaps slack [m] and strength [N]",
+            f"--{name}", **several, metavar="STIFFNESS",
+            help=f"stiffness of {words}, such as 50kN/m, perhaps slack, such as 2mm, and strength, such as 500N",
         )  # fmt: skip
     command.add_argument(
-        "--pendulum", **numbers, metavar="R",
-        help="isolator under it: radius of its dish [m], friction, perhaps stroke to its stop [m] and mass of its "
-        "plate [kg]",
+        "--pendulum", **several, metavar="RADIUS",
+        help="isolator under it: radius of its dish, such as 2m, friction, perhaps stroke to its stop, such as "
+        "20cm, and mass of its plate, such as 30kg",
     )  # fmt: skip
     command.add_argument(
         "--casters", choices=("locked", "free"), help="casters under the lowest body"
@@ -74,21 +85,21 @@ def held(options: argparse.Namespace, system: "System") -> "System":
     from rockfrag.system.contact import checked_friction
 
     constraints: list[Any] = []
-    for gap, side in zip(_some(options, "wall", 1, 2), (1, -1), strict=False):
+    for gap, side in zip(_given(options, "wall"), (1, -1), strict=False):
         constraints.append(mounts.wall_beside(system, gap, side))
     if options.kerb is not None:
-        gap, height = options.kerb
+        gap, height = _given(options, "kerb")
         constraints.append(mounts.wall_beside(system, gap, height=height))
     if options.cord is not None:
-        constraints += mounts.cords_at_top(system, *_some(options, "cord", 1, 3))
+        constraints += mounts.cords_at_top(system, *_given(options, "cord"))
     if options.bracket is not None:
-        springs = _some(options, "bracket", 1, 3)
+        springs = _given(options, "bracket")
         constraints.append(mounts.bracket_at_top(system, *springs))
-    putty = _some(options, "putty", 1, 3)
+    putty = _given(options, "putty")
     bond = mounts.putty_under(system, *putty) if putty else None
     support = None
     if options.pendulum is not None:
-        radius, mu, *more = _some(options, "pendulum", 2, 4)
+        radius, mu, *more = _given(options, "pendulum")
         stroke, mass = (*more, *(math.inf, 0.1 * system.mass)[len(more) :])
         support = SlidingPendulum(
             mass=mass,
@@ -101,14 +112,31 @@ def held(options: argparse.Namespace, system: "System") -> "System":
     return hold(system, *constraints, bonds=bond, support=support)
 
 
-def _some(options: argparse.Namespace, name: str, least: int, most: int) -> list[float]:
-    """Return the numbers of an option; none if it was not given."""
-    given: list[float] = getattr(options, name) or []
-    if given and not least <= len(given) <= most:
+def _given(options: argparse.Namespace, name: str) -> list[float]:
+    """Return the numbers of an option in SI; none if it was not given."""
+    typed: list[str] = getattr(options, name) or []
+    least, units = UNITS[name]
+    if typed and not least <= len(typed) <= len(units):
         raise InputError(
-            f"--{name}: expected {least} to {most} numbers, got {len(given)}."
+            f"--{name}: expected {least} to {len(units)} numbers, got {len(typed)}."
         )
-    return given
+    try:
+        return [_number(each, unit) for each, unit in zip(typed, units, strict=False)]
+    except InputError as error:
+        raise InputError(f"--{name}: {error}") from None
+
+
+def _number(typed: str, unit: str) -> float:
+    """Return a number in SI, typed with a unit or without one; ratios have none."""
+    try:
+        plain = float(typed)
+    except ValueError:
+        plain = math.nan
+    if unit == RATIO:
+        if math.isnan(plain):
+            raise InputError(f"expected a number such as 0.05, found {typed!r:.60}.")
+        return plain
+    return quantity(typed if math.isnan(plain) else plain, unit, unit)
 
 
 def lines_on_holding(response: Any) -> list[str]:

@@ -8,6 +8,8 @@ import pytest
 
 from rockfrag import Block, GroundMotion, Motion
 from rockfrag.base.errors import InputError
+from rockfrag.engines.contract import Cases, Request
+from rockfrag.engines.planar.engine import run as run_planar
 from rockfrag.engines.spatial import _integrate as kernel
 from rockfrag.engines.spatial import run_in_space
 from rockfrag.engines.spatial.body import kernel_body, standing
@@ -240,6 +242,76 @@ def test_impacts_at_rough_walls_never_gain_energy(cases):
         assert abs(found.residual) < 1e-5
         impacts += found.impacts
     assert impacts > 20 * cases
+
+
+def rubbed(system, mu):
+    """A body that stands on a ground of a coefficient of friction."""
+    contact = replace(system.contacts[0], friction=Friction(mu, mu))
+    return replace(system, contacts=(contact,))
+
+
+@pytest.mark.parametrize(
+    "seeds",
+    [(2, 3, 6, 10, 18, 24, 29), pytest.param(range(100), marks=pytest.mark.slow)],
+)
+def test_beside_a_wall_an_analysis_takes_few_steps(seeds):
+    """Seven in which the body is wedged, rattles or hardly slips took some 60 000 steps each, and gave up."""
+    bust = Block(0.3, 0.7, 60.0, depth=0.3)
+    body = kernel_body(hold(bust.system(), Wall(0.17)))
+    for seed in seeds:
+        motion = synthetic_motion(np.random.default_rng(seed), 2)
+        found = run_scales(body, motion, DT, np.array([0.8]))
+        assert found.outs[0, kernel.STEPS] < 6 * len(motion), seed
+        assert found.outs[0, kernel.GAINED] < 1e-6
+
+
+def draw_beside_wall(rng):
+    """A block under one component beside a wall along it, in the plane and as a box; ground and wall are rough."""
+    width, height = rng.uniform(0.2, 0.6), rng.uniform(0.7, 1.6)
+    motion = synthetic_motion(rng, 1)[:, 0] * rng.uniform(2.0, 5.0) * width / height
+    gap, mu = rng.uniform(0.005, 0.08), rng.uniform(0.3, 0.8)
+    rough = Friction(0.3, 0.3) if rng.integers(2) else None
+    wall = Wall(width / 2 + gap, friction=rough)
+    flat = rubbed(hold(Block(width, height, 100.0).system(), wall), mu)
+    box = rubbed(hold(Block(width, height, 100.0, depth=0.4).system(), wall), mu)
+    return flat, box, motion
+
+
+@pytest.mark.parametrize(
+    ("cases", "differing"), [(12, 0), pytest.param(150, 4, marks=pytest.mark.slow)]
+)
+def test_outcomes_beside_a_wall_along_an_axis_are_those_of_the_planar_engine(
+    cases, differing
+):
+    rng, fell, differ = np.random.default_rng(8), 0, 0
+    for _ in range(cases):
+        flat, box, motion = draw_beside_wall(rng)
+        shaking = (GroundMotion(Motion(motion, DT, "x")),)
+        planar = run_planar(Cases((flat,), shaking, np.array([[1.0]]), Request()))
+        fell += planar.overturned.sum()
+        differ += (planar.overturned != shaken(box, along_x(motion)).overturned).sum()
+    assert differ <= differing
+    assert 0.2 < fell / cases < 0.8
+
+
+@pytest.mark.parametrize("along", [4.0, 6.0])
+def test_pressed_against_a_smooth_wall_a_body_slides_along_it_by_friction_of_the_ground(
+    along,
+):
+    """µ (g + a_z) against the part along the wall alone, however hard the body is pressed."""
+    mu, into, low = 0.5, 9.0, Block(0.8, 0.4, 100.0, depth=0.8)
+    motion = np.zeros((60, 3))
+    motion[:50, 0], motion[:50, 1] = -into, along
+    system = rubbed(hold(low.system(), Wall(0.4)), mu)
+    found, _ = run_case(kernel_body(system), motion, DT)
+    moved = math.hypot(*found.walk)
+    # half a second of acceleration, then as long as the friction takes to stop it
+    spare = max(along - mu * G, 0.0)
+    speed = spare * 0.5
+    expected = speed * 0.25 + speed**2 / (2 * mu * G)
+    assert moved == pytest.approx(expected, rel=0.03, abs=1e-9)
+    assert abs(found.walk[0]) < 1e-6
+    assert not found.overturned
 
 
 def test_what_space_cannot_hold_is_refused_in_a_sentence():

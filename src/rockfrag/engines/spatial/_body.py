@@ -5,6 +5,8 @@ velocity of C (7:10, world); the angular velocity (10:13, body); the work done b
 the energy lost by friction (14).  Everything is for a unit of mass: energies in J/kg, forces in N/kg.
 """
 
+import math
+
 import numpy as np
 
 from rockfrag.base.arrays import fields, whole
@@ -240,6 +242,24 @@ def energy(body, y, g):
 
 
 @kernel
+def pay(body, y, gained, g):
+    """Take energy that was gained [J/kg] from the velocities, as far as there is any."""
+    moving = energy(body, y, g) - g * (y[2] - body.height)
+    if gained > 0.0 and moving > 0.0:
+        for k in range(7, 13):
+            y[k] *= math.sqrt(max(1.0 - gained / moving, 0.0))
+
+
+@kernel
+def meets_walls_alone(body):
+    """Whether walls, and no ties, hold a body."""
+    found = body.walls == 1
+    for i in range(body.constraints):
+        found = found and not body.ties[i]
+    return found
+
+
+@kernel
 def free_spin(body, omega, moment):
     """Angular acceleration under a moment other than those of contacts, in the body."""
     left = minus(moment, cross(omega, times(body.inertia, omega)))
@@ -251,6 +271,23 @@ def candidates(body):
     """Numbers of the points that may touch when the body is not flat: the rim's, or the vertices."""
     first = body.count if body.rim > 0 else 0
     return range(first, body.count + (first > 0))
+
+
+@kernel
+def meetings(body):
+    """How many contacts there may be with the ground and all walls, numbered by :func:`meeting`."""
+    on_ground = 1 if body.rim > 0 else body.count
+    return on_ground + body.corners * (body.constraints if body.walls else 0)
+
+
+@kernel
+def meeting(body, k):
+    """Contact number k of all that there may be."""
+    on_ground = 1 if body.rim > 0 else body.count
+    if k < on_ground:
+        return body.count if body.rim > 0 else k
+    wall, corner = (k - on_ground) // body.corners, (k - on_ground) % body.corners
+    return WALLS + MOST_CORNERS * wall + corner
 
 
 @kernel

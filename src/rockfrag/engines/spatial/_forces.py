@@ -24,6 +24,7 @@ from rockfrag.engines.spatial._algebra import (
 )
 
 MOST = 4  # contacts that carry at once
+MOST_NEAR = 16  # contacts that a step of time stepping looks at
 STICKS, SLIDES = 0, 1
 FLIGHT, PIVOT, HINGE, GENERAL, REST, SLIDER = 0, 1, 2, 3, 4, 5
 # slip velocity below which a point slips in the direction noted, if at all [m/s]
@@ -79,6 +80,11 @@ CASE = np.dtype(
         *fields("began"),
         *whole("broken taut", solid.MOST_CONSTRAINTS),
         *fields("hits impact force breaks", solid.HOLDERS),
+        # contacts near ground and walls in time stepping; how fast each may close [m/s], its friction, what an
+        # impulse along each of its axes gives to its velocity there, and its impulse for a unit of mass
+        *whole("near", MOST_NEAR),
+        *fields("closes rubs", MOST_NEAR),
+        *fields("gives shove", MOST_NEAR, 3),
     ],
     align=True,
 )

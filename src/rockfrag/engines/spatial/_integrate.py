@@ -10,6 +10,7 @@ from rockfrag.engines.spatial import _body as solid
 from rockfrag.engines.spatial import _forces as forces
 from rockfrag.engines.spatial import _modes as modes
 from rockfrag.engines.spatial import _step as step
+from rockfrag.engines.spatial import _stepping as stepping
 
 # tilt with which a round base begins to roll: at none it has no direction [rad]
 RIM_START = 1e-7
@@ -26,6 +27,9 @@ HURRY, COARSE = 1000, 1e-6
 # steps in one interval after which a body that is next to flat is laid flat; after twice as many more the interval
 # ends.  Both are counted as paradoxes
 GIVE_UP = 2000
+# contact events in one interval beside walls after which the rest of it is passed by time stepping, and where the
+# one before was; and so many times that steps
+RESTLESS, AGAIN, STIFF = 24, 6, 4
 PATIENCE = 30  # times that this may happen before an analysis ends as one that stood
 # after which an analysis ends as one that stood, counted as a paradox
 MOST_STEPS = 400_000
@@ -100,6 +104,8 @@ def leave_rest(body, y, tau, s):
     """Choose how the body leaves rest: slides, or tips over an edge, a vertex or the rim."""
     rows = algebra.rotation(y)
     pull = forces.pull_at(s.field, tau)
+    if body.walls:
+        pull = modes.borne_by_ground(body, y, rows, pull)
     small = 1e-9 * s.field[6]
     level = algebra.norm(pull[0], pull[1])
     s.rests = 0
@@ -207,7 +213,7 @@ def pass_flat(body, y, s):
     tilt_about(body, y, to_there, max(2 * FLAT_PASS, sine))
     rise(body, y, to_there, algebra.norm(sinking[0], sinking[1]), s)
     # a base that is not symmetrical would gain in the new direction
-    pay(body, y, solid.energy(body, y, s.field[6]) - before, s)
+    solid.pay(body, y, solid.energy(body, y, s.field[6]) - before, s.field[6])
 
 
 @kernel
@@ -341,16 +347,9 @@ def tip_over_rim(body, y, x, z, sliding, pull, s):
         s.slides[0] = forces.SLIDES
         y[10], y[11], y[12] = omega
         y[7], y[8], y[9] = velocity
-    pay(body, y, solid.energy(body, y, s.field[6]) - y[solid.WORK] - before, s)
-
-
-@kernel
-def pay(body, y, gained, s):
-    """Take energy that was gained from the velocities, as far as there is any."""
-    moving = solid.energy(body, y, s.field[6]) - s.field[6] * (y[2] - body.height)
-    if gained > 0.0 and moving > 0.0:
-        for k in range(7, 13):
-            y[k] *= math.sqrt(max(1.0 - gained / moving, 0.0))
+    solid.pay(
+        body, y, solid.energy(body, y, s.field[6]) - y[solid.WORK] - before, s.field[6]
+    )
 
 
 @kernel
@@ -734,6 +733,7 @@ def integrate(
     out[CERTAIN_TIME] = math.nan
     last = acceleration.shape[0] - 1
     stuck = lost_track = still = 0
+    patience = RESTLESS
     ahead = dt
     k = 0
     while k <= last + extra:
@@ -755,7 +755,9 @@ def integrate(
         if s.bonded:
             note_bond(body, y, 0.0, s)
         tau = 0.0
-        many, seen = 0, out[CONTACT_EVENTS]
+        many = 0
+        began = out[CONTACT_EVENTS]
+        seen = began
         s.close = modes.CLOSE
         while dt - tau > 1e-12 * dt:
             if forces.kind_of(s) == forces.REST:
@@ -781,6 +783,11 @@ def integrate(
             )
             stuck = stuck + 1 if h < SHORTEST else 0
             many += 1
+            changes = max(out[CONTACT_EVENTS] - began, many / STIFF)
+            if changes >= patience and solid.meets_walls_alone(body):
+                note_loss(stepping.pass_interval(body, tau, dt, y, s), out)
+                tau = dt
+                patience = AGAIN
             if out[STEPS] > MOST_STEPS:
                 s.counters[modes.UNSOLVED] += 1
                 break
@@ -804,6 +811,8 @@ def integrate(
                 break
         if out[FELL] > 0 or lost_track > PATIENCE or out[STEPS] > MOST_STEPS:
             break
+        if many < AGAIN:
+            patience = RESTLESS
         k += 1
     if out[FELL] == 0.0:
         record(history, k, y, out, s)

@@ -23,6 +23,9 @@ LEAVES = 1e-8
 FASTEST_HOP, SLOWING, CHATTER = 1e-2, 0.05, 1e-6
 # impulse beyond friction, for a unit of mass, that points which slip or leave slowly are stopped by unseen [m/s]
 BEYOND = 1e-3
+# contacts beyond the first four, beside a wall, that are taken in at most, one at a time; velocity [m/s] or, over
+# gravity, acceleration [-] at which they approach
+TAKEN_IN, MISSED = 8, 1e-9
 LANDS, OPENS, LEAVES_CONE, SLIP_ENDS, TIE_TURNS, TIE_BREAKS = 1, 2, 3, 4, 5, 6
 NOTHING = 0
 
@@ -218,17 +221,17 @@ def impact_at_wall(body, y, rows, pull, n, least, s):
     """
     came = (y[7], y[8], y[9], y[10], y[11], y[12])
     before = solid.energy(body, y, s.field[6])
-    part = 1.0
-    for _ in range(40):
-        for k in range(6):
-            y[7 + k] = came[k]
-        found, ways = bounce(body, y, rows, n, least, part, s)
+    found, ways = -1, 0
+    for _ in range(TAKEN_IN):
+        found, ways = bounce_without_gain(body, y, rows, n, least, came, before, s)
         if found < 0:
             break
-        gained = solid.energy(body, y, s.field[6]) - before
-        if gained <= 1e-12 * (before + s.field[6] * body.height):
+        load = algebra.to_body(rows, (y[7], y[8], y[9]))
+        i = missed(body, y, rows, n, (load, solid.omega_of(y)), MISSED, False, s)
+        at = least_needed(n, found, s)
+        if i < 0 or at < 0:
             break
-        part *= 0.5
+        s.which[at] = i
     s.counters[IMPACTS] += 1
     s.counters[AMBIGUOUS] += ways > 1
     s.jammed = 0
@@ -243,6 +246,69 @@ def impact_at_wall(body, y, rows, pull, n, least, s):
         return
     note_impulses(body, n, found, s)
     keep_slow_contacts(body, y, rows, pull, n, found, s)
+
+
+@kernel
+def bounce_without_gain(body, y, rows, n, least, came, before, s):
+    """Solve an impact at walls from the velocities that came, with the largest part of the ratios without gain."""
+    part, found, ways = 1.0, -1, 0
+    for _ in range(40):
+        for k in range(6):
+            y[7 + k] = came[k]
+        found, ways = bounce(body, y, rows, n, least, part, s)
+        if found < 0:
+            break
+        gained = solid.energy(body, y, s.field[6]) - before
+        if gained <= 1e-12 * (before + s.field[6] * body.height):
+            break
+        part *= 0.5
+    return found, ways
+
+
+@kernel
+def missed(body, y, rows, n, moves, small, pushed, s):
+    """Contact that touches, is none of s.which and approaches fastest; -1 if none approaches.
+
+    ``moves`` holds the velocity of the centre of mass and the angular velocity, in the body; or, where the body is
+    ``pushed``, accelerations, and what leaves already is left out.
+    """
+    load, spin = moves
+    worst, fastest = -1, -small
+    for k in range(solid.meetings(body)):
+        i = solid.meeting(body, k)
+        u = approaches(body, y, rows, n, i, load, spin, pushed, s)
+        if u < fastest:
+            worst, fastest = i, u
+    return worst
+
+
+@kernel
+def approaches(body, y, rows, n, i, load, spin, pushed, s):
+    """Velocity (or acceleration) away of contact i, if it touches and is none of s.which; else 0."""
+    for k in range(n):
+        if s.which[k] == i:
+            return 0.0
+    is_tie = i >= solid.WALLS and body.ties[solid.wall_of(i)]
+    if is_tie or solid.gap_of(body, y, rows, i) > TOUCH:
+        return 0.0
+    if pushed and solid.approach_of(body, y, rows, i) > LEAVES:
+        return 0.0
+    p = solid.arm(body, rows[2], i)
+    u = algebra.plus(load, algebra.cross(spin, p))
+    if pushed:
+        u = algebra.plus(u, solid.bias(body, rows[2], solid.omega_of(y), p, i))
+    return solid.in_frame(body, i, algebra.to_world(rows, u))[2]
+
+
+@kernel
+def least_needed(n, found, s):
+    """Which of the contacts s.which does not push and parts fastest; -1 if all push."""
+    best = -1
+    for k in range(n):
+        apart = s.after[3 * k + 2]
+        if not forces.in_set(found, k) and (best < 0 or apart > s.after[3 * best + 2]):
+            best = k
+    return best
 
 
 @kernel
@@ -428,6 +494,8 @@ def rest_margin(body, y, rows, pull, s):
         return bond_margin(body, rows, pull)
     if body.constraints > 0 and pulled_by_ties(body, y, rows, s):
         return -1.0
+    if body.walls:
+        pull = borne_by_ground(body, y, rows, pull)
     level = algebra.norm(pull[0], pull[1])
     margin = -body.static * pull[2] - level
     if body.rim > 0:
@@ -464,16 +532,34 @@ def backed_by_wall(body, y, rows, i, j):
     outward = (edge[1] / length, -edge[0] / length)
     for w in range(body.constraints):
         along = outward[0] * body.away[w, 0] + outward[1] * body.away[w, 1]
-        if body.ties[w] or along > -1.0 + 1e-9:
-            continue
-        touch = 0
-        for k in range(body.corners):
-            at = solid.WALLS + w * solid.MOST_CORNERS + k
-            high = body.corner[k, 2] > 0.0
-            touch += high and solid.gap_of(body, y, rows, at) <= TOUCH
-        if touch >= 2:
+        if not body.ties[w] and along <= -1.0 + 1e-9 and lies_against(body, y, rows, w):
             return True
     return False
+
+
+@kernel
+def lies_against(body, y, rows, w):
+    """Whether a body that stands touches wall w with a side, at two of its upper corners."""
+    touch = 0
+    for k in range(body.corners):
+        at = solid.WALLS + w * solid.MOST_CORNERS + k
+        high = body.corner[k, 2] > 0.0
+        touch += high and solid.gap_of(body, y, rows, at) <= TOUCH
+    return touch >= 2
+
+
+@kernel
+def borne_by_ground(body, y, rows, pull):
+    """Part of the effective gravity that the ground has to bear under a body at rest beside walls.
+
+    What presses a side against a wall the wall can bear, at the height of the centre of mass.
+    """
+    for w in range(body.constraints):
+        a, b = body.away[w, 0], body.away[w, 1]
+        into = -(a * pull[0] + b * pull[1])
+        if not body.ties[w] and into > 0.0 and lies_against(body, y, rows, w):
+            pull = (pull[0] + into * a, pull[1] + into * b, pull[2])
+    return pull
 
 
 @kernel
@@ -642,11 +728,11 @@ def choose_mode(body, tau, y, s):
             s.jammed = 0
             return True
     n, slipping = pick_closed(body, y, rows, AT_REST, s)
-    found, ways = solve_forces(body, y, rows, pull, n, s)
+    found, ways = solve_forces(body, y, rows, pull, n, AT_REST, s)
     if found < 0:
         n, fewer = pick_closed(body, y, rows, SLOW_SLIP, s)
         if fewer < slipping:
-            found, ways = solve_forces(body, y, rows, pull, n, s)
+            found, ways = solve_forces(body, y, rows, pull, n, SLOW_SLIP, s)
     s.counters[AMBIGUOUS] += ways > 1
     if found < 0:
         return False
@@ -669,31 +755,65 @@ def pick_closed(body, y, rows, slow, s):
         if u[2] > LEAVES:
             continue
         s.which[kept] = s.which[i]
-        speed = algebra.norm(u[0], u[1])
-        s.given[kept] = speed > slow
-        slipping += s.given[kept]
-        if s.given[kept]:
-            s.way[kept, 0], s.way[kept, 1] = u[0] / speed, u[1] / speed
-        s.slid[kept] = 0
-        s.friction[kept] = solid.kinetic_of(body, s.which[kept])
-        s.holds[kept] = solid.static_of(body, s.which[kept])
-        if solid.is_smooth(body, s.which[kept]):
-            let_slip(kept, s)
+        slipping += note_slip(body, kept, u, slow, s)
         kept += 1
     return kept, slipping
 
 
 @kernel
-def solve_forces(body, y, rows, pull, n, s):
+def note_slip(body, k, u, slow, s):
+    """Note how contact k of a small system slips where a mode is chosen; return whether it does."""
+    speed = algebra.norm(u[0], u[1])
+    slips = speed > slow
+    s.given[k], s.slid[k] = slips, 0
+    if slips:
+        s.way[k, 0], s.way[k, 1] = u[0] / speed, u[1] / speed
+    s.friction[k] = solid.kinetic_of(body, s.which[k])
+    s.holds[k] = solid.static_of(body, s.which[k])
+    if solid.is_smooth(body, s.which[k]):
+        let_slip(k, s)
+    return slips
+
+
+@kernel
+def solve_forces(body, y, rows, pull, n, slow, s):
     """Solve for the forces at the contacts s.which; return the set that pushes, and how many would do."""
     weight = forces.load_on(body, y, rows, pull, s)
     moment = stick.fill_accelerations(body, y, rows, weight, n, s)
-    if picks_wall(n, s):
+    if not picks_wall(n, s):
+        return solve(body, y, rows, n, 0, moment, s)
+    found, ways = -1, 0
+    for _ in range(TAKEN_IN):
         for i in range(n):
             u = (s.free[3 * i], s.free[3 * i + 1], s.free[3 * i + 2])
             u = solid.in_frame(body, s.which[i], u)
             s.free[3 * i], s.free[3 * i + 1], s.free[3 * i + 2] = u
-    return solve(body, y, rows, n, 0, moment, s)
+        found, ways = solve(body, y, rows, n, 0, moment, s)
+        if found < 0:
+            break
+        moves = pushed_by(body, rows, n, weight, moment, s)
+        i = missed(body, y, rows, n, moves, MISSED * s.field[6], True, s)
+        at = least_needed(n, found, s)
+        if i < 0 or at < 0:
+            break
+        s.which[at] = i
+        u = solid.in_frame(body, i, solid.velocity_of(body, y, rows, i))
+        note_slip(body, at, u, slow, s)
+        stick.fill_accelerations(body, y, rows, weight, n, s)
+    return found, ways
+
+
+@kernel
+def pushed_by(body, rows, n, weight, moment, s):
+    """Acceleration and angular acceleration, in the body, under the forces that were found."""
+    load, spin = weight, algebra.times(body.inverse, moment)
+    for k in range(n):
+        push = (s.impulse[3 * k], s.impulse[3 * k + 1], s.impulse[3 * k + 2])
+        push = algebra.to_body(rows, solid.from_frame(body, s.which[k], push))
+        p = solid.arm(body, rows[2], s.which[k])
+        load = algebra.plus(load, push)
+        spin = algebra.plus(spin, algebra.times(body.inverse, algebra.cross(p, push)))
+    return load, spin
 
 
 @kernel

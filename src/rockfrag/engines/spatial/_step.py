@@ -135,7 +135,8 @@ def margin(body, y, s):
         value = solid.gap_of(body, y, rows, i) + 0.5 * modes.TOUCH
         meets = solid.approach_of(body, y, rows, i) < -1e-10
         if value < 0.5 * modes.TOUCH and not meets:
-            value += modes.TOUCH
+            # what lies a little behind a wall, by the errors of steps, is pushed out as soon as it moves on
+            value = max(value + modes.TOUCH, 0.5 * modes.TOUCH)
         if value < least:
             least, what = value, modes.LANDS
     small = LEAST_FORCE * s.field[6]

@@ -1,0 +1,144 @@
+"""Time stepping through what is left of an interval in which contacts change too often to be followed.
+
+A body that rattles or is wedged between ground and walls has events without end, and a foot that hardly slips
+under a large coefficient of friction is stiff.  In short equal steps velocities obey, at their end, all contacts
+that are near (Stewart and Trinkle 1996): none sinks further than its gap, friction within Coulomb's cone, found by
+Gauss-Seidel.  The method is of first order in the step and, within it, loses energy and never gains any
+(``docs/space.md``, Steps).  In: state and case at an instant of the interval; out: both at its end.
+"""
+
+from rockfrag.engines.compile.jit import kernel
+from rockfrag.engines.spatial import _algebra as algebra
+from rockfrag.engines.spatial import _body as solid
+from rockfrag.engines.spatial import _forces as forces
+from rockfrag.engines.spatial import _modes as modes
+
+PARTS = 16  # steps of a whole interval
+NEAR = 1e-3  # gap below which a contact may be met in a step [m]
+SWEEPS = 40  # of Gauss and Seidel's at most
+# change of a contact's velocity in a sweep at which they end [m/s]
+SETTLED = 1e-9
+
+
+@kernel
+def pass_interval(body, tau, dt, y, s):
+    """Step to the end of an interval and choose the mode there; return the energy lost [J/kg]."""
+    parts = 1 + int(PARTS * (dt - tau) / dt)
+    h = (dt - tau) / parts
+    s.goes_on = 0
+    s.rests = 0
+    s.jammed = 0
+    lost, n = 0.0, 0
+    for part in range(parts):
+        before = solid.energy(body, y, s.field[6]) - y[solid.WORK]
+        n = take_step(body, tau + part * h, h, y, s)
+        gained = solid.energy(body, y, s.field[6]) - y[solid.WORK] - before
+        solid.pay(body, y, gained, s.field[6])
+        lost += min(gained, 0.0) * -1.0
+    before = solid.energy(body, y, s.field[6])
+    close_pressed(body, y, n, s)
+    if not modes.choose_mode(body, dt, y, s):
+        modes.jam(body, y, s)
+    return lost + before - solid.energy(body, y, s.field[6])
+
+
+@kernel
+def take_step(body, tau, h, y, s):
+    """Take one step; return how many contacts were near."""
+    rows = algebra.rotation(y)
+    weight = forces.load_on(body, y, rows, forces.pull_at(s.field, tau + 0.5 * h), s)
+    load = algebra.to_world(rows, weight)
+    spin = solid.free_spin(body, solid.omega_of(y), forces.twist_by_ties(s))
+    for k in range(3):
+        y[7 + k] += h * load[k]
+        y[10 + k] += h * spin[k]
+    n = find_near(body, y, rows, h, s)
+    for _ in range(SWEEPS):
+        if n == 0 or sweep(body, y, rows, n, s) < SETTLED:
+            break
+    note_pushes(body, n, s)
+    y[solid.WORK] += h * (
+        load[0] * y[7] + load[1] * y[8] + (load[2] + s.field[6]) * y[9]
+    )
+    y[solid.WORK] += h * algebra.dot(forces.twist_by_ties(s), solid.omega_of(y))
+    for k in range(3):
+        y[k] += h * y[7 + k]
+    algebra.turn(y, algebra.scaled(h, solid.omega_of(y)))
+    return n
+
+
+@kernel
+def find_near(body, y, rows, h, s):
+    """Fill in the contacts that are near, and what each can do; return how many there are."""
+    n = 0
+    for k in range(solid.meetings(body)):
+        n = add_near(body, y, rows, solid.meeting(body, k), n, h, s)
+    return n
+
+
+@kernel
+def add_near(body, y, rows, i, n, h, s):
+    """Add contact i to those that are near, if it is and there is room; return how many there are."""
+    gap = solid.gap_of(body, y, rows, i)
+    if gap > NEAR or n == forces.MOST_NEAR:
+        return n
+    u = solid.in_frame(body, i, solid.velocity_of(body, y, rows, i))
+    slips = algebra.norm(u[0], u[1]) > modes.AT_REST
+    s.near[n] = i
+    s.rubs[n] = solid.kinetic_of(body, i) if slips else solid.static_of(body, i)
+    s.closes[n] = max(gap, 0.0) / h
+    for axis in range(3):
+        push = forces.push_along(body, rows, i, axis)
+        p = solid.arm(body, rows[2], i)
+        u = solid.in_frame(body, i, forces.response(body, rows, p, p, push))
+        s.gives[n, axis] = u[axis]
+        s.shove[n, axis] = 0.0
+    return n + 1
+
+
+@kernel
+def sweep(body, y, rows, n, s):
+    """Correct the impulse of each near contact once; return the largest change of a velocity."""
+    worst = 0.0
+    for k in range(n):
+        i = s.near[k]
+        u = solid.in_frame(body, i, solid.velocity_of(body, y, rows, i))
+        normal = max(s.shove[k, 2] - (u[2] + s.closes[k]) / s.gives[k, 2], 0.0)
+        change = normal - s.shove[k, 2]
+        s.shove[k, 2] = normal
+        forces.push_at(body, y, rows, i, (0.0, 0.0, change))
+        worst = max(worst, abs(change) * s.gives[k, 2])
+        u = solid.in_frame(body, i, solid.velocity_of(body, y, rows, i))
+        soft = max(s.gives[k, 0], s.gives[k, 1])
+        a, b = s.shove[k, 0] - u[0] / soft, s.shove[k, 1] - u[1] / soft
+        shear, limit = algebra.norm(a, b), s.rubs[k] * normal
+        if shear > limit:
+            a, b = a * limit / shear, b * limit / shear
+        change = algebra.norm(a - s.shove[k, 0], b - s.shove[k, 1])
+        forces.push_at(body, y, rows, i, (a - s.shove[k, 0], b - s.shove[k, 1], 0.0))
+        s.shove[k, 0], s.shove[k, 1] = a, b
+        worst = max(worst, change * soft)
+    return worst
+
+
+@kernel
+def note_pushes(body, n, s):
+    """Keep the largest impulse of each wall in a step."""
+    for w in range(body.constraints):
+        whole = 0.0
+        for k in range(n):
+            if s.near[k] >= solid.WALLS and solid.wall_of(s.near[k]) == w:
+                whole += s.shove[k, 2]
+        s.impact[w] = max(s.impact[w], whole)
+
+
+@kernel
+def close_pressed(body, y, n, s):
+    """Put the contacts that were pressed in the last step, at most MOST, on the ground and the walls."""
+    s.count = 0
+    for k in range(n):
+        if s.shove[k, 2] > 0.0 and s.count < forces.MOST:
+            s.closed[s.count], s.slides[s.count] = s.near[k], forces.SLIDES
+            s.count += 1
+    if s.count > 0:
+        modes.close_gaps_at_wall(body, y, algebra.rotation(y), s)
