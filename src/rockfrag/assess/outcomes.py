@@ -16,7 +16,6 @@ from rockfrag.assess.standing import Standing
 from rockfrag.assess.statics import lifting_in_plane, lifting_in_space
 from rockfrag.base.arrays import Flags, Floats
 from rockfrag.base.plausible import LARGEST_PEAK
-from rockfrag.engines.spatial import run_in_space
 from rockfrag.engines.spatial.body import PERTURBATION
 from rockfrag.fragility.empirical import wilson_interval
 from rockfrag.fragility.observations import Observations
@@ -25,7 +24,6 @@ from rockfrag.outcomes.limit_states import OVERTURNS, ROCKS, limit_states
 from rockfrag.outcomes.outcomes import Outcomes
 from rockfrag.records.motion import GroundMotion, Motion
 from rockfrag.simulation.ensemble import LightBodies, overturns
-from rockfrag.simulation.inputs import checked_threads
 from rockfrag.system.blocks import Body
 from rockfrag.system.contact import Friction
 from rockfrag.system.system import System
@@ -299,8 +297,7 @@ class Shaking(IntensityLevels):
         """
         shaking, scales = self._records()
         lifting = lifting_in_space(body, shaking)
-        threads = checked_threads(None)
-        result = run_in_space([body], shaking, scales, spread=spread, threads=threads)
+        result = overturns([body], shaking, scales=scales, spread=spread)
         states = states_of(result)
         of_row = np.arange(len(scales))
         return self._each_system(states, of_row=of_row, lifting=[lifting])[0]
@@ -332,7 +329,7 @@ class Shaking(IntensityLevels):
             found = self._each_system(states_of(result), light, lifting=lifting)
             return found[0], result
         shaking, scales = self._records()
-        result = run_in_space([system], shaking, scales, threads=checked_threads(None))
+        result = overturns([system], shaking, scales=scales)
         lifting = [lifting_in_space(system, shaking)]
         rows = np.arange(len(scales))
         found = self._each_system(states_of(result), of_row=rows, lifting=lifting)

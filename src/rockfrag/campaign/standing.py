@@ -22,7 +22,6 @@ from scipy.stats import norm, qmc
 
 from rockfrag.base.errors import InputError
 from rockfrag.base.short_repr import short_repr
-from rockfrag.engines.spatial import run_in_space
 from rockfrag.fragility.model_error import CUT, SCAN
 from rockfrag.records.motion import GroundMotion, Motion
 from rockfrag.simulation.ensemble import LightBodies, overturns
@@ -214,7 +213,7 @@ def simulate_in_space(
         for motion in motions
     ]
     cores = checked_threads(threads)
-    return run_in_space(systems, shaking, scales, threads=cores).overturned
+    return overturns(systems, shaking, scales=scales, threads=cores).overturned
 
 
 def least_angle_deg(body: RigidBody) -> float:

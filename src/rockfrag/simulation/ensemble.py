@@ -17,7 +17,11 @@ import pandas as pd
 from numpy.typing import ArrayLike, NDArray
 
 from rockfrag.base.arrays import Floats
-from rockfrag.base.input_checks import positive_number
+from rockfrag.base.input_checks import (
+    number_from_zero,
+    positive_number,
+    whole_number,
+)
 from rockfrag.base.keywords import named_keywords
 from rockfrag.base.units import GRAVITY
 from rockfrag.engines.contract import Cases, Request, run_cases
@@ -83,6 +87,8 @@ def overturns(
     friction: FrictionInput | None = None,
     vertical: inputs.MotionLike | Sequence[inputs.MotionLike] | None = None,
     forces: bool = False,
+    spread: float = 0.0,
+    seed: int = 0,
     g: float = GRAVITY,
     step: float = STEP,
     threads: int | None = None,
@@ -108,6 +114,10 @@ def overturns(
     vertical
         Vertical accelerations, upwards [m/s²], one for each motion and sampled as it; they are scaled with it.
     forces : also tell the friction that the responses asked, and least normal forces
+    spread, seed
+        In space: largest displacement of each vertex of the base over its extent [-], and largest angle by which
+        the body is turned about the vertical [rad], drawn from the seed anew for each system and motion. An ideal
+        base has outcomes that no real one has.
     g : acceleration of gravity [m/s²]
     step
         Largest p h of a step, of which a stack takes 0.35 while both its blocks rotate: smaller is more accurate
@@ -144,6 +154,8 @@ def overturns(
         dt,
         scales,
         forces=forces,
+        spread=spread,
+        seed=seed,
         restitution=restitution,
         friction=friction,
         vertical=vertical,
@@ -165,6 +177,8 @@ def prepared(
     scales: ArrayLike,
     *,
     forces: bool = False,
+    spread: float = 0.0,
+    seed: int = 0,
     **options: Unpack[Options],
 ) -> Cases:
     """Return the checked cases of a door."""
@@ -179,6 +193,8 @@ def prepared(
         linear=inputs.checked_switch("linear", options.get("linear", False)),
         g=g,
         step=positive_number("step", options.get("step", STEP)),
+        spread=number_from_zero("spread", spread),
+        seed=whole_number("seed", seed),
     )
     threads = inputs.checked_threads(options.get("threads"))
     cases = Cases(systems, tuple(shaking), factors, request, threads)

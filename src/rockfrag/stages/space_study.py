@@ -13,10 +13,9 @@ from typing import Any, cast
 import numpy as np
 import pandas as pd
 
-from rockfrag.base.arrays import Floats
+from rockfrag.base.arrays import Flags, Floats
 from rockfrag.base.plausible import STONE
 from rockfrag.base.units import GRAVITY
-from rockfrag.engines.spatial import run_in_space
 from rockfrag.engines.spatial.body import PERTURBATION
 from rockfrag.motions.directions import pair_of_row
 from rockfrag.motions.rotation import common_time, rotate
@@ -143,17 +142,24 @@ def medians(
     peaks = np.array([np.sqrt(first.pga * other.pga) for first, other in pairs])
     scales = levels * GRAVITY / peaks[:, np.newaxis]
     shaking = [GroundMotion(first, other) for first, other in pairs]
-    common, spread = (
-        {"seed": study.seed, "threads": threads},
-        float(sweep["base_spread"]),
-    )
-    space = run_in_space([body], shaking, scales, spread=spread, **common).overturned[0]
+    spread = float(sweep["base_spread"])
+
+    def toppled(factors: Floats, spread: float) -> Flags:
+        """Whether each pair at each factor topples the body, shape (pairs, factors)."""
+        found = overturns(
+            [body],
+            shaking,
+            scales=factors,
+            spread=spread,
+            seed=study.seed,
+            threads=threads,
+        )
+        return np.asarray(found.overturned[0])
+
+    space = toppled(scales, spread)
     half = median(space.mean(axis=0), levels)
     near = 0 if math.isnan(half) else int(np.abs(np.log(levels / half)).argmin())
-    more = spread + PERTURBATION
-    other = run_in_space(
-        [body], shaking, scales[:, [near]], spread=more, **common
-    ).overturned[0]
+    other = toppled(scales[:, [near]], spread + PERTURBATION)
     rows, fractions = [], []
     about = {"base": base, "slenderness": slenderness, "height_m": height}
     for loss in (LOSS, NO_LOSS) if base == ROUND else (LOSS,):

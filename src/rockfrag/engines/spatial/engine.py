@@ -1,21 +1,19 @@
 """The engine in space: many outcomes, or one analysis with its history (``docs/space.md``)."""
 
 import math
-from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 import pandas as pd
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from rockfrag.base.arrays import Floats
-from rockfrag.base.errors import InputError
 from rockfrag.base.units import GRAVITY
 from rockfrag.engines.built_in import SPATIAL as ENGINE
 from rockfrag.engines.compile.jit import compiling_alone
-from rockfrag.engines.contract import Case, Cases, Request
+from rockfrag.engines.contract import Case, Cases
 from rockfrag.engines.spatial import _integrate as kernel
 from rockfrag.engines.spatial import _modes as modes
 from rockfrag.engines.spatial._body import BOND
@@ -28,8 +26,6 @@ from rockfrag.engines.spatial.body import (
     standing,
 )
 from rockfrag.outcomes.outcomes import Outcomes, empty_outcomes
-from rockfrag.records.motion import GroundMotion
-from rockfrag.system.blocks import Block, as_system
 from rockfrag.system.system import System
 
 if TYPE_CHECKING:
@@ -109,12 +105,16 @@ class SpatialResponse:
         return math.nan
 
 
-def run(cases: Cases, spread: float = 0.0, seed: int = 0) -> Outcomes:
-    """Return the outcomes of cases that it supports; spread and seed are those of :func:`run_in_space`."""
+def run(cases: Cases) -> Outcomes:
+    """Return the outcomes of cases that it supports.
+
+    Of a base that is spread each vertex is moved, and the body turned, anew for each system and motion: an ideal
+    base has outcomes that no real one has.
+    """
     result = empty_outcomes(
         cases.names, cases.scales, [ENGINE.name], holding=cases.holding
     )
-    g = cases.request.g
+    g, spread = cases.request.g, cases.request.spread
     bodies = [kernel_body(system, g) for system in cases.systems]
     tasks = [(i, j) for i in range(len(bodies)) for j in range(len(cases.motions))]
 
@@ -122,7 +122,7 @@ def run(cases: Cases, spread: float = 0.0, seed: int = 0) -> Outcomes:
         i, j = task
         motion, body, turned = cases.motions[j], bodies[i], 0.0
         if spread > 0:
-            rng = np.random.default_rng([seed, i, j])
+            rng = np.random.default_rng([cases.request.seed, i, j])
             system, turned = perturbed(cases.systems[i], spread, rng)
             body = kernel_body(system, g)
         ground, start = motion.accelerations, standing(body, turned)
@@ -333,37 +333,3 @@ def _write_holding(
         result.largest_impulse[case][:, row] = mass * impact
         result.largest_force[case][:, row] = mass * force
         result.breaking_time[case][:, row] = breaks
-
-
-def run_in_space(
-    bodies: Sequence[System | Block],
-    motions: Sequence[GroundMotion],
-    scales: ArrayLike = (1.0,),
-    *,
-    spread: float = 0.0,
-    seed: int = 0,
-    threads: int = 1,
-    g: float = GRAVITY,
-) -> Outcomes:
-    """Say for every body × motion × scale what becomes of it in space.
-
-    The outcomes have shape (systems, motions, scales); ``scales`` has shape (scales,) or (motions, scales).
-    ``spread`` is the largest displacement of each vertex of the base over its extent [-], and the largest angle by
-    which the body is turned about the vertical [rad], drawn anew from ``seed`` for each motion: an ideal base has
-    outcomes that no real one has.
-    """
-    request = Request(g=g)
-    systems = tuple(as_system(body) for body in bodies)
-    for system in systems:
-        for motion in motions:
-            found = ENGINE.supports(system, motion, request)
-            if not found:
-                missing = " and ".join(sorted(wish.value for wish in found.missing))
-                raise InputError(
-                    f"in space: {found.reason or missing + ' cannot be had'}."
-                )
-    factors = np.broadcast_to(
-        np.atleast_2d(np.asarray(scales, dtype=np.float64)),
-        (len(motions), np.shape(scales)[-1]),
-    )
-    return run(Cases(systems, tuple(motions), factors, request, threads), spread, seed)

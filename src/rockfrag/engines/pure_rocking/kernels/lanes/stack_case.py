@@ -125,7 +125,7 @@ def next_case(case, ensemble, motions, worker, outcomes):
     """Take a slot through rest and the ends of motions, and through as many cases as end there."""
     while True:
         if case.number >= 0:
-            if case.fallen == 0 and _goes_on(case, ensemble, motions, worker.state):
+            if case.fallen == 0 and _rocks_again(case, ensemble, motions, worker.state):
                 return
             _put_down(case, outcomes[case.number])
         number = take_next(ensemble.counter)
@@ -136,26 +136,32 @@ def next_case(case, ensemble, motions, worker, outcomes):
 
 
 @kernel
-def _goes_on(case, ensemble, motions, state):
-    """Whether a case that has not fallen rocks on: it rises from its rest, or has not come to its end."""
+def _rocks_again(case, ensemble, motions, state):
+    """Take a case that has not fallen through its rest, if it rests, and return whether it then rocks on."""
     body = ensemble.bodies[case.body]
     if case.c1 == 0 and case.c2 == 0:
-        if case.k >= case.last or case.factor == 0.0:
-            return False
-        k, tau, ground, weight = lanes.next_uplift(
-            motions, case.k, case.tau, case.last, case.factor, (case.low, case.high)
-        )
-        if k < 0:
-            return False
-        case.k, case.tau, case.ground, case.weight = k, tau, ground, weight
-        case.theta1, case.omega1, case.theta2, case.omega2 = 0.0, 0.0, 0.0, 0.0
-        to_state(case, state)
-        case.c1, case.c2 = contact_states.uplift(body, state)
-        return True
+        return _lift_off(case, body, motions, state)
     if case.k < case.last:
         return True
     to_state(case, state)
     return case.k < case.free_last and not _is_safe(body, state, case.barrier)
+
+
+@kernel
+def _lift_off(case, body, motions, state):
+    """Take a case at rest to the next instant at which its motion lifts it, and return whether there is one."""
+    if case.k >= case.last or case.factor == 0.0:
+        return False
+    k, tau, ground, weight = lanes.next_uplift(
+        motions, case.k, case.tau, case.last, case.factor, (case.low, case.high)
+    )
+    if k < 0:
+        return False
+    case.k, case.tau, case.ground, case.weight = k, tau, ground, weight
+    case.theta1, case.omega1, case.theta2, case.omega2 = 0.0, 0.0, 0.0, 0.0
+    to_state(case, state)
+    case.c1, case.c2 = contact_states.uplift(body, state)
+    return True
 
 
 @kernel
