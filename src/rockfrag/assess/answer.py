@@ -198,7 +198,7 @@ class Plan:
     # The hazard that counts, and that of PGV beside it, if any
     curves: tuple[HazardCurve, ...]
     level: Level | None  # Level of shaking at the site
-    # The motions at their levels, those under which changes are compared, and those under which a property is moved
+    # The motions at their levels, those under which changes are compared, and those for moved properties
     shaking: Shaking
     fewer: Shaking
     fewest: Shaking
