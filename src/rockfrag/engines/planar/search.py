@@ -107,7 +107,8 @@ def _list_equations(p, w, k, impact):
             w.what[m] = SHEAR
             w.right[m] = -w.free[k, 2 * end + 1]
             for d in range(6):
-                w.row[m, d] = w.column[m, d] = rub[d]
+                w.row[m, d] = rub[d]
+                w.column[m, d] = rub[d]
             m += 1
         shear = False
     if impact and w.drive[k] >= 0:
