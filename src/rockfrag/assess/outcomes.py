@@ -340,9 +340,7 @@ class Shaking(IntensityLevels):
     ) -> tuple[ObjectOutcomes, Floats]:
         """Outcomes of the object on a pad on which it may slide, and how far it does [m], (motions, levels)."""
         system = objects.system_of(objects.body)
-        *below, pad = system.contacts
-        pad = replace(pad, friction=Friction(friction, friction))
-        system = replace(system, contacts=(*below, pad))
+        system = system.with_friction(Friction(friction, friction), at=-1)
         base = self.motions.base
         result = overturns(system, base, scales=self._factors(base))
         lifting = [lifting_in_plane(system, base)]
@@ -409,10 +407,7 @@ class Shaking(IntensityLevels):
         motions, allowed = self.motions, self.allowed[:, 0]
         solid = objects.solid(objects.body) if motions.both else None
         if solid is not None and objects.friction is not None and not objects.pedestals:
-            friction = Friction(objects.friction, objects.friction)
-            slides = replace(
-                solid, contacts=(replace(solid.contacts[0], friction=friction),)
-            )
+            slides = solid.with_friction(Friction(objects.friction, objects.friction))
             return float(self.in_space(slides, objects.base_spread).fractions()[0])
         fallen = overturns(
             objects.system_of(objects.body),

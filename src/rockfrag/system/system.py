@@ -15,7 +15,7 @@ from rockfrag.system import geometry
 from rockfrag.system.body import Circle, Polygon, RigidBody, Vector3
 from rockfrag.system.bond import Bond
 from rockfrag.system.constraints import Constraint, Tie, Wall
-from rockfrag.system.contact import Contact
+from rockfrag.system.contact import Contact, Friction
 from rockfrag.system.support import Support
 
 MOST_BODIES = 12  # bodies of a column
@@ -160,6 +160,12 @@ class System:
                 replace(contact, friction=None) for contact in self.contacts
             ),
         )
+
+    def with_friction(self, friction: Friction, at: int = 0) -> "System":
+        """Return the system with another friction at one contact: 0 is the lowest body's, -1 the uppermost's."""
+        contacts = list(self.contacts)
+        contacts[at] = replace(contacts[at], friction=friction)
+        return replace(self, contacts=tuple(contacts))
 
     def in_plane(self) -> "System":
         """Return the planar system that moves in the vertical plane of x."""
