@@ -217,7 +217,7 @@ def _estimate(outcomes: Observations, link: Link) -> _Estimate:
     apart = separated(
         outcomes.log_im, outcomes.overturned[None], outcomes.trials[None]
     )[0]
-    notes = []
+    notes: list[str] = []
     if not apart:
         found = _statsmodels(outcomes, link)
         if found is not None:
