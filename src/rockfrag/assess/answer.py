@@ -200,9 +200,10 @@ class Plan:
     # The hazard that counts, and that of PGV beside it, if any
     curves: tuple[HazardCurve, ...]
     level: Level | None  # Level of shaking at the site
-    # The motions at their levels, and those under which changes are compared
+    # The motions at their levels, those under which changes are compared, and those for moved properties
     shaking: Shaking
     fewer: Shaking
+    fewest: Shaking
     # Whether directions, and ways to stand other than its own, are left out
     brief: bool
     # Whether changes are compared by few motions: briefly, of columns, in space
@@ -333,7 +334,22 @@ def plan_for(
     least = outcomes.FEWEST_LEVELS if coarse else outcomes.FEW_LEVELS
     shaking = outcomes.make_intensity_levels(motions, measure, asked, count)
     compared = outcomes.make_intensity_levels(fewer, measure, asked, least)
-    return Plan(curves, level, shaking, compared, brief, compares_few=few, holds=holds)
+    moved = compared
+    if motions.both:
+        # a simulation takes milliseconds, and of what a property moves its median alone counts
+        moved = outcomes.make_intensity_levels(
+            fewer, measure, asked, outcomes.FEWEST_LEVELS
+        )
+    return Plan(
+        curves,
+        level,
+        shaking,
+        compared,
+        moved,
+        brief=brief,
+        compares_few=few,
+        holds=holds,
+    )
 
 
 def shake_all(requests: Sequence[Request], plan: Plan) -> list[Shaken]:
@@ -629,14 +645,14 @@ def _moved(
         for request in requests
     ]
     sides = [side for each in variants for variant in each for side in variant.sides]
-    shaken = iter(plan.fewer.outcomes_of(sides))
+    shaken = iter(plan.fewest.outcomes_of(sides))
     found = [
         [variant.turned(lambda _: next(shaken)) for variant in each]
         for each in variants
     ]
     objects = [request.objects for request in requests]
     for moved in requests[0].place.variants():
-        floors = moved.turned(lambda place: plan.fewer.at(place).outcomes_of(objects))
+        floors = moved.turned(lambda place: plan.fewest.at(place).outcomes_of(objects))
         for each, lower, upper in zip(found, *floors.sides, strict=True):
             each.append(Moved(moved.name, moved.spread, lower, upper))
     return found

@@ -30,7 +30,8 @@ from rockfrag.system.system import System
 
 LEVELS = 80  # Levels of shaking that are tried, a constant factor apart
 FEW_LEVELS = 28  # Levels for what is only compared, and for many objects
-FEWEST_LEVELS = 14  # Levels for what is only compared of many objects
+# Levels for what is only compared of many objects, and for what moves a property in space
+FEWEST_LEVELS = 14
 # Tests that are simulated at once, which bounds the memory of their results
 MOST_TESTS = 400_000
 # Lowest and highest level over the median of the motions as recorded

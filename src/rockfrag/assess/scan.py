@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
-from scipy.stats import norm
+from scipy import special
 
 from rockfrag.assess.assumed import Assumption, assume
 from rockfrag.campaign.standing import (
@@ -80,7 +80,7 @@ class Scan:
         """Places of each source's standard deviation to both sides, and half their distance in ln angle."""
         found = {}
         for name, part in self.parts.items():
-            low, high = norm.cdf(-math.sqrt(part)), norm.cdf(math.sqrt(part))
+            low, high = special.ndtr(-math.sqrt(part)), special.ndtr(math.sqrt(part))
             angles = [self.row_at(at)[self.order] for at in (low, high)]
             found[name] = (float(low), float(high), math.log(angles[1] / angles[0]) / 2)
         return found
@@ -148,7 +148,9 @@ def _least_angle_deg(shape: Shape, way: Mapping[Any, Any]) -> float:
 
 def _parts(ways: pd.DataFrame, names: list[str], order: str) -> dict[str, float]:
     """Part of each unknown in the variance of the order: that of its means in bins of equally many ways."""
-    values = norm.ppf((ways[order].rank(method="first").to_numpy() - 0.5) / len(ways))
+    values = special.ndtri(
+        (ways[order].rank(method="first").to_numpy() - 0.5) / len(ways)
+    )
     found = {}
     for name in names:
         bins = (

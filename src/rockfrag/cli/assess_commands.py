@@ -219,7 +219,6 @@ def _one(options: argparse.Namespace, given: dict[str, Any]) -> int:
     from rockfrag.assess.answer import assess, waiting_for
     from rockfrag.assess.export import as_json
     from rockfrag.assess.findings import quality_flags
-    from rockfrag.assess.page import write_answer
     from rockfrag.words.catalogue import catalogue
 
     texts = catalogue(options.language)
@@ -234,6 +233,8 @@ def _one(options: argparse.Namespace, given: dict[str, Any]) -> int:
     # what looks wrong stands behind the answer, and what a page alone shows is computed after both
     for quality_flag in texts.lines(quality_flags(found)):
         print(f"warning: {quality_flag}", file=sys.stderr)
+    from rockfrag.assess.page import write_answer
+
     place = write_answer(found, options.output, options.language)
     if options.pdf:
         from rockfrag.report.pdf import print_page

@@ -14,7 +14,6 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 from scipy import special
-from statsmodels.stats.diagnostic import lilliefors
 
 from rockfrag.base.errors import InputError
 from rockfrag.base.short_repr import short_repr
@@ -269,6 +268,8 @@ def checks_of_brackets(
     test = "none: too few, or open brackets"
     testable = closed.all() and middle.size > 3 and np.ptp(middle) > 0
     if testable and np.isfinite(fit.theta):
+        from statsmodels.stats.diagnostic import lilliefors
+
         p_fit = float(lilliefors(middle, dist="norm")[1])
         test = "Lilliefors, middles of the brackets"
         fraction = (np.arange(middle.size) + 0.5) / middle.size

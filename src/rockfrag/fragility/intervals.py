@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import pandas as pd
 from numpy.typing import ArrayLike, NDArray
-from scipy import special, stats
+from scipy import special
 
 from rockfrag.base.errors import InputError
 from rockfrag.base.short_repr import short_repr
@@ -174,7 +174,7 @@ def step_limits(nothing: Interval, lower: float, upper: float) -> Interval:
     if not 0 < lower < upper < np.inf or nothing.estimate[1] < LEAST_SLOPE:
         return nothing
     fraction = (1.0 - nothing.level) ** (1.0 / nothing.groups)
-    beta = np.log(upper / lower) / (2.0 * float(stats.norm.ppf(0.5 + 0.5 * fraction)))
+    beta = np.log(upper / lower) / (2.0 * float(special.ndtri(0.5 + 0.5 * fraction)))
     beta = max(beta, 1.0 / nothing.estimate[1])
     sure = 1.0 - 2.0 ** (1 - nothing.groups)
     note = (
@@ -306,7 +306,9 @@ def half_width(left_out: Floats, level: float) -> Floats:
     -------
     Half the width, in the unit of the values, shape (…).
     """
-    half = stats.t.ppf(0.5 + 0.5 * level, len(left_out) - 1) * jackknife_error(left_out)
+    half = special.stdtrit(len(left_out) - 1, 0.5 + 0.5 * level) * jackknife_error(
+        left_out
+    )
     return np.where(np.isfinite(half), half, np.inf)
 
 

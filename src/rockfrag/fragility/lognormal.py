@@ -15,13 +15,6 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 from scipy import special
-from statsmodels.genmod import families
-from statsmodels.genmod.generalized_linear_model import GLM
-from statsmodels.tools.sm_exceptions import (
-    ConvergenceWarning,
-    PerfectSeparationError,
-    PerfectSeparationWarning,
-)
 
 from rockfrag.base.keywords import named_keywords
 from rockfrag.base.short_repr import short_repr
@@ -224,15 +217,12 @@ def _estimate(outcomes: Observations, link: Link) -> _Estimate:
     apart = separated(
         outcomes.log_im, outcomes.overturned[None], outcomes.trials[None]
     )[0]
-    notes = []
+    notes: list[str] = []
     if not apart:
-        try:
-            coefficients, information = _statsmodels(outcomes, link)
-        except (PerfectSeparationError, PerfectSeparationWarning, ConvergenceWarning):
-            notes.append(fit_notes.NOT_FINITE)
-        else:
-            method = f"{link}, maximum likelihood (GLM)"
-            return _Estimate(method, coefficients, information, notes)
+        found = _statsmodels(outcomes, link)
+        if found is not None:
+            return _Estimate(f"{link}, maximum likelihood (GLM)", *found, notes)
+        notes.append(fit_notes.NOT_FINITE)
     design = np.column_stack([np.ones(outcomes.im.size), outcomes.log_im])
     fit = fit_batch(
         design,
@@ -247,7 +237,16 @@ def _estimate(outcomes: Observations, link: Link) -> _Estimate:
     return _Estimate(method, fit.coefficients[0], fit.information[0], notes)
 
 
-def _statsmodels(outcomes: Observations, link: Link) -> tuple[Floats, Floats]:
+def _statsmodels(outcomes: Observations, link: Link) -> tuple[Floats, Floats] | None:
+    """Coefficients and their information by statsmodels, slow to load; None without a finite maximum."""
+    from statsmodels.genmod import families
+    from statsmodels.genmod.generalized_linear_model import GLM
+    from statsmodels.tools.sm_exceptions import (
+        ConvergenceWarning,
+        PerfectSeparationError,
+        PerfectSeparationWarning,
+    )
+
     links = {"probit": families.links.Probit, "logit": families.links.Logit}
     # tests at one value are one row of counts: the same likelihood, and a tenth of the time
     values, level = np.unique(outcomes.log_im, return_inverse=True)
@@ -259,7 +258,10 @@ def _statsmodels(outcomes: Observations, link: Link) -> tuple[Floats, Floats]:
     with python_warnings.catch_warnings():
         python_warnings.simplefilter("error", PerfectSeparationWarning)
         python_warnings.simplefilter("error", ConvergenceWarning)
-        result = model.fit(tol=1e-13, maxiter=200)
+        try:
+            result = model.fit(tol=1e-13, maxiter=200)
+        except (PerfectSeparationError, PerfectSeparationWarning, ConvergenceWarning):
+            return None
     return np.asarray(result.params), -np.asarray(
         model.hessian(result.params, observed=False)
     )

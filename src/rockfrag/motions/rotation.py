@@ -9,7 +9,6 @@ from collections.abc import Callable, Collection, Sequence
 from dataclasses import replace
 
 import numpy as np
-from obspy import UTCDateTime
 
 from rockfrag.base.errors import InputError
 from rockfrag.base.input_checks import real_number
@@ -168,6 +167,8 @@ def common_time(
     starts = [0.0] * len(motions)
     stated = [motion.metadata.get("start_time") for motion in motions]
     if all(stated):
+        from obspy import UTCDateTime
+
         times = [UTCDateTime(str(time)) for time in stated]
         starts = [float(time - min(times)) for time in times]
     if verticals is None:

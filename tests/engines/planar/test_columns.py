@@ -166,9 +166,13 @@ def test_contact_events_on_the_spot_do_not_stop_a_body_that_falls() -> None:
     column = Column((Block(0.8, 0.3, 480.0), Block(0.6, 0.9, 700.0), statue))
     time = np.arange(0, 6, DT)
     motion = 48 * np.sin(2 * np.pi * 5.72 * time) * np.sin(np.pi * time / 6) ** 2
-    found = run(column.system(), motion)
-    assert found.overturned_body == found.system.names[2]
-    assert len(found.contact_events) < 1000
+    found = [run(column.system(), factor * motion) for factor in (1.1, 1.18, 1.3, 1.5)]
+    # whether it falls hangs on a thousandth of the motion
+    falls = [each for each in found if each.overturned]
+    assert {each.overturned_body for each in falls} == {found[0].system.names[2]}
+    for each in found:
+        assert each.overturned or each.time[-1] >= time[-1]
+        assert len(each.contact_events) < 400 * each.time[-1]
 
 
 @pytest.mark.parametrize("seed", [4, 5])

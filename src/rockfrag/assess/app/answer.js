@@ -7,7 +7,7 @@ const answer = (data, core) => {
   // levels of a run: the asked one among those of the measure
   function levelsOf(request, run) {
     if (run.role === "first") return [siteLevel(request)];
-    const { levels, few, fewer } = tableOf(request), all = [...(run.fewer ? fewer : run.few ? few : levels)];
+    const { levels, few, fewer, fewest } = tableOf(request), all = [...(run.fewest ? fewest : run.fewer ? fewer : run.few ? few : levels)];
     const asked = siteLevel(request);
     if (!all.includes(asked)) all.push(asked);
     return all.sort((a, b) => a - b);

@@ -267,6 +267,7 @@ def in_space(
         about = {
             "levels": _levels(both, measure, outcomes.FEW_LEVELS),
             "fewer": _levels(fewer, measure, outcomes.FEW_LEVELS),
+            "fewest": _levels(fewer, measure, outcomes.FEWEST_LEVELS),
             "values": both.values(measure).tolist(),
         }
         levels[measure.imt] = {**about, "ratios": ratios_of(both, measure, given)}

@@ -27,13 +27,13 @@ const inSpace = (data) => {
     const rolling = ({ height }) => (height === statue.height ? both.rolling : NaN);
     const found = runs.filter(({ name }) => name !== "restitution").map((run) => {
       const own = run.role === "moved" ? run.body.statue : statue;
-      return { ...run, few: false, fewer: Boolean(run.role === "moved" || run.role === "mitigation"),
+      return { ...run, few: false, fewer: Boolean(run.role === "moved" || run.role === "mitigation"), fewest: run.role === "moved",
         body: solid.round ? { ...run.body, rolling: rolling(run.body.statue) } : run.body, worst: solid.round,
         solid: solidOf(run.body.statue, own, solid) };
     });
     const now = found[0];
     if (!solid.round && solid.anywhere) {
-      const facing = (by) => ({ ...now, role: "moved", name: "facing", fewer: true, solid: solidOf(statue, statue, { ...solid, facing: solid.facing + by }) });
+      const facing = (by) => ({ ...now, role: "moved", name: "facing", fewer: true, fewest: true, solid: solidOf(statue, statue, { ...solid, facing: solid.facing + by }) });
       found.push(facing(-both.aside), facing(both.aside));
     }
     // of fewer motions the object as it stands, in one plane along one component, and at the site's level alone, which comes first

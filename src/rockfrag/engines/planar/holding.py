@@ -60,12 +60,9 @@ def with_plate(system: System) -> System:
 def fill_holding(p: np.void, system: System) -> None:
     """Fill what holds a system into the record of a planar one, whose bodies are there already."""
     count = int(p["count"])
-    p["contacts"], p["reach"] = count, 3
+    p["contacts"] = count
     p["upper"][:count] = np.arange(count)
     p["lower"][:count] = np.arange(count) - 1
-    p["near"] = -1
-    for k in range(count):
-        p["near"][k, :3] = k - 1, k, (k + 1 if k + 1 < count else -1)
     p["is_held"] = len(system.holding) > 0
     if not system.holding:
         return
@@ -78,8 +75,6 @@ def fill_holding(p: np.void, system: System) -> None:
     _fill_ties(p, system, shift)
     _fill_bonds(p, system, shift)
     _fill_support(p, system)
-    if p["contacts"] > count:
-        _note_neighbours(p)
 
 
 def _fill_walls(p: np.void, system: System, shift: int) -> None:
@@ -140,25 +135,6 @@ def _fill_support(p: np.void, system: System) -> None:
         p["is_stop"][k], p["wall_top"][k] = 1, math.inf
         p["bounce"][k] = support.restitution
         p["wall_x"][k] = float(p["standing"][0]) + side * support.stroke
-
-
-def _note_neighbours(p: np.void) -> None:
-    """Note of each contact which others share a body with it; the first three as in a column without walls."""
-    p["reach"] = p["near"].shape[1]
-    contacts, count = int(p["contacts"]), int(p["count"])
-    for k in range(contacts):
-        mine = {int(p["upper"][k]), int(p["lower"][k])} - {-1}
-        if k >= count:
-            p["near"][k, 1] = k
-        others = [
-            other
-            for other in range(contacts)
-            if other not in p["near"][k, :3].tolist()
-            and mine & ({int(p["upper"][other]), int(p["lower"][other])} - {-1})
-        ]
-        if len(others) > p["reach"] - 3:
-            raise InputError("Wall: more than four walls are not computed.")
-        p["near"][k, 3 : 3 + len(others)] = others
 
 
 def _fill_ties(p: np.void, system: System, shift: int) -> None:

@@ -113,7 +113,10 @@ def approach(p, w, k, end):
 
 @kernel
 def settle(p, w, ah, av, exclude):
-    """Find the mode in which touching ends go on, not the old one on ``exclude``; False if there is none."""
+    """Find the mode in which touching ends go on, not the old one on ``exclude``; False if there is none.
+
+    Accelerations and forces are then those of this mode.
+    """
     all_touch = True
     for k in range(p.contacts):
         static = p.static[k]
@@ -138,9 +141,9 @@ def settle(p, w, ah, av, exclude):
             wrong = again
         else:
             take_mode(p, w, found)
-    solve(p, w, w.q, w.v, ah, av, False)
     remember_slides(p, w)
     project(p, w)
+    solve(p, w, w.q, w.v, ah, av, False)
     return wrong < 1e-6
 
 
@@ -341,6 +344,17 @@ def read_slip(p, w, k, still):
 
 
 @kernel
+def _any_slow_end(p, w, closing):
+    """Whether a touching end that is open parts too slowly."""
+    for k in range(p.contacts):
+        for end in range(2):
+            is_open = w.touching[k, end] == 1 and w.closed[k, end] == 0
+            if is_open and approach(p, w, k, end) < closing:
+                return True
+    return False
+
+
+@kernel
 def _shut_weak(p, w, ah, av, closing):
     """Close the ends that part, and end the slips that are, too slow after an impact; whether there are any.
 
@@ -349,7 +363,8 @@ def _shut_weak(p, w, ah, av, closing):
     so that none is closed that the others hold already.
     """
     found = False
-    solve(p, w, w.q, w.v, ah, av, False)
+    if _any_slow_end(p, w, closing):
+        solve(p, w, w.q, w.v, ah, av, False)
     for k in range(p.contacts):
         at_wall = k >= p.count or any_closed(p, w)
         crowd = w.met > CROWD and not at_wall
@@ -358,9 +373,11 @@ def _shut_weak(p, w, ah, av, closing):
         for end in range(2):
             if w.touching[k, end] == 1 and w.closed[k, end] == 0:
                 x, y, tx, ty, _, _, kind = end_of(p, w, w.q, k, end, w.kind[k, end])
+                if rate(p, w.q, w.v, k, x, y, -ty, tx) >= closing:
+                    continue
                 pull = rate(p, w.q, w.out, k, x, y, -ty, tx)
                 pull += bias(p, w.q, w.v, k, x, y, -ty, tx, kind)
-                if (pull < least or crowd) and approach(p, w, k, end) < closing:
+                if pull < least or crowd:
                     w.closed[k, end] = 1
                     if not any_closed(p, w):
                         found = True

@@ -265,7 +265,8 @@ def integrate(p, shaking, start, closing, kept, w):
                 ah, av = stepping.ground_at(sample, tau)
                 instant = Instant((i + tau) * dt, ah, av)
                 _handle(p, w, instant, coarser, False, kept)
-                fresh = True
+                copy(p, w.out, w.a)
+                fresh = False
                 if w.met > 10 * MOST_CONTACT_EVENTS:
                     tau = 1.0
             w.work += work

@@ -23,8 +23,6 @@ Array = NDArray[np.float64]
 MOST = 12  # bodies of the longest column
 MOST_WALLED = 12  # contacts of bodies with walls
 ALL = MOST + MOST_WALLED  # contacts
-# contacts that share a body with one: the one below, itself, the one above, and those of both bodies with walls
-NEAR = 3 + 2 * 4
 MOST_TIES = 8
 MOST_CONSTRAINTS = 16
 TRIES = 1024  # modes that a search tries at most: more than three interfaces have
@@ -48,10 +46,8 @@ BODY = np.dtype(
         *fields("tilt_cos tilt_sin", MOST),
         # contacts: of bodies with each other, and with walls
         *whole("contacts"),
-        # [contact] bodies above and below it, -1: the ground; those that share a body with it, -1: none
+        # [contact] bodies above and below it, -1: the ground
         *whole("upper lower", ALL),
-        *whole("near", ALL, NEAR),
-        *whole("reach"),  # how many of these there are to look at
         # [contact] coefficients of friction
         *fields("static kinetic", ALL),
         # whether walls, ties, bonds or an isolator hold the bodies
@@ -124,15 +120,27 @@ WORK = np.dtype(
         *fields("shear", ALL),
         *fields("out", 3 * MOST),  # accelerations, or velocities after an impact
         *fields("cos sin", MOST),  # of the configuration that was looked at last
-        # one row per closed end and per interface that sticks: what it takes of the body below (3) and above (3)
+        # equations of contact k: from 3 k on, as many as it has (``equations.py``); rows and columns are motion
+        # and forces per coordinate of the body below (3) and of that above (3), each a force at an end, a shear or
+        # a couple
+        *whole("size", ALL),
+        *whole("what", 3 * ALL),
         *fields("row column", 3 * ALL, 6),
+        *fields("right force", 3 * ALL),
+        *fields("moved", 3 * MOST),  # change of motion by all forces
+        # of each contact forces with nothing below, and what a force at the base of the body below takes of them;
+        # compliance of each body with what hangs on it, and its motion by that alone
+        *fields("gain", 3 * ALL),
+        *fields("shared", 3 * ALL, 3),
+        *fields("compliance", MOST, 3, 3),
+        *fields("hanging", MOST, 3),
+        *fields("small", 3, 7),
+        *fields("yields_to", 3, 3),
+        # all equations at once, and which they are
         *fields("light", 6),
         *fields("matrix", 3 * ALL, 3 * ALL),
-        *fields("right largest", 3 * ALL),
-        *whole(
-            "owner", 3 * ALL
-        ),  # of each unknown: 4 k + end, or 4 k + 2 for shear, 4 k + 3 for a couple
-        *whole("upto", ALL + 2),  # number of unknowns of the contacts up to this one
+        *fields("joint largest", 3 * ALL),
+        *whole("place", 3 * ALL),
         # a step: start, end, stages
         *fields("q0 v0 a0 q1 v1 a1", 3 * MOST),
         *fields("kv ka", 3 * MOST, 7),
@@ -140,14 +148,11 @@ WORK = np.dtype(
         *fields("early", ALL, 2),
         *whole("fails", ALL, 7),  # [contact, channel] what has become negative
         # of each interface normal and tangent of its left and its right end, and a couple: motion per coordinate
-        # of the bodies below and above, motion without forces [interface, row], and motion for a unit force of the
-        # interface below, of this one and of the one above [interface, whose, row, force]
+        # of the bodies below and above, and motion without forces [interface, row]
         *fields("basis", ALL, 5, 6),
         *fields("free", ALL, 4),
-        *fields("felt", ALL, NEAR, 4, 5),
-        # of each unknown its forces, and of each contact the forces of a mode
-        *fields("force", 3 * ALL, 5),
-        *fields("given", ALL, 5),
+        # modes of the contacts whose equations are listed, -1: none
+        *whole("listed", ALL),
         # search for a mode
         *whole("touching", ALL, 2),
         *whole("moves", ALL),

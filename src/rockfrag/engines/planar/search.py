@@ -12,11 +12,11 @@ from typing import NamedTuple
 import numpy as np
 
 from rockfrag.engines.compile.jit import kernel
+from rockfrag.engines.planar.equations import solve_equations
 from rockfrag.engines.planar.solve import (
     COUPLE,
     SHEAR,
     bias,
-    eliminate,
     end_of,
     fill_row,
     rate,
@@ -71,14 +71,7 @@ def prepare(p, w, trial):
                     w.free[k, row] += _drift_along(p, w, k, w.basis[k, row])
         w.basis[k, 4, :] = 0.0
         w.basis[k, 4, 5], w.basis[k, 4, 2] = 1.0, -1.0 if p.lower[k] >= 0 else 0.0
-    for k in range(p.contacts):
-        for whose in range(p.reach):
-            other = p.near[k, whose]
-            if other < 0:
-                continue
-            for row in range(4):
-                if w.touching[k, row // 2] == 1:
-                    _fill_felt(p, w, k, whose, row)
+    w.listed[:] = -1
 
 
 @kernel
@@ -91,108 +84,62 @@ def _drift_along(p, w, k, row):
 
 
 @kernel
-def _fill_felt(p, w, k, whose, row):
-    """Fill motion of a row of contact k for unit forces of one that is near."""
-    other = p.near[k, whose]
-    base, shift = 3 * p.upper[k] - 3, 3 * (p.upper[other] - p.upper[k])
-    for force in range(5):
-        if force < 4 and w.touching[other, force // 2] == 0:
+def _list_equations(p, w, k, impact):
+    """Fill rows, columns and right-hand sides of contact k in its mode in ``w`` from what all modes share."""
+    friction = rubbing(p, w, w.q, k)
+    m, shear = 3 * k, w.slides[k] == 0
+    for end in range(2):
+        if w.closed[k, end] == 0:
             continue
-        total = 0.0
-        # both move the bodies between them alone
-        for d in range(max(3 if p.lower[k] < 0 else 0, shift), min(6, 6 + shift)):
-            light = p.inverse[base + d] * w.basis[k, row, d]
-            total += light * w.basis[other, force, d - shift]
-        w.felt[k, whose, row, force] = total
-
-
-@kernel
-def _list_unknowns(p, w, impact):
-    """Number the unknowns of the mode in ``w`` and fill the forces that each stands for; their number."""
-    m = 0
-    for k in range(p.contacts):
-        friction = rubbing(p, w, w.q, k)
-        first = True
-        for end in range(2):
-            if w.closed[k, end] == 0:
-                continue
-            w.owner[m] = 4 * k + end
-            w.force[m, :] = 0.0
-            w.force[m, 2 * end], w.force[m, 2 * end + 1] = 1.0, -friction
-            if impact and w.fraction[k, end] > 0.0:
-                # what the impulse brings about at the other end
-                w.force[m, 2 - 2 * end] = w.fraction[k, end]
-                w.force[m, 3 - 2 * end] = -friction * w.fraction[k, end]
+        push, rub = w.basis[k, 2 * end], w.basis[k, 2 * end + 1]
+        w.what[m] = end
+        w.right[m] = (w.back[k, end] if impact else 0.0) - w.free[k, 2 * end]
+        for d in range(6):
+            w.row[m, d] = push[d]
+            w.column[m, d] = push[d] - friction * rub[d]
+        if impact and w.fraction[k, end] > 0.0:
+            # what the impulse brings about at the other end
+            push_o, rub_o = w.basis[k, 2 - 2 * end], w.basis[k, 3 - 2 * end]
+            for d in range(6):
+                w.column[m, d] += w.fraction[k, end] * (push_o[d] - friction * rub_o[d])
+        m += 1
+        if shear:
+            w.what[m] = SHEAR
+            w.right[m] = -w.free[k, 2 * end + 1]
+            for d in range(6):
+                w.row[m, d] = rub[d]
+                w.column[m, d] = rub[d]
             m += 1
-            if first and w.slides[k] == 0:
-                w.owner[m] = 4 * k + SHEAR
-                w.force[m, :] = 0.0
-                w.force[m, 2 * end + 1] = 1.0
-                m += 1
-            first = False
-        if impact and w.drive[k] >= 0:
-            w.owner[m] = 4 * k + COUPLE
-            w.force[m, :] = 0.0
-            w.force[m, 4] = 1.0
-            m += 1
-        w.upto[k] = m
-    return m
+        shear = False
+    if impact and w.drive[k] >= 0:
+        w.what[m] = COUPLE
+        w.right[m] = w.depart[k] - w.free[k, 2 * w.drive[k]]
+        for d in range(6):
+            w.row[m, d] = w.basis[k, 2 * w.drive[k], d]
+            w.column[m, d] = w.basis[k, 4, d]
+        m += 1
+    w.size[k] = m - 3 * k
 
 
 @kernel
 def _solve_mode(p, w, impact):
-    """Forces of the mode in ``w`` into ``w.right`` and ``w.given``, after :func:`prepare`; False if singular."""
-    m = _list_unknowns(p, w, impact)
-    for i in range(m):
-        k, what = w.owner[i] // 4, w.owner[i] % 4
-        row = 2 * what
-        if what == SHEAR:
-            row = 1 if w.closed[k, 0] == 1 else 3
-        elif what == COUPLE:
-            row = 2 * w.drive[k]
-        w.right[i] = -w.free[k, row]
-        if what == COUPLE:
-            w.right[i] += w.depart[k]
-        elif what < SHEAR and impact:
-            w.right[i] += w.back[k, what]
-        low, high = 0, m
-        if w.upto[p.count - 1] == m:
-            low = w.upto[k + 1] if k + 1 < p.count else m
-            high = w.upto[k + 2] if k + 2 < p.count else m
-        for j in range(low, high):
-            # room for what elimination fills in
-            w.matrix[i, j] = 0.0
-        for whose in range(p.reach):
-            other = p.near[k, whose]
-            if other < 0:
-                continue
-            for j in range(w.upto[other - 1] if other > 0 else 0, w.upto[other]):
-                total = 0.0
-                for force in range(5):
-                    if w.force[j, force] != 0.0:
-                        total += w.force[j, force] * w.felt[k, whose, row, force]
-                w.matrix[i, j] = total
-    if not eliminate(p, w, m, 0):
-        return False
+    """Forces of the mode in ``w``, and motion for them, after :func:`prepare`; False if singular."""
+    changed = -1
     for k in range(p.contacts):
-        for force in range(5):
-            w.given[k, force] = 0.0
-    for i in range(m):
-        for force in range(5):
-            w.given[w.owner[i] // 4, force] += w.force[i, force] * w.right[i]
-    return True
+        digit = _digit(w.closed, w.slides, k)
+        if w.listed[k] != digit:
+            _list_equations(p, w, k, impact)
+            w.listed[k] = digit
+            changed = k if k < p.count else changed
+    return solve_equations(p, w, 0, changed)
 
 
 @kernel
 def _motion_of(p, w, k, row):
     """Relative motion of interface k under the mode that was solved, along a row of its basis."""
-    found = w.free[k, row]
-    for whose in range(p.reach):
-        other = p.near[k, whose]
-        if other >= 0 and w.closed[other].any():
-            for force in range(5):
-                if w.given[other, force] != 0.0:
-                    found += w.felt[k, whose, row, force] * w.given[other, force]
+    found, base = w.free[k, row], 3 * p.upper[k] - 3
+    for d in range(3 if p.lower[k] < 0 else 0, 6):
+        found += w.basis[k, row, d] * w.moved[base + d]
     return found
 
 
@@ -212,9 +159,8 @@ def try_mode(p, w, trial):
     if not _solve_mode(p, w, trial.impact):
         return -math.inf
     worst = math.inf
-    at = 0
     for k in range(p.contacts):
-        pressed, shear = 0.0, 0.0
+        pressed, shear, at = 0.0, 0.0, 3 * k
         slides = w.slides[k]
         closed = -1
         for end in range(2):
@@ -231,20 +177,18 @@ def try_mode(p, w, trial):
                 w.flip[0] = -1
                 return -math.inf
             # a force that friction multiplies counts as the shear that it brings about
-            push = w.right[at] * (max(1.0, p.kinetic[k]) if slides != 0 else 1.0)
+            push = w.force[at] * (max(1.0, p.kinetic[k]) if slides != 0 else 1.0)
             if w.whole[k] == 0:
                 worst = _note_worst(w, worst, push / trial.force, k, end, 0)
-            pressed += w.right[at] * (1.0 + w.fraction[k, end])
+            pressed += w.force[at] * (1.0 + w.fraction[k, end])
             at += 1
             if closed < 0:
                 closed = end
                 if slides == 0:
-                    shear = w.right[at]
+                    shear = w.force[at]
                     at += 1
-        if w.drive[k] >= 0:
-            at += 1
-            if closed < 0:
-                return -math.inf
+        if w.drive[k] >= 0 and closed < 0:
+            return -math.inf
         if closed < 0 or w.whole[k] == BONDED:
             continue
         if slides == 0:
@@ -327,12 +271,12 @@ def _closed_ends(p, w, place):
 
 
 @kernel
-def _is_listed(w, mode):
-    """Whether a mode has been tried."""
-    listed = False
+def _place_of(w, mode):
+    """Place of a mode in the list of those that have been tried, -1 if it has not been."""
     for i in range(w.count):
-        listed = listed or (w.tried[i, 0] == mode[0] and w.tried[i, 1] == mode[1])
-    return listed
+        if w.tried[i, 0] == mode[0] and w.tried[i, 1] == mode[1]:
+            return i
+    return -1
 
 
 @kernel
@@ -342,7 +286,7 @@ def _try_anew(p, w, trial, exclude):
     ``exclude``: a mode that is known to fail.  A full list takes no more.
     """
     mode = whole_mode(p, w.closed, w.slides)
-    if w.count == w.wrong.size or _is_listed(w, mode):
+    if w.count == w.wrong.size or _place_of(w, mode) >= 0:
         return SEEN
     margin = try_mode(p, w, trial)
     fails = mode[0] == exclude[0] and mode[1] == exclude[1]
@@ -441,6 +385,15 @@ def _set_all(p, w, closed):
 
 
 @kernel
+def _open_changed(p, w):
+    """Open all contacts whose mode in ``w`` is not the old one, but for what a given speed of an end needs."""
+    for k in range(p.contacts):
+        lasts = _digit(w.closed, w.slides, k) == _digit(w.old_closed, w.old_slides, k)
+        if not lasts and w.whole[k] == 0 and w.drive[k] < 0:
+            w.closed[k, 0] = w.closed[k, 1] = w.slides[k] = 0
+
+
+@kernel
 def search(p, w, trial, exclude):
     """Set the mode of ``w`` to a consistent one that its touching ends allow, or the least violated; by how much.
 
@@ -451,7 +404,9 @@ def search(p, w, trial, exclude):
     _only_touching(p, w, trial)
     w.count, found, several = 0, -1, False
     for start in range(3):
-        if start > 0:
+        if start == 1 and found >= 0:
+            _open_changed(p, w)
+        elif start > 0:
             _set_all(p, w, start - 1)
         other = _descend(p, w, trial, exclude)
         if other >= 0:

@@ -4,6 +4,7 @@ import math
 
 from rockfrag.base.elementary import sin_cos
 from rockfrag.engines.compile.jit import inlined_kernel, kernel
+from rockfrag.engines.planar.equations import solve_equations
 from rockfrag.engines.planar.records import AT_EDGE
 from rockfrag.engines.planar.support import rubbing
 from rockfrag.engines.planar.ties import is_any_taut, pull
@@ -13,8 +14,6 @@ SHEAR, COUPLE = (
     2,
     3,
 )  # what an unknown of an interface is, besides the normal force at its ends 0 and 1
-SINGULAR = 1e-9
-"""Pivot over the largest coefficient of its equation below which equations with walls say the same thing twice."""
 
 
 @inlined_kernel
@@ -153,60 +152,51 @@ def standing_bodies(p, w):
 
 
 @kernel
-def _fill_equations(p, w, q, v, impact, rough, standing):
-    """Rows, columns and right-hand sides of the mode of the bodies above those that stand; their number."""
-    m = 0
-    for k in range(standing, p.contacts):
-        friction = rubbing(p, w, q, k) if rough else 0.0
-        first = True
-        for end in range(2):
-            if w.closed[k, end] == 0:
-                continue
-            x, y, tx, ty, _, _, kind = end_of(p, w, q, k, end, w.kind[k, end])
-            fill_row(p, q, k, x, y, -ty, tx, w.row[m])
-            w.owner[m] = 4 * k + end
-            w.right[m] = (
-                w.back[k, end] if impact else -bias(p, q, v, k, x, y, -ty, tx, kind)
-            )
-            fill_row(
-                p, q, k, x, y, -ty - friction * tx, tx - friction * ty, w.column[m]
-            )
-            if impact and w.fraction[k, end] > 0.0:
-                # what the impulse brings about at the other end
-                xo, yo, to, no, _, _, _ = end_of(
-                    p, w, q, k, 1 - end, w.kind[k, 1 - end]
-                )
-                fill_row(
-                    p, q, k, xo, yo, -no - friction * to, to - friction * no, w.light
-                )
-                for d in range(6):
-                    w.column[m, d] += w.fraction[k, end] * w.light[d]
+def _fill_equations(p, w, q, v, k, impact, rough):
+    """Fill rows, columns and right-hand sides of contact k, none if it is open."""
+    friction = rubbing(p, w, q, k) if rough else 0.0
+    m = 3 * k
+    first = True
+    for end in range(2):
+        if w.closed[k, end] == 0:
+            continue
+        x, y, tx, ty, _, _, kind = end_of(p, w, q, k, end, w.kind[k, end])
+        fill_row(p, q, k, x, y, -ty, tx, w.row[m])
+        w.what[m] = end
+        w.right[m] = (
+            w.back[k, end] if impact else -bias(p, q, v, k, x, y, -ty, tx, kind)
+        )
+        fill_row(p, q, k, x, y, -ty - friction * tx, tx - friction * ty, w.column[m])
+        if impact and w.fraction[k, end] > 0.0:
+            # what the impulse brings about at the other end
+            xo, yo, to, no, _, _, _ = end_of(p, w, q, k, 1 - end, w.kind[k, 1 - end])
+            fill_row(p, q, k, xo, yo, -no - friction * to, to - friction * no, w.light)
+            for d in range(6):
+                w.column[m, d] += w.fraction[k, end] * w.light[d]
+        m += 1
+        if first and w.slides[k] == 0:
+            fill_row(p, q, k, x, y, tx, ty, w.row[m])
+            fill_row(p, q, k, x, y, tx, ty, w.column[m])
+            w.what[m] = SHEAR
+            w.right[m] = 0.0 if impact else -bias(p, q, v, k, x, y, tx, ty, kind)
             m += 1
-            if first and w.slides[k] == 0:
-                fill_row(p, q, k, x, y, tx, ty, w.row[m])
-                fill_row(p, q, k, x, y, tx, ty, w.column[m])
-                w.owner[m] = 4 * k + SHEAR
-                w.right[m] = 0.0 if impact else -bias(p, q, v, k, x, y, tx, ty, kind)
-                m += 1
-            first = False
-        if impact and w.drive[k] >= 0:
-            end = w.drive[k]
-            x, y, tx, ty, _, _, _ = end_of(p, w, q, k, end, w.kind[k, end])
-            fill_row(p, q, k, x, y, -ty, tx, w.row[m])
-            # a couple turns body k, and what is below it the other way
-            w.column[m, :] = 0.0
-            w.column[m, 5], w.column[m, 2] = 1.0, -1.0 if k > 0 else 0.0
-            w.owner[m] = 4 * k + COUPLE
-            w.right[m] = w.depart[k]
-            m += 1
-        w.upto[k] = m
-    return m
+        first = False
+    if impact and w.drive[k] >= 0:
+        end = w.drive[k]
+        x, y, tx, ty, _, _, _ = end_of(p, w, q, k, end, w.kind[k, end])
+        fill_row(p, q, k, x, y, -ty, tx, w.row[m])
+        # a couple turns body k, and what is below it the other way
+        w.column[m, :] = 0.0
+        w.column[m, 5], w.column[m, 2] = 1.0, -1.0 if k > 0 else 0.0
+        w.what[m] = COUPLE
+        w.right[m] = w.depart[k]
+        m += 1
+    w.size[k] = m - 3 * k
 
 
 @kernel
 def solve_generally(p, w, q, v, ah, av, impact, rough, standing):
     """Solve any mode by elimination above the first ``standing`` bodies, as :func:`solve` does in formulas."""
-    m = _fill_equations(p, w, q, v, impact, rough, standing)
     for k in range(p.count):
         for d in range(3 * k, 3 * k + 3):
             w.out[d] = v[d] if impact else 0.0
@@ -218,42 +208,30 @@ def solve_generally(p, w, q, v, ah, av, impact, rough, standing):
         pull(p, w, q, v)
         for d in range(3 * p.count):
             w.out[d] += w.drift[d]
-    for i in range(m):
-        k = w.owner[i] // 4
-        total = w.right[i]
+    for k in range(standing, p.contacts):
+        _fill_equations(p, w, q, v, k, impact, rough)
         begin, base = 0, 3 * p.upper[k] - 3
         if k == standing or p.lower[k] < 0:
             begin = 3
-        for d in range(begin, 6):
-            total -= w.row[i, d] * w.out[base + d]
-            w.light[d] = w.row[i, d] * p.inverse[base + d]
-        w.right[i] = total
-        low, high = 0, m
-        if w.upto[p.count - 1] == m:
-            low = w.upto[k - 2] if k - 2 >= standing else 0
-            high = w.upto[k + 2] if k + 2 < p.count else m
-        for j in range(low, high):
-            # both move the bodies between them alone
-            total, shift = 0.0, 3 * (p.upper[w.owner[j] // 4] - p.upper[k])
-            for d in range(max(begin, shift), min(6, 6 + shift)):
-                total += w.light[d] * w.column[j, d - shift]
-            w.matrix[i, j] = total
-    if not eliminate(p, w, m, standing):
+        for i in range(3 * k, 3 * k + w.size[k]):
+            for d in range(begin, 6):
+                w.right[i] -= w.row[i, d] * w.out[base + d]
+    w.listed[:] = -1
+    if not solve_equations(p, w, standing, p.count - 1):
         return False
-    for i in range(m):
-        force, k, end = w.right[i], w.owner[i] // 4, w.owner[i] % 4
-        if end == SHEAR:
-            w.shear[k] += force
-        elif end < SHEAR:
-            fraction = w.fraction[k, end] if impact else 0.0
-            w.normal[k, end] += force
-            w.normal[k, 1 - end] += fraction * force
-            w.shear[k] -= rubbing(p, w, q, k) * (force + fraction * force)
-        begin, base = 0, 3 * p.upper[k] - 3
-        if k == standing or p.lower[k] < 0:
-            begin = 3
-        for d in range(begin, 6):
-            w.out[base + d] += p.inverse[base + d] * w.column[i, d] * force
+    for d in range(3 * standing, 3 * p.count):
+        w.out[d] += w.moved[d]
+    for k in range(standing, p.contacts):
+        friction = rubbing(p, w, q, k)
+        for i in range(3 * k, 3 * k + w.size[k]):
+            force, end = w.force[i], w.what[i]
+            if end == SHEAR:
+                w.shear[k] += force
+            elif end < SHEAR:
+                fraction = w.fraction[k, end] if impact else 0.0
+                w.normal[k, end] += force
+                w.normal[k, 1 - end] += fraction * force
+                w.shear[k] -= friction * (force + fraction * force)
     return True
 
 
@@ -350,65 +328,3 @@ def _solve_top(p, w, q, v, ah, av):
         _hold_still(
             p, w, q, 0, pull_x + p.mass[0] * ah, pull_y + p.mass[0] * (p.g + av), moment
         )
-
-
-@kernel
-def _note_largest(w, m):
-    """Note the largest coefficient of each equation."""
-    for i in range(m):
-        w.largest[i] = 0.0
-        for j in range(m):
-            w.largest[i] = max(w.largest[i], abs(w.matrix[i, j]))
-
-
-@kernel
-def eliminate(p, w, m, standing):
-    """Solve m equations in place, those of each contact up to ``w.upto``; False if singular.
-
-    Their matrix is banded but where contacts with walls, which touch any body, are among them.
-    """
-    a, right = w.matrix, w.right
-    banded = w.upto[p.count - 1] == m
-    if not banded:
-        _note_largest(w, m)
-    k = standing
-    for i in range(m):
-        rows = columns = m
-        if banded:
-            while w.upto[k] <= i:
-                k += 1
-            rows = w.upto[k + 1] if k + 1 < p.count else m
-            columns = w.upto[k + 2] if k + 2 < p.count else m
-        best = i
-        for j in range(i + 1, rows):
-            if abs(a[j, i]) > abs(a[best, i]):
-                best = j
-        if a[best, i] == 0.0:
-            return False
-        if not banded and abs(a[best, i]) < SINGULAR * w.largest[best]:
-            # walls and faces may ask for the same thing twice
-            return False
-        if best != i:
-            for j in range(i, columns):
-                a[i, j], a[best, j] = a[best, j], a[i, j]
-            right[i], right[best] = right[best], right[i]
-            w.largest[i], w.largest[best] = w.largest[best], w.largest[i]
-        pivot = 1.0 / a[i, i]
-        for j in range(i + 1, rows):
-            factor = a[j, i] * pivot
-            if factor != 0.0:
-                for c in range(i + 1, columns):
-                    a[j, c] -= factor * a[i, c]
-                right[j] -= factor * right[i]
-    k = p.count - 1
-    for i in range(m - 1, -1, -1):
-        columns = m
-        if banded:
-            while k > standing and w.upto[k - 1] > i:
-                k -= 1
-            columns = w.upto[k + 2] if k + 2 < p.count else m
-        total = right[i]
-        for j in range(i + 1, columns):
-            total -= a[i, j] * right[j]
-        right[i] = total / a[i, i]
-    return True

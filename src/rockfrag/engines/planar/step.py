@@ -218,7 +218,9 @@ def least_margin(p, w, q, v, forces):
         if k > 0:
             turned = max(turned, abs(q[3 * k + 2] - q[3 * k - 1]))
         margin = 0.5 * math.pi - turned
-        if k > 0 and off_the_edge(p, w, q, k):
+        # what sticks with an end closed stays over the face until it has turned
+        holds = some and w.slides[k] == 0
+        if k > 0 and not holds and off_the_edge(p, w, q, k):
             w.fails[k, FALL] = 1
         if margin < 0.0:
             w.fails[k, FALL] = 1
