@@ -34,8 +34,8 @@ def answers(count: int, *, in_space: bool, seed: int = 54) -> list[dict[str, str
         found = assess_with(request, motions)
         spent = time.process_time() - begun[0], time.perf_counter() - begun[1]
         main, half = found.main, found.amplitudes[0.5]
-        figures = (main.value, main.lower, main.upper)
-        figures += (half.value, half.lower, half.upper)
+        figures = [main.value, main.lower, main.upper]
+        figures += [half.value, half.lower, half.upper]
         row = {name: f"{x:.4g}" for name, x in zip(FIGURES, figures, strict=True)}
         row |= {"processor_s": f"{spent[0]:.2f}", "wall_s": f"{spent[1]:.2f}"}
         if number > 0:

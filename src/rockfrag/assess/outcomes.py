@@ -306,7 +306,8 @@ class Shaking(IntensityLevels):
         """All components of each record, and the factors on them, shape (records, levels)."""
         motions = self.motions
         shaking = [
-            GroundMotion(*motions.components(record)) for record in motions.records
+            GroundMotion(*motions.components(record)).with_second()
+            for record in motions.records
         ]
         first = [record[0] for record in motions.records]
         return shaking, self._factors([motions.base[i] for i in first], first)

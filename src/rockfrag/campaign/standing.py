@@ -208,10 +208,7 @@ def simulate_in_space(
     -------
     Whether each overturns, shape (systems, tests, scales).
     """
-    shaking = [
-        GroundMotion(motion, motion.after("still", np.zeros_like(motion.acceleration)))
-        for motion in motions
-    ]
+    shaking = [GroundMotion(motion).with_second() for motion in motions]
     cores = checked_threads(threads)
     return overturns(systems, shaking, scales=scales, threads=cores).overturned
 

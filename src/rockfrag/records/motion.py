@@ -282,6 +282,13 @@ class GroundMotion:
                 column[:] = motion.acceleration
         return found
 
+    def with_second(self) -> "GroundMotion":
+        """Return the motion with a second component, a still one if it has none: bodies then move in space."""
+        if self.y is not None:
+            return self
+        still = self.x.after("still", np.zeros_like(self.x.acceleration))
+        return replace(self, y=still)
+
 
 def integrate(acceleration: Floats, dt: float) -> tuple[Floats, Floats]:
     """Integrate an acceleration that is linear between samples, from rest.
