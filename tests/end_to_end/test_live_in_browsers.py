@@ -99,7 +99,7 @@ def page(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def test_outcomes_over_the_amplitudes_are_those_of_the_package(
     browser, page, body, system, width
 ):
-    from rockfrag.engines.spatial import run_in_space
+    from rockfrag import overturns
 
     opened(browser, page, width, 900, ready=COMPUTED)
     assert browser.run(FITS)
@@ -107,7 +107,7 @@ def test_outcomes_over_the_amplitudes_are_those_of_the_package(
     waited(browser, COMPUTED)
     data = "JSON.parse(document.getElementById('live-data').textContent)"
     scales = np.array(AMPLITUDES_G) / browser.run(f"{data}.motions[0].peak_g")
-    expected = run_in_space([system], [WAVES], scales).overturned.ravel()
+    expected = overturns(system, WAVES, scales=scales).overturned.ravel()
     assert browser.run(COMPUTED) == "".join("1" if fell else "0" for fell in expected)
     assert 0 < expected.sum() < expected.size
     assert browser.console == []

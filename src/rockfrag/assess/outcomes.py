@@ -1,4 +1,8 @@
-"""Which motions topple a body at which level of shaking: fractions of motions, no curve assumed."""
+"""Which motions topple a body at which level of shaking: fractions of motions, no curve assumed.
+
+In: systems, motions and levels of a measure. Out: states by motion and level.
+Docs: ``docs/assess.md``, "What is computed".
+"""
 
 import math
 import warnings
@@ -16,7 +20,6 @@ from rockfrag.assess.standing import Standing
 from rockfrag.assess.statics import lifting_in_plane, lifting_in_space
 from rockfrag.base.arrays import Flags, Floats
 from rockfrag.base.plausible import LARGEST_PEAK
-from rockfrag.engines.spatial import run_in_space
 from rockfrag.engines.spatial.body import PERTURBATION
 from rockfrag.fragility.empirical import wilson_interval
 from rockfrag.fragility.observations import Observations
@@ -25,7 +28,6 @@ from rockfrag.outcomes.limit_states import OVERTURNS, ROCKS, limit_states
 from rockfrag.outcomes.outcomes import Outcomes
 from rockfrag.records.motion import GroundMotion, Motion
 from rockfrag.simulation.ensemble import LightBodies, overturns
-from rockfrag.simulation.inputs import checked_threads
 from rockfrag.system.blocks import Body
 from rockfrag.system.contact import Friction
 from rockfrag.system.system import System
@@ -298,8 +300,7 @@ class Shaking(IntensityLevels):
         """
         shaking, scales = self._records()
         lifting = lifting_in_space(body, shaking)
-        threads = checked_threads(None)
-        result = run_in_space([body], shaking, scales, spread=spread, threads=threads)
+        result = overturns(body, shaking, scales=scales, spread=spread)
         states = states_of(result)
         of_row = np.arange(len(scales))
         return self._each_system(states, of_row=of_row, lifting=[lifting])[0]
@@ -331,7 +332,7 @@ class Shaking(IntensityLevels):
             found = self._each_system(states_of(result), light, lifting=lifting)
             return found[0], result
         shaking, scales = self._records()
-        result = run_in_space([system], shaking, scales, threads=checked_threads(None))
+        result = overturns(system, shaking, scales=scales)
         lifting = [lifting_in_space(system, shaking)]
         rows = np.arange(len(scales))
         found = self._each_system(states_of(result), of_row=rows, lifting=lifting)
@@ -342,9 +343,8 @@ class Shaking(IntensityLevels):
     ) -> tuple[ObjectOutcomes, Floats]:
         """Outcomes of the object on a pad on which it may slide, and how far it does [m], (motions, levels)."""
         system = objects.system_of(objects.body)
-        *below, pad = system.contacts
-        pad = replace(pad, friction=Friction(friction, friction))
-        system = replace(system, contacts=(*below, pad))
+        below = [contact.friction for contact in system.contacts[:-1]]
+        system = system.with_friction([*below, Friction(friction, friction)])
         base = self.motions.base
         result = overturns(system, base, scales=self._factors(base))
         lifting = [lifting_in_plane(system, base)]
@@ -412,9 +412,7 @@ class Shaking(IntensityLevels):
         solid = objects.solid(objects.body) if motions.both else None
         if solid is not None and objects.friction is not None and not objects.pedestals:
             friction = Friction(objects.friction, objects.friction)
-            slides = replace(
-                solid, contacts=(replace(solid.contacts[0], friction=friction),)
-            )
+            slides = solid.with_friction([friction])
             return float(self.in_space(slides, objects.base_spread).fractions()[0])
         fallen = overturns(
             objects.system_of(objects.body),

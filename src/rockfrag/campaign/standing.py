@@ -22,11 +22,9 @@ from scipy.stats import norm, qmc
 
 from rockfrag.base.errors import InputError
 from rockfrag.base.short_repr import short_repr
-from rockfrag.engines.spatial import run_in_space
 from rockfrag.fragility.model_error import CUT, SCAN
 from rockfrag.records.motion import GroundMotion, Motion
 from rockfrag.simulation.ensemble import LightBodies, overturns
-from rockfrag.simulation.inputs import checked_threads
 from rockfrag.simulation.options import system_of
 from rockfrag.system import geometry
 from rockfrag.system.blocks import Block, Column
@@ -213,8 +211,7 @@ def simulate_in_space(
         GroundMotion(motion, motion.after("still", np.zeros_like(motion.acceleration)))
         for motion in motions
     ]
-    cores = checked_threads(threads)
-    return run_in_space(systems, shaking, scales, threads=cores).overturned
+    return overturns(systems, shaking, scales=scales, threads=threads).overturned
 
 
 def least_angle_deg(body: RigidBody) -> float:

@@ -13,7 +13,6 @@ import numpy as np
 
 from rockfrag.base.arrays import Flags, Floats
 from rockfrag.base.plausible import STONE
-from rockfrag.engines.spatial import run_in_space
 from rockfrag.fragility.batch_glm import fit_batch
 from rockfrag.fragility.toppling_velocity import (
     HEIGHTS,
@@ -229,7 +228,7 @@ def shaken_in_space(
     reached = np.empty((len(LIMITS), len(sizes), len(pairs), levels.shape[1]), bool)
     for i, size in enumerate(sizes):
         scales = levels[i] / measure[:, np.newaxis]
-        found = run_in_space([block_of(size, standing)], shaking, scales)
+        found = overturns(block_of(size, standing), shaking, scales=scales, threads=1)
         reached[:, i] = _limits_of(found.peak_rotation[0, ..., 0])
     return Shaken(sizes, levels, reached)
 

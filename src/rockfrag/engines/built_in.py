@@ -168,6 +168,7 @@ SPATIAL = SpatialEngine(
             Wish.TIE,
             Wish.BOND,
             Wish.WALL,
+            Wish.SPREAD,
         }
     ),
     "rockfrag.engines.spatial.engine:run",

@@ -64,6 +64,7 @@ class Wish(Enum):
     SUPPORT = "an isolator"
     PLACE = "bodies where an earlier response left them"
     STEPS = "jumps of the velocity"
+    SPREAD = "a spread of the corners of the base"
 
 
 @dataclass(frozen=True)
@@ -76,6 +77,10 @@ class Request:
     g: float = GRAVITY  # acceleration of gravity [m/s²]
     # largest product of frequency parameter and step [-], of engines that take one
     step: float = STEP
+    # largest displacement of each corner of a base in space over its extent [-], and largest angle by which
+    # the body is turned about the vertical [rad]; drawn anew from the seed for each system and motion
+    spread: float = 0.0
+    seed: int = 0
 
 
 @dataclass(frozen=True)
@@ -187,6 +192,7 @@ def wishes(system: System, motion: GroundMotion, request: Request) -> frozenset[
         Wish.SUPPORT: system.support is not None,
         Wish.PLACE: start is not None and start.position is not None,
         Wish.STEPS: motion.steps is not None,
+        Wish.SPREAD: request.spread > 0,
     }
     return frozenset(wish for wish, there in made.items() if there)
 

@@ -17,7 +17,11 @@ import pandas as pd
 from numpy.typing import ArrayLike, NDArray
 
 from rockfrag.base.arrays import Floats
-from rockfrag.base.input_checks import positive_number
+from rockfrag.base.input_checks import (
+    number_from_zero,
+    positive_number,
+    whole_within,
+)
 from rockfrag.base.keywords import named_keywords
 from rockfrag.base.units import GRAVITY
 from rockfrag.engines.contract import Cases, Request, run_cases
@@ -85,6 +89,8 @@ def overturns(
     forces: bool = False,
     g: float = GRAVITY,
     step: float = STEP,
+    spread: float = 0.0,
+    seed: int = 0,
     threads: int | None = None,
 ) -> Outcomes:
     """Say for every body × motion × scale whether it overturns.
@@ -112,6 +118,11 @@ def overturns(
     step
         Largest p h of a step, of which a stack takes 0.35 while both its blocks rotate: smaller is more accurate
         and slower.
+    spread
+        Of bodies in space: largest displacement of each corner of the base over its extent [-], and largest
+        angle by which the body is turned about the vertical [rad]; an ideal base has outcomes that no real one
+        has.
+    seed : of the spread, which is drawn anew for each body and motion
     threads : threads to use; all cores if None.  Results do not depend on it.
 
     Returns
@@ -152,6 +163,8 @@ def overturns(
         linear=linear,
         g=g,
         step=step,
+        spread=spread,
+        seed=seed,
         threads=threads,
     )
     inputs.check_case_count(len(cases.systems) * cases.scales.size)
@@ -165,6 +178,8 @@ def prepared(
     scales: ArrayLike,
     *,
     forces: bool = False,
+    spread: float = 0.0,
+    seed: int = 0,
     **options: Unpack[Options],
 ) -> Cases:
     """Return the checked cases of a door."""
@@ -179,6 +194,8 @@ def prepared(
         linear=inputs.checked_switch("linear", options.get("linear", False)),
         g=g,
         step=positive_number("step", options.get("step", STEP)),
+        spread=number_from_zero("spread", spread),
+        seed=whole_within("overturns", "seed", seed, 0, 2**63),
     )
     threads = inputs.checked_threads(options.get("threads"))
     cases = Cases(systems, tuple(shaking), factors, request, threads)

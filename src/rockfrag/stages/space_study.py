@@ -16,7 +16,6 @@ import pandas as pd
 from rockfrag.base.arrays import Floats
 from rockfrag.base.plausible import STONE
 from rockfrag.base.units import GRAVITY
-from rockfrag.engines.spatial import run_in_space
 from rockfrag.engines.spatial.body import PERTURBATION
 from rockfrag.motions.directions import pair_of_row
 from rockfrag.motions.rotation import common_time, rotate
@@ -143,16 +142,19 @@ def medians(
     peaks = np.array([np.sqrt(first.pga * other.pga) for first, other in pairs])
     scales = levels * GRAVITY / peaks[:, np.newaxis]
     shaking = [GroundMotion(first, other) for first, other in pairs]
-    common, spread = (
-        {"seed": study.seed, "threads": threads},
-        float(sweep["base_spread"]),
-    )
-    space = run_in_space([body], shaking, scales, spread=spread, **common).overturned[0]
+    spread = float(sweep["base_spread"])
+    space = overturns(
+        body, shaking, scales=scales, spread=spread, seed=study.seed, threads=threads
+    ).overturned[0]
     half = median(space.mean(axis=0), levels)
     near = 0 if math.isnan(half) else int(np.abs(np.log(levels / half)).argmin())
-    more = spread + PERTURBATION
-    other = run_in_space(
-        [body], shaking, scales[:, [near]], spread=more, **common
+    other = overturns(
+        body,
+        shaking,
+        scales=scales[:, [near]],
+        spread=spread + PERTURBATION,
+        seed=study.seed,
+        threads=threads,
     ).overturned[0]
     rows, fractions = [], []
     about = {"base": base, "slenderness": slenderness, "height_m": height}

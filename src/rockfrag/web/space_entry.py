@@ -1,6 +1,6 @@
 """The functions of the module that shakes a body in space, and the record through which a page calls them.
 
-They are compiled to WebAssembly alone (``build``), around the kernel that ``run_in_space`` runs.
+They are compiled to WebAssembly alone (``build``), around the kernel that the engine in space runs.
 """
 
 import numpy as np

@@ -6,12 +6,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from rockfrag import Block, GroundMotion, Motion
+from rockfrag import Block, GroundMotion, Motion, overturns
 from rockfrag.base.errors import InputError
 from rockfrag.engines.contract import Cases, Request
 from rockfrag.engines.planar.engine import run as run_planar
 from rockfrag.engines.spatial import _integrate as kernel
-from rockfrag.engines.spatial import run_in_space
 from rockfrag.engines.spatial.body import kernel_body, standing
 from rockfrag.engines.spatial.engine import run_case, run_scales
 from rockfrag.simulation import holding
@@ -28,7 +27,7 @@ FLAT = Block(0.4, 1.2, 300.0)  # the same in a plane
 def shaken(system, motion, scales=(1.0,)):
     """Outcomes of a system in space under a motion of shape (n, 3) [m/s²]."""
     x, y, z = (Motion(motion[:, k].copy(), DT, "xyz"[k]) for k in range(3))
-    return run_in_space([system], [GroundMotion(x, y, z)], scales)
+    return overturns(system, GroundMotion(x, y, z), scales=scales)
 
 
 def along_x(acceleration):

@@ -1,17 +1,19 @@
-"""The engine in space: many outcomes, or one analysis with its history (``docs/space.md``)."""
+"""The engine in space: many outcomes, or one analysis with its history (``docs/space.md``).
+
+In: :class:`rockfrag.engines.contract.Cases` of single bodies with a depth. Out:
+:class:`rockfrag.outcomes.Outcomes`, or of one case a :class:`SpatialResponse`.
+"""
 
 import math
-from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 import pandas as pd
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from rockfrag.base.arrays import Floats
-from rockfrag.base.errors import InputError
 from rockfrag.base.units import GRAVITY
 from rockfrag.engines.built_in import SPATIAL as ENGINE
 from rockfrag.engines.compile.jit import compiling_alone
@@ -28,8 +30,6 @@ from rockfrag.engines.spatial.body import (
     standing,
 )
 from rockfrag.outcomes.outcomes import Outcomes, empty_outcomes
-from rockfrag.records.motion import GroundMotion
-from rockfrag.system.blocks import Block, as_system
 from rockfrag.system.system import System
 
 if TYPE_CHECKING:
@@ -109,23 +109,22 @@ class SpatialResponse:
         return math.nan
 
 
-def run(cases: Cases, spread: float = 0.0, seed: int = 0) -> Outcomes:
-    """Return the outcomes of cases that it supports; spread and seed are those of :func:`run_in_space`."""
+def run(cases: Cases) -> Outcomes:
+    """Return the outcomes of cases that it supports."""
     result = empty_outcomes(
         cases.names, cases.scales, [ENGINE.name], holding=cases.holding
     )
     g = cases.request.g
-    bodies = [kernel_body(system, g) for system in cases.systems]
-    tasks = [(i, j) for i in range(len(bodies)) for j in range(len(cases.motions))]
+    as_given = [_as_given(system, g) for system in cases.systems]
+    tasks = [(i, j) for i in range(len(as_given)) for j in range(len(cases.motions))]
 
     def run_pair(task: tuple[int, int]) -> None:
         i, j = task
-        motion, body, turned = cases.motions[j], bodies[i], 0.0
-        if spread > 0:
-            rng = np.random.default_rng([seed, i, j])
-            system, turned = perturbed(cases.systems[i], spread, rng)
-            body = kernel_body(system, g)
-        ground, start = motion.accelerations, standing(body, turned)
+        motion, standing_body = cases.motions[j], as_given[i]
+        if cases.request.spread > 0:
+            standing_body = _drawn(cases.systems[i], cases.request, task)
+        body, start = standing_body
+        ground = motion.accelerations
         later = later_peaks(ground)
         # a copy: an array that may not be written would be a type of its own to the kernel
         scales = np.array(cases.scales[j])
@@ -143,14 +142,42 @@ def run(cases: Cases, spread: float = 0.0, seed: int = 0) -> Outcomes:
     return result
 
 
+def _as_given(system: System, g: float) -> tuple[np.void, Floats]:
+    """Record of the body of a system for the kernel, and the state in which it stands, shape (SIZE,)."""
+    body = kernel_body(system, g)
+    return body, standing(body)
+
+
+def _drawn(
+    system: System, request: Request, place: tuple[int, int]
+) -> tuple[np.void, Floats]:
+    """Likewise, of a base whose corners are moved and of a body that is turned by the spread of a request.
+
+    The ``place`` of system and motion among those of a grid numbers the draw.
+    """
+    rng = np.random.default_rng([request.seed, *place])
+    other, turned = perturbed(system, request.spread, rng)
+    body = kernel_body(other, request.g)
+    return body, standing(body, turned)
+
+
 def history(case: Case) -> SpatialResponse:
     """Return outcome and history of a case that it supports."""
     g = case.request.g
-    body = kernel_body(case.system, g)
+    if case.request.spread > 0:
+        body, start = _drawn(case.system, case.request, (0, 0))
+    else:
+        body, start = _as_given(case.system, g)
     ground = case.motion.accelerations
     samples = len(ground) + math.ceil(AFTER / case.motion.dt) + 2
     found, history = run_case(
-        body, ground, case.motion.dt, case.scale, g=g, samples=samples
+        body,
+        ground,
+        case.motion.dt,
+        case.scale,
+        g=g,
+        samples=samples,
+        start=start,
     )
     table = history_table(history, case.motion.dt, float(body["height"]))
     outline = np.array(body["points"][: body["count"], :2])
@@ -333,37 +360,3 @@ def _write_holding(
         result.largest_impulse[case][:, row] = mass * impact
         result.largest_force[case][:, row] = mass * force
         result.breaking_time[case][:, row] = breaks
-
-
-def run_in_space(
-    bodies: Sequence[System | Block],
-    motions: Sequence[GroundMotion],
-    scales: ArrayLike = (1.0,),
-    *,
-    spread: float = 0.0,
-    seed: int = 0,
-    threads: int = 1,
-    g: float = GRAVITY,
-) -> Outcomes:
-    """Say for every body × motion × scale what becomes of it in space.
-
-    The outcomes have shape (systems, motions, scales); ``scales`` has shape (scales,) or (motions, scales).
-    ``spread`` is the largest displacement of each vertex of the base over its extent [-], and the largest angle by
-    which the body is turned about the vertical [rad], drawn anew from ``seed`` for each motion: an ideal base has
-    outcomes that no real one has.
-    """
-    request = Request(g=g)
-    systems = tuple(as_system(body) for body in bodies)
-    for system in systems:
-        for motion in motions:
-            found = ENGINE.supports(system, motion, request)
-            if not found:
-                missing = " and ".join(sorted(wish.value for wish in found.missing))
-                raise InputError(
-                    f"in space: {found.reason or missing + ' cannot be had'}."
-                )
-    factors = np.broadcast_to(
-        np.atleast_2d(np.asarray(scales, dtype=np.float64)),
-        (len(motions), np.shape(scales)[-1]),
-    )
-    return run(Cases(systems, tuple(motions), factors, request, threads), spread, seed)
