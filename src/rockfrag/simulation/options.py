@@ -87,13 +87,11 @@ def system_of(
     The :class:`rockfrag.system.system.System`.
     """
     system = as_system(body)
-    contacts, start = list(system.contacts), system.start
+    start = system.start
     if friction is not None:
         given = _frictions_of(system.count, friction, "friction" + name)
-        contacts = [
-            replace(contact, friction=mu)
-            for contact, mu in zip(contacts, given, strict=True)
-        ]
+        system = system.with_friction(given)
+    contacts = list(system.contacts)
     if restitution is not None:
         laws = _impact_laws(system, restitution, "restitution" + name)
         contacts = [

@@ -15,7 +15,7 @@ from rockfrag.system import geometry
 from rockfrag.system.body import Circle, Polygon, RigidBody, Vector3
 from rockfrag.system.bond import Bond
 from rockfrag.system.constraints import Constraint, Tie, Wall
-from rockfrag.system.contact import Contact
+from rockfrag.system.contact import Contact, Friction
 from rockfrag.system.support import Support
 
 MOST_BODIES = 12  # bodies of a column
@@ -154,12 +154,22 @@ class System:
 
     def held(self) -> "System":
         """Return the system with contacts that never slide."""
-        return replace(
-            self,
-            contacts=tuple(
-                replace(contact, friction=None) for contact in self.contacts
-            ),
-        )
+        return self.with_friction([None] * self.count)
+
+    def with_friction(self, friction: Sequence[Friction | None]) -> "System":
+        """Return the system with other friction.
+
+        Parameters
+        ----------
+        friction : of each contact, from below; None where nothing slides
+
+        Returns
+        -------
+        The system, with all else as it is.
+        """
+        each = zip(self.contacts, friction, strict=True)
+        contacts = tuple(replace(contact, friction=value) for contact, value in each)
+        return replace(self, contacts=contacts)
 
     def in_plane(self) -> "System":
         """Return the planar system that moves in the vertical plane of x."""
