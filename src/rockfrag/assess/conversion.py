@@ -4,6 +4,9 @@ P(topples | IM, PGV/IM) is fitted to the simulated motions (:mod:`rockfrag.asses
 PGV/IM is larger by a factor r topples the object at levels of IM smaller by r^w, with w the effect of ln PGV/IM
 over that of ln IM: fractions of motions are still counted.  The spread of ln PGV/IM at a site differs from one
 earthquake to the next and belongs into the fractions; its mean is not known and belongs into the interval.
+
+In: outcomes of motions, their PGV/IM [s] and what is known of the site. Out: weights and fractions at the site.
+Theory: ``docs/assess.md``, "Two measures".
 """
 
 import math

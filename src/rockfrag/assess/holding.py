@@ -4,6 +4,9 @@ Each holder (:mod:`rockfrag.assess.standing.holders`) is tried twice.  So strong
 motions at the level of the site, it shows what it must bear; as strong as ``PART`` of these motions ask, under all
 levels, it is compared with the object as it stands.  A holder that no engine can simulate with the object in space
 is tried in a plane, beside the object in that plane; what cannot be simulated there either is not tried.
+
+In: an object, holders and motions. Out: forces [N] and factors on the probability [-].
+Theory: ``docs/holding.md``.
 """
 
 from collections.abc import Callable, Iterator, Sequence

@@ -1,6 +1,9 @@
 """A hazard curve: how often each level of shaking is exceeded at a site, and how files say so.
 
 Of a file it is told which kind it is; of several the mean with its quantiles is put together.
+
+In: text of a file, or points. Out: a curve, levels in the unit of its measure and annual rates [1/a].
+Docs: ``docs/assess.md``, "How likely, and what to do".
 """
 
 import csv
