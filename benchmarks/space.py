@@ -83,7 +83,7 @@ def memory(body: Block, motion: GroundMotion) -> None:
     """Print how much memory many cases take in space and in the plane."""
     flat = Block(body.width, body.height, body.mass)
     works = (
-        partial(overturns, [body], [motion], None),
+        partial(overturns, [body], [motion]),
         partial(overturns, [flat], [motion.x], None),
     )
     with multiprocessing.get_context("spawn").Pool(1, maxtasksperchild=1) as pool:
@@ -100,14 +100,14 @@ def main(count: int) -> None:
         GroundMotion(*(Motion(component, DT) for component in item.T)) for item in made
     ]
     body = Block(SIZE[0], SIZE[2], 300.0, depth=SIZE[1])
-    overturns(body, shaken[:1], scales=[0.1], threads=1)
+    overturns([body], shaken[:1], scales=[0.1])
     times = []
     for _ in range(PASSES):
         start = time.process_time()
-        first = overturns(body, shaken, scales=SCALES, threads=1)
+        first = overturns([body], shaken, scales=SCALES)
         times.append(time.process_time() - start)
     ours = count * len(SCALES) / min(times)
-    second = overturns(body, shaken, scales=SCALES, threads=2)
+    second = overturns([body], shaken, scales=SCALES, threads=2)
     equal = np.array_equal(first.turn, second.turn) and np.array_equal(
         first.certain_time, second.certain_time, equal_nan=True
     )

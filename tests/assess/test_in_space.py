@@ -33,7 +33,7 @@ def test_the_fraction_is_that_of_both_components_which_counts_beside_that_in_one
     shaking = [GroundMotion(few.base[i], few.base[j]) for i, j in few.pairs]
     scales = [[0.4 / np.sqrt(pair.x.pga * pair.y.pga) * 9.80665] for pair in shaking]
     body = Block(0.35, 1.2, 180.0, depth=0.5)
-    fallen = overturns(body, shaking, scales=np.array(scales)).overturned
+    fallen = overturns([body], shaking, scales=np.array(scales)).overturned
     total, _, fell = found.counts
     assert 0 < fell / total == fallen.mean() < 1
     answer = json.loads(as_json(found))

@@ -107,7 +107,7 @@ def test_outcomes_over_the_amplitudes_are_those_of_the_package(
     waited(browser, COMPUTED)
     data = "JSON.parse(document.getElementById('live-data').textContent)"
     scales = np.array(AMPLITUDES_G) / browser.run(f"{data}.motions[0].peak_g")
-    expected = overturns(system, WAVES, scales=scales).overturned.ravel()
+    expected = overturns([system], [WAVES], scales=scales).overturned.ravel()
     assert browser.run(COMPUTED) == "".join("1" if fell else "0" for fell in expected)
     assert 0 < expected.sum() < expected.size
     assert browser.console == []

@@ -300,7 +300,7 @@ class Shaking(IntensityLevels):
         """
         shaking, scales = self._records()
         lifting = lifting_in_space(body, shaking)
-        result = overturns(body, shaking, scales=scales, spread=spread)
+        result = overturns([body], shaking, scales=scales, spread=spread)
         states = states_of(result)
         of_row = np.arange(len(scales))
         return self._each_system(states, of_row=of_row, lifting=[lifting])[0]
@@ -332,7 +332,7 @@ class Shaking(IntensityLevels):
             found = self._each_system(states_of(result), light, lifting=lifting)
             return found[0], result
         shaking, scales = self._records()
-        result = overturns(system, shaking, scales=scales)
+        result = overturns([system], shaking, scales=scales)
         lifting = [lifting_in_space(system, shaking)]
         rows = np.arange(len(scales))
         found = self._each_system(states_of(result), of_row=rows, lifting=lifting)
@@ -343,8 +343,7 @@ class Shaking(IntensityLevels):
     ) -> tuple[ObjectOutcomes, Floats]:
         """Outcomes of the object on a pad on which it may slide, and how far it does [m], (motions, levels)."""
         system = objects.system_of(objects.body)
-        below = [contact.friction for contact in system.contacts[:-1]]
-        system = system.with_friction([*below, Friction(friction, friction)])
+        system = system.with_friction(Friction(friction, friction), at=-1)
         base = self.motions.base
         result = overturns(system, base, scales=self._factors(base))
         lifting = [lifting_in_plane(system, base)]
@@ -411,8 +410,7 @@ class Shaking(IntensityLevels):
         motions, allowed = self.motions, self.allowed[:, 0]
         solid = objects.solid(objects.body) if motions.both else None
         if solid is not None and objects.friction is not None and not objects.pedestals:
-            friction = Friction(objects.friction, objects.friction)
-            slides = solid.with_friction([friction])
+            slides = solid.with_friction(Friction(objects.friction, objects.friction))
             return float(self.in_space(slides, objects.base_spread).fractions()[0])
         fallen = overturns(
             objects.system_of(objects.body),

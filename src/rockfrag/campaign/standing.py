@@ -25,6 +25,7 @@ from rockfrag.base.short_repr import short_repr
 from rockfrag.fragility.model_error import CUT, SCAN
 from rockfrag.records.motion import GroundMotion, Motion
 from rockfrag.simulation.ensemble import LightBodies, overturns
+from rockfrag.simulation.inputs import checked_threads
 from rockfrag.simulation.options import system_of
 from rockfrag.system import geometry
 from rockfrag.system.blocks import Block, Column
@@ -211,7 +212,8 @@ def simulate_in_space(
         GroundMotion(motion, motion.after("still", np.zeros_like(motion.acceleration)))
         for motion in motions
     ]
-    return overturns(systems, shaking, scales=scales, threads=threads).overturned
+    cores = checked_threads(threads)
+    return overturns(systems, shaking, scales=scales, threads=cores).overturned
 
 
 def least_angle_deg(body: RigidBody) -> float:

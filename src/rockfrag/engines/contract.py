@@ -64,7 +64,7 @@ class Wish(Enum):
     SUPPORT = "an isolator"
     PLACE = "bodies where an earlier response left them"
     STEPS = "jumps of the velocity"
-    SPREAD = "a spread of the corners of the base"
+    SPREAD = "a base that is spread"
 
 
 @dataclass(frozen=True)
@@ -77,8 +77,8 @@ class Request:
     g: float = GRAVITY  # acceleration of gravity [m/s²]
     # largest product of frequency parameter and step [-], of engines that take one
     step: float = STEP
-    # largest displacement of each corner of a base in space over its extent [-], and largest angle by which
-    # the body is turned about the vertical [rad]; drawn anew from the seed for each system and motion
+    # largest displacement of each vertex of the base over its extent [-], and largest angle by which the body is
+    # turned about the vertical [rad], drawn from ``seed`` anew for each system and motion
     spread: float = 0.0
     seed: int = 0
 

@@ -20,7 +20,7 @@ from rockfrag.base.arrays import Floats
 from rockfrag.base.input_checks import (
     number_from_zero,
     positive_number,
-    whole_within,
+    whole_number,
 )
 from rockfrag.base.keywords import named_keywords
 from rockfrag.base.units import GRAVITY
@@ -87,10 +87,10 @@ def overturns(
     friction: FrictionInput | None = None,
     vertical: inputs.MotionLike | Sequence[inputs.MotionLike] | None = None,
     forces: bool = False,
-    g: float = GRAVITY,
-    step: float = STEP,
     spread: float = 0.0,
     seed: int = 0,
+    g: float = GRAVITY,
+    step: float = STEP,
     threads: int | None = None,
 ) -> Outcomes:
     """Say for every body × motion × scale whether it overturns.
@@ -114,15 +114,14 @@ def overturns(
     vertical
         Vertical accelerations, upwards [m/s²], one for each motion and sampled as it; they are scaled with it.
     forces : also tell the friction that the responses asked, and least normal forces
+    spread, seed
+        In space: largest displacement of each vertex of the base over its extent [-], and largest angle by which
+        the body is turned about the vertical [rad], drawn from the seed anew for each system and motion. An ideal
+        base has outcomes that no real one has.
     g : acceleration of gravity [m/s²]
     step
         Largest p h of a step, of which a stack takes 0.35 while both its blocks rotate: smaller is more accurate
         and slower.
-    spread
-        Of bodies in space: largest displacement of each corner of the base over its extent [-], and largest
-        angle by which the body is turned about the vertical [rad]; an ideal base has outcomes that no real one
-        has.
-    seed : of the spread, which is drawn anew for each body and motion
     threads : threads to use; all cores if None.  Results do not depend on it.
 
     Returns
@@ -155,6 +154,8 @@ def overturns(
         dt,
         scales,
         forces=forces,
+        spread=spread,
+        seed=seed,
         restitution=restitution,
         friction=friction,
         vertical=vertical,
@@ -163,8 +164,6 @@ def overturns(
         linear=linear,
         g=g,
         step=step,
-        spread=spread,
-        seed=seed,
         threads=threads,
     )
     inputs.check_case_count(len(cases.systems) * cases.scales.size)
@@ -195,7 +194,7 @@ def prepared(
         g=g,
         step=positive_number("step", options.get("step", STEP)),
         spread=number_from_zero("spread", spread),
-        seed=whole_within("overturns", "seed", seed, 0, 2**63),
+        seed=whole_number("seed", seed),
     )
     threads = inputs.checked_threads(options.get("threads"))
     cases = Cases(systems, tuple(shaking), factors, request, threads)

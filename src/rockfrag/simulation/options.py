@@ -87,11 +87,13 @@ def system_of(
     The :class:`rockfrag.system.system.System`.
     """
     system = as_system(body)
-    start = system.start
+    contacts, start = list(system.contacts), system.start
     if friction is not None:
         given = _frictions_of(system.count, friction, "friction" + name)
-        system = system.with_friction(given)
-    contacts = list(system.contacts)
+        contacts = [
+            replace(contact, friction=mu)
+            for contact, mu in zip(contacts, given, strict=True)
+        ]
     if restitution is not None:
         laws = _impact_laws(system, restitution, "restitution" + name)
         contacts = [

@@ -13,7 +13,7 @@ from typing import Any, cast
 import numpy as np
 import pandas as pd
 
-from rockfrag.base.arrays import Floats
+from rockfrag.base.arrays import Flags, Floats
 from rockfrag.base.plausible import STONE
 from rockfrag.base.units import GRAVITY
 from rockfrag.engines.spatial.body import PERTURBATION
@@ -143,19 +143,23 @@ def medians(
     scales = levels * GRAVITY / peaks[:, np.newaxis]
     shaking = [GroundMotion(first, other) for first, other in pairs]
     spread = float(sweep["base_spread"])
-    space = overturns(
-        body, shaking, scales=scales, spread=spread, seed=study.seed, threads=threads
-    ).overturned[0]
+
+    def toppled(factors: Floats, spread: float) -> Flags:
+        """Whether each pair at each factor topples the body, shape (pairs, factors)."""
+        found = overturns(
+            [body],
+            shaking,
+            scales=factors,
+            spread=spread,
+            seed=study.seed,
+            threads=threads,
+        )
+        return np.asarray(found.overturned[0])
+
+    space = toppled(scales, spread)
     half = median(space.mean(axis=0), levels)
     near = 0 if math.isnan(half) else int(np.abs(np.log(levels / half)).argmin())
-    other = overturns(
-        body,
-        shaking,
-        scales=scales[:, [near]],
-        spread=spread + PERTURBATION,
-        seed=study.seed,
-        threads=threads,
-    ).overturned[0]
+    other = toppled(scales[:, [near]], spread + PERTURBATION)
     rows, fractions = [], []
     about = {"base": base, "slenderness": slenderness, "height_m": height}
     for loss in (LOSS, NO_LOSS) if base == ROUND else (LOSS,):

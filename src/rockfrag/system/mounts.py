@@ -4,7 +4,6 @@ In: a planar system and what people state of a mount.  Out: the walls, ties and 
 """
 
 import math
-from dataclasses import replace
 
 from rockfrag.base.errors import InputError
 from rockfrag.base.input_checks import number_from_zero, positive_number
@@ -162,19 +161,4 @@ def on_casters(system: System, word: str) -> System:
         raise InputError(f"casters: expected locked or free, got {word!r}.")
     if word == "locked":
         return system
-    return with_ground_friction(system, ROLLING)
-
-
-def with_ground_friction(system: System, friction: Friction) -> System:
-    """System whose lowest body meets the ground with a friction.
-
-    Parameters
-    ----------
-    system, friction : the system, and static and kinetic coefficient [-]
-
-    Returns
-    -------
-    The system.
-    """
-    lowest = replace(system.contacts[0], friction=friction)
-    return replace(system, contacts=(lowest, *system.contacts[1:]))
+    return system.with_friction(ROLLING)

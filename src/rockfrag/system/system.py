@@ -154,22 +154,18 @@ class System:
 
     def held(self) -> "System":
         """Return the system with contacts that never slide."""
-        return self.with_friction([None] * self.count)
+        return replace(
+            self,
+            contacts=tuple(
+                replace(contact, friction=None) for contact in self.contacts
+            ),
+        )
 
-    def with_friction(self, friction: Sequence[Friction | None]) -> "System":
-        """Return the system with other friction.
-
-        Parameters
-        ----------
-        friction : of each contact, from below; None where nothing slides
-
-        Returns
-        -------
-        The system, with all else as it is.
-        """
-        each = zip(self.contacts, friction, strict=True)
-        contacts = tuple(replace(contact, friction=value) for contact, value in each)
-        return replace(self, contacts=contacts)
+    def with_friction(self, friction: Friction, at: int = 0) -> "System":
+        """Return the system with another friction at one contact: 0 is the lowest body's, -1 the uppermost's."""
+        contacts = list(self.contacts)
+        contacts[at] = replace(contacts[at], friction=friction)
+        return replace(self, contacts=tuple(contacts))
 
     def in_plane(self) -> "System":
         """Return the planar system that moves in the vertical plane of x."""

@@ -27,7 +27,7 @@ FLAT = Block(0.4, 1.2, 300.0)  # the same in a plane
 def shaken(system, motion, scales=(1.0,)):
     """Outcomes of a system in space under a motion of shape (n, 3) [m/s²]."""
     x, y, z = (Motion(motion[:, k].copy(), DT, "xyz"[k]) for k in range(3))
-    return overturns(system, GroundMotion(x, y, z), scales=scales)
+    return overturns([system], [GroundMotion(x, y, z)], scales=scales)
 
 
 def along_x(acceleration):

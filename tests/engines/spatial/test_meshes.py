@@ -29,9 +29,9 @@ def test_the_mesh_of_a_box_is_the_box(shape):
     np.testing.assert_allclose(*corners, atol=1e-12)
     x, y, _ = (synthetic_motion(np.random.default_rng(4), 2) * 0.5).T
     motion = GroundMotion(Motion(x, DT), Motion(y, DT))
-    found = overturns(System((body,), (Contact(),)), motion, scales=[0.6, 0.8, 1.0])
+    found = overturns([System((body,), (Contact(),))], [motion], scales=[0.6, 0.8, 1.0])
     expected = overturns(
-        Block(0.35, 1.2, 300.0, depth=0.5), motion, scales=[0.6, 0.8, 1.0]
+        [Block(0.35, 1.2, 300.0, depth=0.5)], [motion], scales=[0.6, 0.8, 1.0]
     )
     np.testing.assert_array_equal(found.overturned, expected.overturned)
 

@@ -19,7 +19,7 @@ from rockfrag.system.body import Circle, Interval, Outline, Polygon
 from rockfrag.system.bond import Bond
 from rockfrag.system.constraints import Tie, Wall
 from rockfrag.system.contact import Friction
-from rockfrag.system.mounts import ROLLING, with_ground_friction
+from rockfrag.system.mounts import ROLLING
 from rockfrag.system.support import SlidingPendulum
 from rockfrag.system.system import System, hold
 from rockfrag.words.findings import Finding, finding, two
@@ -229,9 +229,8 @@ class Casters(Holder):
 
     def on(self, system: System) -> System:
         """Let the ground's contact roll, or slide on what is locked."""
-        return with_ground_friction(
-            system, Friction(LOCKED_AT, LOCKED_AT) if self.locked else ROLLING
-        )
+        locked = Friction(LOCKED_AT, LOCKED_AT)
+        return system.with_friction(locked if self.locked else ROLLING)
 
     def called(self) -> Finding:
         """Casters that are locked, or free."""

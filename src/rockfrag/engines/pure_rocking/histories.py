@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -41,6 +42,28 @@ KINDS = {
 
 Records = NDArray[np.void]
 Link = tuple[Floats, ...]
+
+
+@dataclass(frozen=True)
+class _Turning:
+    """How one body turns over a history of n samples."""
+
+    # of its rotation [-], shape (n,) each
+    sine: Floats
+    cosine: Floats
+    omega: Floats  # angular velocity [rad/s], shape (n,)
+    alpha: Floats  # angular acceleration [rad/s²], shape (n,)
+
+    def turned(self, arm: Floats) -> Link:
+        """Arm in the body [m], shape (2,) or (n, 2), as it lies relative to the ground: x and y [m], (n,) each."""
+        x, y = np.transpose(arm)
+        return x * self.cosine + y * self.sine, -x * self.sine + y * self.cosine
+
+    def link(self, arm: Floats) -> Link:
+        """The same, and the acceleration of its tip about its foot [m/s²], α × r - ω² r, (n,) each."""
+        x, y = self.turned(arm)
+        inwards = self.omega * self.omega
+        return x, y, self.alpha * y - inwards * x, -self.alpha * x - inwards * y
 
 
 def run(cases: Cases) -> Outcomes:
@@ -193,22 +216,17 @@ class SingleRun:
             # the same on every processor
             kept.fill_sines(theta, sine, cosine)
         omega, alpha = self.of("omega"), self.of("alpha")
-
-        def turned(arms: Any, body: int) -> Link:
-            (ax, ay), s, c = np.transpose(arms), sine[:, body], cosine[:, body]
-            return ax * c + ay * s, -ax * s + ay * c
-
-        def link(arms: Any, body: int) -> Link:
-            (x, y), w, q = turned(arms, body), omega[:, body], alpha[:, body]
-            return x, y, q * y - w * w * x, -q * x - w * w * y
-
+        turns = [
+            _Turning(sine[:, i], cosine[:, i], omega[:, i], alpha[:, i])
+            for i in range(self.count)
+        ]
         lower, side, ways = (
             self.system.shapes[0],
             (state < 0).astype(np.int64),
             (+1, -1),
         )
         arm = np.array([geometry.arm(lower, way) for way in ways])[side[:, 0]]
-        links = [link(arm, 0)]
+        links = [turns[0].link(arm)]
         centres = [links[0][:2]]
         if self.count == 2:
             pile = self.system.pile
@@ -216,9 +234,9 @@ class SingleRun:
             above = np.array([geometry.upper_arm(pile, way) for way in ways])
             top = np.subtract(pile.right, pile.left)
             links += [
-                link(feet[side[:, 0], side[:, 1]], 0),
-                link(above[side[:, 1]], 1),
-                turned(top, 0),
+                turns[0].link(feet[side[:, 0], side[:, 1]]),
+                turns[1].link(above[side[:, 1]]),
+                turns[0].turned(top),
             ]
             (xd, yd, *_), (x, y, *_) = links[1:3]
             centres.append((xd + x, yd + y))

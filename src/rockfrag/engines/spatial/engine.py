@@ -110,20 +110,24 @@ class SpatialResponse:
 
 
 def run(cases: Cases) -> Outcomes:
-    """Return the outcomes of cases that it supports."""
+    """Return the outcomes of cases that it supports.
+
+    Of a base that is spread each vertex is moved, and the body turned, anew for each system and motion: an ideal
+    base has outcomes that no real one has.
+    """
     result = empty_outcomes(
         cases.names, cases.scales, [ENGINE.name], holding=cases.holding
     )
     g = cases.request.g
-    as_given = [_as_given(system, g) for system in cases.systems]
-    tasks = [(i, j) for i in range(len(as_given)) for j in range(len(cases.motions))]
+    standing_bodies = [_as_given(system, g) for system in cases.systems]
+    systems, motions = range(len(cases.systems)), range(len(cases.motions))
+    tasks = [(i, j) for i in systems for j in motions]
 
     def run_pair(task: tuple[int, int]) -> None:
         i, j = task
-        motion, standing_body = cases.motions[j], as_given[i]
+        motion, (body, start) = cases.motions[j], standing_bodies[i]
         if cases.request.spread > 0:
-            standing_body = _drawn(cases.systems[i], cases.request, task)
-        body, start = standing_body
+            body, start = _spread(cases.systems[i], cases.request, task)
         ground = motion.accelerations
         later = later_peaks(ground)
         # a copy: an array that may not be written would be a type of its own to the kernel
@@ -148,26 +152,22 @@ def _as_given(system: System, g: float) -> tuple[np.void, Floats]:
     return body, standing(body)
 
 
-def _drawn(
+def _spread(
     system: System, request: Request, place: tuple[int, int]
 ) -> tuple[np.void, Floats]:
-    """Likewise, of a base whose corners are moved and of a body that is turned by the spread of a request.
-
-    The ``place`` of system and motion among those of a grid numbers the draw.
-    """
+    """Record and state likewise, with vertices moved and the body turned; the place in a grid numbers the draw."""
     rng = np.random.default_rng([request.seed, *place])
-    other, turned = perturbed(system, request.spread, rng)
-    body = kernel_body(other, request.g)
+    moved, turned = perturbed(system, request.spread, rng)
+    body = kernel_body(moved, request.g)
     return body, standing(body, turned)
 
 
 def history(case: Case) -> SpatialResponse:
-    """Return outcome and history of a case that it supports."""
+    """Return outcome and history of a case that it supports; a spread is that of the first case of a grid."""
     g = case.request.g
+    body, start = _as_given(case.system, g)
     if case.request.spread > 0:
-        body, start = _drawn(case.system, case.request, (0, 0))
-    else:
-        body, start = _as_given(case.system, g)
+        body, start = _spread(case.system, case.request, (0, 0))
     ground = case.motion.accelerations
     samples = len(ground) + math.ceil(AFTER / case.motion.dt) + 2
     found, history = run_case(
