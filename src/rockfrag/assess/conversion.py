@@ -301,7 +301,18 @@ class Site:
 def find_conversion(
     outcomes: ObjectOutcomes, motions: MotionSet, site: Site, *, by_statics: bool
 ) -> Conversion | None:
-    """Fit the fragility in two measures, and gather what is known of the velocity; None in PGV or unfitted."""
+    """Fit the fragility in two measures, and gather what is known of the velocity at the site.
+
+    Parameters
+    ----------
+    outcomes, motions : of an object at levels of one measure, and the motions that shook it
+    site : what is known of the earthquakes and of the ground there
+    by_statics : whether statics say which motions lift the object
+
+    Returns
+    -------
+    The :class:`Conversion`; None where levels are of PGV already, or the outcomes allow no fit.
+    """
     measure = outcomes.intensity_levels.measure
     if measure == PGV:
         return None
