@@ -520,9 +520,9 @@ def _of_element(
     measure = read_measure(
         f"SA({about.get('saPeriod', '')})" if imt.upper() == "SA" else imt, path
     )
-    values, fractions, times = (
-        _numbers_in(text, path) for text in (levels.text, poes[0].text, years)
-    )
+    values = _numbers_in(levels.text, path)
+    fractions = _numbers_in(poes[0].text, path)
+    times = _numbers_in(years, path)
     if len(times) != 1:
         raise InputError(
             f"{path}: the investigation time is {len(times)} numbers; give one."
