@@ -8,13 +8,17 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from rockfrag.engines.pure_rocking import ensembles
+from rockfrag.engines.pure_rocking.ensembles import run_blocks
 from rockfrag.fragility.empirical import TableIda
 from rockfrag.fragility.ida_curves import with_measures
 from rockfrag.records.motion import GroundMotion, Motion
 from rockfrag.shaketable.tests_table import read_measured
+from rockfrag.simulation import overturns
+from rockfrag.simulation.options import system_of
 from rockfrag.stages import tests as tests_stage
 from rockfrag.stages.fragility import export_curves, floor_curves
-from rockfrag.stages.ida import as_recorded
+from rockfrag.stages.ida import as_recorded, ida_table
 from rockfrag.stages.pedestal import measured_tables, pedestal_tables
 from rockfrag.study.study import Amplitudes
 from rockfrag.system.blocks import Block, Stack
@@ -197,3 +201,24 @@ def test_measured_tests_say_what_they_can_carry(tmp_path):
     assert 0.9 < whole < 1.1
     curves = found["measured/fragility"].set_index("configuration")["theta"]
     assert curves["T1"] > curves["T2"] > curves["T3"]
+
+
+def test_with_friction_a_case_is_integrated_once_with_and_once_without_sliding(
+    monkeypatch,
+):
+    runs = []
+
+    def counted(cases):
+        runs.append(cases.shape)
+        return run_blocks(cases)
+
+    monkeypatch.setattr(ensembles, "run_blocks", counted)
+    shaking = 9.0 * np.sin(2 * np.pi * np.arange(100) / 100)
+    motion = GroundMotion(Motion(shaking, 0.01, metadata={"floor": "hall"}))
+    loose = system_of(STATUE, friction=0.2)
+    table = ida_table(loose, [motion], np.array([0.1, 0.3, 0.6])).to_pandas()
+    assert runs == [(1, 1, 3)]
+    held = overturns(STATUE, motion, scales=np.array([0.1, 0.3, 0.6]) * 9.80665 / 9.0)
+    rough = table["overturned_without_sliding"]
+    assert rough.tolist() == held.overturned.ravel().tolist() == [False, True, True]
+    assert not table["overturned"].any()

@@ -1,4 +1,8 @@
-"""The answer: one object at one place, assessed."""
+"""The answer: one object at one place, assessed.
+
+In: a request and motions. Out: :class:`Assessment`, from which findings, page and files are made.
+Docs: ``docs/assess.md``.
+"""
 
 import math
 from collections.abc import Callable, Mapping, Sequence
@@ -216,6 +220,11 @@ class Plan:
         """The hazard curve that counts."""
         return self.curves[0] if self.curves else None
 
+    @property
+    def comparing(self) -> Shaking:
+        """Motions and levels under which changes are compared."""
+        return self.fewer if self.compares_few else self.shaking
+
 
 @dataclass(frozen=True, eq=False)
 class Shaken:
@@ -353,48 +362,85 @@ def plan_for(
 
 
 def shake_all(requests: Sequence[Request], plan: Plan) -> list[Shaken]:
-    """Shake objects in one place at once; of each the same results as alone, to the bit."""
+    """Shake objects in one place at once; of each the same results as alone, to the bit.
+
+    Parameters
+    ----------
+    requests : an object each
+    plan : motions and levels of that place
+
+    Returns
+    -------
+    What became of each object: in its arrangements, with its changes, on its pad and in one plane.
+    """
     objects = [request.objects for request in requests]
-    ways = [
-        dict(list(object_.arrangements().items())[: 1 if plan.brief else None])
-        for object_ in objects
+    arranged = [_arrangements(object_, plan) for object_ in objects]
+    alike = [
+        _changes_alike(object_, bodies)
+        for object_, bodies in zip(objects, arranged, strict=True)
     ]
-    arrangements = plan.shaking.outcomes_of_each(objects, ways)
-    under = plan.fewer if plan.compares_few else plan.shaking
-    changes: list[dict[Finding, Body]] = []
-    alike: list[dict[Finding, str]] = []
-    for object_, bodies in zip(objects, ways, strict=True):
-        tried = object_.changes()
-        known = {
-            name: way for name in tried for way in bodies if bodies[way] == tried[name]
-        }
-        # of few motions the object as it stands comes first, then with each mitigation
-        first: dict[Finding, Body] = {}
-        if plan.compares_few:
-            first[_AS_IT_STANDS] = object_.body
-        changes.append(
-            first | {name: tried[name] for name in tried if name not in known}
-        )
-        alike.append(known)
-    compared = under.outcomes_of_each(objects, changes)
+    changed = [
+        _bodies_to_compare(object_, known, plan)
+        for object_, known in zip(objects, alike, strict=True)
+    ]
+    arrangements = plan.shaking.outcomes_of_each(objects, arranged)
+    compared = plan.comparing.outcomes_of_each(objects, changed)
     moved = _moved(requests, plan)
     found = []
     each = zip(objects, arrangements, compared, moved, alike, strict=True)
-    for object_, way, change, sides, known in each:
-        before = next(iter(way.values()))
+    for object_, arrangement, change, sides, known in each:
+        before = next(iter(arrangement.values()))
         if plan.compares_few:
             before = change.pop(_AS_IT_STANDS)
-        slides_off = False
-        if object_.under.pad_friction is not None:
-            on_it, slip = under.on_pad(object_, object_.under.pad_friction)
-            far = _slip_at(slip, plan.level, under)
-            change[_pad(object_.under.pad_friction, far, plan.level)] = on_it
-            slides_off = far > object_.block.width / 2
+        slides_off = _add_pad(change, object_, plan)
         planar = _in_one_plane(object_, plan)
         trials = _trials(object_, plan)
-        shaken = Shaken(way, sides, before, planar, change, known, trials, slides_off)
-        found.append(shaken)
+        found.append(
+            Shaken(
+                arrangement, sides, before, planar, change, known, trials, slides_off
+            )
+        )
     return found
+
+
+def _arrangements(object_: Standing, plan: Plan) -> dict[str, Body]:
+    """Bodies of the arrangements that are shaken: the first one alone if the answer is to be brief."""
+    bodies = list(object_.arrangements().items())
+    return dict(bodies[:1] if plan.brief else bodies)
+
+
+def _changes_alike(
+    object_: Standing, arranged: Mapping[str, Body]
+) -> dict[Finding, str]:
+    """Changes that make of the object what one of its arrangements is, with the name of that arrangement."""
+    return {
+        name: arrangement
+        for name, body in object_.changes().items()
+        for arrangement, other in arranged.items()
+        if other == body
+    }
+
+
+def _bodies_to_compare(
+    object_: Standing, alike: Mapping[Finding, str], plan: Plan
+) -> dict[Finding, Body]:
+    """Bodies with each change that no arrangement shows; under few motions first the object as it stands."""
+    first = {_AS_IT_STANDS: object_.body} if plan.compares_few else {}
+    changes = object_.changes().items()
+    return first | {name: body for name, body in changes if name not in alike}
+
+
+def _add_pad(
+    change: dict[Finding, ObjectOutcomes], object_: Standing, plan: Plan
+) -> bool:
+    """Add the outcomes on the pad, if there is one, to those of the changes; return whether it slides off."""
+    friction = object_.under.pad_friction
+    if friction is None:
+        return False
+    on_it, slip = plan.comparing.on_pad(object_, friction)
+    far = _slip_at(slip, plan.level, plan.comparing)
+    change[_pad(friction, far, plan.level)] = on_it
+    return far > object_.block.width / 2
 
 
 def _in_one_plane(objects: Standing, plan: Plan) -> ObjectOutcomes | None:

@@ -1,4 +1,7 @@
-"""What was not given and had to be assumed, with what depends on it."""
+"""What was not given and had to be assumed, with what depends on it.
+
+In: a request. Out: assumptions, each with its value and reason, as ids of texts. Docs: ``docs/defaults.md``.
+"""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass

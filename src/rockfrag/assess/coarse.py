@@ -4,7 +4,10 @@ Lone blocks on a grid of heights and slendernesses are assessed as ``rockfrag as
 each floor and in each way of standing that the table has. Median θ and β of their curves, all that is not known
 included, are interpolated in ln H and ln B/H; an object topples at the level x with the probability
 Φ(ln(x/θ)/β), and a hazard is summed over as for one object. What interpolation costs is measured in each run, on
-the objects that are simulated afterwards. Docs: ``docs/collections.md``, "A million objects".
+the objects that are simulated afterwards.
+
+In: a table of objects (height, slenderness) and a hazard. Out: a row an object with its probability.
+Docs: ``docs/collections.md``, "A million objects".
 """
 
 import math

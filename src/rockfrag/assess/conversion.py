@@ -4,6 +4,9 @@ P(topples | IM, PGV/IM) is fitted to the simulated motions (:mod:`rockfrag.asses
 PGV/IM is larger by a factor r topples the object at levels of IM smaller by r^w, with w the effect of ln PGV/IM
 over that of ln IM: fractions of motions are still counted.  The spread of ln PGV/IM at a site differs from one
 earthquake to the next and belongs into the fractions; its mean is not known and belongs into the interval.
+
+In: outcomes of motions, their PGV/IM [s] and what is known of the site. Out: weights and fractions at the site.
+Theory: ``docs/assess.md``, "Two measures".
 """
 
 import math
@@ -336,7 +339,18 @@ class Site:
 def find_conversion(
     outcomes: ObjectOutcomes, motions: MotionSet, site: Site, *, by_statics: bool
 ) -> Conversion | None:
-    """Fit the fragility in two measures, and gather what is known of the velocity; None in PGV or unfitted."""
+    """Fit the fragility in two measures, and gather what is known of the velocity at the site.
+
+    Parameters
+    ----------
+    outcomes, motions : of an object at levels of one measure, and the motions that shook it
+    site : what is known of the earthquakes and of the ground there
+    by_statics : whether statics say which motions lift the object
+
+    Returns
+    -------
+    The :class:`Conversion`; None where levels are of PGV already, or the outcomes allow no fit.
+    """
     measure = outcomes.intensity_levels.measure
     if measure == PGV:
         return None

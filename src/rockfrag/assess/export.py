@@ -1,4 +1,7 @@
-"""The answer as JSON, for other programs: every number of the page and what an independent computation needs."""
+"""The answer as JSON, for other programs: every number of the page and what an independent computation needs.
+
+In: an answer. Out: JSON, SI units or those of the keys. Docs: ``docs/assess.md``.
+"""
 
 import json
 import math

@@ -1,6 +1,8 @@
 """What an assessment found, as findings: the first screen, and what stands behind it.
 
 Every decision of an answer is taken here; the texts stand in the catalogues of :mod:`rockfrag.words`.
+
+In: an answer. Out: findings, each the id of a text with its numbers. Docs: ``docs/assess.md``, "What to do".
 """
 
 import math

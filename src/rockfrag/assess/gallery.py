@@ -1,4 +1,7 @@
-"""The page of a gallery: what topples together, what is lost, who adds most to it and what helps each."""
+"""The page of a gallery: what topples together, what is lost, who adds most to it and what helps each.
+
+In: an assessed inventory. Out: an HTML page and tables. Docs: ``docs/assess.md``, "A gallery".
+"""
 
 import math
 import os

@@ -5,6 +5,9 @@ motions at the level of the site, it shows what it must bear; as strong as ``PAR
 levels, it is compared with the object as it stands.  A holder that no engine can simulate with the object in
 space, or not soon enough, is tried in a plane, beside the object in that plane; what cannot be simulated there
 either is not tried.
+
+In: an object, holders and motions. Out: forces [N] and factors on the probability [-].
+Theory: ``docs/holding.md``.
 """
 
 from collections.abc import Callable, Iterator, Sequence

@@ -3,6 +3,9 @@
 All objects are shaken by the same ground motions, scaled to the same level, so that what topples together in an
 earthquake is counted and not assumed.  Rates follow from fractions of motions and the hazard as those of one
 object do (:mod:`rockfrag.assess.risk`).
+
+In: a table of objects and motions. Out: a line an object, and what topples together.
+Docs: ``docs/assess.md``, "A gallery".
 """
 
 import math

@@ -1,4 +1,8 @@
-"""What helps: the object changed, as a body, shaken by the same motions, as a factor on the probability."""
+"""What helps: the object changed, as a body, shaken by the same motions, as a factor on the probability.
+
+In: an object and its changes. Out: factors on the probability, with limits [-].
+Docs: ``docs/assess.md``, "What helps".
+"""
 
 import math
 from collections.abc import Mapping

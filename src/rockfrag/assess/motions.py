@@ -1,4 +1,7 @@
-"""The motions of an assessment: a default set of ordinary and pulse-like ones, or the user's own."""
+"""The motions of an assessment: a default set of ordinary and pulse-like ones, or the user's own.
+
+In: the package's motions, or files. Out: :class:`MotionSet`, accelerations [m/s²]. Docs: ``docs/motions.md``.
+"""
 
 import math
 from collections.abc import Iterable, Mapping, Sequence

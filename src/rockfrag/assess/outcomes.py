@@ -1,4 +1,8 @@
-"""Which motions topple a body at which level of shaking: fractions of motions, no curve assumed."""
+"""Which motions topple a body at which level of shaking: fractions of motions, no curve assumed.
+
+In: systems, motions and levels of a measure. Out: states by motion and level.
+Docs: ``docs/assess.md``, "What is computed".
+"""
 
 import math
 import warnings

@@ -1,4 +1,7 @@
-"""The page of one object, and the files that are written beside it."""
+"""The page of one object, and the files that are written beside it.
+
+In: an answer. Out: an HTML page, figures and tables. Docs: ``docs/assess.md``.
+"""
 
 import math
 import os

@@ -1,4 +1,8 @@
-"""Where an object stands: on the ground, or on a floor of a building that changes the motion."""
+"""Where an object stands: on the ground, or on a floor of a building that changes the motion.
+
+In: a floor and a building. Out: motions of that floor [m/s²].
+Docs: ``docs/assess.md``, "The building"; ``docs/building.md``.
+"""
 
 import re
 from collections.abc import Mapping, Sequence

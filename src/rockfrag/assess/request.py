@@ -1,4 +1,7 @@
-"""What is asked: an object, where it stands, and what shakes the place."""
+"""What is asked: an object, where it stands, and what shakes the place.
+
+In: settings as written by a user, with units. Out: a checked request, SI units. Docs: ``docs/assess.md``.
+"""
 
 import math
 import os

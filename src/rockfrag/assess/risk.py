@@ -6,6 +6,8 @@ linear in ln x between levels, and H the annual rate at which x is exceeded, a p
 All that is not known is drawn at once (:mod:`rockfrag.assess.core`, which computes; this module holds it in
 records). A fraction, or a probability, is the mean over the draws; its interval holds the middle 90 % of them and
 the mean. ``docs/assess.md`` has the sources.
+
+In: fractions, (draws, levels), and a hazard curve. Out: rates [1/a] and probabilities [-] with limits.
 """
 
 import math

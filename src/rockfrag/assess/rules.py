@@ -2,6 +2,9 @@
 
 Each rule gives the factor on a motion at which it expects a symmetric block that stands alone to topple; an object
 on a pedestal is looked at twice, as practice does: itself, and both as one body.
+
+In: blocks and motions. Out: factors on the motions by rule, and how far simulations are from them [-].
+Theory: ``docs/rules-of-thumb.md``.
 """
 
 import os

@@ -4,6 +4,9 @@ Which points carry, how far in edges carry and where the object faces are not kn
 (:mod:`rockfrag.campaign.standing`) unless it was measured.  The way in the middle stands for the object, and each
 unknown moves along the order by its part of the variance of normal scores (Saltelli et al. 2008, first-order
 effects; of the order, since a foot that carries from some tolerance on makes the angle jump).
+
+In: a mesh [m] and what was measured. Out: arrangements of the object, with probabilities.
+Docs: ``docs/assess.md``, "Scans".
 """
 
 import math

@@ -2,6 +2,9 @@
 
 Only what is not known stands here and widens intervals. What differs from one earthquake to the next, such as the
 velocity that comes with a given PGA, is in the motions and so in the fractions and probabilities themselves.
+
+In: a request and its motions. Out: sources with standard deviations of ln level [-].
+Theory: ``docs/assess.md``, "How sure".
 """
 
 from collections.abc import Mapping

@@ -1,6 +1,8 @@
 """Statics: the factor on each motion from which it lifts an object, by its own components.
 
 Of an object that something holds, or that may slide, only simulation says: the factor is infinite.
+
+In: a system and motions [m/s²]. Out: factors, (motions,) [-]. Theory: ``docs/assess.md``, "What is computed".
 """
 
 from collections.abc import Sequence

@@ -161,6 +161,7 @@ def _then_of(
 def _by_map(
     options: argparse.Namespace, grid: str, uncertainty: str | None = None
 ) -> "Ground":
+    """Return the function that reads the shaking at a place off a ShakeMap; no place is that of ``--at``."""
     from rockfrag.aftermath.shakemap import read_shakemap
     from rockfrag.aftermath.shaken_ground import mapped_ground
 

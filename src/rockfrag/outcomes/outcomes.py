@@ -92,6 +92,9 @@ class Outcomes:
     scales : factors on the motions, shape (motions, scales)
     engines : names of those that answered
     engine : which of them answered each case
+    without_sliding
+        Whether each case falls if nothing can slide or fly, shape (systems, motions, scales); None unless a
+        planar engine with friction has asked that of pure rocking for all systems
     systems, motions : names of systems and motions, empty where one has none; no names at all if not known
     peaks : peak accelerations of the unscaled motions along x [m/s²], shape (motions,), NaN where not known
     """
@@ -158,6 +161,7 @@ class Outcomes:
     breaking_time: Floats = column(unit="s", table="constraints")
     # largest displacement of the plate of an isolator; NaN of all else
     stroke: Floats = column(unit="m", table="constraints")
+    without_sliding: Flags | None = field(default=None, repr=False)
     systems: tuple[str, ...] = field(default=(), repr=False)
     motions: tuple[str, ...] = field(default=(), repr=False)
     peaks: tuple[float, ...] = field(default=(), repr=False)

@@ -195,10 +195,13 @@ def ida_table(
     if configuration.holding:
         made |= result.wide(0, HELD)
     if configuration.loose:
-        rough = _shaken(configuration.held(), motions, scales, threads)
+        rough = result.without_sliding
+        if rough is None:
+            # a column of three bodies, or one that is held: its engine has not asked pure rocking
+            rough = _shaken(configuration.held(), motions, scales, threads).overturned
         made["peak_slip_m"] = result.of_any("peak_slip")[0].ravel()
         made |= result.wide(0, SLID)
-        made["overturned_without_sliding"] = rough.overturned[0].ravel()
+        made["overturned_without_sliding"] = rough[0].ravel()
     elif motions[0].z is not None:
         made |= result.wide(0, ("minimum_gravity_ratio",))
     return pa.table(made)

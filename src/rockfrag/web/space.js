@@ -4,7 +4,7 @@
  *   const body = space.bodyOf(rockfragSolid({ width: 0.3, depth: 0.4, height: 1.2, mass: 200 }));
  *   const response = space.integrate({ body, x, y, dt: 0.01, scale: 1.5 });
  *
- * The module is made from the kernel that rockfrag.run_in_space runs: outcomes and histories have its bits.
+ * The module is made from the kernel that rockfrag.overturns calls in space: outcomes and histories have its bits.
  */
 async function rockfragSpace(bytes) {
   "use strict";

@@ -8,7 +8,7 @@ from rockfrag import find_thresholds, overturns, simulate
 from rockfrag.base.errors import InputError
 from rockfrag.base.units import GRAVITY
 from rockfrag.cli.main import main
-from rockfrag.engines.contract import Case
+from rockfrag.engines.contract import Case, Request
 from rockfrag.engines.spatial import body as bodies
 from rockfrag.engines.spatial.body import kernel_body
 from rockfrag.engines.spatial.engine import ENGINE, run_case
@@ -113,6 +113,16 @@ def test_a_spread_moves_vertices_and_turns_the_body_by_no_more_than_it_says():
     expected, _ = run_case(body, motion.accelerations, DT, start=start)
     assert found.turn[0, 0, 0, 0] == expected.turn
     assert found.turn[0, 0, 0, 0] != overturns([BOX], [motion]).turn[0, 0, 0, 0]
+
+
+def test_a_history_has_the_spread_that_its_request_asks_for():
+    motion = ground_motion(1, 0.4)
+    first, other = (
+        overturns(BOX, motion, spread=0.01, seed=seed).turn.item() for seed in (3, 4)
+    )
+    request = Request(history=True, spread=0.01, seed=3)
+    history = ENGINE.history(Case(BOX, motion, 1.0, request))
+    assert history.outcome.turn == first != other
 
 
 BLOCKS = [Block(0.35, 1.2, 300.0, depth=0.35), Block(0.3, 1.0, 100.0, round=True)]

@@ -1,6 +1,9 @@
 """Make the module of the core that the page computes with: ``python -m rockfrag.assess.app.build``.
 
 It is built as those of the kernels are (:mod:`rockfrag.web.build`), of the functions that Python calls too.
+
+In: the functions of :mod:`rockfrag.assess.core`. Out: a WebAssembly module beside this file.
+Docs: ``docs/app.md``.
 """
 
 from pathlib import Path

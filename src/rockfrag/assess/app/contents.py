@@ -1,4 +1,7 @@
-"""The whole assessment as one page, ``rockfrag app``: what it computes with, and what it is made of."""
+"""The whole assessment as one page, ``rockfrag app``: what it computes with, and what it is made of.
+
+In: the motions and modules of the package. Out: what the page embeds, as text. Docs: ``docs/app.md``.
+"""
 
 import math
 from base64 import b64encode

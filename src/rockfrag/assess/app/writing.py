@@ -1,4 +1,7 @@
-"""The page of ``rockfrag app``: one file that holds motions, modules, scripts and texts."""
+"""The page of ``rockfrag app``: one file that holds motions, modules, scripts and texts.
+
+In: the contents of the page, and a language. Out: one HTML file. Docs: ``docs/app.md``.
+"""
 
 import os
 import zlib

@@ -3,6 +3,8 @@
 Their arithmetic is plain (:mod:`rockfrag.base.exponentials`), so that command and page have the same bits. They
 allocate nothing: what they leave stands in arrays that are handed to them. Machine code is kept until one of
 their sources changes.
+
+In: a Python function on numbers and arrays. Out: the same, compiled. Docs: ``docs/kernels.md``.
 """
 
 import hashlib

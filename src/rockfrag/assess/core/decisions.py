@@ -1,4 +1,8 @@
-"""What to do: leave it, secure it, or measure something first, by a risk that is accepted."""
+"""What to do: leave it, secure it, or measure something first, by a risk that is accepted.
+
+In: draws of a probability and the accepted one [-]. Out: the decision, as a number.
+Docs: ``docs/assess.md``, "What to do".
+"""
 
 from collections.abc import Mapping
 from dataclasses import dataclass

@@ -4,6 +4,10 @@ Sources are standard normal. Weights of earthquakes are Dirichlet's (Rubin 1981,
 Student's t asks for few earthquakes. There is one earthquake more than was recorded: the next one, whose capacity
 lies where those of the others do, as in a Dirichlet process about their distribution (Ferguson 1973, Ann. Stat. 1:
 209). Points are Sobol's (1967).
+
+In: numbers of draws, sources and earthquakes. Out: points, (draws, sources), and weights, (draws, earthquakes
++ 1).
+Theory: ``docs/assess.md``, "How sure".
 """
 
 from functools import lru_cache

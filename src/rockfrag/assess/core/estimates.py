@@ -5,6 +5,9 @@ the fractions at the levels, and the level that topples a part of the motions. T
 of the draws. Parts are first-order sensitivity indices: the variance of the means over what a source is not, over
 the variance (Sobol' 1993), from the draws that are there (Plischke, Borgonovo and Smith 2013, Eur. J. Oper. Res.
 226: 536).
+
+In: fractions, (draws, levels), and weights of levels. Out: mean, limits and parts of sources [-].
+Theory: ``docs/assess.md``, "How sure".
 """
 
 import math

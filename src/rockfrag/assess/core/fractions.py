@@ -7,6 +7,9 @@ lies beyond it. With F the fraction of motions as counted,
     P(x) = E[F(x exp(-s-m)) 1(x exp(-s) ≥ u)]
 
 motion by motion, so that what does not rock cannot topple, whatever the errors.
+
+In: outcomes by motion and level, the factors that lift, and draws. Out: fractions P, (draws, levels) [-].
+Theory: ``docs/assess.md``, "How sure".
 """
 
 import math

@@ -3,6 +3,9 @@
 The rate is λ = ∫ P(x) |dH(x)|, with P the fraction of motions that topple the object at level x, linear in ln x
 between levels, and H the annual rate at which x is exceeded. It is linear in P at the levels, so that weights of
 levels say all of it.
+
+In: levels and annual rates of a curve. Out: weights of levels [1/a].
+Theory: ``docs/assess.md``, "How likely, and what to do".
 """
 
 import math

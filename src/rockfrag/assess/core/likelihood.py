@@ -1,4 +1,7 @@
-"""Words of a published scale for probabilities: the likelihoods of the IPCC (Mastrandrea et al. 2010)."""
+"""Words of a published scale for probabilities: the likelihoods of the IPCC (Mastrandrea et al. 2010).
+
+In: a probability [-]. Out: the word, as the id of a text. Docs: ``docs/assess.md``, "How likely, and what to do".
+"""
 
 from enum import Enum
 

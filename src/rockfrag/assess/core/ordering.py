@@ -1,4 +1,7 @@
-"""Sorting without memory of its own, and what is read off sorted numbers; compiled."""
+"""Sorting without memory of its own, and what is read off sorted numbers; compiled.
+
+In: arrays of numbers. Out: the same sorted, quantiles and places in them. It is arithmetic; no page derives it.
+"""
 
 import math
 

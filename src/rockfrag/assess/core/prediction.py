@@ -1,4 +1,8 @@
-"""All that is not known of an object drawn at once: fractions of motions at each level under each draw."""
+"""All that is not known of an object drawn at once: fractions of motions at each level under each draw.
+
+In: outcomes of an object and its sources of error. Out: fractions, (draws, levels) [-].
+Theory: ``docs/assess.md``, "How sure".
+"""
 
 from collections.abc import Mapping
 from dataclasses import dataclass

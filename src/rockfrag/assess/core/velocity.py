@@ -3,6 +3,9 @@
 P(topples) = Φ(c0 + c1 ln IM + c2 ln PGV/IM) is fitted to the outcomes by the likelihood with Jeffreys's prior,
 whose maximum is finite even where a plane parts what falls from what stands (Firth 1993, Biometrika 80: 27). The
 weight of ln PGV/IM is c2/c1; its error is that of a jackknife over earthquakes (Tukey 1958).
+
+In: outcomes, levels of IM and PGV/IM by motion. Out: the weight c2/c1 and its error [-].
+Theory: ``docs/assess.md``, "Two measures".
 """
 
 import math

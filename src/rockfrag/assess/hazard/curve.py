@@ -1,6 +1,9 @@
 """A hazard curve: how often each level of shaking is exceeded at a site, and how files say so.
 
 Of a file it is told which kind it is; of several the mean with its quantiles is put together.
+
+In: text of a file, or points. Out: a curve, levels in the unit of its measure and annual rates [1/a].
+Docs: ``docs/assess.md``, "How likely, and what to do".
 """
 
 import csv
@@ -492,6 +495,11 @@ def _read_nrml(text: str, path: str) -> list[Found]:
 def _of_element(
     curves: ET.Element, above: Mapping[str, str], version: Sequence[str], path: str
 ) -> Found:
+    """Read one element of hazard curves: the curve, and which of the mean, quantiles and branches it is.
+
+    ``above`` has the attributes of the elements around it; ``version`` the names of a version of the format: of
+    the element itself, of its levels and of its probabilities of exceedance, and what to say without levels.
+    """
     _, level, poe, missing = version
     levels = next(_named(curves, level), None)
     if levels is None:
@@ -512,24 +520,35 @@ def _of_element(
     measure = read_measure(
         f"SA({about.get('saPeriod', '')})" if imt.upper() == "SA" else imt, path
     )
-    try:
-        values = [float(word) for word in (levels.text or "").split()]
-        fractions = [float(word) for word in (poes[0].text or "").split()]
-        times = [float(word) for word in years.split()]
-    except ValueError as error:
-        raise InputError(
-            f"{path}: a level or probability is no number ({error})."
-        ) from None
+    values = _numbers_in(levels.text, path)
+    fractions = _numbers_in(poes[0].text, path)
+    times = _numbers_in(years, path)
     if len(times) != 1:
         raise InputError(
             f"{path}: the investigation time is {len(times)} numbers; give one."
         )
-    kind = curves.get("statistics", "")
-    if kind == "quantile":
-        kind = f"quantile-{curves.get('quantileValue', '')}"
-    elif not kind and curves.get("sourceModelTreePath"):
-        kind = "branch of a logic tree"
-    return make_curve(measure, values, rates_of(fractions, times[0], path), path), kind
+    rates = rates_of(fractions, times[0], path)
+    return make_curve(measure, values, rates, path), _statistic_of(curves)
+
+
+def _numbers_in(text: str | None, path: str) -> list[float]:
+    """Return the numbers of an element's text."""
+    try:
+        return [float(word) for word in (text or "").split()]
+    except ValueError as error:
+        raise InputError(
+            f"{path}: a level or probability is no number ({error})."
+        ) from None
+
+
+def _statistic_of(curves: ET.Element) -> str:
+    """Return which curve of several an element holds: mean, a quantile, a branch; empty if it is the only one."""
+    statistic = curves.get("statistics", "")
+    if statistic == "quantile":
+        return f"quantile-{curves.get('quantileValue', '')}"
+    if not statistic and curves.get("sourceModelTreePath"):
+        return "branch of a logic tree"
+    return statistic
 
 
 def _named(root: ET.Element, name: str) -> Iterator[ET.Element]:

@@ -1,4 +1,8 @@
-"""An object on a rectangular base of which both sides are known: it rocks, turns and walks in space."""
+"""An object on a rectangular base of which both sides are known: it rocks, turns and walks in space.
+
+In: settings of a request. Out: an object (:mod:`rockfrag.assess.standing.contract`), sizes in m and kg. Docs:
+``docs/assess.md``, "Rectangular bases in space".
+"""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace

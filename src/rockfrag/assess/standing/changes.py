@@ -1,4 +1,7 @@
-"""What may help: the object with a wider foot, a lower centre of gravity, ballast, or joints that are closed."""
+"""What may help: the object with a wider foot, a lower centre of gravity, ballast, or joints that are closed.
+
+In: an object as it stands. Out: the changed objects. Docs: ``docs/assess.md``, "What helps".
+"""
 
 from collections.abc import Sequence
 from dataclasses import replace

@@ -3,6 +3,8 @@
 A kind is a class of its own in a file of this folder. It says which settings it takes, makes itself of them, and
 answers what is asked of every object: its arrangements, its variants with each property moved, the changes that
 may help, and the systems that are simulated of a body. ``planar`` is the simplest one.
+
+In: settings of a request. Out: systems to be shaken. Docs: ``docs/assess.md``, "What is computed".
 """
 
 import math

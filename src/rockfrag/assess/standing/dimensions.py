@@ -1,4 +1,7 @@
-"""Sizes of an object and of what it stands on, as they were given, with what was assumed of the rest."""
+"""Sizes of an object and of what it stands on, as they were given, with what was assumed of the rest.
+
+In: lengths and a mass, some of them unknown. Out: all of them [m, kg]. Docs: ``docs/defaults.md``.
+"""
 
 import math
 import re

@@ -3,6 +3,8 @@
 A holder is part of how an object stands, or is tried by itself as a mitigation (:mod:`rockfrag.assess.holding`):
 first so strong that nothing breaks it, which says what it must bear, then as strong as that.  What each does is
 derived in ``docs/holding.md``; sizes that nobody stated are those of the constants below, and are said.
+
+In: settings of a holder. Out: walls, ties, bonds or supports of a system, SI units.
 """
 
 import math

@@ -1,4 +1,8 @@
-"""An object that rocks in one plane, on edges: width and height are known, and no depth."""
+"""An object that rocks in one plane, on edges: width and height are known, and no depth.
+
+In: settings of a request. Out: an object (:mod:`rockfrag.assess.standing.contract`), sizes in m and kg. Docs:
+``docs/assess.md``, "What is computed".
+"""
 
 from collections.abc import Mapping
 from pathlib import Path

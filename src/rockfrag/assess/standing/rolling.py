@@ -1,4 +1,8 @@
-"""An object on a round base: it rolls on its rim in space and loses nothing."""
+"""An object on a round base: it rolls on its rim in space and loses nothing.
+
+In: settings of a request. Out: an object (:mod:`rockfrag.assess.standing.contract`), sizes in m and kg. Docs:
+``docs/assess.md``, "Round bases".
+"""
 
 from collections.abc import Callable, Mapping
 from dataclasses import replace

@@ -1,4 +1,8 @@
-"""A scanned object: it stands on the polygon of the points that carry, in one of the ways that were drawn."""
+"""A scanned object: it stands on the polygon of the points that carry, in one of the ways that were drawn.
+
+In: settings of a request. Out: an object (:mod:`rockfrag.assess.standing.contract`), sizes in m and kg. Docs:
+``docs/assess.md``, "Scans".
+"""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace

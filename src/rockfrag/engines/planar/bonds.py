@@ -1,6 +1,9 @@
 """Bonds: contacts that are shut whatever their force until a pad or the shear breaks (``docs/holding.md``, 2).
 
 The forces of the two ends of a contact at ± b are those of two pads at ± c: N/2 ± M/(2 c), M = (N_1 - N_0) b.
+
+In: a record ``BODY``, with the forces of its ends in the working memory. Out: forces of the pads [N], margins over
+the weight [-], and which bonds break.
 """
 
 import math

@@ -3,6 +3,9 @@
 One rule decides, for outcomes and for histories: the contact kernels integrate the case, and where in their
 response no contact reached its friction, none opened as a whole and no mode was inconsistent, the case is one of
 pure rocking, and the answer is that of the engine of pure rocking.
+
+In: :class:`rockfrag.engines.contract.Cases` of planar systems. Out: :class:`rockfrag.outcomes.Outcomes`, or of one
+case its :class:`rockfrag.outcomes.response.Response`.
 """
 
 from concurrent.futures import ThreadPoolExecutor
@@ -80,6 +83,8 @@ def run(cases: Cases) -> Outcomes:
         held = run_cases(replace(cases, systems=tuple(stuck[i] for i in rocking)))
         outcomes = replace(outcomes, engines=(PLANAR.name, *held.engines))
         merge_outcomes(outcomes, rocking, held)
+        if len(rocking) == len(cases.systems):
+            outcomes = replace(outcomes, without_sliding=held.overturned)
     found = contact_outcomes(cases)
     for i, system in enumerate(cases.systems):
         own = without_plate(found[i], system)

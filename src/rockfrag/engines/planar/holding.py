@@ -1,6 +1,8 @@
 """From what holds a system to the numbers that the contact kernels read: walls, ties and bonds of a ``BODY``.
 
 Places are those of ``docs/holding.md``: from the origin of the lowest base; kernels count from its middle.
+
+In: a :class:`rockfrag.system.system.System` with constraints. Out: the fields of its record ``BODY``, SI units.
 """
 
 import math

@@ -1,4 +1,9 @@
-"""Integrating one column through one motion, contact event by contact event, with friction and flight."""
+"""Integrating one column through one motion, contact event by contact event, with friction and flight.
+
+In: a record ``BODY``, a ground motion [m/s²] and a start. Out: ``told`` (a record ``OUTCOME``) and, where they are
+kept, samples and contact events. Theory: ``docs/contact.md``,
+"Accumulating contact events" and "Falls"; of columns ``docs/columns.md``.
+"""
 
 import math
 from typing import Any, NamedTuple

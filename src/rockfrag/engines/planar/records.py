@@ -2,6 +2,9 @@
 
 Bodies are numbered from below; contact k lies under body k.  Ends of a contact are 0 (left) and 1 (right).
 Contacts of bodies with walls follow those of bodies with each other (``walls.py``).
+
+In: a :class:`rockfrag.system.system.System`, SI units. Out: records ``BODY``, ``OUTCOME`` and the working memory.
+Theory: ``docs/contact.md``, "Coordinates and contacts", equations 1 and 2.
 """
 
 import math

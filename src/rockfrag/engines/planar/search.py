@@ -4,6 +4,9 @@ A search starts from a mode, mends what it violates most, and goes on so until n
 from the mode that has just failed, from the one in which all is open and, unless these two meet, from the one in
 which all is closed; of those that are consistent the one with fewest closed ends is taken.  Where none ends, all
 modes are tried, the neighbours of those tried first.
+
+In: a record ``BODY`` and its working memory. Out, in that memory: the mode, and whether several were consistent.
+Theory there: "Which mode follows", equations 4 to 6; impacts 8 and 9.
 """
 
 import math

@@ -1,4 +1,8 @@
-"""Where contacts are, and what accelerations, forces and impulses a mode has (``docs/contact.md``, 1 to 6)."""
+"""Where contacts are, and what accelerations, forces and impulses a mode has (``docs/contact.md``, 1 to 6).
+
+In: a record ``BODY``, coordinates, velocities and a mode. Out: in the working memory accelerations [m/s², rad/s²]
+and forces [N] of the closed ends, or velocities and impulses [N s] of an impact. The equations are 1 to 3 and 7.
+"""
 
 import math
 

@@ -1,4 +1,8 @@
-"""One step between contact events, and the first contact event in it."""
+"""One step between contact events, and the first contact event in it.
+
+In: coordinates and velocities at an instant and a mode. Out: those at the end of the step [s], or at the first
+event in it. What must stay positive: ``docs/contact.md``, equations 4 to 6; the step: Dormand and Prince (1980).
+"""
 
 import math
 from typing import NamedTuple

@@ -2,6 +2,8 @@
 
 The plate is body 0 and its contact with the ground is never open.  A dish of radius R adds the slope u/R to its
 friction; a bilinear spring pulls at it, and its hysteretic part yields; a stop is a wall of the plate.
+
+In: a record ``BODY`` and coordinates. Out: the slope of the dish [-], forces of the spring [N], the stroke [m].
 """
 
 import math

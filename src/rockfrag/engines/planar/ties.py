@@ -1,6 +1,9 @@
 """Ties of bodies to the ground: what they pull, when they get taut, slacken and break (``docs/holding.md``, 3).
 
 A tie is a spring with a dashpot; that it becomes taut or slack ends a step, so within one its force is smooth.
+
+In: a record ``BODY``, coordinates and velocities. Out: tensions [N], the accelerations that they cause [m/s²], and
+margins that are negative once a tie changes its state.
 """
 
 import math

@@ -3,6 +3,9 @@
 Ends of such a contact are the two corners of the body's side towards the wall, in the order in which the wall's
 tangent meets them, so that its normal points to the body: from below at a wall to the right, from above at one to
 the left.  Where a low wall ends below the upper corner, that end is the wall's edge against the body's side.
+
+In: a record ``BODY`` and coordinates. Out: point, directions and gap [m] of each end at a wall; hits, and
+impulses [N s].
 """
 
 import math

@@ -3,6 +3,9 @@
 What is above a contact has been pushed by that contact and by nothing else, so its change of momentum and of
 angular momentum is the resultant of the contact and where it acts.  Nothing here is shared with the search and its
 equations.  Impulses on bodies from outside the column would be taken from the change first.
+
+In: a record ``BODY`` and its working memory with the velocities before and after an impact. Out: whether a law of
+impacts (equations 7 to 9) is broken by more than the tolerance.
 """
 
 from typing import NamedTuple

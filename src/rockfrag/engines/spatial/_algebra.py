@@ -1,4 +1,8 @@
-"""Vectors of three as tuples, rotations, and small linear systems, allocation-free."""
+"""Vectors of three as tuples, rotations, and small linear systems, allocation-free.
+
+In and out: tuples of floats; rotations are unit quaternions (world ← body). No equation of mechanics stands here;
+``docs/space.md``, "Coordinates", says what the quaternion means.
+"""
 
 import math
 

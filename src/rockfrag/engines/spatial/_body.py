@@ -3,6 +3,9 @@
 A state y holds C (0:3), the centre of mass relative to the ground; the quaternion world ← body (3:7); the
 velocity of C (7:10, world); the angular velocity (10:13, body); the work done by the ground's motion (13) and
 the energy lost by friction (14).  Everything is for a unit of mass: energies in J/kg, forces in N/kg.
+
+In: a record ``BODY`` and a state. Out: arms [m], velocities [m/s] and heights of points. Theory:
+``docs/space.md``, "Coordinates", equations 1 to 3.
 """
 
 import math

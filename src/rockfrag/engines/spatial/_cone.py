@@ -5,6 +5,10 @@
 for at most four contacts.  Sets of contacts that push are tried, the smallest first.  Within a set all contacts
 stick if the cones allow it; if not, Newton's method on the projections of Alart and Curnier (1991) finds which
 slide and where to.
+
+In: the matrix W [-, for a unit of mass], b [m/s], friction. Out: impulses P and which contacts stick or slide.
+Theory: ``docs/space.md``,
+equation 5.
 """
 
 import math

@@ -1,6 +1,9 @@
 """The rest of a body's record from its base, inertia and height: plain arithmetic, also for kernels (see ``jit``).
 
 So a body has the same bits on every processor, and in a page.
+
+In: vertices or a radius, height [m] and tensor of inertia over the mass [m²]. Out: the other fields of a record
+``BODY``. Theory: ``docs/space.md``, "Coordinates".
 """
 
 import math

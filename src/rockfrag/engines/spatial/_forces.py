@@ -1,4 +1,9 @@
-"""Accelerations and contact forces of a mode: which points are closed, and which of them slide."""
+"""Accelerations and contact forces of a mode: which points are closed, and which of them slide.
+
+In: a record ``BODY``, a state y, the ground's acceleration [m/s²] and a mode. Out: dy/dt, and the forces of the
+closed points [N/kg]. Theory: ``docs/space.md``, equations 2 to 4; a face that
+slides 6 and 7.
+"""
 
 import math
 

@@ -1,4 +1,9 @@
-"""One analysis: a body, a motion of the ground, contact event by contact event."""
+"""One analysis: a body, a motion of the ground, contact event by contact event.
+
+In: a record ``BODY``, accelerations of shape (n, 3) [m/s²], scales, a state to begin with. Out: outcomes and
+counters (their places are named constants here), the state at the end and, if wanted, the history. Theory:
+``docs/space.md``, "Steps".
+"""
 
 import math
 

@@ -1,4 +1,8 @@
-"""Impacts, and which mode follows: both from the one problem of contacts with Coulomb's cone."""
+"""Impacts, and which mode follows: both from the one problem of contacts with Coulomb's cone.
+
+In: a state at an event and the points that touch. Out: the velocities after an impact [m/s, rad/s], and which
+points stick, slide or part. Theory: ``docs/space.md``, "Friction and impacts", equation 5.
+"""
 
 import math
 

@@ -1,4 +1,8 @@
-"""One step of Dormand and Prince's pair of order 5 (1980), and what must not become negative in it."""
+"""One step of Dormand and Prince's pair of order 5 (1980), and what must not become negative in it.
+
+In: a state and a mode. Out: the state at the end of a step, its error, and the first zero of what must stay
+positive. Theory: ``docs/space.md``, "Steps".
+"""
 
 from rockfrag.engines.compile.jit import kernel
 from rockfrag.engines.pure_rocking.kernels.dormand_prince import INSTANTS, WEIGHTS

@@ -1,6 +1,9 @@
 """Impacts (or changes of mode) in which one point or an edge pushes and sticks, in closed form.
 
 They are nearly all there are.  What they are not goes to the one problem of cones (``_cone``).
+
+In: a state and the one or two points that push. Out: impulses a unit of mass [m/s], or nothing if it is another
+case. Theory: ``docs/space.md``, equation 4.
 """
 
 import math

@@ -1,4 +1,8 @@
-"""Bodies as the kernels know them, made of a system of one body in space."""
+"""Bodies as the kernels know them, made of a system of one body in space.
+
+In: a :class:`rockfrag.system.system.System` of one body. Out: its record ``BODY`` and the state in which it
+stands. Theory: ``docs/space.md``, "Coordinates".
+"""
 
 import math
 from dataclasses import replace

@@ -1,4 +1,8 @@
-"""The engine in space: many outcomes, or one analysis with its history (``docs/space.md``)."""
+"""The engine in space: many outcomes, or one analysis with its history (``docs/space.md``).
+
+In: :class:`rockfrag.engines.contract.Cases` of single bodies with a depth. Out:
+:class:`rockfrag.outcomes.Outcomes`, or of one case a :class:`SpatialResponse`.
+"""
 
 import math
 from concurrent.futures import ThreadPoolExecutor
@@ -13,7 +17,7 @@ from rockfrag.base.arrays import Floats
 from rockfrag.base.units import GRAVITY
 from rockfrag.engines.built_in import SPATIAL as ENGINE
 from rockfrag.engines.compile.jit import compiling_alone
-from rockfrag.engines.contract import Case, Cases
+from rockfrag.engines.contract import Case, Cases, Request
 from rockfrag.engines.spatial import _integrate as kernel
 from rockfrag.engines.spatial import _modes as modes
 from rockfrag.engines.spatial._body import BOND
@@ -114,18 +118,17 @@ def run(cases: Cases) -> Outcomes:
     result = empty_outcomes(
         cases.names, cases.scales, [ENGINE.name], holding=cases.holding
     )
-    g, spread = cases.request.g, cases.request.spread
-    bodies = [kernel_body(system, g) for system in cases.systems]
-    tasks = [(i, j) for i in range(len(bodies)) for j in range(len(cases.motions))]
+    g = cases.request.g
+    standing_bodies = [_as_given(system, g) for system in cases.systems]
+    systems, motions = range(len(cases.systems)), range(len(cases.motions))
+    tasks = [(i, j) for i in systems for j in motions]
 
     def run_pair(task: tuple[int, int]) -> None:
         i, j = task
-        motion, body, turned = cases.motions[j], bodies[i], 0.0
-        if spread > 0:
-            rng = np.random.default_rng([cases.request.seed, i, j])
-            system, turned = perturbed(cases.systems[i], spread, rng)
-            body = kernel_body(system, g)
-        ground, start = motion.accelerations, standing(body, turned)
+        motion, (body, start) = cases.motions[j], standing_bodies[i]
+        if cases.request.spread > 0:
+            body, start = _spread(cases.systems[i], cases.request, task)
+        ground = motion.accelerations
         later = later_peaks(ground)
         # a copy: an array that may not be written would be a type of its own to the kernel
         scales = np.array(cases.scales[j])
@@ -143,14 +146,38 @@ def run(cases: Cases) -> Outcomes:
     return result
 
 
+def _as_given(system: System, g: float) -> tuple[np.void, Floats]:
+    """Record of the body of a system for the kernel, and the state in which it stands, shape (SIZE,)."""
+    body = kernel_body(system, g)
+    return body, standing(body)
+
+
+def _spread(
+    system: System, request: Request, place: tuple[int, int]
+) -> tuple[np.void, Floats]:
+    """Record and state likewise, with vertices moved and the body turned; the place in a grid numbers the draw."""
+    rng = np.random.default_rng([request.seed, *place])
+    moved, turned = perturbed(system, request.spread, rng)
+    body = kernel_body(moved, request.g)
+    return body, standing(body, turned)
+
+
 def history(case: Case) -> SpatialResponse:
-    """Return outcome and history of a case that it supports."""
+    """Return outcome and history of a case that it supports; a spread is that of the first case of a grid."""
     g = case.request.g
-    body = kernel_body(case.system, g)
+    body, start = _as_given(case.system, g)
+    if case.request.spread > 0:
+        body, start = _spread(case.system, case.request, (0, 0))
     ground = case.motion.accelerations
     samples = len(ground) + math.ceil(AFTER / case.motion.dt) + 2
     found, history = run_case(
-        body, ground, case.motion.dt, case.scale, g=g, samples=samples
+        body,
+        ground,
+        case.motion.dt,
+        case.scale,
+        g=g,
+        samples=samples,
+        start=start,
     )
     table = history_table(history, case.motion.dt, float(body["height"]))
     outline = np.array(body["points"][: body["count"], :2])

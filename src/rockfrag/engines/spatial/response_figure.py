@@ -1,4 +1,7 @@
-"""Figure of one response of a body in space: the path of its axis, and its base in the plan."""
+"""Figure of one response of a body in space: the path of its axis, and its base in the plan.
+
+In: outcome and history of one analysis, and the outline of the base [m]. Out: a matplotlib figure.
+"""
 
 from typing import TYPE_CHECKING
 
