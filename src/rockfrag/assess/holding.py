@@ -123,6 +123,8 @@ def demands_of(holder: Holder, system: System, at_level: Shaking) -> Floats:
     -------
     The demands of the motions that can be scaled so, shape (motions,) [N or m].
     """
+    if not at_level.allowed.any():
+        return np.zeros(0)
     _, outcomes = at_level.outcomes_of_system(holder.on(system))
     demands = getattr(outcomes, holder.demand)[0, :, 0]
     largest = holder.times * np.nanmax(demands, axis=-1)
@@ -162,7 +164,7 @@ def can_be_simulated(system: System, shaking: Shaking) -> bool:
     motions: Sequence[GroundMotion] = [GroundMotion(shaking.motions.base[0])]
     if not system.planar:
         first = shaking.motions.components(shaking.motions.records[0])
-        motions = [GroundMotion(*first)]
+        motions = [GroundMotion(*first).with_second()]
     try:
         engine_for(system, motions[0], Request())
     except InputError:

@@ -40,7 +40,7 @@ def _is_chain(p, w):
     """Whether no contact with a wall has equations."""
     alone = True
     for k in range(p.count, p.contacts):
-        alone = alone and w.size[k] == 0
+        alone = alone and w.unknowns[k] == 0
     return alone
 
 
@@ -52,7 +52,7 @@ def _eliminate_contact(p, w, k, on_body):
     columns at body k and C', D' below: A = C K D + C' M⁻¹ D', g = A⁻¹ (r - C e), H = A⁻¹ C' M⁻¹.  Below, the
     compliance is M⁻¹ (1 - D' H), and the motion M⁻¹ D' g.
     """
-    size, first, upper, lower = w.size[k], 3 * k, 3 * k, 3 * k - 3
+    size, first, upper, lower = w.unknowns[k], 3 * k, 3 * k, 3 * k - 3
     if k == p.count - 1:
         for d in range(3):
             w.hanging[k, d] = 0.0
@@ -193,7 +193,7 @@ def _substitute(p, w, standing):
     for k in range(standing, p.count):
         first, body = 3 * k, 3 * k
         own_x = own_y = own_twist = 0.0
-        for i in range(first, first + w.size[k]):
+        for i in range(first, first + w.unknowns[k]):
             force = w.gain[i]
             if k > standing:
                 force -= w.shared[i, 0] * push_x + w.shared[i, 1] * push_y
@@ -218,7 +218,7 @@ def _solve_jointly(p, w, standing):
     """Solve all equations at once, whatever bodies they share."""
     m = 0
     for k in range(standing, p.contacts):
-        for i in range(3 * k, 3 * k + w.size[k]):
+        for i in range(3 * k, 3 * k + w.unknowns[k]):
             w.place[m] = i
             w.joint[m] = w.right[i]
             m += 1

@@ -126,7 +126,7 @@ WORK = np.dtype(
         # equations of contact k: from 3 k on, as many as it has (``equations.py``); rows and columns are motion
         # and forces per coordinate of the body below (3) and of that above (3), each a force at an end, a shear or
         # a couple
-        *whole("size", ALL),
+        *whole("unknowns", ALL),
         *whole("what", 3 * ALL),
         *fields("row column", 3 * ALL, 6),
         *fields("right force", 3 * ALL),

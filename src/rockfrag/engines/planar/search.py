@@ -121,7 +121,7 @@ def _list_equations(p, w, k, impact):
             w.row[m, d] = w.basis[k, 2 * w.drive[k], d]
             w.column[m, d] = w.basis[k, 4, d]
         m += 1
-    w.size[k] = m - 3 * k
+    w.unknowns[k] = m - 3 * k
 
 
 @kernel
@@ -388,15 +388,6 @@ def _set_all(p, w, closed):
 
 
 @kernel
-def _open_changed(p, w):
-    """Open all contacts whose mode in ``w`` is not the old one, but for what a given speed of an end needs."""
-    for k in range(p.contacts):
-        lasts = _digit(w.closed, w.slides, k) == _digit(w.old_closed, w.old_slides, k)
-        if not lasts and w.whole[k] == 0 and w.drive[k] < 0:
-            w.closed[k, 0] = w.closed[k, 1] = w.slides[k] = 0
-
-
-@kernel
 def search(p, w, trial, exclude):
     """Set the mode of ``w`` to a consistent one that its touching ends allow, or the least violated; by how much.
 
@@ -407,9 +398,7 @@ def search(p, w, trial, exclude):
     _only_touching(p, w, trial)
     w.count, found, several = 0, -1, False
     for start in range(3):
-        if start == 1 and found >= 0:
-            _open_changed(p, w)
-        elif start > 0:
+        if start > 0:
             _set_all(p, w, start - 1)
         other = _descend(p, w, trial, exclude)
         if other >= 0:

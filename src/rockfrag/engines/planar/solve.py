@@ -195,7 +195,7 @@ def _fill_equations(p, w, q, v, k, impact, rough):
         w.what[m] = COUPLE
         w.right[m] = w.depart[k]
         m += 1
-    w.size[k] = m - 3 * k
+    w.unknowns[k] = m - 3 * k
 
 
 @kernel
@@ -217,7 +217,7 @@ def solve_generally(p, w, q, v, ah, av, impact, rough, standing):
         begin, base = 0, 3 * p.upper[k] - 3
         if k == standing or p.lower[k] < 0:
             begin = 3
-        for i in range(3 * k, 3 * k + w.size[k]):
+        for i in range(3 * k, 3 * k + w.unknowns[k]):
             for d in range(begin, 6):
                 w.right[i] -= w.row[i, d] * w.out[base + d]
     w.listed[:] = -1
@@ -227,7 +227,7 @@ def solve_generally(p, w, q, v, ah, av, impact, rough, standing):
         w.out[d] += w.moved[d]
     for k in range(standing, p.contacts):
         friction = rubbing(p, w, q, k)
-        for i in range(3 * k, 3 * k + w.size[k]):
+        for i in range(3 * k, 3 * k + w.unknowns[k]):
             force, end = w.force[i], w.what[i]
             if end == SHEAR:
                 w.shear[k] += force
