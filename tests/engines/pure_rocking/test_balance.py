@@ -25,7 +25,9 @@ DT = 0.01
 def nothing_after_the_motion(monkeypatch):
     """Free rocking is not followed here."""
     for module in (histories, ensembles):
-        monkeypatch.setattr(module, "free_samples", lambda system, dt, g: 0 * dt)
+        monkeypatch.setattr(
+            module, "free_samples", lambda system, dt, g: np.zeros_like(dt, np.int64)
+        )
 
 
 def drawn(rng, bodies):
