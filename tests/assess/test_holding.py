@@ -6,6 +6,7 @@ import math
 import numpy as np
 import pytest
 
+from rockfrag.assess import holding
 from rockfrag.assess.answer import assess_with
 from rockfrag.assess.export import as_json
 from rockfrag.assess.findings import details_of
@@ -86,6 +87,12 @@ def test_page_and_file_say_what_it_bears_before_and_after_and_what_it_costs(foun
     assert "<th" in page and "Cost" in page
     italian = page_of(found, "it")
     assert "cera o mastice" in italian and "Costo" in italian
+
+
+def test_nothing_is_tried_of_which_hardly_a_motion_asks_anything(few, monkeypatch):
+    one_of_a_hundred = np.append(np.zeros(99), 5.0)
+    monkeypatch.setattr(holding, "demands_of", lambda *_: one_of_a_hundred)
+    assert not tried(assess_with(asked(**BOX, facing_deg=0, pga="0.3 g"), few))
 
 
 def test_an_object_may_be_held_as_it_stands(few):

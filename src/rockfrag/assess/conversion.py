@@ -67,7 +67,7 @@ NODES: Floats = np.round(_EQUAL / _EQUAL.std(), 12)
 def usual_distance(level: float, magnitude: float) -> float:
     """Distance at which an earthquake of a magnitude has a PGA as its median, at least 1 km.
 
-    W. B. Joyner, D. M. Boore (1981), Bulletin of the Seismological Society of America 71: 2011, eq. 7. A strong
+    W. B. Joyner, D. M. Boore (1981), Bulletin of the Seismological Society of America 71: 2011. A strong
     shaking is thus that of a near and large earthquake, and a weak one that of a distant or small one.
 
     Parameters

@@ -94,14 +94,16 @@ def try_holders(
             enough, change = holder, holder.called()
             if holder.demand:
                 demands = demands_of(holder, system, at_level[holder.slow])
-                enough = holder.bearing(_asked(demands))
+                asked = _asked(demands)
+                if asked <= 0:
+                    # hardly a motion asks anything of it
+                    break
+                enough = holder.bearing(asked)
                 held = int((demands <= enough.bears * (1 + 1e-9)).sum())
                 counts = {"held": held, "total": demands.size}
                 change = finding(
                     Text.HOLDS, change=enough.called(), level=level.amount, **counts
                 )
-                if not demands.any():
-                    break
             if k not in before:
                 before[k] = few.outcomes_of_system(system)[0]
             after = few.outcomes_of_system(enough.on(system))[0]
