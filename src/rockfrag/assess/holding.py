@@ -10,7 +10,7 @@ In: an object, holders and motions. Out: forces [N] and factors on the probabili
 Theory: ``docs/holding.md``.
 """
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -21,8 +21,7 @@ from rockfrag.assess.standing import Standing
 from rockfrag.assess.standing.holders import Holder
 from rockfrag.assess.texts import Text
 from rockfrag.base.arrays import Floats
-from rockfrag.base.errors import InputError
-from rockfrag.engines.contract import Request, engine_for
+from rockfrag.engines.contract import Request, engines
 from rockfrag.records.motion import GroundMotion
 from rockfrag.system.system import System
 from rockfrag.words.findings import Finding, finding
@@ -163,12 +162,8 @@ def can_be_simulated(system: System, shaking: Shaking) -> bool:
     -------
     Whether one does.
     """
-    motions: Sequence[GroundMotion] = [GroundMotion(shaking.motions.base[0])]
+    motion = GroundMotion(shaking.motions.base[0])
     if not system.planar:
         first = shaking.motions.components(shaking.motions.records[0])
-        motions = [GroundMotion(*first).with_second()]
-    try:
-        engine_for(system, motions[0], Request())
-    except InputError:
-        return False
-    return True
+        motion = GroundMotion(*first).with_second()
+    return any(engine.supports(system, motion, Request()) for engine in engines())

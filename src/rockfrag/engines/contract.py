@@ -216,7 +216,12 @@ def register_engine(engine: Engine, before: str | None = None) -> Engine:
 
 
 def engines() -> tuple[Engine, ...]:
-    """Return the engines in the order in which they are asked."""
+    """Return the engines in the order in which they are asked.
+
+    Returns
+    -------
+    Those that are registered.
+    """
     if not _ENGINES:
         # these know the contract, and are loaded when one is first wanted
         from rockfrag.engines.built_in import BUILT_IN

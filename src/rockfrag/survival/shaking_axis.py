@@ -30,10 +30,8 @@ from rockfrag.system.blocks import Block
 
 STEP = 2  # Between angles of the densities [degrees]
 ANGLES = np.radians(np.arange(0, 360, STEP))  # Shape (angles,)
-FACINGS = (
-    0.0,
-    45.0,
-)  # Of a stone to the record's first component; which is not known [degrees]
+# Of a stone to the record's first component, of which nothing is known [degrees]
+FACINGS = (0.0, 45.0)
 MEASURED_WITHIN = 10.0  # Standard deviation of one azimuth of like falls [degrees]; an estimate of ours
 OWN_REASONS = 0.1  # Part of falls that point anywhere: struck, rolled on, turned later; an estimate of ours
 

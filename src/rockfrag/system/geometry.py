@@ -250,7 +250,7 @@ STANDS_FLAT = 1e-12  # rotation below which a block stands on its base [rad]
 
 
 def kicked(
-    shape: Shape, pivot: int, theta: float, omega: float, right: float, up: float
+    shape: Shape, pivot: int, theta: float, omega: float, jump: tuple[float, float]
 ) -> float:
     """Rate about a pivot after a jump of the base's velocity (``docs/velocity-steps.md``) [rad/s].
 
@@ -258,7 +258,7 @@ def kicked(
     ----------
     shape, pivot : a block as it stands, and +1 right or -1 left
     theta, omega : rotation [rad] and rate before the jump [rad/s], clockwise
-    right, up : jump of the base's velocity [m/s]
+    jump : of the base's velocity, to the right and up [m/s]
 
     Returns
     -------
@@ -266,11 +266,12 @@ def kicked(
     """
     x, z = arm(shape, pivot)
     x, z = turned(x, z, theta)
+    right, up = jump
     return omega + shape.mass * (x * up - z * right) / pivot_inertia(shape, pivot)
 
 
 def jumped(
-    shape: Shape, theta: float, omega: float, right: float, up: float
+    shape: Shape, theta: float, omega: float, jump: tuple[float, float]
 ) -> tuple[int, float]:
     """Pivot and rate after a jump of the base's velocity; pivot 0 if the block stays on its base.
 
@@ -278,7 +279,7 @@ def jumped(
     ----------
     shape : a block as it stands
     theta, omega : rotation [rad] and rate before the jump [rad/s], clockwise
-    right, up : jump of the base's velocity [m/s]
+    jump : of the base's velocity, to the right and up [m/s]
 
     Returns
     -------
@@ -286,18 +287,18 @@ def jumped(
     """
     if abs(theta) > STANDS_FLAT:
         pivot = 1 if theta > 0.0 else -1
-        return pivot, kicked(shape, pivot, theta, omega, right, up)
+        return pivot, kicked(shape, pivot, theta, omega, jump)
     if omega != 0.0:
         pivot = 1 if omega > 0.0 else -1
-        after = kicked(shape, pivot, theta, omega, right, up)
+        after = kicked(shape, pivot, theta, omega, jump)
         if pivot * after > 0.0:
             return pivot, after
         # the base takes it over to the other pivot, which is an impact
         left = momentum_restitution(shape, -pivot) * omega
-        after = kicked(shape, -pivot, theta, left, right, up)
+        after = kicked(shape, -pivot, theta, left, jump)
         return (-pivot, after) if -pivot * after > 0.0 else (0, 0.0)
-    clockwise = kicked(shape, 1, theta, 0.0, right, up)
-    other = kicked(shape, -1, theta, 0.0, right, up)
+    clockwise = kicked(shape, 1, theta, 0.0, jump)
+    other = kicked(shape, -1, theta, 0.0, jump)
     if clockwise > 0.0 and clockwise >= -other:
         return 1, clockwise
     return (-1, other) if other < 0.0 else (0, 0.0)

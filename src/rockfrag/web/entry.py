@@ -136,8 +136,9 @@ def _check_restitution(call, block, restitution):
 def jump_call(call):
     """Let the base's velocity jump under the lone block that was described last: its state follows."""
     state = call.initial
+    jump = call.right, call.up
     pivot, rate = geometry.jumped(
-        shape_of(call.statue), state.theta2, state.omega2, call.right, call.up
+        shape_of(call.statue), state.theta2, state.omega2, jump
     )
     state.omega2 = rate
     state.c2 = pivot if rate != 0.0 or state.theta2 != 0.0 else 0

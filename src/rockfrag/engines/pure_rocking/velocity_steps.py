@@ -125,7 +125,7 @@ class SteppedCase:
         """The state after a jump of the base, and its contact event; note what it asked of the contact."""
         assert piece.jump is not None
         theta, omega = float(state["theta2"]), float(state["omega2"])
-        pivot, rate = geometry.jumped(self.shape, theta, omega, *piece.jump)
+        pivot, rate = geometry.jumped(self.shape, theta, omega, piece.jump)
         after = state.copy()
         after["omega2"], after["c2"] = rate, pivot if rate or theta else 0
         if pivot:

@@ -41,23 +41,12 @@ IMPACTS, AMBIGUOUS, UNSOLVED, SLIDINGS, FLIGHTS, JAMS = range(COUNTERS)
 def touching(body, y, rows, s):
     """Fill in s.which with the points that touch, at most MOST, the fastest to approach; return their number."""
     n = 0
-    speed = s.vector
     if body.rim > 0 and algebra.norm(rows[2][0], rows[2][1]) < 1e-9:
         return stand_on_feet(body, y, rows, s)
     for i in solid.candidates(body):
         if solid.gap(body, y, rows[2], i) > TOUCH:
             continue
-        u = solid.velocity_of(body, y, rows, i)[2]
-        if n < forces.MOST:
-            s.which[n], speed[n] = i, u
-            n += 1
-            continue
-        last = 0
-        for k in range(1, forces.MOST):
-            if speed[k] > speed[last]:
-                last = k
-        if u < speed[last] - 1e-14:
-            s.which[last], speed[last] = i, u
+        n = keep_fastest(i, solid.velocity_of(body, y, rows, i)[2], n, s)
     for i in solid.wall_candidates(body):
         n = add_wall_contact(body, y, rows, i, n, s)
     return n
@@ -68,16 +57,22 @@ def add_wall_contact(body, y, rows, i, n, s):
     """Add a contact of a wall to those that touch, if it does; return how many there are."""
     if not solid.may_meet(body, i) or solid.gap_of(body, y, rows, i) > TOUCH:
         return n
-    speed, u = s.vector, solid.approach_of(body, y, rows, i)
+    return keep_fastest(i, solid.approach_of(body, y, rows, i), n, s)
+
+
+@kernel
+def keep_fastest(i, velocity, n, s):
+    """Add contact i to the n of s.which, in the place of the slowest to approach if all are taken; return n."""
+    speed = s.vector
     if n < forces.MOST:
-        s.which[n], speed[n] = i, u
+        s.which[n], speed[n] = i, velocity
         return n + 1
     last = 0
     for k in range(1, forces.MOST):
         if speed[k] > speed[last]:
             last = k
-    if u < speed[last] - 1e-14:
-        s.which[last], speed[last] = i, u
+    if velocity < speed[last] - 1e-14:
+        s.which[last], speed[last] = i, velocity
     return n
 
 
