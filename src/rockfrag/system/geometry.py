@@ -81,23 +81,24 @@ def turned_in_plan(
 def turned_moments(
     xx: float, xy: float, yy: float, sine: float, cosine: float
 ) -> tuple[float, float, float]:
-    """Turn the part of a tensor in the plan likewise: xx, xy and yy.
+    """Components of a symmetric tensor in the plan, such as moments of inertia, of a body that was turned.
+
+    These are those of R T Rᵀ, with R the rotation of :func:`turned_in_plan`.
 
     Parameters
     ----------
-    xx, xy, yy : of the tensor, of one unit
-    sine, cosine : of the angle from x towards y [-]
+    xx, xy, yy : components of T before, of one unit
+    sine, cosine : of the angle by which the body turns, from x towards y [-]
 
     Returns
     -------
-    The three, in that unit.
+    xx, xy and yy after, in that unit.
     """
-    aside = 2 * cosine * sine * xy
-    return (
-        cosine * cosine * xx - aside + sine * sine * yy,
-        cosine * sine * (xx - yy) + (cosine * cosine - sine * sine) * xy,
-        sine * sine * xx + aside + cosine * cosine * yy,
-    )
+    mixed = 2 * cosine * sine * xy
+    new_xx = cosine * cosine * xx - mixed + sine * sine * yy
+    new_xy = cosine * sine * (xx - yy) + (cosine * cosine - sine * sine) * xy
+    new_yy = sine * sine * xx + mixed + cosine * cosine * yy
+    return new_xx, new_xy, new_yy
 
 
 def shape_of(

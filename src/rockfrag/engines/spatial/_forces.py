@@ -363,16 +363,26 @@ def stop_edge(body, up, i, j, first, second, momentum, small):
 
 
 @kernel
-def slider_force(body, y, rows, omega, spin, weight, s):
-    """Force at the one contact, which slides; in the body."""
+def slide_on_one_point(body, y, rows, omega, free_spin, weight, s):
+    """Force at the one closed contact, which slides, with its arm and its velocity (``docs/space.md``, 4).
+
+    Friction is kinetic, against the slip, and the normal force is the one that keeps the contact from
+    accelerating upwards.  In: the rows of the attitude, the angular velocity, and the angular acceleration and the
+    effective gravity without the force, both in the body.  Out: the force [N/kg] and the arm [m] in the body, the
+    velocity of the point in axes of the ground [m/s].
+    """
     i = s.closed[0]
-    p = solid.arm(body, rows[2], i)
-    u = solid.point_velocity(y, rows, p)
-    way = slip_direction(s, 0, u[0], u[1])
-    d = to_body(rows, (-body.kinetic * way[0], -body.kinetic * way[1], 1.0))
-    gives = plus(d, cross(times(body.inverse, cross(p, d)), p))
-    free = plus(plus(weight, cross(spin, p)), solid.bias(body, rows[2], omega, p, i))
-    return scaled(-dot(rows[2], free) / dot(rows[2], gives), d), p, u
+    up = rows[2]
+    p = solid.arm(body, up, i)
+    velocity = solid.point_velocity(y, rows, p)
+    way = slip_direction(s, 0, velocity[0], velocity[1])
+    # a unit of normal force, with the friction that comes with it, and how the point accelerates by it
+    unit = to_body(rows, (-body.kinetic * way[0], -body.kinetic * way[1], 1.0))
+    by_unit = plus(unit, cross(times(body.inverse, cross(p, unit)), p))
+    bias = solid.bias(body, up, omega, p, i)
+    without = plus(plus(weight, cross(free_spin, p)), bias)
+    normal = -dot(up, without) / dot(up, by_unit)
+    return scaled(normal, unit), p, velocity
 
 
 @kernel
@@ -526,7 +536,7 @@ def rates(body, tau, y, dy, s, share=True):
         acceleration = plus(load, to_world(rows, force))
     elif kind == SLIDER:
         spin = solid.free_spin(body, omega, twist_by_ties(s))
-        force, p, u = slider_force(body, y, rows, omega, spin, weight, s)
+        force, p, u = slide_on_one_point(body, y, rows, omega, spin, weight, s)
         pushed = to_world(rows, force)
         s.lam[0, 0], s.lam[0, 1], s.lam[0, 2] = pushed
         acceleration = plus(load, pushed)
