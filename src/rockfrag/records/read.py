@@ -1,7 +1,7 @@
 """Any record as a :class:`Motion` in m/s²: unit, channel and zero level settled, not guessed."""
 
 import os
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -199,19 +199,7 @@ def choose_channel(record: Record, wanted: str | int | None) -> Channel:
         raise InputError(
             f"{record.name}: the file has several channels, {_listed(record)}; choose one with channel=."
         )
-    azimuth, letter = (
-        directions.azimuth_of(wanted),
-        len(wanted) == 1 and wanted.isalpha(),
-    )
-    names, ending = directions.plain_name(wanted), wanted.upper()
-    # a SEED code names its sensor, not always its direction
-    turned = [c for c in channels if azimuth is not None and c.component != c.code]
-    ways = (
-        [c for c in channels if names in _names_of(c)],
-        [c for c in turned if directions.azimuth_of(c.component) == azimuth],
-        [c for c in channels if letter and c.code.upper().endswith(ending)],
-    )
-    found = next(filter(None, ways), [])
+    found = _answering(channels, wanted)
     if len(found) == 1:
         return found[0]
     if wanted.isdigit() and not found and 1 <= int(wanted) <= len(channels):
@@ -220,6 +208,28 @@ def choose_channel(record: Record, wanted: str | int | None) -> Channel:
     raise InputError(
         f"{record.name}: {problem} to {wanted!r}; there are {_listed(record)}."
     )
+
+
+def _answering(channels: Sequence[Channel], wanted: str) -> list[Channel]:
+    """Channels of a name; if there are none, those in the direction that it names; else by the letter of codes."""
+    name = directions.plain_name(wanted)
+    named = [each for each in channels if name in _names_of(each)]
+    if named:
+        return named
+    azimuth = directions.azimuth_of(wanted)
+    # a SEED code names its sensor, not always its direction
+    turned = [
+        each
+        for each in channels
+        if azimuth is not None
+        and each.component != each.code
+        and directions.azimuth_of(each.component) == azimuth
+    ]
+    if turned:
+        return turned
+    if len(wanted) == 1 and wanted.isalpha():
+        return [each for each in channels if each.code.upper().endswith(wanted.upper())]
+    return []
 
 
 def motion_of(

@@ -60,11 +60,11 @@ class Holder(ABC):
 
     @property
     def bears(self) -> float:
-        """What it bears [N or m]; infinite where that is not asked."""
+        """Demand at which it fails [N], or at which it meets its stop [m]; infinite where neither is asked."""
         return math.inf
 
     def bearing(self, demand: float) -> Self:
-        """Return it as strong as it must be, rounded up to two digits."""
+        """Return it made to bear a demand [N or m], rounded up to two digits."""
         return self
 
 
@@ -93,11 +93,11 @@ class Putty(Holder):
 
     @property
     def bears(self) -> float:
-        """What it bears."""
+        """Pull on all pads at which it fails [N]."""
         return self.pull
 
     def bearing(self, demand: float) -> Self:
-        """As strong as the pull on all pads."""
+        """Return putty that holds a pull on all pads [N]."""
         return replace(self, pull=rounded_up(demand))
 
 
@@ -116,11 +116,11 @@ class Fastener(Holder):
 
     @property
     def bears(self) -> float:
-        """What it bears."""
+        """Force at which one of its kind breaks [N]."""
         return self.strength
 
     def bearing(self, demand: float) -> Self:
-        """As strong as its largest force."""
+        """Return fasteners that bear a force each [N]."""
         return replace(self, strength=rounded_up(demand))
 
 
@@ -188,11 +188,11 @@ class Isolator(Holder):
 
     @property
     def bears(self) -> float:
-        """What it bears."""
+        """Displacement at which it meets its stop [m]."""
         return self.stroke
 
     def bearing(self, demand: float) -> Self:
-        """With its stop where it is not met."""
+        """Return an isolator whose stop is beyond a displacement [m]."""
         return replace(self, stroke=rounded_up(demand))
 
 

@@ -226,7 +226,7 @@ def solve_generally(p, w, q, v, ah, av, impact, rough, standing):
 
 @kernel
 def _fill_motion_without_forces(p, w, q, v, ah, av, impact, standing):
-    """Fill ``w.out``: accelerations without contact forces, of standing bodies none; or velocities before an impact."""
+    """Fill ``w.out``: accelerations without contact forces, none of standing bodies; or velocities before."""
     for k in range(p.count):
         for d in range(3 * k, 3 * k + 3):
             w.out[d] = v[d] if impact else 0.0

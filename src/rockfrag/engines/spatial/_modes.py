@@ -761,7 +761,11 @@ def pick_closed(body, y, rows, slow, s):
 
 @kernel
 def note_slip(body, k, u, slow, s):
-    """Note how contact k of a small system slips where a mode is chosen; return whether it does."""
+    """Note in ``s`` how contact k of a small system slips where a mode is chosen; return whether it does.
+
+    ``u`` is its velocity, along it and across it [m/s]; what is slower than ``slow`` sticks.  A contact that slips
+    has its direction given (``given``, ``way``) and kinetic friction, one that sticks static friction (``holds``).
+    """
     speed = algebra.norm(u[0], u[1])
     slips = speed > slow
     s.given[k], s.slid[k] = slips, 0
@@ -914,7 +918,10 @@ def settle(body, y, s):
 
 @kernel
 def close_gaps(body, y, rows, s):
-    """Move the body by what its closed points are off the ground."""
+    """Move the body so that its closed points are on the ground, by what is least in its kinetic energy.
+
+    Of two points each is lifted as a vertical impulse there would: two equations with the compliances of both.
+    """
     n = s.count
     if forces.at_wall(s):
         close_gaps_at_wall(body, y, rows, s)
@@ -928,10 +935,13 @@ def close_gaps(body, y, rows, s):
         y[2] -= first
         return
     second = solid.gap(body, y, rows[2], s.closed[1])
-    a, b, c = s.delassus[2, 2], s.delassus[2, 5], s.delassus[5, 5]
-    whole = a * c - b * b
-    lift_at(body, y, rows, s.closed[0], -(c * first - b * second) / whole)
-    lift_at(body, y, rows, s.closed[1], -(a * second - b * first) / whole)
+    # vertical displacement at each by a vertical impulse at each: row 3 k + 2 is the vertical at point k
+    own, mixed, other = s.delassus[2, 2], s.delassus[2, 5], s.delassus[5, 5]
+    determinant = own * other - mixed * mixed
+    lift_first = -(other * first - mixed * second) / determinant
+    lift_second = -(own * second - mixed * first) / determinant
+    lift_at(body, y, rows, s.closed[0], lift_first)
+    lift_at(body, y, rows, s.closed[1], lift_second)
 
 
 @kernel
