@@ -167,9 +167,9 @@ def pairs_of(motions: Sequence[Motion]) -> tuple[tuple[int, int], ...]:
             if i < other:
                 pairs.append((i, other))
             continue
-        event = _fact(motion, "earthquake"), _fact(motion, "station")
-        if all(event):
-            unnamed.setdefault(event, []).append(i)
+        key = _fact(motion, "earthquake"), _fact(motion, "station")
+        if all(key):
+            unnamed.setdefault(key, []).append(i)
     pairs += [(both[0], both[1]) for both in unnamed.values() if len(both) == 2]
     return tuple(sorted(pairs))
 

@@ -126,12 +126,12 @@ def _archived(file: str, wanted: str, dt: float | None, cut_short: bool) -> Reco
                 found = [replace(channel, member=member.name) for channel in found]
             except InputError as error:
                 # the user knows the archive's names, not where they lie unpacked
-                told = type(error)(
+                renamed = type(error)(
                     str(error).replace(str(member.path), f"{file}#{member.name}")
                 )
                 if wanted:
-                    raise told from None
-                left_out.append((member.name, told))
+                    raise renamed from None
+                left_out.append((member.name, renamed))
                 continue
             channels += found
             forms.add(form)
@@ -258,14 +258,14 @@ def motion_of(
     samples = channel.samples
     number = next((n for n, c in enumerate(record.channels, 1) if c is channel), 1)
     where = f", channel {channel.label or number}" if len(record.channels) > 1 else ""
-    told = replace(record, name=f"{record.name}{where}")
-    stored = _settled_unit(told, channel, samples, unit)
+    named = replace(record, name=f"{record.name}{where}")
+    stored = _settled_unit(named, channel, samples, unit)
     if channel.peaks:
         peaks = [StatedPeak(number, unit) for number, unit in channel.peaks]
-        found = with_checked_peaks([replace(channel, unit=stored)], peaks, told.name)
+        found = with_checked_peaks([replace(channel, unit=stored)], peaks, named.name)
         channel = replace(channel, steps=found[0].steps)
     factor = quantities.to_si(stored)
-    acceleration = _in_si(told, samples, factor)
+    acceleration = _in_si(named, samples, factor)
     read = {
         "step": "read",
         "file": printable(Path(record.name).name),
@@ -289,7 +289,7 @@ def motion_of(
         acceleration = acceleration - mean
         steps.append({"step": "remove zero level", "offset_m_s2": mean})
     if not channel.unit and not force:
-        _check_peak(told, acceleration, stored)
+        _check_peak(named, acceleration, stored)
     own = channel.member or record.name.rpartition("#")[2]
     name = printable(Path(own).name.removesuffix(".gz").rsplit(".", 1)[0])
     if len(record.channels) > 1:

@@ -548,14 +548,14 @@ def pivot_constants(
         arm(shape, pivot),
         frequency(shape, pivot, g),
     )
-    aside, length, swing = -pivot * x, radius(shape, pivot), p * p
-    ends = 1 / alpha, 1 / (swing * alpha * alpha)
+    aside, length, p_squared = -pivot * x, radius(shape, pivot), p * p
+    ends = 1 / alpha, 1 / (p_squared * alpha * alpha)
     return (
         alpha,
         aside / y,
         aside / length,
         y / length,
-        swing,
+        p_squared,
         restitution,
         ends[0],
         ends[1],

@@ -74,10 +74,10 @@ class Putty(Holder):
 
     Attributes
     ----------
-    pull : that all pads hold together [N]
+    tension : that all pads hold together [N]
     """
 
-    pull: float = UNBROKEN
+    tension: float = UNBROKEN
     key: ClassVar[str] = "putty"
     demand: ClassVar[str] = "largest_force"
     times: ClassVar[float] = 2.0  # of each of two sides
@@ -85,20 +85,20 @@ class Putty(Holder):
     def on(self, system: System) -> System:
         """Bond the uppermost body to what it stands on."""
         spread = pads_of(system.bodies[-1].base)
-        return hold(system, bonds=Bond(self.pull, UNBROKEN, spread))
+        return hold(system, bonds=Bond(self.tension, UNBROKEN, spread))
 
     def called(self) -> Finding:
         """Such as putty that holds 120 N."""
-        return finding(Text.HOLD_PUTTY, force=two(self.pull))
+        return finding(Text.HOLD_PUTTY, force=two(self.tension))
 
     @property
     def bears(self) -> float:
         """Pull on all pads at which it fails [N]."""
-        return self.pull
+        return self.tension
 
     def bearing(self, demand: float) -> Self:
         """Return putty that holds a pull on all pads [N]."""
-        return replace(self, pull=rounded_up(demand))
+        return replace(self, tension=rounded_up(demand))
 
 
 @dataclass(frozen=True)

@@ -72,7 +72,7 @@ class Round(Standing):
 
     def in_plane(self) -> Planar:
         """The object as it would rock on edges."""
-        return Planar(self.block, self.plane, self.under, self.livelier)
+        return Planar(self.block, self.plane, self.under, self.restitution_factor)
 
     def solid(self, body: Body) -> System | None:
         """The object on its rim; None with what it is fixed to, which stands on another base."""

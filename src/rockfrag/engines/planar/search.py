@@ -25,7 +25,7 @@ from rockfrag.engines.planar.solve import (
     rate,
 )
 from rockfrag.engines.planar.support import rubbing, slope
-from rockfrag.engines.planar.ties import pull
+from rockfrag.engines.planar.ties import fill_tie_accelerations
 
 # violation below which a mode is consistent: forces over the weight, accelerations over g [-].  Less than the
 # slack of contact events, so that a mode that has just failed is not
@@ -60,7 +60,7 @@ def prepare(p, w, trial):
     forces along the first four.
     """
     if p.ties + p.is_sprung > 0 and not trial.impact:
-        pull(p, w, w.q, w.v)
+        fill_tie_accelerations(p, w, w.q, w.v)
     for k in range(p.contacts):
         for end in range(2):
             if w.touching[k, end] == 0:
@@ -445,7 +445,7 @@ def search(p, w, trial, exclude):
         found, more = _try_slips(p, w, trial, found)
         several = several or more
     if several:
-        w.told.several_modes += 1
+        w.outcome.several_modes += 1
     if found < 0 and w.wrong[np.argmin(w.wrong[: w.count])] > ROUNDING:
         found = _try_neighbours(p, w, trial, exclude)
     if found < 0:

@@ -11,7 +11,7 @@ from rockfrag.engines.compile.jit import inlined_kernel, kernel
 from rockfrag.engines.planar.equations import solve_equations
 from rockfrag.engines.planar.records import AT_EDGE
 from rockfrag.engines.planar.support import rubbing
-from rockfrag.engines.planar.ties import is_any_taut, pull
+from rockfrag.engines.planar.ties import fill_tie_accelerations, is_any_taut
 from rockfrag.engines.planar.walls import any_closed, wall_end
 
 SHEAR, COUPLE = (
@@ -233,7 +233,7 @@ def _fill_motion_without_forces(p, w, q, v, ah, av, impact, standing):
         if not impact and k >= standing:
             w.out[3 * k], w.out[3 * k + 1] = -ah, -(p.g + av)
     if p.ties + p.is_sprung > 0 and not impact:
-        pull(p, w, q, v)
+        fill_tie_accelerations(p, w, q, v)
         for d in range(3 * p.count):
             w.out[d] += w.drift[d]
 
@@ -305,7 +305,7 @@ def _solve_top(p, w, q, v, ah, av):
     fx, fy = -ah, -(p.g + av)
     light, slow = p.inverse[3 * k], p.inverse[3 * k + 2]
     w.normal[k, 0] = w.normal[k, 1] = 0.0
-    shear, pull_x, pull_y, twist, moment = 0.0, 0.0, 0.0, 0.0, 0.0
+    shear, force_x, force_y, twist, moment = 0.0, 0.0, 0.0, 0.0, 0.0
     if w.closed[k, 0] == 1 or w.closed[k, 1] == 1:
         end = 0 if w.closed[k, 0] == 1 else 1
         rubs = -w.slides[k] * p.kinetic[k]
@@ -337,16 +337,22 @@ def _solve_top(p, w, q, v, ah, av):
                 shear = (also * across - need * both) / whole
             twist = first * push + two * shear
         w.normal[k, end] = push - far_push
-        pull_x, pull_y = shear * tx - push * ty, push * tx + shear * ty
+        force_x, force_y = shear * tx - push * ty, push * tx + shear * ty
         if k > 0:
-            moment = pull_y * (x - q[0]) - pull_x * (y - q[1])
+            moment = force_y * (x - q[0]) - force_x * (y - q[1])
             moment += far_push * (tx * (far_x - x) + ty * (far_y - y))
     w.shear[k] = shear
-    w.out[3 * k] = fx + pull_x * light
-    w.out[3 * k + 1] = fy + pull_y * light
+    w.out[3 * k] = fx + force_x * light
+    w.out[3 * k + 1] = fy + force_y * light
     w.out[3 * k + 2] = twist * slow
     if k > 0:
         w.out[0] = w.out[1] = w.out[2] = 0.0
         _hold_still(
-            p, w, q, 0, pull_x + p.mass[0] * ah, pull_y + p.mass[0] * (p.g + av), moment
+            p,
+            w,
+            q,
+            0,
+            force_x + p.mass[0] * ah,
+            force_y + p.mass[0] * (p.g + av),
+            moment,
         )

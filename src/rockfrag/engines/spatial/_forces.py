@@ -123,7 +123,7 @@ def kind_of(s):
 
 
 @kernel
-def pull_at(field, tau):
+def effective_gravity_at(field, tau):
     """Effective gravity in the world."""
     return (
         field[0] + field[3] * tau,
@@ -170,7 +170,7 @@ def tie_force(body, length, rate, i):
 
 
 @kernel
-def pull_ties(body, y, rows, s):
+def fill_tie_forces(body, y, rows, s):
     """Fill in force and moment of the ties that have not broken, in the body."""
     for k in range(3):
         s.pulled[k] = s.twisted[k] = 0.0
@@ -301,10 +301,10 @@ def twist_by_ties(s):
 
 
 @kernel
-def load_on(body, y, rows, pull, s):
+def load_on(body, y, rows, gravity, s):
     """Effective gravity and the force of the ties, in the body, for a unit of mass; their moment is kept."""
-    pull_ties(body, y, rows, s)
-    weight = to_body(rows, pull)
+    fill_tie_forces(body, y, rows, s)
+    weight = to_body(rows, gravity)
     return plus(weight, (s.pulled[0], s.pulled[1], s.pulled[2]))
 
 
@@ -401,7 +401,7 @@ def hinge_acceleration(body, rows, omega, weight, i, j, s):
 
 
 @kernel
-def share_force(body, rows, omega, alpha, force, e, s):
+def split_force(body, rows, omega, alpha, force, e, s):
     """Share the force of a hinge between its ends so that both hold if they can; world components."""
     p, q = (
         solid.arm(body, rows[2], s.closed[0]),
@@ -509,18 +509,18 @@ def largest_compliance(s, n):
 
 
 @kernel
-def rates(body, tau, y, dy, s, share=True):
-    """Fill in dy/dt, and the contact forces in world components; those of a hinge's ends only if they are shared.
+def rates(body, tau, y, dy, s, split=True):
+    """Fill in dy/dt, and the contact forces in world components; of a hinge's ends only if its force is ``split``.
 
     ``s.field`` holds the effective gravity at the beginning of the interval, its rate, and the gravity of a ground
     at rest; ``tau`` counts from there.
     """
     rows = rotation(y)
     omega = solid.omega_of(y)
-    pull = pull_at(s.field, tau)
-    weight = load_on(body, y, rows, pull, s)
+    gravity = effective_gravity_at(s.field, tau)
+    weight = load_on(body, y, rows, gravity, s)
     tied = (s.pulled[0], s.pulled[1], s.pulled[2])
-    load = plus(pull, to_world(rows, tied))
+    load = plus(gravity, to_world(rows, tied))
     kind = kind_of(s)
     lost = 0.0
     if kind == PIVOT:
@@ -531,8 +531,8 @@ def rates(body, tau, y, dy, s, share=True):
     elif kind == HINGE:
         i, j = s.closed[0], s.closed[1]
         alpha, force, e = hinge_acceleration(body, rows, omega, weight, i, j, s)
-        if share:
-            share_force(body, rows, omega, alpha, force, e, s)
+        if split:
+            split_force(body, rows, omega, alpha, force, e, s)
         acceleration = plus(load, to_world(rows, force))
     elif kind == SLIDER:
         spin = solid.free_spin(body, omega, twist_by_ties(s))

@@ -105,7 +105,7 @@ def room_along(up, push, along, friction):
 
 
 @kernel
-def share_along(up, first, second, e, friction_first, friction_second):
+def split_along(up, first, second, e, friction_first, friction_second):
     """Share the impulse of an edge along it so that both ends' cones hold, if they can."""
     near, far = dot(first, e), dot(second, e)
     a = room_along(up, first, near, friction_first)
@@ -221,7 +221,7 @@ def hold_edge(body, up, i, j, moment, small, s):
         small,
     )
     near = plus(push, scaled(-1.0, far))
-    near, far = share_along(up, near, far, e, s.holds[i], s.holds[j])
+    near, far = split_along(up, near, far, e, s.holds[i], s.holds[j])
     holds = within_cone(up, near, s.holds[i], small)
     holds = holds and within_cone(up, far, s.holds[j], small)
     return turn, push, near, far, fits and holds
