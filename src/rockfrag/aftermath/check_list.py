@@ -107,6 +107,7 @@ def after_json(collection: ShakenCollection) -> str:
 
 
 def _ground_data(ground: GroundShaking) -> dict[str, object]:
+    """The shaking of a place as JSON writes it: a number that is not known is null."""
     numbers = {
         name: None if math.isnan(value) else value
         for name, value in vars(ground).items()

@@ -44,6 +44,7 @@ def progress_line(
     said = begun + QUIET - (OFTEN if shown else EVERY)
 
     def say(done: int, total: int) -> None:
+        """Print how much is done, but not too often."""
         nonlocal said
         now = clock()
         finished = done >= total
@@ -103,6 +104,7 @@ def sign_of_life(words: str, stream: TextIO | None = None) -> Iterator[None]:
     begun = time.monotonic()
 
     def speak() -> None:
+        """Print a sign of life now and then, until it has ended."""
         wait = SILENT
         while not ended.wait(wait):
             so_far = in_words(time.monotonic() - begun)

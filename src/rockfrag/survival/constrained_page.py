@@ -136,6 +136,7 @@ class _Sentences(NamedTuple):
 
 
 def _sentences(found: Constrained) -> _Sentences:
+    """What the page says first: of the hazard, the branches, the evidence and what it hangs on."""
     branches = (
         f"{len(found.ruled_out)} of {len(found.site.branches)} branches keep less than {100 * RULED_OUT:.0f} % "
         "of their weight."
@@ -279,6 +280,7 @@ def page_of(found: Constrained) -> str:
 
 
 def _hazard(found: Constrained) -> Markup:
+    """Table of the mean hazard before and after."""
     unit, table = found.site.measure.unit, found.result.ratios()
     table = table.assign(rate=table["annual_rate"].map("{:g}".format))
     columns = (

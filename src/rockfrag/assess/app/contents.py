@@ -124,6 +124,7 @@ def data_of(motions: MotionSet, asked: Request | None = None) -> dict[str, Any]:
 def _measure(
     motions: MotionSet, measure: IntensityMeasure, given: Records
 ) -> dict[str, Any]:
+    """What a page has to know of the motions in one measure."""
     return {
         "unit": measure.unit,
         "levels": _levels(motions, measure, outcomes.LEVELS),
@@ -143,6 +144,7 @@ def _levels(motions: MotionSet, measure: IntensityMeasure, count: int) -> list[f
 
 
 def _with_variants(at: Place, intervals: Sequence[float]) -> dict[str, Any]:
+    """Modes of a building, and of it with each property one standard deviation lower and higher, by name."""
     each = {"": at}
     for moved in at.variants():
         each |= {
@@ -227,6 +229,7 @@ def _of(module: ModuleType, *names: str) -> dict[str, Any]:
 
 
 def _constants() -> dict[str, Any]:
+    """Constants of the package that scripts use, so that both have the same ones."""
     return {
         **_of(units, "GRAVITY"),
         **_of(outcomes, "AT_REST", "LARGEST_FACTOR"),

@@ -102,6 +102,7 @@ class Box(Standing):
         )
 
     def _box(self, top: Block) -> Block:
+        """A block that rocks as this box does, in space, with the pedestal to which it may be fixed."""
         width, depth, mass = self.block.width, self.depth, self.block.mass
         across = top.centroidal_inertia
         # moments of uniform boxes about x and y differ by what their sides do

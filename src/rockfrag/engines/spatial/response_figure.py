@@ -34,6 +34,7 @@ def spatial_figure(
 def _path_of_axis(
     panel: Axes, outcome: "SpatialOutcome", history: pd.DataFrame
 ) -> None:
+    """Draw which way the axis leans, and how far, as seen from above."""
     axis = history[["axis_x", "axis_y"]].to_numpy()
     sine = np.maximum(np.hypot(*axis.T), 1e-300)
     x, y = axis.T * (history["tilt_rad"].to_numpy() / sine)
