@@ -126,8 +126,8 @@ def _ground_of(
     options: argparse.Namespace, typed: dict[str, Any], about_station: dict[str, Any]
 ) -> "tuple[Ground, tuple[Motion, ...]]":
     """What shook a place, by the one way that the command line gives, and the record if that is one."""
-    ways = [options.shakemap, options.station, typed]
-    if sum(bool(way) for way in ways) != 1:
+    sources = [options.shakemap, options.station, typed]
+    if sum(bool(source) for source in sources) != 1:
         raise InputError(
             "give what shook the ground in one way: --shakemap, --station, or --pga with --pgv."
         )
