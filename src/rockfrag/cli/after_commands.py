@@ -75,7 +75,10 @@ def _after(options: argparse.Namespace) -> int:
     from rockfrag.aftermath.shaken_objects import after_earthquake
     from rockfrag.assess.inventory import FaultyRows
     from rockfrag.runtime.progress import progress_line
+    from rockfrag.words.catalogue import catalogue
 
+    # an unknown language is refused before anything is written
+    catalogue(options.language)
     about_station = {"unit": options.unit, "dt": options.dt}
     if options.station:
         # the unit of its files, not of records by which objects are shaken
