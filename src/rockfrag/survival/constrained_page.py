@@ -133,7 +133,8 @@ def _assumption(name: str) -> Finding:
 def _hazard_said(found: Constrained) -> Finding:
     """Change of the mean hazard at the annual rate of decisions."""
     measure = found.site.measure
-    decided = found.result.ratios().set_index("annual_rate").loc[DECISION_RATE]
+    table = found.result.ratios()
+    decided = table[table["annual_rate"] == DECISION_RATE].to_dict("records")[0]
     if not decided["level_ratio"] > 0:
         return finding("site_beyond_curves")
     change = decided["level_ratio"] - 1
@@ -141,8 +142,8 @@ def _hazard_said(found: Constrained) -> Finding:
         "site_lower" if change < 0 else "site_higher",
         measure=measure.imt,
         unit=measure.unit,
-        after=three(float(decided["level_after"])),
-        before=three(float(decided["level_before"])),
+        after=three(decided["level_after"]),
+        before=three(decided["level_before"]),
         change=whole(100 * abs(change)),
     )
 
@@ -302,10 +303,8 @@ def _sections(found: Constrained, texts: Catalogue) -> list[Section]:
 def _hazard_table(found: Constrained, texts: Catalogue) -> Markup:
     unit, table = found.site.measure.unit, found.result.ratios()
     table = table.assign(rate=table["annual_rate"].map("{:g}".format))
-    before, after = (
-        texts.say(finding(id, unit=unit))
-        for id in ("site_column_before", "site_column_after")
-    )
+    before = texts.say(finding("site_column_before", unit=unit))
+    after = texts.say(finding("site_column_after", unit=unit))
     columns = (
         column("rate", texts.text("site_column_rate"), numeric=True),
         column("level_before", before, decimals=3),
