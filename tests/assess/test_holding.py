@@ -165,7 +165,7 @@ def test_strengths_take_any_unit_of_force_and_none_is_guessed(tmp_path):
     # as a spring balance shows it
     (cords,) = asked(**size, cord="12 kgf").objects.under.holders
     assert cords.strength == pytest.approx(12 * 9.80665)
-    with pytest.raises(InputError, match="a force such as 120 N.*without a unit"):
+    with pytest.raises(InputError, match=r"a force such as 120 N.*without a unit"):
         asked(**size, bracket="150")
     table = tmp_path / "table.csv"
     table.write_text("name,width_cm,height_cm,putty,cord_n\nA,40,120,15 kgf,90\n")
