@@ -2,8 +2,8 @@
 What does a bracket at the wall buy?
 ====================================
 
-A bookcase that stands before a wall falls away from it. A bracket holds it both ways, as long as it does not break:
-what it must bear decides, and a weak one is hardly better than none.
+A bookcase that stands before a wall falls away from it. A bracket holds it both ways, as long as it does not
+break. What it must bear decides, and a weak one is hardly better than none.
 """
 
 import matplotlib.pyplot as plt
