@@ -164,13 +164,13 @@ def split_name(name: str) -> tuple[str, str]:
 
     Parameters
     ----------
-    name : of a key or column that ends in a unit of length, mass or moment of inertia
+    name : of a key or column that ends in a unit of length, mass, moment of inertia or time
 
     Returns
     -------
     The name without its unit, and the unit.
     """
-    for dimension in ("moment of inertia", "mass", "length"):
+    for dimension in ("moment of inertia", "mass", "length", "time"):
         for unit in DIMENSIONS[dimension]:
             if name.endswith(f"_{unit}"):
                 return name.removesuffix(f"_{unit}"), unit

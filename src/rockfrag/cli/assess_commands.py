@@ -517,8 +517,9 @@ def form_of(settings: Mapping[str, Any], request: Any) -> dict[str, str]:
         )
     form |= {f"pedestal_{key}": str(value) for key, value in pedestal.items()}
     if isinstance(building, Mapping):
-        told = ("storey_height", "material")
-        form |= {key: str(building[key]) for key in told if key in building}
+        told = {"storey_height": "storey_height", "material": "material"}
+        told |= {"first_period": "period"}
+        form |= {told[key]: str(building[key]) for key in told if key in building}
         if "first_period_s" in building:
             form["period"] = f"{building['first_period_s']} s"
     return (
