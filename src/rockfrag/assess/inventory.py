@@ -313,15 +313,23 @@ def assess_each(
         plan = plan_for(same[0], motions.at(same[0].place), brief=True, holds=holds)
         for start in range(0, len(rows), AT_ONCE):
             part = same[start : start + AT_ONCE]
-            shaken = shake_all(part, plan)
+            said = None
+            if progress is not None:
+                counts = (len(found), len(part), len(requests))
+                said = partial(_say_part, progress, counts)
+            shaken = shake_all(part, plan, said)
             for i, request, outcome in zip(rows[start:], part, shaken, strict=False):
                 # a level between those that were tried lies between their fractions
                 level = request.level
                 own = plan if level is None else replace(plan, level=level)
                 found[i] = assessed(request, own, outcome)
-            if progress is not None:
-                progress(len(found), len(requests))
     return [found[i] for i in range(len(requests))]
+
+
+def _say_part(progress: Progress, counts: tuple[int, int, int], part: float) -> None:
+    """Say how many objects are done of all, where a part of those that are shaken at once is."""
+    before, now, total = counts
+    progress(before + part * now, total)
 
 
 def read_inventory(
