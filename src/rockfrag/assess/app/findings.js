@@ -68,7 +68,7 @@ const findings = (data) => {
     function atLevel() {
       const every = data.earthquakes.length, [total, rock, topple] = counts ?? [];
       const counted = counts ? [finding(total < every ? "counted_some" : "counted", { ...(total < every ? { every } : {}), total, rock, topple })] : [];
-      if (found.moved) counted.push(finding("counted_moved", { rock: percent(rocks), topple: percent(value) }));
+      if (found.site) counted.push(finding("counted_moved", { rock: percent(rocks), topple: percent(value) }));
       const starts = Number.isFinite(found.rocksFrom) ? finding("starts_at", { starts: amount(found.rocksFrom) }) : finding("starts_beyond");
       return [...counted, ...(fraction && !atRest ? [between()] : []), starts, ...(request.level === null ? [finding("exceeded_in_475", { level })] : [])];
     }
