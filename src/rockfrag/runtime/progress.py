@@ -117,13 +117,16 @@ class Meter:
 
 
 @contextmanager
-def sign_of_life(words: str, stream: TextIO | None = None) -> Iterator[None]:
+def sign_of_life(
+    words: str, stream: TextIO | None = None, *, expected: float | None = None
+) -> Iterator[None]:
     """Say after :data:`SILENT` seconds, and again at ever longer intervals, that a block is still at work.
 
     Parameters
     ----------
     words : what it does, and what would be quicker
     stream : where to say it, the error stream if None
+    expected : about how long it takes [s], of which it is said how much is left; None where that is not known
 
     Returns
     -------
@@ -136,8 +139,11 @@ def sign_of_life(words: str, stream: TextIO | None = None) -> Iterator[None]:
     def speak() -> None:
         wait = SILENT
         while not ended.wait(wait):
-            so_far = in_words(time.monotonic() - begun)
-            print(f"{words} ({so_far} so far)", file=to, flush=True)
+            lasted = time.monotonic() - begun
+            so_far = f"{in_words(lasted)} so far"
+            if expected is not None and lasted < expected:
+                so_far += f", about {in_words(expected - lasted)} left"
+            print(f"{words} ({so_far})", file=to, flush=True)
             wait = max(EVERY, 2 * wait)
 
     speaker = threading.Thread(target=speak, daemon=True)
