@@ -51,11 +51,11 @@ def test_a_block_leans_where_friction_at_its_foot_reaches_its_arm_over_its_heigh
     arm = H * math.sin(theta) - B * math.cos(theta)
     needed = arm / (2 * H * math.cos(theta))
     holds, slides = leaning(theta, 1.0001 * needed), leaning(theta, 0.9999 * needed)
-    assert holds.work["told"]["leaning"] == 1
+    assert holds.work["outcome"]["leaning"] == 1
     assert np.ptp(holds.history["q"][:, :3], axis=0) == pytest.approx(0.0, abs=1e-9)
     force = holds.response().constraints["largest_force_n"][0]
     assert force == pytest.approx(M * G * needed, rel=1e-9)
-    assert slides.work["told"]["leaning"] == 0
+    assert slides.work["outcome"]["leaning"] == 0
     assert slides.response().overturned
 
 
