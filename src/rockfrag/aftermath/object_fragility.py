@@ -19,6 +19,7 @@ from rockfrag.assess.place import Place
 from rockfrag.assess.request import Level, Request
 from rockfrag.motions.intensity import IntensityMeasure
 from rockfrag.outcomes.limit_states import OVERTURNS, ROCKS
+from rockfrag.runtime.progress import Progress
 
 OF_STATICS = 0.1
 """Standard deviation of ln level of what is not known of where rocking begins [-]: contact, centre of gravity. An
@@ -73,6 +74,7 @@ def object_fragilities(
     measure: IntensityMeasure,
     *,
     on_floor: bool = False,
+    progress: Progress | None = None,
 ) -> tuple[list[ObjectFragility], list[str]]:
     """Find the fragility of each object.
 
@@ -81,6 +83,7 @@ def object_fragilities(
     requests, motions : the objects, and the ground motions by which they are shaken
     measure : PGA or PGV
     on_floor : give the curves in the motion of what each object stands on, as if that were the ground
+    progress : called with the number of objects done and of all
 
     Returns
     -------
@@ -91,7 +94,8 @@ def object_fragilities(
     if on_floor:
         asked = [replace(each, place=Place()) for each in asked]
     found, without = [], []
-    for own, assessed in zip(requests, assess_each(asked, motions), strict=True):
+    answers = assess_each(asked, motions, progress)
+    for own, assessed in zip(requests, answers, strict=True):
         topples = _overturning(assessed)
         if topples is None:
             without.append(own.name)

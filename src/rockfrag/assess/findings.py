@@ -430,7 +430,7 @@ def uncertainty(found: Assessment) -> list[Finding]:
 
 def worth_measuring(found: Assessment) -> list[Finding]:
     """What each measurement would buy: in how many cases it decides, of those that may."""
-    if found.decision is None:
+    if found.decision is None or few_earthquakes(found):
         return []
     said = [
         finding(

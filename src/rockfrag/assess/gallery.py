@@ -191,7 +191,13 @@ class _Layout:
             for name, title in titles.items()
         ]
         caption = texts.text(Text.RANKING_CAPTION)
-        table = table_html(pd.DataFrame(rows), columns, caption, "inventory.csv")
+        table = table_html(
+            pd.DataFrame(rows),
+            columns,
+            caption,
+            "inventory.csv",
+            language=texts.language,
+        )
         top = objects.iloc[0]
         message = finding(Text.ADDS_MOST, name=str(top["name"]))
         if math.isfinite(top["contribution"]):

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from rockfrag.assess.core.estimates import fill_comparison
+from rockfrag.assess.motions import FEWEST_EARTHQUAKES
 from rockfrag.assess.outcomes import ObjectOutcomes
 from rockfrag.assess.risk import Drawn, Evidence, Target
 from rockfrag.words.findings import Finding
@@ -44,12 +45,16 @@ def compare(
     """Estimate again with each change of the object, with the same errors of all that is not known.
 
     Limits of the factor are over the earthquakes; a change is shown to help if they leave nothing else open.
+    So few earthquakes as give no verdict give no limits.
     """
     drawn = evidence.drawn(target, evidence.of(now))
+    few = len(set(evidence.outcomes.earthquakes)) < FEWEST_EARTHQUAKES
     found = []
     for change, outcomes in changed.items():
         other = evidence.drawn(target, evidence.of(outcomes))
         before, after, factor, least, most = _compared(drawn, other)
+        if few:
+            least, most = math.nan, math.nan
         helps = after > before if target.is_level else after < before
         shown = least > 1 if target.is_level else most < 1
         found.append(Mitigation(change, after, factor, least, most, helps, shown))

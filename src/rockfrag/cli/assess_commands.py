@@ -6,6 +6,7 @@ import shutil
 import sys
 import textwrap
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from functools import partial
 from itertools import groupby
 from operator import attrgetter
 from pathlib import Path
@@ -221,16 +222,21 @@ def _refuse_unused(options: argparse.Namespace) -> None:
 
 def _one(options: argparse.Namespace, given: dict[str, Any]) -> int:
     """Answer for one object: print it, and write what was asked for."""
-    from rockfrag.assess.answer import assess, waiting_for
+    from rockfrag.assess.answer import assess
     from rockfrag.assess.export import as_json
     from rockfrag.assess.findings import quality_flags
+    from rockfrag.runtime.progress import progress_line, sign_of_life
     from rockfrag.words.catalogue import catalogue
 
     texts = catalogue(options.language)
     request = _request(options, given)
-    if wait := waiting_for(request):
-        print(wait, file=sys.stderr)
-    found = assess(request, options.records)
+    say = progress_line("of the simulations", in_percent=True)
+    found = assess(
+        request,
+        options.records,
+        announce=partial(print, file=sys.stderr),
+        progress=lambda part: say(part, 1.0),
+    )
     if not options.json:
         _print_lines(found, options)
     if options.kind:
@@ -240,7 +246,8 @@ def _one(options: argparse.Namespace, given: dict[str, Any]) -> int:
         print(f"warning: {quality_flag}", file=sys.stderr)
     from rockfrag.assess.page import write_answer
 
-    place = write_answer(found, options.output, options.language)
+    with sign_of_life("still writing the page, with directions and rules"):
+        place = write_answer(found, options.output, options.language)
     if options.pdf:
         from rockfrag.report.pdf import print_page
 
@@ -528,8 +535,9 @@ def form_of(settings: Mapping[str, Any], request: Any) -> dict[str, str]:
         )
     form |= {f"pedestal_{key}": str(value) for key, value in pedestal.items()}
     if isinstance(building, Mapping):
-        asked = ("storey_height", "material")
-        form |= {key: str(building[key]) for key in asked if key in building}
+        asked = {"storey_height": "storey_height", "material": "material"}
+        asked |= {"first_period": "period"}
+        form |= {asked[key]: str(building[key]) for key in asked if key in building}
         if "first_period_s" in building:
             form["period"] = f"{building['first_period_s']} s"
     return (

@@ -147,10 +147,17 @@ def _catalogue(options: argparse.Namespace) -> int:
     """Run ``catalogue``: write the catalogue of a study, and say what was left out."""
     from rockfrag.base.files import csv_text, write_text
     from rockfrag.records.make_catalogue import make_catalogue
+    from rockfrag.runtime.progress import progress_line
 
     folder = Path(options.output).parent if options.output else Path()
     try:
-        draft = make_catalogue(options.paths, options.unit, options.dt, folder)
+        draft = make_catalogue(
+            options.paths,
+            options.unit,
+            options.dt,
+            folder,
+            progress=progress_line("files"),
+        )
     except InputError as error:
         raise InputError(for_command_line(error, force=False)) from None
     used = [column for column in draft.table if (draft.table[column] != "").any()]

@@ -29,6 +29,7 @@ from rockfrag.records.parsing.text_file import NotAcceleration
 from rockfrag.records.quality_flags import quality_flags
 from rockfrag.records.read import motion_of, read_untold
 from rockfrag.records.sources.archive import is_archive, is_no_record, unpacked
+from rockfrag.runtime.progress import Progress
 
 # degrees by which two components may be off a right angle and still be a pair
 _PERPENDICULAR = 5.0
@@ -199,7 +200,9 @@ class CatalogueDraft:
         """Note what looks wrong in a file."""
         self.notes.append((file, what))
 
-    def look_through(self, path: Path) -> tuple[list[Component], list[PeerRecord]]:
+    def look_through(
+        self, path: Path, progress: Progress | None
+    ) -> tuple[list[Component], list[PeerRecord]]:
         """Return the components below a path and what PEER says of them."""
         inside, files = path.is_dir(), record_files(path)
         self.left_out += [
@@ -207,9 +210,11 @@ class CatalogueDraft:
             for file, why in passed_over(path)
             if file.name != SEARCH_RESULTS
         ]
-        components = [
-            component for file in files for component in self._components(file)
-        ]
+        components = []
+        for number, file in enumerate(files, start=1):
+            components += self._components(file)
+            if progress is not None:
+                progress(number, len(files))
         listed: list[PeerRecord] = []
         try:
             if path.name == SEARCH_RESULTS and not inside:
@@ -453,6 +458,8 @@ def make_catalogue(
     unit: str | None = None,
     dt: float | None = None,
     folder: str | os.PathLike[str] = ".",
+    *,
+    progress: Progress | None = None,
 ) -> CatalogueDraft:
     """Make a catalogue of the horizontal components in folders, archives and files.
 
@@ -470,6 +477,8 @@ def make_catalogue(
         Sampling interval of files that do not state theirs [s].
     folder
         From which the catalogue names its files.
+    progress
+        Called with the number of files read of a path, and of all in it.
 
     Returns
     -------
@@ -482,7 +491,7 @@ def make_catalogue(
     groups: list[list[Component]] = []
     seen: dict[str, str] = {}
     for path in map(Path, paths):
-        found, listed = draft.look_through(path)
+        found, listed = draft.look_through(path, progress)
         used: set[str] = set()
         for record in listed:
             rows += draft.peer_rows(record, found, used)

@@ -16,6 +16,7 @@ import logging
 import sys
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import product
 from pathlib import Path
 from typing import Any
 
@@ -78,12 +79,12 @@ def records_of(every: int, folder: Path) -> Records:
 def kept_surfaces(
     records: Records, extent: Extent, folder: Path
 ) -> Iterator[tuple[pd.DataFrame, list[dict[str, Any]]]]:
-    """Yield for each standing its medians and surfaces; those that an earlier run has left are read."""
-    for standing in STANDINGS:
-        table_at = folder / f"medians-{standing}.csv"
-        rows_at = folder / f"surfaces-{standing}.json"
+    """Yield medians and surfaces of each standing and measure; those that an earlier run has left are read."""
+    for standing, measure in product(STANDINGS, MEASURES):
+        table_at = folder / f"medians-{standing}-{measure}.csv"
+        rows_at = folder / f"surfaces-{standing}-{measure}.json"
         if not (table_at.exists() and rows_at.exists()):
-            ((table, rows),) = medians_and_surfaces(records, extent, [standing])
+            table, rows = medians_and_surfaces(records, extent, standing, measure)
             write_table(table, table_at)
             _write_json(rows, rows_at)
         rows = json.loads(rows_at.read_text(encoding="utf-8"))
@@ -96,36 +97,29 @@ def _write_json(content: Any, file: Path) -> None:
 
 
 def medians_and_surfaces(
-    records: Records, extent: Extent, standings: Sequence[str] = STANDINGS
-) -> Iterator[tuple[pd.DataFrame, list[dict[str, Any]]]]:
-    """Yield for each standing its medians and surfaces, judged by sizes that the fit has not seen."""
-    for standing in standings:
-        grid = extent.plane if standing == "plane" else extent.space
-        sizes = grid_of_sizes(*grid)
-        others = random_sizes(extent.held_out, SEED)
-        weights, rows, tables = records.weights(standing), [], []
-        for measure in MEASURES if standing == "plane" else MEASURES[:1]:
-            seen = records.shake(sizes, standing, measure)
-            unseen = records.shake(others, standing, measure)
-            error = np.nan
-            # the fall first: what the earthquakes do to it they do to lesser rotations
-            for number, limit in reversed(list(enumerate(LIMITS))):
-                drawn = weights if limit == 1 else weights[:1]
-                medians, dispersions = seen.fits(drawn, number)
-                row = _surface_row(sizes, medians, dispersions[0])
-                error = _earthquake_error(np.log(medians[1:])) if limit == 1 else error
-                row["earthquakes"] = round(error, 4)
-                kept, _ = unseen.fits(weights[:1], number)
-                row |= _judged(row["median"], others, kept[0])
-                rows.append(
-                    {"standing": standing, "limit": limit, "measure": measure} | row
-                )
-                table = _table(sizes, medians, dispersions[0])
-                tables.append(
-                    table.assign(standing=standing, measure=measure, limit=limit)
-                )
-            _LOG.info("%s, %s", standing, measure)
-        yield pd.concat(tables, ignore_index=True), rows
+    records: Records, extent: Extent, standing: str, measure: str
+) -> tuple[pd.DataFrame, list[dict[str, Any]]]:
+    """Medians and surfaces of a standing in a measure, judged by sizes that the fit has not seen."""
+    sizes = grid_of_sizes(*(extent.plane if standing == "plane" else extent.space))
+    others = random_sizes(extent.held_out, SEED)
+    weights, rows, tables = records.weights(standing), [], []
+    seen = records.shake(sizes, standing, measure)
+    unseen = records.shake(others, standing, measure)
+    error = np.nan
+    # the fall first: what the earthquakes do to it they do to lesser rotations
+    for number, limit in reversed(list(enumerate(LIMITS))):
+        drawn = weights if limit == 1 else weights[:1]
+        medians, dispersions = seen.fits(drawn, number)
+        row = _surface_row(sizes, medians, dispersions[0])
+        error = _earthquake_error(np.log(medians[1:])) if limit == 1 else error
+        row["earthquakes"] = round(error, 4)
+        kept, _ = unseen.fits(weights[:1], number)
+        row |= _judged(row["median"], others, kept[0])
+        rows.append({"standing": standing, "limit": limit, "measure": measure} | row)
+        table = _table(sizes, medians, dispersions[0])
+        tables.append(table.assign(standing=standing, measure=measure, limit=limit))
+    _LOG.info("%s, %s", standing, measure)
+    return pd.concat(tables, ignore_index=True), rows
 
 
 def _surface_row(sizes: Floats, medians: Floats, dispersions: Floats) -> dict[str, Any]:

@@ -222,7 +222,7 @@ class Constrained:
     result: Reweighted  #: Weights and curves
     #: A row an object: ``object``, ``information_bit``, ``level_ratio_alone`` and ``level_ratio_without``
     by_object: pd.DataFrame
-    #: A row an assumption: ``assumption`` and ``level_ratio``
+    #: A row an assumption: its name as ``assumption``, and ``level_ratio``
     sensitivity: pd.DataFrame
 
     @property
@@ -279,20 +279,18 @@ def _by_object(site: Site) -> pd.DataFrame:
 def _sensitivity(site: Site) -> pd.DataFrame:
     """Ratio of levels where one assumption at a time is another."""
     objects = site.objects
-    less = f"{100 * (1 - IN_SPACE):.0f} %"
     cases = {
-        "as stated": scaled(objects),
-        "ages half as long": scaled(objects, age=0.5),
-        "ages twice as long": scaled(objects, age=2.0),
-        "objects withstand 25 % more": scaled(objects, capacity=1.25),
-        "objects withstand 25 % less": scaled(objects, capacity=0.75),
-        f"boxes under two components instead of one plane (withstand {less} less)": scaled(
-            objects, capacity=IN_SPACE
-        ),
+        "as_stated": scaled(objects),
+        "half_as_old": scaled(objects, age=0.5),
+        "twice_as_old": scaled(objects, age=2.0),
+        "stronger": scaled(objects, capacity=1.25),
+        "weaker": scaled(objects, capacity=0.75),
+        # boxes under two components instead of one plane
+        "in_space": scaled(objects, capacity=IN_SPACE),
     }
     sites = {name: replace(site, objects=moved) for name, moved in cases.items()}
     if len(objects) > 1:
-        sites["errors of fragilities independent"] = replace(site, shared_error=0.0)
-        sites["errors of fragilities all the same"] = replace(site, shared_error=1.0)
+        sites["independent_errors"] = replace(site, shared_error=0.0)
+        sites["shared_errors"] = replace(site, shared_error=1.0)
     rows = [(name, reweight(other).level_ratio) for name, other in sites.items()]
     return pd.DataFrame(rows, columns=["assumption", "level_ratio"])

@@ -184,7 +184,8 @@ const objects = (data) => {
       return { width: below.width, height: below.height + top.height, mass: below.mass + top.mass, inertia, cgHeight: y, cgOffset: x };
     };
     const held = { to_pedestal: () => body(joined(statue, pedestal), null), to_floor: () => body(statue, null) }[pedestal && request.fixed];
-    if (held) return [{ role: "now", body: held() }];
+    const moving = (runs) => (request.solid ? inSpace(data).planOf(request, runs) : runs);
+    if (held) return moving([{ role: "now", body: held() }]);
     stands(body(statue), ensemble);
     if (measured !== null && measured > ensemble.bodyOf(body(statue)).largest) refuse("restitution", "gains_energy");
     const runs = [{ role: "now", body: body(statue) }];
@@ -217,7 +218,7 @@ const objects = (data) => {
       helps("lower_pedestal", body(statue, half), { height: three(100 * half.height) });
     }
     for (const { body: each } of runs) stands(each, ensemble);
-    return request.solid ? inSpace(data).planOf(request, runs) : runs;
+    return moving(runs);
   }
   // what cannot stand is said beside the width
   function stands(body, ensemble) {

@@ -28,6 +28,7 @@ from rockfrag.engines.planar.solve import (
     standing_bodies,
 )
 from rockfrag.engines.planar.walls import any_closed, note_impulses
+from rockfrag.engines.planar.witness import SHUT
 from rockfrag.engines.pure_rocking.kernels.laws import moves_impulse, scales_momentum
 from rockfrag.engines.pure_rocking.kernels.laws import rate as lawful_rate
 from rockfrag.laws.momentum import NUMBER as MOMENTUM
@@ -328,9 +329,22 @@ def _outcome(p, w, trial, part, before):
 
 
 @kernel
-def _is_solvable(p, w):
-    """Whether no two of the closed contacts ask for the same thing, as walls and faces may."""
-    return not any_closed(p, w) or solve(p, w, w.q, w.v, 0.0, 0.0, True, False)
+def _can_hold(p, w, still):
+    """Whether beside walls all closed contacts can be held, with no more than what is slower than ``still`` asks.
+
+    Two that ask for the same thing cannot be, as a wall and a face may; two that all but do, such as a corner
+    right under the edge of a kerb, can, but only by a body that stops.
+    """
+    if not any_closed(p, w):
+        return True
+    if not solve(p, w, w.q, w.v, 0.0, 0.0, True, False):
+        return False
+    most = SHUT * max(still, STILL * p.speed)
+    for d in range(3 * p.count):
+        size = p.size if d % 3 == 2 else 1.0
+        if not size * abs(w.out[d] - w.v[d]) <= most:
+            return False
+    return True
 
 
 @kernel
@@ -342,7 +356,7 @@ def read_slip(p, w, k, still):
     """
     speed, slid = slip_speed(p, w, w.v, k, False), w.slides[k]
     w.slides[k] = 0 if abs(speed) <= still else (1 if speed > 0.0 else -1)
-    if slid != 0 and w.slides[k] == 0 and not _is_solvable(p, w):
+    if slid != 0 and w.slides[k] == 0 and not _can_hold(p, w, still):
         w.slides[k] = slid
 
 
@@ -387,10 +401,10 @@ def _shut_weak(p, w, ah, av, closing):
                         continue
                     if was_open:
                         read_slip(p, w, k, closing)
-                    if w.slides[k] == 0 and not _is_solvable(p, w):
+                    if w.slides[k] == 0 and not _can_hold(p, w, closing):
                         # a face holds it along the wall
                         w.slides[k] = 1
-                    if _is_solvable(p, w):
+                    if _can_hold(p, w, closing):
                         return True
                     w.closed[k, end] = 0
                     solve(p, w, w.q, w.v, ah, av, False)
