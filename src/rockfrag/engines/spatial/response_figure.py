@@ -1,6 +1,7 @@
 """Figure of one response of a body in space: the path of its axis, and its base in the plan.
 
-In: outcome and history of one analysis, and the outline of the base [m]. Out: a matplotlib figure.
+In: outcome and history of one analysis, and the outline of the base [m]. Out: a matplotlib figure. What is drawn
+are the coordinates of ``docs/space.md``, "Coordinates".
 """
 
 from typing import TYPE_CHECKING
