@@ -15,8 +15,6 @@ MOST_POSITIONAL = 5
 COMPILED = {"rockfrag/system/geometry.py", "rockfrag/base/elementary.py"}
 """Modules that kernels compile, which take no names."""
 
-TEMPLATES_THAT_DECIDE = ("assess/app/app.html.j2",)
-
 
 @cache
 def modules() -> dict[str, ast.Module]:
@@ -188,9 +186,7 @@ def decisions(text: str) -> list[str]:
     return found
 
 
-@pytest.mark.parametrize(
-    "name", [n for n in templates() if n not in TEMPLATES_THAT_DECIDE]
-)
+@pytest.mark.parametrize("name", templates())
 def test_a_template_lays_out_and_decides_nothing(name):
     assert not decisions(templates()[name])
 
