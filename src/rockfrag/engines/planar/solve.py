@@ -88,24 +88,28 @@ def rate(p, q, v, k, x, y, dx, dy):
 
 @inlined_kernel
 def bias(p, q, v, k, x, y, dx, dy, kind):
-    """Relative acceleration at (x, y) along (dx, dy), seen from the face, where all accelerations vanish."""
+    """Relative acceleration at (x, y) along (dx, dy), seen from the face, where all accelerations vanish.
+
+    β of equation 2 in ``docs/contact.md``: the centripetal accelerations of both bodies, and Coriolis's by the
+    velocity u of the one relative to the other, as the body with the face turns (ω_f).
+    """
     b = 3 * p.upper[k]
-    turn = v[b + 2]
+    omega = v[b + 2]
     rx, ry = x - q[b], y - q[b + 1]
-    ax, ay = -turn * turn * rx, -turn * turn * ry
-    ux, uy = v[b] + turn * ry, v[b + 1] - turn * rx
-    owner = 0.0 if kind == 1 else turn
+    ax, ay = -omega * omega * rx, -omega * omega * ry
+    ux, uy = v[b] + omega * ry, v[b + 1] - omega * rx
+    omega_of_face = 0.0 if kind == 1 else omega
     if p.lower[k] >= 0:
-        below = v[b - 1]
+        omega_below = v[b - 1]
         rx, ry = x - q[b - 3], y - q[b - 2]
-        ax += below * below * rx
-        ay += below * below * ry
-        ux -= v[b - 3] + below * ry
-        uy -= v[b - 2] - below * rx
+        ax += omega_below * omega_below * rx
+        ay += omega_below * omega_below * ry
+        ux -= v[b - 3] + omega_below * ry
+        uy -= v[b - 2] - omega_below * rx
         if kind == 1:
-            owner = below
-    ax -= 2.0 * owner * uy
-    ay += 2.0 * owner * ux
+            omega_of_face = omega_below
+    ax -= 2.0 * omega_of_face * uy
+    ay += 2.0 * omega_of_face * ux
     return dx * ax + dy * ay
 
 

@@ -112,7 +112,11 @@ class Between:
     def _integrate(
         self, body: np.void, shaking: Shaking, *, rows: int, room: int
     ) -> Part:
-        """Integrate from the state on, and keep so many samples and contact events."""
+        """Integrate a part of the shaking from the state on, which ends at its end.
+
+        ``rows`` samples are kept, none if 0, and ``room`` contact events; where there are more it is integrated once
+        again with room for all.
+        """
         while True:
             kept = contact.Kept(
                 np.zeros(rows, contact.SAMPLE), np.zeros(room, contact.CONTACT_EVENT)

@@ -221,12 +221,12 @@ class SingleRun:
             _Turning(sine[:, i], cosine[:, i], omega[:, i], alpha[:, i])
             for i in range(self.count)
         ]
-        lower, side, pivots = (
-            self.system.shapes[0],
-            (state < 0).astype(np.int64),
-            (+1, -1),
-        )
-        arm = np.array([geometry.arm(lower, way) for way in pivots])[side[:, 0]]
+        lower = self.system.shapes[0]
+        pivots = (+1, -1)
+        # number of each sample's pivots among these, shape (n, blocks)
+        number = (state < 0).astype(np.int64)
+        arms = np.array([geometry.arm(lower, pivot) for pivot in pivots])
+        arm = arms[number[:, 0]]
         links = [turns[0].link(arm)]
         centres = [links[0][:2]]
         if self.count == 2:
@@ -234,11 +234,11 @@ class SingleRun:
             feet = np.array(
                 [[geometry.reach(pile, a, b) for b in pivots] for a in pivots]
             )
-            above = np.array([geometry.upper_arm(pile, way) for way in pivots])
+            above = np.array([geometry.upper_arm(pile, pivot) for pivot in pivots])
             top = np.subtract(pile.right, pile.left)
             links += [
-                turns[0].link(feet[side[:, 0], side[:, 1]]),
-                turns[1].link(above[side[:, 1]]),
+                turns[0].link(feet[number[:, 0], number[:, 1]]),
+                turns[1].link(above[number[:, 1]]),
                 turns[0].turned(top),
             ]
             (xd, yd, *_), (x, y, *_) = links[1:3]

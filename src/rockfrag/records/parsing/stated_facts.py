@@ -241,13 +241,17 @@ def _close(found: Sequence[float | int | str]) -> bool:
 
 
 def _steps(line: str) -> list[float]:
-    """Return the intervals [s] that a folded line states, as a step or a rate."""
+    """Return the intervals [s] that a folded line states, as a step or a rate.
+
+    A word that may mean something else, such as DT, counts with a sign of equality behind it alone. What is not
+    called a sampling interval has to be one that records have.
+    """
     found = []
     for name in ("step", "unsure step"):
         for match in _patterns()[name].finditer(line):
             unit = read_unit(_unit_of(match))
-            stroke = unit.quantity in ("angle", "displacement", "frequency")
-            if name == "unsure step" and (not match["sign"] or stroke):
+            is_other = unit.quantity in ("angle", "displacement", "frequency")
+            if name == "unsure step" and (not match["sign"] or is_other):
                 continue
             value = _value_in(match)
             if unit.quantity == "frequency":
