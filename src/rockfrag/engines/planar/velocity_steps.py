@@ -114,7 +114,7 @@ class Between:
     ) -> Part:
         """Integrate a part of the shaking from the state on, which ends at its end.
 
-        ``rows`` samples are kept, none if 0, and ``room`` contact events; where there are more it is integrated once
+        ``rows`` samples are kept, none if 0, and ``room`` contact events; where there are more it is integrated
         again with room for all.
         """
         while True:
