@@ -5,19 +5,28 @@ import io
 import json
 import shutil
 import subprocess
+from dataclasses import asdict
 from pathlib import Path
 
 import pytest
 
 import rockfrag.assess
+from rockfrag.assess.app.form import form_fields
+from rockfrag.assess.hazard.curve import PGA
+from rockfrag.assess.request import read_request
+from rockfrag.base.units import DIMENSIONS
 
 NODE = shutil.which("node")
 pytestmark = pytest.mark.skipif(NODE is None, reason="Node is not installed")
 LISTS = Path(rockfrag.assess.__file__).parent / "app" / "lists.js"
-FIELDS = ["name", "width", "height", "depth", "round"]
+NAMES = ["name", "width", "height", "depth", "round"]
+FIELDS = [
+    {"name": name, "key": [name], "kind": "flag" if name == "round" else "text"}
+    for name in NAMES
+]
 RUN = """
-const [path, fields, calls] = JSON.parse(require("fs").readFileSync(0, "utf-8"));
-const lists = require(path)({ measures: {} }, fields);
+const [path, units, fields, calls] = JSON.parse(require("fs").readFileSync(0, "utf-8"));
+const lists = require(path)({ measures: { PGA: {} }, units: { dimensions: units } }, fields);
 const say = (key, facts) => `${key} ${JSON.stringify(facts ?? {})}`;
 console.log(JSON.stringify(calls.map(([name, ...rest]) => {
   try { return { found: lists[name](...rest, say) }; }
@@ -26,12 +35,12 @@ console.log(JSON.stringify(calls.map(([name, ...rest]) => {
 """
 
 
-def lists(*calls: list) -> list[dict]:
+def lists(*calls: list, fields: list[dict] = FIELDS) -> list[dict]:
     """What each call of the page's functions gives: what is found, or why it is refused."""
     assert NODE is not None
     done = subprocess.run(
         [NODE, "-e", RUN],
-        input=json.dumps([str(LISTS), FIELDS, calls]),
+        input=json.dumps([str(LISTS), DIMENSIONS, fields, calls]),
         capture_output=True,
         text=True,
         # a file of the largest size took longer than this once
@@ -86,7 +95,7 @@ def test_no_cell_of_a_saved_list_begins_like_a_formula(text):
     saved = written["found"]
     rows = [*csv.reader(io.StringIO(saved, newline=""))]
     assert len(rows) == 2
-    assert len(rows[1]) == len(FIELDS)
+    assert len(rows[1]) == len(NAMES)
     assert not any(cell.startswith(tuple("=+-@\t\r")) for cell in rows[1])
     # opened again it is what it was, but for blanks around it
     assert opened(saved)["found"][0]["name"] == text.strip()
@@ -97,7 +106,7 @@ def test_a_list_that_is_saved_is_opened_again():
     saved = lists(["csvOf", forms])[0]["found"]
     found = opened(f"\ufeff{saved}")["found"]
     for form, back in zip(forms, found, strict=True):
-        assert {name: form.get(name, "") for name in FIELDS} == back
+        assert {name: form.get(name, "") for name in NAMES} == back
 
 
 @pytest.mark.parametrize(
@@ -106,3 +115,24 @@ def test_a_list_that_is_saved_is_opened_again():
 def test_a_line_of_blanks_does_not_stop_the_page(line):
     found = opened(f"{line}\nwidth: 30cm # wide\n", "statue.yaml")
     assert found["found"][0]["width"] == "30cm"
+
+
+def test_what_the_page_saves_the_command_reads_and_the_page_opens(tmp_path):
+    form = {
+        **{"name": "Stele", "width": "35 cm", "height": "1,2 m", "depth": "0.5 m"},
+        **{"facing": "20", "floor": "2/4", "storey_height": "3.2 m"},
+        **{"period": "400 ms", "material": "steel", "pedestal_width": "60 cm"},
+        **{"pedestal_height": "0.5 m", "measure": "PGA", "level": "0.3 g"},
+        **{"years": "475", "round": False},
+    }
+    fields = [asdict(field) for field in form_fields([PGA])]
+    saved = lists(["yamlOf", form], fields=fields)[0]["found"]
+    path = tmp_path / "statue.yaml"
+    path.write_text(saved, encoding="utf-8")
+    request = read_request(path)
+    assert request.objects.facing_deg == 20 and request.objects.depth == 0.5
+    assert request.objects.pedestals[0].width == 0.6
+    assert request.place.building.heights == (3.2,) * 4
+    back = lists(["read", "statue.yaml", saved], fields=fields)[0]["found"][0]
+    told = {key: text.replace(",", ".") for key, text in form.items() if text}
+    assert back == told | {"period": "0.4 s"}

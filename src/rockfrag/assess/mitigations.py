@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rockfrag.assess.core.estimates import fill_comparison
+from rockfrag.assess.core.estimates import SHOWN, fill_comparison
 from rockfrag.assess.outcomes import ObjectOutcomes
 from rockfrag.assess.risk import Drawn, Evidence, Target
 from rockfrag.words.findings import Finding
@@ -49,17 +49,16 @@ def compare(
     found = []
     for change, outcomes in changed.items():
         other = evidence.drawn(target, evidence.of(outcomes))
-        before, after, factor, least, most = _compared(drawn, other)
-        helps = after > before if target.is_level else after < before
-        shown = least > 1 if target.is_level else most < 1
-        found.append(Mitigation(change, after, factor, least, most, helps, shown))
+        _, after, factor, least, most, helps, shown = _compared(drawn, other)
+        said = Mitigation(change, after, factor, least, most, helps > 0, shown > 0)
+        found.append(said)
     return found
 
 
 def _compared(before: Drawn, after: Drawn) -> list[float]:
-    """Both numbers, their ratio and its limits over the earthquakes."""
+    """Both numbers, their ratio and its limits over the earthquakes, whether it helps and is shown to."""
     sets = len(before.prediction.draws.weights)
-    work, found = np.zeros((3, before.values.size)), np.zeros(5)
+    work, found = np.zeros((3, before.values.size)), np.zeros(SHOWN + 1)
     kind = before.target.kind
     fill_comparison(kind, before.shown, after.shown, sets, work, found)
     values: list[float] = found.tolist()

@@ -84,7 +84,7 @@ def test_parts_are_those_of_a_sum_of_sources():
     values = draws.sources @ np.array(list(sources.values()))
     work, found = np.zeros((2, values.size)), np.zeros(MOTIONS + 4)
     given = FRACTION, 1.0, values.mean(), 1.0, values
-    fill_estimate(*given, *work, draws.bins, len(draws.weights), found)
+    fill_estimate(*given, *work, draws.bins, len(draws.weights), 10, found)
     total = values.std()
     for found_part, size in zip(found[-3:], sources.values(), strict=True):
         assert (found_part / total) ** 2 == pytest.approx(size**2 / total**2, abs=0.02)
