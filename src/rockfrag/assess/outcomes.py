@@ -359,10 +359,8 @@ class Shaking(IntensityLevels):
 
     def _factors(self, shaking: Sequence[Motion], rows: Any = slice(None)) -> Floats:
         """Factors on what shakes, by the rows of the levels; at rest what is not counted, shape (rows, levels)."""
-        scales, allowed = (
-            np.ascontiguousarray(table[rows]) for table in (self.scales, self.allowed)
-        )
-        return _factors(scales, allowed, shaking)
+        scales = np.ascontiguousarray(self.scales[rows])
+        return _factors(scales, np.ascontiguousarray(self.allowed[rows]), shaking)
 
     def _each_system(
         self,

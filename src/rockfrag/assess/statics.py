@@ -32,8 +32,11 @@ def lifting_in_space(system: System, shaking: Sequence[GroundMotion]) -> Floats:
     below, height = np.array(body.centre[:2]), float(body.centre[2])
     each = [_samples(motion) for motion in shaking]
     if isinstance(body.base, Circle):
-        rim = (float(body.base.radius), *(np.array(body.base.centre) - below).tolist())
-        return np.array([scales.lifting_over_rim(*rim, height, *xy) for xy in each])
+        radius = float(body.base.radius)
+        x, y = (np.array(body.base.centre) - below).tolist()
+        return np.array(
+            [scales.lifting_over_rim(radius, x, y, height, *xy) for xy in each]
+        )
     assert isinstance(body.base, Polygon)
     corners = np.ascontiguousarray(np.array(body.base.vertices) - below)
     return np.array([scales.lifting_over_edges(corners, height, *xy) for xy in each])

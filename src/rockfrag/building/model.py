@@ -224,9 +224,10 @@ def stiffnesses_for_period(
     # compiled, which other checks need not wait for
     from rockfrag.building.modes import fill_stiffnesses
 
-    each = np.array(masses, dtype=np.float64), np.array(heights, dtype=np.float64)
-    found, memory = np.zeros(len(masses)), np.zeros((2, len(masses), len(masses)))
-    fill_stiffnesses(*each, float(first_period), *memory, found)
+    loads = np.array(masses, dtype=np.float64)
+    tall = np.array(heights, dtype=np.float64)
+    found, memory = np.zeros(loads.size), np.zeros((2, loads.size, loads.size))
+    fill_stiffnesses(loads, tall, float(first_period), *memory, found)
     return tuple(found.tolist())
 
 

@@ -131,7 +131,13 @@ def fill_stiffnesses(
 
 @cached_njit()
 def fill_slower(stiffnesses: Floats, factor: float, found: Floats) -> None:
-    """Stiffnesses with which every period is longer by a factor, shape (n,) both."""
+    """Stiffnesses with which every period is longer by a factor.
+
+    Parameters
+    ----------
+    stiffnesses, found : of each storey, as they are and softer [N/m], shape (n,)
+    factor : on the periods [-]
+    """
     for i in range(found.size):
         found[i] = stiffnesses[i] / (factor * factor)
 

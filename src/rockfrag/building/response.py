@@ -45,10 +45,7 @@ def find_modes(building: ShearBuilding) -> Modes:
     from rockfrag.building.modes import fill_modes
 
     n = building.storeys
-    mass, stiffness = (
-        np.array(each, dtype=np.float64)
-        for each in (building.masses, building.stiffnesses)
-    )
+    mass, stiffness = np.array(building.masses), np.array(building.stiffnesses)
     memory, shape, fractions = np.zeros((2, n, n)), np.zeros((n, n)), np.zeros((n, n))
     frequencies, found = np.zeros((2, n)), np.zeros((2, n))
     fill_modes(mass, stiffness, *memory, frequencies, shape, fractions, found)
@@ -134,8 +131,16 @@ def respond_elastically(building: ShearBuilding, motion: Motion) -> BuildingResp
         modes.frequency.tolist(), modes.damping.tolist(), fractions, strict=True
     ):
         matrix = oscillator_matrix(omega, damping, motion.dt)
-        about = omega, damping, matrix, fraction
-        add_mode(motion.acceleration, motion.dt, *about, displacement, acceleration)
+        add_mode(
+            motion.acceleration,
+            motion.dt,
+            omega,
+            damping,
+            matrix,
+            fraction,
+            displacement,
+            acceleration,
+        )
     return BuildingResponse(
         time=motion.time,
         acceleration=np.vstack([motion.acceleration, acceleration]),

@@ -224,7 +224,7 @@ def _constants() -> dict[str, Any]:
         "MODEL": MODEL_ERRORS[CUT].beyond,
         **_of(sources, "SPACE"),
         **_of(plausible, "STONE", "DENSITIES", "DEPTHS"),
-        **_of(bodies, "PLATE", "LOWER", "BALLAST"),
+        **_of(bodies, "LOWER", "BALLAST"),
         **_of(
             place, "PERIOD_FACTORS", "STOREY_HEIGHT", "STOREY_MASS", "HIGHEST_BUILDING"
         ),

@@ -2,7 +2,7 @@
  * are made by the core, as rockfrag.assess.standing makes them. */
 const plans = (data, core, refuse) => {
   "use strict";
-  const { PLATE, LOWER, BALLAST, TOLERANCES } = data.constants, spatial = inSpace(data, core), { change } = spatial;
+  const { LOWER, BALLAST, TOLERANCES } = data.constants, spatial = inSpace(data, core), { change } = spatial;
   const number = (form) => (value) => ({ number: value, form }), [three, percent] = ["three", "percent"].map(number);
 
   // roles, and bodies as the module of outcomes takes them; the object as it stands first
@@ -33,7 +33,10 @@ const plans = (data, core, refuse) => {
     }
     const helps = (name, what, values = {}) => runs.push({ role: "mitigation", change: name, body: what, values });
     const plateUnder = (block) => change("make_plate", block), onPlate = (block) => joined(block, plateUnder(block));
-    const plate = (block) => ({ width: three(100 * plateUnder(block).width), thick: three(100 * PLATE) });
+    const plate = (block) => {
+      const { width, height } = plateUnder(block);
+      return { width: three(100 * width), thick: three(100 * height) };
+    };
     if (!pedestal) helps("plate_under_it", body(onPlate(statue)), plate(statue));
     else {
       helps("plate_under_pedestal", body(statue, onPlate(pedestal)), plate(pedestal));

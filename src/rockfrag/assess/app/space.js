@@ -98,6 +98,7 @@ const inSpace = (data, core) => {
       const put = (name, m, values) => values.forEach((value, k) => { found[name][(m - first) * each + k] |= value; });
       kept.forEach((m, i) => put("allowed", m, allowed.subarray(i * each, (i + 1) * each)));
       if (!kept.length) return found;
+      const planarIn = (sides, stands, own) => planarOutcomes(run.body, sides, own, stands, factorsOf);
       const note = (m, told, i) => { for (const name of ["overturned", "rocked"]) put(name, m, told[name].subarray(i * each, (i + 1) * each)); };
       const planar = !run.solid || run.body.pedestal;
       if (planar && !run.worst) {
@@ -111,13 +112,13 @@ const inSpace = (data, core) => {
         const add = (told) => { for (const m of places) note(m, told, 0); };
         const sides = planar && run.worst ? sidesOf(record, shaken).map((side) => ({ ...side, peak: peakOf(side) })) : [], across = sides.length / 2;
         const some = sides.filter((_, i) => i % across === 0);
-        if (some.length) add(planarOutcomes(run.body, some, own, stands()));
+        if (some.length) add(planarIn(some, stands(), own));
         for (const m of places) {
           for (const side of sides) lift(m, liftingInPlane(ensemble.bodyOf(run.body), side));
           if (run.solid) lift(m, liftingInSpace(space.bodyOf(run.solid), pairOf(record, shaken)));
         }
         if (run.solid) add(solidOutcomes(run.solid, record, shaken, factorsOf(own, [shaken(record.first)]), stands()));
-        if (sides.length > some.length) add(planarOutcomes(run.body, sides.filter((_, i) => i % across), own, stands()));
+        if (sides.length > some.length) add(planarIn(sides.filter((_, i) => i % across), stands(), own));
       }
       return found;
     };
@@ -132,7 +133,7 @@ const inSpace = (data, core) => {
       return pair[1] ? both.turns.map((turn) => turned(pair, turn)) : [pair[0]];
     }
     // in the worst of some directions: what happens from one side happens
-    function planarOutcomes(body, sides, { levels, scales: row, allowed }, stands) {
+    function planarOutcomes(body, sides, { levels, scales: row, allowed }, stands, factorsOf) {
       const every = (values) => values.constructor.from({ length: sides.length * levels.length }, (_, i) => values[i % levels.length]);
       const counts = every(Uint8Array.from(allowed, (may, k) => (may && stands[k] ? 1 : 0)));
       const scales = factorsOf({ levels, scales: every(row), allowed: counts }, sides);

@@ -74,7 +74,8 @@ def add_ballast(block: Floats, part: float, found: Floats) -> None:
 
 def make_plate(block: Floats, found: Floats) -> None:
     """A square plate of steel under a block, wider than its base."""
-    found[INERTIA] = found[CG_HEIGHT] = found[DEPTH] = math.nan
+    for place in (INERTIA, CG_HEIGHT, DEPTH):
+        found[place] = math.nan
     found[WIDTH] = WIDER * block[WIDTH]
     found[HEIGHT] = PLATE
     found[MASS] = STEEL * PLATE * (found[WIDTH] * found[WIDTH])
@@ -134,7 +135,7 @@ def tell_box(top: Floats, own: Floats, moments: Floats) -> None:
 def tell_round(top: Floats, moments: Floats) -> None:
     """Moments of inertia of an object on a round base about x, y, z [kg m²], and its diameter [m], shape (4,)."""
     across = _shape(top).inertia
-    moments[0] = moments[1] = across
+    moments[0], moments[1] = across, across
     moments[2] = top[MASS] * top[WIDTH] * top[WIDTH] / 8
     moments[3] = top[WIDTH]
 

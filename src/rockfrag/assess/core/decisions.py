@@ -98,7 +98,8 @@ def decide(
     bins, means = prediction.draws.bins, np.zeros(BINS)
     fill_decision(values, bins, places, rest, mean, accepted, means, turned, found)
     tried = tuple(map(Measurement, known, *turned.T.tolist()))
-    action, otherwise = (tuple(Action)[int(found[at])] for at in (ACTION, OTHERWISE))
+    actions = tuple(Action)
+    action, otherwise = actions[int(found[ACTION])], actions[int(found[OTHERWISE])]
     if action is not Action.MEASURE:
         return Decision(action, otherwise, measurements=tried)
     first = tried[int(found[FIRST])]

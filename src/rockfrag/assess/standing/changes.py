@@ -10,7 +10,7 @@ from dataclasses import replace
 import numpy as np
 
 from rockfrag.assess.core import bodies
-from rockfrag.assess.core.bodies import BALLAST, LOWER, PLATE, WIDER
+from rockfrag.assess.core.bodies import BALLAST, LOWER
 from rockfrag.assess.texts import Text
 from rockfrag.base.arrays import Floats
 from rockfrag.system.blocks import Block, Body, Stack, stacked
@@ -29,10 +29,10 @@ def row_of(block: Block, depth: float = math.nan) -> Floats:
     -------
     Its sizes, mass, inertia and centre of gravity, shape (7,) [m, kg]; NaN for what is not given.
     """
-    given = (block.inertia, block.cg_height)
-    inertia, centre = (math.nan if each is None else each for each in given)
-    numbers = (block.width, block.height, block.mass, inertia, centre, block.cg_offset)
-    return np.array([*numbers, depth], dtype=np.float64)
+    sizes = [block.width, block.height, block.mass, block.inertia, block.cg_height]
+    numbers = [*sizes, block.cg_offset, depth]
+    known = [math.nan if number is None else number for number in numbers]
+    return np.array(known, dtype=np.float64)
 
 
 def changed_block(
@@ -105,7 +105,8 @@ def on_plate(block: Block) -> Block:
 
 
 def _plate(where: Text, block: Block) -> Finding:
-    wide, thick = three(100 * WIDER * block.width), three(100 * PLATE)
+    plate = changed_block(block, bodies.make_plate)
+    wide, thick = three(100 * plate.width), three(100 * plate.height)
     return finding(where, width=wide, thick=thick)
 
 
