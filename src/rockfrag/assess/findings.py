@@ -202,7 +202,7 @@ def how_far(found: Assessment) -> Finding:
         most = finding(Text.QUANTITY, value=two(strongest), unit=unit)
         return finding(text, half, most=most)
     middle = finding(Text.QUANTITY, value=two(half.value), unit=unit)
-    about = {"half": middle, "lower": two(half.lower)}
+    about: dict[str, Value] = {"half": middle, "lower": two(half.lower)}
     if text == Text.HOW_FAR:
         about["upper"] = two(half.upper)
     return finding(text, half, **about)
