@@ -44,22 +44,27 @@ def compare(
     """Estimate again with each change of the object, with the same errors of all that is not known.
 
     Limits of the factor are over the earthquakes; a change is shown to help if they leave nothing else open.
+    So few earthquakes as give no verdict give no limits.
     """
     drawn = evidence.drawn(target, evidence.of(now))
+    earthquakes = len(set(evidence.outcomes.earthquakes))
     found = []
     for change, outcomes in changed.items():
         other = evidence.drawn(target, evidence.of(outcomes))
-        _, after, factor, least, most, helps, shown = _compared(drawn, other)
+        _, after, factor, least, most, helps, shown = _compared(
+            drawn, other, earthquakes
+        )
         said = Mitigation(change, after, factor, least, most, helps > 0, shown > 0)
         found.append(said)
     return found
 
 
-def _compared(before: Drawn, after: Drawn) -> list[float]:
+def _compared(before: Drawn, after: Drawn, earthquakes: int) -> list[float]:
     """Both numbers, their ratio and its limits over the earthquakes, whether it helps and is shown to."""
     sets = len(before.prediction.draws.weights)
-    work, found = np.zeros((3, before.values.size)), np.zeros(SHOWN + 1)
+    work, found = np.zeros((2, before.values.size)), np.zeros(SHOWN + 1)
     kind = before.target.kind
-    fill_comparison(kind, before.shown, after.shown, sets, work, found)
+    shown = before.shown, after.shown
+    fill_comparison(kind, shown[0], shown[1], sets, earthquakes, work, found)
     values: list[float] = found.tolist()
     return values

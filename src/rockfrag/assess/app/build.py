@@ -55,7 +55,7 @@ ENTRIES: dict[Any, tuple[Any, ...]] = {
     ),
     estimates.fill_order: (_ROW, _ROW, False, _NUMBERS),
     estimates.fill_parts: (_ROW, _ROW),
-    estimates.fill_comparison: (_WHOLE, _ROW, _ROW, _WHOLE, _TABLE, _ROW),
+    estimates.fill_comparison: (_WHOLE, _ROW, _ROW, _WHOLE, _WHOLE, _TABLE, _ROW),
     hazards.fill_rate_weights: (_ROW, _FLOAT, *(_ROW,) * 3),
     hazards.fill_level: (_ROW, _ROW, _FLOAT, _ROW),
     hazards.fill_power_law: (*(_FLOAT,) * 3, _ROW, _ROW),

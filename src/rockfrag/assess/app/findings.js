@@ -109,7 +109,7 @@ const findings = (data, core, judge) => {
       const said = [finding("sentence", { words: request.solid ? data.motionsInSpace : data.motions })];
       const named = partsOf(main.sources).filter(([, part]) => part >= LEAST_PART).slice(0, MOST_SOURCES);
       if (named.length) said.push(finding("uncertainty", { sources: listed(named.map(([name, part]) => finding("source_part", { source: finding(`source_${name}`), part: wholePercent(part) }))) }));
-      const worth = (found.decision?.measurements ?? []).filter(({ chance }) => chance >= LEAST_WORTH);
+      const worth = (few ? [] : found.decision?.measurements ?? []).filter(({ chance }) => chance >= LEAST_WORTH);
       const each = worth.map(({ source, chance }) => finding("worth_measuring", { what: finding(`measurement_${source}`), cases: whole(10 * chance) }));
       if (each.length) said.push(finding("worth", { measurements: listed(each) }));
       const size = (keys) => keys.reduce((sum, key) => sum + (main.sources[key] ?? 0) ** 2, 0);

@@ -27,16 +27,10 @@ const lists_ = (data, known) => {
   const MOST_ROWS = 500;
   // keys of statue.yaml by the fields of the form; a level, its measure and a hazard are told by others
   const KEYS = Object.fromEntries(known.map(({ name, key }) => [name, key])), isFlag = Object.fromEntries(known.map(({ name, kind }) => [name, kind === "flag"]));
-  // times stand there in seconds
-  const inSeconds = Object.fromEntries(known.map(({ name, dimension }) => [name, dimension === "time"]));
-  function seconds(text) {
-    const [, number, unit] = /^\s*([\d.,]+)\s*(\w*)/.exec(text) ?? [], [up, down] = data.units.dimensions.time[unit] ?? [NaN, 1];
-    return String((Number(number?.replace(",", ".")) * up) / down);
-  }
   function yamlOf(form, say) {
     const typed = (name) => form[name] === true || form[name]?.trim?.();
     const own = known.filter(({ name, key }) => key.length && name !== "years" && typed(name)), number = own.filter(({ kind }) => kind === "number").map(({ name }) => name);
-    const value = (name) => (form[name] === true ? "true" : number.includes(name) ? point(form[name]) : inSeconds[name] ? seconds(form[name]) : JSON.stringify(point(form[name].trim())));
+    const value = (name) => (form[name] === true ? "true" : number.includes(name) ? point(form[name]) : JSON.stringify(point(form[name].trim())));
     const at = (home) => own.filter(({ key }) => key.length === 2 && key[0] === home && (home !== "building" || typed("floor")));
     const lines = own.filter(({ key }) => key.length === 1).map(({ name, key: [key] }) => `${key}: ${value(name)}`);
     for (const home of ["pedestal", "building"]) {
@@ -71,7 +65,7 @@ const lists_ = (data, known) => {
       const place = indent ? [home, key] : [key];
       const name = { pga: "level", pgv: "level", return_period_years: "years" }[place.join(".")] ?? fields.find((own) => KEYS[own].join(".") === place.join("."));
       if (!name) throw new Error(say("file_keys", { key: key.slice(0, 40) }));
-      form[name] = isFlag[name] ? unquoted(value) === "true" : `${unquoted(value)}${inSeconds[name] ? " s" : ""}`;
+      form[name] = isFlag[name] ? unquoted(value) === "true" : String(unquoted(value));
       if (key === "pgv" || key === "pga") form.measure = key.toUpperCase();
     }
     return [form];

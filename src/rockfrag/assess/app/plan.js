@@ -8,7 +8,7 @@ const plans = (data, core, refuse) => {
   // roles, and bodies as the module of outcomes takes them; the object as it stands first
   function planOf(request, ensemble) {
     const { pedestal, restitution: measured, place, changes } = request, statue = changes ? changed(request.statue, changes) : request.statue;
-    const body = (top, below = pedestal, livelier = 1) => ({ statue: top, pedestal: below, measured, livelier });
+    const body = (top, below = pedestal, factor = 1) => ({ statue: top, pedestal: below, measured, restitution_factor: factor });
     const joined = (top, below) => change("join", below, spatial.rowOf(top));
     const moving = (runs) => (request.solid ? spatial.planOf({ ...request, statue }, runs) : runs);
     const held = { to_pedestal: () => body(joined(statue, pedestal), null), to_floor: () => body(statue, null) }[pedestal && request.fixed];

@@ -172,13 +172,14 @@ const risk = (data, core) => {
     return ordered(each, ([name]) => -sources[name], ([, part]) => part).filter(() => parts.values.some(Boolean));
   });
   const meanOf = (target, shifts, rates, outcomes) => within(() => shown(target, drawn(target, predict(outcomes, shifts), rates).middle));
+  const earthquakes = new Set(data.earthquakes).size;
   // what changes do with the same errors, with limits of the factor over the earthquakes
   function compared(target, shifts, rates, now) {
     const with_ = (outcomes) => shownOf(target, drawn(target, predict(outcomes, shifts, true), rates).values);
     const today = within(() => with_(now).values.slice());
     return (changed) => within(() => {
       const before = put(today), after = with_(changed), found = zeros([7]);
-      call("fill_comparison", BigInt(target.kind), before, after, BigInt(sets), zeros([3, before.shape[0]]), found);
+      call("fill_comparison", BigInt(target.kind), before, after, BigInt(sets), BigInt(earthquakes), zeros([2, before.shape[0]]), found);
       const [, value, factor, lower, upper, helps, shown] = found.values;
       return { value, factor, lower, upper, helps: Boolean(helps), shown: Boolean(shown) };
     });

@@ -15,13 +15,13 @@ from typing import Any
 
 from rockfrag.assess.core import bodies, choices
 from rockfrag.base import directions, exponentials
-from rockfrag.engines.compile.jit import KNOWN, kernel, share_with_kernels
+from rockfrag.engines.compile.jit import KNOWN, compile_for_kernels, kernel
 from rockfrag.runtime.machine_code import cached_njit
 
 __all__ = ["entry_kernel", "kernel"]
 
 for _module in (exponentials, directions, choices, bodies):
-    share_with_kernels(_module)
+    compile_for_kernels(_module)
 
 
 @cache
