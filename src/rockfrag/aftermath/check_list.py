@@ -109,6 +109,7 @@ def after_json(collection: ShakenCollection) -> str:
 
 
 def _ground_data(ground: GroundShaking | None) -> dict[str, object] | None:
+    """The shaking of a place as JSON writes it: a number that is not known is null; null where none is known."""
     if ground is None:
         return None
     numbers = {

@@ -260,6 +260,7 @@ def _text_of(path: str) -> str:
 
 
 def _unzipped(data: bytes, path: str) -> bytes:
+    """The one .xml in a zip file."""
     try:
         with zipfile.ZipFile(io.BytesIO(data)) as archive:
             inside = [
@@ -344,6 +345,7 @@ def _in_order(
 
 
 def _factor(measure: str, unit: str, path: str) -> float:
+    """Factor from a map's unit of a measure to g or cm/s."""
     units = OF_VELOCITY if measure == "PGV" else OF_ACCELERATION
     if unit.lower() not in units:
         raise InputError(

@@ -716,6 +716,7 @@ def _governing(request: Request, motions: MotionSet) -> tuple[HazardCurve, ...]:
         return (*others, *velocity)
 
     def scatter(curve: HazardCurve) -> float:
+        """Standard deviation of ln of the levels that first topple the object, in the measure of a curve."""
         shaking = outcomes.make_intensity_levels(motions, curve.measure)
         (found,) = shaking.outcomes_of([request.objects])
         first = found.first_levels()
@@ -738,6 +739,7 @@ def _site_level(request: Request, hazard: HazardCurve | None) -> Level | None:
 
 
 def _counts(now: ObjectOutcomes, level: Level | None) -> tuple[int, int, int] | None:
+    """How many motions are at the level, lift the object, and topple it; None if none was simulated there."""
     if level is None:
         return None
     levels, found = now.intensity_levels, np.zeros(3)

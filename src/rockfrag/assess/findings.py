@@ -169,6 +169,7 @@ def how_likely(found: Assessment) -> Finding:
 
 
 def _few(found: Assessment, fraction: Estimate, about: dict[str, Value]) -> Finding:
+    """The fraction of motions in numbers, where they are of too few earthquakes for an interval."""
     total = len(found.motions.ground)
     topple: Value = percent(fraction.value)
     if found.counts is not None:
@@ -542,6 +543,7 @@ def _has_worst_direction(found: Assessment) -> bool:
 
 
 def _sliding(found: Assessment) -> Finding:
+    """What friction does: the fraction that topples with it and without it."""
     friction = found.request.objects.friction
     if friction is None or found.fraction is None or math.isnan(found.sliding_fraction):
         return finding(Text.DOES_NOT_SLIDE)
@@ -603,6 +605,7 @@ def quality_flags(found: Assessment) -> list[Value]:
 
 
 def _hazard_flags(found: Assessment) -> list[Finding]:
+    """What looks wrong with the hazard curve: rates and levels that no site has."""
     hazard, asked = found.hazard, found.request.level
     if hazard is None:
         return []
@@ -619,6 +622,7 @@ def _hazard_flags(found: Assessment) -> list[Finding]:
 
 
 def _velocity_flags(found: Assessment) -> list[Finding]:
+    """What is wrong with the site's PGV over the measure, where the motions hold none like it."""
     about = found.conversion
     if about is None or about.known is None or found.level is None:
         return []

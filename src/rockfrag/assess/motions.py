@@ -231,6 +231,7 @@ def _nearest(
     """Keep the records nearest in magnitude and distance, all of them where neither is given."""
 
     def away(pair: tuple[Motion, Motion]) -> float:
+        """How unlike a record's magnitude and distance are those asked for, in squares of what counts alike."""
         about = pair[0].metadata
         magnitude = (float(about["magnitude"]) - records.magnitude) / MAGNITUDE_SCALE
         # within a kilometre of the rupture distance means nothing any more
@@ -243,6 +244,7 @@ def _nearest(
 
 
 def _own(records: Records, folder: Path) -> MotionSet:
+    """The motions of the user's files or catalogues, with what has to be said of them."""
     motions: list[Motion] = []
     warnings: list[Value] = []
     for path in records.paths:

@@ -572,6 +572,7 @@ def find_directions(
 
 
 def _half(x: np.ndarray, fraction: np.ndarray) -> float:
+    """Where a rising fraction passes one half, NaN where it does not."""
     reached = np.flatnonzero(fraction >= 0.5)
     if not reached.size or reached[0] == 0:
         return float("nan")

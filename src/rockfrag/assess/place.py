@@ -238,6 +238,7 @@ def _storeys(known: Mapping[str, Any], heights: Sequence[float]) -> Finding:
 
 
 def _heights(known: Mapping[str, Any], storeys: int) -> tuple[float, ...]:
+    """Heights of the storeys [m], equal ones unless each is given."""
     if "storey_heights_m" not in known:
         return (float(known.get("storey_height_m", STOREY_HEIGHT)),) * storeys
     if "storey_height_m" in known:
@@ -254,6 +255,7 @@ def _heights(known: Mapping[str, Any], storeys: int) -> tuple[float, ...]:
 
 
 def _level(floor: str) -> tuple[int, int]:
+    """Level of a floor and number of storeys, of words such as ``2/4``."""
     found = _FLOOR.fullmatch(floor)
     if not found:
         raise InputError(

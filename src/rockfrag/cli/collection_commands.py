@@ -24,6 +24,7 @@ def add_collection_command(commands: Any) -> None:
 
 
 def _collection(options: argparse.Namespace) -> int:
+    """Run ``collection``: write an inventory, and say what has to be asked."""
     import pandas as pd
 
     from rockfrag.base.files import csv_text, write_text

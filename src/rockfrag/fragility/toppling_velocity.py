@@ -3,7 +3,7 @@
 In: width and height of uniform blocks on a floor [m], arrays of any shape. Out: medians of peak ground velocity
 [m/s] or of peak ground acceleration [g], and dispersions [-]. The coefficients stand in
 ``toppling_velocity.json``, which ``python -m rockfrag.stages.toppling_velocity`` writes;
-docs/toppling-velocity.md shows how well they follow the simulations. With x = ln(B / 0.4 m) and y = ln(H / 3B)
+``docs/toppling-velocity.md`` shows how well they follow the simulations. With x = ln(B / 0.4 m), y = ln(H / 3B)
 
     ln median = c0 + c1 x + c2 y + c3 x² + c4 x y + c5 y² + c6 y³,        and the dispersion likewise.
 """

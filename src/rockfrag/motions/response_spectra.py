@@ -352,6 +352,7 @@ def fourier_amplitude(motion: Motion, least_length: int = 0) -> tuple[Floats, Fl
 
 
 def _checked_periods(periods: ArrayLike | Sequence[float]) -> Floats:
+    """Positive periods [s], shape (n,)."""
     checked = np.atleast_1d(np.asarray(periods, dtype=np.float64))
     if checked.ndim != 1 or checked.size == 0:
         raise InputError(

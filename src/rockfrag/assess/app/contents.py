@@ -120,6 +120,7 @@ def data_of(motions: MotionSet, asked: Request | None = None) -> dict[str, Any]:
 def _measure(
     motions: MotionSet, measure: IntensityMeasure, given: Records
 ) -> dict[str, Any]:
+    """What a page has to know of the motions in one measure."""
     return {
         "unit": measure.unit,
         "levels": _levels(motions, measure, outcomes.LEVELS),
@@ -216,6 +217,7 @@ def _of(module: ModuleType, *names: str) -> dict[str, Any]:
 
 
 def _constants() -> dict[str, Any]:
+    """Constants of the package that scripts use, so that both have the same ones."""
     return {
         **_of(units, "GRAVITY"),
         **_of(draws, "MEMBERS", "FEW_MEMBERS"),

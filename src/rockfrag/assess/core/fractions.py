@@ -188,6 +188,7 @@ def _first_level(overturned, allowed):
 
 @kernel
 def _any_allowed(allowed, level):
+    """Whether any motion may be scaled to a level."""
     for m in range(allowed.shape[0]):  # noqa: SIM110 (a kernel has no generators)
         if allowed[m, level]:
             return True
@@ -379,6 +380,7 @@ def fill_shift(levels, lower, upper, lower_uplifts, upper_uplifts, found):
 
 @kernel
 def _mean_log(levels):
+    """Mean of the logarithms of the finite levels, 0 if there are none."""
     total, count = 0.0, 0
     for m in range(levels.size):
         if levels[m] < math.inf:

@@ -104,6 +104,7 @@ class Box(Standing):
         )
 
     def _box(self, top: Block) -> Block:
+        """A block that rocks as this box does, in space, with the pedestal to which it may be fixed."""
         moments = np.zeros(4)
         bodies.tell_box(row_of(top), row_of(self.block, self.depth), moments)
         *tensor, depth = moments.tolist()
