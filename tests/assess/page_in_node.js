@@ -17,11 +17,17 @@ begin({ data, modules, samples: bytes(data.packed) }).then(() => {
       const at = runs.findIndex(({ role }) => role === "first");
       const only = parts.map((part, i) => (i === at ? part : null));
       const early = at < 0 ? null : plain(TASKS.answer({ id, request, parts: only }));
+      const fix = (fixed) => {
+        const other = { ...request, fixed }, told = { id: `${id} ${fixed}`, request: other };
+        const part = TASKS.count({ ...told, run: 0, first: 0, last: count });
+        return TASKS.changed({ ...told, parts: [{ first: 0, ...part }], answered: answer });
+      };
+      const fixed = request.pedestal ? ["to_pedestal", "to_floor"].map(fix) : null;
       const { place } = request, computed = Boolean(place.computed);
       const shaken = (motion) => [...building.floorMotion(place.floors[""], motion).samples];
       const floor = computed ? tools.motions.map(shaken) : [];
       const { first, details } = wording.of(request, answer);
-      return { answer: plain(answer), early, first: plain(first), details: plain(details), lines: first.map(speak.sentence), computed, floor };
+      return { answer: plain(answer), early, fixed, first: plain(first), details: plain(details), lines: first.map(speak.sentence), computed, floor };
     } catch (error) {
       if (!error.field) return { failed: error.stack };
       const { en } = data.texts;

@@ -75,6 +75,13 @@ def check_all(motions: MotionSet, settings, said) -> Assessment:
     if early := said["early"]:  # the first counts are final, and no more than is known
         assert early["counts"] == said["answer"]["counts"]
         assert early["probabilityValue"] is None
+    if said["fixed"] is not None:
+        # what a slider or choice changes has the numbers of the answer
+        (own, *others), name = found.by_arrangement.values(), "fraction"
+        if found.probability is not None:
+            name = "probability"
+        assert [each[name] for each in said["fixed"]] == others
+        assert own == said["answer"][name]["value"]
     # the first screen is the same, and what stands behind it, but for what the page leaves out
     assert same(said["first"], [as_data(each) for each in first_screen(found)])
     behind = {title.id: findings for title, findings in details(found).items()}

@@ -112,8 +112,11 @@ def test_a_vase_in_a_gallery_on_a_phone_in_italian(browser, page):
     )
     text = browser.run("document.body.innerText")
     assert all(word in text for word in ("Si ribalta?", "Larghezza", "I numeri"))
+    rows = "[...document.querySelectorAll('#compared tr')].map(row => [...row.cells].map(one => one.textContent))"
+    # beside the sliders stands the number of the answer
+    assert f"({browser.run(rows)[0][1]})" in lines[0]
     put(browser, "#slide-width", 30)
-    cells = "[...document.querySelectorAll('#compared tr')[1].cells].map(cell => cell.textContent)"
+    cells = f"{rows}[1]"
     waited(browser, f"{cells}[2] !== '–'")
     before, after = (
         float(text.replace(",", ".").split()[0]) for text in browser.run(cells)[1:]

@@ -61,6 +61,7 @@ BEYOND = 1.5  # Median that stands for one above the highest level, over that le
 NORMAL_TENTH = 1.2816  # Standard deviations from a median to its tenth
 SEED = 58  # Of the objects that are drawn at random
 USUAL_BETA = 0.5  # β where too few motions topple a block to say
+RATE_LEVELS = 60  # levels over which a hazard curve is summed up
 
 
 @dataclass(frozen=True, eq=False)
@@ -116,15 +117,21 @@ class Surface:
         return np.asarray(special.ndtr(np.log(self.level / medians) / betas))
 
     def rates(self, medians: Floats, betas: Floats) -> Floats:
-        """Annual rate of toppling under the hazard [1/year], shape (n,)."""
+        """Annual rate of toppling under the hazard [1/year], shape (n,).
+
+        The rate is linear in the fractions at the levels: a weight is the rate of what topples at one level alone.
+        """
         assert self.hazard is not None
         known = self.hazard.levels
-        levels = np.geomspace(known[0] / 4, known[-1] * 4, 60)
+        # beyond the curve at both ends, where curves of fragility still rise
+        levels = np.geomspace(known[0] / 4, known[-1] * 4, RATE_LEVELS)
+        at_one_level = np.eye(levels.size)
         weights = np.array(
-            [toppling_rate(levels, unit, self.hazard) for unit in np.eye(levels.size)]
+            [toppling_rate(levels, each, self.hazard) for each in at_one_level]
         )
         scores = np.log(levels) - np.log(medians)[:, np.newaxis]
-        return np.asarray(special.ndtr(scores / betas[:, np.newaxis]) @ weights)
+        fractions = special.ndtr(scores / betas[:, np.newaxis])
+        return np.asarray(fractions @ weights)
 
 
 @dataclass(frozen=True)

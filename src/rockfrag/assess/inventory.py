@@ -29,6 +29,7 @@ from rockfrag.assess.findings import estimate_of, few_earthquakes, mitigation
 from rockfrag.assess.mitigations import Mitigation
 from rockfrag.assess.motions import MotionSet, motion_set
 from rockfrag.assess.outcomes import ObjectOutcomes
+from rockfrag.assess.page_list import KEYS_OF_SHAKING, is_page_list, read_page_list
 from rockfrag.assess.request import Request, make_request
 from rockfrag.assess.risk import Evidence, after_uplift, risk_target, toppling_rate
 from rockfrag.assess.sources import SPACE
@@ -197,7 +198,8 @@ def _correlation(fell: Flags, allowed: Flags, per_level: Floats) -> Floats:
 
 
 SIZES = ("width_m", "height_m", "depth_m", "mass_kg", "cg_height_m")
-HELD_BY = ("wall_m", "isolator_m")  # Lengths of what holds it
+HELD_BY = ("wall_m", "isolator_m", "putty_n", "bracket_n", "cord_n")
+"""Lengths and strengths of what holds it."""
 PEDESTAL = (
     "pedestal_width_m",
     "pedestal_height_m",
@@ -312,15 +314,23 @@ def assess_each(
         plan = plan_for(same[0], motions.at(same[0].place), brief=True, holds=holds)
         for start in range(0, len(rows), AT_ONCE):
             part = same[start : start + AT_ONCE]
-            shaken = shake_all(part, plan)
+            said = None
+            if progress is not None:
+                counts = (len(found), len(part), len(requests))
+                said = partial(_say_part, progress, counts)
+            shaken = shake_all(part, plan, said)
             for i, request, outcome in zip(rows[start:], part, shaken, strict=False):
                 # a level between those that were tried lies between their fractions
                 level = request.level
                 own = plan if level is None else replace(plan, level=level)
                 found[i] = assessed(request, own, outcome)
-            if progress is not None:
-                progress(len(found), len(requests))
     return [found[i] for i in range(len(requests))]
+
+
+def _say_part(progress: Progress, counts: tuple[int, int, int], part: float) -> None:
+    """Say how many objects are done of all, where a part of those that are shaken at once is."""
+    before, now, total = counts
+    progress(before + part * now, total)
 
 
 def read_inventory(
@@ -348,6 +358,8 @@ def read_inventory(
     if "friction" in shared:
         raise InputError("key friction: sliding takes long; assess the object alone.")
     faults: list[str] = []
+    if is_page_list(path):
+        return _of_the_page(path, shared, faults), faults
     if is_export(path):
         rows = _exported_rows(path, order, faults)
     else:
@@ -359,7 +371,7 @@ def read_inventory(
             f"{path}: {len(rows)} objects are more than the {MOST_OBJECTS} allowed; --coarse takes them all."
         )
     requests: list[Request] = []
-    taken = {"inventory": "the page of the gallery"}
+    taken = dict(NAMES_TAKEN)
     for row in rows:
         try:
             name = _own_name(row, taken)
@@ -374,6 +386,36 @@ def read_inventory(
             f"{path}: {without[0]} has no value; give that of all objects or of none."
         )
     return requests, faults
+
+
+NAMES_TAKEN = {"inventory": "the page of the gallery"}
+"""Names of files that no object may have, and what they are of."""
+
+
+def _of_the_page(
+    path: str | os.PathLike[str], shared: Mapping[str, Any], faults: list[str]
+) -> list[Request]:
+    """Requests of a list that the page saved; what is wrong with other rows goes to ``faults``."""
+    listed = read_page_list(path)
+    stated = {*KEYS_OF_SHAKING} & {*shared}
+    if stated:
+        raise InputError(
+            f"key {min(stated)}: {path} was saved by the page and says its shaking itself; leave it out."
+        )
+    requests: list[Request] = []
+    taken = dict(NAMES_TAKEN)
+    for each in listed.objects:
+        row = Row(str(path), each.line, {"name": each.name})
+        try:
+            own = {**each.settings, "name": _own_name(row, taken)}
+            request = _request_of(own, shared, f"{path}, line {each.line}")
+        except InputError as error:
+            faults.append(str(error))
+            continue
+        if listed.hazard is not None:
+            request = replace(request, hazard=(listed.hazard,))
+        requests.append(request)
+    return requests
 
 
 def _exported_rows(
@@ -419,11 +461,18 @@ def _request(row: Row, name: str, shared: Mapping[str, Any]) -> Request:
         own["pedestal"] = pedestals if len(pedestals) > 1 else pedestals[0]
     own |= {key: read(row, key) for key, read in OTHERS.items() if row.has(key)}
     worth, place = own.pop("value", math.nan), _coordinates(row, own)
-    where = f"{row.path}, line {row.line}"
+    request = _request_of(own, shared, f"{row.path}, line {row.line}")
+    return replace(request, value=worth, coordinates=place)
+
+
+def _request_of(
+    own: Mapping[str, Any], shared: Mapping[str, Any], where: str
+) -> Request:
+    """The request of keys of a row and of all rows; messages name columns."""
     try:
         request = make_request({**shared, **own}, where)
         _check_size(request, where)
-        return replace(request, value=worth, coordinates=place)
+        return request
     except InputError as error:
         # columns instead of keys, of what stands in the row
         words = re.sub(rf"\bkey ({'|'.join(own)})\b", r"column \1", str(error))
@@ -480,7 +529,7 @@ _above_0 = partial(Row.number, above=0)
 OTHERS: Mapping[str, Callable[[Row, str], Any]] = {
     "floor": Row.text, "restitution": _above_0, "round": _yes, "value": _above_0,
     "latitude": Row.number, "longitude": Row.number,
-    "casters": Row.text, "putty_n": _above_0, "bracket_n": _above_0, "cord_n": _above_0,
+    "casters": Row.text,
 }  # fmt: skip
 """What else a column may say, and how it is read."""
 

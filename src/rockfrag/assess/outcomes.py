@@ -27,6 +27,7 @@ from rockfrag.motions.intensity import IntensityMeasure
 from rockfrag.outcomes.limit_states import OVERTURNS, ROCKS, limit_states
 from rockfrag.outcomes.outcomes import Outcomes
 from rockfrag.records.motion import GroundMotion, Motion
+from rockfrag.runtime.progress import Meter
 from rockfrag.simulation.ensemble import LightBodies, overturns
 from rockfrag.system.blocks import Body
 from rockfrag.system.contact import Friction
@@ -38,6 +39,11 @@ FEW_LEVELS = 28  # Levels for what is only compared, and for many objects
 FEWEST_LEVELS = 14
 # Tests that are simulated at once, which bounds the memory of their results
 MOST_TESTS = 400_000
+# About how long a core takes for one history, by what moves: one body or two that only rock, contacts that open
+# and slide (for each body), a body in space [s]; what is said of time and progress rests on it
+SECONDS = {"rocks": 2e-5, "contact": 4e-4, "space": 4e-4}
+# Work that is done at once where each history takes long, so that it can be said how far it is [s]
+MOST_SECONDS = 3.0
 # Lowest and highest level over the median of the motions as recorded
 RANGE = (0.05, 8.0)
 
@@ -218,13 +224,27 @@ class Shaking(IntensityLevels):
         """The same levels of the ground at another place."""
         return replace(self, motions=self.motions.at(place))
 
-    def outcomes_of(self, objects: Sequence[Standing]) -> list[ObjectOutcomes]:
+    def outcomes_of(
+        self, objects: Sequence[Standing], meter: Meter | None = None
+    ) -> list[ObjectOutcomes]:
         """Shake several objects as they stand by every motion at every level."""
         bodies = [{"": object_.body} for object_ in objects]
-        return [found[""] for found in self.outcomes_of_each(objects, bodies)]
+        return [found[""] for found in self.outcomes_of_each(objects, bodies, meter)]
+
+    def seconds_of(self, objects: Standing) -> float:
+        """About how long a core takes to shake one body of an object [s]."""
+        kind, bodies = "rocks", 1
+        if self.motions.both and objects.in_space:
+            kind = "space"
+        elif objects.many:
+            kind, bodies = "contact", 1 + len(objects.pedestals)
+        return self.scales.size * SECONDS[kind] * bodies
 
     def outcomes_of_each(
-        self, objects: Sequence[Standing], bodies: Sequence[Mapping[Key, Body]]
+        self,
+        objects: Sequence[Standing],
+        bodies: Sequence[Mapping[Key, Body]],
+        meter: Meter | None = None,
     ) -> list[dict[Key, ObjectOutcomes]]:
         """Shake several bodies of each of several objects by every motion at every level."""
         every = [
@@ -232,9 +252,18 @@ class Shaking(IntensityLevels):
             for object_, named in zip(objects, bodies, strict=True)
             for body in named.values()
         ]
-        most = max(1, MOST_TESTS // self.scales.size)
-        parts = (every[i : i + most] for i in range(0, len(every), most))
-        each = iter([found for part in parts for found in self._shaken(part)])
+        most = MOST_TESTS // self.scales.size
+        slowest = max(map(self.seconds_of, objects), default=0.0)
+        if slowest > self.scales.size * SECONDS["rocks"]:
+            most = min(most, int(MOST_SECONDS / slowest))
+        most = max(1, most)
+        shaken = []
+        for start in range(0, len(every), most):
+            part = every[start : start + most]
+            shaken += self._shaken(part)
+            if meter is not None:
+                meter.add(sum(self.seconds_of(object_) for object_, _ in part))
+        each = iter(shaken)
         return [{name: next(each) for name in named} for named in bodies]
 
     def _shaken(self, every: Sequence[tuple[Standing, Body]]) -> list[ObjectOutcomes]:

@@ -145,8 +145,8 @@ def _ground_of(
             )
     if options.sd_ln is not None and not typed:
         raise InputError("--sd-ln is of typed levels; give --pga or --pgv with it.")
-    ways = [options.shakemap, options.station, typed]
-    if sum(bool(way) for way in ways) != 1:
+    sources = [options.shakemap, options.station, typed]
+    if sum(bool(source) for source in sources) != 1:
         raise InputError(
             "give what shook the ground in one way: --shakemap, --station, or --pga with --pgv."
         )

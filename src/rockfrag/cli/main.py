@@ -200,10 +200,27 @@ def _simulate(options: argparse.Namespace) -> int:
         "still simulating; kernels are compiled once a machine, and many bodies, friction or a body in space take "
         "longer than blocks that only rock"
     )
-    with sign_of_life(words):
+    with sign_of_life(words, expected=_compiling_s(options)):
         lines = _simulated(options)
     print("\n".join(lines))
     return 0
+
+
+def _compiling_s(options: argparse.Namespace) -> float | None:
+    """About how long the kernels of a history compile once a machine [s]; None where they are at hand."""
+    from rockfrag.engines.planar import integrate as contact
+    from rockfrag.engines.pure_rocking.kernels import single
+    from rockfrag.engines.spatial import _integrate as space
+    from rockfrag.runtime.machine_code import is_kept
+
+    in_contact = options.friction or len(options.pedestal or []) > 1 or is_held(options)
+    if options.second is not None:
+        entry, seconds = space.integrate_scales, 40.0
+    elif in_contact:
+        entry, seconds = contact.integrate, 40.0
+    else:
+        entry, seconds = single.integrate, 20.0
+    return None if is_kept(entry) else seconds
 
 
 def _simulated(options: argparse.Namespace) -> list[str]:

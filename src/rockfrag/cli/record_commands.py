@@ -140,10 +140,17 @@ def _info(options: argparse.Namespace) -> int:
 def _catalogue(options: argparse.Namespace) -> int:
     from rockfrag.base.files import csv_text, write_text
     from rockfrag.records.make_catalogue import make_catalogue
+    from rockfrag.runtime.progress import progress_line
 
     folder = Path(options.output).parent if options.output else Path()
     try:
-        draft = make_catalogue(options.paths, options.unit, options.dt, folder)
+        draft = make_catalogue(
+            options.paths,
+            options.unit,
+            options.dt,
+            folder,
+            progress=progress_line("files"),
+        )
     except InputError as error:
         raise InputError(for_command_line(error, force=False)) from None
     used = [column for column in draft.table if (draft.table[column] != "").any()]

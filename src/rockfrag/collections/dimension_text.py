@@ -541,11 +541,11 @@ def _joined(about: Dimensions, phrases: Sequence[_Phrase]) -> Dimensions:
             about,
             question="which length is the height and which a side is not stated; give their order",
         )
-    ways = directions(words)
-    if ways is None:
+    stated = directions(words)
+    if stated is None:
         named = " × ".join(word.upper() for word in words)
         return replace(about, question=f"{named} leaves open which length is which")
-    by_way = dict(zip(ways, (length.metres() for length in kept), strict=True))
+    by_way = dict(zip(stated, (length.metres() for length in kept), strict=True))
     return about.with_lengths(_placed(by_way))
 
 

@@ -81,7 +81,7 @@ def is_export(path: str | os.PathLike[str]) -> bool:
     if Path(path).suffix.lower() != ".csv" or not Path(path).is_file():
         return False
     try:
-        titles, _ = _cells(path)
+        titles, _ = table_cells(path)
     except InputError:
         return False
     named = {title.strip().casefold() for title in titles}
@@ -115,7 +115,7 @@ def read_export(path: str | os.PathLike[str], order: str = "") -> list[Collected
     InputError
         If the file cannot be read, or has neither a text of dimensions nor a column of heights.
     """
-    titles, rows = _cells(path)
+    titles, rows = table_cells(path)
     columns = {_plain_title(title): i for i, title in enumerate(titles)}
     text_at = _first(columns, TEXTS)
     sides = _columns_of_sides(columns)
@@ -196,10 +196,19 @@ def _written(value: float) -> str:
     return f"{value:.6g}"
 
 
-def _cells(
+def table_cells(
     path: str | os.PathLike[str],
 ) -> tuple[list[str], list[tuple[int, list[str]]]]:
-    """Titles of a CSV file, and the line and cells of each row; cells may hold line breaks."""
+    """Read the cells of a CSV file, which may hold line breaks.
+
+    Parameters
+    ----------
+    path : of the file, which messages name
+
+    Returns
+    -------
+    The titles, and of each row the line at which it begins and its cells.
+    """
     encoding = table_encoding(path)
     if Path(path).stat().st_size > MOST_BYTES:
         raise InputError(

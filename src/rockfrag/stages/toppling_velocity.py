@@ -236,8 +236,33 @@ NAMES = {"plane": "plane", "square": "square", "oblong": "1 to 2", "round": "rou
 
 
 def page_tables(tables: Mapping[str, pd.DataFrame]) -> str:
-    """Tables of the page in Markdown: pieces, flatness, causes, bias, surfaces."""
-    pieces, causes = tables["pieces"], tables["causes"]
+    """Write the tables of ``docs/toppling_velocity.md`` in Markdown, a blank line between them.
+
+    Parameters
+    ----------
+    tables : ``pieces``, ``flatness``, ``causes``, ``bias`` and ``surfaces``, as :func:`study` makes them
+
+    Returns
+    -------
+    The text between the marks ``BEGIN`` and ``END`` of the page.
+    """
+    pieces = tables["pieces"]
+    parts = [
+        piece_lines(pieces),
+        [
+            "Medians in m/s, dispersions β and standard errors from the choice of earthquakes."
+        ],
+        flatness_lines(tables["flatness"]),
+        flat_lines(pieces),
+        cause_lines(tables["causes"]),
+        bias_lines(tables["bias"]),
+        surface_lines(tables["surfaces"]),
+    ]
+    return "\n\n".join("\n".join(lines) for lines in parts)
+
+
+def piece_lines(pieces: pd.DataFrame) -> list[str]:
+    """Table in Markdown of pieces of furniture, with published and simulated medians."""
     lines = [
         "| B × H [m] | FEMA P-58 | Kaneko | plane, β, ± | square, β, ± | 1 to 2 | round | plane over Kaneko | "
         "square over Kaneko | plane over P-58 |",
@@ -253,39 +278,50 @@ def page_tables(tables: Mapping[str, pd.DataFrame]) -> str:
             f"{' | '.join(each)} | {row['oblong']:.3f} | {row['round']:.3f} | {row['plane_over_kaneko']:.2f} | "
             f"{row['square_over_kaneko']:.2f} | {row['plane_over_p58']:.2f} |"
         )
-    lines += [
-        "\nMedians in m/s, dispersions β and standard errors from the choice of earthquakes.\n",
+    return lines
+
+
+def flatness_lines(flatness: pd.DataFrame) -> list[str]:
+    """Table in Markdown of how flat the ratio over Kaneko is over all sizes."""
+    lines = [
         "| over all sizes | sizes | over Kaneko | spread of ln | least | most | mean β |",
         "|---|--:|--:|--:|--:|--:|--:|",
     ]
-    for row in tables["flatness"].to_dict("records"):
+    for row in flatness.to_dict("records"):
         lines.append(
             f"| {NAMES[row['standing']]} | {row['sizes']} | {row['ratio']:.2f} | {row['spread']:.3f} | "
             f"{row['least']:.2f} | {row['most']:.2f} | {row['dispersion']:.2f} |"
         )
-    lines += ["", *flat_lines(pieces), "", *cause_lines(causes)]
-    lines += [
-        "",
+    return lines
+
+
+def bias_lines(bias: pd.DataFrame) -> list[str]:
+    """Table in Markdown of the bias of cut blocks, simulated over published medians."""
+    lines = [
         "| cut blocks | bias of ln median | standard error |",
         "|---|--:|--:|",
     ]
-    for row in tables["bias"].to_dict("records"):
+    for row in bias.to_dict("records"):
         lines.append(
             f"| {NAMES[row['standing']]} | {row['bias']:+.2f} | {row['error']:.2f} |"
         )
-    lines += [
-        "",
+    return lines
+
+
+def surface_lines(surfaces: pd.DataFrame) -> list[str]:
+    """Table in Markdown of how far surfaces are off, for some of their limits."""
+    lines = [
         "| surface | by | limit | held-out sizes, ln | largest | earthquakes, ln |",
         "|---|---|--:|--:|--:|--:|",
     ]
-    surfaces = tables["surfaces"]
-    for row in surfaces[surfaces["limit"].isin((1.0, 0.3, 0.01))].to_dict("records"):
+    shown = surfaces["limit"].isin((1.0, 0.3, 0.01))
+    for row in surfaces[shown].to_dict("records"):
         measure = "PGV" if row["measure"] == MEASURES[0] else "PGA"
         lines.append(
             f"| {NAMES[row['standing']]} | {measure} | {row['limit']:g} | {row['residual']:.3f} | "
             f"{row['largest']:.3f} | {row['earthquakes']:.3f} |"
         )
-    return "\n".join(lines)
+    return lines
 
 
 def flat_lines(pieces: pd.DataFrame) -> list[str]:

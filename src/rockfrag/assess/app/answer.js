@@ -98,7 +98,7 @@ const answer = (data, core) => {
     const here = (outcomes) => (velocity?.site ? { ...outcomes, site: velocity.site } : outcomes), atSite = here(now);
     const known = (role) => runs.map((run, i) => ({ ...run, outcomes: outcomes[i] && here(outcomes[i]) })).filter((run) => run.role === role && run.outcomes);
     const target = hazard ? judge.riskTarget(hazard, 50) : judge.fractionTarget(level);
-    const answer = { level, years: 50, counts: countsOf(now, level), rocksFrom: rocksFrom(request, now, exact, ensemble), shares: judge.fractions(atSite), levels: now.levels, moved: Boolean(velocity?.site) };
+    const answer = { level, years: 50, counts: countsOf(now, level), rocksFrom: rocksFrom(request, now, exact, ensemble), shares: judge.fractions(atSite), levels: now.levels, site: velocity?.site ?? null };
     answer.value = judge.valueOf(judge.fractionTarget(level), atSite);
     answer.rockingValue = judge.valueOf(judge.fractionTarget(level, "rocked"), atSite);
     answer.probabilityValue = hazard ? judge.valueOf(target, atSite) : null;
@@ -134,6 +134,12 @@ const answer = (data, core) => {
     answer.safer = saferOf(known("arrangement"), answer.mitigations);
     return answer;
   }
+  // the answer's own numbers for the object with a change, whose outcomes are these; as much of it is not known
+  function changed(request, outcomes, { level, site, shifts, rates }) {
+    const hazard = hazardOf(request), atSite = site ? { ...outcomes, site } : outcomes;
+    const meanOf = (target) => judge.meanOf(target, shifts, rates, atSite);
+    return { fraction: meanOf(judge.fractionTarget(level)), probability: hazard && meanOf(judge.riskTarget(hazard, 50)) };
+  }
   // arrangements that the motions show to be safer than its own, or its own if it is safer than all others
   function saferOf(arrangements, mitigations) {
     const each = arrangements.map(({ name, change }) => [name, mitigations.find((item) => item.name === change)]);
@@ -163,6 +169,6 @@ const answer = (data, core) => {
     }
     return best;
   }
-  return { counter, joined, found, siteLevel, levelsOf, hazardOf, judge };
+  return { counter, joined, found, changed };
 };
 if (typeof module !== "undefined") module.exports = answer;

@@ -68,7 +68,7 @@ const findings = (data) => {
     function atLevel() {
       const every = data.earthquakes.length, [total, rock, topple] = counts ?? [];
       const counted = counts ? [finding(total < every ? "counted_some" : "counted", { ...(total < every ? { every } : {}), total, rock, topple })] : [];
-      if (found.moved) counted.push(finding("counted_moved", { rock: percent(rocks), topple: percent(value) }));
+      if (found.site) counted.push(finding("counted_moved", { rock: percent(rocks), topple: percent(value) }));
       const starts = Number.isFinite(found.rocksFrom) ? finding("starts_at", { starts: amount(found.rocksFrom) }) : finding("starts_beyond");
       return [...counted, ...(fraction && !atRest ? [between()] : []), starts, ...(request.level === null ? [finding("exceeded_in_475", { level })] : [])];
     }
@@ -117,7 +117,7 @@ const findings = (data) => {
       const ranked = Number.isFinite(total) && total > 0 ? Object.entries(main.sources).map(([name, s]) => [name, (s * s) / total]).sort((a, b) => b[1] - a[1]) : [];
       const named = ranked.filter(([, part]) => part >= LEAST_PART).slice(0, MOST_SOURCES);
       if (named.length) said.push(finding("uncertainty", { sources: listed(named.map(([name, part]) => finding("source_part", { source: finding(`source_${name}`), part: wholePercent(part) }))) }));
-      const worth = (found.decision?.measurements ?? []).filter(({ chance }) => chance >= LEAST_WORTH);
+      const worth = (few ? [] : found.decision?.measurements ?? []).filter(({ chance }) => chance >= LEAST_WORTH);
       const each = worth.map(({ source, chance }) => finding("worth_measuring", { what: finding(`measurement_${source}`), cases: whole(10 * chance) }));
       if (each.length) said.push(finding("worth", { measurements: listed(each) }));
       const size = (keys) => keys.reduce((sum, key) => sum + (main.sources[key] ?? 0) ** 2, 0);

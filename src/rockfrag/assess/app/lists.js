@@ -27,11 +27,12 @@ const lists_ = (data, fields) => {
   // keys of statue.yaml by the fields of the form
   const KEYS = { storey_height: ["building", "storey_height"], material: ["building", "material"], period: ["building", "first_period"],
     pedestal_width: ["pedestal", "width"], pedestal_height: ["pedestal", "height"], pedestal_mass: ["pedestal", "mass"] };
+  const NUMBERS = { facing: "facing_deg", restitution: "restitution" }; // without a unit beside them
   const LEFT_OUT = ["measure", "level", "years", "hazard", "round"];
   function yamlOf(form, say) {
     const plain = fields.filter((name) => !KEYS[name] && !LEFT_OUT.includes(name) && form[name]?.trim?.());
-    const value = (name) => (name === "restitution" ? point(form[name]) : JSON.stringify(point(form[name].trim())));
-    const lines = plain.map((name) => `${name}: ${value(name)}`);
+    const value = (name) => (NUMBERS[name] ? point(form[name].trim()) : JSON.stringify(point(form[name].trim())));
+    const lines = plain.map((name) => `${NUMBERS[name] ?? name}: ${value(name)}`);
     if (form.round) lines.push("round: true");
     for (const part of ["pedestal", "building"]) {
       const own = Object.entries(KEYS).filter(([name, [home]]) => home === part && form[name]?.trim() && (part === "pedestal" || form.floor?.trim()));
@@ -63,7 +64,7 @@ const lists_ = (data, fields) => {
       if (!indent) home = value ? "" : key;
       if (!indent && !value) continue;
       const name = indent ? Object.keys(KEYS).find((own) => KEYS[own][0] === home && KEYS[own][1] === key)
-        : { pga: "level", pgv: "level", return_period: "years", return_period_years: "years" }[key] ?? key;
+        : { facing_deg: "facing", pga: "level", pgv: "level", return_period: "years", return_period_years: "years" }[key] ?? key;
       if (!fields.includes(name) || (!indent && KEYS[name])) throw new Error(say("file_keys", { key: key.slice(0, 40) }));
       form[name] = name === "round" ? unquoted(value) === "true" : String(unquoted(value));
       if (key === "pgv" || key === "pga") form.measure = key.toUpperCase();

@@ -178,13 +178,14 @@ const objects = (data) => {
   // what is shaken: roles, and bodies as the module takes them; the object as it stands first
   function planOf(request, ensemble) {
     const { statue, pedestal, restitution: measured, place } = request;
-    const body = (top, below = pedestal, livelier = 1) => ({ statue: top, pedestal: below, measured, livelier });
+    const body = (top, below = pedestal, restitution_factor = 1) => ({ statue: top, pedestal: below, measured, restitution_factor });
     const joined = (top, below) => {
       const { centre: [x, y, inertia] } = ensemble.bodyOf({ statue: top, pedestal: below });
       return { width: below.width, height: below.height + top.height, mass: below.mass + top.mass, inertia, cgHeight: y, cgOffset: x };
     };
     const held = { to_pedestal: () => body(joined(statue, pedestal), null), to_floor: () => body(statue, null) }[pedestal && request.fixed];
-    if (held) return [{ role: "now", body: held() }];
+    const moving = (runs) => (request.solid ? inSpace(data).planOf(request, runs) : runs);
+    if (held) return moving([{ role: "now", body: held() }]);
     stands(body(statue), ensemble);
     if (measured !== null && measured > ensemble.bodyOf(body(statue)).largest) refuse("restitution", "gains_energy");
     const runs = [{ role: "now", body: body(statue) }];
@@ -217,7 +218,7 @@ const objects = (data) => {
       helps("lower_pedestal", body(statue, half), { height: three(100 * half.height) });
     }
     for (const { body: each } of runs) stands(each, ensemble);
-    return request.solid ? inSpace(data).planOf(request, runs) : runs;
+    return moving(runs);
   }
   // what cannot stand is said beside the width
   function stands(body, ensemble) {

@@ -174,7 +174,8 @@ function update() {
     settle(null);
   });
 }
-async function compute(run, told, only = Infinity) {
+const startsOf = (count) => Array.from({ length: Math.ceil(count / PART) }, (_, i) => i * PART);
+async function compute(run, told) {
   const { id, request } = run, count = data.earthquakes.length;
   const plan = await ask(run, { kind: "plan", id, request });
   if (plan.refusal) {
@@ -185,11 +186,11 @@ async function compute(run, told, only = Infinity) {
     return run === current && settle(refusal);
   }
   if (plan.failure) return refused(plan.failure);
-  const roles = plan.told.roles.slice(0, only), parts = roles.map(() => []);
-  const starts = Array.from({ length: Math.ceil(count / PART) }, (_, i) => i * PART);
+  const { roles } = plan.told, parts = roles.map(() => []);
+  const starts = startsOf(count);
   const needed = (role) => roles.map(({ role: own }, i) => (own === role ? i : -1)).filter((i) => i >= 0);
   const early = needed("first"), all = [[0], [...needed("now"), ...needed("moved")], roles.map((_, i) => i)];
-  const moments = [...(early.length ? [early] : []), ...all].slice(0, only === 1 ? 1 : 4);
+  const moments = [...(early.length ? [early] : []), ...all];
   let done = 0, latest = 0, earlier = null;
   const ready = (i) => parts[i].length === starts.length;
   const answerNow = async () => {
@@ -282,18 +283,32 @@ function drawSliders() {
 }
 function slide() {
   if (!shown || shown.run !== current) return;
-  const [width, cg, ballast] = Object.values(SLIDERS).map(([, , at]) => at / 100), before = shown.found;
+  const [width, cg, ballast] = Object.values(SLIDERS).map(([, , at]) => at / 100), { found } = shown;
   const choice = find("slide-fixed"), fixed = shown.run.request.pedestal ? choice.value : "not_fixed";
   choice.closest("div").hidden = !shown.run.request.pedestal;
-  if (!(width || cg || ballast || fixed !== "not_fixed")) return compare(before, null);
+  other = null;
+  if (!(width || cg || ballast || fixed !== "not_fixed")) return compare(found, null);
   const { request } = current, statue = bodies.changed(request.statue, { wider: 1 + width, lower: 1 - cg, ballast });
-  other = { id: ++number, request: { ...request, statue, fixed } };
-  compute(other, ({ found }) => compare(before, found), 1);
+  other = { id: ++number, request: { ...request, statue, fixed }, since: performance.now() };
+  shakeChanged(other, found);
 }
-function compare(before, after) {
-  const rows = [["topples_column", "value"], ["risk_column", "probabilityValue"]];
-  find("compared").replaceChildren(...rows.map(([title, key]) => make("tr", {}, make("th", { scope: "row", textContent: say(title) }),
-    make("td", { className: "number", textContent: percent(before[key]) }), make("td", { className: "number", textContent: after ? percent(after[key]) : "–" }))));
+// the object with a change under all motions, and the answer's own numbers of it
+async function shakeChanged(run, answered) {
+  const { id, request } = run, plan = await ask(run, { kind: "plan", id, request });
+  if (plan.failure) return compare(answered, null);
+  const starts = startsOf(data.earthquakes.length);
+  const parts = await Promise.all(starts.map(async (first) => {
+    const message = { kind: "count", id, request, run: 0, first, last: Math.min(first + PART, data.earthquakes.length) };
+    return { first, ...(await ask(run, message)).told };
+  }));
+  const { told } = await ask(run, { kind: "changed", id, request, parts, answered }, true);
+  compare(answered, told);
+  find("compared").dataset.took = String(performance.now() - run.since);
+}
+function compare({ fraction, probability }, after) {
+  const rows = [["topples_column", fraction, after?.fraction], ["risk_column", probability, after?.probability]];
+  find("compared").replaceChildren(...rows.map(([title, before, now]) => make("tr", {}, make("th", { scope: "row", textContent: say(title) }),
+    make("td", { className: "number", textContent: percent(before?.value) }), make("td", { className: "number", textContent: percent(now) }))));
 }
 
 // ---- the object under the motion that decides
@@ -414,7 +429,7 @@ function play() {
 // ---- objects that are kept
 
 const kept = [];
-const percent = (value) => (value === null ? "–" : new Intl.NumberFormat(document.documentElement.lang, { maximumSignificantDigits: 2 }).format(100 * value) + " %");
+const percent = (value) => (typeof value === "number" ? speak.say({ number: value, form: "percent" }) : "–");
 function drawKept() {
   const button = (id, action) => {
     const made = make("button", { type: "button", id, textContent: say(id) });
@@ -429,7 +444,7 @@ function drawKept() {
     button("open", () => file.click()), button(kept.length ? "print_all" : "print", () => print()), file);
   find("columns").closest(".wide").hidden = !kept.length;
   find("columns").replaceChildren(...headings(), make("td"));
-  const risk = ({ told: { found } }) => found.probabilityValue ?? found.value;
+  const risk = ({ told: { found } }) => found.main.value;
   kept.sort((a, b) => risk(b) - risk(a));
   find("objects").replaceChildren(...kept.map((item, i) => {
     const row = rowOf(item, i), remove = () => { kept.splice(kept.indexOf(item), 1); drawKept(); };
@@ -443,7 +458,7 @@ function drawKept() {
 }
 const headings = () => ["rank", "name", "topples_column", "risk_column", "page_to_do"].map((id) => make("th", { scope: "col", textContent: say(id) }));
 function rowOf({ told: { run: { request }, found } }, i) {
-  const { first } = wording.of(request, found), cells = [i + 1, speak.sentence(wording.called(request)), percent(found.value), percent(found.probabilityValue), speak.sentence(first.at(-1))];
+  const { first } = wording.of(request, found), cells = [i + 1, speak.sentence(wording.called(request)), percent(found.fraction.value), percent(found.probability?.value), speak.sentence(first.at(-1))];
   return make("tr", {}, ...cells.map((text) => make("td", { textContent: text })));
 }
 async function keep() {

@@ -2,7 +2,7 @@
 const risk = (data, core) => {
   "use strict";
   const { zeros, put, call, within, constants: { FRACTION, RATE, LEVEL, CLASSES, BINS, MOST_LEVELS, MEMORY, STATE } } = core;
-  const { FLANK_Z, EC8_SLOPE, EC8_SLOPE_SD, LEAST_CHANCE, MEMBERS, FEW_MEMBERS } = data.constants;
+  const { FLANK_Z, EC8_SLOPE, EC8_SLOPE_SD, LEAST_CHANCE, MEMBERS, FEW_MEMBERS, FEWEST_EARTHQUAKES } = data.constants;
   const bytes = (text) => Uint8Array.from(atob(text), (c) => c.charCodeAt(0)), numbers = (text) => new Float64Array(bytes(text).buffer);
   const { columns } = data.draws, normals = put(numbers(data.draws.normals), [data.draws.size, columns]), bins = bytes(data.draws.bins);
   const fewNormals = put(normals.values.slice(0, (data.draws.size / MEMBERS) * FEW_MEMBERS * columns), [(data.draws.size / MEMBERS) * FEW_MEMBERS, columns]);
@@ -165,8 +165,8 @@ const risk = (data, core) => {
     const today = within(() => with_(now).values.slice());
     return (changed) => within(() => {
       const before = put(today), after = with_(changed), found = zeros([5]);
-      call("fill_comparison", BigInt(target.kind), before, after, BigInt(sets), zeros([3, before.shape[0]]), found);
-      const [was, value, factor, lower, upper] = found.values;
+      call("fill_comparison", BigInt(target.kind), before, after, BigInt(sets), zeros([2, before.shape[0]]), found);
+      const [was, value, factor, ...limits] = found.values, [lower, upper] = groups < FEWEST_EARTHQUAKES ? [NaN, NaN] : limits;
       return { value, factor, lower, upper, helps: value < was, shown: upper < 1 };
     });
   }

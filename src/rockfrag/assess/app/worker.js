@@ -38,6 +38,7 @@ const TASKS = {
     const runs = planOf(task), outcomes = parts.map((each, i) => each && tools.made.joined(task.request, runs[i], each));
     return tools.made.found(task.request, runs, outcomes, tools.ensemble, earlier);
   },
+  changed: ({ parts, answered, ...task }) => tools.made.changed(task.request, tools.made.joined(task.request, planOf(task)[0], parts), answered),
   motion: ({ motion }) => ({ samples: tools.motions[motion].samples, dt: tools.motions[motion].dt }),
 };
 onmessage = async ({ data: task }) => {
