@@ -395,8 +395,9 @@ has 0.25); less is better. *rockfrag* draws what nobody measured ({ARRANGEMENTS}
 of the kind of body. Rules get the same arrangements and a dispersion of {BETA:g} about what they say: ASCE 43-05
 (appendix A), Kaneko's curve, the peak velocity g α/p, and b/h. The measured curve of another object is what one
 has who tests one object and speaks of another. A scan is answered in space (in at most {SOLID} of the
-arrangements, `--in-space`; those in which it would hardly stand are left out), a cut block, which one component
-along its side moves in its own plane, in that. Intervals are over input motions.
+arrangements, `--in-space`; those in which it would hardly stand are left out, which leaves 18 of the granite
+rock's), a cut block, which one component along its side moves in its own plane, in that. Intervals are over input
+motions.
 
 Errors of the model: {", ".join(f"{each.beyond:.3f} of a {kind}" for kind, each in MODEL_ERRORS.items())}
 (standard deviations of ln level, [campaigns](campaigns.md#blind-the-model-error)). That of scans rests on the
