@@ -10,6 +10,7 @@ from rockfrag.assess import holding
 from rockfrag.assess.answer import assess_with
 from rockfrag.assess.export import as_json
 from rockfrag.assess.findings import details_of
+from rockfrag.assess.inventory import read_inventory
 from rockfrag.assess.page import page_of
 from rockfrag.assess.standing.holders import (
     PADS_AT,
@@ -153,3 +154,23 @@ def test_strengths_are_rounded_up_to_two_digits():
     assert rounded_up(0.0) == 0.0
     kinds = holders_beside([Putty(100.0)])
     assert [type(each) for each in kinds][:2] == [Bracket, Cords]
+
+
+def test_strengths_take_any_unit_of_force_and_none_is_guessed(tmp_path):
+    size = {"width": "40 cm", "height": "1.2 m", "pga": "0.3 g"}
+    given = [{"putty": "0.15 kN"}, {"putty_kn": 0.15}, {"putty_n": 150}]
+    for stated in given:
+        (putty,) = asked(**size, **stated).objects.under.holders
+        assert putty.pull == pytest.approx(150.0)
+    # as a spring balance shows it
+    (cords,) = asked(**size, cord="12 kgf").objects.under.holders
+    assert cords.strength == pytest.approx(12 * 9.80665)
+    with pytest.raises(InputError, match=r"a force such as 120 N.*without a unit"):
+        asked(**size, bracket="150")
+    table = tmp_path / "table.csv"
+    table.write_text("name,width_cm,height_cm,putty,cord_n\nA,40,120,15 kgf,90\n")
+    (request,), faults = read_inventory(table, {"pga": "0.3 g"})
+    assert not faults
+    assert [each.bears for each in request.objects.under.holders] == pytest.approx(
+        [15 * 9.80665, 90.0]
+    )

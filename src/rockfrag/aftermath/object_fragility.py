@@ -30,6 +30,7 @@ ASKED = {
     "PGV": 20.0,
 }  # A level to ask at [g; cm/s]; curves do not depend on it
 NORMAL_TENTH = 1.2816  # Standard deviations from a median to its tenth
+ROUNDING = 1e-6  # Difference of ln levels that is none [-]
 
 
 @dataclass(frozen=True)
@@ -127,9 +128,12 @@ def _overturning(found: Assessment) -> LognormalState | None:
 def _rocking(found: Assessment, topples: LognormalState) -> LognormalState:
     """Curve of the level from which motions lift the object; what topples rocked before."""
     lifts = found.outcomes.lifts_from()
-    known = np.log(lifts[np.isfinite(lifts)])
-    if not known.size:
+    ln_lifts = np.log(lifts[np.isfinite(lifts)])
+    if not ln_lifts.size:
         return topples
-    spread = 0.0 if found.measure == PGA and known.std() < 1e-6 else float(known.std())
-    median = min(float(np.exp(np.median(known))), topples.median)
-    return LognormalState(median, math.hypot(spread, OF_STATICS))
+    of_motions = float(ln_lifts.std())
+    # in PGA all motions lift it at one level but for rounding
+    if found.measure == PGA and of_motions < ROUNDING:
+        of_motions = 0.0
+    median = min(float(np.exp(np.median(ln_lifts))), topples.median)
+    return LognormalState(median, math.hypot(of_motions, OF_STATICS))

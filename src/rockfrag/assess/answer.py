@@ -792,8 +792,7 @@ def _mitigations(
     costs: Mapping[str, float],
 ) -> tuple[Mitigation, ...]:
     """What each change does, the most helpful first."""
-    ways = shaken.arrangements
-    known = {change: ways[way] for change, way in shaken.alike.items()}
+    known = {change: shaken.arrangements[own] for change, own in shaken.alike.items()}
     found = [
         *compare(target, evidence, shaken.before, shaken.changed),
         *compare(target, evidence, evidence.outcomes, known),

@@ -322,11 +322,15 @@ def value_of(found: Assessment, value: float) -> Value:
 def position(found: Assessment) -> list[Finding]:
     """How it stands best, and how it moves."""
     said = []
-    ways = found.by_arrangement
-    if len(set(ways.values())) > 1:
-        ranked = sorted(ways, key=lambda way: ways[way], reverse=_grows(found))
+    arrangements = found.by_arrangement
+    if len(set(arrangements.values())) > 1:
+        ranked = sorted(
+            arrangements, key=lambda way: arrangements[way], reverse=_grows(found)
+        )
         each = [
-            finding(Text.WAY, way=finding(way), value=value_of(found, ways[way]))
+            finding(
+                Text.WAY, way=finding(way), value=value_of(found, arrangements[way])
+            )
             for way in ranked
         ]
         best = ranked[0]

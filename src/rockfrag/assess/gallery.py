@@ -188,22 +188,28 @@ class _Layout:
             for name, title in titles.items()
         ]
         caption = texts.text(Text.RANKING_CAPTION)
-        table = table_html(pd.DataFrame(rows), columns, caption, "inventory.csv")
+        table = table_html(
+            pd.DataFrame(rows),
+            columns,
+            caption,
+            "inventory.csv",
+            language=texts.language,
+        )
         top = objects.iloc[0]
-        told = finding(Text.ADDS_MOST, name=str(top["name"]))
+        message = finding(Text.ADDS_MOST, name=str(top["name"]))
         if math.isfinite(top["contribution"]):
             text = Text.ADDS_MOST_LOSS if self.valued else Text.ADDS_MOST_NUMBER
             part = percent(top["contribution"])
-            told = finding(text, name=str(top["name"]), part=part)
+            message = finding(text, name=str(top["name"]), part=part)
         title = texts.text(Text.RANKING_TITLE)
-        return Section("ranking", title, texts.say(told), (), [table])
+        return Section("ranking", title, texts.say(message), (), [table])
 
     def _numbers(self, figures: Sequence[FigureSpec]) -> Section:
         texts, numbers = self.texts, self.joint.numbers
         most, rate = int(numbers["at_least"].max()), numbers["annual_rate"].iloc[-1]
-        told = finding(Text.NONE_TOPPLES)
+        message = finding(Text.NONE_TOPPLES)
         if rate:
-            told = finding(Text.NUMBERS_TOGETHER, count=most, years=two(1 / rate))
+            message = finding(Text.NUMBERS_TOGETHER, count=most, years=two(1 / rate))
         chances = [f"probability{end}" for end in ("", "_lower", "_upper")]
         shown = numbers.assign(
             rate=numbers["annual_rate"].map("{:.2g}".format), **100 * numbers[chances]
@@ -221,7 +227,7 @@ class _Layout:
         return Section(
             "numbers",
             texts.text(Text.NUMBERS_TITLE),
-            texts.say(told),
+            texts.say(message),
             [texts.text(Text.NUMBERS_WITHOUT)],
             [table, *figures],
         )
@@ -230,11 +236,11 @@ class _Layout:
         table = self.joint.correlation
         apart = table.to_numpy()[np.triu_indices(len(table), 1)]
         known = apart[np.isfinite(apart)]
-        told = finding(Text.NO_PAIR)
+        message = finding(Text.NO_PAIR)
         if known.size:
-            told = finding(Text.PAIR_MEDIAN, median=two(float(np.median(known))))
+            message = finding(Text.PAIR_MEDIAN, median=two(float(np.median(known))))
         title = self.texts.text(Text.CORRELATION_TITLE)
-        return Section("correlation", title, self.texts.say(told), (), [drawn])
+        return Section("correlation", title, self.texts.say(message), (), [drawn])
 
 
 def numbers_figure(joint: JointRisk, years: float, texts: Catalogue) -> Figure:

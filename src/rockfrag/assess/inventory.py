@@ -198,7 +198,8 @@ def _correlation(fell: Flags, allowed: Flags, per_level: Floats) -> Floats:
 
 
 SIZES = ("width_m", "height_m", "depth_m", "mass_kg", "cg_height_m")
-HELD_BY = ("wall_m", "isolator_m")  # Lengths of what holds it
+HELD_BY = ("wall_m", "isolator_m", "putty_n", "bracket_n", "cord_n")
+"""Lengths and strengths of what holds it."""
 PEDESTAL = (
     "pedestal_width_m",
     "pedestal_height_m",
@@ -528,7 +529,7 @@ _above_0 = partial(Row.number, above=0)
 OTHERS: Mapping[str, Callable[[Row, str], Any]] = {
     "floor": Row.text, "restitution": _above_0, "round": _yes, "value": _above_0,
     "latitude": Row.number, "longitude": Row.number,
-    "casters": Row.text, "putty_n": _above_0, "bracket_n": _above_0, "cord_n": _above_0,
+    "casters": Row.text,
 }  # fmt: skip
 """What else a column may say, and how it is read."""
 

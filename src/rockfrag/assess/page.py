@@ -191,12 +191,12 @@ class _Layout:
             costs = [_cost(each.cost) for each in found.mitigations]
             rows = [(*row, cost) for row, cost in zip(rows, costs, strict=True)]
             titles.append(Text.COLUMN_COST)
-        told = (Text.HELPS_ANCHORS, Text.HELPS_ISOLATION, Text.HELPS_PAD)
+        stated = (Text.HELPS_ANCHORS, Text.HELPS_ISOLATION, Text.HELPS_PAD)
         return Section(
             "mitigations",
             self._text(Text.HELPS_TITLE),
             self.texts.paragraph(helps(found)),
-            [self._text(id) for id in told],
+            [self._text(id) for id in stated],
             [self._titled(Text.CHANGES_CAPTION, titles, rows, slice(1, 2))],
         )
 
@@ -211,16 +211,16 @@ class _Layout:
             (finding(way), value_of(found, value))
             for way, value in found.by_arrangement.items()
         ]
-        told = self._turned()
+        stated = self._turned()
         if len(rows) > 1:
-            told.append(finding(Text.STANDS_FLOOR))
+            stated.append(finding(Text.STANDS_FLOOR))
         titles = [Text.COLUMN_WAY, Text.COLUMN_ESTIMATE]
         return Section(
             "arrangements",
             self._text(Text.STANDS_TITLE),
             self.texts.paragraph(position(found)),
-            self.texts.lines(told),
-            [self._titled(Text.WAYS_CAPTION, titles, rows, slice(1, None))],
+            self.texts.lines(stated),
+            [self._titled(Text.ARRANGEMENTS_CAPTION, titles, rows, slice(1, None))],
         )
 
     def _turned(self) -> list[said.Finding]:
@@ -230,16 +230,16 @@ class _Layout:
             return []
         factor = said.percent(directions.factor)
         count = directions.records
-        told = [finding(Text.STANDS_TURNED, records=count, factor=factor)]
+        stated = [finding(Text.STANDS_TURNED, records=count, factor=factor)]
         if math.isfinite(directions.fraction):
             parts = {"worst": directions.worst_fraction, "random": directions.fraction}
             shown = {name: said.percent(part) for name, part in parts.items()}
-            told.append(finding(Text.STANDS_TURNED_AT_SITE, **shown))
-        return told
+            stated.append(finding(Text.STANDS_TURNED_AT_SITE, **shown))
+        return stated
 
     def _sure(self) -> Section:
         found, texts = self.found, self.texts
-        told = [finding(Text.SURE_HOLDS), finding(Text.SURE_SCALE)]
+        stated = [finding(Text.SURE_HOLDS), finding(Text.SURE_SCALE)]
         parts: list[FigureSpec | Markup] = []
         if found.main.sources:
             alt, caption = map(self._text, (Text.SOURCES_ALT, Text.SOURCES_CAPTION))
@@ -252,7 +252,7 @@ class _Layout:
             "sure",
             self._text(Text.SURE_TITLE),
             texts.paragraph(message),
-            texts.lines(told),
+            texts.lines(stated),
             [*parts, self._sources_table(), self._effects_table()],
         )
 
@@ -285,8 +285,8 @@ class _Layout:
 
     def _assumed(self) -> Section:
         title, message = map(self._text, (Text.ASSUMED_TITLE, Text.ASSUMED_MESSAGE))
-        told = self.texts.lines(assumptions(self.found))
-        return Section("assumed", title, message, told)
+        stated = self.texts.lines(assumptions(self.found))
+        return Section("assumed", title, message, stated)
 
     def _rules(self) -> Section:
         rows = [
@@ -302,19 +302,19 @@ class _Layout:
             *(Text.COLUMN_RULE, Text.COLUMN_BIAS),
             *(Text.COLUMN_SCATTER, Text.COLUMN_UNSAFE),
         ]
-        told = (Text.RULES_TITLE, Text.RULES_MESSAGE, Text.RULES_HOW)
-        title, message, how = map(self._text, told)
+        stated = (Text.RULES_TITLE, Text.RULES_MESSAGE, Text.RULES_HOW)
+        title, message, how = map(self._text, stated)
         table = self._titled(Text.RULES_CAPTION, titles, rows, slice(1, None))
         return Section("rules", title, message, [how], [table])
 
     def _levels(self) -> Section:
         found, texts = self.found, self.texts
-        told: list[Value] = []
+        stated: list[Value] = []
         if found.curve is not None and math.isfinite(found.curve.fit.theta):
             fit = found.curve.fit
             about = {"median": said.three(fit.theta), "beta": said.two(fit.beta)}
-            told.append(finding(Text.LEVELS_CURVE, unit=found.measure.unit, **about))
-            told += found.curve.warnings
+            stated.append(finding(Text.LEVELS_CURVE, unit=found.measure.unit, **about))
+            stated += found.curve.warnings
         table = levels_table(found)
         caption = self._text(Text.LEVELS_CAPTION)
         head = texts.lines(table)
@@ -323,7 +323,7 @@ class _Layout:
             "levels",
             self._text(Text.LEVELS_TITLE),
             texts.sentence(starts(found)),
-            texts.lines(told),
+            texts.lines(stated),
             [text_table(head, rows, caption, head)],
         )
 
@@ -362,9 +362,9 @@ class _Layout:
             for word in words_of(self.found)
         )
         titles = [Text.COLUMN_WORD, Text.COLUMN_MEANING]
-        told = (Text.GLOSSARY_TITLE, Text.GLOSSARY_MESSAGE)
+        stated = (Text.GLOSSARY_TITLE, Text.GLOSSARY_MESSAGE)
         table = self._titled(Text.GLOSSARY_CAPTION, titles, words, slice(0))
-        title, message = map(self._text, told)
+        title, message = map(self._text, stated)
         return Section("glossary", title, message, (), [table])
 
 

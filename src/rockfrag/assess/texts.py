@@ -218,7 +218,7 @@ class Text(StrEnum):
     COLUMN_WITH_IT = auto()
     COLUMN_COST = auto()
     COLUMN_DOES = auto()
-    WAYS_CAPTION = auto()
+    ARRANGEMENTS_CAPTION = auto()
     COLUMN_WAY = auto()
     COLUMN_ESTIMATE = auto()
     SOURCES_TABLE = auto()

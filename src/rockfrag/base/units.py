@@ -39,7 +39,11 @@ DIMENSIONS: Mapping[str, Mapping[str, tuple[float, float]]] = {
     },
     "velocity": {"m_s": (1.0, 1.0), "cm_s": (1.0, 100.0), "mm_s": (1.0, 1000.0)},
     "time": {"s": (1.0, 1.0), "ms": (1.0, 1000.0)},
-    "force": {"N": (1.0, 1.0), "kN": (1000.0, 1.0), "lbf": (4.4482216152605, 1.0)},
+    "force": {
+        **{"N": (1.0, 1.0), "kN": (1000.0, 1.0)},
+        # what spring balances show
+        **{"kgf": (9.80665, 1.0), "lbf": (4.4482216152605, 1.0)},
+    },
     "stiffness": {"N_m": (1.0, 1.0), "kN_m": (1000.0, 1.0), "N_mm": (1000.0, 1.0)},
 }
 """Of each dimension its units, and of each unit the factor and the divisor that lead to SI.
@@ -144,7 +148,8 @@ def quantity(given: object, to: str, unit: str | None) -> float:
 def other_names(name: str) -> dict[str, str | None]:
     """Names under which a quantity such as ``width_cm`` may be given, and the unit that each states.
 
-    ``{"width": None, "width_m": "m", "width_cm": "cm", …}``; None where the unit stands beside the number.
+    ``{"width": None, "width_m": "m", "width_cm": "cm", …}``; None where the unit stands beside the number. Names
+    are written small: ``putty_kn`` states kN.
 
     Parameters
     ----------
@@ -156,7 +161,7 @@ def other_names(name: str) -> dict[str, str | None]:
     """
     stem, unit = split_name(name)
     units = DIMENSIONS[dimension_of(unit)]
-    return {stem: None, **{f"{stem}_{unit}": unit for unit in units}}
+    return {stem: None, **{f"{stem}_{unit.lower()}": unit for unit in units}}
 
 
 def split_name(name: str) -> tuple[str, str]:
@@ -164,14 +169,15 @@ def split_name(name: str) -> tuple[str, str]:
 
     Parameters
     ----------
-    name : of a key or column that ends in a unit of length, mass, moment of inertia or time
+    name : of a key or column that ends in a unit of length, mass, moment of inertia, force or time
 
     Returns
     -------
     The name without its unit, and the unit.
     """
-    for dimension in ("moment of inertia", "mass", "length", "time"):
+    for dimension in ("moment of inertia", "mass", "length", "force", "time"):
         for unit in DIMENSIONS[dimension]:
-            if name.endswith(f"_{unit}"):
-                return name.removesuffix(f"_{unit}"), unit
+            ending = f"_{unit.lower()}"
+            if name.endswith(ending):
+                return name.removesuffix(ending), unit
     raise ValueError(f"{name} names no unit")

@@ -101,14 +101,17 @@ class _Option(NamedTuple):
 def _options(keys: Mapping[str, Any], above: str = "") -> Iterator[_Option]:
     """Yield the options of the keys of a schema, and of the keys in them."""
     for key, about in keys.items():
-        if told := about.get("option"):
+        if option := about.get("option"):
             plain = _UNITS.sub("", key)
-            reads = told.get("reads", _reading(about)) | {"help": told["help"]}
-            if word := told.get("metavar"):
+            reads = option.get("reads", _reading(about)) | {"help": option["help"]}
+            if word := option.get("metavar"):
                 reads["metavar"] = tuple(word) if isinstance(word, list) else word
             whole = above + (plain if about.get("quantity") else key)
             yield _Option(
-                told.get("name", plain.replace("_", "-")), whole, told["group"], reads
+                option.get("name", plain.replace("_", "-")),
+                whole,
+                option["group"],
+                reads,
             )
         known = read_schema("known_of_building") if key == "building" else about
         yield from _options(known.get("properties", {}), f"{key}.")
@@ -135,7 +138,7 @@ def _all_options() -> list[_Option]:
 
 
 def add_request_options(parser: argparse.ArgumentParser) -> None:
-    """Add what an object, its place and its motions are told by."""
+    """Add what an object, its place and its motions are stated by."""
     for title, options in groupby(_all_options(), key=attrgetter("group")):
         group = parser.add_argument_group(title)
         for option in options:
@@ -524,9 +527,9 @@ def form_of(settings: Mapping[str, Any], request: Any) -> dict[str, str]:
         )
     form |= {f"pedestal_{key}": str(value) for key, value in pedestal.items()}
     if isinstance(building, Mapping):
-        told = {"storey_height": "storey_height", "material": "material"}
-        told |= {"first_period": "period"}
-        form |= {told[key]: str(building[key]) for key in told if key in building}
+        asked = {"storey_height": "storey_height", "material": "material"}
+        asked |= {"first_period": "period"}
+        form |= {asked[key]: str(building[key]) for key in asked if key in building}
         if "first_period_s" in building:
             form["period"] = f"{building['first_period_s']} s"
     return (

@@ -29,6 +29,8 @@ def add_constrain_command(commands: Any) -> None:
         parser, "folder of fetched records, for objects that are simulated"
     )
     parser.add_argument("--json", action="store_true", help="print the answer as JSON")
+    words = "of page and lines, such as it"
+    parser.add_argument("--language", default="en", help=words)
     fell = parser.add_argument_group("of fallen.csv")
     words = "grid.xml of a ShakeMap, what was known of the shaking before"
     fell.add_argument("--shakemap", metavar="GRID", help=words)
@@ -50,20 +52,22 @@ def add_constrain_command(commands: Any) -> None:
     fell.add_argument("--shared-sd", metavar="S", type=float, help=words)
     words = "standard deviation of ln level from one of like objects to the next"
     fell.add_argument("--own-sd", metavar="S", type=float, help=words)
-    words = "of page and lines, such as it"
-    fell.add_argument("--language", help=words)
     parser.set_defaults(run=_constrain)
 
 
 OF_FALLEN = (
     *("shakemap", "map_uncertainty", "at", "prior_pgv", "prior_pga"),
-    *("slenderness_sd", "shared_sd", "own_sd", "language"),
+    *("slenderness_sd", "shared_sd", "own_sd"),
 )
 """Options that say something of ``fallen.csv`` only."""
 
 
 # imported when it runs: `rockfrag --help` should not wait for numba
 def _constrain(options: argparse.Namespace) -> int:
+    from rockfrag.words.catalogue import catalogue
+
+    # an unknown language is refused before anything is written
+    catalogue(options.language)
     if Path(options.file).suffix.lower() == ".csv":
         return _shaking(options)
     for name in OF_FALLEN:
@@ -76,8 +80,9 @@ def _constrain(options: argparse.Namespace) -> int:
     from rockfrag.survival.site import read_site
 
     found = constrain(read_site(options.file, options.records))
-    place = write_constrained(found, options.output)
-    print(json_of(found) if options.json else "\n".join(lines_of(found)))
+    place = write_constrained(found, options.output, options.language)
+    lines = lines_of(found, options.language)
+    print(json_of(found) if options.json else "\n".join(lines))
     print(place, file=sys.stderr)
     return 0
 
@@ -91,7 +96,6 @@ def _shaking(options: argparse.Namespace) -> int:
         read_fallen,
     )
     from rockfrag.survival.fallen_page import fallen_json, fallen_lines, write_fallen
-    from rockfrag.words.catalogue import FIRST
 
     for name in ("slenderness_sd", "shared_sd", "own_sd"):
         _spread(name, getattr(options, name))
@@ -107,9 +111,8 @@ def _shaking(options: argparse.Namespace) -> int:
         options.records,
         progress_line("groups"),
     )
-    language = options.language or FIRST
-    place = write_fallen(found, options.output, language)
-    lines = fallen_lines(found, language)
+    place = write_fallen(found, options.output, options.language)
+    lines = fallen_lines(found, options.language)
     print(fallen_json(found) if options.json else "\n".join(lines))
     print(place, file=sys.stderr)
     return 0

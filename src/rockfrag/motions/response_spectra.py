@@ -566,7 +566,7 @@ def _may_hold_the_peak(x: Floats, stretch: Floats) -> bool:
 
 @cached_njit(error_model="numpy")
 def _advance(x: Floats, a: float, s: float) -> None:
-    """One step of all lanes."""
+    """Take all lanes a step on, with the ground's acceleration at its beginning and its slope."""
     for i in range(LANES):
         u0, v0 = x[_U + i], x[_V + i]
         u = x[_UU + i] * u0 + x[_UV + i] * v0 + x[_UA + i] * a + x[_US + i] * s
@@ -591,17 +591,20 @@ def _turns_high(x: Floats, a: float, s: float, step: float) -> bool:
 
 @cached_njit(error_model="numpy")
 def _look_between(x: Floats, i: int, a: float, s: float, step: float) -> None:
-    """Let the peaks of lane i between the last two steps count, if they can be the largest."""
-    u, v, u1, v1, c, k = (
-        x[_U0 + i],
-        x[_V0 + i],
-        x[_U + i],
-        x[_V + i],
-        x[_C + i],
-        x[_K + i],
-    )
-    if max(abs(u), abs(u1)) + x[_ADDED + i] > x[_KEPT + i] * x[_LARGEST + i]:
-        first = u, v, -(c * v + k * u) - a
-        last = u1, v1, -(c * v1 + k * u1) - (a + step * s)
-        peak = peak_within(0, first, last, (u, v, a, s), c, k, step)
+    """Let the peaks of lane i within its last step count, if they can be the largest.
+
+    ``a`` and ``s`` are the ground's acceleration at the beginning of the step and its slope there.
+    """
+    displacement, velocity = x[_U0 + i], x[_V0 + i]
+    end_displacement, end_velocity = x[_U + i], x[_V + i]
+    c, k = x[_C + i], x[_K + i]
+    at_ends = max(abs(displacement), abs(end_displacement))
+    if at_ends + x[_ADDED + i] > x[_KEPT + i] * x[_LARGEST + i]:
+        # relative to the ground, ü = -c u̇ - k u - a
+        begins = -(c * velocity + k * displacement) - a
+        ends = -(c * end_velocity + k * end_displacement) - (a + step * s)
+        first = displacement, velocity, begins
+        last = end_displacement, end_velocity, ends
+        start = displacement, velocity, a, s
+        peak = peak_within(0, first, last, start, c, k, step)
         x[_LARGEST + i] = max(x[_LARGEST + i], peak)

@@ -378,10 +378,10 @@ class CatalogueDraft:
 
         kept = []
         for number in sorted(range(len(groups)), key=worth):
-            told = _horizontal(groups[number]) or groups[number]
-            if all(component.digest in seen for component in told):
+            horizontal = _horizontal(groups[number]) or groups[number]
+            if all(component.digest in seen for component in horizontal):
                 for first in groups[number]:
-                    other = seen.get(first.digest, "") or told[0].file
+                    other = seen.get(first.digest, "") or horizontal[0].file
                     self.note(first.file, f"the same record as {other}; left out")
                 continue
             kept.append(number)
@@ -538,17 +538,17 @@ def _with_third_upright(components: Sequence[Component]) -> list[Component]:
 
 
 def _records_of(components: Sequence[Component]) -> list[list[Component]]:
-    """Group components of one record, in the ways of :data:`_WAYS`."""
+    """Group components of one record, by what :data:`_GROUPED_BY`."""
     groups: list[list[Component]] = []
     components = _with_third_upright(components)
     left = list(components)
     numbered = _numbered(components)
-    for way in range(len(_WAYS)):
+    for way in range(len(_GROUPED_BY)):
         by_key: dict[object, list[Component]] = {}
         for component in left:
             key = component.shared_by_a_record[way]
             if key is not None and not (
-                _WAYS[way] == "names" and component.file in numbered
+                _GROUPED_BY[way] == "names" and component.file in numbered
             ):
                 by_key.setdefault(key, []).append(component)
         for several in by_key.values():
@@ -568,7 +568,7 @@ def _records_of(components: Sequence[Component]) -> list[list[Component]]:
     return sorted(groups, key=lambda group: order[group[0].file])
 
 
-_WAYS = ("file", "headers", "names", "station and time")
+_GROUPED_BY = ("file", "headers", "names", "station and time")
 """How components of one record are found, in this order."""
 
 

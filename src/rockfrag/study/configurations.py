@@ -81,7 +81,7 @@ def read_configurations(
         path,
         ["name", "object"],
         ["pedestal", "counterpart", *holding.COLUMNS],
-        quantities=holding.LENGTHS,
+        quantities=holding.QUANTITIES,
     )
     for row in rows:
         name = row.text("name")

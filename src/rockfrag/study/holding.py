@@ -21,11 +21,12 @@ LENGTHS = (
     *("wall_m", "wall_left_m", "wall_height_m", "putty_spread_m"),
     *("cord_slack_m", "bracket_slack_m"),
 )
-"""Columns of lengths, whose unit may stand in the name."""
+FORCES = ("putty_n", "putty_shear_n", "cord_n", "bracket_n")
+QUANTITIES = (*LENGTHS, *FORCES)
+"""Columns of lengths and forces, whose unit may stand in the name."""
 COLUMNS = (
-    *LENGTHS,
-    *("wall_friction", "wall_restitution", "putty_n", "putty_shear_n"),
-    *("cord_n_m", "cord_n", "bracket_n_m", "bracket_n", "casters"),
+    *QUANTITIES,
+    *("wall_friction", "wall_restitution", "cord_n_m", "bracket_n_m", "casters"),
 )
 """Columns of an arrangement that say what holds it."""
 _ISOLATOR_LENGTHS = ("radius_m", "stroke_m", "yield_m")
@@ -102,7 +103,7 @@ def stated_by(row: Row) -> dict[str, float | str]:
             continue
         if column == "casters":
             stated[column] = row.text(column)
-        elif column in LENGTHS:
+        elif column in QUANTITIES:
             stated[column] = row.quantity(column)
         else:
             stated[column] = row.number(column)

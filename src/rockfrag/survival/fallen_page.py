@@ -294,7 +294,13 @@ def _sections(found: FallenPlace, texts: Catalogue) -> list[Section]:
         column("alone_upper", texts.text("fallen_column_upper"), decimals=0),
     )
     caption = texts.text("fallen_table")
-    table = table_html(_group_table(found, texts), columns, caption, "shaking.csv")
+    table = table_html(
+        _group_table(found, texts),
+        columns,
+        caption,
+        "shaking.csv",
+        language=texts.language,
+    )
     limits = [texts.text(id) for id in LIMITS]
     title = texts.text("fallen_objects")
     sections = [

@@ -347,6 +347,7 @@ def draw_errors(objects: int, shared: float, samples: int) -> tuple[Floats, Floa
 
 
 RECORDS = "resources/records"  # Folder of fetched records
+UNNAMED = "the site"  # What a site without a name is called
 
 # One a measure: fractions at all levels count
 ANY_LEVEL = {"PGA": 0.1, "SA": 0.1, "PGV": 10.0}
@@ -405,7 +406,7 @@ def read_site(path: str | os.PathLike[str], records: str | Path = RECORDS) -> Si
             curves, folder / realizations if realizations else None
         )
         site = Site(
-            name=known.get("name", "the site"),
+            name=known.get("name", UNNAMED),
             branches=tuple(branches),
             objects=(),
             shared_error=float(known.get("shared_error", 0.0)),

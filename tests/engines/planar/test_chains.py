@@ -51,6 +51,24 @@ def test_what_has_broken_is_gone_and_what_has_slid_is_nearer_to_its_wall() -> No
     assert run(after, motion).slip[0] == pytest.approx(before.slip[-1], abs=1e-12)
 
 
+def test_a_bond_that_the_main_shock_broke_stays_broken_in_the_aftershock() -> None:
+    motion = 0.8 * random_motion(np.random.default_rng(5))[:400]
+    # so strong that it bears what follows, had it not been broken
+    bond = Bond(400.0, 400.0, 0.1)
+    held = hold(as_system(BLOCK), bonds=bond)
+    first, second = 2.0 * motion, 1.1 * motion
+    before, after, whole = chained(held, first, second)
+    at = first.size + QUIET.size
+    assert not before.overturned
+    assert 0 < whole.constraints["breaking_time_s"][0] < first.size * DT
+    samples = min(len(after.theta), len(whole.theta) - at)
+    assert np.array_equal(after.theta[:samples], whole.theta[at : at + samples])
+    assert np.abs(after.theta).max() > 0
+    unbroken = run(held, second, friction=LOOSE)
+    assert math.isnan(unbroken.constraints["breaking_time_s"][0])
+    assert np.abs(unbroken.theta).max() == 0
+
+
 def test_an_isolator_begins_where_it_was_left() -> None:
     support = SlidingPendulum(mass=20.0, radius=2.0, friction=0.1)
     held = hold(as_system(Block(0.6, 1.2, 100.0)), support=support)

@@ -90,6 +90,20 @@ def test_what_is_out_of_reach_changes_no_bit():
         assert np.array_equal(first, second, equal_nan=True), name
 
 
+def test_in_a_sequence_a_bond_that_the_main_shock_broke_holds_no_more():
+    rng = np.random.default_rng(3)
+    shock = synthetic_motion(rng, 2, 8.0)
+    after, quiet = 0.5 * shock, np.zeros((1500, 3))
+    system = hold(BOX.system(), bonds=Bond(1500.0, 1e6, (0.15, 0.2)))
+    alone = shaken(system, after)
+    main = shaken(system, 0.6 * shock)
+    both = shaken(system, np.concatenate([0.6 * shock, quiet, after]))
+    assert np.isnan(alone.breaking_time).all() and alone.peak_velocity.max() == 0
+    assert not main.overturned.any() and np.isfinite(main.breaking_time).all()
+    assert both.breaking_time == pytest.approx(main.breaking_time)
+    assert both.impacts[0, 0, 0] > main.impacts[0, 0, 0]
+
+
 def cords(stiffness, strength=math.inf, slack=0.0):
     """Cords to both sides at the height of 1 m."""
     return [

@@ -178,7 +178,7 @@ const objects = (data) => {
   // what is shaken: roles, and bodies as the module takes them; the object as it stands first
   function planOf(request, ensemble) {
     const { statue, pedestal, restitution: measured, place } = request;
-    const body = (top, below = pedestal, livelier = 1) => ({ statue: top, pedestal: below, measured, livelier });
+    const body = (top, below = pedestal, restitution_factor = 1) => ({ statue: top, pedestal: below, measured, restitution_factor });
     const joined = (top, below) => {
       const { centre: [x, y, inertia] } = ensemble.bodyOf({ statue: top, pedestal: below });
       return { width: below.width, height: below.height + top.height, mass: below.mass + top.mass, inertia, cgHeight: y, cgOffset: x };

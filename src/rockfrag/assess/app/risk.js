@@ -165,7 +165,7 @@ const risk = (data, core) => {
     const today = within(() => with_(now).values.slice());
     return (changed) => within(() => {
       const before = put(today), after = with_(changed), found = zeros([5]);
-      call("fill_comparison", BigInt(target.kind), before, after, BigInt(sets), zeros([3, before.shape[0]]), found);
+      call("fill_comparison", BigInt(target.kind), before, after, BigInt(sets), zeros([2, before.shape[0]]), found);
       const [was, value, factor, ...limits] = found.values, [lower, upper] = groups < FEWEST_EARTHQUAKES ? [NaN, NaN] : limits;
       return { value, factor, lower, upper, helps: value < was, shown: upper < 1 };
     });

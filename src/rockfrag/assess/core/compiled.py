@@ -14,12 +14,12 @@ from pathlib import Path
 from typing import Any
 
 from rockfrag.base import exponentials
-from rockfrag.engines.compile.jit import KNOWN, kernel, share_with_kernels
+from rockfrag.engines.compile.jit import KNOWN, compile_for_kernels, kernel
 from rockfrag.runtime.machine_code import cached_njit
 
 __all__ = ["entry_kernel", "kernel"]
 
-share_with_kernels(exponentials)
+compile_for_kernels(exponentials)
 
 
 @cache

@@ -193,6 +193,7 @@ def _variance_of_bins(values, bins):
 
 @kernel
 def _mean_of_bin(values, bins, wanted):
+    """Mean of the values of the draws in one of the ``BINS`` bins of a source."""
     total = 0.0
     for d in range(values.size):
         if bins[d] == wanted:
@@ -250,45 +251,57 @@ BEFORE, AFTER, FACTOR, LEAST, MOST = range(5)
 
 @entry_kernel
 def fill_comparison(kind, before, after, sets, work, found):
-    """Compare shown numbers of the same draws without and with a change, shape (draws,) both.
+    """Compare shown numbers of the same draws without and with a change.
 
-    Limits of the factor are over the sets of weights of the earthquakes; NaN where there are none. Levels are
-    compared by their medians, all else by means. ``work`` has the shape (3, draws).
+    Parameters
+    ----------
+    kind : ``FRACTION``, ``RATE`` or ``LEVEL``; levels are compared by their medians, all else by means
+    before, after : shown numbers, shape (draws,) each
+    sets : sets of weights of the earthquakes; the draws of one follow each other
+    work : working memory, shape (2, draws)
+    found
+        Filled, shape (5,): the numbers before and after, their ratio, and the limits of it over the sets. NaN is
+        what is not known: the ratio of infinite numbers or to zero.
     """
     for place in range(5):
         found[place] = math.nan
+    scratch = work[0]
+    found[BEFORE] = _centre(kind, before, scratch)
+    found[AFTER] = _centre(kind, after, scratch)
+    if not _have_ratio(found[BEFORE], found[AFTER]):
+        return
+    found[FACTOR] = found[AFTER] / found[BEFORE]
     members, count = before.size // sets, 0
-    for b in range(-1, sets):
-        # all draws first, then those of each set
-        first, end = (0, before.size) if b < 0 else (b * members, (b + 1) * members)
-        centres = found[BEFORE : AFTER + 1] if b < 0 else work[2, :2]
-        for side in range(2):
-            values = before if side == 0 else after
-            centres[side] = _centre(kind, values[first:end], work[0, : end - first])
-        if not (0.0 < centres[0] < math.inf and centres[1] < math.inf):
-            if b < 0:
-                return
-            continue
-        if b < 0:
-            found[FACTOR] = centres[1] / centres[0]
-        else:
-            work[1, count] = centres[1] / centres[0]
+    for b in range(sets):
+        first, end = b * members, (b + 1) * members
+        without = _centre(kind, before[first:end], scratch)
+        changed = _centre(kind, after[first:end], scratch)
+        if _have_ratio(without, changed):
+            work[1, count] = changed / without
             count += 1
     if count > 0:
         ratios = work[1, :count]
         sort(ratios)
-        found[LEAST] = quantile(ratios, count, (1.0 - INSIDE) / 2)
-        found[MOST] = quantile(ratios, count, (1.0 + INSIDE) / 2)
-        found[LEAST] = min(found[LEAST], found[FACTOR])
-        found[MOST] = max(found[MOST], found[FACTOR])
+        lower = quantile(ratios, count, (1.0 - INSIDE) / 2)
+        upper = quantile(ratios, count, (1.0 + INSIDE) / 2)
+        # the interval holds the factor of all draws
+        found[LEAST] = min(lower, found[FACTOR])
+        found[MOST] = max(upper, found[FACTOR])
+
+
+@kernel
+def _have_ratio(before, after):
+    """Whether the second number over the first is a finite one."""
+    return 0.0 < before < math.inf and after < math.inf
 
 
 @kernel
 def _centre(kind, values, work):
-    """Mean of values; of levels the median, the lower of two."""
+    """Mean of values; of levels the median, the lower of two. ``work`` is memory for at least as many numbers."""
     if kind != LEVEL:
         return mean(values)
+    ordered = work[: values.size]
     for i in range(values.size):
-        work[i] = values[i]
-    sort(work)
-    return work[(values.size - 1) // 2]
+        ordered[i] = values[i]
+    sort(ordered)
+    return ordered[(values.size - 1) // 2]

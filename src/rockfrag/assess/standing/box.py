@@ -80,7 +80,7 @@ class Box(Standing):
     @property
     def in_space(self) -> bool:
         """In space, unless its restitution was measured, its impacts are changed or a pad is to be tried."""
-        plain = self.under.restitution is None and self.livelier == 1.0
+        plain = self.under.restitution is None and self.restitution_factor == 1.0
         return plain and self.under.pad_friction is None
 
     @property
@@ -91,7 +91,7 @@ class Box(Standing):
 
     def in_plane(self) -> Planar:
         """The object as it rocks across its narrower side."""
-        return Planar(self.block, self.plane, self.under, self.livelier)
+        return Planar(self.block, self.plane, self.under, self.restitution_factor)
 
     def solid(self, body: Body) -> System | None:
         """The object on its rectangular base, or one with what it is fixed to, whose base is square or as deep."""

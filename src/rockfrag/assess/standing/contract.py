@@ -69,13 +69,13 @@ class Standing(ABC):
     block : the object itself in the plane in which it rocks
     plane : in which direction that is
     under : what it stands on, and what was said of it
-    livelier : factor on every restitution [-]; impacts never gain energy
+    restitution_factor : factor on every restitution [-]; impacts never gain energy
     """
 
     block: Block
     plane: Finding
     under: Foundation = field(default_factory=Foundation)
-    livelier: float = 1.0
+    restitution_factor: float = 1.0
 
     # Kind of body whose model error counts; of kinds without a campaign that of a cut block
     measured_as: ClassVar[str] = CUT
@@ -158,7 +158,7 @@ class Standing(ABC):
             ),
             # of a body in space that of the planar answer
             "restitution": lambda factor: replace(
-                self, livelier=self.livelier * factor
+                self, restitution_factor=self.restitution_factor * factor
             ),
         }
         if self.pedestals:
@@ -191,7 +191,7 @@ class Standing(ABC):
     def system_of(self, body: Body) -> System:
         """Return what is shaken in a plane: a body whose impacts lose what was measured or assumed."""
         system = body.system()
-        if self.under.restitution is None and self.livelier == 1:
+        if self.under.restitution is None and self.restitution_factor == 1:
             return system
         shapes = system.carried
         each = [self._ratios(shape, self.under.restitution) for shape in shapes]
@@ -202,8 +202,8 @@ class Standing(ABC):
     ) -> tuple[float, float]:
         """Ratios of velocities at the right and left pivot, none of which gains energy."""
         e = math.nan if measured is None else measured
-        right = geometry.scaled_restitution(shape, 1, e, self.livelier)
-        return right, geometry.scaled_restitution(shape, -1, e, self.livelier)
+        right = geometry.scaled_restitution(shape, 1, e, self.restitution_factor)
+        return right, geometry.scaled_restitution(shape, -1, e, self.restitution_factor)
 
     @property
     def in_space(self) -> bool:

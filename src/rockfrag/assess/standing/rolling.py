@@ -52,16 +52,18 @@ class Round(Standing):
         return found
 
     def system_of(self, body: Body) -> System:
-        """The body in a plane; on its own base the object rolls, fixed to its pedestal on that of the pedestal."""
+        """The body in a plane, with the restitution of each contact.
+
+        On its own base the object rolls and loses nothing. Fixed to its pedestal the two are one block, higher
+        than the object, which rocks on the pedestal's base.
+        """
         system = body.system()
         rolls = body.blocks[-1].height == self.block.height
+        usual = self.under.restitution
         *below, top = system.carried
-        measured = ROLLING if rolls else self.under.restitution
-        each = [
-            *(self._ratios(shape, self.under.restitution) for shape in below),
-            self._ratios(top, measured),
-        ]
-        return system_of(system, restitution=each if below else each[0])
+        restitution = [self._ratios(shape, usual) for shape in below]
+        restitution.append(self._ratios(top, ROLLING if rolls else usual))
+        return system_of(system, restitution=restitution if below else restitution[0])
 
     @property
     def in_space(self) -> bool:
@@ -70,7 +72,7 @@ class Round(Standing):
 
     def in_plane(self) -> Planar:
         """The object as it would rock on edges."""
-        return Planar(self.block, self.plane, self.under, self.livelier)
+        return Planar(self.block, self.plane, self.under, self.restitution_factor)
 
     def solid(self, body: Body) -> System | None:
         """The object on its rim; None with what it is fixed to, which stands on another base."""

@@ -28,13 +28,14 @@ from rockfrag.engines.planar.solve import (
     standing_bodies,
 )
 from rockfrag.engines.planar.walls import any_closed, note_impulses
+from rockfrag.engines.planar.witness import SHUT
 from rockfrag.engines.pure_rocking.kernels.laws import moves_impulse, scales_momentum
 from rockfrag.engines.pure_rocking.kernels.laws import rate as lawful_rate
 from rockfrag.laws.momentum import NUMBER as MOMENTUM
 
 NO_GAIN = 1e-12  # fraction of the kinetic energy below which a gain is rounding
 HALVINGS = 40  # halvings of the interval in which a law that gives way keeps the energy
-CROWD = 100
+MANY_CONTACT_EVENTS = 100
 """Contact events within a sample after which speeds below the closing speed count as none, whatever pulls."""
 PULLS = 1e-9  # acceleration over g towards a wall above which it is none of rounding
 UNREACHED = 1e-7  # violation above which an impact has no outcome under a law
@@ -154,7 +155,7 @@ def settle(p, w, ah, av, exclude):
 def remember_slides(p, w):
     """Keep which interfaces have reached their limit."""
     for k in range(p.count):
-        w.told.slid[k] |= w.slides[k] != 0
+        w.outcome.slid[k] |= w.slides[k] != 0
 
 
 @kernel
@@ -206,8 +207,8 @@ def strike(p, w, ah, av, closing, push):
         copy(p, w.out, w.v)
     project(p, w)
     touch_closed(p, w)
-    w.struck += before - kinetic_energy(p, w.v)
-    w.told.impacts += 1
+    w.impact_loss += before - kinetic_energy(p, w.v)
+    w.outcome.impacts += 1
 
 
 @kernel
@@ -293,7 +294,7 @@ def _obey(p, w, trial):
             w.falls[k] = -1
     if _outcome(p, w, trial, 1.0, energy):
         return
-    w.told.given_way += 1
+    w.outcome.given_way += 1
     low, high = 0.0, 1.0
     for _ in range(HALVINGS):
         middle = 0.5 * (low + high)
@@ -328,9 +329,22 @@ def _outcome(p, w, trial, part, before):
 
 
 @kernel
-def _is_solvable(p, w):
-    """Whether no two of the closed contacts ask for the same thing, as walls and faces may."""
-    return not any_closed(p, w) or solve(p, w, w.q, w.v, 0.0, 0.0, True, False)
+def _can_hold(p, w, still):
+    """Whether beside walls all closed contacts can be held, with no more than what is slower than ``still`` asks.
+
+    Two that ask for the same thing cannot be, as a wall and a face may; two that all but do, such as a corner
+    right under the edge of a kerb, can, but only by a body that stops.
+    """
+    if not any_closed(p, w):
+        return True
+    if not solve(p, w, w.q, w.v, 0.0, 0.0, True, False):
+        return False
+    most = SHUT * max(still, STILL * p.speed)
+    for d in range(3 * p.count):
+        size = p.size if d % 3 == 2 else 1.0
+        if not size * abs(w.out[d] - w.v[d]) <= most:
+            return False
+    return True
 
 
 @kernel
@@ -342,7 +356,7 @@ def read_slip(p, w, k, still):
     """
     speed, slid = slip_speed(p, w, w.v, k, False), w.slides[k]
     w.slides[k] = 0 if abs(speed) <= still else (1 if speed > 0.0 else -1)
-    if slid != 0 and w.slides[k] == 0 and not _is_solvable(p, w):
+    if slid != 0 and w.slides[k] == 0 and not _can_hold(p, w, still):
         w.slides[k] = slid
 
 
@@ -361,16 +375,16 @@ def _any_slow_end(p, w, closing):
 def _shut_weak(p, w, ah, av, closing):
     """Close the ends that part, and end the slips that are, too slow after an impact; whether there are any.
 
-    Slow ends close where they fall back, and in a crowd whatever pulls.  What pulls depends on the sign of a slip,
-    so that slow slips and slow ends would call forth each other without an end.  At walls ends close one by one,
-    so that none is closed that the others hold already.
+    Slow ends close where they fall back, and among many contact events wherever: which way an end is pulled
+    depends on the sign of a slip, so that slow slips and slow ends would call forth each other without an end.
+    At walls ends close one by one, so that none is closed that the others hold already.
     """
     found = False
     if _any_slow_end(p, w, closing):
         solve(p, w, w.q, w.v, ah, av, False)
     for k in range(p.contacts):
         at_wall = k >= p.count or any_closed(p, w)
-        crowd = w.met > CROWD and not at_wall
+        are_many = w.met > MANY_CONTACT_EVENTS and not at_wall
         least = -PULLS * p.g if at_wall else 0.0
         was_open = not w.closed[k].any()
         for end in range(2):
@@ -378,19 +392,19 @@ def _shut_weak(p, w, ah, av, closing):
                 x, y, tx, ty, _, _, kind = end_of(p, w, w.q, k, end, w.kind[k, end])
                 if rate(p, w.q, w.v, k, x, y, -ty, tx) >= closing:
                     continue
-                pull = rate(p, w.q, w.out, k, x, y, -ty, tx)
-                pull += bias(p, w.q, w.v, k, x, y, -ty, tx, kind)
-                if pull < least or crowd:
+                parting = rate(p, w.q, w.out, k, x, y, -ty, tx)
+                parting += bias(p, w.q, w.v, k, x, y, -ty, tx, kind)
+                if parting < least or are_many:
                     w.closed[k, end] = 1
                     if not any_closed(p, w):
                         found = True
                         continue
                     if was_open:
                         read_slip(p, w, k, closing)
-                    if w.slides[k] == 0 and not _is_solvable(p, w):
+                    if w.slides[k] == 0 and not _can_hold(p, w, closing):
                         # a face holds it along the wall
                         w.slides[k] = 1
-                    if _is_solvable(p, w):
+                    if _can_hold(p, w, closing):
                         return True
                     w.closed[k, end] = 0
                     solve(p, w, w.q, w.v, ah, av, False)

@@ -46,7 +46,9 @@ def pass_interval(body, tau, dt, y, s):
 def take_step(body, tau, h, y, s):
     """Take one step; return how many contacts were near."""
     rows = algebra.rotation(y)
-    weight = forces.load_on(body, y, rows, forces.pull_at(s.field, tau + 0.5 * h), s)
+    weight = forces.load_on(
+        body, y, rows, forces.effective_gravity_at(s.field, tau + 0.5 * h), s
+    )
     load = algebra.to_world(rows, weight)
     spin = solid.free_spin(body, solid.omega_of(y), forces.twist_by_ties(s))
     for k in range(3):

@@ -100,7 +100,9 @@ class SpatialResponse:
 
     def samples(self) -> dict[str, NDArray[Any]]:
         """Return the columns of a row per sample and body, here one body: those of the history."""
-        columns = {str(name): told.to_numpy() for name, told in self.history.items()}
+        columns = {
+            str(name): values.to_numpy() for name, values in self.history.items()
+        }
         return columns | {"body": np.ones(len(self.history), np.int64)}
 
     @property

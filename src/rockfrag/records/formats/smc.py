@@ -18,7 +18,7 @@ from obspy import UTCDateTime
 from rockfrag.records.parsing.format import Channel, Format, stated
 from rockfrag.records.parsing.stated_peak import StatedPeak, with_checked_peak
 from rockfrag.records.parsing.text_file import TextFile
-from rockfrag.records.parsing.timestamps import pairs_of, time_at
+from rockfrag.records.parsing.timestamps import channel_of_pairs, time_at
 
 _TEXT_LINES, _INTEGER_LINES, _REAL_LINES = 11, 6, 10
 _FIRST_DATA = _TEXT_LINES + _INTEGER_LINES + _REAL_LINES
@@ -69,7 +69,7 @@ def _parse(text: TextFile) -> Iterator[Channel]:
     )
     if rate == numbers[_MISSING_REAL]:
         # without a rate the values are pairs of time and acceleration
-        values = pairs_of(samples, "cm/s2", text, start, count // 2)
+        values = channel_of_pairs(samples, "cm/s2", text, start, count // 2)
     else:
         dt = float(f"{1 / rate:.9g}") if rate > 0 else 0.0
         values = Channel(count, text.interval(dt, at_reals), samples, "cm/s2")

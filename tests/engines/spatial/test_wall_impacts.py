@@ -1,0 +1,121 @@
+"""Impacts of a body in space at rough walls: explained by pushes within friction, and without a gain of energy."""
+
+import math
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+
+from rockfrag import Block
+from rockfrag.base.units import GRAVITY
+from rockfrag.engines.spatial import engine
+from rockfrag.engines.spatial.body import kernel_body
+from rockfrag.system import Friction, Wall, hold
+
+from ...oracle.cones import Touch, spatial_rays, unexplained
+from .checks import turned_by
+
+BRIEF = 1e-7  # in which an impact is over, and next to nothing else happens [s]
+NEAR = 1e-9  # gap of what is about to touch [m]
+
+
+class Meeting(NamedTuple):
+    """A body that is about to meet walls, and perhaps the ground: its record, state, and where it touches."""
+
+    body: np.void
+    state: np.ndarray
+    touches: list[Touch]
+    size: float
+
+
+def drawn_attitude(rng: np.random.Generator, kind: str) -> np.ndarray:
+    """Rotation vector: any, about an edge towards the wall, or about the vertical alone."""
+    if kind == "edge":
+        return np.array([0.0, rng.uniform(0.01, 0.5), 0.0])
+    turn = np.array([0.0, 0.0, rng.uniform(0, math.pi / 2)])
+    return turn if kind == "upright" else turn + rng.normal(0, 0.2, 3)
+
+
+def drawn_meeting(rng: np.random.Generator) -> Meeting:
+    """Draw a box whose furthest corners all but touch one wall or two, and mostly the ground."""
+    width, depth = rng.uniform(0.2, 0.6, 2)
+    block = Block(width, rng.uniform(0.3, 1.8), 1.0, depth=depth)
+    kind = str(rng.choice(["any", "any", "edge", "upright"]))
+    # a body that is turned stands within its wall
+    directions = [0.0, math.pi / 2][: int(rng.integers(1, 3))]
+    walls = [
+        Wall(
+            1.0,
+            direction,
+            friction=Friction(*(2 * [rng.uniform(0.0, 1.0)])),
+            restitution=float(rng.choice([0.0, rng.uniform(0.1, 1.0)])),
+        )
+        for direction in directions
+    ]
+    mu = rng.uniform(0.1, 1.0)
+    system = hold(block.system(), *walls)
+    contact = replace(system.contacts[0], friction=Friction(mu, mu))
+    body = kernel_body(replace(system, contacts=(contact,)))
+    state, attitude = turned_by(drawn_attitude(rng, kind))
+    sides = np.array([width, depth, block.height]) / 2
+    signs = np.array(np.meshgrid(*3 * [[-1, 1]])).reshape(3, -1).T
+    arms = (signs * sides) @ attitude.T
+    outwards = [np.array([math.cos(a), math.sin(a), 0.0]) for a in directions]
+    for away in outwards:
+        state[:3] += (1.0 - NEAR - (arms @ away).max()) * away
+    state[2] = NEAR - arms[:, 2].min() + (0.3 if rng.uniform() < 0.2 else 0.0)
+    places = state[:3] + arms
+    touches = [
+        Touch(place, -away, wall.friction.static)
+        for away, wall in zip(outwards, walls, strict=True)
+        for place in places
+        if 1.0 - place @ away < 1e-6
+    ]
+    touches += [
+        Touch(place, np.array([0.0, 0.0, 1.0]), mu)
+        for place in places
+        if place[2] < 1e-6
+    ]
+    state[7:10] = rng.normal(0, 0.5, 3)
+    state[10:13] = rng.normal(0, 1.0, 3)
+    return Meeting(body, state, touches, float(np.linalg.norm(sides)))
+
+
+def energy(body: np.void, row: np.ndarray) -> float:
+    """Energy of a unit of mass [J/kg]."""
+    spin = row[10:13]
+    motion = float(row[7:10] @ row[7:10] + spin @ body["inertia"] @ spin) / 2
+    return motion + GRAVITY * float(row[2])
+
+
+@pytest.mark.parametrize("impacts", [300, pytest.param(10_000, marks=pytest.mark.slow)])
+def test_impacts_at_walls_gain_nothing_and_push_within_friction(
+    impacts: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    # nothing is followed beyond the impact
+    monkeypatch.setattr(engine, "AFTER", 0.0)
+    rng, seen, unsolved, worst = np.random.default_rng(6), 0, 0, []
+    still = np.zeros((4, 3))
+    while seen < impacts:
+        meeting = drawn_meeting(rng)
+        body, start = meeting.body, meeting.state.copy()
+        before = start.copy()
+        found, history = engine.run_case(body, still, BRIEF, start=start, samples=4)
+        if not found.impacts:
+            continue
+        seen += found.impacts
+        unsolved += found.paradoxes
+        after = history[-1]
+        assert energy(body, after) - energy(body, before) < 1e-11
+        assert found.gained < 1e-11
+        unit = math.sqrt(GRAVITY * meeting.size)
+        units = np.repeat([unit, unit * meeting.size], 3)
+        attitude = Rotation.from_quat(np.roll(before[3:7], -1)).as_matrix()
+        spin = attitude @ body["inertia"] @ (after[10:13] - before[10:13])
+        change = np.concatenate([after[7:10] - before[7:10], spin]) / units
+        rays = [spatial_rays(touch, before[:3]) / units for touch in meeting.touches]
+        worst.append(unexplained(np.concatenate(rays), change))
+    assert max(worst) < 1e-5
+    assert unsolved <= impacts / 1000
