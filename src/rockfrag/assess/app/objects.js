@@ -63,6 +63,7 @@ const objects = (data) => {
     const restitution = number("restitution", form.restitution, "restitution", 0, 1);
     if (round && restitution !== null) refuse("restitution", "rolls");
     const deep = Boolean(form.depth?.trim()) && !round && restitution === null && data.both.records.length > 0;
+    if (!deep && form.facing?.trim()) refuse("facing", "facing_in_plane");
     if (deep) statue.depth = depth;
     let pedestal = null;
     if (form.pedestal_width?.trim() || form.pedestal_height?.trim()) {
