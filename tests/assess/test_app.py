@@ -7,12 +7,13 @@ import random
 import shutil
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from rockfrag.assess.answer import Assessment, assess_with
+from rockfrag.assess.answer import Assessment, assess_with, plan_for
 from rockfrag.assess.app.build import PATH
 from rockfrag.assess.app.contents import computing, script
 from rockfrag.assess.app.writing import page_of
@@ -204,6 +205,23 @@ def test_hostile_input_gets_a_sentence(tmp_path, motions):
         "each has its sentence"
     )
     assert sum("refused" in said for said in refused) > 0.9 * len(forms)
+
+
+@needs_node
+def test_a_direction_that_changes_nothing_is_refused_as_the_command_does(
+    tmp_path, motions
+):
+    """Numbers with 0 and 45 degrees were equal where a restitution was given, and nothing was said."""
+    deep = USUAL | {"depth": "30 cm", "facing": "45"}
+    one = replace(motions, pairs=())
+    for known, more in ((motions, {"restitution": "0.7"}), (one, {})):
+        (refused,) = in_node(tmp_path, known, [deep | more])
+        assert refused["refused"] == ["facing", "facing_in_plane", True]
+    keys = {"width": "35 cm", "height": "1.2 m", "depth": "30 cm", "facing_deg": 45}
+    with pytest.raises(InputError, match=r"facing.*one plane"):
+        make_request(keys | {"restitution": 0.7}, "test")
+    with pytest.raises(InputError, match=r"facing.*one plane"):
+        plan_for(make_request(keys | {"pga": "0.3 g"}, "test"), one, brief=True)
 
 
 BUILDING = case_tables(__file__)["building"]

@@ -67,6 +67,7 @@ const objects = (data) => {
     if (round) statue.inertia = (statue.mass * (0.75 * width * width + height * height)) / 12;
     if (round && restitution !== null) refuse("restitution", "rolls");
     const deep = given.depth !== null && !round && restitution === null && data.both.records.length > 0;
+    if (!deep && given.facing !== null) refuse("facing", "facing_in_plane");
     if (deep) statue.depth = depth;
     return {
       name: short(form.name ?? "") || data.texts.en.the_object, statue, narrower, pedestal: pedestalOf(given), massGiven: mass !== null, depthGiven: given.depth !== null, restitution,
