@@ -204,6 +204,7 @@ def after_page(collection: ShakenCollection, language: str = FIRST) -> str:
         language=texts.language,
         title=texts.say(finding("after_title", n=count)),
         answer=texts.lines(_answer(collection)),
+        left_out=collection.faults,
         how=[texts.text("after_how"), texts.text(_left_out(collection))],
         style=Markup(TEMPLATES.get_template("style.css").render()),
         table=framed(texts.text("after_caption"), head, rows, 5),
