@@ -80,6 +80,7 @@ def _of_schema() -> Iterator[Field]:
 
 
 def _field(home: tuple[str, ...], key: str, about: Mapping[str, Any]) -> Field:
+    """Field of the form for a key of the schema: a quantity, a choice, a flag, a number or a text."""
     form, dimension = about["form"], about["form"].get("dimension", "")
     plain = key
     if about.get("quantity"):
