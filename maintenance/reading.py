@@ -41,6 +41,9 @@ def main() -> int:
         "conditional expressions in 1000 lines": _in_thousand(nodes, ast.IfExp, lines),
         "functions": len(functions),
         "functions with sections": sum(described),
+        "functions without a docstring": sum(
+            ast.get_docstring(function) is None for function in functions
+        ),
         "decisions in templates": len(_DECISION.findall(templates)),
         "comparisons in templates": len(_COMPARISON.findall(templates)),
     }
