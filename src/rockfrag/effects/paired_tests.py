@@ -21,6 +21,10 @@ from rockfrag.base.short_repr import short_repr
 from rockfrag.effects.notes import notes_on_left_out
 
 KEY = ["object", "earthquake", "floor", "motion"]
+CHANGED, PLAIN = "P", "NP"
+"""Sides of a pair as the column ``pedestal`` writes them: on the pedestal and alone, or an arrangement and the one
+that it is compared with (:func:`with_counterparts`)."""
+
 _NEEDED = ("object", "pedestal", "earthquake", "floor", "amplitude_g")
 
 
@@ -92,7 +96,7 @@ def check_tests(tests: pd.DataFrame) -> pd.DataFrame:
             clean[name] = usual
     clean["censored"] = clean["censored"].fillna("none").astype(str)
     for name, allowed in (
-        ("pedestal", ("P", "NP")),
+        ("pedestal", (CHANGED, PLAIN)),
         ("censored", ("none", "right", "left")),
     ):
         known = ", ".join(allowed)
@@ -186,7 +190,7 @@ def pedestals_apart(tests: pd.DataFrame) -> tuple[pd.DataFrame, dict[str, str]]:
     """
     if not {"configuration", "object", "pedestal"} <= set(tests.columns):
         return tests, {}
-    on_pedestal = tests[tests["pedestal"] == "P"]
+    on_pedestal = tests[tests["pedestal"] == CHANGED]
     names = on_pedestal.groupby("object")["configuration"].unique()
     several = names[names.map(len) > 1]
     parts = [tests[~tests["object"].isin(list(several.index))]]
@@ -194,7 +198,7 @@ def pedestals_apart(tests: pd.DataFrame) -> tuple[pd.DataFrame, dict[str, str]]:
     for object_name, configurations in several.items():
         rows = tests[tests["object"] == object_name]
         for name in configurations:
-            here = (rows["pedestal"] == "NP") | (rows["configuration"] == name)
+            here = (rows["pedestal"] == PLAIN) | (rows["configuration"] == name)
             parts.append(rows[here].assign(object=name))
             origin[str(name)] = str(object_name)
     return pd.concat(parts, ignore_index=True), origin
@@ -223,8 +227,8 @@ def with_counterparts(
         own = tests[tests["configuration"] == name]
         others = tests[tests["configuration"] == other]
         parts += [
-            own.assign(object=label, pedestal="P"),
-            others.assign(object=label, pedestal="NP"),
+            own.assign(object=label, pedestal=CHANGED),
+            others.assign(object=label, pedestal=PLAIN),
         ]
         if len(own):
             origin[label] = str(own["object"].iloc[0])
@@ -268,7 +272,7 @@ def _sides(clean: pd.DataFrame) -> pd.DataFrame:
         "left": "any",
     }
     sides = work.pivot_table(list(how), KEY, "pedestal", how)
-    return sides.reindex(columns=pd.MultiIndex.from_product([how, ("P", "NP")]))
+    return sides.reindex(columns=pd.MultiIndex.from_product([how, (CHANGED, PLAIN)]))
 
 
 def pair_tests(
@@ -294,8 +298,8 @@ def pair_tests(
     # d = ln a_P - ln a_NP is open upwards where P lies above its figure or NP below, downwards the other way round
     lies_above = pd.DataFrame(sides["right"]).eq(True)
     lies_below = pd.DataFrame(sides["left"]).eq(True)
-    upward = (lies_above["P"] | lies_below["NP"]).to_numpy()
-    downward = (lies_above["NP"] | lies_below["P"]).to_numpy()
+    upward = (lies_above[CHANGED] | lies_below[PLAIN]).to_numpy()
+    downward = (lies_above[PLAIN] | lies_below[CHANGED]).to_numpy()
     both = ln_a.notna().all(axis=1).to_numpy()
     if not both.any():
         raise InputError(
@@ -303,9 +307,9 @@ def pair_tests(
             "check the columns object, motion and pedestal."
         )
     frame = pd.DataFrame(
-        {"a_np_g": np.exp(ln_a["NP"]), "a_p_g": np.exp(ln_a["P"])}
+        {"a_np_g": np.exp(ln_a[PLAIN]), "a_p_g": np.exp(ln_a[CHANGED])}
     ).assign(
-        d=ln_a["P"] - ln_a["NP"],
+        d=ln_a[CHANGED] - ln_a[PLAIN],
         # a censored side takes its partner's step; without any step the figures count as exact
         resolution=width.mean(axis=1).fillna(0.0),
         bound=np.select(
@@ -319,7 +323,7 @@ def pair_tests(
     )
     frame.insert(5, "s_c", frame["slenderness"] - centre)
     alone = frame.loc[~both, KEY].assign(
-        missing=np.where(ln_a["P"].isna(), "P", "NP")[~both]
+        missing=np.where(ln_a[CHANGED].isna(), CHANGED, PLAIN)[~both]
     )
     limits = frame[KEY].assign(
         d_lower=np.where(downward, -np.inf, frame["d"]),
