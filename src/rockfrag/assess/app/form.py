@@ -80,6 +80,17 @@ def _of_schema() -> Iterator[Field]:
 
 
 def _field(home: tuple[str, ...], key: str, about: Mapping[str, Any]) -> Field:
+    """The field of a key.
+
+    Parameters
+    ----------
+    home : keys of the mapping in which the key stands
+    key, about : the key, and what the schema says of it
+
+    Returns
+    -------
+    The field.
+    """
     form, dimension = about["form"], about["form"].get("dimension", "")
     plain = key
     if about.get("quantity"):
