@@ -66,6 +66,8 @@ def faults_of_words(found: Assessment) -> list[str]:
         said.append(f"{len(words.split())} words")
     if "decidable" in words or "nan" in words.lower() or "inf" in words.lower():
         said.append("no verdict")
+    if "than less than" in words or "than more than" in words:
+        said.append("a bound of a bound")
     first = first_screen(found)[0]
     likelihood = dict(first.values).get("likelihood")
     if found.fraction is not None and isinstance(likelihood, Finding):

@@ -238,7 +238,8 @@ def advice(found: Assessment) -> Finding:
     assert decision is not None
     by_hazard = found.probability is not None
     action = list(Action).index(decision.action)
-    text = _text(choices.advice, action, by_hazard, found.does_not_move)
+    worth = estimate.value or estimate.upper
+    text = _text(choices.advice, action, by_hazard, found.does_not_move, worth)
     about: dict[str, Value] = {}
     if text == Text.MEASURE_FIRST:
         what = SOURCES[decision.source].measurement
@@ -248,7 +249,7 @@ def advice(found: Assessment) -> Finding:
         about = {"accepted": percent(found.request.accepted)}
         about["years"] = three(found.request.years)
     elif text in (Text.SECURE_UNLESS, Text.LEAVE_UNLESS):
-        about = {"p": percent(estimate.value or estimate.upper)}
+        about = {"p": percent(worth)}
     return finding(text, estimate, **about)
 
 

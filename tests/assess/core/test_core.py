@@ -170,10 +170,13 @@ def test_what_is_open_is_said_to_be_and_no_limit_is_said_twice():
         choices.between(0.3, 0.0, 1.0) == 0 and choices.over_years(0.3, 0.0, 1.0) == 1
     )
     assert choices.chance(0.0, 0.0, 0.04) == 1 and choices.chance(0.0, 0.0, 0.0) == 0
-    assert choices.advice(choices.MEASURE, True, True) == 0
+    assert choices.advice(choices.MEASURE, True, True, 0.3) == 0
+    # next to nothing, or all, of what a fall costs is no part to be said
+    assert choices.advice(choices.LEAVE, False, False, 1e-6) == 3
+    assert choices.advice(choices.SECURE, False, False, 0.999) == 1
     # what does not move is left, unless the hazard says otherwise
-    assert choices.advice(choices.LEAVE, False, True) == 3
-    assert choices.advice(choices.SECURE, True, True) == 1
+    assert choices.advice(choices.LEAVE, False, True, 0.01) == 3
+    assert choices.advice(choices.SECURE, True, True, 0.3) == 1
 
 
 def test_what_is_ranked_stands_as_pythons_sort_puts_it():

@@ -94,7 +94,7 @@ PLAIN: dict[Any, tuple[Any, ...]] = {
     choices.chance: _LIMITS,
     choices.how_far: (_FLOAT, _FLOAT),
     choices.in_years: _LIMITS,
-    choices.advice: (_FLOAT, False, False),
+    choices.advice: (_FLOAT, False, False, _FLOAT),
     choices.counted: (_FLOAT, _FLOAT),
     choices.between: _LIMITS,
     choices.starts: (_FLOAT,),

@@ -48,8 +48,8 @@ const findings = (data, core, judge) => {
       return finding(id, { in_years: { p: percent(probability.value), years, ...limits(probability) }, in_years_at_most: { years, upper: percent(probability.upper) } }[id]);
     }
     function advice() {
-      const { action, source, chance: part } = found.decision, p = percent(main.value || main.upper);
-      const id = chosen("advice", action, Boolean(probability), atRest), measured = { what: finding(`measurement_${source}`), cases: whole(10 * part) };
+      const { action, source, chance: part } = found.decision, worth = main.value || main.upper, p = percent(worth);
+      const id = chosen("advice", action, Boolean(probability), atRest, worth), measured = { what: finding(`measurement_${source}`), cases: whole(10 * part) };
       return finding(id, { measure_first: measured, leave_it: { accepted: percent(found.accepted), years }, secure_unless: { p }, leave_unless: { p } }[id]);
     }
     function first() {

@@ -80,7 +80,17 @@ def _of_schema() -> Iterator[Field]:
 
 
 def _field(home: tuple[str, ...], key: str, about: Mapping[str, Any]) -> Field:
-    """Field of the form for a key of the schema: a quantity, a choice, a flag, a number or a text."""
+    """The field of a key.
+
+    Parameters
+    ----------
+    home : keys of the mapping in which the key stands
+    key, about : the key, and what the schema says of it
+
+    Returns
+    -------
+    The field.
+    """
     form, dimension = about["form"], about["form"].get("dimension", "")
     plain = key
     if about.get("quantity"):

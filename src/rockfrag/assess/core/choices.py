@@ -8,6 +8,8 @@ In: probabilities with limits [-], levels of shaking, counts. Out: places. Docs:
 
 import math
 
+from rockfrag.words.catalogue import LEAST, SURE
+
 HARDLY = 0.1  # Fraction of the motions up to which an object hardly rocks
 FEWEST_EARTHQUAKES = 5
 """Earthquakes below which no verdict is given: an interval over fewer was not validated."""
@@ -77,14 +79,19 @@ def in_years(value: float, lower: float, upper: float) -> int:
     return 1 if value == 0.0 or is_open(lower, upper) else 0
 
 
-def advice(action: int, by_hazard: bool, at_rest: bool) -> int:
-    """Say to measure first; with a hazard to secure or to leave it; else what follows from costs."""
+def advice(action: int, by_hazard: bool, at_rest: bool, worth: float) -> int:
+    """Say to measure first; with a hazard to secure or to leave it; else what follows from costs.
+
+    ``worth`` is the part of what a fall costs that securing may cost [-]; next to nothing, or all, is not said.
+    """
     if action == MEASURE:
         return 0
     if by_hazard:
         return 1 if action == SECURE else 2
-    if at_rest:
+    if at_rest or (action == LEAVE and worth < LEAST):
         return 3
+    if action == SECURE and worth > SURE:
+        return 1
     return 4 if action == SECURE else 5
 
 
