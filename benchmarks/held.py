@@ -16,7 +16,7 @@ from rockfrag.simulation.ensemble import overturns
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
 from tests.engines.planar.cases import DT
-from tests.engines.planar.held_cases import DRAWN, LEVELS, drawn_case
+from tests.engines.planar.held_cases import DRAWN, LEVELS, HeldCase, drawn_case
 
 
 def main(each: int) -> None:
@@ -25,7 +25,7 @@ def main(each: int) -> None:
         rng = np.random.default_rng(22)
         cases = [drawn_case(kind, level, rng) for level in LEVELS for _ in range(each)]
 
-        def ours(cases: list = cases) -> list[bool]:
+        def ours(cases: list[HeldCase] = cases) -> list[bool]:
             return [
                 bool(overturns(c.system, c.motion, DT, friction=c.mu).overturned.any())
                 for c in cases

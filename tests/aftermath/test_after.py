@@ -457,6 +457,18 @@ def test_hostile_names_stay_text_and_pages_speak_italian(place, records):
     assert "caduto" in after_lines(found, "it")[-1]
 
 
+def test_rows_that_were_left_out_stand_on_the_page_to_be_looked_at(place, records):
+    rows = INVENTORY.splitlines()
+    path = place / "some.csv"
+    path.write_text(f"{rows[0]}\n{rows[1]}\nbust <b>,no width,120 cm,35,135,\n")
+    ground = GroundShaking(0.3, 35.0)
+    found = after_earthquake(path, lambda _: ground, records, keep_going=True)
+    page = after_page(found)
+    assert "1 row was left out" in page and "some.csv, line 3" in page
+    # of what is in the list four boxes, of what is left out one
+    assert page.count('type="checkbox"') == 4 + 1
+
+
 @pytest.mark.parametrize(
     ("options", "words"),
     [

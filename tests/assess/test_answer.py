@@ -287,7 +287,9 @@ def test_advice_agrees_with_the_risk_that_is_accepted(on_pedestal):
     def said(value, **more):
         estimate = Estimate(value, value / 2, min(1, 2 * value), {})
         request = replace(on_pedestal.request, **more)
-        decision = decide(value, np.full(32, value), None, {}, request.accepted)
+        nothing = on_pedestal.evidence.prediction
+        values = np.full(32, value)
+        decision = decide(value, values, nothing, {}, request.accepted)
         about = {"request": request, "decision": decision}
         return advice(replace(on_pedestal, probability=estimate, **about)).id
 

@@ -3,15 +3,17 @@
 import csv
 import io
 import json
-import re
 import shutil
 import subprocess
+from dataclasses import asdict
 from pathlib import Path
 
 import pytest
 
 import rockfrag.assess
 from rockfrag.assess import page_list
+from rockfrag.assess.app.form import form_fields
+from rockfrag.assess.hazard.curve import PGA
 from rockfrag.assess.inventory import read_inventory
 from rockfrag.assess.request import read_request
 from rockfrag.base.errors import InputError
@@ -19,10 +21,14 @@ from rockfrag.base.errors import InputError
 NODE = shutil.which("node")
 pytestmark = pytest.mark.skipif(NODE is None, reason="Node is not installed")
 LISTS = Path(rockfrag.assess.__file__).parent / "app" / "lists.js"
-FIELDS = ["name", "width", "height", "depth", "round"]
+NAMES = ["name", "width", "height", "depth", "round"]
+FIELDS = [
+    {"name": name, "key": [name], "kind": "flag" if name == "round" else "text"}
+    for name in NAMES
+]
 RUN = """
 const [path, fields, calls] = JSON.parse(require("fs").readFileSync(0, "utf-8"));
-const lists = require(path)({ measures: {} }, fields);
+const lists = require(path)({ measures: { PGA: {} } }, fields);
 const say = (key, facts) => `${key} ${JSON.stringify(facts ?? {})}`;
 console.log(JSON.stringify(calls.map(([name, ...rest]) => {
   try { return { found: lists[name](...rest, say) }; }
@@ -31,7 +37,7 @@ console.log(JSON.stringify(calls.map(([name, ...rest]) => {
 """
 
 
-def lists(*calls: list, fields: list[str] = FIELDS) -> list[dict]:
+def lists(*calls: list, fields: list[dict] = FIELDS) -> list[dict]:
     """What each call of the page's functions gives: what is found, or why it is refused."""
     assert NODE is not None
     done = subprocess.run(
@@ -91,7 +97,7 @@ def test_no_cell_of_a_saved_list_begins_like_a_formula(text):
     saved = written["found"]
     rows = [*csv.reader(io.StringIO(saved, newline=""))]
     assert len(rows) == 2
-    assert len(rows[1]) == len(FIELDS)
+    assert len(rows[1]) == len(NAMES)
     assert not any(cell.startswith(tuple("=+-@\t\r")) for cell in rows[1])
     # opened again it is what it was, but for blanks around it
     assert opened(saved)["found"][0]["name"] == text.strip()
@@ -102,7 +108,7 @@ def test_a_list_that_is_saved_is_opened_again():
     saved = lists(["csvOf", forms])[0]["found"]
     found = opened(f"\ufeff{saved}")["found"]
     for form, back in zip(forms, found, strict=True):
-        assert {name: form.get(name, "") for name in FIELDS} == back
+        assert {name: form.get(name, "") for name in NAMES} == back
 
 
 @pytest.mark.parametrize(
@@ -111,6 +117,31 @@ def test_a_list_that_is_saved_is_opened_again():
 def test_a_line_of_blanks_does_not_stop_the_page(line):
     found = opened(f"{line}\nwidth: 30cm # wide\n", "statue.yaml")
     assert found["found"][0]["width"] == "30cm"
+
+
+def fields_of_the_form() -> list[dict]:
+    return [asdict(field) for field in form_fields([PGA])]
+
+
+def test_what_the_page_saves_the_command_reads_and_the_page_opens(tmp_path):
+    form = {
+        **{"name": "Stele", "width": "35 cm", "height": "1,2 m", "depth": "0.5 m"},
+        **{"facing": "20", "floor": "2/4", "storey_height": "3.2 m"},
+        **{"period": "400 ms", "material": "steel", "pedestal_width": "60 cm"},
+        **{"pedestal_height": "0.5 m", "measure": "PGA", "level": "0.3 g"},
+        **{"years": "475", "round": False},
+    }
+    fields = fields_of_the_form()
+    saved = lists(["yamlOf", form], fields=fields)[0]["found"]
+    path = tmp_path / "statue.yaml"
+    path.write_text(saved, encoding="utf-8")
+    request = read_request(path)
+    assert request.objects.facing_deg == 20 and request.objects.depth == 0.5
+    assert request.objects.pedestals[0].width == 0.6
+    assert request.place.building.heights == (3.2,) * 4
+    back = lists(["read", "statue.yaml", saved], fields=fields)[0]["found"][0]
+    told = {key: text.replace(",", ".") for key, text in form.items() if text}
+    assert back == told
 
 
 # ---- the list in the command
@@ -137,14 +168,13 @@ SHAKEN = [
 def saved(forms: list[dict]) -> tuple[str, list[str]]:
     """The list that the page saves of forms, and statue.yaml of each."""
     calls = [["csvOf", forms], *(["yamlOf", form] for form in forms)]
-    csv_file, *files = lists(*calls, fields=list(page_list.FIELDS))
+    csv_file, *files = lists(*calls, fields=fields_of_the_form())
     return csv_file["found"], [each["found"] for each in files]
 
 
 def test_the_list_has_the_fields_of_the_form():
-    script = (LISTS.parent / "page.js").read_text(encoding="utf-8")
-    groups = script.split("const FIELDS = {")[1].split("};")[0]
-    assert set(re.findall(r'"(\w+)"', groups)) == set(page_list.FIELDS)
+    names = {field["name"] for field in fields_of_the_form()}
+    assert names == set(page_list.FIELDS)
 
 
 @pytest.mark.parametrize("shaking", SHAKEN, ids=lambda each: each["measure"])

@@ -109,6 +109,7 @@ def after_json(collection: ShakenCollection) -> str:
 
 
 def _ground_data(ground: GroundShaking | None) -> dict[str, object] | None:
+    """The shaking of a place as JSON writes it: a number that is not known is null; null where none is known."""
     if ground is None:
         return None
     numbers = {
@@ -203,6 +204,7 @@ def after_page(collection: ShakenCollection, language: str = FIRST) -> str:
         language=texts.language,
         title=texts.say(finding("after_title", n=count)),
         answer=texts.lines(_answer(collection)),
+        left_out=collection.faults,
         how=[texts.text("after_how"), texts.text(_left_out(collection))],
         style=Markup(TEMPLATES.get_template("style.css").render()),
         table=framed(texts.text("after_caption"), head, rows, 5),

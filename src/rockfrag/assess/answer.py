@@ -17,11 +17,12 @@ from scipy import special
 from rockfrag.assess import outcomes, risk
 from rockfrag.assess.assumed import Moved
 from rockfrag.assess.conversion import Conversion, Site, find_conversion
+from rockfrag.assess.core import choices
 from rockfrag.assess.core.decisions import Decision, decide
 from rockfrag.assess.core.draws import FEW_MEMBERS
-from rockfrag.assess.core.estimates import fill_sides, rate_of
+from rockfrag.assess.core.estimates import fill_order, fill_sides, rate_of
+from rockfrag.assess.core.fractions import fill_counts_at
 from rockfrag.assess.core.hazards import spread_of_quantiles
-from rockfrag.assess.core.likelihood import Likelihood, likelihood_of
 from rockfrag.assess.hazard.curve import PGA, PGV, HazardCurve
 from rockfrag.assess.holding import (
     Trial,
@@ -127,7 +128,7 @@ class Assessment:
     def does_not_move(self) -> bool:
         """Whether it is exceptionally unlikely that it rocks at the level, limits included."""
         limit = self.rocking.upper if self.rocking else 1.0
-        return likelihood_of(limit) is Likelihood.EXCEPTIONALLY_UNLIKELY
+        return choices.stays(limit)
 
     # ---- what no line says is computed where a page or a file shows it
 
@@ -715,6 +716,7 @@ def _governing(request: Request, motions: MotionSet) -> tuple[HazardCurve, ...]:
         return (*others, *velocity)
 
     def scatter(curve: HazardCurve) -> float:
+        """Standard deviation of ln of the levels that first topple the object, in the measure of a curve."""
         shaking = outcomes.make_intensity_levels(motions, curve.measure)
         (found,) = shaking.outcomes_of([request.objects])
         first = found.first_levels()
@@ -737,15 +739,14 @@ def _site_level(request: Request, hazard: HazardCurve | None) -> Level | None:
 
 
 def _counts(now: ObjectOutcomes, level: Level | None) -> tuple[int, int, int] | None:
+    """How many motions are at the level, lift the object, and topple it; None if none was simulated there."""
     if level is None:
         return None
-    levels = now.intensity_levels
-    at = levels.place_of(level.value)
-    allowed = levels.allowed[:, at]
-    if levels.levels[at] != level.value or not allowed.any():
-        return None
-    rocked, fell = now.rocked[allowed, at].sum(), now.overturned[allowed, at].sum()
-    return int(allowed.sum()), int(rocked), int(fell)
+    levels, found = now.intensity_levels, np.zeros(3)
+    tables = map(np.ascontiguousarray, (levels.allowed, now.rocked, now.overturned))
+    fill_counts_at(levels.levels, level.value, *tables, found)
+    total, rocked, fell = map(int, found)
+    return (total, rocked, fell) if total else None
 
 
 def _variants(request: Request, plan: Plan) -> list[Moved[Standing]]:
@@ -808,15 +809,12 @@ def _mitigations(
             for each in found
         ]
     # changes are ranked by what they do to the same motions, and by what is left where none topples the object
-    found.sort(
-        key=lambda each: (
-            math.isnan(each.factor),
-            np.nan_to_num(each.factor),
-            each.value,
-        )
-    )
+    factors = np.array([each.factor for each in found])
+    values = np.array([each.value for each in found])
+    order = np.zeros(len(found), dtype=np.int64)
     # a level helps by growing, a probability by shrinking
-    return tuple(reversed(found) if target.is_level else found)
+    fill_order(factors, values, target.is_level, order)
+    return tuple(found[place] for place in order)
 
 
 def _shown_safer(shaken: Shaken, helps: Sequence[Mitigation]) -> frozenset[str]:
@@ -826,6 +824,6 @@ def _shown_safer(shaken: Shaken, helps: Sequence[Mitigation]) -> frozenset[str]:
     }
     better = {way for way, each in known.items() if each.shown}
     own = next(iter(shaken.arrangements))
-    if known and all(each.lower > 1 and not each.helps for each in known.values()):
+    if known and all(choices.is_worse(e.lower, e.helps) for e in known.values()):
         better.add(own)
     return frozenset(better)

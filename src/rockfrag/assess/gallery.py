@@ -96,6 +96,7 @@ class _Layout:
         return math.isfinite(self.inventory.found[0].request.value)
 
     def page(self) -> str:
+        """The page of all objects as HTML."""
         inventory, joint, texts, years = (
             self.inventory,
             self.joint,
@@ -139,6 +140,7 @@ class _Layout:
     def _figure(
         self, name: str, words: tuple[Text, Text], draw: Callable[[], Figure]
     ) -> FigureSpec:
+        """A figure with its description and caption in the page's language."""
         alt, caption = words
         below = self.texts.say(finding(caption, years=three(self.years)))
         return FigureSpec(name, self.texts.text(alt), below, draw)
@@ -158,6 +160,7 @@ class _Layout:
         return Finding(self.texts.say(first_one), self.texts.say(most))
 
     def _ranking(self) -> Section:
+        """Which objects add most to the expected loss, and what helps each."""
         texts, objects = self.texts, self.joint.objects
         parts = objects.set_index("name")["contribution"]
         rows = []
@@ -205,6 +208,7 @@ class _Layout:
         return Section("ranking", title, texts.say(message), (), [table])
 
     def _numbers(self, figures: Sequence[FigureSpec]) -> Section:
+        """How many objects topple in one earthquake, and how often."""
         texts, numbers = self.texts, self.joint.numbers
         most, rate = int(numbers["at_least"].max()), numbers["annual_rate"].iloc[-1]
         message = finding(Text.NONE_TOPPLES)
@@ -233,6 +237,7 @@ class _Layout:
         )
 
     def _correlation(self, drawn: FigureSpec) -> Section:
+        """How alike the objects topple, pair by pair."""
         table = self.joint.correlation
         apart = table.to_numpy()[np.triu_indices(len(table), 1)]
         known = apart[np.isfinite(apart)]

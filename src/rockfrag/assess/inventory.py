@@ -147,6 +147,7 @@ def _common(outcomes: ObjectOutcomes) -> Evidence:
 
 
 def _by_object(names: list[str], rates: Floats, worth: Floats) -> pd.DataFrame:
+    """Annual rates and losses by object, and the fraction of the loss that each adds."""
     losses = rates * worth
     table = pd.DataFrame(
         {"name": names, "annual_rate": rates, "value": worth, "annual_loss": losses}
@@ -453,6 +454,7 @@ def _own_name(row: Row, taken: dict[str, str]) -> str:
 
 
 def _request(row: Row, name: str, shared: Mapping[str, Any]) -> Request:
+    """What a row of an inventory asks, with what all rows share."""
     own: dict[str, Any] = {"name": name}
     own |= {key: row.quantity(key, above=0) for key in SIZES if row.has(key)}
     own |= {key: row.quantity(key) for key in HELD_BY if row.has(key)}
@@ -519,6 +521,7 @@ def _pedestals(row: Row) -> list[dict[str, float]]:
 
 
 def _yes(row: Row, column: str) -> bool:
+    """Whether a cell says yes."""
     said = row.text(column).lower()
     if said not in YES + NO:
         raise row.error(column, f"expected yes or no, found {said[:40]!r}")
@@ -642,6 +645,7 @@ def inventory_lines(inventory: Inventory, language: str = FIRST) -> list[str]:
 
 
 def _head(inventory: Inventory) -> Finding:
+    """First sentence on an inventory: how many objects, and what was asked."""
     first, faults = inventory.found[0], len(inventory.faults)
     left_out = (
         finding(Text.LEFT_OUT, n=faults) if faults else finding(Text.NONE_LEFT_OUT)
@@ -681,6 +685,7 @@ def fares_of(found: Assessment) -> Value:
 
 
 def _half(found: Assessment) -> Finding:
+    """The level at which half of the motions topple an object, in words."""
     half = found.amplitudes[0.5].value
     if not math.isfinite(half):
         return finding(Text.HALF_BEYOND)

@@ -12,6 +12,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from rockfrag.assess.core.choices import are_few
 from rockfrag.assess.hazard.curve import PGV, VELOCITY_PER_G
 from rockfrag.assess.place import Place
 from rockfrag.assess.request import Records
@@ -35,9 +36,6 @@ NEAREST = 40
 
 MAGNITUDE_SCALE, DISTANCE_SCALE = 0.5, 0.7
 """Differences of magnitude and of ln distance that count alike when records are chosen."""
-
-# Earthquakes below which no verdict is given: an interval over fewer was not validated
-FEWEST_EARTHQUAKES = 5
 
 
 @dataclass(frozen=True)
@@ -233,6 +231,7 @@ def _nearest(
     """Keep the records nearest in magnitude and distance, all of them where neither is given."""
 
     def away(pair: tuple[Motion, Motion]) -> float:
+        """How unlike a record's magnitude and distance are those asked for, in squares of what counts alike."""
         about = pair[0].metadata
         magnitude = (float(about["magnitude"]) - records.magnitude) / MAGNITUDE_SCALE
         # within a kilometre of the rupture distance means nothing any more
@@ -245,6 +244,7 @@ def _nearest(
 
 
 def _own(records: Records, folder: Path) -> MotionSet:
+    """The motions of the user's files or catalogues, with what has to be said of them."""
     motions: list[Motion] = []
     warnings: list[Value] = []
     for path in records.paths:
@@ -271,7 +271,7 @@ def _own(records: Records, folder: Path) -> MotionSet:
     found = MotionSet(tuple(motions), tuple(motions), pairs_of(motions), "")
     earthquakes = len(set(found.earthquakes))
     of = finding(Text.EARTHQUAKES, n=earthquakes)
-    if earthquakes < FEWEST_EARTHQUAKES:
+    if are_few(earthquakes):
         warnings.append(finding(Text.FLAG_FEW_EARTHQUAKES, earthquakes=of))
     said = finding(Text.MOTIONS_OWN, n=len(motions), earthquakes=of)
     return replace(found, about_set=said, warnings=tuple(warnings))

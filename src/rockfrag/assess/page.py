@@ -94,6 +94,7 @@ class _Layout:
     texts: Catalogue
 
     def page(self) -> str:
+        """The page as HTML."""
         found, texts = self.found, self.texts
         sections = [
             self._helps(),
@@ -130,6 +131,7 @@ class _Layout:
         return self.texts.text(id)
 
     def _answer(self) -> Answer:
+        """First screen: the answer, what to do, and where each question is answered."""
         found, texts = self.found, self.texts
         first, *others, to_do = texts.lines(first_screen(found))
         behind = {**details(found)}
@@ -181,6 +183,7 @@ class _Layout:
         return text_table(head, cells, self._text(caption), head[numeric])
 
     def _helps(self) -> Section:
+        """What changes do to the answer, and what each costs."""
         found = self.found
         rows: list[tuple[Value, ...]] = [
             (each.change, value_of(found, each.value), mitigation_cell(found, each))
@@ -206,6 +209,7 @@ class _Layout:
         return self._table(caption, [finding(id) for id in titles], rows, numeric)
 
     def _stands(self) -> Section:
+        """How the answer differs between the arrangements in which the object may stand."""
         found = self.found
         rows = [
             (finding(way), value_of(found, value))
@@ -238,6 +242,7 @@ class _Layout:
         return stated
 
     def _sure(self) -> Section:
+        """How sure the answer is, and which sources make it unsure."""
         found, texts = self.found, self.texts
         stated = [finding(Text.SURE_HOLDS), finding(Text.SURE_SCALE)]
         parts: list[FigureSpec | Markup] = []
@@ -257,6 +262,7 @@ class _Layout:
         )
 
     def _sources_table(self) -> Markup:
+        """The part of each source in the uncertainty, what it is known from, and how to measure it."""
         rows = []
         for name, part in parts_of(self.found.main.sources).items():
             source = SOURCES[name]
@@ -271,6 +277,7 @@ class _Layout:
         return self._titled(Text.SOURCES_TABLE, titles, rows, slice(1, 2))
 
     def _effects_table(self) -> Markup:
+        """How the answer changes with each measured quantity one standard deviation lower and higher."""
         found = self.found
         rows = []
         for effect in found.effects:
@@ -289,6 +296,7 @@ class _Layout:
         return Section("assumed", title, message, stated)
 
     def _rules(self) -> Section:
+        """How rules of thumb do on this object beside the simulation."""
         rows = [
             (
                 rule.rule,
@@ -308,6 +316,7 @@ class _Layout:
         return Section("rules", title, message, [how], [table])
 
     def _levels(self) -> Section:
+        """What topples at each level of shaking."""
         found, texts = self.found, self.texts
         stated: list[Value] = []
         if found.curve is not None and math.isfinite(found.curve.fit.theta):
@@ -328,6 +337,7 @@ class _Layout:
         )
 
     def _motions(self) -> Section:
+        """The motions, those first that topple the object at the lowest level."""
         found = self.found
         recorded, first = (
             found.motions.values(found.measure),
@@ -354,6 +364,7 @@ class _Layout:
         return Section("motions", title, self.texts.sentence(message), (), [table])
 
     def _glossary(self) -> Section:
+        """The words of the page and what they mean."""
         words = sorted(
             (
                 self.texts.sentence(finding(f"word_{word}")),

@@ -140,6 +140,7 @@ def _settings(form: Mapping[str, str]) -> dict[str, Any]:
 
 
 def _level(given: Mapping[str, str]) -> dict[str, Any]:
+    """Settings of the level and its return period, of the form's fields."""
     settings: dict[str, Any] = {}
     measure = given.get("measure", "PGA")
     if "level" in given:

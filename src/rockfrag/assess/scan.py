@@ -140,6 +140,7 @@ def make_scan(
 def _ordered(
     shape: Shape, arrangements: pd.DataFrame, names: list[str], order: str
 ) -> Scan:
+    """A scan whose arrangements are sorted by a column, with the part of each unknown in it."""
     ordered = arrangements.sort_values(order, kind="stable", ignore_index=True)
     return Scan(shape, ordered, _parts(ordered, names, order), order)
 

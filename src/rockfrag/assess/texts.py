@@ -3,7 +3,7 @@
 Families of texts are named by what they are of: ``source_…``, ``basis_…`` and ``measurement_…`` of a source of
 uncertainty, ``assumed_…`` and ``why_…`` of an assumption, ``word_…`` and ``meaning_…`` of the glossary.
 
-In and out: names only. Docs: ``docs/assess.md``.
+In: nothing. Out: names only. Docs: ``docs/assess.md``.
 """
 
 from enum import StrEnum, auto

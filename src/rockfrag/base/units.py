@@ -70,7 +70,16 @@ _NUMBER = re.compile(
 
 
 def dimension_of(unit: str) -> str:
-    """Dimension of a unit as it stands in names, such as ``cm`` or ``kg_m2``."""
+    """Dimension of a unit as it stands in names.
+
+    Parameters
+    ----------
+    unit : such as ``cm`` or ``kg_m2``
+
+    Returns
+    -------
+    The dimension, such as ``length``.
+    """
     return next(name for name, units in DIMENSIONS.items() if unit in units)
 
 

@@ -247,6 +247,7 @@ def missing_motions(source: str, names: Sequence[str]) -> list[str]:
 
 
 def _path(pattern: str, name: str) -> str:
+    """The file of a test's motion, of a pattern that holds its key."""
     if KEY not in pattern:
         raise InputError(
             f"{pattern}: expected an .npz archive, or file names with {KEY} where the test's motion is named."
@@ -255,6 +256,7 @@ def _path(pattern: str, name: str) -> str:
 
 
 def _archive(source: str) -> Any:
+    """An open .npz archive of arrays."""
     if not is_file(Path(source)):
         raise InputError(f"{source}: there is no such file; correct the path.")
     try:
@@ -271,6 +273,7 @@ def _archive(source: str) -> Any:
 def _of_archive(
     source: str, names: Sequence[str], unit: str | None, dt: float | None
 ) -> list[Motion]:
+    """The motions of an .npz archive by name, in m/s²."""
     if unit is None or dt is None:
         raise InputError(
             f"{source}: an .npz archive states neither unit nor interval; give unit and dt."

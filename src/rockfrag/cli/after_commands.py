@@ -80,6 +80,7 @@ def add_after_command(commands: Any) -> None:
 
 # imported when it runs: `rockfrag --help` should not wait for numba
 def _after(options: argparse.Namespace) -> int:
+    """Run ``after``: print what an earthquake did to a collection, and write its files."""
     from rockfrag.aftermath.check_list import after_json, after_lines, write_after
     from rockfrag.aftermath.shaken_objects import after_earthquake
     from rockfrag.assess.inventory import FaultyRows
@@ -196,6 +197,7 @@ def _by_map(options: argparse.Namespace, shakemap: "ShakeMap") -> "Ground":
     from rockfrag.aftermath.shaken_ground import mapped_ground
 
     def ground(at: tuple[float, float] | None) -> "GroundShaking | None":
+        """Shaking of a place by the map, None where it has no point near."""
         place = at or options.at
         if place is None:
             raise InputError(
@@ -210,6 +212,7 @@ def _by_map(options: argparse.Namespace, shakemap: "ShakeMap") -> "Ground":
 def _of_station(
     options: argparse.Namespace, records: Sequence[str], about: dict[str, Any]
 ) -> "tuple[GroundShaking, tuple[Motion, ...]]":
+    """Shaking that a station recorded, and its motions."""
     from rockfrag.aftermath.shaken_ground import recorded_ground
 
     away = options.station_km or 0.0
@@ -219,6 +222,7 @@ def _of_station(
 
 
 def _typed(options: argparse.Namespace, typed: dict[str, Any]) -> "GroundShaking":
+    """Shaking that the command line states in numbers."""
     from rockfrag.aftermath.shaken_ground import GroundShaking
     from rockfrag.assess.request import make_request
     from rockfrag.words.findings import finding

@@ -157,6 +157,7 @@ def add_records_option(parser: Any, words: str = "folder of fetched records") ->
 
 # imported when it runs: `rockfrag --help` should not wait for numba
 def _assess(options: argparse.Namespace) -> int:
+    """Run ``assess`` on one object, an inventory, or a large table."""
     from rockfrag.assess.inventory import FaultyRows
 
     given = settings_of(options)
@@ -220,6 +221,7 @@ def _refuse_unused(options: argparse.Namespace) -> None:
 
 
 def _one(options: argparse.Namespace, given: dict[str, Any]) -> int:
+    """Answer for one object: print it, and write what was asked for."""
     from rockfrag.assess.answer import assess
     from rockfrag.assess.export import as_json
     from rockfrag.assess.findings import quality_flags
@@ -291,6 +293,7 @@ def _usual_words(kind: str, given: Mapping[str, Any]) -> str:
 
 
 def _request(options: argparse.Namespace, given: dict[str, Any]) -> Any:
+    """What the command line asks, with the file of the object if there is one."""
     from rockfrag.assess.request import make_request
     from rockfrag.base.yaml_file import read_yaml
 
@@ -363,6 +366,7 @@ def _pedestals(given: Sequence[Sequence[str]]) -> Any:
 
 
 def _inventory(options: argparse.Namespace, shared: dict[str, Any]) -> int:
+    """Answer for all objects of an inventory."""
     from rockfrag.assess.gallery import write_inventory
     from rockfrag.assess.inventory import assess_inventory, inventory_lines, joint_lines
     from rockfrag.runtime.progress import progress_line
@@ -390,6 +394,7 @@ def _inventory(options: argparse.Namespace, shared: dict[str, Any]) -> int:
 
 
 def _coarse(options: argparse.Namespace, shared: dict[str, Any]) -> int:
+    """Answer for a large table, most objects by a surface through simulated ones."""
     from rockfrag.assess.coarse import Simulated, coarse_inventory, coarse_lines
     from rockfrag.base.files import write_table
     from rockfrag.runtime.progress import progress_line
@@ -419,6 +424,7 @@ def _coarse(options: argparse.Namespace, shared: dict[str, Any]) -> int:
 
 
 def _rules(options: argparse.Namespace) -> int:
+    """Print how rules of thumb do on the objects of an inventory."""
     from rockfrag.assess.rules import rules_study
     from rockfrag.base.files import write_table
     from rockfrag.runtime.progress import progress_line
@@ -441,6 +447,7 @@ def on_command_line(words: str, given: Collection[str] | None = None) -> str:
     names |= {"records": "record", "building.storey_heights": "storey-height"}
 
     def option(found: re.Match[str]) -> str:
+        """The option that stands for a key in a message."""
         key = _UNITS.sub("", found[1])
         whole = key.split(".")[0]
         if given is not None and whole not in {
@@ -491,6 +498,7 @@ def add_app_command(commands: Any) -> None:
 
 # imported when it runs: `rockfrag --help` should not wait for numba
 def _app(options: argparse.Namespace) -> int:
+    """Run ``app``: write the page that computes by itself."""
     from rockfrag.assess.app.writing import write_app
     from rockfrag.assess.motions import motion_set
     from rockfrag.assess.place import Place

@@ -64,6 +64,7 @@ OF_FALLEN = (
 
 # imported when it runs: `rockfrag --help` should not wait for numba
 def _constrain(options: argparse.Namespace) -> int:
+    """Run ``constrain``: weigh hazard branches by what stands, or shaking by what fell."""
     from rockfrag.words.catalogue import catalogue
 
     # an unknown language is refused before anything is written
@@ -88,6 +89,7 @@ def _constrain(options: argparse.Namespace) -> int:
 
 
 def _shaking(options: argparse.Namespace) -> int:
+    """Say what shaking a table of fallen and standing objects tells."""
     from rockfrag.runtime.progress import progress_line
     from rockfrag.survival.fallen import (
         FROM_ONE_TO_THE_NEXT,
@@ -119,6 +121,7 @@ def _shaking(options: argparse.Namespace) -> int:
 
 
 def _spread(name: str, value: float | None) -> None:
+    """Refuse a standard deviation of ln that is none."""
     if value is not None and not 0 <= value <= 2:
         raise InputError(
             f"--{name.replace('_', '-')}: expected a number from 0 to 2, got {value}."
@@ -146,6 +149,7 @@ def _prior(options: argparse.Namespace) -> "Prior":
 
 
 def _mapped(options: argparse.Namespace) -> "Prior":
+    """What a ShakeMap says of the shaking before any object is looked at."""
     from rockfrag.aftermath.shakemap import read_shakemap
     from rockfrag.aftermath.shaken_ground import CORRELATION, mapped_ground
     from rockfrag.survival.shaking_posterior import Prior

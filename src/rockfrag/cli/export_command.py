@@ -38,6 +38,7 @@ def add_export_command(commands: Any) -> None:
 
 # imported when it runs: `rockfrag --help` should not wait for numba
 def _export(options: argparse.Namespace) -> int:
+    """Run ``export``: write fragilities of objects for other programs."""
     from rockfrag.aftermath.component_tables import (
         fragility_rows,
         ned_reference,

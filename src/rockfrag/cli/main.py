@@ -194,6 +194,7 @@ def _add_case(parser: argparse.ArgumentParser) -> None:
 
 # each command imports what it needs when it runs: `rockfrag --help` should not wait for numba
 def _simulate(options: argparse.Namespace) -> int:
+    """Run ``simulate``, with a sign of life while it takes long."""
     from rockfrag.runtime.progress import sign_of_life
 
     words = (
@@ -355,6 +356,7 @@ def _case_in_space(
 
 
 def _play(options: argparse.Namespace) -> int:
+    """Run ``play``: write the page of one history."""
     from rockfrag.records.motion import GroundMotion
     from rockfrag.report.play_page import write_play_page
 
@@ -407,6 +409,7 @@ def _warn_of_unit(record: str, peak: float, body: "Body") -> None:
 
 
 def _check_config(options: argparse.Namespace) -> int:
+    """Run ``check-config``: say what a study will do, and what looks wrong with it."""
     from rockfrag.stages.running import results_folder
     from rockfrag.study.loading import check_records, check_tables, load_any
     from rockfrag.study.study import Study

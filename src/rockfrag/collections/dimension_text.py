@@ -353,6 +353,7 @@ def _plain_masses(text: str) -> str:
     mass = r"(?<![\d.,])(\d{1,3})([.,])(\d{3})(\s*(?:kg|kgs|kilograms?|lbs?|g))(?!\w)"
 
     def without_sign(found: re.Match[str]) -> str:
+        """A number without the marks between its thousands; nothing where these may be decimals."""
         if marks == {found[2]}:
             return found[0]
         american = found[2] == "," and found[4].strip().startswith("lb")

@@ -179,6 +179,7 @@ def bracket_interval(
     groups = len(names)
 
     def refit(weights: Floats) -> Floats:
+        """Coefficients for weights of the groups, shape (batch, groups); of many blocks by a step each."""
         each = weights[:, codes]
         if (
             groups > MOST_BLOCKS

@@ -27,6 +27,7 @@ from rockfrag.base.arrays import Floats
 from rockfrag.base.errors import InputError
 from rockfrag.base.keywords import named_keywords
 from rockfrag.base.short_repr import short_repr
+from rockfrag.motions.oscillator import fill_propagator
 from rockfrag.records.motion import Motion
 from rockfrag.runtime.machine_code import cached_njit
 
@@ -83,28 +84,11 @@ def oscillator_matrix(omega: float, damping: float, step: float) -> Floats:
 
     Returns
     -------
-    The propagator, shape (4, 4).
+    The propagator, shape (2, 4).
     """
-    rate = damping * omega
-    turn = omega * math.sqrt(abs(1 - damping**2))
-    if damping < 1:
-        decay = math.exp(-rate * step)
-        cosine, sine = (
-            decay * math.cos(turn * step),
-            decay * math.sin(turn * step) / turn,
-        )
-    elif damping > 1:
-        slow, fast = math.exp((turn - rate) * step), math.exp(-(turn + rate) * step)
-        cosine, sine = (slow + fast) / 2, (slow - fast) / (2 * turn)
-    else:
-        cosine, sine = math.exp(-rate * step), step * math.exp(-rate * step)
-    free = np.array(
-        [[cosine + rate * sine, sine], [-(omega**2) * sine, cosine - rate * sine]]
-    )
-    # the steady answer to a and to s at the beginning of the step, and one step later
-    before = np.array([[-1.0, 2 * damping / omega], [0.0, -1.0]]) / omega**2
-    after = before + np.array([[0.0, -step], [0.0, 0.0]]) / omega**2
-    return np.hstack([free, after - free @ before])
+    matrix = np.zeros((2, 4))
+    fill_propagator(omega, damping, step, matrix)
+    return matrix
 
 
 @cached_njit()
@@ -368,6 +352,7 @@ def fourier_amplitude(motion: Motion, least_length: int = 0) -> tuple[Floats, Fl
 
 
 def _checked_periods(periods: ArrayLike | Sequence[float]) -> Floats:
+    """Positive periods [s], shape (n,)."""
     checked = np.atleast_1d(np.asarray(periods, dtype=np.float64))
     if checked.ndim != 1 or checked.size == 0:
         raise InputError(

@@ -107,6 +107,7 @@ def _is_empty(numbered: tuple[int, str]) -> bool:
 
 
 def _peer_record(row: dict[str, str], where: str) -> PeerRecord:
+    """A row of PEER's search results: the record's files and what is known of it."""
     cells = defaultdict(str, row)
     files = tuple("" if set(cells[key]) <= {"-", " "} else cells[key] for key in _FILES)
     if not cells[_NUMBER].isdigit() or not files[0]:
@@ -369,6 +370,7 @@ class CatalogueDraft:
         """
 
         def worth(number: int) -> tuple[int, bool, int]:
+            """Order of copies: those with most horizontal components first, unpacked ones first."""
             group = groups[number]
             return (
                 -len(_horizontal(group)),

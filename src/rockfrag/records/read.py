@@ -94,6 +94,7 @@ def read_untold(path: Path, dt: float | None) -> tuple[Record, float | None]:
 def _channels(
     path: Path, dt: float | None, cut_short: bool
 ) -> tuple[str, list[Channel]]:
+    """Format and channels of a file, by this package's readers or ObsPy's."""
     found = next((known for known in FORMATS if known.is_format(path)), None)
     if found is None:
         name, channels = obspy_channels(path, cut_short)
@@ -325,6 +326,7 @@ def _check_peak(record: Record, acceleration: NDArray[np.float64], unit: str) ->
 
 
 def _metadata(record: Record, channel: Channel, unit: str) -> dict[str, Any]:
+    """What is known of a channel, for the motion that it becomes."""
     start = channel.start_time
     facts = {
         **{key: getattr(channel, key) for key in ("network", "station", "location")},
@@ -341,6 +343,7 @@ def _metadata(record: Record, channel: Channel, unit: str) -> dict[str, Any]:
 def _settled_unit(
     record: Record, channel: Channel, samples: NDArray[np.float64], unit: str | None
 ) -> str:
+    """Unit of the samples, as stated in the file or given; an error where both differ or none is known."""
     asked = None if unit is None else quantities.asked_unit(unit)
     velocity = directions.is_seismometer(channel.code)
     if channel.counts and (velocity or asked is None):
@@ -382,6 +385,7 @@ def _settled_unit(
 
 
 def _listed(record: Record) -> str:
+    """The channels of a record by number and name, for messages."""
     named = ((c.member, c.code, c.component) for c in record.channels)
     words = (" ".join(dict.fromkeys(filter(None, names))) for names in named)
     return "; ".join(

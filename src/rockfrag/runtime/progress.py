@@ -49,6 +49,7 @@ def progress_line(
     said = begun + QUIET - (OFTEN if shown else EVERY)
 
     def say(done: float, total: float) -> None:
+        """Print how much is done, but not too often."""
         nonlocal said
         now = clock()
         finished = done >= total
@@ -137,6 +138,7 @@ def sign_of_life(
     begun = time.monotonic()
 
     def speak() -> None:
+        """Print a sign of life now and then, until it has ended."""
         wait = SILENT
         while not ended.wait(wait):
             lasted = time.monotonic() - begun

@@ -301,6 +301,7 @@ def _sections(found: Constrained, texts: Catalogue) -> list[Section]:
 
 
 def _hazard_table(found: Constrained, texts: Catalogue) -> Markup:
+    """Table of the mean hazard before and after."""
     unit, table = found.site.measure.unit, found.result.ratios()
     table = table.assign(rate=table["annual_rate"].map("{:g}".format))
     before = texts.say(finding("site_column_before", unit=unit))
@@ -316,6 +317,7 @@ def _hazard_table(found: Constrained, texts: Catalogue) -> Markup:
 
 
 def _branch_table(found: Constrained, texts: Catalogue) -> Markup:
+    """Table of the branches: weights before and after, and how probably each lets all stand."""
     columns = (
         column("branch", texts.text("site_column_branch")),
         column("weight_before", texts.text("site_column_weight_before"), decimals=4),

@@ -219,6 +219,7 @@ def _hangs_on(found: FallenPlace) -> Said:
 
 
 def _group_table(found: FallenPlace, texts: Catalogue) -> pd.DataFrame:
+    """Each group of objects: its size, how many fell, and the shaking that it says alone."""
     rows = []
     for group, own, (middle, low, high) in zip(
         found.groups, found.own, found.alone, strict=True

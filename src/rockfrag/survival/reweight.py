@@ -264,6 +264,7 @@ def constrain(site: Site) -> Constrained:
 
 
 def _by_object(site: Site) -> pd.DataFrame:
+    """What each object says alone, and what the others say without it, those that say most first."""
     rows = []
     for body in site.objects:
         alone = reweight(replace(site, objects=(body,)))

@@ -83,6 +83,7 @@ def read_branches(
 
 
 def _check(branches: Sequence[Branch], where: str) -> None:
+    """Refuse weights of branches that are not above 0, or do not sum to 1."""
     for branch in branches:
         if branch.weight <= 0:
             raise InputError(
@@ -426,6 +427,7 @@ def read_site(path: str | os.PathLike[str], records: str | Path = RECORDS) -> Si
 def _objects(
     given: Sequence[Mapping[str, Any]], site: Site, folder: Path, records: Path
 ) -> list[StandingObject]:
+    """The objects that stand at a site, of their settings."""
     found: list[StandingObject] = []
     for at, settings in enumerate(given, start=1):
         name = settings.get("name", f"object {at}")
@@ -505,6 +507,7 @@ def _simulated(
 def _stated(
     settings: Mapping[str, Any], measure: IntensityMeasure
 ) -> tuple[float, ...]:
+    """Coefficients of a fragility that is stated: by median and β, or as they are."""
     coefficients = settings.get("coefficients")
     if (coefficients is None) == ("median" not in settings):
         raise InputError(
@@ -533,6 +536,7 @@ def _stated(
 
 
 def _age(settings: Mapping[str, Any]) -> Age:
+    """For how long an object has stood: one number of years, a range, or a median with its spread."""
     age, longest = (
         settings["age_years"],
         float(settings.get("fragile_for_years", math.inf)),

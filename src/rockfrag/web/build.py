@@ -228,6 +228,7 @@ def _beside(name: str) -> Path:
 
 
 def _linked(objects: list[bytes], exports: list[str]) -> bytes:
+    """Link objects to one module that exports some of their functions."""
     with tempfile.TemporaryDirectory() as folder:
         paths = [Path(folder, f"{i}.o") for i in range(len(objects))]
         for path, made in zip(paths, objects, strict=True):

@@ -88,7 +88,7 @@ def page_of(
         "packed": base64_text(packed),
     }
     style = TEMPLATES.get_template("style.css").render() + script("app.css")
-    parts = ("building", "space", "objects", "findings", "lists", "scene", "page")
+    parts = ("core", "floors", "space", "objects", "lists", "scene", "page")
     scripts = [driver_text("integrate", "space"), scripts_of("view"), formatter()]
     scripts += [script(f"{name}.js") for name in parts]
     return TEMPLATES.from_string(script("app.html.j2")).render(

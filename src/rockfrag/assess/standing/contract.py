@@ -15,7 +15,8 @@ from pathlib import Path
 from typing import Any, ClassVar, Self
 
 from rockfrag.assess.assumed import Assumption, Moved, moved_to_both_sides
-from rockfrag.assess.standing.changes import usual_changes
+from rockfrag.assess.core import bodies
+from rockfrag.assess.standing.changes import changed_block, row_of, usual_changes
 from rockfrag.assess.standing.holders import Holder, holders_beside
 from rockfrag.assess.texts import Text
 from rockfrag.base.errors import InputError
@@ -31,9 +32,6 @@ TOLERANCES = {"width": 0.02, "cg_height": 0.05, "restitution": 0.05, "mass": 0.2
 
 OF_A_TILT_TEST = 0.01
 """Relative standard deviation of the width over the height of its centre of gravity that a tilt test gives [-]."""
-
-# Height of a body that is another one than the object, over that of the object
-HIGHER = 1.0 + 1e-9
 
 ALONE = Text.ON_THE_FLOOR  # How an object stands without a pedestal
 
@@ -220,7 +218,7 @@ class Standing(ABC):
 
     def is_whole(self, top: Block) -> bool:
         """Whether a block is the object with what it is fixed to."""
-        return top.height > self.block.height * HIGHER
+        return bodies.is_whole(row_of(top), row_of(self.block))
 
     def check(self) -> None:
         """Refuse a restitution with which an impact would gain energy."""
@@ -245,10 +243,4 @@ def stretched_block(
     block: Block, width: float = 1.0, height: float = 1.0, mass: float = 1.0
 ) -> Block:
     """A block with edges further apart, a higher centre of gravity and more mass, by factors."""
-    return replace(
-        block,
-        width=block.width * width,
-        mass=block.mass * mass,
-        inertia=block.centroidal_inertia * mass,
-        cg_height=min(block.h * height, block.height),
-    )
+    return changed_block(block, bodies.stretch, width, height, mass)

@@ -12,6 +12,8 @@ from typing import Any, ClassVar, Self
 import numpy as np
 
 from rockfrag.assess.assumed import assume
+from rockfrag.assess.core import bodies
+from rockfrag.assess.standing.changes import row_of
 from rockfrag.assess.standing.contract import Foundation, Standing
 from rockfrag.assess.standing.dimensions import on_foundation, sizes_of
 from rockfrag.assess.standing.planar import Planar
@@ -79,7 +81,7 @@ class Round(Standing):
         top = body.blocks[-1]
         if self.is_whole(top):
             return None
-        across = top.centroidal_inertia
-        along = top.mass * top.width * top.width / 8
-        tensor = checked_tensor(np.diag((across, across, along)))
+        moments = np.zeros(4)
+        bodies.tell_round(row_of(top), moments)
+        tensor = checked_tensor(np.diag(moments[:3]))
         return replace(top, round=True, inertia=tensor).system()

@@ -194,6 +194,7 @@ def _scan_of(
 
 
 def _shape_of(mesh: Mapping[str, Any], folder: Path, mass: float | None) -> Shape:
+    """The body of a mesh file, of stone where its mass is not known."""
     return read_shape(
         folder / mesh["file"],
         mass=mass,

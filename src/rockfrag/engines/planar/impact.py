@@ -3,7 +3,7 @@
 An impact has impulses at touching ends, Coulomb's law on them, and each contact's own law.
 
 In: a record ``BODY`` and its working memory with coordinates, velocities [m/s, rad/s] and the mode that has
-failed. Out, in that memory: the mode that follows, and the velocities after the impact (equations 7 to 9, 15).
+failed. Out: in that memory the mode that follows, and the velocities after the impact (equations 7 to 9, 15).
 """
 
 from rockfrag.base.elementary import sin_cos

@@ -152,10 +152,20 @@ def integrate_cases(numbers, cases, nothing, w, outcomes):
 
 @entry_kernel
 def integrate(p, shaking, start, closing, kept, w):
-    """Integrate one column, a BODY, from ``start`` through its shaking and on until it rests or has fallen.
+    """Integrate one column from ``start`` through its shaking and on until it rests or has fallen.
 
-    ``closing`` is the speed over √(g b) below which a contact stays closed after an impact; ``kept`` is a
-    :class:`Kept`, ``w`` a WORK, which tells the number of contact events.  Returned are the samples done.
+    Parameters
+    ----------
+    p : record BODY, the column
+    shaking : a :class:`Shaking`
+    start : coordinates and velocities that it begins with [m, rad; m/s, rad/s], shape (2, 3 MOST)
+    closing : speed over √(g b) below which a contact stays closed after an impact [-]
+    kept : a :class:`Kept`, what is kept of the history
+    w : record WORK, the memory; tells the number of contact events
+
+    Returns
+    -------
+    Number of samples done.
     """
     _begin(p, w, start)
     dt, substeps = shaking.dt, shaking.substeps

@@ -5,7 +5,7 @@ from the mode that has just failed, from the one in which all is open and, unles
 which all is closed; of those that are consistent the one with fewest closed ends is taken.  Where none ends, all
 modes are tried, the neighbours of those tried first.
 
-In: a record ``BODY`` and its working memory. Out, in that memory: the mode, and whether several were consistent.
+In: a record ``BODY`` and its working memory. Out: in that memory the mode, and whether several were consistent.
 Theory there: "Which mode follows", equations 4 to 6; impacts 8 and 9.
 """
 

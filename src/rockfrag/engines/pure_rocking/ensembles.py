@@ -120,6 +120,7 @@ def sampled(
     offsets = np.concatenate([[0], np.cumsum(sizes + -sizes % BLOCK)])
 
     def end_to_end(each: Sequence[Floats]) -> Floats:
+        """Samples of all motions behind each other, each as dense as its systems need."""
         made = np.zeros(offsets[-1])
         for start, (times, motion) in zip(offsets.tolist(), each_kind, strict=False):
             dense = refined(each[motion], times)

@@ -93,6 +93,7 @@ def summarised(
     summaries = np.zeros(cases.shape, kept.SUMMARY)
 
     def work(place: tuple[int, int, int]) -> None:
+        """Integrate one case and keep what outcomes take from it."""
         i, j, k = place
         case = Case(
             cases.systems[i], cases.motions[j], float(cases.scales[j, k]), cases.request

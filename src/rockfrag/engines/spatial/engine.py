@@ -126,6 +126,7 @@ def run(cases: Cases) -> Outcomes:
     tasks = [(i, j) for i in systems for j in motions]
 
     def run_pair(task: tuple[int, int]) -> None:
+        """Integrate a system under a motion at all its scales into the outcomes."""
         i, j = task
         motion, (body, start) = cases.motions[j], standing_bodies[i]
         if cases.request.spread > 0:
@@ -263,6 +264,7 @@ def run_scales(
 def _outcome(
     body: np.void, out: Floats, counters: NDArray[np.int64], y: Floats
 ) -> SpatialOutcome:
+    """An outcome by names, of what the kernel left in its row and its counters."""
     fell = bool(out[kernel.FELL])
     return SpatialOutcome(
         overturned=fell,

@@ -46,6 +46,7 @@ def _recognise(lines: list[str], name: str) -> bool:
 
 
 def _parse(text: TextFile) -> Iterator[Channel]:
+    """Channels of a file of this format, by its header as the head of the module says it."""
     words = text.lines(0, _TEXT_LINES)
     kind = _KINDS.match(words[0])
     if kind is None or len(text) <= _FIRST_DATA:
@@ -127,6 +128,7 @@ def _width(text: TextFile, start: int, whole: list[int]) -> int:
 
 
 def _start(whole: list[int]) -> UTCDateTime | None:
+    """Time of the first sample by the header's integers, None if it is not known."""
     year, day, hour, minute, second, millisecond = whole[_YEAR : _YEAR + 6]
     missing = whole[_MISSING]
     if missing in (year, day, hour, minute) or year <= 0:

@@ -134,6 +134,7 @@ class TimeColumn:
         )
 
     def _check_count(self) -> None:
+        """Refuse a single time."""
         if self.times.size < 2:
             self.text.fail(
                 "one time alone says nothing about the sampling interval", self.line
@@ -160,6 +161,7 @@ class TimeColumn:
         return alike and near and self._is_rounded(step)
 
     def _fail_rounded(self, dt: float) -> NoReturn:
+        """Refuse times so coarsely rounded that their interval is not known."""
         half = self._resolution / 2
         self.text.fail(
             f"the time column steps by {self._show(dt)} s, which is {1 / (dt * self.seconds):.2f} samples a "
@@ -169,6 +171,7 @@ class TimeColumn:
         )
 
     def _uneven_interval(self) -> tuple[float, Notes]:
+        """Interval of times that are even but for jitter, and the note that says so."""
         self._check_no_gap()
         count = np.arange(self.times.size)
         slope = float(np.polynomial.polynomial.polyfit(count, self.times, 1)[1])

@@ -113,6 +113,7 @@ def _rejection(rejected: int, curves: int) -> str:
 
 
 def _figures(results: Results, curves: pd.DataFrame) -> list[FigureSpec]:
+    """Figures of the curves, one an object and limit state."""
     bands, bins = results.table("fragility_bands"), results.table("fragility_bins")
     measure = str(results.table("fragility")["im"].iloc[0])
     same = curves[
