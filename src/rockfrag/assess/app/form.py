@@ -80,6 +80,7 @@ def _of_schema() -> Iterator[Field]:
 
 
 def _field(home: tuple[str, ...], key: str, about: Mapping[str, Any]) -> Field:
+    """The field of a key of the schema, which stands in ``home``."""
     form, dimension = about["form"], about["form"].get("dimension", "")
     plain = key
     if about.get("quantity"):
