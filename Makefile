@@ -1,7 +1,8 @@
 # make run      the thesis's study, from records to report (STUDY=config/other.yaml for another; VERBOSE=1)
 # make smoke    a small study in under a minute
 # make report-pdf  the report of STUDY on paper, by a browser of the Chromium family
-# make test     the tests; make validate the long ones; make coverage what they reach; make lint the checks of form
+# make test     the tests; make validate the long ones (PART=engines, statistics, pages or workflow for a part of them);
+#               make coverage what they reach; make lint the checks of form
 # make torture  a small study killed, starved and misused; make fuzz damaged inputs
 #               (INPUTS=10000 for fewer), random requests of assess (REQUESTS=200), studies (STUDIES=20), calls (CALLS=50)
 # make mutants  one line changed of what computes, MUTANTS=100 times: do the quick tests notice (SEED=1)
@@ -19,6 +20,13 @@ INPUTS ?= 1000000
 REQUESTS ?= 2000
 STUDIES ?= 500
 CALLS ?= 200
+# long tests by parts, so that none has to run for a whole night
+PART ?= all
+LONG_engines = tests/engines tests/simulation tests/system tests/base tests/scale
+LONG_statistics = tests/validation tests/campaign tests/effects tests/fragility tests/survival thesis/tests
+LONG_pages = tests/end_to_end tests/web tests/assess tests/aftermath tests/report
+LONG_workflow = tests/workflow tests/project tests/records tests/cli
+LONG_all = $(LONG_engines) $(LONG_statistics) $(LONG_pages) $(LONG_workflow)
 MUTANTS ?= 100
 SEED ?= 1
 # one line a stage; all that Snakemake says with VERBOSE=1
@@ -50,7 +58,8 @@ test: .venv/installed
 	@$(RUN) pytest -n auto --dist worksteal -m "not slow"
 
 validate: .venv/installed
-	@$(RUN) pytest -n auto --dist loadfile -m slow
+	@$(if $(LONG_$(PART)),,echo "PART: expected engines, statistics, pages or workflow, found $(PART)."; exit 2)
+	@$(RUN) pytest -n auto --dist loadfile -m slow $(LONG_$(PART))
 
 coverage: .venv/installed
 	@$(RUN) pytest -n auto --dist worksteal -m "not slow" --cov --cov-report=term --cov-report=xml

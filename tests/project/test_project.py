@@ -196,6 +196,24 @@ def test_long_checks_run_every_week_and_a_tag_publishes_what_was_tested():
         assert set(release["jobs"][publishing]["needs"]) == {"build", "test", "site"}
 
 
+def test_each_long_test_is_of_one_part_of_the_validation():
+    makefile = (ROOT / "Makefile").read_text(encoding="utf-8")
+    parts = dict(re.findall(r"^LONG_(\w+) = (.*)$", makefile, re.MULTILINE))
+    del parts["all"]
+    folders = [folder for part in parts.values() for folder in part.split()]
+    long = {
+        path.relative_to(ROOT).parts
+        for tests in (ROOT / "tests", ROOT / "thesis" / "tests")
+        for path in tests.rglob("test_*.py")
+        if "pytest.mark.slow" in path.read_text(encoding="utf-8")
+    }
+    assert {"/".join(names[:2]) for names in long} <= set(folders)
+    assert len(folders) == len(set(folders))
+    assert all((ROOT / folder).is_dir() for folder in folders)
+    matrix = hosted("weekly.yml")["jobs"]["validate"]["strategy"]["matrix"]
+    assert set(matrix["part"]) == set(parts)
+
+
 def test_the_changelog_dates_every_version():
     text = (ROOT / "CHANGELOG.md").read_text(encoding="utf-8")
     found = re.findall(r"^## (\S+) - (\d{4}-\d{2}-\d{2})$", text, re.MULTILINE)

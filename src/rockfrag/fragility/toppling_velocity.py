@@ -104,8 +104,8 @@ def terms_of(width_m: Floats, height_m: Floats) -> Floats:
 
 
 def toppling_velocity(
-    width_m: float | Floats,
-    height_m: float | Floats,
+    width_m: ArrayLike,
+    height_m: ArrayLike,
     *,
     standing: str = "plane",
     limit: float = 1.0,

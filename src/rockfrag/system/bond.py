@@ -18,12 +18,12 @@ class Bond:
     ----------
     tension : tensile capacity of all pads [N]
     shear : force that it bears along the contact beside friction [N]
-    spread : half the distance of the pads along x and along y [m]
+    spread : half the distance of the pads along x and along y, or one for both [m]
     """
 
     tension: float
     shear: float
-    spread: tuple[float, float]
+    spread: float | tuple[float, float]
 
     def __post_init__(self) -> None:
         number_from_zero("Bond: tension", self.tension, "newtons")
@@ -37,6 +37,12 @@ class Bond:
         for value in pair:
             positive_number("Bond: spread", value, "metres")
         object.__setattr__(self, "spread", pair)
+
+    @property
+    def pads(self) -> tuple[float, float]:
+        """Half the distance of the pads along x and along y [m]."""
+        assert isinstance(self.spread, tuple)
+        return self.spread
 
     @classmethod
     def of_layer(

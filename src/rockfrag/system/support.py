@@ -41,17 +41,23 @@ class SlidingPendulum(Support):
     Attributes
     ----------
     radius : of the dish R [m]; infinite: a flat surface
-    friction : of the plate on it
+    friction : coefficient of the plate on it, or both of them [-]
     """
 
     radius: float = math.inf
-    friction: Friction | None = None
+    friction: float | Friction | None = None
 
     def __post_init__(self) -> None:
         super().__post_init__()
         positive_or_infinite("SlidingPendulum: radius", self.radius, "metres")
         mu = checked_friction("SlidingPendulum: friction", self.friction)
         object.__setattr__(self, "friction", mu)
+
+    @property
+    def sliding(self) -> Friction | None:
+        """Friction of the plate in the dish; None without any."""
+        assert not isinstance(self.friction, float)
+        return self.friction
 
 
 @dataclass(frozen=True, kw_only=True)

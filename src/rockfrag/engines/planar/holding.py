@@ -42,7 +42,7 @@ def with_plate(system: System) -> System:
         )
     ends = Interval(-PLATE / 2, PLATE / 2)
     plate = RigidBody(support.mass, support.mass, (0.0, 0.0, 0.0), ends, THIN, ends)
-    friction = support.friction if isinstance(support, SlidingPendulum) else None
+    friction = support.sliding if isinstance(support, SlidingPendulum) else None
     first = replace(system.contacts[0], offset=(0.0, 0.0))
     start = system.start
     if start is not None:
@@ -172,5 +172,5 @@ def _fill_bonds(p: np.void, system: System, shift: int) -> None:
     for row, (contact, bond) in enumerate(system.bonds, len(system.constraints)):
         k = contact + shift
         p["is_bonded"][k], p["bond_number"][k] = 1, row
-        p["bond_spread"][k] = bond.spread[0]
+        p["bond_spread"][k] = bond.pads[0]
         p["bond_tension"][k], p["bond_shear"][k] = bond.tension / 2, bond.shear

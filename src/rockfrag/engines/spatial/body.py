@@ -128,7 +128,7 @@ def _corners(given: RigidBody) -> Floats:
 
 def _fill_bond(body: np.void, given: RigidBody, bond: Bond) -> None:
     """Describe a bond under a body, for a unit of mass."""
-    body["bonded"], body["pads"] = 1, bond.spread
+    body["bonded"], body["pads"] = 1, bond.pads
     body["tension"], body["shear"] = bond.tension / given.mass, bond.shear / given.mass
     # the pads lie around the origin of the base
     body["aside"] = given.centre[:2]
