@@ -2,7 +2,7 @@
 const answer = (data, core) => {
   "use strict";
   const { constants: { AT_REST, LARGEST_FACTOR, LARGEST_PEAK, GRAVITY, MODEL, SPACE, ACCEPTED_AT_A_LEVEL, ACCEPTED_IN_FIFTY_YEARS }, measures } = data;
-  const judge = risk(data, core), spatial = inSpace(data);
+  const judge = risk(data, core), spatial = inSpace(data), putty = puttied(data.constants);
 
   // levels of a run: the asked one among those of the measure
   function levelsOf(request, run) {
@@ -54,8 +54,11 @@ const answer = (data, core) => {
       const shaking = shakingOf(request.place, run.floor ?? "", `${first}-${last}`), { scales, allowed } = scalesOf(request, run, places, shaking);
       // what is allowed follows from the floor as it is, on whatever floor it is counted
       const own = run.floor ? scalesOf(request, run, places, shakingOf(request.place, "", `${first}-${last}`)) : null;
-      const body = ensemble.bodyOf(run.body), lifting = Float64Array.from(shaking, ({ peak }) => (body.uplift * GRAVITY) / peak);
-      return { ...ensemble.count(body, shaking, own ? moved(own, shaking) : scales), allowed: own?.allowed ?? allowed, lifting };
+      const body = ensemble.bodyOf(run.body), factors = own ? moved(own, shaking) : scales;
+      const limits = request.putty ? putty.breaksFrom(run.body.statue, request.putty) : null;
+      const uplift = limits ? Math.min(...limits) : body.uplift * GRAVITY;
+      const outcomes = limits ? putty.count(ensemble, body, limits, shaking, factors) : ensemble.count(body, shaking, factors);
+      return { ...outcomes, allowed: own?.allowed ?? allowed, lifting: Float64Array.from(shaking, ({ peak }) => uplift / peak) };
     };
     function countInSpace(request, run, first, last) {
       const on = (floor) => (m) => shakingOf(request.place, floor, `${m}-${m + 1}`)[0], shaken = on(run.floor ?? "");

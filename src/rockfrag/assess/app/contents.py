@@ -30,7 +30,7 @@ from rockfrag.assess.hazard.curve import PGA, PGV
 from rockfrag.assess.motions import FEWEST_EARTHQUAKES, MotionSet
 from rockfrag.assess.place import Place
 from rockfrag.assess.request import Records, Request
-from rockfrag.assess.standing import box, changes, contract, rolling
+from rockfrag.assess.standing import box, changes, contract, holders, rolling
 from rockfrag.base import plausible, units
 from rockfrag.base.arrays import Floats
 from rockfrag.building.model import ModalDamping, ShearBuilding
@@ -47,6 +47,7 @@ SCRIPTS = (
     "building",
     "space",
     "objects",
+    "held",
     "answer",
 )
 """Scripts that compute, in the order in which they need each other."""
@@ -239,6 +240,7 @@ def _constants() -> dict[str, Any]:
         **_of(plausible, "STONE", "DENSITIES", "DEPTHS"),
         **_of(changes, "WIDER", "PLATE", "STEEL", "LOWER", "BALLAST", "BALLAST_AT"),
         **_of(changes, "PEDESTAL_HEIGHT"),
+        **_of(holders, "PADS_AT"),
         **_of(
             place, "PERIOD_FACTORS", "STOREY_HEIGHT", "STOREY_MASS", "HIGHEST_BUILDING"
         ),
