@@ -3,8 +3,9 @@
  * The instant is that at which equation 3 of docs/holding.md is first broken, to a sample; what follows is the free
  * object, shaken from there on by what is left of the motion.
  */
-const puttied = ({ PADS_AT, GRAVITY }) => {
+const puttied = (constants) => {
   "use strict";
+  const { PADS_AT, GRAVITY } = constants;
   // accelerations over which the left and the right pads of an object are torn off, those of a pull of all pads [N]
   function breaksFrom({ width, height, mass, cgHeight = null, cgOffset = 0 }, pull) {
     const half = (PADS_AT * width) / 2, high = cgHeight ?? height / 2;
