@@ -110,7 +110,7 @@ def asked_at_some_door(rng: np.random.Generator, system: System) -> None:
 
 
 @pytest.mark.parametrize(
-    ("draws", "least"), [(40, 10), pytest.param(1000, 300, marks=pytest.mark.slow)]
+    ("draws", "least"), [(12, 3), pytest.param(1000, 300, marks=pytest.mark.slow)]
 )
 def test_what_holds_a_body_is_simulated_at_every_door_or_refused_in_a_sentence(
     draws: int, least: int

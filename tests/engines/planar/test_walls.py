@@ -321,7 +321,7 @@ def test_a_cart_meets_a_wall_at_the_speed_that_rolling_over_the_gap_gives(
     assert found.constraints["largest_impulse_n_s"][0] == pytest.approx(
         M * speed, rel=1e-6
     )
-    assert np.abs(found.theta).max() == 0.0
+    assert np.abs(found.theta).max() < 1e-15
 
 
 def test_a_cart_on_free_casters_never_rocks_until_it_meets_the_kerb() -> None:

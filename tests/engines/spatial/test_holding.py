@@ -94,7 +94,11 @@ def test_in_a_sequence_a_bond_that_the_main_shock_broke_holds_no_more():
     rng = np.random.default_rng(3)
     shock = synthetic_motion(rng, 2, 8.0)
     after, quiet = 0.5 * shock, np.zeros((1500, 3))
-    system = hold(BOX.system(), bonds=Bond(1500.0, 1e6, (0.15, 0.2)))
+    pads = (0.15, 0.2)
+    strong = shaken(hold(BOX.system(), bonds=Bond(1e6, 1e6, pads)), after)
+    # so strong that it bears what follows, had it not been broken
+    enough = 1.02 * 2 * float(strong.largest_force[0, 0, 0, 0])
+    system = hold(BOX.system(), bonds=Bond(enough, 1e6, pads))
     alone = shaken(system, after)
     main = shaken(system, 0.6 * shock)
     both = shaken(system, np.concatenate([0.6 * shock, quiet, after]))
