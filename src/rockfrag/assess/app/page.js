@@ -534,6 +534,7 @@ function drawSheets() {
   for (const { form, told: { run: { request }, found }, scene: still } of items) {
     const said = saidOf(request, found), canvas = make("canvas", { width: 600, height: 300 });
     const sheet = make("section", { className: "sheet" }, make("h2", { textContent: said.headline }), make("p", { textContent: said.screen }), make("p", { textContent: typedIn(form) }), make("dl", {}, ...linesAs(said)));
+    if (!kept.length) sheet.append(...tried());
     find("sheets").append(sheet);
     if (still) {
       sheet.append(make("figure", {}, canvas, make("figcaption", { textContent: `${still.title()}: ${still.words()}` })));
@@ -542,6 +543,17 @@ function drawSheets() {
     if (request.place.computed) sheet.append(make("p", { className: "message", textContent: say("computed_floor") }));
     sheet.append(make("p", { className: "message", textContent: `${data.made ? say("made") + " " : ""}${say("no_substitute")} ${new Date().toISOString().slice(0, 10)}` }));
   }
+}
+// what the sliders try of the object that is shown, before and after
+function tried() {
+  if (!other) return [];
+  const fields = [...find("sliders").querySelectorAll(".field:not([hidden])")], moved = fields.filter((field) => field.querySelector("input")?.value > 0);
+  const choice = find("slide-fixed"), chosen = choice.selectedOptions[0];
+  const words = moved.map((field) => field.querySelector("label").textContent);
+  if (!choice.closest("div").hidden && choice.selectedIndex > 0) words.push(`${say("slide_fixed")}: ${chosen.textContent}`);
+  const table = find("compared").closest("table").cloneNode(true);
+  table.querySelector("tbody").removeAttribute("id");
+  return [make("p", { textContent: `${say("try")}: ${words.join("; ")}.` }), table];
 }
 function rankedSheet() {
   const table = make("table", {}, make("thead", {}, make("tr", {}, ...headings())), make("tbody", {}, ...kept.map(rowOf)));
