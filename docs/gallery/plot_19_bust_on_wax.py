@@ -40,4 +40,4 @@ for line, (name, fraction) in zip(
 ):
     axes.plot(levels, fraction, line, label=name)
 axes.set(xlabel="peak ground acceleration [g]", ylabel="fraction that topples [-]")
-axes.legend(frameon=False, fontsize=8)
+axes.legend(frameon=False, fontsize=8, loc="upper left")
