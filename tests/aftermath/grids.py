@@ -76,3 +76,23 @@ def write_grids(folder: Path) -> tuple[Path, Path]:
     grid.write_text(grid_text())
     spread.write_text(grid_text(SPREADS, of_uncertainty))
     return grid, spread
+
+
+AFTERSHOCK = "made1-aftershock"
+
+
+def write_aftershock(folder: Path, spread: float = 0.5) -> tuple[Path, Path]:
+    """Write both grids of a second shock, half as strong everywhere."""
+
+    def weaker(longitude: float, latitude: float) -> list[float]:
+        pga, pgv, *others = of_grid(longitude, latitude)
+        return [pga / 2, pgv / 2, *others]
+
+    def of_spread(longitude: float, latitude: float) -> list[float]:
+        return [spread, spread, 0.5]
+
+    grid, other = folder / "then.xml", folder / "then-uncertainty.xml"
+    text = grid_text(values=weaker, event=AFTERSHOCK)
+    grid.write_text(text.replace('magnitude="6.6"', 'magnitude="5.4"'))
+    other.write_text(grid_text(SPREADS, of_spread, event=AFTERSHOCK))
+    return grid, other

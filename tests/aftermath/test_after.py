@@ -30,11 +30,11 @@ from rockfrag.assess.request import Level, LevelSpread, make_request
 from rockfrag.assess.risk import fraction_target
 from rockfrag.base.errors import InputError
 from rockfrag.cli.main import main
-from rockfrag.records.motion import GroundMotion
+from rockfrag.records.motion import GroundMotion, Motion
 from rockfrag.simulation import overturns
 from rockfrag.system.blocks import Block
 
-from .grids import write_grids
+from .grids import AFTERSHOCK, write_aftershock, write_grids
 
 INVENTORY = """\
 name,width,height,latitude,longitude,floor
@@ -55,6 +55,13 @@ def place(tmp_path):
     write_grids(tmp_path)
     (tmp_path / "inventory.csv").write_text(INVENTORY)
     return tmp_path
+
+
+def write_rows(place, *rows: int):
+    """An inventory of some rows of the usual one."""
+    lines, path = INVENTORY.splitlines(), place / "rows.csv"
+    path.write_text("\n".join(lines[i] for i in (0, *rows)) + "\n")
+    return path
 
 
 @pytest.fixture
@@ -275,6 +282,168 @@ def test_a_second_record_fells_what_the_first_left_standing(
     assert rows["stout"]["under_the_record"] == "stood"
 
 
+def test_two_maps_each_with_its_uncertainty_say_what_fell_in_either(
+    place, own_records, capsys
+):
+    write_aftershock(place)
+    rows = write_rows(place, 1, 2)
+    asked = ["after", str(rows), "--output", str(place / "out"), "--json"]
+    asked += ["--record", str(own_records / "catalogue.csv")]
+    asked += ["--shakemap", str(place / "grid.xml")]
+    asked += ["--map-uncertainty", str(place / "uncertainty.xml")]
+    asked += ["--then-shakemap", str(place / "then.xml")]
+    asked += ["--then-map-uncertainty", str(place / "then-uncertainty.xml")]
+    assert main(asked) == 0
+    found = json.loads(capsys.readouterr().out)
+    for first, second in zip(found["ground"], found["ground_then"], strict=True):
+        assert second["pga"] == pytest.approx(first["pga"] / 2, rel=1e-4)
+        assert second["pga_spread"] == 0.5 and first["pgv_spread"] == 0.35
+        assert second["magnitude"] == 5.4 and first["magnitude"] == 6.6
+    for each in found["objects"]:
+        assert each["probability_fell"] > each["probability_fell_in_the_first"]
+        assert each["then_pga_g"] == pytest.approx(each["pga_g"] / 2, rel=1e-4)
+    page = (place / "out" / "after.html").read_text(encoding="utf-8")
+    assert "Then a second shock." in page and "beside these two" in page
+    assert any(AFTERSHOCK in line for line in found["said"])
+
+
+def test_falls_in_either_of_two_maps_are_those_of_drawn_shocks(place, records):
+    """Each world draws both shakings, what is not known of the object, and a motion for each shock."""
+    request = make_request({"width": "30 cm", "height": "120 cm", **records}, "test")
+    motions = motion_set(request.records, request.place, ".")
+    main_shock, after = (
+        GroundShaking(0.3, 35.0, 0.3, 0.3),
+        GroundShaking(0.2, 25.0, 0.6, 0.6),
+    )
+    found = after_earthquake(
+        write_rows(place, 1), lambda _: main_shock, records, then=lambda _: after
+    ).objects[0]
+    first, then = (
+        assess_with(replace(request, level=level_of(each)), motions, brief=True)
+        for each in (main_shock, after)
+    )
+    rng = np.random.default_rng(5)
+    draws = rng.integers(first.fraction.draws.size, size=200_000)
+    falls = [
+        rng.random(draws.size) < each.fraction.draws[draws] for each in (first, then)
+    ]
+    assert found.fell == pytest.approx((falls[0] | falls[1]).mean(), abs=0.005)
+    # errors of the object are the same in both, so that both fall together oftener than by chance
+    together = (falls[0] & falls[1]).mean()
+    assert together > falls[0].mean() * falls[1].mean() + 0.01
+
+
+def test_each_shock_has_the_magnitude_of_its_own_map_where_no_velocity_is_mapped(
+    place, records
+):
+    write_aftershock(place)
+    for name in ("grid.xml", "then.xml"):
+        text = (place / name).read_text()
+        (place / name).write_text(text.replace('name="PGV"', 'name="PGX"'))
+    shakemap, second = (
+        read_shakemap(place / name) for name in ("grid.xml", "then.xml")
+    )
+    found = after_earthquake(
+        write_rows(place, 1),
+        lambda at: mapped_ground(shakemap, *at),
+        records,
+        then=lambda at: mapped_ground(second, *at),
+    )
+    for each in found.objects:
+        assert each.found.request.records.magnitude == 6.6
+        assert each.then.request.records.magnitude == 5.4
+
+
+def test_objects_beyond_the_map_of_the_second_shock_are_named(place, records):
+    main_shock = read_shakemap(place / "grid.xml")
+    found = after_earthquake(
+        write_rows(place, 1, 2),
+        lambda at: mapped_ground(main_shock, *at),
+        records,
+        then=lambda at: None if at[1] > 135.5 else GroundShaking(0.3, 35.0),
+    )
+    assert found.then_beyond == ["far"]
+    by_name = {each.request.name: each for each in found.objects}
+    assert by_name["far"].then is None and by_name["near"].then is not None
+    said = " ".join(after_lines(found))
+    assert "1 object lies beyond the map of the second shock" in said
+
+
+@pytest.mark.parametrize(
+    ("dt", "then_dt", "common"), [(0.01, 0.004, 0.002), (0.005, 0.0024, 0.0002)]
+)
+def test_records_sampled_in_other_intervals_make_a_sequence_of_the_same_lines(
+    dt, then_dt, common
+):
+    rng = np.random.default_rng(4)
+    first, then = (
+        Motion(rng.normal(size=200), step, f"noise {step}") for step in (dt, then_dt)
+    )
+    (joined,) = one_after_the_other([first], [then], quiet=6.0)
+    assert joined.dt == pytest.approx(common)
+    times = joined.dt * np.arange(joined.acceleration.size)
+    begins = 199 * dt + 6.0 + joined.dt
+    for motion, start in ((first, 0.0), (then, begins)):
+        own = start + motion.dt * np.arange(200)
+        found = np.interp(own, times, joined.acceleration)
+        assert found == pytest.approx(motion.acceleration, abs=1e-6)
+
+
+def test_the_second_shock_begins_at_once_in_components_of_unequal_length():
+    pair = [Motion(np.ones(n), 0.01, f"of {n}") for n in (50, 80)]
+    joined = one_after_the_other(pair, pair, quiet=1.0)
+    assert len({motion.acceleration.size for motion in joined}) == 1
+    # 80 samples of the longer first, and the quiet time
+    assert all(motion.acceleration[180] == 1 for motion in joined)
+    assert not any(motion.acceleration[100:180].any() for motion in joined)
+
+
+@pytest.mark.parametrize("depth", [None, 0.3])
+def test_sequences_of_motions_fell_as_many_as_both_shocks_by_themselves(
+    depth, own_records, made_motions
+):
+    """Each motion at one level, then each at another; in space the second finds a block turned and moved."""
+    made = made_motions(12)
+    pairs = [GroundMotion(*pair) for pair in zip(made[::2], made[1::2], strict=True)]
+    body = Block(0.2, 0.8, 80.0, depth=depth)
+    motions = pairs if depth else [pair.x for pair in pairs]
+    grid = np.geomspace(0.5, 3.0, 30)
+    toppled = overturns(body, motions, scales=grid).overturned[0]
+    # half of the motions topple it, the others do not
+    first = float(np.median(grid[toppled.argmax(axis=1)]))
+    then = 0.95 * first
+
+    def fells(motion, scale: float) -> bool:
+        return bool(overturns(body, motion, scales=[scale]).overturned[0, 0, 0])
+
+    alone = [[fells(each, scale) for each in motions] for scale in (first, then)]
+    separate, sequences = [], []
+    for i, main_shock in enumerate(motions):
+        for j, aftershock in enumerate(motions):
+            separate.append(alone[0][i] or alone[1][j])
+            both = [
+                [
+                    replace(each, acceleration=each.acceleration * scale)
+                    for each in parts
+                ]
+                for parts, scale in (
+                    (_components(main_shock), first),
+                    (_components(aftershock), then),
+                )
+            ]
+            joined = one_after_the_other(*both)
+            sequence = GroundMotion(*joined) if depth else joined[0]
+            sequences.append(fells(sequence, 1.0))
+    assert 0.2 < np.mean(separate) < 0.95
+    if depth is None:
+        assert sequences == separate
+    assert abs(np.mean(sequences) - np.mean(separate)) < 0.1
+
+
+def _components(motion):
+    return (motion.x, motion.y) if isinstance(motion, GroundMotion) else (motion,)
+
+
 def test_hostile_names_stay_text_and_pages_speak_italian(place, records):
     rows = INVENTORY.splitlines()
     (place / "hostile.csv").write_text(
@@ -288,6 +457,18 @@ def test_hostile_names_stay_text_and_pages_speak_italian(place, records):
     assert "caduto" in after_lines(found, "it")[-1]
 
 
+def test_rows_that_were_left_out_stand_on_the_page_to_be_looked_at(place, records):
+    rows = INVENTORY.splitlines()
+    path = place / "some.csv"
+    path.write_text(f"{rows[0]}\n{rows[1]}\nbust <b>,no width,120 cm,35,135,\n")
+    ground = GroundShaking(0.3, 35.0)
+    found = after_earthquake(path, lambda _: ground, records, keep_going=True)
+    page = after_page(found)
+    assert "1 row was left out" in page and "some.csv, line 3" in page
+    # of what is in the list four boxes, of what is left out one
+    assert page.count('type="checkbox"') == 4 + 1
+
+
 @pytest.mark.parametrize(
     ("options", "words"),
     [
@@ -297,6 +478,11 @@ def test_hostile_names_stay_text_and_pages_speak_italian(place, records):
         (["--pga", "0.2 g", "--sd-ln", "-1"], "--sd-ln"),
         (["--pgv", "20 cm/s", "--width", "3 m"], "--width"),
         (["--station", "nowhere.txt", "--station-km", "-3"], "--station-km"),
+        (["--pga", "0.2 g", "--map-uncertainty", "u.xml"], "needs --shakemap"),
+        (["--shakemap", "grid.xml", "--sd-ln", "0.3"], "--sd-ln is of typed"),
+        (["--shakemap", "grid.xml", "--then-shakemap", "grid.xml"], "both of"),
+        (["--pga", "0.2 g", "--then-map-uncertainty", "u.xml"], "--then-shakemap"),
+        (["--shakemap", "grid.xml", "--then-station", "a"], "needs --station"),
     ],
 )
 def test_a_wrong_question_is_refused_in_one_sentence(

@@ -137,6 +137,9 @@ def test_names_that_are_alike_in_32_letters_give_facilities_of_their_own(of_grou
     nowhere = replace(stele, request=replace(stele.request, coordinates=None))
     with pytest.raises(InputError, match="no place"):
         shakecast_xml([nowhere])
+    # a longer type would be cut off where it is imported
+    with pytest.raises(InputError, match="1 to 10 letters"):
+        shakecast_xml([stele], "MUSEUM CONTENTS")
 
 
 NED_COLUMNS = (

@@ -63,6 +63,14 @@ def test_spreads_are_those_of_the_point_else_of_the_event_else_usual_ones(grids)
     assert alone.at(*PLACE).stated == {"PGA"}
     assert both.at(*PLACE).spreads["PGA"] == pytest.approx(0.3 + 0.1 * 0.456)
     assert both.at(*PLACE).spreads["PGV"] == pytest.approx(0.35)
+    # older maps state none of the whole map as zero
+    text = (
+        grids[0]
+        .read_text()
+        .replace('value="0.5" numsta="12"', 'value="0.000" numsta=""')
+    )
+    grids[0].write_text(text)
+    assert read_shakemap(grids[0]).at(*PLACE).spreads["PGV"] == 0.65
 
 
 def test_nothing_is_known_beyond_the_map_and_longitudes_may_count_round(grids):
@@ -152,6 +160,18 @@ def test_accelerations_are_read_in_the_unit_that_the_grid_states(
     pga, _ = logs(PLACE[1], PLACE[0])
     found = read_shakemap(path).at(*PLACE).values["PGA"]
     assert found == pytest.approx(math.exp(pga) / 100 / LARGER_OF_TWO, rel=1e-4)
+
+
+def test_a_map_far_from_a_large_earthquake_is_believed(tmp_path):
+    """There PGA has died out, and PGV has not: 0.1 % g with more than 1 cm/s."""
+    path = tmp_path / "grid.xml"
+
+    def values(longitude: float, latitude: float) -> list[float]:
+        return [0.1, 1.3, 3.5, 0.4, 1.4, 0.7, 0.5, 1.0, 300.0]
+
+    path.write_text(grid_text(values=values))
+    found = read_shakemap(path).at(*PLACE).values
+    assert found["PGV"] == pytest.approx(1.3 / LARGER_OF_TWO)
 
 
 def test_points_without_shaking_do_not_count(tmp_path):

@@ -105,6 +105,7 @@ def _within(answer: dict[str, Any]) -> list[str]:
         ),
         "a tenth topples at more than half": _of(amplitudes["0.1"])
         <= _of(amplitudes["0.5"]),
+        "toppling starts below rocking": _topples_after_rocking(answer),
         "counts": _counts_agree(answer),
         "decision": _decided(answer),
         "below uplift": _at_rest(answer),
@@ -113,6 +114,17 @@ def _within(answer: dict[str, Any]) -> list[str]:
         "shares are parts": all(0 <= p <= 1 for p in answer["fragility"]["fraction"]),
     }
     return [name for name, right in checks.items() if not right]
+
+
+def _topples_after_rocking(answer: dict[str, Any]) -> bool:
+    """None topples it below the level at which one rocks it, nor half of all that may be."""
+    starts = _of({"value": answer["rocks_from"]})
+    half = _of(answer["amplitude_toppling"]["0.5"])
+    curve = answer["fragility"]
+    fell = zip(curve["levels"], curve["fraction"], strict=True)
+    return starts <= half and not any(
+        fraction > 0 for level, fraction in fell if level < starts
+    )
 
 
 def _of(estimate: dict[str, Any]) -> float:

@@ -6,10 +6,10 @@ const finite = (key, v) => (typeof v === "number" && !Number.isFinite(v) ? null 
 const plain = (value) => JSON.parse(JSON.stringify(value, finite));
 const modules = Object.fromEntries(Object.entries(data.modules).map(([name, text]) => [name, bytes(text)]));
 begin({ data, modules, samples: bytes(data.packed) }).then(() => {
-  const wording = findings(data), speak = catalogue(data.texts.en);
+  const speak = catalogue(data.texts.en);
   const found = forms.map((form, id) => {
     try {
-      const request = tools.bodies.requestOf(form), count = data.earthquakes.length;
+      const request = tools.form.requestOf(form), count = data.earthquakes.length;
       const runs = TASKS.plan({ id, request }).roles;
       const parts = runs.map((_, run) => [[0, 10], [10, count]].map(([first, last]) => (
         { first, ...TASKS.count({ id, request, run, first, last }) })));
@@ -28,11 +28,8 @@ begin({ data, modules, samples: bytes(data.packed) }).then(() => {
         return [...TASKS.count({ ...told, run: 0, first: 0, last: count }).overturned];
       };
       const held = request.pedestal || request.solid || !form.putty ? null : stick(Number(form.putty));
-      const { place } = request, computed = Boolean(place.computed);
-      const shaken = (motion) => [...building.floorMotion(place.floors[""], motion).samples];
-      const floor = computed ? tools.motions.map(shaken) : [];
-      const { first, details } = wording.of(request, answer);
-      return { answer: plain(answer), early, fixed, held, first: plain(first), details: plain(details), lines: first.map(speak.sentence), computed, floor };
+      const { first, details } = answer.said;
+      return { answer: plain(answer), early, fixed, held, first: plain(first), details: plain(details), lines: first.map(speak.sentence) };
     } catch (error) {
       if (!error.field) return { failed: error.stack };
       const { en } = data.texts;

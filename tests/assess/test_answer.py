@@ -1,6 +1,7 @@
 """An assessment says what an engineer would find by hand in the words of a conservator, or what cannot be used."""
 
 import json
+import math
 import random
 import re
 from dataclasses import replace
@@ -286,7 +287,9 @@ def test_advice_agrees_with_the_risk_that_is_accepted(on_pedestal):
     def said(value, **more):
         estimate = Estimate(value, value / 2, min(1, 2 * value), {})
         request = replace(on_pedestal.request, **more)
-        decision = decide(value, np.full(32, value), None, {}, request.accepted)
+        nothing = on_pedestal.evidence.prediction
+        values = np.full(32, value)
+        decision = decide(value, values, nothing, {}, request.accepted)
         about = {"request": request, "decision": decision}
         return advice(replace(on_pedestal, probability=estimate, **about)).id
 
@@ -355,6 +358,45 @@ def test_few_earthquakes_get_no_verdict(few):
     verdict, to_do = lines_of(found)
     assert "too few to say how likely" in verdict and "likely to topple" not in verdict
     assert to_do == "Give records of at least 5 earthquakes."
+
+
+def test_a_pad_on_which_it_leaves_its_place_is_no_help(few):
+    """It slid over three metres, and the pad stood first of what helps."""
+    settings = {"width": "30 cm", "height": "1.2 m", "pad_friction": 0.11}
+    for pga, leaves in (("0.15 g", False), ("1 g", True)):
+        found = assess_with(asked(**settings, pga=pga), few, holders=False)
+        pad = next(
+            each for each in found.mitigations if each.change.id.startswith("pad")
+        )
+        slip = dict(pad.change.values)["slip"].value
+        # half of its width in cm
+        assert (slip > 15) == leaves
+        assert not (leaves and pad.shown)
+        assert ("pad of friction" in " ".join(details_of(found))) == pad.shown
+
+
+def test_it_is_said_of_how_many_motions_the_counts_are(motions):
+    found = assess_with(asked(**STATUE, pga="4 g"), motions, holders=False)
+    total, _, _ = found.counts
+    every = len(motions.ground)
+    assert 0 < total < every
+    assert f"Of the {total} motions that can be scaled to it (of {every})" in " ".join(
+        details_of(found)
+    )
+
+
+def test_few_earthquakes_show_no_change_to_help_and_nothing_worth_measuring(few):
+    """One motion said that an isolator "takes off 80 % of the risk (65 to 90 %)"."""
+    ground, pairs = few.ground[:2], few.pairs[:1]
+    one = replace(few, ground=ground, base=ground, pairs=pairs)
+    settings = {**STATUE, "pga": "0.6 g", "return_period": 475}
+    found = assess_with(asked(**settings), one, holders=False)
+    assert found.mitigations and not any(each.shown for each in found.mitigations)
+    assert all(math.isnan(each.lower) for each in found.mitigations)
+    assert not found.shown_safer
+    said = " ".join(details_of(found))
+    assert "takes off" not in said and "Worth measuring" not in said
+    assert "shown to help" in said
 
 
 def test_all_faults_of_an_inventory_are_listed_and_good_rows_ranked(

@@ -1,11 +1,16 @@
-"""Random questions: what an answer says agrees with itself, whatever was asked."""
+"""Random questions: what an answer says agrees with itself, whatever was asked.
+
+``python -m tests.assess.test_consistency 2000`` asks as many under the default motions and prints what contradicts
+itself; ``… 20 --lines`` prints the first lines, to be read aloud.
+"""
 
 import math
 import random
+import sys
 
 import pytest
 
-from rockfrag.assess.answer import Assessment, assess_with
+from rockfrag.assess.answer import RECORDS, Assessment, assess, assess_with
 from rockfrag.assess.core.decisions import LEAST_CHANCE, Action
 from rockfrag.assess.core.likelihood import likelihood_of
 from rockfrag.assess.findings import few_earthquakes, first_screen, lines_of
@@ -94,3 +99,23 @@ def test_random_answers_agree_with_themselves(motions, count, seed, in_space):
         if said:
             found[number] = (settings, said, lines_of(answer))
     assert not found, found
+
+
+def main(count: int, *, lines: bool) -> None:
+    """Ask so many questions, and print what contradicts itself, or every answer."""
+    rng, wrong = random.Random(52), 0
+    for number in range(1, count + 1):
+        settings = some_request(rng, in_space=0.3 if lines else 0.05)
+        brief = not lines and number % 10 > 0
+        found = assess(make_request(settings, "question"), RECORDS, brief=brief)
+        said = faults(found) + faults_of_words(found)
+        wrong += bool(said)
+        if said or lines:
+            print(f"{number}. {settings}\n   {' '.join(lines_of(found))} {said or ''}")
+        if number % 100 == 0:
+            print(f"{number} asked, {wrong} contradict themselves", flush=True)
+    print(f"{count} asked, {wrong} contradict themselves", flush=True)
+
+
+if __name__ == "__main__":
+    main(int(sys.argv[1]), lines="--lines" in sys.argv)

@@ -9,7 +9,7 @@ import pytest
 from rockfrag import overturns
 from rockfrag.assess.answer import assess_with
 from rockfrag.assess.export import as_json
-from rockfrag.assess.findings import details_of
+from rockfrag.assess.findings import details_of, first_screen
 from rockfrag.assess.request import make_request
 from rockfrag.assess.texts import Text
 from rockfrag.base.errors import InputError
@@ -52,6 +52,29 @@ def test_without_a_depth_or_with_a_measured_restitution_it_is_planar(few):
         answer = assess_with(request, few, brief=True)
         assert not answer.motions.both
         assert "space" in answer.main.sources
+
+
+@pytest.mark.parametrize(
+    "settings",
+    [
+        {**BOX, "pga": "0.02 g"},
+        {"width": "35 cm", "height": "120 cm", "floor": "2/3", "pga": "0.01 g"},
+    ],
+)
+def test_far_below_uplift_it_is_said_not_to_move_in_space_and_on_floors(few, settings):
+    """Statics of each record's own components say it, whatever the number of earthquakes."""
+    request = asked(**settings)
+    answer = assess_with(request, few.at(request.place), brief=True)
+    assert answer.does_not_move
+    assert answer.fraction.upper <= answer.rocking.upper < 0.01
+    likely, *others = first_screen(answer)
+    assert likely.id in (Text.HOW_LIKELY_AT_REST, Text.HOW_LIKELY_FEW_EARTHQUAKES)
+    assert not any(each.id.startswith("how_far") for each in others)
+
+
+def test_no_restitution_is_a_source_where_none_enters(found):
+    assert "restitution" not in found.evidence.shifts
+    assert "restitution" not in found.main.sources
 
 
 @pytest.mark.parametrize("key", ["facing_deg", "base_spread"])

@@ -377,11 +377,11 @@ def test_how_a_scan_stands_is_a_source_until_it_is_measured(tmp_path, few):
     assert blind["model"] < sources(cut)["model"]
     # on few points it loses more in impacts than a cut block
     tolerances = request.objects.under.tolerances
-    assert request.objects.livelier == pytest.approx((0.7 + 1) / 2)
+    assert request.objects.restitution_factor == pytest.approx((0.7 + 1) / 2)
     assert tolerances["restitution"] == pytest.approx(
         0.3 / math.sqrt(12) / 0.85, rel=0.03
     )
-    assert cut.objects.livelier == 1
+    assert cut.objects.restitution_factor == 1
 
 
 ROOT = Path(__file__).resolve().parents[2]

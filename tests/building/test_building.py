@@ -19,6 +19,7 @@ from rockfrag.building.inelastic import (
     respond_hysteretically,
     storey_envelopes,
 )
+from rockfrag.building.model import ShearBuilding
 from rockfrag.building.response import BuildingResponse, find_modes, respond_elastically
 from rockfrag.building.settings import make_building
 
@@ -104,6 +105,22 @@ def test_modal_superposition_equals_the_matrix_exponential(settings, damping, no
     assert np.abs(found.acceleration[1:] - total).max() < 1e-9 * scale
     drift = np.diff(state[:n], axis=0, prepend=0) / np.array(building.heights)[:, None]
     assert np.abs(found.drift - drift).max() < 1e-9 * np.abs(drift).max()
+
+
+@pytest.mark.parametrize("storeys", [1, 2, 7, 40])
+def test_modes_are_those_of_lapack(storeys):
+    """Rotations find what another method finds, of storeys that differ by a factor of 30."""
+    random = np.random.default_rng(storeys)
+    masses, stiffnesses = (
+        scale * np.exp(random.uniform(0, np.log(30), storeys)) for scale in (1e5, 1e8)
+    )
+    building = ShearBuilding(tuple(masses), (3.5,) * storeys, tuple(stiffnesses))
+    squares, vectors = eigh(building.stiffness_matrix(), np.diag(masses))
+    found = find_modes(building)
+    np.testing.assert_allclose(found.frequency, np.sqrt(squares), rtol=1e-10)
+    # what floors take of each mode, whose shape may be next to nothing at the top
+    parts = vectors * (vectors.T @ masses)
+    assert np.abs(found.participation * found.shape - parts).max() < 1e-9
 
 
 def test_modes_take_up_the_whole_mass_and_every_floor_moves_with_the_ground(settings):

@@ -61,6 +61,10 @@ def test_the_synthetic_laboratory_is_reproduced_from_configuration_to_page(
     )
     assert tables["trials"].iloc[0]["edge_retreat_mm"] < 3
     assert tables["rocking"]["right"].iloc[0] > 0.9
+    # what is wrong was a false alarm or missed, on each line
+    wrong = agreement["false_alarms"] + agreement["missed"]
+    counted = (1 - agreement["right"]) * agreement["tests"]
+    np.testing.assert_allclose(wrong, counted, atol=1e-9)
     # votes that are split leave a wider curve than their majority
     beta = tables["fragility"].set_index("who")["beta"]
     assert beta["rockfrag by votes"] > beta["rockfrag"]
@@ -68,6 +72,9 @@ def test_the_synthetic_laboratory_is_reproduced_from_configuration_to_page(
     for said in (
         "% of the outcomes",
         "Whether the object rocked at all",
+        # of one answer a test, beside the mean over repeats above
+        f"{tests['right'].sum()} of {len(tests)} tests are predicted as they happened",
+        "so that its counts may differ by a test or two",
         "simulated, votes",
         r"Simulated over measured PGA of overturning: median \d.*, dispersion \d"
         r".*</strong> Fitted to fractions of plausible trials, .*: median \d.*, dispersion \d",

@@ -1,5 +1,7 @@
 """A museum's export made an inventory: every row is in it or asked about."""
 
+import math
+
 import pytest
 
 from rockfrag.assess.inventory import read_inventory
@@ -106,3 +108,33 @@ def test_an_inventory_is_no_export_and_an_export_is_no_inventory(export, tmp_pat
     path.write_text("Title,Height (cm),Width (cm)\na,90,30\n")
     assert is_export(path)
     assert not is_export(tmp_path / "nowhere.csv")
+
+
+def test_solid_materials_give_masses_and_hollow_ones_none(tmp_path):
+    rows = {
+        "Stele": ("Carrara marble", "H 100 x W 40 x D 20 cm", 0.08 * 2700),
+        "Säule": ("Kalkstein, Farbreste", "Höhe 100 cm, Dm. 20 cm", math.pi * 23),
+        "Figure": ("Lindenholz", "H 100 × B 20 × T 20 cm", 0.04 * 650),
+        # stated, or not to be known: hollow, of two materials, without a depth
+        "Weighed": ("marbre", "H. 100 ; L. 40 ; P. 20 cm ; poids 90 kg", 90),
+        "Bronze": ("bronze", "H 100 x W 40 x D 20 cm", None),
+        "Vase": ("terracotta", "H 45 cm, Diam. 30 cm", None),
+        "Both": ("marble and wood", "H 100 x W 40 x D 20 cm", None),
+        "Based": ("bronze on a marble base", "H 100 x W 40 x D 20 cm", None),
+        "Relief": ("marble", "H 100 x W 40 cm", None),
+        "Unknown": ("mixed media", "H 100 x W 40 x D 20 cm", None),
+    }
+    path = tmp_path / "export.csv"
+    lines = [f'{name},"{rows[name][0]}","{rows[name][1]}"' for name in rows]
+    path.write_text("\n".join(["Title,Medium,Dimensions", *lines]) + "\n")
+    for each in read_export(path):
+        expected = rows[each.name][2]
+        if expected is None:
+            assert each.mass is None, each.name
+        else:
+            assert each.mass == pytest.approx(expected, rel=1e-3), each.name
+    table = inventory_table(read_export(path)).set_index("name")
+    assert float(table["mass_kg"]["Stele"]) == pytest.approx(216)
+    assert table["mass_kg"]["Bronze"] == ""
+    stele = read_export(path)[0]
+    assert stele.understood.endswith("solid Carrara marble of 2700 kg/m³")

@@ -11,7 +11,7 @@ from rockfrag.assess import app
 
 NODE = shutil.which("node")
 SCRIPT = """
-const fields = ["name", "width", "height", "depth", "round"];
+const fields = ["name", "width", "height", "depth", "round"].map((name) => ({ name, key: [name], kind: "text" }));
 const lists = require(process.argv[1])({ measures: {} }, fields);
 const text = require("fs").readFileSync(0, "utf8");
 try { console.log(JSON.stringify(lists.read("export.csv", text, (id) => id))); }

@@ -1,5 +1,7 @@
 """The surface of toppling velocities over size: what it says of sizes, limits and what it was not fitted to."""
 
+from itertools import product
+
 import numpy as np
 import pytest
 
@@ -69,14 +71,35 @@ def test_wider_blocks_need_more_and_higher_ones_of_the_same_slenderness_too():
     assert (np.diff(medians) > 0).all()
 
 
+@pytest.mark.parametrize("standing", STANDINGS)
 @pytest.mark.parametrize("measure", MEASURES)
-def test_larger_rotations_need_more(measure):
+def test_larger_rotations_need_more(standing, measure):
     medians = [
-        toppling_velocity(WIDTHS, HEIGHTS, limit=limit, measure=measure)[0]
+        toppling_velocity(
+            WIDTHS, HEIGHTS, standing=standing, limit=limit, measure=measure
+        )[0]
         for limit in LIMITS
     ]
     slender = INSIDE & (HEIGHTS / WIDTHS >= 2)
-    assert (np.diff([each[slender] for each in medians], axis=0) > -0.02).all()
+    steps = np.diff(np.log([each[slender] for each in medians]), axis=0)
+    # each surface is within its error of the medians, of neighbouring limits much the same
+    assert (steps > -0.02).all()
+    assert (steps.sum(axis=0) > 0.05).all()
+
+
+def test_both_components_rock_a_base_at_less_of_their_mean_than_one_alone_does():
+    """By the geometric mean of both: one of them is above it, and both add up towards the edge of a round base."""
+
+    def rocks(standing: str) -> np.ndarray:
+        medians, _ = toppling_velocity(
+            WIDTHS, HEIGHTS, standing=standing, limit=0.01, measure="pga_g"
+        )
+        return medians[INSIDE]
+
+    plane, square, around = map(rocks, ("plane", "square", "round"))
+    assert (square < plane).all() and (around < square).all()
+    # two equal components at once would lift a round base at 1 / √2
+    assert (around > plane / np.sqrt(2) - 0.1 * plane).all()
 
 
 def test_the_least_rotation_needs_the_acceleration_of_uplift():
@@ -101,8 +124,8 @@ def test_a_million_objects_are_one_look_up():
 
 def test_the_surface_states_its_error():
     assert {key[0] for key in surfaces()} == set(STANDINGS)
-    for standing in STANDINGS:
-        surface = surface_of(standing)
+    for standing, measure in product(STANDINGS, MEASURES):
+        surface = surface_of(standing, 1.0, measure)
         assert 0 < surface.residual < surface.largest < 0.2
         assert 0.02 < surface.earthquakes < 0.1
 

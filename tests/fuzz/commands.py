@@ -1,8 +1,8 @@
-"""Random calls of ``info``, ``catalogue``, ``write`` and ``simulate``, and what their answers may not say.
+"""Random calls of all commands but ``assess`` of one object, and what their answers may not say.
 
 Each call is made in this process with files of its own. Oracles share nothing with what answers: nothing rocks
-below b/h, what falls has rocked, a record written and read again has its peak, and every file of a folder is in
-the list or named with a reason.
+below b/h, what falls has rocked, a record written and read again has its peak, and every file of a folder and
+every object of a list is in the result or named with a reason; probabilities lie within 0 and 1 and their limits.
 """
 
 import contextlib
@@ -19,6 +19,7 @@ import numpy as np
 from rockfrag.base.errors import InputError
 from rockfrag.cli.main import main
 
+from ..conftest import motions_of_noise, write_records
 from .damage import Attempt
 
 GRAVITY = 9.81
@@ -138,11 +139,145 @@ def listed(rng: random.Random, folder: Path) -> list[str]:
     ]
 
 
+def inventory(rng: random.Random, path: Path) -> dict[str, float]:
+    """Write an inventory of blocks on the ground; return b/h of each by its name."""
+    slender, rows = {}, ["name,width,height,depth"]
+    for k in range(rng.randint(1, 4)):
+        width, height = rng.uniform(0.05, 0.6), rng.uniform(0.3, 2.0)
+        name = f"object {k}"
+        deep = f"{width * rng.uniform(1, 2):.4f}m" if rng.random() < 0.2 else ""
+        rows.append(f"{name},{width:.4f} m,{height:.4f} m,{deep}")
+        slender[name] = width / height
+    path.write_text("\n".join(rows) + "\n")
+    return slender
+
+
+def within(row: dict[str, str], name: str) -> bool:
+    """Whether a probability of a row lies within 0 and 1, and within its limits."""
+    value = float(row[name])
+    low, high = float(row[f"{name}_lower"]), float(row[f"{name}_upper"])
+    return 0 <= low <= value * (1 + 1e-9) and value <= high * (1 + 1e-9) <= 1 + 2e-9
+
+
+def after_an_earthquake(rng: random.Random, folder: Path) -> list[str]:
+    """List objects after typed levels of shaking."""
+    records = write_records(folder, motions_of_noise(6))
+    slender = inventory(rng, folder / "list.csv")
+    pga = rng.uniform(0.02, 0.8)
+    words = ["after", folder / "list.csv", "--pga", f"{pga:.4f}g"]
+    if rng.random() < 0.5:
+        words += ["--pgv", f"{100 * pga * rng.uniform(0.6, 1.4):.2f}cm/s"]
+    status, _, err = called(*words, "--record", records, "--output", folder / "out")
+    if status:
+        raise InputError(err.strip())
+    with (folder / "out" / "after.csv").open(newline="", encoding="utf-8") as file:
+        rows = list(csv.DictReader(file))
+    wrong = []
+    if sorted(row["name"] for row in rows) != sorted(slender):
+        wrong.append("the list has other objects than the inventory")
+    chances = [float(row["probability_fell"]) for row in rows]
+    if chances != sorted(chances, reverse=True):
+        wrong.append("what fell most probably is not first")
+    for row, fell in zip(rows, chances, strict=True):
+        both = fell + float(row["probability_rocked_and_stands"])
+        if not within(row, "probability_fell") or not both <= 1 + 1e-9:
+            wrong.append(f"{row['name']}: probabilities {row}")
+        # levels that are typed are known; a property may be a tenth smaller
+        if pga < 0.7 * slender[row["name"]] and fell > 0.01:
+            wrong.append(f"{row['name']} fell with {fell} far below b/h")
+    return wrong
+
+
+def ranked(rng: random.Random, folder: Path) -> list[str]:
+    """Rank an inventory with the probability in 50 years."""
+    records = write_records(folder, motions_of_noise(6))
+    slender = inventory(rng, folder / "list.csv")
+    words = ["assess", folder / "list.csv", "--pga", f"{rng.uniform(0.1, 0.6):.3f}g"]
+    words += ["--return-period", rng.choice((72, 475)), "--record", records]
+    status, out, err = called(*words, "--output", folder / "out")
+    if status:
+        raise InputError(err.strip())
+    with (folder / "out" / "inventory.csv").open(newline="", encoding="utf-8") as file:
+        rows = list(csv.DictReader(file))
+    wrong = []
+    if sorted(row["name"] for row in rows) != sorted(slender):
+        wrong.append("the list has other objects than the inventory")
+    if any(name not in out for name in slender):
+        wrong.append("an object is not on the screen")
+    for row in rows:
+        if not within(row, "probability") or not within(row, "fraction"):
+            wrong.append(f"{row['name']}: {row}")
+        if float(row["fraction"]) > float(row["fraction_rocking"]) + 1e-9:
+            wrong.append(f"{row['name']} topples more often than it rocks")
+    parts = sum(float(row["contribution"] or 0) for row in rows)
+    if parts and abs(parts - 1) > 1e-6:
+        wrong.append(f"contributions add up to {parts}")
+    with (folder / "out" / "together.csv").open(newline="", encoding="utf-8") as file:
+        rates = [float(row["annual_rate"]) for row in csv.DictReader(file)]
+    if rates != sorted(rates, reverse=True):
+        wrong.append("more objects topple together oftener than fewer")
+    return wrong
+
+
+def collected(rng: random.Random, folder: Path) -> list[str]:
+    """Make an inventory of a museum's export."""
+    texts = ["H. 30 cm; W. 12 cm", "30 x 12 x 10 cm", "unknown", "", "Diam. 12 cm"]
+    count = rng.randint(1, 12)
+    rows = ["Title,Dimensions"]
+    rows += [f'"vase {k}","{rng.choice(texts)}"' for k in range(count)]
+    export, table, each = (folder / f"{n}.csv" for n in ("export", "list", "each"))
+    export.write_text("\n".join(rows) + "\n")
+    status, out, err = called(
+        "collection", export, "--output", table, "--understood", each
+    )
+    with each.open(newline="", encoding="utf-8") as file:
+        understood = list(csv.DictReader(file))
+    listed_rows = []
+    if table.exists():
+        with table.open(newline="", encoding="utf-8") as file:
+            listed_rows = list(csv.DictReader(file))
+    wrong = []
+    if len(understood) != count:
+        wrong.append(f"of {count} objects {len(understood)} are accounted for")
+    asked = [
+        row for row in understood if any("give" in (v or "") for v in row.values())
+    ]
+    if not len(listed_rows) <= count - (0 if not asked else 1):
+        wrong.append("what is asked is in the list too")
+    names = {row["name"] for row in listed_rows}
+    for row in listed_rows:
+        if not (float(row["width_m"]) > 0 and float(row["height_m"]) > 0):
+            wrong.append(f"{row['name']} has no size")
+    if len(names) != len(listed_rows) or status not in (0, 1, 2) or not out + err:
+        wrong.append(f"status {status}: {out}{err}")
+    return wrong
+
+
+def played(rng: random.Random, folder: Path) -> list[str]:
+    """Write a page in which a body rocks, which loads nothing."""
+    file, page = folder / "record.txt", folder / "page.html"
+    record(rng, file)
+    words = ["play", file, "--unit", "g", "--output", page]
+    words += ["--body", f"{rng.uniform(10, 60):.1f}cm", f"{rng.uniform(0.5, 2):.2f}m"]
+    if rng.random() < 0.4:
+        words += ["--pedestal", "70cm", "0.5m"]
+    status, _, err = called(*words)
+    if status:
+        raise InputError(err.strip())
+    text = page.read_text(encoding="utf-8")
+    loads = re.findall(r"(?:src|href)=[\"'](?!data:|#|blob:)([^\"']+)", text)
+    return [f"loads {loads}"] if loads or "default-src 'none'" not in text else []
+
+
 CALLS: tuple[Callable[[random.Random, Path], list[str]], ...] = (
     simulated,
     simulated,
     written_and_read,
     listed,
+    after_an_earthquake,
+    ranked,
+    collected,
+    played,
 )
 
 

@@ -206,6 +206,18 @@ def test_the_changelog_dates_every_version():
     )
 
 
+def test_the_changelog_is_for_a_user_to_read():
+    """One version had 11 000 words under one date, and none of the headings of Keep a Changelog."""
+    text = (ROOT / "CHANGELOG.md").read_text(encoding="utf-8")
+    versions = text.split("\n## ")[1:]
+    assert versions[0].startswith("Unreleased\n")
+    for version in versions:
+        headings = re.findall("^### (.*)$", version, re.MULTILINE)
+        kept = ["Added", "Changed", "Deprecated", "Removed", "Fixed", "Security"]
+        assert headings and headings == [name for name in kept if name in headings]
+        assert len(version.splitlines()) < 150
+
+
 def test_forms_for_issues_ask_for_something():
     forms = sorted((ROOT / ".github" / "ISSUE_TEMPLATE").glob("*.yml"))
     assert len(forms) >= 4

@@ -98,7 +98,12 @@ def test_a_page_explains_the_terms_that_it_uses_and_no_others():
     # as words of their own
     assert set(terms_used("The PGAs of P&NP")) == set()
     assert set(terms_used("PGA and beta")) == {"PGA, PGV, PGD"}
-    assert all(meaning.endswith(".") for meaning in TERMS.values())
+    for language, terms in TERMS.items():
+        assert all(meaning.endswith(".") for meaning in terms.values())
+        assert terms_used(" ".join(terms), language).keys() == terms.keys()
+    # a page in another language is not explained in English
+    assert "PGA, PGV, PGD" in terms_used("PGA", "it")
+    assert not terms_used("PGA amplitude", "xx")
 
 
 def test_a_page_is_printed_beside_itself(tmp_path: Path):

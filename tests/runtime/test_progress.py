@@ -43,6 +43,15 @@ def test_a_terminal_has_one_line_that_is_written_over():
     assert text.count("\n") == 1 and text.count("\r") == 20
 
 
+def test_work_that_cannot_be_counted_is_said_in_percent():
+    now = 0.0
+    stream = io.StringIO()
+    say = progress_line("of it", stream, lambda: now, in_percent=True)
+    now = 12.0
+    say(0.25, 1.0)
+    assert stream.getvalue() == "25 % of it, 12 s, about 36 s left\n"
+
+
 def test_times_are_said_as_people_say_them():
     assert [in_words(s) for s in (7.6, 99, 150, 7 * 3600)] == [
         "8 s",
@@ -60,6 +69,12 @@ def test_a_block_that_lasts_gives_a_sign_of_life(monkeypatch):
         while not stream.getvalue() and time.monotonic() < deadline:
             time.sleep(0.005)
     assert stream.getvalue().startswith("still simulating (0 s so far)")
+    stream = io.StringIO()
+    with sign_of_life("still simulating", stream, expected=40):
+        deadline = time.monotonic() + 5
+        while not stream.getvalue() and time.monotonic() < deadline:
+            time.sleep(0.005)
+    assert "(0 s so far, about 40 s left)" in stream.getvalue()
     quick = io.StringIO()
     with sign_of_life("still simulating", quick):
         pass

@@ -16,6 +16,7 @@ from scipy import special
 from rockfrag.assess.hazard.curve import PGA, PGV, HazardCurve
 from rockfrag.base.errors import InputError
 from rockfrag.cli.main import main
+from rockfrag.survival.constrained_page import page_of
 from rockfrag.survival.reweight import SAMPLES, Reweighted, constrain, reweight, scaled
 from rockfrag.survival.site import (
     Age,
@@ -27,6 +28,7 @@ from rockfrag.survival.site import (
     read_branches,
     read_site,
 )
+from rockfrag.words.catalogue import TEXTS
 
 from ..assess.samples import openquake_csv
 from ..case_tables import case_tables
@@ -223,6 +225,38 @@ def test_answer_lines_page_json_and_tables(site, capsys):
     assert weights["weight"].tolist() == pytest.approx(after)
     curves = pd.read_csv(folder / "Hill-curves.csv")
     assert (curves["mean_after"] <= curves["mean_before"]).all()
+
+
+def test_lines_and_page_of_a_site_speak_italian(site, capsys):
+    status, said = run(site, capsys, "--language", "it")
+    assert status == 0
+    first, *_, last = said.out.splitlines()
+    assert first.startswith("Pericolosità") and "in meno" in first
+    assert "rock A dice di più" in said.out and last.startswith("Limiti")
+    page = (site.parent / "out" / "Hill.html").read_text(encoding="utf-8")
+    assert '<html lang="it"' in page and "Quale oggetto decide" in page
+    assert "oggetti che resistono al 25 % in più" in page
+    # nothing of what the page says in English is left
+    english = json.loads((TEXTS / "en.json").read_text(encoding="utf-8"))
+    for id, text in english.items():
+        if id.startswith("site_") and isinstance(text, str):
+            longest = max(re.split(r"{\w+}", text), key=len).strip()
+            assert len(longest) < 9 or longest not in page, id
+    # numbers for programs are the same in every language
+    assert json.loads((site.parent / "out" / "Hill.json").read_text())["limits"]
+
+
+def test_an_unknown_language_is_refused_before_anything_is_written(site, capsys):
+    status, said = run(site, capsys, "--language", "tlh")
+    assert status == 2 and "no texts in 'tlh'" in said.err
+    assert not (site.parent / "out").exists()
+
+
+def test_a_table_that_is_cut_says_so_in_the_language_of_its_page():
+    branches = made_branches(*np.linspace(0.5, 2.0, 501))
+    found = constrain(Site("here", tuple(branches), (rock(3000),)))
+    assert "The first 500 of 501; here-weights.csv has all." in page_of(found)
+    assert "Le prime 500 di 501" in page_of(found, "it")
 
 
 @pytest.mark.parametrize(("file", "old", "new", "sentence"), CASES["refused"])

@@ -96,7 +96,9 @@ def _told_of(shape: Shape, objects: Standing) -> Standing:
     scan, _ = make_scan(shape, {}, None)
     usual = {**objects.under.tolerances, "restitution": ON_POINTS["restitution"]}
     under = replace(objects.under, tolerances=usual)
-    return Scanned(scan.block(), objects.plane, under, ON_POINTS["livelier"], scan=scan)
+    return Scanned(
+        scan.block(), objects.plane, under, ON_POINTS["restitution_factor"], scan=scan
+    )
 
 
 def _true_scan(shape: Shape, told: Standing, seed: int, outside: float) -> Standing:
@@ -108,7 +110,9 @@ def _true_scan(shape: Shape, told: Standing, seed: int, outside: float) -> Stand
         middle * (tolerance(u) / middle) ** outside
     )
     way = dict(draw_arrangements(shape, unknowns, 64, seed).table.iloc[0])
-    return replace(told, block=body_of(shape, way), livelier=way["restitution_ratio"])
+    return replace(
+        told, block=body_of(shape, way), restitution_factor=way["restitution_ratio"]
+    )
 
 
 def _true_place(place: Place, random: np.random.Generator) -> Place:
@@ -280,7 +284,7 @@ def _drawn(
     else:
         truth = replace(
             told,
-            livelier=1
+            restitution_factor=1
             + told.under.tolerances["restitution"] * random.standard_normal(),
         )
     z = random.standard_normal(2)

@@ -264,6 +264,13 @@ def test_pure_rocking_is_judged_by_friction_and_normal_force():
     assert finding(57, smooth) is FOR
     assert finding(57, smooth.assign(friction_demand=0.5)) is OPEN
     assert finding(57, smooth.assign(friction_demand=1.5)) is AGAINST
+    # where the ground gives way under both contacts no friction is enough, which is no number
+    for endless in (np.inf, [np.inf, 0.3] * (len(smooth) // 2)):
+        table = hypothesis_table(
+            Evidence(smooth.assign(friction_demand=endless), "measured")
+        )
+        words = str(table.set_index("number").loc[57].to_dict())
+        assert "none is enough in" in words and "median inf" not in words
     opened = hypothesis_table(
         Evidence(smooth.assign(least_normal_force_n=-0.1), "measured")
     )

@@ -98,15 +98,20 @@ def after_json(collection: ShakenCollection) -> str:
         "rockfrag": __version__,
         "expected_falls": collection.expected_falls,
         "ground": [_ground_data(each.ground) for each in collection.objects],
+        "ground_then": [_ground_data(each.ground_then) for each in collection.objects],
         "objects": json.loads(table.to_json(orient="records", double_precision=15)),
         "beyond_the_map": list(collection.beyond),
+        "beyond_the_second_map": list(collection.then_beyond),
         "faults": list(collection.faults),
         "said": catalogue().lines(_answer(collection)),
     }
     return json.dumps(answer, indent=2, ensure_ascii=False, allow_nan=False) + "\n"
 
 
-def _ground_data(ground: GroundShaking) -> dict[str, object]:
+def _ground_data(ground: GroundShaking | None) -> dict[str, object] | None:
+    """The shaking of a place as JSON writes it: a number that is not known is null; null where none is known."""
+    if ground is None:
+        return None
     numbers = {
         name: None if math.isnan(value) else value
         for name, value in vars(ground).items()
@@ -124,35 +129,45 @@ def _answer(collection: ShakenCollection) -> list[Finding]:
         said = [finding("after_first", name=first[0].request.name, n=len(first))]
     expected, count = two(collection.expected_falls), len(objects)
     said.append(finding("after_expected", expected=expected, count=count))
-    said.append(_ground_said(objects))
+    said.append(_ground_said([each.ground for each in objects]))
+    again = [each.ground_then for each in objects if each.ground_then is not None]
+    if again:
+        said.append(finding("after_then", shaking=_ground_said(again)))
     if collection.beyond:
-        names = ", ".join(collection.beyond[:5])
-        said.append(finding("after_beyond", n=len(collection.beyond), names=names))
+        said.append(_beyond_said("after_beyond", collection.beyond))
+    if collection.then_beyond:
+        said.append(_beyond_said("after_then_beyond", collection.then_beyond))
     if collection.faults:
         said.append(finding("after_faults", n=len(collection.faults)))
     return said
 
 
-def _ground_said(objects: Sequence[ShakenObject]) -> Finding:
-    """The shaking of the places, from the weakest to the strongest in the measure that is known of all."""
-    grounds = [each.ground for each in objects]
-    measures = (
-        ("PGA", "g", [each.pga for each in grounds], grounds[0].pga_spread),
-        ("PGV", "cm/s", [each.pgv for each in grounds], grounds[0].pgv_spread),
-    )
-    name, unit, values, spread = next(
-        each for each in measures if all(math.isfinite(value) for value in each[2])
-    )
+def _beyond_said(text: str, names: Sequence[str]) -> Finding:
+    return finding(text, n=len(names), names=", ".join(names[:5]))
+
+
+def _ground_said(grounds: Sequence[GroundShaking]) -> Finding:
+    """The shaking of places, from the weakest to the strongest, in the measure that is known of most."""
+    measures = {
+        "PGA": ("g", [(each.pga, each.pga_spread) for each in grounds]),
+        "PGV": ("cm/s", [(each.pgv, each.pgv_spread) for each in grounds]),
+    }
+    known = {
+        name: [each for each in places if math.isfinite(each[0])]
+        for name, (_, places) in measures.items()
+    }
+    name = max(known, key=lambda each: len(known[each]))
+    values, spreads = zip(*known[name], strict=True)
     text = "after_shaking" if max(values) > min(values) else "after_shaking_one"
     return finding(
         text,
         source=grounds[0].source,
         measure=name,
-        unit=unit,
+        unit=measures[name][0],
         low=two(min(values)),
         high=two(max(values)),
-        # one standard deviation of ln as a factor up and down
-        factor=two(math.exp(spread)),
+        # one standard deviation of ln as a factor up and down, where it is known least
+        factor=two(math.exp(max(spreads))),
     )
 
 
@@ -189,12 +204,19 @@ def after_page(collection: ShakenCollection, language: str = FIRST) -> str:
         language=texts.language,
         title=texts.say(finding("after_title", n=count)),
         answer=texts.lines(_answer(collection)),
-        how=[texts.text("after_how"), texts.text("after_without")],
+        left_out=collection.faults,
+        how=[texts.text("after_how"), texts.text(_left_out(collection))],
         style=Markup(TEMPLATES.get_template("style.css").render()),
         table=framed(texts.text("after_caption"), head, rows, 5),
         note=texts.text("after_note"),
         made=f"rockfrag {__version__}",
     )
+
+
+def _left_out(collection: ShakenCollection) -> str:
+    """Text of what the list says nothing about; of aftershocks only where none was given."""
+    then = any(each.then is not None for each in collection.objects)
+    return "after_without_then" if then else "after_without"
 
 
 def _under_record(each: ShakenObject) -> Finding:

@@ -19,6 +19,7 @@ from rockfrag.assess.place import Place
 from rockfrag.assess.request import Level, Request
 from rockfrag.motions.intensity import IntensityMeasure
 from rockfrag.outcomes.limit_states import OVERTURNS, ROCKS
+from rockfrag.runtime.progress import Progress
 
 OF_STATICS = 0.1
 """Standard deviation of ln level of what is not known of where rocking begins [-]: contact, centre of gravity. An
@@ -29,6 +30,7 @@ ASKED = {
     "PGV": 20.0,
 }  # A level to ask at [g; cm/s]; curves do not depend on it
 NORMAL_TENTH = 1.2816  # Standard deviations from a median to its tenth
+ROUNDING = 1e-6  # Difference of ln levels that is none [-]
 
 
 @dataclass(frozen=True)
@@ -72,6 +74,7 @@ def object_fragilities(
     measure: IntensityMeasure,
     *,
     on_floor: bool = False,
+    progress: Progress | None = None,
 ) -> tuple[list[ObjectFragility], list[str]]:
     """Find the fragility of each object.
 
@@ -80,6 +83,7 @@ def object_fragilities(
     requests, motions : the objects, and the ground motions by which they are shaken
     measure : PGA or PGV
     on_floor : give the curves in the motion of what each object stands on, as if that were the ground
+    progress : called with the number of objects done and of all
 
     Returns
     -------
@@ -90,7 +94,8 @@ def object_fragilities(
     if on_floor:
         asked = [replace(each, place=Place()) for each in asked]
     found, without = [], []
-    for own, assessed in zip(requests, assess_each(asked, motions), strict=True):
+    answers = assess_each(asked, motions, progress)
+    for own, assessed in zip(requests, answers, strict=True):
         topples = _overturning(assessed)
         if topples is None:
             without.append(own.name)
@@ -123,9 +128,12 @@ def _overturning(found: Assessment) -> LognormalState | None:
 def _rocking(found: Assessment, topples: LognormalState) -> LognormalState:
     """Curve of the level from which motions lift the object; what topples rocked before."""
     lifts = found.outcomes.lifts_from()
-    known = np.log(lifts[np.isfinite(lifts)])
-    if not known.size:
+    ln_lifts = np.log(lifts[np.isfinite(lifts)])
+    if not ln_lifts.size:
         return topples
-    spread = 0.0 if found.measure == PGA and known.std() < 1e-6 else float(known.std())
-    median = min(float(np.exp(np.median(known))), topples.median)
-    return LognormalState(median, math.hypot(spread, OF_STATICS))
+    of_motions = float(ln_lifts.std())
+    # in PGA all motions lift it at one level but for rounding
+    if found.measure == PGA and of_motions < ROUNDING:
+        of_motions = 0.0
+    median = min(float(np.exp(np.median(ln_lifts))), topples.median)
+    return LognormalState(median, math.hypot(of_motions, OF_STATICS))

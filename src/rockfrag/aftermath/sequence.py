@@ -5,16 +5,18 @@ quiet time between them is that of a sequence, whatever the engine. Probabilitie
 draw by draw of what is not known of the object, so that what survived the first is stronger than the usual object.
 """
 
+import math
 from collections.abc import Sequence
+from fractions import Fraction
 
 import numpy as np
 
 from rockfrag.base.arrays import Floats
 from rockfrag.base.errors import InputError
-from rockfrag.motions.processing import interpolate
 from rockfrag.records.motion import Motion
 
 QUIET = 30.0  # Time between both, in which rocking dies out [s]
+FINEST = 20  # Most samples of the joined motion to one of its parts
 
 
 def one_after_the_other(
@@ -41,18 +43,40 @@ def one_after_the_other(
             f"the records of a sequence have {len(first)} and {len(then)} horizontal components; give as many of "
             "both."
         )
-    dt = min(motion.dt for motion in (*first, *then))
+    dt = _common_interval([motion.dt for motion in (*first, *then)])
+    mains = _of_one_length([_sampled(motion, dt) for motion in first])
+    others = _of_one_length([_sampled(motion, dt) for motion in then])
+    rest = np.zeros(round(quiet / dt))
     joined = []
-    for before, after in zip(first, then, strict=True):
-        parts = [
-            motion if motion.dt == dt else interpolate(motion, dt)
-            for motion in (before, after)
-        ]
-        rest = np.zeros(round(quiet / dt))
-        samples = np.concatenate([parts[0].acceleration, rest, parts[1].acceleration])
+    for at, (before, after) in enumerate(zip(first, then, strict=True)):
+        samples = np.concatenate([mains[at], rest, others[at]])
         name = f"{before.name}, then {after.name}"
         joined.append(Motion(samples, dt, name, before.metadata))
     return tuple(joined)
+
+
+def _of_one_length(components: Sequence[Floats]) -> list[Floats]:
+    """Components with zeros at the end of shorter ones, so that what follows begins in all at once."""
+    longest = max(samples.size for samples in components)
+    return [np.pad(samples, (0, longest - samples.size)) for samples in components]
+
+
+def _common_interval(intervals: Sequence[float]) -> float:
+    """Longest interval of which all are multiples [s], but not far shorter than the shortest."""
+    parts = [Fraction(dt).limit_denominator(1_000_000) for dt in intervals]
+    below = math.lcm(*(part.denominator for part in parts))
+    above = math.gcd(*(int(part * below) for part in parts))
+    return max(above / below, min(intervals) / FINEST)
+
+
+def _sampled(motion: Motion, dt: float) -> Floats:
+    """Samples of the straight lines between those of a motion, shape (n,) [m/s²]."""
+    if motion.dt == dt:
+        return motion.acceleration
+    end = motion.dt * (motion.acceleration.size - 1)
+    times = dt * np.arange(math.floor(end / dt * (1 + 1e-12)) + 1)
+    old = motion.dt * np.arange(motion.acceleration.size)
+    return np.asarray(np.interp(times, old, motion.acceleration))
 
 
 def in_either(first: Floats, then: Floats) -> Floats:

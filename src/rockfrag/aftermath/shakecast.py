@@ -21,12 +21,16 @@ COLOURS = {ROCKS: "YELLOW", OVERTURNS: "RED"}
 TO_METRIC = {"PGA": 100.0, "PGV": 1.0}  # From g to % g; PGV in cm/s
 CLASS = "CONTENTS"
 COMPONENT = "SYSTEM"  # The component by which ShakeCast alerts
-LONGEST = {"id": 32, "name": 128, "short": 10, "description": 255}
+LONGEST = {"id": 32, "kind": 10, "name": 128, "short": 10, "description": 255}
 """Characters that its fields hold."""
 
 
 def _facts(fragilities: Sequence[ObjectFragility], kind: str) -> list[dict[str, str]]:
     """What both versions say of each facility."""
+    if not 1 <= len(kind) <= LONGEST["kind"]:
+        raise InputError(
+            f"ShakeCast: the facility type {kind!r} has not 1 to {LONGEST['kind']} letters; give a shorter one."
+        )
     names = identifiers((each.request.name for each in fragilities), "-_")
     rows, taken = [], set[str]()
     for number, each in enumerate(fragilities, start=1):

@@ -21,7 +21,7 @@ from rockfrag.words.findings import Value
 
 CORRELATION = 0.73
 """Correlation of what ln PGA and ln PGV of an earthquake at a place differ by from a prediction [-] (Bradley 2012,
-Bull. Geotech. Seism. Res. 10: 1)."""
+Earthq. Spectra 28: 17)."""
 
 WITHIN_EARTHQUAKE = {"PGA": 0.495, "PGV": 0.552}
 """Standard deviation of ln between places in one earthquake, at magnitudes above 5.5 [-] (Boore and others 2014,

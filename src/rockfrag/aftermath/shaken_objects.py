@@ -60,6 +60,7 @@ class ShakenObject:
     ground : what shook its place
     under_record : id of the text that says what the record itself does to it; empty without one
     then : its assessment at the level of a second shock; None without one
+    ground_then : what shook its place the second time; None where nothing is known of it
     left : where the record, or both, left an object in space that stands; None where that is not known
     """
 
@@ -67,6 +68,7 @@ class ShakenObject:
     ground: GroundShaking
     under_record: str = ""
     then: Assessment | None = None
+    ground_then: GroundShaking | None = None
     left: WhereLeft | None = None
 
     @property
@@ -131,12 +133,14 @@ class ShakenCollection:
     objects : the most likely fallen first, then the most likely moved
     motions : the ground motions by which they were assessed
     beyond : names of the objects in places of which the map says nothing
+    then_beyond : names of those in places of which the map of the second shock says nothing
     faults : what is wrong with the rows that were left out, a sentence each
     """
 
     objects: Sequence[ShakenObject]
     motions: MotionSet
     beyond: Sequence[str] = ()
+    then_beyond: Sequence[str] = ()
     faults: Sequence[str] = ()
 
     @property
@@ -184,59 +188,48 @@ def after_earthquake(
     requests, faults = read_inventory(path, shared or {}, order=order)
     if faults and not (keep_going and requests):
         raise FaultyRows(faults)
-    shaken, beyond = [], []
-    for request in requests:
-        here = ground(request.coordinates)
-        if here is None:
-            beyond.append(request.name)
-        else:
-            shaken.append((_asked(request, here), here))
+    shaken, beyond = _shaken_by(ground, requests)
     if not shaken:
         raise InputError(
             f"{path}: nothing is known of the shaking of any object; the map does not reach their coordinates."
         )
     motions = motion_set(requests[0].records, requests[0].place, Path(records))
-    standing = [request for request, _ in shaken]
-    found = assess_each(standing, motions, progress)
-    again = _again(standing, then, motions, progress)
+    found = assess_each([_asked(*each) for each in shaken], motions, progress)
+    again, beyond_then = _shaken_by(then, [request for request, _ in shaken])
+    found_then = assess_each([_asked(*each) for each in again], motions, progress)
+    second = {
+        each.name: (assessed, here)
+        for (each, here), assessed in zip(again, found_then, strict=True)
+    }
     both = one_after_the_other(recorded, then_recorded) if then_recorded else ()
-    objects = [
-        _shaken_object(each, here, later, (recorded, both))
-        for each, (_, here), later in zip(found, shaken, again, strict=True)
-    ]
+    objects = []
+    for (request, here), assessed in zip(shaken, found, strict=True):
+        later, there = second.get(request.name, (None, None))
+        fate, left = _under_records(request, recorded, both)
+        objects.append(ShakenObject(assessed, here, fate, later, there, left))
     objects.sort(key=lambda each: (each.fell, each.moved), reverse=True)
-    return ShakenCollection(objects, motions, beyond, faults)
+    return ShakenCollection(
+        objects, motions, beyond, beyond_then if then else (), faults
+    )
 
 
-def _again(
-    requests: Sequence[Request],
-    then: Ground | None,
-    motions: MotionSet,
-    progress: Progress | None,
-) -> Sequence[Assessment | None]:
-    """Assess objects at the levels of a second shock; None each without one, and where nothing is known of it."""
-    grounds = [then(each.coordinates) if then else None for each in requests]
-    known = [i for i, ground in enumerate(grounds) if ground is not None]
-    asked = [
-        _asked(requests[i], ground) for i in known if (ground := grounds[i]) is not None
-    ]
-    found = dict(zip(known, assess_each(asked, motions, progress), strict=True))
-    return [found.get(i) for i in range(len(requests))]
+def _shaken_by(
+    ground: Ground | None, requests: Sequence[Request]
+) -> tuple[list[tuple[Request, GroundShaking]], list[str]]:
+    """Objects with what shook their places, and the names of those in places of which nothing is known."""
+    places = [(each, ground(each.coordinates) if ground else None) for each in requests]
+    shaken = [(each, here) for each, here in places if here is not None]
+    return shaken, [each.name for each, here in places if here is None]
 
 
-def _shaken_object(
-    found: Assessment,
-    ground: GroundShaking,
-    then: Assessment | None,
-    records: tuple[Sequence[Motion], Sequence[Motion]],
-) -> ShakenObject:
-    """An object with what the record of the place did to it, or that of both shocks in a row."""
-    first, both = records
-    fate = _under_record(found.request, first, both)
-    left = None
-    if fate == "after_record_rocked":
-        left = _where_left(found.request, both or first)
-    return ShakenObject(found, ground, fate, then, left)
+def _under_records(
+    request: Request, first: Sequence[Motion], both: Sequence[Motion]
+) -> tuple[str, WhereLeft | None]:
+    """What the record of the place, or that of both shocks in a row, does to an object, and where it leaves it."""
+    fate = _under_record(request, first, both)
+    if fate != "after_record_rocked":
+        return fate, None
+    return fate, _where_left(request, both or first)
 
 
 def _under_record(
@@ -310,8 +303,9 @@ def shaken_table(collection: ShakenCollection) -> pd.DataFrame:
     Returns
     -------
     Columns ``rank``, ``name``, ``place``, ``latitude``, ``longitude`` [degrees], ``pga_g``, ``pgv_cm_s``,
-    ``probability_fell`` with its limits, ``probability_rocked_and_stands`` [-], ``look`` and, where a record was
-    given, ``under_the_record``, in space with ``turned_deg`` and ``moved_cm``.
+    ``probability_fell`` with its limits, ``probability_rocked_and_stands`` [-], ``look``; after a second shock
+    ``probability_fell_in_the_first``, ``then_pga_g`` and ``then_pgv_cm_s``; and, where a record was given,
+    ``under_the_record``, in space with ``turned_deg`` and ``moved_cm``.
     """
     texts = catalogue()
     rows = []
@@ -334,6 +328,9 @@ def shaken_table(collection: ShakenCollection) -> pd.DataFrame:
         }
         if each.then is not None and each.found.fraction is not None:
             row["probability_fell_in_the_first"] = each.found.fraction.value
+        if each.ground_then is not None:
+            row["then_pga_g"] = each.ground_then.pga
+            row["then_pgv_cm_s"] = each.ground_then.pgv
         if each.under_record:
             row["under_the_record"] = texts.text(each.under_record)
         if each.left is not None:

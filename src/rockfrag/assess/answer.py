@@ -5,6 +5,7 @@ Docs: ``docs/assess.md``.
 """
 
 import math
+import os
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -16,13 +17,19 @@ from scipy import special
 from rockfrag.assess import outcomes, risk
 from rockfrag.assess.assumed import Moved
 from rockfrag.assess.conversion import Conversion, Site, find_conversion
+from rockfrag.assess.core import choices
 from rockfrag.assess.core.decisions import Decision, decide
 from rockfrag.assess.core.draws import FEW_MEMBERS
-from rockfrag.assess.core.estimates import fill_sides, rate_of
+from rockfrag.assess.core.estimates import fill_order, fill_sides, rate_of
+from rockfrag.assess.core.fractions import fill_counts_at
 from rockfrag.assess.core.hazards import spread_of_quantiles
-from rockfrag.assess.core.likelihood import Likelihood, likelihood_of
 from rockfrag.assess.hazard.curve import PGA, PGV, HazardCurve
-from rockfrag.assess.holding import Trial, can_be_simulated, try_holders
+from rockfrag.assess.holding import (
+    Trial,
+    can_be_simulated,
+    seconds_of_a_holder,
+    try_holders,
+)
 from rockfrag.assess.mitigations import Mitigation, compare
 from rockfrag.assess.motions import MotionSet, motion_set
 from rockfrag.assess.outcomes import Directions, ObjectOutcomes, Shaking
@@ -43,6 +50,7 @@ from rockfrag.fragility.model_error import MODEL_ERRORS
 from rockfrag.motions.intensity import IntensityMeasure
 from rockfrag.outcomes.limit_states import OVERTURNS, ROCKS
 from rockfrag.runtime.machine_code import is_kept
+from rockfrag.runtime.progress import LONG, Meter, in_words
 from rockfrag.system.blocks import Body
 from rockfrag.words.findings import Finding, finding, two
 
@@ -120,7 +128,7 @@ class Assessment:
     def does_not_move(self) -> bool:
         """Whether it is exceptionally unlikely that it rocks at the level, limits included."""
         limit = self.rocking.upper if self.rocking else 1.0
-        return likelihood_of(limit) is Likelihood.EXCEPTIONALLY_UNLIKELY
+        return choices.stays(limit)
 
     # ---- what no line says is computed where a page or a file shows it
 
@@ -251,7 +259,12 @@ class Shaken:
 
 
 def assess(
-    request: Request, records: str | Path = RECORDS, *, brief: bool = False
+    request: Request,
+    records: str | Path = RECORDS,
+    *,
+    brief: bool = False,
+    announce: Callable[[str], None] | None = None,
+    progress: Callable[[float], None] | None = None,
 ) -> Assessment:
     """Assess one object at one place.
 
@@ -260,13 +273,19 @@ def assess(
     request : what is asked
     records : folder of fetched records
     brief : leave out directions and mitigations, as for one line of an inventory
+    announce : called with what a first or a long answer waits for, before it does
+    progress : called with the part of the simulations that is done [-]
 
     Returns
     -------
     The :class:`Assessment`.
     """
     motions = motion_set(request.records, request.place, Path(records))
-    return assess_with(request, motions, brief=brief)
+    plan = plan_for(request, motions, brief=brief, holds=not brief)
+    if announce is not None:
+        for words in waiting_for(request, plan):
+            announce(words)
+    return assessed(request, plan, shake_all([request], plan, progress)[0])
 
 
 LEVELS_OF_HOLDERS = 8
@@ -276,24 +295,30 @@ COMPILING_S = {False: 20, True: 60}
 """About how long kernels compile once on a machine, in a plane and in space [s]."""
 
 
-def waiting_for(request: Request) -> str:
-    """Say what a first answer on a machine waits for.
+def waiting_for(request: Request, plan: Plan) -> list[str]:
+    """Say what a first answer on a machine waits for, and how long one takes that takes long.
 
     Parameters
     ----------
-    request : what is asked
+    request, plan : what is asked, and under which motions
 
     Returns
     -------
-    A sentence; empty where the kernels are compiled.
+    Sentences; none where the kernels are compiled and the answer comes soon.
     """
+    said = []
     in_space = request.objects.in_space
     entries = [integrate_scales] if in_space else [integrate_blocks]
     if request.objects.pedestals:
         entries.append(integrate_stacks)
-    if all(map(is_kept, entries)):
-        return ""
-    return f"compiling once on this machine, about {COMPILING_S[in_space]} s"
+    if not all(map(is_kept, entries)):
+        said.append(f"compiling once on this machine, about {COMPILING_S[in_space]} s")
+    seconds = seconds_of([request], plan) / (os.cpu_count() or 1)
+    if seconds > LONG:
+        said.append(
+            f"this takes about {in_words(seconds)}; fewer records or fewer pedestals take less"
+        )
+    return said
 
 
 def assess_with(
@@ -361,18 +386,54 @@ def plan_for(
     )
 
 
-def shake_all(requests: Sequence[Request], plan: Plan) -> list[Shaken]:
+def seconds_of(requests: Sequence[Request], plan: Plan) -> float:
+    """About how long a core simulates what is asked.
+
+    Parameters
+    ----------
+    requests, plan : as :func:`shake_all` takes them
+
+    Returns
+    -------
+    The time, within a factor of about two [s].
+    """
+    total = 0.0
+    places = 2 * len(requests[0].place.variants())
+    for request in requests:
+        object_ = request.objects
+        arranged = _arrangements(object_, plan)
+        alike = _changes_alike(object_, arranged)
+        compared = _bodies_to_compare(object_, alike, plan)
+        moved = 2 * len(_variants(request, plan)) + places
+        total += plan.shaking.seconds_of(object_) * len(arranged)
+        total += plan.comparing.seconds_of(object_) * len(compared)
+        total += plan.fewest.seconds_of(object_) * moved
+        if plan.holds and plan.level is not None:
+            tried = len(object_.holders_to_try())
+            total += tried * seconds_of_a_holder(plan.shaking, _few_levels(plan))
+    return total
+
+
+def shake_all(
+    requests: Sequence[Request],
+    plan: Plan,
+    progress: Callable[[float], None] | None = None,
+) -> list[Shaken]:
     """Shake objects in one place at once; of each the same results as alone, to the bit.
 
     Parameters
     ----------
     requests : an object each
     plan : motions and levels of that place
+    progress : called with the part of the simulations that is done [-]
 
     Returns
     -------
     What became of each object: in its arrangements, with its changes, on its pad and in one plane.
     """
+    meter = None
+    if progress is not None:
+        meter = Meter(seconds_of(requests, plan), progress)
     objects = [request.objects for request in requests]
     arranged = [_arrangements(object_, plan) for object_ in objects]
     alike = [
@@ -383,9 +444,9 @@ def shake_all(requests: Sequence[Request], plan: Plan) -> list[Shaken]:
         _bodies_to_compare(object_, known, plan)
         for object_, known in zip(objects, alike, strict=True)
     ]
-    arrangements = plan.shaking.outcomes_of_each(objects, arranged)
-    compared = plan.comparing.outcomes_of_each(objects, changed)
-    moved = _moved(requests, plan)
+    arrangements = plan.shaking.outcomes_of_each(objects, arranged, meter)
+    compared = plan.comparing.outcomes_of_each(objects, changed, meter)
+    moved = _moved(requests, plan, meter)
     found = []
     each = zip(objects, arrangements, compared, moved, alike, strict=True)
     for object_, arrangement, change, sides, known in each:
@@ -394,12 +455,14 @@ def shake_all(requests: Sequence[Request], plan: Plan) -> list[Shaken]:
             before = change.pop(_AS_IT_STANDS)
         slides_off = _add_pad(change, object_, plan)
         planar = _in_one_plane(object_, plan)
-        trials = _trials(object_, plan)
+        trials = _trials(object_, plan, meter)
         found.append(
             Shaken(
                 arrangement, sides, before, planar, change, known, trials, slides_off
             )
         )
+    if progress is not None:
+        progress(1.0)
     return found
 
 
@@ -453,17 +516,23 @@ def _in_one_plane(objects: Standing, plan: Plan) -> ObjectOutcomes | None:
     return plan.shaking.outcomes_of([flat])[0]
 
 
-def _trials(objects: Standing, plan: Plan) -> list[Trial]:
-    """What may hold an object, tried under few motions at few levels, as each simulation takes milliseconds."""
+def _trials(objects: Standing, plan: Plan, meter: Meter | None) -> list[Trial]:
+    """What may hold an object, tried."""
     if not plan.holds or plan.level is None:
         return []
+    few = _few_levels(plan)
+    return try_holders(objects, plan.shaking, few, plan.level, meter=meter)
+
+
+def _few_levels(plan: Plan) -> Shaking:
+    """Few motions at few levels, by which holders are compared, as each simulation takes milliseconds."""
+    assert plan.level is not None
     motions = plan.fewer.motions
     if not plan.compares_few:
         motions = motions.thinned().thinned()
-    few = outcomes.make_intensity_levels(
+    return outcomes.make_intensity_levels(
         motions, plan.shaking.measure, [plan.level.value], LEVELS_OF_HOLDERS
     )
-    return try_holders(objects, plan.shaking, few, plan.level)
 
 
 _AS_IT_STANDS = finding("as_it_stands")
@@ -647,6 +716,7 @@ def _governing(request: Request, motions: MotionSet) -> tuple[HazardCurve, ...]:
         return (*others, *velocity)
 
     def scatter(curve: HazardCurve) -> float:
+        """Standard deviation of ln of the levels that first topple the object, in the measure of a curve."""
         shaking = outcomes.make_intensity_levels(motions, curve.measure)
         (found,) = shaking.outcomes_of([request.objects])
         first = found.first_levels()
@@ -669,36 +739,38 @@ def _site_level(request: Request, hazard: HazardCurve | None) -> Level | None:
 
 
 def _counts(now: ObjectOutcomes, level: Level | None) -> tuple[int, int, int] | None:
+    """How many motions are at the level, lift the object, and topple it; None if none was simulated there."""
     if level is None:
         return None
-    levels = now.intensity_levels
-    at = levels.place_of(level.value)
-    allowed = levels.allowed[:, at]
-    if levels.levels[at] != level.value or not allowed.any():
-        return None
-    rocked, fell = now.rocked[allowed, at].sum(), now.overturned[allowed, at].sum()
-    return int(allowed.sum()), int(rocked), int(fell)
+    levels, found = now.intensity_levels, np.zeros(3)
+    tables = map(np.ascontiguousarray, (levels.allowed, now.rocked, now.overturned))
+    fill_counts_at(levels.levels, level.value, *tables, found)
+    total, rocked, fell = map(int, found)
+    return (total, rocked, fell) if total else None
+
+
+def _variants(request: Request, plan: Plan) -> list[Moved[Standing]]:
+    """The object with every property moved to both sides; no restitution enters in space."""
+    idle = {"restitution"} if plan.shaking.motions.both else set()
+    return [each for each in request.objects.variants() if each.name not in idle]
 
 
 def _moved(
-    requests: Sequence[Request], plan: Plan
+    requests: Sequence[Request], plan: Plan, meter: Meter | None
 ) -> list[list[Moved[ObjectOutcomes]]]:
     """Outcomes with every property of body and floor moved by its standard deviation, of each object."""
-    # no restitution enters in space
-    idle = {"restitution"} if plan.shaking.motions.both else set()
-    variants = [
-        [each for each in request.objects.variants() if each.name not in idle]
-        for request in requests
-    ]
+    variants = [_variants(request, plan) for request in requests]
     sides = [side for each in variants for variant in each for side in variant.sides]
-    shaken = iter(plan.fewest.outcomes_of(sides))
+    shaken = iter(plan.fewest.outcomes_of(sides, meter))
     found = [
         [variant.turned(lambda _: next(shaken)) for variant in each]
         for each in variants
     ]
     objects = [request.objects for request in requests]
     for moved in requests[0].place.variants():
-        floors = moved.turned(lambda place: plan.fewest.at(place).outcomes_of(objects))
+        floors = moved.turned(
+            lambda place: plan.fewest.at(place).outcomes_of(objects, meter)
+        )
         for each, lower, upper in zip(found, *floors.sides, strict=True):
             each.append(Moved(moved.name, moved.spread, lower, upper))
     return found
@@ -721,8 +793,7 @@ def _mitigations(
     costs: Mapping[str, float],
 ) -> tuple[Mitigation, ...]:
     """What each change does, the most helpful first."""
-    ways = shaken.arrangements
-    known = {change: ways[way] for change, way in shaken.alike.items()}
+    known = {change: shaken.arrangements[own] for change, own in shaken.alike.items()}
     found = [
         *compare(target, evidence, shaken.before, shaken.changed),
         *compare(target, evidence, evidence.outcomes, known),
@@ -738,15 +809,12 @@ def _mitigations(
             for each in found
         ]
     # changes are ranked by what they do to the same motions, and by what is left where none topples the object
-    found.sort(
-        key=lambda each: (
-            math.isnan(each.factor),
-            np.nan_to_num(each.factor),
-            each.value,
-        )
-    )
+    factors = np.array([each.factor for each in found])
+    values = np.array([each.value for each in found])
+    order = np.zeros(len(found), dtype=np.int64)
     # a level helps by growing, a probability by shrinking
-    return tuple(reversed(found) if target.is_level else found)
+    fill_order(factors, values, target.is_level, order)
+    return tuple(found[place] for place in order)
 
 
 def _shown_safer(shaken: Shaken, helps: Sequence[Mitigation]) -> frozenset[str]:
@@ -756,6 +824,6 @@ def _shown_safer(shaken: Shaken, helps: Sequence[Mitigation]) -> frozenset[str]:
     }
     better = {way for way, each in known.items() if each.shown}
     own = next(iter(shaken.arrangements))
-    if known and all(each.lower > 1 and not each.helps for each in known.values()):
+    if known and all(choices.is_worse(e.lower, e.helps) for e in known.values()):
         better.add(own)
     return frozenset(better)

@@ -39,11 +39,14 @@ from rockfrag.collections.exported_table import (
 from rockfrag.fragility.toppling_velocity import toppling_velocity
 from rockfrag.motions.intensity import IntensityMeasure
 from rockfrag.runtime.progress import Progress
+from rockfrag.words.catalogue import catalogue
+from rockfrag.words.findings import percent
 
 LOWEST, HIGHEST = 0.1, 8.0  # Of the simulated blocks [m]
 SLENDEREST, STOUTEST = 0.06, 1.2  # Width over height of them [-]
 WORST = 1000  # Objects that are simulated
 AT_ONCE = 100_000  # Objects that are interpolated at once, which bounds memory
+KEPT_AT_ONCE = 100  # Assessments that are held in memory at once
 
 NUMBERS = ("width_m", "height_m", "depth_m")
 KNOWN = ("name", *NUMBERS, "round", "floor", "latitude", "longitude", "value")
@@ -58,6 +61,7 @@ BEYOND = 1.5  # Median that stands for one above the highest level, over that le
 NORMAL_TENTH = 1.2816  # Standard deviations from a median to its tenth
 SEED = 58  # Of the objects that are drawn at random
 USUAL_BETA = 0.5  # β where too few motions topple a block to say
+RATE_LEVELS = 60  # levels over which a hazard curve is summed up
 
 
 @dataclass(frozen=True, eq=False)
@@ -113,15 +117,21 @@ class Surface:
         return np.asarray(special.ndtr(np.log(self.level / medians) / betas))
 
     def rates(self, medians: Floats, betas: Floats) -> Floats:
-        """Annual rate of toppling under the hazard [1/year], shape (n,)."""
+        """Annual rate of toppling under the hazard [1/year], shape (n,).
+
+        The rate is linear in the fractions at the levels: a weight is the rate of what topples at one level alone.
+        """
         assert self.hazard is not None
         known = self.hazard.levels
-        levels = np.geomspace(known[0] / 4, known[-1] * 4, 60)
+        # beyond the curve at both ends, where curves of fragility still rise
+        levels = np.geomspace(known[0] / 4, known[-1] * 4, RATE_LEVELS)
+        at_one_level = np.eye(levels.size)
         weights = np.array(
-            [toppling_rate(levels, unit, self.hazard) for unit in np.eye(levels.size)]
+            [toppling_rate(levels, each, self.hazard) for each in at_one_level]
         )
         scores = np.log(levels) - np.log(medians)[:, np.newaxis]
-        return np.asarray(special.ndtr(scores / betas[:, np.newaxis]) @ weights)
+        fractions = special.ndtr(scores / betas[:, np.newaxis])
+        return np.asarray(fractions @ weights)
 
 
 @dataclass(frozen=True)
@@ -138,6 +148,24 @@ class Simulated:
     at_random: int = 0
 
 
+@dataclass(frozen=True)
+class SimulatedObject:
+    """What is kept of the assessment of an object, which itself takes megabytes.
+
+    Attributes
+    ----------
+    request : the object
+    probability : of toppling, under the hazard or at the level [-]
+    median : of its curve, in the unit of the measure; NaN where too few motions topple it
+    fraction : of motions that topple it at the level [-]; NaN without a level
+    """
+
+    request: Request
+    probability: float
+    median: float
+    fraction: float
+
+
 @dataclass(frozen=True, eq=False)
 class CoarseInventory:
     """A table of objects, each with its coarse answer, and the worst of them simulated.
@@ -146,7 +174,7 @@ class CoarseInventory:
     ----------
     table : the rows with ``fraction`` and, with a hazard, ``probability``, ``median`` and ``beta`` of the curve,
         ``simulated`` (NaN where it was not) and ``fault`` (empty where a row could be used)
-    worst : assessments of the worst objects, the worst first
+    worst : the worst objects, the worst first
     bias, scatter : mean and standard deviation of ln (coarse over simulated median) [-], of those drawn at random
         if there are any; NaN without
     fraction_off : by how much nine of ten of their fractions are off at most [-]; NaN without
@@ -155,7 +183,7 @@ class CoarseInventory:
     """
 
     table: pd.DataFrame
-    worst: Sequence[Assessment]
+    worst: Sequence[SimulatedObject]
     bias: float
     scatter: float
     fraction_off: float
@@ -218,8 +246,24 @@ def coarse_inventory(
     others = usable.index.difference(worst)
     drawn = np.random.default_rng(SEED).permutation(others)[: count.at_random]
     asked = [_request(table.loc[i], shared) for i in (*worst, *drawn)]
-    found = assess_each(asked, motions, _further(progress, done, total))
+    found = _simulated(asked, motions, _further(progress, done, total))
     return _joined(table, worst, drawn, found)
+
+
+def _simulated(
+    requests: Sequence[Request], motions: MotionSet, progress: Progress | None
+) -> list[SimulatedObject]:
+    """Assess objects, so many at once that memory does not grow with their number."""
+    found = []
+    for start in range(0, len(requests), KEPT_AT_ONCE):
+        part = requests[start : start + KEPT_AT_ONCE]
+        said = _further(progress, start, len(requests))
+        for each in assess_each(part, motions, said):
+            fraction = math.nan if each.fraction is None else each.fraction.value
+            median = each.predicted.median
+            kept = SimulatedObject(each.request, each.main.value, median, fraction)
+            found.append(kept)
+    return found
 
 
 def _further(progress: Progress | None, before: int, total: int) -> Progress | None:
@@ -396,37 +440,29 @@ def _joined(
     table: pd.DataFrame,
     worst: pd.Index,
     drawn: NDArray[np.int64],
-    found: Sequence[Assessment],
+    found: Sequence[SimulatedObject],
 ) -> CoarseInventory:
     """Put simulated answers beside the coarse ones, and say how far apart they are."""
     rows = [*worst, *drawn]
-    main = [each.main.value for each in found]
     table["simulated"] = math.nan
-    table.loc[rows, "simulated"] = main
+    table.loc[rows, "simulated"] = [each.probability for each in found]
     first = len(worst) if len(drawn) else 0
-    compared = [each for each in found[first:] if math.isfinite(each.predicted.median)]
-    names = [
-        row
-        for row, each in zip(rows[first:], found[first:], strict=True)
-        if math.isfinite(each.predicted.median)
-    ]
-    exact = np.array([each.predicted.median for each in compared])
-    ratio = np.log(table.loc[names, "median"].to_numpy() / exact)
-    off = [
-        abs(coarse - each.fraction.value)
-        for coarse, each in zip(
-            table.loc[rows[first:], "fraction"], found[first:], strict=True
-        )
-        if each.fraction is not None
-    ]
-    ranked = sorted(found[: len(worst)], key=lambda each: each.main.value, reverse=True)
+    beside = table.loc[rows[first:]]
+    exact = np.array([each.median for each in found[first:]])
+    ratio = np.log(beside["median"].to_numpy() / exact)
+    ratio = ratio[np.isfinite(ratio)]
+    off = beside["fraction"] - [each.fraction for each in found[first:]]
+    off = off[np.isfinite(off)].abs()
+    ranked = sorted(
+        found[: len(worst)], key=lambda each: each.probability, reverse=True
+    )
     return CoarseInventory(
         table=table.drop(columns="kind"),
         worst=ranked,
         bias=float(ratio.mean()) if ratio.size else math.nan,
         scatter=float(ratio.std()) if ratio.size else math.nan,
-        fraction_off=float(np.quantile(off, 0.9)) if off else math.nan,
-        compared=len(compared),
+        fraction_off=float(off.quantile(0.9)) if off.size else math.nan,
+        compared=ratio.size,
         faults=int((table["fault"] != "").sum()),
     )
 
@@ -458,5 +494,6 @@ def coarse_lines(found: CoarseInventory) -> list[str]:
             f"{100 * found.fraction_off:.1f} points."
         )
     for rank, each in enumerate(found.worst[:10], start=1):
-        lines.append(f"{rank:4d}  {each.request.name}  {100 * each.main.value:.2g} %")
+        likely = catalogue().say(percent(each.probability))
+        lines.append(f"{rank:4d}  {each.request.name}  {likely}")
     return lines

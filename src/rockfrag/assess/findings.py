@@ -6,15 +6,16 @@ In: an answer. Out: findings, each the id of a text with its numbers. Docs: ``do
 """
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 
 from rockfrag.assess.answer import Assessment
 from rockfrag.assess.assumed import Assumption
+from rockfrag.assess.core import choices
 from rockfrag.assess.core.decisions import Action
-from rockfrag.assess.core.likelihood import likelihood_of
+from rockfrag.assess.core.likelihood import Likelihood
+from rockfrag.assess.core.scales import LARGEST_FACTOR
 from rockfrag.assess.mitigations import Mitigation
-from rockfrag.assess.motions import FEWEST_EARTHQUAKES
-from rockfrag.assess.outcomes import LARGEST_FACTOR, STEPS, fraction_at
+from rockfrag.assess.outcomes import STEPS, fraction_at
 from rockfrag.assess.risk import Estimate
 from rockfrag.assess.sources import SOURCES, parts_of
 from rockfrag.assess.texts import Text
@@ -32,7 +33,6 @@ from rockfrag.words.findings import (
     whole,
 )
 
-HARDLY = 0.1  # Fraction of the motions up to which an object hardly rocks
 MOST_SOURCES = 3  # Sources of uncertainty that are named in a line
 LEAST_PART = 0.05  # Part of the variance from which a source is worth naming [-]
 MOST_ASSUMPTIONS = 3  # Assumptions that are named in a line; the page has all
@@ -47,6 +47,37 @@ PLAUSIBLE_HAZARD: Mapping[str, tuple[float, float]] = {
     "PGV": (0.5, 250.0),
 }
 """Levels of 475 years between which sites lie, by measure, in its unit."""
+
+TEXTS: Mapping[Callable[..., int], tuple[str, ...]] = {
+    choices.likelihood: tuple(step.value for step in Likelihood),
+    choices.how_likely: (
+        *(Text.HOW_LIKELY_FEW_EARTHQUAKES, Text.HOW_LIKELY_AT_REST),
+        *(Text.HOW_LIKELY_HARDLY_ROCKS, Text.HOW_LIKELY),
+    ),
+    choices.chance: ("", Text.AT_MOST, Text.AT_LEAST),
+    choices.how_far: (Text.HOW_FAR, Text.HOW_FAR_FROM, Text.HOW_FAR_BEYOND),
+    choices.in_years: (Text.IN_YEARS, Text.IN_YEARS_AT_MOST),
+    choices.advice: (
+        *(Text.MEASURE_FIRST, Text.SECURE_IT, Text.LEAVE_IT),
+        *(Text.LEAVE_IT_AT_REST, Text.SECURE_UNLESS, Text.LEAVE_UNLESS),
+    ),
+    choices.counted: (Text.COUNTED, Text.COUNTED_SOME),
+    choices.between: (
+        *(Text.FRACTION_OPEN, Text.FRACTION_AT_MOST),
+        *(Text.FRACTION_AT_LEAST, Text.FRACTION_BETWEEN),
+    ),
+    choices.starts: (Text.STARTS_AT, Text.STARTS_BEYOND),
+    choices.over_years: (Text.YEARS_AT_MOST, Text.YEARS_OPEN, Text.YEARS_BETWEEN),
+    choices.reduces: (Text.NONE_LEFT, Text.REDUCES, Text.BEARS_MORE),
+    choices.safest: (Text.SAFEST, Text.NO_SAFEST),
+}
+"""Texts among which each of :mod:`rockfrag.assess.core.choices` chooses by numbers, for the page too."""
+
+
+def _text(choice: Callable[..., int], *numbers: float) -> str:
+    """The text that a choice takes."""
+    return TEXTS[choice][choice(*numbers)]
+
 
 Titled = dict[Finding, list[Finding]]
 """Findings by the title above them."""
@@ -92,7 +123,7 @@ def details_of(found: Assessment, language: str = FIRST) -> list[str]:
 def first_screen(found: Assessment) -> list[Finding]:
     """How likely it topples, how far that is away, how likely in some years, and what to do."""
     if few_earthquakes(found):
-        about = finding(Text.GIVE_EARTHQUAKES, least=FEWEST_EARTHQUAKES)
+        about = finding(Text.GIVE_EARTHQUAKES, least=choices.FEWEST_EARTHQUAKES)
         return [how_likely(found), about]
     said = [how_likely(found)]
     if not (found.fraction is not None and found.does_not_move):
@@ -104,7 +135,7 @@ def first_screen(found: Assessment) -> list[Finding]:
 
 def few_earthquakes(found: Assessment) -> bool:
     """Whether there are too few earthquakes for a verdict."""
-    return len(set(found.counted.earthquakes)) < FEWEST_EARTHQUAKES
+    return choices.are_few(len(set(found.counted.earthquakes)))
 
 
 def _who(found: Assessment) -> dict[str, Value]:
@@ -126,17 +157,19 @@ def how_likely(found: Assessment) -> Finding:
         starts = _amount(found, found.rocks_from)
         return finding(Text.HOW_LIKELY_NO_LEVEL, starts=starts, **_who(found))
     about = {**_who(found), "level": level.amount}
-    if few_earthquakes(found):
+    few, at_rest = few_earthquakes(found), found.does_not_move
+    text = _text(choices.how_likely, few, at_rest, rocking.value)
+    if text == Text.HOW_LIKELY_FEW_EARTHQUAKES:
         return _few(found, fraction, about)
-    if found.does_not_move:
+    if text == Text.HOW_LIKELY_AT_REST:
         about["starts"] = _amount(found, found.rocks_from)
-        return finding(Text.HOW_LIKELY_AT_REST, fraction, **about)
-    text = Text.HOW_LIKELY_HARDLY_ROCKS if rocking.value <= HARDLY else Text.HOW_LIKELY
-    about["likelihood"] = finding(likelihood_of(fraction.value).value)
+        return finding(text, fraction, **about)
+    about["likelihood"] = finding(_text(choices.likelihood, fraction.value))
     return finding(text, fraction, p=_said_chance(fraction), **about)
 
 
 def _few(found: Assessment, fraction: Estimate, about: dict[str, Value]) -> Finding:
+    """The fraction of motions in numbers, where they are of too few earthquakes for an interval."""
     total = len(found.motions.ground)
     topple: Value = percent(fraction.value)
     if found.counts is not None:
@@ -148,41 +181,48 @@ def _few(found: Assessment, fraction: Estimate, about: dict[str, Value]) -> Find
 
 def _said_chance(estimate: Estimate) -> Value:
     """A probability, or its limit where all motions agree."""
-    if estimate.value == 0 and estimate.upper > 0:
-        return finding(Text.AT_MOST, upper=percent(estimate.upper))
-    if estimate.value == 1 and estimate.lower < 1:
-        return finding(Text.AT_LEAST, lower=percent(estimate.lower))
+    text = _text(choices.chance, *_numbers(estimate))
+    if text == Text.AT_MOST:
+        return finding(text, upper=percent(estimate.upper))
+    if text == Text.AT_LEAST:
+        return finding(text, lower=percent(estimate.lower))
     return percent(estimate.value)
+
+
+def _numbers(estimate: Estimate) -> tuple[float, float, float]:
+    """A number and its limits."""
+    return estimate.value, estimate.lower, estimate.upper
 
 
 def how_far(found: Assessment) -> Finding:
     """The level at which half of the motions topple it."""
     half = found.amplitudes[0.5]
-    if not math.isfinite(half.value):
+    text, unit = _text(choices.how_far, half.value, half.upper), found.measure.unit
+    if text == Text.HOW_FAR_BEYOND:
         strongest = float(found.outcomes.intensity_levels.levels[-1])
-        most = finding(Text.QUANTITY, value=two(strongest), unit=found.measure.unit)
-        return finding(Text.HOW_FAR_BEYOND, half, most=most)
-    unit, lower = found.measure.unit, two(half.lower)
+        most = finding(Text.QUANTITY, value=two(strongest), unit=unit)
+        return finding(text, half, most=most)
     middle = finding(Text.QUANTITY, value=two(half.value), unit=unit)
-    if not math.isfinite(half.upper):
-        return finding(Text.HOW_FAR_FROM, half, half=middle, lower=lower)
-    upper = two(half.upper)
-    return finding(Text.HOW_FAR, half, half=middle, lower=lower, upper=upper)
+    about: dict[str, Value] = {"half": middle, "lower": two(half.lower)}
+    if text == Text.HOW_FAR:
+        about["upper"] = two(half.upper)
+    return finding(text, half, **about)
 
 
 def in_years(found: Assessment, probability: Estimate) -> Finding:
     """How likely it topples in the years asked for, by all shaking of the site."""
     years = three(found.request.years)
-    if probability.value == 0 or _is_open(probability):
+    text = _text(choices.in_years, *_numbers(probability))
+    if text == Text.IN_YEARS_AT_MOST:
         upper = percent(probability.upper)
-        return finding(Text.IN_YEARS_AT_MOST, probability, years=years, upper=upper)
+        return finding(text, probability, years=years, upper=upper)
     about = {"p": percent(probability.value), "years": years}
-    return finding(Text.IN_YEARS, probability, **about, **_limits(probability))
+    return finding(text, probability, **about, **_limits(probability))
 
 
 def _is_open(estimate: Estimate) -> bool:
     """Whether so few earthquakes leave every value possible."""
-    return estimate.lower <= 0 and estimate.upper >= 1
+    return choices.is_open(estimate.lower, estimate.upper)
 
 
 def _limits(estimate: Estimate) -> dict[str, Value]:
@@ -196,28 +236,20 @@ def advice(found: Assessment) -> Finding:
         return finding(Text.GIVE_LEVEL)
     decision = found.decision
     assert decision is not None
-    if decision.action is Action.MEASURE:
+    by_hazard = found.probability is not None
+    action = list(Action).index(decision.action)
+    text = _text(choices.advice, action, by_hazard, found.does_not_move)
+    about: dict[str, Value] = {}
+    if text == Text.MEASURE_FIRST:
         what = SOURCES[decision.source].measurement
         assert what is not None
-        cases = whole(10 * decision.chance)
-        return finding(Text.MEASURE_FIRST, estimate, what=what, cases=cases)
-    secure = decision.action is Action.SECURE
-    if found.probability is None:
-        return _by_cost(found, estimate, secure=secure)
-    if secure:
-        return finding(Text.SECURE_IT, estimate)
-    accepted = percent(found.request.accepted)
-    years = three(found.request.years)
-    return finding(Text.LEAVE_IT, estimate, accepted=accepted, years=years)
-
-
-def _by_cost(found: Assessment, fraction: Estimate, *, secure: bool) -> Finding:
-    """What to do without a hazard, where costs decide."""
-    if found.does_not_move:
-        return finding(Text.LEAVE_IT_AT_REST, fraction)
-    text = Text.SECURE_UNLESS if secure else Text.LEAVE_UNLESS
-    worth = fraction.value or fraction.upper
-    return finding(text, fraction, p=percent(worth))
+        about = {"what": what, "cases": whole(10 * decision.chance)}
+    elif text == Text.LEAVE_IT:
+        about = {"accepted": percent(found.request.accepted)}
+        about["years"] = three(found.request.years)
+    elif text in (Text.SECURE_UNLESS, Text.LEAVE_UNLESS):
+        about = {"p": percent(estimate.value or estimate.upper)}
+    return finding(text, estimate, **about)
 
 
 # ---- behind it
@@ -262,9 +294,9 @@ def counted(found: Assessment) -> list[Finding]:
     if found.counts is not None:
         (total, rocked, fell), every = found.counts, len(found.motions.ground)
         about = {"total": total, "rock": rocked, "topple": fell}
-        text = Text.COUNTED
-        if total < every:
-            text, about["every"] = Text.COUNTED_SOME, every
+        text = _text(choices.counted, total, every)
+        if text == Text.COUNTED_SOME:
+            about["every"] = every
         said.append(finding(text, **about))
     if found.conversion is not None and found.conversion.known is not None:
         rock, topple = percent(found.rocking.value), percent(found.fraction.value)
@@ -274,22 +306,23 @@ def counted(found: Assessment) -> list[Finding]:
 
 def between(fraction: Estimate) -> Finding:
     """What of the motions could topple it with all that is not known."""
-    if _is_open(fraction):
-        return finding(Text.FRACTION_OPEN, fraction)
-    if fraction.value == 0:
-        upper = percent(fraction.upper)
-        return finding(Text.FRACTION_AT_MOST, fraction, upper=upper)
-    if fraction.value == 1:
-        lower = percent(fraction.lower)
-        return finding(Text.FRACTION_AT_LEAST, fraction, lower=lower)
-    return finding(Text.FRACTION_BETWEEN, fraction, **_limits(fraction))
+    text = _text(choices.between, *_numbers(fraction))
+    about: dict[str, Value] = {}
+    if text == Text.FRACTION_AT_MOST:
+        about = {"upper": percent(fraction.upper)}
+    elif text == Text.FRACTION_AT_LEAST:
+        about = {"lower": percent(fraction.lower)}
+    elif text == Text.FRACTION_BETWEEN:
+        about = _limits(fraction)
+    return finding(text, fraction, **about)
 
 
 def starts(found: Assessment) -> Finding:
     """Where rocking starts."""
-    if not math.isfinite(found.rocks_from):
-        return finding(Text.STARTS_BEYOND)
-    return finding(Text.STARTS_AT, starts=_amount(found, found.rocks_from))
+    text = _text(choices.starts, found.rocks_from)
+    if text == Text.STARTS_BEYOND:
+        return finding(text)
+    return finding(text, starts=_amount(found, found.rocks_from))
 
 
 def over_years(found: Assessment) -> list[Finding]:
@@ -299,14 +332,14 @@ def over_years(found: Assessment) -> list[Finding]:
         return [finding(Text.NEEDS_HAZARD)]
     accepted = percent(found.request.accepted)
     said = finding(Text.ACCEPTED, accepted=accepted, years=years)
-    if probability.value == 0:
-        upper = percent(probability.upper)
-        none = finding(Text.YEARS_AT_MOST, probability, years=years, upper=upper)
-        return [none, said]
-    about: dict[str, Value] = {"p": percent(probability.value), "years": years}
-    text = Text.YEARS_OPEN
-    if not _is_open(probability):
-        text, about = Text.YEARS_BETWEEN, {**about, **_limits(probability)}
+    text = _text(choices.over_years, *_numbers(probability))
+    about: dict[str, Value] = {"years": years}
+    if text == Text.YEARS_AT_MOST:
+        about["upper"] = percent(probability.upper)
+    else:
+        about["p"] = percent(probability.value)
+    if text == Text.YEARS_BETWEEN:
+        about |= _limits(probability)
     return [finding(text, probability, **about), said]
 
 
@@ -322,18 +355,22 @@ def value_of(found: Assessment, value: float) -> Value:
 def position(found: Assessment) -> list[Finding]:
     """How it stands best, and how it moves."""
     said = []
-    ways = found.by_arrangement
-    if len(set(ways.values())) > 1:
-        ranked = sorted(ways, key=lambda way: ways[way], reverse=_grows(found))
+    arrangements = found.by_arrangement
+    if len(set(arrangements.values())) > 1:
+        ranked = sorted(
+            arrangements, key=lambda way: arrangements[way], reverse=_grows(found)
+        )
         each = [
-            finding(Text.WAY, way=finding(way), value=value_of(found, ways[way]))
+            finding(
+                Text.WAY, way=finding(way), value=value_of(found, arrangements[way])
+            )
             for way in ranked
         ]
         best = ranked[0]
-        if best in found.shown_safer:
-            said.append(finding(Text.SAFEST, way=finding(best), ways=listed(each)))
-        else:
-            said.append(finding(Text.NO_SAFEST, ways=listed(each)))
+        text, about = _text(choices.safest, best in found.shown_safer), {}
+        if text == Text.SAFEST:
+            about["way"] = finding(best)
+        said.append(finding(text, ways=listed(each), **about))
     return [*said, *moves(found)]
 
 
@@ -359,8 +396,8 @@ def helps(found: Assessment) -> list[Finding]:
     """The changes that are shown to help, the best first."""
     if not found.mitigations:
         return [finding(Text.NOTHING_TRIED)]
-    at_rest = found.does_not_move and found.probability is None
-    if found.main.value == 0 or at_rest:
+    by_hazard = found.probability is not None
+    if not choices.needs_change(found.main.value, found.does_not_move, by_hazard):
         return [finding(Text.NO_CHANGE_NEEDED)]
     shown = [change for change in found.mitigations if change.shown][:MOST_CHANGES]
     said = [mitigation(found, change) for change in shown]
@@ -385,9 +422,9 @@ def _whole_percent(part: float) -> Finding:
 
 def mitigation(found: Assessment, change: Mitigation) -> Finding:
     """What a change does that is shown to help."""
-    if change.factor == 0:
-        return finding(Text.NONE_LEFT, change=change.change)
-    text = Text.BEARS_MORE if _grows(found) else Text.REDUCES
+    text = _text(choices.reduces, change.factor, _grows(found))
+    if text == Text.NONE_LEFT:
+        return finding(text, change=change.change)
     return finding(text, change=change.change, **_reduction(change))
 
 
@@ -425,7 +462,7 @@ def uncertainty(found: Assessment) -> list[Finding]:
 
 def worth_measuring(found: Assessment) -> list[Finding]:
     """What each measurement would buy: in how many cases it decides, of those that may."""
-    if found.decision is None:
+    if found.decision is None or few_earthquakes(found):
         return []
     said = [
         finding(
@@ -506,6 +543,7 @@ def _has_worst_direction(found: Assessment) -> bool:
 
 
 def _sliding(found: Assessment) -> Finding:
+    """What friction does: the fraction that topples with it and without it."""
     friction = found.request.objects.friction
     if friction is None or found.fraction is None or math.isnan(found.sliding_fraction):
         return finding(Text.DOES_NOT_SLIDE)
@@ -567,6 +605,7 @@ def quality_flags(found: Assessment) -> list[Value]:
 
 
 def _hazard_flags(found: Assessment) -> list[Finding]:
+    """What looks wrong with the hazard curve: rates and levels that no site has."""
     hazard, asked = found.hazard, found.request.level
     if hazard is None:
         return []
@@ -583,6 +622,7 @@ def _hazard_flags(found: Assessment) -> list[Finding]:
 
 
 def _velocity_flags(found: Assessment) -> list[Finding]:
+    """What is wrong with the site's PGV over the measure, where the motions hold none like it."""
     about = found.conversion
     if about is None or about.known is None or found.level is None:
         return []

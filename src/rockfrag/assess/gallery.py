@@ -96,6 +96,7 @@ class _Layout:
         return math.isfinite(self.inventory.found[0].request.value)
 
     def page(self) -> str:
+        """The page of all objects as HTML."""
         inventory, joint, texts, years = (
             self.inventory,
             self.joint,
@@ -139,6 +140,7 @@ class _Layout:
     def _figure(
         self, name: str, words: tuple[Text, Text], draw: Callable[[], Figure]
     ) -> FigureSpec:
+        """A figure with its description and caption in the page's language."""
         alt, caption = words
         below = self.texts.say(finding(caption, years=three(self.years)))
         return FigureSpec(name, self.texts.text(alt), below, draw)
@@ -158,6 +160,7 @@ class _Layout:
         return Finding(self.texts.say(first_one), self.texts.say(most))
 
     def _ranking(self) -> Section:
+        """Which objects add most to the expected loss, and what helps each."""
         texts, objects = self.texts, self.joint.objects
         parts = objects.set_index("name")["contribution"]
         rows = []
@@ -188,22 +191,29 @@ class _Layout:
             for name, title in titles.items()
         ]
         caption = texts.text(Text.RANKING_CAPTION)
-        table = table_html(pd.DataFrame(rows), columns, caption, "inventory.csv")
+        table = table_html(
+            pd.DataFrame(rows),
+            columns,
+            caption,
+            "inventory.csv",
+            language=texts.language,
+        )
         top = objects.iloc[0]
-        told = finding(Text.ADDS_MOST, name=str(top["name"]))
+        message = finding(Text.ADDS_MOST, name=str(top["name"]))
         if math.isfinite(top["contribution"]):
             text = Text.ADDS_MOST_LOSS if self.valued else Text.ADDS_MOST_NUMBER
             part = percent(top["contribution"])
-            told = finding(text, name=str(top["name"]), part=part)
+            message = finding(text, name=str(top["name"]), part=part)
         title = texts.text(Text.RANKING_TITLE)
-        return Section("ranking", title, texts.say(told), (), [table])
+        return Section("ranking", title, texts.say(message), (), [table])
 
     def _numbers(self, figures: Sequence[FigureSpec]) -> Section:
+        """How many objects topple in one earthquake, and how often."""
         texts, numbers = self.texts, self.joint.numbers
         most, rate = int(numbers["at_least"].max()), numbers["annual_rate"].iloc[-1]
-        told = finding(Text.NONE_TOPPLES)
+        message = finding(Text.NONE_TOPPLES)
         if rate:
-            told = finding(Text.NUMBERS_TOGETHER, count=most, years=two(1 / rate))
+            message = finding(Text.NUMBERS_TOGETHER, count=most, years=two(1 / rate))
         chances = [f"probability{end}" for end in ("", "_lower", "_upper")]
         shown = numbers.assign(
             rate=numbers["annual_rate"].map("{:.2g}".format), **100 * numbers[chances]
@@ -221,20 +231,21 @@ class _Layout:
         return Section(
             "numbers",
             texts.text(Text.NUMBERS_TITLE),
-            texts.say(told),
+            texts.say(message),
             [texts.text(Text.NUMBERS_WITHOUT)],
             [table, *figures],
         )
 
     def _correlation(self, drawn: FigureSpec) -> Section:
+        """How alike the objects topple, pair by pair."""
         table = self.joint.correlation
         apart = table.to_numpy()[np.triu_indices(len(table), 1)]
         known = apart[np.isfinite(apart)]
-        told = finding(Text.NO_PAIR)
+        message = finding(Text.NO_PAIR)
         if known.size:
-            told = finding(Text.PAIR_MEDIAN, median=two(float(np.median(known))))
+            message = finding(Text.PAIR_MEDIAN, median=two(float(np.median(known))))
         title = self.texts.text(Text.CORRELATION_TITLE)
-        return Section("correlation", title, self.texts.say(told), (), [drawn])
+        return Section("correlation", title, self.texts.say(message), (), [drawn])
 
 
 def numbers_figure(joint: JointRisk, years: float, texts: Catalogue) -> Figure:

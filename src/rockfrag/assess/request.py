@@ -202,6 +202,7 @@ def _level(settings: Mapping[str, Any]) -> Level | None:
 
 
 def _level_of(key: str, given: Any) -> Level:
+    """The level of shaking that a key gives: PGA, PGV, or a period and its acceleration."""
     measure = {"pga": PGA, "pgv": PGV}.get(key)
     if measure is None:
         period, given = given
@@ -240,6 +241,7 @@ def _return_period(settings: Mapping[str, Any]) -> float | None:
 
 
 def _hazard(settings: Mapping[str, Any], folder: Path) -> tuple[HazardCurve, ...]:
+    """Hazard curves of files, or one through a level and its return period."""
     level, years = _level(settings), _return_period(settings)
     if years is None:
         return tuple(
@@ -256,6 +258,7 @@ def _hazard(settings: Mapping[str, Any], folder: Path) -> tuple[HazardCurve, ...
 
 
 def _records(settings: Mapping[str, Any], folder: Path) -> Records:
+    """The records that a request names, or magnitude and distance by which they are chosen."""
     given = settings.get("records", {})
     return Records(
         paths=tuple(folder / path for path in given.get("paths", [])),

@@ -230,6 +230,7 @@ class Drawn:
         shown, work = np.zeros(values.size), np.zeros(values.size)
         found = np.zeros(estimates.MOTIONS + 1 + len(prediction.sources))
         last, sets = float(prediction.levels[-1]), len(draws.weights)
+        earthquakes = draws.weights.shape[1] - 1
         estimates.fill_estimate(
             target.kind,
             target.years,
@@ -240,12 +241,10 @@ class Drawn:
             work,
             draws.bins,
             sets,
+            earthquakes,
             found,
         )
         value, lower, upper, *sources = found.tolist()
-        if draws.weights.shape[1] < 3 and not target.is_level:
-            # one earthquake says nothing of others
-            lower, upper = 0.0, 1.0
         parts = dict(zip((MOTIONS, *prediction.sources), sources, strict=True))
         known = parts if any(sources) else {}
         return Estimate(value, lower, upper, known, shown)

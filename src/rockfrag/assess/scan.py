@@ -39,7 +39,7 @@ SOURCE_OF = {
 }
 """Sources of uncertainty by the unknown."""
 
-WAYS = 256  # Ways to stand that are drawn
+ARRANGEMENTS = 256  # Ways to stand that are drawn
 
 # Relative standard deviation of a given contact tolerance: of ours
 KNOWN_CONTACT_SPREAD = 0.2
@@ -53,7 +53,7 @@ class Scan:
 
     shape: Shape  # The scan
     # A row each, by rising angle of balance, in its direction or the least
-    ways: pd.DataFrame
+    arrangements: pd.DataFrame
     # Part of the variance of the order by source; the sum is 1
     parts: Mapping[str, float]
     # Column with that angle: ``alpha_deg``, or in space ``least_deg``
@@ -63,8 +63,11 @@ class Scan:
 
     def row_at(self, fraction: float) -> Mapping[str, float]:
         """The way below which a fraction of all balances."""
-        place = min(int(fraction * len(self.ways)), len(self.ways) - 1)
-        return {str(key): float(value) for key, value in self.ways.iloc[place].items()}
+        place = min(int(fraction * len(self.arrangements)), len(self.arrangements) - 1)
+        return {
+            str(key): float(value)
+            for key, value in self.arrangements.iloc[place].items()
+        }
 
     def block(self, fraction: float = 0.5) -> Block:
         """The planar block of such a way."""
@@ -116,9 +119,9 @@ def make_scan(
     open_ones = {
         name: unknown for name, unknown in unknowns.items() if name not in exact
     }
-    ways = draw_arrangements(shape, open_ones, WAYS, 1, exact).table
-    ways["least_deg"] = [
-        _least_angle_deg(shape, way) for way in ways.to_dict("records")
+    arrangements = draw_arrangements(shape, open_ones, ARRANGEMENTS, 1, exact).table
+    arrangements["least_deg"] = [
+        _least_angle_deg(shape, way) for way in arrangements.to_dict("records")
     ]
     contact = {"median": two(median), "spread": 50 if accuracy is None else 30}
     assumed = [
@@ -126,16 +129,19 @@ def make_scan(
         for source in map(SOURCE_OF.__getitem__, open_ones)
         if source != "contact" or given is None
     ]
-    upright = ways[ways["least_deg"] >= LEAST_ANGLE_DEG]
+    upright = arrangements[arrangements["least_deg"] >= LEAST_ANGLE_DEG]
     carries = [name for name in open_ones if name != "direction_deg"]
     space = _ordered(shape, upright, carries, "least_deg") if len(upright) else None
     return replace(
-        _ordered(shape, ways, list(open_ones), "alpha_deg"), space=space
+        _ordered(shape, arrangements, list(open_ones), "alpha_deg"), space=space
     ), assumed
 
 
-def _ordered(shape: Shape, ways: pd.DataFrame, names: list[str], order: str) -> Scan:
-    ordered = ways.sort_values(order, kind="stable", ignore_index=True)
+def _ordered(
+    shape: Shape, arrangements: pd.DataFrame, names: list[str], order: str
+) -> Scan:
+    """A scan whose arrangements are sorted by a column, with the part of each unknown in it."""
+    ordered = arrangements.sort_values(order, kind="stable", ignore_index=True)
     return Scan(shape, ordered, _parts(ordered, names, order), order)
 
 
@@ -149,15 +155,19 @@ def _least_angle_deg(shape: Shape, way: Mapping[Any, Any]) -> float:
     )
 
 
-def _parts(ways: pd.DataFrame, names: list[str], order: str) -> dict[str, float]:
+def _parts(
+    arrangements: pd.DataFrame, names: list[str], order: str
+) -> dict[str, float]:
     """Part of each unknown in the variance of the order: that of its means in bins of equally many ways."""
     values = special.ndtri(
-        (ways[order].rank(method="first").to_numpy() - 0.5) / len(ways)
+        (arrangements[order].rank(method="first").to_numpy() - 0.5) / len(arrangements)
     )
     found = {}
     for name in names:
         bins = (
-            ways[name].rank(method="first", pct=True).to_numpy() * _BINS * 0.999999
+            arrangements[name].rank(method="first", pct=True).to_numpy()
+            * _BINS
+            * 0.999999
         ).astype(int)
         means = np.array([values[bins == k].mean() for k in range(_BINS)])
         # means of few ways differ by chance too

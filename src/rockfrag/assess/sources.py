@@ -10,6 +10,9 @@ Theory: ``docs/assess.md``, "How sure".
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+import numpy as np
+
+from rockfrag.assess.core.estimates import fill_order, fill_parts
 from rockfrag.fragility.model_error import CUT, MODEL_ERRORS, SCAN
 from rockfrag.words.findings import Finding, finding, three
 
@@ -76,11 +79,14 @@ SOURCES: Mapping[str, Source] = {
 
 def parts_of(sources: Mapping[str, float]) -> dict[str, float]:
     """Part of each source in the variance of an interval, the largest first [-]; empty where one has no bound."""
-    total = sum(value**2 for value in sources.values())
-    if not 0 < total < float("inf"):
+    deviations = np.array(list(sources.values()), dtype=np.float64)
+    parts, order = np.zeros(deviations.size), np.zeros(deviations.size, dtype=np.int64)
+    fill_parts(deviations, parts)
+    if not parts.any():
         return {}
-    ranked = sorted(sources, key=lambda name: -sources[name])
-    return {name: sources[name] ** 2 / total for name in ranked}
+    fill_order(-deviations, parts, False, order)
+    names = list(sources)
+    return {names[place]: float(parts[place]) for place in order}
 
 
 MEASUREMENTS: Mapping[str, Source] = {

@@ -3,7 +3,7 @@
 Families of texts are named by what they are of: ``source_…``, ``basis_…`` and ``measurement_…`` of a source of
 uncertainty, ``assumed_…`` and ``why_…`` of an assumption, ``word_…`` and ``meaning_…`` of the glossary.
 
-In and out: names only. Docs: ``docs/assess.md``.
+In: nothing. Out: names only. Docs: ``docs/assess.md``.
 """
 
 from enum import StrEnum, auto
@@ -219,7 +219,7 @@ class Text(StrEnum):
     COLUMN_WITH_IT = auto()
     COLUMN_COST = auto()
     COLUMN_DOES = auto()
-    WAYS_CAPTION = auto()
+    ARRANGEMENTS_CAPTION = auto()
     COLUMN_WAY = auto()
     COLUMN_ESTIMATE = auto()
     SOURCES_TABLE = auto()

@@ -184,6 +184,7 @@ def csv_text(table: pd.DataFrame) -> str:
 
 
 def _as_text(value: Any) -> Any:
+    """A cell that no spreadsheet takes for a formula: what looks like one gets an apostrophe before it."""
     if (
         not isinstance(value, str)
         or len(value) < 2

@@ -112,6 +112,7 @@ def ratio_to_one(name: str, value: object) -> float:
 def _checked(
     name: str, value: object, wanted: str, allowed: Callable[[float], bool]
 ) -> float:
+    """A real number that is allowed, or an error that says what was wanted."""
     number = math.nan
     is_number = isinstance(value, numbers.Real) and not isinstance(
         value, (bool, np.bool_)

@@ -33,6 +33,7 @@ def named_keywords(function: Called) -> Called:
 
     @functools.wraps(function)
     def checked(*arguments: Any, **keywords: Any) -> Any:
+        """Call the function; a keyword that it has not is refused, with the nearest one that it has."""
         for name in keywords:
             if name not in names:
                 near = difflib.get_close_matches(name, known, n=1)

@@ -31,6 +31,7 @@ def short_repr(result: object) -> str:
 
 
 def _shown(value: object) -> str:
+    """A value in few words: tables, arrays and long lists by their size."""
     if isinstance(value, pd.DataFrame):
         return f"<table of {len(value)} rows: {', '.join(map(str, value.columns))}>"
     if isinstance(value, np.ndarray) and value.size > FEW:

@@ -70,7 +70,16 @@ _NUMBER = re.compile(
 
 
 def dimension_of(unit: str) -> str:
-    """Dimension of a unit as it stands in names, such as ``cm`` or ``kg_m2``."""
+    """Dimension of a unit as it stands in names.
+
+    Parameters
+    ----------
+    unit : such as ``cm`` or ``kg_m2``
+
+    Returns
+    -------
+    The dimension, such as ``length``.
+    """
     return next(name for name, units in DIMENSIONS.items() if unit in units)
 
 
@@ -169,13 +178,13 @@ def split_name(name: str) -> tuple[str, str]:
 
     Parameters
     ----------
-    name : of a key or column that ends in a unit of length, mass, moment of inertia or force
+    name : of a key or column that ends in a unit of length, mass, moment of inertia, force or time
 
     Returns
     -------
     The name without its unit, and the unit.
     """
-    for dimension in ("moment of inertia", "mass", "length", "force"):
+    for dimension in ("moment of inertia", "mass", "length", "force", "time"):
         for unit in DIMENSIONS[dimension]:
             ending = f"_{unit.lower()}"
             if name.endswith(ending):

@@ -49,6 +49,7 @@ def _wrong(place: Any, problem: str) -> yaml.MarkedYAMLError:
 
 
 def _mapping(loader: _StrictLoader, node: yaml.MappingNode) -> dict[str, Any]:
+    """A mapping whose keys are words, each given once."""
     seen: set[str] = set()
     for key, _ in node.value:
         if not isinstance(key, yaml.ScalarNode):
@@ -65,6 +66,7 @@ def _mapping(loader: _StrictLoader, node: yaml.MappingNode) -> dict[str, Any]:
 
 
 def _text(loader: _StrictLoader, node: yaml.ScalarNode) -> str:
+    """A text without characters that no text shows."""
     # an escape such as "\x07" can write what the file itself must not hold
     if unfit := unfit_character(node.value):
         raise _wrong(

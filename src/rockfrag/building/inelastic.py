@@ -216,6 +216,7 @@ def _shears(u: Any, memory: Any, moved: Any, masonry: Any, force: Any) -> None:
 def _integrate(
     ground: Any, step: float, parts: int, matrices: Any, masonry: Any
 ) -> Any:
+    """Integrate the equations of motion of a building with masonry (``docs/building.md``); compiled."""
     mass, viscous, inverse = matrices
     corner, strength, law = masonry
     n, samples = mass.size, ground.size

@@ -221,11 +221,14 @@ def stiffnesses_for_period(
     check_positive("building", "first_period", "s", [first_period])
     check_positive("building", "masses", "kg", masses)
     check_positive("building", "heights", "m", heights)
-    shape = 1 / np.asarray(heights, dtype=np.float64)
-    root = 1 / np.sqrt(np.asarray(masses, dtype=np.float64))
-    eigenvalues = np.linalg.eigvalsh(root[:, None] * chain_matrix(tuple(shape)) * root)
-    scale = (2 * math.pi / first_period) ** 2 / eigenvalues[0]
-    return tuple(float(value) for value in scale * shape)
+    # compiled, which other checks need not wait for
+    from rockfrag.building.modes import fill_stiffnesses
+
+    loads = np.array(masses, dtype=np.float64)
+    tall = np.array(heights, dtype=np.float64)
+    found, memory = np.zeros(loads.size), np.zeros((2, loads.size, loads.size))
+    fill_stiffnesses(loads, tall, float(first_period), *memory, found)
+    return tuple(found.tolist())
 
 
 def check_positive(owner: str, what: str, unit: str, values: Sequence[float]) -> None:

@@ -41,17 +41,15 @@ def find_modes(building: ShearBuilding) -> Modes:
     -------
     The :class:`Modes`: frequencies [rad/s], shape (storeys,), and mode shapes, shape (storeys, storeys).
     """
-    mass = np.asarray(building.masses)
-    root = 1 / np.sqrt(mass)
-    # the symmetric form M^-1/2 K M^-1/2 keeps the shapes orthogonal to machine precision
-    eigenvalues, vectors = np.linalg.eigh(
-        root[:, None] * building.stiffness_matrix() * root
-    )
-    frequency = np.sqrt(eigenvalues)
-    shape = root[:, None] * vectors
-    shape /= shape[-1]
-    modal_mass = shape.T**2 @ mass
-    excited = shape.T @ mass
+    # compiled, which the checks of a building need not wait for
+    from rockfrag.building.modes import fill_modes
+
+    n = building.storeys
+    mass, stiffness = np.array(building.masses), np.array(building.stiffnesses)
+    memory, shape, fractions = np.zeros((2, n, n)), np.zeros((n, n)), np.zeros((n, n))
+    frequencies, found = np.zeros((2, n)), np.zeros((2, n))
+    fill_modes(mass, stiffness, *memory, frequencies, shape, fractions, found)
+    frequency = frequencies[0]
     damping = building.damping
     ratios = np.full(building.storeys, damping.ratio)
     if isinstance(damping, RayleighDamping):
@@ -66,8 +64,8 @@ def find_modes(building: ShearBuilding) -> Modes:
     return Modes(
         period=2 * np.pi / frequency,
         shape=shape,
-        participation=excited / modal_mass,
-        mass_fraction=excited**2 / modal_mass / mass.sum(),
+        participation=found[0],
+        mass_fraction=found[1],
         damping=ratios,
     )
 
@@ -121,19 +119,28 @@ class BuildingResponse:
 
 def respond_elastically(building: ShearBuilding, motion: Motion) -> BuildingResponse:
     """Superpose the modes, each exact for a ground acceleration linear between samples."""
-    # compiled, which the checks of a building need not wait for
-    from rockfrag.motions.response_spectra import oscillator_response
+    from rockfrag.building.modes import add_mode
+    from rockfrag.motions.response_spectra import oscillator_matrix
 
     modes = find_modes(building)
     displacement = np.zeros((building.storeys, motion.acceleration.size))
+    # the fractions of all modes sum to one at a floor, so the total accelerations superpose too
     acceleration = np.zeros_like(displacement)
-    for period, damping, fraction in zip(
-        modes.period, modes.damping, (modes.participation * modes.shape).T, strict=True
+    fractions = np.ascontiguousarray((modes.participation * modes.shape).T)
+    for omega, damping, fraction in zip(
+        modes.frequency.tolist(), modes.damping.tolist(), fractions, strict=True
     ):
-        u, _, total = oscillator_response(motion, float(period), float(damping))
-        displacement += np.outer(fraction, u)
-        # the fractions of all modes sum to one at a floor, so the total accelerations superpose too
-        acceleration += np.outer(fraction, total)
+        matrix = oscillator_matrix(omega, damping, motion.dt)
+        add_mode(
+            motion.acceleration,
+            motion.dt,
+            omega,
+            damping,
+            matrix,
+            fraction,
+            displacement,
+            acceleration,
+        )
     return BuildingResponse(
         time=motion.time,
         acceleration=np.vstack([motion.acceleration, acceleration]),

@@ -45,6 +45,7 @@ def make_building(settings: Any, source: str = "building") -> model.ShearBuildin
 
 
 def _building(settings: Mapping[str, Any]) -> model.ShearBuilding:
+    """A building of checked keys, whose numbers must be those of a building."""
     heights, masses = settings["storey_heights_m"], settings["masses_kg"]
     if len(heights) != len(masses):
         raise InputError(

@@ -53,38 +53,25 @@ def read_campaign(
 ) -> Campaign:
     """Read a table of tests, one row a test, and, if there is one, a table of other programs' outcomes by test.
 
-    ``columns`` are ``test`` and ``motion`` (without it the measures of a test name its motion); either
+    Meanings are ``test`` and ``motion`` (without it the measures of a test name its motion); either
     ``overturned`` (yes or no) or ``lower_g`` and ``upper_g``, the largest peak survived and the one that
     overturned, which make two tests; ``group`` where tests of one input motion share a name, else the motion;
     ``amplitude_g`` where motions are scaled to a peak; ``rocked``, ``slid`` (yes or no) and ``which_way`` (text)
-    where the laboratory noted them. ``measures`` has for each intensity measure the columns and numbers whose
-    product it is.
+    where the laboratory noted them.
 
     Parameters
     ----------
-    path, columns : CSV file, and its columns by their meaning
-    measures, other_codes : recipes of the measures, and a file of other programs’ outcomes
+    path : CSV file
+    columns : titles of its columns by their meaning
+    measures : of each intensity measure the columns and numbers whose product it is
+    other_codes : CSV file of other programs’ outcomes
 
     Returns
     -------
     The :class:`Campaign`.
     """
     source = Path(path).name
-    factors = [
-        part for recipe in measures.values() for part in recipe if isinstance(part, str)
-    ]
-    keys = {
-        "label": ("test", "motion", "group", "which_way"),
-        "positive": ("amplitude_g", "lower_g", "upper_g"),
-        "outcome": (MEASURED, *NOTED),
-    }
-    kinds = {
-        columns[key]: kind
-        for kind, some in keys.items()
-        for key in some
-        if key in columns
-    }
-    raw = read_columns(path, dict.fromkeys(factors, "positive") | kinds)
+    raw = read_columns(path, _kinds_of_columns(columns, measures))
     motion = raw[columns["motion"]] if "motion" in columns else ""
     tests = pd.DataFrame({"test": raw[columns["test"]], "motion": motion, "group": ""})
     doubled = tests["test"][tests["test"].duplicated()]
@@ -95,12 +82,7 @@ def read_campaign(
     for name, recipe in measures.items():
         tests[name] = product_of(raw, recipe)
     if "motion" not in columns:
-        # tests that repeat a setting share its name, the measures in words
-        rows = tests[list(measures)].to_numpy().tolist()
-        tests["motion"] = [
-            ", ".join(f"{m} {v:g}" for m, v in zip(measures, row, strict=True))
-            for row in rows
-        ]
+        tests["motion"] = _settings_in_words(tests[list(measures)])
     tests["group"] = raw[columns["group"]] if "group" in columns else tests["motion"]
     for key in NOTED:
         if key in columns:
@@ -111,6 +93,34 @@ def read_campaign(
     return Campaign(
         tests, tuple(measures), _codes(other_codes, columns["test"], tests["test"])
     )
+
+
+def _kinds_of_columns(
+    columns: Mapping[str, str], measures: Mapping[str, Sequence[str | float]]
+) -> dict[str, str]:
+    """What each column of a table of tests holds, by its title, as :func:`read_columns` takes it."""
+    kinds = {
+        part: "positive"
+        for recipe in measures.values()
+        for part in recipe
+        if isinstance(part, str)
+    }
+    meanings = {
+        "label": ("test", "motion", "group", "which_way"),
+        "positive": ("amplitude_g", "lower_g", "upper_g"),
+        "outcome": (MEASURED, *NOTED),
+    }
+    for kind, keys in meanings.items():
+        kinds |= {columns[key]: kind for key in keys if key in columns}
+    return kinds
+
+
+def _settings_in_words(measures: pd.DataFrame) -> list[str]:
+    """Name of each test's setting, its measures in words: tests that repeat a setting share it."""
+    return [
+        ", ".join(f"{name} {value:g}" for name, value in row.items())
+        for row in measures.to_dict("records")
+    ]
 
 
 def _with_outcomes(
@@ -237,6 +247,7 @@ def missing_motions(source: str, names: Sequence[str]) -> list[str]:
 
 
 def _path(pattern: str, name: str) -> str:
+    """The file of a test's motion, of a pattern that holds its key."""
     if KEY not in pattern:
         raise InputError(
             f"{pattern}: expected an .npz archive, or file names with {KEY} where the test's motion is named."
@@ -245,6 +256,7 @@ def _path(pattern: str, name: str) -> str:
 
 
 def _archive(source: str) -> Any:
+    """An open .npz archive of arrays."""
     if not is_file(Path(source)):
         raise InputError(f"{source}: there is no such file; correct the path.")
     try:
@@ -261,6 +273,7 @@ def _archive(source: str) -> Any:
 def _of_archive(
     source: str, names: Sequence[str], unit: str | None, dt: float | None
 ) -> list[Motion]:
+    """The motions of an .npz archive by name, in m/s²."""
     if unit is None or dt is None:
         raise InputError(
             f"{source}: an .npz archive states neither unit nor interval; give unit and dt."

@@ -15,9 +15,18 @@ from rockfrag.cli.assess_commands import (
 )
 
 if TYPE_CHECKING:
+    from rockfrag.aftermath.shakemap import ShakeMap
     from rockfrag.aftermath.shaken_ground import GroundShaking
     from rockfrag.aftermath.shaken_objects import Ground
     from rockfrag.records.motion import Motion
+
+NEEDED = {
+    "map_uncertainty": "shakemap",
+    "then_map_uncertainty": "then_shakemap",
+    "station_km": "station",
+    "then_station": "station",
+}
+"""Options that say something only beside another one."""
 
 UNUSED = ("name", "width", "height", "depth", "mesh", "sa", "hazard", "return_period")
 """Keys of ``statue.yaml`` that are of one object, or of earthquakes to come."""
@@ -43,11 +52,11 @@ def add_after_command(commands: Any) -> None:
     words = "record of a station: one file, or one of each horizontal component"
     ground.add_argument("--station", metavar="RECORD", nargs="+", help=words)
     words = "distance of the station from the objects [km]"
-    ground.add_argument(
-        "--station-km", metavar="KM", type=float, default=0.0, help=words
-    )
+    ground.add_argument("--station-km", metavar="KM", type=float, help=words)
     words = "grid.xml of a second shock, which found the objects as the first left them"
     ground.add_argument("--then-shakemap", metavar="GRID", help=words)
+    words = "uncertainty.xml of the map of the second shock"
+    ground.add_argument("--then-map-uncertainty", metavar="GRID", help=words)
     words = "record of a second shock, with as many files as --station"
     ground.add_argument("--then-station", metavar="RECORD", nargs="+", help=words)
     words = "place of objects without coordinates of their own [degrees]"
@@ -55,7 +64,7 @@ def add_after_command(commands: Any) -> None:
         "--at", metavar=("LATITUDE", "LONGITUDE"), nargs=2, type=float, help=words
     )
     words = "standard deviation of ln of typed --pga and --pgv [-]"
-    ground.add_argument("--sd-ln", metavar="S", type=float, default=0.0, help=words)
+    ground.add_argument("--sd-ln", metavar="S", type=float, help=words)
     add_request_options(command)
     out = command.add_argument_group("the list")
     words = "where page, table and JSON are written"
@@ -71,11 +80,15 @@ def add_after_command(commands: Any) -> None:
 
 # imported when it runs: `rockfrag --help` should not wait for numba
 def _after(options: argparse.Namespace) -> int:
+    """Run ``after``: print what an earthquake did to a collection, and write its files."""
     from rockfrag.aftermath.check_list import after_json, after_lines, write_after
     from rockfrag.aftermath.shaken_objects import after_earthquake
     from rockfrag.assess.inventory import FaultyRows
     from rockfrag.runtime.progress import progress_line
+    from rockfrag.words.catalogue import catalogue
 
+    # an unknown language is refused before anything is written
+    catalogue(options.language)
     about_station = {"unit": options.unit, "dt": options.dt}
     if options.station:
         # the unit of its files, not of records by which objects are shaken
@@ -126,13 +139,23 @@ def _ground_of(
     options: argparse.Namespace, typed: dict[str, Any], about_station: dict[str, Any]
 ) -> "tuple[Ground, tuple[Motion, ...]]":
     """What shook a place, by the one way that the command line gives, and the record if that is one."""
-    ways = [options.shakemap, options.station, typed]
-    if sum(bool(way) for way in ways) != 1:
+    for name, needed in NEEDED.items():
+        if getattr(options, name) is not None and not getattr(options, needed):
+            raise InputError(
+                f"--{name.replace('_', '-')} needs --{needed.replace('_', '-')}."
+            )
+    if options.sd_ln is not None and not typed:
+        raise InputError("--sd-ln is of typed levels; give --pga or --pgv with it.")
+    sources = [options.shakemap, options.station, typed]
+    if sum(bool(source) for source in sources) != 1:
         raise InputError(
             "give what shook the ground in one way: --shakemap, --station, or --pga with --pgv."
         )
     if options.shakemap:
-        return _by_map(options, options.shakemap, options.map_uncertainty), ()
+        from rockfrag.aftermath.shakemap import read_shakemap
+
+        first = read_shakemap(options.shakemap, options.map_uncertainty)
+        return _by_map(options, first), ()
     if typed:
         ground = _typed(options, typed)
         return lambda _: ground, ()
@@ -147,27 +170,34 @@ def _then_of(
     if options.then_shakemap and options.then_station:
         raise InputError("give the second shock by --then-shakemap or --then-station.")
     if options.then_shakemap:
-        return _by_map(options, options.then_shakemap), ()
+        return _by_map(options, _second_map(options)), ()
     if not options.then_station:
         return None, ()
-    if not options.station:
-        raise InputError(
-            "--then-station needs --station, the record of the first shock."
-        )
     recorded, motions = _of_station(options, options.then_station, about_station)
     return lambda _: recorded, motions
 
 
-def _by_map(
-    options: argparse.Namespace, grid: str, uncertainty: str | None = None
-) -> "Ground":
-    """Return the function that reads the shaking at a place off a ShakeMap; no place is that of ``--at``."""
+def _second_map(options: argparse.Namespace) -> "ShakeMap":
+    """Read the map of the second shock, which is not that of the first."""
     from rockfrag.aftermath.shakemap import read_shakemap
+
+    found = read_shakemap(options.then_shakemap, options.then_map_uncertainty)
+    if options.shakemap:
+        first = read_shakemap(options.shakemap)
+        if first.identifier and first.identifier == found.identifier:
+            raise InputError(
+                f"--then-shakemap: {options.then_shakemap} and {options.shakemap} are both of the earthquake "
+                f"{first.identifier}; give the map of the second shock."
+            )
+    return found
+
+
+def _by_map(options: argparse.Namespace, shakemap: "ShakeMap") -> "Ground":
+    """Return the function that reads the shaking at a place off a ShakeMap; no place is that of ``--at``."""
     from rockfrag.aftermath.shaken_ground import mapped_ground
 
-    shakemap = read_shakemap(grid, uncertainty)
-
     def ground(at: tuple[float, float] | None) -> "GroundShaking | None":
+        """Shaking of a place by the map, None where it has no point near."""
         place = at or options.at
         if place is None:
             raise InputError(
@@ -182,31 +212,30 @@ def _by_map(
 def _of_station(
     options: argparse.Namespace, records: Sequence[str], about: dict[str, Any]
 ) -> "tuple[GroundShaking, tuple[Motion, ...]]":
+    """Shaking that a station recorded, and its motions."""
     from rockfrag.aftermath.shaken_ground import recorded_ground
 
-    if not 0 <= options.station_km < math.inf:
-        raise InputError(
-            f"--station-km: expected kilometres, got {options.station_km}."
-        )
-    return recorded_ground(records, options.station_km, **about)
+    away = options.station_km or 0.0
+    if not 0 <= away < math.inf:
+        raise InputError(f"--station-km: expected kilometres, got {away}.")
+    return recorded_ground(records, away, **about)
 
 
 def _typed(options: argparse.Namespace, typed: dict[str, Any]) -> "GroundShaking":
+    """Shaking that the command line states in numbers."""
     from rockfrag.aftermath.shaken_ground import GroundShaking
     from rockfrag.assess.request import make_request
     from rockfrag.words.findings import finding
 
-    if not 0 <= options.sd_ln < 3:
-        raise InputError(
-            f"--sd-ln: expected a number from 0 to 3, got {options.sd_ln}."
-        )
+    spread = options.sd_ln or 0.0
+    if not 0 <= spread < 3:
+        raise InputError(f"--sd-ln: expected a number from 0 to 3, got {spread}.")
     # read and checked as those of one object are
     about = {"width": "1 m", "height": "2 m", **typed}
     level = make_request(about, "rockfrag after").level
     assert level is not None
-    found = GroundShaking(
-        math.nan, math.nan, options.sd_ln, options.sd_ln, source=finding("after_typed")
-    )
+    source = finding("after_typed")
+    found = GroundShaking(math.nan, math.nan, spread, spread, source=source)
     if "pga" not in typed:
         return replace(found, pgv=level.value)
     return replace(found, pga=level.value, pgv=level.pgv)

@@ -6,6 +6,7 @@ import shutil
 import sys
 import textwrap
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from functools import partial
 from itertools import groupby
 from operator import attrgetter
 from pathlib import Path
@@ -100,14 +101,17 @@ class _Option(NamedTuple):
 def _options(keys: Mapping[str, Any], above: str = "") -> Iterator[_Option]:
     """Yield the options of the keys of a schema, and of the keys in them."""
     for key, about in keys.items():
-        if told := about.get("option"):
+        if option := about.get("option"):
             plain = _UNITS.sub("", key)
-            reads = told.get("reads", _reading(about)) | {"help": told["help"]}
-            if word := told.get("metavar"):
+            reads = option.get("reads", _reading(about)) | {"help": option["help"]}
+            if word := option.get("metavar"):
                 reads["metavar"] = tuple(word) if isinstance(word, list) else word
             whole = above + (plain if about.get("quantity") else key)
             yield _Option(
-                told.get("name", plain.replace("_", "-")), whole, told["group"], reads
+                option.get("name", plain.replace("_", "-")),
+                whole,
+                option["group"],
+                reads,
             )
         known = read_schema("known_of_building") if key == "building" else about
         yield from _options(known.get("properties", {}), f"{key}.")
@@ -134,7 +138,7 @@ def _all_options() -> list[_Option]:
 
 
 def add_request_options(parser: argparse.ArgumentParser) -> None:
-    """Add what an object, its place and its motions are told by."""
+    """Add what an object, its place and its motions are stated by."""
     for title, options in groupby(_all_options(), key=attrgetter("group")):
         group = parser.add_argument_group(title)
         for option in options:
@@ -153,6 +157,7 @@ def add_records_option(parser: Any, words: str = "folder of fetched records") ->
 
 # imported when it runs: `rockfrag --help` should not wait for numba
 def _assess(options: argparse.Namespace) -> int:
+    """Run ``assess`` on one object, an inventory, or a large table."""
     from rockfrag.assess.inventory import FaultyRows
 
     given = settings_of(options)
@@ -216,16 +221,22 @@ def _refuse_unused(options: argparse.Namespace) -> None:
 
 
 def _one(options: argparse.Namespace, given: dict[str, Any]) -> int:
-    from rockfrag.assess.answer import assess, waiting_for
+    """Answer for one object: print it, and write what was asked for."""
+    from rockfrag.assess.answer import assess
     from rockfrag.assess.export import as_json
     from rockfrag.assess.findings import quality_flags
+    from rockfrag.runtime.progress import progress_line, sign_of_life
     from rockfrag.words.catalogue import catalogue
 
     texts = catalogue(options.language)
     request = _request(options, given)
-    if wait := waiting_for(request):
-        print(wait, file=sys.stderr)
-    found = assess(request, options.records)
+    say = progress_line("of the simulations", in_percent=True)
+    found = assess(
+        request,
+        options.records,
+        announce=partial(print, file=sys.stderr),
+        progress=lambda part: say(part, 1.0),
+    )
     if not options.json:
         _print_lines(found, options)
     if options.kind:
@@ -235,7 +246,8 @@ def _one(options: argparse.Namespace, given: dict[str, Any]) -> int:
         print(f"warning: {quality_flag}", file=sys.stderr)
     from rockfrag.assess.page import write_answer
 
-    place = write_answer(found, options.output, options.language)
+    with sign_of_life("still writing the page, with directions and rules"):
+        place = write_answer(found, options.output, options.language)
     if options.pdf:
         from rockfrag.report.pdf import print_page
 
@@ -281,6 +293,7 @@ def _usual_words(kind: str, given: Mapping[str, Any]) -> str:
 
 
 def _request(options: argparse.Namespace, given: dict[str, Any]) -> Any:
+    """What the command line asks, with the file of the object if there is one."""
     from rockfrag.assess.request import make_request
     from rockfrag.base.yaml_file import read_yaml
 
@@ -353,6 +366,7 @@ def _pedestals(given: Sequence[Sequence[str]]) -> Any:
 
 
 def _inventory(options: argparse.Namespace, shared: dict[str, Any]) -> int:
+    """Answer for all objects of an inventory."""
     from rockfrag.assess.gallery import write_inventory
     from rockfrag.assess.inventory import assess_inventory, inventory_lines, joint_lines
     from rockfrag.runtime.progress import progress_line
@@ -380,6 +394,7 @@ def _inventory(options: argparse.Namespace, shared: dict[str, Any]) -> int:
 
 
 def _coarse(options: argparse.Namespace, shared: dict[str, Any]) -> int:
+    """Answer for a large table, most objects by a surface through simulated ones."""
     from rockfrag.assess.coarse import Simulated, coarse_inventory, coarse_lines
     from rockfrag.base.files import write_table
     from rockfrag.runtime.progress import progress_line
@@ -409,6 +424,7 @@ def _coarse(options: argparse.Namespace, shared: dict[str, Any]) -> int:
 
 
 def _rules(options: argparse.Namespace) -> int:
+    """Print how rules of thumb do on the objects of an inventory."""
     from rockfrag.assess.rules import rules_study
     from rockfrag.base.files import write_table
     from rockfrag.runtime.progress import progress_line
@@ -431,6 +447,7 @@ def on_command_line(words: str, given: Collection[str] | None = None) -> str:
     names |= {"records": "record", "building.storey_heights": "storey-height"}
 
     def option(found: re.Match[str]) -> str:
+        """The option that stands for a key in a message."""
         key = _UNITS.sub("", found[1])
         whole = key.split(".")[0]
         if given is not None and whole not in {
@@ -481,6 +498,7 @@ def add_app_command(commands: Any) -> None:
 
 # imported when it runs: `rockfrag --help` should not wait for numba
 def _app(options: argparse.Namespace) -> int:
+    """Run ``app``: write the page that computes by itself."""
     from rockfrag.assess.app.writing import write_app
     from rockfrag.assess.motions import motion_set
     from rockfrag.assess.place import Place
@@ -517,8 +535,9 @@ def form_of(settings: Mapping[str, Any], request: Any) -> dict[str, str]:
         )
     form |= {f"pedestal_{key}": str(value) for key, value in pedestal.items()}
     if isinstance(building, Mapping):
-        told = ("storey_height", "material")
-        form |= {key: str(building[key]) for key in told if key in building}
+        asked = {"storey_height": "storey_height", "material": "material"}
+        asked |= {"first_period": "period"}
+        form |= {asked[key]: str(building[key]) for key in asked if key in building}
         if "first_period_s" in building:
             form["period"] = f"{building['first_period_s']} s"
     return (

@@ -24,6 +24,7 @@ def add_collection_command(commands: Any) -> None:
 
 
 def _collection(options: argparse.Namespace) -> int:
+    """Run ``collection``: write an inventory, and say what has to be asked."""
     import pandas as pd
 
     from rockfrag.base.files import csv_text, write_text
@@ -39,9 +40,8 @@ def _collection(options: argparse.Namespace) -> int:
                 "name": [collected.name for collected in objects],
                 "line": [collected.line for collected in objects],
                 "dimensions": [collected.text for collected in objects],
-                "understood": [
-                    collected.dimensions.understood for collected in objects
-                ],
+                "material": [collected.material for collected in objects],
+                "understood": [collected.understood for collected in objects],
                 "others": [
                     "; ".join(collected.dimensions.others) for collected in objects
                 ],

@@ -29,6 +29,8 @@ def add_constrain_command(commands: Any) -> None:
         parser, "folder of fetched records, for objects that are simulated"
     )
     parser.add_argument("--json", action="store_true", help="print the answer as JSON")
+    words = "of page and lines, such as it"
+    parser.add_argument("--language", default="en", help=words)
     fell = parser.add_argument_group("of fallen.csv")
     words = "grid.xml of a ShakeMap, what was known of the shaking before"
     fell.add_argument("--shakemap", metavar="GRID", help=words)
@@ -50,20 +52,23 @@ def add_constrain_command(commands: Any) -> None:
     fell.add_argument("--shared-sd", metavar="S", type=float, help=words)
     words = "standard deviation of ln level from one of like objects to the next"
     fell.add_argument("--own-sd", metavar="S", type=float, help=words)
-    words = "of page and lines, such as it"
-    fell.add_argument("--language", help=words)
     parser.set_defaults(run=_constrain)
 
 
 OF_FALLEN = (
     *("shakemap", "map_uncertainty", "at", "prior_pgv", "prior_pga"),
-    *("slenderness_sd", "shared_sd", "own_sd", "language"),
+    *("slenderness_sd", "shared_sd", "own_sd"),
 )
 """Options that say something of ``fallen.csv`` only."""
 
 
 # imported when it runs: `rockfrag --help` should not wait for numba
 def _constrain(options: argparse.Namespace) -> int:
+    """Run ``constrain``: weigh hazard branches by what stands, or shaking by what fell."""
+    from rockfrag.words.catalogue import catalogue
+
+    # an unknown language is refused before anything is written
+    catalogue(options.language)
     if Path(options.file).suffix.lower() == ".csv":
         return _shaking(options)
     for name in OF_FALLEN:
@@ -76,13 +81,15 @@ def _constrain(options: argparse.Namespace) -> int:
     from rockfrag.survival.site import read_site
 
     found = constrain(read_site(options.file, options.records))
-    place = write_constrained(found, options.output)
-    print(json_of(found) if options.json else "\n".join(lines_of(found)))
+    place = write_constrained(found, options.output, options.language)
+    lines = lines_of(found, options.language)
+    print(json_of(found) if options.json else "\n".join(lines))
     print(place, file=sys.stderr)
     return 0
 
 
 def _shaking(options: argparse.Namespace) -> int:
+    """Say what shaking a table of fallen and standing objects tells."""
     from rockfrag.runtime.progress import progress_line
     from rockfrag.survival.fallen import (
         FROM_ONE_TO_THE_NEXT,
@@ -91,7 +98,6 @@ def _shaking(options: argparse.Namespace) -> int:
         read_fallen,
     )
     from rockfrag.survival.fallen_page import fallen_json, fallen_lines, write_fallen
-    from rockfrag.words.catalogue import FIRST
 
     for name in ("slenderness_sd", "shared_sd", "own_sd"):
         _spread(name, getattr(options, name))
@@ -107,15 +113,15 @@ def _shaking(options: argparse.Namespace) -> int:
         options.records,
         progress_line("groups"),
     )
-    language = options.language or FIRST
-    place = write_fallen(found, options.output, language)
-    lines = fallen_lines(found, language)
+    place = write_fallen(found, options.output, options.language)
+    lines = fallen_lines(found, options.language)
     print(fallen_json(found) if options.json else "\n".join(lines))
     print(place, file=sys.stderr)
     return 0
 
 
 def _spread(name: str, value: float | None) -> None:
+    """Refuse a standard deviation of ln that is none."""
     if value is not None and not 0 <= value <= 2:
         raise InputError(
             f"--{name.replace('_', '-')}: expected a number from 0 to 2, got {value}."
@@ -143,6 +149,7 @@ def _prior(options: argparse.Namespace) -> "Prior":
 
 
 def _mapped(options: argparse.Namespace) -> "Prior":
+    """What a ShakeMap says of the shaking before any object is looked at."""
     from rockfrag.aftermath.shakemap import read_shakemap
     from rockfrag.aftermath.shaken_ground import CORRELATION, mapped_ground
     from rockfrag.survival.shaking_posterior import Prior

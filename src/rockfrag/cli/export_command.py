@@ -38,6 +38,7 @@ def add_export_command(commands: Any) -> None:
 
 # imported when it runs: `rockfrag --help` should not wait for numba
 def _export(options: argparse.Namespace) -> int:
+    """Run ``export``: write fragilities of objects for other programs."""
     from rockfrag.aftermath.component_tables import (
         fragility_rows,
         ned_reference,
@@ -50,6 +51,7 @@ def _export(options: argparse.Namespace) -> int:
     from rockfrag.assess.motions import motion_set
     from rockfrag.base.files import write_table, write_text
     from rockfrag.fragility.exports import write_simcenter
+    from rockfrag.runtime.progress import progress_line
 
     shared = {"floor": options.floor} if options.floor else {}
     requests, faults = read_inventory(options.file, shared)
@@ -63,7 +65,13 @@ def _export(options: argparse.Namespace) -> int:
     measure = read_measure(options.measure, "--measure")
     motions = motion_set(requests[0].records, requests[0].place, Path(options.records))
     folder = Path(options.output)
-    on_floor, without = object_fragilities(requests, motions, measure, on_floor=True)
+    on_floor, without = object_fragilities(
+        requests,
+        motions,
+        measure,
+        on_floor=True,
+        progress=progress_line("objects in the motion of their floors"),
+    )
     for name in without:
         print(
             f"warning: left out: {name}: half of the motions topple it at no level.",
@@ -81,7 +89,8 @@ def _export(options: argparse.Namespace) -> int:
         )
     placed = [each for each in requests if each.coordinates is not None]
     if placed:
-        of_ground, _ = object_fragilities(placed, motions, measure)
+        say = progress_line("objects in the motion of the ground")
+        of_ground, _ = object_fragilities(placed, motions, measure, progress=say)
         kind = options.facility_type
         facilities, curves = shakecast_tables(of_ground, kind)
         write_text(shakecast_xml(of_ground, kind), folder / "shakecast.xml")

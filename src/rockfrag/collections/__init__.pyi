@@ -9,4 +9,5 @@ from .exported_table import (
     inventory_table as inventory_table,
     is_export as is_export,
     read_export as read_export,
+    table_cells as table_cells,
 )

@@ -59,6 +59,7 @@ WITH_BASE = (
     *("con base", "complessivo", "total", "totale", "met sokkel", "totaal", "com base"),
     *("with stand", "with plinth", "with pedestal", "including stand"),
     *("including plinth", "including pedestal", "inkl. sockel", "con peana"),
+    *("incl. plinth", "incl. pedestal", "incl. stand", "including the base"),
 )
 WITHOUT_BASE = (
     *("without base", "excluding base", "ohne sockel", "sans socle"),
@@ -112,6 +113,15 @@ _TERM = re.compile(
     rf"(?P<low>{_ANY_NUMBER})(?:\s*(?:-|\bto\b|\bbis\b|à)\s*(?P<high>{_ANY_NUMBER}))?"
     rf"(?:\s*(?P<unit>{_UNIT})(?![^\W\d_])\.?)?"
     rf"(?:\s*(?P<after>{_ORDER})(?![^\W\d_])\.?(?:\s*(?P<last>{_UNIT})(?![^\W\d_]))?)?"
+)
+_BETWEEN = re.compile(
+    rf"(?<!\w)(?:between|from|zwischen|von|entre|de|tra|da|tussen|van)\s+({_ANY_NUMBER})\s*"
+    rf"(?:and|to|und|bis|et|à|a|e|y|en|tot)\s+(?=\d)"
+)
+"""A range in words: between 30 and 45 cm, von 30 bis 45 cm."""
+
+_TWO_LANGUAGES = re.compile(
+    rf"(?<!\w)({_WAY})\.?\s*/\s*({_WAY})(?!\w)\.?\s*[:=]?\s*(?=\d)"
 )
 _UNIT_ALONE = re.compile(rf"(?:all )?(?:in )?({_any_of([*METRES])})\.?")
 _ORDER_ALONE = re.compile(
@@ -297,9 +307,17 @@ def _plain(text: str) -> str:
     text = re.sub(r"\(\s*\)", " ", text)
     # .60 m, but not H.60 cm
     text = re.sub(r"(?:^|(?<=[\s×x(,;:]))\.(?=\d)", "0.", _plain_masses(text))
-    # height with base: 180 cm; rim diameter 20 cm: a part of its own
+    text = _BETWEEN.sub(r"\1 - ", text)
+    text = _TWO_LANGUAGES.sub(_said_twice, text)
+    # hauteur en cm : 180
     text = re.sub(
-        rf"(?<!\w)({_ORDER})\.?\s+({_WITH_OR_WITHOUT})[\s:.]*(?=\d)",
+        rf"(?<!\w)({_WAY})\.?\s+(?:en|in)\s+(mm|cm|m)[.\s:=]*({_ANY_NUMBER})",
+        r"\1 \3 \2",
+        text,
+    )
+    # height with base: 180 cm, height (with base): 180 cm; rim diameter 20 cm: a part of its own
+    text = re.sub(
+        rf"(?<!\w)({_ORDER})\.?\s*(?:\s|\()\s*({_WITH_OR_WITHOUT})[\s:.)]*(?=\d)",
         r"; \2: \1 ",
         text,
     )
@@ -320,6 +338,12 @@ def _plain(text: str) -> str:
     return re.sub(r"\bby\b", "×", text)
 
 
+def _said_twice(found: re.Match[str]) -> str:
+    """Return the first of two words for one direction: höhe/height; both where they are of two."""
+    same = DIRECTION_OF[found[1]] == DIRECTION_OF[found[2]]
+    return f"{found[1]} " if same else found[0]
+
+
 def _plain_masses(text: str) -> str:
     """Text whose masses have no sign between thousands; one that may be such a sign or a decimal one says nothing.
 
@@ -329,6 +353,7 @@ def _plain_masses(text: str) -> str:
     mass = r"(?<![\d.,])(\d{1,3})([.,])(\d{3})(\s*(?:kg|kgs|kilograms?|lbs?|g))(?!\w)"
 
     def without_sign(found: re.Match[str]) -> str:
+        """A number without the marks between its thousands; nothing where these may be decimals."""
         if marks == {found[2]}:
             return found[0]
         american = found[2] == "," and found[4].strip().startswith("lb")
@@ -517,11 +542,11 @@ def _joined(about: Dimensions, phrases: Sequence[_Phrase]) -> Dimensions:
             about,
             question="which length is the height and which a side is not stated; give their order",
         )
-    ways = directions(words)
-    if ways is None:
+    stated = directions(words)
+    if stated is None:
         named = " × ".join(word.upper() for word in words)
         return replace(about, question=f"{named} leaves open which length is which")
-    by_way = dict(zip(ways, (length.metres() for length in kept), strict=True))
+    by_way = dict(zip(stated, (length.metres() for length in kept), strict=True))
     return about.with_lengths(_placed(by_way))
 
 

@@ -25,12 +25,18 @@ from rockfrag.collections.dimension_text import (
     Length,
     read_dimensions,
 )
+from rockfrag.collections.materials import density_of
 
 NAMES = ("title", "name", "object name", "objectname", "object title", "titel", "titre")
 NUMBERS = (
     *("object number", "objectnumber", "accession number", "accession_number"),
     *("accessionnumber", "accessionnum", "inventory number", "objectid", "object id"),
     *("inventarnummer", "id", "uuid"),
+)
+MATERIALS = (
+    *("medium", "material", "materials", "materials and techniques", "technique"),
+    *("materialien", "matériau", "matériaux", "matière", "materia", "materiali"),
+    *("materiale", "materiales", "materiaal", "materialen", "classification material"),
 )
 TEXTS = ("dimensions", "dimension", "size", "maße", "abmessungen", "afmetingen")
 SIDES = ("height", "width", "depth", "diameter")
@@ -47,12 +53,36 @@ class CollectedObject:
     line : line of the file at which the row begins
     text : its dimensions as they stand
     dimensions : what was understood of them
+    material : what it is made of, as it stands; empty where that is not stated
     """
 
     name: str
     line: int
     text: str
     dimensions: Dimensions
+    material: str = ""
+
+    @property
+    def mass(self) -> float | None:
+        """Mass that is stated, or that of a solid box or cylinder of its material [kg]; None without either."""
+        size, density = self.dimensions, density_of(self.material)
+        if size.mass is not None or density is None or size.height is None:
+            return size.mass
+        if size.width is None and size.diameter is not None:
+            base = math.pi / 4 * size.diameter.low**2
+        elif size.width is not None and size.depth is not None:
+            base = size.width.low * size.depth.low
+        else:
+            return None
+        return density * base * size.height.high
+
+    @property
+    def understood(self) -> str:
+        """What was understood of its size and its material, in words."""
+        said, density = self.dimensions.understood, density_of(self.material)
+        if density is None or self.dimensions.mass is not None:
+            return said
+        return f"{said}, solid {self.material} of {density:.0f} kg/m³"
 
     @property
     def question(self) -> str:
@@ -81,7 +111,7 @@ def is_export(path: str | os.PathLike[str]) -> bool:
     if Path(path).suffix.lower() != ".csv" or not Path(path).is_file():
         return False
     try:
-        titles, _ = _cells(path)
+        titles, _ = table_cells(path)
     except InputError:
         return False
     named = {title.strip().casefold() for title in titles}
@@ -115,7 +145,7 @@ def read_export(path: str | os.PathLike[str], order: str = "") -> list[Collected
     InputError
         If the file cannot be read, or has neither a text of dimensions nor a column of heights.
     """
-    titles, rows = _cells(path)
+    titles, rows = table_cells(path)
     columns = {_plain_title(title): i for i, title in enumerate(titles)}
     text_at = _first(columns, TEXTS)
     sides = _columns_of_sides(columns)
@@ -125,6 +155,7 @@ def read_export(path: str | os.PathLike[str], order: str = "") -> list[Collected
             f"found {', '.join(titles)[:300]}."
         )
     name_at, number_at = _first(columns, NAMES), _first(columns, NUMBERS)
+    material_at = _first(columns, MATERIALS)
     taken: set[str] = set()
     found = []
     for line, cells in rows:
@@ -142,7 +173,8 @@ def read_export(path: str | os.PathLike[str], order: str = "") -> list[Collected
         size = _of_numbers(stated, units, f"{path}, line {line}")
         if size is None:
             size = read_dimensions(text, order)
-        found.append(CollectedObject(name, line, text, size))
+        material = "" if material_at is None else " ".join(cells[material_at].split())
+        found.append(CollectedObject(name, line, text, size, material))
     return found
 
 
@@ -186,7 +218,7 @@ def inventory_cells(collected: CollectedObject) -> dict[str, str]:
         "width_m": _written(width.low),
         "height_m": _written(size.height.high),
         "depth_m": _written(size.depth.low) if size.depth else "",
-        "mass_kg": "" if size.mass is None else _written(size.mass),
+        "mass_kg": "" if (mass := collected.mass) is None else _written(mass),
         "round": "" if size.width else "yes",
     }
 
@@ -196,10 +228,19 @@ def _written(value: float) -> str:
     return f"{value:.6g}"
 
 
-def _cells(
+def table_cells(
     path: str | os.PathLike[str],
 ) -> tuple[list[str], list[tuple[int, list[str]]]]:
-    """Titles of a CSV file, and the line and cells of each row; cells may hold line breaks."""
+    """Read the cells of a CSV file, which may hold line breaks.
+
+    Parameters
+    ----------
+    path : of the file, which messages name
+
+    Returns
+    -------
+    The titles, and of each row the line at which it begins and its cells.
+    """
     encoding = table_encoding(path)
     if Path(path).stat().st_size > MOST_BYTES:
         raise InputError(

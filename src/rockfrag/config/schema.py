@@ -92,6 +92,7 @@ def checked(content: object, name: str, where: str) -> dict[str, Any]:
 
 @cache
 def _validator(name: str) -> "Draft202012Validator":
+    """Validator of a schema, to which 1.0 is no whole number."""
     # loaded where a file is checked: the command line only reads its options from a schema
     from jsonschema import Draft202012Validator
     from jsonschema.validators import extend
@@ -172,6 +173,7 @@ def _in_usual_units(value: Any, schema: _Schema, key: str) -> Any:
 
 
 def _converted(value: Any, name: str, unit: str | None, key: str) -> Any:
+    """A quantity with its unit as a number in the unit of its key."""
     if isinstance(value, list | tuple):
         return [
             _converted(number, name, unit, f"{key}[{i}]")
@@ -200,6 +202,7 @@ def _places(value: Any, key: str = "") -> Iterator[tuple[str, Any]]:
 
 
 def _importance(error: "ValidationError") -> tuple[int, list[str]]:
+    """Order of an error: what a user typed goes before what follows from it."""
     if _broken_rule(error):
         # keys that are right by themselves; the first rule in the order of the schema
         return 3, []
@@ -239,6 +242,7 @@ def _deepest(error: "ValidationError") -> "ValidationError":
 
 
 def _key(error: "ValidationError", last: str | None = None) -> str:
+    """The key of an error as a user writes it, such as ``floors[2].name``."""
     key = ""
     for part in error.absolute_path:
         key = f"{key}[{part}]" if isinstance(part, int) else _joined(key, str(part))
@@ -248,6 +252,7 @@ def _key(error: "ValidationError", last: str | None = None) -> str:
 
 
 def _sentence(error: "ValidationError") -> str:
+    """An error in one sentence: what was expected and what was found."""
     if broken := _broken_rule(error):
         return broken
     schema: _Schema = error.schema if isinstance(error.schema, Mapping) else {}
@@ -272,6 +277,7 @@ def _sentence(error: "ValidationError") -> str:
 
 
 def _short(value: Any) -> str:
+    """A value in few characters."""
     return (
         value[:60]
         if isinstance(value, str) and value.isidentifier()

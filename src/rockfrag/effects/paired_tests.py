@@ -287,22 +287,15 @@ def pair_tests(
     """
     tests, origin = pedestals_apart(tests)
     clean = check_tests(tests)
-    if slenderness is None:
-        slenderness = dict.fromkeys(clean["object"].unique(), math.nan)
-    given = {
-        name: slenderness[tested]
-        for name, tested in origin.items()
-        if tested in slenderness
-    }
-    slenderness = {**slenderness, **given}
-    slenderness_of(clean, slenderness)
+    slenderness = _slenderness_by_name(clean, slenderness, origin)
     sides = _sides(clean)
     ln_a = pd.DataFrame(sides["ln_a"]).astype(float)
     width = pd.DataFrame(sides["width"]).astype(float)
-    above = pd.DataFrame(sides["right"]).eq(True).to_numpy().T
-    below = pd.DataFrame(sides["left"]).eq(True).to_numpy().T
-    # d is open upwards where P (the first side) lies above its figure or NP below, and downwards likewise
-    upward, downward = above[0] | below[1], above[1] | below[0]
+    # d = ln a_P - ln a_NP is open upwards where P lies above its figure or NP below, downwards the other way round
+    lies_above = pd.DataFrame(sides["right"]).eq(True)
+    lies_below = pd.DataFrame(sides["left"]).eq(True)
+    upward = (lies_above["P"] | lies_below["NP"]).to_numpy()
+    downward = (lies_above["NP"] | lies_below["P"]).to_numpy()
     both = ln_a.notna().all(axis=1).to_numpy()
     if not both.any():
         raise InputError(
@@ -337,3 +330,24 @@ def pair_tests(
         censored=limits[both & (upward | downward)].reset_index(drop=True),
         unpaired=alone.reset_index(drop=True),
     )
+
+
+def _slenderness_by_name(
+    clean: pd.DataFrame,
+    slenderness: Mapping[str, float] | None,
+    origin: Mapping[str, str],
+) -> dict[str, float]:
+    """Slenderness of all names in a table of tests; NaN where none was given.
+
+    ``origin`` is the object by the name of each of its pedestals, where it has several.
+    """
+    if slenderness is None:
+        return dict.fromkeys(clean["object"].unique(), math.nan)
+    by_pedestal = {
+        name: slenderness[tested]
+        for name, tested in origin.items()
+        if tested in slenderness
+    }
+    known = {**slenderness, **by_pedestal}
+    slenderness_of(clean, known)
+    return known

@@ -156,6 +156,7 @@ def _effect_row(pairs: pd.DataFrame, sampled: cluster_means.Units) -> dict[str, 
 
 
 def _whole_tests(table: pd.DataFrame, seed: int) -> pd.DataFrame:
+    """Tests of the effect over all pairs: limits, t and sign flips."""
     effect = cluster_means.mean_effect(table)
     unit = "earthquake" if len(set(table["earthquake"])) > 1 else "motion"
     flips = cluster_means.sign_flip_test(cluster_means.earthquake_means(table), seed)

@@ -235,7 +235,10 @@ def shaken_in_space(
     reached = np.empty((len(LIMITS), len(sizes), len(pairs), levels.shape[1]), bool)
     for i, size in enumerate(sizes):
         scales = levels[i] / measure[:, np.newaxis]
-        found = overturns([block_of(size, standing)], shaking, scales=scales)
+        with warnings.catch_warnings():
+            # as in the plane
+            warnings.simplefilter("ignore", UnitWarning)
+            found = overturns([block_of(size, standing)], shaking, scales=scales)
         reached[:, i] = _limits_of(found.peak_rotation[0, ..., 0])
     return Shaken(sizes, levels, reached)
 

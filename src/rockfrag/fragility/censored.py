@@ -179,6 +179,7 @@ def bracket_interval(
     groups = len(names)
 
     def refit(weights: Floats) -> Floats:
+        """Coefficients for weights of the groups, shape (batch, groups); of many blocks by a step each."""
         each = weights[:, codes]
         if (
             groups > MOST_BLOCKS
@@ -219,6 +220,7 @@ def bracket_log_scores(brackets: Brackets, weights: Floats) -> Floats:
 
 
 def _logs(brackets: Brackets) -> tuple[Floats, Floats]:
+    """Logarithms of both bounds, shape (n,) each; -∞ of a bound of zero."""
     with np.errstate(divide="ignore"):
         return np.log(brackets.lower), np.log(brackets.upper)
 
@@ -226,7 +228,17 @@ def _logs(brackets: Brackets) -> tuple[Floats, Floats]:
 def _without_a_block(low: Floats, high: Floats, weights: Floats) -> Floats:
     """Fit (intercept, slope) without each of many blocks: a step of Newton's from the fit to all.
 
-    What the step neglects is of second order in a block's fraction of all, a hundredth.
+    What the step neglects is of second order in a block's fraction of all, a hundredth. Where some fit is no
+    regular one each is searched for by itself.
+
+    Parameters
+    ----------
+    low, high : logarithms of the brackets' bounds, shape (n,)
+    weights : 0 for what is left out, else 1, a row a fit, shape (batch, n)
+
+    Returns
+    -------
+    Shape (batch, 2).
     """
     left, right = _shared(low, high, weights)
     if (left <= right).any():
@@ -235,10 +247,12 @@ def _without_a_block(low: Floats, high: Floats, weights: Floats) -> Floats:
     is_curve = whole.coefficients[0, 1] >= lognormal.LEAST_SLOPE
     if not (np.isfinite(whole.log_likelihood).all() and is_curve):
         return _fit_weighted(low, high, weights).coefficients
+    # sums of slope and curvature of the log-likelihood over what is left, and H⁻¹ times the slope
     terms = _terms(low, high, whole.coefficients)
     _, score0, score1, h00, h01, h11 = (weights @ np.concatenate(terms).T).T
+    determinant = h00 * h11 - h01**2
     step = np.column_stack([h11 * score0 - h01 * score1, h00 * score1 - h01 * score0])
-    return np.asarray(whole.coefficients - step / (h00 * h11 - h01**2)[:, None])
+    return np.asarray(whole.coefficients - step / determinant[:, None])
 
 
 def _shared(low: Floats, high: Floats, weights: Floats) -> tuple[Floats, Floats]:

@@ -79,6 +79,7 @@ def check_notes(
 
 
 def _rejection(unit: str, level: float, p_fit: float, fractions: Fractions) -> str:
+    """Sentence that the lognormal curve is rejected, with what to use instead."""
     words = f"The lognormal curve is rejected (p = {p_fit:.3f}): use the nonparametric monotone curve"
     if math.isnan(fractions.theta):
         return f"{words}, which does not reach a half."

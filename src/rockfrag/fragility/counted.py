@@ -70,12 +70,15 @@ class CountedObservations(Observations):
         return found
 
     def independent(self, inside: NDArray[np.bool_]) -> tuple[int, float]:
-        """Motions with a test in the rows ``inside``, which are neighbours."""
-        low = self._edge_below(self.im[inside].min())
+        """Number of motions with a test in the rows ``inside``, which are neighbouring cells.
+
+        Motion i has tests at ``rise`` + ``scale[i]`` in ln of the measure: it counts where one of them lies from
+        the lower edge of the first cell to the upper edge of the last.
+        """
         edges, rise, scale = self.of.edges, self.of.rise, self.of.scale
-        high = edges[
-            np.searchsorted(edges, np.log(self.im[inside].max()), side="right")
-        ]
+        low = self._edge_below(self.im[inside].min())
+        largest = np.log(self.im[inside].max())
+        high = edges[np.searchsorted(edges, largest, side="right")]
         first = np.searchsorted(rise, low - scale)
         after = np.searchsorted(rise, high - scale)
         count = int((after > first).sum())

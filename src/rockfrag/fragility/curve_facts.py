@@ -84,6 +84,7 @@ def curve_facts(row: Mapping[Hashable, Any]) -> str:
 
 
 def _beta_limits(row: Mapping[Hashable, Any]) -> str:
+    """Limits of β in words; a lower one of zero is not resolved."""
     lower, upper = row["beta_lower"], row["beta_upper"]
     if lower <= 0 and upper <= row.get("beta", math.inf):
         return f"at most {upper:.4g} (not resolved)"
@@ -91,6 +92,7 @@ def _beta_limits(row: Mapping[Hashable, Any]) -> str:
 
 
 def _parts_of_beta(row: Mapping[Hashable, Any]) -> str:
+    """Sentence on β of the motions, of the estimate and of the model, and all together."""
     statistical = float(row.get("beta_statistical", math.nan))
     estimated = f"{statistical:.3f}" if math.isfinite(statistical) else "not known"
     total = total_beta(row["beta"], statistical)
@@ -101,6 +103,7 @@ def _parts_of_beta(row: Mapping[Hashable, Any]) -> str:
 
 
 def _nonparametric(row: Mapping[Hashable, Any], known: Set[Hashable]) -> str:
+    """θ and β of the non-parametric curve with limits, in words."""
     parts = []
     for name in ("theta", "beta"):
         column = f"{name}_isotonic"

@@ -178,6 +178,10 @@ def resurrections_of(parts: Iterable[Swept]) -> pd.DataFrame:
 def _resurrections(
     amplitude: Floats, overturned: NDArray[np.bool_]
 ) -> dict[str, float | int]:
+    """Bounds of the first amplitude that overturns and of that above which all do; how much survives between them.
+
+    ``resurrections`` counts the windows of amplitudes that survive, ``window_width`` adds up their widths [ln].
+    """
     fell, stood = np.flatnonzero(overturned), np.flatnonzero(~overturned)
     first = fell[0] if fell.size else amplitude.size
     always = stood[-1] + 1 if stood.size else 0

@@ -187,17 +187,16 @@ class _Counted(NamedTuple):
 def _fractions(
     counted: _Counted, *, motions: int, level: float, witnesses: int | None = None
 ) -> Fractions:
-    """Fractions of tests counted by group and value.
+    """Fit the never-falling fraction to counted tests, with θ, β and limits by leaving out a group at a time.
 
-    Every group bears witness to fractions of 0 and 1 where ``witnesses`` says how many groups there are.
+    ``motions`` is how many there are. ``witnesses`` are the groups that have shown a fraction of 0 or 1 wherever
+    it is one; without it they are counted value by value.
     """
     log_im, middle, fell, total = counted
     groups = len(fell)
+    im = np.exp(log_im)
     fraction = _rising(fell.sum(axis=0), total.sum(axis=0))
-    im, theta = np.exp(log_im), float("nan")
-    if fraction[0] <= 0.5 <= fraction[-1]:
-        at, value = knots_of(im, fraction)
-        theta = float(np.exp(np.interp(0.5, value, np.log(at))))
+    theta = _median(im, fraction)
     beta = _dispersion(middle, fraction, motions)
     if groups < 2:
         nothing = np.full(fraction.shape, np.nan)
@@ -206,26 +205,29 @@ def _fractions(
     replicates = zip(weights @ fell, weights @ total, strict=True)
     left_out = np.array([_rising(some, of) for some, of in replicates])
     seen = _witnesses(fraction, total) if witnesses is None else np.float64(witnesses)
-    lower, upper = _limits(
-        fraction, intervals.jackknife_error(left_out), seen, motions, level
-    )
+    error = intervals.jackknife_error(left_out)
+    lower, upper = _limits(fraction, error, seen, motions, level)
     theta_limits = UNKNOWN
     if np.isfinite(theta):
         # values between which the limits of the curve hold one half
         low = im[upper < 0.5].max(initial=0.0)
         high = im[lower > 0.5].min(initial=np.inf)
         theta_limits = min(float(low), theta), max(float(high), theta)
-    fewer = motions * weights.mean(axis=1)
-    betas = np.array(
-        [
-            _dispersion(middle, rising, count)
-            for rising, count in zip(left_out, fewer, strict=True)
-        ]
-    )
-    beta_limits = (
-        intervals.beta_limits(beta, betas, level) if np.isfinite(beta) else UNKNOWN
-    )
+    beta_limits = UNKNOWN
+    if np.isfinite(beta):
+        motions_left = motions * weights.mean(axis=1)
+        pairs = zip(left_out, motions_left, strict=True)
+        betas = np.array([_dispersion(middle, some, count) for some, count in pairs])
+        beta_limits = intervals.beta_limits(beta, betas, level)
     return Fractions(im, fraction, lower, upper, theta, theta_limits, beta, beta_limits)
+
+
+def _median(im: Floats, fraction: Floats) -> float:
+    """Value at which the curve passes one half; NaN where it does not."""
+    if not fraction[0] <= 0.5 <= fraction[-1]:
+        return float("nan")
+    at, value = knots_of(im, fraction)
+    return float(np.exp(np.interp(0.5, value, np.log(at))))
 
 
 def _rising(fell: Floats, total: Floats) -> Floats:

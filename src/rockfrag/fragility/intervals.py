@@ -112,6 +112,7 @@ def outcome_fitter(outcomes: Observations, over: Over) -> tuple[WeightedFit, int
     start = whole.coefficients[0] if np.isfinite(whole.coefficients).all() else None
 
     def fit(weights: Floats) -> Floats:
+        """Coefficients for weights of the groups, shape (batch, groups); penalised where outcomes separate."""
         weights = outcomes.group_weights(weights)
         y, m = weights @ fell, weights @ total
         apart = separated(values, y, m)
@@ -217,6 +218,7 @@ def resampled_interval(
     centre = (float(estimate[0]), float(estimate[1]))
 
     def without_limits(reason: str) -> Interval:
+        """An interval without limits, and why."""
         nan = (float("nan"), float("nan"))
         said = (*notes, reason)
         return Interval(

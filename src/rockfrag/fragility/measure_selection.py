@@ -22,6 +22,7 @@ from statsmodels.tools.tools import add_constant
 from rockfrag.base.errors import InputError
 from rockfrag.base.short_repr import short_repr
 from rockfrag.fragility import censored, held_out, observations
+from rockfrag.fragility.censored import Brackets
 from rockfrag.fragility.empirical import TableIda
 from rockfrag.fragility.ida_curves import scale_power
 from rockfrag.fragility.intervals import Interval, interval_over_motions
@@ -146,7 +147,7 @@ def recommend_measure(
             "measures: name at least one column with an intensity measure."
         )
     rows, data, scores = [], {}, []
-    extra = {column: numbers(table, column, source) for column in given}
+    properties = {column: numbers(table, column, source) for column in given}
     for column in measures:
         outcomes = observations.observations_from_table(
             table,
@@ -161,7 +162,7 @@ def recommend_measure(
         residual = outcomes.overturned / outcomes.trials - fit.probability(outcomes.im)
         p = {
             name: dependence_p_value(residual, values, outcomes.earthquake)
-            for name, values in extra.items()
+            for name, values in properties.items()
         }
         rows.append(_row(column, fit, interval, outcomes, p))
         group = pd.factorize(pd.Series(outcomes.earthquake))[0]
@@ -236,6 +237,7 @@ def _select(
         p_worse[:] = [held_out.paired_p(best, score) for score in scores]
         fraction[known] = held_out.fraction_best(scores[known], replicates, seed)
     near = known & ~(p_worse < DIFFERENCE_P)
+    # late, rank and total are there to sort by; the last puts the larger score first
     table = compared.assign(
         score=np.where(known, total / tests, np.nan),
         p_worse=p_worse,
@@ -321,6 +323,42 @@ def recommend_ida_measure(
     The :class:`MeasureSelection`. Its table has also ``beta_amplitude``: β over the power with which the measure
     grows with the amplitude, which compares Arias intensity fairly with peaks.
     """
+    powers = _powers_of_amplitude(columns)
+    by_amplitude = ida.brackets(
+        ida.resurrections("amplitude_g"), "first", "amplitude_g"
+    )
+    recorded = measures.set_index("name").loc[list(by_amplitude.motion)]
+    properties = {column: numbers(recorded, column, "measures") for column in given}
+    earthquake = pd.factorize(pd.Series(by_amplitude.earthquake))[0]
+    rows, scores = [], []
+    for column, power in powers.items():
+        outcomes = ida.outcomes(column)
+        brackets = replace(
+            _brackets_in(by_amplitude, recorded, column, power),
+            name=outcomes.name,
+            unit=outcomes.unit,
+        )
+        fit = censored.fit_brackets(brackets)
+        interval = censored.bracket_interval(brackets, level=level)
+        p = _sufficiency(brackets, fit.theta, properties)
+        rows.append(
+            _row(column, fit, interval, outcomes, p, beta_amplitude=fit.beta / power)
+        )
+        scores.append(held_out.capacity_scores(brackets, earthquake))
+    return _select(
+        rows,
+        np.array(scores),
+        tests=earthquake.size,
+        given=given,
+        replicates=200,
+        seed=seed,
+        efficiency="beta_amplitude",
+        needed="score",
+    )
+
+
+def _powers_of_amplitude(columns: Sequence[str]) -> dict[str, int]:
+    """Power of the amplitude with which each measure grows: 1 of a peak, 2 of Arias intensity [-]."""
     powers = {column: scale_power(column) for column in columns}
     fixed = [column for column, power in powers.items() if power == 0]
     if fixed:
@@ -328,44 +366,38 @@ def recommend_ida_measure(
             f"measure {fixed[0]!r} does not grow with the amplitude, so no amplitude overturns by "
             "it; name it among the given columns instead."
         )
-    amplitude = ida.brackets(ida.resurrections("amplitude_g"), "first", "amplitude_g")
-    recorded = measures.set_index("name").loc[list(amplitude.motion)]
-    extra = {column: numbers(recorded, column, "measures") for column in given}
-    pga = observations.positive(recorded, "pga_g", "measures")
-    group = pd.factorize(pd.Series(amplitude.earthquake))[0]
-    rows, scores = [], []
-    for column, power in powers.items():
-        unit_value = observations.positive(recorded, column, "measures") / pga**power
-        outcomes = ida.outcomes(column)
-        scaled = replace(
-            amplitude,
-            lower=unit_value * amplitude.lower**power,
-            upper=unit_value * amplitude.upper**power,
-            name=outcomes.name,
-            unit=outcomes.unit,
-        )
-        fit = censored.fit_brackets(scaled)
-        interval = censored.bracket_interval(scaled, level=level)
-        # residual of ln capacity of the motions that overturned above a survived step
-        seen = np.isfinite(scaled.upper) & (scaled.lower > 0)
-        residual = 0.5 * np.log(scaled.lower[seen] * scaled.upper[seen]) - np.log(
-            fit.theta
-        )
-        p = {
-            name: dependence_p_value(residual, values[seen], scaled.earthquake[seen])
-            for name, values in extra.items()
-        }
-        rows.append(
-            _row(column, fit, interval, outcomes, p, beta_amplitude=fit.beta / power)
-        )
-        scores.append(held_out.capacity_scores(scaled, group))
-    return _select(
-        rows,
-        np.array(scores),
-        tests=group.size,
-        given=given,
-        replicates=200,
-        seed=seed,
-        efficiency="beta_amplitude",
-        needed="score",
+    return powers
+
+
+def _brackets_in(
+    by_amplitude: Brackets, recorded: pd.DataFrame, column: str, power: float
+) -> Brackets:
+    """Brackets of the first overturning in another measure than the peak acceleration [g].
+
+    A motion whose measure is m at its recorded peak a has m (x/a)^power at the peak x.  ``recorded`` has a row for
+    each motion of the brackets, in their order.
+    """
+    recorded_pga = observations.positive(recorded, "pga_g", "measures")
+    at_recorded = observations.positive(recorded, column, "measures")
+    at_one_g = at_recorded / recorded_pga**power
+    return replace(
+        by_amplitude,
+        lower=at_one_g * by_amplitude.lower**power,
+        upper=at_one_g * by_amplitude.upper**power,
     )
+
+
+def _sufficiency(
+    brackets: Brackets, median: float, properties: Mapping[str, Floats]
+) -> dict[str, float]:
+    """Return p values of a dependence of ln capacity on properties of the motions, by their names [-].
+
+    The capacity of a motion is the geometric middle of its bracket; motions whose bracket is open have none.
+    """
+    closed = np.isfinite(brackets.upper) & (brackets.lower > 0)
+    ln_capacity = 0.5 * np.log(brackets.lower[closed] * brackets.upper[closed])
+    residual = ln_capacity - np.log(median)
+    return {
+        name: dependence_p_value(residual, values[closed], brackets.earthquake[closed])
+        for name, values in properties.items()
+    }

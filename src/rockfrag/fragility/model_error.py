@@ -1,7 +1,11 @@
-"""How far medians of the simulation that answers are from those of others, measured or published, by kind of body.
+"""The model error: how far simulated medians are from measured or published ones, by kind of body.
 
-Of scans the numbers are those that ``python -m rockfrag.stages.model_error`` prints for the campaigns that were at
-hand, of cut blocks those of ``python -m rockfrag.stages.toppling_velocity`` beside published medians of furniture.
+In: nothing, as the numbers are computed elsewhere and stand here; of scans by
+``python -m rockfrag.stages.model_error`` from campaigns on shaking tables, of cut blocks by
+``python -m rockfrag.stages.toppling_velocity`` beside published medians of furniture. Out: standard deviations and
+biases of ln median [-], which curves, answers and exports add to their own as squares.
+
+Theory: ``docs/campaigns.md``, "Blind: the model error"; of cut blocks ``docs/toppling-velocity.md``.
 """
 
 import math

@@ -69,6 +69,7 @@ def choice_text(choice: Choice) -> str:
 
 
 def _equals_text(choice: Choice) -> str:
+    """Sentence on the measures that the scores do not tell from the best."""
     each = [
         f"{row['im']} ({row['score']:.3f}, β = {row['beta']:.2f})"
         for row in choice.equal
@@ -80,6 +81,7 @@ def _equals_text(choice: Choice) -> str:
 
 
 def _sufficiency_text(column: str, p: float) -> str:
+    """Sentence on whether the best measure is sufficient for a property."""
     name = _COLUMNS.get(column, column)
     if math.isnan(p):
         return f"These motions cannot test its sufficiency with respect to {name}."

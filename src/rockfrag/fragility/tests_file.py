@@ -213,6 +213,7 @@ def product_of(raw: pd.DataFrame, recipe: Sequence[str | float]) -> Floats:
 
 
 def _outcomes(piece: pd.DataFrame, column: str, source: str, first: int) -> Floats:
+    """Outcomes of a column, 1 for yes and 0 for no; other words are refused."""
     text = piece[column].fillna("").str.strip().str.lower()
     text = text.str.replace(r"^([01])[.,]0*$", r"\1", regex=True)
     wrong = ~text.isin(_YES | _NO).to_numpy()

@@ -3,7 +3,7 @@
 In: width and height of uniform blocks on a floor [m], arrays of any shape. Out: medians of peak ground velocity
 [m/s] or of peak ground acceleration [g], and dispersions [-]. The coefficients stand in
 ``toppling_velocity.json``, which ``python -m rockfrag.stages.toppling_velocity`` writes;
-docs/toppling-velocity.md shows how well they follow the simulations. With x = ln(B / 0.4 m) and y = ln(H / 3B)
+``docs/toppling-velocity.md`` shows how well they follow the simulations. With x = ln(B / 0.4 m), y = ln(H / 3B)
 
     ln median = c0 + c1 x + c2 y + c3 x² + c4 x y + c5 y² + c6 y³,        and the dispersion likewise.
 """
@@ -30,7 +30,7 @@ LIMITS = (0.01, 0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0)
 """Rotations over the critical angle that are limit states; 1 stands for the fall (after D'Angela et al., 2026)."""
 
 MEASURES = ("pgv_m_s", "pga_g")
-"""Measures of the medians, acceleration in the plane only; of two components, their geometric mean."""
+"""Measures of the medians; of two components, their geometric mean."""
 
 WIDTHS, HEIGHTS, SLENDERNESSES = (0.1, 0.8), (0.3, 3.0), (1.25, 30.0)
 """Least and largest width [m], height [m], and height over width [-] that the surface was fitted to."""
@@ -153,7 +153,7 @@ def surface_of(standing: str, limit: float = 1.0, measure: str = "pgv_m_s") -> S
         raise InputError(
             f"toppling velocity: no surface for {standing!r}, limit {limit!r}, {measure!r}; choose one of "
             f"{', '.join(STANDINGS)}, of {', '.join(f'{each:g}' for each in LIMITS)} and of "
-            f"{', '.join(MEASURES)} (accelerations in the plane only)."
+            f"{', '.join(MEASURES)}."
         )
     return known[standing, limit, measure]
 

@@ -412,6 +412,7 @@ def check_vector(
 def _surface_table(
     fit: VectorFragility, logs: list[Floats], outcome: Floats
 ) -> pd.DataFrame:
+    """Tests by cell of both measures, with the observed and the fitted probability."""
     row, first = observations.cells(logs[0], MOST_CELLS)
     column, second = observations.cells(logs[1], MOST_CELLS)
     tests = observations.counts(row, column, np.ones(outcome.size))
@@ -597,6 +598,7 @@ def _joined(parts: list[pd.DataFrame], columns: list[str]) -> pd.DataFrame:
 
 
 def _contours(fit: VectorFragility, tests: pd.DataFrame) -> pd.DataFrame:
+    """Lines of one probability each: values of the stronger measure at values of the other."""
     logs = np.log(tests[list(fit.measures)].to_numpy(dtype=np.float64))
     of = int(np.argmax(np.array(fit.coefficients[1:3]) * logs.std(axis=0)))
     other = np.exp(np.linspace(logs[:, 1 - of].min(), logs[:, 1 - of].max(), POINTS))

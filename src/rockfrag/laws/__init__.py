@@ -1,6 +1,6 @@
 """Laws of impacts: what a contact does when it closes, one file a law (``docs/restitution.md``).
 
-A file ends with ``LAW = declare(...)``: its name, what the kernels are told of a measured restitution, and the
+A file ends with ``LAW = declare(...)``: its name, what the kernels get of a measured restitution, and the
 rate at which it lets a contact come off, a function that the kernels inline.  A new law is one file and its name
 in ``BUILT_IN``; a law without a rate of its own only makes the number of another law of what was measured.
 """
@@ -16,8 +16,8 @@ from rockfrag.system.geometry import Shape
 BUILT_IN = ("momentum", "position", "couple", "ratio")
 """Files of the laws, in the order of the numbers by which the kernels know them; the second is the usual one."""
 
-Told = tuple[int, float]
-"""What the kernels are told of the impacts that end on a pivot: number of a law, and the law's own number."""
+ForKernels = tuple[int, float]
+"""What the kernels get of the impacts that end on a pivot: number of a law, and the law's own number."""
 
 Rate = Callable[[float, float, float, float], float]
 
@@ -29,8 +29,8 @@ class Law:
     name: str  # Name in files and messages
     number: int  # Number by which the kernels know it
     # Function of the shape of the lone body, its measured ratio of the angular velocities after and
-    # before an impact [-] and the pivot on which the impact ends: what the kernels are told
-    tell: Callable[[Shape, float, int], Told]
+    # before an impact [-] and the pivot on which the impact ends: what the kernels get
+    tell: Callable[[Shape, float, int], ForKernels]
     # Function that the kernels inline: of the law's number, the rate at which momentum lets the
     # contact come off, the rate before the impact and the one that impulses moved as the law says
     # leave, the rate at which the contact comes off [rad/s, or m/s]. None: of another law
@@ -46,7 +46,7 @@ _LAWS: dict[str, Law] = {}
 
 def declare(
     name: str,
-    tell: Callable[[Shape, float, int], Told],
+    tell: Callable[[Shape, float, int], ForKernels],
     rate: Rate | None = None,
     **more: bool,
 ) -> Law:

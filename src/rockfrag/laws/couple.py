@@ -5,13 +5,13 @@ The contact then loses a fixed fraction of the energy that is free in it (``docs
 
 import math
 
-from rockfrag.laws import BUILT_IN, Told, declare
+from rockfrag.laws import BUILT_IN, ForKernels, declare
 from rockfrag.system.geometry import Shape, momentum_restitution
 
 NUMBER = BUILT_IN.index("couple")
 
 
-def tell(shape: Shape, restitution: float, pivot: int) -> Told:
+def tell(shape: Shape, restitution: float, pivot: int) -> ForKernels:
     """Return the multiple: what was measured over what momentum leaves the lone body; NaN if that is nothing."""
     by_momentum = momentum_restitution(shape, pivot)
     return NUMBER, restitution / by_momentum if by_momentum > 0.0 else math.nan

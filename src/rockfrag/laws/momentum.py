@@ -1,13 +1,13 @@
 """Conservation of angular momentum about the new pivot (Housner 1963): the law where nothing was measured."""
 
-from rockfrag.laws import BUILT_IN, Told, declare
+from rockfrag.laws import BUILT_IN, ForKernels, declare
 from rockfrag.system.geometry import Shape
 
 NUMBER = BUILT_IN.index("momentum")
 
 
-def tell(shape: Shape, restitution: float, pivot: int) -> Told:
-    """Return what the kernels are told, whatever was measured."""
+def tell(shape: Shape, restitution: float, pivot: int) -> ForKernels:
+    """Return what the kernels get, whatever was measured."""
     return NUMBER, 1.0
 
 

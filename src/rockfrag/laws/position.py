@@ -5,13 +5,13 @@ then conserves its momentum about the point of the impulse, which gives the poin
 Where momentum leaves more there is no such point within the base, and a couple brakes.
 """
 
-from rockfrag.laws import BUILT_IN, Told, couple, declare
+from rockfrag.laws import BUILT_IN, ForKernels, couple, declare
 from rockfrag.system.geometry import Shape, impulse_position, momentum_restitution
 
 NUMBER = BUILT_IN.index("position")
 
 
-def tell(shape: Shape, restitution: float, pivot: int) -> Told:
+def tell(shape: Shape, restitution: float, pivot: int) -> ForKernels:
     """Return the place of the impulse, or the couple that brakes.
 
     Parameters

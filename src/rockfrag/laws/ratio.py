@@ -3,13 +3,13 @@
 It is the measured one, whatever the bodies weigh (``docs/restitution.md``, "Ratio").
 """
 
-from rockfrag.laws import BUILT_IN, Told, declare
+from rockfrag.laws import BUILT_IN, ForKernels, declare
 from rockfrag.system.geometry import Shape
 
 NUMBER = BUILT_IN.index("ratio")
 
 
-def tell(shape: Shape, restitution: float, pivot: int) -> Told:
+def tell(shape: Shape, restitution: float, pivot: int) -> ForKernels:
     """Return the measured ratio."""
     return NUMBER, restitution
 

@@ -138,9 +138,10 @@ def _motions_of_row(
 
 
 def pairs_of(motions: Sequence[Motion]) -> tuple[tuple[int, int], ...]:
-    """Positions of the two components of records: those that name each other, else of one station and time.
+    """Find the two horizontal components of each record among motions.
 
-    Without names of files, motions of one earthquake and station are of one record where there are two.
+    A motion that names the file of its second component is paired with that file's motion.  Others are paired
+    where they are the only two of their earthquake and station.  What was turned into a direction has no partner.
 
     Parameters
     ----------
@@ -148,26 +149,31 @@ def pairs_of(motions: Sequence[Motion]) -> tuple[tuple[int, int], ...]:
 
     Returns
     -------
-    Pairs of positions, rising.
+    Pairs of positions in ``motions``, rising.
     """
-    by_file = {
-        str(motion.metadata["file"]): i
+    place_of_file = {
+        _fact(motion, "file"): i
         for i, motion in enumerate(motions)
-        if motion.metadata.get("file")
+        if _fact(motion, "file")
     }
     pairs = []
-    left: dict[tuple[str, str], list[int]] = {}
+    unnamed: dict[tuple[str, str], list[int]] = {}
     for i, motion in enumerate(motions):
-        other = by_file.get(str(motion.metadata.get("second") or ""))
-        if motion.metadata.get("direction"):
+        if _fact(motion, "direction"):
             continue
+        other = place_of_file.get(_fact(motion, "second"))
         if other is not None and other != i:
+            # both name each other: the pair counts once
             if i < other:
                 pairs.append((i, other))
             continue
-        earthquake = str(motion.metadata.get("earthquake") or "")
-        station = str(motion.metadata.get("station") or "")
-        if earthquake and station:
-            left.setdefault((earthquake, station), []).append(i)
-    pairs += [(both[0], both[1]) for both in left.values() if len(both) == 2]
+        key = _fact(motion, "earthquake"), _fact(motion, "station")
+        if all(key):
+            unnamed.setdefault(key, []).append(i)
+    pairs += [(both[0], both[1]) for both in unnamed.values() if len(both) == 2]
     return tuple(sorted(pairs))
+
+
+def _fact(motion: Motion, key: str) -> str:
+    """Entry of a motion's metadata as text, empty where there is none."""
+    return str(motion.metadata.get(key) or "")

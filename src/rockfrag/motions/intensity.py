@@ -118,6 +118,8 @@ class IntensityMeasure:
 
 @cache
 def _spectrum_at(period: float) -> Shared:
+    """Function of a motion and a damping that gives its spectrum at one period."""
+
     def spectrum(motion: Motion, damping: float) -> Any:
         from rockfrag.motions.response_spectra import response_spectrum
 
@@ -138,6 +140,7 @@ def intensity_measure(
     """
 
     def declare(function: Function) -> Function:
+        """Register a function as a measure, under its name."""
         known = name or function.__name__
         if known in _MEASURES:
             raise InputError(

@@ -162,6 +162,7 @@ def starting_later(motion: Motion, seconds: float) -> Motion:
 
 
 def _enough_samples(step: str, motion: Motion, least: int) -> None:
+    """Refuse a motion that is too short for a step."""
     if motion.acceleration.size < least:
         raise InputError(
             f"step {step}: motion {motion.name!r} has {motion.acceleration.size} sample(s) and "
@@ -265,6 +266,7 @@ def bandpass(
 def _filtered(
     kind: str, motion: Motion, order: int, causal: bool, **corners_hz: float
 ) -> Motion:
+    """Butterworth filter of a kind, forwards or both ways, with its corners in the provenance."""
     corners, nyquist = {}, 0.5 / motion.dt
     for name, value in corners_hz.items():
         corner = positive_number(f"step {kind}: {name}", value, "hertz")
@@ -470,6 +472,7 @@ def _scaled(
 
 
 def _check_not_zero(step: str, motion: Motion, actual: float) -> None:
+    """Refuse to scale a motion whose peak is zero."""
     if actual <= 0:
         raise InputError(
             f"step {step}: motion {motion.name!r} is zero throughout and cannot be scaled; leave it out."

@@ -290,13 +290,12 @@ def mavroeidis_papageorgiou(
     omega = 2 * np.pi / period
 
     def shape(t: Floats) -> Floats:
+        """Acceleration for A = 1: the derivative of envelope × wave, each with its own frequency."""
         s = t - length / 2
         slow, fast = omega * s / cycles, omega * s + phase
-        return np.asarray(
-            -omega
-            / 2
-            * (np.sin(slow) * np.cos(fast) / cycles + (1 + np.cos(slow)) * np.sin(fast))
-        )
+        of_envelope = np.sin(slow) * np.cos(fast) / cycles
+        of_wave = (1 + np.cos(slow)) * np.sin(fast)
+        return np.asarray(-omega / 2 * (of_envelope + of_wave))
 
     given = {
         "amplitude": velocity,

@@ -27,6 +27,7 @@ from rockfrag.base.arrays import Floats
 from rockfrag.base.errors import InputError
 from rockfrag.base.keywords import named_keywords
 from rockfrag.base.short_repr import short_repr
+from rockfrag.motions.oscillator import fill_propagator
 from rockfrag.records.motion import Motion
 from rockfrag.runtime.machine_code import cached_njit
 
@@ -83,28 +84,11 @@ def oscillator_matrix(omega: float, damping: float, step: float) -> Floats:
 
     Returns
     -------
-    The propagator, shape (4, 4).
+    The propagator, shape (2, 4).
     """
-    rate = damping * omega
-    turn = omega * math.sqrt(abs(1 - damping**2))
-    if damping < 1:
-        decay = math.exp(-rate * step)
-        cosine, sine = (
-            decay * math.cos(turn * step),
-            decay * math.sin(turn * step) / turn,
-        )
-    elif damping > 1:
-        slow, fast = math.exp((turn - rate) * step), math.exp(-(turn + rate) * step)
-        cosine, sine = (slow + fast) / 2, (slow - fast) / (2 * turn)
-    else:
-        cosine, sine = math.exp(-rate * step), step * math.exp(-rate * step)
-    free = np.array(
-        [[cosine + rate * sine, sine], [-(omega**2) * sine, cosine - rate * sine]]
-    )
-    # the steady answer to a and to s at the beginning of the step, and one step later
-    before = np.array([[-1.0, 2 * damping / omega], [0.0, -1.0]]) / omega**2
-    after = before + np.array([[0.0, -step], [0.0, 0.0]]) / omega**2
-    return np.hstack([free, after - free @ before])
+    matrix = np.zeros((2, 4))
+    fill_propagator(omega, damping, step, matrix)
+    return matrix
 
 
 @cached_njit()
@@ -368,6 +352,7 @@ def fourier_amplitude(motion: Motion, least_length: int = 0) -> tuple[Floats, Fl
 
 
 def _checked_periods(periods: ArrayLike | Sequence[float]) -> Floats:
+    """Positive periods [s], shape (n,)."""
     checked = np.atleast_1d(np.asarray(periods, dtype=np.float64))
     if checked.ndim != 1 or checked.size == 0:
         raise InputError(
@@ -566,7 +551,7 @@ def _may_hold_the_peak(x: Floats, stretch: Floats) -> bool:
 
 @cached_njit(error_model="numpy")
 def _advance(x: Floats, a: float, s: float) -> None:
-    """One step of all lanes."""
+    """Take all lanes a step on, with the ground's acceleration at its beginning and its slope."""
     for i in range(LANES):
         u0, v0 = x[_U + i], x[_V + i]
         u = x[_UU + i] * u0 + x[_UV + i] * v0 + x[_UA + i] * a + x[_US + i] * s
@@ -591,17 +576,20 @@ def _turns_high(x: Floats, a: float, s: float, step: float) -> bool:
 
 @cached_njit(error_model="numpy")
 def _look_between(x: Floats, i: int, a: float, s: float, step: float) -> None:
-    """Let the peaks of lane i between the last two steps count, if they can be the largest."""
-    u, v, u1, v1, c, k = (
-        x[_U0 + i],
-        x[_V0 + i],
-        x[_U + i],
-        x[_V + i],
-        x[_C + i],
-        x[_K + i],
-    )
-    if max(abs(u), abs(u1)) + x[_ADDED + i] > x[_KEPT + i] * x[_LARGEST + i]:
-        first = u, v, -(c * v + k * u) - a
-        last = u1, v1, -(c * v1 + k * u1) - (a + step * s)
-        peak = peak_within(0, first, last, (u, v, a, s), c, k, step)
+    """Let the peaks of lane i within its last step count, if they can be the largest.
+
+    ``a`` and ``s`` are the ground's acceleration at the beginning of the step and its slope there.
+    """
+    displacement, velocity = x[_U0 + i], x[_V0 + i]
+    end_displacement, end_velocity = x[_U + i], x[_V + i]
+    c, k = x[_C + i], x[_K + i]
+    at_ends = max(abs(displacement), abs(end_displacement))
+    if at_ends + x[_ADDED + i] > x[_KEPT + i] * x[_LARGEST + i]:
+        # relative to the ground, ü = -c u̇ - k u - a
+        begins = -(c * velocity + k * displacement) - a
+        ends = -(c * end_velocity + k * end_displacement) - (a + step * s)
+        first = displacement, velocity, begins
+        last = end_displacement, end_velocity, ends
+        start = displacement, velocity, a, s
+        peak = peak_within(0, first, last, start, c, k, step)
         x[_LARGEST + i] = max(x[_LARGEST + i], peak)

@@ -10,6 +10,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from rockfrag.base.directions import in_direction
 from rockfrag.base.errors import InputError
 from rockfrag.base.input_checks import real_number
 from rockfrag.motions.processing import starting_later
@@ -35,8 +36,8 @@ def rotate(first: Motion, second: Motion, angle_deg: float) -> Motion:
     """
     _check_pair(first, second)
     angle = math.radians(real_number("rotate: angle_deg", angle_deg, "degrees"))
-    turned = first.acceleration * math.cos(angle) + second.acceleration * math.sin(
-        angle
+    turned = in_direction(
+        first.acceleration, second.acceleration, math.cos(angle), math.sin(angle)
     )
     return first.after("rotate", turned, second=second.name, angle_deg=float(angle_deg))
 
@@ -205,9 +206,11 @@ def _at(motion: Motion, begin: float, dt: float, count: int) -> Motion:
     if same:
         samples = motion.acceleration[round(shift) : round(shift) + count]
     else:
-        samples = np.interp(
-            begin + np.arange(count) * dt, motion.time, motion.acceleration
-        )
+        # compiled, which most records need not wait for
+        from rockfrag.motions.between_samples import fill_between
+
+        samples = np.zeros(count)
+        fill_between(motion.acceleration, motion.dt, begin, dt, samples)
     if same and round(shift) == 0 and samples.size == motion.acceleration.size:
         return motion
     if begin > 0:

@@ -252,6 +252,7 @@ def _unit_process(
 def _target(
     who: str, periods: ArrayLike, target_g: ArrayLike, dt: float
 ) -> tuple[Floats, Floats]:
+    """Checked periods [s] and spectral accelerations [m/s²] of a target."""
     given = np.asarray(periods, dtype=np.float64)
     wanted = np.asarray(target_g, dtype=np.float64)
     if given.ndim != 1 or given.shape != wanted.shape or given.size < 2:
@@ -293,6 +294,7 @@ def _synthetic(
     given: Mapping[str, Any],
     **found: float,
 ) -> Motion:
+    """A motion made by a model, with the model and its seed in the provenance."""
     facts = {"synthetic": True, "kind": model, "source": source, "seed": seed, **found}
     step = {"step": model, "seed": seed, **plain(given), "dt": float(dt)}
     return Motion(acceleration, dt, f"{model}_{seed}", facts, (step,))

@@ -86,6 +86,7 @@ def limit_state(
         )
 
     def declare(predicate: Predicate) -> Predicate:
+        """Register a predicate on outcomes as a limit state."""
         if name in _STATES:
             raise InputError(
                 f"limit state {name!r} is declared twice; give the second another name."
@@ -148,6 +149,7 @@ def _rocks(outcomes: Outcomes) -> NDArray[np.bool_]:
     slipping=True,
 )
 def _slides(outcomes: Outcomes) -> NDArray[np.bool_]:
+    """Whether a contact slips by what can be seen, or the body falls."""
     with np.errstate(invalid="ignore"):
         return (
             np.asarray((outcomes.peak_slip > VISIBLE).any(axis=-1))

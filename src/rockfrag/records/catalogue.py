@@ -343,6 +343,7 @@ def load_component(
 
 
 def _check_digest(path: Path, digest: str) -> None:
+    """Refuse a file that is not the one that a catalogue names."""
     if not is_file(path):
         raise InputError(f"{path}: there is no such file.")
     if digest and sha256_of(path) != digest:

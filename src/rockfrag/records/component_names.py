@@ -72,6 +72,7 @@ def parts_of(name: str) -> tuple[str, str]:
 
 
 def _split(name: str) -> tuple[str, str]:
+    """A file's name without what names its component, and that."""
     found = next(filter(None, (pattern.match(name) for pattern in _PATTERNS)), None)
     if found is None:
         return name, ""

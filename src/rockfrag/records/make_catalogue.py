@@ -29,6 +29,7 @@ from rockfrag.records.parsing.text_file import NotAcceleration
 from rockfrag.records.quality_flags import quality_flags
 from rockfrag.records.read import motion_of, read_untold
 from rockfrag.records.sources.archive import is_archive, is_no_record, unpacked
+from rockfrag.runtime.progress import Progress
 
 # degrees by which two components may be off a right angle and still be a pair
 _PERPENDICULAR = 5.0
@@ -106,6 +107,7 @@ def _is_empty(numbered: tuple[int, str]) -> bool:
 
 
 def _peer_record(row: dict[str, str], where: str) -> PeerRecord:
+    """A row of PEER's search results: the record's files and what is known of it."""
     cells = defaultdict(str, row)
     files = tuple("" if set(cells[key]) <= {"-", " "} else cells[key] for key in _FILES)
     if not cells[_NUMBER].isdigit() or not files[0]:
@@ -198,7 +200,9 @@ class CatalogueDraft:
         """Note what looks wrong in a file."""
         self.notes.append((file, what))
 
-    def look_through(self, path: Path) -> tuple[list[Component], list[PeerRecord]]:
+    def look_through(
+        self, path: Path, progress: Progress | None
+    ) -> tuple[list[Component], list[PeerRecord]]:
         """Return the components below a path and what PEER says of them."""
         inside, files = path.is_dir(), record_files(path)
         self.left_out += [
@@ -206,9 +210,11 @@ class CatalogueDraft:
             for file, why in passed_over(path)
             if file.name != SEARCH_RESULTS
         ]
-        components = [
-            component for file in files for component in self._components(file)
-        ]
+        components = []
+        for number, file in enumerate(files, start=1):
+            components += self._components(file)
+            if progress is not None:
+                progress(number, len(files))
         listed: list[PeerRecord] = []
         try:
             if path.name == SEARCH_RESULTS and not inside:
@@ -364,6 +370,7 @@ class CatalogueDraft:
         """
 
         def worth(number: int) -> tuple[int, bool, int]:
+            """Order of copies: those with most horizontal components first, unpacked ones first."""
             group = groups[number]
             return (
                 -len(_horizontal(group)),
@@ -373,10 +380,10 @@ class CatalogueDraft:
 
         kept = []
         for number in sorted(range(len(groups)), key=worth):
-            told = _horizontal(groups[number]) or groups[number]
-            if all(component.digest in seen for component in told):
+            horizontal = _horizontal(groups[number]) or groups[number]
+            if all(component.digest in seen for component in horizontal):
                 for first in groups[number]:
-                    other = seen.get(first.digest, "") or told[0].file
+                    other = seen.get(first.digest, "") or horizontal[0].file
                     self.note(first.file, f"the same record as {other}; left out")
                 continue
             kept.append(number)
@@ -451,6 +458,8 @@ def make_catalogue(
     unit: str | None = None,
     dt: float | None = None,
     folder: str | os.PathLike[str] = ".",
+    *,
+    progress: Progress | None = None,
 ) -> CatalogueDraft:
     """Make a catalogue of the horizontal components in folders, archives and files.
 
@@ -468,6 +477,8 @@ def make_catalogue(
         Sampling interval of files that do not state theirs [s].
     folder
         From which the catalogue names its files.
+    progress
+        Called with the number of files read of a path, and of all in it.
 
     Returns
     -------
@@ -480,7 +491,7 @@ def make_catalogue(
     groups: list[list[Component]] = []
     seen: dict[str, str] = {}
     for path in map(Path, paths):
-        found, listed = draft.look_through(path)
+        found, listed = draft.look_through(path, progress)
         used: set[str] = set()
         for record in listed:
             rows += draft.peer_rows(record, found, used)
@@ -529,17 +540,17 @@ def _with_third_upright(components: Sequence[Component]) -> list[Component]:
 
 
 def _records_of(components: Sequence[Component]) -> list[list[Component]]:
-    """Group components of one record, in the ways of :data:`_WAYS`."""
+    """Group components of one record, by what :data:`_GROUPED_BY`."""
     groups: list[list[Component]] = []
     components = _with_third_upright(components)
     left = list(components)
     numbered = _numbered(components)
-    for way in range(len(_WAYS)):
+    for way in range(len(_GROUPED_BY)):
         by_key: dict[object, list[Component]] = {}
         for component in left:
             key = component.shared_by_a_record[way]
             if key is not None and not (
-                _WAYS[way] == "names" and component.file in numbered
+                _GROUPED_BY[way] == "names" and component.file in numbered
             ):
                 by_key.setdefault(key, []).append(component)
         for several in by_key.values():
@@ -559,7 +570,7 @@ def _records_of(components: Sequence[Component]) -> list[list[Component]]:
     return sorted(groups, key=lambda group: order[group[0].file])
 
 
-_WAYS = ("file", "headers", "names", "station and time")
+_GROUPED_BY = ("file", "headers", "names", "station and time")
 """How components of one record are found, in this order."""
 
 

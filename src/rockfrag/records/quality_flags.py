@@ -136,6 +136,7 @@ def _drifts_on(velocity: NDArray[np.float64]) -> bool:
 
 
 def _is_doubled(a: NDArray[np.float64]) -> bool:
+    """Whether every sample stands twice in a row."""
     moving = a[: a.size // 2 * 2].reshape(-1, 2)
     moving = moving[np.abs(moving).max(axis=1) > 0]
     if moving.shape[0] < 10 or np.unique(a).size < 10:

@@ -1,7 +1,7 @@
 """Any record as a :class:`Motion` in m/s²: unit, channel and zero level settled, not guessed."""
 
 import os
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -94,6 +94,7 @@ def read_untold(path: Path, dt: float | None) -> tuple[Record, float | None]:
 def _channels(
     path: Path, dt: float | None, cut_short: bool
 ) -> tuple[str, list[Channel]]:
+    """Format and channels of a file, by this package's readers or ObsPy's."""
     found = next((known for known in FORMATS if known.is_format(path)), None)
     if found is None:
         name, channels = obspy_channels(path, cut_short)
@@ -126,12 +127,12 @@ def _archived(file: str, wanted: str, dt: float | None, cut_short: bool) -> Reco
                 found = [replace(channel, member=member.name) for channel in found]
             except InputError as error:
                 # the user knows the archive's names, not where they lie unpacked
-                told = type(error)(
+                renamed = type(error)(
                     str(error).replace(str(member.path), f"{file}#{member.name}")
                 )
                 if wanted:
-                    raise told from None
-                left_out.append((member.name, told))
+                    raise renamed from None
+                left_out.append((member.name, renamed))
                 continue
             channels += found
             forms.add(form)
@@ -199,19 +200,7 @@ def choose_channel(record: Record, wanted: str | int | None) -> Channel:
         raise InputError(
             f"{record.name}: the file has several channels, {_listed(record)}; choose one with channel=."
         )
-    azimuth, letter = (
-        directions.azimuth_of(wanted),
-        len(wanted) == 1 and wanted.isalpha(),
-    )
-    names, ending = directions.plain_name(wanted), wanted.upper()
-    # a SEED code names its sensor, not always its direction
-    turned = [c for c in channels if azimuth is not None and c.component != c.code]
-    ways = (
-        [c for c in channels if names in _names_of(c)],
-        [c for c in turned if directions.azimuth_of(c.component) == azimuth],
-        [c for c in channels if letter and c.code.upper().endswith(ending)],
-    )
-    found = next(filter(None, ways), [])
+    found = _answering(channels, wanted)
     if len(found) == 1:
         return found[0]
     if wanted.isdigit() and not found and 1 <= int(wanted) <= len(channels):
@@ -220,6 +209,28 @@ def choose_channel(record: Record, wanted: str | int | None) -> Channel:
     raise InputError(
         f"{record.name}: {problem} to {wanted!r}; there are {_listed(record)}."
     )
+
+
+def _answering(channels: Sequence[Channel], wanted: str) -> list[Channel]:
+    """Channels of a name; if there are none, those in the direction that it names; else by the letter of codes."""
+    name = directions.plain_name(wanted)
+    named = [each for each in channels if name in _names_of(each)]
+    if named:
+        return named
+    azimuth = directions.azimuth_of(wanted)
+    # a SEED code names its sensor, not always its direction
+    turned = [
+        each
+        for each in channels
+        if azimuth is not None
+        and each.component != each.code
+        and directions.azimuth_of(each.component) == azimuth
+    ]
+    if turned:
+        return turned
+    if len(wanted) == 1 and wanted.isalpha():
+        return [each for each in channels if each.code.upper().endswith(wanted.upper())]
+    return []
 
 
 def motion_of(
@@ -248,14 +259,14 @@ def motion_of(
     samples = channel.samples
     number = next((n for n, c in enumerate(record.channels, 1) if c is channel), 1)
     where = f", channel {channel.label or number}" if len(record.channels) > 1 else ""
-    told = replace(record, name=f"{record.name}{where}")
-    stored = _settled_unit(told, channel, samples, unit)
+    named = replace(record, name=f"{record.name}{where}")
+    stored = _settled_unit(named, channel, samples, unit)
     if channel.peaks:
         peaks = [StatedPeak(number, unit) for number, unit in channel.peaks]
-        found = with_checked_peaks([replace(channel, unit=stored)], peaks, told.name)
+        found = with_checked_peaks([replace(channel, unit=stored)], peaks, named.name)
         channel = replace(channel, steps=found[0].steps)
     factor = quantities.to_si(stored)
-    acceleration = _in_si(told, samples, factor)
+    acceleration = _in_si(named, samples, factor)
     read = {
         "step": "read",
         "file": printable(Path(record.name).name),
@@ -279,7 +290,7 @@ def motion_of(
         acceleration = acceleration - mean
         steps.append({"step": "remove zero level", "offset_m_s2": mean})
     if not channel.unit and not force:
-        _check_peak(told, acceleration, stored)
+        _check_peak(named, acceleration, stored)
     own = channel.member or record.name.rpartition("#")[2]
     name = printable(Path(own).name.removesuffix(".gz").rsplit(".", 1)[0])
     if len(record.channels) > 1:
@@ -315,6 +326,7 @@ def _check_peak(record: Record, acceleration: NDArray[np.float64], unit: str) ->
 
 
 def _metadata(record: Record, channel: Channel, unit: str) -> dict[str, Any]:
+    """What is known of a channel, for the motion that it becomes."""
     start = channel.start_time
     facts = {
         **{key: getattr(channel, key) for key in ("network", "station", "location")},
@@ -331,6 +343,7 @@ def _metadata(record: Record, channel: Channel, unit: str) -> dict[str, Any]:
 def _settled_unit(
     record: Record, channel: Channel, samples: NDArray[np.float64], unit: str | None
 ) -> str:
+    """Unit of the samples, as stated in the file or given; an error where both differ or none is known."""
     asked = None if unit is None else quantities.asked_unit(unit)
     velocity = directions.is_seismometer(channel.code)
     if channel.counts and (velocity or asked is None):
@@ -372,6 +385,7 @@ def _settled_unit(
 
 
 def _listed(record: Record) -> str:
+    """The channels of a record by number and name, for messages."""
     named = ((c.member, c.code, c.component) for c in record.channels)
     words = (" ".join(dict.fromkeys(filter(None, names))) for names in named)
     return "; ".join(

@@ -136,6 +136,7 @@ def motions_of_study(path: str | os.PathLike[str]) -> list[Motion]:
 
 
 def _format(path: str | os.PathLike[str], format: str | None) -> str:
+    """Format to write, by its name or the ending of the file."""
     endings = {ending.lower(): name for name, (ending, _) in WRITERS.items()}
     name = (
         endings.get(Path(path).suffix.lower(), "") if format is None else format.upper()

@@ -66,6 +66,7 @@ def study_answer(results: Results) -> Answer:
 
 
 def _question(names: Sequence[str], study: Study) -> str:
+    """The question that the study asks, in words."""
     objects = listed(names)
     if len(names) > MOST_NAMED:
         objects = f"the {len(names)} objects"
@@ -278,6 +279,7 @@ def could_change(results: Results) -> list[str]:
 
 
 def _sliding(results: Results) -> str:
+    """Sentence on what friction may change."""
     if results.study.slides:
         sliding = results.table("sliding")
         decided = int(sliding["saved"].sum() + sliding["felled"].sum())
@@ -302,6 +304,7 @@ def _flight(light: int, analyses: int) -> str:
 
 
 def _few(earthquakes: int) -> str:
+    """Sentence on how few the earthquakes are, empty if they are not."""
     if earthquakes == 1:
         return (
             "Other earthquakes: a single one does not show how much earthquakes differ."

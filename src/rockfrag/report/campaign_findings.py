@@ -88,6 +88,7 @@ def campaign_findings(tables: Mapping[str, pd.DataFrame]) -> list[Finding]:
 
 
 def _predicted(ours: Row) -> Finding:
+    """Finding on how many outcomes the simulation predicts."""
     return Finding(
         f"The simulation predicts {number(100 * ours['right'], 1)} % of the outcomes",
         f"{sentence(_tests(ours['missed']))} overturned in the laboratory only, "

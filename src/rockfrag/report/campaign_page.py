@@ -92,6 +92,7 @@ def run(job: Job[CampaignStudy]) -> Results:
 
 
 def _near_critical(tests: pd.DataFrame) -> str:
+    """Sentence on the tests about which plausible arrangements disagree."""
     near, total = int(tests["near_critical"].sum()), len(tests)
     return (
         f"{sentence(of_all(near, total, 'test'))} {agree(near, total, 'is', 'are')} near-critical: plausible "
@@ -105,6 +106,7 @@ def _with_percents(table: pd.DataFrame) -> pd.DataFrame:
 
 
 def _agreement(tables: Tables, found: Finding, level: str) -> Section:
+    """How often each prediction is right, beside the simulation."""
     named = _with_percents(tables["agreement"])
     lead = [better_text(row) for row in named.to_dict("records")]
     named = named.assign(who=[who_text(name) for name in named["who"]], lead=lead)
@@ -149,6 +151,7 @@ _ROCKING_COLUMNS = (
 
 
 def _conditioning(study: CampaignStudy, tables: Tables) -> Section:
+    """What filters and baselines of the motions do to the predictions."""
     steps = [" ".join(map(str, step.values())) for step in study.conditioning]
     columns = [
         column("conditioning"),
@@ -169,6 +172,7 @@ def _conditioning(study: CampaignStudy, tables: Tables) -> Section:
 
 
 def _fragility(tables: Tables, level: str) -> Section:
+    """Curves of measured and simulated outcomes."""
     fragility, tests = tables["fragility"], tables["tests"]
     outcomes = {
         "measured": "measured",
@@ -216,6 +220,7 @@ def _with_unit(measure: str) -> str:
 
 
 def _tests(study: CampaignStudy, tables: Tables) -> Section:
+    """All tests, with the range of each motion's scales that overturns."""
     tests, regions = tables["tests"], tables["regions"]
     names = [
         name.removesuffix("_from")
@@ -279,6 +284,7 @@ _PROPERTIES = {
 
 
 def _object(study: CampaignStudy, tables: Tables) -> Section:
+    """How the object stands: what trials leave plausible, and its contact."""
     trials, contact = tables["trials"], tables["contact"]
     likely = trials[trials["plausible"]]
     parts: list[Markup | FigureSpec] = []

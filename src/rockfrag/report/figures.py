@@ -80,6 +80,7 @@ def plot_tests(
 def _plot_arrows(
     axes: Axes, x: Floats, y: Floats, *, bound: pd.Series, arrow: Path, colour: str
 ) -> None:
+    """Draw an arrow at each bound that is open."""
     chosen = bound.to_numpy(dtype=bool)
     axes.plot(
         x[chosen],
@@ -192,6 +193,7 @@ def _sides_panel(
 
 
 def _finish_sides(figure: Figure, axes: Axes, tests: pd.DataFrame, means: bool) -> None:
+    """Label the axis, and explain sides, means and marks in the legend."""
     axes.set_ylabel(AMPLITUDE)
     sides = [side for side in SIDES if (tests["pedestal"] == side).any()]
     handles = []

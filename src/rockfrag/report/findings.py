@@ -521,6 +521,7 @@ def pedestal_effect(
 def _effect(
     row: Mapping[Any, Any], others: Sequence[Mapping[Any, Any]], sides: Sides
 ) -> Finding:
+    """Finding on an effect, with its numbers and what else they say."""
     has_width = wording.has_interval(row["lower"], row["upper"], _RATIO_DECIMALS)
     numbers = [_ratio_and_units(row, sides, has_width)]
     pairs, tied = int(row["pairs"]), int(row["tied"])
@@ -547,6 +548,7 @@ def _is_one_inside(row: Mapping[Any, Any]) -> bool:
 
 
 def _effect_headline(row: Mapping[Any, Any], sides: Sides, has_width: bool) -> str:
+    """Headline of an effect: that it raises, lowers or does not change the amplitudes."""
     size = number(100 * abs(row["ratio"] - 1), 1)
     moves = f"{'raises' if row['ratio'] > 1 else 'lowers'} the"
     change = sentence(sides.change)
@@ -592,6 +594,7 @@ def _ratio_and_units(row: Mapping[Any, Any], sides: Sides, has_width: bool) -> s
 
 
 def _effect_by_floor(floors: pd.DataFrame, sides: Sides) -> Finding:
+    """Finding on whether an effect differs between floors."""
     limits = floors[["lower", "upper"]].to_numpy(dtype=float)
     known = np.array(
         [wording.has_interval(low, high, _RATIO_DECIMALS) for low, high in limits]

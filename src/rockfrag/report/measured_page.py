@@ -206,6 +206,7 @@ def _curves(
     goodness: pd.DataFrame,
     calibration: FigureSpec,
 ) -> Section:
+    """Fitted curves, how well they describe the tests, and their warnings."""
     warnings = dict.fromkeys(note for note in fitted["warnings"] if note)
     level = _level(study)
     curves = table_html(

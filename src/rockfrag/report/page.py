@@ -27,6 +27,7 @@ from rockfrag.report.figures import BAND, GREY
 from rockfrag.report.part import Answer, FigureSpec, Section
 from rockfrag.runtime.processes import in_processes
 from rockfrag.words.catalogue import FIRST, catalogue
+from rockfrag.words.findings import finding
 from rockfrag.words.sentences import estimates, number, probability, sentence
 
 TEMPLATES = Environment(
@@ -176,7 +177,12 @@ MOST_TABLE_ROWS = 500
 
 
 def table_html(
-    table: pd.DataFrame, columns: Sequence[Column], caption: str, file: str = ""
+    table: pd.DataFrame,
+    columns: Sequence[Column],
+    caption: str,
+    file: str = "",
+    *,
+    language: str = FIRST,
 ) -> Markup:
     """Table on the page, empty without rows.
 
@@ -185,6 +191,7 @@ def table_html(
     table, columns : the data, and what is shown of them
     caption, file
         What stands above it, and the file with all rows; where it is named ``MOST_TABLE_ROWS`` are shown.
+    language : of what is said of rows that are not shown
 
     Returns
     -------
@@ -193,7 +200,8 @@ def table_html(
     if table.empty:
         return Markup("")
     if file and len(table) > MOST_TABLE_ROWS:
-        caption += f" The first {MOST_TABLE_ROWS} of {len(table)}; {file} has all."
+        cut = finding("table_cut", shown=MOST_TABLE_ROWS, n=len(table), file=file)
+        caption += f" {catalogue(language).say(cut)}"
         table = table.iloc[:MOST_TABLE_ROWS]
     head = [(column.title, _kind(table, column)) for column in columns]
     records = table.to_dict("records")
@@ -300,14 +308,15 @@ def inline_svg(svg: str, name: str, alt: str) -> Markup:
     ).format(box[1] if box else "", alt, Markup(inner.strip()))
 
 
-TERMS: Mapping[str, str] = json.loads(
+TERMS: Mapping[str, Mapping[str, str]] = json.loads(
     resources.files("rockfrag.report").joinpath("terms.json").read_text("utf-8")
 )
-"""Meaning by term; a term such as ``PGA, PGV`` is used where one of its parts is."""
+"""Meaning by term in each language; a term such as ``PGA, PGV`` is used where one of its parts is."""
 
 
-def terms_used(text: str) -> dict[str, str]:
+def terms_used(text: str, language: str = FIRST) -> dict[str, str]:
     """Return the terms that the visible text of a page uses with their meanings, in alphabetical order."""
+    terms = TERMS.get(language, {})
 
     def occurs(term: str) -> bool:
         """Whether it is there as a word of its own, abbreviations as they are written."""
@@ -317,8 +326,8 @@ def terms_used(text: str) -> dict[str, str]:
             is not None
         )
 
-    used = [name for name in TERMS if any(map(occurs, name.split(", ")))]
-    return {name: TERMS[name] for name in sorted(used, key=str.lower)}
+    used = [name for name in terms if any(map(occurs, name.split(", ")))]
+    return {name: terms[name] for name in sorted(used, key=str.lower)}
 
 
 def draw_all(
@@ -396,7 +405,7 @@ class Page:
             vars(self),
             shell=catalogue(self.language).texts,
             pictures=pictures,
-            glossary=terms_used(self.words),
+            glossary=terms_used(self.words, self.language),
             style=Markup(
                 "".join(environment.get_template(name).render() for name in style)
             ),

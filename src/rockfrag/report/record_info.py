@@ -90,6 +90,7 @@ def _error_row(file: str, error: InputError) -> dict[str, Any]:
 def _row(
     record: Record, channel: Channel, unit: str | None, force: bool
 ) -> dict[str, Any]:
+    """Row of the table on one channel: its length, peaks, period and quality flags."""
     row: dict[str, Any] = {
         "file": printable(
             f"{record.name}#{channel.member}" if channel.member else record.name

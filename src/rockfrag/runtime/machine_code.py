@@ -31,6 +31,7 @@ def cached_njit(
     """
 
     def decorate(function: Callable[..., Any]) -> Any:
+        """Compile a function, with its machine code kept in a file where that is possible."""
         try:
             compiled: Any = numba.njit(cache=True, **options)(function)
         except RuntimeError:
@@ -87,6 +88,7 @@ def _seal(file: Any) -> None:
         return written + hashlib.sha256(written).digest()
 
     def load_data(name: str) -> Any:
+        """Machine code of a file whose seal is right."""
         found = Path(file._data_path(name)).read_bytes()
         content, seal = found[:-_SEAL], found[-_SEAL:]
         if hashlib.sha256(content).digest() != seal:
@@ -94,6 +96,7 @@ def _seal(file: Any) -> None:
         return pickle.loads(content)
 
     def load_whole(signature: Any) -> Any:
+        """Machine code of a file, None where it is damaged."""
         try:
             return load(signature)
         except Exception:  # half a pickle raises nearly anything

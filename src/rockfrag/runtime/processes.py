@@ -74,6 +74,7 @@ def end_with(process: int) -> None:
 
 
 def _watch(process: int, parent: int) -> None:
+    """End this process once its parent or another has ended."""
     has_ended = _watcher(process)
     while os.getppid() == parent and not has_ended():
         pass
@@ -93,6 +94,7 @@ def _watcher(process: int) -> Callable[[], bool]:
 
 
 def _has_ended(process: int) -> bool:
+    """Whether a process has ended, looked at after a while."""
     time.sleep(LOOK_S)
     if os.name != "posix":
         # there signal 0 would end the process

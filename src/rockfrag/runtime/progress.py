@@ -17,14 +17,18 @@ EVERY = 10.0  # seconds between two lines of a file or a pipe
 SILENT = 15.0  # seconds after which what cannot be counted gives its first sign
 OFTEN = 0.5  # seconds between two states of the line of a terminal
 
-Progress = Callable[[int, int], None]
-"""What a long computation calls with the number done and that of all."""
+Progress = Callable[[float, float], None]
+"""What a long computation calls with the number done, of which parts count, and that of all."""
+
+LONG = 120.0  # seconds from which it is said beforehand how long something takes
 
 
 def progress_line(
     what: str,
     stream: TextIO | None = None,
     clock: Callable[[], float] = time.monotonic,
+    *,
+    in_percent: bool = False,
 ) -> Progress:
     """Make a function that says how much is done and how long the rest takes.
 
@@ -33,6 +37,7 @@ def progress_line(
     what : what is counted, such as ``objects``
     stream : where to say it, the error stream if None
     clock : seconds of a clock that never goes back
+    in_percent : say which part is done, as of work that cannot be counted
 
     Returns
     -------
@@ -43,7 +48,8 @@ def progress_line(
     begun = clock()
     said = begun + QUIET - (OFTEN if shown else EVERY)
 
-    def say(done: int, total: int) -> None:
+    def say(done: float, total: float) -> None:
+        """Print how much is done, but not too often."""
         nonlocal said
         now = clock()
         finished = done >= total
@@ -53,7 +59,12 @@ def progress_line(
             return
         said = now
         left = (now - begun) * (total - done) / done if done else float("nan")
-        words = f"{done} of {total} {what}, {in_words(now - begun)}"
+        count = (
+            f"{100 * done / total:.0f} %"
+            if in_percent
+            else f"{done:.0f} of {total:.0f}"
+        )
+        words = f"{count} {what}, {in_words(now - begun)}"
         if not finished and done:
             words += f", about {in_words(left)} left"
         print(
@@ -85,14 +96,38 @@ def in_words(seconds: float) -> str:
     return f"{minutes // 60} h {minutes % 60} min"
 
 
+class Meter:
+    """Work that is done, of all that is expected."""
+
+    def __init__(self, expected: float, say: Callable[[float], None] | None) -> None:
+        """Take the work that is expected, in any unit, and what is called with the part of it that is done."""
+        self._expected = expected
+        self._say = say
+        self._done = 0.0
+
+    def add(self, work: float) -> None:
+        """Count work that was done.
+
+        Parameters
+        ----------
+        work : in the unit of what is expected
+        """
+        self._done += work
+        if self._say is not None and self._expected > 0:
+            self._say(min(self._done / self._expected, 1.0))
+
+
 @contextmanager
-def sign_of_life(words: str, stream: TextIO | None = None) -> Iterator[None]:
+def sign_of_life(
+    words: str, stream: TextIO | None = None, *, expected: float | None = None
+) -> Iterator[None]:
     """Say after :data:`SILENT` seconds, and again at ever longer intervals, that a block is still at work.
 
     Parameters
     ----------
     words : what it does, and what would be quicker
     stream : where to say it, the error stream if None
+    expected : about how long it takes [s], of which it is said how much is left; None where that is not known
 
     Returns
     -------
@@ -103,10 +138,14 @@ def sign_of_life(words: str, stream: TextIO | None = None) -> Iterator[None]:
     begun = time.monotonic()
 
     def speak() -> None:
+        """Print a sign of life now and then, until it has ended."""
         wait = SILENT
         while not ended.wait(wait):
-            so_far = in_words(time.monotonic() - begun)
-            print(f"{words} ({so_far} so far)", file=to, flush=True)
+            lasted = time.monotonic() - begun
+            so_far = f"{in_words(lasted)} so far"
+            if expected is not None and lasted < expected:
+                so_far += f", about {in_words(expected - lasted)} left"
+            print(f"{words} ({so_far})", file=to, flush=True)
             wait = max(EVERY, 2 * wait)
 
     speaker = threading.Thread(target=speak, daemon=True)

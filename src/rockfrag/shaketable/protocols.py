@@ -60,6 +60,7 @@ Steps = LinearSteps | GeometricSteps
 
 
 def _count(levels: float) -> int:
+    """Number of levels up to a limit."""
     # the last level counts when it meets the limit within rounding
     count = math.floor(levels + 1e-9) + 1
     if count > MOST_STEPS:

@@ -108,6 +108,7 @@ def read_measured(path: str | os.PathLike[str]) -> pd.DataFrame:
 
 
 def _test(row: Row, bounds: tuple[str, str], in_g: float) -> dict[str, object]:
+    """A test of a row of a table, its amplitudes in g."""
     for column, known in _CHOICES.items():
         if row.cells[column] not in known:
             choice = ", ".join(name or "nothing" for name in known)

@@ -28,6 +28,7 @@ def one_sine_pulse(omega: float, p: float) -> float:
         return -(p * math.sin(angle) + omega * math.cos(angle)) / (p**2 + omega**2)
 
     def excess(x: float) -> float:
+        """Zero where an amplitude, over the one that lifts, just overturns; rises with it."""
         begin = math.asin(1 / x)
         return (
             x * p * (math.exp(-p * (phase - begin) / omega) * part(phase) - part(begin))

@@ -243,6 +243,7 @@ def overturned_cases(
     overturned = np.zeros(len(system), dtype=bool)
 
     def run(number: int) -> None:
+        """Simulate the cases of one system, those of a motion side by side."""
         mine = np.flatnonzero(system == number)
         used, row = np.unique(motion[mine], return_inverse=True)
         # the cases of a motion side by side; what is left over is a scale of zero, which costs nothing

@@ -182,6 +182,7 @@ def ground_motion(
 
 
 def _refuse_file_name(name: str, motion: object) -> None:
+    """Refuse the name of a file in place of its numbers."""
     if isinstance(motion, (str, os.PathLike)):
         raise InputError(
             f"{name}: expected numbers [m/s²], got {shown(os.fspath(motion))}; of a file give what "
@@ -190,6 +191,7 @@ def _refuse_file_name(name: str, motion: object) -> None:
 
 
 def _listed_motions(motions: Any, name: str = "motions") -> list[MotionLike]:
+    """Motions as a list; one alone is a list of one."""
     _refuse_file_name(name, motions)
     if is_system(motions):
         raise InputError(

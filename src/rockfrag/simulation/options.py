@@ -225,6 +225,7 @@ def _impact_laws(
 def _law_of(
     name: str, law: str, value: object, shape: geometry.Shape, lone: bool
 ) -> ImpactLaw:
+    """Law of impacts of a contact, of a measured restitution."""
     if value is None:
         return BY_MOMENTUM
     both = _ratios(name, value, shape)

@@ -173,6 +173,7 @@ def restitution_from_impacts(
     largest = over * (1 - 1e-12)
 
     def speed_of(interval: float, pivot: int) -> float:
+        """Speed on a pivot after which the block is back after an interval, within what is possible."""
         if flight(largest, pivot) <= interval:
             return largest
         if flight(1e-9 * largest, pivot) >= interval:
@@ -252,6 +253,7 @@ def restitution_from_history(
 
 
 def _numbers(name: str, data: ArrayLike, least: int) -> Floats:
+    """At least so many finite numbers, shape (n,)."""
     values = real_array(name, data, "s" if "time" in name else "rad")
     if values.ndim != 1 or values.size < least:
         raise InputError(
@@ -264,6 +266,7 @@ def _numbers(name: str, data: ArrayLike, least: int) -> Floats:
 
 
 def _checked_peaks(block: Block, peaks: ArrayLike) -> tuple[Floats, list[int]]:
+    """Sizes of peaks that alternate, and the pivot of each."""
     values = _numbers("peaks", peaks, 2)
     first = 1 if values[0] > 0 else -1
     pivots = [first * (-1) ** k for k in range(values.size)]

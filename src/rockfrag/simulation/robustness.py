@@ -116,6 +116,7 @@ def perturbed(system: System, size: float, rng: np.random.Generator) -> System:
 
 
 def _resized(body: RigidBody, across: float, up: float) -> RigidBody:
+    """A body in space scaled across and up, of the same density."""
     x, y, z = body.centre
     base, height = _scaled(body.base, across), body.height * up
     made = replace(
@@ -148,6 +149,7 @@ def _uniform(body: RigidBody) -> float:
 
 
 def _scaled(outline: Outline, across: float) -> Outline:
+    """An outline scaled across."""
     if isinstance(outline, Interval):
         return Interval(outline.left * across, outline.right * across)
     if isinstance(outline, Circle):

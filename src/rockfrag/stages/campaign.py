@@ -267,22 +267,17 @@ class _Simulated:
         return measured.agreement(name, theirs) | lead
 
     def rocking(self) -> pd.DataFrame:
-        """Whether the object rocked, where the laboratory noted it: trials chosen by overturning vote on it."""
+        """How often it is predicted right whether the object rocked; no row where no laboratory noted it.
+
+        The trials that predict overturning best on other motions say of each test whether it rocked.
+        """
         noted = self.campaign.tests.get("rocked")
         if noted is None:
-            columns = [
-                "who",
-                "right",
-                "lower",
-                "upper",
-                "false_alarms",
-                "missed",
-                "tests",
-            ]
-            return pd.DataFrame(columns=columns)
-        votes = self.measured.cross_validate(self.outcomes, self.rocked)
-        seen = replace(self.measured, overturned=noted.to_numpy())
-        return pd.DataFrame([seen.agreement(OURS, votes >= HALF)])
+            numbers = ["right", "lower", "upper", "false_alarms", "missed", "tests"]
+            return pd.DataFrame(columns=["who", *numbers])
+        rocked = self.measured.cross_validate(self.outcomes, self.rocked) >= HALF
+        noted_tests = replace(self.measured, overturned=noted.to_numpy())
+        return pd.DataFrame([noted_tests.agreement(OURS, rocked)])
 
     def fragility(self) -> pd.DataFrame:
         """Lognormal curves of measured and simulated outcomes in every measure."""

@@ -197,7 +197,8 @@ def ida_table(
     if configuration.loose:
         rough = result.without_sliding
         if rough is None:
-            # a column of three bodies, or one that is held: its engine has not asked pure rocking
+            # no engine of pure rocking has columns of three bodies, nor what is held: the contacts, too rough to
+            # slide, are integrated once more, so that two integrations are made of a case here too
             rough = _shaken(configuration.held(), motions, scales, threads).overturned
         made["peak_slip_m"] = result.of_any("peak_slip")[0].ravel()
         made |= result.wide(0, SLID)

@@ -87,17 +87,19 @@ class BlindAnswer:
         -------
         The probability of a median below the measured one [-]; uniform if the error is that of the model.
         """
-        return float(stats.norm.cdf(self._standard(error)).mean())
+        return float(stats.norm.cdf(self._standard_scores(error)).mean())
 
     def density(self, error: float) -> float:
         """Density of ln of the measured median in the ways to stand, with an error of the model, its slope."""
         width = math.hypot(error, self.sampling)
-        return float(stats.norm.pdf(self._standard(error)).mean()) / width
+        return float(stats.norm.pdf(self._standard_scores(error)).mean()) / width
 
-    def _standard(self, error: float) -> Floats:
+    def _standard_scores(self, error: float) -> Floats:
+        """How many standard deviations the measured median lies above that of each way to stand, shape (ways,)."""
+        # a way in which all topples has the median 0
         with np.errstate(divide="ignore"):
-            away = math.log(self.measured) - np.log(self.medians)
-        return np.asarray(away / math.hypot(error, self.sampling))
+            ln_ratio = math.log(self.measured) - np.log(self.medians)
+        return np.asarray(ln_ratio / math.hypot(error, self.sampling))
 
     def interval(self) -> tuple[float, float]:
         """Limits of the median (90 %), of a model without error."""

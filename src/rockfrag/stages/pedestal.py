@@ -130,6 +130,7 @@ def beside(measured: pd.DataFrame, simulated: pd.DataFrame) -> pd.DataFrame:
 
 
 def _curves(measured: pd.DataFrame, level: float, notes: list[str]) -> pd.DataFrame:
+    """Curves of the measured tests by object and side; what none can be fitted to is noted."""
     rows = []
     digest = table_hash(measured)
     for (object_name, side), tests in measured.groupby(

@@ -16,6 +16,7 @@ import logging
 import sys
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import product
 from pathlib import Path
 from typing import Any
 
@@ -78,12 +79,12 @@ def records_of(every: int, folder: Path) -> Records:
 def kept_surfaces(
     records: Records, extent: Extent, folder: Path
 ) -> Iterator[tuple[pd.DataFrame, list[dict[str, Any]]]]:
-    """Yield for each standing its medians and surfaces; those that an earlier run has left are read."""
-    for standing in STANDINGS:
-        table_at = folder / f"medians-{standing}.csv"
-        rows_at = folder / f"surfaces-{standing}.json"
+    """Yield medians and surfaces of each standing and measure; those that an earlier run has left are read."""
+    for standing, measure in product(STANDINGS, MEASURES):
+        table_at = folder / f"medians-{standing}-{measure}.csv"
+        rows_at = folder / f"surfaces-{standing}-{measure}.json"
         if not (table_at.exists() and rows_at.exists()):
-            ((table, rows),) = medians_and_surfaces(records, extent, [standing])
+            table, rows = medians_and_surfaces(records, extent, standing, measure)
             write_table(table, table_at)
             _write_json(rows, rows_at)
         rows = json.loads(rows_at.read_text(encoding="utf-8"))
@@ -96,36 +97,29 @@ def _write_json(content: Any, file: Path) -> None:
 
 
 def medians_and_surfaces(
-    records: Records, extent: Extent, standings: Sequence[str] = STANDINGS
-) -> Iterator[tuple[pd.DataFrame, list[dict[str, Any]]]]:
-    """Yield for each standing its medians and surfaces, judged by sizes that the fit has not seen."""
-    for standing in standings:
-        grid = extent.plane if standing == "plane" else extent.space
-        sizes = grid_of_sizes(*grid)
-        others = random_sizes(extent.held_out, SEED)
-        weights, rows, tables = records.weights(standing), [], []
-        for measure in MEASURES if standing == "plane" else MEASURES[:1]:
-            seen = records.shake(sizes, standing, measure)
-            unseen = records.shake(others, standing, measure)
-            error = np.nan
-            # the fall first: what the earthquakes do to it they do to lesser rotations
-            for number, limit in reversed(list(enumerate(LIMITS))):
-                drawn = weights if limit == 1 else weights[:1]
-                medians, dispersions = seen.fits(drawn, number)
-                row = _surface_row(sizes, medians, dispersions[0])
-                error = _earthquake_error(np.log(medians[1:])) if limit == 1 else error
-                row["earthquakes"] = round(error, 4)
-                kept, _ = unseen.fits(weights[:1], number)
-                row |= _judged(row["median"], others, kept[0])
-                rows.append(
-                    {"standing": standing, "limit": limit, "measure": measure} | row
-                )
-                table = _table(sizes, medians, dispersions[0])
-                tables.append(
-                    table.assign(standing=standing, measure=measure, limit=limit)
-                )
-            _LOG.info("%s, %s", standing, measure)
-        yield pd.concat(tables, ignore_index=True), rows
+    records: Records, extent: Extent, standing: str, measure: str
+) -> tuple[pd.DataFrame, list[dict[str, Any]]]:
+    """Medians and surfaces of a standing in a measure, judged by sizes that the fit has not seen."""
+    sizes = grid_of_sizes(*(extent.plane if standing == "plane" else extent.space))
+    others = random_sizes(extent.held_out, SEED)
+    weights, rows, tables = records.weights(standing), [], []
+    seen = records.shake(sizes, standing, measure)
+    unseen = records.shake(others, standing, measure)
+    error = np.nan
+    # the fall first: what the earthquakes do to it they do to lesser rotations
+    for number, limit in reversed(list(enumerate(LIMITS))):
+        drawn = weights if limit == 1 else weights[:1]
+        medians, dispersions = seen.fits(drawn, number)
+        row = _surface_row(sizes, medians, dispersions[0])
+        error = _earthquake_error(np.log(medians[1:])) if limit == 1 else error
+        row["earthquakes"] = round(error, 4)
+        kept, _ = unseen.fits(weights[:1], number)
+        row |= _judged(row["median"], others, kept[0])
+        rows.append({"standing": standing, "limit": limit, "measure": measure} | row)
+        table = _table(sizes, medians, dispersions[0])
+        tables.append(table.assign(standing=standing, measure=measure, limit=limit))
+    _LOG.info("%s, %s", standing, measure)
+    return pd.concat(tables, ignore_index=True), rows
 
 
 def _surface_row(sizes: Floats, medians: Floats, dispersions: Floats) -> dict[str, Any]:
@@ -242,8 +236,33 @@ NAMES = {"plane": "plane", "square": "square", "oblong": "1 to 2", "round": "rou
 
 
 def page_tables(tables: Mapping[str, pd.DataFrame]) -> str:
-    """Tables of the page in Markdown: pieces, flatness, causes, bias, surfaces."""
-    pieces, causes = tables["pieces"], tables["causes"]
+    """Write the tables of ``docs/toppling_velocity.md`` in Markdown, a blank line between them.
+
+    Parameters
+    ----------
+    tables : ``pieces``, ``flatness``, ``causes``, ``bias`` and ``surfaces``, as :func:`study` makes them
+
+    Returns
+    -------
+    The text between the marks ``BEGIN`` and ``END`` of the page.
+    """
+    pieces = tables["pieces"]
+    parts = [
+        piece_lines(pieces),
+        [
+            "Medians in m/s, dispersions β and standard errors from the choice of earthquakes."
+        ],
+        flatness_lines(tables["flatness"]),
+        flat_lines(pieces),
+        cause_lines(tables["causes"]),
+        bias_lines(tables["bias"]),
+        surface_lines(tables["surfaces"]),
+    ]
+    return "\n\n".join("\n".join(lines) for lines in parts)
+
+
+def piece_lines(pieces: pd.DataFrame) -> list[str]:
+    """Table in Markdown of pieces of furniture, with published and simulated medians."""
     lines = [
         "| B × H [m] | FEMA P-58 | Kaneko | plane, β, ± | square, β, ± | 1 to 2 | round | plane over Kaneko | "
         "square over Kaneko | plane over P-58 |",
@@ -259,39 +278,50 @@ def page_tables(tables: Mapping[str, pd.DataFrame]) -> str:
             f"{' | '.join(each)} | {row['oblong']:.3f} | {row['round']:.3f} | {row['plane_over_kaneko']:.2f} | "
             f"{row['square_over_kaneko']:.2f} | {row['plane_over_p58']:.2f} |"
         )
-    lines += [
-        "\nMedians in m/s, dispersions β and standard errors from the choice of earthquakes.\n",
+    return lines
+
+
+def flatness_lines(flatness: pd.DataFrame) -> list[str]:
+    """Table in Markdown of how flat the ratio over Kaneko is over all sizes."""
+    lines = [
         "| over all sizes | sizes | over Kaneko | spread of ln | least | most | mean β |",
         "|---|--:|--:|--:|--:|--:|--:|",
     ]
-    for row in tables["flatness"].to_dict("records"):
+    for row in flatness.to_dict("records"):
         lines.append(
             f"| {NAMES[row['standing']]} | {row['sizes']} | {row['ratio']:.2f} | {row['spread']:.3f} | "
             f"{row['least']:.2f} | {row['most']:.2f} | {row['dispersion']:.2f} |"
         )
-    lines += ["", *flat_lines(pieces), "", *cause_lines(causes)]
-    lines += [
-        "",
+    return lines
+
+
+def bias_lines(bias: pd.DataFrame) -> list[str]:
+    """Table in Markdown of the bias of cut blocks, simulated over published medians."""
+    lines = [
         "| cut blocks | bias of ln median | standard error |",
         "|---|--:|--:|",
     ]
-    for row in tables["bias"].to_dict("records"):
+    for row in bias.to_dict("records"):
         lines.append(
             f"| {NAMES[row['standing']]} | {row['bias']:+.2f} | {row['error']:.2f} |"
         )
-    lines += [
-        "",
+    return lines
+
+
+def surface_lines(surfaces: pd.DataFrame) -> list[str]:
+    """Table in Markdown of how far surfaces are off, for some of their limits."""
+    lines = [
         "| surface | by | limit | held-out sizes, ln | largest | earthquakes, ln |",
         "|---|---|--:|--:|--:|--:|",
     ]
-    surfaces = tables["surfaces"]
-    for row in surfaces[surfaces["limit"].isin((1.0, 0.3, 0.01))].to_dict("records"):
+    shown = surfaces["limit"].isin((1.0, 0.3, 0.01))
+    for row in surfaces[shown].to_dict("records"):
         measure = "PGV" if row["measure"] == MEASURES[0] else "PGA"
         lines.append(
             f"| {NAMES[row['standing']]} | {measure} | {row['limit']:g} | {row['residual']:.3f} | "
             f"{row['largest']:.3f} | {row['earthquakes']:.3f} |"
         )
-    return "\n".join(lines)
+    return lines
 
 
 def flat_lines(pieces: pd.DataFrame) -> list[str]:

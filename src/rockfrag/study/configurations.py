@@ -47,6 +47,7 @@ def read_specimens(path: str | os.PathLike[str]) -> dict[str, Block]:
 
 
 def _block(row: Row) -> Block:
+    """The block of a row of specimens."""
     columns = {"width": "width_m", "height": "height_m", "mass": "mass_kg"}
     stated = {"inertia": "inertia_kg_m2", "cg_height": "cg_height_m"}
     columns |= {name: column for name, column in stated.items() if row.has(column)}

@@ -284,6 +284,7 @@ def _state(path: Path) -> tuple[str, int, int]:
 
 
 def _read_all(study: Study) -> list[str]:
+    """Read all motions of a study, and return what looks wrong with them."""
     from rockfrag.motions.directions import motions_of_row
 
     warnings = [

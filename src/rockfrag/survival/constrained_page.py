@@ -1,17 +1,16 @@
 """Page of a site whose hazard was reweighted by survival, and the tables beside it.
 
 In: :class:`rockfrag.survival.reweight.Constrained`. Out: HTML, JSON and CSV files, and lines for a screen;
-levels in the unit of the hazard's measure, annual rates [1/year], information [bit].
+levels in the unit of the hazard's measure, annual rates [1/year], information [bit]. Words are those of the
+catalogue of a language.
 
 Theory: ``docs/survival.md``, "How it is calculated" and "What it cannot say".
 """
 
 import json
 import os
-from collections.abc import Hashable
 from importlib.metadata import version
 from pathlib import Path
-from typing import NamedTuple
 
 import numpy as np
 import pandas as pd
@@ -21,41 +20,32 @@ from matplotlib.figure import Figure
 from rockfrag.base import figure_style as style
 from rockfrag.base.files import file_name, write_table, write_text
 from rockfrag.report.page import Page, column, table_html
-from rockfrag.report.part import Answer, FigureSpec, Finding, Section
-from rockfrag.survival.reweight import DECISION_RATE, RULED_OUT, Constrained
+from rockfrag.report.part import Answer, FigureSpec, Section
+from rockfrag.report.part import Finding as Shown
+from rockfrag.survival.reweight import DECISION_RATE, IN_SPACE, RULED_OUT, Constrained
+from rockfrag.survival.site import UNNAMED
+from rockfrag.words.catalogue import FIRST, Catalogue, catalogue
+from rockfrag.words.findings import Finding, Value, finding, listed, three, two, whole
 
-BRANCHES = (
-    column("branch"),
-    column("weight_before", decimals=4),
-    column("weight_after", decimals=4),
-    column("survival", "Probability that all stand", decimals=4),
-)
-OBJECTS = (
-    column("object"),
-    column("information_bit", "Information alone [bit]", decimals=2),
-    column(
-        "level_ratio_alone", "Level at 1e-4 with it alone, after / before", decimals=2
-    ),
-    column(
-        "level_ratio_without", "Level at 1e-4 without it, after / before", decimals=2
-    ),
-)
-ASSUMED = (
-    column("assumption"),
-    column("level_ratio", "Level at 1e-4, after / before", decimals=2),
-)
+LIMITS = ("site_limit_past", "site_limit_fragility", "site_limit_branches")
+"""Texts of the limits of every answer, a sentence each."""
 
-LIMITS = (
-    "Survival tells how strong shaking at the site has been since the objects stand, not how strong it will be "
-    "in the next 50 years if rates change.",
-    "The fragility is that of today; an object that was broader or lower, buried or supported was less fragile "
-    "then, and counts for less: state since when with fragile_for_years.",
-    "The branches are reweighted, not validated: if none of them is right, none of the new weights is.",
-)
-"""Limits of every answer, a sentence each."""
+ASSUMPTIONS = {
+    "as_stated": "site_assumption_as_stated",
+    "half_as_old": "site_assumption_half_as_old",
+    "twice_as_old": "site_assumption_twice_as_old",
+    "stronger": "site_assumption_stronger",
+    "weaker": "site_assumption_weaker",
+    "in_space": "site_assumption_in_space",
+    "independent_errors": "site_assumption_independent",
+    "shared_errors": "site_assumption_shared",
+}
+"""Texts of what is taken otherwise, by its name in the table of sensitivities."""
 
 
-def write_constrained(found: Constrained, folder: str | os.PathLike[str]) -> Path:
+def write_constrained(
+    found: Constrained, folder: str | os.PathLike[str], language: str = FIRST
+) -> Path:
     """Write page, JSON and tables of a site into a folder, and return the path of the page.
 
     Files: ``<site>.html``, ``<site>.json``, ``<site>-weights.csv`` (``rlz_id``, ``branch_path`` and ``weight`` as
@@ -63,7 +53,8 @@ def write_constrained(found: Constrained, folder: str | os.PathLike[str]) -> Pat
 
     Parameters
     ----------
-    found, folder : the site with its new weights, and where files go
+    found : the site with its new weights
+    folder, language : where files go, and the language of the page
 
     Returns
     -------
@@ -74,7 +65,7 @@ def write_constrained(found: Constrained, folder: str | os.PathLike[str]) -> Pat
     write_table(found.result.curves(), Path(f"{stem}-curves.csv"))
     write_text(json_of(found), f"{stem}.json")
     page = Path(f"{stem}.html")
-    write_text(page_of(found), page)
+    write_text(page_of(found, language), page)
     return page
 
 
@@ -105,11 +96,12 @@ def json_of(found: Constrained) -> str:
     -------
     JSON.
     """
+    texts = catalogue()
     tables = {
         "branches": found.result.table(),
         "mean_hazard": found.result.ratios(),
         "objects": found.by_object,
-        "sensitivity": found.sensitivity,
+        "sensitivity": _assumed(found, texts),
     }
     content = {
         "site": found.site.name,
@@ -121,174 +113,239 @@ def json_of(found: Constrained) -> str:
             name: json.loads(table.to_json(orient="records"))
             for name, table in tables.items()
         },
-        "limits": list(LIMITS),
+        "limits": [texts.text(id) for id in LIMITS],
     }
     return json.dumps(content, indent=2, ensure_ascii=False) + "\n"
 
 
-class _Sentences(NamedTuple):
-    """The answer, a sentence each."""
-
-    hazard: str
-    branches: str
-    evidence: str
-    hangs_on: str  # the assumption that changes it most
+def _assumed(found: Constrained, texts: Catalogue) -> pd.DataFrame:
+    """Table of sensitivities with its assumptions in words."""
+    words = [texts.say(_assumption(name)) for name in found.sensitivity["assumption"]]
+    return found.sensitivity.assign(assumption=words)
 
 
-def _sentences(found: Constrained) -> _Sentences:
-    branches = (
-        f"{len(found.ruled_out)} of {len(found.site.branches)} branches keep less than {100 * RULED_OUT:.0f} % "
-        "of their weight."
-    )
-    return _Sentences(
-        _hazard_sentence(found),
-        branches,
-        _evidence_sentence(found),
-        _sensitivity_sentence(found),
-    )
+def _assumption(name: str) -> Finding:
+    if name == "in_space":
+        return finding(ASSUMPTIONS[name], less=whole(100 * (1 - IN_SPACE)))
+    return finding(ASSUMPTIONS[name])
 
 
-def _hazard_sentence(found: Constrained) -> str:
+def _hazard_said(found: Constrained) -> Finding:
     """Change of the mean hazard at the annual rate of decisions."""
     measure = found.site.measure
-    decided = found.result.ratios().set_index("annual_rate").loc[DECISION_RATE]
+    table = found.result.ratios()
+    decided = table[table["annual_rate"] == DECISION_RATE].to_dict("records")[0]
     if not decided["level_ratio"] > 0:
-        return "The mean hazard at 1e-4 a year lies beyond the curves; extend them."
+        return finding("site_beyond_curves")
     change = decided["level_ratio"] - 1
-    return (
-        f"The mean {measure.imt} at 1e-4 a year is {decided['level_after']:.3g} {measure.unit} after "
-        f"{decided['level_before']:.3g} {measure.unit} before, {100 * abs(change):.0f} % "
-        f"{'lower' if change < 0 else 'higher'}."
+    return finding(
+        "site_lower" if change < 0 else "site_higher",
+        measure=measure.imt,
+        unit=measure.unit,
+        after=three(decided["level_after"]),
+        before=three(decided["level_before"]),
+        change=whole(100 * abs(change)),
     )
 
 
-def _evidence_sentence(found: Constrained) -> str:
+def _branches_said(found: Constrained) -> Finding:
+    return finding(
+        "site_ruled_out",
+        count=len(found.ruled_out),
+        n=len(found.site.branches),
+        least=whole(100 * RULED_OUT),
+    )
+
+
+def _evidence_said(found: Constrained) -> Finding:
     """Object that moves the weights most."""
     first = found.by_object.to_dict("records")[0]
+    name, bit = first["object"], two(first["information_bit"])
     if len(found.by_object) == 1:
-        return f"{first['object']} is the only object; one object is weak evidence."
-    without = ""
-    if (ratio := first["level_ratio_without"]) > 0:
-        without = f"; without it the mean hazard at 1e-4 a year is {ratio:.2f} times that before"
-    return f"{first['object']} tells most ({first['information_bit']:.2f} bit alone){without}."
+        return finding("site_only", name=name)
+    if (without := first["level_ratio_without"]) > 0:
+        ratio = two(without)
+        return finding("site_tells_most_without", name=name, bit=bit, ratio=ratio)
+    return finding("site_tells_most", name=name, bit=bit)
 
 
-def _sensitivity_sentence(found: Constrained) -> str:
+def _hangs_on_said(found: Constrained) -> Finding:
     """Assumption without which the level changes most."""
     moved = found.sensitivity.iloc[1:]
     moved = moved[moved["level_ratio"] > 0]
     if moved.empty or not found.result.level_ratio > 0:
-        return "No assumption can be named, as the level at 1e-4 a year lies beyond the curves."
+        return finding("site_hangs_on_nothing")
     away = np.log(moved["level_ratio"] / found.result.level_ratio).abs()
     worst = moved.iloc[int(away.to_numpy().argmax())]
-    return (
-        f"With {worst['assumption']} the level would be {worst['level_ratio']:.2f} times that before, with all as "
-        f"stated {found.result.level_ratio:.2f} times."
+    return finding(
+        "site_hangs_on",
+        assumption=_assumption(worst["assumption"]),
+        ratio=two(worst["level_ratio"]),
+        stated=two(found.result.level_ratio),
     )
 
 
-def lines_of(found: Constrained) -> list[str]:
+def lines_of(found: Constrained, language: str = FIRST) -> list[str]:
     """Answer in lines for a screen.
 
     Parameters
     ----------
-    found : the site with its new weights
+    found, language : the site with its new weights, and the language
 
     Returns
     -------
     The lines.
     """
-    words = _sentences(found)
-    branches = words.branches.replace(" branches", "", 1).rstrip(".")
-    moved = f"{found.result.information:.2f} bit"
+    texts = catalogue(language)
+    moved = finding("site_moved", bit=two(found.result.information))
+    said: dict[str, list[Value]] = {
+        "site_head_hazard": [_hazard_said(found)],
+        "site_head_branches": [_branches_said(found), moved],
+        "site_head_evidence": [_evidence_said(found)],
+        "site_head_hangs_on": [_hangs_on_said(found)],
+        "site_head_limits": [finding(id) for id in LIMITS],
+    }
+    heads = [texts.text(id) for id in said]
+    longest = max(map(len, heads))
     return [
-        f"Hazard    {words.hazard}",
-        f"Branches  {branches}; the weights moved by {moved}.",
-        f"Evidence  {words.evidence}",
-        f"Hangs on  {words.hangs_on}",
-        f"Limits    {' '.join(LIMITS)}",
+        f"{head:<{longest}}  {' '.join(map(texts.say, values))}"
+        for head, values in zip(heads, said.values(), strict=True)
     ]
 
 
-def page_of(found: Constrained) -> str:
+def page_of(found: Constrained, language: str = FIRST) -> str:
     """Page as HTML, which loads nothing from outside.
 
     Parameters
     ----------
-    found : the site with its new weights
+    found, language : the site with its new weights, and the language
 
     Returns
     -------
     HTML.
     """
-    words = _sentences(found)
-    names = ", ".join(body.name for body in found.site.objects)
+    texts = catalogue(language)
+    site = found.site
+    names = listed([body.name for body in site.objects])
+    place = finding("site_unnamed") if site.name == UNNAMED else site.name
+    hazard, evidence, hangs_on = map(
+        texts.say, (_hazard_said(found), _evidence_said(found), _hangs_on_said(found))
+    )
+    limits = [texts.text(id) for id in LIMITS]
     curves = FigureSpec(
         name="curves",
-        alt=f"Mean hazard before and after survival. {words.hazard}",
-        caption=(
-            "Mean hazard before (dashed) and after survival (solid); shaded from the 16th to the 84th "
-            "percentile of the branches."
-        ),
-        draw=lambda: curves_figure(found),
+        alt=texts.say(finding("site_figure_curves_alt", hazard=hazard)),
+        caption=texts.text("site_figure_curves"),
+        draw=lambda: curves_figure(found, texts),
     )
-    weights = FigureSpec(
-        name="weights",
-        alt="Weights of the branches before and after survival.",
-        caption="Weights of the branches that matter most.",
-        draw=lambda: weights_figure(found),
-    )
-    file = f"{file_name(found.site.name)}-weights.csv"
-    caption = "Branches of the hazard with their weights."
-    branch_table = table_html(found.result.table(), BRANCHES, caption, file)
-    caption = "What each object says by itself, and what is left without it."
-    objects = table_html(found.by_object, OBJECTS, caption)
-    caption = "One assumption at a time taken otherwise."
-    assumed = table_html(found.sensitivity, ASSUMED, caption)
     return Page(
-        title=f"What {names} say about the hazard of {found.site.name}",
-        lead=(
-            f"{len(found.site.branches)} branches of the hazard reweighted by what still stands: {names}."
-        ),
+        title=texts.say(finding("site_title", names=names, site=place)),
+        lead=texts.say(finding("site_lead", n=len(site.branches), names=names)),
         answer=Answer(
-            asked="How strong can shaking have been, since these objects stand?",
+            asked=texts.text("site_asked"),
             sentences=[
-                Finding("Hazard", words.hazard),
-                Finding("Evidence", words.evidence),
-                Finding("It hangs on", words.hangs_on),
+                Shown(texts.text("site_head_hazard"), hazard),
+                Shown(texts.text("site_head_evidence"), evidence),
+                Shown(texts.text("site_it_hangs_on"), hangs_on),
             ],
             figure=curves,
-            rests_on=LIMITS,
+            rests_on=limits,
         ),
-        sections=[
-            Section(
-                "hazard",
-                "Mean hazard before and after",
-                words.hazard,
-                (),
-                [_hazard(found)],
-            ),
-            Section(
-                "branches", "Branches", words.branches, (), [weights, branch_table]
-            ),
-            Section("objects", "Which object decides", words.evidence, (), [objects]),
-            Section("hangs-on", "What it hangs on", words.hangs_on, LIMITS, [assumed]),
-        ],
-        provenance={"Program": f"rockfrag {version('rockfrag')}"},
+        sections=_sections(found, texts),
+        provenance={
+            texts.text("provenance_program"): f"rockfrag {version('rockfrag')}"
+        },
+        language=texts.language,
     ).html()
 
 
-def _hazard(found: Constrained) -> Markup:
+def _sections(found: Constrained, texts: Catalogue) -> list[Section]:
+    """Chapters: the hazard, its branches, the objects, and on what the answer hangs."""
+    weights = FigureSpec(
+        name="weights",
+        alt=texts.text("site_figure_weights_alt"),
+        caption=texts.text("site_figure_weights"),
+        draw=lambda: weights_figure(found, texts),
+    )
+    limits = [texts.text(id) for id in LIMITS]
+    return [
+        Section(
+            "hazard",
+            texts.text("site_hazard"),
+            texts.say(_hazard_said(found)),
+            (),
+            [_hazard_table(found, texts)],
+        ),
+        Section(
+            "branches",
+            texts.text("site_branches"),
+            texts.say(_branches_said(found)),
+            (),
+            [weights, _branch_table(found, texts)],
+        ),
+        Section(
+            "objects",
+            texts.text("site_objects"),
+            texts.say(_evidence_said(found)),
+            (),
+            [_object_table(found, texts)],
+        ),
+        Section(
+            "hangs-on",
+            texts.text("site_assumptions"),
+            texts.say(_hangs_on_said(found)),
+            limits,
+            [_assumption_table(found, texts)],
+        ),
+    ]
+
+
+def _hazard_table(found: Constrained, texts: Catalogue) -> Markup:
+    """Table of the mean hazard before and after."""
     unit, table = found.site.measure.unit, found.result.ratios()
     table = table.assign(rate=table["annual_rate"].map("{:g}".format))
+    before = texts.say(finding("site_column_before", unit=unit))
+    after = texts.say(finding("site_column_after", unit=unit))
     columns = (
-        column("rate", "Annual rate [1/year]", numeric=True),
-        column("level_before", f"Before [{unit}]", decimals=3),
-        column("level_after", f"After [{unit}]", decimals=3),
-        column("level_ratio", "Level after / before", decimals=2),
-        column("rate_ratio", "Rate of the level before, after / before", decimals=2),
+        column("rate", texts.text("site_column_rate"), numeric=True),
+        column("level_before", before, decimals=3),
+        column("level_after", after, decimals=3),
+        column("level_ratio", texts.text("site_column_level_ratio"), decimals=2),
+        column("rate_ratio", texts.text("site_column_rate_ratio"), decimals=2),
     )
-    return table_html(table, columns, "Mean hazard at annual rates of 1e-2 to 1e-5.")
+    return table_html(table, columns, texts.text("site_hazard_table"))
+
+
+def _branch_table(found: Constrained, texts: Catalogue) -> Markup:
+    """Table of the branches: weights before and after, and how probably each lets all stand."""
+    columns = (
+        column("branch", texts.text("site_column_branch")),
+        column("weight_before", texts.text("site_column_weight_before"), decimals=4),
+        column("weight_after", texts.text("site_column_weight_after"), decimals=4),
+        column("survival", texts.text("site_column_survival"), decimals=4),
+    )
+    table, caption = found.result.table(), texts.text("site_branch_table")
+    file = f"{file_name(found.site.name)}-weights.csv"
+    return table_html(table, columns, caption, file, language=texts.language)
+
+
+def _object_table(found: Constrained, texts: Catalogue) -> Markup:
+    columns = (
+        column("object", texts.text("site_column_object")),
+        column("information_bit", texts.text("site_column_bit"), decimals=2),
+        column("level_ratio_alone", texts.text("site_column_alone"), decimals=2),
+        column("level_ratio_without", texts.text("site_column_without"), decimals=2),
+    )
+    return table_html(found.by_object, columns, texts.text("site_object_table"))
+
+
+def _assumption_table(found: Constrained, texts: Catalogue) -> Markup:
+    columns = (
+        column("assumption", texts.text("site_column_assumption")),
+        column("level_ratio", texts.text("site_column_level"), decimals=2),
+    )
+    caption = texts.text("site_assumption_table")
+    return table_html(_assumed(found, texts), columns, caption)
 
 
 # Branches whose weights are drawn: those that matter most before or after
@@ -296,32 +353,34 @@ MOST_BRANCHES_SHOWN = 20
 LONGEST_LABEL = 34  # Characters of a branch's name beside its weights
 
 
-def curves_figure(found: Constrained) -> Figure:
+def curves_figure(found: Constrained, texts: Catalogue) -> Figure:
     """Mean hazard before and after, with the range of the branches from the 16th to the 84th percentile."""
     measure = found.site.measure
     curves = found.result.curves()
     level = curves["level"].to_numpy()
     with style.panels(style.COLUMN_WIDTH, 2.8) as (figure, axes):
-        for when, colour, line, words in (
-            ("before", style.ORANGE, "--", "before"),
-            ("after", style.BLUE, "-", "after survival"),
+        for when, colour, line, id in (
+            ("before", style.ORANGE, "--", "site_figure_mean_before"),
+            ("after", style.BLUE, "-", "site_figure_mean_after"),
         ):
             low, high = curves[f"fractile_0.16_{when}"], curves[f"fractile_0.84_{when}"]
             axes.fill_between(level, low, high, color=colour, alpha=0.2, linewidth=0)
             mean = curves[f"mean_{when}"]
-            axes.plot(level, mean, color=colour, linestyle=line, label=f"mean {words}")
+            axes.plot(level, mean, color=colour, linestyle=line, label=texts.text(id))
         rates = curves[["mean_before", "mean_after"]].to_numpy()
         axes.set(
             ylim=(max(rates[-1].min(), 1e-6), min(rates[0].max() * 1.5, 10.0)),
-            xlabel=f"{measure.imt} of the ground [{measure.unit}]",
-            ylabel="Annual rate of exceedance [1/year]",
+            xlabel=texts.say(
+                finding("site_figure_level", measure=measure.imt, unit=measure.unit)
+            ),
+            ylabel=texts.text("site_figure_rate"),
         )
         style.plain_log(axes, "xy")
         axes.legend(loc="lower left")
     return figure
 
 
-def weights_figure(found: Constrained) -> Figure:
+def weights_figure(found: Constrained, texts: Catalogue) -> Figure:
     """Weights of the branches before and after, those that matter most."""
     table = found.result.table()
     largest = table[["weight_before", "weight_after"]].max(axis=1)
@@ -339,17 +398,23 @@ def weights_figure(found: Constrained) -> Figure:
             "o",
             color=style.ORANGE,
             markerfacecolor="none",
-            label="before",
+            label=texts.text("site_figure_before"),
         )
-        axes.plot(after, place, "s", color=style.BLUE, label="after survival")
-        names = [_short(name, number) for number, name in table["branch"].items()]
+        axes.plot(
+            after, place, "s", color=style.BLUE, label=texts.text("site_figure_after")
+        )
+        names = [
+            _short(name, row + 1, texts)
+            for row, name in zip(table.index, table["branch"], strict=True)
+        ]
         axes.set_yticks(place, names)
-        axes.set(xlabel="Weight of the branch [-]", xlim=(0, None))
+        axes.set(xlabel=texts.text("site_figure_weight"), xlim=(0, None))
         figure.legend(loc="outside upper center", ncols=2)
     return figure
 
 
-def _short(name: str, number: Hashable) -> str:
+def _short(name: str, row: int, texts: Catalogue) -> str:
     """Name of a branch that fits beside an axis: a long one by its place in the table and its end."""
-    short = f"row {int(str(number)) + 1}: …{name[8 - LONGEST_LABEL :]}"
-    return name if len(name) <= LONGEST_LABEL else short
+    if len(name) <= LONGEST_LABEL:
+        return name
+    return texts.say(finding("site_figure_row", n=row, end=name[8 - LONGEST_LABEL :]))

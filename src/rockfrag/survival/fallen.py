@@ -182,6 +182,7 @@ def _counts(said: str) -> tuple[int, int]:
 
 
 def _azimuths(said: str) -> tuple[float, ...]:
+    """Azimuths of falls of a cell [degrees]."""
     try:
         found = tuple(float(part) % 360.0 for part in said.split("|") if part.strip())
     except ValueError:
@@ -299,6 +300,7 @@ class _Shaken:
 
 
 def _shaken(group: Observed, motions: MotionSet, known: Knowledge) -> _Shaken:
+    """Simulate a group's object under the motions of its place, and its variants under fewer of them."""
     objects = group.request.objects
     here = motions.at(group.request.place)
     if objects.in_space and here.pairs:

@@ -219,6 +219,7 @@ def _hangs_on(found: FallenPlace) -> Said:
 
 
 def _group_table(found: FallenPlace, texts: Catalogue) -> pd.DataFrame:
+    """Each group of objects: its size, how many fell, and the shaking that it says alone."""
     rows = []
     for group, own, (middle, low, high) in zip(
         found.groups, found.own, found.alone, strict=True
@@ -294,7 +295,13 @@ def _sections(found: FallenPlace, texts: Catalogue) -> list[Section]:
         column("alone_upper", texts.text("fallen_column_upper"), decimals=0),
     )
     caption = texts.text("fallen_table")
-    table = table_html(_group_table(found, texts), columns, caption, "shaking.csv")
+    table = table_html(
+        _group_table(found, texts),
+        columns,
+        caption,
+        "shaking.csv",
+        language=texts.language,
+    )
     limits = [texts.text(id) for id in LIMITS]
     title = texts.text("fallen_objects")
     sections = [

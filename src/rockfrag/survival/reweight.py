@@ -110,7 +110,20 @@ class Reweighted:
 
 
 def reweight(site: Site, samples: int = SAMPLES) -> Reweighted:
-    """Weigh branches of the hazard by how probably they let all objects stand; ``samples`` are a power of two."""
+    """Weigh branches of the hazard by how probably they let all objects stand.
+
+    For each draw of the objects' ages and errors the earthquakes that would have toppled one of them are counted
+    (λ of the module, integrated over time); the probability that none came is exp(-count), and S the mean of it.
+
+    Parameters
+    ----------
+    site : branches and objects
+    samples : number of draws, a power of two
+
+    Returns
+    -------
+    The :class:`Reweighted`.
+    """
     objects = site.objects
     wanted = set().union(*(body.measures for body in objects))
     reach = (min(b.reach[0] for b in objects), max(b.reach[1] for b in objects))
@@ -122,26 +135,52 @@ def reweight(site: Site, samples: int = SAMPLES) -> Reweighted:
     curves = [branch.curves for branch in site.branches]
     shaking = shaking_rates(curves, wanted, site.velocity, reach)
     indices = [body.index(shaking) for body in objects]
-    # number of earthquakes that topple an object that stands, (samples, branches)
     expected = np.zeros((samples, len(shaking.rates)))
-    for at, (error, exposure) in enumerate(zip(errors, years, strict=True)):
-        stands = np.ones(shaking.rates.shape[1])
-        # from the object that has stood longest: each next one adds to what may topple since then
-        order = np.argsort(-exposure, kind="stable")
-        until = np.append(exposure[order[1:]], 0.0)
-        for k, next_exposure in zip(order, until, strict=True):
-            topples = objects[k].probability(indices[k], error[k])
-            if site.same_earthquakes:
-                stands = stands * (1.0 - topples)
-                expected[at] += (exposure[k] - next_exposure) * (
-                    shaking.rates @ (1.0 - stands)
-                )
-            else:
-                expected[at] += exposure[k] * (shaking.rates @ topples)
+    for draw, (error, exposure) in enumerate(zip(errors, years, strict=True)):
+        # shape (objects, points of shaking)
+        topple = np.array(
+            [
+                body.probability(index, own)
+                for body, index, own in zip(objects, indices, error, strict=True)
+            ]
+        )
+        expected[draw] = _toppling_earthquakes(
+            shaking.rates, topple, exposure, together=site.same_earthquakes
+        )
     log_survival = special.logsumexp(-expected, axis=0) - np.log(samples)
     logs = np.log([branch.weight for branch in site.branches]) + log_survival
     weights = np.exp(logs - special.logsumexp(logs))
     return Reweighted(site, np.asarray(log_survival), weights)
+
+
+def _toppling_earthquakes(
+    rates: Floats, topple: Floats, years: Floats, *, together: bool
+) -> Floats:
+    """Expected number of earthquakes that topple an object while it stands, by branch.
+
+    Parameters
+    ----------
+    rates : of the points of shaking in each branch [1/year], shape (branches, points)
+    topple : probability that each topples each object, shape (objects, points)
+    years : for how long each object has stood [years], shape (objects,)
+    together : whether all feel the same earthquakes; else their numbers add up
+
+    Returns
+    -------
+    Shape (branches,).
+    """
+    expected = np.zeros(len(rates))
+    all_stand = np.ones(rates.shape[1])
+    # from the object that has stood longest: each next one adds to what may topple since then
+    order = np.argsort(-years, kind="stable")
+    since_next = np.append(years[order[1:]], 0.0)
+    for k, next_years in zip(order, since_next, strict=True):
+        if together:
+            all_stand = all_stand * (1.0 - topple[k])
+            expected += (years[k] - next_years) * (rates @ (1.0 - all_stand))
+        else:
+            expected += years[k] * (rates @ topple[k])
+    return expected
 
 
 def scaled(
@@ -183,7 +222,7 @@ class Constrained:
     result: Reweighted  #: Weights and curves
     #: A row an object: ``object``, ``information_bit``, ``level_ratio_alone`` and ``level_ratio_without``
     by_object: pd.DataFrame
-    #: A row an assumption: ``assumption`` and ``level_ratio``
+    #: A row an assumption: its name as ``assumption``, and ``level_ratio``
     sensitivity: pd.DataFrame
 
     @property
@@ -225,6 +264,7 @@ def constrain(site: Site) -> Constrained:
 
 
 def _by_object(site: Site) -> pd.DataFrame:
+    """What each object says alone, and what the others say without it, those that say most first."""
     rows = []
     for body in site.objects:
         alone = reweight(replace(site, objects=(body,)))
@@ -239,20 +279,18 @@ def _by_object(site: Site) -> pd.DataFrame:
 def _sensitivity(site: Site) -> pd.DataFrame:
     """Ratio of levels where one assumption at a time is another."""
     objects = site.objects
-    less = f"{100 * (1 - IN_SPACE):.0f} %"
     cases = {
-        "as stated": scaled(objects),
-        "ages half as long": scaled(objects, age=0.5),
-        "ages twice as long": scaled(objects, age=2.0),
-        "objects withstand 25 % more": scaled(objects, capacity=1.25),
-        "objects withstand 25 % less": scaled(objects, capacity=0.75),
-        f"boxes under two components instead of one plane (withstand {less} less)": scaled(
-            objects, capacity=IN_SPACE
-        ),
+        "as_stated": scaled(objects),
+        "half_as_old": scaled(objects, age=0.5),
+        "twice_as_old": scaled(objects, age=2.0),
+        "stronger": scaled(objects, capacity=1.25),
+        "weaker": scaled(objects, capacity=0.75),
+        # boxes under two components instead of one plane
+        "in_space": scaled(objects, capacity=IN_SPACE),
     }
     sites = {name: replace(site, objects=moved) for name, moved in cases.items()}
     if len(objects) > 1:
-        sites["errors of fragilities independent"] = replace(site, shared_error=0.0)
-        sites["errors of fragilities all the same"] = replace(site, shared_error=1.0)
+        sites["independent_errors"] = replace(site, shared_error=0.0)
+        sites["shared_errors"] = replace(site, shared_error=1.0)
     rows = [(name, reweight(other).level_ratio) for name, other in sites.items()]
     return pd.DataFrame(rows, columns=["assumption", "level_ratio"])

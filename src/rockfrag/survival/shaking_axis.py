@@ -18,9 +18,10 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import special
 
+from rockfrag.assess.core.scales import AT_REST
 from rockfrag.assess.hazard.curve import PGV
 from rockfrag.assess.motions import MotionSet
-from rockfrag.assess.outcomes import AT_REST, FEW_LEVELS, make_intensity_levels
+from rockfrag.assess.outcomes import FEW_LEVELS, make_intensity_levels
 from rockfrag.base.arrays import Floats
 from rockfrag.motions.rotation import rotate
 from rockfrag.records.motion import GroundMotion, Motion

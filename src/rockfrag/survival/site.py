@@ -83,6 +83,7 @@ def read_branches(
 
 
 def _check(branches: Sequence[Branch], where: str) -> None:
+    """Refuse weights of branches that are not above 0, or do not sum to 1."""
     for branch in branches:
         if branch.weight <= 0:
             raise InputError(
@@ -347,6 +348,7 @@ def draw_errors(objects: int, shared: float, samples: int) -> tuple[Floats, Floa
 
 
 RECORDS = "resources/records"  # Folder of fetched records
+UNNAMED = "the site"  # What a site without a name is called
 
 # One a measure: fractions at all levels count
 ANY_LEVEL = {"PGA": 0.1, "SA": 0.1, "PGV": 10.0}
@@ -405,7 +407,7 @@ def read_site(path: str | os.PathLike[str], records: str | Path = RECORDS) -> Si
             curves, folder / realizations if realizations else None
         )
         site = Site(
-            name=known.get("name", "the site"),
+            name=known.get("name", UNNAMED),
             branches=tuple(branches),
             objects=(),
             shared_error=float(known.get("shared_error", 0.0)),
@@ -425,6 +427,7 @@ def read_site(path: str | os.PathLike[str], records: str | Path = RECORDS) -> Si
 def _objects(
     given: Sequence[Mapping[str, Any]], site: Site, folder: Path, records: Path
 ) -> list[StandingObject]:
+    """The objects that stand at a site, of their settings."""
     found: list[StandingObject] = []
     for at, settings in enumerate(given, start=1):
         name = settings.get("name", f"object {at}")
@@ -504,6 +507,7 @@ def _simulated(
 def _stated(
     settings: Mapping[str, Any], measure: IntensityMeasure
 ) -> tuple[float, ...]:
+    """Coefficients of a fragility that is stated: by median and β, or as they are."""
     coefficients = settings.get("coefficients")
     if (coefficients is None) == ("median" not in settings):
         raise InputError(
@@ -532,6 +536,7 @@ def _stated(
 
 
 def _age(settings: Mapping[str, Any]) -> Age:
+    """For how long an object has stood: one number of years, a range, or a median with its spread."""
     age, longest = (
         settings["age_years"],
         float(settings.get("fragile_for_years", math.inf)),

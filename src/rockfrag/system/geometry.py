@@ -81,23 +81,24 @@ def turned_in_plan(
 def turned_moments(
     xx: float, xy: float, yy: float, sine: float, cosine: float
 ) -> tuple[float, float, float]:
-    """Turn the part of a tensor in the plan likewise: xx, xy and yy.
+    """Components of a symmetric tensor in the plan, such as moments of inertia, of a body that was turned.
+
+    These are those of R T Rᵀ, with R the rotation of :func:`turned_in_plan`.
 
     Parameters
     ----------
-    xx, xy, yy : of the tensor, of one unit
-    sine, cosine : of the angle from x towards y [-]
+    xx, xy, yy : components of T before, of one unit
+    sine, cosine : of the angle by which the body turns, from x towards y [-]
 
     Returns
     -------
-    The three, in that unit.
+    xx, xy and yy after, in that unit.
     """
-    aside = 2 * cosine * sine * xy
-    return (
-        cosine * cosine * xx - aside + sine * sine * yy,
-        cosine * sine * (xx - yy) + (cosine * cosine - sine * sine) * xy,
-        sine * sine * xx + aside + cosine * cosine * yy,
-    )
+    mixed = 2 * cosine * sine * xy
+    new_xx = cosine * cosine * xx - mixed + sine * sine * yy
+    new_xy = cosine * sine * (xx - yy) + (cosine * cosine - sine * sine) * xy
+    new_yy = sine * sine * xx + mixed + cosine * cosine * yy
+    return new_xx, new_xy, new_yy
 
 
 def shape_of(
@@ -547,14 +548,14 @@ def pivot_constants(
         arm(shape, pivot),
         frequency(shape, pivot, g),
     )
-    aside, length, swing = -pivot * x, radius(shape, pivot), p * p
-    ends = 1 / alpha, 1 / (swing * alpha * alpha)
+    aside, length, p_squared = -pivot * x, radius(shape, pivot), p * p
+    ends = 1 / alpha, 1 / (p_squared * alpha * alpha)
     return (
         alpha,
         aside / y,
         aside / length,
         y / length,
-        swing,
+        p_squared,
         restitution,
         ends[0],
         ends[1],

@@ -148,7 +148,7 @@ def module_of(
     ----------
     entries : kernels by the names that the page calls, with arguments of the types for which they are compiled
     records : dtypes of records by name; ``call`` is what the page hands over
-    constants : numbers that the page is told, by name
+    constants : numbers that the page gets, by name
     fused : whether multiply-adds are fused; None where there are none
 
     Returns
@@ -159,11 +159,11 @@ def module_of(
     llvm.initialize_all_asmprinters()
     objects = [_object(name, *entry, fused) for name, entry in entries.items()]
     layout = {name: _described(dtype) for name, dtype in records.items()}
-    told = json.dumps(
+    stated = json.dumps(
         layout | {"constants": dict(constants)}, separators=(",", ":")
     ).encode()
     # a custom section, which has the number 0, its length, and the length of its name
-    section = _length(len(b"layout")) + b"layout" + told
+    section = _length(len(b"layout")) + b"layout" + stated
     return _linked(objects, list(entries)) + b"\0" + _length(len(section)) + section
 
 
@@ -228,6 +228,7 @@ def _beside(name: str) -> Path:
 
 
 def _linked(objects: list[bytes], exports: list[str]) -> bytes:
+    """Link objects to one module that exports some of their functions."""
     with tempfile.TemporaryDirectory() as folder:
         paths = [Path(folder, f"{i}.o") for i in range(len(objects))]
         for path, made in zip(paths, objects, strict=True):

@@ -13,19 +13,19 @@ async function rockfragEnsemble(bytes) {
   const { gravity, step, stack_step: stackStep, free_time: freeTime, block: BLOCK } = layout.constants;
   const { fields } = layout.call;
 
-  // a block, or one on a pedestal; `measured` restitution, none if null, and the factor `livelier` on each; `rolling` is
+  // a block, or one on a pedestal; `measured` restitution, none if null, and the factor `restitution_factor` on each; `rolling` is
   // the restitution of a statue on a round base, NaN where it stands on another one
-  function bodyOf({ statue, pedestal = null, measured = null, livelier = 1, rolling = null }) {
+  function bodyOf({ statue, pedestal = null, measured = null, restitution_factor = 1, rolling = null }) {
     reserve(arrays);
     new Uint8Array(memory.buffer, call, layout.call.size).fill(0);
     write(layout.call, call, {
       statue: rockfragBlock(statue),
       pedestal: rockfragBlock(pedestal ?? statue),
       stacked: pedestal ? 1 : 0,
-      told: measured !== null || livelier !== 1 || rolling !== null,
+      has_ratios: measured !== null || restitution_factor !== 1 || rolling !== null,
       below: measured ?? NaN,
       above: rolling ?? measured ?? NaN,
-      livelier,
+      restitution_factor,
     });
     const gravityAt = fields.body[0] + layout.body.fields.gravity[0];
     reserve(0).setFloat64(call + gravityAt, gravity, true);
@@ -46,7 +46,7 @@ async function rockfragEnsemble(bytes) {
   function roundsOnce() {
     const small = 2 ** -30;
     reserve(arrays);
-    write(layout.call, call, { above: 1 + small, livelier: 1 - small, uplift: -1 });
+    write(layout.call, call, { above: 1 + small, restitution_factor: 1 - small, uplift: -1 });
     run("multiplyAdd");
     return read({ fields: { uplift: fields.uplift } }, call).uplift === -(small ** 2);
   }

@@ -19,10 +19,10 @@ _F, _I = np.float64, np.int64
 
 SHAKEN = np.dtype(
     [
-        # what describe reads: whether the ratios of impacts are told, those of the pedestal and of the statue, NaN
-        # where momentum's count, and the factor on each
+        # what describe reads: whether the ratios of impacts are given, those of the pedestal and of the statue
+        # (NaN where momentum's count), and the factor on each
         ("statue", entry.BLOCK), ("pedestal", entry.BLOCK), ("stacked", _I),
-        ("told", _I), ("below", _F), ("above", _F), ("livelier", _F),
+        ("has_ratios", _I), ("below", _F), ("above", _F), ("restitution_factor", _F),
         # what it leaves; the least acceleration at which a contact opens [g], and constants of the right and left
         # pivot of a lone block
         ("fault", _I), ("fastest", _F), ("slowest", _F), ("uplift", _F), ("largest", _F), ("centre", _F, 3),
@@ -44,7 +44,7 @@ _integrate_stacks = kernel(integrate_stacks.py_func)
 @kernel
 def multiply_add(call):
     """Put a multiply-add of numbers of a call into it, which tells whether it rounds once."""
-    call.uplift = fma(call.above, call.livelier, call.uplift)
+    call.uplift = fma(call.above, call.restitution_factor, call.uplift)
 
 
 @kernel
@@ -52,8 +52,8 @@ def describe_shaken(call):
     """Describe a block, or one on a pedestal, to the lanes; gravity stands in its record already."""
     body, g = call.body[0], call.body[0].gravity
     upper, lower = entry.shape_of(call.statue), entry.shape_of(call.pedestal)
-    told = call.told != 0
-    body.measured = told
+    has_ratios = call.has_ratios != 0
+    body.measured = has_ratios
     call.fault = geometry.STANDS if geometry.can_stand(upper) else geometry.FALLS_ALONE
     call.uplift, call.largest = np.inf, np.inf
     if call.stacked == 0:
@@ -62,9 +62,9 @@ def describe_shaken(call):
         entry.note_frequencies(call, upper, g)
         for pivot in (1, -1):
             after = geometry.momentum_restitution(upper, -pivot)
-            if told:
+            if has_ratios:
                 after = geometry.scaled_restitution(
-                    upper, -pivot, call.above, call.livelier
+                    upper, -pivot, call.above, call.restitution_factor
                 )
             here = call.pivots[(1 - pivot) // 2]
             (
@@ -93,8 +93,10 @@ def describe_shaken(call):
 @kernel
 def _fill_law(call, after, shape, pivot, measured):
     after.law, after.value = momentum.NUMBER, 1.0
-    if call.told != 0:
-        ratio = geometry.scaled_restitution(shape, pivot, measured, call.livelier)
+    if call.has_ratios != 0:
+        ratio = geometry.scaled_restitution(
+            shape, pivot, measured, call.restitution_factor
+        )
         after.law, after.value = position.tell(shape, ratio, pivot)
 
 

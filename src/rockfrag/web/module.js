@@ -57,7 +57,7 @@ async function rockfragModule(bytes) {
     return view.getFloat64(result, true);
   }
   const run = (name, ...parameters) => invoke(name, call, ...parameters);
-  return { memory, layout, call, arrays, reserve, read, write, array, run, invoke };
+  return { memory, layout, result, call, arrays, reserve, read, write, array, run, invoke };
 }
 
 // numbers of a block that are not given as the kernels know them

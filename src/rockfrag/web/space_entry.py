@@ -6,7 +6,7 @@ They are compiled to WebAssembly alone (``build``), around the kernel that the e
 import numpy as np
 
 from rockfrag.base.elementary import sin_cos
-from rockfrag.engines.compile.jit import kernel, share_with_kernels
+from rockfrag.engines.compile.jit import compile_for_kernels, kernel
 from rockfrag.engines.spatial import _describe
 from rockfrag.engines.spatial._body import BODY, SIZE
 from rockfrag.engines.spatial._forces import CASE
@@ -31,7 +31,7 @@ SPACE = np.dtype(
 )  # fmt: skip
 """What a page and the module hand to each other."""
 
-share_with_kernels(_describe)
+compile_for_kernels(_describe)
 
 
 @kernel

@@ -106,6 +106,7 @@ class Catalogue:
         return f"{', '.join(words[:-1])} {self.text('and')} {words[-1]}"
 
     def _number(self, number: Number) -> str:
+        """A number in the language, in the form that it asks for."""
         value, form = number.value, number.form
         if not math.isfinite(value):
             return self.text("unknown")

@@ -1,17 +1,20 @@
 """All that is not known drawn at once: closed forms, statics as a cap, parts of sources, decisions."""
 
 from dataclasses import replace
+from itertools import product
 
 import numpy as np
 import pytest
 from scipy import stats
 
+from rockfrag.assess.core import choices
 from rockfrag.assess.core.decisions import Action, decide
 from rockfrag.assess.core.draws import make_draws
-from rockfrag.assess.core.estimates import FRACTION, MOTIONS, fill_estimate
+from rockfrag.assess.core.estimates import FRACTION, MOTIONS, fill_estimate, fill_order
 from rockfrag.assess.core.fractions import count_motions
 from rockfrag.assess.core.likelihood import Likelihood, likelihood_of
 from rockfrag.assess.core.prediction import Prediction, Shift, predict
+from rockfrag.assess.findings import TEXTS
 
 LEVELS = np.geomspace(0.02, 4.0, 80)
 MANY = 400
@@ -84,7 +87,7 @@ def test_parts_are_those_of_a_sum_of_sources():
     values = draws.sources @ np.array(list(sources.values()))
     work, found = np.zeros((2, values.size)), np.zeros(MOTIONS + 4)
     given = FRACTION, 1.0, values.mean(), 1.0, values
-    fill_estimate(*given, *work, draws.bins, len(draws.weights), found)
+    fill_estimate(*given, *work, draws.bins, len(draws.weights), 10, found)
     total = values.std()
     for found_part, size in zip(found[-3:], sources.values(), strict=True):
         assert (found_part / total) ** 2 == pytest.approx(size**2 / total**2, abs=0.02)
@@ -144,3 +147,42 @@ def test_a_measurement_that_leaves_much_decides_less():
 def test_likelihoods_are_those_of_the_scale():
     steps = [likelihood_of(p) for p in (0.005, 0.05, 0.2, 0.5, 0.8, 0.95, 0.995)]
     assert steps == list(Likelihood)
+
+
+NUMBERS = (0.0, 0.005, 0.05, 0.2, 0.5, 0.8, 0.95, 1.0, np.inf)
+
+
+@pytest.mark.parametrize("choice", TEXTS, ids=lambda choice: choice.__name__)
+def test_every_choice_takes_each_of_its_texts_and_no_other(choice):
+    """Of numbers from 0 to infinity, flags and actions; none is out of reach, and none is missing."""
+    count = choice.__code__.co_argcount
+    kinds = [
+        choice.__annotations__[name].__name__
+        for name in choice.__code__.co_varnames[:count]
+    ]
+    of_kind = {"float": NUMBERS, "bool": (False, True), "int": (0, 1, 2)}
+    given = product(*(of_kind[kind] for kind in kinds))
+    assert {choice(*numbers) for numbers in given} == set(range(len(TEXTS[choice])))
+
+
+def test_what_is_open_is_said_to_be_and_no_limit_is_said_twice():
+    assert (
+        choices.between(0.3, 0.0, 1.0) == 0 and choices.over_years(0.3, 0.0, 1.0) == 1
+    )
+    assert choices.chance(0.0, 0.0, 0.04) == 1 and choices.chance(0.0, 0.0, 0.0) == 0
+    assert choices.advice(choices.MEASURE, True, True) == 0
+    # what does not move is left, unless the hazard says otherwise
+    assert choices.advice(choices.LEAVE, False, True) == 3
+    assert choices.advice(choices.SECURE, True, True) == 1
+
+
+def test_what_is_ranked_stands_as_pythons_sort_puts_it():
+    random = np.random.default_rng(5)
+    first = random.choice([0.0, 0.5, 0.7, np.nan], 40)
+    second = random.choice([0.1, 0.2], 40)
+    order = np.zeros(40, dtype=np.int64)
+    fill_order(first, second, False, order)
+    keys = [
+        (np.isnan(a), np.nan_to_num(a), b) for a, b in zip(first, second, strict=True)
+    ]
+    assert order.tolist() == sorted(range(40), key=lambda place: keys[place])

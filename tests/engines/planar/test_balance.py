@@ -73,7 +73,7 @@ def test_the_first_impacts_of_shaken_columns_obey_their_laws():
         found = history_of(system, motion, up, 1e-6)
         struck = found.contact_events
         struck = struck[struck["kind"] == IMPACT]
-        assert found.work["told"]["paradoxes"] == 0
+        assert found.work["outcome"]["paradoxes"] == 0
         assert max(worst_violations(system, struck, 1e-6).values(), default=0) < 1
         seen += len(struck)
     assert seen > 20

@@ -22,7 +22,7 @@ def hit(p, w):
     """Strike; the number of impacts that had no outcome."""
     look_at(p, w, w.q)
     strike(p, w, 0.0, 0.0, 0.0, False)
-    return w.told.paradoxes
+    return w.outcome.paradoxes
 
 
 @pytest.mark.parametrize(

@@ -51,11 +51,11 @@ def test_a_block_leans_where_friction_at_its_foot_reaches_its_arm_over_its_heigh
     arm = H * math.sin(theta) - B * math.cos(theta)
     needed = arm / (2 * H * math.cos(theta))
     holds, slides = leaning(theta, 1.0001 * needed), leaning(theta, 0.9999 * needed)
-    assert holds.work["told"]["leaning"] == 1
+    assert holds.work["outcome"]["leaning"] == 1
     assert np.ptp(holds.history["q"][:, :3], axis=0) == pytest.approx(0.0, abs=1e-9)
     force = holds.response().constraints["largest_force_n"][0]
     assert force == pytest.approx(M * G * needed, rel=1e-9)
-    assert slides.work["told"]["leaning"] == 0
+    assert slides.work["outcome"]["leaning"] == 0
     assert slides.response().overturned
 
 
@@ -115,7 +115,7 @@ def test_a_rocking_block_that_hits_a_smooth_wall_is_thrown_up_at_its_foot(
     impulse = (1 + ratio) * z * omega / (1 / M + rho**2 / inertia)
     _, v_y, after = event["v_after"][:3]
     assert theta == pytest.approx(0.1, abs=1e-9)
-    told = found.work["told"]["largest_impulse"]
+    told = found.work["outcome"]["largest_impulse"]
     assert told[0] == pytest.approx(impulse, rel=1e-9)
     assert after == pytest.approx(omega - impulse * rho / inertia, rel=1e-9)
     foot = v_y + after * r_x
@@ -246,7 +246,7 @@ def test_impacts_at_walls_and_kerbs_gain_nothing_and_push_within_friction(
         struck = found.contact_events[found.contact_events["kind"] == IMPACT]
         struck = struck[struck["at_wall"] > 0][: hits // 10]
         seen += len(struck)
-        counted += int(found.work["told"]["paradoxes"])
+        counted += int(found.work["outcome"]["paradoxes"])
         for impact in impacts_of(system, struck):
             left, gained = examined(system, impact)
             assert gained < 1e-12

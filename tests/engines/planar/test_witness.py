@@ -57,12 +57,12 @@ def test_every_impact_obeys_its_laws(
         events = found.contact_events
         struck = events[events["kind"] == contact.IMPACT][:of_each]
         seen += len(struck)
-        if found.work["told"]["paradoxes"] == 0:
+        if found.work["outcome"]["paradoxes"] == 0:
             assert (
                 max(worst_violations(system, struck, closing).values(), default=0) < 1
             )
         else:
-            unlawful += int(found.work["told"]["paradoxes"])
+            unlawful += int(found.work["outcome"]["paradoxes"])
     assert unlawful <= impacts / 1000
 
 

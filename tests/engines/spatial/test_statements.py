@@ -389,7 +389,7 @@ def test_a_tie_pulls_from_its_knot_to_its_anchor_by_stretch_and_rate():
         natural = math.dist((0.1, 0.0, 1.0), (1.0, 0.2, 1.1)) + 0.01
         size = 5e3 * (length - natural) + 40.0 * rate if length > natural else 0.0
         pull = max(size, 0.0) * way
-        forces.pull_ties(body, y, rotation(y), s)
+        forces.fill_tie_forces(body, y, rotation(y), s)
         assert r @ s.pulled == pytest.approx(pull, abs=1e-9)
         assert s.twisted == pytest.approx(np.cross(knot, r.T @ pull), abs=1e-9)
         margin = forces.tie_margin(body, length, rate, 0)

@@ -99,6 +99,8 @@ def building_variants(
 def _variant(
     settings: Mapping[str, Any], axis: str, value: Any, source: str
 ) -> Variant:
+    """A building changed along an axis of the analysis, and what the change is called."""
+
     def changed(**changes: Any) -> ShearBuilding:
         kept = {k: v for k, v in settings.items() if k != "storey_stiffnesses_N_m"}
         return make_building(kept | changes, source)
@@ -146,6 +148,7 @@ def building_sensitivity(
     known: dict[str, pd.DataFrame] = {}
 
     def ida(motion: Motion) -> pd.DataFrame:
+        """IDA curves of all specimens on a floor; those of the ground, which no variant changes, are known."""
         if motion.metadata["level"] == 0 and motion.name in known:
             return known[motion.name]
         tables = [

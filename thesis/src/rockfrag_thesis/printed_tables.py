@@ -103,6 +103,7 @@ def compare(
 def _printed(
     path: str | os.PathLike[str], quantities: Sequence[Quantity]
 ) -> dict[tuple[str, str], str]:
+    """Cells of a printed table by name and column."""
     columns = [quantity.column for quantity in quantities]
     rows = read_rows(path, ["name", *columns], ["magnitude_mw"])
     for row in rows:

@@ -1,8 +1,8 @@
 /* The answer about one object: outcomes of its bodies by motion and level, and what follows from them. */
 const answer = (data, core) => {
   "use strict";
-  const { constants: { AT_REST, LARGEST_FACTOR, LARGEST_PEAK, GRAVITY, MODEL, SPACE, ACCEPTED_AT_A_LEVEL, ACCEPTED_IN_FIFTY_YEARS }, measures } = data;
-  const judge = risk(data, core), spatial = inSpace(data), putty = puttied(data.constants);
+  const { constants: { MODEL, SPACE, ACCEPTED_AT_A_LEVEL, ACCEPTED_IN_FIFTY_YEARS }, measures } = data;
+  const judge = risk(data, core), spatial = inSpace(data, core), building = floors(data, core), wording = findings(data, core, judge), putty = puttied(data.constants);
 
   // levels of a run: the asked one among those of the measure
   function levelsOf(request, run) {
@@ -16,31 +16,33 @@ const answer = (data, core) => {
   const hazardOf = ({ curve, years, level }) => curve ?? (years === null ? null : judge.curveOfOneLevel(level, years));
   const siteLevel = (request) => request.level ?? judge.levelOf(request.curve, 1 / 475);
 
-  // factors on some motions at all levels, and which of them count
-  function scalesOf(request, run, places, shaking) {
-    const levels = levelsOf(request, run), { values } = tableOf(request);
-    const scales = new Float64Array(levels.length * shaking.length), allowed = new Uint8Array(scales.length);
-    shaking.forEach(({ peak }, m) => levels.forEach((level, k) => {
-      const scale = level / values[places[m]], most = ((1 - 1e-9) * LARGEST_PEAK) / peak, at = m * levels.length + k;
-      allowed[at] = scale <= LARGEST_FACTOR && scale >= 1 / LARGEST_FACTOR && scale <= most ? 1 : 0;
-      scales[at] = Math.min(allowed[at] ? scale : AT_REST, most);
-    }));
-    return { levels, scales, allowed };
-  }
+  // factors to all levels of some motions, and which of them count
+  const scalesOf = (request, run, places, shaking) => core.within(() => {
+    const levels = levelsOf(request, run), { values } = tableOf(request), shape = [places.length, levels.length];
+    const scales = core.zeros(shape), allowed = core.zeros(shape, Uint8Array), peaks = shaking.map(({ peak }) => peak);
+    core.call("fill_scales", core.put(levels), core.put(places.map((m) => values[m])), core.put(peaks), scales, allowed);
+    return { levels, scales: scales.values.slice(), allowed: allowed.values.slice() };
+  });
+  // those on what shakes the object; at rest what does not count
+  const factorsOf = ({ levels, scales, allowed }, shaking) => core.within(() => {
+    const shape = [shaking.length, levels.length], factors = core.zeros(shape), peaks = core.put(shaking.map(({ peak }) => peak));
+    core.call("fill_factors", core.put(scales, shape), core.put(allowed, shape), peaks, factors);
+    return factors.values.slice();
+  });
 
   // a worker's part: outcomes of a run under some of the motions
   function counter(ensemble, motions, space) {
-    const solids = spatial.counter(ensemble, space), floors = new Map();
+    const solids = spatial.counter(ensemble, space), shaken = new Map();
     let standing = "";
     function shakingOf(place, floor, part) {
       // floors of one place are kept, and the ground
-      if (!place.ground && place.key !== standing) for (const key of floors.keys()) if (key) floors.delete(key);
+      if (!place.ground && place.key !== standing) for (const key of shaken.keys()) if (key) shaken.delete(key);
       if (!place.ground) standing = place.key;
-      const key = place.ground ? "" : `${place.key} ${floor}`, known = floors.get(key) ?? new Map();
-      floors.set(key, known);
+      const key = place.ground ? "" : `${place.key} ${floor}`, known = shaken.get(key) ?? new Map();
+      shaken.set(key, known);
       if (!known.has(part)) known.set(part, partOf(part).map((motion) => {
         const moved = place.ground ? motion : building.floorMotion(place.floors[floor], motion);
-        return { ...moved, peak: moved.samples.reduce((most, a) => Math.max(most, Math.abs(a)), 0) };
+        return { ...moved, peak: spatial.peakOf(moved) };
       }));
       return known.get(part);
     }
@@ -50,29 +52,19 @@ const answer = (data, core) => {
     };
     return function count(request, run, first, last) {
       if (request.solid) return countInSpace(request, run, first, last);
-      const places = Array.from({ length: last - first }, (_, i) => first + i);
-      const shaking = shakingOf(request.place, run.floor ?? "", `${first}-${last}`), { scales, allowed } = scalesOf(request, run, places, shaking);
+      const places = Array.from({ length: last - first }, (_, i) => first + i), on = (floor) => shakingOf(request.place, floor, `${first}-${last}`);
       // what is allowed follows from the floor as it is, on whatever floor it is counted
-      const own = run.floor ? scalesOf(request, run, places, shakingOf(request.place, "", `${first}-${last}`)) : null;
-      const body = ensemble.bodyOf(run.body), factors = own ? moved(own, shaking) : scales;
-      const limits = request.putty ? putty.breaksFrom(run.body.statue, request.putty) : null;
-      const uplift = limits ? Math.min(...limits) : body.uplift * GRAVITY;
+      const shaking = on(run.floor ?? ""), own = scalesOf(request, run, places, on("")), factors = factorsOf(own, shaking);
+      const body = ensemble.bodyOf(run.body), limits = request.putty ? putty.breaksFrom(run.body.statue, request.putty) : null;
+      const uplift = limits ? Math.min(...limits) / data.constants.GRAVITY : body.uplift;
       const outcomes = limits ? putty.count(ensemble, body, limits, shaking, factors) : ensemble.count(body, shaking, factors);
-      return { ...outcomes, allowed: own?.allowed ?? allowed, lifting: Float64Array.from(shaking, ({ peak }) => uplift / peak) };
+      return { ...outcomes, allowed: own.allowed, lifting: Float64Array.from(shaking, ({ peak }) => core.call("lifting_in_plane", uplift, peak)) };
     };
     function countInSpace(request, run, first, last) {
-      const on = (floor) => (m) => shakingOf(request.place, floor, `${m}-${m + 1}`)[0], shaken = on(run.floor ?? "");
-      return solids(run, first, last, shaken, (places) => {
-        const own = scalesOf(request, run, places, places.map(on("")));
-        return { ...own, scales: run.floor ? moved(own, places.map(shaken)) : own.scales, factors: (k, counts, samples) => {
-          const most = ((1 - 1e-9) * LARGEST_PEAK) / samples.reduce((peak, a) => Math.max(peak, Math.abs(a)), 0);
-          return counts ? Math.min(own.levels[k] / tableOf(request).values[places[0]], most) : AT_REST;
-        } };
-      });
+      const on = (floor) => (m) => shakingOf(request.place, floor, `${m}-${m + 1}`)[0];
+      const made = { scalesOf: (places) => scalesOf(request, run, places, places.map(on(""))), factorsOf };
+      return solids(run, first, last, on(run.floor ?? ""), made);
     }
-  }
-  function moved({ levels, scales }, shaking) {
-    return scales.map((scale, at) => Math.min(scale, ((1 - 1e-9) * LARGEST_PEAK) / shaking[Math.floor(at / levels.length)].peak));
   }
 
   // all parts of a run put together
@@ -101,12 +93,12 @@ const answer = (data, core) => {
     const here = (outcomes) => (velocity?.site ? { ...outcomes, site: velocity.site } : outcomes), atSite = here(now);
     const known = (role) => runs.map((run, i) => ({ ...run, outcomes: outcomes[i] && here(outcomes[i]) })).filter((run) => run.role === role && run.outcomes);
     const target = hazard ? judge.riskTarget(hazard, 50) : judge.fractionTarget(level);
-    const answer = { level, years: 50, counts: countsOf(now, level), rocksFrom: rocksFrom(request, now, exact, ensemble), shares: judge.fractions(atSite), levels: now.levels, site: velocity?.site ?? null };
+    const answer = { level, years: 50, counts: judge.countsAt(now, level), rocksFrom: rocksFrom(request, now, exact, ensemble), shares: judge.fractions(atSite), levels: now.levels, site: velocity?.site ?? null };
     answer.value = judge.valueOf(judge.fractionTarget(level), atSite);
     answer.rockingValue = judge.valueOf(judge.fractionTarget(level, "rocked"), atSite);
     answer.probabilityValue = hazard ? judge.valueOf(target, atSite) : null;
     answer.deciding = deciding(now, level);
-    answer.earthquakes = judge.groups;
+    answer.earthquakes = new Set(data.earthquakes).size;
     answer.accepted = hazard ? ACCEPTED_IN_FIFTY_YEARS : ACCEPTED_AT_A_LEVEL;
     const moved = known("moved"), sides = [];
     for (let i = 0; i + 1 < moved.length; i += 2) sides.push([moved[i].name, moved[i].outcomes, moved[i + 1].outcomes]);
@@ -132,9 +124,10 @@ const answer = (data, core) => {
     const as = { mitigation: judge.compared(target, shifts, rates, before?.outcomes ?? atSite), arrangement: judge.compared(target, shifts, rates, atSite) };
     answer.planar = planar ? meanOf(planar.outcomes) : null;
     const changes = [...known("mitigation"), ...known("arrangement")].filter(({ change }) => change);
-    answer.mitigations = changes.map(({ role, change, values, outcomes: with_ }) => ({ name: change, values, ...as[role](with_) }))
-      .sort((a, b) => Number.isNaN(a.factor) - Number.isNaN(b.factor) || (a.factor || 0) - (b.factor || 0) || a.value - b.value);
+    const tried = changes.map(({ role, change, values, outcomes: with_ }) => ({ name: change, values, ...as[role](with_) }));
+    answer.mitigations = judge.ordered(tried, ({ factor }) => factor, ({ value }) => value);
     answer.safer = saferOf(known("arrangement"), answer.mitigations);
+    answer.said = wording.of(request, answer);
     return answer;
   }
   // the answer's own numbers for the object with a change, whose outcomes are these; as much of it is not known
@@ -147,17 +140,7 @@ const answer = (data, core) => {
   function saferOf(arrangements, mitigations) {
     const each = arrangements.map(({ name, change }) => [name, mitigations.find((item) => item.name === change)]);
     const better = each.filter(([, item]) => item.shown).map(([name]) => name);
-    return each.length && each.every(([, { lower, helps }]) => lower > 1 && !helps) ? [...better, "on_its_pedestal"] : better;
-  }
-  function countsOf({ levels, allowed, rocked, overturned }, level) {
-    const at = levels.indexOf(level), counts = [0, 0, 0];
-    for (let place = at; place < allowed.length; place += levels.length) {
-      if (!allowed[place]) continue;
-      counts[0] += 1;
-      counts[1] += rocked[place];
-      counts[2] += overturned[place];
-    }
-    return counts[0] ? counts : null;
+    return each.length && each.every(([, { lower, helps }]) => core.choose("is_worse", lower, helps)) ? [...better, "on_its_pedestal"] : better;
   }
   function rocksFrom(request, now, exact, ensemble) {
     if (exact) return ensemble.bodyOf({ ...request, measured: request.restitution }).uplift;

@@ -11,19 +11,26 @@ from typing import Any
 
 import numpy as np
 
-from rockfrag.assess.core import estimates, fractions, hazards, velocity
+from rockfrag.assess.core import (
+    bodies,
+    choices,
+    estimates,
+    fractions,
+    hazards,
+    scales,
+    velocity,
+)
+from rockfrag.building import modes
 from rockfrag.engines.compile.jit import kernel
+from rockfrag.motions import oscillator
+from rockfrag.motions.between_samples import fill_between
 from rockfrag.web.build import module_of
 
 PATH = Path(__file__).with_name("core.wasm")
 
 _FLOAT, _WHOLE = 0.0, 0
 _ROW, _TABLE, _CUBE = np.zeros(1), np.zeros((1, 1)), np.zeros((1, 1, 1))
-_NUMBERS, _BIN, _BINS = (
-    np.zeros(1, np.int64),
-    np.zeros(1, np.uint8),
-    np.zeros((1, 1), np.uint8),
-)
+_NUMBERS, _BINS = np.zeros(1, np.int64), np.zeros((1, 1), np.uint8)
 _FLAGS = np.zeros((1, 1), np.bool_)
 _COUNTS = (_ROW, _CUBE, _TABLE, _TABLE, _ROW, _ROW, _ROW)
 
@@ -31,6 +38,7 @@ ENTRIES: dict[Any, tuple[Any, ...]] = {
     fractions.fill_counts: (_ROW, _FLAGS, _FLAGS, _ROW, _NUMBERS, _TABLE, *_COUNTS),
     fractions.fill_fractions: (*_COUNTS, *(_TABLE,) * 5),
     fractions.fill_uplifts: (_ROW, _FLAGS, _FLAGS, _FLAGS, _ROW, _ROW),
+    fractions.fill_counts_at: (_ROW, _FLOAT, *(_FLAGS,) * 3, _ROW),
     fractions.fill_counted: (_FLAGS, _FLAGS, _ROW, _ROW),
     fractions.fill_shift: (_ROW,) * 6,
     estimates.fill_place: (_ROW, _FLOAT, _ROW),
@@ -40,10 +48,14 @@ ENTRIES: dict[Any, tuple[Any, ...]] = {
     estimates.rate_of: (_FLOAT, _FLOAT),
     estimates.fill_shown: (_WHOLE, _FLOAT, _ROW, _ROW),
     estimates.fill_estimate: (
-        *(_WHOLE, _FLOAT, _FLOAT, _FLOAT), *(_ROW,) * 3, _BINS, _WHOLE, _ROW,
+        *(_WHOLE, _FLOAT, _FLOAT, _FLOAT), *(_ROW,) * 3, _BINS, _WHOLE, _WHOLE, _ROW,
     ),
-    estimates.fill_turned: (_ROW, _BIN, *(_FLOAT,) * 3, _ROW, _ROW),
-    estimates.fill_comparison: (_WHOLE, _ROW, _ROW, _WHOLE, _TABLE, _ROW),
+    estimates.fill_decision: (
+        *(_ROW, _BINS, _NUMBERS, _ROW, _FLOAT, _FLOAT), _ROW, _TABLE, _ROW,
+    ),
+    estimates.fill_order: (_ROW, _ROW, False, _NUMBERS),
+    estimates.fill_parts: (_ROW, _ROW),
+    estimates.fill_comparison: (_WHOLE, _ROW, _ROW, _WHOLE, _WHOLE, _TABLE, _ROW),
     hazards.fill_rate_weights: (_ROW, _FLOAT, *(_ROW,) * 3),
     hazards.fill_level: (_ROW, _ROW, _FLOAT, _ROW),
     hazards.fill_power_law: (*(_FLOAT,) * 3, _ROW, _ROW),
@@ -58,8 +70,51 @@ ENTRIES: dict[Any, tuple[Any, ...]] = {
         *(_ROW, *(_FLAGS,) * 3, *(_ROW,) * 3, _FLOAT, False, _ROW),
         *(np.zeros((1, 1), np.int64), *(_FLAGS,) * 3),
     ),
+    scales.fill_scales: (*(_ROW,) * 3, _TABLE, _FLAGS),
+    scales.fill_factors: (_TABLE, _FLAGS, _ROW, _TABLE),
+    scales.peak_of: (_ROW,),
+    scales.fill_direction: (_ROW, _ROW, _FLOAT, _FLOAT, _ROW),
+    scales.lifting_in_plane: (_FLOAT, _FLOAT),
+    scales.lifting_over_edges: (_TABLE, _FLOAT, _ROW, _ROW),
+    scales.lifting_over_rim: (*(_FLOAT,) * 4, _ROW, _ROW),
+    fill_between: (_ROW, *(_FLOAT,) * 3, _ROW),
+    modes.fill_modes: (_ROW, _ROW, *(_TABLE,) * 6),
+    modes.fill_stiffnesses: (_ROW, _ROW, _FLOAT, _TABLE, _TABLE, _ROW),
+    modes.fill_slower: (_ROW, _FLOAT, _ROW),
+    modes.add_mode: (_ROW, *(_FLOAT,) * 3, _TABLE, _ROW, _TABLE, _TABLE),
 }  # fmt: skip
 """Functions of the module, with arguments of their types."""
+
+_LIMITS = (_FLOAT,) * 3
+PLAIN: dict[Any, tuple[Any, ...]] = {
+    choices.likelihood: (_FLOAT,),
+    choices.stays: (_FLOAT,),
+    choices.are_few: (_FLOAT,),
+    choices.how_likely: (False, False, _FLOAT),
+    choices.chance: _LIMITS,
+    choices.how_far: (_FLOAT, _FLOAT),
+    choices.in_years: _LIMITS,
+    choices.advice: (_FLOAT, False, False),
+    choices.counted: (_FLOAT, _FLOAT),
+    choices.between: _LIMITS,
+    choices.starts: (_FLOAT,),
+    choices.over_years: _LIMITS,
+    choices.needs_change: (_FLOAT, False, False),
+    choices.reduces: (_FLOAT, False),
+    choices.is_worse: (_FLOAT, False),
+    choices.safest: (False,),
+    bodies.stretch: (_ROW, *(_FLOAT,) * 3, _ROW),
+    bodies.add_ballast: (_ROW, _FLOAT, _ROW),
+    bodies.make_plate: (_ROW, _ROW),
+    bodies.make_lower: (_ROW, _ROW),
+    bodies.join: (_ROW, _ROW, _ROW),
+    bodies.carries_plate: (_ROW, _ROW),
+    bodies.is_whole: (_ROW, _ROW),
+    bodies.tell_box: (_ROW, _ROW, _ROW),
+    bodies.tell_round: (_ROW, _ROW),
+    oscillator.fill_propagator: (*(_FLOAT,) * 3, _TABLE),
+}
+"""Plain functions of the module."""
 
 
 def build_core() -> bytes:
@@ -68,12 +123,18 @@ def build_core() -> bytes:
         entry.__name__: (kernel(entry.py_func), arguments)
         for entry, arguments in ENTRIES.items()
     }
+    entries |= {
+        plain.__name__: (kernel(plain), arguments) for plain, arguments in PLAIN.items()
+    }
     constants: dict[str, float] = {
         "FRACTION": estimates.FRACTION,
         "RATE": estimates.RATE,
         "LEVEL": estimates.LEVEL,
         "CLASSES": fractions.CLASSES,
         "BINS": estimates.BINS,
+        "ACTION": estimates.ACTION,
+        "OTHERWISE": estimates.OTHERWISE,
+        "FIRST": estimates.FIRST,
         "MOST_LEVELS": velocity.MOST_LEVELS,
         "MEMORY": velocity.MEMORY,
         "STATE": velocity.STATE,

@@ -5,8 +5,8 @@ In: the motions and modules of the package. Out: what the page embeds, as text. 
 
 import math
 from base64 import b64encode
-from collections.abc import Iterable, Sequence
-from dataclasses import replace
+from collections.abc import Iterable
+from dataclasses import asdict, replace
 from importlib.resources import files
 from pathlib import Path
 from types import ModuleType
@@ -22,38 +22,36 @@ from rockfrag.assess import (
     request,
     sources,
 )
+from rockfrag.assess.app.form import GROUPS, form_fields
 from rockfrag.assess.conversion import NODES, VelocityRelation, published_velocity
-from rockfrag.assess.core import decisions, draws
-from rockfrag.assess.core.likelihood import BELOW, UP_TO, Likelihood
+from rockfrag.assess.core import bodies, choices, draws
 from rockfrag.assess.hazard import curve
 from rockfrag.assess.hazard.curve import PGA, PGV
-from rockfrag.assess.motions import FEWEST_EARTHQUAKES, MotionSet
+from rockfrag.assess.motions import MotionSet
 from rockfrag.assess.place import Place
 from rockfrag.assess.request import Records, Request
-from rockfrag.assess.standing import box, changes, contract, holders, rolling
+from rockfrag.assess.standing import box, contract, holders, rolling
 from rockfrag.base import plausible, units
 from rockfrag.base.arrays import Floats
 from rockfrag.building.model import ModalDamping, ShearBuilding
 from rockfrag.building.response import find_modes
 from rockfrag.fragility.model_error import CUT, MODEL_ERRORS
 from rockfrag.motions.intensity import IntensityMeasure
-from rockfrag.motions.response_spectra import oscillator_matrix
 from rockfrag.web import driver_text
 from rockfrag.words.findings import as_data
 
 SCRIPTS = (
     "core",
     "risk",
-    "building",
+    "floors",
     "space",
     "objects",
+    "plan",
+    "findings",
     "held",
     "answer",
 )
 """Scripts that compute, in the order in which they need each other."""
-
-# Storeys up to which modes of the usual building stand in the page, to the bit
-TABLED_STOREYS = 8
 
 
 def script(name: str) -> str:
@@ -77,14 +75,12 @@ def data_of(motions: MotionSet, asked: Request | None = None) -> dict[str, Any]:
     given = asked.records if asked else Records()
     level = [asked.level.measure] if asked and asked.level else []
     measures = dict.fromkeys((PGA, PGV, *level, *(each.measure for each in hazard)))
-    intervals = sorted({motion.dt for motion in motions.ground})
     names = list(dict.fromkeys(motions.earthquakes))
     left = [[name, source.left] for name, source in sources.MEASUREMENTS.items()]
-    # modes of buildings of which only the storeys are known, as they are and with each property moved
-    storeys = range(1, TABLED_STOREYS + 1)
-    usual = {n: place.make_place({"floor": f"1/{n}"}, Path()) for n in storeys}
     return {
         "earthquakes": [names.index(name) for name in motions.earthquakes],
+        "fields": [asdict(field) for field in form_fields(measures)],
+        "groups": GROUPS,
         "motions": as_data(motions.about_set),
         "motionsInSpace": as_data(motions.with_both_components().about_set),
         "names": [motion.name for motion in motions.ground],
@@ -105,9 +101,9 @@ def data_of(motions: MotionSet, asked: Request | None = None) -> dict[str, Any]:
         ],
         "measurements": left,
         "draws": _draws(motions),
+        "choices": {of.__name__: texts for of, texts in findings.TEXTS.items()},
         "constants": _constants(),
-        "floors": {n: _with_variants(at, intervals) for n, at in usual.items()},
-        "own": asked and _own(asked.place, intervals),
+        "own": asked and _own(asked.place),
         "limits": {
             "storey": plausible.STOREY_HEIGHTS,
             "period": plausible.FIRST_PERIODS,
@@ -125,6 +121,7 @@ def data_of(motions: MotionSet, asked: Request | None = None) -> dict[str, Any]:
 def _measure(
     motions: MotionSet, measure: IntensityMeasure, given: Records
 ) -> dict[str, Any]:
+    """What a page has to know of the motions in one measure."""
     return {
         "unit": measure.unit,
         "levels": _levels(motions, measure, outcomes.LEVELS),
@@ -143,17 +140,7 @@ def _levels(motions: MotionSet, measure: IntensityMeasure, count: int) -> list[f
     return values
 
 
-def _with_variants(at: Place, intervals: Sequence[float]) -> dict[str, Any]:
-    each = {"": at}
-    for moved in at.variants():
-        each |= {
-            f"{moved.name}{sign}": side
-            for sign, side in zip("-+", moved.sides, strict=True)
-        }
-    return {name: _modes(side.building, intervals) for name, side in each.items()}
-
-
-def _own(at: Place, intervals: Sequence[float]) -> dict[str, Any] | None:
+def _own(at: Place) -> dict[str, Any] | None:
     """A building that was given: its modes, the levels of its floors, and what is said of it."""
     building = at.building
     if building is None:
@@ -164,10 +151,14 @@ def _own(at: Place, intervals: Sequence[float]) -> dict[str, Any] | None:
     if building == usual.building:
         return None
     top = replace(building, floors={**building.floors, "": building.storeys})
+    variants = {"": replace(at, building=top, floor="")}
+    for moved in variants[""].variants():
+        for sign, side in zip("-+", moved.sides, strict=True):
+            variants[f"{moved.name}{sign}"] = side
     return {
         "storeys": building.storeys,
         "levels": dict(building.floors),
-        "modes": _with_variants(replace(at, building=top, floor=""), intervals),
+        "floors": {name: _modes(side.building) for name, side in variants.items()},
         "total": sum(building.heights),
         "period": float(find_modes(building).period[0]),
         # all of it is given; of one made of what is known of it the floor is called so
@@ -175,27 +166,26 @@ def _own(at: Place, intervals: Sequence[float]) -> dict[str, Any] | None:
     }
 
 
-def _modes(
-    model: ShearBuilding | None, intervals: Sequence[float]
-) -> list[dict[str, Any]]:
-    """What :func:`rockfrag.building.response.respond_elastically` does with each mode, by sampling interval."""
+def _modes(model: ShearBuilding | None) -> dict[str, Any]:
+    """Frequency, damping and fractions of each mode [rad/s, -]."""
     assert model is not None
-    modes, found = find_modes(model), []
+    modes = find_modes(model)
     fractions = (modes.participation * modes.shape).T
-    each = (values.tolist() for values in (modes.period, modes.damping, fractions))
-    for period, damping, fraction in zip(*each, strict=True):
-        omega = 2 * math.pi / period
-        found.append(
-            {
-                "fractions": fraction,
-                "damper": 2 * damping * omega,
-                "spring": omega**2,
-                "steps": {
-                    dt: oscillator_matrix(omega, damping, dt).tolist()
-                    for dt in intervals
-                },
-            }
-        )
+    each = (values.tolist() for values in (modes.frequency, modes.damping, fractions))
+    names = ("omega", "damping", "fractions")
+    found = [dict(zip(names, mode, strict=True)) for mode in zip(*each, strict=True)]
+    return {"modes": found}
+
+
+def _variants(period: float) -> dict[str, Any]:
+    """Factor on the periods and damping of a sketched building, as it is and with each moved by its spread."""
+    ratio = ModalDamping().ratio
+    found = {"": {"slower": 1.0, "damping": ratio}}
+    for sign, side in (("-", -1), ("+", 1)):
+        found[f"period{sign}"] = {"slower": 1 + side * period, "damping": ratio}
+    for sign, side in (("-", -1), ("+", 1)):
+        damped = ratio * (1 + side * place.TOLERANCES["damping"])
+        found[f"damping{sign}"] = {"slower": 1.0, "damping": damped}
     return found
 
 
@@ -228,34 +218,33 @@ def _of(module: ModuleType, *names: str) -> dict[str, Any]:
 
 
 def _constants() -> dict[str, Any]:
+    """Constants of the package that scripts use, so that both have the same ones."""
     return {
         **_of(units, "GRAVITY"),
-        **_of(outcomes, "AT_REST", "LARGEST_FACTOR"),
-        **_of(plausible, "LARGEST_PEAK"),
         **_of(draws, "MEMBERS", "FEW_MEMBERS"),
         "FLANK_Z": float(special.ndtri(curve.FLANKS[1])),
         **_of(curve, "EC8_SLOPE", "EC8_SLOPE_SD"),
         "MODEL": MODEL_ERRORS[CUT].beyond,
         **_of(sources, "SPACE"),
         **_of(plausible, "STONE", "DENSITIES", "DEPTHS"),
-        **_of(changes, "WIDER", "PLATE", "STEEL", "LOWER", "BALLAST", "BALLAST_AT"),
-        **_of(changes, "PEDESTAL_HEIGHT"),
+        **_of(bodies, "LOWER", "BALLAST"),
         **_of(holders, "PADS_AT"),
         **_of(
             place, "PERIOD_FACTORS", "STOREY_HEIGHT", "STOREY_MASS", "HIGHEST_BUILDING"
         ),
-        **_of(findings, "HARDLY", "LEAST_PART", "MOST_SOURCES", "MOST_ASSUMPTIONS"),
+        **_of(findings, "LEAST_PART", "MOST_SOURCES", "MOST_ASSUMPTIONS"),
         **_of(findings, "MOST_CHANGES", "LEAST_WORTH"),
-        **_of(decisions, "LEAST_CHANCE"),
-        "FEWEST_EARTHQUAKES": FEWEST_EARTHQUAKES,
+        **_of(choices, "FEWEST_EARTHQUAKES"),
         **_of(request, "ACCEPTED_AT_A_LEVEL", "ACCEPTED_IN_FIFTY_YEARS"),
-        "BELOW": [[limit, step.value] for limit, step in BELOW],
-        "UP_TO": [[limit, step.value] for limit, step in UP_TO],
-        "CERTAIN": Likelihood.VIRTUALLY_CERTAIN.value,
-        "DAMPING": ModalDamping().ratio,
-        **_of(contract, "TOLERANCES"),
-        "PLACE_TOLERANCES": place.TOLERANCES,
-        "KNOWN_PERIOD": place.TOLERANCE_OF_KNOWN_PERIOD,
+        "VARIANTS": {
+            "assumed": _variants(place.TOLERANCES["period"]),
+            "known": _variants(place.TOLERANCE_OF_KNOWN_PERIOD),
+        },
+        # both sides of each property
+        "TOLERANCES": {
+            name: [1 - spread, 1 + spread]
+            for name, spread in contract.TOLERANCES.items()
+        },
         **_of(request, "LONGEST_PERIOD"),
     }
 
@@ -286,7 +275,6 @@ def in_space(
         "measures": levels,
         "turns": [[math.cos(angle), math.sin(angle)] for angle in turns],
         "aside": box.ASIDE,
-        "higher": contract.HIGHER,
         "rolling": rolling.ROLLING,
     }
 

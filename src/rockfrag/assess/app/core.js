@@ -4,7 +4,7 @@
  */
 async function rockfragCore(bytes) {
   "use strict";
-  const { memory, layout, arrays, reserve, array, invoke } = await rockfragModule(bytes);
+  const { memory, layout, result, arrays, reserve, array, invoke } = await rockfragModule(bytes);
   let end = arrays;
 
   // an array of zeros; `values` is a view of it for as long as no memory is asked for
@@ -22,12 +22,20 @@ async function rockfragCore(bytes) {
     made.values.set(values);
     return made;
   }
-  const call = (name, ...given) => invoke(name, ...given.flatMap((each) => each.parameters ?? [each]));
+  const parametersOf = (given) => given.flatMap((each) => each.parameters ?? [typeof each === "boolean" ? Number(each) : each]);
+  const call = (name, ...given) => invoke(name, ...parametersOf(given));
+  // what a plain function chooses: the place of a text, or whether something is so
+  function choose(name, ...given) {
+    const found = new BigInt64Array(memory.buffer, result, 1);
+    found[0] = 0n;
+    call(name, ...given);
+    return Number(found[0]);
+  }
   // what is put meanwhile is forgotten afterwards
   function within(work) {
     const before = end;
     try { return work(); } finally { end = before; }
   }
-  return { zeros, put, call, within, constants: layout.constants };
+  return { zeros, put, call, choose, within, constants: layout.constants };
 }
 if (typeof module !== "undefined") module.exports = rockfragCore;

@@ -1,15 +1,16 @@
 /* What the page found, as findings of rockfrag.assess.findings: ids of texts, and the values that stand in them. */
-const findings = (data) => {
+const findings = (data, core, judge) => {
   "use strict";
-  const { HARDLY, BELOW, UP_TO, CERTAIN, FEWEST_EARTHQUAKES, LEAST_PART, MOST_SOURCES, MOST_ASSUMPTIONS, MOST_CHANGES, LEAST_WORTH } = data.constants;
+  const { choose } = core, { partsOf, ordered } = judge, { LEAST_PART, MOST_SOURCES, MOST_ASSUMPTIONS, MOST_CHANGES, LEAST_WORTH, FEWEST_EARTHQUAKES } = data.constants;
   const finding = (id, values = {}) => ({ id, values });
   const number = (form) => (value) => ({ number: value, form });
   const [percent, limit, two, three, four, whole] = ["percent", "limit", "two", "three", "four", "whole"].map(number);
   const listed = (values) => ({ listed: values });
   const wholePercent = (part) => finding("whole_percent", { value: whole(100 * part) });
   const limits = ({ lower, upper }) => ({ lower: limit(lower), upper: limit(upper) });
-  const isOpen = ({ lower, upper }) => lower <= 0 && upper >= 1;
-  const likelihoodOf = (p) => (BELOW.find(([most]) => p < most) ?? UP_TO.find(([most]) => p <= most) ?? [0, CERTAIN])[1];
+  const numbers = ({ value, lower, upper }) => [value, lower, upper];
+  // the text that a function of the core chooses by numbers
+  const chosen = (choice, ...given) => data.choices[choice][choose(choice, ...given)];
 
   const called = ({ name }) => (name === data.texts.en.the_object ? finding("the_object") : name);
   function where({ place: { storeys, level, label } }) {
@@ -20,42 +21,36 @@ const findings = (data) => {
   // the first screen and what stands behind it, of an answer that may not be complete yet
   function of(request, found) {
     const { measure } = request, { unit } = data.measures[measure], { fraction, rocking, probability, counts } = found;
-    const main = probability ?? fraction, years = three(found.years), few = found.earthquakes < FEWEST_EARTHQUAKES;
+    const main = probability ?? fraction, years = three(found.years), few = choose("are_few", found.earthquakes);
     const amount = (value) => finding("amount", { measure, value: two(value), unit });
     const level = finding("amount", { measure, value: three(found.level), unit }), who = { name: called(request), where: where(request) };
-    // exceptionally unlikely that it rocks, limits included
-    const atRest = rocking?.upper < BELOW[0][0], value = fraction?.value ?? found.value, rocks = rocking?.value ?? found.rockingValue;
+    const atRest = choose("stays", rocking?.upper ?? 1), value = fraction?.value ?? found.value, rocks = rocking?.value ?? found.rockingValue;
 
     function howLikely() {
-      const about = { ...who, level };
-      if (few) {
-        const topple = counts ? counts[2] : percent(found.value), total = counts ? counts[0] : data.earthquakes.length;
-        return finding("how_likely_few_earthquakes", { ...about, topple, total, n: found.earthquakes });
-      }
-      if (atRest) return finding("how_likely_at_rest", { ...about, starts: amount(found.rocksFrom) });
-      const id = rocks <= HARDLY ? "how_likely_hardly_rocks" : "how_likely";
-      return finding(id, { ...about, likelihood: finding(likelihoodOf(value)), p: chance(fraction ?? { value: found.value, lower: 1, upper: 0 }) });
+      const id = chosen("how_likely", few, atRest, rocks), topple = counts ? counts[2] : percent(found.value);
+      const about = {
+        how_likely_few_earthquakes: () => ({ topple, total: counts ? counts[0] : data.earthquakes.length, n: found.earthquakes }),
+        how_likely_at_rest: () => ({ starts: amount(found.rocksFrom) }),
+      }[id] ?? (() => ({ likelihood: finding(chosen("likelihood", value)), p: chance(fraction ?? { value: found.value, lower: 1, upper: 0 }) }));
+      return finding(id, { ...who, level, ...about() });
     }
-    function chance({ value, lower, upper }) {
-      if (value === 0 && upper > 0) return finding("at_most", { upper: percent(upper) });
-      if (value === 1 && lower < 1) return finding("at_least", { lower: percent(lower) });
-      return percent(value);
+    function chance(estimate) {
+      const id = chosen("chance", ...numbers(estimate)), { value, lower, upper } = estimate;
+      return { at_most: () => finding(id, { upper: percent(upper) }), at_least: () => finding(id, { lower: percent(lower) }) }[id]?.() ?? percent(value);
     }
     function howFar({ value, lower, upper }) {
-      if (!Number.isFinite(value)) return finding("how_far_beyond", { most: finding("quantity", { value: two(found.levels.at(-1)), unit }) });
-      const about = { half: finding("quantity", { value: two(value), unit }), lower: two(lower) };
-      return Number.isFinite(upper) ? finding("how_far", { ...about, upper: two(upper) }) : finding("how_far_from", about);
+      const id = chosen("how_far", value, upper), quantity = (each) => finding("quantity", { value: two(each), unit });
+      const half = { half: quantity(value), lower: two(lower) };
+      return finding(id, { how_far: { ...half, upper: two(upper) }, how_far_from: half, how_far_beyond: { most: quantity(found.levels.at(-1)) } }[id]);
     }
     function inYears() {
-      if (probability.value === 0 || isOpen(probability)) return finding("in_years_at_most", { years, upper: percent(probability.upper) });
-      return finding("in_years", { p: percent(probability.value), years, ...limits(probability) });
+      const id = chosen("in_years", ...numbers(probability));
+      return finding(id, { in_years: { p: percent(probability.value), years, ...limits(probability) }, in_years_at_most: { years, upper: percent(probability.upper) } }[id]);
     }
     function advice() {
-      const { action, source, chance: part } = found.decision;
-      if (action === "measure") return finding("measure_first", { what: finding(`measurement_${source}`), cases: whole(10 * part) });
-      if (probability) return action === "secure" ? finding("secure_it") : finding("leave_it", { accepted: percent(found.accepted), years });
-      if (atRest) return finding("leave_it_at_rest");
-      return finding(action === "secure" ? "secure_unless" : "leave_unless", { p: percent(fraction.value || fraction.upper) });
+      const { action, source, chance: part } = found.decision, p = percent(main.value || main.upper);
+      const id = chosen("advice", action, Boolean(probability), atRest), measured = { what: finding(`measurement_${source}`), cases: whole(10 * part) };
+      return finding(id, { measure_first: measured, leave_it: { accepted: percent(found.accepted), years }, secure_unless: { p }, leave_unless: { p } }[id]);
     }
     function first() {
       if (few) return [howLikely(), finding("give_earthquakes", { least: FEWEST_EARTHQUAKES })];
@@ -67,31 +62,28 @@ const findings = (data) => {
 
     function atLevel() {
       const every = data.earthquakes.length, [total, rock, topple] = counts ?? [];
-      const counted = counts ? [finding(total < every ? "counted_some" : "counted", { ...(total < every ? { every } : {}), total, rock, topple })] : [];
+      const id = counts && chosen("counted", total, every), counted = counts ? [finding(id, { ...(id === "counted" ? {} : { every }), total, rock, topple })] : [];
       if (found.site) counted.push(finding("counted_moved", { rock: percent(rocks), topple: percent(value) }));
-      const starts = Number.isFinite(found.rocksFrom) ? finding("starts_at", { starts: amount(found.rocksFrom) }) : finding("starts_beyond");
+      const begins = chosen("starts", found.rocksFrom), starts = finding(begins, begins === "starts_at" ? { starts: amount(found.rocksFrom) } : {});
       return [...counted, ...(fraction && !atRest ? [between()] : []), starts, ...(request.level === null ? [finding("exceeded_in_475", { level })] : [])];
     }
     function between() {
-      if (isOpen(fraction)) return finding("fraction_open");
-      if (fraction.value === 0) return finding("fraction_at_most", { upper: percent(fraction.upper) });
-      if (fraction.value === 1) return finding("fraction_at_least", { lower: percent(fraction.lower) });
-      return finding("fraction_between", limits(fraction));
+      const id = chosen("between", ...numbers(fraction)), { lower, upper } = fraction;
+      return finding(id, { fraction_at_most: { upper: percent(upper) }, fraction_at_least: { lower: percent(lower) }, fraction_between: limits(fraction) }[id]);
     }
     function overYears() {
       if (found.probabilityValue === null) return [finding("needs_hazard")];
       if (!probability) return [];
-      const accepted = finding("accepted", { accepted: percent(found.accepted), years });
-      if (probability.value === 0) return [finding("years_at_most", { years, upper: percent(probability.upper) }), accepted];
-      const about = { p: percent(probability.value), years };
-      return [isOpen(probability) ? finding("years_open", about) : finding("years_between", { ...about, ...limits(probability) }), accepted];
+      const id = chosen("over_years", ...numbers(probability)), p = percent(probability.value);
+      const about = { years_at_most: { upper: percent(probability.upper) }, years_open: { p }, years_between: { p, ...limits(probability) } }[id];
+      return [finding(id, { years, ...about }), finding("accepted", { accepted: percent(found.accepted), years })];
     }
     function position() {
       const ways = found.arrangements, said = [];
       if (new Set(ways.map(([, value]) => value)).size > 1) {
-        const ranked = [...ways].sort((a, b) => a[1] - b[1]), [[best]] = ranked;
+        const ranked = ordered(ways, ([, value]) => value, () => 0), [[best]] = ranked, id = chosen("safest", found.safer.includes(best));
         const each = listed(ranked.map(([way, value]) => finding("way", { way: finding(way), value: percent(value) })));
-        said.push(found.safer.includes(best) ? finding("safest", { way: finding(best), ways: each }) : finding("no_safest", { ways: each }));
+        said.push(finding(id, { ways: each, ...(id === "safest" ? { way: finding(best) } : {}) }));
       }
       if (!request.solid) return [...said, finding(request.narrower ? "rocks_across_narrower" : "rocks_across", { width: four(100 * request.statue.width) })];
       said.push(finding(request.solid.round ? "rolls_in_space" : "moves_in_space"));
@@ -104,20 +96,20 @@ const findings = (data) => {
     }
     function helps() {
       if (!main) return [];
-      if (main.value === 0 || (atRest && !probability)) return [finding("no_change_needed")];
+      if (!choose("needs_change", main.value, atRest, Boolean(probability))) return [finding("no_change_needed")];
       const shown = found.mitigations.filter((each) => each.shown).slice(0, MOST_CHANGES);
       // what may hold it needs an engine that a page has not
       const leftOut = finding("holders_not_tried");
       if (!shown.length) return [finding("no_change_shown"), leftOut];
-      return [...shown.map((each) => (each.factor === 0 ? finding("none_left", { change: changeOf(each) }) : finding("reduces", { change: changeOf(each), ...reduction(each) }))), leftOut];
+      const said = shown.map((each) => [chosen("reduces", each.factor, false), each]);
+      return [...said.map(([id, each]) => finding(id, { change: changeOf(each), ...(id === "none_left" ? {} : reduction(each)) })), leftOut];
     }
     function howSure() {
       if (!main) return [];
-      const total = Object.values(main.sources).reduce((sum, s) => sum + s * s, 0), said = [finding("sentence", { words: request.solid ? data.motionsInSpace : data.motions })];
-      const ranked = Number.isFinite(total) && total > 0 ? Object.entries(main.sources).map(([name, s]) => [name, (s * s) / total]).sort((a, b) => b[1] - a[1]) : [];
-      const named = ranked.filter(([, part]) => part >= LEAST_PART).slice(0, MOST_SOURCES);
+      const said = [finding("sentence", { words: request.solid ? data.motionsInSpace : data.motions })];
+      const named = partsOf(main.sources).filter(([, part]) => part >= LEAST_PART).slice(0, MOST_SOURCES);
       if (named.length) said.push(finding("uncertainty", { sources: listed(named.map(([name, part]) => finding("source_part", { source: finding(`source_${name}`), part: wholePercent(part) }))) }));
-      const worth = (found.decision?.measurements ?? []).filter(({ chance }) => chance >= LEAST_WORTH);
+      const worth = (few ? [] : found.decision?.measurements ?? []).filter(({ chance }) => chance >= LEAST_WORTH);
       const each = worth.map(({ source, chance }) => finding("worth_measuring", { what: finding(`measurement_${source}`), cases: whole(10 * chance) }));
       if (each.length) said.push(finding("worth", { measurements: listed(each) }));
       const size = (keys) => keys.reduce((sum, key) => sum + (main.sources[key] ?? 0) ** 2, 0);

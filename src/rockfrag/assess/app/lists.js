@@ -1,6 +1,7 @@
 /* Objects as CSV and as statue.yaml: written by the page, and read again; nothing in them is executed. */
-const lists_ = (data, fields) => {
+const lists_ = (data, known) => {
   "use strict";
+  const fields = known.map(({ name }) => name);
   const cell = (text) => (/[",\n\r]/.test(text) ? `"${text.replaceAll('"', '""')}"` : text);
   // a sheet would take what begins so for a formula
   const guarded = (text) => (/^[-=+@\t\r]/.test(text) ? ` ${text}` : text);
@@ -24,18 +25,17 @@ const lists_ = (data, fields) => {
     return rows.filter((row) => row.some((text) => text.trim()));
   }
   const MOST_ROWS = 500;
-  // keys of statue.yaml by the fields of the form
-  const KEYS = { storey_height: ["building", "storey_height"], material: ["building", "material"], period: ["building", "first_period"],
-    pedestal_width: ["pedestal", "width"], pedestal_height: ["pedestal", "height"], pedestal_mass: ["pedestal", "mass"] };
-  const LEFT_OUT = ["measure", "level", "years", "hazard", "round"];
+  // keys of statue.yaml by the fields of the form; a level, its measure and a hazard are told by others
+  const KEYS = Object.fromEntries(known.map(({ name, key }) => [name, key])), isFlag = Object.fromEntries(known.map(({ name, kind }) => [name, kind === "flag"]));
   function yamlOf(form, say) {
-    const plain = fields.filter((name) => !KEYS[name] && !LEFT_OUT.includes(name) && form[name]?.trim?.());
-    const value = (name) => (name === "restitution" ? point(form[name]) : JSON.stringify(point(form[name].trim())));
-    const lines = plain.map((name) => `${name}: ${value(name)}`);
-    if (form.round) lines.push("round: true");
-    for (const part of ["pedestal", "building"]) {
-      const own = Object.entries(KEYS).filter(([name, [home]]) => home === part && form[name]?.trim() && (part === "pedestal" || form.floor?.trim()));
-      if (own.length) lines.push(`${part}:`, ...own.map(([name, [, key]]) => `  ${key}: ${value(name)}`));
+    const typed = (name) => form[name] === true || form[name]?.trim?.();
+    const own = known.filter(({ name, key }) => key.length && name !== "years" && typed(name)), number = own.filter(({ kind }) => kind === "number").map(({ name }) => name);
+    const value = (name) => (form[name] === true ? "true" : number.includes(name) ? point(form[name]) : JSON.stringify(point(form[name].trim())));
+    const at = (home) => own.filter(({ key }) => key.length === 2 && key[0] === home && (home !== "building" || typed("floor")));
+    const lines = own.filter(({ key }) => key.length === 1).map(({ name, key: [key] }) => `${key}: ${value(name)}`);
+    for (const home of ["pedestal", "building"]) {
+      const inner = at(home);
+      if (inner.length) lines.push(`${home}:`, ...inner.map(({ name, key: [, key] }) => `  ${key}: ${value(name)}`));
     }
     const period = /^SA\((.*)\)$/.exec(form.measure)?.[1];
     if (form.level?.trim()) lines.push(period ? `sa: ["${period} s", ${value("level")}]` : `${form.measure === "PGV" ? "pgv" : "pga"}: ${value("level")}`);
@@ -62,10 +62,10 @@ const lists_ = (data, fields) => {
       if (spectral && data.measures[form.measure]) continue;
       if (!indent) home = value ? "" : key;
       if (!indent && !value) continue;
-      const name = indent ? Object.keys(KEYS).find((own) => KEYS[own][0] === home && KEYS[own][1] === key)
-        : { pga: "level", pgv: "level", return_period: "years", return_period_years: "years" }[key] ?? key;
-      if (!fields.includes(name) || (!indent && KEYS[name])) throw new Error(say("file_keys", { key: key.slice(0, 40) }));
-      form[name] = name === "round" ? unquoted(value) === "true" : String(unquoted(value));
+      const place = indent ? [home, key] : [key];
+      const name = { pga: "level", pgv: "level", return_period_years: "years" }[place.join(".")] ?? fields.find((own) => KEYS[own].join(".") === place.join("."));
+      if (!name) throw new Error(say("file_keys", { key: key.slice(0, 40) }));
+      form[name] = isFlag[name] ? unquoted(value) === "true" : String(unquoted(value));
       if (key === "pgv" || key === "pga") form.measure = key.toUpperCase();
     }
     return [form];

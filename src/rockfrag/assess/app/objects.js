@@ -1,10 +1,9 @@
-/* From what was typed to bodies: sizes, what stands on what, what is not known to the digit, and what helps. */
+/* The form: what was typed, as a request in SI, or a refusal beside its field. */
 const objects = (data) => {
   "use strict";
   const { units, constants } = data;
   const {
-    STONE, DEPTHS, DENSITIES, WIDER, PLATE, STEEL, LOWER, BALLAST, BALLAST_AT, PEDESTAL_HEIGHT, PERIOD_FACTORS, STOREY_HEIGHT,
-    STOREY_MASS, HIGHEST_BUILDING, DAMPING, TOLERANCES, PLACE_TOLERANCES, KNOWN_PERIOD, LONGEST_PERIOD,
+    STONE, DEPTHS, DENSITIES, PERIOD_FACTORS, STOREY_HEIGHT, HIGHEST_BUILDING, VARIANTS, LONGEST_PERIOD,
   } = constants;
 
   // a refusal: the field it is about, and the sentence of the table with what stands in it
@@ -46,41 +45,45 @@ const objects = (data) => {
     return value;
   }
 
+  // what stands in the fields, each as the schema has it; null where nothing does
+  const READ = {
+    quantity: ({ name, dimension, positive: above }, text) => (above ? positive : quantity)(name, text, dimension),
+    number: ({ name, limits: [low, high] }, text) => number(name, text, name, low, high),
+    flag: (_, text) => Boolean(text),
+  };
+  const givenIn = (form) => Object.fromEntries(data.fields.map((field) => [field.name, READ[field.kind]?.(field, form[field.name]) ?? null]));
+
   // the form's texts, by field, as a request in SI
   function requestOf(form) {
-    const round = Boolean(form.round), side = positive("width", form.width, "length"), height = positive("height", form.height, "length");
-    if (side === null) refuse("width", "missing", { example: "35 cm" });
+    const given = givenIn(form), { round, height, mass, cg_height: cgHeight, restitution } = given;
+    if (given.width === null) refuse("width", "missing", { example: "35 cm" });
     if (height === null) refuse("height", "missing", { example: "1.2 m" });
-    const mass = positive("mass", form.mass, "mass"), cgHeight = positive("cg_height", form.cg_height, "length");
     if (cgHeight !== null && cgHeight >= height) refuse("cg_height", "above_top");
-    const cgOffset = quantity("cg_offset", form.cg_offset, "length") ?? 0;
-    const { width, depth, facing, narrower = false } = planOfBase(form, side, round), [low, high] = DENSITIES;
-    const statue = { width, height, mass: mass ?? STONE * width * depth * height * (round ? Math.PI / 4 : 1), cgHeight, cgOffset };
+    const { width, depth, facing, narrower = false } = planOfBase(given), [low, high] = DENSITIES;
+    const statue = { width, height, mass: mass ?? STONE * width * depth * height * (round ? Math.PI / 4 : 1), cgHeight, cgOffset: given.cg_offset ?? 0 };
     checkDensity("mass", statue);
     const density = statue.mass / (width * depth * height);
-    if (form.depth?.trim() && !(density >= low && density <= high)) refuse("mass", "density");
+    if (given.depth !== null && !(density >= low && density <= high)) refuse("mass", "density");
     if (round) statue.inertia = (statue.mass * (0.75 * width * width + height * height)) / 12;
-    const restitution = number("restitution", form.restitution, "restitution", 0, 1);
     if (round && restitution !== null) refuse("restitution", "rolls");
-    const deep = Boolean(form.depth?.trim()) && !round && restitution === null && data.both.records.length > 0;
+    const deep = given.depth !== null && !round && restitution === null && data.both.records.length > 0;
+    if (!deep && given.facing !== null) refuse("facing", "facing_in_plane");
     if (deep) statue.depth = depth;
-    let pedestal = null;
-    if (form.pedestal_width?.trim() || form.pedestal_height?.trim()) {
-      const wide = positive("pedestal_width", form.pedestal_width, "length"), high = positive("pedestal_height", form.pedestal_height, "length");
-      if (wide === null) refuse("pedestal_width", "missing", { example: "50 cm" });
-      if (high === null) refuse("pedestal_height", "missing", { example: "90 cm" });
-      const heavy = positive("pedestal_mass", form.pedestal_mass, "mass");
-      pedestal = { width: wide, height: high, mass: heavy ?? STONE * wide * wide * high, massGiven: heavy !== null };
-      checkDensity("pedestal_mass", pedestal);
-    } else if (form.pedestal_mass?.trim()) refuse("pedestal_width", "missing", { example: "50 cm" });
     return {
-      name: short(form.name ?? "") || data.texts.en.the_object, statue, narrower, pedestal, massGiven: mass !== null, depthGiven: Boolean(form.depth?.trim()), restitution,
-      solid: round || deep ? { round, facing, anywhere: !form.facing?.trim() } : null, place: placeOf(form), ...shakingOf(form),
+      name: short(form.name ?? "") || data.texts.en.the_object, statue, narrower, pedestal: pedestalOf(given), massGiven: mass !== null, depthGiven: given.depth !== null, restitution,
+      solid: round || deep ? { round, facing, anywhere: given.facing === null } : null, place: placeOf(form, given), ...shakingOf(form),
     };
   }
+  function pedestalOf({ pedestal_width: width, pedestal_height: height, pedestal_mass: mass }) {
+    if ([width, height, mass].every((each) => each === null)) return null;
+    if (width === null) refuse("pedestal_width", "missing", { example: "50 cm" });
+    if (height === null) refuse("pedestal_height", "missing", { example: "90 cm" });
+    const pedestal = { width, height, mass: mass ?? STONE * width * width * height, massGiven: mass !== null };
+    checkDensity("pedestal_mass", pedestal);
+    return pedestal;
+  }
   // the narrower side of the base, the other one, and the direction of the narrower one [degrees]
-  function planOfBase(form, width, round) {
-    const depth = positive("depth", form.depth, "length"), facing = number("facing", form.facing, "facing", -1e-300, 360);
+  function planOfBase({ width, depth, facing, round }) {
     if (round && depth !== null && depth !== width) refuse("depth", "round_depth");
     if (facing !== null && (round || depth === null)) refuse("facing", "no_facing");
     if (depth === null || !(depth < width)) return { width, depth: depth ?? width, facing: facing ?? 0 };
@@ -129,15 +132,12 @@ const objects = (data) => {
     return (p) => (p >= 0 && p < 1 ? -Math.log1p(-p) / years : NaN);
   };
 
-  // a floor whose modes stand in the page, as the building is and with each property moved
-  function tabled(known, at) {
-    const floors = Object.fromEntries(at.level === 0 ? [] : Object.entries(known).map(([name, modes]) => [name, { modes, level: at.level }]));
-    return { assumed: "building", ...at, ground: at.level === 0, floors };
-  }
+  // a floor, as the building is and with each property moved
+  const floorsOf = (level, named) => (level === 0 ? {} : Object.fromEntries(Object.entries(named).map(([name, about]) => [name, { ...about, level }])));
   const BUILDING = ["storey_height", "material", "period"];
-  function placeOf(form) {
+  function placeOf(form, { storey_height: each, period: given }) {
     if (data.onFloor || !form.floor?.trim()) {
-      if (form.storey_height?.trim() || form.period?.trim()) refuse("floor", "missing", { example: "2/4" });
+      if (each !== null || given !== null) refuse("floor", "missing", { example: "2/4" });
       return { ground: true, key: "", floors: {}, assumed: data.onFloor ? "" : "on_ground" };
     }
     const { own } = data, found = /^\s*(\d{1,3})\s*\/\s*(\d{1,3})\s*$/.exec(form.floor);
@@ -146,100 +146,20 @@ const objects = (data) => {
     if (!(level <= storeys && storeys >= 1 && storeys <= HIGHEST_BUILDING)) refuse("floor", "floor", { most: HIGHEST_BUILDING, text: short(form.floor) });
     if (own && (own.whole || (storeys === own.storeys && BUILDING.every((name) => (form[name] ?? "") === (data.form[name] ?? (name === "material" ? "masonry" : "")))))) {
       if (storeys !== own.storeys || level > storeys) refuse("floor", "own_floor", { storeys: own.storeys, labels: Object.keys(own.levels).join(", "), text: short(form.floor) });
-      return tabled(own.modes, { level, storeys, label: found ? "" : label, total: own.total, period: own.period, key: `own ${level}`, assumed: own.whole ? "elastic" : "building" });
+      return { ground: level === 0, level, storeys, label: found ? "" : label, total: own.total, period: own.period, key: `own ${level}`, assumed: own.whole ? "elastic" : "building",
+        floors: floorsOf(level, own.floors) };
     }
-    const each = positive("storey_height", form.storey_height, "length"), given = positive("period", form.period, "time");
     const heights = new Array(storeys).fill(each ?? STOREY_HEIGHT), total = heights.reduce((a, b) => a + b, 0);
     if (!(heights[0] >= data.limits.storey[0] && heights[0] <= data.limits.storey[1])) refuse("storey_height", "storey");
-    const material = PERIOD_FACTORS[form.material] ? form.material : "masonry";
-    const period = given ?? PERIOD_FACTORS[material] * total ** 0.75;
+    const material = PERIOD_FACTORS[form.material] ? form.material : "masonry", height = heights[0];
+    const period = given ?? usualPeriod(PERIOD_FACTORS[material], total);
     if (!(period >= data.limits.period[0] && period <= data.limits.period[1])) refuse("period", "period");
-    const known = each === null && given === null && material === "masonry" ? data.floors?.[storeys] : null;
-    if (known) return tabled(known, { level, storeys, total, period, key: `${level}/${storeys}` });
-    const masses = heights.map(() => STOREY_MASS), stiffnesses = building.stiffnessesFor(masses, heights, period);
-    const at = { masses, stiffnesses, damping: DAMPING, level };
-    const slower = (factor) => ({ ...at, stiffnesses: stiffnesses.map((k) => k / factor ** 2) });
-    const spread = { ...PLACE_TOLERANCES, ...(given === null ? {} : { period: KNOWN_PERIOD }) };
-    const floors = level === 0 ? {} : {
-      "": at, "period-": slower(1 - spread.period), "period+": slower(1 + spread.period),
-      "damping-": { ...at, damping: DAMPING * (1 - spread.damping) }, "damping+": { ...at, damping: DAMPING * (1 + spread.damping) },
-    };
-    return { ground: level === 0, level, storeys, floors, key: JSON.stringify(at), assumed: "building", total, period, computed: level > 0 };
+    const sketched = { storeys, height, period }, moved = given === null ? VARIANTS.assumed : VARIANTS.known;
+    const named = Object.entries(moved).map(([name, about]) => [name, { sketched, ...about }]);
+    return { ground: level === 0, level, storeys, total, period, key: JSON.stringify([level, sketched]), assumed: "building", floors: floorsOf(level, Object.fromEntries(named)) };
   }
-
-  // ---- bodies
-
-  const three = (value) => ({ number: value, form: "three" });
-  const inertiaOf = (block) => block.inertia ?? (block.mass * (block.width * block.width + block.height * block.height)) / 12;
-  const heightOf = (block) => block.cgHeight ?? block.height / 2;
-  const wider = (block, factor) => ({ ...block, width: block.width * factor, inertia: inertiaOf(block), ...(block.depth ? { depth: block.depth * factor } : {}) });
-  const higher = (block, factor) => ({ ...block, cgHeight: Math.min(heightOf(block) * factor, block.height), inertia: inertiaOf(block) });
-
-  // what is shaken: roles, and bodies as the module takes them; the object as it stands first
-  function planOf(request, ensemble) {
-    const { statue, pedestal, restitution: measured, place } = request;
-    const body = (top, below = pedestal, livelier = 1) => ({ statue: top, pedestal: below, measured, livelier });
-    const joined = (top, below) => {
-      const { centre: [x, y, inertia] } = ensemble.bodyOf({ statue: top, pedestal: below });
-      return { width: below.width, height: below.height + top.height, mass: below.mass + top.mass, inertia, cgHeight: y, cgOffset: x };
-    };
-    const held = { to_pedestal: () => body(joined(statue, pedestal), null), to_floor: () => body(statue, null) }[pedestal && request.fixed];
-    const moving = (runs) => (request.solid ? inSpace(data).planOf(request, runs) : runs);
-    if (held) return moving([{ role: "now", body: held() }]);
-    stands(body(statue), ensemble);
-    if (measured !== null && measured > ensemble.bodyOf(body(statue)).largest) refuse("restitution", "gains_energy");
-    const runs = [{ role: "now", body: body(statue) }];
-    const move = (name, make) => {
-      const s = TOLERANCES[name];
-      for (const factor of [1 - s, 1 + s]) runs.push({ role: "moved", name, few: true, body: make(factor) });
-    };
-    move("width", (f) => body(wider(statue, f), pedestal && wider(pedestal, f)));
-    move("cg_height", (f) => body(higher(statue, f)));
-    move("restitution", (f) => body(statue, pedestal, f));
-    if (pedestal) move("mass", (f) => body({ ...statue, mass: statue.mass * f, inertia: inertiaOf(statue) * f }));
-    for (const floor of Object.keys(place.floors).filter(Boolean))
-      runs.push({ role: "moved", name: floor.slice(0, -1), few: true, floor, body: body(statue) });
-    if (pedestal) {
-      runs.push({ role: "arrangement", name: "fixed_to_its_pedestal", change: "fix_object", values: {}, body: body(joined(statue, pedestal), null) });
-      runs.push({ role: "arrangement", name: "on_the_floor", change: "fix_pedestal", values: {}, body: body(statue, null) });
-    }
-    const helps = (name, what, values = {}) => runs.push({ role: "mitigation", change: name, body: what, values });
-    const onPlate = (block) => joined(block, { width: WIDER * block.width, height: PLATE, mass: STEEL * PLATE * (WIDER * block.width) ** 2 });
-    const plate = (block) => ({ width: three(100 * WIDER * block.width), thick: three(100 * PLATE) });
-    if (!pedestal) helps("plate_under_it", body(onPlate(statue)), plate(statue));
-    else {
-      helps("plate_under_pedestal", body(statue, onPlate(pedestal)), plate(pedestal));
-      if (WIDER * statue.width <= pedestal.width) helps("plate_under_object", body(onPlate(statue)), plate(statue));
-    }
-    helps("lower_centre", body(higher(statue, LOWER)), { part: { number: 1 - LOWER, form: "percent" } });
-    helps("ballast", body(withBallast(statue)), { part: { number: BALLAST, form: "percent" } });
-    if (pedestal) {
-      const half = { ...pedestal, height: PEDESTAL_HEIGHT * pedestal.height, mass: PEDESTAL_HEIGHT * pedestal.mass };
-      helps("lower_pedestal", body(statue, half), { height: three(100 * half.height) });
-    }
-    for (const { body: each } of runs) stands(each, ensemble);
-    return moving(runs);
-  }
-  // what cannot stand is said beside the width
-  function stands(body, ensemble) {
-    try {
-      ensemble.bodyOf(body);
-    } catch ({ message }) {
-      refuse("width", `fault_${ROCKFRAG_FAULTS.indexOf(message)}`);
-    }
-  }
-  function withBallast(block, part = BALLAST) {
-    const added = part * block.mass, mass = block.mass + added, at = BALLAST_AT * block.height, h = heightOf(block);
-    const cgHeight = (block.mass * h + added * at) / mass, cgOffset = (block.mass * block.cgOffset) / mass;
-    const own = block.mass * ((h - cgHeight) ** 2 + (block.cgOffset - cgOffset) ** 2);
-    const inertia = inertiaOf(block) + own + added * ((at - cgHeight) ** 2 + cgOffset ** 2);
-    return { ...block, mass, cgHeight, cgOffset, inertia };
-  }
-  // the object with a wider foot, a lower centre of gravity and ballast of a part of its mass in its foot
-  function changed(statue, { wider: foot, lower, ballast }) {
-    const heavier = ballast ? withBallast(statue, ballast) : statue;
-    return higher(wider(heavier, foot), lower);
-  }
-  return { requestOf, planOf, changed };
+  // C_t H^(3/4), of EN 1998-1
+  const usualPeriod = (factor, height) => factor * (Math.sqrt(height) * Math.sqrt(Math.sqrt(height)));
+  return { requestOf, refuse };
 };
 if (typeof module !== "undefined") module.exports = objects;

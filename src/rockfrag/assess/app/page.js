@@ -13,22 +13,14 @@ const make = (tag, attributes = {}, ...children) => {
   element.append(...children);
   return element;
 };
-const FIELDS = {
-  object: ["name", "width", "height", "mass"],
-  more: ["depth", "facing", "round", "cg_height", "cg_offset", "restitution"],
-  pedestal: ["pedestal_width", "pedestal_height", "pedestal_mass"],
-  place: ["floor", "storey_height", "material", "period"],
-  shaking: ["measure", "level", "years", "hazard"],
-};
-if (data.own?.whole) FIELDS.place = ["floor"];
+const FIELDS = Object.fromEntries(data.groups.map((group) => [group, data.fields.filter((field) => field.group === group)]));
+if (data.own?.whole) FIELDS.place = FIELDS.place.filter(({ name }) => name === "floor");
 const CLOSED = ["more", "pedestal", "place"]; // groups that open where they are wanted
-const OPTIONS = { measure: Object.keys(data.measures), material: ["masonry", "concrete", "steel"] };
 const ALL = Object.values(FIELDS).flat();
 const PART = 25; // motions of a task
 // why a body cannot stand, in the words of the module
 const FAULTS = Object.fromEntries(ROCKFRAG_FAULTS.map((text, i) => [`fault_${i}`, text]));
 let texts = data.texts.en, say = null, speak = null;
-const wording = findings(data);
 
 // ---- texts
 
@@ -51,35 +43,36 @@ const form = find("form"), inputs = {};
 function drawForm() {
   const old = formTexts();
   form.replaceChildren();
-  for (const [group, names] of Object.entries(FIELDS)) {
-    const title = say(group), boxes = names.map((name) => field(name, old));
-    const given = names.some((name) => inputs[name].checked || (inputs[name].type === "text" && inputs[name].value));
+  for (const [group, fields] of Object.entries(FIELDS)) {
+    const title = say(group), boxes = fields.map((each) => field(each, old));
+    const given = fields.some(({ name }) => inputs[name].checked || (inputs[name].type === "text" && inputs[name].value));
     form.append(CLOSED.includes(group) ? make("details", { open: given }, make("summary", { textContent: title }), ...boxes)
       : make("fieldset", {}, make("legend", { textContent: title }), ...boxes));
   }
 }
-function field(name, old) {
-  const options = OPTIONS[name], value = old?.[name] ?? data.form[name] ?? "";
-  const input = name === "hazard" ? make("textarea", { rows: 3, value }) : options
-    ? make("select", {}, ...options.map((id) => make("option", { value: id, textContent: say(id) })))
-    : make("input", name === "round" ? { type: "checkbox", checked: Boolean(value) } : { type: "text", value, maxLength: 80 });
+function field({ name, kind, options }, old) {
+  const value = old?.[name] ?? data.form[name] ?? "";
+  const input = {
+    lines: () => make("textarea", { rows: 3, value }),
+    choice: () => make("select", {}, ...options.map((id) => make("option", { value: id, textContent: say(id) }))),
+    flag: () => make("input", { type: "checkbox", checked: Boolean(value) }),
+  }[kind]?.() ?? make("input", { type: "text", value, maxLength: 80 });
   if (name === "floor") input.placeholder = "2/4";
-  if (options) input.value = options.includes(value) ? value : options[0];
+  if (kind === "choice") input.value = options.includes(value) ? value : options[0];
   input.id = `field-${name}`;
   input.setAttribute("aria-describedby", `${input.id}-error`);
   input.addEventListener("input", later);
   inputs[name] = input;
   const label = make("label", { htmlFor: input.id, textContent: say(name) });
-  const box = make("div", { className: name === "hazard" ? "field long" : "field" }, label, input, make("small", { id: `${input.id}-error` }));
-  return box;
+  return make("div", { className: kind === "lines" ? "field long" : "field" }, label, input, make("small", { id: `${input.id}-error` }));
 }
 function formTexts() {
   if (!inputs.width) return null;
-  return Object.fromEntries(ALL.map((name) => [name, name === "round" ? inputs[name].checked : inputs[name].value]));
+  return Object.fromEntries(ALL.map(({ name, kind }) => [name, kind === "flag" ? inputs[name].checked : inputs[name].value]));
 }
 const whyOf = ({ id, values }) => say(texts[`${id}_refused`] ? `${id}_refused` : id, values);
 function complain(refusal) {
-  for (const name of ALL) {
+  for (const { name } of ALL) {
     const wrong = refusal?.field === name;
     inputs[name].setAttribute("aria-invalid", String(wrong));
     const { id, values } = refusal ?? {};
@@ -232,14 +225,12 @@ function progress(done, all) {
 let shown = null;
 function show(answer) {
   shown = answer;
-  const { run: { request, since }, found } = answer, said = saidOf(request, found, answer);
+  const { run: { since }, found } = answer, said = saidOf(found, answer);
   find("answer").classList.remove("stale");
   find("headline").textContent = find("bar").textContent = said.headline;
   find("screen").textContent = said.screen;
   find("lines").replaceChildren(...linesAs(said));
   if (answer.last) find("done").textContent = say("ready");
-  find("note").hidden = !request.place.computed;
-  find("note").textContent = say("computed_floor");
   const stage = answer.last ? "complete" : found.complete ? "interval" : "first", { dataset } = document.body;
   if (stage !== dataset.stage) dataset[stage] = String(performance.now() - since);
   dataset.stage = stage;
@@ -248,8 +239,8 @@ function show(answer) {
   if (!answer.early && scene.of !== answer.run) scene.drawn = draw(answer);
 }
 // the first screen and what stands behind it in words; of an answer that is not complete what is known of it
-function saidOf(request, found, { last = true, early = false } = {}) {
-  const { first: [likely, ...others], details } = wording.of(request, found), hidden = [...(last ? [] : ["title_helps"]), ...(early ? ["title_years"] : [])];
+function saidOf(found, { last = true, early = false } = {}) {
+  const { first: [likely, ...others], details } = found.said, hidden = [...(last ? [] : ["title_helps"]), ...(early ? ["title_years"] : [])];
   const lines = details.filter(([{ id }]) => !hidden.includes(id)).map(([title, said]) => [speak.sentence(title), speak.paragraph(said)]);
   return { headline: speak.sentence(likely).replace(/\.$/, ""), screen: speak.paragraph(others), lines };
 }
@@ -258,8 +249,8 @@ function linesAs({ lines }) {
 }
 // what was typed, in a line
 function typedIn(form) {
-  const plain = ALL.filter((name) => (form[name] === true || form[name]?.trim?.()) && !["measure", "material", "hazard", "level"].includes(name));
-  const typed = plain.map((name) => (form[name] === true ? say(name) : `${say(name)}: ${form[name]}`));
+  const plain = ALL.filter(({ name, kind }) => (form[name] === true || form[name]?.trim?.()) && !["choice", "lines"].includes(kind) && name !== "level");
+  const typed = plain.map(({ name }) => (form[name] === true ? say(name) : `${say(name)}: ${form[name]}`));
   if (form.level.trim()) typed.push(`${form.measure}: ${form.level}`);
   if (form.hazard.trim()) typed.push(say("curve_of", { measure: form.measure, count: form.hazard.trim().split("\n").length }));
   return typed.join("; ") + ".";
@@ -298,8 +289,8 @@ function slide() {
   choice.closest("div").hidden = !shown.run.request.pedestal;
   other = null;
   if (!(width || cg || ballast || putty || fixed !== "not_fixed")) return compare(found, null);
-  const { request } = current, statue = bodies.changed(request.statue, { wider: 1 + width, lower: 1 - cg, ballast });
-  other = { id: ++number, request: { ...request, statue, fixed, putty }, since: performance.now() };
+  const changes = { wider: 1 + width, lower: 1 - cg, ballast };
+  other = { id: ++number, request: { ...current.request, changes, fixed, putty }, since: performance.now() };
   shakeChanged(other, found);
 }
 // the object with a change under all motions, and the answer's own numbers of it
@@ -324,7 +315,7 @@ function compare({ fraction, probability }, after) {
 // ---- the object under the motion that decides
 
 const scene = { of: null, response: null, timer: 0, at: 0 };
-let kernel = null;
+let kernel = null, building = null;
 async function draw(told) {
   const { run: of, found: { deciding } } = told;
   scene.of = of;
@@ -336,13 +327,14 @@ async function draw(told) {
   canvasOf(of.request.solid);
   if (of.request.solid) {
     inSpaceScene ??= sceneInSpace(data, find("scene"), () => paint());
-    const response = await inSpaceScene.respond(of.request, deciding, async (m) => (await ask(null, { kind: "motion", motion: m })).told, () => unpacked(data.modules.space));
+    const response = await inSpaceScene.respond(of.request, deciding, async (m) => (await ask(null, { kind: "motion", motion: m })).told, (name) => unpacked(data.modules[name]));
     if (scene.of !== of) return;
     Object.assign(scene, { response, statue, pedestal, dt: response.dt });
     describe(deciding, measure);
     scene.at = response.most;
     return paint();
   }
+  if (!place.ground) building ??= floors(data, await rockfragCore(await unpacked(data.modules.core)));
   const ground = place.ground ? motion : building.floorMotion(place.floors[""], motion);
   const body = kernel.bodyOf({ statue, pedestal, restitution: pedestal && restitution !== null ? [restitution, restitution] : restitution });
   const scale = deciding.level / data.measures[measure].values[deciding.motion];
@@ -467,8 +459,9 @@ function drawKept() {
   }));
 }
 const headings = () => ["rank", "name", "topples_column", "risk_column", "page_to_do"].map((id) => make("th", { scope: "col", textContent: say(id) }));
+const calledOf = ({ name }) => (name === data.texts.en.the_object ? say("the_object") : name);
 function rowOf({ told: { run: { request }, found } }, i) {
-  const { first } = wording.of(request, found), cells = [i + 1, speak.sentence(wording.called(request)), percent(found.fraction.value), percent(found.probability?.value), speak.sentence(first.at(-1))];
+  const { first } = found.said, cells = [i + 1, speak.sentence(calledOf(request)), percent(found.fraction.value), percent(found.probability?.value), speak.sentence(first.at(-1))];
   return make("tr", {}, ...cells.map((text) => make("td", { textContent: text })));
 }
 async function keep() {
@@ -485,9 +478,9 @@ function stillOf(run) {
   return { statue, pedestal, words, title, at: 0, response: { theta1: [theta1[at]], theta2: [theta2[at]] } };
 }
 function fillForm(values) {
-  for (const name of ALL) {
-    if (name === "round") inputs[name].checked = values[name] === true || values[name] === "true";
-    else inputs[name].value = values[name] ?? (OPTIONS[name]?.[0] ?? "");
+  for (const { name, kind, options } of ALL) {
+    if (kind === "flag") inputs[name].checked = values[name] === true || values[name] === "true";
+    else inputs[name].value = values[name] ?? options[0] ?? "";
   }
   update();
 }
@@ -531,8 +524,8 @@ function answered(form) {
 function drawSheets() {
   const items = kept.length ? kept : shown ? [{ form: shown.run.form, told: shown, scene: stillOf(shown.run) }] : [];
   find("sheets").replaceChildren(...(kept.length > 1 ? [rankedSheet()] : []));
-  for (const { form, told: { run: { request }, found }, scene: still } of items) {
-    const said = saidOf(request, found), canvas = make("canvas", { width: 600, height: 300 });
+  for (const { form, told: { found }, scene: still } of items) {
+    const said = saidOf(found), canvas = make("canvas", { width: 600, height: 300 });
     const sheet = make("section", { className: "sheet" }, make("h2", { textContent: said.headline }), make("p", { textContent: said.screen }), make("p", { textContent: typedIn(form) }), make("dl", {}, ...linesAs(said)));
     if (!kept.length) sheet.append(...tried());
     find("sheets").append(sheet);
@@ -540,7 +533,6 @@ function drawSheets() {
       sheet.append(make("figure", {}, canvas, make("figcaption", { textContent: `${still.title()}: ${still.words()}` })));
       paint(still, canvas);
     }
-    if (request.place.computed) sheet.append(make("p", { className: "message", textContent: say("computed_floor") }));
     sheet.append(make("p", { className: "message", textContent: `${data.made ? say("made") + " " : ""}${say("no_substitute")} ${new Date().toISOString().slice(0, 10)}` }));
   }
 }

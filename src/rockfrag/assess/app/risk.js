@@ -1,8 +1,8 @@
 /* What is estimated of outcomes, by calls of the core in turn; see rockfrag.assess.risk. */
 const risk = (data, core) => {
   "use strict";
-  const { zeros, put, call, within, constants: { FRACTION, RATE, LEVEL, CLASSES, BINS, MOST_LEVELS, MEMORY, STATE } } = core;
-  const { FLANK_Z, EC8_SLOPE, EC8_SLOPE_SD, LEAST_CHANCE, MEMBERS, FEW_MEMBERS } = data.constants;
+  const { zeros, put, call, within, constants: { FRACTION, RATE, LEVEL, CLASSES, BINS, MOST_LEVELS, MEMORY, STATE, ACTION, OTHERWISE, FIRST } } = core;
+  const { FLANK_Z, EC8_SLOPE, EC8_SLOPE_SD, MEMBERS, FEW_MEMBERS } = data.constants;
   const bytes = (text) => Uint8Array.from(atob(text), (c) => c.charCodeAt(0)), numbers = (text) => new Float64Array(bytes(text).buffer);
   const { columns } = data.draws, normals = put(numbers(data.draws.normals), [data.draws.size, columns]), bins = bytes(data.draws.bins);
   const fewNormals = put(normals.values.slice(0, (data.draws.size / MEMBERS) * FEW_MEMBERS * columns), [(data.draws.size / MEMBERS) * FEW_MEMBERS, columns]);
@@ -124,7 +124,7 @@ const risk = (data, core) => {
     call("fill_counts", at.levels, at.overturned, at.allowed, at.uplifts, at.quakes, zeros([3, at.rows.length]), ...counts);
     const overturned = zeros(tables), rocked = zeros(tables);
     call("fill_fractions", ...counts, weights[count], own, put(shifts.flatMap(([, lifts, topples]) => [lifts, topples]), [shifts.length, 2]), overturned, rocked);
-    return { levels: at.levels, overturned, rocked, normals: own, names: shifts.map(([name]) => name) };
+    return { levels: at.levels, overturned, rocked, normals: own, count, names: shifts.map(([name]) => name) };
   }
   function drawn(target, prediction, rates) {
     const table = prediction[target.state], values = zeros([table.shape[0]]);
@@ -137,43 +137,57 @@ const risk = (data, core) => {
     return { values, middle };
   }
   const rowsOf = (names) => put(bins.slice(0, names.length * data.draws.size), [names.length, data.draws.size]);
-  const all = new Set(data.earthquakes), groups = all.size;
   const estimate = (target, prediction, rates) => within(() => {
-    const { values, middle } = drawn(target, prediction, rates), { names, levels } = prediction, memory = () => zeros(values.shape);
+    const { values, middle } = drawn(target, prediction, rates), { names, levels, count } = prediction, memory = () => zeros(values.shape);
     const found = zeros([4 + names.length]);
-    call("fill_estimate", BigInt(target.kind), target.years, middle, levels.values.at(-1), values, memory(), memory(), rowsOf(names), BigInt(sets), found);
-    const [value, ...limits] = found.values, [lower, upper] = groups < 2 && target.kind !== LEVEL ? [0, 1] : limits;
-    const parts = ["motions", ...names].map((name, i) => [name, limits[2 + i]]);
-    return { value, lower, upper, sources: parts.some(([, part]) => part > 0) ? Object.fromEntries(parts) : {} };
+    call("fill_estimate", BigInt(target.kind), target.years, middle, levels.values.at(-1), values, memory(), memory(), rowsOf(names), BigInt(sets), BigInt(count), found);
+    const [value, lower, upper, ...parts] = found.values, named = ["motions", ...names].map((name, i) => [name, parts[i]]);
+    return { value, lower, upper, sources: parts.some((part) => part > 0) ? Object.fromEntries(named) : {} };
   });
   // what to do: leave it, secure it, or measure first what would turn that round with a chance, the cheapest first
   const decision = (target, prediction, rates, accepted) => within(() => {
-    const { values, middle } = drawn(target, prediction, rates), { names } = prediction, found = zeros([2]), means = zeros([BINS]);
-    const limit = target.kind === RATE ? call("rate_of", accepted, target.years) : accepted, otherwise = middle > limit ? "secure" : "leave";
-    const measurements = data.measurements.filter(([source]) => names.includes(source)).map(([source, left]) => {
-      const { size } = data.draws, first = names.indexOf(source) * size;
-      call("fill_turned", values, put(bins.slice(first, first + size)), left, middle, limit, means, found);
-      return { source, chance: found.values[0] };
-    });
-    const first = measurements.find(({ chance }) => chance >= LEAST_CHANCE);
-    return { otherwise, measurements, ...(first ? { action: "measure", ...first } : { action: otherwise, source: "", chance: 0 }) };
+    const { values, middle } = drawn(target, prediction, rates), { names } = prediction, found = zeros([3]);
+    const limit = target.kind === RATE ? call("rate_of", accepted, target.years) : accepted;
+    const known = data.measurements.filter(([source]) => names.includes(source)), turned = zeros([known.length, 2]);
+    const places = put(BigInt64Array.from(known, ([source]) => BigInt(names.indexOf(source))));
+    call("fill_decision", values, rowsOf(names), places, put(known.map(([, left]) => left)), middle, limit, zeros([BINS]), turned, found);
+    const measurements = known.map(([source], i) => ({ source, chance: turned.values[2 * i] })), { values: codes } = found;
+    return { action: codes[ACTION], otherwise: codes[OTHERWISE], measurements, ...measurements[codes[FIRST]] };
+  });
+  const countsAt = ({ levels, allowed, rocked, overturned, motions }, level) => within(() => {
+    const table = (values) => put(values, [values.length / levels.length, levels.length]), found = zeros([3]);
+    call("fill_counts_at", put(levels), level, ...[allowed, rocked, overturned].map(table), found);
+    return found.values[0] ? [...found.values] : null;
+  });
+  const ordered = (items, first, second, falling) => within(() => {
+    const order = zeros([items.length], BigInt64Array);
+    call("fill_order", put(items.map(first)), put(items.map(second)), falling ? 1 : 0, order);
+    return [...order.values].map((place) => items[Number(place)]);
+  });
+  // sources with their parts in the variance of an interval, the largest first; none where there are none
+  const partsOf = (sources) => within(() => {
+    const deviations = put(Object.values(sources)), parts = zeros(deviations.shape);
+    call("fill_parts", deviations, parts);
+    const each = Object.keys(sources).map((name, i) => [name, parts.values[i]]);
+    return ordered(each, ([name]) => -sources[name], ([, part]) => part).filter(() => parts.values.some(Boolean));
   });
   const meanOf = (target, shifts, rates, outcomes) => within(() => shown(target, drawn(target, predict(outcomes, shifts), rates).middle));
+  const earthquakes = new Set(data.earthquakes).size;
   // what changes do with the same errors, with limits of the factor over the earthquakes
   function compared(target, shifts, rates, now) {
     const with_ = (outcomes) => shownOf(target, drawn(target, predict(outcomes, shifts, true), rates).values);
     const today = within(() => with_(now).values.slice());
     return (changed) => within(() => {
-      const before = put(today), after = with_(changed), found = zeros([5]);
-      call("fill_comparison", BigInt(target.kind), before, after, BigInt(sets), zeros([3, before.shape[0]]), found);
-      const [was, value, factor, lower, upper] = found.values;
-      return { value, factor, lower, upper, helps: value < was, shown: upper < 1 };
+      const before = put(today), after = with_(changed), found = zeros([7]);
+      call("fill_comparison", BigInt(target.kind), before, after, BigInt(sets), BigInt(earthquakes), zeros([2, before.shape[0]]), found);
+      const [, value, factor, lower, upper, helps, shown] = found.values;
+      return { value, factor, lower, upper, helps: Boolean(helps), shown: Boolean(shown) };
     });
   }
 
   return {
     fractions, curveOf, curveOfOneLevel, levelOf, riskTarget, fractionTarget, amplitudeTarget, valueOf, liftsFrom, estimate, meanOf,
-    shiftOf, velocityOf, afterUplift, predict, decision, ofQuantiles, compared, groups, within,
+    shiftOf, velocityOf, afterUplift, predict, decision, ofQuantiles, compared, countsAt, ordered, partsOf, within,
   };
 };
 if (typeof module !== "undefined") module.exports = risk;

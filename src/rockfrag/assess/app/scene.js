@@ -1,11 +1,16 @@
 /* The object rocking in space under the record that decides: its history by the module, its view by view.js. */
 const sceneInSpace = (data, canvas, redraw) => {
   "use strict";
-  const spatial = inSpace(data), view = rockfragView(canvas, redraw);
-  let space = null;
+  const view = rockfragView(canvas, redraw);
+  let space = null, spatial = null, building = null;
   // the response under a record on a floor; `motionOf` gives a motion, `bytes` the module
   async function respond({ statue, pedestal, solid, measure, place }, { motion, level }, motionOf, bytes) {
-    space ??= await rockfragSpace(await bytes());
+    space ??= await rockfragSpace(await bytes("space"));
+    if (!spatial) {
+      const core = await rockfragCore(await bytes("core"));
+      spatial = inSpace(data, core);
+      building = floors(data, core);
+    }
     const record = spatial.recordOf[motion], shaken = new Map();
     for (const m of [record.first, record.second]) {
       if (m === null) continue;

@@ -1,24 +1,34 @@
 /* Bodies in space: what of a request moves so, and its outcomes, as rockfrag.assess.objects and .outcomes have them. */
-const inSpace = (data) => {
+const inSpace = (data, core) => {
   "use strict";
-  const { both, constants: { GRAVITY } } = data;
+  const { both } = data;
   const recordOf = data.earthquakes.map((_, m) => both.records.find(({ first, second }) => m === first || m === second) ?? { first: m, second: null });
   const inFewer = new Uint8Array(data.earthquakes.length);
   for (const m of both.fewer) inFewer[m] = 1;
-  const inertiaOf = (block) => block.inertia ?? (block.mass * (block.width * block.width + block.height * block.height)) / 12;
 
-  // ---- bodies
+  // ---- bodies, as rows of the core
+
+  const rowOf = ({ width, height, mass, inertia, cgHeight, cgOffset, depth }) => core.put([width, height, mass, inertia ?? NaN, cgHeight ?? NaN, cgOffset ?? 0, depth ?? NaN]);
+  const known = (value) => (Number.isNaN(value) ? null : value);
+  // a block as a function of the core changes it
+  const change = (name, block, ...given) => core.within(() => {
+    const found = core.zeros([7]);
+    core.call(name, rowOf(block), ...given, found);
+    const [width, height, mass, inertia, cgHeight, cgOffset, depth] = [...found.values].map(known);
+    return { width, height, mass, inertia, cgHeight, cgOffset, depth };
+  });
+  const told = (name, ...blocks) => Boolean(core.within(() => core.choose(name, ...blocks.map(rowOf))));
 
   // a block as it moves in space, of an object (its own sizes); null where that is not known
   function solidOf(top, own, { round, facing }) {
-    const whole = top.height > own.height * both.higher, across = inertiaOf(top);
-    const { width, height, mass, cgHeight, cgOffset } = top;
-    if (round) return whole ? null : rockfragSolid({ width, height, mass, cgHeight, cgOffset, round, inertia: [across, across, (mass * width * width) / 8] });
-    const aside = (own.mass * (own.depth * own.depth - own.width * own.width)) / 12;
-    let along = (own.mass * (own.width * own.width + own.depth * own.depth)) / 12;
-    if (whole) along += ((mass - own.mass) * width * width) / 6;
-    const depth = whole ? Math.max(own.depth, width) : own.depth, turned = ((facing % 360) + 360) % 360;
-    return rockfragSolid({ width, depth, height, mass, cgHeight, cgOffset, inertia: [across + aside, across, along], turn: turned ? facing * (Math.PI / 180) : 0 });
+    if (round && told("is_whole", top, own)) return null;
+    const { width, height, mass, cgHeight, cgOffset } = top, moments = core.within(() => {
+      const found = core.zeros([4]);
+      core.call(...(round ? ["tell_round", rowOf(top)] : ["tell_box", rowOf(top), rowOf(own)]), found);
+      return [...found.values];
+    });
+    const [depth] = moments.splice(3), solid = { width, height, mass, cgHeight, cgOffset, inertia: moments };
+    return rockfragSolid(round ? { ...solid, round } : { ...solid, depth, turn: facing % 360 ? facing * (Math.PI / 180) : 0 });
   }
 
   // what is shaken in a plane, with what moves in space beside it
@@ -49,59 +59,50 @@ const inSpace = (data) => {
     if (!times) return motion;
     const { begin, skip, count, dt } = times, { samples } = motion;
     if (skip !== null) return { samples: samples.subarray(skip, skip + count), dt };
-    const found = new Float64Array(count), last = samples.length - 1, at = (j) => j * motion.dt;
-    for (let i = 0, j = 0; i < count; i++) {
-      const x = begin + i * dt;
-      while (j < last && at(j + 1) <= x) j++;
-      found[i] = j >= last ? samples[last] : ((samples[j + 1] - samples[j]) / (at(j + 1) - at(j))) * (x - at(j)) + samples[j];
-    }
-    return { samples: found, dt };
+    return { dt, samples: core.within(() => {
+      const found = core.zeros([count]);
+      core.call("fill_between", core.put(samples), motion.dt, begin, dt, found);
+      return found.values.slice();
+    }) };
   }
   const pairOf = (record, shaken) => (record.second === null ? [shaken(record.first), null]
     : [record.first, record.second].map((m, k) => common(shaken(m), record.times[k])));
-  function turned([one, other], [c, s]) {
-    return { dt: one.dt, samples: one.samples.map((a, i) => a * c + other.samples[i] * s) };
-  }
+  const turned = ([one, other], [cosine, sine]) => ({ dt: one.dt, samples: core.within(() => {
+    const found = core.zeros([one.samples.length]);
+    core.call("fill_direction", core.put(one.samples), core.put(other.samples), cosine, sine, found);
+    return found.values.slice();
+  }) });
 
   // ---- statics: the factor on a motion from which it lifts an object
 
-  const liftingInPlane = (body, { samples }) => (body.uplift * GRAVITY) / samples.reduce((peak, a) => Math.max(peak, Math.abs(a)), 0);
-  const length = (x, y) => Math.sqrt(x * x + y * y);
+  const peakOf = ({ samples }) => core.within(() => core.call("peak_of", core.put(samples)));
+  const liftingInPlane = ({ uplift }, { peak }) => core.call("lifting_in_plane", uplift, peak);
   // over an edge or a rim, by both components
-  function liftingInSpace({ points, height, rim, centre }, [one, other]) {
-    let most = 0;
-    if (rim) {
-      const least = (GRAVITY * (rim - length(...centre))) / height;
-      one.samples.forEach((a, i) => { most = Math.max(most, length(a, other ? other.samples[i] : 0)); });
-      return least / most;
-    }
-    const edges = points.map(([x, y], i) => {
-      const [toX, toY] = points[(i + 1) % points.length], [dx, dy] = [toX - x, toY - y], side = length(dx, dy), normal = [dy / side, -dx / side];
-      const least = (GRAVITY * (normal[0] * x + normal[1] * y)) / height;
-      return [normal[0] / least, normal[1] / least];
-    });
-    one.samples.forEach((a, i) => { for (const [x, y] of edges) most = Math.max(most, -(x * a + y * (other ? other.samples[i] : 0))); });
-    return 1 / most;
-  }
+  const liftingInSpace = ({ points, height, rim, centre }, [one, other]) => core.within(() => {
+    const shaken = [core.put(one.samples), other ? core.put(other.samples) : core.zeros([one.samples.length])];
+    if (rim) return core.call("lifting_over_rim", rim, ...centre, height, ...shaken);
+    return core.call("lifting_over_edges", core.put(points.flat(), [points.length, 2]), height, ...shaken);
+  });
 
   // ---- outcomes
 
-  // a worker's part: outcomes of a run under motions first to last - 1; `shaken` gives a motion on the run's floor, and
-  // `scalesOf` levels, factors on motions and which are allowed
+  // a worker's part: outcomes of a run under motions first to last - 1; `shaken` gives a motion on the run's floor,
+  // `scalesOf` levels, factors to them and which are allowed, and `factorsOf` those on what shakes
   function counter(ensemble, space) {
-    return function count(run, first, last, shaken, scalesOf) {
+    return function count(run, first, last, shaken, { scalesOf, factorsOf }) {
       const kept = Array.from({ length: last - first }, (_, i) => first + i).filter((m) => !run.fewer || inFewer[m]);
-      const { levels, allowed, scales } = scalesOf(kept), each = levels.length;
+      const all = scalesOf(kept), { levels, allowed } = all, each = levels.length;
       const found = Object.fromEntries(["overturned", "rocked", "allowed"].map((name) => [name, new Uint8Array((last - first) * each)]));
       found.lifting = new Float64Array(last - first).fill(Infinity);
       const lift = (m, factor) => { found.lifting[m - first] = Math.min(found.lifting[m - first], factor); };
       const put = (name, m, values) => values.forEach((value, k) => { found[name][(m - first) * each + k] |= value; });
       kept.forEach((m, i) => put("allowed", m, allowed.subarray(i * each, (i + 1) * each)));
       if (!kept.length) return found;
+      const planarIn = (sides, stands, own) => planarOutcomes(run.body, sides, own, stands, factorsOf);
       const note = (m, told, i) => { for (const name of ["overturned", "rocked"]) put(name, m, told[name].subarray(i * each, (i + 1) * each)); };
       const planar = !run.solid || run.body.pedestal;
       if (planar && !run.worst) {
-        const body = ensemble.bodyOf(run.body), shaking = kept.map(shaken), told = ensemble.count(body, shaking, scales);
+        const body = ensemble.bodyOf(run.body), shaking = kept.map(shaken), told = ensemble.count(body, shaking, factorsOf(all, shaking));
         kept.forEach((m, i) => { note(m, told, i); lift(m, liftingInPlane(body, shaking[i])); });
       }
       if (run.solid || run.worst) for (const record of new Set(kept.map((m) => recordOf[m]))) {
@@ -109,15 +110,15 @@ const inSpace = (data) => {
         // what has fallen in one answer needs no other
         const stands = () => levels.map((_, k) => places.some((m) => !found.overturned[(m - first) * each + k]));
         const add = (told) => { for (const m of places) note(m, told, 0); };
-        const sides = planar && run.worst ? sidesOf(record, shaken) : [], across = sides.length / 2;
+        const sides = planar && run.worst ? sidesOf(record, shaken).map((side) => ({ ...side, peak: peakOf(side) })) : [], across = sides.length / 2;
         const some = sides.filter((_, i) => i % across === 0);
-        if (some.length) add(planarOutcomes(run.body, some, own, stands()));
+        if (some.length) add(planarIn(some, stands(), own));
         for (const m of places) {
           for (const side of sides) lift(m, liftingInPlane(ensemble.bodyOf(run.body), side));
           if (run.solid) lift(m, liftingInSpace(space.bodyOf(run.solid), pairOf(record, shaken)));
         }
-        if (run.solid) add(solidOutcomes(run.solid, record, shaken, own.scales, stands()));
-        if (sides.length > some.length) add(planarOutcomes(run.body, sides.filter((_, i) => i % across), own, stands()));
+        if (run.solid) add(solidOutcomes(run.solid, record, shaken, factorsOf(own, [shaken(record.first)]), stands()));
+        if (sides.length > some.length) add(planarIn(sides.filter((_, i) => i % across), stands(), own));
       }
       return found;
     };
@@ -132,15 +133,16 @@ const inSpace = (data) => {
       return pair[1] ? both.turns.map((turn) => turned(pair, turn)) : [pair[0]];
     }
     // in the worst of some directions: what happens from one side happens
-    function planarOutcomes(body, sides, { levels, allowed, factors }, stands) {
-      const scales = new Float64Array(sides.length * levels.length);
-      sides.forEach(({ samples }, i) => levels.forEach((_, k) => { scales[i * levels.length + k] = factors(k, allowed[k] && stands[k], samples); }));
+    function planarOutcomes(body, sides, { levels, scales: row, allowed }, stands, factorsOf) {
+      const every = (values) => values.constructor.from({ length: sides.length * levels.length }, (_, i) => values[i % levels.length]);
+      const counts = every(Uint8Array.from(allowed, (may, k) => (may && stands[k] ? 1 : 0)));
+      const scales = factorsOf({ levels, scales: every(row), allowed: counts }, sides);
       const told = ensemble.count(ensemble.bodyOf(body), sides, scales), joined = {};
       for (const name of ["overturned", "rocked"])
         joined[name] = Uint8Array.from(levels, (_, k) => Math.max(...sides.map((_, i) => told[name][i * levels.length + k])));
       return joined;
     }
   }
-  return { planOf, counter, pairOf, recordOf, solidOf, fewer: both.fewer };
+  return { planOf, counter, pairOf, recordOf, solidOf, change, told, rowOf, peakOf, fewer: both.fewer };
 };
 if (typeof module !== "undefined") module.exports = inSpace;

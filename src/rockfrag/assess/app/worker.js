@@ -5,9 +5,9 @@ async function begin({ data, modules, samples }) {
   const fused = await unpacked(modules.fused);
   let ensemble = WebAssembly.validate(fused) ? await rockfragEnsemble(fused) : null;
   if (!ensemble?.roundsOnce()) ensemble = await rockfragEnsemble(await unpacked(modules.plain));
-  const motions = decoded(data, await unpacked(samples));
-  const made = answer(data, await rockfragCore(await unpacked(modules.core)));
-  tools = { ensemble, made, motions, bodies: objects(data), count: made.counter(ensemble, motions, await rockfragSpace(await unpacked(modules.space))), plans: new Map() };
+  const motions = decoded(data, await unpacked(samples)), core = await rockfragCore(await unpacked(modules.core));
+  const made = answer(data, core), form = objects(data);
+  tools = { ensemble, made, motions, form, bodies: plans(data, core, form.refuse), count: made.counter(ensemble, motions, await rockfragSpace(await unpacked(modules.space))), plans: new Map() };
 }
 // samples are decimals: whole numbers over powers of ten, times the factor of their unit; bytes of equal rank together
 function decoded({ samples: { counts, dts, factor, decimal } }, bytes) {

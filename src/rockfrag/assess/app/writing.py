@@ -88,7 +88,7 @@ def page_of(
         "packed": base64_text(packed),
     }
     style = TEMPLATES.get_template("style.css").render() + script("app.css")
-    parts = ("building", "space", "objects", "findings", "lists", "scene", "page")
+    parts = ("core", "floors", "space", "objects", "lists", "scene", "page")
     scripts = [driver_text("integrate", "space"), scripts_of("view"), formatter()]
     scripts += [script(f"{name}.js") for name in parts]
     return TEMPLATES.from_string(script("app.html.j2")).render(
@@ -101,45 +101,58 @@ def page_of(
 
 
 def packed_samples(motions: Sequence[Motion]) -> tuple[bytes, dict[str, Any]]:
-    """Return the samples of motions, packed, and what a page needs to get every bit of them again.
+    """Pack the samples of motions, so that a page gets every bit of them again.
 
-    Of records, decimals of few digits, they are whole numbers over powers of ten times the factor of the unit.
+    Records state decimals of few digits: these are packed as whole numbers (four bytes each) and, behind all of
+    them, the powers of ten (a byte each) by which they are divided before the factor of the unit multiplies them.
+    Where no unit makes them so they are packed as they are.
+
+    Parameters
+    ----------
+    motions : accelerations [m/s²]
+
+    Returns
+    -------
+    The packed bytes, and what a script needs to unpack them: ``counts`` and ``dts`` by motion, ``factor`` of the
+    unit, and whether they are ``decimal``.
     """
     samples = np.concatenate([motion.acceleration for motion in motions])
     about: dict[str, Any] = {
         "counts": [motion.acceleration.size for motion in motions],
         "dts": [motion.dt for motion in motions],
+        "factor": 1.0,
+        "decimal": False,
     }
     for factor in _FACTORS:
         whole, power = _decimals(samples, factor)
         if (power >= 0).all():
-            content = _by_rank(whole.astype("<i4")) + power.astype(np.uint8).tobytes()
-            return zlib.compress(content, 9), {
-                **about,
-                "factor": factor,
-                "decimal": True,
-            }
-    content = _by_rank(samples.astype("<f8"))
-    return zlib.compress(content, 9), {**about, "factor": 1.0, "decimal": False}
+            content = _bytes_by_rank(whole.astype("<i4"))
+            content += power.astype(np.uint8).tobytes()
+            about |= {"factor": factor, "decimal": True}
+            return zlib.compress(content, 9), about
+    return zlib.compress(_bytes_by_rank(samples.astype("<f8")), 9), about
 
 
-def _by_rank(values: np.ndarray) -> bytes:
-    """Bytes of equal rank together, which pack better."""
+def _bytes_by_rank(values: np.ndarray) -> bytes:
+    """Bytes of numbers, the first of all, then the second of all, and so on: these pack better."""
     return values.view(np.uint8).reshape(values.size, -1).T.tobytes()
 
 
 def _decimals(samples: np.ndarray, factor: float) -> tuple[np.ndarray, np.ndarray]:
-    """Whole numbers and powers of ten that give each sample to the bit; power -1 where none of few digits do."""
+    """Whole numbers and powers of ten that give each sample to the bit; power -1 where none of few digits do.
+
+    The fewest digits are taken: sample = number / 10^power × factor, computed in this order.
+    """
     plain = samples / factor
+    # power of ten of the first digit
     size = np.floor(np.log10(np.abs(plain), out=np.zeros(plain.size), where=plain != 0))
     whole, power = np.zeros(plain.size), np.full(plain.size, -1.0)
     for digits in range(1, _MOST_DIGITS + 1):
+        # powers of ten up to 22 are exact numbers
         tried = np.clip(digits - 1 - size, 0, 22)
         number = np.round(plain * 10.0**tried)
-        hit = (
-            (power < 0)
-            & (number / 10.0**tried * factor == samples)
-            & (np.abs(number) < 2**31)
-        )
-        whole[hit], power[hit] = number[hit], tried[hit]
+        is_same = number / 10.0**tried * factor == samples
+        fits = np.abs(number) < 2**31
+        found = (power < 0) & is_same & fits
+        whole[found], power[found] = number[found], tried[found]
     return whole, power

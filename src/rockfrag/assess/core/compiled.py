@@ -13,13 +13,15 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from rockfrag.base import exponentials
-from rockfrag.engines.compile.jit import KNOWN, kernel, share_with_kernels
+from rockfrag.assess.core import bodies, choices
+from rockfrag.base import directions, exponentials
+from rockfrag.engines.compile.jit import KNOWN, compile_for_kernels, kernel
 from rockfrag.runtime.machine_code import cached_njit
 
 __all__ = ["entry_kernel", "kernel"]
 
-share_with_kernels(exponentials)
+for _module in (exponentials, directions, choices, bodies):
+    compile_for_kernels(_module)
 
 
 @cache
@@ -27,7 +29,7 @@ def _digest() -> str:
     """Digest of all sources of the core."""
     digest = hashlib.sha256()
     own = sorted(Path(__file__).parent.glob("*.py"))
-    for path in [*own, Path(exponentials.__file__)]:
+    for path in [*own, Path(exponentials.__file__), Path(directions.__file__)]:
         digest.update(path.read_bytes())
     return digest.hexdigest()
 

@@ -10,17 +10,22 @@ from enum import Enum
 
 import numpy as np
 
-from rockfrag.assess.core.estimates import BINS, fill_turned
+from rockfrag.assess.core.estimates import (
+    ACTION,
+    BINS,
+    FIRST,
+    LEAST_CHANCE,
+    OTHERWISE,
+    fill_decision,
+)
 from rockfrag.assess.core.prediction import Prediction
 from rockfrag.base.arrays import Floats
 
-LEAST_CHANCE = (
-    0.2  # With which a measurement must turn the decision round to be named [-]
-)
+__all__ = ["LEAST_CHANCE", "Action", "Decision", "Measurement", "decide"]
 
 
 class Action(Enum):
-    """What to do with an object."""
+    """What to do with an object, in the order of the core's numbers."""
 
     LEAVE = "leave"
     SECURE = "secure"
@@ -84,16 +89,18 @@ def decide(
     -------
     The decision; to measure is named where that would turn it round with a chance of ``LEAST_CHANCE``.
     """
-    tried = []
-    for source, rest in left.items():
-        if source not in prediction.sources:
-            continue
-        found, means = np.zeros(2), np.zeros(BINS)
-        bins = prediction.draws.bins[prediction.sources.index(source)]
-        fill_turned(values, bins, float(rest), mean, accepted, means, found)
-        tried.append(Measurement(source, *found.tolist()))
-    first = next((each for each in tried if each.chance >= LEAST_CHANCE), None)
-    otherwise = Action.SECURE if mean > accepted else Action.LEAVE
-    if first is None:
-        return Decision(otherwise, otherwise, measurements=tuple(tried))
-    return Decision(Action.MEASURE, otherwise, first.source, first.chance, tuple(tried))
+    known = [name for name in left if name in prediction.sources]
+    places = np.array(
+        [prediction.sources.index(name) for name in known], dtype=np.int64
+    )
+    rest = np.array([left[name] for name in known], dtype=np.float64)
+    turned, found = np.zeros((len(known), 2)), np.zeros(3)
+    bins, means = prediction.draws.bins, np.zeros(BINS)
+    fill_decision(values, bins, places, rest, mean, accepted, means, turned, found)
+    tried = tuple(map(Measurement, known, *turned.T.tolist()))
+    actions = tuple(Action)
+    action, otherwise = actions[int(found[ACTION])], actions[int(found[OTHERWISE])]
+    if action is not Action.MEASURE:
+        return Decision(action, otherwise, measurements=tried)
+    first = tried[int(found[FIRST])]
+    return Decision(action, otherwise, first.source, first.chance, tried)

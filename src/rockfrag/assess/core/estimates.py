@@ -15,6 +15,7 @@ import math
 import numpy as np
 from scipy import special
 
+from rockfrag.assess.core.choices import LEAVE, MEASURE, SECURE, are_few
 from rockfrag.assess.core.compiled import entry_kernel, kernel
 from rockfrag.assess.core.ordering import mean, quantile, sort, variance
 from rockfrag.base.exponentials import exp, expm1, log, log1p
@@ -112,8 +113,8 @@ def fill_shown(kind, years, values, shown):
 
 @entry_kernel
 def fill_estimate(
-    kind, years, middle, last_level, values, shown, work, bins, sets, found
-):
+    kind, years, middle, last_level, values, shown, work, bins, sets, earthquakes, found
+):  # fmt: skip
     """Estimate with an interval, and the standard deviation that each source gives it.
 
     Parameters
@@ -126,6 +127,7 @@ def fill_estimate(
     shown, work : what is shown of them, and working memory, shape (draws,) each
     bins : of each draw by each source, shape (sources, draws)
     sets : sets of weights of the earthquakes; the draws of one follow each other
+    earthquakes : their number; one says nothing of others, and leaves every fraction possible
     found : number, limits, and standard deviations by the motions and by each source, shape (4 + sources,)
     """
     for d in range(values.size):
@@ -141,6 +143,8 @@ def fill_estimate(
     if kind == LEVEL:
         value = work[(values.size - 1) // 2]
     found[VALUE] = value
+    if earthquakes < 2 and kind != LEVEL:
+        lower, upper = 0.0, 1.0
     found[LOWER], found[UPPER] = min(lower, value), max(upper, value)
     _scale(kind, last_level, values, work)
     total = variance(work)
@@ -193,6 +197,7 @@ def _variance_of_bins(values, bins):
 
 @kernel
 def _mean_of_bin(values, bins, wanted):
+    """Mean of the values of the draws in one of the ``BINS`` bins of a source."""
     total = 0.0
     for d in range(values.size):
         if bins[d] == wanted:
@@ -210,8 +215,44 @@ def fill_sides(values, bins, found):
         found[side] = total / 3.0
 
 
+ACTION, OTHERWISE, FIRST = range(3)
+"""Places in what :func:`fill_decision` leaves: what to do, the same if nothing is measured, and the place of the
+measurement that comes first, -1 for none."""
+
+LEAST_CHANCE = 0.2
+"""With which a measurement must turn the decision round to be named [-]."""
+
+
 @entry_kernel
-def fill_turned(values, bins, left, middle, accepted, means, found):
+def fill_decision(
+    values, bins, sources, left, middle, accepted, means, turned, found
+):  # fmt: skip
+    """What to do: leave it, secure it, or measure first what may turn that round, the cheapest first.
+
+    Parameters
+    ----------
+    values : of each draw, shape (draws,)
+    bins : of each draw by each source, shape (sources, draws)
+    sources : places of the sources that can be measured, the cheapest first, shape (measurements,)
+    left : what measuring each leaves of its standard deviation [-], shape (measurements,)
+    middle : mean of the values, by which it is decided
+    accepted : largest mean with which it is left
+    means : memory, shape (``BINS``,)
+    turned : chance that each turns the decision round, and the mean where it does, shape (measurements, 2)
+    found : the decision, shape (3,)
+    """
+    found[OTHERWISE] = SECURE if middle > accepted else LEAVE
+    found[FIRST] = -1
+    for i in range(sources.size):
+        own = bins[sources[i]]
+        _fill_turned(values, own, left[i], middle, accepted, means, turned[i])
+        if found[FIRST] < 0 and turned[i, 0] >= LEAST_CHANCE:
+            found[FIRST] = i
+    found[ACTION] = MEASURE if found[FIRST] >= 0 else found[OTHERWISE]
+
+
+@kernel
+def _fill_turned(values, bins, left, middle, accepted, means, found):
     """Chance that measuring a source turns a decision round, and the mean where it does, shape (2,).
 
     ``left`` is what the measurement leaves of the source's standard deviation; what it says and what is left are
@@ -244,51 +285,121 @@ def _mean_once_said(means, left, said):
     return total / weights
 
 
-BEFORE, AFTER, FACTOR, LEAST, MOST = range(5)
-"""Places in what :func:`fill_comparison` leaves: both numbers, their ratio and its limits."""
+BEFORE, AFTER, FACTOR, LEAST, MOST, HELPS, SHOWN = range(7)
+"""Places in what :func:`fill_comparison` leaves: both numbers, their ratio and its limits, whether the change
+helps, and whether the motions show that it does, beyond what one earthquake decides."""
 
 
 @entry_kernel
-def fill_comparison(kind, before, after, sets, work, found):
-    """Compare shown numbers of the same draws without and with a change, shape (draws,) both.
+def fill_comparison(kind, before, after, sets, earthquakes, work, found):
+    """Compare shown numbers of the same draws without and with a change.
 
-    Limits of the factor are over the sets of weights of the earthquakes; NaN where there are none. Levels are
-    compared by their medians, all else by means. ``work`` has the shape (3, draws).
+    Parameters
+    ----------
+    kind
+        ``FRACTION``, ``RATE`` or ``LEVEL``; levels are compared by their medians and help by growing, all else by
+        means, and by shrinking
+    before, after : shown numbers, shape (draws,) each
+    sets : sets of weights of the earthquakes; the draws of one follow each other
+    earthquakes : their number; so few as give no verdict give no limits
+    work : working memory, shape (2, draws)
+    found
+        Filled, shape (7,): the numbers before and after, their ratio, the limits of it over the sets, whether the
+        change helps and is shown to. NaN is what is not known: the ratio of infinite numbers or to zero.
     """
-    for place in range(5):
+    _compare(kind, before, after, sets, work, found)
+    if are_few(earthquakes):
+        found[LEAST], found[MOST] = math.nan, math.nan
+    was, now = found[BEFORE], found[AFTER]
+    helps = now > was if kind == LEVEL else now < was
+    shown = found[LEAST] > 1.0 if kind == LEVEL else found[MOST] < 1.0
+    found[HELPS], found[SHOWN] = 1.0 if helps else 0.0, 1.0 if shown else 0.0
+
+
+@kernel
+def _compare(kind, before, after, sets, work, found):
+    """Both numbers, their ratio and its limits, NaN where there are none."""
+    for place in range(7):
         found[place] = math.nan
+    scratch = work[0]
+    found[BEFORE] = _centre(kind, before, scratch)
+    found[AFTER] = _centre(kind, after, scratch)
+    if not _have_ratio(found[BEFORE], found[AFTER]):
+        return
+    found[FACTOR] = found[AFTER] / found[BEFORE]
     members, count = before.size // sets, 0
-    for b in range(-1, sets):
-        # all draws first, then those of each set
-        first, end = (0, before.size) if b < 0 else (b * members, (b + 1) * members)
-        centres = found[BEFORE : AFTER + 1] if b < 0 else work[2, :2]
-        for side in range(2):
-            values = before if side == 0 else after
-            centres[side] = _centre(kind, values[first:end], work[0, : end - first])
-        if not (0.0 < centres[0] < math.inf and centres[1] < math.inf):
-            if b < 0:
-                return
-            continue
-        if b < 0:
-            found[FACTOR] = centres[1] / centres[0]
-        else:
-            work[1, count] = centres[1] / centres[0]
+    for b in range(sets):
+        first, end = b * members, (b + 1) * members
+        without = _centre(kind, before[first:end], scratch)
+        changed = _centre(kind, after[first:end], scratch)
+        if _have_ratio(without, changed):
+            work[1, count] = changed / without
             count += 1
     if count > 0:
         ratios = work[1, :count]
         sort(ratios)
-        found[LEAST] = quantile(ratios, count, (1.0 - INSIDE) / 2)
-        found[MOST] = quantile(ratios, count, (1.0 + INSIDE) / 2)
-        found[LEAST] = min(found[LEAST], found[FACTOR])
-        found[MOST] = max(found[MOST], found[FACTOR])
+        lower = quantile(ratios, count, (1.0 - INSIDE) / 2)
+        upper = quantile(ratios, count, (1.0 + INSIDE) / 2)
+        # the interval holds the factor of all draws
+        found[LEAST] = min(lower, found[FACTOR])
+        found[MOST] = max(upper, found[FACTOR])
+
+
+@kernel
+def _have_ratio(before, after):
+    """Whether the second number over the first is a finite one."""
+    return 0.0 < before < math.inf and after < math.inf
 
 
 @kernel
 def _centre(kind, values, work):
-    """Mean of values; of levels the median, the lower of two."""
+    """Mean of values; of levels the median, the lower of two. ``work`` is memory for at least as many numbers."""
     if kind != LEVEL:
         return mean(values)
+    ordered = work[: values.size]
     for i in range(values.size):
-        work[i] = values[i]
-    sort(work)
-    return work[(values.size - 1) // 2]
+        ordered[i] = values[i]
+    sort(ordered)
+    return ordered[(values.size - 1) // 2]
+
+
+# ---- what is said first
+
+
+@entry_kernel
+def fill_order(first, second, falling, order):
+    """Places by the first numbers, of equal ones by the second, of both equal as they come; NaN last, shape (n,).
+
+    ``falling`` turns all of it round.
+    """
+    for i in range(order.size):
+        place = i
+        while place > 0 and _comes_before(first, second, i, order[place - 1]):
+            order[place] = order[place - 1]
+            place -= 1
+        order[place] = i
+    if falling:
+        for i in range(order.size // 2):
+            other = order.size - 1 - i
+            order[i], order[other] = order[other], order[i]
+
+
+@kernel
+def _comes_before(first, second, i, j):
+    if math.isnan(first[i]) != math.isnan(first[j]):
+        return math.isnan(first[j])
+    if first[i] != first[j] and not math.isnan(first[i]):
+        return first[i] < first[j]
+    return second[i] < second[j]
+
+
+@entry_kernel
+def fill_parts(deviations, parts):
+    """Part of each source in the variance of an interval [-], shape (sources,); zeros where it has no bound."""
+    total = 0.0
+    for j in range(deviations.size):
+        total += deviations[j] * deviations[j]
+    for j in range(parts.size):
+        parts[j] = 0.0
+        if 0.0 < total < math.inf:
+            parts[j] = deviations[j] * deviations[j] / total

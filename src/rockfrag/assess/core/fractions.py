@@ -188,6 +188,7 @@ def _first_level(overturned, allowed):
 
 @kernel
 def _any_allowed(allowed, level):
+    """Whether any motion may be scaled to a level."""
     for m in range(allowed.shape[0]):  # noqa: SIM110 (a kernel has no generators)
         if allowed[m, level]:
             return True
@@ -319,6 +320,21 @@ def fill_uplifts(levels, rocked, overturned, allowed, lifting, uplifts):
 
 
 @entry_kernel
+def fill_counts_at(levels, level, allowed, rocked, overturned, found):
+    """How many motions count at one of the levels, rock and topple the object there; zeros of any other level."""
+    for place in range(3):
+        found[place] = 0.0
+    for k in range(levels.size):
+        if levels[k] != level:
+            continue
+        for m in range(allowed.shape[0]):
+            if allowed[m, k]:
+                found[0] += 1.0
+                found[1] += 1.0 if rocked[m, k] else 0.0
+                found[2] += 1.0 if overturned[m, k] else 0.0
+
+
+@entry_kernel
 def fill_counted(happened, allowed, weights, fractions):
     """Fraction of the weighted motions to which something happened at each level, shape (levels,).
 
@@ -364,6 +380,7 @@ def fill_shift(levels, lower, upper, lower_uplifts, upper_uplifts, found):
 
 @kernel
 def _mean_log(levels):
+    """Mean of the logarithms of the finite levels, 0 if there are none."""
     total, count = 0.0, 0
     for m in range(levels.size):
         if levels[m] < math.inf:

@@ -5,9 +5,11 @@ In: a probability [-]. Out: the word, as the id of a text. Docs: ``docs/assess.m
 
 from enum import Enum
 
+from rockfrag.assess.core.choices import likelihood
+
 
 class Likelihood(Enum):
-    """A step of the scale; its value is the key of its words."""
+    """A step of the scale, in its order; its value is the key of its words."""
 
     EXCEPTIONALLY_UNLIKELY = "exceptionally_unlikely"
     VERY_UNLIKELY = "very_unlikely"
@@ -18,24 +20,6 @@ class Likelihood(Enum):
     VIRTUALLY_CERTAIN = "virtually_certain"
 
 
-BELOW = (
-    (0.01, Likelihood.EXCEPTIONALLY_UNLIKELY),
-    (0.10, Likelihood.VERY_UNLIKELY),
-    (0.33, Likelihood.UNLIKELY),
-)
-UP_TO = (
-    (0.66, Likelihood.ABOUT_AS_LIKELY_AS_NOT),
-    (0.90, Likelihood.LIKELY),
-    (0.99, Likelihood.VERY_LIKELY),
-)
-
-
 def likelihood_of(probability: float) -> Likelihood:
     """Step of a probability [-]: < 1, < 10, < 33 %, then up to 66, 90, 99 %, and above."""
-    for limit, step in BELOW:
-        if probability < limit:
-            return step
-    for limit, step in UP_TO:
-        if probability <= limit:
-            return step
-    return Likelihood.VIRTUALLY_CERTAIN
+    return tuple(Likelihood)[likelihood(probability)]

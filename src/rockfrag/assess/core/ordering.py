@@ -1,6 +1,7 @@
 """Sorting without memory of its own, and what is read off sorted numbers; compiled.
 
-In: arrays of numbers. Out: the same sorted, quantiles and places in them. It is arithmetic; no page derives it.
+In: arrays of numbers. Out: the same sorted, quantiles and places in them. It is arithmetic, which no page derives;
+how it is compiled says ``docs/kernels.md``.
 """
 
 import math

@@ -258,7 +258,14 @@ def spread_of_mean(level, rest, lines):
 def shift_by_velocity(weight, spread, error, wanted, middle):
     """Standard deviation of ln level that follows from that of the velocity, and from that of the weight [-].
 
-    The second counts as far as the site's velocity lies from that of the motions, whose median is ``middle``.
+    The second counts as far as the site's velocity lies from that of the motions.
+
+    Parameters
+    ----------
+    weight, error : of the velocity, which says how far levels move, and its standard deviation [-]
+    spread : standard deviation of ln (PGV over the measure) at the site [-]
+    wanted : mean of the same at the site, at each level, shape (levels,)
+    middle : median of the same over the motions
     """
     away = 0.0
     for k in range(wanted.size):

@@ -443,6 +443,7 @@ def _read_usgs(text: str, path: str) -> list[Found]:
 
 
 def _numbers(values: Any) -> list[float]:
+    """A list of numbers, which nothing else is taken for."""
     if not isinstance(values, list) or any(
         isinstance(value, bool) or not isinstance(value, int | float)
         for value in values

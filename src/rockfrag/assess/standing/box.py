@@ -12,6 +12,8 @@ from typing import Any, Self
 import numpy as np
 
 from rockfrag.assess.assumed import Moved, assume
+from rockfrag.assess.core import bodies
+from rockfrag.assess.standing.changes import row_of
 from rockfrag.assess.standing.contract import Foundation, Standing
 from rockfrag.assess.standing.dimensions import (
     conserves_momentum,
@@ -80,7 +82,7 @@ class Box(Standing):
     @property
     def in_space(self) -> bool:
         """In space, unless its restitution was measured, its impacts are changed or a pad is to be tried."""
-        plain = self.under.restitution is None and self.livelier == 1.0
+        plain = self.under.restitution is None and self.restitution_factor == 1.0
         return plain and self.under.pad_friction is None
 
     @property
@@ -91,7 +93,7 @@ class Box(Standing):
 
     def in_plane(self) -> Planar:
         """The object as it rocks across its narrower side."""
-        return Planar(self.block, self.plane, self.under, self.livelier)
+        return Planar(self.block, self.plane, self.under, self.restitution_factor)
 
     def solid(self, body: Body) -> System | None:
         """The object on its rectangular base, or one with what it is fixed to, whose base is square or as deep."""
@@ -102,13 +104,8 @@ class Box(Standing):
         )
 
     def _box(self, top: Block) -> Block:
-        width, depth, mass = self.block.width, self.depth, self.block.mass
-        across = top.centroidal_inertia
-        # moments of uniform boxes about x and y differ by what their sides do
-        aside = mass * (depth * depth - width * width) / 12
-        along = mass * (width * width + depth * depth) / 12
-        if self.is_whole(top):
-            along += (top.mass - mass) * top.width * top.width / 6
-            depth = max(depth, top.width)
-        tensor = checked_tensor(np.diag((across + aside, across, along)))
-        return replace(top, depth=depth, inertia=tensor)
+        """A block that rocks as this box does, in space, with the pedestal to which it may be fixed."""
+        moments = np.zeros(4)
+        bodies.tell_box(row_of(top), row_of(self.block, self.depth), moments)
+        *tensor, depth = moments.tolist()
+        return replace(top, depth=depth, inertia=checked_tensor(np.diag(tensor)))

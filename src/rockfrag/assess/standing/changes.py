@@ -3,21 +3,65 @@
 In: an object as it stands. Out: the changed objects. Docs: ``docs/assess.md``, "What helps".
 """
 
-from collections.abc import Sequence
+import math
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 
+import numpy as np
+
+from rockfrag.assess.core import bodies
+from rockfrag.assess.core.bodies import BALLAST, LOWER
 from rockfrag.assess.texts import Text
+from rockfrag.base.arrays import Floats
 from rockfrag.system.blocks import Block, Body, Stack, stacked
 from rockfrag.words.findings import Finding, finding, percent, three
 
-WIDER = 1.25  # Width of a foot plate over that of the base
-# Thickness of a foot plate [m], square and of steel [kg/m³]
-PLATE, STEEL = 0.02, 7850.0
-LOWER = 0.8  # Factor of a lower centre of gravity
 
-BALLAST, BALLAST_AT = 0.25, 0.05  # Its mass and its height over those of the object
+def row_of(block: Block, depth: float = math.nan) -> Floats:
+    """The numbers of a block as :mod:`rockfrag.assess.core.bodies` has them.
 
-PEDESTAL_HEIGHT = 0.5  # Height of another pedestal over that of the one that is there
+    Parameters
+    ----------
+    block : in the plane in which it rocks
+    depth : of its base across that plane [m]
+
+    Returns
+    -------
+    Its sizes, mass, inertia and centre of gravity, shape (7,) [m, kg]; NaN for what is not given.
+    """
+    sizes = [block.width, block.height, block.mass, block.inertia, block.cg_height]
+    numbers = [*sizes, block.cg_offset, depth]
+    known = [math.nan if number is None else number for number in numbers]
+    return np.array(known, dtype=np.float64)
+
+
+def changed_block(
+    block: Block, change: Callable[..., None], *numbers: float | Floats
+) -> Block:
+    """A block as a function of :mod:`rockfrag.assess.core.bodies` changes it.
+
+    Parameters
+    ----------
+    block : the block
+    change : the function
+    *numbers : what it is given
+
+    Returns
+    -------
+    The changed block.
+    """
+    found = np.zeros(bodies.DEPTH + 1)
+    change(row_of(block), *numbers, found)
+    width, height, mass, inertia, centre, aside, _ = found.tolist()
+    return replace(
+        block,
+        width=width,
+        height=height,
+        mass=mass,
+        inertia=None if math.isnan(inertia) else inertia,
+        cg_height=None if math.isnan(centre) else centre,
+        cg_offset=aside,
+    )
 
 
 def usual_changes(block: Block, pedestals: Sequence[Block]) -> dict[Finding, Body]:
@@ -43,17 +87,13 @@ def usual_changes(block: Block, pedestals: Sequence[Block]) -> dict[Finding, Bod
     found: dict[Finding, Body] = {
         _plate(where, lowest): stacked((on_plate(lowest), *pedestals[1:], block))
     }
-    if WIDER * block.width <= highest.width:
+    if bodies.carries_plate(row_of(block), row_of(highest)):
         # beyond the pedestal's edges a plate carries no further out
         found[_plate(Text.PLATE_UNDER_OBJECT, block)] = stacked(
             (*pedestals, on_plate(block))
         )
     found |= {name: stacked((*pedestals, body)) for name, body in lower.items()}
-    half = replace(
-        lowest,
-        height=PEDESTAL_HEIGHT * lowest.height,
-        mass=PEDESTAL_HEIGHT * lowest.mass,
-    )
+    half = changed_block(lowest, bodies.make_lower)
     lower_one = finding(Text.LOWER_PEDESTAL, height=three(100 * half.height))
     found[lower_one] = stacked((half, *pedestals[1:], block))
     return found | _fixed(block, pedestals)
@@ -61,26 +101,18 @@ def usual_changes(block: Block, pedestals: Sequence[Block]) -> dict[Finding, Bod
 
 def on_plate(block: Block) -> Block:
     """The block fixed to a square plate of steel under it, wider than its base."""
-    width = WIDER * block.width
-    plate = Block(width, PLATE, STEEL * PLATE * width**2)
-    return Stack(plate, block).rigidly_joined()
+    return Stack(changed_block(block, bodies.make_plate), block).rigidly_joined()
 
 
 def _plate(where: Text, block: Block) -> Finding:
-    wide, thick = three(100 * WIDER * block.width), three(100 * PLATE)
+    plate = changed_block(block, bodies.make_plate)
+    wide, thick = three(100 * plate.width), three(100 * plate.height)
     return finding(where, width=wide, thick=thick)
 
 
 def with_ballast(block: Block) -> Block:
     """The block with ballast near its foot, in the middle of its base."""
-    added = BALLAST * block.mass
-    mass = block.mass + added
-    at = BALLAST_AT * block.height
-    height = (block.mass * block.h + added * at) / mass
-    aside = block.mass * block.cg_offset / mass
-    own = block.mass * ((block.h - height) ** 2 + (block.cg_offset - aside) ** 2)
-    inertia = block.centroidal_inertia + own + added * ((at - height) ** 2 + aside**2)
-    return replace(block, mass=mass, cg_height=height, cg_offset=aside, inertia=inertia)
+    return changed_block(block, bodies.add_ballast, BALLAST)
 
 
 def _fixed(block: Block, pedestals: Sequence[Block]) -> dict[Finding, Body]:
@@ -110,5 +142,4 @@ def _fixed(block: Block, pedestals: Sequence[Block]) -> dict[Finding, Body]:
 
 def _lowered(block: Block) -> Block:
     """The block with a lower centre of gravity, mass and inertia as they are."""
-    height = min(block.h * LOWER, block.height)
-    return replace(block, inertia=block.centroidal_inertia, cg_height=height)
+    return changed_block(block, bodies.stretch, 1.0, LOWER, 1.0)

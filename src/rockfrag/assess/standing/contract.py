@@ -15,7 +15,8 @@ from pathlib import Path
 from typing import Any, ClassVar, Self
 
 from rockfrag.assess.assumed import Assumption, Moved, moved_to_both_sides
-from rockfrag.assess.standing.changes import usual_changes
+from rockfrag.assess.core import bodies
+from rockfrag.assess.standing.changes import changed_block, row_of, usual_changes
 from rockfrag.assess.standing.holders import Holder, holders_beside
 from rockfrag.assess.texts import Text
 from rockfrag.base.errors import InputError
@@ -31,9 +32,6 @@ TOLERANCES = {"width": 0.02, "cg_height": 0.05, "restitution": 0.05, "mass": 0.2
 
 OF_A_TILT_TEST = 0.01
 """Relative standard deviation of the width over the height of its centre of gravity that a tilt test gives [-]."""
-
-# Height of a body that is another one than the object, over that of the object
-HIGHER = 1.0 + 1e-9
 
 ALONE = Text.ON_THE_FLOOR  # How an object stands without a pedestal
 
@@ -69,13 +67,13 @@ class Standing(ABC):
     block : the object itself in the plane in which it rocks
     plane : in which direction that is
     under : what it stands on, and what was said of it
-    livelier : factor on every restitution [-]; impacts never gain energy
+    restitution_factor : factor on every restitution [-]; impacts never gain energy
     """
 
     block: Block
     plane: Finding
     under: Foundation = field(default_factory=Foundation)
-    livelier: float = 1.0
+    restitution_factor: float = 1.0
 
     # Kind of body whose model error counts; of kinds without a campaign that of a cut block
     measured_as: ClassVar[str] = CUT
@@ -158,7 +156,7 @@ class Standing(ABC):
             ),
             # of a body in space that of the planar answer
             "restitution": lambda factor: replace(
-                self, livelier=self.livelier * factor
+                self, restitution_factor=self.restitution_factor * factor
             ),
         }
         if self.pedestals:
@@ -191,7 +189,7 @@ class Standing(ABC):
     def system_of(self, body: Body) -> System:
         """Return what is shaken in a plane: a body whose impacts lose what was measured or assumed."""
         system = body.system()
-        if self.under.restitution is None and self.livelier == 1:
+        if self.under.restitution is None and self.restitution_factor == 1:
             return system
         shapes = system.carried
         each = [self._ratios(shape, self.under.restitution) for shape in shapes]
@@ -202,8 +200,8 @@ class Standing(ABC):
     ) -> tuple[float, float]:
         """Ratios of velocities at the right and left pivot, none of which gains energy."""
         e = math.nan if measured is None else measured
-        right = geometry.scaled_restitution(shape, 1, e, self.livelier)
-        return right, geometry.scaled_restitution(shape, -1, e, self.livelier)
+        right = geometry.scaled_restitution(shape, 1, e, self.restitution_factor)
+        return right, geometry.scaled_restitution(shape, -1, e, self.restitution_factor)
 
     @property
     def in_space(self) -> bool:
@@ -220,7 +218,7 @@ class Standing(ABC):
 
     def is_whole(self, top: Block) -> bool:
         """Whether a block is the object with what it is fixed to."""
-        return top.height > self.block.height * HIGHER
+        return bodies.is_whole(row_of(top), row_of(self.block))
 
     def check(self) -> None:
         """Refuse a restitution with which an impact would gain energy."""
@@ -245,10 +243,4 @@ def stretched_block(
     block: Block, width: float = 1.0, height: float = 1.0, mass: float = 1.0
 ) -> Block:
     """A block with edges further apart, a higher centre of gravity and more mass, by factors."""
-    return replace(
-        block,
-        width=block.width * width,
-        mass=block.mass * mass,
-        inertia=block.centroidal_inertia * mass,
-        cg_height=min(block.h * height, block.height),
-    )
+    return changed_block(block, bodies.stretch, width, height, mass)

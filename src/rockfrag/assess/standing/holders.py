@@ -60,11 +60,11 @@ class Holder(ABC):
 
     @property
     def bears(self) -> float:
-        """What it bears [N or m]; infinite where that is not asked."""
+        """Demand at which it fails [N], or at which it meets its stop [m]; infinite where neither is asked."""
         return math.inf
 
     def bearing(self, demand: float) -> Self:
-        """Return it as strong as it must be, rounded up to two digits."""
+        """Return it made to bear a demand [N or m], rounded up to two digits."""
         return self
 
 
@@ -74,10 +74,10 @@ class Putty(Holder):
 
     Attributes
     ----------
-    pull : that all pads hold together [N]
+    tension : that all pads hold together [N]
     """
 
-    pull: float = UNBROKEN
+    tension: float = UNBROKEN
     key: ClassVar[str] = "putty"
     demand: ClassVar[str] = "largest_force"
     times: ClassVar[float] = 2.0  # of each of two sides
@@ -85,20 +85,20 @@ class Putty(Holder):
     def on(self, system: System) -> System:
         """Bond the uppermost body to what it stands on."""
         spread = pads_of(system.bodies[-1].base)
-        return hold(system, bonds=Bond(self.pull, UNBROKEN, spread))
+        return hold(system, bonds=Bond(self.tension, UNBROKEN, spread))
 
     def called(self) -> Finding:
         """Such as putty that holds 120 N."""
-        return finding(Text.HOLD_PUTTY, force=two(self.pull))
+        return finding(Text.HOLD_PUTTY, force=two(self.tension))
 
     @property
     def bears(self) -> float:
-        """What it bears."""
-        return self.pull
+        """Pull on all pads at which it fails [N]."""
+        return self.tension
 
     def bearing(self, demand: float) -> Self:
-        """As strong as the pull on all pads."""
-        return replace(self, pull=rounded_up(demand))
+        """Return putty that holds a pull on all pads [N]."""
+        return replace(self, tension=rounded_up(demand))
 
 
 @dataclass(frozen=True)
@@ -116,11 +116,11 @@ class Fastener(Holder):
 
     @property
     def bears(self) -> float:
-        """What it bears."""
+        """Force at which one of its kind breaks [N]."""
         return self.strength
 
     def bearing(self, demand: float) -> Self:
-        """As strong as its largest force."""
+        """Return fasteners that bear a force each [N]."""
         return replace(self, strength=rounded_up(demand))
 
 
@@ -188,11 +188,11 @@ class Isolator(Holder):
 
     @property
     def bears(self) -> float:
-        """What it bears."""
+        """Displacement at which it meets its stop [m]."""
         return self.stroke
 
     def bearing(self, demand: float) -> Self:
-        """With its stop where it is not met."""
+        """Return an isolator whose stop is beyond a displacement [m]."""
         return replace(self, stroke=rounded_up(demand))
 
 

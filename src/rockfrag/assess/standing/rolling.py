@@ -12,6 +12,8 @@ from typing import Any, ClassVar, Self
 import numpy as np
 
 from rockfrag.assess.assumed import assume
+from rockfrag.assess.core import bodies
+from rockfrag.assess.standing.changes import row_of
 from rockfrag.assess.standing.contract import Foundation, Standing
 from rockfrag.assess.standing.dimensions import on_foundation, sizes_of
 from rockfrag.assess.standing.planar import Planar
@@ -52,16 +54,18 @@ class Round(Standing):
         return found
 
     def system_of(self, body: Body) -> System:
-        """The body in a plane; on its own base the object rolls, fixed to its pedestal on that of the pedestal."""
+        """The body in a plane, with the restitution of each contact.
+
+        On its own base the object rolls and loses nothing. Fixed to its pedestal the two are one block, higher
+        than the object, which rocks on the pedestal's base.
+        """
         system = body.system()
         rolls = body.blocks[-1].height == self.block.height
+        usual = self.under.restitution
         *below, top = system.carried
-        measured = ROLLING if rolls else self.under.restitution
-        each = [
-            *(self._ratios(shape, self.under.restitution) for shape in below),
-            self._ratios(top, measured),
-        ]
-        return system_of(system, restitution=each if below else each[0])
+        restitution = [self._ratios(shape, usual) for shape in below]
+        restitution.append(self._ratios(top, ROLLING if rolls else usual))
+        return system_of(system, restitution=restitution if below else restitution[0])
 
     @property
     def in_space(self) -> bool:
@@ -70,14 +74,14 @@ class Round(Standing):
 
     def in_plane(self) -> Planar:
         """The object as it would rock on edges."""
-        return Planar(self.block, self.plane, self.under, self.livelier)
+        return Planar(self.block, self.plane, self.under, self.restitution_factor)
 
     def solid(self, body: Body) -> System | None:
         """The object on its rim; None with what it is fixed to, which stands on another base."""
         top = body.blocks[-1]
         if self.is_whole(top):
             return None
-        across = top.centroidal_inertia
-        along = top.mass * top.width * top.width / 8
-        tensor = checked_tensor(np.diag((across, across, along)))
+        moments = np.zeros(4)
+        bodies.tell_round(row_of(top), moments)
+        tensor = checked_tensor(np.diag(moments[:3]))
         return replace(top, round=True, inertia=tensor).system()

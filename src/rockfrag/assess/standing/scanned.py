@@ -28,7 +28,7 @@ from rockfrag.system.mesh import Shape, read_shape
 from rockfrag.system.system import System
 from rockfrag.words.findings import finding, three, whole
 
-ON_POINTS = {"livelier": 0.85, "restitution": 0.1}
+ON_POINTS = {"restitution_factor": 0.85, "restitution": 0.1}
 """Middle and relative standard deviation of the restitution of a scanned body over that of momentum, which is
 uniform from 0.7 to 1 (:mod:`rockfrag.campaign.standing`)."""
 
@@ -65,11 +65,11 @@ class Scanned(Standing):
             Text.ROCKS_TOWARDS,
             direction=whole(way["direction_deg"]),
             angle=three(way["alpha_deg"]),
-            count=len(scan.ways),
+            count=len(scan.arrangements),
         )
-        livelier, first = 1.0, [assume("scanned_base")]
+        restitution_factor, first = 1.0, [assume("scanned_base")]
         if "restitution" not in settings:
-            livelier = ON_POINTS["livelier"]
+            restitution_factor = ON_POINTS["restitution_factor"]
             first.append(assume("on_points", "restitution"))
             usual = TOLERANCES | {"restitution": ON_POINTS["restitution"]}
             under = replace(under, tolerances=tolerances_in(settings, usual))
@@ -79,7 +79,7 @@ class Scanned(Standing):
             block,
             plane,
             on_foundation(under, block, (*first, *assumed)),
-            livelier,
+            restitution_factor,
             base_spread=float(settings.get("base_spread", 0.0)),
             scan=scan,
             scanned=scan.space.body() if scan.space else None,
@@ -88,9 +88,9 @@ class Scanned(Standing):
 
     def variants(self) -> list[Moved[Self]]:
         """The usual ones, and the ways to stand that are one standard deviation of each source away."""
-        return [*super().variants(), *self._ways()]
+        return [*super().variants(), *self._arrangements()]
 
-    def _ways(self) -> list[Moved[Self]]:
+    def _arrangements(self) -> list[Moved[Self]]:
         """The ways to stand in the plane and in space."""
         assert self.scan is not None
         planar, in_space = self.scan.sides(), self.scan.space
@@ -126,13 +126,13 @@ class Scanned(Standing):
     @property
     def in_space(self) -> bool:
         """In space, unless its restitution was measured, its impacts are changed or a pad is to be tried."""
-        usual = self.livelier == ON_POINTS["livelier"]
+        usual = self.restitution_factor == ON_POINTS["restitution_factor"]
         plain = self.under.restitution is None and self.under.pad_friction is None
         return self.scanned is not None and plain and usual
 
     def in_plane(self) -> Planar:
         """The object as it rocks in the plane of the middle way."""
-        return Planar(self.block, self.plane, self.under, self.livelier)
+        return Planar(self.block, self.plane, self.under, self.restitution_factor)
 
     def solid(self, body: Body) -> System | None:
         """The scan in space; None with what it is fixed to."""
@@ -194,6 +194,7 @@ def _scan_of(
 
 
 def _shape_of(mesh: Mapping[str, Any], folder: Path, mass: float | None) -> Shape:
+    """The body of a mesh file, of stone where its mass is not known."""
     return read_shape(
         folder / mesh["file"],
         mass=mass,

@@ -24,6 +24,7 @@ def by_reference(named_tuple: Any) -> Any:
 
     @extending.typeof_impl.register(named_tuple)  # type: ignore[untyped-decorator]
     def of_value(values: Any, context: Any) -> Reference:
+        """Numba's type of a tuple of values."""
         return Reference(
             types.BaseTuple.from_types(
                 [extending.typeof_impl(value, context) for value in values], named_tuple
@@ -53,6 +54,7 @@ class _Fields(AttributeTemplate):  # type: ignore[misc]
 def _field(
     context: Any, builder: Any, reference: Reference, pointer: Any, name: str
 ) -> Any:
+    """Load a field of a named tuple that is handed on by reference."""
     at = reference.tuple_type.fields.index(name)
     return builder.load(cgutils.gep_inbounds(builder, pointer, 0, at))
 

@@ -73,7 +73,7 @@ inlined_kernel: Callable[..., Any] = numba.njit(**_EVERY, **_PART, forceinline=T
 """Mark a function that only kernels call as always inlined: what is called at every contact event."""
 
 
-def share_with_kernels(module: ModuleType) -> None:
+def compile_for_kernels(module: ModuleType) -> None:
     """Let kernels call the functions of a module, plain Python, as if they were some of them.
 
     Parameters
@@ -89,7 +89,7 @@ def share_with_kernels(module: ModuleType) -> None:
 
 
 for _module in (elementary, geometry, couple, position):
-    share_with_kernels(_module)
+    compile_for_kernels(_module)
 
 
 @contextmanager

@@ -66,7 +66,7 @@ def note_rest_loads(p, w, now):
                 margin += w.rest[row, 2] * now.av
                 load = 2.0 * (p.bond_tension[k] - margin * p.weight)
                 at = p.bond_number[k]
-                w.told.largest_force[at] = max(w.told.largest_force[at], load)
+                w.outcome.largest_force[at] = max(w.outcome.largest_force[at], load)
 
 
 @kernel
@@ -76,7 +76,7 @@ def note_loads(p, w):
         if w.whole[k] == WHOLE:
             at = p.bond_number[k]
             load = -2.0 * pad_force(p, w, k)
-            w.told.largest_force[at] = max(w.told.largest_force[at], load)
+            w.outcome.largest_force[at] = max(w.outcome.largest_force[at], load)
 
 
 @kernel
@@ -114,5 +114,5 @@ def note_breaking(p, w, time):
     for k in range(p.count):
         at = p.bond_number[k]
         broken = p.is_bonded[k] == 1 and w.whole[k] == 0
-        if broken and math.isnan(w.told.breaking_time[at]):
-            w.told.breaking_time[at] = time
+        if broken and math.isnan(w.outcome.breaking_time[at]):
+            w.outcome.breaking_time[at] = time

@@ -108,16 +108,16 @@ _OF_BODIES = (
 """What is told of each body or the contact under it."""
 
 
-def without_plate(told: NDArray[np.void], system: System) -> NDArray[np.void]:
+def without_plate(outcome: NDArray[np.void], system: System) -> NDArray[np.void]:
     """Outcomes of a system, of whose lowest body nothing is told if it is the plate of an isolator."""
     if system.support is None:
-        return told
-    own = told.copy()
+        return outcome
+    own = outcome.copy()
     for name in _OF_BODIES:
-        own[name] = np.roll(told[name], -1, axis=-1)
+        own[name] = np.roll(outcome[name], -1, axis=-1)
         own[name][..., -1] = 0
     for name in ("overturned_body", "parted_contact"):
-        own[name] = np.maximum(told[name] - 1, 0)
+        own[name] = np.maximum(outcome[name] - 1, 0)
     return own
 
 
@@ -163,8 +163,10 @@ def history(case: Case) -> Response:
     found = ContactRun(case)
     pure = replace(case, system=case.system.held())
     engine = _pure(pure.system, case.motion, pure.request)
-    told = found.work["told"]
-    loose = told["slid"].any() or told["flights"].any() or told["paradoxes"] > 0
+    outcome = found.work["outcome"]
+    loose = (
+        outcome["slid"].any() or outcome["flights"].any() or outcome["paradoxes"] > 0
+    )
     if loose or engine is None:
         return found.response()
     return without_slip(replace(engine.history(pure), system=case.system))
@@ -295,11 +297,11 @@ class ContactRun:
     def response(self) -> Response:
         """Return the response that the contact kernels wrote."""
         case, history = self.case, self.history
-        told = without_plate(np.array(self.work["told"]), case.system)
+        outcome = without_plate(np.array(self.work["outcome"]), case.system)
         done, count, fallen = (
             len(history),
             case.system.count,
-            int(told["overturned_body"]),
+            int(outcome["overturned_body"]),
         )
         # the lowest body of an isolated system is the plate
         first = int(self.body["count"]) - count
@@ -328,7 +330,7 @@ class ContactRun:
             contact_events=table,
             overturned=fallen > 0,
             overturned_body=("", *case.system.names)[fallen],
-            overturning_time=float(told["overturning_time"]),
+            overturning_time=float(outcome["overturning_time"]),
             energy=self._energies(),
             constraints=self._constraints(),
             plate=history["q"][:, 0].copy() if first else None,
@@ -338,36 +340,39 @@ class ContactRun:
             least_normal_force=np.asarray(normal.min(axis=0)),
             grazings=int((table["kind"].eq("impact") & (meets < GRAZING_SPEED)).sum()),
             forced=int(self.work["forced"]),
-            **{name: int(told[name]) for name in ("impacts", "paradoxes", "given_way")},
+            **{
+                name: int(outcome[name])
+                for name in ("impacts", "paradoxes", "given_way")
+            },
         )
 
     def _constraints(self) -> pd.DataFrame:
         """Make the table of what holds the bodies."""
-        names, told = self.case.system.holding, self.work["told"]
+        names, outcome = self.case.system.holding, self.work["outcome"]
         table = {"constraint": np.arange(1, len(names) + 1), "name": list(names)}
         for column in columns("constraints"):
-            table[column.title] = told[column.name][: len(names)].copy()
+            table[column.title] = outcome[column.name][: len(names)].copy()
         return pd.DataFrame(table)
 
     def _energies(self) -> pd.DataFrame:
         """Balance of energy by cause over time [J]."""
-        p, history, struck = self.body, self.history, self.contact_events
+        p, history, contact_events = self.body, self.history, self.contact_events
         count = int(self.body["count"])
         inertia, at = 1.0 / p["inverse"][: 3 * count], slice(1, 3 * count, 3)
         kinetic = (inertia * history["v"][:, : 3 * count] ** 2).sum(axis=1) / 2
         potential = float(p["g"]) * (p["mass"][:count] * history["q"][:, at]).sum(
             axis=1
         )
-        lost = struck["energy_before"] - struck["energy_after"]
-        lost[~np.isin(struck["kind"], (contact.IMPACT, contact.PARADOX))] = 0.0
+        lost = contact_events["energy_before"] - contact_events["energy_after"]
+        lost[~np.isin(contact_events["kind"], (contact.IMPACT, contact.PARADOX))] = 0.0
         # the lowest contact whose mode changes as it comes down, or the uppermost
-        opened, _ = _modes(struck["before"], count)
-        closed, _ = _modes(struck["after"], count)
+        opened, _ = _modes(contact_events["before"], count)
+        closed, _ = _modes(contact_events["after"], count)
         closes = (opened != 0) & (opened != closed)
         closes[:, -1] = True
         own = self.case.system.count
         contact_of = np.maximum(closes.argmax(axis=1) - (count - own), 0)
-        contact_of[struck["at_wall"] > 0] = own
+        contact_of[contact_events["at_wall"] > 0] = own
         table = responses.energy_table(
             self.clock,
             kinetic,
@@ -375,7 +380,7 @@ class ContactRun:
             history["work"],
             contacts=own,
             losses=(self.event_clock, contact_of, lost),
-            friction=history["rubbed"],
+            friction=history["friction_loss"],
             held=history["tied"] if self.case.system.holding else None,
         )
         table["time"] = self.time

@@ -3,7 +3,7 @@
 An impact has impulses at touching ends, Coulomb's law on them, and each contact's own law.
 
 In: a record ``BODY`` and its working memory with coordinates, velocities [m/s, rad/s] and the mode that has
-failed. Out, in that memory: the mode that follows, and the velocities after the impact (equations 7 to 9, 15).
+failed. Out: in that memory the mode that follows, and the velocities after the impact (equations 7 to 9, 15).
 """
 
 from rockfrag.base.elementary import sin_cos
@@ -35,7 +35,7 @@ from rockfrag.laws.momentum import NUMBER as MOMENTUM
 
 NO_GAIN = 1e-12  # fraction of the kinetic energy below which a gain is rounding
 HALVINGS = 40  # halvings of the interval in which a law that gives way keeps the energy
-CROWD = 100
+MANY_CONTACT_EVENTS = 100
 """Contact events within a sample after which speeds below the closing speed count as none, whatever pulls."""
 PULLS = 1e-9  # acceleration over g towards a wall above which it is none of rounding
 UNREACHED = 1e-7  # violation above which an impact has no outcome under a law
@@ -155,7 +155,7 @@ def settle(p, w, ah, av, exclude):
 def remember_slides(p, w):
     """Keep which interfaces have reached their limit."""
     for k in range(p.count):
-        w.told.slid[k] |= w.slides[k] != 0
+        w.outcome.slid[k] |= w.slides[k] != 0
 
 
 @kernel
@@ -207,8 +207,8 @@ def strike(p, w, ah, av, closing, push):
         copy(p, w.out, w.v)
     project(p, w)
     touch_closed(p, w)
-    w.struck += before - kinetic_energy(p, w.v)
-    w.told.impacts += 1
+    w.impact_loss += before - kinetic_energy(p, w.v)
+    w.outcome.impacts += 1
 
 
 @kernel
@@ -294,7 +294,7 @@ def _obey(p, w, trial):
             w.falls[k] = -1
     if _outcome(p, w, trial, 1.0, energy):
         return
-    w.told.given_way += 1
+    w.outcome.given_way += 1
     low, high = 0.0, 1.0
     for _ in range(HALVINGS):
         middle = 0.5 * (low + high)
@@ -375,16 +375,16 @@ def _any_slow_end(p, w, closing):
 def _shut_weak(p, w, ah, av, closing):
     """Close the ends that part, and end the slips that are, too slow after an impact; whether there are any.
 
-    Slow ends close where they fall back, and in a crowd whatever pulls.  What pulls depends on the sign of a slip,
-    so that slow slips and slow ends would call forth each other without an end.  At walls ends close one by one,
-    so that none is closed that the others hold already.
+    Slow ends close where they fall back, and among many contact events wherever: which way an end is pulled
+    depends on the sign of a slip, so that slow slips and slow ends would call forth each other without an end.
+    At walls ends close one by one, so that none is closed that the others hold already.
     """
     found = False
     if _any_slow_end(p, w, closing):
         solve(p, w, w.q, w.v, ah, av, False)
     for k in range(p.contacts):
         at_wall = k >= p.count or any_closed(p, w)
-        crowd = w.met > CROWD and not at_wall
+        are_many = w.met > MANY_CONTACT_EVENTS and not at_wall
         least = -PULLS * p.g if at_wall else 0.0
         was_open = not w.closed[k].any()
         for end in range(2):
@@ -392,9 +392,9 @@ def _shut_weak(p, w, ah, av, closing):
                 x, y, tx, ty, _, _, kind = end_of(p, w, w.q, k, end, w.kind[k, end])
                 if rate(p, w.q, w.v, k, x, y, -ty, tx) >= closing:
                     continue
-                pull = rate(p, w.q, w.out, k, x, y, -ty, tx)
-                pull += bias(p, w.q, w.v, k, x, y, -ty, tx, kind)
-                if pull < least or crowd:
+                parting = rate(p, w.q, w.out, k, x, y, -ty, tx)
+                parting += bias(p, w.q, w.v, k, x, y, -ty, tx, kind)
+                if parting < least or are_many:
                     w.closed[k, end] = 1
                     if not any_closed(p, w):
                         found = True

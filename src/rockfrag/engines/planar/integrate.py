@@ -1,8 +1,9 @@
 """Integrating one column through one motion, contact event by contact event, with friction and flight.
 
-In: a record ``BODY``, a ground motion [m/s²] and a start. Out: ``told`` (a record ``OUTCOME``) and, where they are
-kept, samples and contact events. Theory: ``docs/contact.md``,
-"Accumulating contact events" and "Falls"; of columns ``docs/columns.md``.
+In: a record ``BODY``, a ground motion [m/s²] and a start. Out: ``outcome`` (a record ``OUTCOME``) and, where they
+are kept, samples and contact events.
+
+Theory: ``docs/contact.md``, "Accumulating contact events" and "Falls"; of columns ``docs/columns.md``.
 """
 
 import math
@@ -57,7 +58,9 @@ SAMPLE = np.dtype(
         *fields("q v", 3 * MOST),  # coordinates of the bodies and their rates
         # of each interface and, α = θ'', of each body
         *fields("slip normal shear alpha", MOST),
-        *fields("work rubbed struck tied"),  # ledgers so far, as in WORK [J]
+        *fields(
+            "work friction_loss impact_loss tied"
+        ),  # ledgers so far, as in WORK [J]
         *whole("mode"),
     ]
 )
@@ -122,7 +125,7 @@ class Instant(NamedTuple):
 
 
 @entry_kernel
-def integrate_cases(numbers, cases, nothing, w, outcome):
+def integrate_cases(numbers, cases, nothing, w, outcomes):
     """Integrate the cases of some ``numbers``, and keep their outcomes; ``nothing`` is a KEPT without rows."""
     motions, scales = cases.factors.shape
     for number in numbers:
@@ -143,16 +146,26 @@ def integrate_cases(numbers, cases, nothing, w, outcome):
         )
         look_at(cases.bodies[b], w, w.q)
         for k in range(cases.bodies[b].count):
-            w.told.slip[k] = slip(cases.bodies[b], w, k)
-        outcome[number] = w.told
+            w.outcome.slip[k] = slip(cases.bodies[b], w, k)
+        outcomes[number] = w.outcome
 
 
 @entry_kernel
 def integrate(p, shaking, start, closing, kept, w):
-    """Integrate one column, a BODY, from ``start`` through its shaking and on until it rests or has fallen.
+    """Integrate one column from ``start`` through its shaking and on until it rests or has fallen.
 
-    ``closing`` is the speed over √(g b) below which a contact stays closed after an impact; ``kept`` is a
-    :class:`Kept`, ``w`` a WORK, which tells the number of contact events.  Returned are the samples done.
+    Parameters
+    ----------
+    p : record BODY, the column
+    shaking : a :class:`Shaking`
+    start : coordinates and velocities that it begins with [m, rad; m/s, rad/s], shape (2, 3 MOST)
+    closing : speed over √(g b) below which a contact stays closed after an impact [-]
+    kept : a :class:`Kept`, what is kept of the history
+    w : record WORK, the memory; tells the number of contact events
+
+    Returns
+    -------
+    Number of samples done.
     """
     _begin(p, w, start)
     dt, substeps = shaking.dt, shaking.substeps
@@ -215,7 +228,9 @@ def integrate(p, shaking, start, closing, kept, w):
                 stretch = stepping.Stretch(
                     step * dt, ah, av, step * sample.rise_h, step * sample.rise_v
                 )
-                work, rubbed, tied = stepping.take_step(p, w, stretch, energy_balance)
+                work, friction_loss, tied = stepping.take_step(
+                    p, w, stretch, energy_balance
+                )
                 error = stepping.step_error(p, w, stretch.length)
                 if step < stepping.SHORTEST or error <= accuracy:
                     break
@@ -225,7 +240,9 @@ def integrate(p, shaking, start, closing, kept, w):
                 # sliding that jams: forces grow faster than the step sees
                 step *= 0.125
                 stretch = stepping.beginning(stretch, 0.125)
-                work, rubbed, tied = stepping.take_step(p, w, stretch, energy_balance)
+                work, friction_loss, tied = stepping.take_step(
+                    p, w, stretch, energy_balance
+                )
                 at_end = stepping.least_margin(p, w, w.q1, w.v1, True)
             when = 2.0
             if idle <= MOST_IDLE or at_end < -LARGEST_FAILURE:
@@ -258,7 +275,7 @@ def integrate(p, shaking, start, closing, kept, w):
             else:
                 if energy_balance:
                     shorter = stepping.beginning(stretch, when)
-                    work, rubbed, tied = stepping.take_step(p, w, shorter, True)
+                    work, friction_loss, tied = stepping.take_step(p, w, shorter, True)
                 impact.project(p, w)
                 tau += when * step
                 idle = idle + 1 if when < 1e-9 else 0
@@ -275,21 +292,21 @@ def integrate(p, shaking, start, closing, kept, w):
                 if w.met > 10 * MOST_CONTACT_EVENTS:
                     tau = 1.0
             w.work += work
-            w.rubbed += rubbed
+            w.friction_loss += friction_loss
             w.tied += tied
             _track(p, w)
-            if w.told.overturned_body > 0:
-                w.told.overturning_time = (i + tau) * dt
+            if w.outcome.overturned_body > 0:
+                w.outcome.overturning_time = (i + tau) * dt
                 break
         done = i + 2
         now = late
         if energy_balance:
             _keep(p, w, kept.history[i + 1], now)
-        if w.told.overturned_body > 0:
+        if w.outcome.overturned_body > 0:
             break
         if i >= n - 1 and (w.resting == 1 or (not fresh and _lies_still(p, w))):
             break
-    w.told.leaning = 1 if _leans(p, w) else 0
+    w.outcome.leaning = 1 if _leans(p, w) else 0
     return done
 
 
@@ -323,7 +340,7 @@ def _lies_still(p, w):
 @kernel
 def _leans(p, w):
     """Whether a body that has not fallen rests beyond its balance, against a wall or in a tie."""
-    if p.is_held == 0 or w.resting == 1 or w.told.overturned_body > 0:
+    if p.is_held == 0 or w.resting == 1 or w.outcome.overturned_body > 0:
         return False
     beyond = False
     for k in range(p.count):
@@ -362,27 +379,31 @@ def _begin(p, w, start):
         for end in range(2):
             _, _, _, _, gap, _, w.kind[k, end] = end_of(p, w, w.q, k, end, -1)
             w.closed[k, end] = 1 if gap < 1e-11 * p.size else 0
-    w.work = w.rubbed = w.struck = w.tied = 0.0
-    told = w.told
-    told.leaning = 0
-    told.hits[:] = 0
-    told.largest_impulse[:] = told.largest_force[:] = 0.0
-    told.breaking_time[:] = math.nan
-    told.stroke[:] = math.nan
+    w.work = w.friction_loss = w.impact_loss = w.tied = 0.0
+    outcome = w.outcome
+    outcome.leaning = 0
+    outcome.hits[:] = 0
+    outcome.largest_impulse[:] = outcome.largest_force[:] = 0.0
+    outcome.breaking_time[:] = math.nan
+    outcome.stroke[:] = math.nan
     for k in range(p.count):
         w.whole[k] = p.is_bonded[k] * w.closed[k, 0] * w.closed[k, 1]
     if p.is_supported == 1:
         w.whole[0] = GUIDED
-        told.stroke[p.support_number] = 0.0
+        outcome.stroke[p.support_number] = 0.0
     w.yields = w.spring_fails = 0
     w.plastic = 0.0
     note_breaking(p, w, 0.0)
     least_tie_margin(p, w, w.q, w.v)
-    told.peak_rotation[:] = told.peak_velocity[:] = told.peak_slip[:] = 0.0
-    told.slid[:] = told.flights[:] = 0
-    told.impacts = told.paradoxes = told.overturned_body = told.parted_contact = 0
-    told.several_modes = told.given_way = w.forced = w.met = w.resting = w.noted = 0
-    told.overturning_time = math.nan
+    outcome.peak_rotation[:] = outcome.peak_velocity[:] = outcome.peak_slip[:] = 0.0
+    outcome.slid[:] = outcome.flights[:] = 0
+    outcome.impacts = outcome.paradoxes = outcome.overturned_body = (
+        outcome.parted_contact
+    ) = 0
+    outcome.several_modes = outcome.given_way = w.forced = w.met = w.resting = (
+        w.noted
+    ) = 0
+    outcome.overturning_time = math.nan
 
 
 @kernel
@@ -393,9 +414,11 @@ def _track(p, w):
         if not (w.closed[k, 0] and w.closed[k, 1]):
             # a body on its whole base is carried along
             part = abs(w.q[3 * k + 2]) / _critical(p, w, k)
-            w.told.peak_rotation[k] = max(w.told.peak_rotation[k], part)
-        w.told.peak_velocity[k] = max(w.told.peak_velocity[k], abs(w.v[3 * k + 2]))
-        w.told.peak_slip[k] = max(w.told.peak_slip[k], abs(slip(p, w, k)))
+            w.outcome.peak_rotation[k] = max(w.outcome.peak_rotation[k], part)
+        w.outcome.peak_velocity[k] = max(
+            w.outcome.peak_velocity[k], abs(w.v[3 * k + 2])
+        )
+        w.outcome.peak_slip[k] = max(w.outcome.peak_slip[k], abs(slip(p, w, k)))
 
 
 @kernel
@@ -429,8 +452,8 @@ def _handle(p, w, now, closing, exclude, kept):
     _remember(p, w)
     for k in range(p.contacts):
         if w.fails[k, stepping.FALL] == 1:
-            w.told.overturned_body = p.upper[k] + 1
-            w.told.parted_contact = _parted(w, p.upper[k])
+            w.outcome.overturned_body = p.upper[k] + 1
+            w.outcome.parted_contact = _parted(w, p.upper[k])
             _note(p, w, now.time, FALLEN, kept)
             return
     look_at(p, w, w.q)
@@ -487,17 +510,17 @@ def _handle(p, w, now, closing, exclude, kept):
         kind = IMPACT
         exclude = False
     if not impact.settle(p, w, now.ah, now.av, exclude):
-        w.told.paradoxes += 1
+        w.outcome.paradoxes += 1
         impact.strike(p, w, now.ah, now.av, closing * p.speed, True)
         impact.settle(p, w, now.ah, now.av, False)
         kind = PARADOX
     if kind == IMPACT and _is_unlawful(p, w, closing):
-        w.told.paradoxes += 1
+        w.outcome.paradoxes += 1
     note_breaking(p, w, now.time)
     if count_broken(p, w) > broken and kind != IMPACT and kind != PARADOX:
         kind = BROKEN
     for k in range(p.count):
-        w.told.flights[k] += w.old_closed[k].any() and not w.closed[k].any()
+        w.outcome.flights[k] += w.old_closed[k].any() and not w.closed[k].any()
     _note(p, w, now.time, kind, kept)
 
 
@@ -680,6 +703,10 @@ def _keep(p, w, sample, now):
         sample.slip[k], sample.shear[k] = slip(p, w, k), w.shear[k]
         sample.normal[k] = w.normal[k, 0] + w.normal[k, 1]
         sample.alpha[k] = w.out[3 * k + 2]
-    sample.work, sample.rubbed, sample.struck = w.work, w.rubbed, w.struck
+    sample.work, sample.friction_loss, sample.impact_loss = (
+        w.work,
+        w.friction_loss,
+        w.impact_loss,
+    )
     sample.tied = w.tied
     sample.mode = mode_number(p, w.closed, w.slides)

@@ -197,8 +197,8 @@ WORK = np.dtype(
         # margins of rest, linear in the two accelerations
         *fields("rest", 4 * MOST, 3),
         # ledgers [J]: of the ground, lost to friction, lost in impacts, given to ties
-        *fields("work rubbed struck tied"),
-        *fields("told", of=OUTCOME),
+        *fields("work friction_loss impact_loss tied"),
+        *fields("outcome", of=OUTCOME),
         # forced, resting; contact events: met within the sample, noted in all
         *whole("forced resting met noted"),
     ]

@@ -3,7 +3,7 @@
 Slip and approach change with the normal impulse at constant rates until the slip stops (E. J. Routh, Dynamics of a
 System of Rigid Bodies, 1905; J. B. Keller, Journal of Applied Mechanics 53, 1986, 1-4).
 
-In: a record ``BODY`` and its working memory with the velocities before [m/s, rad/s]. Out, in that memory: the
+In: a record ``BODY`` and its working memory with the velocities before [m/s, rad/s]. Out: in that memory the
 velocities after, and how the contact slides. Theory there: "Static above kinetic friction in an impact".
 """
 

@@ -5,7 +5,7 @@ from the mode that has just failed, from the one in which all is open and, unles
 which all is closed; of those that are consistent the one with fewest closed ends is taken.  Where none ends, all
 modes are tried, the neighbours of those tried first.
 
-In: a record ``BODY`` and its working memory. Out, in that memory: the mode, and whether several were consistent.
+In: a record ``BODY`` and its working memory. Out: in that memory the mode, and whether several were consistent.
 Theory there: "Which mode follows", equations 4 to 6; impacts 8 and 9.
 """
 
@@ -25,7 +25,7 @@ from rockfrag.engines.planar.solve import (
     rate,
 )
 from rockfrag.engines.planar.support import GUIDED, rubbing, slope
-from rockfrag.engines.planar.ties import pull
+from rockfrag.engines.planar.ties import fill_tie_accelerations
 
 # violation below which a mode is consistent: forces over the weight, accelerations over g [-].  Less than the
 # slack of contact events, so that a mode that has just failed is not
@@ -36,6 +36,7 @@ ROUNDING = 1e-10  # violation up to which a mode is taken where none is consiste
 FAILS, SEEN = -1, -2  # what a mode that is tried is, unless it is consistent
 # what changes between modes: whether the end 0 or 1 is closed, or how an interface slides
 SLIP = 2
+CHANGES = 5  # of one contact: both ends, and three ways to slide
 NONE = (-1, -1)  # no mode
 BONDED = 1  # what a contact is that neither opens nor slides
 
@@ -52,9 +53,14 @@ class Trial(NamedTuple):
 
 @kernel
 def prepare(p, w, trial):
-    """Fill what all modes of the ends that touch share: motion without forces, and motion for unit forces."""
+    """Fill what all modes of the ends that touch share: motion without forces, and motion for unit forces.
+
+    ``w.basis[k]`` has a row a direction at contact k, per coordinate of the bodies below and above (3 each):
+    normal and tangent of the left end, of the right end, and a couple.  ``w.free[k]`` has the motion without
+    forces along the first four.
+    """
     if p.ties + p.is_sprung > 0 and not trial.impact:
-        pull(p, w, w.q, w.v)
+        fill_tie_accelerations(p, w, w.q, w.v)
     for k in range(p.contacts):
         for end in range(2):
             if w.touching[k, end] == 0:
@@ -88,32 +94,40 @@ def _drift_along(p, w, k, row):
 
 @kernel
 def _list_equations(p, w, k, impact):
-    """Fill rows, columns and right-hand sides of contact k in its mode in ``w`` from what all modes share."""
+    """Fill rows, columns and right-hand sides of contact k in its mode in ``w`` from what :func:`prepare` left.
+
+    One equation for the normal force of each closed end, one for the shear of a contact that sticks, one for the
+    couple that a law of restitution asks for (``docs/contact.md``, 3; impacts 7).
+    """
     friction = rubbing(p, w, w.q, k)
-    m, shear = 3 * k, w.slides[k] == 0
+    m, needs_shear = 3 * k, w.slides[k] == 0
     for end in range(2):
         if w.closed[k, end] == 0:
             continue
-        push, rub = w.basis[k, 2 * end], w.basis[k, 2 * end + 1]
+        normal, tangent = w.basis[k, 2 * end], w.basis[k, 2 * end + 1]
         w.what[m] = end
         w.right[m] = (w.back[k, end] if impact else 0.0) - w.free[k, 2 * end]
         for d in range(6):
-            w.row[m, d] = push[d]
-            w.column[m, d] = push[d] - friction * rub[d]
+            w.row[m, d] = normal[d]
+            w.column[m, d] = normal[d] - friction * tangent[d]
         if impact and w.fraction[k, end] > 0.0:
-            # what the impulse brings about at the other end
-            push_o, rub_o = w.basis[k, 2 - 2 * end], w.basis[k, 3 - 2 * end]
+            # the other end gets a fraction of this end's impulse
+            other_normal = w.basis[k, 2 - 2 * end]
+            other_tangent = w.basis[k, 3 - 2 * end]
             for d in range(6):
-                w.column[m, d] += w.fraction[k, end] * (push_o[d] - friction * rub_o[d])
+                w.column[m, d] += w.fraction[k, end] * (
+                    other_normal[d] - friction * other_tangent[d]
+                )
         m += 1
-        if shear:
+        if needs_shear:
             w.what[m] = SHEAR
             w.right[m] = -w.free[k, 2 * end + 1]
             for d in range(6):
-                w.row[m, d] = rub[d]
-                w.column[m, d] = rub[d]
+                w.row[m, d] = tangent[d]
+                w.column[m, d] = tangent[d]
             m += 1
-        shear = False
+        # one shear holds both ends, which lie on one line
+        needs_shear = False
     if impact and w.drive[k] >= 0:
         w.what[m] = COUPLE
         w.right[m] = w.depart[k] - w.free[k, 2 * w.drive[k]]
@@ -126,15 +140,21 @@ def _list_equations(p, w, k, impact):
 
 @kernel
 def _solve_mode(p, w, impact):
-    """Forces of the mode in ``w``, and motion for them, after :func:`prepare`; False if singular."""
-    changed = -1
+    """Forces of the mode in ``w``, and the motion that they bring about; False if its equations are singular.
+
+    Equations are listed anew for the contacts whose mode is not the one that they were listed for since
+    :func:`prepare`.  Of a column what is above the uppermost of these need not be eliminated again.
+    """
+    uppermost_changed = -1
     for k in range(p.contacts):
         digit = _digit(w.closed, w.slides, k)
-        if w.listed[k] != digit:
-            _list_equations(p, w, k, impact)
-            w.listed[k] = digit
-            changed = k if k < p.count else changed
-    return solve_equations(p, w, 0, changed)
+        if w.listed[k] == digit:
+            continue
+        _list_equations(p, w, k, impact)
+        w.listed[k] = digit
+        if k < p.count:
+            uppermost_changed = k
+    return solve_equations(p, w, 0, uppermost_changed)
 
 
 @kernel
@@ -312,28 +332,41 @@ def _descend(p, w, trial, exclude):
 
 @kernel
 def _try_neighbours(p, w, trial, exclude):
-    """Try all that differs in one thing from what has been tried, and so on; as :func:`_descend`."""
+    """Try all modes that differ in one thing from those that were tried, then their neighbours, until one fits.
+
+    Returned is its place in the list, or ``FAILS``.
+    """
     at = 0
     while at < w.count:
         for k in range(p.contacts):
-            for what in range(5):
+            for what in range(CHANGES):
                 _take_tried(p, w, at)
-                if w.whole[k] == BONDED or (w.whole[k] != 0 and what < SLIP):
-                    continue
-                if what < SLIP:
-                    if w.touching[k, what] == 0 or w.drive[k] >= 0:
-                        continue
-                    change(w, k, what, 0, trial.impact)
-                else:
-                    way, given = what - 3, 0 if trial.impact else w.moves[k]
-                    if not w.closed[k].any() or (given != 0 and way != given):
-                        continue
-                    w.slides[k] = way
-                found = _try_anew(p, w, trial, exclude)
-                if found >= 0:
-                    return found
+                if _change_to_neighbour(w, trial, k, what):
+                    found = _try_anew(p, w, trial, exclude)
+                    if found >= 0:
+                        return found
         at += 1
     return FAILS
+
+
+@kernel
+def _change_to_neighbour(w, trial, k, what):
+    """Change one thing of contact k in ``w``; False if it may not change.
+
+    ``what``: 0 or 1 opens or closes that end, 2 to 4 set the sign of slip to -1, 0 or 1.
+    """
+    if w.whole[k] == BONDED:
+        return False
+    if what < SLIP:
+        if w.whole[k] != 0 or w.touching[k, what] == 0 or w.drive[k] >= 0:
+            return False
+        change(w, k, what, 0, trial.impact)
+        return True
+    way, given = what - SLIP - 1, 0 if trial.impact else w.moves[k]
+    if not w.closed[k].any() or (given != 0 and way != given):
+        return False
+    w.slides[k] = way
+    return True
 
 
 @kernel
@@ -413,7 +446,7 @@ def search(p, w, trial, exclude):
         found, more = _try_slips(p, w, trial, found)
         several = several or more
     if several:
-        w.told.several_modes += 1
+        w.outcome.several_modes += 1
     if found < 0 and w.wrong[np.argmin(w.wrong[: w.count])] > ROUNDING:
         found = _try_neighbours(p, w, trial, exclude)
     if found < 0:

@@ -11,7 +11,7 @@ from rockfrag.engines.compile.jit import inlined_kernel, kernel
 from rockfrag.engines.planar.equations import solve_equations
 from rockfrag.engines.planar.records import AT_EDGE
 from rockfrag.engines.planar.support import rubbing
-from rockfrag.engines.planar.ties import is_any_taut, pull
+from rockfrag.engines.planar.ties import fill_tie_accelerations, is_any_taut
 from rockfrag.engines.planar.walls import any_closed, wall_end
 
 SHEAR, COUPLE = (
@@ -200,31 +200,49 @@ def _fill_equations(p, w, q, v, k, impact, rough):
 
 @kernel
 def solve_generally(p, w, q, v, ah, av, impact, rough, standing):
-    """Solve any mode by elimination above the first ``standing`` bodies, as :func:`solve` does in formulas."""
-    for k in range(p.count):
-        for d in range(3 * k, 3 * k + 3):
-            w.out[d] = v[d] if impact else 0.0
-        if not impact and k >= standing:
-            w.out[3 * k], w.out[3 * k + 1] = -ah, -(p.g + av)
-    for k in range(p.contacts):
-        w.normal[k, 0] = w.normal[k, 1] = w.shear[k] = 0.0
-    if p.ties + p.is_sprung > 0 and not impact:
-        pull(p, w, q, v)
-        for d in range(3 * p.count):
-            w.out[d] += w.drift[d]
+    """Solve any mode by elimination above the first ``standing`` bodies (``docs/contact.md``, 3; impacts 7).
+
+    In and out as of :func:`solve`.  Three steps: motion without contact forces into ``w.out``; forces that bring
+    about what the mode asks of the motion; the motion that they add.
+    """
+    _fill_motion_without_forces(p, w, q, v, ah, av, impact, standing)
     for k in range(standing, p.contacts):
         _fill_equations(p, w, q, v, k, impact, rough)
-        begin, base = 0, 3 * p.upper[k] - 3
-        if k == standing or p.lower[k] < 0:
-            begin = 3
+        base = 3 * p.upper[k] - 3
+        # coordinates of the body below count unless it is the ground, or stands
+        begin = 3 if k == standing or p.lower[k] < 0 else 0
         for i in range(3 * k, 3 * k + w.unknowns[k]):
             for d in range(begin, 6):
                 w.right[i] -= w.row[i, d] * w.out[base + d]
+    # what a search has listed no longer stands
     w.listed[:] = -1
     if not solve_equations(p, w, standing, p.count - 1):
         return False
     for d in range(3 * standing, 3 * p.count):
         w.out[d] += w.moved[d]
+    _keep_forces(p, w, q, impact, standing)
+    return True
+
+
+@kernel
+def _fill_motion_without_forces(p, w, q, v, ah, av, impact, standing):
+    """Fill ``w.out``: accelerations without contact forces, none of standing bodies; or velocities before."""
+    for k in range(p.count):
+        for d in range(3 * k, 3 * k + 3):
+            w.out[d] = v[d] if impact else 0.0
+        if not impact and k >= standing:
+            w.out[3 * k], w.out[3 * k + 1] = -ah, -(p.g + av)
+    if p.ties + p.is_sprung > 0 and not impact:
+        fill_tie_accelerations(p, w, q, v)
+        for d in range(3 * p.count):
+            w.out[d] += w.drift[d]
+
+
+@kernel
+def _keep_forces(p, w, q, impact, standing):
+    """Sum up the unknowns that were solved to normal forces of ends and shears of contacts."""
+    for k in range(p.contacts):
+        w.normal[k, 0] = w.normal[k, 1] = w.shear[k] = 0.0
     for k in range(standing, p.contacts):
         friction = rubbing(p, w, q, k)
         for i in range(3 * k, 3 * k + w.unknowns[k]):
@@ -232,11 +250,11 @@ def solve_generally(p, w, q, v, ah, av, impact, rough, standing):
             if end == SHEAR:
                 w.shear[k] += force
             elif end < SHEAR:
+                # with a law of restitution the other end gets a fraction of it too
                 fraction = w.fraction[k, end] if impact else 0.0
                 w.normal[k, end] += force
                 w.normal[k, 1 - end] += fraction * force
                 w.shear[k] -= friction * (force + fraction * force)
-    return True
 
 
 @kernel
@@ -287,7 +305,7 @@ def _solve_top(p, w, q, v, ah, av):
     fx, fy = -ah, -(p.g + av)
     light, slow = p.inverse[3 * k], p.inverse[3 * k + 2]
     w.normal[k, 0] = w.normal[k, 1] = 0.0
-    shear, pull_x, pull_y, twist, moment = 0.0, 0.0, 0.0, 0.0, 0.0
+    shear, force_x, force_y, twist, moment = 0.0, 0.0, 0.0, 0.0, 0.0
     if w.closed[k, 0] == 1 or w.closed[k, 1] == 1:
         end = 0 if w.closed[k, 0] == 1 else 1
         rubs = -w.slides[k] * p.kinetic[k]
@@ -319,16 +337,22 @@ def _solve_top(p, w, q, v, ah, av):
                 shear = (also * across - need * both) / whole
             twist = first * push + two * shear
         w.normal[k, end] = push - far_push
-        pull_x, pull_y = shear * tx - push * ty, push * tx + shear * ty
+        force_x, force_y = shear * tx - push * ty, push * tx + shear * ty
         if k > 0:
-            moment = pull_y * (x - q[0]) - pull_x * (y - q[1])
+            moment = force_y * (x - q[0]) - force_x * (y - q[1])
             moment += far_push * (tx * (far_x - x) + ty * (far_y - y))
     w.shear[k] = shear
-    w.out[3 * k] = fx + pull_x * light
-    w.out[3 * k + 1] = fy + pull_y * light
+    w.out[3 * k] = fx + force_x * light
+    w.out[3 * k + 1] = fy + force_y * light
     w.out[3 * k + 2] = twist * slow
     if k > 0:
         w.out[0] = w.out[1] = w.out[2] = 0.0
         _hold_still(
-            p, w, q, 0, pull_x + p.mass[0] * ah, pull_y + p.mass[0] * (p.g + av), moment
+            p,
+            w,
+            q,
+            0,
+            force_x + p.mass[0] * ah,
+            force_y + p.mass[0] * (p.g + av),
+            moment,
         )

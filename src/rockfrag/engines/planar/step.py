@@ -86,13 +86,13 @@ def take_step(p, w, stretch, energy_balance):
     for d in range(size):
         w.kv[d, 0] = w.v0[d]
         w.ka[d, 0] = w.a0[d]
-    work, rubbed, tied = 0.0, 0.0, 0.0
+    work, friction_loss, tied = 0.0, 0.0, 0.0
     if energy_balance:
         look_at(p, w, w.q0)
         solve(p, w, w.q0, w.v0, stretch.ah, stretch.av, False)
         first, two, three = _powers(p, w, w.q0, w.v0, stretch.ah, stretch.av)
         work += WEIGHTS[6, 0] * first
-        rubbed += WEIGHTS[6, 0] * two
+        friction_loss += WEIGHTS[6, 0] * two
         tied += WEIGHTS[6, 0] * three
     for stage in range(1, 7):
         for d in range(size):
@@ -117,10 +117,10 @@ def take_step(p, w, stretch, energy_balance):
         if energy_balance and 2 <= stage <= 5:
             first, two, three = _powers(p, w, w.q1, w.v1, ah, av)
             work += WEIGHTS[6, stage] * first
-            rubbed += WEIGHTS[6, stage] * two
+            friction_loss += WEIGHTS[6, stage] * two
             tied += WEIGHTS[6, stage] * three
     copy(p, w.out, w.a1)
-    return work * h, rubbed * h, tied * h
+    return work * h, friction_loss * h, tied * h
 
 
 @kernel

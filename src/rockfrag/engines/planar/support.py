@@ -83,4 +83,4 @@ def note_stroke(p, w):
     """Keep the largest displacement of the plate."""
     if p.is_supported == 1:
         at = p.support_number
-        w.told.stroke[at] = max(w.told.stroke[at], abs(displacement(p, w.q)))
+        w.outcome.stroke[at] = max(w.outcome.stroke[at], abs(displacement(p, w.q)))

@@ -54,7 +54,7 @@ def is_any_taut(p, w):
 
 
 @kernel
-def pull(p, w, q, v):
+def fill_tie_accelerations(p, w, q, v):
     """Accelerations by ties and the spring of an isolator into ``w.drift``, after ``look_at`` with ``q``."""
     for d in range(3 * p.count):
         w.drift[d] = 0.0
@@ -149,13 +149,13 @@ def change_ties(p, w, time):
             middle = 0.5 * (p.tie_long[t] + p.tie_short[t])
             longer = p.is_bracket[t] == 0 or length > middle
             w.taut[t] = TAUT if longer else PUSHED
-            w.told.hits[at] += 1
+            w.outcome.hits[at] += 1
             continue
         force, _ = tension(p, w, w.q, w.v, t)
-        w.told.largest_force[at] = max(w.told.largest_force[at], abs(force))
+        w.outcome.largest_force[at] = max(w.outcome.largest_force[at], abs(force))
         if abs(force) >= p.tie_strength[t] * (1.0 - 1e-9):
             w.taut[t] = BROKEN
-            w.told.breaking_time[at] = time
+            w.outcome.breaking_time[at] = time
         else:
             w.taut[t] = SLACK
     return changed
@@ -167,4 +167,4 @@ def note_tensions(p, w):
     for t in range(p.ties):
         force, _ = tension(p, w, w.q, w.v, t)
         at = p.tie_number[t]
-        w.told.largest_force[at] = max(w.told.largest_force[at], abs(force))
+        w.outcome.largest_force[at] = max(w.outcome.largest_force[at], abs(force))

@@ -32,7 +32,7 @@ from rockfrag.engines.velocity_pieces import Jump, Piece, pieces_of
 from rockfrag.outcomes.outcomes import Outcomes, empty_outcomes
 from rockfrag.outcomes.response import Response
 
-LEDGERS = ("work", "rubbed", "struck", "tied")
+LEDGERS = ("work", "friction_loss", "impact_loss", "tied")
 _LARGEST = ("peak_rotation", "peak_velocity", "peak_slip", "slid")
 _COUNTED = ("flights", "impacts", "paradoxes", "several_modes", "given_way")
 _LAST = ("overturned_body", "parted_contact", "leaning")
@@ -50,7 +50,7 @@ def run(cases: Cases) -> Outcomes:
         steps = Between(case)
         for _ in steps.parts(keeps=False):
             pass
-        found[i, m, s] = steps.told
+        found[i, m, s] = steps.outcome
     for i, system in enumerate(cases.systems):
         write_contact(outcomes, i, system.count, found[i], everything=True)
     return outcomes
@@ -78,7 +78,7 @@ class Between:
 
     case: Case
     work: np.void = field(default_factory=records.working_memory)
-    told: np.void = field(default_factory=lambda: np.zeros(1, records.OUTCOME)[0])
+    outcome: np.void = field(default_factory=lambda: np.zeros(1, records.OUTCOME)[0])
     forced: int = 0
     spent: dict[str, float] = field(default_factory=lambda: dict.fromkeys(LEDGERS, 0.0))
 
@@ -88,7 +88,7 @@ class Between:
         self.closing = closing_of(self.case.system)
         self.at_jump = self.body.copy()
         self.at_jump["kinetic"] = self.body["static"]
-        self.told["overturning_time"] = math.nan
+        self.outcome["overturning_time"] = math.nan
 
     def parts(self, *, keeps: bool) -> Iterator[Part]:
         """Go through all parts; ``keeps`` samples and contact events."""
@@ -98,9 +98,9 @@ class Between:
                 yield self._jump(piece, piece.jump, is_first=is_first)
             is_first = False
             yield self._through(piece, keeps=keeps)
-            if self.told["overturned_body"]:
+            if self.outcome["overturned_body"]:
                 break
-        self.told["slip"] = self._look(self.body, 0.0, 0.0).samples["slip"][0]
+        self.outcome["slip"] = self._look(self.body, 0.0, 0.0).samples["slip"][0]
 
     def _look(self, body: np.void, ah: float, av: float) -> Part:
         """Let contacts take up the state as it is, and no time pass."""
@@ -155,10 +155,10 @@ class Between:
         self.state[1, 1 : 3 * count : 3] -= jump.up
         shifted = self.state[1].copy()
         part = self._look(self.at_jump, ah, av)
-        struck = part.contact_events
-        jammed = struck["kind"] == contact.PARADOX
+        contact_events = part.contact_events
+        jammed = contact_events["kind"] == contact.PARADOX
         # what a jump jams has an impulse, which is its answer and no paradox
-        struck["kind"][jammed] = contact.IMPACT
+        contact_events["kind"][jammed] = contact.IMPACT
         opening = np.zeros(1, contact.CONTACT_EVENT)
         opening["kind"], opening["q"] = VELOCITY_STEP, self.state[0]
         mode, kinetic = part.samples["mode"][0], self._kinetic(shifted)
@@ -168,9 +168,9 @@ class Between:
         # what a jump adds is work of the base
         opening["energy_before"], opening["energy_after"] = kinetic, kinetic
         self.spent["work"] += kinetic - self._kinetic(old)
-        self.work["told"]["paradoxes"] -= int(jammed.sum())
+        self.work["outcome"]["paradoxes"] -= int(jammed.sum())
         self._add(piece.begin)
-        part.contact_events = np.concatenate([opening, struck])
+        part.contact_events = np.concatenate([opening, contact_events])
         part.samples = part.samples[:0] if before is None else before
         size = part.samples.size
         part.time, part.ground = part.time[:size], part.ground[:size]
@@ -192,14 +192,14 @@ class Between:
 
     def _add(self, begin: float) -> None:
         """Add what the kernels told of a part that begins at an instant [s]."""
-        told, more = self.told, self.work["told"]
+        outcome, more = self.outcome, self.work["outcome"]
         for name in _LARGEST:
-            told[name] = np.maximum(told[name], more[name])
+            outcome[name] = np.maximum(outcome[name], more[name])
         for name in _COUNTED:
-            told[name] += more[name]
+            outcome[name] += more[name]
         for name in _LAST:
-            told[name] = more[name]
-        told["overturning_time"] = begin + float(more["overturning_time"])
+            outcome[name] = more[name]
+        outcome["overturning_time"] = begin + float(more["overturning_time"])
         self.forced += int(self.work["forced"])
         for name in LEDGERS:
             self.spent[name] += float(self.work[name])
@@ -220,4 +220,4 @@ class JumpedRun(ContactRun):
         firsts = np.cumsum([0, *(part.time.size for part in parts)])
         rows = [first + part.rows for first, part in zip(firsts, parts, strict=False)]
         self.event_clock = np.concatenate(rows)
-        self.work["told"], self.work["forced"] = steps.told, steps.forced
+        self.work["outcome"], self.work["forced"] = steps.outcome, steps.forced

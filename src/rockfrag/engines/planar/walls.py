@@ -94,8 +94,8 @@ def note_impulses(p, w):
             w.hit[k, end] += w.normal[k, end]
         if given > UNFELT * p.weight / p.g * p.speed:
             at = p.wall[k]
-            w.told.hits[at] += 1
-            w.told.largest_impulse[at] = max(w.told.largest_impulse[at], given)
+            w.outcome.hits[at] += 1
+            w.outcome.largest_impulse[at] = max(w.outcome.largest_impulse[at], given)
 
 
 @kernel
@@ -103,4 +103,4 @@ def note_forces(p, w):
     """Keep the largest forces on walls, with those of a motion in ``w``."""
     for k in range(p.count, p.contacts):
         at, force = p.wall[k], w.normal[k, 0] + w.normal[k, 1]
-        w.told.largest_force[at] = max(w.told.largest_force[at], force)
+        w.outcome.largest_force[at] = max(w.outcome.largest_force[at], force)

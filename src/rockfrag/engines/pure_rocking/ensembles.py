@@ -24,13 +24,13 @@ from rockfrag.engines.pure_rocking.kernels.lanes.case import (
 )
 from rockfrag.engines.pure_rocking.kernels.lanes.scheduler import integrate_stacks
 from rockfrag.engines.steps import STACK_STEP, free_samples, step_count
-from rockfrag.laws import Told, law_named, momentum, ratio
+from rockfrag.laws import ForKernels, law_named, momentum, ratio
 from rockfrag.outcomes.outcomes import Outcomes, empty_outcomes
 from rockfrag.system import geometry
 from rockfrag.system.contact import ImpactLaw
 from rockfrag.system.system import System
 
-BY_MOMENTUM: Told = (momentum.NUMBER, 1.0)
+BY_MOMENTUM: ForKernels = (momentum.NUMBER, 1.0)
 FIELDS = ("after1r", "after1l", "after2r", "after2l")
 
 
@@ -56,7 +56,7 @@ def body_record(system: System, linear: bool = False, g: float = GRAVITY) -> np.
     return filled
 
 
-def afters(system: System) -> tuple[Told, ...]:
+def afters(system: System) -> tuple[ForKernels, ...]:
     """Return how ground and interface come off impacts that end on their right and left pivots.
 
     Of a lone body, which the interface stands for, all laws are the same.
@@ -78,8 +78,8 @@ def afters(system: System) -> tuple[Told, ...]:
     )
 
 
-def after_impact(law: ImpactLaw, shape: geometry.Shape, pivot: int) -> Told:
-    """What the kernels are told of the impacts of a contact that end on a pivot of the body above it."""
+def after_impact(law: ImpactLaw, shape: geometry.Shape, pivot: int) -> ForKernels:
+    """What the kernels get of the impacts of a contact that end on a pivot of the body above it."""
     return law_named(law.name).tell(shape, law.right if pivot > 0 else law.left, pivot)
 
 
@@ -120,6 +120,7 @@ def sampled(
     offsets = np.concatenate([[0], np.cumsum(sizes + -sizes % BLOCK)])
 
     def end_to_end(each: Sequence[Floats]) -> Floats:
+        """Samples of all motions behind each other, each as dense as its systems need."""
         made = np.zeros(offsets[-1])
         for start, (times, motion) in zip(offsets.tolist(), each_kind, strict=False):
             dense = refined(each[motion], times)
@@ -223,9 +224,14 @@ def run_blocks(cases: Cases) -> Outcomes:
     pivots["swing"] *= intervals[:, :, np.newaxis] ** 2
     pivots["per_swing"] /= intervals[:, :, np.newaxis] ** 2
     parts, free = np.ones(intervals.shape), np.zeros(intervals.shape, np.int64)
-    told = {"bodies": pivots, "factors": cases.scales / g, "parts": parts, "free": free}
+    given = {
+        "bodies": pivots,
+        "factors": cases.scales / g,
+        "parts": parts,
+        "free": free,
+    }
     return _by_lanes(
-        LONE_BLOCKS.name, cases, block.integrate_blocks, block.worker, made, **told
+        LONE_BLOCKS.name, cases, block.integrate_blocks, block.worker, made, **given
     )
 
 
@@ -273,12 +279,12 @@ def _by_lanes(
     kernel: Any,
     worker: Callable[[], Any],
     sampled: Any,
-    **told: Any,
+    **given: Any,
 ) -> Outcomes:
-    """Return what lanes make of motions ``sampled`` for an ensemble, and of what its kernel is ``told``."""
+    """Return what lanes make of motions ``sampled`` for an ensemble, and of what its kernel is ``given``."""
     motions, rows, intervals = sampled
     count = len(cases.systems) * cases.scales.size
-    ensemble = Ensemble(np.array([0]), count, rows=rows, intervals=intervals, **told)
+    ensemble = Ensemble(np.array([0]), count, rows=rows, intervals=intervals, **given)
     found = np.empty(count, OUTCOME)
     integrate(kernel, worker, cases.threads, ensemble, motions, found)
     outcomes = empty_outcomes(cases.names, cases.scales, (name,))

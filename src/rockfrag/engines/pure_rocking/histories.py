@@ -93,6 +93,7 @@ def summarised(
     summaries = np.zeros(cases.shape, kept.SUMMARY)
 
     def work(place: tuple[int, int, int]) -> None:
+        """Integrate one case and keep what outcomes take from it."""
         i, j, k = place
         case = Case(
             cases.systems[i], cases.motions[j], float(cases.scales[j, k]), cases.request
@@ -220,18 +221,20 @@ class SingleRun:
             _Turning(sine[:, i], cosine[:, i], omega[:, i], alpha[:, i])
             for i in range(self.count)
         ]
-        lower, side, ways = (
+        lower, side, pivots = (
             self.system.shapes[0],
             (state < 0).astype(np.int64),
             (+1, -1),
         )
-        arm = np.array([geometry.arm(lower, way) for way in ways])[side[:, 0]]
+        arm = np.array([geometry.arm(lower, way) for way in pivots])[side[:, 0]]
         links = [turns[0].link(arm)]
         centres = [links[0][:2]]
         if self.count == 2:
             pile = self.system.pile
-            feet = np.array([[geometry.reach(pile, a, b) for b in ways] for a in ways])
-            above = np.array([geometry.upper_arm(pile, way) for way in ways])
+            feet = np.array(
+                [[geometry.reach(pile, a, b) for b in pivots] for a in pivots]
+            )
+            above = np.array([geometry.upper_arm(pile, way) for way in pivots])
             top = np.subtract(pile.right, pile.left)
             links += [
                 turns[0].link(feet[side[:, 0], side[:, 1]]),

@@ -1,7 +1,7 @@
 """Vectors of three as tuples, rotations, and small linear systems, allocation-free.
 
-In and out: tuples of floats; rotations are unit quaternions (world ← body). No equation of mechanics stands here;
-``docs/space.md``, "Coordinates", says what the quaternion means.
+In: tuples of floats, and unit quaternions (world ← body). Out: likewise, or solutions in arrays. No equation of
+mechanics stands here; ``docs/space.md``, "Coordinates", says what the quaternion means.
 """
 
 import math

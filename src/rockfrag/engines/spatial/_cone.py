@@ -456,16 +456,16 @@ def solve_cones(s, n, least):
     At ``least`` so many of the n contacts push. Returned are the set that pushes as bits (-1 if none was found),
     and how many sets of that size would do.
     """
-    chosen, ways = fewest(s, n, least, False)
+    chosen, solutions = fewest(s, n, least, False)
     if chosen < 0:
-        chosen, ways = fewest(s, n, least, True)
+        chosen, solutions = fewest(s, n, least, True)
     if chosen >= 0:
         for i in range(3 * n):
             s.impulse[i] = s.best[i]
         for i in range(n):
             s.grip[i] = s.best_grip[i]
         fill_after(s, n)
-    return chosen, ways
+    return chosen, solutions
 
 
 @kernel
@@ -476,7 +476,7 @@ def fewest(s, n, least, slide):
         # the largest velocity (or acceleration) that there is to stop
         scale = max(scale, abs(s.free[i]))
     small = 1e-11 * scale
-    chosen, ways, size_found, lowest = -1, 0, 99, 0.0
+    chosen, solutions, size_found, lowest = -1, 0, 99, 0.0
     for k in range(1 << MOST):
         mask = ORDER[k]
         size = members(s, n, mask)
@@ -493,7 +493,7 @@ def fewest(s, n, least, slide):
             and cones_hold(s, n, mask, small / largest)
             and others_open(s, n, mask, small)
         ):
-            ways += 1
+            solutions += 1
             # change of kinetic energy by the impulses: P·b + P·W P / 2
             change = 0.0
             for i in range(3 * n):
@@ -504,4 +504,4 @@ def fewest(s, n, least, slide):
                     s.best[i] = s.impulse[i]
                 for i in range(n):
                     s.best_grip[i] = s.grip[i]
-    return chosen, ways
+    return chosen, solutions

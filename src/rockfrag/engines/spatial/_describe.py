@@ -46,6 +46,7 @@ def fill_body(body: Any, g: float) -> bool:
 
 
 def _fill_rim(body: Any) -> None:
+    """Fill points of a round base, and how near and far its rim lies from the centre."""
     radius, x, y = body.rim, body.centre[0], body.centre[1]
     body.count = FEET
     for i in range(FEET):
@@ -63,6 +64,7 @@ def _fill_rim(body: Any) -> None:
 
 
 def _reach_of_polygon(body: Any) -> None:
+    """Fill how near and far the edges of a base lie from the centre, and its radius in torsion."""
     body.nearest, body.furthest = math.inf, 0.0
     moment = area = 0.0
     for i in range(body.count):

@@ -123,7 +123,7 @@ def kind_of(s):
 
 
 @kernel
-def pull_at(field, tau):
+def effective_gravity_at(field, tau):
     """Effective gravity in the world."""
     return (
         field[0] + field[3] * tau,
@@ -170,7 +170,7 @@ def tie_force(body, length, rate, i):
 
 
 @kernel
-def pull_ties(body, y, rows, s):
+def fill_tie_forces(body, y, rows, s):
     """Fill in force and moment of the ties that have not broken, in the body."""
     for k in range(3):
         s.pulled[k] = s.twisted[k] = 0.0
@@ -301,10 +301,10 @@ def twist_by_ties(s):
 
 
 @kernel
-def load_on(body, y, rows, pull, s):
+def load_on(body, y, rows, gravity, s):
     """Effective gravity and the force of the ties, in the body, for a unit of mass; their moment is kept."""
-    pull_ties(body, y, rows, s)
-    weight = to_body(rows, pull)
+    fill_tie_forces(body, y, rows, s)
+    weight = to_body(rows, gravity)
     return plus(weight, (s.pulled[0], s.pulled[1], s.pulled[2]))
 
 
@@ -363,16 +363,26 @@ def stop_edge(body, up, i, j, first, second, momentum, small):
 
 
 @kernel
-def slider_force(body, y, rows, omega, spin, weight, s):
-    """Force at the one contact, which slides; in the body."""
+def slide_on_one_point(body, y, rows, omega, free_spin, weight, s):
+    """Force at the one closed contact, which slides, with its arm and its velocity (``docs/space.md``, 4).
+
+    Friction is kinetic, against the slip, and the normal force is the one that keeps the contact from
+    accelerating upwards.  In: the rows of the attitude, the angular velocity, and the angular acceleration and the
+    effective gravity without the force, both in the body.  Out: the force [N/kg] and the arm [m] in the body, the
+    velocity of the point in axes of the ground [m/s].
+    """
     i = s.closed[0]
-    p = solid.arm(body, rows[2], i)
-    u = solid.point_velocity(y, rows, p)
-    way = slip_direction(s, 0, u[0], u[1])
-    d = to_body(rows, (-body.kinetic * way[0], -body.kinetic * way[1], 1.0))
-    gives = plus(d, cross(times(body.inverse, cross(p, d)), p))
-    free = plus(plus(weight, cross(spin, p)), solid.bias(body, rows[2], omega, p, i))
-    return scaled(-dot(rows[2], free) / dot(rows[2], gives), d), p, u
+    up = rows[2]
+    p = solid.arm(body, up, i)
+    velocity = solid.point_velocity(y, rows, p)
+    way = slip_direction(s, 0, velocity[0], velocity[1])
+    # a unit of normal force, with the friction that comes with it, and how the point accelerates by it
+    unit = to_body(rows, (-body.kinetic * way[0], -body.kinetic * way[1], 1.0))
+    by_unit = plus(unit, cross(times(body.inverse, cross(p, unit)), p))
+    bias = solid.bias(body, up, omega, p, i)
+    without = plus(plus(weight, cross(free_spin, p)), bias)
+    normal = -dot(up, without) / dot(up, by_unit)
+    return scaled(normal, unit), p, velocity
 
 
 @kernel
@@ -391,7 +401,7 @@ def hinge_acceleration(body, rows, omega, weight, i, j, s):
 
 
 @kernel
-def share_force(body, rows, omega, alpha, force, e, s):
+def split_force(body, rows, omega, alpha, force, e, s):
     """Share the force of a hinge between its ends so that both hold if they can; world components."""
     p, q = (
         solid.arm(body, rows[2], s.closed[0]),
@@ -499,18 +509,18 @@ def largest_compliance(s, n):
 
 
 @kernel
-def rates(body, tau, y, dy, s, share=True):
-    """Fill in dy/dt, and the contact forces in world components; those of a hinge's ends only if they are shared.
+def rates(body, tau, y, dy, s, split=True):
+    """Fill in dy/dt, and the contact forces in world components; of a hinge's ends only if its force is ``split``.
 
     ``s.field`` holds the effective gravity at the beginning of the interval, its rate, and the gravity of a ground
     at rest; ``tau`` counts from there.
     """
     rows = rotation(y)
     omega = solid.omega_of(y)
-    pull = pull_at(s.field, tau)
-    weight = load_on(body, y, rows, pull, s)
+    gravity = effective_gravity_at(s.field, tau)
+    weight = load_on(body, y, rows, gravity, s)
     tied = (s.pulled[0], s.pulled[1], s.pulled[2])
-    load = plus(pull, to_world(rows, tied))
+    load = plus(gravity, to_world(rows, tied))
     kind = kind_of(s)
     lost = 0.0
     if kind == PIVOT:
@@ -521,12 +531,12 @@ def rates(body, tau, y, dy, s, share=True):
     elif kind == HINGE:
         i, j = s.closed[0], s.closed[1]
         alpha, force, e = hinge_acceleration(body, rows, omega, weight, i, j, s)
-        if share:
-            share_force(body, rows, omega, alpha, force, e, s)
+        if split:
+            split_force(body, rows, omega, alpha, force, e, s)
         acceleration = plus(load, to_world(rows, force))
     elif kind == SLIDER:
         spin = solid.free_spin(body, omega, twist_by_ties(s))
-        force, p, u = slider_force(body, y, rows, omega, spin, weight, s)
+        force, p, u = slide_on_one_point(body, y, rows, omega, spin, weight, s)
         pushed = to_world(rows, force)
         s.lam[0, 0], s.lam[0, 1], s.lam[0, 2] = pushed
         acceleration = plus(load, pushed)

@@ -78,24 +78,26 @@ def set_field(field, acceleration, k, scale, dt, g):
 def rest_ends(body, y, s, tau, dt):
     """When the ground no longer carries the body at rest, -1 if it does: concave margins need only ends."""
     field = s.field
-    pull = forces.pull_at(field, dt)
-    level = algebra.norm(pull[0], pull[1])
-    upright = level * body.height < -pull[2] * body.nearest * (1 - 1e-9)
-    if upright and level < -body.static * pull[2] and not s.bonded:
+    gravity = forces.effective_gravity_at(field, dt)
+    level = algebra.norm(gravity[0], gravity[1])
+    upright = level * body.height < -gravity[2] * body.nearest * (1 - 1e-9)
+    if upright and level < -body.static * gravity[2] and not s.bonded:
         # a flat body rests whichever way it is pulled
         return -1.0
     rows = algebra.rotation(y)
-    below = modes.rest_margin(body, y, rows, pull, s)
+    below = modes.rest_margin(body, y, rows, gravity, s)
     if below >= 0:
         return -1.0
-    above = modes.rest_margin(body, y, rows, forces.pull_at(field, tau), s)
+    above = modes.rest_margin(body, y, rows, forces.effective_gravity_at(field, tau), s)
     if above <= 0:
         return tau
     bracket = (tau, above, dt, below, 0)
     for _ in range(100):
         low, above, high, below, _ = bracket
         middle = (low * below - high * above) / (below - above)
-        value = modes.rest_margin(body, y, rows, forces.pull_at(field, middle), s)
+        value = modes.rest_margin(
+            body, y, rows, forces.effective_gravity_at(field, middle), s
+        )
         bracket = narrowed(bracket, middle, value)
         if abs(value) < 1e-14:
             return middle
@@ -108,52 +110,52 @@ def rest_ends(body, y, s, tau, dt):
 def leave_rest(body, y, tau, s):
     """Choose how the body leaves rest: slides, or tips over an edge, a vertex or the rim."""
     rows = algebra.rotation(y)
-    pull = forces.pull_at(s.field, tau)
+    gravity = forces.effective_gravity_at(s.field, tau)
     if body.walls:
-        pull = modes.borne_by_ground(body, y, rows, pull)
+        gravity = modes.borne_by_ground(body, y, rows, gravity)
     small = 1e-9 * s.field[6]
-    level = algebra.norm(pull[0], pull[1])
+    level = algebra.norm(gravity[0], gravity[1])
     s.rests = 0
-    whole = modes.rest_margin(body, y, rows, pull, s)
-    if -body.static * pull[2] - level < small or whole < -small:
-        slide_or_jump(body, y, tau, s, pull, level, whole < -small)
+    whole = modes.rest_margin(body, y, rows, gravity, s)
+    if -body.static * gravity[2] - level < small or whole < -small:
+        slide_or_jump(body, y, tau, s, gravity, level, whole < -small)
         return
     if body.rim > 0:
-        b = algebra.to_body(rows, (pull[0], pull[1], 0.0))
-        centre = -pull[2] / body.height
+        b = algebra.to_body(rows, (gravity[0], gravity[1], 0.0))
+        centre = -gravity[2] / body.height
         x, z = b[0] - centre * body.centre[0], b[1] - centre * body.centre[1]
-        start_rolling(body, y, x, z, pull, s)
+        start_rolling(body, y, x, z, gravity, s)
         return
     s.count = 0
     last, first = -1, -1
     for i in range(body.count):
         if solid.gap(body, y, rows[2], i) <= modes.TOUCH:
             if last >= 0:
-                add_edge(body, y, rows, pull, last, i, small, s)
+                add_edge(body, y, rows, gravity, last, i, small, s)
             else:
                 first = i
             last = i
-    add_edge(body, y, rows, pull, last, first, small, s)
+    add_edge(body, y, rows, gravity, last, first, small, s)
     modes.anchor_all(body, y, s)
 
 
 @kernel
-def slide_or_jump(body, y, tau, s, pull, level, jumps):
+def slide_or_jump(body, y, tau, s, gravity, level, jumps):
     """Leave rest by sliding on the whole base, or, after a jump of the ground's acceleration, in any way."""
     if jumps and modes.choose_mode(body, tau, y, s):
         return
     n = modes.pick_feet(body, y, algebra.rotation(y), s)
     for i in range(n):
         s.closed[i], s.slides[i] = s.which[i], forces.SLIDES
-        s.direction[i, 0], s.direction[i, 1] = pull[0] / level, pull[1] / level
+        s.direction[i, 0], s.direction[i, 1] = gravity[0] / level, gravity[1] / level
     s.count = n
     s.counters[modes.SLIDINGS] += 1
 
 
 @kernel
-def add_edge(body, y, rows, pull, i, j, small, s):
+def add_edge(body, y, rows, gravity, i, j, small, s):
     """Close the ends of an edge that the body tips over; a vertex that two such edges share stays alone."""
-    if modes.edge_margin(body, y, rows, pull, i, j) > small:
+    if modes.edge_margin(body, y, rows, gravity, i, j) > small:
         return
     if s.count == 0:
         s.closed[0], s.closed[1] = i, j
@@ -167,14 +169,14 @@ def add_edge(body, y, rows, pull, i, j, small, s):
 
 
 @kernel
-def start_rolling(body, y, x, z, pull, s):
+def start_rolling(body, y, x, z, gravity, s):
     """Tilt a round body by RIM_START towards a direction of the base, by the work of the ground's pull."""
     size = max(algebra.norm(x, z), 1e-300)
     u = (x / size, z / size)
     a, b, c = y[0], y[1], y[2]
     tilt_about(body, y, u, RIM_START)
-    lifted = (pull[2] + s.field[6]) * (y[2] - c)
-    y[solid.WORK] += pull[0] * (y[0] - a) + pull[1] * (y[1] - b) + lifted
+    lifted = (gravity[2] + s.field[6]) * (y[2] - c)
+    y[solid.WORK] += gravity[0] * (y[0] - a) + gravity[1] * (y[1] - b) + lifted
     s.closed[0], s.slides[0] = solid.rim_contact(body), forces.STICKS
     s.count, s.rests = 1, 0
     modes.settle(body, y, s)
@@ -328,7 +330,7 @@ def stop_slips(body, y, s):
 
 
 @kernel
-def rim_instead_of_feet(body, y, pull, s):
+def rim_instead_of_feet(body, y, gravity, s):
     """Replace the feet of a round base by its lowest point as soon as fewer than three of them carry."""
     n = s.count
     if body.rim == 0.0 or n == 0 or n > 2 or s.closed[0] == solid.rim_contact(body):
@@ -338,16 +340,16 @@ def rim_instead_of_feet(body, y, pull, s):
         x += body.points[s.closed[i], 0] - body.centre[0]
         z += body.points[s.closed[i], 1] - body.centre[1]
         sliding = max(sliding, s.slides[i])
-    tip_over_rim(body, y, x, z, sliding, pull, s)
+    tip_over_rim(body, y, x, z, sliding, gravity, s)
 
 
 @kernel
-def tip_over_rim(body, y, x, z, sliding, pull, s):
+def tip_over_rim(body, y, x, z, sliding, gravity, s):
     """Tilt a flat body towards a direction of the base, with the velocities that it has if it slides."""
     omega = solid.omega_of(y)
     velocity = (y[7], y[8], y[9])
     before = solid.energy(body, y, s.field[6]) - y[solid.WORK]
-    start_rolling(body, y, x, z, pull, s)
+    start_rolling(body, y, x, z, gravity, s)
     if sliding == forces.SLIDES:
         s.slides[0] = forces.SLIDES
         y[10], y[11], y[12] = omega
@@ -400,16 +402,16 @@ def note_soon(s, peaks, k, scale, dt):
 def happen(body, what, tau, y, cut, stuck, s):
     """Change velocities and mode by what ended a step (a landing, an opening, …); return the energy lost [J]."""
     g = s.field[6]
-    pull = forces.pull_at(s.field, tau)
+    gravity = forces.effective_gravity_at(s.field, tau)
     before = solid.energy(body, y, g) - y[solid.WORK]
     if what == modes.LANDS:
-        modes.impact(body, y, pull, 0, s)
+        modes.impact(body, y, gravity, 0, s)
         rows = algebra.rotation(y)
         if body.rim == 0.0 and modes.count_touching(body, y, rows) >= 3:
             # the points that open begin with no gap, not with one of rounding
             modes.lay_flat(body, y)
         left = solid.energy(body, y, g)
-        carried = modes.rest_margin(body, y, rows, pull, s) >= 0
+        carried = modes.rest_margin(body, y, rows, gravity, s) >= 0
         if carried and (left < cut * body.barrier or rattle_ends(body, left, s)):
             modes.come_to_rest(body, y, s)
     elif what == modes.SLIP_ENDS:
@@ -420,7 +422,7 @@ def happen(body, what, tau, y, cut, stuck, s):
         turn_ties(body, y, tau, True, s)
     if what == modes.OPENS and body.rim > 0 and s.count >= 3:
         x, z = modes.pressure_centre(body, s)
-        tip_over_rim(body, y, x, z, forces.SLIDES, pull, s)
+        tip_over_rim(body, y, x, z, forces.SLIDES, gravity, s)
     elif stuck > 3 and what in (modes.OPENS, modes.LEAVES_CONE):
         modes.insist(body, what, s)
     elif forces.kind_of(s) != forces.REST and not modes.choose_mode(body, tau, y, s):
@@ -428,11 +430,11 @@ def happen(body, what, tau, y, cut, stuck, s):
         free = slides_any(s)
         if free:
             # an impact without a collision
-            modes.impact(body, y, pull, 1, s)
+            modes.impact(body, y, gravity, 1, s)
             free = modes.choose_mode(body, tau, y, s)
         if not free:
             modes.jam(body, y, s)
-    rim_instead_of_feet(body, y, pull, s)
+    rim_instead_of_feet(body, y, gravity, s)
     return before - (solid.energy(body, y, g) - y[solid.WORK])
 
 
@@ -541,7 +543,7 @@ def record(history, k, y, out, s):
 @kernel
 def small_rim(body, y, tau, cut, s):
     """Let a round body lie flat whose wobble is below the cut-off while the ground would carry it flat."""
-    pull = forces.pull_at(s.field, tau)
+    gravity = forces.effective_gravity_at(s.field, tau)
     rows = algebra.rotation(y)
     if s.count != 1:
         return
@@ -552,7 +554,7 @@ def small_rim(body, y, tau, cut, s):
     if tilting + 0.5 * y[9] ** 2 + lift >= small:
         return
     if (
-        modes.rest_margin(body, y, rows, pull, s) >= 0
+        modes.rest_margin(body, y, rows, gravity, s) >= 0
         and solid.energy(body, y, s.field[6]) < small
     ):
         modes.come_to_rest(body, y, s)
@@ -733,7 +735,7 @@ def integrate(
         modes.come_to_rest(body, y, s)
     else:
         modes.choose_mode(body, 0.0, y, s)
-        rim_instead_of_feet(body, y, forces.pull_at(s.field, 0.0), s)
+        rim_instead_of_feet(body, y, forces.effective_gravity_at(s.field, 0.0), s)
     modes.anchor_all(body, y, s)
     out[CERTAIN_TIME] = math.nan
     last = acceleration.shape[0] - 1
@@ -861,7 +863,7 @@ def begin_holding(body, y, s):
 def note_bond(body, y, tau, s):
     """Keep by how much a side of the bond is pulled at most."""
     rows = algebra.rotation(y)
-    pulled = modes.bond_pull(body, rows, forces.pull_at(s.field, tau))
+    pulled = modes.bond_tension(body, rows, forces.effective_gravity_at(s.field, tau))
     s.force[solid.BOND] = max(s.force[solid.BOND], min(pulled, 0.5 * body.tension))
 
 

@@ -183,19 +183,19 @@ def hold(body, y, rows, s):
 
 
 @kernel
-def impact(body, y, pull, least, s):
+def impact(body, y, gravity, least, s):
     """Solve an impact of all points that touch, and hold those that hardly leave."""
     rows = algebra.rotation(y)
     before = (y[7], y[8], y[9])
     n = touching(body, y, rows, s)
     momentum = stick.fill_velocities(body, y, rows, n, s)
     if picks_wall(n, s):
-        impact_at_wall(body, y, rows, pull, n, least, s)
+        impact_at_wall(body, y, rows, gravity, n, least, s)
         return
     note_slips(body, n, s)
-    found, ways = solve(body, y, rows, n, least, momentum, s)
+    found, solutions = solve(body, y, rows, n, least, momentum, s)
     s.counters[IMPACTS] += 1
-    s.counters[AMBIGUOUS] += ways > 1
+    s.counters[AMBIGUOUS] += solutions > 1
     s.jammed = 0
     if found < 0:
         # last resort: no point that touches approaches or slips any more
@@ -208,21 +208,21 @@ def impact(body, y, pull, least, s):
     for i in range(n):
         push = (s.impulse[3 * i], s.impulse[3 * i + 1], s.impulse[3 * i + 2])
         forces.push_at(body, y, rows, s.which[i], push)
-    keep_slow_contacts(body, y, rows, pull, n, found, s)
+    keep_slow_contacts(body, y, rows, gravity, n, found, s)
     witness(body, y, before, s)
 
 
 @kernel
-def impact_at_wall(body, y, rows, pull, n, least, s):
+def impact_at_wall(body, y, rows, gravity, n, least, s):
     """Solve an impact at walls, and what it asks of the ground, with the ratios of the walls.
 
     Newton's ratio and friction together may gain energy; then all ratios are halved until they do not.
     """
     came = (y[7], y[8], y[9], y[10], y[11], y[12])
     before = solid.energy(body, y, s.field[6])
-    found, ways = -1, 0
+    found, solutions = -1, 0
     for _ in range(TAKEN_IN):
-        found, ways = bounce_without_gain(body, y, rows, n, least, came, before, s)
+        found, solutions = bounce_without_gain(body, y, rows, n, least, came, before, s)
         if found < 0:
             break
         load = algebra.to_body(rows, (y[7], y[8], y[9]))
@@ -232,7 +232,7 @@ def impact_at_wall(body, y, rows, pull, n, least, s):
             break
         s.which[at] = i
     s.counters[IMPACTS] += 1
-    s.counters[AMBIGUOUS] += ways > 1
+    s.counters[AMBIGUOUS] += solutions > 1
     s.jammed = 0
     if found < 0:
         s.counters[UNSOLVED] += 1
@@ -244,24 +244,24 @@ def impact_at_wall(body, y, rows, pull, n, least, s):
         hold(body, y, rows, s)
         return
     note_impulses(body, n, found, s)
-    keep_slow_contacts(body, y, rows, pull, n, found, s)
+    keep_slow_contacts(body, y, rows, gravity, n, found, s)
 
 
 @kernel
 def bounce_without_gain(body, y, rows, n, least, came, before, s):
     """Solve an impact at walls from the velocities that came, with the largest part of the ratios without gain."""
-    part, found, ways = 1.0, -1, 0
+    part, found, solutions = 1.0, -1, 0
     for _ in range(40):
         for k in range(6):
             y[7 + k] = came[k]
-        found, ways = bounce(body, y, rows, n, least, part, s)
+        found, solutions = bounce(body, y, rows, n, least, part, s)
         if found < 0:
             break
         gained = solid.energy(body, y, s.field[6]) - before
         if gained <= 1e-12 * (before + s.field[6] * body.height):
             break
         part *= 0.5
-    return found, ways
+    return found, solutions
 
 
 @kernel
@@ -321,14 +321,14 @@ def bounce(body, y, rows, n, least, part, s):
             s.free[3 * i + 2] += ratio * min(s.free[3 * i + 2], 0.0)
     forces.fill_delassus(body, rows, s.which, n, s.delassus)
     fill_edges(body, y, rows, s.which, n, s)
-    found, ways = solve_cones(s, n, least)
+    found, solutions = solve_cones(s, n, least)
     for i in range(n if found >= 0 else 0):
         push = (s.impulse[3 * i], s.impulse[3 * i + 1], s.impulse[3 * i + 2])
         forces.push_at(body, y, rows, s.which[i], push)
     if found >= 0:
         # how contacts really part: those of a wall by its ratio too
         forces.fill_velocities(body, y, rows, s.which, n, s.after)
-    return found, ways
+    return found, solutions
 
 
 @kernel
@@ -362,9 +362,9 @@ def solve(body, y, rows, n, least, moment, s):
         regains = s.slid[i] and s.friction[i] < s.holds[i]
         plain = plain and not (s.given[i] or regains)
     if plain:
-        found, ways = stick.stick_alone_or_by_two(body, rows, n, least, moment, s)
+        found, solutions = stick.stick_alone_or_by_two(body, rows, n, least, moment, s)
         if found >= 0:
-            return found, ways
+            return found, solutions
     forces.fill_delassus(body, rows, s.which, n, s.delassus)
     fill_edges(body, y, rows, s.which, n, s)
     return solve_cones(s, n, least)
@@ -393,7 +393,7 @@ def let_slip(i, s):
 
 
 @kernel
-def chatters(body, y, rows, pull, i, k, leaving, s):
+def chatters(body, y, rows, gravity, i, k, leaving, s):
     """Whether contact k hops, with a speed, beside contact i on which the body pivots, so little that both close.
 
     Impacts at either end conserve the momentum about the edge between them, with which it goes on when hops are
@@ -403,7 +403,7 @@ def chatters(body, y, rows, pull, i, k, leaving, s):
     if leaving > FASTEST_HOP:
         return False
     up, omega = rows[2], solid.omega_of(y)
-    weight = forces.load_on(body, y, rows, pull, s)
+    weight = forces.load_on(body, y, rows, gravity, s)
     here, there = s.which[i], s.which[k]
     alpha, force = forces.pivot_acceleration(body, up, omega, weight, here, s)
     p, q = solid.arm(body, up, here), solid.arm(body, up, there)
@@ -419,7 +419,7 @@ def chatters(body, y, rows, pull, i, k, leaving, s):
 
 
 @kernel
-def hopping(body, y, rows, pull, n, found, s):
+def hopping(body, y, rows, gravity, n, found, s):
     """Contact that chatters beside the only one that pushed, and stuck; -1 if there is none."""
     slowest, alone = -1, -1
     for k in range(n):
@@ -432,18 +432,18 @@ def hopping(body, y, rows, pull, n, found, s):
     if algebra.norm(s.after[3 * alone], s.after[3 * alone + 1]) > AT_REST:
         return -1
     leaving = s.after[3 * slowest + 2]
-    closes = chatters(body, y, rows, pull, alone, slowest, leaving, s)
+    closes = chatters(body, y, rows, gravity, alone, slowest, leaving, s)
     return slowest if closes else -1
 
 
 @kernel
-def keep_slow_contacts(body, y, rows, pull, n, found, s):
+def keep_slow_contacts(body, y, rows, gravity, n, found, s):
     """Close, together with those that pushed, the contacts that leave more slowly than CLOSE, or chatter."""
     count = 0
     slow = False
     hops = -1
     if not picks_wall(n, s):
-        hops = hopping(body, y, rows, pull, n, found, s)
+        hops = hopping(body, y, rows, gravity, n, found, s)
     for i in range(n):
         leaving = s.after[3 * i + 2]
         if forces.in_set(found, i) or leaving < s.close or i == hops:
@@ -460,20 +460,20 @@ def keep_slow_contacts(body, y, rows, pull, n, found, s):
 
 
 @kernel
-def bond_margin(body, rows, pull):
+def bond_margin(body, rows, gravity):
     """Margin by which a bond holds [N/kg], against tension at a pad and against shear (``docs/holding.md``)."""
-    weight = -pull[2]
-    shear = body.shear + body.static * weight - algebra.norm(pull[0], pull[1])
-    return min(2.0 * (0.5 * body.tension - bond_pull(body, rows, pull)), shear)
+    weight = -gravity[2]
+    shear = body.shear + body.static * weight - algebra.norm(gravity[0], gravity[1])
+    return min(2.0 * (0.5 * body.tension - bond_tension(body, rows, gravity)), shear)
 
 
 @kernel
-def bond_pull(body, rows, pull):
+def bond_tension(body, rows, gravity):
     """Force by which one side of a bond is pulled, for a unit of mass; negative where it is pressed."""
-    flat = algebra.to_body(rows, (pull[0], pull[1], 0.0))
-    whole = pull[2]
+    flat = algebra.to_body(rows, (gravity[0], gravity[1], 0.0))
+    whole = gravity[2]
     for k in range(2):
-        moment = body.height * flat[k] - pull[2] * body.aside[k]
+        moment = body.height * flat[k] - gravity[2] * body.aside[k]
         whole += abs(moment) / body.pads[k]
     return 0.5 * whole
 
@@ -481,45 +481,45 @@ def bond_pull(body, rows, pull):
 @kernel
 def pulled_by_ties(body, y, rows, s):
     """Whether a tie pulls at a body as it stands."""
-    forces.pull_ties(body, y, rows, s)
+    forces.fill_tie_forces(body, y, rows, s)
     pulled = abs(s.pulled[0]) + abs(s.pulled[1]) + abs(s.pulled[2])
     return pulled > 1e-9 * s.field[6]
 
 
 @kernel
-def rest_margin(body, y, rows, pull, s):
+def rest_margin(body, y, rows, gravity, s):
     """Least margin of acceleration by which the body rests: over the edges of its base, and of friction."""
     if s.bonded:
-        return bond_margin(body, rows, pull)
+        return bond_margin(body, rows, gravity)
     if body.constraints > 0 and pulled_by_ties(body, y, rows, s):
         return -1.0
     if body.walls:
-        pull = borne_by_ground(body, y, rows, pull)
-    level = algebra.norm(pull[0], pull[1])
-    margin = -body.static * pull[2] - level
+        gravity = borne_by_ground(body, y, rows, gravity)
+    level = algebra.norm(gravity[0], gravity[1])
+    margin = -body.static * gravity[2] - level
     if body.rim > 0:
-        return min(margin, topple_margin(body, rows, pull))
+        return min(margin, topple_margin(body, rows, gravity))
     last = -1
     first = -1
     for i in range(body.count):
         if solid.gap(body, y, rows[2], i) > TOUCH:
             continue
         if last >= 0:
-            margin = min(margin, tipping_margin(body, y, rows, pull, last, i))
+            margin = min(margin, tipping_margin(body, y, rows, gravity, last, i))
         else:
             first = i
         last = i
     if first == last:
         return -1.0
-    return min(margin, tipping_margin(body, y, rows, pull, last, first))
+    return min(margin, tipping_margin(body, y, rows, gravity, last, first))
 
 
 @kernel
-def tipping_margin(body, y, rows, pull, i, j):
+def tipping_margin(body, y, rows, gravity, i, j):
     """Margin of rest against tipping over an edge; none is needed where a wall stands against it."""
     if body.walls and backed_by_wall(body, y, rows, i, j):
         return 1e300
-    return edge_margin(body, y, rows, pull, i, j)
+    return edge_margin(body, y, rows, gravity, i, j)
 
 
 @kernel
@@ -548,32 +548,32 @@ def lies_against(body, y, rows, w):
 
 
 @kernel
-def borne_by_ground(body, y, rows, pull):
+def borne_by_ground(body, y, rows, gravity):
     """Part of the effective gravity that the ground has to bear under a body at rest beside walls.
 
     What presses a side against a wall the wall can bear, at the height of the centre of mass.
     """
     for w in range(body.constraints):
         a, b = body.away[w, 0], body.away[w, 1]
-        into = -(a * pull[0] + b * pull[1])
+        into = -(a * gravity[0] + b * gravity[1])
         if not body.ties[w] and into > 0.0 and lies_against(body, y, rows, w):
-            pull = (pull[0] + into * a, pull[1] + into * b, pull[2])
-    return pull
+            gravity = (gravity[0] + into * a, gravity[1] + into * b, gravity[2])
+    return gravity
 
 
 @kernel
-def pulled_off(body, pull):
+def pulled_off(body, gravity):
     """Whether static friction of the whole base cannot hold it."""
-    return algebra.norm(pull[0], pull[1]) > -body.static * pull[2]
+    return algebra.norm(gravity[0], gravity[1]) > -body.static * gravity[2]
 
 
 @kernel
-def topple_margin(body, rows, pull):
+def topple_margin(body, rows, gravity):
     """Margin by which the ground carries a round body that is flat, whatever it slides."""
     centre = algebra.to_world(rows, (body.centre[0], body.centre[1], 0.0))
-    x = body.height * pull[0] + pull[2] * centre[0]
-    y = body.height * pull[1] + pull[2] * centre[1]
-    return (-body.rim * pull[2] - algebra.norm(x, y)) / body.height
+    x = body.height * gravity[0] + gravity[2] * centre[0]
+    y = body.height * gravity[1] + gravity[2] * centre[1]
+    return (-body.rim * gravity[2] - algebra.norm(x, y)) / body.height
 
 
 @kernel
@@ -596,16 +596,18 @@ def meets_wall(body, y, rows):
 
 
 @kernel
-def carried_flat(body, tau, y, rows, pull, s):
+def carried_flat(body, tau, y, rows, gravity, s):
     """Whether a body that lies flat, and slides or is about to, stays on its face; a polygon slides on it then."""
     if body.rim == 0.0:
-        slide_flat(body, y, rows, pull, s)
+        slide_flat(body, y, rows, gravity, s)
         forces.rates(body, tau, y, s.slopes[0], s)
         return pressure_margin(body, s) > 1e-9 * body.furthest
     off = algebra.norm(body.centre[0], body.centre[1])
     if body.kinetic * body.height + off < body.rim:
         return True
-    return algebra.norm(y[7], y[8]) < AT_REST and topple_margin(body, rows, pull) >= 0
+    return (
+        algebra.norm(y[7], y[8]) < AT_REST and topple_margin(body, rows, gravity) >= 0
+    )
 
 
 @kernel
@@ -646,21 +648,21 @@ def pick_feet(body, y, rows, s):
 
 
 @kernel
-def slide_flat(body, y, rows, pull, s):
+def slide_flat(body, y, rows, gravity, s):
     """Let a body slide on points of its face, those that do not slip yet the way it is pulled."""
-    level = max(algebra.norm(pull[0], pull[1]), 1e-300)
+    level = max(algebra.norm(gravity[0], gravity[1]), 1e-300)
     n = pick_feet(body, y, rows, s)
     s.count, s.rests = n, 0
     for i in range(n):
         s.closed[i], s.slides[i] = s.which[i], forces.SLIDES
     for i in range(n):
         u = forces.slip_of(body, y, rows, i, s)
-        s.direction[i, 0], s.direction[i, 1] = pull[0] / level, pull[1] / level
+        s.direction[i, 0], s.direction[i, 1] = gravity[0] / level, gravity[1] / level
         s.direction[i, 0], s.direction[i, 1] = forces.slip_direction(s, i, u[0], u[1])
 
 
 @kernel
-def edge_margin(body, y, rows, pull, i, j):
+def edge_margin(body, y, rows, gravity, i, j):
     """Margin of rest against tipping over the edge from point i to the next point j that touches."""
     p = solid.position_of_base(y, rows, solid.arm(body, rows[2], i))
     q = solid.position_of_base(y, rows, solid.arm(body, rows[2], j))
@@ -668,7 +670,8 @@ def edge_margin(body, y, rows, pull, i, j):
     normal = ((q[1] - p[1]) / length, -(q[0] - p[0]) / length)
     reach = normal[0] * (p[0] - y[0]) + normal[1] * (p[1] - y[1])
     return (
-        -(y[2] * (normal[0] * pull[0] + normal[1] * pull[1]) + reach * pull[2]) / y[2]
+        -(y[2] * (normal[0] * gravity[0] + normal[1] * gravity[1]) + reach * gravity[2])
+        / y[2]
     )
 
 
@@ -703,36 +706,36 @@ def lay_flat(body, y):
 def choose_mode(body, tau, y, s):
     """Choose the mode that follows for the points that touch and do not leave; return whether one was found."""
     rows = algebra.rotation(y)
-    pull = forces.pull_at(s.field, tau)
+    gravity = forces.effective_gravity_at(s.field, tau)
     spin = body.height * math.sqrt(y[10] ** 2 + y[11] ** 2 + y[12] ** 2)
     still = math.sqrt(y[7] ** 2 + y[8] ** 2 + y[9] ** 2) + spin < 10 * CLOSE
     if (
         still
         and count_touching(body, y, rows) >= 3
-        and rest_margin(body, y, rows, pull, s) >= 0
+        and rest_margin(body, y, rows, gravity, s) >= 0
     ):
         come_to_rest(body, y, s)
         return True
     was_flying = s.count == 0
     if lies_flat(body, y, rows) and not meets_wall(body, y, rows):
         slip = algebra.norm(y[7], y[8]) + body.furthest * abs(y[12])
-        stands = rest_margin(body, y, rows, pull, s) >= 0
-        slides = slip >= 2 * AT_REST or pulled_off(body, pull) or body.rim > 0
-        if slides and carried_flat(body, tau, y, rows, pull, s):
+        stands = rest_margin(body, y, rows, gravity, s) >= 0
+        slides = slip >= 2 * AT_REST or pulled_off(body, gravity) or body.rim > 0
+        if slides and carried_flat(body, tau, y, rows, gravity, s):
             if slip < 2 * AT_REST and stands:
                 come_to_rest(body, y, s)
             else:
-                slide_flat(body, y, rows, pull, s)
+                slide_flat(body, y, rows, gravity, s)
                 s.counters[SLIDINGS] += 1
             s.jammed = 0
             return True
     n, slipping = pick_closed(body, y, rows, AT_REST, s)
-    found, ways = solve_forces(body, y, rows, pull, n, AT_REST, s)
+    found, solutions = solve_forces(body, y, rows, gravity, n, AT_REST, s)
     if found < 0:
         n, fewer = pick_closed(body, y, rows, SLOW_SLIP, s)
         if fewer < slipping:
-            found, ways = solve_forces(body, y, rows, pull, n, SLOW_SLIP, s)
-    s.counters[AMBIGUOUS] += ways > 1
+            found, solutions = solve_forces(body, y, rows, gravity, n, SLOW_SLIP, s)
+    s.counters[AMBIGUOUS] += solutions > 1
     if found < 0:
         return False
     s.jammed = 0
@@ -761,7 +764,11 @@ def pick_closed(body, y, rows, slow, s):
 
 @kernel
 def note_slip(body, k, u, slow, s):
-    """Note how contact k of a small system slips where a mode is chosen; return whether it does."""
+    """Note in ``s`` how contact k of a small system slips where a mode is chosen; return whether it does.
+
+    ``u`` is its velocity, along it and across it [m/s]; what is slower than ``slow`` sticks.  A contact that slips
+    has its direction given (``given``, ``way``) and kinetic friction, one that sticks static friction (``holds``).
+    """
     speed = algebra.norm(u[0], u[1])
     slips = speed > slow
     s.given[k], s.slid[k] = slips, 0
@@ -775,19 +782,19 @@ def note_slip(body, k, u, slow, s):
 
 
 @kernel
-def solve_forces(body, y, rows, pull, n, slow, s):
+def solve_forces(body, y, rows, gravity, n, slow, s):
     """Solve for the forces at the contacts s.which; return the set that pushes, and how many would do."""
-    weight = forces.load_on(body, y, rows, pull, s)
+    weight = forces.load_on(body, y, rows, gravity, s)
     moment = stick.fill_accelerations(body, y, rows, weight, n, s)
     if not picks_wall(n, s):
         return solve(body, y, rows, n, 0, moment, s)
-    found, ways = -1, 0
+    found, solutions = -1, 0
     for _ in range(TAKEN_IN):
         for i in range(n):
             u = (s.free[3 * i], s.free[3 * i + 1], s.free[3 * i + 2])
             u = solid.in_frame(body, s.which[i], u)
             s.free[3 * i], s.free[3 * i + 1], s.free[3 * i + 2] = u
-        found, ways = solve(body, y, rows, n, 0, moment, s)
+        found, solutions = solve(body, y, rows, n, 0, moment, s)
         if found < 0:
             break
         moves = pushed_by(body, rows, n, weight, moment, s)
@@ -799,7 +806,7 @@ def solve_forces(body, y, rows, pull, n, slow, s):
         u = solid.in_frame(body, i, solid.velocity_of(body, y, rows, i))
         note_slip(body, at, u, slow, s)
         stick.fill_accelerations(body, y, rows, weight, n, s)
-    return found, ways
+    return found, solutions
 
 
 @kernel
@@ -914,7 +921,10 @@ def settle(body, y, s):
 
 @kernel
 def close_gaps(body, y, rows, s):
-    """Move the body by what its closed points are off the ground."""
+    """Move the body so that its closed points are on the ground, by what is least in its kinetic energy.
+
+    Of two points each is lifted as a vertical impulse there would: two equations with the compliances of both.
+    """
     n = s.count
     if forces.at_wall(s):
         close_gaps_at_wall(body, y, rows, s)
@@ -928,10 +938,13 @@ def close_gaps(body, y, rows, s):
         y[2] -= first
         return
     second = solid.gap(body, y, rows[2], s.closed[1])
-    a, b, c = s.delassus[2, 2], s.delassus[2, 5], s.delassus[5, 5]
-    whole = a * c - b * b
-    lift_at(body, y, rows, s.closed[0], -(c * first - b * second) / whole)
-    lift_at(body, y, rows, s.closed[1], -(a * second - b * first) / whole)
+    # vertical displacement at each by a vertical impulse at each: row 3 k + 2 is the vertical at point k
+    own, mixed, other = s.delassus[2, 2], s.delassus[2, 5], s.delassus[5, 5]
+    determinant = own * other - mixed * mixed
+    lift_first = -(other * first - mixed * second) / determinant
+    lift_second = -(own * second - mixed * first) / determinant
+    lift_at(body, y, rows, s.closed[0], lift_first)
+    lift_at(body, y, rows, s.closed[1], lift_second)
 
 
 @kernel

@@ -3,8 +3,9 @@
 A body that rattles or is wedged between ground and walls has events without end, and a foot that hardly slips
 under a large coefficient of friction is stiff.  In short equal steps velocities obey, at their end, all contacts
 that are near (Stewart and Trinkle 1996): none sinks further than its gap, friction within Coulomb's cone, found by
-Gauss-Seidel.  The method is of first order in the step and, within it, loses energy and never gains any
-(``docs/space.md``, Steps).  In: state and case at an instant of the interval; out: both at its end.
+Gauss-Seidel.  The method is of first order in the step and, within it, loses energy and never gains any.
+
+In: state and case at an instant of the interval. Out: both at its end. Theory: ``docs/space.md``, "Steps".
 """
 
 from rockfrag.engines.compile.jit import kernel
@@ -46,7 +47,9 @@ def pass_interval(body, tau, dt, y, s):
 def take_step(body, tau, h, y, s):
     """Take one step; return how many contacts were near."""
     rows = algebra.rotation(y)
-    weight = forces.load_on(body, y, rows, forces.pull_at(s.field, tau + 0.5 * h), s)
+    weight = forces.load_on(
+        body, y, rows, forces.effective_gravity_at(s.field, tau + 0.5 * h), s
+    )
     load = algebra.to_world(rows, weight)
     spin = solid.free_spin(body, solid.omega_of(y), forces.twist_by_ties(s))
     for k in range(3):

@@ -23,6 +23,8 @@ from rockfrag.engines.spatial._algebra import (
 from rockfrag.engines.spatial._forces import stop_edge, stop_point, twist_by_ties
 
 NOTHING = (0.0, 0.0, 0.0)
+ROUNDING = 1e-11  # speed over the largest one to stop below which a contact does not approach [-]
+EQUAL = 1e-12  # difference of work, over the square of that speed, below which sets do equally well [-]
 
 
 @kernel
@@ -44,7 +46,11 @@ def fill_velocities(body, y, rows, n, s):
 
 @kernel
 def fill_accelerations(body, y, rows, weight, n, s):
-    """Fill in how the contacts s.which accelerate without forces; return the moment that turns the body."""
+    """Fill in how the contacts s.which accelerate without forces; return the moment that turns the body.
+
+    ``s.load`` gets the acceleration of each but for the body's own, in the body, ``s.free`` all of it, in axes of
+    the ground.
+    """
     omega = solid.omega_of(y)
     moment = minus(twist_by_ties(s), cross(omega, times(body.inertia, omega)))
     spin = times(body.inverse, moment)
@@ -65,21 +71,21 @@ def fill_free(body, rows, k, spin, s):
 
 
 @kernel
-def parts(body, up, k, turn, push, s):
-    """Velocity upwards of contact k after an impulse that leaves the body turning so."""
+def upward_speed(body, up, k, turn, push, s):
+    """Velocity upwards of contact k after an impulse that leaves the body turning with ``turn``."""
     p = solid.arm(body, up, s.which[k])
     after = plus(plus(load_of(s, k), push), cross(turn, p))
     return dot(up, after)
 
 
 @kernel
-def others_part(body, up, n, i, j, turn, push, small, s):
-    """Whether all contacts but i and j part, or stay."""
-    part = True
+def others_stay_out(body, up, n, i, j, turn, push, small, s):
+    """Whether no contact but i and j (-1: none) approaches the ground after the impulse of these two."""
     for k in range(n):
-        if part and k not in (i, j):
-            part = parts(body, up, k, turn, push, s) >= -small
-    return part
+        stops = k in (i, j)
+        if not stops and not upward_speed(body, up, k, turn, push, s) >= -small:
+            return False
+    return True
 
 
 @kernel
@@ -99,7 +105,7 @@ def room_along(up, push, along, friction):
 
 
 @kernel
-def share_along(up, first, second, e, friction_first, friction_second):
+def split_along(up, first, second, e, friction_first, friction_second):
     """Share the impulse of an edge along it so that both ends' cones hold, if they can."""
     near, far = dot(first, e), dot(second, e)
     a = room_along(up, first, near, friction_first)
@@ -154,53 +160,43 @@ def work_of(rows, k, push, s):
 def stick_alone_or_by_two(body, rows, n, least, moment, s):
     """Find the fewest contacts, none, one or two, that stick while no other approaches, as ``_cone.fewest`` does.
 
-    ``moment`` is what :func:`fill_velocities` or :func:`fill_accelerations` returned.  Returned are the set as
-    bits (-1 if there is none) and how many of its size would do.
+    Of sets of one size the one is taken that takes most kinetic energy away.  ``moment`` is what
+    :func:`fill_velocities` or :func:`fill_accelerations` returned; no set of fewer than ``least`` is looked for.
+    Returned are the set as bits (-1 if there is none) and how many of its size would do; ``s.impulse`` and
+    ``s.after`` have the impulses and the velocities after them.
     """
     up = rows[2]
     scale = speed_to_stop(s, n)
-    small = 1e-11 * scale
+    small, equal_work = ROUNDING * scale, EQUAL * scale * scale
     spin = times(body.inverse, moment)
-    if least == 0 and others_part(body, up, n, -1, -1, spin, NOTHING, small, s):
+    if least == 0 and others_stay_out(body, up, n, -1, -1, spin, NOTHING, small, s):
         keep(rows, n, -1, -1, NOTHING, NOTHING, s)
         fill_after(body, rows, n, spin, NOTHING, s)
         return 0, 1
-    chosen, ways, lowest = -1, 0, 0.0
+    chosen, solutions, lowest = -1, 0, 0.0
     best_turn, best_push = spin, NOTHING
     for i in range(n):
         turn, push = stop_point(body, up, s.which[i], load_of(s, i), moment)
         if not within_cone(up, push, s.holds[i], small):
             continue
-        if not others_part(body, up, n, i, i, turn, push, small, s):
+        if not others_stay_out(body, up, n, i, i, turn, push, small, s):
             continue
-        ways += 1
+        solutions += 1
         change = work_of(rows, i, push, s)
-        if chosen < 0 or change < lowest - 1e-12 * scale * scale:
+        if chosen < 0 or change < lowest - equal_work:
             chosen, lowest = 1 << i, change
             best_turn, best_push = turn, push
             keep(rows, n, i, -1, push, NOTHING, s)
     for j in range(n if chosen < 0 else 0):
         for i in range(j):
-            turn, push, far, e, fits = stop_edge(
-                body,
-                up,
-                s.which[i],
-                s.which[j],
-                load_of(s, i),
-                load_of(s, j),
-                moment,
-                small,
-            )
-            if not fits or not others_part(body, up, n, i, j, turn, push, small, s):
+            turn, push, near, far, holds = hold_edge(body, up, i, j, moment, small, s)
+            if not holds or not others_stay_out(
+                body, up, n, i, j, turn, push, small, s
+            ):
                 continue
-            near = plus(push, scaled(-1.0, far))
-            near, far = share_along(up, near, far, e, s.holds[i], s.holds[j])
-            holds = within_cone(up, near, s.holds[i], small)
-            if not (holds and within_cone(up, far, s.holds[j], small)):
-                continue
-            ways += 1
+            solutions += 1
             change = work_of(rows, i, near, s) + work_of(rows, j, far, s)
-            if chosen < 0 or change < lowest - 1e-12 * scale * scale:
+            if chosen < 0 or change < lowest - equal_work:
                 chosen, lowest = (1 << i) | (1 << j), change
                 best_turn, best_push = turn, push
                 keep(rows, n, i, j, near, far, s)
@@ -208,4 +204,24 @@ def stick_alone_or_by_two(body, rows, n, least, moment, s):
         fill_after(body, rows, n, best_turn, best_push, s)
         for k in range(n):
             s.grip[k] = s.holds[k]
-    return chosen, ways
+    return chosen, solutions
+
+
+@kernel
+def hold_edge(body, up, i, j, moment, small, s):
+    """Stop contacts i and j: angular velocity after it, impulses of both and of each, and whether friction can."""
+    turn, push, far, e, fits = stop_edge(
+        body,
+        up,
+        s.which[i],
+        s.which[j],
+        load_of(s, i),
+        load_of(s, j),
+        moment,
+        small,
+    )
+    near = plus(push, scaled(-1.0, far))
+    near, far = split_along(up, near, far, e, s.holds[i], s.holds[j])
+    holds = within_cone(up, near, s.holds[i], small)
+    holds = holds and within_cone(up, far, s.holds[j], small)
+    return turn, push, near, far, fits and holds

@@ -100,7 +100,9 @@ class SpatialResponse:
 
     def samples(self) -> dict[str, NDArray[Any]]:
         """Return the columns of a row per sample and body, here one body: those of the history."""
-        columns = {str(name): told.to_numpy() for name, told in self.history.items()}
+        columns = {
+            str(name): values.to_numpy() for name, values in self.history.items()
+        }
         return columns | {"body": np.ones(len(self.history), np.int64)}
 
     @property
@@ -124,6 +126,7 @@ def run(cases: Cases) -> Outcomes:
     tasks = [(i, j) for i in systems for j in motions]
 
     def run_pair(task: tuple[int, int]) -> None:
+        """Integrate a system under a motion at all its scales into the outcomes."""
         i, j = task
         motion, (body, start) = cases.motions[j], standing_bodies[i]
         if cases.request.spread > 0:
@@ -261,6 +264,7 @@ def run_scales(
 def _outcome(
     body: np.void, out: Floats, counters: NDArray[np.int64], y: Floats
 ) -> SpatialOutcome:
+    """An outcome by names, of what the kernel left in its row and its counters."""
     fell = bool(out[kernel.FELL])
     return SpatialOutcome(
         overturned=fell,

@@ -1,6 +1,7 @@
 """Figure of one response of a body in space: the path of its axis, and its base in the plan.
 
-In: outcome and history of one analysis, and the outline of the base [m]. Out: a matplotlib figure.
+In: outcome and history of one analysis, and the outline of the base [m]. Out: a matplotlib figure. What is drawn
+are the coordinates of ``docs/space.md``, "Coordinates".
 """
 
 from typing import TYPE_CHECKING
@@ -34,6 +35,7 @@ def spatial_figure(
 def _path_of_axis(
     panel: Axes, outcome: "SpatialOutcome", history: pd.DataFrame
 ) -> None:
+    """Draw which way the axis leans, and how far, as seen from above."""
     axis = history[["axis_x", "axis_y"]].to_numpy()
     sine = np.maximum(np.hypot(*axis.T), 1e-300)
     x, y = axis.T * (history["tilt_rad"].to_numpy() / sine)

@@ -25,6 +25,7 @@ _MAX_HEADER = 40
 
 
 def _parse(text: TextFile) -> list[form.Channel]:
+    """Channels of a file of this format, by its header as the head of the module says it."""
     header = text.lines(0, _MAX_HEADER)
     # orientations (N-S E-W U-D) above the samples
     titles = [_TITLES.match(line) is not None for line in header].index(True)

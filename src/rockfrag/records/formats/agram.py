@@ -37,6 +37,7 @@ def _recognise(lines: list[str], name: str) -> bool:
 
 
 def _parse(text: TextFile) -> Iterator[Channel]:
+    """Channels of a file of this format, by its header as the head of the module says it."""
     for line, following in text.parts(_RATE_LINE):
         stop = following if following == len(text) else following - _ABOVE
         values, words = (
@@ -64,6 +65,7 @@ def _parse(text: TextFile) -> Iterator[Channel]:
 
 
 def _section(text: TextFile, line: int, stop: int) -> Channel:
+    """A channel of a file, from the line that states its rate."""
     rate, size = _RATE.match(text.line(line)), _SIZE.match(text.line(line + 1))
     if rate is None or size is None:
         text.fail("rate, type, number of points or units cannot be read here", line)

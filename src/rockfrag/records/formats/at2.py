@@ -99,6 +99,7 @@ def _quantity_and_unit(header: list[str]) -> tuple[str, str]:
 
 
 def _parse(text: TextFile) -> Iterator[Channel]:
+    """Channels of a file of this format, by its header as the head of the module says it."""
     header = text.lines(0, _MAX_HEADER)
     found = _size(header)
     if found is None:
@@ -168,6 +169,7 @@ FORMAT = Format("AT2", _recognise, _parse)
 
 
 def _text(trace: Written) -> str:
+    """A trace as a file of this format."""
     earthquake = trace.said("earthquake", otherwise="UNKNOWN EARTHQUAKE")
     station = trace.said("station", otherwise="UNKNOWN STATION")
     component = trace.said("component", "channel", otherwise="UNKNOWN")

@@ -33,6 +33,7 @@ _MAX_HEADER = 30
 
 
 def _parse(text: TextFile) -> Iterator[form.Channel]:
+    """Channels of a file of this format, by its header as the head of the module says it."""
     for first, stop in text.parts(_FIRST, form.CHANNEL_END):
         at_units = text.find(_UNITS_LINE, first, min(stop, first + _MAX_HEADER))
         facts = form.facts_in(text.lines(first, at_units + 1), _FACTS)

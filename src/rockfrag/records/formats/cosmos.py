@@ -72,6 +72,7 @@ _FACTS = {
 
 
 def _parse(text: TextFile) -> Iterator[form.Channel]:
+    """Channels of a file of this format, by its header as the head of the module says it."""
     if re.search(r"\bspectr", text.line(0), re.I):
         text.refuse(
             "this file holds response spectra, not acceleration; give the V2 file"
@@ -157,6 +158,7 @@ def _block(
 
 
 def _section(text: TextFile, line: int, stop: int, dt: float) -> form.Channel:
+    """A channel of a file, from the line that states its unit."""
     match = _VALUES_LINE.match(text.line(line))
     if match is None:
         text.fail("the line above the samples does not state their unit", line)

@@ -62,6 +62,7 @@ def _recognise(lines: list[str], name: str) -> bool:
 
 
 def _parse(text: TextFile) -> Iterator[form.Channel]:
+    """Channels of a file of this format, by its header as the head of the module says it."""
     if _SPECTRA.match(text.line(0)):
         text.refuse(
             "this file holds response spectra (volume 3), not acceleration; give the V2 file"
@@ -96,6 +97,7 @@ def _peak(words: list[str], in_volume_2: bool) -> StatedPeak:
 
 
 def _section(text: TextFile, line: int, stop: int) -> form.Channel:
+    """A channel of a file, from the line that states its samples."""
     words = text.line(line)
     second = _VOLUME_2.match(words)
     match = second or _VOLUME_1.match(words)

@@ -36,6 +36,7 @@ _MAX_HEADER = 30
 
 
 def _parse(text: TextFile) -> Iterator[form.Channel]:
+    """Channels of a file of this format, by its header as the head of the module says it."""
     header = text.lines(0, _MAX_HEADER)
     at_size = next((i for i, line in enumerate(header) if _SIZE.search(line)), 0)
     size, header = _SIZE.search(header[at_size]), header[:_HEADER]

@@ -24,6 +24,7 @@ _ORDER = ("U", "N", "E")
 
 
 def _parse(text: TextFile) -> list[form.Channel]:
+    """Channels of a file of this format, by its header as the head of the module says it."""
     header = text.lines(0, _MAX_HEADER)
     below = (
         i for i, x in enumerate(header) if x.strip() and not x.lstrip().startswith("#")

@@ -49,6 +49,7 @@ def _recognise(lines: list[str], name: str) -> bool:
 
 
 def _parse(text: TextFile) -> Iterator[Channel]:
+    """Channels of a file of this format, by its header as the head of the module says it."""
     facts, start = _header(text.lines(0, _MAX_HEADER))
     for key in _NEEDED:
         if not facts.get(key):

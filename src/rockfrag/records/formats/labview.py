@@ -69,6 +69,7 @@ class _Measurement:
 
 
 def _parse(text: TextFile) -> list[Channel]:
+    """Channels of a file of this format, by its header as the head of the module says it."""
     ends = [first for first, _ in text.parts(_END)]
     if len(ends) != 2:
         text.fail(

@@ -165,6 +165,7 @@ def _unknown(path: Path) -> str:
 
 
 def _stream(plain: Path, name: str, path: Path) -> Stream:
+    """All traces of a file by ObsPy's reader of a format."""
     _check_size(plain, name, path)
     try:
         # ObsPy takes a name for a pattern; ours are names
@@ -206,6 +207,7 @@ def _check_whole_records(plain: Path, path: Path, cut_short: bool) -> None:
 
 
 def _channel(trace: Trace, format_name: str, path: Path, cut_short: bool) -> Channel:
+    """A channel of a trace, its samples in the unit that the file states."""
     stats = trace.stats
     if np.ma.is_masked(trace.data):
         raise InputError(f"{path}: channel {trace.id} has gaps or no samples.")

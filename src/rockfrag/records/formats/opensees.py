@@ -39,6 +39,7 @@ def _parse(text: TextFile) -> Iterator[Channel]:
 def _series(
     text: TextFile, line: int, stop: int, unit: str, promised: int | None
 ) -> Channel:
+    """The channel of a Path time series of a script."""
     script = _command(text, line, stop)
     tag = re.search(r"Path[\"']?\s+(\w+)", script, re.I)
     step = _number(text, line, script, "dt")
@@ -80,6 +81,7 @@ def _command(text: TextFile, line: int, stop: int) -> str:
 
 
 def _values(text: TextFile, line: int, script: str) -> NDArray[np.float64]:
+    """Samples that a script lists, or that a file beside it holds."""
     listed, file = _option(script, "values"), _option(script, "filePath")
     if listed is not None:
         body, where = listed.encode("latin-1"), text.name
@@ -100,6 +102,7 @@ def _values(text: TextFile, line: int, script: str) -> NDArray[np.float64]:
 
 
 def _option(script: str, name: str) -> str | None:
+    """What stands behind an option of a script, None if it is not there."""
     match = re.search(_OPTION.format(name=name), script, re.I)
     return (
         next(group for group in match.groups() if group is not None) if match else None
@@ -107,6 +110,7 @@ def _option(script: str, name: str) -> str | None:
 
 
 def _number(text: TextFile, line: int, script: str, name: str) -> float | None:
+    """The number behind an option of a script, None if it is not there."""
     words = _option(script, name)
     if words is None:
         return None

@@ -160,6 +160,7 @@ class _Layout:
 
 
 def _recognise(lines: list[str], name: str) -> bool:
+    """Whether a file is rows of numbers of one width, and no other format's."""
     plain = list(plain_rows(lines).lines)
     table = number_fields.number_table(plain)
     if table is None or _OF_OBSPY.match(lines[0]):
@@ -178,6 +179,7 @@ def _recognise(lines: list[str], name: str) -> bool:
 
 
 def _parse(text: TextFile) -> list[Channel]:
+    """Channels of rows of numbers, by what the words above them and the user say."""
     dt = text.asked_dt
     if dt is not None and not (np.isfinite(dt) and dt > 0):
         raise InputError(f"dt must be a positive number of seconds, got {dt}.")
@@ -496,6 +498,7 @@ def _without_leading(
 
 
 def _fail_no_sample(layout: _Layout, word: str) -> NoReturn:
+    """Refuse a word above the samples that is no sample."""
     layout.text.fail(
         f"{word!r} above the samples looks like no sample; take the line out, or write it as they are",
         layout.line,

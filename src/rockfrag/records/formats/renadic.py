@@ -17,6 +17,7 @@ _HEADER = 13
 
 
 def _parse(text: TextFile) -> Iterator[Channel]:
+    """Channels of a file of this format, by its header as the head of the module says it."""
     for first, stop in text.parts(_FIRST, CHANNEL_END):
         values = read_pairs(text, first, stop)
         header = text.lines(first, first + _HEADER)

@@ -32,6 +32,7 @@ def _recognise(lines: list[str], name: str) -> bool:
 
 
 def _parse(text: TextFile) -> Iterator[Channel]:
+    """Channels of a file of this format, by its header as the head of the module says it."""
     columns, titles = _titles(text.lines(0, _MAX_HEADER))[0]
     unit = canonical_unit(titles["unit"])
     if quantity_of(unit) != "acceleration":
@@ -67,6 +68,7 @@ FORMAT = Format("SEISMOSOFT", _recognise, _parse)
 
 
 def _text(trace: Written) -> str:
+    """A trace as a file of this format."""
     component = trace.facts.get("component") or trace.facts.get("channel")
     header = [
         trace.said("earthquake", otherwise="Unknown earthquake"),

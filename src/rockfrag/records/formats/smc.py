@@ -18,7 +18,7 @@ from obspy import UTCDateTime
 from rockfrag.records.parsing.format import Channel, Format, stated
 from rockfrag.records.parsing.stated_peak import StatedPeak, with_checked_peak
 from rockfrag.records.parsing.text_file import TextFile
-from rockfrag.records.parsing.timestamps import pairs_of, time_at
+from rockfrag.records.parsing.timestamps import channel_of_pairs, time_at
 
 _TEXT_LINES, _INTEGER_LINES, _REAL_LINES = 11, 6, 10
 _FIRST_DATA = _TEXT_LINES + _INTEGER_LINES + _REAL_LINES
@@ -46,6 +46,7 @@ def _recognise(lines: list[str], name: str) -> bool:
 
 
 def _parse(text: TextFile) -> Iterator[Channel]:
+    """Channels of a file of this format, by its header as the head of the module says it."""
     words = text.lines(0, _TEXT_LINES)
     kind = _KINDS.match(words[0])
     if kind is None or len(text) <= _FIRST_DATA:
@@ -69,7 +70,7 @@ def _parse(text: TextFile) -> Iterator[Channel]:
     )
     if rate == numbers[_MISSING_REAL]:
         # without a rate the values are pairs of time and acceleration
-        values = pairs_of(samples, "cm/s2", text, start, count // 2)
+        values = channel_of_pairs(samples, "cm/s2", text, start, count // 2)
     else:
         dt = float(f"{1 / rate:.9g}") if rate > 0 else 0.0
         values = Channel(count, text.interval(dt, at_reals), samples, "cm/s2")
@@ -127,6 +128,7 @@ def _width(text: TextFile, start: int, whole: list[int]) -> int:
 
 
 def _start(whole: list[int]) -> UTCDateTime | None:
+    """Time of the first sample by the header's integers, None if it is not known."""
     year, day, hour, minute, second, millisecond = whole[_YEAR : _YEAR + 6]
     missing = whole[_MISSING]
     if missing in (year, day, hour, minute) or year <= 0:

@@ -25,6 +25,7 @@ _HALF_A_DAY = 12 * 3600
 
 
 def _parse(text: TextFile) -> list[form.Channel]:
+    """Channels of a file of this format, by its header as the head of the module says it."""
     at_data = text.find(_DATA, 0, _MAX_HEADER)
     if at_data < 0:
         text.fail("no line DATOS DE ACELERACION; the file is cut short")
@@ -109,6 +110,7 @@ def _start(facts: dict[str, str]) -> UTCDateTime | None:
 
 
 def _facts(facts: dict[str, str]) -> dict[str, object]:
+    """Coordinates, station and earthquake by the keys of the header."""
     stated = facts["coordenadas de la estacion"]
     coordinates = re.findall(r"(\d+(?:\.\d+)?)\s*(LAT|LONG)\.?\s*([NSEW])", stated)
     place = {

@@ -50,6 +50,7 @@ def _recognise(lines: list[str], name: str) -> bool:
 
 
 def _parse(text: TextFile) -> Iterator[form.Channel]:
+    """Channels of a file of this format, by its header as the head of the module says it."""
     for first, stop in text.parts(_FIRST):
         sections = list(text.parts(_VALUES, _END, first, stop))
         if not sections:
@@ -107,6 +108,7 @@ def _check_peak(
 
 
 def _section(text: TextFile, line: int, stop: int, words: list[str]) -> form.Channel:
+    """A channel of a file, from the line that states its samples."""
     match = _VALUES_LINE.match(text.line(line))
     if match is None:
         text.fail("number of samples, interval or quantity cannot be read here", line)

@@ -220,6 +220,7 @@ def _splits(
 
 
 def _columns(titles: list[str], units: list[str]) -> list[Column]:
+    """Columns of titles and of the units below them."""
     columns = [
         _column(title, unit, first=number == 0)
         for number, (title, unit) in enumerate(zip(titles, units, strict=True))
@@ -277,6 +278,7 @@ class _Title:
 
 
 def _column(title: str, unit_below: str, first: bool) -> Column:
+    """What a column holds by its title: quantity, unit and direction."""
     found = _taken_apart(title, unit_below)
     words, unit = found.words, found.unit
     bare = folded(spaced(words)).strip(" _-.:,/")

@@ -34,6 +34,7 @@ _OTHER_SCALE = (
 
 @cache
 def _factor() -> re.Pattern[str]:
+    """Pattern of a factor in words, with its value."""
     return re.compile(
         rf"{_OTHER_SCALE}{alternatives('factor')}{IS}"
         rf"(?:by|of|con|with|mit|por|per|par)?\s*(?P<value>[+-]?{VALUE})(?!\s*:\s*\d)"

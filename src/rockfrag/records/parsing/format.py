@@ -184,6 +184,7 @@ class Format:
         ]
 
     def _parsed(self, text: text_file.TextFile) -> list[Channel]:
+        """Channels of acceleration of a file; an error where it has others alone."""
         try:
             found = list(self.parse(text))
             channels = [

@@ -62,6 +62,7 @@ def parse_columns(lines: list[bytes], width: int) -> NDArray[np.float64]:
 
 
 def _number(token: bytes, line: int) -> float:
+    """A finite number of one field, in Fortran's notation too."""
     plain = _EXPONENT_WITHOUT_LETTER.sub(rb"\1E\2", token.translate(_D_EXPONENT))
     value = float(plain) if len(token) <= _LONGEST and _NUMBER.match(plain) else np.nan
     if np.isfinite(value):

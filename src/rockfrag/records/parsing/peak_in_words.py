@@ -50,6 +50,7 @@ def peaks_in_words(lines: Sequence[str]) -> tuple[StatedPeak, ...]:
 
 
 def _peak_in(line: str) -> StatedPeak | None:
+    """The peak that a line states with its unit, None if it states none."""
     named = words_for("peak").search(line)
     if named is None or _OF_OTHERS.search(line):
         return None

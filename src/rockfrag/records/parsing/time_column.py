@@ -134,6 +134,7 @@ class TimeColumn:
         )
 
     def _check_count(self) -> None:
+        """Refuse a single time."""
         if self.times.size < 2:
             self.text.fail(
                 "one time alone says nothing about the sampling interval", self.line
@@ -160,6 +161,7 @@ class TimeColumn:
         return alike and near and self._is_rounded(step)
 
     def _fail_rounded(self, dt: float) -> NoReturn:
+        """Refuse times so coarsely rounded that their interval is not known."""
         half = self._resolution / 2
         self.text.fail(
             f"the time column steps by {self._show(dt)} s, which is {1 / (dt * self.seconds):.2f} samples a "
@@ -169,6 +171,7 @@ class TimeColumn:
         )
 
     def _uneven_interval(self) -> tuple[float, Notes]:
+        """Interval of times that are even but for jitter, and the note that says so."""
         self._check_no_gap()
         count = np.arange(self.times.size)
         slope = float(np.polynomial.polynomial.polyfit(count, self.times, 1)[1])
@@ -192,6 +195,7 @@ class TimeColumn:
         return worst <= 2 * fraction * dt and off <= max(fraction * dt, DRIFT * length)
 
     def _check_no_gap(self) -> None:
+        """Refuse times with a step of more than ``GAP`` usual ones, naming the first."""
         steps = np.diff(self.times)
         usual = float(np.median(steps))
         gaps = np.flatnonzero(steps > GAP * usual)
@@ -209,16 +213,22 @@ class TimeColumn:
         )
 
     def _fail_uneven(self, dt: float, off: float) -> NoReturn:
+        """Refuse times that are ``off`` even ones at an interval, naming the line that is furthest off.
+
+        That is one end of the step which differs most, the one further from the even times.
+        """
         steps = np.diff(self.times)
-        off_line = self.times - np.arange(self.times.size) * dt
-        off_line = np.abs(off_line - np.median(off_line))
-        worst = int(np.abs(steps - dt).argmax())
-        bad = worst + int(off_line[worst + 1] >= off_line[worst])
-        way_out = (
-            f"if the samples are even and only their times are not, give dt= ({self._in_seconds(dt):g} s)"
-            if self._is_jitter(off, dt, STATED_JITTER)
-            else "too much for dt=; interpolate the samples to even times"
-        )
+        start = self.times - np.arange(self.times.size) * dt
+        distance = np.abs(start - np.median(start))
+        worst_step = int(np.abs(steps - dt).argmax())
+        is_later = distance[worst_step + 1] >= distance[worst_step]
+        bad = worst_step + int(is_later)
+        way_out = "too much for dt=; interpolate the samples to even times"
+        if self._is_jitter(off, dt, STATED_JITTER):
+            way_out = (
+                "if the samples are even and only their times are not, give "
+                f"dt= ({self._in_seconds(dt):g} s)"
+            )
         self.text.fail(
             f"times are not equally spaced: {self._show(self.times[bad])} s here, steps of "
             f"{self._show(steps.min())} to {self._show(steps.max())} s, and times up to {off / dt:.2g} of a step "
@@ -237,6 +247,7 @@ class TimeColumn:
         return ({"step": "take uneven times as even", **taken, SAID: said},)
 
     def _in_seconds(self, value: float) -> float:
+        """Convert a number in the column's unit to seconds."""
         value = float(value)
         return value if self.seconds == 1 else float(f"{value * self.seconds:.12g}")
 

@@ -173,10 +173,10 @@ def read_pairs(text: TextFile, first: int, stop: int) -> Channel:
     # 100 integers (16I5) and 50 reals (8F10) are seven lines each
     text.reals(at_numbers + 7, at_numbers + 14, 10, 50)
     values = _flat(text, at_numbers + 14, stop, 2 * count)
-    return pairs_of(values, unit, text, at_numbers + 14, count)
+    return channel_of_pairs(values, unit, text, at_numbers + 14, count)
 
 
-def pairs_of(
+def channel_of_pairs(
     values: NDArray[np.float64], unit: str, text: TextFile, line: int, promised: int
 ) -> Channel:
     """Return times [s] and accelerations that alternate as even samples; ``promised`` is the number stated."""

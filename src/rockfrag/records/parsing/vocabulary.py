@@ -58,6 +58,7 @@ def alternatives(concept: str) -> str:
 
 
 def _pattern_of(word: str) -> str:
+    """Pattern of a word of the vocabulary: ``*`` stands for any letters, a blank for none, one or a line."""
     letters = r"[\s_-]*".join(
         re.escape(part).replace(r"\*", r"[^\W\d_]*") for part in word.split()
     )

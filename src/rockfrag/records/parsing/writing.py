@@ -61,6 +61,7 @@ def text_writer(
     """
 
     def write(stream: Stream, filename: str | os.PathLike[str], **_: Any) -> None:
+        """Write one trace of a stream, whose unit must be known, as ObsPy's plugins do."""
         if len(stream) != 1:
             raise InputError(
                 f"{filename}: a file holds one trace, not {len(stream)}; choose one."

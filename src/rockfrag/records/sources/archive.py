@@ -94,6 +94,7 @@ class _Room:
 
 
 def _kind(path: str | os.PathLike[str]) -> str:
+    """Kind of an archive by its first bytes, empty if it is none."""
     head = read_head(str(path), 512)
     if head.startswith((b"PK\x03\x04", b"PK\x05\x06")):
         return "zip"
@@ -105,6 +106,7 @@ def _kind(path: str | os.PathLike[str]) -> str:
 
 
 def _from_zip(path: str | os.PathLike[str]) -> Iterator[tuple[str, IO[bytes]]]:
+    """Yield names and open files of a zip archive."""
     with zipfile.ZipFile(path) as archive:
         if "[Content_Types].xml" in archive.namelist():
             raise InputError(
@@ -122,6 +124,7 @@ def _from_zip(path: str | os.PathLike[str]) -> Iterator[tuple[str, IO[bytes]]]:
 
 
 def _from_tar(path: str | os.PathLike[str]) -> Iterator[tuple[str, IO[bytes]]]:
+    """Yield names and open files of a tar archive."""
     with tarfile.open(path) as archive:
         for info in archive:
             # links and devices are nothing that a record can be

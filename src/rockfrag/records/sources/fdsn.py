@@ -147,6 +147,7 @@ def _answered(folder: Path) -> bool:
 def _window(
     request: FdsnRequest, client: "Client"
 ) -> tuple[UTCDateTime, UTCDateTime, dict[str, str]]:
+    """Begin and end of the window that is asked for, and what is known of its earthquake."""
     if not request.earthquake:
         return request.begin, request.end, {}
     earthquake = client.get_events(eventid=request.earthquake)[0]

@@ -112,6 +112,7 @@ def _check_may_be_replaced(file: Path, whole: bytes, pinned: PinnedWheel) -> Non
 
 
 def _download(pinned: PinnedWheel, scratch: Path) -> Path:
+    """Download a pinned wheel by pip into a folder."""
     command = [
         *(sys.executable, "-m", "pip", "download", "--no-deps", "--only-binary=:all:"),
         *(
@@ -138,6 +139,7 @@ def _download(pinned: PinnedWheel, scratch: Path) -> Path:
 
 
 def _check(wheel: Path, pinned: PinnedWheel) -> None:
+    """Refuse a wheel whose digest is not the pinned one."""
     try:
         digest = sha256_of(wheel)
     except OSError as error:

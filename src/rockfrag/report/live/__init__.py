@@ -86,6 +86,7 @@ def _element(
     outcomes: pd.DataFrame | None,
     texts: Catalogue,
 ) -> Markup:
+    """The page's part that simulates, with its data and scripts."""
     say = live_texts(texts)
     of_study = outcomes is not None
     if outcomes is None:
@@ -161,6 +162,7 @@ def _start(bodies: Mapping[str, System], rows: list[list[str]]) -> tuple[int, in
 
 
 def _motion(motion: Motion) -> dict[str, Any]:
+    """A motion as a page holds it."""
     peaks = {"pga": motion.pga, "pga_g": motion.pga / GRAVITY}
     return {
         "name": motion.name,

@@ -128,6 +128,7 @@ def _sizes(body: RigidBody) -> dict[str, Any] | None:
 
 
 def _motion(motion: GroundMotion) -> dict[str, Any]:
+    """A ground motion of up to three components as a page holds it."""
     each = [
         component
         for component in (motion.x, motion.y, motion.z)

@@ -75,6 +75,7 @@ def as_recorded(results: Results) -> Section:
 
 
 def _outcome(row: dict[Any, Any]) -> str:
+    """Outcome of a motion as recorded, in a word or two."""
     words = "stays"
     if row["overturned"]:
         words = "overturns"

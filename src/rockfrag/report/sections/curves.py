@@ -14,6 +14,7 @@ import numpy as np
 import pandas as pd
 from markupsafe import Markup
 from matplotlib.axes import Axes
+from matplotlib.collections import PathCollection
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import PercentFormatter
@@ -112,6 +113,7 @@ def _rejection(rejected: int, curves: int) -> str:
 
 
 def _figures(results: Results, curves: pd.DataFrame) -> list[FigureSpec]:
+    """Figures of the curves, one an object and limit state."""
     bands, bins = results.table("fragility_bands"), results.table("fragility_bins")
     measure = str(results.table("fragility")["im"].iloc[0])
     same = curves[
@@ -459,45 +461,74 @@ def two_measures_figure(contours: pd.DataFrame, cells: pd.DataFrame) -> Figure:
     """Draw contours of the fitted probability of overturning over cells of tests.
 
     The first measure is across, the second one up; the band holds the median's limits.
+
+    Parameters
+    ----------
+    contours : points of lines of one probability each (:meth:`VectorFragility.contours`)
+    cells : a row a cell of tests, with their number and the fraction of them that overturned
+
+    Returns
+    -------
+    The figure.
     """
     first, second = str(cells["first"].iloc[0]), str(cells["second"].iloc[0])
     x, y = cells["at_first"].to_numpy(), cells["at_second"].to_numpy()
+    # a margin about the cells, in factors as the axes are logarithmic
+    reach, rise = (0.8 * x.min(), 1.25 * x.max()), (0.9 * y.min(), 1.1 * y.max())
     with style.panels(style.COLUMN_WIDTH, 3.2) as (figure, axes):
-        size = 6 + 30 * np.sqrt(cells["tests"] / cells["tests"].max())
-        shades = cells["probability"]
-        shown = axes.scatter(
-            x, y, size, shades, marker="s", cmap="Greys", vmin=0, vmax=1
-        )
-        shown.set(edgecolor=style.GUIDE, linewidth=0.3)
-        reach, rise = (0.8 * x.min(), 1.25 * x.max()), (0.9 * y.min(), 1.1 * y.max())
-        across = bool((contours["of"] == first).all())
-        low, high = reach if across else rise
-        fill = axes.fill_betweenx if across else axes.fill_between
-        for probability, line in LINES.items():
-            part = contours[np.isclose(contours["probability"], probability)]
-            at = part["at"]
-            value = part["value"].where(part["value"].between(low, high))
-            axes.plot(
-                value if across else at,
-                at if across else value,
-                color=style.BLUE,
-                linestyle=line,
-                label=f"{100 * probability:.0f} %",
-            )
-            if probability == MEDIAN:
-                lower = part["lower"].clip(low, high)
-                upper = part["upper"].clip(low, high)
-                fill(at, lower, upper, color=style.BLUE, alpha=0.2, linewidth=0)
+        squares = _draw_cells(axes, cells)
+        gives_first = bool((contours["of"] == first).all())
+        _draw_contours(axes, contours, gives_first, reach if gives_first else rise)
         axes.set(xlim=reach, ylim=rise, xlabel=_axis(first), ylabel=_axis(second))
         style.plain_log(axes, "xy")
         percent = PercentFormatter(1.0, decimals=0, symbol=" %")
-        bar = figure.colorbar(shown, ax=axes, format=percent, pad=0.02)
+        bar = figure.colorbar(squares, ax=axes, format=percent, pad=0.02)
         bar.set_label("Observed, rising in both measures")
         title = "Fitted probability of overturning"
         figure.legend(loc="outside upper center", ncols=3, title=title)
     return figure
 
 
+def _draw_cells(axes: Axes, cells: pd.DataFrame) -> PathCollection:
+    """Draw a square a cell, darker where more of its tests overturned, larger where it has more tests."""
+    squares = axes.scatter(
+        cells["at_first"].to_numpy(),
+        cells["at_second"].to_numpy(),
+        6 + 30 * np.sqrt(cells["tests"] / cells["tests"].max()),
+        cells["probability"],
+        marker="s",
+        cmap="Greys",
+        vmin=0,
+        vmax=1,
+    )
+    squares.set(edgecolor=style.GUIDE, linewidth=0.3)
+    return squares
+
+
+def _draw_contours(
+    axes: Axes,
+    contours: pd.DataFrame,
+    gives_first: bool,
+    shown: tuple[float, float],
+) -> None:
+    """Draw lines of one probability each, and the limits of the median.
+
+    Contours give a value of one measure at each of the other: of the first, which is across, or of the second.
+    Values are ``shown`` between two limits.
+    """
+    for probability, line in LINES.items():
+        part = contours[np.isclose(contours["probability"], probability)]
+        at, value = part["at"], part["value"].where(part["value"].between(*shown))
+        x, y = (value, at) if gives_first else (at, value)
+        label = f"{100 * probability:.0f} %"
+        axes.plot(x, y, color=style.BLUE, linestyle=line, label=label)
+        if probability == MEDIAN:
+            fill = axes.fill_betweenx if gives_first else axes.fill_between
+            lower, upper = part["lower"].clip(*shown), part["upper"].clip(*shown)
+            fill(at, lower, upper, color=style.BLUE, alpha=0.2, linewidth=0)
+
+
 def _axis(column: str) -> str:
+    """Label of an axis: the measure of a column with its unit."""
     name, unit = name_and_unit(column)
     return f"{name} [{unit}]" if unit else name

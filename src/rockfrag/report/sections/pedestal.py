@@ -152,6 +152,7 @@ def _pedestal_words(
 
 
 def _forest(effects: pd.DataFrame, sides: Sides) -> FigureSpec:
+    """Figure of all effects with their limits, the smallest groups left out where there are too many."""
     shown, left_out = effects, []
     for scope, words in (("cell", "floors by object"), ("earthquake", "earthquakes")):
         if len(shown) > MOST_ROWS:

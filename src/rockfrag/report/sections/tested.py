@@ -213,6 +213,7 @@ def drift_words(scaling: pd.DataFrame) -> str:
 
 
 def _scaling_html(scaling: pd.DataFrame) -> Markup:
+    """Table of the factors on the motions."""
     columns = [
         column("motion"),
         column("pga_g", "Peak [g]", decimals=3),

@@ -133,6 +133,7 @@ def hypothesis(number: int, **figures: Any) -> Callable[[Test], Test]:
     """Enter the decorated function as the test of a hypothesis; figures are those that its words leave open."""
 
     def enter(test: Test) -> Test:
+        """Enter the hypothesis of a number with its test."""
         said = _STATEMENTS[number]
 
         def filled(name: str) -> str:

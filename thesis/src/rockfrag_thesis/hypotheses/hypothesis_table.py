@@ -93,6 +93,7 @@ def _hypotheses(theory: bool) -> list[Hypothesis]:
 def _row(
     hypothesis: Hypothesis, evidence: Setting | Evidence, basis: str
 ) -> dict[str, str | float]:
+    """Row of a hypothesis: what its test finds in the evidence, open where the data cannot decide it."""
     try:
         with warnings.catch_warnings():
             # the hypotheses are about pure rocking, whose limits the chapter on validity counts

@@ -5,6 +5,7 @@ In: the protocol, masses [kg] and tests. Out: an outcome a hypothesis. Theory: `
 """
 
 import numpy as np
+import pandas as pd
 
 from rockfrag.base.units import GRAVITY
 from rockfrag.effects.cluster_means import t_estimate
@@ -107,7 +108,7 @@ def c57(tests: Evidence) -> Result:
     refuted = bool(opened or demand.max() > ROUGH)
     return Result(
         decided(not refuted and demand.max() < SMOOTH, refuted),
-        f"friction needed: median {demand.median():.2f}, largest {demand.max():.2f}; tests that need more than "
+        f"friction needed: {_needed(demand)}; tests that need more than "
         f"{SMOOTH}: {int((demand > SMOOTH).sum())} of {len(need)}; tests in which a contact opens: {opened}",
         float(demand.max()),
         float(demand.min()),
@@ -116,6 +117,17 @@ def c57(tests: Evidence) -> Result:
         remark="about the model's premise, not about the experiment, whose bars lay in fixtures that "
         "hold them sideways; without the impulses of impacts",
     )
+
+
+def _needed(demand: pd.Series) -> str:
+    """Median and largest of the friction that tests need, and in how many no friction is enough [-]."""
+    known = demand[np.isfinite(demand)]
+    parts = []
+    if len(known):
+        parts.append(f"median {known.median():.2f}, largest {known.max():.2f}")
+    if beyond := len(demand) - len(known):
+        parts.append(f"none is enough in {beyond} of {len(demand)}")
+    return ", ".join(parts)
 
 
 @hypothesis(58)

@@ -291,6 +291,7 @@ def motion_columns(motions: Sequence[Motion]) -> dict[str, list[str]]:
 def _rows(
     case: Case, motions: Sequence[Motion], stack: Floats, lone: Floats
 ) -> pd.DataFrame:
+    """Rows of a case, one a motion, with amplitudes of the stack and of the lone object."""
     return pd.DataFrame(
         {
             "factor": case.factor,

@@ -27,6 +27,7 @@ def run(job: Job[Study]) -> Results:
 
 
 def _printed_tables(job: Job[Study]) -> Results:
+    """Yield the printed tables beside what the study has in their place."""
     from rockfrag_thesis import printed_tables as printed
 
     study, motions = job.study, job.motions("motions/ground")
@@ -43,6 +44,7 @@ def _printed_tables(job: Job[Study]) -> Results:
 
 
 def _hypotheses(job: Job[Study]) -> Results:
+    """Yield the hypotheses with what data and theory say of each."""
     from rockfrag.shaketable.definitions import DEFINITION
     from rockfrag_thesis.hypotheses import (
         Evidence,

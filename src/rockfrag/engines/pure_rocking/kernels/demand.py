@@ -49,6 +49,7 @@ def _swung(arm, omega, alpha):
 
 @inlined_kernel
 def _fraction(normal, shear):
+    """Coefficient of friction that a force asks for; infinite where it pulls."""
     return abs(shear) / normal if normal > 0.0 else math.inf
 
 
@@ -62,9 +63,13 @@ def _components(body, turn1, force):
 
 @kernel
 def forces(body, state, alpha1, alpha2):
-    """Normal and shear of the ground, and of the interface, in a state with its angular accelerations [N]."""
+    """Normal and shear of the ground, and of the interface, in a state with its angular accelerations [N].
+
+    Both follow from the accelerations of the centres of gravity by the equations at the head of the module.
+    """
     turn1, turn2 = sin_cos(state.theta1), sin_cos(state.theta2)
     s1, s2 = pivot(state.c1), pivot(state.c2)
+    # accelerations relative to the ground: centre of the pedestal, pivot of the statue, and its centre about that
     first = _swung(_turned(arm1(body, s1), turn1), state.omega1, alpha1)
     foot = _swung(_turned(reach(body, s1, s2), turn1), state.omega1, alpha1)
     two = _swung(_turned(arm2(body, s2), turn2), state.omega2, alpha2)

@@ -207,7 +207,7 @@ def _through_sample(body, shaking, k, contact_events, summary, work):
                 after = (
                     state
                     if kind == record.CLOSING
-                    else _struck(body, before, closes, work.trial)
+                    else _after_impact(body, before, closes, work.trial)
                 )
                 ask_impulses(body, before, after, demand)
             clock = (k + (sub + tau) / substeps) * shaking.dt
@@ -217,7 +217,7 @@ def _through_sample(body, shaking, k, contact_events, summary, work):
 
 
 @kernel
-def _struck(body, before, closes, after):
+def _after_impact(body, before, closes, after):
     """Fill the state after an impact that nothing else has ended, and return it."""
     record.copy_state(before, after)
     n1, n2, w1, w2, _ = impact(body, before, closes[0], closes[1])

@@ -214,7 +214,7 @@ def pulled(gravity, now, before):
 
 
 @inlined_kernel
-def _pull(ground, weight, sine, cosine):
+def _torque(ground, weight, sine, cosine):
     """Coefficient of W sin ψ + A cos ψ; of sine and cosine, that of this order and the one before."""
     (a, rise), (u, lift, varies) = ground, weight
     (s, s_before), (c, c_before) = sine, cosine
@@ -236,19 +236,19 @@ def rates_of_one(turn, w, kappa, ground, weight):
     w1 = kappa * fma(ground[0], c0, weight[0] * s0)
     s1 = c0 * w
     c1 = -(s0 * w)
-    w2 = 0.5 * kappa * _pull(ground, weight, (s1, s0), (c1, c0))
+    w2 = 0.5 * kappa * _torque(ground, weight, (s1, s0), (c1, c0))
     s2 = 0.5 * fma(c1, w, c0 * w1)
     c2 = -0.5 * fma(s1, w, s0 * w1)
-    w3 = (1 / 3) * kappa * _pull(ground, weight, (s2, s1), (c2, c1))
+    w3 = (1 / 3) * kappa * _torque(ground, weight, (s2, s1), (c2, c1))
     s3 = (1 / 3) * fma(c2, w, fma(c0, w2, c1 * w1))
     c3 = -(1 / 3) * fma(s2, w, fma(s0, w2, s1 * w1))
-    w4 = 0.25 * kappa * _pull(ground, weight, (s3, s2), (c3, c2))
+    w4 = 0.25 * kappa * _torque(ground, weight, (s3, s2), (c3, c2))
     s4 = 0.25 * fma(c3, w, fma(c0, w3, fma(c2, w1, c1 * w2)))
     c4 = -0.25 * fma(s3, w, fma(s0, w3, fma(s2, w1, s1 * w2)))
-    w5 = 0.2 * kappa * _pull(ground, weight, (s4, s3), (c4, c3))
+    w5 = 0.2 * kappa * _torque(ground, weight, (s4, s3), (c4, c3))
     s5 = 0.2 * fma(c4, w, fma(c0, w4, fma(c3, w1, fma(c1, w3, c2 * w2))))
     c5 = -0.2 * fma(s4, w, fma(s0, w4, fma(s3, w1, fma(s1, w3, s2 * w2))))
-    w6 = (1 / 6) * kappa * _pull(ground, weight, (s5, s4), (c5, c4))
+    w6 = (1 / 6) * kappa * _torque(ground, weight, (s5, s4), (c5, c4))
     return w, w1, w2, w3, w4, w5, w6
 
 

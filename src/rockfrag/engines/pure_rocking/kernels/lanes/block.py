@@ -46,7 +46,7 @@ LANE = np.dtype(
         *whole("case body motion k first last following", LANES),
         *whole("side", LANES),  # 1 on the right pivot, -1 on the left, 0 at rest
         # sample of the last impact, and how many that has had
-        *whole("fell crowded crowd", LANES),
+        *whole("fell counted_sample contact_events", LANES),
         *fields("psi omega", LANES),  # the state, ψ and ψ'
         # A and W now, at the end of the sample
         *fields("ground ground_end weight weight_end", LANES),
@@ -59,7 +59,7 @@ LANE = np.dtype(
         # θc, κ = p² dt², 1/θc and 1/(κ θc²) of the pivot
         *fields("angle kappa per_angle per_speed", LANES),
         # the most that A and W can be from here on, and √(light² + bound²) + heavy - light, with the least W
-        *fields("bound heavy crest", LANES),
+        *fields("bound heavy barrier", LANES),
         # scale of the motion over g, and that times the side
         *fields("factor signed", LANES),
         *fields("flag when", LANES),  # when: time in the step at which ψ passes θc
@@ -118,8 +118,8 @@ def _advance(lane, upward):
         end = psi + taylor.travel(rates, 1.0)
         v = taylor.rate_at(rates, 1.0)
         taylor.keep_rates(lane.rates, i, rates)
-        crest = lane.crest[i] - lane.heavy[i] * c + lane.bound[i] * s
-        certain = (w < 0.0) & (0.5 * omega * omega >= kappa * crest)
+        barrier = lane.barrier[i] - lane.heavy[i] * c + lane.bound[i] * s
+        certain = (w < 0.0) & (0.5 * omega * omega >= kappa * barrier)
         grazes = (w > 0.0) & (v < 0.0)
         touches = end >= angle
         lies = end <= angle - HALF_TURN
@@ -245,10 +245,10 @@ def _take_contact_event(lane, i, tally, ensemble, motions):
     else:
         tau -= lane.was_left[i] * (1.0 - t)
         tally.impacts += 1
-        if lane.crowded[i] != k:
-            lane.crowded[i] = k
-            lane.crowd[i] = 0
-        lane.crowd[i] += 1
+        if lane.counted_sample[i] != k:
+            lane.counted_sample[i] = k
+            lane.contact_events[i] = 0
+        lane.contact_events[i] += 1
         there = _pivot(lane, i, side, ensemble)
         w = block_impact(there, w)
         side = -side
@@ -258,7 +258,7 @@ def _take_contact_event(lane, i, tally, ensemble, motions):
         ahead = Ahead(
             motions.samples, motions.vertical, factor, lane.last[i], k, tau, 1.0
         )
-        still = w > -1e-12 or lane.crowd[i] > MAX_CONTACT_EVENTS_PER_STEP
+        still = w > -1e-12 or lane.contact_events[i] > MAX_CONTACT_EVENTS_PER_STEP
         if still or block_dies_out(-w, side, here, there, ahead):
             side = 0
     if tau >= 1.0 - 1e-13:
@@ -457,7 +457,7 @@ def _take_up(lane, i, number, ensemble, motions):
     lane.first[i] = motions.offsets[sampled]
     lane.k[i] = motions.offsets[sampled]
     lane.last[i] = motions.lasts[sampled]
-    lane.side[i], lane.fell[i], lane.crowded[i] = 0, 0, -1
+    lane.side[i], lane.fell[i], lane.counted_sample[i] = 0, 0, -1
 
 
 @inlined_kernel
@@ -490,7 +490,7 @@ def _place(lane, i, ensemble, motions):
     bound = max(max(0.0, factor * most * side), factor * least * side)
     light, heavy = cases.weights_ahead(motions, k, factor)
     lane.bound[i], lane.heavy[i] = bound, heavy
-    lane.crest[i] = math.sqrt(light * light + bound * bound) + (heavy - light)
+    lane.barrier[i] = math.sqrt(light * light + bound * bound) + (heavy - light)
     if light <= 0.0:
         # where gravity may vanish, no fall is certain before the block lies down
-        lane.crest[i] = math.inf
+        lane.barrier[i] = math.inf

@@ -12,6 +12,12 @@ from rockfrag.engines.pure_rocking.kernels.lanes.case import (
     WITHIN,
     next_samples,
 )
+from rockfrag.engines.pure_rocking.kernels.lanes.stack_case import (
+    BOTH_ROTATE,
+    ONE_ROTATES,
+)
+
+EMPTY = -1  # slot of a lane that holds no case
 
 
 @entry_kernel
@@ -24,6 +30,10 @@ def integrate_stacks(ensemble, motions, worker, outcomes):
     motions : a :class:`Motions`, accelerations over g
     worker : named tuple of records, the memory of one thread
     outcomes : records ``OUTCOME`` of all cases, changed in place
+
+    Returns
+    -------
+    Steps that lanes of one and of two rotations made, to see how busy they were.
     """
     g = ensemble.bodies[0].gravity
     upward = motions.vertical.size > 0
@@ -32,17 +42,20 @@ def integrate_stacks(ensemble, motions, worker, outcomes):
         case = worker.cases[slot]
         stack_case.next_case(case, ensemble, motions, worker, outcomes)
         _wait(case, worker)
-    steps1, steps2 = 0, 0
+    steps_of_one, steps_of_two = 0, 0
+    # numbers of cases by kind: in lanes, and waiting for one
     waits, busy = worker.waits, worker.busy
-    while busy[0] + waits[0] + busy[1] + waits[1] > 0:
-        ones = busy[0] + waits[0] >= min(LANES, busy[1] + waits[1])
-        kind = stack_case.ONE_ROTATES if ones else stack_case.BOTH_ROTATE
+    while _left(worker, ONE_ROTATES) + _left(worker, BOTH_ROTATE) > 0:
+        # the kind that fills its lanes goes on, of one rotation first; where neither does, that with more cases
+        ones = _left(worker, ONE_ROTATES) >= min(LANES, _left(worker, BOTH_ROTATE))
+        kind = ONE_ROTATES if ones else BOTH_ROTATE
+        # bits of the lanes that have to be looked at
         if ones:
-            steps1 += LANES
+            steps_of_one += LANES
             stack_one.advance(worker.one, g, upward)
             stops = next_samples(worker.one, worker.one.factor, LANES, motions)
         else:
-            steps2 += LANES
+            steps_of_two += LANES
             stack_two.advance(worker.two, g, upward)
             stops = next_samples(worker.two, worker.two.factor, LANES, motions)
             stack_case.find_contact_events_of_two(stops, worker)
@@ -51,37 +64,19 @@ def integrate_stacks(ensemble, motions, worker, outcomes):
             stops &= stops - 1
             slot = worker.one.slot[i] if ones else worker.two.slot[i]
             flag = worker.one.flag[i] if ones else worker.two.flag[i]
-            if slot >= 0:
-                if flag == WITHIN:
-                    continue
+            if slot != EMPTY and flag == WITHIN:
+                continue
+            if slot != EMPTY:
                 case = worker.cases[slot]
                 case.k = worker.one.k[i] if ones else worker.two.k[i]
-                if flag == QUIET:
-                    if ones:
-                        stack_case.store_one(i, case, worker.one)
-                    else:
-                        stack_case.store_two(i, case, worker.two)
-                else:
-                    if ones:
-                        closes = stack_case.contact_event_of_one(
-                            i, case, worker, ensemble, motions, g
-                        )
-                    else:
-                        closes = stack_case.contact_event_of_two(
-                            i, case, worker, ensemble, motions, g
-                        )
-                    if closes[0] or closes[1]:
-                        stack_case.general_impact(
-                            case, worker, ensemble.bodies[case.body], closes, motions
-                        )
-                    stack_case.after_contact_event(case)
+                _leave_lane(i, case, flag, ones, worker, ensemble, motions)
                 if not stack_case.rocks_on(case):
                     stack_case.next_case(case, ensemble, motions, worker, outcomes)
                 if stack_case.lane_of(case) != kind:
                     _wait(case, worker)
-                    slot = -1
+                    slot = EMPTY
                     busy[kind] -= 1
-            if slot < 0 and waits[kind] > 0:
+            if slot == EMPTY and waits[kind] > 0:
                 waits[kind] -= 1
                 busy[kind] += 1
                 slot = worker.waiting[kind, waits[kind]]
@@ -90,7 +85,33 @@ def integrate_stacks(ensemble, motions, worker, outcomes):
                     stack_case.place_one(i, worker.cases[slot], worker, motions)
             elif _hold(worker.two, i, slot, worker.cases):
                 stack_case.place_two(i, worker.cases[slot], worker, motions)
-    return steps1, steps2
+    return steps_of_one, steps_of_two
+
+
+@inlined_kernel
+def _left(worker, kind):
+    """Number of cases of a kind that are in lanes or wait for one."""
+    return worker.busy[kind] + worker.waits[kind]
+
+
+@inlined_kernel
+def _leave_lane(i, case, flag, ones, worker, ensemble, motions):
+    """Take the state of lane i into its case; where a contact event stopped it, go through the event."""
+    if flag == QUIET:
+        if ones:
+            stack_case.store_one(i, case, worker.one)
+        else:
+            stack_case.store_two(i, case, worker.two)
+        return
+    g = ensemble.bodies[0].gravity
+    if ones:
+        closes = stack_case.contact_event_of_one(i, case, worker, ensemble, motions, g)
+    else:
+        closes = stack_case.contact_event_of_two(i, case, worker, ensemble, motions, g)
+    if closes[0] or closes[1]:
+        body = ensemble.bodies[case.body]
+        stack_case.general_impact(case, worker, body, closes, motions)
+    stack_case.after_contact_event(case)
 
 
 @inlined_kernel
@@ -105,7 +126,7 @@ def _wait(case, worker):
 @inlined_kernel
 def _hold(lane, i, slot, cases):
     """Let lane i hold the case of a slot; whether there is one."""
-    if slot < 0:
+    if slot == EMPTY:
         # what the lane computes from here on, nobody looks at; at its last sample, it stops each time
         lane.slot[i], lane.k[i], lane.last[i] = -1, 0, 0
         return False

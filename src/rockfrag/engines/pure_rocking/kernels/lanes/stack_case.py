@@ -46,7 +46,7 @@ CASE = np.dtype(
         # of its last contact event the ground acceleration, gravity over the above, the sample, and how many that
         # has had
         *fields("ground weight"),
-        *whole("crowded crowd"),
+        *whole("counted_sample contact_events"),
         *fields("peak1 peak2 fast near"),  # extremes so far, as in the lanes
         *whole("impacts given_way fallen"),  # what fell: 1 the pedestal, 2 the statue
     ],
@@ -216,7 +216,7 @@ def _take_up(case, number, ensemble, motions, worker):
     case.first, case.last = motions.offsets[sampled], motions.lasts[sampled]
     case.free_last = case.last + ensemble.free[body, motion]
     case.k, case.tau = case.first, 0.0
-    case.c1, case.c2, case.fallen, case.crowded, case.impacts, case.given_way = (
+    case.c1, case.c2, case.fallen, case.counted_sample, case.impacts, case.given_way = (
         0,
         0,
         0,
@@ -279,7 +279,7 @@ def contact_event_of_one(i, case, worker, ensemble, motions, g):
     if when > 1.0:
         return False, False
     case.tau -= left * (1.0 - at)
-    case.ground, case.weight = stack_one.pull_at(lane, i, at)
+    case.ground, case.weight = stack_one.ground_and_weight_at(lane, i, at)
     body = ensemble.bodies[case.body]
     _count_contact_event(case)
     if fails:
@@ -398,8 +398,8 @@ def _impact_alone(case, worker, body, g, motions):
         settled = case.low * case.weight < case.ground < case.high * case.weight
     elif n1 == 0 or n2 == 0:
         constants = worker.ones[slot, equations.number_of(n1, n2)]
-        pull = case.ground, case.weight
-        settled = stack_one.least_hold(constants, 0.0, v2, pull, g) > 0.0
+        ground_and_weight = case.ground, case.weight
+        settled = stack_one.least_hold(constants, 0.0, v2, ground_and_weight, g) > 0.0
     else:
         settled = True
     case.c1, case.c2, case.omega1, case.omega2 = n1, n2, v1, v2
@@ -449,23 +449,26 @@ def close_one(case, worker, ground, g, motions):
 @inlined_kernel
 def _count_contact_event(case):
     """Count a contact event of a case within its sample."""
-    if case.crowded != case.k:
-        case.crowded = case.k
-        case.crowd = 0
-    case.crowd += 1
+    if case.counted_sample != case.k:
+        case.counted_sample = case.k
+        case.contact_events = 0
+    case.contact_events += 1
 
 
 @inlined_kernel
 def _forced(case):
     """Whether its sample has had so many contact events that contacts must stay closed."""
-    return case.crowd > MAX_CONTACT_EVENTS_PER_STEP
+    return case.contact_events > MAX_CONTACT_EVENTS_PER_STEP
 
 
 @inlined_kernel
 def after_contact_event(case):
     """Take a case past its contact event, or past the end of its step, to the sample that it is in."""
-    crowded = case.crowded == case.k and case.crowd > MAX_CONTACT_EVENTS_PER_STEP + 20
-    if case.tau >= 1.0 - 1e-13 or crowded:
+    are_too_many = (
+        case.counted_sample == case.k
+        and case.contact_events > MAX_CONTACT_EVENTS_PER_STEP + 20
+    )
+    if case.tau >= 1.0 - 1e-13 or are_too_many:
         case.tau = 0.0
         case.k += 1
     if abs(case.theta1) >= contact_states.HALF_TURN:

@@ -74,6 +74,7 @@ def fill_constants(body, h, lanes_of_one, two, impacts, scratch):
 
 @kernel
 def _one_rotates(body, c1, c2, hh, lanes_of_one):
+    """Fill the constants of a contact state in which one part rotates; ``hh``: step squared [s²]."""
     critical, vx, vy, inertia = equations.balance(body, c1, c2)
     for corner in (1.0, -1.0):
         hold = lanes_of_one.right if corner > 0.0 else lanes_of_one.left
@@ -91,6 +92,7 @@ def _one_rotates(body, c1, c2, hh, lanes_of_one):
 
 @kernel
 def _both_rotate(body, c1, c2, hh, two):
+    """Fill the constants of a contact state in which both blocks rotate; ``hh``: step squared [s²]."""
     s1, s2 = equations.pivot(c1), equations.pivot(c2)
     two.m11, two.m22 = equations.inertia1(body, s1, s2), equations.inertia2(body, s2)
     two.e, two.f = equations.coupling(body, s1, s2)

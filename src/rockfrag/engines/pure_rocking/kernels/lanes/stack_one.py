@@ -53,9 +53,9 @@ LANE = np.dtype(
 
 
 @inlined_kernel
-def _moment(hold, i, turn, alpha, square, pull):
-    """Contact moment of a closed contact at one corner; ``turn`` is of θ, ``pull`` the ground and weight."""
-    ground, weight = pull
+def _moment(hold, i, turn, alpha, square, ground_and_weight):
+    """Contact moment of a closed contact at one corner; ``turn``: sine and cosine of θ."""
+    ground, weight = ground_and_weight
     s, c = turn
     moment = (hold[0, i] + hold[1, i] * s + hold[2, i] * c) * alpha
     moment += (hold[3, i] + hold[4, i] * s + hold[5, i] * c) * square
@@ -191,7 +191,10 @@ def next_contact_event(lanes_of_one, lane, i, series, g):
     if lane.flag[i] == CLOSES:
         when = roots.crossing_time(series.gap)
         omega = roots.slope(series.one.angle, when) / lane.was_left[i]
-        if least_hold(lanes_of_one, 0.0, omega, pull_at(lane, i, when), g) >= 0.0:
+        if (
+            least_hold(lanes_of_one, 0.0, omega, ground_and_weight_at(lane, i, when), g)
+            >= 0.0
+        ):
             return when, False
     else:
         when = roots.closing_time(series.gap, 1.0)
@@ -202,7 +205,7 @@ def next_contact_event(lanes_of_one, lane, i, series, g):
 
 
 @inlined_kernel
-def pull_at(lane, i, tau):
+def ground_and_weight_at(lane, i, tau):
     """Acceleration of the ground, and weight, in the lane's step."""
     ground, weight = lane.was_ground[i], lane.was_weight[i]
     return (
@@ -212,17 +215,17 @@ def pull_at(lane, i, tau):
 
 
 @kernel
-def least_hold(lanes_of_one, theta, omega, pull, g):
-    """Least contact moment of the closed contact, negative if it has to pull; ``pull`` as in ``_moment``."""
-    ground, weight = pull
+def least_hold(lanes_of_one, theta, omega, ground_and_weight, g):
+    """Least contact moment of the closed contact, negative if it has to pull."""
+    ground, weight = ground_and_weight
     turn = taylor.quick_sine_cosine(theta)
     s, c = turn
     alpha = weight * (lanes_of_one.gx * c + lanes_of_one.gy * s) - ground / g * (
         lanes_of_one.gy * c - lanes_of_one.gx * s
     )
     return min(
-        _moment(lanes_of_one.right, 0, turn, alpha, omega * omega, pull),
-        _moment(lanes_of_one.left, 0, turn, alpha, omega * omega, pull),
+        _moment(lanes_of_one.right, 0, turn, alpha, omega * omega, ground_and_weight),
+        _moment(lanes_of_one.left, 0, turn, alpha, omega * omega, ground_and_weight),
     )
 
 
@@ -231,13 +234,17 @@ def _release_time(lanes_of_one, lane, i, series, end, g):
     """Time up to ``end`` at which the closed contact lets go; NEVER if it holds."""
     angle, left = series.one.angle, lane.was_left[i]
     at_low = least_hold(
-        lanes_of_one, angle[0], angle[1] / left, pull_at(lane, i, 0.0), g
+        lanes_of_one, angle[0], angle[1] / left, ground_and_weight_at(lane, i, 0.0), g
     )
     if at_low < 0.0:
         return 0.0
     omega = roots.slope(angle, end) / left
     at_high = least_hold(
-        lanes_of_one, roots.value(angle, end), omega, pull_at(lane, i, end), g
+        lanes_of_one,
+        roots.value(angle, end),
+        omega,
+        ground_and_weight_at(lane, i, end),
+        g,
     )
     if at_high >= 0.0:
         return roots.NEVER
@@ -248,7 +255,11 @@ def _release_time(lanes_of_one, lane, i, series, end, g):
         tau = roots.guess_between(bracket)
         omega = roots.slope(angle, tau) / left
         hold = least_hold(
-            lanes_of_one, roots.value(angle, tau), omega, pull_at(lane, i, tau), g
+            lanes_of_one,
+            roots.value(angle, tau),
+            omega,
+            ground_and_weight_at(lane, i, tau),
+            g,
         )
         bracket = roots.narrowed(bracket, tau, hold)
     return bracket[2]

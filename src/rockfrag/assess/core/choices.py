@@ -1,0 +1,139 @@
+"""Which text says what was found: by its numbers alone, for the command line and the page alike.
+
+Plain functions of numbers, which the page's module is made of too. Each returns the place of a text among those
+that :data:`rockfrag.assess.findings.TEXTS` lists for it.
+
+In: probabilities with limits [-], levels of shaking, counts. Out: places. Docs: ``docs/assess.md``, "What to do".
+"""
+
+import math
+
+HARDLY = 0.1  # Fraction of the motions up to which an object hardly rocks
+FEWEST_EARTHQUAKES = 5
+"""Earthquakes below which no verdict is given: an interval over fewer was not validated."""
+
+BELOW = (0.01, 0.10, 0.33)
+"""Probabilities below which the steps of the scale of likelihoods lie, and up to which the next ones lie [-]."""
+UP_TO = (0.66, 0.90, 0.99)
+
+LEAVE, SECURE, MEASURE = 0, 1, 2
+"""What to do with an object."""
+
+
+def likelihood(probability: float) -> int:
+    """Step of the IPCC's scale: < 1, < 10, < 33 %, then up to 66, 90, 99 %, and above."""
+    for step in range(3):
+        if probability < BELOW[step]:
+            return step
+    for step in range(3):
+        if probability <= UP_TO[step]:
+            return 3 + step
+    return 6
+
+
+def stays(rocking_at_most: float) -> bool:
+    """Whether it is exceptionally unlikely that an object rocks, limits included."""
+    return likelihood(rocking_at_most) == 0
+
+
+def are_few(earthquakes: int) -> bool:
+    """Whether there are too few earthquakes for a verdict."""
+    return earthquakes < FEWEST_EARTHQUAKES
+
+
+def is_open(lower: float, upper: float) -> bool:
+    """Whether so few earthquakes leave every value possible."""
+    return lower <= 0.0 and upper >= 1.0
+
+
+# ---- the first screen
+
+
+def how_likely(few: bool, at_rest: bool, rocking: float) -> int:
+    """Say that earthquakes are few, that it does not move, that it hardly rocks, or how likely it topples."""
+    if few:
+        return 0
+    if at_rest:
+        return 1
+    return 2 if rocking <= HARDLY else 3
+
+
+def chance(value: float, lower: float, upper: float) -> int:
+    """Say a probability, or its limit where all motions agree."""
+    if value == 0.0 and upper > 0.0:
+        return 1
+    return 2 if value == 1.0 and lower < 1.0 else 0
+
+
+def how_far(half: float, upper: float) -> int:
+    """Say a level with its limits, with the lower one alone, or that none of those tried is enough."""
+    if not half < math.inf:
+        return 2
+    return 0 if upper < math.inf else 1
+
+
+def in_years(value: float, lower: float, upper: float) -> int:
+    """Say a probability in some years, or its upper limit alone."""
+    return 1 if value == 0.0 or is_open(lower, upper) else 0
+
+
+def advice(action: int, by_hazard: bool, at_rest: bool) -> int:
+    """Say to measure first; with a hazard to secure or to leave it; else what follows from costs."""
+    if action == MEASURE:
+        return 0
+    if by_hazard:
+        return 1 if action == SECURE else 2
+    if at_rest:
+        return 3
+    return 4 if action == SECURE else 5
+
+
+# ---- behind it
+
+
+def counted(total: int, every: int) -> int:
+    """Say how many motions do what, of all or of those that can be scaled so far."""
+    return 1 if total < every else 0
+
+
+def between(value: float, lower: float, upper: float) -> int:
+    """Say that a fraction is open, or its upper, its lower or both limits."""
+    if is_open(lower, upper):
+        return 0
+    if value == 0.0:
+        return 1
+    return 2 if value == 1.0 else 3
+
+
+def starts(level: float) -> int:
+    """Say where rocking starts, or that it does not at any level tried."""
+    return 0 if level < math.inf else 1
+
+
+def over_years(value: float, lower: float, upper: float) -> int:
+    """Say the upper limit of a probability, that it is open, or both limits."""
+    if value == 0.0:
+        return 0
+    return 1 if is_open(lower, upper) else 2
+
+
+def needs_change(value: float, at_rest: bool, by_hazard: bool) -> bool:
+    """Whether there is anything that a change could make smaller."""
+    return not (value == 0.0 or (at_rest and not by_hazard))
+
+
+def reduces(factor: float, grows: bool) -> int:
+    """Say that none is left, how much a change takes off, or how much more the object bears."""
+    if factor == 0.0:
+        return 0
+    return 2 if grows else 1
+
+
+def is_worse(lower: float, helps: bool) -> bool:
+    """Whether a way to stand is shown to be worse than its own: the limit of the factor, and what is estimated."""
+    return lower > 1.0 and not helps
+
+
+def safest(is_shown: bool) -> int:
+    """Say which way to stand is safest, or that the motions show none to be."""
+    return 0 if is_shown else 1
