@@ -109,6 +109,7 @@ def asked_at_some_door(rng: np.random.Generator, system: System) -> None:
         assert len(found.table) == 1
 
 
+@pytest.mark.filterwarnings("ignore::rockfrag.simulation.ensemble.LightBodies")
 @pytest.mark.parametrize(
     ("draws", "least"), [(12, 3), pytest.param(1000, 300, marks=pytest.mark.slow)]
 )
