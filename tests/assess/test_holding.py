@@ -164,7 +164,7 @@ def test_strengths_take_any_unit_of_force_and_none_is_guessed(tmp_path):
     given = [{"putty": "0.15 kN"}, {"putty_kn": 0.15}, {"putty_n": 150}]
     for stated in given:
         (putty,) = asked(**size, **stated).objects.under.holders
-        assert putty.pull == pytest.approx(150.0)
+        assert putty.bears == pytest.approx(150.0)
     # as a spring balance shows it
     (cords,) = asked(**size, cord="12 kgf").objects.under.holders
     assert cords.strength == pytest.approx(12 * 9.80665)
