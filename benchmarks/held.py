@@ -1,15 +1,18 @@
 """Blocks beside walls and kerbs and in cords: the engine in the plane beside MuJoCo in steps of 1 ms.
 
-Prints cases per second of process time of both, in one run, and how many outcomes are equal.
-``python benchmarks/held.py [cases of each level]``
+Each block is shaken by several motions, as an assessment does.  Prints cases per second of process time of both,
+in one run, and how many outcomes are equal.  ``python benchmarks/held.py [blocks [motions of each]]``
 """
 
 import sys
 import time
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
+from rockfrag.records.motion import Motion
 from rockfrag.simulation.ensemble import overturns
 
 # the random cases and MuJoCo lie with the oracles of the tests
@@ -19,32 +22,48 @@ from tests.engines.planar.cases import DT
 from tests.engines.planar.held_cases import DRAWN, LEVELS, HeldCase, drawn_case
 
 
-def main(each: int) -> None:
+def grid(kind: str, blocks: int, motions: int) -> list[list[HeldCase]]:
+    """Draw blocks of a kind of holder, each under several motions."""
+    rng = np.random.default_rng(22)
+    found = []
+    for _ in range(blocks):
+        cases = [drawn_case(kind, LEVELS[k % len(LEVELS)], rng) for k in range(motions)]
+        found.append([cases[0]._replace(motion=case.motion) for case in cases])
+    return found
+
+
+def by_engine(cases: list[HeldCase]) -> list[bool]:
+    """Whether a block falls under each motion."""
+    shaking = [Motion(case.motion, DT) for case in cases]
+    found = overturns([cases[0].system], shaking, friction=cases[0].mu, threads=1)
+    return [bool(fell) for fell in found.overturned[0, :, 0]]
+
+
+def timed(
+    work: Callable[[list[HeldCase]], list[bool]], given: Any
+) -> tuple[Any, float]:
+    """Outcomes of all blocks, and the process time that they took [s]."""
+    begun = time.process_time()
+    found = [work(cases) for cases in given]
+    return np.array(found), time.process_time() - begun
+
+
+def main(blocks: int, motions: int) -> None:
     """Run both and print, a line a kind of holder."""
     for kind in DRAWN:
-        rng = np.random.default_rng(22)
-        cases = [drawn_case(kind, level, rng) for level in LEVELS for _ in range(each)]
-
-        def ours(cases: list[HeldCase] = cases) -> list[bool]:
-            return [
-                bool(overturns(c.system, c.motion, DT, friction=c.mu).overturned.any())
-                for c in cases
-            ]
-
+        given = grid(kind, blocks, motions)
         # compiled before it is timed
-        ours(cases[:1])
-        begun = time.process_time()
-        found = ours()
-        taken = time.process_time() - begun
-        begun = time.process_time()
-        theirs = [case.falls_in_mujoco() for case in cases]
-        others = time.process_time() - begun
-        equal = np.mean(np.array(found) == np.array(theirs))
+        by_engine(given[0][:1])
+        found, taken = timed(by_engine, given)
+        theirs, others = timed(
+            lambda cases: [case.falls_in_mujoco() for case in cases], given
+        )
         print(
-            f"{kind}: {len(cases) / taken:.0f} cases/s, MuJoCo {len(cases) / others:.2f}, "
-            f"ratio {others / taken:.0f}, outcomes equal {equal:.2f}"
+            f"{kind}: {found.size / taken:.0f} cases/s, MuJoCo {found.size / others:.1f}, "
+            f"ratio {others / taken:.0f}, outcomes equal {(found == theirs).mean():.2f}",
+            flush=True,
         )
 
 
 if __name__ == "__main__":
-    main(int(sys.argv[1]) if len(sys.argv) > 1 else 20)
+    main(*(int(each) for each in sys.argv[1:3] or (8, 12)))

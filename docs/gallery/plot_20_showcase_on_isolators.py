@@ -3,7 +3,7 @@ What does an isolator ask for?
 ==============================
 
 A showcase on sliding pendulums moves slowly while the ground shakes fast, and does not rock. What it needs is way:
-at a stop that comes too early the plate is halted with all its speed, and that topples what the isolator saved.
+at a stop that comes too early the plate is halted with all its speed, and what stood still above it rocks.
 """
 
 import matplotlib.pyplot as plt
@@ -39,5 +39,5 @@ for line, (name, response) in zip(("-", "--", ":"), responses.items(), strict=Tr
         plates.plot(response.time, 100 * response.plate, line, label=name)
     turns.plot(response.time, np.degrees(response.theta[:, 0]), line, label=name)
 plates.set(ylabel="plate [cm]")
-turns.set(xlabel="time [s]", ylabel="rotation [°]", ylim=(-20, 20), xlim=(0, 6))
+turns.set(xlabel="time [s]", ylabel="rotation [°]", ylim=(-20, 20), xlim=(0, 3))
 turns.legend(frameon=False, fontsize=8)

@@ -3,7 +3,7 @@ What does a bracket at the wall buy?
 ====================================
 
 A bookcase that stands before a wall falls away from it. A bracket holds it both ways, as long as it does not
-break. What it must bear decides, and a weak one is hardly better than none.
+break. What it bears decides: where it breaks the bookcase falls at once.
 """
 
 import matplotlib.pyplot as plt
@@ -46,10 +46,10 @@ scales = levels * 9.81 / np.array([[motion.pga] for motion in motions])
 found = overturns(list(held.values()), motions, scales=scales, friction=0.6)
 fractions = found.overturned.mean(axis=1)
 
-figure, axes = plt.subplots(figsize=(5.4, 3.4))
+figure, axes = plt.subplots(figsize=(5.4, 3.6), layout="constrained")
 for line, (name, fraction) in zip(
     ("-", "-.", ":", "--"), zip(held, fractions, strict=True), strict=True
 ):
     axes.plot(levels, fraction, line, label=name)
 axes.set(xlabel="peak ground acceleration [g]", ylabel="fraction that topples [-]")
-axes.legend(frameon=False, fontsize=8)
+figure.legend(fontsize=8, loc="outside lower center", ncols=2)

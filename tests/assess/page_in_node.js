@@ -23,8 +23,13 @@ begin({ data, modules, samples: bytes(data.packed) }).then(() => {
         return TASKS.changed({ ...told, parts: [{ first: 0, ...part }], answered: answer });
       };
       const fixed = request.pedestal ? ["to_pedestal", "to_floor"].map(fix) : null;
+      const stick = (putty) => {
+        const told = { id: `${id} ${putty}`, request: { ...request, putty } };
+        return [...TASKS.count({ ...told, run: 0, first: 0, last: count }).overturned];
+      };
+      const held = request.pedestal || request.solid || !form.putty ? null : stick(Number(form.putty));
       const { first, details } = answer.said;
-      return { answer: plain(answer), early, fixed, first: plain(first), details: plain(details), lines: first.map(speak.sentence) };
+      return { answer: plain(answer), early, fixed, held, first: plain(first), details: plain(details), lines: first.map(speak.sentence) };
     } catch (error) {
       if (!error.field) return { failed: error.stack };
       const { en } = data.texts;

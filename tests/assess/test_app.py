@@ -13,6 +13,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from rockfrag import overturns
 from rockfrag.assess.answer import Assessment, assess_with, plan_for
 from rockfrag.assess.app.build import PATH
 from rockfrag.assess.app.contents import computing, script
@@ -20,6 +21,7 @@ from rockfrag.assess.app.writing import page_of
 from rockfrag.assess.findings import details, first_screen
 from rockfrag.assess.motions import MotionSet
 from rockfrag.assess.request import make_request
+from rockfrag.assess.standing.holders import Putty
 from rockfrag.base.errors import InputError
 from rockfrag.cli.assess_commands import form_of
 from rockfrag.cli.main import main
@@ -186,6 +188,31 @@ USUAL = {
     "level": "0,3 g",
     "years": "475",
 }
+
+
+@needs_node
+def test_putty_that_is_tried_live_does_what_the_engine_with_a_bond_says(
+    tmp_path, motions
+):
+    pulls = (20.0, 300.0, 1500.0, 1e6)
+    form = {"width": "20 cm", "height": "80 cm", "mass": "60 kg"}
+    form |= {"measure": "PGA", "level": "0.5 g"}
+    forms = [form | {"putty": str(pull)} for pull in pulls]
+    settings = {key: form[key] for key in ("width", "height", "mass")}
+    request = make_request(settings | {"pga": "0.5 g"}, "test")
+    levels = assess_with(request, motions, holders=False).counted.intensity_levels
+    scales = np.where(levels.allowed, levels.scales, 1e-3)
+    body = request.objects.system_of(request.objects.body)
+    fell = []
+    for pull, said in zip(pulls, in_node(tmp_path, motions, forms), strict=True):
+        assert "failed" not in said, said
+        system = Putty(pull).on(body)
+        found = overturns([system], motions.base, scales=scales).overturned[0]
+        live = np.reshape(said["held"], found.shape).astype(bool)
+        # it breaks at the next sample there
+        assert (live == found)[levels.allowed].mean() > 0.97
+        fell.append(live[levels.allowed].mean())
+    assert fell[0] > fell[1] > fell[2] > fell[3] == 0
 
 
 @needs_node

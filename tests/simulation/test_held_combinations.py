@@ -11,6 +11,7 @@ from rockfrag.base.errors import InputError
 from rockfrag.engines.spatial.engine import SpatialResponse
 from rockfrag.records.motion import GroundMotion, Motion
 from rockfrag.simulation import find_thresholds
+from rockfrag.simulation.options import system_of
 from rockfrag.system import (
     BilinearIsolator,
     Friction,
@@ -109,8 +110,19 @@ def asked_at_some_door(rng: np.random.Generator, system: System) -> None:
         assert len(found.table) == 1
 
 
+def test_what_nobody_said_may_slide_is_rough_without_jamming_where_it_is_held() -> None:
+    stack = as_system(Stack(Block(0.5, 0.3, 150.0), Block(0.36, 0.8, 80.0)))
+    dish = SlidingPendulum(mass=17.0, radius=2.0, friction=0.06)
+    held = hold(stack, bracket_at_top(stack, 1e6), support=dish)
+    assert [each.friction for each in system_of(stack).contacts] == [None, None]
+    assert {each.friction for each in system_of(held).contacts} == {Friction(20, 20)}
+    stated = system_of(held, 0.4)
+    assert {each.friction for each in stated.contacts} == {Friction(0.4, 0.4)}
+
+
+@pytest.mark.filterwarnings("ignore::rockfrag.simulation.ensemble.LightBodies")
 @pytest.mark.parametrize(
-    ("draws", "least"), [(40, 10), pytest.param(1000, 300, marks=pytest.mark.slow)]
+    ("draws", "least"), [(12, 2), pytest.param(1000, 300, marks=pytest.mark.slow)]
 )
 def test_what_holds_a_body_is_simulated_at_every_door_or_refused_in_a_sentence(
     draws: int, least: int

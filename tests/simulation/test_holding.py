@@ -149,6 +149,30 @@ def test_a_wall_sends_the_point_that_meets_it_back_and_throws_the_foot_up() -> N
     assert foot > 0
 
 
+def test_a_pivot_that_held_at_a_wall_would_have_to_pull() -> None:
+    """P_x = (1 + e) ω (I_O/z - m h), P_y = -(1 + e) m b ω, from momentum along, upwards and about the centre."""
+    rate, z, e, half, mass = 0.8, 0.6, 0.3, BUST.width / 2, BUST.mass
+    inertia = BUST.centroidal_inertia + mass * (half**2 + BUST.h**2)
+    # unknown: the wall's impulse (against x), and those of the pivot along and upwards
+    matrix = [
+        [-1.0, 1.0, 0.0],
+        [0.0, 0.0, 1.0],
+        # clockwise about the centre; the pivot is below it on the right
+        [-(z - BUST.h), -BUST.h, -half],
+    ]
+    change = (
+        -(1 + e)
+        * rate
+        * np.array([mass * BUST.h, mass * half, BUST.centroidal_inertia])
+    )
+    wall, along, upwards = np.linalg.solve(matrix, change)
+    assert wall == pytest.approx((1 + e) * rate * inertia / z, rel=1e-12)
+    assert along == pytest.approx(
+        (1 + e) * rate * (inertia / z - mass * BUST.h), rel=1e-12
+    )
+    assert upwards == pytest.approx(-(1 + e) * mass * half * rate, rel=1e-12)
+
+
 def test_leaning_needs_the_friction_that_balance_asks_for() -> None:
     shelf = Block(0.3, 1.8, 90.0)
     gap = 0.5

@@ -471,11 +471,18 @@ def live_of(found: Assessment, texts: Catalogue) -> Markup:
     if motions.both and objects.solid(objects.body) is not None:
         return _in_space(objects, motions, chosen, texts)
     bodies = {
-        texts.text(way): objects.system_of(body)
+        _shown_as(objects, way, texts): objects.system_of(body)
         for way, body in objects.arrangements().items()
     }
     shaking = carried([_named(motions, motions.base[i], i) for i in chosen])
     return live_kernel(bodies, shaking, texts=texts)
+
+
+def _shown_as(objects: Standing, way: str, texts: Catalogue) -> str:
+    """What the live part calls a way to stand: it simulates the object without what holds it."""
+    stands = finding(way)
+    free = finding(Text.SHOWN_FREE, way=stands) if objects.under.holders else stands
+    return texts.say(free)
 
 
 def _in_space(
@@ -484,7 +491,7 @@ def _in_space(
     """The ways to stand that are known in space, on pedestals that stay where they are, under both components."""
     bodies, left_out = {}, []
     for way, body in objects.arrangements().items():
-        name = texts.text(way)
+        name = _shown_as(objects, way, texts)
         solid, pedestals = objects.solid(body), body.blocks[:-1]
         if solid is None:
             left_out.append(name)

@@ -105,6 +105,7 @@ class Text(StrEnum):
     HOLD_ISOLATOR = auto()
     HOLD_WALL = auto()
     HOLD_OFF_WALL = auto()
+    SHOWN_FREE = auto()
     HOLD_CASTERS_LOCKED = auto()
     HOLD_CASTERS_FREE = auto()
     HOLDS = auto()

@@ -66,6 +66,10 @@ Restitution = float | Sequence[Measured] | dict[str, Any] | MeasuredRestitution 
 """A measured restitution; numbers alone follow the law ``"position"``, and None conserves momentum."""
 
 
+NEVER_SLIDES = Friction(20.0, 20.0)
+"""Friction of held bodies on each other that nobody said may slide, as of a body in space without any [-]."""
+
+
 def system_of(
     body: SystemLike,
     friction: FrictionInput | None = None,
@@ -104,9 +108,24 @@ def system_of(
         start = Start(
             _start(system, theta0, "theta0"), _start(system, omega0, "omega0")
         )
-    if all(given is None for given in (friction, restitution, theta0, omega0)):
+    if any(given is not None for given in (friction, restitution, theta0, omega0)):
+        system = replace(system, contacts=tuple(contacts), start=start)
+    return _rough_where_held(system)
+
+
+def _rough_where_held(system: System) -> System:
+    """Return it with a finite friction of contacts without any, where bodies on each other are held.
+
+    Of two contacts that may not slide at all, one that was shut while it slipped jams under the other one.
+    """
+    on_each_other = system.count > 1 or system.support is not None
+    if not (system.planar and system.holding and on_each_other):
         return system
-    return replace(system, contacts=tuple(contacts), start=start)
+    contacts = (
+        contact if contact.friction else replace(contact, friction=NEVER_SLIDES)
+        for contact in system.contacts
+    )
+    return replace(system, contacts=tuple(contacts))
 
 
 def _start(system: System, value: object, name: str) -> tuple[float, ...]:

@@ -12,16 +12,17 @@ from ...oracle.mujoco_model import falls, held_model
 from ...simulation.reference_bodies import random_motion
 from .cases import DT
 
-LEVELS = (1.2, 2.0, 3.0)  # of random motions [-]
+LEVELS = (2.0, 3.5, 6.0)  # peaks of motions over those at which a free block rocks [-]
 
 
 def drawn_walls(rng, block):
-    """A wall on each side."""
+    """A wall on the right, and half of the time one on the left."""
     mu = rng.uniform(0.0, 0.5)
-    gaps = rng.uniform(0.05, 0.5, 2) * block.width
+    gaps = rng.uniform(0.05, 0.5), rng.uniform(0.3, 1.5)
+    sides = [0.0, math.pi][: int(rng.integers(1, 3))]
     return [
-        Wall(block.width / 2 + gap, direction, friction=(mu, mu))
-        for gap, direction in zip(gaps, (0.0, math.pi), strict=True)
+        Wall((0.5 + gap) * block.width, direction, friction=(mu, mu))
+        for gap, direction in zip(gaps, sides, strict=False)
     ]
 
 
@@ -37,7 +38,7 @@ def drawn_kerbs(rng, block):
 def drawn_cords(rng, block):
     """Two cords with slack from the middle of the top."""
     weight, top = block.mass * 9.81, block.height
-    stiffness = weight * 10 ** rng.uniform(0.5, 1.5) / top
+    stiffness = weight * 10 ** rng.uniform(-1.0, 0.5) / top
     return [
         Tie(
             (0, 0, top),
@@ -80,4 +81,6 @@ def drawn_case(kind: str, level: float, rng: np.random.Generator) -> HeldCase:
     width, mu = rng.uniform(0.15, 0.5), rng.uniform(0.35, 0.8)
     block = Block(width, width * rng.uniform(2.5, 5.0), rng.uniform(20, 200))
     holders = DRAWN[kind](rng, block)
-    return HeldCase(block, mu, holders, level * random_motion(rng)[:800])
+    motion = random_motion(rng, 800)
+    peak = level * 9.81 * block.width / block.height
+    return HeldCase(block, mu, holders, motion * peak / np.abs(motion).max())

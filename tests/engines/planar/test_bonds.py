@@ -86,6 +86,16 @@ def test_after_its_break_a_block_moves_as_one_that_was_never_bonded() -> None:
     )
 
 
+def test_a_bond_that_breaks_as_the_motion_begins_leaves_every_bit() -> None:
+    motion = 5.0 + random_motion(np.random.default_rng(4))[:200]
+    free = run(BLOCK, motion, friction=0.6)
+    found = run(bonded(Bond(300.0, STRONG, 0.1)), motion, friction=0.6)
+    assert found.constraints["breaking_time_s"][0] == 0.0
+    assert np.abs(free.theta).max() > 0.1
+    assert np.array_equal(found.theta, free.theta)
+    assert np.array_equal(found.normal_force[1:], free.normal_force[1:])
+
+
 def test_bodies_that_are_bonded_for_ever_move_as_one() -> None:
     stack = Stack(Block(0.5, 0.3, 150.0), Block(0.4, 0.9, 120.0))
     motion = 1.5 * random_motion(np.random.default_rng(3))

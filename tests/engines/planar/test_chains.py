@@ -7,6 +7,7 @@ import pytest
 
 from rockfrag import Block, Stack, simulate
 from rockfrag.base.errors import InputError
+from rockfrag.simulation.holding import bond_tension_needed
 from rockfrag.system import Bond, Friction, SlidingPendulum, Tie, Wall, as_system, hold
 
 from ...simulation.reference_bodies import random_motion
@@ -53,10 +54,10 @@ def test_what_has_broken_is_gone_and_what_has_slid_is_nearer_to_its_wall() -> No
 
 def test_a_bond_that_the_main_shock_broke_stays_broken_in_the_aftershock() -> None:
     motion = 0.8 * random_motion(np.random.default_rng(5))[:400]
-    # so strong that it bears what follows, had it not been broken
-    bond = Bond(400.0, 400.0, 0.1)
-    held = hold(as_system(BLOCK), bonds=bond)
     first, second = 2.0 * motion, 1.1 * motion
+    # so strong that it bears what follows, had it not been broken
+    needed = bond_tension_needed(BLOCK, second, 0.1)
+    held = hold(as_system(BLOCK), bonds=Bond(1.02 * needed, 1e6, 0.1))
     before, after, whole = chained(held, first, second)
     at = first.size + QUIET.size
     assert not before.overturned

@@ -21,8 +21,8 @@ def test_outcomes_are_those_of_mujoco_in_nine_of_ten_cases(kind: str) -> None:
             found = overturns(case.system, case.motion, DT, friction=case.mu)
             ours[i, j] = found.overturned
             theirs[i, j] = case.falls_in_mujoco()
-    shares = ours.mean(axis=1), theirs.mean(axis=1)
-    print(kind, "topple by level", *shares, "equal", (ours == theirs).mean())
+    fell = ours.sum(axis=1), theirs.sum(axis=1)
+    print(kind, "topple of 20 by level", *fell, "equal", (ours == theirs).mean())
     assert 0.1 < ours.mean() < 0.9
     assert (ours == theirs).mean() >= 0.9
-    assert np.abs(shares[0] - shares[1]).max() <= 0.15
+    assert np.abs(fell[0] - fell[1]).max() <= 3

@@ -12,7 +12,7 @@ from rockfrag.engines.planar.integrate import IMPACT
 from rockfrag.simulation.inputs import ground_motion
 from rockfrag.simulation.options import system_of
 from rockfrag.system import Wall, as_system, hold
-from rockfrag.system.mounts import on_casters
+from rockfrag.system.mounts import ROLLING, on_casters
 from rockfrag.system.system import corners, standing_centres
 
 from ...oracle import witness
@@ -304,6 +304,24 @@ def test_the_third_body_of_a_column_that_leans_over_is_held_by_the_wall() -> Non
     free = run(column, motion, friction=0.7)
     held = run(walled(column, Wall(0.27), Wall(0.27, LEFT)), motion, friction=0.7)
     assert (free.overturned, held.overturned) == (True, False)
+
+
+@pytest.mark.parametrize("gap", [0.05, 0.3])
+def test_a_cart_meets_a_wall_at_the_speed_that_rolling_over_the_gap_gives(
+    gap: float,
+) -> None:
+    """V² = 2 (a - µ_r g) s, all of which a flat side loses at a wall without restitution."""
+    push = np.full(400, -2.0)
+    cart = on_casters(as_system(BLOCK), "free")
+    found = run(hold(cart, Wall(B + gap)), push)
+    speed = math.sqrt(2 * (2.0 - ROLLING.kinetic * G) * gap)
+    assert found.energy["lost_walls"].iloc[-1] == pytest.approx(
+        0.5 * M * speed**2, rel=1e-6
+    )
+    assert found.constraints["largest_impulse_n_s"][0] == pytest.approx(
+        M * speed, rel=1e-6
+    )
+    assert np.abs(found.theta).max() < 1e-15
 
 
 def test_a_cart_on_free_casters_never_rocks_until_it_meets_the_kerb() -> None:

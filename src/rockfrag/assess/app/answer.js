@@ -2,7 +2,7 @@
 const answer = (data, core) => {
   "use strict";
   const { constants: { MODEL, SPACE, ACCEPTED_AT_A_LEVEL, ACCEPTED_IN_FIFTY_YEARS }, measures } = data;
-  const judge = risk(data, core), spatial = inSpace(data, core), building = floors(data, core), wording = findings(data, core, judge);
+  const judge = risk(data, core), spatial = inSpace(data, core), building = floors(data, core), wording = findings(data, core, judge), putty = puttied(data.constants);
 
   // levels of a run: the asked one among those of the measure
   function levelsOf(request, run) {
@@ -54,9 +54,11 @@ const answer = (data, core) => {
       if (request.solid) return countInSpace(request, run, first, last);
       const places = Array.from({ length: last - first }, (_, i) => first + i), on = (floor) => shakingOf(request.place, floor, `${first}-${last}`);
       // what is allowed follows from the floor as it is, on whatever floor it is counted
-      const shaking = on(run.floor ?? ""), own = scalesOf(request, run, places, on(""));
-      const body = ensemble.bodyOf(run.body), lifting = Float64Array.from(shaking, ({ peak }) => core.call("lifting_in_plane", body.uplift, peak));
-      return { ...ensemble.count(body, shaking, factorsOf(own, shaking)), allowed: own.allowed, lifting };
+      const shaking = on(run.floor ?? ""), own = scalesOf(request, run, places, on("")), factors = factorsOf(own, shaking);
+      const body = ensemble.bodyOf(run.body), limits = request.putty ? putty.breaksFrom(run.body.statue, request.putty) : null;
+      const uplift = limits ? Math.min(...limits) / data.constants.GRAVITY : body.uplift;
+      const outcomes = limits ? putty.count(ensemble, body, limits, shaking, factors) : ensemble.count(body, shaking, factors);
+      return { ...outcomes, allowed: own.allowed, lifting: Float64Array.from(shaking, ({ peak }) => core.call("lifting_in_plane", uplift, peak)) };
     };
     function countInSpace(request, run, first, last) {
       const on = (floor) => (m) => shakingOf(request.place, floor, `${m}-${m + 1}`)[0];

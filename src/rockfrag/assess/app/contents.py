@@ -30,7 +30,7 @@ from rockfrag.assess.hazard.curve import PGA, PGV
 from rockfrag.assess.motions import MotionSet
 from rockfrag.assess.place import Place
 from rockfrag.assess.request import Records, Request
-from rockfrag.assess.standing import box, contract, rolling
+from rockfrag.assess.standing import box, contract, holders, rolling
 from rockfrag.base import plausible, units
 from rockfrag.base.arrays import Floats
 from rockfrag.building.model import ModalDamping, ShearBuilding
@@ -48,6 +48,7 @@ SCRIPTS = (
     "objects",
     "plan",
     "findings",
+    "held",
     "answer",
 )
 """Scripts that compute, in the order in which they need each other."""
@@ -227,6 +228,7 @@ def _constants() -> dict[str, Any]:
         **_of(sources, "SPACE"),
         **_of(plausible, "STONE", "DENSITIES", "DEPTHS"),
         **_of(bodies, "LOWER", "BALLAST"),
+        **_of(holders, "PADS_AT"),
         **_of(
             place, "PERIOD_FACTORS", "STOREY_HEIGHT", "STOREY_MASS", "HIGHEST_BUILDING"
         ),

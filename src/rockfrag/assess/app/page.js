@@ -258,12 +258,13 @@ function typedIn(form) {
 
 // ---- what helps: sliders, before and after
 
-const SLIDERS = { width: [0, 50, 0], cg: [0, 40, 0], ballast: [0, 100, 0] };
+const SLIDERS = { width: [0, 50, 0], cg: [0, 40, 0], ballast: [0, 100, 0], putty: [0, 600, 0] };
+const GRAVITY = data.constants.GRAVITY;
 function drawSliders() {
   find("sliders").replaceChildren(...Object.entries(SLIDERS).map(([id, [low, high, at]]) => {
     const input = make("input", { type: "range", min: low, max: high, step: 1, id: `slide-${id}` }), told = make("output");
     input.value = at;
-    const tell = () => { told.textContent = ` ${SLIDERS[id][2]} %`; };
+    const tell = () => { told.textContent = ` ${SLIDERS[id][2]} %${id === "putty" ? pullInNewtons() : ""}`; };
     input.addEventListener("input", () => { SLIDERS[id][2] = Number(input.value); tell(); slide(); });
     tell();
     return make("div", { className: "field" }, make("label", { htmlFor: input.id }, say(`slide_${id}`), told), input);
@@ -272,15 +273,24 @@ function drawSliders() {
   choice.addEventListener("input", slide);
   find("sliders").append(make("div", { className: "field" }, make("label", { htmlFor: choice.id }, say("slide_fixed")), choice));
 }
+// what putty under the object that is shown holds, its ballast being none
+const pullOf = ({ statue }) => (SLIDERS.putty[2] / 100) * statue.mass * GRAVITY;
+function pullInNewtons() {
+  if (!shown || !SLIDERS.putty[2]) return "";
+  return ` = ${new Intl.NumberFormat(document.documentElement.lang, { maximumSignificantDigits: 2 }).format(pullOf(shown.run.request))} N`;
+}
 function slide() {
   if (!shown || shown.run !== current) return;
   const [width, cg, ballast] = Object.values(SLIDERS).map(([, , at]) => at / 100), { found } = shown;
+  // of a pedestal or a body in space the command line tells
+  const sticks = !shown.run.request.pedestal && !shown.run.request.solid, putty = sticks ? pullOf(shown.run.request) : 0;
+  find("slide-putty").closest("div").hidden = !sticks;
   const choice = find("slide-fixed"), fixed = shown.run.request.pedestal ? choice.value : "not_fixed";
   choice.closest("div").hidden = !shown.run.request.pedestal;
   other = null;
-  if (!(width || cg || ballast || fixed !== "not_fixed")) return compare(found, null);
+  if (!(width || cg || ballast || putty || fixed !== "not_fixed")) return compare(found, null);
   const changes = { wider: 1 + width, lower: 1 - cg, ballast };
-  other = { id: ++number, request: { ...current.request, changes, fixed }, since: performance.now() };
+  other = { id: ++number, request: { ...current.request, changes, fixed, putty }, since: performance.now() };
   shakeChanged(other, found);
 }
 // the object with a change under all motions, and the answer's own numbers of it
@@ -517,6 +527,7 @@ function drawSheets() {
   for (const { form, told: { found }, scene: still } of items) {
     const said = saidOf(found), canvas = make("canvas", { width: 600, height: 300 });
     const sheet = make("section", { className: "sheet" }, make("h2", { textContent: said.headline }), make("p", { textContent: said.screen }), make("p", { textContent: typedIn(form) }), make("dl", {}, ...linesAs(said)));
+    if (!kept.length) sheet.append(...tried());
     find("sheets").append(sheet);
     if (still) {
       sheet.append(make("figure", {}, canvas, make("figcaption", { textContent: `${still.title()}: ${still.words()}` })));
@@ -524,6 +535,17 @@ function drawSheets() {
     }
     sheet.append(make("p", { className: "message", textContent: `${data.made ? say("made") + " " : ""}${say("no_substitute")} ${new Date().toISOString().slice(0, 10)}` }));
   }
+}
+// what the sliders try of the object that is shown, before and after
+function tried() {
+  if (!other) return [];
+  const fields = [...find("sliders").querySelectorAll(".field:not([hidden])")], moved = fields.filter((field) => field.querySelector("input")?.value > 0);
+  const choice = find("slide-fixed"), chosen = choice.selectedOptions[0];
+  const words = moved.map((field) => field.querySelector("label").textContent);
+  if (!choice.closest("div").hidden && choice.selectedIndex > 0) words.push(`${say("slide_fixed")}: ${chosen.textContent}`);
+  const table = find("compared").closest("table").cloneNode(true);
+  table.querySelector("tbody").removeAttribute("id");
+  return [make("p", { textContent: `${say("try")}: ${words.join("; ")}.` }), table];
 }
 function rankedSheet() {
   const table = make("table", {}, make("thead", {}, make("tr", {}, ...headings())), make("tbody", {}, ...kept.map(rowOf)));

@@ -24,7 +24,7 @@ from rockfrag.engines.planar.solve import (
     fill_row,
     rate,
 )
-from rockfrag.engines.planar.support import rubbing, slope
+from rockfrag.engines.planar.support import GUIDED, rubbing, slope
 from rockfrag.engines.planar.ties import fill_tie_accelerations
 
 # violation below which a mode is consistent: forces over the weight, accelerations over g [-].  Less than the
@@ -413,7 +413,8 @@ def _set_all(p, w, closed):
         for end in range(2):
             stays = 1 if w.whole[k] != 0 else closed
             w.closed[k, end] = stays * w.touching[k, end]
-        if closed == 1 and w.touching[k, 0] + w.touching[k, 1] > 0:
+        touches = closed == 1 and w.touching[k, 0] + w.touching[k, 1] > 0
+        if touches or w.whole[k] == GUIDED:
             w.slides[k] = w.moves[k]
         if w.drive[k] >= 0:
             w.closed[k, w.drive[k]] = 0
