@@ -261,7 +261,7 @@ def test_a_table_that_is_cut_says_so_in_the_language_of_its_page():
 
 @pytest.mark.parametrize(("file", "old", "new", "sentence"), CASES["refused"])
 def test_what_cannot_be_is_said_in_one_sentence(site, capsys, file, old, new, sentence):
-    path = site.with_name(file)
+    path = site.parent / file
     path.write_text(path.read_text().replace(old, new))
     status, said = run(site, capsys)
     assert status == 2

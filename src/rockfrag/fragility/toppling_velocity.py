@@ -9,14 +9,13 @@ In: width and height of uniform blocks on a floor [m], arrays of any shape. Out:
 """
 
 import json
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
 from importlib.resources import files
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from rockfrag.base.arrays import Flags, Floats
 from rockfrag.base.errors import InputError
@@ -58,7 +57,11 @@ class Surface:
     largest: float
     earthquakes: float
 
-    def at(self, width_m: ArrayLike, height_m: ArrayLike) -> tuple[Floats, Floats]:
+    def at(
+        self,
+        width_m: Floats | Sequence[float] | float,
+        height_m: Floats | Sequence[float] | float,
+    ) -> tuple[Floats, Floats]:
         """Median and dispersion of sizes [m]; NaN outside of the sizes that it was fitted to."""
         width, height = np.broadcast_arrays(
             real_array("width_m", width_m, "m"), real_array("height_m", height_m, "m")
@@ -104,8 +107,8 @@ def terms_of(width_m: Floats, height_m: Floats) -> Floats:
 
 
 def toppling_velocity(
-    width_m: ArrayLike,
-    height_m: ArrayLike,
+    width_m: Floats | Sequence[float] | float,
+    height_m: Floats | Sequence[float] | float,
     *,
     standing: str = "plane",
     limit: float = 1.0,
