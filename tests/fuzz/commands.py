@@ -152,6 +152,19 @@ def inventory(rng: random.Random, path: Path) -> dict[str, float]:
     return slender
 
 
+def rows_of(path: Path) -> list[dict[str, str]]:
+    """Rows of a table that a command wrote."""
+    with path.open(newline="", encoding="utf-8") as file:
+        return list(csv.DictReader(file))
+
+
+def lost(rows: list[dict[str, str]], slender: dict[str, float]) -> list[str]:
+    """What is wrong where a list has other objects than the inventory."""
+    if sorted(row["name"] for row in rows) == sorted(slender):
+        return []
+    return ["the list has other objects than the inventory"]
+
+
 def within(row: dict[str, str], name: str) -> bool:
     """Whether a probability of a row lies within 0 and 1, and within its limits."""
     value = float(row[name])
@@ -170,11 +183,8 @@ def after_an_earthquake(rng: random.Random, folder: Path) -> list[str]:
     status, _, err = called(*words, "--record", records, "--output", folder / "out")
     if status:
         raise InputError(err.strip())
-    with (folder / "out" / "after.csv").open(newline="", encoding="utf-8") as file:
-        rows = list(csv.DictReader(file))
-    wrong = []
-    if sorted(row["name"] for row in rows) != sorted(slender):
-        wrong.append("the list has other objects than the inventory")
+    rows = rows_of(folder / "out" / "after.csv")
+    wrong = lost(rows, slender)
     chances = [float(row["probability_fell"]) for row in rows]
     if chances != sorted(chances, reverse=True):
         wrong.append("what fell most probably is not first")
@@ -197,11 +207,8 @@ def ranked(rng: random.Random, folder: Path) -> list[str]:
     status, out, err = called(*words, "--output", folder / "out")
     if status:
         raise InputError(err.strip())
-    with (folder / "out" / "inventory.csv").open(newline="", encoding="utf-8") as file:
-        rows = list(csv.DictReader(file))
-    wrong = []
-    if sorted(row["name"] for row in rows) != sorted(slender):
-        wrong.append("the list has other objects than the inventory")
+    rows = rows_of(folder / "out" / "inventory.csv")
+    wrong = lost(rows, slender)
     if any(name not in out for name in slender):
         wrong.append("an object is not on the screen")
     for row in rows:
@@ -212,8 +219,8 @@ def ranked(rng: random.Random, folder: Path) -> list[str]:
     parts = sum(float(row["contribution"] or 0) for row in rows)
     if parts and abs(parts - 1) > 1e-6:
         wrong.append(f"contributions add up to {parts}")
-    with (folder / "out" / "together.csv").open(newline="", encoding="utf-8") as file:
-        rates = [float(row["annual_rate"]) for row in csv.DictReader(file)]
+    together = rows_of(folder / "out" / "together.csv")
+    rates = [float(row["annual_rate"]) for row in together]
     if rates != sorted(rates, reverse=True):
         wrong.append("more objects topple together oftener than fewer")
     return wrong
@@ -230,12 +237,8 @@ def collected(rng: random.Random, folder: Path) -> list[str]:
     status, out, err = called(
         "collection", export, "--output", table, "--understood", each
     )
-    with each.open(newline="", encoding="utf-8") as file:
-        understood = list(csv.DictReader(file))
-    listed_rows = []
-    if table.exists():
-        with table.open(newline="", encoding="utf-8") as file:
-            listed_rows = list(csv.DictReader(file))
+    understood = rows_of(each)
+    listed_rows = rows_of(table) if table.exists() else []
     wrong = []
     if len(understood) != count:
         wrong.append(f"of {count} objects {len(understood)} are accounted for")

@@ -281,11 +281,9 @@ def assess(
     The :class:`Assessment`.
     """
     motions = motion_set(request.records, request.place, Path(records))
-    plan = plan_for(request, motions, brief=brief, holds=not brief)
-    if announce is not None:
-        for words in waiting_for(request, plan):
-            announce(words)
-    return assessed(request, plan, shake_all([request], plan, progress)[0])
+    return assess_with(
+        request, motions, brief=brief, announce=announce, progress=progress
+    )
 
 
 LEVELS_OF_HOLDERS = 8
@@ -322,14 +320,20 @@ def waiting_for(request: Request, plan: Plan) -> list[str]:
 
 
 def assess_with(
-    request: Request, motions: MotionSet, *, brief: bool = False, holders: bool = True
+    request: Request,
+    motions: MotionSet,
+    *,
+    brief: bool = False,
+    holders: bool = True,
+    announce: Callable[[str], None] | None = None,
+    progress: Callable[[float], None] | None = None,
 ) -> Assessment:
     """Assess one object with motions that are at hand.
 
     Parameters
     ----------
     request, motions : what is asked, and by what
-    brief : leave out as :func:`assess` does
+    brief, announce, progress : as :func:`assess` takes them
     holders : try what may hold the object, as the one-file page cannot
 
     Returns
@@ -337,7 +341,10 @@ def assess_with(
     The :class:`Assessment`.
     """
     plan = plan_for(request, motions, brief=brief, holds=holders and not brief)
-    return assessed(request, plan, shake_all([request], plan)[0])
+    if announce is not None:
+        for words in waiting_for(request, plan):
+            announce(words)
+    return assessed(request, plan, shake_all([request], plan, progress)[0])
 
 
 def plan_for(

@@ -8,9 +8,9 @@ import os
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
+from rockfrag.assess.app.form import Field, form_fields
 from rockfrag.assess.hazard.curve import (
     HazardCurve,
     make_curve,
@@ -18,18 +18,13 @@ from rockfrag.assess.hazard.curve import (
     read_measure,
 )
 from rockfrag.base.errors import InputError
-from rockfrag.collections.exported_table import table_cells
+from rockfrag.collections.exported_table import table_cells, table_titles
 
-OBJECT = ("name", "width", "height", "mass", "depth", "cg_height", "cg_offset")
-NUMBERS = {"facing": "facing_deg", "restitution": "restitution"}
-PEDESTAL = {f"pedestal_{key}": key for key in ("width", "height", "mass")}
-BUILDING = {
-    "storey_height": "storey_height",
-    "material": "material",
-    "period": "first_period",
-}
 SHAKING = ("measure", "level", "years", "hazard")
-FIELDS = (*OBJECT, *NUMBERS, "round", "floor", *PEDESTAL, *BUILDING, *SHAKING)
+"""Columns that say the place's shaking, of which several keys may follow."""
+
+FORM = form_fields(())
+FIELDS = tuple(field.name for field in FORM)
 """Columns of the list: the fields of the page's form."""
 
 KEYS_OF_SHAKING = ("pga", "pgv", "sa", "return_period", "return_period_years", "hazard")
@@ -66,13 +61,7 @@ def is_page_list(path: str | os.PathLike[str]) -> bool:
     -------
     Whether :func:`read_page_list` is to read it.
     """
-    if Path(path).suffix.lower() != ".csv" or not Path(path).is_file():
-        return False
-    try:
-        titles, _ = table_cells(path)
-    except InputError:
-        return False
-    return set(MARKS) <= set(titles) <= set(FIELDS)
+    return set(MARKS) <= set(table_titles(path)) <= set(FIELDS)
 
 
 def read_page_list(path: str | os.PathLike[str]) -> PageList:
@@ -124,19 +113,30 @@ def _check_shaking(own: dict[str, str], first: dict[str, str], where: str) -> No
 def _settings(form: Mapping[str, str]) -> dict[str, Any]:
     """Keys of ``statue.yaml`` of a row; a building is one only where a floor is given, as in the form."""
     given = {name: _with_point(text) for name, text in form.items() if text}
-    settings: dict[str, Any] = {key: given[key] for key in OBJECT if key in given}
-    settings |= {
-        key: _number(given[name]) for name, key in NUMBERS.items() if name in given
-    }
-    if given.get("round", "false").lower() == "true":
-        settings["round"] = True
-    if "floor" in given:
-        settings["floor"] = given["floor"]
-    for part, names in (("pedestal", PEDESTAL), ("building", BUILDING)):
-        own = {key: given[name] for name, key in names.items() if name in given}
-        if own and (part == "pedestal" or "floor" in given):
-            settings[part] = own
+    settings: dict[str, Any] = {}
+    for field in FORM:
+        if field.name not in given or field.name in SHAKING:
+            continue
+        *home, key = field.key
+        if home == ["building"] and "floor" not in given:
+            continue
+        value = _value(field, given[field.name])
+        if value is False:
+            # a box that is not ticked
+            continue
+        # keys of the pedestal and of the building stand in mappings of their own
+        place = settings.setdefault(home[0], {}) if home else settings
+        place[key] = value
     return settings | _level(given)
+
+
+def _value(field: Field, text: str) -> Any:
+    """What a cell says, as ``statue.yaml`` has it."""
+    if field.kind == "number":
+        return _number(text)
+    if field.kind == "flag":
+        return text.lower() == "true"
+    return text
 
 
 def _level(given: Mapping[str, str]) -> dict[str, Any]:

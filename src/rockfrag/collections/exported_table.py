@@ -108,12 +108,7 @@ def is_export(path: str | os.PathLike[str]) -> bool:
     -------
     Whether :func:`read_export` is to read it.
     """
-    if Path(path).suffix.lower() != ".csv" or not Path(path).is_file():
-        return False
-    try:
-        titles, _ = table_cells(path)
-    except InputError:
-        return False
+    titles = table_titles(path)
     named = {title.strip().casefold() for title in titles}
     if "name" in named and any(_OF_INVENTORY.fullmatch(title) for title in named):
         return False
@@ -226,6 +221,25 @@ def inventory_cells(collected: CollectedObject) -> dict[str, str]:
 def _written(value: float) -> str:
     """A number without the noise of the conversion of its unit."""
     return f"{value:.6g}"
+
+
+def table_titles(path: str | os.PathLike[str]) -> list[str]:
+    """Titles of the columns of a table.
+
+    Parameters
+    ----------
+    path : file, if it is one
+
+    Returns
+    -------
+    The titles; none of what is no CSV file, or cannot be read.
+    """
+    if Path(path).suffix.lower() != ".csv" or not Path(path).is_file():
+        return []
+    try:
+        return table_cells(path)[0]
+    except InputError:
+        return []
 
 
 def table_cells(
