@@ -104,8 +104,10 @@ def _after(options: argparse.Namespace) -> int:
         key: given.pop(key) for key in ("pga", "pgv") if key in given
     }
     try:
-        ground, recorded = _ground_of(options, typed, about_station)
-        then, then_recorded = _then_of(options, about_station)
+        _check_sources(options, typed)
+        first = _map_of(options.shakemap, options.map_uncertainty)
+        ground, recorded = _ground_of(options, typed, about_station, first)
+        then, then_recorded = _then_of(options, about_station, first)
         found = after_earthquake(
             options.file,
             ground,
@@ -135,10 +137,8 @@ def _after(options: argparse.Namespace) -> int:
     return 0
 
 
-def _ground_of(
-    options: argparse.Namespace, typed: dict[str, Any], about_station: dict[str, Any]
-) -> "tuple[Ground, tuple[Motion, ...]]":
-    """What shook a place, by the one way that the command line gives, and the record if that is one."""
+def _check_sources(options: argparse.Namespace, typed: dict[str, Any]) -> None:
+    """Refuse options without effect, and what shook the ground in no way or in several."""
     for name, needed in NEEDED.items():
         if getattr(options, name) is not None and not getattr(options, needed):
             raise InputError(
@@ -151,11 +151,24 @@ def _ground_of(
         raise InputError(
             "give what shook the ground in one way: --shakemap, --station, or --pga with --pgv."
         )
-    if options.shakemap:
-        from rockfrag.aftermath.shakemap import read_shakemap
 
-        first = read_shakemap(options.shakemap, options.map_uncertainty)
-        return _by_map(options, first), ()
+
+def _map_of(grid: str | None, uncertainty: str | None) -> "ShakeMap | None":
+    """Read the map of a shock, if it has one."""
+    from rockfrag.aftermath.shakemap import read_shakemap
+
+    return read_shakemap(grid, uncertainty) if grid else None
+
+
+def _ground_of(
+    options: argparse.Namespace,
+    typed: dict[str, Any],
+    about_station: dict[str, Any],
+    shakemap: "ShakeMap | None",
+) -> "tuple[Ground, tuple[Motion, ...]]":
+    """What shook a place, by the one way that the command line gives, and the record if that is one."""
+    if shakemap is not None:
+        return _by_map(options, shakemap), ()
     if typed:
         ground = _typed(options, typed)
         return lambda _: ground, ()
@@ -164,32 +177,34 @@ def _ground_of(
 
 
 def _then_of(
-    options: argparse.Namespace, about_station: dict[str, Any]
+    options: argparse.Namespace,
+    about_station: dict[str, Any],
+    first: "ShakeMap | None",
 ) -> "tuple[Ground | None, tuple[Motion, ...]]":
     """What shook a place a second time, and the record if that is one."""
     if options.then_shakemap and options.then_station:
         raise InputError("give the second shock by --then-shakemap or --then-station.")
-    if options.then_shakemap:
-        return _by_map(options, _second_map(options)), ()
+    second = _map_of(options.then_shakemap, options.then_map_uncertainty)
+    if second is not None:
+        _check_other_shock(options, first, second)
+        return _by_map(options, second), ()
     if not options.then_station:
         return None, ()
     recorded, motions = _of_station(options, options.then_station, about_station)
     return lambda _: recorded, motions
 
 
-def _second_map(options: argparse.Namespace) -> "ShakeMap":
-    """Read the map of the second shock, which is not that of the first."""
-    from rockfrag.aftermath.shakemap import read_shakemap
-
-    found = read_shakemap(options.then_shakemap, options.then_map_uncertainty)
-    if options.shakemap:
-        first = read_shakemap(options.shakemap)
-        if first.identifier and first.identifier == found.identifier:
-            raise InputError(
-                f"--then-shakemap: {options.then_shakemap} and {options.shakemap} are both of the earthquake "
-                f"{first.identifier}; give the map of the second shock."
-            )
-    return found
+def _check_other_shock(
+    options: argparse.Namespace, first: "ShakeMap | None", second: "ShakeMap"
+) -> None:
+    """Refuse two maps of one earthquake."""
+    if first is None or not first.identifier:
+        return
+    if first.identifier == second.identifier:
+        raise InputError(
+            f"--then-shakemap: {options.then_shakemap} and {options.shakemap} are both of the earthquake "
+            f"{first.identifier}; give the map of the second shock."
+        )
 
 
 def _by_map(options: argparse.Namespace, shakemap: "ShakeMap") -> "Ground":
