@@ -411,7 +411,10 @@ def happen(body, what, tau, y, cut, stuck, s):
             # the points that open begin with no gap, not with one of rounding
             modes.lay_flat(body, y)
         left = solid.energy(body, y, g)
-        carried = modes.rest_margin(body, y, rows, gravity, s) >= 0
+        carried = (
+            stands_within_balance(body, rows)
+            and modes.rest_margin(body, y, rows, gravity, s) >= 0
+        )
         if carried and (left < cut * body.barrier or rattle_ends(body, left, s)):
             modes.come_to_rest(body, y, s)
     elif what == modes.SLIP_ENDS:
@@ -467,6 +470,15 @@ def is_beyond(body, y):
     rows = algebra.rotation(y)
     sine = algebra.norm(rows[2][0], rows[2][1])
     return reach_towards_tilt(body, rows) * rows[2][2] < sine * body.height
+
+
+@kernel
+def stands_within_balance(body, rows):
+    """Whether the centre of mass is within the base: what leans at a wall beyond that has little energy too."""
+    up = rows[2]
+    sine = algebra.norm(up[0], up[1])
+    reach = reach_towards_tilt(body, rows)
+    return up[2] > 0.0 and sine * body.height <= up[2] * reach
 
 
 @kernel
