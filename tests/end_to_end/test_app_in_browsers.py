@@ -21,6 +21,7 @@ from .browsers import (
     QUICK_IN_ONE,
     Browser,
     barriers,
+    expression,
     opened,
     put,
     put_file,
@@ -71,7 +72,7 @@ def test_it_answers_in_the_words_of_assess(browser, app_page, motions, width, da
     assert browser.console == []
 
 
-ANSWER = Path(__file__).with_name("answer.js").read_text()
+ANSWER = expression("answer.js")
 
 
 @pytest.mark.parametrize("count", [3, pytest.param(200, marks=pytest.mark.slow)])
