@@ -15,10 +15,15 @@ const lists_ = (data, known) => {
         fields.map((name) => cell(guarded(String(form[name] ?? "")))).join(","),
       ),
     ].join("\r\n") + "\r\n";
+  const counted = (text, letter) => text.split(letter).length;
   // rows of cells; of a file that ends within quotation marks the row in which they
   // open is named
   function rowsOf(text, say) {
     const rows = [[""]];
+    const [head] = text.split("\n", 1);
+    const [separator] = [",", ";", "\t"].sort(
+      (a, b) => counted(head, b) - counted(head, a),
+    );
     let quoted = false;
     let opened = 0;
     for (let i = 0; i < text.length; i++) {
@@ -29,7 +34,7 @@ const lists_ = (data, known) => {
       else if (letter === '"') {
         quoted = !quoted;
         opened = rows.length;
-      } else if (!quoted && letter === ",") row.push("");
+      } else if (!quoted && letter === separator) row.push("");
       else if (!quoted && letter === "\n") rows.push([""]);
       else if (letter !== "\r" || quoted) row[row.length - 1] += letter;
     }
@@ -119,7 +124,8 @@ const lists_ = (data, known) => {
       form[name] = isFlag[name] ? unquoted(value) === "true" : String(unquoted(value));
       if (key === "pgv" || key === "pga") form.measure = key.toUpperCase();
     }
-    return [form];
+    // without a floor it stands on the ground
+    return [{ floor: "", ...form }];
   }
   // a museum's table: a title, sides in columns such as Height (cm), and whatever else
   // it keeps
@@ -127,19 +133,19 @@ const lists_ = (data, known) => {
   const NAMES = ["title", "object name", "name", "titel", "titre"];
   const WORDS = /^(dimensions?|size|maße|abmessungen|afmetingen)$/i;
   function ofMuseum(titles, rows, say) {
-    const sides = titles.map((title) => SIDES.exec(title.trim()));
+    const sides = titles.map((title) => SIDES.exec(title));
     const at = (side) => sides.findIndex((found) => found?.[1].toLowerCase() === side);
     if (at("height") < 0) throw new Error(say("file_in_words"));
     const named = NAMES.map((name) =>
-      titles.findIndex((title) => title.trim().toLowerCase() === name),
+      titles.findIndex((title) => title.toLowerCase() === name),
     ).find((i) => i >= 0);
     const length = (row, side) =>
-      at(side) >= 0 && row[at(side)]?.trim()
-        ? `${row[at(side)].trim()} ${sides[at(side)][2].toLowerCase()}`
+      at(side) >= 0 && row[at(side)]
+        ? `${row[at(side)]} ${sides[at(side)][2].toLowerCase()}`
         : "";
-    return rows.map((row, i) => {
+    const forms = rows.map((row, i) => {
       const form = {
-        name: row[named]?.trim() || String(i + 1),
+        name: row[named] || String(i + 1),
         width: length(row, "width") || length(row, "diameter"),
         height: length(row, "height"),
       };
@@ -147,23 +153,65 @@ const lists_ = (data, known) => {
       if (!length(row, "width") && length(row, "diameter")) form.round = "true";
       return form;
     });
+    return { forms, unused: filled(titles, rows, (i) => i !== named && !sides[i]) };
   }
+  // titles of columns of which some cell says something
+  const filled = (titles, rows, isAsked) =>
+    titles.filter((_, i) => isAsked(i) && rows.some((row) => row[i]));
+
+  // an inventory as rockfrag assess reads it, and a list that the page saved: columns
+  // are fields of the form, with units in the titles or in the cells
+  function fieldOf(title) {
+    if (fields.includes(title)) return { name: title, unit: "" };
+    const quantities = known.filter(({ kind }) => kind === "quantity");
+    for (const { name, dimension } of quantities)
+      for (const unit of Object.keys(data.units.dimensions[dimension]))
+        if (title === `${name}_${unit.toLowerCase()}`) return { name, unit };
+    return null;
+  }
+  // columns that change nothing of what an object does
+  const WITHOUT_EFFECT = ["value", "latitude", "longitude"];
+  const ANSWERS = { yes: true, true: true, 1: true, x: true };
+  Object.assign(ANSWERS, { no: false, false: false, 0: false });
+  function ofInventory(titles, rows, say) {
+    const columns = titles.map(fieldOf);
+    const unknown = filled(titles, rows, (i) => !columns[i]);
+    const lost = unknown.find((title) => !WITHOUT_EFFECT.includes(title));
+    if (lost !== undefined)
+      throw new Error(say("file_keys", { key: lost.slice(0, 40) }));
+    const textOf = ({ name, unit }, text, row) => {
+      if (!text) return "";
+      if (isFlag[name]) return String(answerOf(name, text, row, say));
+      return unit && /\d\s*$/.test(text) ? `${text} ${unit}` : text;
+    };
+    const forms = rows.map((row, k) => {
+      const form = {};
+      columns.forEach((column, i) => {
+        if (column) form[column.name] = textOf(column, row[i], k + 2);
+      });
+      return form;
+    });
+    return { forms, unused: unknown };
+  }
+  function answerOf(name, text, row, say) {
+    const answer = ANSWERS[text.toLowerCase()];
+    if (answer === undefined)
+      throw new Error(say("file_flag", { row, column: name, text: text.slice(0, 40) }));
+    return answer;
+  }
+
+  // objects of a file as the form has them, and titles of columns that are not used
   function read(name, text, say) {
-    if (!/\.csv$/i.test(name)) return ofYaml(text, say);
-    const [titles, ...rows] = rowsOf(text.replace(/^\ufeff/, ""), say);
-    const isMuseums = (titles ?? []).some(
-      (title) => WORDS.test(title.trim()) || SIDES.test(title.trim()),
+    if (!/\.csv$/i.test(name)) return { forms: ofYaml(text, say), unused: [] };
+    const plain = text.replace(/^\ufeff/, "");
+    const [titles = [], ...rows] = rowsOf(plain, say).map((row) =>
+      row.map((cell) => cell.trim()),
     );
-    if (
-      isMuseums &&
-      !titles.includes("width") &&
-      rows.length &&
-      rows.length <= MOST_ROWS
-    )
-      return ofMuseum(titles, rows, say);
-    const unknown = (titles ?? []).find((title) => !fields.includes(title.trim()));
-    if (unknown !== undefined)
-      throw new Error(say("file_keys", { key: unknown.trim().slice(0, 40) }));
+    const isWidth = (title) => fieldOf(title)?.name === "width";
+    const isInventory = titles.includes("name") && titles.some(isWidth);
+    const isMuseums = titles.some((title) => WORDS.test(title) || SIDES.test(title));
+    const reader = isMuseums && !isInventory ? ofMuseum : ofInventory;
+    if (reader === ofInventory) checkTitles(titles, say);
     if (!rows.length) throw new Error(say("file_no_rows"));
     if (rows.length > MOST_ROWS)
       throw new Error(say("file_too_many", { count: rows.length, most: MOST_ROWS }));
@@ -176,11 +224,16 @@ const lists_ = (data, known) => {
           expected: titles.length,
         }),
       );
-    return rows.map((row) =>
-      Object.fromEntries(
-        titles.map((title, i) => [title.trim(), (row[i] ?? "").trim()]),
-      ),
-    );
+    return reader(titles, rows, say);
+  }
+  // a file of something else is not an inventory; a quantity stands once
+  function checkTitles(titles, say) {
+    const columns = titles.map((title) => fieldOf(title)?.name);
+    const twice = columns.findIndex((name, i) => name && columns.indexOf(name) < i);
+    if (twice >= 0)
+      throw new Error(say("file_twice", { key: titles[twice].slice(0, 40) }));
+    if (!columns.some(Boolean))
+      throw new Error(say("file_keys", { key: (titles[0] ?? "").slice(0, 40) }));
   }
   return { csvOf, yamlOf, read };
 };

@@ -229,15 +229,13 @@
       request = bodies.requestOf(form);
     } catch (error) {
       if (!error.field) throw error;
-      current = null;
-      other = null;
-      complain(error);
-      find("answer").classList.add("stale");
-      find("done").textContent = "";
-      return settle(error);
+      return refuse(error);
     }
     complain(null);
     find("blocked").hidden = true;
+    find("state").hidden = false;
+    if (!shown) headline("…");
+    for (const place of COMPUTED) find(place).classList.add("stale");
     number += 1;
     // the first answer is timed since the file was opened
     current = {
@@ -267,12 +265,9 @@
         id: plan.refusal.text,
         values: plan.refusal.values,
       };
-      complain(refusal);
-      find("answer").classList.add("stale");
-      find("done").textContent = "";
-      return run === current && settle(refusal);
+      return run === current && refuse(refusal);
     }
-    if (plan.failure) return refused(plan.failure);
+    if (plan.failure) return fail(plan.failure);
     const { roles } = plan.result;
     const parts = roles.map(() => []);
     const starts = startsOf(count);
@@ -299,7 +294,7 @@
         ),
       };
       const found = await ask(run, message, true);
-      if (found.failure) return refused(found.failure);
+      if (found.failure) return fail(found.failure);
       earlier = found.result;
       // a later one was asked for since, and may have come first
       if (stage + 1 < latest) return;
@@ -321,7 +316,7 @@
           last: Math.min(first + PART, count),
         };
         ask(run, message).then((part) => {
-          if (part.failure) return refused(part.failure);
+          if (part.failure) return fail(part.failure);
           parts[i].push({ first, ...part.result });
           done += 1;
           if (run === current) progress(done, roles.length * starts.length);
@@ -329,11 +324,34 @@
         });
       });
   }
-  function refused(why) {
+  function refuse(refusal) {
+    complain(refusal);
+    withdraw(`${say(refusal.field)}: ${whyOf(refusal)}`);
+    settle(refusal);
+  }
+  function fail(why) {
     find("blocked").textContent = say("failed", { why });
     find("blocked").hidden = false;
-    find("answer").classList.add("stale");
+    withdraw("…");
     settle({ id: "failed", values: { why } });
+  }
+  // what follows an answer, and is computed after it
+  const COMPUTED = ["drawing", "helping"];
+  // nothing of an earlier answer stands beside an entry that cannot be used
+  function withdraw(words) {
+    current = null;
+    other = null;
+    shown = null;
+    scene.of = null;
+    if (scene.timer) play();
+    headline(words);
+    for (const id of ["screen", "state", "behind", ...COMPUTED]) find(id).hidden = true;
+    find("done").textContent = "";
+    find("keep").disabled = true;
+    document.body.dataset.stage = "refused";
+  }
+  function headline(words) {
+    for (const place of ["headline", "bar"]) find(place).textContent = words;
   }
   function progress(done, all) {
     find("progress").max = all;
@@ -351,8 +369,8 @@
       found,
     } = answer;
     const said = saidOf(found, answer);
-    find("answer").classList.remove("stale");
-    for (const place of ["headline", "bar"]) find(place).textContent = said.headline;
+    for (const place of ["screen", "state", "behind"]) find(place).hidden = false;
+    headline(said.headline);
     find("screen").textContent = said.screen;
     find("lines").replaceChildren(...linesAs(said));
     if (answer.last) find("done").textContent = say("ready");
@@ -530,6 +548,7 @@
     find("compared").dataset.took = String(performance.now() - run.since);
   }
   function compare({ fraction, probability }, after) {
+    computed("helping");
     const rows = [
       ["topples_column", fraction, after?.fraction],
       ["risk_column", probability, after?.probability],
@@ -656,7 +675,12 @@
     if (scene.timer) play();
     play();
   }
+  function computed(place) {
+    find(place).hidden = false;
+    find(place).classList.remove("stale");
+  }
   function titled(turned = "") {
+    computed("drawing");
     find("scene-words").textContent = scene.words() + turned;
     find("scene-title").textContent = scene.title();
     find("scene").setAttribute("aria-label", scene.words() + turned);
@@ -851,8 +875,12 @@
       response: { theta1: [theta1[at]], theta2: [theta2[at]] },
     };
   }
+  // what a file does not say of the place and its shaking stays as it is
+  const STAYS = ["place", "shaking"];
   function fillForm(values) {
-    for (const { name, kind, options } of ALL) {
+    const isSaid = (group) => FIELDS[group].some(({ name }) => name in values);
+    for (const { name, kind, options, group } of ALL) {
+      if (STAYS.includes(group) && !isSaid(group)) continue;
       if (kind === "flag")
         inputs[name].checked = values[name] === true || values[name] === "true";
       else inputs[name].value = values[name] ?? options[0] ?? "";
@@ -878,7 +906,7 @@
     };
     try {
       if (file.size > 200000) throw new Error(say("file_long"));
-      const forms = lists.read(file.name, await file.text(), say);
+      const { forms, unused } = lists.read(file.name, await file.text(), say);
       const left = [];
       if (forms.length === 1) fillForm(forms[0]);
       else
@@ -895,12 +923,16 @@
             );
           else await keep();
         }
-      if (left.length) complainOf([say("rows_left"), ...left].join(" "));
+      const notes = left.length ? [say("rows_left"), ...left] : [];
+      if (unused.length) notes.push(unusedColumns(unused));
+      if (notes.length) complainOf(notes.join(" "));
     } catch (error) {
       complainOf(say("file_unread", { why: error.message }));
     }
     input.value = "";
   }
+  const unusedColumns = (titles) =>
+    say("columns_unused", { columns: titles.slice(0, 12).join(", ").slice(0, 300) });
   function answered(form) {
     return new Promise((resolve) => {
       settle = resolve;
@@ -915,6 +947,8 @@
     if (!kept.length && shown)
       items.push({ form: shown.run.form, answer: shown, scene: stillOf(shown.run) });
     find("sheets").replaceChildren(...(kept.length > 1 ? [rankedSheet()] : []));
+    if (!items.length)
+      find("sheets").append(make("p", { textContent: find("headline").textContent }));
     for (const {
       form,
       answer: { found },
@@ -1016,11 +1050,11 @@
     drawForm();
     drawSliders();
     drawKept();
-    if (shown) {
-      show(shown);
-      if (scene.words) find("scene-words").textContent = scene.words();
-      if (scene.title) find("scene-title").textContent = scene.title();
-    }
+    if (document.body.dataset.stage === "refused") update();
+    if (!shown) return;
+    show(shown);
+    if (scene.words) find("scene-words").textContent = scene.words();
+    if (scene.title) find("scene-title").textContent = scene.title();
   }
   begin();
 })();
