@@ -7,7 +7,7 @@
  *
  * The lanes are those of the package. Multiply-adds of `ensemble-fused.wasm` are
  * instructions that some browsers do not know and some processors do not fuse
- * (`roundsOnce`); those of `ensemble.wasm` take six times as long. /
+ * (`roundsOnce`); those of `ensemble.wasm` take six times as long.
  */
 async function rockfragEnsemble(bytes) {
   "use strict";

@@ -8,7 +8,7 @@
  *   const hit = kernel.bump({ statue, velocity: 0.3, distance: 0.025 });
  *
  * Everything that is computed about a body is computed by the module, which is made
- * from the kernels that rockfrag.simulate runs: a history has its bits. /
+ * from the kernels that rockfrag.simulate runs: a history has its bits.
  */
 async function rockfragKernel(bytes) {
   "use strict";

@@ -7,7 +7,7 @@
  *   const response = space.integrate({ body, x, y, dt: 0.01, scale: 1.5 });
  *
  * The module is made from the kernel that rockfrag.overturns calls in space: outcomes
- * and histories have its bits. /
+ * and histories have its bits.
  */
 async function rockfragSpace(bytes) {
   "use strict";

@@ -2,7 +2,7 @@
  * needs module.js.
  *
  * Whatever is estimated is computed in rockfrag.assess.core, here and by `rockfrag
- * assess` alike. /
+ * assess` alike.
  */
 async function rockfragCore(bytes) {
   "use strict";

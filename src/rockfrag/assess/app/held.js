@@ -3,7 +3,7 @@
  *
  * The instant is that at which equation 3 of docs/holding.md is first broken, to a
  * sample; what follows is the free object, shaken from there on by what is left of the
- * motion. /
+ * motion.
  */
 const puttied = (constants) => {
   "use strict";
