@@ -284,3 +284,13 @@ def test_names_of_rocking_modes_are_explained():
     assert contact_event_lines([row], 5)[-1].startswith("1: both bodies rock")
     column = {**row, "to": "0 1 0 -1"}
     assert len(contact_event_lines([column], 5)) == 2
+
+
+def test_the_package_is_a_command_of_the_same_name():
+    said = subprocess.run(
+        [sys.executable, "-m", "rockfrag", "--version"],
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    assert said.stdout == f"rockfrag {rockfrag.__version__}\n"
