@@ -3,7 +3,7 @@
 const plans = (data, core, refuse) => {
   "use strict";
   const { LOWER, BALLAST, TOLERANCES } = data.constants, spatial = inSpace(data, core), { change } = spatial;
-  const number = (form) => (value) => ({ number: value, form }), [three, percent] = ["three", "percent"].map(number);
+  const number = (form) => (value) => ({ number: value, form }), [two, three, percent] = ["two", "three", "percent"].map(number);
 
   // roles, and bodies as the module of outcomes takes them; the object as it stands first
   function planOf(request, ensemble) {
@@ -35,7 +35,7 @@ const plans = (data, core, refuse) => {
     const plateUnder = (block) => change("make_plate", block), onPlate = (block) => joined(block, plateUnder(block));
     const plate = (block) => {
       const { width, height } = plateUnder(block);
-      return { width: three(100 * width), thick: three(100 * height) };
+      return { width: two(100 * width), thick: three(100 * height) };
     };
     if (!pedestal) helps("plate_under_it", body(onPlate(statue)), plate(statue));
     else {
