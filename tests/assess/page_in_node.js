@@ -1,39 +1,69 @@
-// What the scripts of a page, which stand before this, make of forms: of a file with its data and the forms, as JSON.
+// What the scripts of a page, which stand before this, make of forms: of a file with
+// its data and the forms, as JSON.
 const fs = require("fs");
 const { data, forms } = JSON.parse(fs.readFileSync(process.argv[2]));
 const bytes = (text) => Uint8Array.from(Buffer.from(text, "base64"));
 const finite = (key, v) => (typeof v === "number" && !Number.isFinite(v) ? null : v);
 const plain = (value) => JSON.parse(JSON.stringify(value, finite));
-const modules = Object.fromEntries(Object.entries(data.modules).map(([name, text]) => [name, bytes(text)]));
+const modules = Object.fromEntries(
+  Object.entries(data.modules).map(([name, text]) => [name, bytes(text)]),
+);
 begin({ data, modules, samples: bytes(data.packed) }).then(() => {
   const speak = catalogue(data.texts.en);
   const found = forms.map((form, id) => {
     try {
-      const request = tools.form.requestOf(form), count = data.earthquakes.length;
+      const request = tools.form.requestOf(form);
+      const count = data.earthquakes.length;
       const runs = TASKS.plan({ id, request }).roles;
-      const parts = runs.map((_, run) => [[0, 10], [10, count]].map(([first, last]) => (
-        { first, ...TASKS.count({ id, request, run, first, last }) })));
+      const parts = runs.map((_, run) =>
+        [
+          [0, 10],
+          [10, count],
+        ].map(([first, last]) => ({
+          first,
+          ...TASKS.count({ id, request, run, first, last }),
+        })),
+      );
       const answer = TASKS.answer({ id, request, parts });
       const at = runs.findIndex(({ role }) => role === "first");
       const only = parts.map((part, i) => (i === at ? part : null));
       const early = at < 0 ? null : plain(TASKS.answer({ id, request, parts: only }));
       const fix = (fixed) => {
-        const other = { ...request, fixed }, told = { id: `${id} ${fixed}`, request: other };
-        const part = TASKS.count({ ...told, run: 0, first: 0, last: count });
-        return TASKS.changed({ ...told, parts: [{ first: 0, ...part }], answered: answer });
+        const other = { ...request, fixed };
+        const task = { id: `${id} ${fixed}`, request: other };
+        const part = TASKS.count({ ...task, run: 0, first: 0, last: count });
+        return TASKS.changed({
+          ...task,
+          parts: [{ first: 0, ...part }],
+          answered: answer,
+        });
       };
       const fixed = request.pedestal ? ["to_pedestal", "to_floor"].map(fix) : null;
       const stick = (putty) => {
-        const told = { id: `${id} ${putty}`, request: { ...request, putty } };
-        return [...TASKS.count({ ...told, run: 0, first: 0, last: count }).overturned];
+        const task = { id: `${id} ${putty}`, request: { ...request, putty } };
+        return [...TASKS.count({ ...task, run: 0, first: 0, last: count }).overturned];
       };
-      const held = request.pedestal || request.solid || !form.putty ? null : stick(Number(form.putty));
+      const held =
+        request.pedestal || request.solid || !form.putty
+          ? null
+          : stick(Number(form.putty));
       const { first, details } = answer.said;
-      return { answer: plain(answer), early, fixed, held, first: plain(first), details: plain(details), lines: first.map(speak.sentence) };
+      return {
+        answer: plain(answer),
+        early,
+        fixed,
+        held,
+        first: plain(first),
+        details: plain(details),
+        lines: first.map(speak.sentence),
+      };
     } catch (error) {
       if (!error.field) return { failed: error.stack };
       const { en } = data.texts;
-      const sentence = en[`${error.id}_refused`] ?? en[error.id] ?? ROCKFRAG_FAULTS[Number(error.id.slice(6))];
+      const sentence =
+        en[`${error.id}_refused`] ??
+        en[error.id] ??
+        ROCKFRAG_FAULTS[Number(error.id.slice(6))];
       return { refused: [error.field, error.id, sentence.endsWith(".")] };
     }
   });

@@ -7,6 +7,7 @@ import shutil
 import subprocess
 from dataclasses import asdict
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -16,7 +17,9 @@ from rockfrag.assess.app.form import form_fields
 from rockfrag.assess.hazard.curve import PGA
 from rockfrag.assess.inventory import read_inventory
 from rockfrag.assess.request import read_request
+from rockfrag.assess.standing.rolling import Round
 from rockfrag.base.errors import InputError
+from rockfrag.base.units import DIMENSIONS, quantity
 
 NODE = shutil.which("node")
 pytestmark = pytest.mark.skipif(NODE is None, reason="Node is not installed")
@@ -27,8 +30,8 @@ FIELDS = [
     for name in NAMES
 ]
 RUN = """
-const [path, fields, calls] = JSON.parse(require("fs").readFileSync(0, "utf-8"));
-const lists = require(path)({ measures: { PGA: {} } }, fields);
+const [path, fields, units, calls] = JSON.parse(require("fs").readFileSync(0, "utf-8"));
+const lists = require(path)({ measures: { PGA: {} }, units }, fields);
 const say = (key, facts) => `${key} ${JSON.stringify(facts ?? {})}`;
 console.log(JSON.stringify(calls.map(([name, ...rest]) => {
   try { return { found: lists[name](...rest, say) }; }
@@ -42,7 +45,7 @@ def lists(*calls: list, fields: list[dict] = FIELDS) -> list[dict]:
     assert NODE is not None
     done = subprocess.run(
         [NODE, "-e", RUN],
-        input=json.dumps([str(LISTS), fields, calls]),
+        input=json.dumps([str(LISTS), fields, {"dimensions": DIMENSIONS}, calls]),
         capture_output=True,
         text=True,
         # a file of the largest size took longer than this once
@@ -52,8 +55,14 @@ def lists(*calls: list, fields: list[dict] = FIELDS) -> list[dict]:
     return json.loads(done.stdout)
 
 
-def opened(text: str, name: str = "objects.csv") -> dict:
-    return lists(["read", name, text])[0]
+def opened(
+    text: str, name: str = "objects.csv", fields: list[dict] = FIELDS
+) -> dict[str, Any]:
+    """What the page finds in a file: its objects and the columns that it does not use."""
+    answer = lists(["read", name, text], fields=fields)[0]
+    if "refused" in answer:
+        return answer
+    return {"found": answer["found"]["forms"], "unused": answer["found"]["unused"]}
 
 
 def table(count: int) -> str:
@@ -139,9 +148,76 @@ def test_what_the_page_saves_the_command_reads_and_the_page_opens(tmp_path):
     assert request.objects.facing_deg == 20 and request.objects.depth == 0.5
     assert request.objects.pedestals[0].width == 0.6
     assert request.place.building.heights == (3.2,) * 4
-    back = lists(["read", "statue.yaml", saved], fields=fields)[0]["found"][0]
+    (back,) = opened(saved, "statue.yaml", fields)["found"]
     told = {key: text.replace(",", ".") for key, text in form.items() if text}
     assert back == told
+
+
+# ---- an inventory of the command in the page
+
+INVENTORY = """\
+name,width_cm,height_cm,mass_kg,floor,cg_height_m,round,pedestal_width_m,pedestal_height_m
+Bust,35,120,190,2/4,0.5,no,,
+"Vase, tall",22,60,,1/4,,YES,0.5,0.9
+Case,60 cm,2 m,300 kg,,,,,
+"""
+
+
+def metres(text: str) -> float:
+    return quantity(text.replace(",", "."), "m", None)
+
+
+@pytest.mark.parametrize("separator", [",", ";", "\t"])
+def test_the_page_opens_an_inventory_as_the_command_reads_it(separator, tmp_path):
+    rows = list(csv.reader(io.StringIO(INVENTORY)))
+    text = io.StringIO()
+    csv.writer(text, delimiter=separator).writerows(rows)
+    table = text.getvalue()
+    if separator == ";":
+        table = table.replace("0.5", "0,5")
+    path = tmp_path / "inventory.csv"
+    path.write_text(table, encoding="utf-8")
+    requests, faults = read_inventory(path, {"pga": "0.3 g"})
+    assert not faults
+    found = opened(table, fields=fields_of_the_form())
+    assert found["unused"] == []
+    for form, request in zip(found["found"], requests, strict=True):
+        block = request.objects.block
+        assert form["name"] == request.name
+        assert metres(form["width"]) == pytest.approx(block.width)
+        assert metres(form["height"]) == pytest.approx(block.height)
+        if form["mass"]:
+            assert quantity(form["mass"], "kg", None) == pytest.approx(block.mass)
+        if form["cg_height"]:
+            assert metres(form["cg_height"]) == pytest.approx(block.cg_height)
+        assert (form["round"] == "true") == isinstance(request.objects, Round)
+        assert bool(form["floor"]) == (request.place.building is not None)
+        high = [metres(form[key]) for key in ("pedestal_height",) if form[key]]
+        assert high == pytest.approx([one.height for one in request.objects.pedestals])
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        # what changes the answer is not left out
+        ("name,width_cm,height_cm,wall\na,30,90,2 cm\n", 'file_keys {"key":"wall"}'),
+        ("name,width_cm,height_cm,putty_n\na,30,90,9\n", 'file_keys {"key":"putty_n"}'),
+        ("name,width_cm,width,height\na,30,3 m,90\n", 'file_twice {"key":"width"}'),
+        ("name,width,height,round\na,3cm,9cm,maybe\n",
+         'file_flag {"row":2,"column":"round","text":"maybe"}'),
+    ],
+)  # fmt: skip
+def test_an_inventory_that_the_form_cannot_hold_is_refused(text, words):
+    assert opened(text, fields=fields_of_the_form())["refused"] == words
+
+
+def test_columns_that_are_not_used_are_named():
+    text = "name,width_cm,height_cm,value,wall\na,30,90,500,\n"
+    assert opened(text, fields=fields_of_the_form())["unused"] == ["value"]
+    museums = "Title,Height (cm),Width (cm),Medium,Credit\nBust,60,20,marble,\n"
+    found = opened(museums)
+    assert found["unused"] == ["Medium"]
+    assert found["found"][0] == {"name": "Bust", "width": "20 cm", "height": "60 cm"}
 
 
 # ---- the list in the command

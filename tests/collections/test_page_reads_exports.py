@@ -14,7 +14,7 @@ SCRIPT = """
 const fields = ["name", "width", "height", "depth", "round"].map((name) => ({ name, key: [name], kind: "text" }));
 const lists = require(process.argv[1])({ measures: {} }, fields);
 const text = require("fs").readFileSync(0, "utf8");
-try { console.log(JSON.stringify(lists.read("export.csv", text, (id) => id))); }
+try { console.log(JSON.stringify(lists.read("export.csv", text, (id) => id).forms)); }
 catch (error) { console.log(JSON.stringify(error.message)); }
 """
 

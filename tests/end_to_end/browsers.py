@@ -285,6 +285,12 @@ QUICK_IN_ONE = pytest.mark.parametrize(
 """Marks long tests whose figures and words are seen in both browsers by quick ones."""
 
 
+def expression(name: str) -> str:
+    """Return the expression that a script beside this file holds, without its last semicolon."""
+    text = Path(__file__).with_name(name).read_text(encoding="utf-8")
+    return text.rstrip().removesuffix(";")
+
+
 def put(browser: Browser, place: str, value: object, event: str = "input") -> None:
     """Give the element at a selector a value, as a person does."""
     browser.run(

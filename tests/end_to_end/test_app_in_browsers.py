@@ -21,6 +21,7 @@ from .browsers import (
     QUICK_IN_ONE,
     Browser,
     barriers,
+    expression,
     opened,
     put,
     put_file,
@@ -71,7 +72,7 @@ def test_it_answers_in_the_words_of_assess(browser, app_page, motions, width, da
     assert browser.console == []
 
 
-ANSWER = Path(__file__).with_name("answer.js").read_text()
+ANSWER = expression("answer.js")
 
 
 @pytest.mark.parametrize("count", [3, pytest.param(200, marks=pytest.mark.slow)])
@@ -145,6 +146,13 @@ def test_the_last_key_stroke_is_answered(browser, app_page):
     assert browser.console == []
 
 
+LEFT_OF_AN_ANSWER = (
+    "['screen', 'state', 'behind', 'drawing', 'helping']"
+    ".filter(id => document.getElementById(id).checkVisibility())"
+)
+"""Parts of an answer that can be seen."""
+
+
 @QUICK_IN_ONE
 def test_what_cannot_be_used_gets_a_sentence_beside_it(browser, app_page):
     opened(browser, app_page, ready=ANSWERED)
@@ -156,8 +164,16 @@ def test_what_cannot_be_used_gets_a_sentence_beside_it(browser, app_page):
             browser,
             f"document.getElementById('field-{error}-error').textContent.endsWith('.')",
         )
+        # nothing of the answer before stands beside it, nor on the phone's bar
+        headline = browser.run("document.getElementById('headline').innerText")
+        error_text = f"document.getElementById('field-{error}-error').textContent"
+        assert headline.endswith(browser.run(error_text)), field
+        assert browser.run("document.getElementById('bar').textContent") == headline
+        assert browser.run(LEFT_OF_AN_ANSWER) == [], field
         put(browser, f"#field-{field}", before)
         waited(browser, f"!document.getElementById('field-{error}-error').textContent")
+    waited(browser, ANSWERED)
+    assert len(browser.run(LEFT_OF_AN_ANSWER)) == 5
     assert browser.run("document.querySelectorAll('main img, main b').length") == 0
     assert browser.run("document.title") != "hit"
     assert browser.console == []
@@ -180,6 +196,11 @@ def test_a_browser_that_is_not_allowed_to_compute_says_so(
     browser.open(path)
     waited(browser, "!document.getElementById('blocked').hidden")
     assert words in browser.run("document.getElementById('blocked').textContent")
+
+
+INVENTORY = (
+    "name,width_cm,height_cm,mass_kg,floor\nUrn,30,60,80,\nBust,35,120,190,2/4\n"
+)
 
 
 def test_objects_are_kept_and_opened_again(browser, app_page, tmp_path):
@@ -212,6 +233,15 @@ def test_objects_are_kept_and_opened_again(browser, app_page, tmp_path):
     assert (request.objects.block.width, request.hazard[0].measure.imt) == (0.25, "PGA")
     put_file(browser, "statue.yaml", "width: 30 cm\nheight: 1 m\npga: 0.5 g\n")
     waited(browser, "document.getElementById('field-width').value === '30 cm'")
+    # an inventory of the command, at the place and under the shaking that stand there
+    put_file(browser, "inventory.csv", INVENTORY)
+    waited(browser, "document.querySelectorAll('#objects tr').length === 3")
+    assert browser.run("document.getElementById('file-error').hidden")
+    waited(browser, ANSWERED)
+    said = " ".join(shown_in(browser))
+    assert browser.run("document.getElementById('field-mass').value") == "190 kg"
+    assert browser.run("document.getElementById('field-level').value") == "0.5 g"
+    assert "on level 2 of 4" in browser.run("document.body.innerText"), said
     for name, text in (("a.yaml", "!!js/function x"), ("a.csv", "<script>,b\n1,2\n")):
         put_file(browser, name, text)
         waited(browser, "!document.getElementById('file-error').hidden")

@@ -5,13 +5,13 @@ from pathlib import Path
 
 import pytest
 
-from .browsers import FITS, Browser, barriers, opened, put
+from .browsers import FITS, Browser, barriers, expression, opened, put
 
 pytestmark = pytest.mark.slow
 
 OPEN = "document.querySelectorAll('details').forEach(one => { one.open = true; })"
 
-TOO_WIDE = Path(__file__).with_name("too_wide.js").read_text()
+TOO_WIDE = expression("too_wide.js")
 """Elements that reach beyond their room, or beyond the window."""
 
 

@@ -220,3 +220,39 @@ def test_macros_have_at_most_five_arguments():
         for macro, arguments in re.findall(r"\{%-? *macro (\w+)\((.*?)\)", text):
             count = len([each for each in arguments.split(",") if each.strip()])
             assert count <= MOST_POSITIONAL, f"{name}: {macro}"
+
+
+MOST_LETTERS = 88
+SCRIPTS = (ROOT / "src", ROOT / "tests")
+
+
+def long_lines(text: str) -> list[str]:
+    """Lines of a script that are too long, but for those that are one text."""
+    too_long = [line.strip() for line in text.splitlines() if len(line) > MOST_LETTERS]
+    return [line for line in too_long if not re.fullmatch(r"([\"'`]).*\1[,;]?", line)]
+
+
+def declared_together(text: str) -> list[str]:
+    """Declarations of a script that name several things, but in the head of a loop."""
+    return re.findall(
+        r"^ *(?:const|let) .*,$|^ *(?:const|let) \w+, .*", text, re.MULTILINE
+    )
+
+
+def scripts() -> list[Path]:
+    """All scripts of the package and of its tests."""
+    found = [path for folder in SCRIPTS for path in sorted(folder.rglob("*.js"))]
+    assert len(found) > 25
+    return found
+
+
+@pytest.mark.parametrize("seen", [long_lines, declared_together])
+def test_scripts_are_open_too(seen):
+    """As prettier lays them out (``.prettierrc``)."""
+    packed = {path.name: seen(path.read_text(encoding="utf-8")) for path in scripts()}
+    assert not {name: lines for name, lines in packed.items() if lines}
+
+
+def test_packed_scripts_are_seen():
+    packed = f"const a = 1,\nlet b, c;\nconst d = [{'1, ' * 40}];\n"
+    assert [len(seen(packed)) for seen in (long_lines, declared_together)] == [1, 2]

@@ -1,21 +1,37 @@
-/* Outcomes of a body under many motions at many levels, as rockfrag's `overturns` counts them; needs module.js.
+/* Outcomes of a body under many motions at many levels, as rockfrag's `overturns`
+ * counts them; needs module.js.
  *
- *   const ensemble = await rockfragEnsemble(bytes);                    // of ensemble.wasm, a Uint8Array
+ *   const ensemble = await rockfragEnsemble(bytes);  // of ensemble.wasm, a Uint8Array
  *   const body = ensemble.bodyOf({ statue: { width: 0.3, height: 1.2, mass: 200 } });
- *   const found = ensemble.count(body, motions, scales);               // of one motion after another
+ *   const found = ensemble.count(body, motions, scales);
  *
- * The lanes are those of the package. Multiply-adds of `ensemble-fused.wasm` are instructions that some browsers do not
- * know and some processors do not fuse (`roundsOnce`); those of `ensemble.wasm` take six times as long.
+ * The lanes are those of the package. Multiply-adds of `ensemble-fused.wasm` are
+ * instructions that some browsers do not know and some processors do not fuse
+ * (`roundsOnce`); those of `ensemble.wasm` take six times as long.
  */
 async function rockfragEnsemble(bytes) {
   "use strict";
-  const { memory, layout, call, arrays, reserve, read, write, array, run } = await rockfragModule(bytes);
-  const { gravity, step, stack_step: stackStep, free_time: freeTime, block: BLOCK } = layout.constants;
+  const { memory, layout, call, arrays, reserve, read, write, array, run } =
+    await rockfragModule(bytes);
+  const {
+    gravity,
+    step,
+    stack_step: stackStep,
+    free_time: freeTime,
+    block: BLOCK,
+  } = layout.constants;
   const { fields } = layout.call;
 
-  // a block, or one on a pedestal; `measured` restitution, none if null, and the factor `restitution_factor` on each; `rolling` is
-  // the restitution of a statue on a round base, NaN where it stands on another one
-  function bodyOf({ statue, pedestal = null, measured = null, restitution_factor = 1, rolling = null }) {
+  // a block, or one on a pedestal; `measured` restitution, none if null, and the factor
+  // `restitution_factor` on each; `rolling` is the restitution of a statue on a round
+  // base, NaN where it stands on another one
+  function bodyOf({
+    statue,
+    pedestal = null,
+    measured = null,
+    restitution_factor = 1,
+    rolling = null,
+  }) {
     reserve(arrays);
     new Uint8Array(memory.buffer, call, layout.call.size).fill(0);
     write(layout.call, call, {
@@ -30,23 +46,41 @@ async function rockfragEnsemble(bytes) {
     const gravityAt = fields.body[0] + layout.body.fields.gravity[0];
     reserve(0).setFloat64(call + gravityAt, gravity, true);
     run("describe");
-    const told = read({ fields: Object.fromEntries(TOLD.map((name) => [name, fields[name]])) }, call);
-    if (told.fault !== 0) throw new Error(ROCKFRAG_FAULTS[told.fault]);
+    const described = read(
+      { fields: Object.fromEntries(DESCRIBED.map((name) => [name, fields[name]])) },
+      call,
+    );
+    if (described.fault !== 0) throw new Error(ROCKFRAG_FAULTS[described.fault]);
     return {
-      ...told,
+      ...described,
       stacked: Boolean(pedestal),
       centre: [...new Float64Array(memory.buffer, call + fields.centre[0], 3)],
-      record: new Uint8Array(memory.buffer.slice(call + fields.body[0], call + fields.body[0] + layout.body.size)),
-      pivots: new Uint8Array(memory.buffer.slice(call + fields.pivots[0], call + fields.pivots[0] + 2 * layout.pivot.size)),
+      record: new Uint8Array(
+        memory.buffer.slice(
+          call + fields.body[0],
+          call + fields.body[0] + layout.body.size,
+        ),
+      ),
+      pivots: new Uint8Array(
+        memory.buffer.slice(
+          call + fields.pivots[0],
+          call + fields.pivots[0] + 2 * layout.pivot.size,
+        ),
+      ),
     };
   }
-  const TOLD = ["fault", "fastest", "slowest", "uplift", "largest"];
+  const DESCRIBED = ["fault", "fastest", "slowest", "uplift", "largest"];
 
-  // whether a multiply-add rounds once: (1 + ε)(1 - ε) - 1 is -ε², and 0 where the product is rounded
+  // whether a multiply-add rounds once: (1 + ε)(1 - ε) - 1 is -ε², and 0 where the
+  // product is rounded
   function roundsOnce() {
     const small = 2 ** -30;
     reserve(arrays);
-    write(layout.call, call, { above: 1 + small, restitution_factor: 1 - small, uplift: -1 });
+    write(layout.call, call, {
+      above: 1 + small,
+      restitution_factor: 1 - small,
+      uplift: -1,
+    });
     run("multiplyAdd");
     return read({ fields: { uplift: fields.uplift } }, call).uplift === -(small ** 2);
   }
@@ -57,7 +91,9 @@ async function rockfragEnsemble(bytes) {
     return 2 ** Math.ceil(Math.log2(needed));
   }
 
-  // ---- motions end to end, sampled as densely as a body needs, with extremes of each block of samples
+  // ---- motions end to end, sampled as densely as a body needs
+
+  // with extremes of each block of samples
 
   const packed = new WeakMap();
   let loaded = null;
@@ -68,25 +104,41 @@ async function rockfragEnsemble(bytes) {
     if (known.has(key)) return known.get(key);
     const sizes = motions.map(({ samples }, i) => samples.length * times[i] + 1);
     const offsets = [0];
-    for (const size of sizes) offsets.push(offsets.at(-1) + Math.ceil(size / BLOCK) * BLOCK);
+    for (const size of sizes)
+      offsets.push(offsets.at(-1) + Math.ceil(size / BLOCK) * BLOCK);
     const samples = new Float64Array(offsets.at(-1));
-    motions.forEach((motion, i) => refine(motion.samples, times[i], samples.subarray(offsets[i])));
+    motions.forEach((motion, i) =>
+      refine(motion.samples, times[i], samples.subarray(offsets[i])),
+    );
     const blocks = samples.length / BLOCK;
     const extremes = new Float64Array(4 * blocks);
-    const [high, low, aheadHigh, aheadLow] = [0, 1, 2, 3].map((row) => extremes.subarray(row * blocks, (row + 1) * blocks));
+    const [high, low, aheadHigh, aheadLow] = [0, 1, 2, 3].map((row) =>
+      extremes.subarray(row * blocks, (row + 1) * blocks),
+    );
     motions.forEach((_, i) => {
-      let most = -Infinity, least = Infinity;
-      for (let block = offsets[i + 1] / BLOCK - 1; block >= offsets[i] / BLOCK; block--) {
+      let most = -Infinity;
+      let least = Infinity;
+      for (
+        let block = offsets[i + 1] / BLOCK - 1;
+        block >= offsets[i] / BLOCK;
+        block--
+      ) {
         const own = samples.subarray(block * BLOCK, (block + 1) * BLOCK);
         high[block] = Math.max(...own);
         low[block] = Math.min(...own);
-        aheadHigh[block] = most = Math.max(most, high[block]);
-        aheadLow[block] = least = Math.min(least, low[block]);
+        most = Math.max(most, high[block]);
+        least = Math.min(least, low[block]);
+        aheadHigh[block] = most;
+        aheadLow[block] = least;
       }
     });
     const places = new BigInt64Array(2 * offsets.length);
-    offsets.forEach((at, i) => { places[i] = BigInt(at); });
-    sizes.forEach((size, i) => { places[offsets.length + i] = BigInt(offsets[i] + size - 1); });
+    offsets.forEach((at, i) => {
+      places[i] = BigInt(at);
+    });
+    sizes.forEach((size, i) => {
+      places[offsets.length + i] = BigInt(offsets[i] + size - 1);
+    });
     const made = { samples, extremes, places, blocks, count: offsets.length };
     known.set(key, made);
     return made;
@@ -96,7 +148,9 @@ async function rockfragEnsemble(bytes) {
   function refine(values, times, into) {
     if (times === 1) return into.set(values);
     for (let i = 0; i < values.length * times; i++) {
-      const k = Math.floor(i / times), here = values[k], next = k + 1 < values.length ? values[k + 1] : 0;
+      const k = Math.floor(i / times);
+      const here = values[k];
+      const next = k + 1 < values.length ? values[k + 1] : 0;
       into[i] = (next - here) * (i / times - k) + here;
     }
   }
@@ -128,10 +182,18 @@ async function rockfragEnsemble(bytes) {
 
   // ---- outcomes
 
-  // what motions first to last - 1 do at factors on them, (motions, scales); both results are (last - first, scales)
+  // what motions first to last - 1 do at factors on them, (motions, scales); both
+  // results are (last - first, scales)
   function count(body, motions, scales, first = 0, last = motions.length) {
-    const tables = load(pack(motions, motions.map(({ dt }) => density(body, dt))));
-    const many = last - first, each = scales.length / motions.length, cases = many * each;
+    const tables = load(
+      pack(
+        motions,
+        motions.map(({ dt }) => density(body, dt)),
+      ),
+    );
+    const many = last - first;
+    const each = scales.length / motions.length;
+    const cases = many * each;
     const record = body.stacked ? 8 : layout.pivot.size;
     let end = tables.end;
     const place = (size) => {
@@ -139,8 +201,12 @@ async function rockfragEnsemble(bytes) {
       end += size;
       return at;
     };
-    const bodiesAt = place(2 * many * record), factorsAt = place(8 * cases), rowsAt = place(8 * many);
-    const intervalsAt = place(8 * many), freeAt = place(8 * many), outcomesAt = place(cases * layout.outcome.size);
+    const bodiesAt = place(2 * many * record);
+    const factorsAt = place(8 * cases);
+    const rowsAt = place(8 * many);
+    const intervalsAt = place(8 * many);
+    const freeAt = place(8 * many);
+    const outcomesAt = place(cases * layout.outcome.size);
     const view = reserve(end);
     const factors = new Float64Array(memory.buffer, factorsAt, cases);
     for (let i = 0; i < cases; i++) {
@@ -153,25 +219,44 @@ async function rockfragEnsemble(bytes) {
       const interval = dt / density(body, dt);
       view.setBigInt64(rowsAt + 8 * i, BigInt(first + i), true);
       view.setFloat64(intervalsAt + 8 * i, interval, true);
-      view.setBigInt64(freeAt + 8 * i, body.stacked ? BigInt(Math.ceil(freeTime / body.slowest / interval)) : 0n, true);
+      view.setBigInt64(
+        freeAt + 8 * i,
+        body.stacked ? BigInt(Math.ceil(freeTime / body.slowest / interval)) : 0n,
+        true,
+      );
       if (body.stacked) {
-        const parts = Math.max(1, Math.ceil((body.fastest * interval) / (stackStep * step) - 1e-9));
+        const parts = Math.max(
+          1,
+          Math.ceil((body.fastest * interval) / (stackStep * step) - 1e-9),
+        );
         view.setFloat64(bodiesAt + 8 * i, 1 / parts, true);
         continue;
       }
       const at = bodiesAt + 2 * i * record;
       new Uint8Array(memory.buffer, at, 2 * record).set(body.pivots);
       for (const pivot of [at, at + record]) {
-        view.setFloat64(pivot + swing[0], view.getFloat64(pivot + swing[0], true) * (interval * interval), true);
-        view.setFloat64(pivot + perSwing[0], view.getFloat64(pivot + perSwing[0], true) / (interval * interval), true);
+        view.setFloat64(
+          pivot + swing[0],
+          view.getFloat64(pivot + swing[0], true) * (interval * interval),
+          true,
+        );
+        view.setFloat64(
+          pivot + perSwing[0],
+          view.getFloat64(pivot + perSwing[0], true) / (interval * interval),
+          true,
+        );
       }
     }
-    new Uint8Array(memory.buffer, call + fields.body[0], layout.body.size).set(body.record);
+    new Uint8Array(memory.buffer, call + fields.body[0], layout.body.size).set(
+      body.record,
+    );
     write(layout.call, call, { cases });
     view.setBigInt64(call + fields.counter[0], 0n, true);
     run(
       body.stacked ? "countStacks" : "countBlocks",
-      ...(body.stacked ? array(bodiesAt, [1, many], 8) : array(bodiesAt, [1, many, 2], record)),
+      ...(body.stacked
+        ? array(bodiesAt, [1, many], 8)
+        : array(bodiesAt, [1, many, 2], record)),
       ...array(factorsAt, [many, each], 8),
       ...array(rowsAt, [1, many], 8),
       ...array(intervalsAt, [1, many], 8),
@@ -179,11 +264,14 @@ async function rockfragEnsemble(bytes) {
       ...tables.parameters,
       ...array(outcomesAt, [cases], layout.outcome.size),
     );
-    const overturned = new Uint8Array(cases), rocked = new Uint8Array(cases);
+    const overturned = new Uint8Array(cases);
+    const rocked = new Uint8Array(cases);
     const { fallen, peak1, peak2 } = layout.outcome.fields;
     for (let i = 0, at = outcomesAt; i < cases; i++, at += layout.outcome.size) {
       overturned[i] = view.getInt32(at + fallen[0], true) > 0 ? 1 : 0;
-      const turned = view.getFloat64(at + peak2[0], true) > 0 || (body.stacked && view.getFloat64(at + peak1[0], true) > 0);
+      const turned =
+        view.getFloat64(at + peak2[0], true) > 0 ||
+        (body.stacked && view.getFloat64(at + peak1[0], true) > 0);
       rocked[i] = overturned[i] || turned ? 1 : 0;
     }
     return { overturned, rocked };

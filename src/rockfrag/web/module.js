@@ -1,4 +1,6 @@
-/* A WebAssembly module made from the kernels, and its records by the names of their fields; works in Node too. */
+/* A WebAssembly module made from the kernels, and its records by the names of their
+ * fields; works in Node too.
+ */
 async function rockfragModule(bytes) {
   "use strict";
   const { module, instance } = await WebAssembly.instantiate(bytes, {});
@@ -7,7 +9,8 @@ async function rockfragModule(bytes) {
     new TextDecoder().decode(WebAssembly.Module.customSections(module, "layout")[0]),
   );
 
-  // memory: what a function returns, a call, and arrays after it, all aligned to eight bytes
+  // memory: what a function returns, a call, and arrays after it, all aligned to eight
+  // bytes
   const result = (heap.value + 15) & ~15;
   const call = result + 16;
   const arrays = (call + layout.call.size + 15) & ~15;
@@ -23,7 +26,9 @@ async function rockfragModule(bytes) {
   function read(record, at) {
     const found = {};
     for (const [name, place] of Object.entries(record.fields)) {
-      found[name] = Array.isArray(place) ? number(place[1], at + place[0]) : read(place, at + place.at);
+      found[name] = Array.isArray(place)
+        ? number(place[1], at + place[0])
+        : read(place, at + place.at);
     }
     return found;
   }
@@ -44,11 +49,22 @@ async function rockfragModule(bytes) {
     }
   }
 
-  // an array as the kernels take one: owner and parent, count and size of items, place, shape and strides
+  // an array as the kernels take one: owner and parent, count and size of items, place,
+  // shape and strides
   function array(at, shape, size) {
-    const strides = shape.map((_, axis) => shape.slice(axis + 1).reduce((a, b) => a * b, size));
+    const strides = shape.map((_, axis) =>
+      shape.slice(axis + 1).reduce((a, b) => a * b, size),
+    );
     const count = shape.reduce((a, b) => a * b, 1);
-    return [0, 0, BigInt(count), BigInt(size), at, ...shape.map(BigInt), ...strides.map(BigInt)];
+    return [
+      0,
+      0,
+      BigInt(count),
+      BigInt(size),
+      at,
+      ...shape.map(BigInt),
+      ...strides.map(BigInt),
+    ];
   }
 
   // a function by its name; it returns its result, of those that have one
@@ -57,7 +73,19 @@ async function rockfragModule(bytes) {
     return view.getFloat64(result, true);
   }
   const run = (name, ...parameters) => invoke(name, call, ...parameters);
-  return { memory, layout, result, call, arrays, reserve, read, write, array, run, invoke };
+  return {
+    memory,
+    layout,
+    result,
+    call,
+    arrays,
+    reserve,
+    read,
+    write,
+    array,
+    run,
+    invoke,
+  };
 }
 
 // numbers of a block that are not given as the kernels know them
@@ -88,7 +116,8 @@ const ROCKFRAG_FAULTS = [
 function rockfragDisplacement(samples, dt) {
   const keep = Math.exp(-2 * Math.PI * 0.15 * dt);
   const found = new Float64Array(samples.length);
-  let velocity = 0, place = 0;
+  let velocity = 0;
+  let place = 0;
   for (let k = 1; k < samples.length; k++) {
     velocity = keep * (velocity + samples[k] * dt);
     place = keep * (place + velocity * dt);

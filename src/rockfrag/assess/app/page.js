@@ -1,594 +1,1060 @@
 /* The page: a form, workers that compute beside it, and what they say. */
 (() => {
-"use strict";
-const find = (id) => document.getElementById(id);
-const data = JSON.parse(find("data").textContent);
-function bytesOf(text) {
-  const letters = atob(text), bytes = new Uint8Array(letters.length);
-  for (let i = 0; i < bytes.length; i++) bytes[i] = letters.charCodeAt(i);
-  return bytes;
-}
-const make = (tag, attributes = {}, ...children) => {
-  const element = Object.assign(document.createElement(tag), attributes);
-  element.append(...children);
-  return element;
-};
-const FIELDS = Object.fromEntries(data.groups.map((group) => [group, data.fields.filter((field) => field.group === group)]));
-if (data.own?.whole) FIELDS.place = FIELDS.place.filter(({ name }) => name === "floor");
-const CLOSED = ["more", "pedestal", "place"]; // groups that open where they are wanted
-const ALL = Object.values(FIELDS).flat();
-const PART = 25; // motions of a task
-// why a body cannot stand, in the words of the module
-const FAULTS = Object.fromEntries(ROCKFRAG_FAULTS.map((text, i) => [`fault_${i}`, text]));
-let texts = data.texts.en, say = null, speak = null;
-
-// ---- texts
-
-function choose(language) {
-  texts = { ...FAULTS, ...data.texts.en, ...data.texts[language] };
-  document.documentElement.lang = language;
-  speak = catalogue(texts);
-  say = (id, values = {}) => speak.say({ id, values });
-  document.title = say("title");
-  for (const element of document.querySelectorAll("[data-text]")) element.textContent = say(element.dataset.text);
-  find("lead").textContent = say("lead", { motions: data.motions });
-  find("made").hidden = !data.made;
-  find("made").textContent = say("made");
-  find("progress").setAttribute("aria-label", say("answer"));
-}
-
-// ---- the form
-
-const form = find("form"), inputs = {};
-function drawForm() {
-  const old = formTexts();
-  form.replaceChildren();
-  for (const [group, fields] of Object.entries(FIELDS)) {
-    const title = say(group), boxes = fields.map((each) => field(each, old));
-    const given = fields.some(({ name }) => inputs[name].checked || (inputs[name].type === "text" && inputs[name].value));
-    form.append(CLOSED.includes(group) ? make("details", { open: given }, make("summary", { textContent: title }), ...boxes)
-      : make("fieldset", {}, make("legend", { textContent: title }), ...boxes));
+  "use strict";
+  const find = (id) => document.getElementById(id);
+  const data = JSON.parse(find("data").textContent);
+  function bytesOf(text) {
+    const letters = atob(text);
+    const bytes = new Uint8Array(letters.length);
+    for (let i = 0; i < bytes.length; i++) bytes[i] = letters.charCodeAt(i);
+    return bytes;
   }
-}
-function field({ name, kind, options }, old) {
-  const value = old?.[name] ?? data.form[name] ?? "";
-  const input = {
-    lines: () => make("textarea", { rows: 3, value }),
-    choice: () => make("select", {}, ...options.map((id) => make("option", { value: id, textContent: say(id) }))),
-    flag: () => make("input", { type: "checkbox", checked: Boolean(value) }),
-  }[kind]?.() ?? make("input", { type: "text", value, maxLength: 80 });
-  if (name === "floor") input.placeholder = "2/4";
-  if (kind === "choice") input.value = options.includes(value) ? value : options[0];
-  input.id = `field-${name}`;
-  input.setAttribute("aria-describedby", `${input.id}-error`);
-  input.addEventListener("input", later);
-  inputs[name] = input;
-  const label = make("label", { htmlFor: input.id, textContent: say(name) });
-  return make("div", { className: kind === "lines" ? "field long" : "field" }, label, input, make("small", { id: `${input.id}-error` }));
-}
-function formTexts() {
-  if (!inputs.width) return null;
-  return Object.fromEntries(ALL.map(({ name, kind }) => [name, kind === "flag" ? inputs[name].checked : inputs[name].value]));
-}
-const whyOf = ({ id, values }) => say(texts[`${id}_refused`] ? `${id}_refused` : id, values);
-function complain(refusal) {
-  for (const { name } of ALL) {
-    const wrong = refusal?.field === name;
-    inputs[name].setAttribute("aria-invalid", String(wrong));
-    const { id, values } = refusal ?? {};
-    if (wrong && inputs[name].closest("details")) inputs[name].closest("details").open = true;
-    find(`field-${name}-error`).textContent = wrong ? whyOf({ id, values }) : "";
+  const make = (tag, attributes = {}, ...children) => {
+    const element = Object.assign(document.createElement(tag), attributes);
+    element.append(...children);
+    return element;
+  };
+  const FIELDS = Object.fromEntries(
+    data.groups.map((group) => [
+      group,
+      data.fields.filter((field) => field.group === group),
+    ]),
+  );
+  if (data.own?.whole)
+    FIELDS.place = FIELDS.place.filter(({ name }) => name === "floor");
+  // groups that open where they are wanted
+  const CLOSED = ["more", "pedestal", "place"];
+  const ALL = Object.values(FIELDS).flat();
+  const PART = 25; // motions of a task
+  // why a body cannot stand, in the words of the module
+  const FAULTS = Object.fromEntries(
+    ROCKFRAG_FAULTS.map((text, i) => [`fault_${i}`, text]),
+  );
+  let texts = data.texts.en;
+  let say = null;
+  let speak = null;
+
+  // ---- texts
+
+  function choose(language) {
+    texts = { ...FAULTS, ...data.texts.en, ...data.texts[language] };
+    document.documentElement.lang = language;
+    speak = catalogue(texts);
+    say = (id, values = {}) => speak.say({ id, values });
+    document.title = say("title");
+    for (const element of document.querySelectorAll("[data-text]"))
+      element.textContent = say(element.dataset.text);
+    find("lead").textContent = say("lead", { motions: data.motions });
+    find("made").hidden = !data.made;
+    find("made").textContent = say("made");
+    find("progress").setAttribute("aria-label", say("answer"));
   }
-}
 
-// ---- workers
+  // a number of so many digits as the language writes it
+  const local = (value, digits) =>
+    new Intl.NumberFormat(document.documentElement.lang, {
+      maximumSignificantDigits: digits,
+    }).format(value);
 
-const pool = [], waiting = [], asked = new Map();
-let number = 0, current = null, other = null;
-async function startWorkers() {
-  const url = URL.createObjectURL(new Blob([find("computing").textContent], { type: "text/javascript" }));
-  const count = Math.max(1, Math.min(4, navigator.hardwareConcurrency ?? 2));
-  const modules = { fused: bytesOf(data.modules.fused), plain: bytesOf(data.modules.plain), space: bytesOf(data.modules.space), core: bytesOf(data.modules.core) }, samples = bytesOf(data.packed);
-  const { packed, modules: _, ...rest } = data;
-  return Promise.all(Array.from({ length: count }, () => {
-    const worker = { post: started(url), busy: true };
-    worker.post.onmessage = ({ data: message }) => {
-      worker.busy = false;
-      const task = worker.task;
-      worker.task = null;
-      next();
-      task?.done(message);
+  // ---- the form
+
+  const form = find("form");
+  const inputs = {};
+  function drawForm() {
+    const old = formTexts();
+    form.replaceChildren();
+    for (const [group, fields] of Object.entries(FIELDS)) {
+      const title = say(group);
+      const boxes = fields.map((each) => field(each, old));
+      const given = fields.some(
+        ({ name }) =>
+          inputs[name].checked || (inputs[name].type === "text" && inputs[name].value),
+      );
+      form.append(
+        CLOSED.includes(group)
+          ? make(
+              "details",
+              { open: given },
+              make("summary", { textContent: title }),
+              ...boxes,
+            )
+          : make("fieldset", {}, make("legend", { textContent: title }), ...boxes),
+      );
+    }
+  }
+  function field({ name, kind, options }, old) {
+    const value = old?.[name] ?? data.form[name] ?? "";
+    const input =
+      {
+        lines: () => make("textarea", { rows: 3, value }),
+        choice: () =>
+          make(
+            "select",
+            {},
+            ...options.map((id) => make("option", { value: id, textContent: say(id) })),
+          ),
+        flag: () => make("input", { type: "checkbox", checked: Boolean(value) }),
+      }[kind]?.() ?? make("input", { type: "text", value, maxLength: 80 });
+    if (name === "floor") input.placeholder = "2/4";
+    if (kind === "choice") input.value = options.includes(value) ? value : options[0];
+    input.id = `field-${name}`;
+    input.setAttribute("aria-describedby", `${input.id}-error`);
+    input.addEventListener("input", later);
+    inputs[name] = input;
+    const label = make("label", { htmlFor: input.id, textContent: say(name) });
+    return make(
+      "div",
+      { className: kind === "lines" ? "field long" : "field" },
+      label,
+      input,
+      make("small", { id: `${input.id}-error` }),
+    );
+  }
+  function formTexts() {
+    if (!inputs.width) return null;
+    return Object.fromEntries(
+      ALL.map(({ name, kind }) => [
+        name,
+        kind === "flag" ? inputs[name].checked : inputs[name].value,
+      ]),
+    );
+  }
+  const whyOf = ({ id, values }) =>
+    say(texts[`${id}_refused`] ? `${id}_refused` : id, values);
+  function complain(refusal) {
+    for (const { name } of ALL) {
+      const wrong = refusal?.field === name;
+      inputs[name].setAttribute("aria-invalid", String(wrong));
+      const { id, values } = refusal ?? {};
+      if (wrong && inputs[name].closest("details"))
+        inputs[name].closest("details").open = true;
+      find(`field-${name}-error`).textContent = wrong ? whyOf({ id, values }) : "";
+    }
+  }
+
+  // ---- workers
+
+  const pool = [];
+  const waiting = [];
+  const asked = new Map();
+  let number = 0;
+  let current = null;
+  let other = null;
+  async function startWorkers() {
+    const url = URL.createObjectURL(
+      new Blob([find("computing").textContent], { type: "text/javascript" }),
+    );
+    const count = Math.max(1, Math.min(4, navigator.hardwareConcurrency ?? 2));
+    const modules = {
+      fused: bytesOf(data.modules.fused),
+      plain: bytesOf(data.modules.plain),
+      space: bytesOf(data.modules.space),
+      core: bytesOf(data.modules.core),
     };
-    // it could not start at all
-    worker.post.onerror = () => worker.task?.done({ failure: "no_workers" });
-    pool.push(worker);
-    return new Promise((resolve, reject) => {
-      worker.task = { done: (message) => (message.failure ? reject(new Error(message.failure)) : resolve()) };
-      worker.post.postMessage({ kind: "begin", data: rest, modules, samples });
+    const samples = bytesOf(data.packed);
+    const { packed, modules: _, ...rest } = data;
+    return Promise.all(
+      Array.from({ length: count }, () => {
+        const worker = { post: started(url), busy: true };
+        worker.post.onmessage = ({ data: message }) => {
+          worker.busy = false;
+          const task = worker.task;
+          worker.task = null;
+          next();
+          task?.done(message);
+        };
+        // it could not start at all
+        worker.post.onerror = () => worker.task?.done({ failure: "no_workers" });
+        pool.push(worker);
+        return new Promise((resolve, reject) => {
+          worker.task = {
+            done: (message) =>
+              message.failure ? reject(new Error(message.failure)) : resolve(),
+          };
+          worker.post.postMessage({ kind: "begin", data: rest, modules, samples });
+        });
+      }),
+    );
+  }
+  function started(url) {
+    try {
+      return new Worker(url);
+    } catch {
+      throw new Error("no_workers");
+    }
+  }
+  // a free worker takes what waits of its own motions, whose floors and tables it has,
+  // else what waits first; what an older request asked for is dropped
+  function next() {
+    for (const [i, worker] of pool.entries()) {
+      if (worker.busy) continue;
+      for (let k = waiting.length - 1; k >= 0; k--)
+        if (waiting[k].of && waiting[k].of !== current && waiting[k].of !== other)
+          waiting.splice(k, 1);
+      const own = waiting.findIndex(
+        ({ message: { first = i * PART } }) =>
+          Math.floor(first / PART) % pool.length === i,
+      );
+      const [task] = waiting.splice(Math.max(own, 0), 1);
+      if (!task) return;
+      worker.busy = true;
+      worker.task = task;
+      worker.post.postMessage(task.message);
+    }
+  }
+  function ask(of, message, first = false) {
+    return new Promise((resolve) => {
+      waiting[first ? "unshift" : "push"]({
+        of,
+        message,
+        done: (result) => {
+          if (!of || of === current || of === other) resolve(result);
+        },
+      });
+      next();
     });
-  }));
-}
-function started(url) {
-  try {
-    return new Worker(url);
-  } catch {
-    throw new Error("no_workers");
   }
-}
-// a free worker takes what waits of its own motions, whose floors and tables it has, else what waits first; what an older
-// request asked for is dropped
-function next() {
-  for (const [i, worker] of pool.entries()) {
-    if (worker.busy) continue;
-    for (let k = waiting.length - 1; k >= 0; k--) if (waiting[k].of && waiting[k].of !== current && waiting[k].of !== other) waiting.splice(k, 1);
-    const own = waiting.findIndex(({ message: { first = i * PART } }) => Math.floor(first / PART) % pool.length === i);
-    const [task] = waiting.splice(Math.max(own, 0), 1);
-    if (!task) return;
-    worker.busy = true;
-    worker.task = task;
-    worker.post.postMessage(task.message);
-  }
-}
-function ask(of, message, first = false) {
-  return new Promise((resolve) => {
-    waiting[first ? "unshift" : "push"]({ of, message, done: (told) => { if (!of || of === current || of === other) resolve(told); } });
-    next();
-  });
-}
-// ---- a request, from its plan to its answer
+  // ---- a request, from its plan to its answer
 
-let timer = 0, settle = () => {}; // gets why an answer is refused, null once it is complete
-function later() {
-  clearTimeout(timer);
-  timer = setTimeout(update, 120);
-}
-function update() {
-  const form = formTexts();
-  let request;
-  try {
-    request = bodies.requestOf(form);
-  } catch (error) {
-    if (!error.field) throw error;
-    current = other = null;
-    complain(error);
-    find("answer").classList.add("stale");
-    find("done").textContent = "";
-    return settle(error);
+  let timer = 0;
+  let settle = () => {}; // gets why an answer is refused, null once it is complete
+  function later() {
+    clearTimeout(timer);
+    timer = setTimeout(update, 120);
   }
-  complain(null);
-  find("blocked").hidden = true;
-  current = { id: ++number, request, form, since: number > 1 ? performance.now() : 0 }; // the first answer since the file was opened
-  document.body.dataset.stage = "";
-  other = null;
-  compute(current, (told) => {
-    show(told);
-    if (!told.last) return;
-    slide();
-    settle(null);
-  });
-}
-const startsOf = (count) => Array.from({ length: Math.ceil(count / PART) }, (_, i) => i * PART);
-async function compute(run, told) {
-  const { id, request } = run, count = data.earthquakes.length;
-  const plan = await ask(run, { kind: "plan", id, request });
-  if (plan.refusal) {
-    const refusal = { field: plan.refusal.field, id: plan.refusal.text, values: plan.refusal.values };
+  function update() {
+    const form = formTexts();
+    let request;
+    try {
+      request = bodies.requestOf(form);
+    } catch (error) {
+      if (!error.field) throw error;
+      return refuse(error);
+    }
+    complain(null);
+    find("blocked").hidden = true;
+    find("state").hidden = false;
+    if (!shown) headline("…");
+    for (const place of COMPUTED) find(place).classList.add("stale");
+    number += 1;
+    // the first answer is timed since the file was opened
+    current = {
+      id: number,
+      request,
+      form,
+      since: number > 1 ? performance.now() : 0,
+    };
+    document.body.dataset.stage = "";
+    other = null;
+    compute(current, (answer) => {
+      show(answer);
+      if (!answer.last) return;
+      slide();
+      settle(null);
+    });
+  }
+  const startsOf = (count) =>
+    Array.from({ length: Math.ceil(count / PART) }, (_, i) => i * PART);
+  async function compute(run, report) {
+    const { id, request } = run;
+    const count = data.earthquakes.length;
+    const plan = await ask(run, { kind: "plan", id, request });
+    if (plan.refusal) {
+      const refusal = {
+        field: plan.refusal.field,
+        id: plan.refusal.text,
+        values: plan.refusal.values,
+      };
+      return run === current && refuse(refusal);
+    }
+    if (plan.failure) return fail(plan.failure);
+    const { roles } = plan.result;
+    const parts = roles.map(() => []);
+    const starts = startsOf(count);
+    const needed = (role) =>
+      roles.map(({ role: own }, i) => (own === role ? i : -1)).filter((i) => i >= 0);
+    const early = needed("first");
+    const all = [[0], [...needed("now"), ...needed("moved")], roles.map((_, i) => i)];
+    const moments = [...(early.length ? [early] : []), ...all];
+    let done = 0;
+    let latest = 0;
+    let earlier = null;
+    const ready = (i) => parts[i].length === starts.length;
+    const answerNow = async () => {
+      const stage = moments.findLastIndex((all) => all.every(ready));
+      if (stage < latest) return;
+      latest = stage + 1;
+      const message = {
+        kind: "answer",
+        id,
+        request,
+        earlier,
+        parts: parts.map((each, i) =>
+          ready(i) && moments[stage].includes(i) ? each : null,
+        ),
+      };
+      const found = await ask(run, message, true);
+      if (found.failure) return fail(found.failure);
+      earlier = found.result;
+      // a later one was asked for since, and may have come first
+      if (stage + 1 < latest) return;
+      report({
+        run,
+        found: found.result,
+        early: moments[stage] === early,
+        last: stage === moments.length - 1,
+      });
+    };
+    for (const i of new Set([...early, ...roles.keys()]))
+      starts.forEach((first) => {
+        const message = {
+          kind: "count",
+          id,
+          request,
+          run: i,
+          first,
+          last: Math.min(first + PART, count),
+        };
+        ask(run, message).then((part) => {
+          if (part.failure) return fail(part.failure);
+          parts[i].push({ first, ...part.result });
+          done += 1;
+          if (run === current) progress(done, roles.length * starts.length);
+          if (ready(i)) answerNow();
+        });
+      });
+  }
+  function refuse(refusal) {
     complain(refusal);
-    find("answer").classList.add("stale");
-    find("done").textContent = "";
-    return run === current && settle(refusal);
+    withdraw(`${say(refusal.field)}: ${whyOf(refusal)}`);
+    settle(refusal);
   }
-  if (plan.failure) return refused(plan.failure);
-  const { roles } = plan.told, parts = roles.map(() => []);
-  const starts = startsOf(count);
-  const needed = (role) => roles.map(({ role: own }, i) => (own === role ? i : -1)).filter((i) => i >= 0);
-  const early = needed("first"), all = [[0], [...needed("now"), ...needed("moved")], roles.map((_, i) => i)];
-  const moments = [...(early.length ? [early] : []), ...all];
-  let done = 0, latest = 0, earlier = null;
-  const ready = (i) => parts[i].length === starts.length;
-  const answerNow = async () => {
-    const stage = moments.findLastIndex((all) => all.every(ready));
-    if (stage < latest) return;
-    latest = stage + 1;
-    const message = { kind: "answer", id, request, earlier, parts: parts.map((each, i) => (ready(i) && moments[stage].includes(i) ? each : null)) };
-    const found = await ask(run, message, true);
-    if (found.failure) return refused(found.failure);
-    earlier = found.told;
-    if (stage + 1 < latest) return; // a later one was asked for since, and may have come first
-    told({ run, found: found.told, early: moments[stage] === early, last: stage === moments.length - 1 });
-  };
-  for (const i of new Set([...early, ...roles.keys()])) starts.forEach((first) => {
-    const message = { kind: "count", id, request, run: i, first, last: Math.min(first + PART, count) };
-    ask(run, message).then((part) => {
-      if (part.failure) return refused(part.failure);
-      parts[i].push({ first, ...part.told });
-      done += 1;
-      if (run === current) progress(done, roles.length * starts.length);
-      if (ready(i)) answerNow();
-    });
-  });
-}
-function refused(why) {
-  find("blocked").textContent = say("failed", { why });
-  find("blocked").hidden = false;
-  find("answer").classList.add("stale");
-  settle({ id: "failed", values: { why } });
-}
-function progress(done, all) {
-  find("progress").max = all;
-  find("progress").value = done;
-  find("done").textContent = say("working", { done, all });
-}
-
-// ---- the answer
-
-let shown = null;
-function show(answer) {
-  shown = answer;
-  const { run: { since }, found } = answer, said = saidOf(found, answer);
-  find("answer").classList.remove("stale");
-  find("headline").textContent = find("bar").textContent = said.headline;
-  find("screen").textContent = said.screen;
-  find("lines").replaceChildren(...linesAs(said));
-  if (answer.last) find("done").textContent = say("ready");
-  const stage = answer.last ? "complete" : found.complete ? "interval" : "first", { dataset } = document.body;
-  if (stage !== dataset.stage) dataset[stage] = String(performance.now() - since);
-  dataset.stage = stage;
-  find("keep").disabled = !answer.last;
-  document.dispatchEvent(new CustomEvent("answer", { detail: { found, last: answer.last } }));
-  if (!answer.early && scene.of !== answer.run) scene.drawn = draw(answer);
-}
-// the first screen and what stands behind it in words; of an answer that is not complete what is known of it
-function saidOf(found, { last = true, early = false } = {}) {
-  const { first: [likely, ...others], details } = found.said, hidden = [...(last ? [] : ["title_helps"]), ...(early ? ["title_years"] : [])];
-  const lines = details.filter(([{ id }]) => !hidden.includes(id)).map(([title, said]) => [speak.sentence(title), speak.paragraph(said)]);
-  return { headline: speak.sentence(likely).replace(/\.$/, ""), screen: speak.paragraph(others), lines };
-}
-function linesAs({ lines }) {
-  return lines.flatMap(([title, text]) => [make("dt", { textContent: title }), make("dd", { textContent: text })]);
-}
-// what was typed, in a line
-function typedIn(form) {
-  const plain = ALL.filter(({ name, kind }) => (form[name] === true || form[name]?.trim?.()) && !["choice", "lines"].includes(kind) && name !== "level");
-  const typed = plain.map(({ name }) => (form[name] === true ? say(name) : `${say(name)}: ${form[name]}`));
-  if (form.level.trim()) typed.push(`${form.measure}: ${form.level}`);
-  if (form.hazard.trim()) typed.push(say("curve_of", { measure: form.measure, count: form.hazard.trim().split("\n").length }));
-  return typed.join("; ") + ".";
-}
-
-// ---- what helps: sliders, before and after
-
-const SLIDERS = { width: [0, 50, 0], cg: [0, 40, 0], ballast: [0, 100, 0], putty: [0, 600, 0] };
-const GRAVITY = data.constants.GRAVITY;
-function drawSliders() {
-  find("sliders").replaceChildren(...Object.entries(SLIDERS).map(([id, [low, high, at]]) => {
-    const input = make("input", { type: "range", min: low, max: high, step: 1, id: `slide-${id}` }), told = make("output");
-    input.value = at;
-    const tell = () => { told.textContent = ` ${SLIDERS[id][2]} %${id === "putty" ? pullInNewtons() : ""}`; };
-    input.addEventListener("input", () => { SLIDERS[id][2] = Number(input.value); tell(); slide(); });
-    tell();
-    return make("div", { className: "field" }, make("label", { htmlFor: input.id }, say(`slide_${id}`), told), input);
-  }));
-  const choice = make("select", { id: "slide-fixed" }, ...["not_fixed", "to_pedestal", "to_floor"].map((id) => make("option", { value: id, textContent: say(id) })));
-  choice.addEventListener("input", slide);
-  find("sliders").append(make("div", { className: "field" }, make("label", { htmlFor: choice.id }, say("slide_fixed")), choice));
-}
-// what putty under the object that is shown holds, its ballast being none
-const pullOf = ({ statue }) => (SLIDERS.putty[2] / 100) * statue.mass * GRAVITY;
-function pullInNewtons() {
-  if (!shown || !SLIDERS.putty[2]) return "";
-  return ` = ${new Intl.NumberFormat(document.documentElement.lang, { maximumSignificantDigits: 2 }).format(pullOf(shown.run.request))} N`;
-}
-function slide() {
-  if (!shown || shown.run !== current) return;
-  const [width, cg, ballast] = Object.values(SLIDERS).map(([, , at]) => at / 100), { found } = shown;
-  // of a pedestal or a body in space the command line tells
-  const sticks = !shown.run.request.pedestal && !shown.run.request.solid, putty = sticks ? pullOf(shown.run.request) : 0;
-  find("slide-putty").closest("div").hidden = !sticks;
-  const choice = find("slide-fixed"), fixed = shown.run.request.pedestal ? choice.value : "not_fixed";
-  choice.closest("div").hidden = !shown.run.request.pedestal;
-  other = null;
-  if (!(width || cg || ballast || putty || fixed !== "not_fixed")) return compare(found, null);
-  const changes = { wider: 1 + width, lower: 1 - cg, ballast };
-  other = { id: ++number, request: { ...current.request, changes, fixed, putty }, since: performance.now() };
-  shakeChanged(other, found);
-}
-// the object with a change under all motions, and the answer's own numbers of it
-async function shakeChanged(run, answered) {
-  const { id, request } = run, plan = await ask(run, { kind: "plan", id, request });
-  if (plan.failure) return compare(answered, null);
-  const starts = startsOf(data.earthquakes.length);
-  const parts = await Promise.all(starts.map(async (first) => {
-    const message = { kind: "count", id, request, run: 0, first, last: Math.min(first + PART, data.earthquakes.length) };
-    return { first, ...(await ask(run, message)).told };
-  }));
-  const { told } = await ask(run, { kind: "changed", id, request, parts, answered }, true);
-  compare(answered, told);
-  find("compared").dataset.took = String(performance.now() - run.since);
-}
-function compare({ fraction, probability }, after) {
-  const rows = [["topples_column", fraction, after?.fraction], ["risk_column", probability, after?.probability]];
-  find("compared").replaceChildren(...rows.map(([title, before, now]) => make("tr", {}, make("th", { scope: "row", textContent: say(title) }),
-    make("td", { className: "number", textContent: percent(before?.value) }), make("td", { className: "number", textContent: percent(now) }))));
-}
-
-// ---- the object under the motion that decides
-
-const scene = { of: null, response: null, timer: 0, at: 0 };
-let kernel = null, building = null;
-async function draw(told) {
-  const { run: of, found: { deciding } } = told;
-  scene.of = of;
-  kernel ??= await rockfragKernel(await unpacked(data.modules.history));
-  const motion = (await ask(null, { kind: "motion", motion: deciding.motion })).told;
-  if (scene.of !== of) return;
-  const { statue, pedestal, restitution, measure, place } = { measure: "PGA", ...of.request };
-  scene.dt = motion.dt;
-  canvasOf(of.request.solid);
-  if (of.request.solid) {
-    inSpaceScene ??= sceneInSpace(data, find("scene"), () => paint());
-    const response = await inSpaceScene.respond(of.request, deciding, async (m) => (await ask(null, { kind: "motion", motion: m })).told, (name) => unpacked(data.modules[name]));
-    if (scene.of !== of) return;
-    Object.assign(scene, { response, statue, pedestal, dt: response.dt });
-    describe(deciding, measure);
-    scene.at = response.most;
-    return paint();
-  }
-  if (!place.ground) building ??= floors(data, await rockfragCore(await unpacked(data.modules.core)));
-  const ground = place.ground ? motion : building.floorMotion(place.floors[""], motion);
-  const body = kernel.bodyOf({ statue, pedestal, restitution: pedestal && restitution !== null ? [restitution, restitution] : restitution });
-  const scale = deciding.level / data.measures[measure].values[deciding.motion];
-  scene.response = kernel.integrate({ body, samples: ground.samples, dt: motion.dt, scale });
-  Object.assign(scene, { statue, pedestal, at: 0 });
-  describe(deciding, measure);
-  const { theta2, done } = scene.response;
-  let most = 0;
-  for (let k = 0; k < done; k++) if (Math.abs(theta2[k]) > Math.abs(theta2[most]) && Math.abs(theta2[k]) < 0.6) most = k;
-  scene.at = most;
-  paint();
-}
-let inSpaceScene = null;
-// in space the picture can be turned by keys
-function canvasOf(solid) {
-  find("scene").tabIndex = solid ? 0 : -1;
-  find("scene").setAttribute("role", solid ? "application" : "img");
-}
-function describe(deciding, measure) {
-  const { unit } = data.measures[measure], { fallen, history } = scene.response;
-  const level = () => `${measure} ${new Intl.NumberFormat(document.documentElement.lang, { maximumSignificantDigits: 2 }).format(deciding.level)} ${unit}`;
-  scene.words = () => say("scene_words", { motion: data.names[deciding.motion], level: level(), what: say(fallen ? "falls" : "stays") });
-  const turned = history ? ` ${say("turn_view")}` : "";
-  scene.title = () => say(deciding.falls ? "scene" : "scene_other");
-  find("bump").hidden = Boolean(scene.pedestal);
-  titled(turned);
-}
-// a base that is hit, runs a distance and is stopped: no record of accelerations holds that
-function hit(event) {
-  event.preventDefault();
-  const [velocity, millimetres] = ["velocity", "distance"].map((name) => Number(find(`bump-${name}`).value));
-  if (!(velocity > 0 && millimetres > 0)) return;
-  const response = kernel.bump({ statue: scene.statue, velocity, distance: millimetres / 1000 });
-  Object.assign(scene, { response, dt: response.dt, at: 0 });
-  const local = (value) => new Intl.NumberFormat(document.documentElement.lang, { maximumSignificantDigits: 3 }).format(value);
-  scene.words = () => say("bump_words", { velocity: local(velocity), distance: local(millimetres), what: say(response.fallen ? "falls" : "stays") });
-  scene.title = () => say("bump_title");
-  titled();
-  if (scene.timer) play();
-  play();
-}
-function titled(turned = "") {
-  find("scene-words").textContent = scene.words() + turned;
-  find("scene-title").textContent = scene.title();
-  find("scene").setAttribute("aria-label", scene.words() + turned);
-}
-const unpacked = async (text) => new Uint8Array(await new Response(new Blob([bytesOf(text)]).stream().pipeThrough(new DecompressionStream("deflate"))).arrayBuffer());
-function paint(what = scene, canvas = find("scene")) {
-  const { response, statue, pedestal, at } = what, context = canvas.getContext("2d");
-  if (!response) return;
-  const style = getComputedStyle(canvas), colour = (name) => style.getPropertyValue(`--${name}`).trim();
-  if (response.history) return inSpaceScene.paint(context, response, at, colour);
-  const below = pedestal?.height ?? 0, tall = below + statue.height, zoom = Math.min(230 / tall, 320 / Math.max(tall, statue.width));
-  context.clearRect(0, 0, 600, 300);
-  context.fillStyle = colour("rule");
-  context.fillRect(40, 280, 520, 3);
-  const turn = ([x, y], angle, [px, py]) => {
-    const s = Math.sin(angle), c = Math.cos(angle);
-    return [px + (x - px) * c + (y - py) * s, py - (x - px) * s + (y - py) * c];
-  };
-  const box = (width, bottom, height) => [[-width / 2, bottom], [width / 2, bottom], [width / 2, bottom + height], [-width / 2, bottom + height]];
-  const one = pedestal ? response.theta1[at] : 0, two = response.theta2[at];
-  const foot = [((one < 0 ? -1 : 1) * (pedestal?.width ?? 0)) / 2, 0], contact = Math.min(statue.width, pedestal?.width ?? Infinity) / 2;
-  const pivot = [(two - one < 0 ? -1 : 1) * contact, below];
-  const fill = (corners, name) => {
-    context.beginPath();
-    corners.forEach(([x, y]) => context.lineTo(300 + zoom * x, 280 - zoom * y));
-    context.closePath();
-    context.fillStyle = colour(name);
-    context.fill();
-  };
-  if (pedestal) fill(box(pedestal.width, 0, below).map((corner) => turn(corner, one, foot)), "faint");
-  fill(box(statue.width, below, statue.height).map((corner) => turn(turn(corner, two - one, pivot), one, foot)), "blue");
-}
-function play() {
-  if (!scene.response) return;
-  if (scene.timer) {
-    cancelAnimationFrame(scene.timer);
-    scene.timer = 0;
-    find("play").textContent = say("play");
-    return;
-  }
-  const start = performance.now();
-  find("play").textContent = say("pause");
-  const step = (now) => {
-    scene.at = Math.min(scene.response.done - 1, Math.max(0, Math.round((now - start) / 1000 / scene.dt)));
-    paint();
-    scene.timer = scene.at < scene.response.done - 1 ? requestAnimationFrame(step) : 0;
-    if (!scene.timer) find("play").textContent = say("play");
-  };
-  scene.timer = requestAnimationFrame(step);
-}
-
-// ---- objects that are kept
-
-const kept = [];
-const percent = (value) => (typeof value === "number" ? speak.say({ number: value, form: "percent" }) : "–");
-function drawKept() {
-  const button = (id, action) => {
-    const made = make("button", { type: "button", id, textContent: say(id) });
-    made.addEventListener("click", action);
-    return made;
-  };
-  const file = make("input", { type: "file", accept: ".csv,.yaml,.yml", id: "file", hidden: true });
-  file.addEventListener("change", () => openFile(file));
-  const keepOne = button("keep", keep);
-  keepOne.disabled = document.body.dataset.stage !== "complete";
-  find("tools").replaceChildren(keepOne, button("save_csv", saveCsv), button("save_yaml", () => save("statue.yaml", lists.yamlOf(formTexts(), say))),
-    button("open", () => file.click()), button(kept.length ? "print_all" : "print", () => print()), file);
-  find("columns").closest(".wide").hidden = !kept.length;
-  find("columns").replaceChildren(...headings(), make("td"));
-  const risk = ({ told: { found } }) => found.main.value;
-  kept.sort((a, b) => risk(b) - risk(a));
-  find("objects").replaceChildren(...kept.map((item, i) => {
-    const row = rowOf(item, i), remove = () => { kept.splice(kept.indexOf(item), 1); drawKept(); };
-    row.append(make("td", {}, button("load", () => fillForm(item.form)), button("remove", remove)));
-    for (const each of row.querySelectorAll("button")) {
-      each.removeAttribute("id");
-      each.setAttribute("aria-label", `${each.textContent}: ${item.told.run.request.name}`);
-    }
-    return row;
-  }));
-}
-const headings = () => ["rank", "name", "topples_column", "risk_column", "page_to_do"].map((id) => make("th", { scope: "col", textContent: say(id) }));
-const calledOf = ({ name }) => (name === data.texts.en.the_object ? say("the_object") : name);
-function rowOf({ told: { run: { request }, found } }, i) {
-  const { first } = found.said, cells = [i + 1, speak.sentence(calledOf(request)), percent(found.fraction.value), percent(found.probability?.value), speak.sentence(first.at(-1))];
-  return make("tr", {}, ...cells.map((text) => make("td", { textContent: text })));
-}
-async function keep() {
-  const item = { form: shown.run.form, told: shown };
-  await scene.drawn;
-  kept.push(Object.assign(item, { scene: stillOf(item.told.run) }));
-  drawKept();
-}
-// what is drawn of an object, without its motion
-function stillOf(run) {
-  if (scene.of !== run || !scene.response) return null;
-  const { response, response: { theta1, theta2 }, statue, pedestal, at, words, title } = scene;
-  if (response.history) return { response, statue, pedestal, at, words, title };
-  return { statue, pedestal, words, title, at: 0, response: { theta1: [theta1[at]], theta2: [theta2[at]] } };
-}
-function fillForm(values) {
-  for (const { name, kind, options } of ALL) {
-    if (kind === "flag") inputs[name].checked = values[name] === true || values[name] === "true";
-    else inputs[name].value = values[name] ?? options[0] ?? "";
-  }
-  update();
-}
-function save(name, text) {
-  const link = make("a", { href: URL.createObjectURL(new Blob([text], { type: "text/plain" })), download: name });
-  link.click();
-  setTimeout(() => URL.revokeObjectURL(link.href), 1000);
-}
-const saveCsv = () => save("objects.csv", lists.csvOf(kept.map(({ form }) => form)));
-async function openFile(input) {
-  const [file] = input.files, problem = find("file-error");
-  problem.hidden = true;
-  const complainOf = (text) => {
-    problem.textContent = text;
-    problem.hidden = false;
-  };
-  try {
-    if (file.size > 200000) throw new Error(say("file_long"));
-    const forms = lists.read(file.name, await file.text(), say), left = [];
-    if (forms.length === 1) fillForm(forms[0]);
-    else for (const [i, form] of forms.entries()) {
-      const refusal = await answered(form), row = i + 2; // below the titles
-      if (refusal) left.push(say("row_left", { row, field: refusal.field ? say(refusal.field) : "", why: whyOf(refusal) }));
-      else await keep();
-    }
-    if (left.length) complainOf([say("rows_left"), ...left].join(" "));
-  } catch (error) {
-    complainOf(say("file_unread", { why: error.message }));
-  }
-  input.value = "";
-}
-function answered(form) {
-  return new Promise((resolve) => {
-    settle = resolve;
-    fillForm(form);
-  });
-}
-
-// ---- on paper: a sheet for each object that is kept, or for the one that is shown
-
-function drawSheets() {
-  const items = kept.length ? kept : shown ? [{ form: shown.run.form, told: shown, scene: stillOf(shown.run) }] : [];
-  find("sheets").replaceChildren(...(kept.length > 1 ? [rankedSheet()] : []));
-  for (const { form, told: { found }, scene: still } of items) {
-    const said = saidOf(found), canvas = make("canvas", { width: 600, height: 300 });
-    const sheet = make("section", { className: "sheet" }, make("h2", { textContent: said.headline }), make("p", { textContent: said.screen }), make("p", { textContent: typedIn(form) }), make("dl", {}, ...linesAs(said)));
-    if (!kept.length) sheet.append(...tried());
-    find("sheets").append(sheet);
-    if (still) {
-      sheet.append(make("figure", {}, canvas, make("figcaption", { textContent: `${still.title()}: ${still.words()}` })));
-      paint(still, canvas);
-    }
-    sheet.append(make("p", { className: "message", textContent: `${data.made ? say("made") + " " : ""}${say("no_substitute")} ${new Date().toISOString().slice(0, 10)}` }));
-  }
-}
-// what the sliders try of the object that is shown, before and after
-function tried() {
-  if (!other) return [];
-  const fields = [...find("sliders").querySelectorAll(".field:not([hidden])")], moved = fields.filter((field) => field.querySelector("input")?.value > 0);
-  const choice = find("slide-fixed"), chosen = choice.selectedOptions[0];
-  const words = moved.map((field) => field.querySelector("label").textContent);
-  if (!choice.closest("div").hidden && choice.selectedIndex > 0) words.push(`${say("slide_fixed")}: ${chosen.textContent}`);
-  const table = find("compared").closest("table").cloneNode(true);
-  table.querySelector("tbody").removeAttribute("id");
-  return [make("p", { textContent: `${say("try")}: ${words.join("; ")}.` }), table];
-}
-function rankedSheet() {
-  const table = make("table", {}, make("thead", {}, make("tr", {}, ...headings())), make("tbody", {}, ...kept.map(rowOf)));
-  return make("section", { className: "sheet" }, make("h2", { textContent: say("list") }), table);
-}
-
-// ---- the beginning
-
-const bodies = objects(data), lists = lists_(data, ALL);
-async function begin() {
-  for (const [id, { language }] of Object.entries(data.texts)) find("language").append(make("option", { value: id, textContent: language }));
-  const wanted = navigator.language?.slice(0, 2);
-  find("language").value = data.texts[wanted] ? wanted : "en";
-  find("language").addEventListener("change", () => { translate(); });
-  find("play").addEventListener("click", play);
-  find("bump").addEventListener("submit", hit);
-  addEventListener("beforeprint", drawSheets);
-  form.addEventListener("submit", (event) => event.preventDefault());
-  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => paint());
-  translate();
-  const stop = (id) => {
-    find("blocked").textContent = say(id);
+  function fail(why) {
+    find("blocked").textContent = say("failed", { why });
     find("blocked").hidden = false;
-  };
-  if (typeof WebAssembly !== "object" || typeof DecompressionStream !== "function") return stop("no_wasm");
-  find("done").textContent = say("starting");
-  try {
-    await startWorkers();
-  } catch (error) {
-    return stop(error.message === "no_workers" ? "no_workers" : "no_wasm");
+    withdraw("…");
+    settle({ id: "failed", values: { why } });
   }
-  update();
-}
-function translate() {
-  choose(find("language").value);
-  drawForm();
-  drawSliders();
-  drawKept();
-  if (shown) {
+  // what follows an answer, and is computed after it
+  const COMPUTED = ["drawing", "helping"];
+  // nothing of an earlier answer stands beside an entry that cannot be used
+  function withdraw(words) {
+    current = null;
+    other = null;
+    shown = null;
+    scene.of = null;
+    if (scene.timer) play();
+    headline(words);
+    for (const id of ["screen", "state", "behind", ...COMPUTED]) find(id).hidden = true;
+    find("done").textContent = "";
+    find("keep").disabled = true;
+    document.body.dataset.stage = "refused";
+  }
+  function headline(words) {
+    for (const place of ["headline", "bar"]) find(place).textContent = words;
+  }
+  function progress(done, all) {
+    find("progress").max = all;
+    find("progress").value = done;
+    find("done").textContent = say("working", { done, all });
+  }
+
+  // ---- the answer
+
+  let shown = null;
+  function show(answer) {
+    shown = answer;
+    const {
+      run: { since },
+      found,
+    } = answer;
+    const said = saidOf(found, answer);
+    for (const place of ["screen", "state", "behind"]) find(place).hidden = false;
+    headline(said.headline);
+    find("screen").textContent = said.screen;
+    find("lines").replaceChildren(...linesAs(said));
+    if (answer.last) find("done").textContent = say("ready");
+    const stage = stageOf(answer);
+    const { dataset } = document.body;
+    if (stage !== dataset.stage) dataset[stage] = String(performance.now() - since);
+    dataset.stage = stage;
+    find("keep").disabled = !answer.last;
+    document.dispatchEvent(
+      new CustomEvent("answer", { detail: { found, last: answer.last } }),
+    );
+    if (!answer.early && scene.of !== answer.run) scene.drawn = draw(answer);
+  }
+  function stageOf({ last, found }) {
+    if (last) return "complete";
+    return found.complete ? "interval" : "first";
+  }
+  // the first screen and what stands behind it in words; of an answer that is not
+  // complete what is known of it
+  function saidOf(found, { last = true, early = false } = {}) {
+    const {
+      first: [likely, ...others],
+      details,
+    } = found.said;
+    const hidden = [
+      ...(last ? [] : ["title_helps"]),
+      ...(early ? ["title_years"] : []),
+    ];
+    const lines = details
+      .filter(([{ id }]) => !hidden.includes(id))
+      .map(([title, said]) => [speak.sentence(title), speak.paragraph(said)]);
+    return {
+      headline: speak.sentence(likely).replace(/\.$/, ""),
+      screen: speak.paragraph(others),
+      lines,
+    };
+  }
+  function linesAs({ lines }) {
+    return lines.flatMap(([title, text]) => [
+      make("dt", { textContent: title }),
+      make("dd", { textContent: text }),
+    ]);
+  }
+  // what was typed, in a line
+  function typedIn(form) {
+    const plain = ALL.filter(
+      ({ name, kind }) =>
+        (form[name] === true || form[name]?.trim?.()) &&
+        !["choice", "lines"].includes(kind) &&
+        name !== "level",
+    );
+    const typed = plain.map(({ name }) =>
+      form[name] === true ? say(name) : `${say(name)}: ${form[name]}`,
+    );
+    if (form.level.trim()) typed.push(`${form.measure}: ${form.level}`);
+    if (form.hazard.trim())
+      typed.push(
+        say("curve_of", {
+          measure: form.measure,
+          count: form.hazard.trim().split("\n").length,
+        }),
+      );
+    return typed.join("; ") + ".";
+  }
+
+  // ---- what helps: sliders, before and after
+
+  const SLIDERS = {
+    width: [0, 50, 0],
+    cg: [0, 40, 0],
+    ballast: [0, 100, 0],
+    putty: [0, 600, 0],
+  };
+  const GRAVITY = data.constants.GRAVITY;
+  function drawSliders() {
+    find("sliders").replaceChildren(
+      ...Object.entries(SLIDERS).map(([id, [low, high, at]]) => {
+        const input = make("input", {
+          type: "range",
+          min: low,
+          max: high,
+          step: 1,
+          id: `slide-${id}`,
+        });
+        const output = make("output");
+        input.value = at;
+        const tell = () => {
+          const pull = id === "putty" ? pullInNewtons() : "";
+          output.textContent = ` ${SLIDERS[id][2]} %${pull}`;
+        };
+        input.addEventListener("input", () => {
+          SLIDERS[id][2] = Number(input.value);
+          tell();
+          slide();
+        });
+        tell();
+        return make(
+          "div",
+          { className: "field" },
+          make("label", { htmlFor: input.id }, say(`slide_${id}`), output),
+          input,
+        );
+      }),
+    );
+    const choice = make(
+      "select",
+      { id: "slide-fixed" },
+      ...["not_fixed", "to_pedestal", "to_floor"].map((id) =>
+        make("option", { value: id, textContent: say(id) }),
+      ),
+    );
+    choice.addEventListener("input", slide);
+    find("sliders").append(
+      make(
+        "div",
+        { className: "field" },
+        make("label", { htmlFor: choice.id }, say("slide_fixed")),
+        choice,
+      ),
+    );
+  }
+  // what putty under the object that is shown holds, its ballast being none
+  const pullOf = ({ statue }) => (SLIDERS.putty[2] / 100) * statue.mass * GRAVITY;
+  function pullInNewtons() {
+    if (!shown || !SLIDERS.putty[2]) return "";
+    return ` = ${local(pullOf(shown.run.request), 2)} N`;
+  }
+  function slide() {
+    if (!shown || shown.run !== current) return;
+    const [width, cg, ballast] = Object.values(SLIDERS).map(([, , at]) => at / 100);
+    const { found } = shown;
+    // of a pedestal or a body in space the command line tells
+    const sticks = !shown.run.request.pedestal && !shown.run.request.solid;
+    const putty = sticks ? pullOf(shown.run.request) : 0;
+    find("slide-putty").closest("div").hidden = !sticks;
+    const choice = find("slide-fixed");
+    const fixed = shown.run.request.pedestal ? choice.value : "not_fixed";
+    choice.closest("div").hidden = !shown.run.request.pedestal;
+    other = null;
+    if (!(width || cg || ballast || putty || fixed !== "not_fixed"))
+      return compare(found, null);
+    const changes = { wider: 1 + width, lower: 1 - cg, ballast };
+    other = {
+      id: ++number,
+      request: { ...current.request, changes, fixed, putty },
+      since: performance.now(),
+    };
+    shakeChanged(other, found);
+  }
+  // the object with a change under all motions, and the answer's own numbers of it
+  async function shakeChanged(run, answered) {
+    const { id, request } = run;
+    const plan = await ask(run, { kind: "plan", id, request });
+    if (plan.failure) return compare(answered, null);
+    const starts = startsOf(data.earthquakes.length);
+    const parts = await Promise.all(
+      starts.map(async (first) => {
+        const message = {
+          kind: "count",
+          id,
+          request,
+          run: 0,
+          first,
+          last: Math.min(first + PART, data.earthquakes.length),
+        };
+        return { first, ...(await ask(run, message)).result };
+      }),
+    );
+    const { result } = await ask(
+      run,
+      { kind: "changed", id, request, parts, answered },
+      true,
+    );
+    compare(answered, result);
+    find("compared").dataset.took = String(performance.now() - run.since);
+  }
+  function compare({ fraction, probability }, after) {
+    computed("helping");
+    const rows = [
+      ["topples_column", fraction, after?.fraction],
+      ["risk_column", probability, after?.probability],
+    ];
+    find("compared").replaceChildren(
+      ...rows.map(([title, before, now]) =>
+        make(
+          "tr",
+          {},
+          make("th", { scope: "row", textContent: say(title) }),
+          make("td", { className: "number", textContent: percent(before?.value) }),
+          make("td", { className: "number", textContent: percent(now) }),
+        ),
+      ),
+    );
+  }
+
+  // ---- the object under the motion that decides
+
+  const scene = { of: null, response: null, timer: 0, at: 0 };
+  let kernel = null;
+  let building = null;
+  async function draw(answer) {
+    const {
+      run: of,
+      found: { deciding },
+    } = answer;
+    scene.of = of;
+    kernel ??= await rockfragKernel(await unpacked(data.modules.history));
+    const motion = (await ask(null, { kind: "motion", motion: deciding.motion }))
+      .result;
+    if (scene.of !== of) return;
+    const { statue, pedestal, restitution, measure, place } = {
+      measure: "PGA",
+      ...of.request,
+    };
+    scene.dt = motion.dt;
+    canvasOf(of.request.solid);
+    if (of.request.solid) {
+      inSpaceScene ??= sceneInSpace(data, find("scene"), () => paint());
+      const response = await inSpaceScene.respond(
+        of.request,
+        deciding,
+        async (m) => (await ask(null, { kind: "motion", motion: m })).result,
+        (name) => unpacked(data.modules[name]),
+      );
+      if (scene.of !== of) return;
+      Object.assign(scene, { response, statue, pedestal, dt: response.dt });
+      describe(deciding, measure);
+      scene.at = response.most;
+      return paint();
+    }
+    if (!place.ground)
+      building ??= floors(data, await rockfragCore(await unpacked(data.modules.core)));
+    const ground = place.ground
+      ? motion
+      : building.floorMotion(place.floors[""], motion);
+    const body = kernel.bodyOf({
+      statue,
+      pedestal,
+      restitution:
+        pedestal && restitution !== null ? [restitution, restitution] : restitution,
+    });
+    const scale = deciding.level / data.measures[measure].values[deciding.motion];
+    scene.response = kernel.integrate({
+      body,
+      samples: ground.samples,
+      dt: motion.dt,
+      scale,
+    });
+    Object.assign(scene, { statue, pedestal, at: 0 });
+    describe(deciding, measure);
+    const { theta2, done } = scene.response;
+    let most = 0;
+    for (let k = 0; k < done; k++)
+      if (Math.abs(theta2[k]) > Math.abs(theta2[most]) && Math.abs(theta2[k]) < 0.6)
+        most = k;
+    scene.at = most;
+    paint();
+  }
+  let inSpaceScene = null;
+  // in space the picture can be turned by keys
+  function canvasOf(solid) {
+    find("scene").tabIndex = solid ? 0 : -1;
+    find("scene").setAttribute("role", solid ? "application" : "img");
+  }
+  function describe(deciding, measure) {
+    const { unit } = data.measures[measure];
+    const { fallen, history } = scene.response;
+    const level = () => `${measure} ${local(deciding.level, 2)} ${unit}`;
+    scene.words = () =>
+      say("scene_words", {
+        motion: data.names[deciding.motion],
+        level: level(),
+        what: say(fallen ? "falls" : "stays"),
+      });
+    const turned = history ? ` ${say("turn_view")}` : "";
+    scene.title = () => say(deciding.falls ? "scene" : "scene_other");
+    find("bump").hidden = Boolean(scene.pedestal);
+    titled(turned);
+  }
+  // a base that is hit, runs a distance and is stopped: no record of accelerations
+  // holds that
+  function hit(event) {
+    event.preventDefault();
+    const [velocity, millimetres] = ["velocity", "distance"].map((name) =>
+      Number(find(`bump-${name}`).value),
+    );
+    if (!(velocity > 0 && millimetres > 0)) return;
+    const response = kernel.bump({
+      statue: scene.statue,
+      velocity,
+      distance: millimetres / 1000,
+    });
+    Object.assign(scene, { response, dt: response.dt, at: 0 });
+    scene.words = () =>
+      say("bump_words", {
+        velocity: local(velocity, 3),
+        distance: local(millimetres, 3),
+        what: say(response.fallen ? "falls" : "stays"),
+      });
+    scene.title = () => say("bump_title");
+    titled();
+    if (scene.timer) play();
+    play();
+  }
+  function computed(place) {
+    find(place).hidden = false;
+    find(place).classList.remove("stale");
+  }
+  function titled(turned = "") {
+    computed("drawing");
+    find("scene-words").textContent = scene.words() + turned;
+    find("scene-title").textContent = scene.title();
+    find("scene").setAttribute("aria-label", scene.words() + turned);
+  }
+  const unpacked = async (text) =>
+    new Uint8Array(
+      await new Response(
+        new Blob([bytesOf(text)])
+          .stream()
+          .pipeThrough(new DecompressionStream("deflate")),
+      ).arrayBuffer(),
+    );
+  function paint(what = scene, canvas = find("scene")) {
+    const { response, statue, pedestal, at } = what;
+    const context = canvas.getContext("2d");
+    if (!response) return;
+    const style = getComputedStyle(canvas);
+    const colour = (name) => style.getPropertyValue(`--${name}`).trim();
+    if (response.history) return inSpaceScene.paint(context, response, at, colour);
+    const below = pedestal?.height ?? 0;
+    const tall = below + statue.height;
+    const zoom = Math.min(230 / tall, 320 / Math.max(tall, statue.width));
+    context.clearRect(0, 0, 600, 300);
+    context.fillStyle = colour("rule");
+    context.fillRect(40, 280, 520, 3);
+    const turn = ([x, y], angle, [px, py]) => {
+      const s = Math.sin(angle);
+      const c = Math.cos(angle);
+      return [px + (x - px) * c + (y - py) * s, py - (x - px) * s + (y - py) * c];
+    };
+    const box = (width, bottom, height) => [
+      [-width / 2, bottom],
+      [width / 2, bottom],
+      [width / 2, bottom + height],
+      [-width / 2, bottom + height],
+    ];
+    const one = pedestal ? response.theta1[at] : 0;
+    const two = response.theta2[at];
+    const foot = [((one < 0 ? -1 : 1) * (pedestal?.width ?? 0)) / 2, 0];
+    const contact = Math.min(statue.width, pedestal?.width ?? Infinity) / 2;
+    const pivot = [(two - one < 0 ? -1 : 1) * contact, below];
+    const fill = (corners, name) => {
+      context.beginPath();
+      corners.forEach(([x, y]) => context.lineTo(300 + zoom * x, 280 - zoom * y));
+      context.closePath();
+      context.fillStyle = colour(name);
+      context.fill();
+    };
+    if (pedestal)
+      fill(
+        box(pedestal.width, 0, below).map((corner) => turn(corner, one, foot)),
+        "faint",
+      );
+    fill(
+      box(statue.width, below, statue.height).map((corner) =>
+        turn(turn(corner, two - one, pivot), one, foot),
+      ),
+      "blue",
+    );
+  }
+  function play() {
+    if (!scene.response) return;
+    if (scene.timer) {
+      cancelAnimationFrame(scene.timer);
+      scene.timer = 0;
+      find("play").textContent = say("play");
+      return;
+    }
+    const start = performance.now();
+    find("play").textContent = say("pause");
+    const step = (now) => {
+      scene.at = Math.min(
+        scene.response.done - 1,
+        Math.max(0, Math.round((now - start) / 1000 / scene.dt)),
+      );
+      paint();
+      scene.timer =
+        scene.at < scene.response.done - 1 ? requestAnimationFrame(step) : 0;
+      if (!scene.timer) find("play").textContent = say("play");
+    };
+    scene.timer = requestAnimationFrame(step);
+  }
+
+  // ---- objects that are kept
+
+  const kept = [];
+  const percent = (value) =>
+    typeof value === "number" ? speak.say({ number: value, form: "percent" }) : "–";
+  function drawKept() {
+    const button = (id, action) => {
+      const made = make("button", { type: "button", id, textContent: say(id) });
+      made.addEventListener("click", action);
+      return made;
+    };
+    const file = make("input", {
+      type: "file",
+      accept: ".csv,.yaml,.yml",
+      id: "file",
+      hidden: true,
+    });
+    file.addEventListener("change", () => openFile(file));
+    const keepOne = button("keep", keep);
+    keepOne.disabled = document.body.dataset.stage !== "complete";
+    find("tools").replaceChildren(
+      keepOne,
+      button("save_csv", saveCsv),
+      button("save_yaml", () => save("statue.yaml", lists.yamlOf(formTexts(), say))),
+      button("open", () => file.click()),
+      button(kept.length ? "print_all" : "print", () => print()),
+      file,
+    );
+    find("columns").closest(".wide").hidden = !kept.length;
+    find("columns").replaceChildren(...headings(), make("td"));
+    const risk = ({ answer: { found } }) => found.main.value;
+    kept.sort((a, b) => risk(b) - risk(a));
+    find("objects").replaceChildren(
+      ...kept.map((item, i) => {
+        const row = rowOf(item, i);
+        const remove = () => {
+          kept.splice(kept.indexOf(item), 1);
+          drawKept();
+        };
+        row.append(
+          make(
+            "td",
+            {},
+            button("load", () => fillForm(item.form)),
+            button("remove", remove),
+          ),
+        );
+        for (const each of row.querySelectorAll("button")) {
+          each.removeAttribute("id");
+          each.setAttribute(
+            "aria-label",
+            `${each.textContent}: ${item.answer.run.request.name}`,
+          );
+        }
+        return row;
+      }),
+    );
+  }
+  const headings = () =>
+    ["rank", "name", "topples_column", "risk_column", "page_to_do"].map((id) =>
+      make("th", { scope: "col", textContent: say(id) }),
+    );
+  const calledOf = ({ name }) =>
+    name === data.texts.en.the_object ? say("the_object") : name;
+  function rowOf(
+    {
+      answer: {
+        run: { request },
+        found,
+      },
+    },
+    i,
+  ) {
+    const { first } = found.said;
+    const cells = [
+      i + 1,
+      speak.sentence(calledOf(request)),
+      percent(found.fraction.value),
+      percent(found.probability?.value),
+      speak.sentence(first.at(-1)),
+    ];
+    return make("tr", {}, ...cells.map((text) => make("td", { textContent: text })));
+  }
+  async function keep() {
+    const item = { form: shown.run.form, answer: shown };
+    await scene.drawn;
+    kept.push(Object.assign(item, { scene: stillOf(item.answer.run) }));
+    drawKept();
+  }
+  // what is drawn of an object, without its motion
+  function stillOf(run) {
+    if (scene.of !== run || !scene.response) return null;
+    const {
+      response,
+      response: { theta1, theta2 },
+      statue,
+      pedestal,
+      at,
+      words,
+      title,
+    } = scene;
+    if (response.history) return { response, statue, pedestal, at, words, title };
+    return {
+      statue,
+      pedestal,
+      words,
+      title,
+      at: 0,
+      response: { theta1: [theta1[at]], theta2: [theta2[at]] },
+    };
+  }
+  // what a file does not say of the place and its shaking stays as it is
+  const STAYS = ["place", "shaking"];
+  function fillForm(values) {
+    const isSaid = (group) => FIELDS[group].some(({ name }) => name in values);
+    for (const { name, kind, options, group } of ALL) {
+      if (STAYS.includes(group) && !isSaid(group)) continue;
+      if (kind === "flag")
+        inputs[name].checked = values[name] === true || values[name] === "true";
+      else inputs[name].value = values[name] ?? options[0] ?? "";
+    }
+    update();
+  }
+  function save(name, text) {
+    const link = make("a", {
+      href: URL.createObjectURL(new Blob([text], { type: "text/plain" })),
+      download: name,
+    });
+    link.click();
+    setTimeout(() => URL.revokeObjectURL(link.href), 1000);
+  }
+  const saveCsv = () => save("objects.csv", lists.csvOf(kept.map(({ form }) => form)));
+  async function openFile(input) {
+    const [file] = input.files;
+    const problem = find("file-error");
+    problem.hidden = true;
+    const complainOf = (text) => {
+      problem.textContent = text;
+      problem.hidden = false;
+    };
+    try {
+      if (file.size > 200000) throw new Error(say("file_long"));
+      const { forms, unused } = lists.read(file.name, await file.text(), say);
+      const left = [];
+      if (forms.length === 1) fillForm(forms[0]);
+      else
+        for (const [i, form] of forms.entries()) {
+          const refusal = await answered(form);
+          const row = i + 2; // below the titles
+          if (refusal)
+            left.push(
+              say("row_left", {
+                row,
+                field: refusal.field ? say(refusal.field) : "",
+                why: whyOf(refusal),
+              }),
+            );
+          else await keep();
+        }
+      const notes = left.length ? [say("rows_left"), ...left] : [];
+      if (unused.length) notes.push(unusedColumns(unused));
+      if (notes.length) complainOf(notes.join(" "));
+    } catch (error) {
+      complainOf(say("file_unread", { why: error.message }));
+    }
+    input.value = "";
+  }
+  const unusedColumns = (titles) =>
+    say("columns_unused", { columns: titles.slice(0, 12).join(", ").slice(0, 300) });
+  function answered(form) {
+    return new Promise((resolve) => {
+      settle = resolve;
+      fillForm(form);
+    });
+  }
+
+  // ---- on paper: a sheet for each object that is kept, or for the one that is shown
+
+  function drawSheets() {
+    const items = [...kept];
+    if (!kept.length && shown)
+      items.push({ form: shown.run.form, answer: shown, scene: stillOf(shown.run) });
+    find("sheets").replaceChildren(...(kept.length > 1 ? [rankedSheet()] : []));
+    if (!items.length)
+      find("sheets").append(make("p", { textContent: find("headline").textContent }));
+    for (const {
+      form,
+      answer: { found },
+      scene: still,
+    } of items) {
+      const said = saidOf(found);
+      const canvas = make("canvas", { width: 600, height: 300 });
+      const sheet = make(
+        "section",
+        { className: "sheet" },
+        make("h2", { textContent: said.headline }),
+        make("p", { textContent: said.screen }),
+        make("p", { textContent: typedIn(form) }),
+        make("dl", {}, ...linesAs(said)),
+      );
+      if (!kept.length) sheet.append(...tried());
+      find("sheets").append(sheet);
+      if (still) {
+        sheet.append(
+          make(
+            "figure",
+            {},
+            canvas,
+            make("figcaption", { textContent: `${still.title()}: ${still.words()}` }),
+          ),
+        );
+        paint(still, canvas);
+      }
+      const day = new Date().toISOString().slice(0, 10);
+      const last = [...(data.made ? [say("made")] : []), say("no_substitute"), day];
+      sheet.append(make("p", { className: "message", textContent: last.join(" ") }));
+    }
+  }
+  // what the sliders try of the object that is shown, before and after
+  function tried() {
+    if (!other) return [];
+    const fields = [...find("sliders").querySelectorAll(".field:not([hidden])")];
+    const moved = fields.filter((field) => field.querySelector("input")?.value > 0);
+    const choice = find("slide-fixed");
+    const chosen = choice.selectedOptions[0];
+    const words = moved.map((field) => field.querySelector("label").textContent);
+    if (!choice.closest("div").hidden && choice.selectedIndex > 0)
+      words.push(`${say("slide_fixed")}: ${chosen.textContent}`);
+    const table = find("compared").closest("table").cloneNode(true);
+    table.querySelector("tbody").removeAttribute("id");
+    return [make("p", { textContent: `${say("try")}: ${words.join("; ")}.` }), table];
+  }
+  function rankedSheet() {
+    const table = make(
+      "table",
+      {},
+      make("thead", {}, make("tr", {}, ...headings())),
+      make("tbody", {}, ...kept.map(rowOf)),
+    );
+    return make(
+      "section",
+      { className: "sheet" },
+      make("h2", { textContent: say("list") }),
+      table,
+    );
+  }
+
+  // ---- the beginning
+
+  const bodies = objects(data);
+  const lists = lists_(data, ALL);
+  async function begin() {
+    for (const [id, { language }] of Object.entries(data.texts))
+      find("language").append(make("option", { value: id, textContent: language }));
+    const wanted = navigator.language?.slice(0, 2);
+    find("language").value = data.texts[wanted] ? wanted : "en";
+    find("language").addEventListener("change", () => {
+      translate();
+    });
+    find("play").addEventListener("click", play);
+    find("bump").addEventListener("submit", hit);
+    addEventListener("beforeprint", drawSheets);
+    form.addEventListener("submit", (event) => event.preventDefault());
+    matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () =>
+      paint(),
+    );
+    translate();
+    const stop = (id) => {
+      find("blocked").textContent = say(id);
+      find("blocked").hidden = false;
+    };
+    if (typeof WebAssembly !== "object" || typeof DecompressionStream !== "function")
+      return stop("no_wasm");
+    find("done").textContent = say("starting");
+    try {
+      await startWorkers();
+    } catch (error) {
+      return stop(error.message === "no_workers" ? "no_workers" : "no_wasm");
+    }
+    update();
+  }
+  function translate() {
+    choose(find("language").value);
+    drawForm();
+    drawSliders();
+    drawKept();
+    if (document.body.dataset.stage === "refused") update();
+    if (!shown) return;
     show(shown);
     if (scene.words) find("scene-words").textContent = scene.words();
     if (scene.title) find("scene-title").textContent = scene.title();
   }
-}
-begin();
+  begin();
 })();

@@ -1,26 +1,58 @@
-/* A worker of the page: it decodes the motions once, and counts and answers as it is asked. */
+/* A worker of the page: it decodes the motions once, and counts and answers as it is
+ * asked.
+ */
 let tools = null;
 async function begin({ data, modules, samples }) {
-  const unpacked = async (packed) => new Uint8Array(await new Response(new Blob([packed]).stream().pipeThrough(new DecompressionStream("deflate"))).arrayBuffer());
+  const unpacked = async (packed) =>
+    new Uint8Array(
+      await new Response(
+        new Blob([packed]).stream().pipeThrough(new DecompressionStream("deflate")),
+      ).arrayBuffer(),
+    );
   const fused = await unpacked(modules.fused);
   let ensemble = WebAssembly.validate(fused) ? await rockfragEnsemble(fused) : null;
-  if (!ensemble?.roundsOnce()) ensemble = await rockfragEnsemble(await unpacked(modules.plain));
-  const motions = decoded(data, await unpacked(samples)), core = await rockfragCore(await unpacked(modules.core));
-  const made = answer(data, core), form = objects(data);
-  tools = { ensemble, made, motions, form, bodies: plans(data, core, form.refuse), count: made.counter(ensemble, motions, await rockfragSpace(await unpacked(modules.space))), plans: new Map() };
+  if (!ensemble?.roundsOnce())
+    ensemble = await rockfragEnsemble(await unpacked(modules.plain));
+  const motions = decoded(data, await unpacked(samples));
+  const core = await rockfragCore(await unpacked(modules.core));
+  const made = answer(data, core);
+  const form = objects(data);
+  tools = {
+    ensemble,
+    made,
+    motions,
+    form,
+    bodies: plans(data, core, form.refuse),
+    count: made.counter(
+      ensemble,
+      motions,
+      await rockfragSpace(await unpacked(modules.space)),
+    ),
+    plans: new Map(),
+  };
 }
-// samples are decimals: whole numbers over powers of ten, times the factor of their unit; bytes of equal rank together
+// samples are decimals: whole numbers over powers of ten, times the factor of their
+// unit; bytes of equal rank together
 function decoded({ samples: { counts, dts, factor, decimal } }, bytes) {
-  const total = counts.reduce((a, b) => a + b, 0), values = new Float64Array(total), size = decimal ? 4 : 8;
+  const total = counts.reduce((a, b) => a + b, 0);
+  const values = new Float64Array(total);
+  const size = decimal ? 4 : 8;
   const plain = new Uint8Array(total * size);
-  for (let rank = 0; rank < size; rank++) for (let i = 0; i < total; i++) plain[i * size + rank] = bytes[rank * total + i];
+  for (let rank = 0; rank < size; rank++)
+    for (let i = 0; i < total; i++) plain[i * size + rank] = bytes[rank * total + i];
   if (!decimal) values.set(new Float64Array(plain.buffer));
   else {
-    const whole = new Int32Array(plain.buffer), powers = Array.from({ length: 23 }, (_, i) => Number(`1e${i}`));
-    for (let i = 0; i < total; i++) values[i] = (whole[i] / powers[bytes[4 * total + i]]) * factor;
+    const whole = new Int32Array(plain.buffer);
+    const powers = Array.from({ length: 23 }, (_, i) => Number(`1e${i}`));
+    for (let i = 0; i < total; i++)
+      values[i] = (whole[i] / powers[bytes[4 * total + i]]) * factor;
   }
-  let at = 0;
-  return counts.map((count, i) => ({ samples: values.subarray(at, (at += count)), dt: dts[i] }));
+  let end = 0;
+  return counts.map((count, i) => {
+    const begin = end;
+    end += count;
+    return { samples: values.subarray(begin, end), dt: dts[i] };
+  });
 }
 function planOf({ id, request }) {
   const { plans, bodies, ensemble } = tools;
@@ -31,20 +63,40 @@ function planOf({ id, request }) {
   return plans.get(id);
 }
 const TASKS = {
-  begin: async (task) => { await begin(task); },
+  begin: async (task) => {
+    await begin(task);
+  },
   plan: (task) => ({ roles: planOf(task).map(({ role, name }) => ({ role, name })) }),
-  count: (task) => tools.count(task.request, planOf(task)[task.run], task.first, task.last),
+  count: (task) =>
+    tools.count(task.request, planOf(task)[task.run], task.first, task.last),
   answer: ({ parts, earlier, ...task }) => {
-    const runs = planOf(task), outcomes = parts.map((each, i) => each && tools.made.joined(task.request, runs[i], each));
+    const runs = planOf(task);
+    const outcomes = parts.map(
+      (each, i) => each && tools.made.joined(task.request, runs[i], each),
+    );
     return tools.made.found(task.request, runs, outcomes, tools.ensemble, earlier);
   },
-  changed: ({ parts, answered, ...task }) => tools.made.changed(task.request, tools.made.joined(task.request, planOf(task)[0], parts), answered),
-  motion: ({ motion }) => ({ samples: tools.motions[motion].samples, dt: tools.motions[motion].dt }),
+  changed: ({ parts, answered, ...task }) =>
+    tools.made.changed(
+      task.request,
+      tools.made.joined(task.request, planOf(task)[0], parts),
+      answered,
+    ),
+  motion: ({ motion }) => ({
+    samples: tools.motions[motion].samples,
+    dt: tools.motions[motion].dt,
+  }),
 };
 onmessage = async ({ data: task }) => {
   try {
-    postMessage({ id: task.id, told: await TASKS[task.kind](task) });
+    postMessage({ id: task.id, result: await TASKS[task.kind](task) });
   } catch (error) {
-    postMessage({ id: task.id, refusal: error.field ? { field: error.field, text: error.id ?? "", values: error.values ?? {} } : null, failure: String(error.message ?? error) });
+    postMessage({
+      id: task.id,
+      refusal: error.field
+        ? { field: error.field, text: error.id ?? "", values: error.values ?? {} }
+        : null,
+      failure: String(error.message ?? error),
+    });
   }
 };

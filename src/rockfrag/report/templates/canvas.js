@@ -1,15 +1,33 @@
-/* What all drawings of a page share: its colours, and a canvas at the resolution of the screen. */
+/* What all drawings of a page share: its colours, and a canvas at the resolution of the
+ * screen.
+ */
 function rockfragColours() {
   "use strict";
   const style = getComputedStyle(document.documentElement);
-  const names = ["ink", "soft", "line", "paper", "wash", "accent", "blue", "red", "band", "rule"];
-  return Object.fromEntries(names.map((name) => [name, style.getPropertyValue("--" + name).trim()]));
+  const names = [
+    "ink",
+    "soft",
+    "line",
+    "paper",
+    "wash",
+    "accent",
+    "blue",
+    "red",
+    "band",
+    "rule",
+  ];
+  return Object.fromEntries(
+    names.map((name) => [name, style.getPropertyValue("--" + name).trim()]),
+  );
 }
 function rockfragSized(canvas) {
   "use strict";
-  const ratio = devicePixelRatio || 1, width = canvas.clientWidth, height = canvas.clientHeight;
+  const ratio = devicePixelRatio || 1;
+  const width = canvas.clientWidth;
+  const height = canvas.clientHeight;
   const [wide, high] = [width, height].map((value) => Math.round(value * ratio));
-  if (canvas.width !== wide || canvas.height !== high) Object.assign(canvas, { width: wide, height: high });
+  if (canvas.width !== wide || canvas.height !== high)
+    Object.assign(canvas, { width: wide, height: high });
   const context = canvas.getContext("2d");
   context.setTransform(ratio, 0, 0, ratio, 0, 0);
   context.clearRect(0, 0, width, height);
@@ -19,5 +37,6 @@ function rockfragSized(canvas) {
 // what says texts with values in their places
 function rockfragSayer(texts) {
   "use strict";
-  return (id, values = {}) => texts[id].replace(/\{(\w+)\}/g, (_, place) => values[place]);
+  return (id, values = {}) =>
+    texts[id].replace(/\{(\w+)\}/g, (_, place) => values[place]);
 }

@@ -3,10 +3,13 @@
 function openAround(id) {
   const target = id && document.getElementById(id);
   if (!target) return;
-  for (let one = target; one; one = one.parentElement) if (one.tagName === "DETAILS") one.open = true;
+  for (let one = target; one; one = one.parentElement)
+    if (one.tagName === "DETAILS") one.open = true;
   target.scrollIntoView();
 }
-addEventListener("hashchange", () => openAround(decodeURIComponent(location.hash.slice(1))));
+addEventListener("hashchange", () =>
+  openAround(decodeURIComponent(location.hash.slice(1))),
+);
 openAround(decodeURIComponent(location.hash.slice(1)));
 for (const link of document.querySelectorAll('a[href^="#"]'))
   link.addEventListener("click", () => openAround(link.hash.slice(1)));
@@ -15,17 +18,22 @@ addEventListener("beforeprint", () => {
   closed = [...document.querySelectorAll("details:not([open])")];
   for (const one of closed) one.open = true;
 });
-addEventListener("afterprint", () => { for (const one of closed) one.open = false; });
+addEventListener("afterprint", () => {
+  for (const one of closed) one.open = false;
+});
 
 // Longer tables and lists can be filtered, and tables sorted by any column.
 const LONG = 8;
 function sortKey(cell) {
-  const text = cell.textContent.trim().replace(/^[<>≤≥] /, "").replaceAll("−", "-");
+  const text = cell.textContent
+    .trim()
+    .replace(/^[<>≤≥] /, "")
+    .replaceAll("−", "-");
   const number = parseFloat(text);
   return Number.isNaN(number) ? text.toLowerCase() : number;
 }
 function compare(a, b) {
-  if (typeof a === typeof b) return a < b ? -1 : a > b ? 1 : 0;
+  if (typeof a === typeof b) return Number(a > b) - Number(a < b);
   return typeof a === "number" ? -1 : 1;
 }
 function sortBy(table, column, falling) {
@@ -34,7 +42,8 @@ function sortBy(table, column, falling) {
   rows.sort((a, b) => (falling ? compare(b[0], a[0]) : compare(a[0], b[0])));
   body.append(...rows.map((row) => row[1]));
   for (const [number, head] of [...table.tHead.rows[0].cells].entries()) {
-    if (number === column) head.setAttribute("aria-sort", falling ? "descending" : "ascending");
+    if (number === column)
+      head.setAttribute("aria-sort", falling ? "descending" : "ascending");
     else head.removeAttribute("aria-sort");
   }
 }
@@ -48,11 +57,14 @@ function sortable(table, tools) {
     button.type = "button";
     button.textContent = head.textContent;
     button.addEventListener("click", () =>
-      sortBy(table, column, head.getAttribute("aria-sort") === "ascending"));
+      sortBy(table, column, head.getAttribute("aria-sort") === "ascending"),
+    );
     head.replaceChildren(button);
     choice.add(new Option(button.textContent, column));
   }
-  choice.addEventListener("change", () => { if (choice.value) sortBy(table, Number(choice.value), false); });
+  choice.addEventListener("change", () => {
+    if (choice.value) sortBy(table, Number(choice.value), false);
+  });
   tools.append(choice);
 }
 function filterable(items, tools, what) {
@@ -62,7 +74,8 @@ function filterable(items, tools, what) {
   box.setAttribute("aria-label", `Filter ${what}`);
   box.addEventListener("input", () => {
     const wanted = box.value.toLowerCase();
-    for (const item of items) item.hidden = !item.textContent.toLowerCase().includes(wanted);
+    for (const item of items)
+      item.hidden = !item.textContent.toLowerCase().includes(wanted);
   });
   tools.append(box);
 }
