@@ -47,7 +47,7 @@ def main() -> int:
             "--hazard",
             "hazard.csv",
         ]
-        command = [str(python), "-m", "rockfrag.cli.main", *asked]
+        command = [str(python), "-m", "rockfrag", *asked]
         tried = (
             (command, folder),
             ([str(python), "-m", "pytest", "-q", "-m", "not slow", *TESTS], ROOT),

@@ -282,5 +282,15 @@ def test_a_table_of_tests_is_looked_into_before_it_is_called_right(tmp_path, cap
 def test_names_of_rocking_modes_are_explained():
     row = {"time": 1.0, "kind": "opening", "from": "rest", "to": "4a"}
     assert contact_event_lines([row], 5)[-1].startswith("1: both bodies rock")
-    column = {**row, "to": "0 1 0 -1"}
-    assert len(contact_event_lines([column], 5)) == 2
+    column = {**row, "to": "R00"}
+    assert contact_event_lines([column], 5)[-1].startswith("a letter for each body")
+
+
+def test_the_package_is_a_command_of_the_same_name():
+    said = subprocess.run(
+        [sys.executable, "-m", "rockfrag", "--version"],
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    assert said.stdout == f"rockfrag {rockfrag.__version__}\n"

@@ -12,6 +12,7 @@ are drawn only if they are asked for: each must be answered without a contradict
 
 import argparse
 import contextlib
+import itertools
 import os
 import random
 import resource
@@ -30,6 +31,7 @@ from pathlib import Path
 
 from rockfrag.base.errors import LONGEST_MESSAGE, InputError
 from rockfrag.runtime.processes import in_processes
+from rockfrag.runtime.progress import progress_line
 
 from . import inputs
 from .commands import commands
@@ -132,9 +134,14 @@ def main() -> int:
     with tempfile.TemporaryDirectory(
         dir=memory if os.access(memory, os.W_OK) else None
     ) as scratch:
+        # each process says how far it is itself, and all have about as much to do
+        say, begun = progress_line("chunks"), itertools.count(1)
+        own = -(-len(chunks) // options.processes)
 
         def one(chunk: tuple[str, int, int]) -> Tally:
-            return _tried(Path(scratch), options.seed, *chunk)
+            found = _tried(Path(scratch), options.seed, *chunk)
+            say(min(next(begun), own), own)
+            return found
 
         found = in_processes(one, chunks, options.processes)
     tallies = {kind: Tally(kind) for kind in kinds}

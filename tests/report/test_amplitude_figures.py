@@ -137,7 +137,10 @@ def test_the_shakers_limits_stand_beside_the_objects():
     assert [bar.get_width() for bar in axes.patches] == [1.5, 0.4]
     assert sorted(x for line in axes.lines for x in line.get_xdata()) == [0.5, 0.6]
     # each bar says what ends it
-    assert {text.get_text().strip() for text in axes.texts} == {"stroke", "force"}
+    said = {text.get_text().strip(): text.get_position()[0] for text in axes.texts}
+    assert said.keys() == {"stroke", "force"}
+    # behind the mark that lies beyond the bar
+    assert said["stroke"] > 0.5 and said["force"] == 1.5
 
 
 def test_a_configuration_without_a_curve_keeps_its_outcomes():

@@ -68,6 +68,17 @@ def test_the_figure_of_an_ensemble_shows_each_motion_up_to_its_fall(outcomes):
     plt.close("all")
 
 
+def test_motions_of_unlike_strength_are_counted_where_most_of_them_were_tried():
+    """As recorded they have few levels in common, and the panel was all but empty."""
+    unlike = [Motion(k * SHORT.acceleration, SHORT.dt) for k in (0.1, 1.0, 1.2)]
+    found = overturns(STATUE, unlike, scales=SCALES)
+    _, below = found.plot().axes
+    solid, dotted = below.lines
+    assert len(solid.get_xdata()) < len(dotted.get_xdata())
+    assert dotted.get_ydata().max() == 1.0
+    plt.close("all")
+
+
 def test_the_figure_of_a_rocking_spectrum_marks_blocks_that_overturn():
     spectrum = rocking_spectrum(one_sine(4.0, period=1.0), [2.0, 4.0, 6.0], [0.2, 0.3])
     rotation = spectrum.plot().axes[0]

@@ -417,7 +417,8 @@ def seconds_of(requests: Sequence[Request], plan: Plan) -> float:
         total += plan.fewest.seconds_of(object_) * moved
         if plan.holds and plan.level is not None:
             tried = len(object_.holders_to_try())
-            total += tried * seconds_of_a_holder(plan.shaking, _few_levels(plan))
+            few = _few_levels(plan)
+            total += tried * seconds_of_a_holder(object_, plan.shaking, few)
     return total
 
 

@@ -93,7 +93,7 @@ def try_holders(
     found = []
     for number, holder in enumerate(objects.holders_to_try()):
         if number and meter is not None:
-            meter.add(seconds_of_a_holder(shaking, few))
+            meter.add(seconds_of_a_holder(objects, shaking, few))
         for k, system in enumerate(systems):
             if holder.slow and not system.planar:
                 continue
@@ -120,19 +120,20 @@ def try_holders(
     return found
 
 
-def seconds_of_a_holder(shaking: Shaking, few: Shaking) -> float:
+def seconds_of_a_holder(objects: Standing, shaking: Shaking, few: Shaking) -> float:
     """About how long a core takes to try one way to hold an object.
 
     Parameters
     ----------
-    shaking, few : as :func:`try_holders` takes them
+    objects, shaking, few : as :func:`try_holders` takes them
 
     Returns
     -------
     The time [s].
     """
     histories = len(shaking.motions.base) + few.scales.size
-    return histories * SECONDS["contact"]
+    # what is held changes its contacts often, and all bodies below with it
+    return histories * SECONDS["held"] * (1 + len(objects.pedestals)) ** 3
 
 
 def demands_of(holder: Holder, system: System, at_level: Shaking) -> Floats:

@@ -40,8 +40,9 @@ FEWEST_LEVELS = 14
 # Tests that are simulated at once, which bounds the memory of their results
 MOST_TESTS = 400_000
 # About how long a core takes for one history, by what moves: one body or two that only rock, contacts that open
-# and slide (for each body), a body in space [s]; what is said of time and progress rests on it
-SECONDS = {"rocks": 2e-5, "contact": 4e-4, "space": 4e-4}
+# and slide (for each body), a body in space, a held one (for the cube of the bodies) [s]; what is said of time and
+# progress rests on it
+SECONDS = {"rocks": 2e-5, "contact": 4e-4, "space": 4e-4, "held": 3e-3}
 # Work that is done at once where each history takes long, so that it can be said how far it is [s]
 MOST_SECONDS = 3.0
 # Lowest and highest level over the median of the motions as recorded

@@ -12,6 +12,7 @@ from pathlib import Path
 
 import numpy as np
 from markupsafe import Markup
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from rockfrag.assess.answer import Assessment
@@ -21,6 +22,7 @@ from rockfrag.assess.findings import (
     all_assumed,
     assumptions,
     details,
+    few_earthquakes,
     first_screen,
     helps,
     how_likely,
@@ -156,7 +158,7 @@ class _Layout:
             figure=FigureSpec(
                 "fractions",
                 self._text(Text.FRACTIONS_ALT),
-                self._text(Text.FRACTIONS_CAPTION),
+                fractions_caption(found, texts),
                 lambda: fractions_figure(found, texts),
             ),
             rests_on=texts.lines([motions, *assumed[:MOST_ASSUMPTIONS]]),
@@ -544,18 +546,7 @@ def fractions_figure(found: Assessment, texts: Catalogue) -> Figure:
                 [shown.min(), shown.max()] if shown.size else [levels[0], levels[-1]]
             )
         if found.level is not None:
-            axes.axvline(
-                found.level.value, color="#555555", linestyle="--", linewidth=0.9
-            )
-            at = (found.level.value, 98)
-            words = axes.annotate(
-                texts.text(Text.AXIS_SITE),
-                at,
-                (3, 0),
-                textcoords="offset points",
-                va="top",
-            )
-            words.set_color("#555555")
+            _mark_site(axes, found, texts)
             ends.append(found.level.value)
         axes.set(
             xlim=(0.8 * min(ends), 1.25 * max(ends)),
@@ -567,6 +558,47 @@ def fractions_figure(found: Assessment, texts: Catalogue) -> Figure:
         if len(found.arrangements) > 1:
             axes.legend(loc="upper left" if found.level is None else "center right")
     return figure
+
+
+def fractions_caption(found: Assessment, texts: Catalogue) -> str:
+    """What band and bar of that figure hold."""
+    ids = [Text.FRACTIONS_CAPTION]
+    if _has_interval(found):
+        ids.append(Text.FRACTIONS_CAPTION_SITE)
+    return " ".join(map(texts.text, ids))
+
+
+def _has_interval(found: Assessment) -> bool:
+    """Whether the answer says what fraction topples at the site's level, with an interval."""
+    return found.fraction is not None and not few_earthquakes(found)
+
+
+def _mark_site(axes: Axes, found: Assessment, texts: Catalogue) -> None:
+    """Draw the level of the site, and what the answer says there with all that is not known."""
+    level, fraction = found.level, found.fraction
+    assert level is not None
+    axes.axvline(level.value, color="#555555", linestyle="--", linewidth=0.9)
+    words = axes.annotate(
+        texts.text(Text.AXIS_SITE),
+        (level.value, 98),
+        (3, 0),
+        textcoords="offset points",
+        va="top",
+    )
+    words.set_color("#555555")
+    if fraction is None or not _has_interval(found):
+        return
+    below, above = fraction.value - fraction.lower, fraction.upper - fraction.value
+    axes.errorbar(
+        [level.value],
+        [100 * fraction.value],
+        [[100 * max(below, 0.0)], [100 * max(above, 0.0)]],
+        fmt="o",
+        color="#222222",
+        markersize=4,
+        capsize=3,
+        clip_on=False,
+    )
 
 
 def sources_figure(found: Assessment, texts: Catalogue) -> Figure:

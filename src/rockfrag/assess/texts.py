@@ -175,6 +175,7 @@ class Text(StrEnum):
     PROVENANCE_HAZARD = auto()
     FRACTIONS_ALT = auto()
     FRACTIONS_CAPTION = auto()
+    FRACTIONS_CAPTION_SITE = auto()
     AXIS_LEVEL = auto()
     AXIS_TOPPLE = auto()
     AXIS_SITE = auto()

@@ -40,7 +40,16 @@ MOST_CONTACT_EVENTS = 30
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Run the command line; return 0, 1 if a file could not be read, 2 if an input is not usable."""
+    """Run the command line.
+
+    Parameters
+    ----------
+    arguments : words behind the name of the command, those of the process if None
+
+    Returns
+    -------
+    Exit status: 0, 1 if a file could not be read, 2 if an input is not usable.
+    """
     with warnings.catch_warnings():
         # a warning is a sentence, without the line of code that gave it
         warnings.showwarning = lambda said, *_: print(

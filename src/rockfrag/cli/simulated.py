@@ -5,6 +5,7 @@ walk [mm], times [s].
 """
 
 import math
+import re
 from collections.abc import Iterable, Sequence
 from typing import Any
 
@@ -18,6 +19,12 @@ MEANING = (
     "right, b: to the left"
 )
 """What names of rocking modes mean."""
+
+OF_A_COLUMN = re.compile("[0RLF]{3,}")
+MEANING_IN_A_COLUMN = (
+    "a letter for each body from below: 0 stands flat on the one below, R rocks on its right edge, L on its left "
+    "edge, F is off it"
+)
 
 LARGEST_FRICTION = 10.0  # surfaces have less; a contact that needs more parts
 
@@ -98,6 +105,8 @@ def contact_event_lines(contact_events: Sequence[Any], most: int) -> list[str]:
         lines.append(f"… and {len(contact_events) - most} more (--all-contact-events)")
     if any(row["to"] in OF_TWO_BODIES for row in contact_events):
         lines.append(MEANING)
+    elif any(OF_A_COLUMN.fullmatch(row["to"]) for row in contact_events):
+        lines.append(MEANING_IN_A_COLUMN)
     return lines
 
 

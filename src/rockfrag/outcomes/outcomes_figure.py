@@ -112,7 +112,12 @@ def _fractions(axes: Axes, levels: Floats, overturned: Floats) -> None:
     counted = inside.sum(axis=0)
     with np.errstate(invalid="ignore"):
         fraction = (np.array(found) * inside).sum(axis=0) / counted
-    # only where all motions were tried
-    whole = counted == len(levels)
+    whole, most = counted == len(levels), 2 * counted >= len(levels)
     axes.step(grid[whole], fraction[whole], where="post", color=style.BLACK, lw=1.0)
+    if most.sum() > whole.sum():
+        # motions of unlike strength have few levels in common
+        axes.step(grid[most], fraction[most], ":", where="post", color=style.GUIDE)
+        axes.annotate(
+            "dotted: of most motions", (0.02, 0.9), xycoords="axes fraction", va="top"
+        ).set_fontsize(6.5)
     axes.set_ylim(-0.03, 1.03)

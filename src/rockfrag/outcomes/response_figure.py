@@ -64,11 +64,13 @@ def response_figure(response: "Response", title: str) -> Figure:
             mew=0.5,
             label="impact",
         )
-        if not single or len(impacts):
-            _legend_above(rotation)
         if response.overturned:
             for panel in panels:
-                panel.axvline(response.overturning_time, color=style.RED, lw=0.8)
+                label = "overturned" if panel is rotation else None
+                end = response.overturning_time
+                panel.axvline(end, color=style.RED, lw=0.8, label=label)
+        if not single or len(impacts) or response.overturned:
+            _legend_above(rotation)
         for panel in between:
             _slips(panel, response, colours)
         _rocking_modes(rocking_mode, response)
@@ -82,7 +84,7 @@ def _legend_above(panel: Axes) -> None:
     panel.legend(
         loc="lower right",
         bbox_to_anchor=(1.0, 1.0),
-        ncols=4,
+        ncols=7,
         borderaxespad=0.1,
         handlelength=1.2,
         columnspacing=0.8,

@@ -291,9 +291,9 @@ def _light_words(
         found = int((strong & (outcomes.peak_rotation > 0).any(axis=-1)).sum())
     if found:
         yield (
-            f"in {found} cases a squat body rocks so fast that its own motion may take the weight off a contact, "
-            "which pure rocking holds shut. Give friction= to let it leave, or forces=True to see when contact is "
-            "lost."
+            f"in {found} {'case' if found == 1 else 'cases'} a squat body rocks so fast that its own motion may "
+            "take the weight off a contact, which pure rocking holds shut. Give friction= to let it leave, or "
+            "forces=True to see when contact is lost."
         )
 
 

@@ -44,8 +44,8 @@ LARGEST_PERTURBATION = 0.1  # beyond this a copy is another experiment
 def outcome_robustness(
     bodies: SystemLike | Sequence[SystemLike],
     motions: MotionLike | Sequence[MotionLike],
-    dt: float | Sequence[float] | None,
-    scales: ArrayLike,
+    dt: float | Sequence[float] | None = None,
+    scales: ArrayLike = (1.0,),
     *,
     perturbation: float,
     copies: int = 16,
@@ -75,7 +75,8 @@ def outcome_robustness(
     >>> from rockfrag import Block, outcome_robustness
     >>> from rockfrag.motions import one_sine
     >>> motion = one_sine(1.0, period=1.0)
-    >>> outcome_robustness(Block(0.3, 1.2, 180.0), motion, None, [2.6, 5.0], perturbation=0.01)
+    >>> block = Block(0.3, 1.2, 180.0)
+    >>> outcome_robustness(block, motion, scales=[2.6, 5.0], perturbation=0.01)
     array([[[1., 1.]]])
     """
     size = real_number("perturbation", perturbation)

@@ -8,7 +8,7 @@ const plans = (data, core, refuse) => {
   const spatial = inSpace(data, core);
   const { change } = spatial;
   const number = (form) => (value) => ({ number: value, form });
-  const [three, percent] = ["three", "percent"].map(number);
+  const [two, three, percent] = ["two", "three", "percent"].map(number);
 
   // roles, and bodies as the module of outcomes takes them; the object as it stands
   // first
@@ -76,7 +76,7 @@ const plans = (data, core, refuse) => {
     const onPlate = (block) => joined(block, plateUnder(block));
     const plate = (block) => {
       const { width, height } = plateUnder(block);
-      return { width: three(100 * width), thick: three(100 * height) };
+      return { width: two(100 * width), thick: three(100 * height) };
     };
     if (!pedestal) helps("plate_under_it", body(onPlate(statue)), plate(statue));
     else {

@@ -14,7 +14,7 @@ from rockfrag.assess.core.bodies import BALLAST, LOWER
 from rockfrag.assess.texts import Text
 from rockfrag.base.arrays import Floats
 from rockfrag.system.blocks import Block, Body, Stack, stacked
-from rockfrag.words.findings import Finding, finding, percent, three
+from rockfrag.words.findings import Finding, finding, percent, three, two
 
 
 def row_of(block: Block, depth: float = math.nan) -> Floats:
@@ -106,7 +106,7 @@ def on_plate(block: Block) -> Block:
 
 def _plate(where: Text, block: Block) -> Finding:
     plate = changed_block(block, bodies.make_plate)
-    wide, thick = three(100 * plate.width), three(100 * plate.height)
+    wide, thick = two(100 * plate.width), three(100 * plate.height)
     return finding(where, width=wide, thick=thick)
 
 

@@ -17,6 +17,8 @@ from rockfrag.base import figure_style as style
 if TYPE_CHECKING:
     from rockfrag.engines.spatial.engine import SpatialOutcome
 
+LEAST_TILT = 1e-2  # what leans less is drawn as next to nothing [rad]
+
 
 def spatial_figure(
     outcome: "SpatialOutcome",
@@ -49,7 +51,7 @@ def _path_of_axis(
         )
     else:
         panel.set_title("Does not fall", loc="left")
-    _square(panel, np.array([x, y]), 1.25)
+    _square(panel, np.array([x, y]), 1.25, least=LEAST_TILT)
     panel.set_xlabel("Tilt of the axis along x [rad]")
     panel.set_ylabel("Tilt of the axis along y [rad]")
 
@@ -87,10 +89,12 @@ def _plan(
     )
 
 
-def _square(panel: Axes, points: NDArray[np.float64], margin: float) -> None:
-    """Show all points at one scale for both directions."""
+def _square(
+    panel: Axes, points: NDArray[np.float64], margin: float, least: float = 1e-6
+) -> None:
+    """Show all points at one scale for both directions, and at least so much to each side."""
     middle = (points.max(axis=1) + points.min(axis=1)) / 2
-    half = max(margin * float(np.ptp(points, axis=1).max()) / 2, 1e-6)
+    half = max(margin * float(np.ptp(points, axis=1).max()) / 2, least)
     panel.set_xlim(middle[0] - half, middle[0] + half)
     panel.set_ylim(middle[1] - half, middle[1] + half)
     panel.set_aspect("equal")

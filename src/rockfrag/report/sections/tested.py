@@ -373,10 +373,13 @@ def shaker_limits(limits: pd.DataFrame, tests: pd.DataFrame) -> Figure:
                 ms=3,
             )
         reasons = limits.set_index("motion")["limited_by"]
+        marks = rows.groupby("motion")["a"].max()
+        # behind the bar, and behind the marks that lie at its end or beyond
+        ends = largest[motions].combine(1.03 * marks, max, fill_value=0.0)
         for y, motion in enumerate(motions):
-            reason = axes.text(largest[motion], y, f" {reasons[motion]}", color=GREY)
+            reason = axes.text(ends[motion], y, f" {reasons[motion]}", color=GREY)
             reason.set(va="center", fontsize=6.5)
-        axes.set_xlim(0, 1.2 * float(largest[motions].max()))
+        axes.set_xlim(0, 1.2 * float(ends.max()))
         axes.set_yticks(range(len(motions)), [label(name) for name in motions])
         axes.tick_params(axis="y", length=0)
         axes.set_xlabel("Peak acceleration of the motion [g]")
