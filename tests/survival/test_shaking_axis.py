@@ -50,9 +50,11 @@ def test_the_interval_of_the_axis_holds_it_in_nine_of_ten_worlds(stones):
 
 
 def test_stones_fall_along_the_only_component_and_the_axis_turns_with_the_azimuths(
-    made_motions,
+    made_motions, recwarn
 ):
     first = made_motions(2)
+    # of which the largest level makes 6 g
+    first[0].acceleration[first[0].acceleration.size // 2] *= 6
     still = [
         Motion(1e-3 * motion.acceleration, motion.dt, f"{motion.name} across")
         for motion in first
@@ -60,6 +62,7 @@ def test_stones_fall_along_the_only_component_and_the_axis_turns_with_the_azimut
     motions = tuple(part for pair in zip(first, still, strict=True) for part in pair)
     about = MotionSet(motions, motions, ((0, 1), (2, 3)), "")
     predicted = predicted_falls(Block(0.2, 1.2, 100.0), about)
+    assert not recwarn.list  # of one component of a scaled record the unit is known
     facing, other = np.split(predicted.angles, 2)
     assert np.isfinite(facing).any()
     # to one side or the other of the motion's axis
