@@ -80,7 +80,7 @@ class CollectedObject:
     def understood(self) -> str:
         """What was understood of its size and its material, in words."""
         said, solid = self.dimensions.understood, solid_of(self.material)
-        if solid is None or self.dimensions.mass is not None:
+        if solid is None or self.dimensions.mass is not None or self.mass is None:
             return said
         between = f"{solid.low:.0f} to {solid.high:.0f} kg/m³"
         return f"{said}, solid {self.material} of {between} ({solid.source})"
