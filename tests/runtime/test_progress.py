@@ -38,6 +38,16 @@ def test_the_seconds_left_are_those_that_the_rest_takes_at_the_same_pace():
     assert len(lines) == 8
 
 
+def test_the_end_is_said_once():
+    now = 60.0
+    stream = io.StringIO()
+    say = progress_line("objects", stream, lambda: now)
+    now = 100.0
+    for done in (2, 3, 3):
+        say(done, 3)
+    assert stream.getvalue().count("3 of 3 objects") == 1
+
+
 def test_a_terminal_has_one_line_that_is_written_over():
     text = _said(4.0, 20, Terminal())
     assert text.count("\n") == 1 and text.count("\r") == 20

@@ -47,17 +47,20 @@ def progress_line(
     shown = to.isatty()
     begun = clock()
     said = begun + QUIET - (OFTEN if shown else EVERY)
+    ended = False
 
     def say(done: float, total: float) -> None:
         """Print how much is done, but not too often."""
-        nonlocal said
+        nonlocal said, ended
         now = clock()
         finished = done >= total
+        if finished and ended:
+            return
         if now - begun < QUIET or (
             not finished and now - said < (OFTEN if shown else EVERY)
         ):
             return
-        said = now
+        said, ended = now, finished
         left = (now - begun) * (total - done) / done if done else float("nan")
         count = (
             f"{100 * done / total:.0f} %"
