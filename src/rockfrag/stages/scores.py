@@ -1,6 +1,6 @@
 """Blind probabilities of every test of campaigns, scored beside engineers' rules and others' measured curves.
 
-    python -m rockfrag.stages.scores config/granite.yaml … --tests shakebot.csv --page docs/scores.md
+    python -m rockfrag.stages.scores config/granite.yaml config/oxford.yaml --tests bare.csv --page docs/scores.md
 
 prints a table for each campaign and writes a page that says which rule is better and which is not. No outcome of a
 campaign is used for what is said of it, but for the curves of others. Tests of an object of which nobody wrote
