@@ -190,6 +190,8 @@ def test_the_record_of_the_place_shakes_each_object_itself(
     with (place / "out" / "after.csv").open(newline="") as file:
         rows = {row["name"]: row["under_the_record"] for row in csv.DictReader(file)}
     assert rows["slender"] == "fell" and rows["stout"] == "stood"
+    said = capsys.readouterr().out
+    assert "Shaking by record" in said and "factor of 1." not in said
     assert "Under the record" in (place / "out" / "after.html").read_text()
 
 
@@ -198,13 +200,23 @@ def test_two_shocks_fell_more_than_one_and_errors_of_an_object_are_its_own(
 ):
     ground = GroundShaking(0.25, 30.0, 0.2, 0.2)
 
+    counted: list[tuple[float, float]] = []
+
     def found(then) -> dict:
         collection = after_earthquake(
-            place / "inventory.csv", lambda _: ground, records, then=then
+            place / "inventory.csv",
+            lambda _: ground,
+            records,
+            then=then,
+            progress=lambda *count: counted.append(count),
         )
         return {each.request.name: each for each in collection.objects}
 
-    once, twice = found(None), found(lambda _: ground)
+    once = found(None)
+    counted.clear()
+    twice = found(lambda _: ground)
+    # progress goes once to the end, over both shocks
+    assert counted == sorted(counted) and counted[-1] == (8, 8)
     for name, each in twice.items():
         first = once[name].fell
         # what survived a shock is stronger than others: less than of two that know nothing of each other
@@ -304,6 +316,7 @@ def test_two_maps_each_with_its_uncertainty_say_what_fell_in_either(
         assert each["then_pga_g"] == pytest.approx(each["pga_g"] / 2, rel=1e-4)
     page = (place / "out" / "after.html").read_text(encoding="utf-8")
     assert "Then a second shock." in page and "beside these two" in page
+    assert "known within a factor" in page
     assert any(AFTERSHOCK in line for line in found["said"])
 
 

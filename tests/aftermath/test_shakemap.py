@@ -1,6 +1,7 @@
 """ShakeMap grids are read as they are written, in their units, or refused in one sentence."""
 
 import math
+import re
 import zipfile
 
 import numpy as np
@@ -160,6 +161,25 @@ def test_accelerations_are_read_in_the_unit_that_the_grid_states(
     pga, _ = logs(PLACE[1], PLACE[0])
     found = read_shakemap(path).at(*PLACE).values["PGA"]
     assert found == pytest.approx(math.exp(pga) / 100 / LARGER_OF_TWO, rel=1e-4)
+
+
+def test_a_grid_that_states_no_unit_at_all_is_in_those_of_every_map(tmp_path):
+    """As maps are that were cut for other programs; one in g is refused all the same."""
+    path = tmp_path / "grid.xml"
+    bare = re.sub(r'units="[^"]*"', 'units=""', grid_text())
+    path.write_text(bare)
+    pga, pgv = logs(PLACE[1], PLACE[0])
+    found = read_shakemap(path).at(*PLACE).values
+    assert found["PGA"] == pytest.approx(math.exp(pga) / 100 / LARGER_OF_TWO, rel=1e-4)
+    assert found["PGV"] == pytest.approx(math.exp(pgv) / LARGER_OF_TWO, rel=1e-4)
+
+    def in_g(longitude: float, latitude: float) -> list[float]:
+        first, *others = of_grid(longitude, latitude)
+        return [first / 100, *others]
+
+    path.write_text(re.sub(r'units="[^"]*"', 'units=""', grid_text(values=in_g)))
+    with pytest.raises(InputError, match="no earthquake has"):
+        read_shakemap(path)
 
 
 def test_a_map_far_from_a_large_earthquake_is_believed(tmp_path):

@@ -7,51 +7,25 @@ from pathlib import Path
 
 import pytest
 
+from rockfrag.base.yaml_file import read_yaml
 from rockfrag.stages.campaign import run
 from rockfrag.stages.job import Job
 from rockfrag.study.loading import load_any
 
-HEIGHT, SLENDERNESS = 0.08, 4.5
-WIDTH = HEIGHT / SLENDERNESS
+ROOT = Path(__file__).parents[2]
 
 
 def study_of(folder: Path, rows: list[dict[str, str]], trials: int = 32) -> Path:
-    """Write a campaign of a block of the material and shape given, whose size is not known."""
+    """Write the campaign of Oxford's block with some tests."""
     table = ["test,distance_mm,velocity_m_s,overturned"]
     table += [
         f"{n},{row['distance_mm']},{row['velocity_m_s']},{row['outcome']}"
         for n, row in enumerate(rows)
     ]
     (folder / "tests.csv").write_text("\n".join(table) + "\n")
-    mass = 1.0
-    content = {
-        "study": "steps",
-        "title": "A block on a base that is hit and stopped",
-        "seed": 1,
-        "campaign": {
-            "tests": "tests.csv",
-            "columns": {"test": "test", "overturned": "overturned", "group": "test"},
-            "motions": {"steps": "bump and stop"},
-            "measures": {
-                "velocity_m_s": ["velocity_m_s"],
-                "distance_m": ["distance_mm", 0.001],
-            },
-        },
-        "object": {
-            "left_m": WIDTH / 2,
-            "right_m": WIDTH / 2,
-            "cg_height_m": HEIGHT / 2,
-            "height_m": HEIGHT,
-            "mass_kg": mass,
-            "inertia_kg_m2": mass * (WIDTH**2 + HEIGHT**2) / 12,
-        },
-        "unknowns": {
-            "size": [0.6, 1.6],
-            "edge_retreat_mm": [0, 0],
-            "restitution": [1, 1],
-        },
-        "trials": trials,
-    }
+    content = read_yaml(ROOT / "config" / "oxford.yaml")
+    content["campaign"]["tests"] = "tests.csv"
+    content["trials"] = trials
     path = folder / "steps.yaml"
     # YAML holds JSON
     path.write_text(json.dumps(content))

@@ -1,6 +1,7 @@
 """A museum's export made an inventory: every row is in it or asked about."""
 
 import math
+from pathlib import Path
 
 import pytest
 
@@ -12,6 +13,7 @@ from rockfrag.collections.exported_table import (
     is_export,
     read_export,
 )
+from rockfrag.collections.materials import HOLLOW, SOLIDS
 
 EXPORT = """\
 Title,Artist,Medium,Dimensions,ObjectID
@@ -113,12 +115,14 @@ def test_an_inventory_is_no_export_and_an_export_is_no_inventory(export, tmp_pat
 def test_solid_materials_give_masses_and_hollow_ones_none(tmp_path):
     rows = {
         "Stele": ("Carrara marble", "H 100 x W 40 x D 20 cm", 0.08 * 2700),
-        "Säule": ("Kalkstein, Farbreste", "Höhe 100 cm, Dm. 20 cm", math.pi * 23),
-        "Figure": ("Lindenholz", "H 100 × B 20 × T 20 cm", 0.04 * 650),
+        "Säule": ("Kalkstein, Farbreste", "Höhe 100 cm, Dm. 20 cm", math.pi * 25),
+        "Figure": ("Lindenholz", "H 100 × B 20 × T 20 cm", 0.04 * 455),
+        "Saint": ("oak wood, traces of paint", "H 100 x W 20 x D 20 cm", 0.04 * 750),
         # stated, or not to be known: hollow, of two materials, without a depth
         "Weighed": ("marbre", "H. 100 ; L. 40 ; P. 20 cm ; poids 90 kg", 90),
         "Bronze": ("bronze", "H 100 x W 40 x D 20 cm", None),
         "Vase": ("terracotta", "H 45 cm, Diam. 30 cm", None),
+        "Cast": ("plaster", "H 100 x W 40 x D 20 cm", None),
         "Both": ("marble and wood", "H 100 x W 40 x D 20 cm", None),
         "Based": ("bronze on a marble base", "H 100 x W 40 x D 20 cm", None),
         "Relief": ("marble", "H 100 x W 40 cm", None),
@@ -137,4 +141,20 @@ def test_solid_materials_give_masses_and_hollow_ones_none(tmp_path):
     assert float(table["mass_kg"]["Stele"]) == pytest.approx(216)
     assert table["mass_kg"]["Bronze"] == ""
     stele = read_export(path)[0]
-    assert stele.understood.endswith("solid Carrara marble of 2700 kg/m³")
+    assert stele.understood.endswith(
+        "solid Carrara marble of 2600 to 2800 kg/m³ (Bolz and Tuve 1973)"
+    )
+
+
+def test_densities_stand_in_the_docs_with_their_sources():
+    text = (Path(__file__).parents[2] / "docs" / "collections.md").read_text()
+    rows = {
+        tuple(cell.strip() for cell in line.strip("|").split("|"))
+        for line in text.splitlines()
+        if line.startswith("|")
+    }
+    for solid in SOLIDS:
+        between = f"{solid.low:.0f} to {solid.high:.0f}"
+        assert (solid.name, between, solid.source) in rows
+    words = [word for solid in SOLIDS for word in solid.words]
+    assert len(set(words)) == len(words) and not set(words) & HOLLOW

@@ -103,6 +103,10 @@ def test_pieces_of_ones_own_are_held_against_both_curves(tmp_path):
     file.write_text("width_cm,height,fema_p58_m_s\n32.1,0.737 m,0.724\n")
     (piece,) = pieces_of(str(file)).to_dict("records")
     assert piece == pytest.approx(BOOKCASES.iloc[0].to_dict())
+    file.write_text("name,width_m,height_m,fema_p58_m_s\nlow,0.321,0.737,0.724\n")
+    (piece,) = pieces_of(str(file)).to_dict("records")
+    assert piece.pop("name") == "low"
+    assert piece == pytest.approx(BOOKCASES.iloc[0].to_dict())
 
 
 def test_records_of_an_earthquake_count_together():

@@ -133,3 +133,10 @@ def test_the_surface_states_its_error():
 def test_an_unknown_limit_is_refused_with_those_that_are():
     with pytest.raises(InputError, match=r"0\.01, 0\.05"):
         toppling_velocity(0.3, 1.0, limit=0.33)
+
+
+def test_medians_have_the_shape_of_the_sizes():
+    sizes = (0.32, 1.8), ([0.3], [1.2]), (np.full((2, 1), 0.3), [1.2, 1.3, 1.4])
+    for (width, height), shape in zip(sizes, ((), (1,), (2, 3)), strict=True):
+        for found in toppling_velocity(width, height):
+            assert found.shape == shape

@@ -129,6 +129,21 @@ def test_a_prior_pulls_and_open_ends_are_said(tmp_path, own):
     assert weak.posterior.pgv()[0] < loose.posterior.pgv()[0]
 
 
+def test_falls_that_disagree_with_what_was_known_are_named_and_others_are_not(
+    tmp_path, own
+):
+    fell = "stones,30 cm,90 cm,30 of 60"
+
+    def evidence(**known: Prior) -> str:
+        return fallen_lines(found_of(tmp_path, own, fell, Knowledge(**known)))[2]
+
+    assert "Without them" not in evidence()
+    middle = found_of(tmp_path, own, fell).posterior.pgv()[0]
+    agreed = evidence(prior=Prior(middle, 0.3))
+    assert f"would be {middle:.2g} cm/s" in agreed and "disagrees" not in agreed
+    assert "disagrees with what fell" in evidence(prior=Prior(middle / 5, 0.3))
+
+
 @pytest.mark.parametrize(
     ("rows", "words"),
     [

@@ -73,3 +73,17 @@ def test_stones_fall_along_the_only_component_and_the_axis_turns_with_the_azimut
         found = shaking_axis([([turn, turn + 5, turn - 5], density)], weights)
         assert abs((found.azimuth - turn + 90) % 180 - 90) < 6
         assert found.within < 25
+
+
+def test_turned_components_of_scaled_records_are_no_doubt_of_their_unit(
+    made_motions, recwarn
+):
+    (motion,) = made_motions(1)
+    samples = motion.acceleration.copy()
+    samples[np.abs(samples).argmax()] *= 8
+    pair = tuple(
+        Motion(factor * samples, motion.dt, name)
+        for factor, name in ((1.0, "first"), (0.95, "second"))
+    )
+    predicted_falls(Block(0.2, 1.2, 100.0), MotionSet(pair, pair, ((0, 1),), ""))
+    assert not recwarn.list

@@ -159,6 +159,8 @@ def _ground_said(grounds: Sequence[GroundShaking]) -> Finding:
     name = max(known, key=lambda each: len(known[each]))
     values, spreads = zip(*known[name], strict=True)
     text = "after_shaking" if max(values) > min(values) else "after_shaking_one"
+    if text == "after_shaking_one" and not max(spreads):
+        text = "after_shaking_exact"
     return finding(
         text,
         source=grounds[0].source,

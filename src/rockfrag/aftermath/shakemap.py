@@ -215,13 +215,14 @@ def _read_grid(path: str) -> tuple[ET.Element, dict[str, Floats], Floats, Floats
     longitudes = placed.pop("LON").mean(axis=0)
     latitudes = placed.pop("LAT").mean(axis=1)
     layers = {}
+    units = _units(columns)
     for name, layer in placed.items():
         measure = name.removeprefix("STD")
         if measure not in MEASURES:
             continue
         if name == measure:
             with np.errstate(divide="ignore", invalid="ignore"):
-                layer = np.log(layer * _factor(name, columns[name][1], path))
+                layer = np.log(layer * _factor(name, units[name], path))
         elif "log10" in columns[name][1].lower():
             layer = layer * math.log(10.0)
         layers[name] = layer
@@ -343,6 +344,18 @@ def _in_order(
             f"{path}: the points of the grid do not fill rows and columns."
         )
     return rows[order], shape
+
+
+def _units(columns: Mapping[str, tuple[int, str]]) -> dict[str, str]:
+    """Unit of each measure of a grid.
+
+    The library that cuts maps for other programs of the USGS states none at all; they are those of every map then,
+    which PGA and PGV are held against (:func:`_check_units`).
+    """
+    units = {name: columns[name][1] for name in MEASURES if name in columns}
+    if {"PGA", "PGV"} <= set(units) and not any(units.values()):
+        return {name: "cms" if name == "PGV" else "pctg" for name in units}
+    return units
 
 
 def _factor(measure: str, unit: str, path: str) -> float:

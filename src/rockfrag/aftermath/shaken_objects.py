@@ -174,7 +174,7 @@ def after_earthquake(
     then, then_recorded : the same of a second shock; None and empty without one
     keep_going : list the rows that are right where others are not
     order : of lengths that a museum's table does not name, such as ``HWD``
-    progress : called with the number of objects done and of all, in each shock
+    progress : called with the number of objects done and of all, those of a second shock counted again
 
     Returns
     -------
@@ -194,9 +194,11 @@ def after_earthquake(
             f"{path}: nothing is known of the shaking of any object; the map does not reach their coordinates."
         )
     motions = motion_set(requests[0].records, requests[0].place, Path(records))
-    found = assess_each([_asked(*each) for each in shaken], motions, progress)
     again, beyond_then = _shaken_by(then, [request for request, _ in shaken])
-    found_then = assess_each([_asked(*each) for each in again], motions, progress)
+    # both shocks at once: progress counts to the end
+    every = [_asked(*each) for each in (*shaken, *again)]
+    assessed_each = assess_each(every, motions, progress)
+    found, found_then = assessed_each[: len(shaken)], assessed_each[len(shaken) :]
     second = {
         each.name: (assessed, here)
         for (each, here), assessed in zip(again, found_then, strict=True)

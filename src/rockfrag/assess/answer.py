@@ -138,6 +138,16 @@ class Assessment:
         return self.evidence.curve()
 
     @cached_property
+    def rocks_far(self) -> Estimate | None:
+        """Fraction that rocks it a third of the way or topples it, as :attr:`fraction`; None without a level."""
+        reached = self.outcomes.others.get(outcomes.STEPS)
+        if self.level is None or reached is None:
+            return None
+        far = replace(self.outcomes, overturned=reached | self.outcomes.overturned)
+        found = self.evidence.of(far)
+        return self.evidence.drawn(_fraction_at(self.level), found).estimate()
+
+    @cached_property
     def curve(self) -> Fragility | None:
         """Lognormal curve of the motions as recorded, NaN where there is none; None where it is left out."""
         return None if self.brief else fragility_of(self.counted.outcomes())

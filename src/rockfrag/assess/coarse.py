@@ -482,7 +482,7 @@ def coarse_lines(found: CoarseInventory) -> list[str]:
     order = "probability" if "probability" in table else "fraction"
     known = table[order].dropna()
     lines = [
-        f"{len(known)} of {len(table)} objects; {known.sum():.4g} topple in the mean, "
+        f"{len(known)} of {len(table)} objects; {known.sum():.0f} topple in the mean, "
         f"{int((known >= 0.1).sum())} with 10 % or more."
     ]
     if found.faults:

@@ -15,7 +15,6 @@ from rockfrag.assess.core.decisions import Action
 from rockfrag.assess.core.likelihood import Likelihood
 from rockfrag.assess.core.scales import LARGEST_FACTOR
 from rockfrag.assess.mitigations import Mitigation
-from rockfrag.assess.outcomes import STEPS, fraction_at
 from rockfrag.assess.risk import Estimate
 from rockfrag.assess.sources import SOURCES, parts_of
 from rockfrag.assess.texts import Text
@@ -493,12 +492,9 @@ def how_sure(found: Assessment) -> list[Finding]:
 
 def short_of_a_fall(found: Assessment) -> list[Finding]:
     """How many motions rock it so far that its edges chip and it steps aside, those that topple it included."""
-    if found.level is None or STEPS not in found.outcomes.others:
+    if found.rocks_far is None or found.rocks_far.value <= 0:
         return []
-    levels = found.outcomes.intensity_levels.levels
-    parts = found.outcomes.fractions(state=STEPS)
-    part = fraction_at(found.level.value, levels, parts)
-    return [finding(Text.SHORT_OF_A_FALL, part=percent(part))] if part > 0 else []
+    return [finding(Text.SHORT_OF_A_FALL, part=percent(found.rocks_far.value))]
 
 
 def all_assumed(found: Assessment) -> list[Assumption]:

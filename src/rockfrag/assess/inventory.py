@@ -291,6 +291,8 @@ def assess_each(
 ) -> list[Assessment]:
     """Assess objects, those in places that shake alike at once, each at its own level.
 
+    One object at two levels is shaken once.
+
     Parameters
     ----------
     requests, motions : the objects, and the ground motions by which they are shaken
@@ -311,20 +313,25 @@ def assess_each(
     found: dict[int, Assessment] = {}
     holds = len(requests) <= MOST_HELD and any(each.costs for each in requests)
     for rows in groups.values():
-        same = [requests[i] for i in rows]
-        plan = plan_for(same[0], motions.at(same[0].place), brief=True, holds=holds)
-        for start in range(0, len(rows), AT_ONCE):
-            part = same[start : start + AT_ONCE]
+        first = requests[rows[0]]
+        plan = plan_for(first, motions.at(first.place), brief=True, holds=holds)
+        at_levels: dict[int, list[int]] = {}
+        for i in rows:
+            at_levels.setdefault(id(requests[i].objects), []).append(i)
+        each = list(at_levels.values())
+        for start in range(0, len(each), AT_ONCE):
+            part = each[start : start + AT_ONCE]
             said = None
             if progress is not None:
-                counts = (len(found), len(part), len(requests))
+                counts = (len(found), sum(map(len, part)), len(requests))
                 said = partial(_say_part, progress, counts)
-            shaken = shake_all(part, plan, said)
-            for i, request, outcome in zip(rows[start:], part, shaken, strict=False):
-                # a level between those that were tried lies between their fractions
-                level = request.level
-                own = plan if level is None else replace(plan, level=level)
-                found[i] = assessed(request, own, outcome)
+            shaken = shake_all([requests[places[0]] for places in part], plan, said)
+            for places, outcome in zip(part, shaken, strict=True):
+                for i in places:
+                    # a level between those that were tried lies between their fractions
+                    level = requests[i].level
+                    own = plan if level is None else replace(plan, level=level)
+                    found[i] = assessed(requests[i], own, outcome)
     return [found[i] for i in range(len(requests))]
 
 

@@ -60,12 +60,15 @@ WITH_BASE = (
     *("with stand", "with plinth", "with pedestal", "including stand"),
     *("including plinth", "including pedestal", "inkl. sockel", "con peana"),
     *("incl. plinth", "incl. pedestal", "incl. stand", "including the base"),
+    *("including socle", "met voetstuk", "con plinto", "con zoccolo", "mit plinthe"),
 )
 WITHOUT_BASE = (
     *("without base", "excluding base", "ohne sockel", "sans socle"),
     *("senza base", "sin base", "zonder sokkel", "sem base", "sin peana"),
     *("without stand", "without plinth", "without pedestal"),
     *("excluding stand", "excluding plinth", "excluding pedestal"),
+    *("excluding socle", "zonder voetstuk", "senza plinto", "senza zoccolo"),
+    "ohne plinthe",
 )
 OBJECT = ("object", "sculpture", "figure", "statue", "objekt", "objet", "objeto")
 FEET = (
@@ -78,8 +81,12 @@ PIECES_OF_IT = (
     *("rim", "mouth", "lip", "seat", "mündung", "orlo", "bocca", "embouchure"),
     *("pedestal", "frame", "framed", "unframed", "image", "sheet", "lid", "case"),
     *("head", "rahmen", "cadre", "cornice", "marco", "lijst", "deckel", "couvercle"),
+    *("internal", "inner", "inside", "interior", "lichte", "innen", "interno"),
+    *("intérieur", "intérieure", "interna", "binnen"),
 )
 EACH = ("each", "jeweils", "je", "chacun", "chacune", "ciascuno", "cada uno", "elk")
+_SPECIFIC = ("", "with base", "each", "without base")
+"""Parts from the least to the most specific; pieces of it are more so."""
 
 _APPROXIMATE = re.compile(
     r"\b(?:approximately|approx|about|circa|ca|c|etwa|ungefähr|environ|env|aprox|ongeveer)\b\.?\s*"
@@ -102,7 +109,7 @@ _WAY = _any_of([*DIRECTION_OF])
 _ORDER = _any_of([*DIRECTION_OF, *WEIGHT_WORDS])
 _UNIT = _any_of([*METRES, *KILOGRAMS])
 _PART = _any_of([*WITHOUT_BASE, *WITH_BASE, *PIECES_OF_IT, *EACH])
-_WITH_OR_WITHOUT = _any_of([*WITHOUT_BASE, *WITH_BASE])
+_WITH_OR_WITHOUT = _any_of([*WITHOUT_BASE, *WITH_BASE, *EACH])
 _PIECE = _any_of(PIECES_OF_IT)
 _METRIC = "cm|mm|m|kg"  # Units that Italian catalogues write before the number
 _NUMBER = r"\d+(?:[.,]\d+)?(?:(?:\s+|-)\d+/\d+)?(?!\d)"
@@ -123,6 +130,15 @@ _BETWEEN = re.compile(
 _TWO_LANGUAGES = re.compile(
     rf"(?<!\w)({_WAY})\.?\s*/\s*({_WAY})(?!\w)\.?\s*[:=]?\s*(?=\d)"
 )
+_ORDER_IN_ONE = re.compile(r"(?<!\w)(?=[a-z]*h)[hwdbtlp]{3}(?!\w)")
+"""Three letters of an order without signs: HWD, HBT, LBH."""
+
+_METRES_FIRST = re.compile(r"(?<![\d.,])(\d)\s*m\.?\s*(\d\d)(?=\s*(?:$|[;,)×x](?!\d)))")
+"""1 m 80, of which the second number are centimetres."""
+
+_LETTERED = [re.compile(rf"(?<!\w)(?:\({name}\)|{name}[:)])") for name in "ab"]
+"""Marks of two parts with sizes of their own: (a), (b)."""
+
 _UNIT_ALONE = re.compile(rf"(?:all )?(?:in )?({_any_of([*METRES])})\.?")
 _ORDER_ALONE = re.compile(
     rf"(?<!\w)((?:{_WAY})\.?(?:\s*[×/,]\s*(?:{_WAY})\.?)+)(?!\w)\s*[:=]?"
@@ -267,10 +283,14 @@ def read_dimensions(text: str, order: str = "") -> Dimensions:
             raise InputError(
                 f"order: expected letters of height, width, depth or length such as HWD, got {order!r}."
             )
+    if all(mark.search(text.casefold()) for mark in _LETTERED):
+        question = "parts a and b have sizes of their own; give each a row"
+        return Dimensions(question=question)
     phrases = _with_stated_unit(list(_phrases(_plain(text))))
     masses = [phrase.mass for phrase in phrases if phrase.mass is not None]
     about = Dimensions(
-        mass=masses[0] if masses else None,
+        # of a mass of 0 nothing is known
+        mass=(masses[0] or None) if masses else None,
         approximate=bool(_APPROXIMATE.search(text.casefold())),
     )
     measured = [phrase for phrase in _with_orders(phrases, order) if phrase.lengths]
@@ -307,6 +327,8 @@ def _plain(text: str) -> str:
     text = re.sub(r"\(\s*\)", " ", text)
     # .60 m, but not H.60 cm
     text = re.sub(r"(?:^|(?<=[\s×x(,;:]))\.(?=\d)", "0.", _plain_masses(text))
+    text = _METRES_FIRST.sub(r"\1.\2 m", text)
+    text = _ORDER_IN_ONE.sub(lambda found: " × ".join(found[0]), text)
     text = _BETWEEN.sub(r"\1 - ", text)
     text = _TWO_LANGUAGES.sub(_said_twice, text)
     # hauteur en cm : 180
@@ -401,8 +423,16 @@ def _split_part(words: str) -> tuple[str | None, str]:
             part, rest = found[1], words[: found.start(1)]
         else:
             continue
-        return part if stands_for is None else stands_for, rest.strip(" .,:")
+        within, rest = _split_part(rest.strip(" .,:"))
+        part = part if stands_for is None else stands_for
+        # overall, without base: the more specific one
+        return max(part, within or "", key=_how_specific), rest
     return None, words
+
+
+def _how_specific(part: str) -> int:
+    """How much of an object a part leaves out, in order."""
+    return _SPECIFIC.index(part) if part in _SPECIFIC else len(_SPECIFIC)
 
 
 def _names_all(phrases: Sequence[_Phrase], part: str) -> bool:
@@ -501,7 +531,9 @@ def _number(text: str, unit: str) -> float:
     value = float(whole.strip().replace(",", ".")) if whole.strip() else 0.0
     if fraction:
         above, below = fraction.split("/")
-        value += float(above) / float(below) if float(below) else 0.0
+        if not float(below):
+            return 0.0
+        value += float(above) / float(below)
     return value
 
 
@@ -533,7 +565,7 @@ def _joined(about: Dimensions, phrases: Sequence[_Phrase]) -> Dimensions:
             text = "; ".join(phrase.text for phrase in phrases)
             return replace(
                 about,
-                question=f"the sizes “{text}” differ; say which is the object's",
+                question=f"the sizes “{text}” differ, or one has no side; say which is the object's",
             )
         kept = restated
     words = [length.word for length in kept]
@@ -546,6 +578,8 @@ def _joined(about: Dimensions, phrases: Sequence[_Phrase]) -> Dimensions:
     if stated is None:
         named = " × ".join(word.upper() for word in words)
         return replace(about, question=f"{named} leaves open which length is which")
+    if not all(length.low > 0 for length in kept):
+        return replace(about, question="a length of 0 is no size; leave it out")
     by_way = dict(zip(stated, (length.metres() for length in kept), strict=True))
     return about.with_lengths(_placed(by_way))
 

@@ -25,7 +25,7 @@ from rockfrag.collections.dimension_text import (
     Length,
     read_dimensions,
 )
-from rockfrag.collections.materials import density_of
+from rockfrag.collections.materials import solid_of
 
 NAMES = ("title", "name", "object name", "objectname", "object title", "titel", "titre")
 NUMBERS = (
@@ -65,8 +65,8 @@ class CollectedObject:
     @property
     def mass(self) -> float | None:
         """Mass that is stated, or that of a solid box or cylinder of its material [kg]; None without either."""
-        size, density = self.dimensions, density_of(self.material)
-        if size.mass is not None or density is None or size.height is None:
+        size, solid = self.dimensions, solid_of(self.material)
+        if size.mass is not None or solid is None or size.height is None:
             return size.mass
         if size.width is None and size.diameter is not None:
             base = math.pi / 4 * size.diameter.low**2
@@ -74,15 +74,16 @@ class CollectedObject:
             base = size.width.low * size.depth.low
         else:
             return None
-        return density * base * size.height.high
+        return solid.density * base * size.height.high
 
     @property
     def understood(self) -> str:
         """What was understood of its size and its material, in words."""
-        said, density = self.dimensions.understood, density_of(self.material)
-        if density is None or self.dimensions.mass is not None:
+        said, solid = self.dimensions.understood, solid_of(self.material)
+        if solid is None or self.dimensions.mass is not None or self.mass is None:
             return said
-        return f"{said}, solid {self.material} of {density:.0f} kg/m³"
+        between = f"{solid.low:.0f} to {solid.high:.0f} kg/m³"
+        return f"{said}, solid {self.material} of {between} ({solid.source})"
 
     @property
     def question(self) -> str:

@@ -36,6 +36,7 @@ _WORDS = {
         *("d", "dp", "depth", "deep", "t", "tiefe", "tief", "p", "prof", "profondeur"),
         *("profondità", "profundidad", "fondo", "diepte", "diep", "thickness", "thick"),
         *("dicke", "épaisseur", "spessore", "grosor", "dikte", "ép", "spess"),
+        "profundo",
         *("pr", "gesamttiefe", "profundidade", "espessura", "dybde", "djup"),
     ),
     Direction.LENGTH: (

@@ -69,7 +69,12 @@ class Surface:
         inside = is_inside(width, height)
         terms = terms_of(np.where(inside, width, 1.0), np.where(inside, height, 3.0))
         median, dispersion = np.exp(terms @ self.median), terms @ self.dispersion
-        return np.where(inside, median, np.nan), np.where(inside, dispersion, np.nan)
+        # of one size it is one number
+        shape = np.broadcast_shapes(np.shape(width_m), np.shape(height_m))
+        return (
+            np.where(inside, median, np.nan).reshape(shape),
+            np.where(inside, dispersion, np.nan).reshape(shape),
+        )
 
 
 def is_inside(width_m: Floats, height_m: Floats) -> Flags:

@@ -385,16 +385,19 @@ def write_page(page: Path, tables: Mapping[str, pd.DataFrame]) -> None:
 
 
 def pieces_of(file: str) -> pd.DataFrame:
-    """Pieces of furniture of a file, with sizes [m] and the medians of FEMA P-58 [m/s]."""
+    """Pieces of furniture of a file, with names if it has them, sizes [m] and the medians of FEMA P-58 [m/s]."""
     *sizes, published = BOOKCASES.columns
-    rows = read_rows(file, [*sizes, published], quantities=sizes)
-    return pd.DataFrame(
+    rows = read_rows(file, [*sizes, published], ["name"], quantities=sizes)
+    pieces = pd.DataFrame(
         [
             {name: row.quantity(name, 0.0) for name in sizes}
             | {published: row.number(published, 0.0)}
             for row in rows
         ]
     )
+    if rows[0].has("name"):
+        pieces.insert(0, "name", [row.text("name") for row in rows])
+    return pieces
 
 
 def print_pieces(shaken: ShakenPieces, causes: Sequence[str]) -> None:
@@ -425,7 +428,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("--resume", action="store_true", help=words)
     words = f"print this row of the causes alone: {', '.join(c.name for c in CAUSES)}"
     parser.add_argument("--cause", metavar="NAME", action="append", help=words)
-    words = "pieces of your own: width_m (that rocks), height_m, fema_p58_m_s; print their ratios alone"
+    words = "pieces of your own: width_m (that rocks), height_m, fema_p58_m_s, name; print their ratios alone"
     parser.add_argument("--pieces", metavar="FILE", help=words)
     given = parser.parse_args(arguments)
     logging.basicConfig(level=logging.INFO, format="%(message)s")

@@ -141,7 +141,7 @@ def fallen_lines(found: FallenPlace, language: str = FIRST) -> list[str]:
     said: dict[str, list[Value]] = {
         "fallen_head_velocity": [_velocity(found)],
         "fallen_head_peak": [_acceleration(found)],
-        "fallen_head_evidence": [_evidence(found)],
+        "fallen_head_evidence": _evidence(found),
     }
     if found.direction is not None:
         said["fallen_head_direction"] = _directions(found, found.direction)
@@ -180,14 +180,20 @@ def _level(
     return finding(both, middle=middle, low=low, high=high)
 
 
-def _evidence(found: FallenPlace) -> Said:
-    return finding(
-        "fallen_evidence",
-        fallen=found.fallen,
-        count=found.count,
-        bit=two(max(found.posterior.information_bit, 0.0)),
-        n=len(found.motions.ground),
-    )
+def _evidence(found: FallenPlace) -> list[Value]:
+    """How many fell, what was known before, and whether both agree."""
+    n = len(found.motions.ground)
+    said: list[Value] = [
+        finding("fallen_evidence", fallen=found.fallen, count=found.count, n=n)
+    ]
+    if not found.knowledge.prior.knows_something:
+        return said
+    middle, low, high = found.posterior.pgv_before()
+    known = finding("fallen_before", middle=two(middle), low=two(low), high=two(high))
+    said.append(known)
+    if not low <= found.posterior.pgv()[0] <= high:
+        said.append(finding("fallen_against"))
+    return said
 
 
 def _directions(found: FallenPlace, falls: FallDirection) -> list[Value]:
@@ -262,7 +268,7 @@ def fallen_page(found: FallenPlace, language: str = FIRST) -> str:
         caption=caption,
         draw=lambda: shaking_figure(found, texts),
     )
-    said = texts.lines([_velocity(found), _acceleration(found), _evidence(found)])
+    said = texts.lines([_velocity(found), _acceleration(found), *_evidence(found)])
     limits = [texts.text(id) for id in LIMITS]
     count = finding("fallen_title", fallen=found.fallen, count=found.count)
     lead = finding("fallen_lead", n=len(found.motions.ground))
@@ -305,7 +311,7 @@ def _sections(found: FallenPlace, texts: Catalogue) -> list[Section]:
     limits = [texts.text(id) for id in LIMITS]
     title = texts.text("fallen_objects")
     sections = [
-        Section("objects", title, texts.say(_evidence(found)), (), [table]),
+        Section("objects", title, " ".join(texts.lines(_evidence(found))), (), [table]),
         Section(
             "hangs-on",
             texts.text("fallen_head_hangs_on"),

@@ -12,6 +12,7 @@ with the part c of falls for reasons of their own: what the motion does to all d
 """
 
 import math
+import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -26,6 +27,7 @@ from rockfrag.base.arrays import Floats
 from rockfrag.motions.rotation import rotate
 from rockfrag.records.motion import GroundMotion, Motion
 from rockfrag.simulation.ensemble import overturns
+from rockfrag.simulation.inputs import UnitWarning
 from rockfrag.survival.shaking_posterior import INTERVAL, smoothed
 from rockfrag.system.blocks import Block
 
@@ -89,7 +91,10 @@ def predicted_falls(block: Block, motions: MotionSet) -> PredictedFalls:
     found = []
     for facing in FACINGS:
         turned = [_turned(both.components(record), facing) for record in pairs]
-        outcomes = overturns([solid], turned, scales=scales)
+        with warnings.catch_warnings():
+            # of one component of a scaled record, whose unit is known
+            warnings.simplefilter("ignore", UnitWarning)
+            outcomes = overturns([solid], turned, scales=scales)
         fastest = np.array([_fastest(motion) for motion in turned])
         found.append(outcomes.fall_direction[0, ..., 0] - fastest[:, np.newaxis])
     return PredictedFalls(shaking.levels, np.concatenate(found))

@@ -70,6 +70,11 @@ class Prior:
     pga_spread: float = np.nan
     correlation: float = 0.0
 
+    @property
+    def knows_something(self) -> bool:
+        """Whether anything is known."""
+        return bool(np.isfinite(self.pgv) or np.isfinite(self.pga))
+
     def log_weights(self, log_pgv: Floats, log_pga: Floats) -> Floats:
         """Logarithm of the probability of each motion at each level, but for a constant.
 
@@ -127,9 +132,15 @@ class ShakingPosterior:
 
     def pgv(self) -> tuple[float, float, float]:
         """Median PGV, and the limits that hold it with 90 % [cm/s]."""
-        x = np.log(self.levels)
-        low, middle, high = _quantiles(x, self.probability)
-        return float(np.exp(middle)), float(np.exp(low)), float(np.exp(high))
+        return self._median_and_limits(self.probability)
+
+    def pgv_before(self) -> tuple[float, float, float]:
+        """Return the same before the falls were looked at [cm/s]."""
+        return self._median_and_limits(self.prior)
+
+    def _median_and_limits(self, probability: Floats) -> tuple[float, float, float]:
+        low, middle, high = np.exp(_quantiles(np.log(self.levels), probability))
+        return float(middle), float(low), float(high)
 
     def pga(self) -> tuple[float, float, float]:
         """Median PGA, and the limits that hold it with 90 % [g]."""
@@ -152,7 +163,7 @@ class ShakingPosterior:
 
     @property
     def information_bit(self) -> float:
-        """Information of the falls: by how much the posterior is narrower than what was known before [bit]."""
+        """Information of the falls: divergence of what is known after from what was known before [bit]."""
         known = self.probability > 0
         ratio = self.probability[known] / np.maximum(self.prior[known], 1e-300)
         return float(self.probability[known] @ np.log2(ratio))
