@@ -10,6 +10,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy import special
@@ -45,7 +46,6 @@ from rockfrag.base.short_repr import short_repr
 from rockfrag.engines.pure_rocking.kernels.lanes.block import integrate_blocks
 from rockfrag.engines.pure_rocking.kernels.lanes.scheduler import integrate_stacks
 from rockfrag.engines.spatial._integrate import integrate_scales
-from rockfrag.fragility.estimators import Fragility, fragility_of
 from rockfrag.fragility.model_error import MODEL_ERRORS
 from rockfrag.motions.intensity import IntensityMeasure
 from rockfrag.outcomes.limit_states import OVERTURNS, ROCKS
@@ -53,6 +53,9 @@ from rockfrag.runtime.machine_code import is_kept
 from rockfrag.runtime.progress import LONG, Meter, in_words
 from rockfrag.system.blocks import Body
 from rockfrag.words.findings import Finding, finding, two
+
+if TYPE_CHECKING:
+    from rockfrag.fragility.estimators import Fragility
 
 RECORDS = "resources/records"  # Folder of fetched records
 
@@ -138,8 +141,11 @@ class Assessment:
         return self.evidence.curve()
 
     @cached_property
-    def curve(self) -> Fragility | None:
+    def curve(self) -> "Fragility | None":
         """Lognormal curve of the motions as recorded, NaN where there is none; None where it is left out."""
+        # the page alone shows it, and what fits it takes half a second to load
+        from rockfrag.fragility.estimators import fragility_of
+
         return None if self.brief else fragility_of(self.counted.outcomes())
 
     @cached_property

@@ -17,7 +17,6 @@ from typing import NamedTuple
 import numpy as np
 import pandas as pd
 from numpy.typing import ArrayLike, NDArray
-from scipy import optimize, stats
 
 from rockfrag.fragility import intervals
 from rockfrag.fragility.observations import Floats, Observations, cells, counts
@@ -235,6 +234,9 @@ def _rising(fell: Floats, total: Floats) -> Floats:
     tried = total > 0
     if not tried.any():
         return np.zeros(total.shape)
+    # takes half a second to load, as scipy.stats below, and a fitted curve needs neither
+    from scipy import optimize
+
     fitted = optimize.isotonic_regression(
         fell[tried] / total[tried], weights=total[tried]
     ).x
@@ -260,6 +262,8 @@ def _limits(
     level: float,
 ) -> tuple[Floats, Floats]:
     """Pointwise limits of fractions with a standard error over groups."""
+    from scipy import stats
+
     with np.errstate(divide="ignore", invalid="ignore"):
         trials = np.where(error > 0, fraction * (1.0 - fraction) / error**2, np.inf)
     certain = (fraction <= 0.0) | (fraction >= 1.0)
@@ -277,6 +281,8 @@ def _dispersion(middle: Floats, fraction: Floats, motions: float) -> float:
     """Half the distance between the 16 % and the 84 % point of Harrell and Davis."""
     if not (fraction[0] <= ENDS[0] and fraction[-1] >= ENDS[1]):
         return float("nan")
+    from scipy import stats
+
     points = []
     for end in ENDS:
         reached = stats.beta.cdf(

@@ -22,8 +22,16 @@ import pandas as pd
 from jinja2 import Environment, PackageLoader, StrictUndefined, select_autoescape
 from markupsafe import Markup
 
-from rockfrag.base.figure_style import BLUE, GREEN, GUIDE, PURPLE, RED, save_figure
-from rockfrag.report.figures import BAND, GREY
+from rockfrag.base.figure_style import (
+    BAND,
+    BLUE,
+    GREEN,
+    GREY,
+    GUIDE,
+    PURPLE,
+    RED,
+    save_figure,
+)
 from rockfrag.report.part import Answer, FigureSpec, Section
 from rockfrag.runtime.processes import in_processes
 from rockfrag.words.catalogue import FIRST, catalogue
