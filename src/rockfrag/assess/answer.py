@@ -10,7 +10,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from scipy import special
@@ -21,7 +21,12 @@ from rockfrag.assess.conversion import Conversion, Site, find_conversion
 from rockfrag.assess.core import choices
 from rockfrag.assess.core.decisions import Decision, decide
 from rockfrag.assess.core.draws import FEW_MEMBERS
-from rockfrag.assess.core.estimates import fill_order, fill_sides, rate_of
+from rockfrag.assess.core.estimates import (
+    fill_estimate,
+    fill_order,
+    fill_sides,
+    rate_of,
+)
 from rockfrag.assess.core.fractions import fill_counts_at
 from rockfrag.assess.core.hazards import spread_of_quantiles
 from rockfrag.assess.hazard.curve import PGA, PGV, HazardCurve
@@ -43,6 +48,7 @@ from rockfrag.assess.texts import Text
 from rockfrag.base.arrays import Floats
 from rockfrag.base.errors import InputError
 from rockfrag.base.short_repr import short_repr
+from rockfrag.engines.planar.integrate import integrate_cases
 from rockfrag.engines.pure_rocking.kernels.lanes.block import integrate_blocks
 from rockfrag.engines.pure_rocking.kernels.lanes.scheduler import integrate_stacks
 from rockfrag.engines.spatial._integrate import integrate_scales
@@ -295,8 +301,22 @@ def assess(
 LEVELS_OF_HOLDERS = 8
 """Levels of shaking at which what may hold an object is compared with the object as it stands."""
 
-COMPILING_S = {False: 20, True: 60}
-"""About how long kernels compile once on a machine, in a plane and in space [s]."""
+COMPILING_S = {"blocks": 3, "stacks": 8, "contacts": 20, "space": 20, "core": 14}
+"""About how long kernels compile once on a machine, by what they are for [s]."""
+
+
+def _kernels(request: Request, plan: Plan) -> dict[str, Any]:
+    """A kernel that Python calls of each kind that an answer needs, by what it is for."""
+    objects = request.objects
+    found = {"core": fill_estimate, "blocks": integrate_blocks}
+    if objects.pedestals:
+        found["stacks"] = integrate_stacks
+    if objects.in_space:
+        found["space"] = integrate_scales
+    tried = plan.holds and plan.level is not None
+    if tried or objects.many or objects.friction is not None:
+        found["contacts"] = integrate_cases
+    return found
 
 
 def waiting_for(request: Request, plan: Plan) -> list[str]:
@@ -311,12 +331,11 @@ def waiting_for(request: Request, plan: Plan) -> list[str]:
     Sentences; none where the kernels are compiled and the answer comes soon.
     """
     said = []
-    in_space = request.objects.in_space
-    entries = [integrate_scales] if in_space else [integrate_blocks]
-    if request.objects.pedestals:
-        entries.append(integrate_stacks)
-    if not all(map(is_kept, entries)):
-        said.append(f"compiling once on this machine, about {COMPILING_S[in_space]} s")
+    kernels = _kernels(request, plan)
+    new = [name for name, entry in kernels.items() if not is_kept(entry)]
+    if new:
+        compiling = sum(map(COMPILING_S.__getitem__, new))
+        said.append(f"compiling once on this machine, about {in_words(compiling)}")
     seconds = seconds_of([request], plan) / (os.cpu_count() or 1)
     if seconds > LONG:
         said.append(
