@@ -10,6 +10,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
+from pkgutil import resolve_name
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -48,7 +49,6 @@ from rockfrag.assess.texts import Text
 from rockfrag.base.arrays import Floats
 from rockfrag.base.errors import InputError
 from rockfrag.base.short_repr import short_repr
-from rockfrag.engines.planar.integrate import integrate_cases
 from rockfrag.engines.pure_rocking.kernels.lanes.block import integrate_blocks
 from rockfrag.engines.pure_rocking.kernels.lanes.scheduler import integrate_stacks
 from rockfrag.engines.spatial._integrate import integrate_scales
@@ -304,6 +304,8 @@ LEVELS_OF_HOLDERS = 8
 COMPILING_S = {"blocks": 3, "stacks": 8, "contacts": 20, "space": 20, "core": 14}
 """About how long kernels compile once on a machine, by what they are for [s]."""
 
+_CONTACTS = "rockfrag.engines.planar.integrate.integrate_cases"
+
 
 def _kernels(request: Request, plan: Plan) -> dict[str, Any]:
     """A kernel that Python calls of each kind that an answer needs, by what it is for."""
@@ -315,7 +317,8 @@ def _kernels(request: Request, plan: Plan) -> dict[str, Any]:
         found["space"] = integrate_scales
     tried = plan.holds and plan.level is not None
     if tried or objects.many or objects.friction is not None:
-        found["contacts"] = integrate_cases
+        # loaded where it is needed, as the engine does
+        found["contacts"] = resolve_name(_CONTACTS)
     return found
 
 
