@@ -244,12 +244,10 @@ def _most_likely(outcomes: Observations, link: Link) -> tuple[Floats, Floats] | 
     """Coefficients of the GLM and their expected information; None without a finite maximum."""
     # tests at one value are one row of counts: the same likelihood, and a tenth of the time
     values, level = np.unique(outcomes.log_im, return_inverse=True)
-    fell, trials = (
-        np.asarray(np.bincount(level, counts)[None], dtype=np.float64)
-        for counts in (outcomes.overturned, outcomes.trials)
-    )
+    fell = np.bincount(level, outcomes.overturned).astype(np.float64)
+    trials = np.bincount(level, outcomes.trials).astype(np.float64)
     design = np.column_stack([np.ones(values.size), values])
-    fit = fit_batch(design, fell, trials, link=link, tolerance=STEP)
+    fit = fit_batch(design, fell[None], trials[None], link=link, tolerance=STEP)
     if not fit.converged[0]:
         return None
     return fit.coefficients[0], fit.information[0]
