@@ -6,10 +6,18 @@ from unittest.mock import patch
 import pytest
 
 from rockfrag.assess import answer
-from rockfrag.assess.answer import plan_for, seconds_of, shake_all, waiting_for
+from rockfrag.assess.answer import (
+    COMPILING_S,
+    plan_for,
+    seconds_of,
+    shake_all,
+    waiting_for,
+)
 from rockfrag.assess.inventory import assess_each
 from rockfrag.assess.outcomes import Shaking
 from rockfrag.cli.main import main
+from rockfrag.engines.planar.integrate import integrate_cases
+from rockfrag.runtime.progress import in_words
 
 from .conftest import asked
 
@@ -89,6 +97,22 @@ def test_what_takes_long_is_said_beforehand_with_what_is_quicker(few):
         with patch.object(answer, "seconds_of", lambda *_: 4000.0):
             (words,) = waiting_for(request, plan)
     assert words.startswith("this takes about ") and "fewer records" in words
+
+
+def test_a_first_answer_says_how_long_its_kernels_compile(few):
+    said = {}
+    for name, settings in (("block", BLOCK), ("box", BLOCK | {"depth": "25 cm"})):
+        request = asked(**settings)
+        plan = plan_for(request, few, brief=False, holds=True)
+        with patch.object(answer, "is_kept", lambda _: False):
+            (said[name],) = waiting_for(request, plan)
+        # what holds it is tried by kernels of contacts, which are compiled apart
+        with patch.object(answer, "is_kept", lambda e: e is not integrate_cases):
+            (words,) = waiting_for(request, plan)
+        contacts = in_words(COMPILING_S["contacts"])
+        assert words == f"compiling once on this machine, about {contacts}"
+    assert said["block"].startswith("compiling once on this machine, about ")
+    assert said["box"] != said["block"]
 
 
 def test_what_is_refused_waits_for_nothing(own_records, tmp_path, capsys):

@@ -71,6 +71,23 @@ def test_the_fast_batch_equals_statsmodels(link):
         assert batch.information[k] == pytest.approx(hessian, rel=1e-5, abs=1e-9)
 
 
+@pytest.mark.parametrize("link", ["probit", "logit"])
+def test_a_fitted_curve_is_that_of_statsmodels(link):
+    rng = np.random.default_rng(4)
+    for median, spread, count in ((0.3, 0.4, 40), (2.0, 0.9, 200), (0.05, 0.2, 900)):
+        im = median * np.exp(rng.normal(0.0, 0.7, count))
+        fell = im > median * np.exp(rng.normal(0.0, spread, count))
+        found = fit_lognormal(outcomes_of(im, fell), link=link)
+        design = np.column_stack([np.ones(count), np.log(im)])
+        name = sm.families.links.Probit if link == "probit" else sm.families.links.Logit
+        model = sm.GLM(fell.astype(float), design, sm.families.Binomial(name()))
+        result = model.fit(tol=1e-13, maxiter=200)
+        theta = np.exp(-result.params[0] / result.params[1])
+        assert found.theta == pytest.approx(theta, rel=1e-7)
+        assert found.beta == pytest.approx(1 / result.params[1], rel=1e-7)
+        assert found.log_likelihood == pytest.approx(result.llf, rel=1e-12)
+
+
 def test_penalised_logit_of_one_proportion_adds_half_a_failure_and_half_a_survival():
     # Firth (1993): with a logit link and a constant the penalised estimate is (y + 1/2) / (n + 1)
     counts = np.array([[0.5], [3.0]]), np.array([[7.0]] * 2)

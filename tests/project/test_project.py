@@ -131,6 +131,31 @@ def test_what_is_slow_to_load_is_loaded_only_when_it_is_used():
     assert printed_alone("-c", program) == "[]"
 
 
+ANSWER = """
+import sys
+import numpy as np
+from rockfrag import Motion
+from rockfrag.assess.answer import assess_with
+from rockfrag.assess.findings import lines_of
+from rockfrag.assess.inventory import FaultyRows
+from rockfrag.assess.motions import MotionSet
+from rockfrag.assess.request import make_request
+from rockfrag.cli.main import main
+shaking = 5 * np.sin(np.arange(300) / 15)
+made = tuple(Motion(k * shaking, dt=0.01, name=f"{k}") for k in (1, 2))
+keys = {"width": "20 cm", "height": "1 m", "pga": "0.3 g"}
+found = assess_with(make_request(keys, "asked"), MotionSet(made, made, (), "made"))
+assert lines_of(found, "en")
+print([one for one in HEAVY if one in sys.modules])
+"""
+
+
+def test_the_lines_of_an_answer_wait_for_nothing_that_only_a_page_needs():
+    heavy = ("scipy.stats", "scipy.optimize", "scipy.spatial", "scipy.signal")
+    heavy += ("matplotlib", "jinja2", "statsmodels", "obspy")
+    assert printed_alone("-c", ANSWER.replace("HEAVY", repr(heavy))) == "[]"
+
+
 WORKFLOWS = ROOT / ".github" / "workflows"
 
 

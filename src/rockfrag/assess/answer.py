@@ -10,6 +10,8 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
+from pkgutil import resolve_name
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from scipy import special
@@ -20,7 +22,12 @@ from rockfrag.assess.conversion import Conversion, Site, find_conversion
 from rockfrag.assess.core import choices
 from rockfrag.assess.core.decisions import Decision, decide
 from rockfrag.assess.core.draws import FEW_MEMBERS
-from rockfrag.assess.core.estimates import fill_order, fill_sides, rate_of
+from rockfrag.assess.core.estimates import (
+    fill_estimate,
+    fill_order,
+    fill_sides,
+    rate_of,
+)
 from rockfrag.assess.core.fractions import fill_counts_at
 from rockfrag.assess.core.hazards import spread_of_quantiles
 from rockfrag.assess.hazard.curve import PGA, PGV, HazardCurve
@@ -45,7 +52,6 @@ from rockfrag.base.short_repr import short_repr
 from rockfrag.engines.pure_rocking.kernels.lanes.block import integrate_blocks
 from rockfrag.engines.pure_rocking.kernels.lanes.scheduler import integrate_stacks
 from rockfrag.engines.spatial._integrate import integrate_scales
-from rockfrag.fragility.estimators import Fragility, fragility_of
 from rockfrag.fragility.model_error import MODEL_ERRORS
 from rockfrag.motions.intensity import IntensityMeasure
 from rockfrag.outcomes.limit_states import OVERTURNS, ROCKS
@@ -53,6 +59,9 @@ from rockfrag.runtime.machine_code import is_kept
 from rockfrag.runtime.progress import LONG, Meter, in_words
 from rockfrag.system.blocks import Body
 from rockfrag.words.findings import Finding, finding, two
+
+if TYPE_CHECKING:
+    from rockfrag.fragility.estimators import Fragility
 
 RECORDS = "resources/records"  # Folder of fetched records
 
@@ -148,8 +157,11 @@ class Assessment:
         return self.evidence.drawn(_fraction_at(self.level), found).estimate()
 
     @cached_property
-    def curve(self) -> Fragility | None:
+    def curve(self) -> "Fragility | None":
         """Lognormal curve of the motions as recorded, NaN where there is none; None where it is left out."""
+        # the page alone shows it, and what fits it takes half a second to load
+        from rockfrag.fragility.estimators import fragility_of
+
         return None if self.brief else fragility_of(self.counted.outcomes())
 
     @cached_property
@@ -299,8 +311,25 @@ def assess(
 LEVELS_OF_HOLDERS = 8
 """Levels of shaking at which what may hold an object is compared with the object as it stands."""
 
-COMPILING_S = {False: 20, True: 60}
-"""About how long kernels compile once on a machine, in a plane and in space [s]."""
+COMPILING_S = {"blocks": 3, "stacks": 8, "contacts": 20, "space": 20, "core": 14}
+"""About how long kernels compile once on a machine, by what they are for [s]."""
+
+_CONTACTS = "rockfrag.engines.planar.integrate.integrate_cases"
+
+
+def _kernels(request: Request, plan: Plan) -> dict[str, Any]:
+    """A kernel that Python calls of each kind that an answer needs, by what it is for."""
+    objects = request.objects
+    found = {"core": fill_estimate, "blocks": integrate_blocks}
+    if objects.pedestals:
+        found["stacks"] = integrate_stacks
+    if objects.in_space:
+        found["space"] = integrate_scales
+    tried = plan.holds and plan.level is not None
+    if tried or objects.many or objects.friction is not None:
+        # loaded where it is needed, as the engine does
+        found["contacts"] = resolve_name(_CONTACTS)
+    return found
 
 
 def waiting_for(request: Request, plan: Plan) -> list[str]:
@@ -315,12 +344,11 @@ def waiting_for(request: Request, plan: Plan) -> list[str]:
     Sentences; none where the kernels are compiled and the answer comes soon.
     """
     said = []
-    in_space = request.objects.in_space
-    entries = [integrate_scales] if in_space else [integrate_blocks]
-    if request.objects.pedestals:
-        entries.append(integrate_stacks)
-    if not all(map(is_kept, entries)):
-        said.append(f"compiling once on this machine, about {COMPILING_S[in_space]} s")
+    kernels = _kernels(request, plan)
+    new = [name for name, entry in kernels.items() if not is_kept(entry)]
+    if new:
+        compiling = sum(map(COMPILING_S.__getitem__, new))
+        said.append(f"compiling once on this machine, about {in_words(compiling)}")
     seconds = seconds_of([request], plan) / (os.cpu_count() or 1)
     if seconds > LONG:
         said.append(

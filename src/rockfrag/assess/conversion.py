@@ -15,7 +15,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import pandas as pd
-from scipy import optimize, special
+from scipy import special
 
 from rockfrag.assess.core.velocity import (
     MEMORY,
@@ -80,9 +80,9 @@ def usual_distance(level: float, magnitude: float) -> float:
     Distance to the rupture [km].
     """
     of_source = -1.02 + 0.249 * magnitude - math.log10(level)
-    slant = optimize.brentq(
-        lambda r: of_source - math.log10(r) - 0.00255 * r, 1e-3, 1e4
-    )
+    # log r + 0.00255 r = of_source by Lambert's function, W exp W = x
+    rate = 0.00255 * math.log(10)
+    slant = float(special.lambertw(rate * 10**of_source).real) / rate
     return math.sqrt(max(slant**2 - 7.3**2, 1.0))
 
 

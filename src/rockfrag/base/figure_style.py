@@ -23,6 +23,7 @@ YELLOW, BLUE, RED, PURPLE = "#F0E442", "#0072B2", "#D55E00", "#CC79A7"
 """Colours of Okabe and Ito (2008), told apart by readers with any colour vision."""
 
 GUIDE = "#999999"  # of lines and shapes that others are seen against
+GREY, BAND = "#777777", "#e9e9e9"  # of what is a bound only, and of ranges
 OKABE_ITO = (BLUE, ORANGE, GREEN, RED, SKY, PURPLE, BLACK, YELLOW)
 
 COLUMN_WIDTH, PAGE_WIDTH = 3.5, 7.0  # of one and of two columns of a journal [in]

@@ -18,7 +18,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
-from scipy.stats import norm, qmc
+from scipy import special
 
 from rockfrag.base.errors import InputError
 from rockfrag.base.short_repr import short_repr
@@ -92,13 +92,16 @@ def lognormal(median: float, spread: float) -> Quantile:
     -------
     A function of probabilities [-].
     """
-    return lambda fraction: median * math.exp(spread * float(norm.ppf(fraction)))
+    return lambda fraction: median * math.exp(spread * float(special.ndtri(fraction)))
 
 
 def even_guesses(
     quantiles: Mapping[str, Quantile], count: int, seed: int
 ) -> Iterator[dict[str, float]]:
     """Yield guesses that fill distributions evenly (scrambled Sobol points), most evenly by a power of two."""
+    # takes half a second to load, and most objects are no scans
+    from scipy.stats import qmc
+
     sobol = qmc.Sobol(len(quantiles), scramble=True, rng=np.random.default_rng(seed))
     for point in sobol.random(count):
         fractions = zip(quantiles.items(), point, strict=True)
@@ -379,7 +382,9 @@ def unknowns_of(
             # edges of cut stone are broken by a millimetre or two
             "edge_retreat_mm": uniform(0.0, 2.0),
             # about Housner (1963)
-            "restitution_ratio": lambda fraction: 1 + 0.05 * float(norm.ppf(fraction)),
+            "restitution_ratio": lambda fraction: (
+                1 + 0.05 * float(special.ndtri(fraction))
+            ),
         }
     spread = 0.5 if scan_accuracy_mm is None else 0.3
     # two standard deviations of a scanned height are what noise lowers the lowest of many points by

@@ -14,6 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 import pandas as pd
 from numpy.typing import ArrayLike, NDArray
+from scipy import special
 
 from rockfrag.base.errors import InputError
 from rockfrag.fragility import observations
@@ -36,12 +37,14 @@ def wilson_interval(
     -------
     Lower and upper limits [-], shape (n,) each.
     """
-    from statsmodels.stats.proportion import proportion_confint
-
-    lower, upper = proportion_confint(
-        overturned, trials, alpha=1.0 - level, method="wilson"
-    )
-    return np.asarray(lower, dtype=np.float64), np.asarray(upper, dtype=np.float64)
+    n = np.asarray(trials, dtype=np.float64)
+    p = np.asarray(overturned, dtype=np.float64) / n
+    score = -special.ndtri((1.0 - level) / 2.0)
+    square = score**2
+    wider = 1 + square / n
+    middle = (p + square / (2 * n)) / wider
+    half = score * np.sqrt(p * (1.0 - p) / n + square / (4.0 * n**2)) / wider
+    return np.clip(middle - half, 0.0, 1.0), np.clip(middle + half, 0.0, 1.0)
 
 
 def fraction_in_bins(outcomes: Observations, level: float = 0.90) -> pd.DataFrame:

@@ -11,7 +11,7 @@ from typing import Literal
 
 import numpy as np
 import pandas as pd
-from scipy import stats
+from scipy import special
 
 from rockfrag.base.keywords import named_keywords
 from rockfrag.base.short_repr import short_repr
@@ -48,7 +48,7 @@ class Fragility:
         lower, upper = self.interval.theta
         if not 0 < lower < upper < np.inf:
             return float("nan")
-        half = float(stats.norm.ppf(0.5 + 0.5 * self.interval.level))
+        half = float(special.ndtri(0.5 + 0.5 * self.interval.level))
         return float(np.log(upper / lower) / (2.0 * half))
 
 

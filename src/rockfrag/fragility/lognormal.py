@@ -8,7 +8,6 @@ Theory: ``docs/fragility.md``, first equation and "Estimators"; Firth (1993, Bio
 separation.
 """
 
-import warnings as python_warnings
 from dataclasses import dataclass, replace
 from typing import NamedTuple
 
@@ -127,7 +126,7 @@ def curve_parameters(coefficients: Floats, covariance: Floats) -> Curve:
 
 @named_keywords
 def fit_lognormal(outcomes: Observations, *, link: Link = "probit") -> FragilityFit:
-    """Fit a curve to outcomes by maximum likelihood (statsmodels GLM, binomial).
+    """Fit a curve to outcomes by maximum likelihood (a probit of ln IM).
 
     Where one value of the measure separates survival from overturning the likelihood has no maximum; the fit is
     then penalised (Firth, 1993), as ``method`` and ``warnings`` say. θ and β are NaN where all tests agree or are
@@ -219,7 +218,7 @@ def _estimate(outcomes: Observations, link: Link) -> _Estimate:
     )[0]
     notes: list[str] = []
     if not apart:
-        found = _statsmodels(outcomes, link)
+        found = _most_likely(outcomes, link)
         if found is not None:
             return _Estimate(f"{link}, maximum likelihood (GLM)", *found, notes)
         notes.append(fit_notes.NOT_FINITE)
@@ -237,31 +236,18 @@ def _estimate(outcomes: Observations, link: Link) -> _Estimate:
     return _Estimate(method, fit.coefficients[0], fit.information[0], notes)
 
 
-def _statsmodels(outcomes: Observations, link: Link) -> tuple[Floats, Floats] | None:
-    """Coefficients and their information by statsmodels, slow to load; None without a finite maximum."""
-    from statsmodels.genmod import families
-    from statsmodels.genmod.generalized_linear_model import GLM
-    from statsmodels.tools.sm_exceptions import (
-        ConvergenceWarning,
-        PerfectSeparationError,
-        PerfectSeparationWarning,
-    )
+STEP = 1e-12
+"""Step of the coefficients below which the maximum of the likelihood is found [-]."""
 
-    links = {"probit": families.links.Probit, "logit": families.links.Logit}
+
+def _most_likely(outcomes: Observations, link: Link) -> tuple[Floats, Floats] | None:
+    """Coefficients of the GLM and their expected information; None without a finite maximum."""
     # tests at one value are one row of counts: the same likelihood, and a tenth of the time
     values, level = np.unique(outcomes.log_im, return_inverse=True)
-    fell = np.bincount(level, outcomes.overturned)
-    trials = np.bincount(level, outcomes.trials)
+    fell = np.bincount(level, outcomes.overturned).astype(np.float64)
+    trials = np.bincount(level, outcomes.trials).astype(np.float64)
     design = np.column_stack([np.ones(values.size), values])
-    counts = np.column_stack([fell, trials - fell])
-    model = GLM(counts, design, family=families.Binomial(links[link]()))
-    with python_warnings.catch_warnings():
-        python_warnings.simplefilter("error", PerfectSeparationWarning)
-        python_warnings.simplefilter("error", ConvergenceWarning)
-        try:
-            result = model.fit(tol=1e-13, maxiter=200)
-        except (PerfectSeparationError, PerfectSeparationWarning, ConvergenceWarning):
-            return None
-    return np.asarray(result.params), -np.asarray(
-        model.hessian(result.params, observed=False)
-    )
+    fit = fit_batch(design, fell[None], trials[None], link=link, tolerance=STEP)
+    if not fit.converged[0]:
+        return None
+    return fit.coefficients[0], fit.information[0]

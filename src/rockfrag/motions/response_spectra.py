@@ -407,9 +407,17 @@ LOOK_EVERY = 32
 def peak_displacements(
     motion: Motion, periods: Floats, damping: float = 0.05
 ) -> Floats:
-    """Sd of many oscillators [m], shape (k,), as :func:`response_spectrum` gives it, bit by bit.
+    """Sd of many oscillators, as :func:`response_spectrum` gives it, bit by bit.
 
-    The motion is linear between samples and zero after the last one; ``periods`` [s], shape (k,), are positive.
+    Parameters
+    ----------
+    motion : ground acceleration, linear between samples and zero after the last one
+    periods : natural periods [s], shape (k,), each positive
+    damping : fraction of critical damping [-], zero or more
+
+    Returns
+    -------
+    Peak relative displacements [m], shape (k,).
     """
     damping = checked_damping(damping)
     peaks = np.empty(periods.size)

@@ -27,6 +27,9 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 MOST_SAMPLES = 10_000_000  # more than this are taken for a mistake in a unit
+SAID = "said"
+"""Key of a step of the provenance: words that everybody who uses the motion should read."""
+
 # motions of a row group of a file, which can be read by themselves
 MOTIONS_AT_ONCE = 64
 

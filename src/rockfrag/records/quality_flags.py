@@ -6,8 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockfrag.base.units import GRAVITY
-from rockfrag.records.motion import Motion
-from rockfrag.records.parsing.format import SAID
+from rockfrag.records.motion import SAID, Motion
 
 _GSE = "a GSE file, which is not read here; convert it with ObsPy: obspy.read(file).write('record.mseed', 'MSEED')"
 _KINDS: dict[tuple[bytes, ...], str] = {

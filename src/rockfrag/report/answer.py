@@ -14,10 +14,10 @@ import pandas as pd
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from rockfrag.base.figure_style import BLACK, COLUMN_WIDTH, panels, plain_log
+from rockfrag.base.figure_style import BLACK, COLUMN_WIDTH, GREY, panels, plain_log
 from rockfrag.fragility.curve_facts import REJECTED
 from rockfrag.report import findings
-from rockfrag.report.figures import GREY, SIDE_COLOUR, SIDE_NAME, drawn_tests
+from rockfrag.report.figures import SIDE_COLOUR, SIDE_NAME, drawn_tests
 from rockfrag.report.part import Answer, FigureSpec, Finding, Results, joined
 from rockfrag.simulation.ensemble import LIGHT
 from rockfrag.study.study import Study

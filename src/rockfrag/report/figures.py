@@ -18,11 +18,10 @@ from matplotlib.path import Path
 
 from rockfrag.base import figure_style as style
 from rockfrag.base.arrays import Floats
+from rockfrag.base.figure_style import BAND, GREY
 from rockfrag.report.findings import WITH_PEDESTAL, Sides
 from rockfrag.words.sentences import shortened
 
-GREY = "#777777"
-BAND = "#e9e9e9"
 SIDES = ("NP", "P")
 SIDE_COLOUR = {"NP": style.ORANGE, "P": style.BLUE}
 SIDE_MARKER = {"NP": "o", "P": "s"}

@@ -17,6 +17,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import PercentFormatter
 
 from rockfrag.base import figure_style as style
+from rockfrag.base.figure_style import GREY
 from rockfrag.fragility.checks import GoodnessOfFit
 from rockfrag.fragility.curve_facts import REJECTED
 from rockfrag.fragility.empirical import fraction_in_bins, local_fraction
@@ -24,7 +25,6 @@ from rockfrag.fragility.estimators import Fragility
 from rockfrag.fragility.ida_curves import levels_drawn
 from rockfrag.fragility.observations import Observations
 from rockfrag.fragility.user_table import UserFragility, fit_user_table
-from rockfrag.report.figures import GREY
 from rockfrag.report.page import column, estimated, p_values, table_html
 from rockfrag.report.part import Answer, FigureSpec, Finding, Section, chapter
 from rockfrag.report.sections.curves import (

@@ -22,8 +22,16 @@ import pandas as pd
 from jinja2 import Environment, PackageLoader, StrictUndefined, select_autoescape
 from markupsafe import Markup
 
-from rockfrag.base.figure_style import BLUE, GREEN, GUIDE, PURPLE, RED, save_figure
-from rockfrag.report.figures import BAND, GREY
+from rockfrag.base.figure_style import (
+    BAND,
+    BLUE,
+    GREEN,
+    GREY,
+    GUIDE,
+    PURPLE,
+    RED,
+    save_figure,
+)
 from rockfrag.report.part import Answer, FigureSpec, Section
 from rockfrag.runtime.processes import in_processes
 from rockfrag.words.catalogue import FIRST, catalogue
@@ -331,15 +339,16 @@ def terms_used(text: str, language: str = FIRST) -> dict[str, str]:
 
 
 def draw_all(
-    specs: Sequence[FigureSpec], folder: Path, processes: int = 1
+    specs: Sequence[FigureSpec],
+    folder: Path,
+    processes: int = 1,
+    endings: Sequence[str] = ("svg", "png"),
 ) -> dict[str, Picture]:
     """Draw figures into a folder and return them by name; whoever draws, the bytes are the same."""
     folder.mkdir(parents=True, exist_ok=True)
 
     def drawn(spec: FigureSpec) -> None:
-        save_figure(
-            spec.draw(), *(folder / f"{spec.name}.{end}" for end in ("svg", "png"))
-        )
+        save_figure(spec.draw(), *(folder / f"{spec.name}.{end}" for end in endings))
 
     in_processes(drawn, specs, processes)
     found = {}
@@ -400,7 +409,9 @@ class Page:
         style = ["style.css", "live.css"] if self.live else ["style.css"]
         with TemporaryDirectory(prefix="rockfrag.") as scratch:
             specs = [spec for spec, _ in self.figures.values()]
-            pictures = draw_all(specs, folder or Path(scratch), processes)
+            # the page holds the lines alone
+            endings = ("svg", "png") if folder else ("svg",)
+            pictures = draw_all(specs, folder or Path(scratch), processes, endings)
         return environment.get_template("report.html.j2").render(
             vars(self),
             shell=catalogue(self.language).texts,

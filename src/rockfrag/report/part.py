@@ -9,7 +9,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pandas as pd
@@ -19,7 +19,9 @@ from numpy.typing import NDArray
 
 from rockfrag.records.motion import Motion, read_motion_metadata, read_motion_set
 from rockfrag.shaketable.definitions import DEFINITION, read_swept
-from rockfrag.study.study import Study
+
+if TYPE_CHECKING:
+    from rockfrag.study.study import Study
 
 MOST_MOTIONS = 50
 """Motions of which a report shows every outcome; of a larger study it shows the first."""
@@ -115,7 +117,7 @@ def joined(*sentences: str) -> str:
 class Results:
     """The results of a study in a folder, read when asked for."""
 
-    def __init__(self, study: Study, folder: Path) -> None:
+    def __init__(self, study: "Study", folder: Path) -> None:
         self.study = study
         self.folder = folder
         self._tables: dict[str, pd.DataFrame] = {}

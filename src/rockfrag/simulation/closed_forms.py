@@ -7,8 +7,6 @@ and g [m/s²] appear.  Amplitudes of pulses are given as x = a / (θc g), dimens
 
 import math
 
-from scipy.optimize import brentq
-
 from rockfrag.base.input_checks import positive_number
 from rockfrag.base.units import GRAVITY
 
@@ -19,6 +17,8 @@ def one_sine_pulse(omega: float, p: float) -> float:
     Zhang & Makris (2001): x p ∫ exp(-p (t - t0)) sin ωt dt = 1 from ω t0 = asin(1/x) to ω t = 2π; overturning
     after an impact may need less.
     """
+    from scipy.optimize import brentq
+
     positive_number("omega", omega, "rad/s")
     positive_number("p", p, "1/s")
     phase = 2 * math.pi

@@ -11,7 +11,7 @@ import numpy as np
 
 from rockfrag.base.units import GRAVITY
 from rockfrag.motions.intensity import pgv
-from rockfrag.motions.response_spectra import response_spectrum
+from rockfrag.motions.response_spectra import peak_displacements
 from rockfrag.records.motion import Motion
 from rockfrag.simulation.closed_forms import housner_velocity, kaneko_velocity
 from rockfrag.system.blocks import Block
@@ -45,7 +45,8 @@ def housner(block: Block, motion: Motion) -> float:
     The critical angle is Sv √(m R² / (g R I_O)), that is Sv = g α / p. Sv is the mean of the undamped
     pseudo-velocity spectrum from 0.1 to 2.5 s.
     """
-    spectrum = response_spectrum(motion, HOUSNER_PERIODS, 0.0).pseudo_velocity
+    peaks = peak_displacements(motion, HOUSNER_PERIODS, 0.0)
+    spectrum = peaks * (2 * math.pi / HOUSNER_PERIODS)
     return float(housner_velocity(block.alpha, block.frequency()) / spectrum.mean())
 
 
@@ -103,7 +104,8 @@ def asce_43(block: Block, motion: Motion) -> float:
         2 * math.pi * theta
     )
     capacity = 2 * GRAVITY * lifted / theta
-    demand = response_spectrum(motion, 1 / frequency, damping).pseudo_acceleration
+    period = 1 / frequency
+    demand = peak_displacements(motion, period, damping) * (2 * math.pi / period) ** 2
     return float((capacity / demand).max())
 
 

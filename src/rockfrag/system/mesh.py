@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from scipy.spatial import ConvexHull, QhullError
+from numpy.typing import NDArray
 
 from rockfrag.base.arrays import Floats
 from rockfrag.base.errors import InputError
@@ -65,7 +65,7 @@ class Shape:
     def outline(self) -> Floats:
         """Convex outline seen from above, relative to the centre of gravity, in order [m], shape (n, 2)."""
         seen = self.points[:, :2]
-        return np.asarray(seen[ConvexHull(seen).vertices])
+        return np.asarray(seen[_hull(seen)])
 
     def contact_polygon(self, tolerance: float) -> Floats:
         """Return the corners of the polygon around all points at most ``tolerance`` [m] above the lowest one.
@@ -74,13 +74,13 @@ class Shape:
         """
         low = self.points[self.points[:, 2] <= tolerance - self.cg_height][:, :2]
         try:
-            hull = ConvexHull(low)
-        except (QhullError, ValueError) as error:
+            corners = _hull(low)
+        except (RuntimeError, ValueError) as error:
             raise InputError(
                 f"{self.name}: within {1000 * tolerance:g} mm of its lowest point the mesh has "
                 f"{len(low)} point(s), which make no polygon to stand on; {self._way_out(tolerance)}"
             ) from error
-        return np.asarray(low[hull.vertices])
+        return np.asarray(low[corners])
 
     def _way_out(self, tolerance: float) -> str:
         """What to do with a body that stands on too few points: it may lie on its side."""
@@ -219,6 +219,14 @@ def _without_hardly_turning(corners: Floats) -> Floats:
     return kept
 
 
+def _hull(points: Floats) -> NDArray[np.intp]:
+    """Places of the corners of the convex hull of points in a plane, in order; RuntimeError without one."""
+    # loaded for objects with corners of their own, which most are not
+    from scipy.spatial import ConvexHull
+
+    return np.asarray(ConvexHull(points).vertices)
+
+
 def _retreated(corners: Floats, distance: float) -> Floats | None:
     """Move the edges of a convex polygon about the origin inwards; None where the origin is left outside."""
     outward = outward_normals(corners)
@@ -227,7 +235,7 @@ def _retreated(corners: Floats, distance: float) -> Floats | None:
         return None
     # corners of the polygon are the dual of the hull of its edges' poles
     poles = outward / reach[:, np.newaxis]
-    kept = ConvexHull(poles).vertices
+    kept = _hull(poles)
     ahead = np.roll(kept, -1)
     cross = outward[kept, 0] * outward[ahead, 1] - outward[kept, 1] * outward[ahead, 0]
     x = (reach[kept] * outward[ahead, 1] - reach[ahead] * outward[kept, 1]) / cross
@@ -309,7 +317,7 @@ def _closed_mesh(path: Path, hull: bool) -> Any:
     if hull:
         try:
             return trimesh.convex.convex_hull(vertices)
-        except (QhullError, ValueError, IndexError) as error:
+        except (RuntimeError, ValueError, IndexError) as error:
             raise InputError(
                 f"{path}: its {len(vertices)} points enclose no volume."
             ) from error

@@ -2,18 +2,21 @@
 
 from dataclasses import replace
 from itertools import product
+from pathlib import Path
+from unittest.mock import patch
 
 import numpy as np
 import pytest
 from scipy import stats
 
-from rockfrag.assess.core import choices
+from rockfrag.assess.core import choices, sobol
 from rockfrag.assess.core.decisions import Action, decide
 from rockfrag.assess.core.draws import make_draws
 from rockfrag.assess.core.estimates import FRACTION, MOTIONS, fill_estimate, fill_order
 from rockfrag.assess.core.fractions import count_motions
 from rockfrag.assess.core.likelihood import Likelihood, likelihood_of
 from rockfrag.assess.core.prediction import Prediction, Shift, predict
+from rockfrag.assess.core.sobol import sobol_points
 from rockfrag.assess.findings import TEXTS
 
 LEVELS = np.geomspace(0.02, 4.0, 80)
@@ -189,3 +192,15 @@ def test_what_is_ranked_stands_as_pythons_sort_puts_it():
         (np.isnan(a), np.nan_to_num(a), b) for a, b in zip(first, second, strict=True)
     ]
     assert order.tolist() == sorted(range(40), key=lambda place: keys[place])
+
+
+@pytest.mark.parametrize("dimensions, count, first", [(1, 16, 0), (33, 256, 512)])
+def test_points_of_sobol_are_those_of_scipy_to_the_last_bit(dimensions, count, first):
+    sequence = stats.qmc.Sobol(dimensions, scramble=False)
+    if first:
+        sequence.fast_forward(first)
+    found = sobol_points(dimensions, count, first)
+    assert np.array_equal(found, sequence.random(count))
+    # where scipy keeps no such table
+    with patch.object(sobol, "_TABLE", Path("nowhere")):
+        assert np.array_equal(sobol_points(dimensions, count, first), found)

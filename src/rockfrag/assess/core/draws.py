@@ -15,10 +15,10 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy import special, stats
-from scipy.stats import qmc
+from scipy import special
 
 from rockfrag.assess.core.estimates import BINS
+from rockfrag.assess.core.sobol import sobol_points
 from rockfrag.base.arrays import Floats
 
 BLOCKS = 256  # Sets of weights
@@ -72,16 +72,13 @@ def _concentration(earthquakes: int) -> float:
     With 1 the variance of a mean is s²/(n + 1), s² with n in its denominator (Rubin 1981): too little for few.
     """
     n = max(earthquakes, 2)
-    student, normal = stats.t.ppf(0.95, n - 1), special.ndtri(0.95)
+    student, normal = special.stdtrit(n - 1, 0.95), special.ndtri(0.95)
     wider = (student / normal) ** 2 * (n + 1) / (n - 1)
     return float(max((n + 1) / wider - 1, 0.1 * n) / n)
 
 
 def _points(dimensions: int, count: int, first: int) -> Floats:
     """Points of Sobol's sequence inside the unit cube, shifted by the golden ratio's multiples."""
-    sequence = qmc.Sobol(dimensions, scramble=False)
-    if first:
-        sequence.fast_forward(first)
-    points = sequence.random(count)
+    points = sobol_points(dimensions, count, first)
     shift = (np.arange(1, dimensions + 1) * (np.sqrt(5.0) - 1) / 2) % 1.0
     return np.asarray((points + shift) % 1.0).clip(1e-9, 1 - 1e-9)

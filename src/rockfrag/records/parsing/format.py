@@ -21,10 +21,6 @@ from rockfrag.records.parsing.quantities import canonical_unit
 _FIRST, _LAST = UTCDateTime(1900, 1, 1), UTCDateTime(2100, 1, 1)
 
 
-SAID = "said"
-"""Key of a step of the provenance: words that everybody who uses the motion should read."""
-
-
 def cut_short_step(promised: int, found: int) -> dict[str, Any]:
     """Return the step of the provenance of a file with fewer samples than its header promises."""
     counts = {"samples_promised": promised, "samples_read": found}

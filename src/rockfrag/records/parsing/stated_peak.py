@@ -7,7 +7,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from rockfrag.base.errors import InputError
-from rockfrag.records.parsing.format import SAID, Channel
+from rockfrag.records.motion import SAID
+from rockfrag.records.parsing.format import Channel
 from rockfrag.records.parsing.quantities import to_si
 
 REFUSED = 0.25

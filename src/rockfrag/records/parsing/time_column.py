@@ -14,7 +14,7 @@ from typing import Any, NoReturn
 import numpy as np
 from numpy.typing import NDArray
 
-from rockfrag.records.parsing.format import SAID
+from rockfrag.records.motion import SAID
 from rockfrag.records.parsing.text_file import TextFile
 
 JITTER = 0.1

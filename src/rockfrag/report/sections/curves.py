@@ -20,6 +20,7 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import PercentFormatter
 
 from rockfrag.base import figure_style as style
+from rockfrag.base.figure_style import GREY
 from rockfrag.base.files import file_name
 from rockfrag.fragility.check_notes import REJECTION, TAILS
 from rockfrag.fragility.curve_facts import REJECTED, compared_curves
@@ -27,7 +28,6 @@ from rockfrag.fragility.observations import Floats, name_and_unit
 from rockfrag.fragility.vector import INTERACTION_LEVEL, VectorTables
 from rockfrag.outcomes.limit_states import OVERTURNS, limit_states
 from rockfrag.report.answer import has_one_record
-from rockfrag.report.figures import GREY
 from rockfrag.report.findings import ONE_MOTION, strength_found
 from rockfrag.report.page import Row, column, estimated, p_values, table_html
 from rockfrag.report.part import FigureSpec, Finding, Results, Section, chapter

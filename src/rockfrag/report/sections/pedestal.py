@@ -19,8 +19,8 @@ from matplotlib.lines import Line2D
 from numpy.typing import NDArray
 
 from rockfrag.base import figure_style as style
+from rockfrag.base.figure_style import BAND, GREY
 from rockfrag.report import figures, page
-from rockfrag.report.figures import BAND, GREY
 from rockfrag.report.findings import (
     WITH_PEDESTAL,
     Sides,
@@ -315,7 +315,7 @@ def measured_beside(beside: pd.DataFrame) -> Figure:
     known = figures.drawn_tests(beside.dropna(subset=["simulated_g"]))
     with style.panels(style.COLUMN_WIDTH, 3.2) as (figure, axes):
         largest = 1.15 * float(known[["a", "simulated_g"]].to_numpy(dtype=float).max())
-        axes.plot([0, largest], [0, largest], color=figures.GREY, lw=0.8)
+        axes.plot([0, largest], [0, largest], color=GREY, lw=0.8)
         for side, name in figures.SIDE_NAME.items():
             rows = known[known["pedestal"] == side]
             if rows.empty:

@@ -18,11 +18,12 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
 from rockfrag.base import figure_style as style
+from rockfrag.base.figure_style import GREY
 from rockfrag.base.units import CENTIMETRES_PER_METRE, GRAVITY
 from rockfrag.motions.intensity import intensity_measures
 from rockfrag.records.motion import Motion
 from rockfrag.records.quality_flags import DRIFT
-from rockfrag.report.figures import GREY, MARKERS, drawn_tests
+from rockfrag.report.figures import MARKERS, drawn_tests
 from rockfrag.report.findings import model_allowed, sliding_found
 from rockfrag.report.page import Column, column, table_html
 from rockfrag.report.part import FigureSpec, Results, Section, chapter

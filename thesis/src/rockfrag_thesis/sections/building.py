@@ -9,8 +9,8 @@ from functools import partial
 import pandas as pd
 from matplotlib.figure import Figure
 
-from rockfrag.base.figure_style import COLUMN_WIDTH, OKABE_ITO, panels
-from rockfrag.report.figures import GREY, MARKERS
+from rockfrag.base.figure_style import COLUMN_WIDTH, GREY, OKABE_ITO, panels
+from rockfrag.report.figures import MARKERS
 from rockfrag.report.page import Column, table_html
 from rockfrag.report.part import FigureSpec, Results, Section
 from rockfrag.words.sentences import agree, number, of_all, sentence, shortened

@@ -13,9 +13,8 @@ import pandas as pd
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from rockfrag.base.figure_style import BLUE, COLUMN_WIDTH, ORANGE, panels
+from rockfrag.base.figure_style import BAND, BLUE, COLUMN_WIDTH, GREY, ORANGE, panels
 from rockfrag.report.answer import study_answer
-from rockfrag.report.figures import BAND, GREY
 from rockfrag.report.findings import FRICTION, ratio_text
 from rockfrag.report.part import Answer, FigureSpec, Finding, Results
 from rockfrag.report.sections.pedestal import NONE, ratio_axis

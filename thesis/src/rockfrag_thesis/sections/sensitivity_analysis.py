@@ -15,9 +15,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from rockfrag.base.figure_style import BLACK, OKABE_ITO, WIDEST, panels
+from rockfrag.base.figure_style import BAND, BLACK, GREY, OKABE_ITO, WIDEST, panels
 from rockfrag.effects.cluster_means import benjamini_hochberg
-from rockfrag.report.figures import BAND, GREY, MARKERS
+from rockfrag.report.figures import MARKERS
 from rockfrag.report.findings import ratio_text
 from rockfrag.report.page import Column, Row, by_row, estimated, table_html
 from rockfrag.report.part import FigureSpec, Results, Section
