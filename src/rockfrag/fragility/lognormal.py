@@ -126,7 +126,7 @@ def curve_parameters(coefficients: Floats, covariance: Floats) -> Curve:
 
 @named_keywords
 def fit_lognormal(outcomes: Observations, *, link: Link = "probit") -> FragilityFit:
-    """Fit a curve to outcomes by maximum likelihood (a probit of ln IM).
+    """Fit a curve to outcomes by maximum likelihood (binomial, of ln IM).
 
     Where one value of the measure separates survival from overturning the likelihood has no maximum; the fit is
     then penalised (Firth, 1993), as ``method`` and ``warnings`` say. θ and β are NaN where all tests agree or are
