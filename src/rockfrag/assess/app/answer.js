@@ -11,7 +11,7 @@ const answer = (data, core) => {
   const spatial = inSpace(data, core);
   const building = floors(data, core);
   const wording = findings(data, core, judge);
-  const putty = puttied(data.constants);
+  const putty = puttied(core, spatial.rowOf);
 
   // levels of a run: the asked one among those of the measure
   function levelsOf(request, run) {
@@ -292,19 +292,21 @@ const answer = (data, core) => {
       return ensemble.bodyOf({ ...request, measured: request.restitution }).uplift;
     return Math.min(...judge.liftsFrom(now));
   }
-  // the motion that topples it first, and at which level; the first one at the site's
-  // where none does
-  function deciding({ levels, allowed, overturned }, level) {
-    let best = { motion: 0, level, falls: false };
-    for (let m = 0; m < data.earthquakes.length; m++) {
-      const k = levels.findIndex(
-        (_, k) => allowed[m * levels.length + k] && overturned[m * levels.length + k],
-      );
-      if (k >= 0 && (!best.falls || levels[k] < best.level))
-        best = { motion: m, level: levels[k], falls: true };
-    }
-    return best;
-  }
+  // the motion that is drawn, and at which level
+  const deciding = ({ levels, allowed, overturned }, level) =>
+    core.within(() => {
+      const shape = [data.earthquakes.length, levels.length];
+      const tables = [allowed, overturned].map((table) => core.put(table, shape));
+      const found = core.zeros([3]);
+      core.call("fill_deciding", core.put(levels), ...tables, level, found);
+      const { MOTION, AT_LEVEL, FALLS } = core.constants;
+      const values = [...found.values];
+      return {
+        motion: values[MOTION],
+        level: values[AT_LEVEL],
+        falls: Boolean(values[FALLS]),
+      };
+    });
   return { counter, joined, found, changed };
 };
 if (typeof module !== "undefined") module.exports = answer;

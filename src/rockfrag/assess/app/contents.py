@@ -30,7 +30,7 @@ from rockfrag.assess.hazard.curve import PGA, PGV
 from rockfrag.assess.motions import MotionSet
 from rockfrag.assess.place import Place
 from rockfrag.assess.request import Records, Request
-from rockfrag.assess.standing import box, contract, holders, rolling
+from rockfrag.assess.standing import box, contract, rolling
 from rockfrag.base import plausible, units
 from rockfrag.base.arrays import Floats
 from rockfrag.building.model import ModalDamping, ShearBuilding
@@ -228,12 +228,10 @@ def _constants() -> dict[str, Any]:
         **_of(sources, "SPACE"),
         **_of(plausible, "STONE", "DENSITIES", "DEPTHS"),
         **_of(bodies, "LOWER", "BALLAST"),
-        **_of(holders, "PADS_AT"),
         **_of(
             place, "PERIOD_FACTORS", "STOREY_HEIGHT", "STOREY_MASS", "HIGHEST_BUILDING"
         ),
-        **_of(findings, "LEAST_PART", "MOST_SOURCES", "MOST_ASSUMPTIONS"),
-        **_of(findings, "MOST_CHANGES", "LEAST_WORTH"),
+        **_of(findings, "MOST_SOURCES", "MOST_ASSUMPTIONS", "MOST_CHANGES"),
         **_of(choices, "FEWEST_EARTHQUAKES"),
         **_of(request, "ACCEPTED_AT_A_LEVEL", "ACCEPTED_IN_FIFTY_YEARS"),
         "VARIANTS": {

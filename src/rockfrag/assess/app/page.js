@@ -223,6 +223,8 @@
     timer = setTimeout(update, 120);
   }
   function update() {
+    // it is still starting
+    if (!bodies) return;
     const form = formTexts();
     let request;
     try {
@@ -601,8 +603,7 @@
       scene.at = response.most;
       return paint();
     }
-    if (!place.ground)
-      building ??= floors(data, await rockfragCore(await unpacked(data.modules.core)));
+    if (!place.ground) building ??= floors(data, core);
     const ground = place.ground
       ? motion
       : building.floorMotion(place.floors[""], motion);
@@ -1013,7 +1014,8 @@
 
   // ---- the beginning
 
-  const bodies = objects(data);
+  let core = null;
+  let bodies = null;
   const lists = lists_(data, ALL);
   async function begin() {
     for (const [id, { language }] of Object.entries(data.texts))
@@ -1039,6 +1041,8 @@
       return stop("no_wasm");
     find("done").textContent = say("starting");
     try {
+      core = await rockfragCore(await unpacked(data.modules.core));
+      bodies = objects(data, core);
       await startWorkers();
     } catch (error) {
       return stop(error.message === "no_workers" ? "no_workers" : "no_wasm");

@@ -16,7 +16,7 @@ async function begin({ data, modules, samples }) {
   const motions = decoded(data, await unpacked(samples));
   const core = await rockfragCore(await unpacked(modules.core));
   const made = answer(data, core);
-  const form = objects(data);
+  const form = objects(data, core);
   tools = {
     ensemble,
     made,
