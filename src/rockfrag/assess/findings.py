@@ -411,7 +411,7 @@ def _reduction(change: Mitigation) -> dict[str, Value]:
     """What a change takes off the risk, or adds to the shaking that the object bears, with its limits."""
     found = np.zeros(3)
     choices.tell_reduction(change.factor, change.lower, change.upper, found)
-    value, lower, upper = (float(part) for part in found)
+    value, lower, upper = found.tolist()
     limits = {"lower": whole(100 * lower), "upper": whole(100 * upper)}
     return {"value": _whole_percent(value), **limits}
 

@@ -236,7 +236,7 @@ const answer = (data, core) => {
         ? judge.meanOf(target, shifts, rates, outcomes)
         : judge.valueOf(target, outcomes);
     answer.arrangements = [
-      ["on_its_pedestal", answer.main?.value ?? meanOf(atSite)],
+      [ownOf(request), answer.main?.value ?? meanOf(atSite)],
       ...known("arrangement").map((run) => [run.name, meanOf(run.outcomes)]),
     ];
     const [before] = known("before");
@@ -259,7 +259,7 @@ const answer = (data, core) => {
       ({ factor }) => factor,
       ({ value }) => value,
     );
-    answer.safer = saferOf(known("arrangement"), answer.mitigations);
+    answer.safer = saferOf(request, known("arrangement"), answer.mitigations);
     answer.said = wording.of(request, answer);
     return answer;
   }
@@ -274,9 +274,11 @@ const answer = (data, core) => {
       probability: hazard && meanOf(judge.riskTarget(hazard, 50)),
     };
   }
+  // the way in which it stands
+  const ownOf = ({ pedestal }) => (pedestal ? "on_its_pedestal" : "on_the_floor");
   // arrangements that the motions show to be safer than its own, or its own if it is
   // safer than all others
-  function saferOf(arrangements, mitigations) {
+  function saferOf(request, arrangements, mitigations) {
     const each = arrangements.map(({ name, change }) => [
       name,
       mitigations.find((item) => item.name === change),
@@ -284,7 +286,7 @@ const answer = (data, core) => {
     const better = each.filter(([, item]) => item.shown).map(([name]) => name);
     return each.length &&
       each.every(([, { lower, helps }]) => core.choose("is_worse", lower, helps))
-      ? [...better, "on_its_pedestal"]
+      ? [...better, ownOf(request)]
       : better;
   }
   function rocksFrom(request, now, exact, ensemble) {

@@ -216,17 +216,16 @@ const findings = (data, core, judge) => {
           }),
         );
       }
-      if (!request.solid)
-        return [
-          ...said,
-          finding(request.narrower ? "rocks_across_narrower" : "rocks_across", {
-            width: four(100 * request.statue.width),
-          }),
-        ];
+      if (!request.solid) return [...said, planeOf(request)];
       said.push(finding(request.solid.round ? "rolls_in_space" : "moves_in_space"));
       return typeof found.planar === "number"
         ? [...said, finding("in_one_plane", { value: percent(found.planar) })]
         : said;
+    }
+    function planeOf({ kind, narrower, statue: { width } }) {
+      if (kind) return finding(kind.plane);
+      const id = narrower ? "rocks_across_narrower" : "rocks_across";
+      return finding(id, { width: four(100 * width) });
     }
     const changeOf = ({ name, values }) => finding(name, values);
     function reduction({ factor, lower, upper }) {
@@ -333,8 +332,9 @@ const findings = (data, core, judge) => {
   // what was not given: its text, what stands in it, and the sources that it widens;
   // the place first
   function assumed({
+    kind,
     place,
-    statue,
+    sizes: statue,
     pedestal,
     massGiven,
     restitution,
@@ -352,7 +352,7 @@ const findings = (data, core, judge) => {
         { total: three(place.total), period: two(place.period) },
         ["period", "damping"],
       ]);
-    found.push([baseOf(solid), {}, []]);
+    found.push([kind?.assumption ?? baseOf(solid), {}, []]);
     if (restitution === null && !solid?.round)
       found.push(["restitution", {}, ["restitution"]]);
     if (!depthGiven && !solid)

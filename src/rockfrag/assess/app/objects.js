@@ -85,6 +85,17 @@ const objects = (data, core) => {
       ]),
     );
 
+  // a block after functions of the core in turn
+  const { change } = inSpace(data, core);
+  const stepped = (block, steps) =>
+    steps.reduce((made, [name, numbers]) => change(name, made, ...numbers), block);
+
+  // a kind of standing that is asked for by a word; null where its sizes say all
+  function kindOf({ stands }) {
+    if (!stands) return null;
+    return data.kinds[stands] ?? refuse("stands", "kind");
+  }
+
   // the form's texts, by field, as a request in SI
   function requestOf(form) {
     const given = givenIn(form);
@@ -107,16 +118,21 @@ const objects = (data, core) => {
       refuse("mass", "density");
     if (round) statue.inertia = core.call("round_inertia", width, height, statue.mass);
     if (round && restitution !== null) refuse("restitution", "rolls");
+    const kind = kindOf(form);
+    if (kind && round) refuse("stands", "kind");
     const deep =
       given.depth !== null &&
       !round &&
+      !kind &&
       restitution === null &&
       data.both.records.length > 0;
     if (!deep && given.facing !== null) refuse("facing", "facing_in_plane");
     if (deep) statue.depth = depth;
     return {
       name: short(form.name ?? "") || data.texts.en.the_object,
-      statue,
+      kind,
+      sizes: statue,
+      statue: kind ? stepped(statue, kind.steps) : statue,
       narrower,
       pedestal: pedestalOf(given),
       massGiven: mass !== null,
@@ -322,6 +338,6 @@ const objects = (data, core) => {
       floors: floorsOf(level, Object.fromEntries(named)),
     };
   }
-  return { requestOf, refuse };
+  return { requestOf, refuse, stepped };
 };
 if (typeof module !== "undefined") module.exports = objects;

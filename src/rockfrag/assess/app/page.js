@@ -22,6 +22,9 @@
   );
   if (data.own?.whole)
     FIELDS.place = FIELDS.place.filter(({ name }) => name === "floor");
+  // without a kind of standing that an extension has added there is none to choose
+  const KINDS = Object.keys(data.kinds);
+  if (!KINDS.length) FIELDS.more = FIELDS.more.filter(({ name }) => name !== "stands");
   // groups that open where they are wanted
   const CLOSED = ["more", "pedestal", "place"];
   const ALL = Object.values(FIELDS).flat();
@@ -91,7 +94,9 @@
           make(
             "select",
             {},
-            ...options.map((id) => make("option", { value: id, textContent: say(id) })),
+            ...options.map((id) =>
+              make("option", { value: id, textContent: say(id || `${name}_usual`) }),
+            ),
           ),
         flag: () => make("input", { type: "checkbox", checked: Boolean(value) }),
       }[kind]?.() ?? make("input", { type: "text", value, maxLength: 80 });
@@ -427,6 +432,7 @@
     const typed = plain.map(({ name }) =>
       form[name] === true ? say(name) : `${say(name)}: ${form[name]}`,
     );
+    if (form.stands) typed.push(say(form.stands));
     if (form.level.trim()) typed.push(`${form.measure}: ${form.level}`);
     if (form.hazard.trim())
       typed.push(

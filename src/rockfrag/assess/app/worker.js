@@ -22,7 +22,7 @@ async function begin({ data, modules, samples }) {
     made,
     motions,
     form,
-    bodies: plans(data, core, form.refuse),
+    bodies: plans(data, core, form),
     count: made.counter(
       ensemble,
       motions,

@@ -116,18 +116,18 @@ def carries_plate(block: Floats, below: Floats) -> bool:
     return bool(WIDER * block[WIDTH] <= below[WIDTH])
 
 
-def tell_pads(block: Floats, pull: float, limits: Floats) -> None:
+def tell_pads(block: Floats, force: float, limits: Floats) -> None:
     """Accelerations over which pads of wax or putty are torn off (docs/holding.md, equation 3) [m/s²].
 
     Parameters
     ----------
     block : the object
-    pull : that all pads hold together [N]
+    force : that all pads hold together [N]
     limits : of its left and of its right pad, shape (2,)
     """
     shape = _shape(block)
     half = PADS_AT * block[WIDTH] / 2
-    held = pull * half / shape.mass
+    held = force * half / shape.mass
     limits[0] = (GRAVITY * (half - shape.x) + held) / shape.y
     limits[1] = (GRAVITY * (half + shape.x) + held) / shape.y
 

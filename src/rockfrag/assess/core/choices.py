@@ -145,9 +145,9 @@ def reduces(factor: float, grows: bool) -> int:
 def tell_reduction(factor: float, lower: float, upper: float, found: Floats) -> None:
     """What a factor takes off a risk, or adds to what an object bears, and its limits, rising [-]."""
     sign = -1.0 if factor > 1.0 else 1.0
-    one, other = sign * (1.0 - lower), sign * (1.0 - upper)
+    first, second = sign * (1.0 - lower), sign * (1.0 - upper)
     found[0] = sign * (1.0 - factor)
-    found[1], found[2] = min(one, other), max(one, other)
+    found[1], found[2] = min(first, second), max(first, second)
 
 
 def names_source(part: float) -> bool:
