@@ -10,17 +10,22 @@ import pytest
 from rockfrag.assess import standing
 from rockfrag.assess.answer import assess_with
 from rockfrag.assess.assumed import assume
+from rockfrag.assess.core import bodies
 from rockfrag.assess.findings import details_of, lines_of
+from rockfrag.assess.motions import MotionSet
 from rockfrag.assess.page import page_of
 from rockfrag.assess.standing import KINDS, make_standing
 from rockfrag.assess.standing.contract import Standing
+from rockfrag.assess.standing.declared import Declared, Way
 from rockfrag.assess.standing.dimensions import on_foundation, sizes_of
+from rockfrag.base.errors import InputError
 from rockfrag.system.blocks import Block
 from rockfrag.words import catalogue as catalogues
 from rockfrag.words.catalogue import TEXTS
 from rockfrag.words.findings import finding
 
 from .conftest import asked
+from .in_node import check_all, in_node, needs_node
 
 SIZES = {"width": "30 cm", "height": "1 m"}
 
@@ -45,6 +50,8 @@ def test_settings_are_of_the_first_kind_that_takes_them(settings, kind):
 class OnFeet(Standing):
     """A narrow kind: an object on feet that stand further in than its sides, by a tenth of its width each."""
 
+    option = "on_feet_of_its_own"
+
     @classmethod
     def takes(cls, settings: Mapping) -> bool:
         return settings.get("name") == "cabinet"
@@ -66,7 +73,19 @@ class OnFeet(Standing):
         return replace(self.block, width=self.block.width / 0.8)
 
 
+class OnTwoFeet(Declared):
+    """The same by declaration, with a heavy foot."""
+
+    option, assumption, plane_text = "on_two_feet", "on_feet", "rocks_on_feet"
+    steps = ((bodies.add_ballast, (0.1,)), (bodies.stretch, (0.8, 1.0, 1.0)))
+    others = (
+        Way("without_feet", "taking_its_feet_off", ((bodies.stretch, (1.25, 1, 1)),)),
+    )
+
+
 NEW = {
+    "on_two_feet": "on two feet",
+    "on_feet_of_its_own": "on feet of its own",
     "rocks_on_feet": "It rocks on its feet.",
     "without_feet": "without its feet",
     "taking_its_feet_off": "taking its feet off",
@@ -83,7 +102,7 @@ def cabinet(tmp_path, monkeypatch):
     english = json.loads((folder / "en.json").read_text(encoding="utf-8"))
     (folder / "en.json").write_text(json.dumps(english | NEW), encoding="utf-8")
     monkeypatch.setattr(catalogues, "TEXTS", folder)
-    monkeypatch.setattr(standing, "KINDS", [OnFeet, *KINDS])
+    monkeypatch.setattr(standing, "KINDS", [OnFeet, OnTwoFeet, *KINDS])
 
 
 def test_a_kind_added_by_a_class_and_its_texts_runs_to_the_page(cabinet, motions):
@@ -100,5 +119,51 @@ def test_a_kind_added_by_a_class_and_its_texts_runs_to_the_page(cabinet, motions
     assert "it stands on its feet" in said or "more assumptions" in said
     page = page_of(found)
     # in a few words it stands in lists only
-    for id in set(NEW) - {"assumed_on_feet"}:
+    for id in set(NEW) - {"assumed_on_feet", "on_two_feet", "on_feet_of_its_own"}:
         assert NEW[id].lower() in page.lower(), id
+
+
+SHAKEN = {"measure": "PGA", "level": "0.3 g", "years": "475"}
+ON_PEDESTAL = {"pedestal_width": "60 cm", "pedestal_height": "50 cm"}
+
+
+@needs_node
+@pytest.mark.usefixtures("cabinet")
+def test_a_kind_by_declaration_has_the_answer_of_the_command_in_the_one_file_page(
+    motions, tmp_path
+):
+    ground = motions.ground[:12]
+    few = MotionSet(ground, ground, motions.pairs[:6], "made motions")
+    form = SIZES | SHAKEN | ON_PEDESTAL | {"stands": "on_two_feet"}
+    (said,) = in_node(tmp_path, few, [form])
+    page = (tmp_path / "in.json").read_text(encoding="utf-8")
+    fields = json.loads(page)["data"]["fields"]
+    (field,) = [field for field in fields if field["name"] == "stands"]
+    assert field["options"] == ["", "on_feet_of_its_own", "on_two_feet"]
+    settings = SIZES | {"stands": "on_two_feet", "pga": "0.3 g", "return_period": "475"}
+    settings["pedestal"] = {"width": "60 cm", "height": "50 cm"}
+    found = check_all(few, settings, said)
+    assert isinstance(found.request.objects, OnTwoFeet)
+    assert found.by_arrangement["without_feet"] < found.main.value
+    # statics of its feet, of the object alone: b/h
+    assert found.rocks_from < 0.3
+
+
+@needs_node
+@pytest.mark.usefixtures("cabinet")
+def test_a_kind_whose_code_a_page_has_not_is_refused_beside_its_field(
+    motions, tmp_path
+):
+    rounded = {"stands": "on_two_feet", "round": True}
+    own = {"stands": "on_feet_of_its_own"}
+    forms = [SIZES | SHAKEN | each for each in (own, rounded)]
+    assert in_node(tmp_path, motions, forms) == 2 * [
+        {"refused": ["stands", "kind", True]}
+    ]
+    with pytest.raises(InputError, match="key round: it rocks in one plane"):
+        asked(**SIZES, **rounded)
+
+
+def test_a_word_that_no_kind_has_is_refused():
+    with pytest.raises(InputError, match=r"key stands: .* found 'on one leg'"):
+        asked(**SIZES, stands="on one leg")

@@ -14,6 +14,7 @@ import numpy as np
 import pytest
 
 from rockfrag import Block, GroundMotion, Motion, Stack, overturns, simulate
+from rockfrag.assess.standing.holders import Beside
 from rockfrag.base.units import GRAVITY
 from rockfrag.engines.pure_rocking.ensembles import body_record
 from rockfrag.engines.spatial.body import kernel_body
@@ -340,6 +341,43 @@ def test_random_bodies_in_space_have_the_bits_of_the_package(tmp_path, bodies):
         assert item["alike"], "an outcome alone is that of the history"
         fell += outcome.overturned
     assert 0.15 * bodies < fell < 0.85 * bodies
+
+
+@needs_node
+def test_a_box_at_a_wall_has_the_bits_of_the_package(tmp_path):
+    """At a wall behind its narrower side, touching it or some way off: those that hit it and those that do not."""
+    rng = np.random.default_rng(8)
+    time = np.arange(700) * 0.01
+    motion = np.exp(-(((time - 2) / 1.2) ** 2)) * (
+        rng.normal(0, 2.0, (3, 700))
+        + 3 * np.sin(5 * time + np.array([[0.0], [1], [2]]))
+    )
+    cases, systems, alone = [], [], []
+    for gap in (0.0, 0.0, 0.02, 0.3, 5.0):
+        width = float(rng.uniform(0.2, 0.4))
+        given = {"width": width, "depth": 1.3 * width, "height": 3 * width}
+        block = {**given, "mass": 900 * width * width}
+        systems.append(Beside(gap).on(Block(**block).system()))
+        alone.append(Block(**block).system())
+        cases.append({
+            "block": block, "wall": gap, "friction": None, "components": 2, "dt": 0.01,
+            "scale": 1.2,
+        })  # fmt: skip
+    said, written = in_node(tmp_path, "space", cases, motion)
+    numbers, differ = np.frombuffer(written), 0
+    shaking = np.column_stack([motion[0], motion[1], np.zeros(700)])
+    for item, system, free in zip(said, systems, alone, strict=True):
+        body = kernel_body(system)
+        assert item["record"] == body.tobytes().hex()
+        samples = 700 + math.ceil(AFTER / 0.01) + 2
+        outcome, history = run_case(body, shaking, 0.01, 1.2, samples=samples)
+        table, numbers = np.split(numbers, [history.size])
+        np.testing.assert_array_equal(table.reshape(history.shape), history)
+        _, numbers = np.split(numbers, [7])
+        assert item["fell"] == outcome.overturned
+        other, _ = run_case(kernel_body(free), shaking, 0.01, 1.2, samples=samples)
+        differ += outcome.peak_rotation != other.peak_rotation
+    assert 2 <= differ <= 4
 
 
 # --------------------------------------------------------------------------- the modules

@@ -8,10 +8,13 @@ In: an answer. Out: findings, each the id of a text with its numbers. Docs: ``do
 import math
 from collections.abc import Callable, Mapping
 
+import numpy as np
+
 from rockfrag.assess.answer import Assessment
 from rockfrag.assess.assumed import Assumption
 from rockfrag.assess.core import choices
 from rockfrag.assess.core.decisions import Action
+from rockfrag.assess.core.estimates import sum_of_squares
 from rockfrag.assess.core.likelihood import Likelihood
 from rockfrag.assess.core.scales import LARGEST_FACTOR
 from rockfrag.assess.mitigations import Mitigation
@@ -33,9 +36,7 @@ from rockfrag.words.findings import (
 )
 
 MOST_SOURCES = 3  # Sources of uncertainty that are named in a line
-LEAST_PART = 0.05  # Part of the variance from which a source is worth naming [-]
 MOST_ASSUMPTIONS = 3  # Assumptions that are named in a line; the page has all
-LEAST_WORTH = 0.05  # Chance of deciding from which a measurement is listed [-]
 MOST_CHANGES = 3  # Changes that are named in a line
 
 # Annual rates between which a level and a hazard fit each other [1/year]
@@ -407,13 +408,11 @@ def helps(found: Assessment) -> list[Finding]:
 
 def _reduction(change: Mitigation) -> dict[str, Value]:
     """What a change takes off the risk, or adds to the shaking that the object bears, with its limits."""
-    sign = -1.0 if change.factor > 1 else 1.0
-    ends = sorted(sign * (1 - factor) for factor in (change.lower, change.upper))
-    return {
-        "value": _whole_percent(sign * (1 - change.factor)),
-        "lower": whole(100 * ends[0]),
-        "upper": whole(100 * ends[1]),
-    }
+    found = np.zeros(3)
+    choices.tell_reduction(change.factor, change.lower, change.upper, found)
+    value, lower, upper = found.tolist()
+    limits = {"lower": whole(100 * lower), "upper": whole(100 * upper)}
+    return {"value": _whole_percent(value), **limits}
 
 
 def _whole_percent(part: float) -> Finding:
@@ -453,7 +452,7 @@ def uncertainty(found: Assessment) -> list[Finding]:
             Text.SOURCE_PART, source=SOURCES[name].called, part=_whole_percent(part)
         )
         for name, part in parts_of(found.main.sources).items()
-        if part >= LEAST_PART
+        if choices.names_source(part)
     ]
     if not named:
         return []
@@ -471,7 +470,7 @@ def worth_measuring(found: Assessment) -> list[Finding]:
             cases=whole(10 * each.chance),
         )
         for each in found.decision.measurements
-        if each.chance >= LEAST_WORTH
+        if choices.lists_measurement(each.chance)
     ]
     return [finding(Text.WORTH, measurements=listed(said))] if said else []
 
@@ -503,7 +502,8 @@ def all_assumed(found: Assessment) -> list[Assumption]:
     lines = [*found.request.place.assumed, *found.request.objects.under.assumed]
 
     def size(assumption: Assumption) -> float:
-        return sum(sources.get(name, 0.0) ** 2 for name in assumption.sources)
+        widened = [sources.get(name, 0.0) for name in assumption.sources]
+        return float(sum_of_squares(np.array(widened, dtype=np.float64)))
 
     return sorted(lines, key=size, reverse=True)
 

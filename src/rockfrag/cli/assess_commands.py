@@ -470,7 +470,7 @@ _SHAKING = {"pga": "0.4 g", "return_period": "475"}  # In the form where none is
 
 _FORM = (
     *("name", "width", "height", "mass", "cg_height", "cg_offset"),
-    *("restitution", "floor", "depth"),
+    *("restitution", "floor", "depth", "stands"),
 )
 _LEVELS = ("pga", "pgv", "sa")
 _KEYS = (

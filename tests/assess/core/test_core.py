@@ -9,15 +9,17 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from rockfrag.assess.core import choices, sobol
+from rockfrag.assess.core import bodies, choices, sobol
 from rockfrag.assess.core.decisions import Action, decide
 from rockfrag.assess.core.draws import make_draws
 from rockfrag.assess.core.estimates import FRACTION, MOTIONS, fill_estimate, fill_order
-from rockfrag.assess.core.fractions import count_motions
+from rockfrag.assess.core.fractions import count_motions, fill_deciding
 from rockfrag.assess.core.likelihood import Likelihood, likelihood_of
 from rockfrag.assess.core.prediction import Prediction, Shift, predict
+from rockfrag.assess.core.scales import fill_torn
 from rockfrag.assess.core.sobol import sobol_points
 from rockfrag.assess.findings import TEXTS
+from rockfrag.base.units import GRAVITY
 
 LEVELS = np.geomspace(0.02, 4.0, 80)
 MANY = 400
@@ -204,3 +206,52 @@ def test_points_of_sobol_are_those_of_scipy_to_the_last_bit(dimensions, count, f
     # where scipy keeps no such table
     with patch.object(sobol, "_TABLE", Path("nowhere")):
         assert np.array_equal(sobol_points(dimensions, count, first), found)
+
+
+# ---- what is drawn and tried in the page
+
+
+def test_the_motion_that_is_drawn_topples_it_at_the_lowest_level():
+    levels, allowed = np.array([0.1, 0.2, 0.3]), np.ones((3, 3), bool)
+    fell = np.array([[0, 0, 1], [0, 1, 1], [0, 1, 1]], bool)
+    found = np.zeros(3)
+    fill_deciding(levels, allowed, fell, 0.25, found)
+    assert found.tolist() == [1, 0.2, 1]
+    # one that may not be scaled so far does not count
+    fill_deciding(levels, allowed & (np.arange(3) != 1), fell, 0.25, found)
+    assert found.tolist() == [0, 0.3, 1]
+    fill_deciding(levels, allowed, np.zeros_like(fell), 0.25, found)
+    assert found.tolist() == [0, 0.25, 0]
+
+
+def test_pads_are_torn_off_where_the_moments_about_the_other_pad_say_so():
+    width, height, mass, aside, pull = 0.4, 1.1, 200.0, 0.03, 900.0
+    given = [width, height, mass, np.nan, np.nan, aside, np.nan]
+    limits = np.zeros(2)
+    bodies.tell_pads(np.array(given), pull, limits)
+    half = bodies.PADS_AT * width / 2
+    for acceleration, way in zip(limits, (-1, 1), strict=True):
+        # about the pad that is left: weight and half of the pull against the ground's
+        weight = mass * GRAVITY * (half + way * aside)
+        pulled = pull / 2 * 2 * half
+        assert acceleration * mass * height / 2 == pytest.approx(weight + pulled)
+
+
+def test_a_pad_is_torn_off_at_the_first_sample_beyond_its_limit():
+    samples = np.array([0.0, 1.0, -3.0, 2.5, -4.0])
+    first = np.zeros(4, np.int64)
+    fill_torn(samples, np.array([0.5, 1.0, 1.5, 9.0]), np.array([2.2, 3.5]), first)
+    assert first.tolist() == [-1, 3, 2, 1]
+
+
+@pytest.mark.parametrize(
+    ("factor", "limits", "said"),
+    [
+        (0.25, (0.1, 0.6), (0.75, 0.4, 0.9)),
+        (1.5, (0.8, 3.0), (0.5, -0.2, 2.0)),
+    ],
+)
+def test_a_reduction_has_rising_limits(factor, limits, said):
+    found = np.zeros(3)
+    choices.tell_reduction(factor, *limits, found)
+    assert found == pytest.approx(said)

@@ -8,10 +8,11 @@ const all = [part(0), part(1), part(2)];
 rockfragSpace(new Uint8Array(fs.readFileSync(wasm))).then((space) => {
   const tables = [];
   const said = JSON.parse(fs.readFileSync(cases)).map(
-    ({ block, solid, friction, components, dt, scale }) => {
+    ({ block, solid, wall = null, friction, components, dt, scale }) => {
       const body = space.bodyOf({
         ...(block ? rockfragSolid(block) : solid),
         friction,
+        wall,
       });
       const [x, y, z] = all.map((own, k) => (k < components ? own : null));
       const found = space.integrate({ body, x, y, z, dt, scale, history: true });

@@ -11,7 +11,7 @@ const answer = (data, core) => {
   const spatial = inSpace(data, core);
   const building = floors(data, core);
   const wording = findings(data, core, judge);
-  const putty = puttied(data.constants);
+  const putty = puttied(core, spatial.rowOf);
 
   // levels of a run: the asked one among those of the measure
   function levelsOf(request, run) {
@@ -236,7 +236,7 @@ const answer = (data, core) => {
         ? judge.meanOf(target, shifts, rates, outcomes)
         : judge.valueOf(target, outcomes);
     answer.arrangements = [
-      ["on_its_pedestal", answer.main?.value ?? meanOf(atSite)],
+      [ownOf(request), answer.main?.value ?? meanOf(atSite)],
       ...known("arrangement").map((run) => [run.name, meanOf(run.outcomes)]),
     ];
     const [before] = known("before");
@@ -259,7 +259,7 @@ const answer = (data, core) => {
       ({ factor }) => factor,
       ({ value }) => value,
     );
-    answer.safer = saferOf(known("arrangement"), answer.mitigations);
+    answer.safer = saferOf(request, known("arrangement"), answer.mitigations);
     answer.said = wording.of(request, answer);
     return answer;
   }
@@ -274,9 +274,11 @@ const answer = (data, core) => {
       probability: hazard && meanOf(judge.riskTarget(hazard, 50)),
     };
   }
+  // the way in which it stands
+  const ownOf = ({ pedestal }) => (pedestal ? "on_its_pedestal" : "on_the_floor");
   // arrangements that the motions show to be safer than its own, or its own if it is
   // safer than all others
-  function saferOf(arrangements, mitigations) {
+  function saferOf(request, arrangements, mitigations) {
     const each = arrangements.map(({ name, change }) => [
       name,
       mitigations.find((item) => item.name === change),
@@ -284,7 +286,7 @@ const answer = (data, core) => {
     const better = each.filter(([, item]) => item.shown).map(([name]) => name);
     return each.length &&
       each.every(([, { lower, helps }]) => core.choose("is_worse", lower, helps))
-      ? [...better, "on_its_pedestal"]
+      ? [...better, ownOf(request)]
       : better;
   }
   function rocksFrom(request, now, exact, ensemble) {
@@ -292,19 +294,21 @@ const answer = (data, core) => {
       return ensemble.bodyOf({ ...request, measured: request.restitution }).uplift;
     return Math.min(...judge.liftsFrom(now));
   }
-  // the motion that topples it first, and at which level; the first one at the site's
-  // where none does
-  function deciding({ levels, allowed, overturned }, level) {
-    let best = { motion: 0, level, falls: false };
-    for (let m = 0; m < data.earthquakes.length; m++) {
-      const k = levels.findIndex(
-        (_, k) => allowed[m * levels.length + k] && overturned[m * levels.length + k],
-      );
-      if (k >= 0 && (!best.falls || levels[k] < best.level))
-        best = { motion: m, level: levels[k], falls: true };
-    }
-    return best;
-  }
+  // the motion that is drawn, and at which level
+  const deciding = ({ levels, allowed, overturned }, level) =>
+    core.within(() => {
+      const shape = [data.earthquakes.length, levels.length];
+      const tables = [allowed, overturned].map((table) => core.put(table, shape));
+      const found = core.zeros([3]);
+      core.call("fill_deciding", core.put(levels), ...tables, level, found);
+      const { MOTION, AT_LEVEL, FALLS } = core.constants;
+      const values = [...found.values];
+      return {
+        motion: values[MOTION],
+        level: values[AT_LEVEL],
+        falls: Boolean(values[FALLS]),
+      };
+    });
   return { counter, joined, found, changed };
 };
 if (typeof module !== "undefined") module.exports = answer;

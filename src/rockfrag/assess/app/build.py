@@ -24,6 +24,7 @@ from rockfrag.building import modes
 from rockfrag.engines.compile.jit import kernel
 from rockfrag.motions import oscillator
 from rockfrag.motions.between_samples import fill_between
+from rockfrag.system.system import round_inertia
 from rockfrag.web.build import module_of
 
 PATH = Path(__file__).with_name("core.wasm")
@@ -39,12 +40,14 @@ ENTRIES: dict[Any, tuple[Any, ...]] = {
     fractions.fill_fractions: (*_COUNTS, *(_TABLE,) * 5),
     fractions.fill_uplifts: (_ROW, _FLAGS, _FLAGS, _FLAGS, _ROW, _ROW),
     fractions.fill_counts_at: (_ROW, _FLOAT, *(_FLAGS,) * 3, _ROW),
+    fractions.fill_deciding: (_ROW, _FLAGS, _FLAGS, _FLOAT, _ROW),
     fractions.fill_counted: (_FLAGS, _FLAGS, _ROW, _ROW),
     fractions.fill_shift: (_ROW,) * 6,
     estimates.fill_place: (_ROW, _FLOAT, _ROW),
     estimates.fill_sums: (_TABLE, _ROW, _ROW),
     estimates.fill_crossings: (_TABLE, _ROW, _FLOAT, _ROW),
     estimates.fill_errors: (_ROW, _TABLE, _ROW),
+    estimates.sum_of_squares: (_ROW,),
     estimates.rate_of: (_FLOAT, _FLOAT),
     estimates.fill_shown: (_WHOLE, _FLOAT, _ROW, _ROW),
     estimates.fill_estimate: (
@@ -72,6 +75,7 @@ ENTRIES: dict[Any, tuple[Any, ...]] = {
     ),
     scales.fill_scales: (*(_ROW,) * 3, _TABLE, _FLAGS),
     scales.fill_factors: (_TABLE, _FLAGS, _ROW, _TABLE),
+    scales.fill_torn: (_ROW, _ROW, _ROW, _NUMBERS),
     scales.peak_of: (_ROW,),
     scales.fill_direction: (_ROW, _ROW, _FLOAT, _FLOAT, _ROW),
     scales.lifting_in_plane: (_FLOAT, _FLOAT),
@@ -101,8 +105,15 @@ PLAIN: dict[Any, tuple[Any, ...]] = {
     choices.over_years: _LIMITS,
     choices.needs_change: (_FLOAT, False, False),
     choices.reduces: (_FLOAT, False),
+    choices.tell_reduction: (*_LIMITS, _ROW),
+    choices.names_source: (_FLOAT,),
+    choices.lists_measurement: (_FLOAT,),
     choices.is_worse: (_FLOAT, False),
     choices.safest: (False,),
+    bodies.solid_mass: (*_LIMITS, False),
+    bodies.tell_pads: (_ROW, _FLOAT, _ROW),
+    bodies.usual_period: (_FLOAT, _FLOAT),
+    round_inertia: _LIMITS,
     bodies.stretch: (_ROW, *(_FLOAT,) * 3, _ROW),
     bodies.add_ballast: (_ROW, _FLOAT, _ROW),
     bodies.make_plate: (_ROW, _ROW),
@@ -127,6 +138,9 @@ def build_core() -> bytes:
         plain.__name__: (kernel(plain), arguments) for plain, arguments in PLAIN.items()
     }
     constants: dict[str, float] = {
+        "MOTION": fractions.MOTION,
+        "AT_LEVEL": fractions.LEVEL,
+        "FALLS": fractions.FALLS,
         "FRACTION": estimates.FRACTION,
         "RATE": estimates.RATE,
         "LEVEL": estimates.LEVEL,

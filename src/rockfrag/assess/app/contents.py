@@ -21,6 +21,7 @@ from rockfrag.assess import (
     place,
     request,
     sources,
+    standing,
 )
 from rockfrag.assess.app.form import GROUPS, form_fields
 from rockfrag.assess.conversion import NODES, VelocityRelation, published_velocity
@@ -30,7 +31,8 @@ from rockfrag.assess.hazard.curve import PGA, PGV
 from rockfrag.assess.motions import MotionSet
 from rockfrag.assess.place import Place
 from rockfrag.assess.request import Records, Request
-from rockfrag.assess.standing import box, contract, holders, rolling
+from rockfrag.assess.standing import box, contract, rolling
+from rockfrag.assess.standing.declared import as_declared
 from rockfrag.base import plausible, units
 from rockfrag.base.arrays import Floats
 from rockfrag.building.model import ModalDamping, ShearBuilding
@@ -81,6 +83,7 @@ def data_of(motions: MotionSet, asked: Request | None = None) -> dict[str, Any]:
         "earthquakes": [names.index(name) for name in motions.earthquakes],
         "fields": [asdict(field) for field in form_fields(measures)],
         "groups": GROUPS,
+        "kinds": {word: as_declared(kind) for word, kind in standing.options().items()},
         "motions": as_data(motions.about_set),
         "motionsInSpace": as_data(motions.with_both_components().about_set),
         "names": [motion.name for motion in motions.ground],
@@ -228,12 +231,10 @@ def _constants() -> dict[str, Any]:
         **_of(sources, "SPACE"),
         **_of(plausible, "STONE", "DENSITIES", "DEPTHS"),
         **_of(bodies, "LOWER", "BALLAST"),
-        **_of(holders, "PADS_AT"),
         **_of(
             place, "PERIOD_FACTORS", "STOREY_HEIGHT", "STOREY_MASS", "HIGHEST_BUILDING"
         ),
-        **_of(findings, "LEAST_PART", "MOST_SOURCES", "MOST_ASSUMPTIONS"),
-        **_of(findings, "MOST_CHANGES", "LEAST_WORTH"),
+        **_of(findings, "MOST_SOURCES", "MOST_ASSUMPTIONS", "MOST_CHANGES"),
         **_of(choices, "FEWEST_EARTHQUAKES"),
         **_of(request, "ACCEPTED_AT_A_LEVEL", "ACCEPTED_IN_FIFTY_YEARS"),
         "VARIANTS": {

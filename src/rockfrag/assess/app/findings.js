@@ -5,14 +5,8 @@ const findings = (data, core, judge) => {
   "use strict";
   const { choose } = core;
   const { partsOf, ordered } = judge;
-  const {
-    LEAST_PART,
-    MOST_SOURCES,
-    MOST_ASSUMPTIONS,
-    MOST_CHANGES,
-    LEAST_WORTH,
-    FEWEST_EARTHQUAKES,
-  } = data.constants;
+  const { MOST_SOURCES, MOST_ASSUMPTIONS, MOST_CHANGES, FEWEST_EARTHQUAKES } =
+    data.constants;
   const finding = (id, values = {}) => ({ id, values });
   const number = (form) => (value) => ({ number: value, form });
   const [percent, limit, two, three, four, whole] = [
@@ -222,26 +216,28 @@ const findings = (data, core, judge) => {
           }),
         );
       }
-      if (!request.solid)
-        return [
-          ...said,
-          finding(request.narrower ? "rocks_across_narrower" : "rocks_across", {
-            width: four(100 * request.statue.width),
-          }),
-        ];
+      if (!request.solid) return [...said, planeOf(request)];
       said.push(finding(request.solid.round ? "rolls_in_space" : "moves_in_space"));
       return typeof found.planar === "number"
         ? [...said, finding("in_one_plane", { value: percent(found.planar) })]
         : said;
     }
+    function planeOf({ kind, narrower, statue: { width } }) {
+      if (kind) return finding(kind.plane);
+      const id = narrower ? "rocks_across_narrower" : "rocks_across";
+      return finding(id, { width: four(100 * width) });
+    }
     const changeOf = ({ name, values }) => finding(name, values);
     function reduction({ factor, lower, upper }) {
-      const sign = factor > 1 ? -1 : 1;
-      const ends = [lower, upper].map((end) => sign * (1 - end)).sort((a, b) => a - b);
+      const [value, least, most] = core.within(() => {
+        const found = core.zeros([3]);
+        core.call("tell_reduction", factor, lower, upper, found);
+        return [...found.values];
+      });
       return {
-        value: wholePercent(sign * (1 - factor)),
-        lower: whole(100 * ends[0]),
-        upper: whole(100 * ends[1]),
+        value: wholePercent(value),
+        lower: whole(100 * least),
+        upper: whole(100 * most),
       };
     }
     function helps() {
@@ -273,7 +269,7 @@ const findings = (data, core, judge) => {
         }),
       ];
       const named = partsOf(main.sources)
-        .filter(([, part]) => part >= LEAST_PART)
+        .filter(([, part]) => choose("names_source", part))
         .slice(0, MOST_SOURCES);
       if (named.length)
         said.push(
@@ -289,7 +285,7 @@ const findings = (data, core, judge) => {
           }),
         );
       const worth = (few ? [] : (found.decision?.measurements ?? [])).filter(
-        ({ chance }) => chance >= LEAST_WORTH,
+        ({ chance }) => choose("lists_measurement", chance),
       );
       const each = worth.map(({ source, chance }) =>
         finding("worth_measuring", {
@@ -298,23 +294,22 @@ const findings = (data, core, judge) => {
         }),
       );
       if (each.length) said.push(finding("worth", { measurements: listed(each) }));
-      const size = (keys) =>
-        keys.reduce((sum, key) => sum + (main.sources[key] ?? 0) ** 2, 0);
-      const order = assumed(request)
-        .map(([id, values, keys], i) => [
-          finding(`assumed_${id}`, values),
-          size(keys),
-          i,
-        ])
-        .sort((a, b) => b[1] - a[1] || a[2] - b[2]);
+      const order = ordered(
+        assumed(request),
+        ([, , keys]) => -widening(keys),
+        () => 0,
+      ).map(([id, values]) => finding(`assumed_${id}`, values));
       const rest = order.length - MOST_ASSUMPTIONS;
-      said.push(
-        finding("assumed", {
-          assumptions: listed(order.slice(0, MOST_ASSUMPTIONS).map(([short]) => short)),
-        }),
-      );
+      const short = order.slice(0, MOST_ASSUMPTIONS);
+      said.push(finding("assumed", { assumptions: listed(short) }));
       return rest > 0 ? [...said, finding("more_assumed", { n: rest })] : said;
     }
+    // how much sources widen the interval together
+    const widening = (keys) =>
+      core.within(() => {
+        const deviations = keys.map((key) => main.sources[key] ?? 0);
+        return core.call("sum_of_squares", core.put(deviations));
+      });
     function details() {
       const all = {
         title_level: atLevel(),
@@ -337,8 +332,9 @@ const findings = (data, core, judge) => {
   // what was not given: its text, what stands in it, and the sources that it widens;
   // the place first
   function assumed({
+    kind,
     place,
-    statue,
+    sizes: statue,
     pedestal,
     massGiven,
     restitution,
@@ -356,7 +352,7 @@ const findings = (data, core, judge) => {
         { total: three(place.total), period: two(place.period) },
         ["period", "damping"],
       ]);
-    found.push([baseOf(solid), {}, []]);
+    found.push([kind?.assumption ?? baseOf(solid), {}, []]);
     if (restitution === null && !solid?.round)
       found.push(["restitution", {}, ["restitution"]]);
     if (!depthGiven && !solid)

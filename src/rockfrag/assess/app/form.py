@@ -9,6 +9,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
+from rockfrag.assess import standing
 from rockfrag.base.units import dimension_of, split_name
 from rockfrag.config.schema import read_schema
 from rockfrag.motions.intensity import IntensityMeasure
@@ -104,6 +105,8 @@ def _field(home: tuple[str, ...], key: str, about: Mapping[str, Any]) -> Field:
         return Field(
             name, group, "quantity", whole, dimension=dimension, positive=positive
         )
+    if whole == ("stands",):
+        return Field(name, group, "choice", whole, options=("", *standing.options()))
     if "enum" in about:
         return Field(name, group, "choice", whole, options=tuple(about["enum"]))
     if about["type"] == "boolean":

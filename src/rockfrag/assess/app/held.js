@@ -1,37 +1,45 @@
 /* Wax or putty under an object, tried live: until a pad is torn off the object moves
  * with the ground, then it is free.
  *
- * The instant is that at which equation 3 of docs/holding.md is first broken, to a
- * sample; what follows is the free object, shaken from there on by what is left of the
- * motion.
+ * The core finds the sample from which on equation 3 of docs/holding.md is broken; what
+ * follows is the free object, shaken from there on by what is left of the motion.
  */
-const puttied = (constants) => {
+const puttied = (core, rowOf) => {
   "use strict";
-  const { PADS_AT, GRAVITY } = constants;
   // accelerations over which the left and the right pads of an object are torn off,
   // those of a pull of all pads [N]
-  function breaksFrom({ width, height, mass, cgHeight = null, cgOffset = 0 }, pull) {
-    const half = (PADS_AT * width) / 2;
-    const high = cgHeight ?? height / 2;
-    return [half - cgOffset, half + cgOffset].map(
-      (arm) => (GRAVITY * arm + (pull * half) / mass) / high,
-    );
-  }
-  // which pad a motion tears off first is not asked: the sample from which on one is,
-  // -1 if none is ever
-  const breaksAt = (samples, scale, [left, right]) =>
-    samples.findIndex((a) => scale * a > left || -scale * a > right);
+  const breaksFrom = (block, pull) =>
+    core.within(() => {
+      const limits = core.zeros([2]);
+      core.call("tell_pads", rowOf(block), pull, limits);
+      return [...limits.values];
+    });
+  // the first sample that tears a pad off, at each factor on a motion
+  const tornAt = (samples, scales, limits) =>
+    core.within(() => {
+      const first = core.zeros([scales.length], BigInt64Array);
+      core.call(
+        "fill_torn",
+        core.put(samples),
+        core.put(scales),
+        core.put(limits),
+        first,
+      );
+      return Array.from(first.values, Number);
+    });
 
   // as ensemble.count: outcomes of a body under motions at factors, shape (motions,
   // scales)
   function count(ensemble, body, limits, motions, scales) {
     const each = scales.length / motions.length;
     const left = [];
-    scales.forEach((scale, at) => {
-      const { samples, dt } = motions[Math.floor(at / each)];
-      const first = breaksAt(samples, scale, limits);
-      if (first >= 0)
-        left.push({ at, scale, motion: { samples: samples.subarray(first), dt } });
+    motions.forEach(({ samples, dt }, m) => {
+      const own = scales.subarray(m * each, (m + 1) * each);
+      tornAt(samples, own, limits).forEach((first, k) => {
+        if (first < 0) return;
+        const motion = { samples: samples.subarray(first), dt };
+        left.push({ at: m * each + k, scale: own[k], motion });
+      });
     });
     const overturned = new Uint8Array(scales.length);
     const rocked = new Uint8Array(scales.length);
@@ -42,7 +50,8 @@ const puttied = (constants) => {
       Float64Array.from(left, ({ scale }) => scale),
     );
     left.forEach(({ at }, i) => {
-      [overturned[at], rocked[at]] = [found.overturned[i], found.rocked[i]];
+      overturned[at] = found.overturned[i];
+      rocked[at] = found.rocked[i];
     });
     return { overturned, rocked };
   }

@@ -1,9 +1,8 @@
 /* The form: what was typed, as a request in SI, or a refusal beside its field. */
-const objects = (data) => {
+const objects = (data, core) => {
   "use strict";
   const { units, constants } = data;
   const {
-    STONE,
     DEPTHS,
     DENSITIES,
     PERIOD_FACTORS,
@@ -86,6 +85,17 @@ const objects = (data) => {
       ]),
     );
 
+  // a block after functions of the core in turn
+  const { change } = inSpace(data, core);
+  const stepped = (block, steps) =>
+    steps.reduce((made, [name, numbers]) => change(name, made, ...numbers), block);
+
+  // a kind of standing that is asked for by a word; null where its sizes say all
+  function kindOf({ stands }) {
+    if (!stands) return null;
+    return data.kinds[stands] ?? refuse("stands", "kind");
+  }
+
   // the form's texts, by field, as a request in SI
   function requestOf(form) {
     const given = givenIn(form);
@@ -98,7 +108,7 @@ const objects = (data) => {
     const statue = {
       width,
       height,
-      mass: mass ?? STONE * width * depth * height * (round ? Math.PI / 4 : 1),
+      mass: mass ?? core.call("solid_mass", width, depth, height, Boolean(round)),
       cgHeight,
       cgOffset: given.cg_offset ?? 0,
     };
@@ -106,19 +116,23 @@ const objects = (data) => {
     const density = statue.mass / (width * depth * height);
     if (given.depth !== null && !(density >= low && density <= high))
       refuse("mass", "density");
-    if (round)
-      statue.inertia = (statue.mass * (0.75 * width * width + height * height)) / 12;
+    if (round) statue.inertia = core.call("round_inertia", width, height, statue.mass);
     if (round && restitution !== null) refuse("restitution", "rolls");
+    const kind = kindOf(form);
+    if (kind && round) refuse("stands", "kind");
     const deep =
       given.depth !== null &&
       !round &&
+      !kind &&
       restitution === null &&
       data.both.records.length > 0;
     if (!deep && given.facing !== null) refuse("facing", "facing_in_plane");
     if (deep) statue.depth = depth;
     return {
       name: short(form.name ?? "") || data.texts.en.the_object,
-      statue,
+      kind,
+      sizes: statue,
+      statue: kind ? stepped(statue, kind.steps) : statue,
       narrower,
       pedestal: pedestalOf(given),
       massGiven: mass !== null,
@@ -140,7 +154,7 @@ const objects = (data) => {
     const pedestal = {
       width,
       height,
-      mass: mass ?? STONE * width * width * height,
+      mass: mass ?? core.call("solid_mass", width, width, height, false),
       massGiven: mass !== null,
     };
     checkDensity("pedestal_mass", pedestal);
@@ -241,7 +255,7 @@ const objects = (data) => {
     if (/return|tr\b|anni|periodo/.test(heading)) return (period) => 1 / period;
     if (!/poe/.test(heading)) return (rate) => rate;
     const years = Number(/poe_?(\d+)/.exec(heading)?.[1] ?? 50);
-    return (p) => (p >= 0 && p < 1 ? -Math.log1p(-p) / years : NaN);
+    return (p) => (p >= 0 && p < 1 ? core.call("rate_of", p, years) : NaN);
   }
 
   // a floor, as the building is and with each property moved
@@ -304,7 +318,7 @@ const objects = (data) => {
       refuse("storey_height", "storey");
     const material = PERIOD_FACTORS[form.material] ? form.material : "masonry";
     const height = heights[0];
-    const period = given ?? usualPeriod(PERIOD_FACTORS[material], total);
+    const period = given ?? core.call("usual_period", PERIOD_FACTORS[material], total);
     if (!(period >= data.limits.period[0] && period <= data.limits.period[1]))
       refuse("period", "period");
     const sketched = { storeys, height, period };
@@ -324,9 +338,6 @@ const objects = (data) => {
       floors: floorsOf(level, Object.fromEntries(named)),
     };
   }
-  // C_t H^(3/4), of EN 1998-1
-  const usualPeriod = (factor, height) =>
-    factor * (Math.sqrt(height) * Math.sqrt(Math.sqrt(height)));
-  return { requestOf, refuse };
+  return { requestOf, refuse, stepped };
 };
 if (typeof module !== "undefined") module.exports = objects;

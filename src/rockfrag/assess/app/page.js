@@ -22,6 +22,9 @@
   );
   if (data.own?.whole)
     FIELDS.place = FIELDS.place.filter(({ name }) => name === "floor");
+  // without a kind of standing that an extension has added there is none to choose
+  const KINDS = Object.keys(data.kinds);
+  if (!KINDS.length) FIELDS.more = FIELDS.more.filter(({ name }) => name !== "stands");
   // groups that open where they are wanted
   const CLOSED = ["more", "pedestal", "place"];
   const ALL = Object.values(FIELDS).flat();
@@ -91,7 +94,9 @@
           make(
             "select",
             {},
-            ...options.map((id) => make("option", { value: id, textContent: say(id) })),
+            ...options.map((id) =>
+              make("option", { value: id, textContent: say(id || `${name}_usual`) }),
+            ),
           ),
         flag: () => make("input", { type: "checkbox", checked: Boolean(value) }),
       }[kind]?.() ?? make("input", { type: "text", value, maxLength: 80 });
@@ -223,6 +228,8 @@
     timer = setTimeout(update, 120);
   }
   function update() {
+    // it is still starting
+    if (!bodies) return;
     const form = formTexts();
     let request;
     try {
@@ -425,6 +432,7 @@
     const typed = plain.map(({ name }) =>
       form[name] === true ? say(name) : `${say(name)}: ${form[name]}`,
     );
+    if (form.stands) typed.push(say(form.stands));
     if (form.level.trim()) typed.push(`${form.measure}: ${form.level}`);
     if (form.hazard.trim())
       typed.push(
@@ -445,6 +453,8 @@
     putty: [0, 600, 0],
   };
   const GRAVITY = data.constants.GRAVITY;
+  // distances of a wall behind the object [cm], and in metres
+  const WALLS = { 0: 0, 2: 0.02, 5: 0.05, 10: 0.1, 20: 0.2 };
   function drawSliders() {
     find("sliders").replaceChildren(
       ...Object.entries(SLIDERS).map(([id, [low, high, at]]) => {
@@ -475,22 +485,22 @@
         );
       }),
     );
-    const choice = make(
-      "select",
-      { id: "slide-fixed" },
-      ...["not_fixed", "to_pedestal", "to_floor"].map((id) =>
-        make("option", { value: id, textContent: say(id) }),
-      ),
-    );
-    choice.addEventListener("input", slide);
+    const distances = Object.keys(WALLS);
     find("sliders").append(
-      make(
-        "div",
-        { className: "field" },
-        make("label", { htmlFor: choice.id }, say("slide_fixed")),
-        choice,
+      choiceOf("fixed", ["not_fixed", "to_pedestal", "to_floor"], say),
+      choiceOf("wall", ["", ...distances], (cm) =>
+        cm ? say("at_wall", { distance: cm }) : say("no_wall"),
       ),
     );
+  }
+  function choiceOf(id, values, textOf) {
+    const options = values.map((value) =>
+      make("option", { value, textContent: textOf(value) }),
+    );
+    const choice = make("select", { id: `slide-${id}` }, ...options);
+    choice.addEventListener("input", slide);
+    const label = make("label", { htmlFor: choice.id }, say(`slide_${id}`));
+    return make("div", { className: "field" }, label, choice);
   }
   // what putty under the object that is shown holds, its ballast being none
   const pullOf = ({ statue }) => (SLIDERS.putty[2] / 100) * statue.mass * GRAVITY;
@@ -509,13 +519,18 @@
     const choice = find("slide-fixed");
     const fixed = shown.run.request.pedestal ? choice.value : "not_fixed";
     choice.closest("div").hidden = !shown.run.request.pedestal;
+    // a wall is for a box in space that stands alone
+    const { solid, pedestal } = shown.run.request;
+    const behind = find("slide-wall");
+    behind.closest("div").hidden = !solid || solid.round || Boolean(pedestal);
+    const wall = behind.closest("div").hidden ? null : (WALLS[behind.value] ?? null);
     other = null;
-    if (!(width || cg || ballast || putty || fixed !== "not_fixed"))
+    if (!(width || cg || ballast || putty || fixed !== "not_fixed" || wall !== null))
       return compare(found, null);
     const changes = { wider: 1 + width, lower: 1 - cg, ballast };
     other = {
       id: ++number,
-      request: { ...current.request, changes, fixed, putty },
+      request: { ...current.request, changes, fixed, putty, wall },
       since: performance.now(),
     };
     shakeChanged(other, found);
@@ -601,8 +616,7 @@
       scene.at = response.most;
       return paint();
     }
-    if (!place.ground)
-      building ??= floors(data, await rockfragCore(await unpacked(data.modules.core)));
+    if (!place.ground) building ??= floors(data, core);
     const ground = place.ground
       ? motion
       : building.floorMotion(place.floors[""], motion);
@@ -987,11 +1001,12 @@
     if (!other) return [];
     const fields = [...find("sliders").querySelectorAll(".field:not([hidden])")];
     const moved = fields.filter((field) => field.querySelector("input")?.value > 0);
-    const choice = find("slide-fixed");
-    const chosen = choice.selectedOptions[0];
     const words = moved.map((field) => field.querySelector("label").textContent);
-    if (!choice.closest("div").hidden && choice.selectedIndex > 0)
-      words.push(`${say("slide_fixed")}: ${chosen.textContent}`);
+    for (const choice of find("sliders").querySelectorAll("select"))
+      if (!choice.closest("div").hidden && choice.selectedIndex > 0)
+        words.push(
+          `${choice.labels[0].textContent}: ${choice.selectedOptions[0].textContent}`,
+        );
     const table = find("compared").closest("table").cloneNode(true);
     table.querySelector("tbody").removeAttribute("id");
     return [make("p", { textContent: `${say("try")}: ${words.join("; ")}.` }), table];
@@ -1013,7 +1028,8 @@
 
   // ---- the beginning
 
-  const bodies = objects(data);
+  let core = null;
+  let bodies = null;
   const lists = lists_(data, ALL);
   async function begin() {
     for (const [id, { language }] of Object.entries(data.texts))
@@ -1039,6 +1055,8 @@
       return stop("no_wasm");
     find("done").textContent = say("starting");
     try {
+      core = await rockfragCore(await unpacked(data.modules.core));
+      bodies = objects(data, core);
       await startWorkers();
     } catch (error) {
       return stop(error.message === "no_workers" ? "no_workers" : "no_wasm");

@@ -2,8 +2,9 @@
  * otherwise, and changed; its bodies are made by the core, as rockfrag.assess.standing
  * makes them.
  */
-const plans = (data, core, refuse) => {
+const plans = (data, core, form) => {
   "use strict";
+  const { refuse, stepped } = form;
   const { LOWER, BALLAST, TOLERANCES } = data.constants;
   const spatial = inSpace(data, core);
   const { change } = spatial;
@@ -70,6 +71,14 @@ const plans = (data, core, refuse) => {
         body: body(statue, null),
       });
     }
+    for (const { name, change, steps } of request.kind?.others ?? [])
+      runs.push({
+        role: "arrangement",
+        name,
+        change,
+        values: {},
+        body: body(stepped(statue, steps)),
+      });
     const helps = (name, what, values = {}) =>
       runs.push({ role: "mitigation", change: name, body: what, values });
     const plateUnder = (block) => change("make_plate", block);

@@ -42,7 +42,7 @@ const inSpace = (data, core) => {
 
   // a block as it moves in space, of an object (its own sizes); null where that is not
   // known
-  function solidOf(top, own, { round, facing }) {
+  function solidOf(top, own, { round, facing, wall = null }) {
     if (round && isSo("is_whole", top, own)) return null;
     const { width, height, mass, cgHeight, cgOffset } = top;
     const moments = core.within(() => {
@@ -55,15 +55,14 @@ const inSpace = (data, core) => {
     });
     const [depth] = moments.splice(3);
     const solid = { width, height, mass, cgHeight, cgOffset, inertia: moments };
-    return rockfragSolid(
-      round
-        ? { ...solid, round }
-        : { ...solid, depth, turn: facing % 360 ? facing * (Math.PI / 180) : 0 },
-    );
+    if (round) return rockfragSolid({ ...solid, round });
+    const turn = facing % 360 ? facing * (Math.PI / 180) : 0;
+    return { ...rockfragSolid({ ...solid, depth, turn }), wall };
   }
 
   // what is shaken in a plane, with what moves in space beside it
-  function planOf({ statue, solid }, runs) {
+  function planOf({ statue, solid: given, wall = null }, runs) {
+    const solid = { ...given, wall };
     // a round base rolls on its rim; what it is fixed to stands on another one
     const rolling = ({ height }) => (height === statue.height ? both.rolling : NaN);
     const found = runs

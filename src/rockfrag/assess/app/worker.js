@@ -16,13 +16,13 @@ async function begin({ data, modules, samples }) {
   const motions = decoded(data, await unpacked(samples));
   const core = await rockfragCore(await unpacked(modules.core));
   const made = answer(data, core);
-  const form = objects(data);
+  const form = objects(data, core);
   tools = {
     ensemble,
     made,
     motions,
     form,
-    bodies: plans(data, core, form.refuse),
+    bodies: plans(data, core, form),
     count: made.counter(
       ensemble,
       motions,

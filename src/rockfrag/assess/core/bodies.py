@@ -9,6 +9,8 @@ In: blocks [m, kg]. Out: blocks with a change. Docs: ``docs/assess.md``, "What h
 import math
 
 from rockfrag.base.arrays import Floats
+from rockfrag.base.plausible import STONE
+from rockfrag.base.units import GRAVITY
 from rockfrag.system.geometry import Shape, joined, pile_of, shape_of
 
 WIDTH, HEIGHT, MASS, INERTIA, CG_HEIGHT, CG_OFFSET, DEPTH = range(7)
@@ -22,6 +24,9 @@ LOWER = 0.8  # Factor of a lower centre of gravity
 BALLAST, BALLAST_AT = 0.25, 0.05  # Its mass and its height over those of the object
 
 PEDESTAL_HEIGHT = 0.5  # Height of another pedestal over that of the one that is there
+
+PADS_AT = 0.8
+"""Distance of pads from the middle of the base, over that of its edge [-]."""
 
 HIGHER = 1.0 + 1e-9
 """Height of a body that is another one than the object, over that of the object."""
@@ -38,6 +43,11 @@ def _shape(block: Floats) -> Shape:
 def _copy(block: Floats, found: Floats) -> None:
     for i in range(found.size):
         found[i] = block[i]
+
+
+def solid_mass(width: float, depth: float, height: float, is_round: bool) -> float:
+    """Mass of a box, or of a cylinder, of solid stone [kg]."""
+    return STONE * width * depth * height * (math.pi / 4 if is_round else 1.0)
 
 
 def stretch(
@@ -104,6 +114,22 @@ def join(lower: Floats, upper: Floats, found: Floats) -> None:
 def carries_plate(block: Floats, below: Floats) -> bool:
     """Whether a plate under a block reaches no further than what it stands on, and so may carry it further out."""
     return bool(WIDER * block[WIDTH] <= below[WIDTH])
+
+
+def tell_pads(block: Floats, force: float, limits: Floats) -> None:
+    """Accelerations over which pads of wax or putty are torn off (docs/holding.md, equation 3) [m/s²].
+
+    Parameters
+    ----------
+    block : the object
+    force : that all pads hold together [N]
+    limits : of its left and of its right pad, shape (2,)
+    """
+    shape = _shape(block)
+    half = PADS_AT * block[WIDTH] / 2
+    held = force * half / shape.mass
+    limits[0] = (GRAVITY * (half - shape.x) + held) / shape.y
+    limits[1] = (GRAVITY * (half + shape.x) + held) / shape.y
 
 
 # ---- in space

@@ -8,11 +8,17 @@ In: probabilities with limits [-], levels of shaking, counts. Out: places. Docs:
 
 import math
 
+from rockfrag.base.arrays import Floats
 from rockfrag.words.catalogue import LEAST, SURE
 
 HARDLY = 0.1  # Fraction of the motions up to which an object hardly rocks
 FEWEST_EARTHQUAKES = 5
 """Earthquakes below which no verdict is given: an interval over fewer was not validated."""
+
+LEAST_PART = 0.05
+"""Part of the variance from which a source is worth naming [-]."""
+LEAST_WORTH = 0.05
+"""Chance of deciding from which a measurement is listed [-]."""
 
 BELOW = (0.01, 0.10, 0.33)
 """Probabilities below which the steps of the scale of likelihoods lie, and up to which the next ones lie [-]."""
@@ -134,6 +140,24 @@ def reduces(factor: float, grows: bool) -> int:
     if factor == 0.0:
         return 0
     return 2 if grows else 1
+
+
+def tell_reduction(factor: float, lower: float, upper: float, found: Floats) -> None:
+    """What a factor takes off a risk, or adds to what an object bears, and its limits, rising [-]."""
+    sign = -1.0 if factor > 1.0 else 1.0
+    first, second = sign * (1.0 - lower), sign * (1.0 - upper)
+    found[0] = sign * (1.0 - factor)
+    found[1], found[2] = min(first, second), max(first, second)
+
+
+def names_source(part: float) -> bool:
+    """Whether a source is worth naming, by its part in the variance."""
+    return part >= LEAST_PART
+
+
+def lists_measurement(chance: float) -> bool:
+    """Whether a measurement is listed, by the chance that it decides."""
+    return chance >= LEAST_WORTH
 
 
 def is_worse(lower: float, helps: bool) -> bool:

@@ -105,6 +105,15 @@ def rate_of(probability, years):
 
 
 @entry_kernel
+def sum_of_squares(deviations):
+    """Sum of squares, of what widens an interval together."""
+    total = 0.0
+    for i in range(deviations.size):
+        total += deviations[i] * deviations[i]
+    return total
+
+
+@entry_kernel
 def fill_shown(kind, years, values, shown):
     """The numbers that are shown of values."""
     for d in range(values.size):

@@ -23,6 +23,9 @@ from rockfrag.assess.core.ordering import sort
 from rockfrag.base.arrays import Flags, Floats
 from rockfrag.base.exponentials import log, normal_cdf
 
+MOTION, LEVEL, FALLS = range(3)
+"""Places of what is drawn of an object, by :func:`fill_deciding`."""
+
 CLASSES = 48  # Most levels of uplift that are told apart
 ROUNDING = 1e-9  # Of logarithms of levels
 LEAST_SPREAD = 0.1  # Least standard deviation of ln capacity of the next earthquake [-]
@@ -332,6 +335,25 @@ def fill_counts_at(levels, level, allowed, rocked, overturned, found):
                 found[0] += 1.0
                 found[1] += 1.0 if rocked[m, k] else 0.0
                 found[2] += 1.0 if overturned[m, k] else 0.0
+
+
+@entry_kernel
+def fill_deciding(levels, allowed, overturned, level, found):
+    """Which motion topples an object first, and at which level; at the site's level the first one where none does.
+
+    Parameters
+    ----------
+    levels : rising, shape (levels,)
+    allowed, overturned : of each motion and level, shape (motions, levels)
+    level : of the site
+    found : the motion, the level and whether it topples then, shape (3,)
+    """
+    found[MOTION], found[LEVEL], found[FALLS] = 0.0, level, 0.0
+    for k in range(levels.size):
+        for m in range(overturned.shape[0]):
+            if allowed[m, k] and overturned[m, k]:
+                found[MOTION], found[LEVEL], found[FALLS] = m, levels[k], 1.0
+                return
 
 
 @entry_kernel

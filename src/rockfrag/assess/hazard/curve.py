@@ -20,6 +20,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from rockfrag.assess.core.estimates import rate_of
 from rockfrag.assess.core.hazards import fill_level, fill_power_law
 from rockfrag.base.arrays import Floats
 from rockfrag.base.errors import InputError
@@ -182,8 +183,8 @@ def rates_of(poes: Sequence[float], years: float, where: str) -> Floats:
         raise InputError(
             f"{where}: {wrong:g} is no probability of exceedance from 0 to 1."
         )
-    with np.errstate(divide="ignore"):
-        return np.asarray(-np.log1p(-p) / years)
+    rates = [rate_of(each, float(years)) if each < 1 else math.inf for each in p]
+    return np.asarray(rates, dtype=np.float64)
 
 
 def curve_of_one_level(

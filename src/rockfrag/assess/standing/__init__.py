@@ -10,11 +10,17 @@ from rockfrag.assess.standing.dimensions import foundation_of
 from rockfrag.assess.standing.planar import Planar
 from rockfrag.assess.standing.rolling import Round
 from rockfrag.assess.standing.scanned import Scanned
+from rockfrag.base.errors import InputError
 
-__all__ = ["KINDS", "Standing", "make_standing"]
+__all__ = ["KINDS", "Standing", "make_standing", "options"]
 
 KINDS: list[type[Standing]] = [Scanned, Round, Box, Planar]
 """Kinds of standing: the first that takes the settings makes the object."""
+
+
+def options() -> dict[str, type[Standing]]:
+    """Return the kinds that are asked for by a word, by that word."""
+    return {kind.option: kind for kind in KINDS if kind.option}
 
 
 def make_standing(settings: Mapping[str, Any], folder: Path) -> Standing:
@@ -29,6 +35,14 @@ def make_standing(settings: Mapping[str, Any], folder: Path) -> Standing:
     -------
     The object as it stands.
     """
+    asked, known = settings.get("stands"), options()
+    if asked is not None and asked not in known:
+        words = (
+            f"one of {', '.join(known)}"
+            if known
+            else "no such key, as no kind has a word"
+        )
+        raise InputError(f"key stands: expected {words}, found {asked[:40]!r}.")
     kind = next(kind for kind in KINDS if kind.takes(settings))
     found = kind.of(settings, folder, foundation_of(settings))
     found.check()

@@ -75,6 +75,9 @@ class Standing(ABC):
     under: Foundation = field(default_factory=Foundation)
     restitution_factor: float = 1.0
 
+    # Word by which key ``stands`` and the page's form ask for it, and id of its text; empty where sizes say
+    # of which kind an object is
+    option: ClassVar[str] = ""
     # Kind of body whose model error counts; of kinds without a campaign that of a cut block
     measured_as: ClassVar[str] = CUT
     # Text of how it moves in space

@@ -10,6 +10,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from rockfrag.assess.assumed import Assumption, assume, tolerances_in
+from rockfrag.assess.core.bodies import solid_mass
 from rockfrag.assess.standing.contract import OF_A_TILT_TEST, TOLERANCES, Foundation
 from rockfrag.assess.standing.holders import holders_of
 from rockfrag.assess.texts import Text
@@ -136,7 +137,7 @@ def sizes_of(settings: Mapping[str, Any]) -> Sizes:
         assumed.append(assume("depth", depth=_centimetres(depth)))
     mass = settings.get("mass_kg")
     if mass is None:
-        mass = STONE * width * depth * height * (math.pi / 4 if is_round else 1.0)
+        mass = solid_mass(width, depth, height, is_round)
         solid = "cylinder" if is_round else "box"
         about = {"mass": three(mass), "density": whole(STONE)}
         assumed.append(assume(f"mass_of_{solid}", "mass", **about))
@@ -248,7 +249,7 @@ def _pedestals(
             width, depth = depth, width
         mass = block.get("mass_kg")
         if mass is None:
-            mass = STONE * width * depth * height
+            mass = solid_mass(width, depth, height, False)
             about: dict[str, Value] = {"mass": three(mass), "density": whole(STONE)}
             what = "pedestal"
             if len(given) > 1:

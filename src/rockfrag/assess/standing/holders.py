@@ -13,6 +13,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, ClassVar, Self
 
+from rockfrag.assess.core.bodies import PADS_AT
 from rockfrag.assess.texts import Text
 from rockfrag.base.units import GRAVITY
 from rockfrag.system.body import Circle, Interval, Outline, Polygon
@@ -25,7 +26,6 @@ from rockfrag.system.system import System, hold
 from rockfrag.words.findings import Finding, finding, two
 
 UNBROKEN = 1e9  # Strength of what is tried before it is known what it must bear [N]
-PADS_AT = 0.8  # Distance of pads from the middle of the base, over that of its edge [-]
 FASTENED_AT = 0.8  # Height of a bracket or cord over that of the object [-]
 # Length of a bracket or cord, from the object's middle beyond its edge [m]
 REACH = 0.1
