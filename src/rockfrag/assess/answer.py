@@ -311,8 +311,8 @@ def assess(
 LEVELS_OF_HOLDERS = 8
 """Levels of shaking at which what may hold an object is compared with the object as it stands."""
 
-COMPILING_S = {"blocks": 3, "stacks": 8, "contacts": 20, "space": 20, "core": 14}
-"""About how long kernels compile once on a machine, by what they are for [s]."""
+COMPILING_S = {"blocks": 3, "stacks": 8, "contacts": 30, "space": 40, "core": 20}
+"""About how long kernels compile once on a machine, by what they are for [s]; a block's are 54 s together."""
 
 _CONTACTS = "rockfrag.engines.planar.integrate.integrate_cases"
 
