@@ -132,4 +132,7 @@ def _snakemake(study_file: str, arguments: Sequence[str]) -> int:
 
 if __name__ == "__main__":
     speak_utf8()
+    if sys.argv[1:2] in ([], ["-h"], ["--help"]):
+        print(__doc__)
+        sys.exit(0 if sys.argv[1:] else 2)
     sys.exit(main(sys.argv[1], sys.argv[2:]))

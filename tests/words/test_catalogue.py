@@ -26,6 +26,7 @@ PLACES = re.compile(r"\{(\w+)\}")
 NODE = shutil.which("node")
 FAMILIES = (
     r"(source|basis|measurement|assumed|why|word|meaning|shell|of|slide|live)_\w+"
+    r"|\w+_usual"
 )
 """Ids that are made of the name of what they are of."""
 

@@ -346,3 +346,11 @@ def test_a_profile_whose_executor_is_not_installed_says_what_to_install(
     assert done.returncode == 2
     assert done.stderr.count("\n") == 1
     assert "snakemake-executor-plugin-nowhere" in done.stderr
+
+
+@pytest.mark.parametrize(("arguments", "status"), [(["--help"], 0), ([], 2)])
+def test_the_command_says_what_it_is_for(arguments, status):
+    command = [sys.executable, str(ROOT / "workflow" / "run.py"), *arguments]
+    found = subprocess.run(command, capture_output=True, text=True, timeout=60)
+    assert found.returncode == status
+    assert "workflow/run.py config/thesis.yaml --cores all" in found.stdout
