@@ -30,7 +30,15 @@ from rockfrag.fragility.toppling_velocity import LIMITS, terms_of, toppling_velo
 from rockfrag.motions import one_sine
 from rockfrag.motions.intensity import pgv
 from rockfrag.simulation.closed_forms import kaneko_velocity
-from rockfrag.stages.toppling_velocity import cause_lines, pieces_of, records_of
+from rockfrag.stages.toppling_velocity import (
+    BEGIN,
+    END,
+    around_tables,
+    cause_lines,
+    main,
+    pieces_of,
+    records_of,
+)
 
 NAMES = [cause.name for cause in CAUSES]
 
@@ -172,3 +180,14 @@ def test_the_surface_is_that_of_simulations_of_bookcases_in_the_plane(records):
     assert medians[0] == pytest.approx(surface, rel=0.06)
     kaneko = [kaneko_velocity(*size) for size in sizes.tolist()]
     assert medians[0] / kaneko == pytest.approx(1.22, rel=0.06)
+
+
+def test_a_page_without_a_place_for_tables_is_refused_before_the_work(tmp_path, capsys):
+    page = tmp_path / "page.md"
+    page.write_text("# A page of somebody's\n", encoding="utf-8")
+    assert main(["--page", str(page), "--output", str(tmp_path / "found")]) == 2
+    assert "page.md: tables stand between the lines" in capsys.readouterr().err
+    assert not (tmp_path / "found").exists()
+    assert around_tables(tmp_path / "new.md") == ("", "\n")
+    page.write_text(f"before {BEGIN} old {END} after", encoding="utf-8")
+    assert around_tables(page) == ("before ", " after")

@@ -373,10 +373,22 @@ def bias_table(pieces: pd.DataFrame) -> pd.DataFrame:
     return pd.DataFrame(rows)
 
 
+def around_tables(page: Path) -> tuple[str, str]:
+    """Read what stands before and after the tables of a page; nothing of one that is not there yet."""
+    if not page.exists():
+        return "", "\n"
+    before, begun, rest = page.read_text(encoding="utf-8").partition(BEGIN)
+    _, ended, after = rest.partition(END)
+    if not begun or not ended:
+        raise InputError(
+            f"{page}: tables stand between the lines {BEGIN} and {END}; write them there, or name a new file."
+        )
+    return before, after
+
+
 def write_page(page: Path, tables: Mapping[str, pd.DataFrame]) -> None:
     """Write the tables into the page, between its marks."""
-    text = page.read_text(encoding="utf-8")
-    before, after = text.split(BEGIN)[0], text.split(END)[1]
+    before, after = around_tables(page)
     with whole_file(page) as path:
         path.write_text(
             f"{before}{BEGIN}\n\n{page_tables(tables)}\n\n{END}{after}",
@@ -433,7 +445,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
     given = parser.parse_args(arguments)
     logging.basicConfig(level=logging.INFO, format="%(message)s")
     extent = QUICK if given.quick else WHOLE
+    page = Path(given.page) if given.page else None
     try:
+        if page is not None:
+            # before what takes hours
+            around_tables(page)
         records = records_of(extent.every, Path(given.records))
         if given.cause or given.pieces:
             own = pieces_of(given.pieces) if given.pieces else BOOKCASES
@@ -452,7 +468,6 @@ def main(arguments: Sequence[str] | None = None) -> int:
         write_table(table, folder / f"{name}.csv")
     if given.surface:
         _write_json({"surfaces": rows}, Path(given.surface))
-    page = Path(given.page) if given.page else None
     figures = [folder] if page is None else [folder, page.parent / "images"]
     if page is not None:
         write_page(page, tables)
