@@ -6,6 +6,7 @@ import pytest
 import statsmodels.api as sm
 
 from rockfrag.base.errors import InputError
+from rockfrag.fragility import lognormal
 from rockfrag.fragility.batch_glm import fit_batch
 from rockfrag.fragility.estimators import fragility_of
 from rockfrag.fragility.lognormal import fit_lognormal
@@ -157,3 +158,19 @@ def test_one_motion_and_repeated_rows_are_stated():
 def test_counts_and_tables_that_cannot_be_are_refused(table, column, trials, words):
     with pytest.raises(InputError, match=words):
         observations_from_table(table, column, trials=trials, motion=None)
+
+
+def test_many_tests_are_fitted_by_cells_with_the_likelihood_of_the_tests(monkeypatch):
+    rng = np.random.default_rng(8)
+    levels = rng.choice(np.geomspace(0.2, 2.0, 25), 600)
+    fell = rng.uniform(size=600) < levels / (levels + 0.6)
+    outcomes = outcomes_of(levels, fell)
+    alone = fit_lognormal(outcomes)
+    monkeypatch.setattr(lognormal, "MOST_ROWS", 100)
+    by_cells = fit_lognormal(outcomes)
+    assert by_cells.theta == pytest.approx(alone.theta, rel=1e-9)
+    assert by_cells.n_motions == alone.n_motions
+    probability = alone.probability(levels)
+    expected = np.log(np.where(fell, probability, 1 - probability)).sum()
+    assert alone.log_likelihood == pytest.approx(expected, rel=1e-9)
+    assert by_cells.log_likelihood == pytest.approx(expected, rel=1e-9)

@@ -25,8 +25,8 @@ from .changes import Change
 ROOT = Path(__file__).resolve().parents[2]
 SOURCE = ROOT / "src" / "rockfrag"
 
-LONGEST_TEST_S = 6.0  # of the processor; slower tests are not asked
-LONGEST_TRIAL_S = 60.0
+LONGEST_TEST_S = 4.0  # of the processor; slower tests are not asked
+LONGEST_TRIAL_S = 40.0
 """Time of the processor that all tests of a mutant may take that does not change them."""
 
 
