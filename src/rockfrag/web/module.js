@@ -1,6 +1,19 @@
 /* A WebAssembly module made from the kernels, and its records by the names of their
  * fields; works in Node too.
  */
+// bytes of a text in base 64
+function rockfragBytes(text) {
+  "use strict";
+  return Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
+}
+// bytes that were packed by zlib
+async function rockfragUnpacked(packed) {
+  "use strict";
+  const stream = new Blob([packed])
+    .stream()
+    .pipeThrough(new DecompressionStream("deflate"));
+  return new Uint8Array(await new Response(stream).arrayBuffer());
+}
 async function rockfragModule(bytes) {
   "use strict";
   const { module, instance } = await WebAssembly.instantiate(bytes, {});

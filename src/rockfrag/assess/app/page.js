@@ -3,12 +3,6 @@
   "use strict";
   const find = (id) => document.getElementById(id);
   const data = JSON.parse(find("data").textContent);
-  function bytesOf(text) {
-    const letters = atob(text);
-    const bytes = new Uint8Array(letters.length);
-    for (let i = 0; i < bytes.length; i++) bytes[i] = letters.charCodeAt(i);
-    return bytes;
-  }
   const make = (tag, attributes = {}, ...children) => {
     const element = Object.assign(document.createElement(tag), attributes);
     element.append(...children);
@@ -151,12 +145,12 @@
     );
     const count = Math.max(1, Math.min(4, navigator.hardwareConcurrency ?? 2));
     const modules = {
-      fused: bytesOf(data.modules.fused),
-      plain: bytesOf(data.modules.plain),
-      space: bytesOf(data.modules.space),
-      core: bytesOf(data.modules.core),
+      fused: rockfragBytes(data.modules.fused),
+      plain: rockfragBytes(data.modules.plain),
+      space: rockfragBytes(data.modules.space),
+      core: rockfragBytes(data.modules.core),
     };
-    const samples = bytesOf(data.packed);
+    const samples = rockfragBytes(data.packed);
     const { packed, modules: _, ...rest } = data;
     return Promise.all(
       Array.from({ length: count }, () => {
@@ -699,14 +693,7 @@
     find("scene-title").textContent = scene.title();
     find("scene").setAttribute("aria-label", scene.words() + turned);
   }
-  const unpacked = async (text) =>
-    new Uint8Array(
-      await new Response(
-        new Blob([bytesOf(text)])
-          .stream()
-          .pipeThrough(new DecompressionStream("deflate")),
-      ).arrayBuffer(),
-    );
+  const unpacked = (text) => rockfragUnpacked(rockfragBytes(text));
   function paint(what = scene, canvas = find("scene")) {
     const { response, statue, pedestal, at } = what;
     const context = canvas.getContext("2d");

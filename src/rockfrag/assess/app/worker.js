@@ -3,18 +3,12 @@
  */
 let tools = null;
 async function begin({ data, modules, samples }) {
-  const unpacked = async (packed) =>
-    new Uint8Array(
-      await new Response(
-        new Blob([packed]).stream().pipeThrough(new DecompressionStream("deflate")),
-      ).arrayBuffer(),
-    );
-  const fused = await unpacked(modules.fused);
+  const fused = await rockfragUnpacked(modules.fused);
   let ensemble = WebAssembly.validate(fused) ? await rockfragEnsemble(fused) : null;
   if (!ensemble?.roundsOnce())
-    ensemble = await rockfragEnsemble(await unpacked(modules.plain));
-  const motions = decoded(data, await unpacked(samples));
-  const core = await rockfragCore(await unpacked(modules.core));
+    ensemble = await rockfragEnsemble(await rockfragUnpacked(modules.plain));
+  const motions = decoded(data, await rockfragUnpacked(samples));
+  const core = await rockfragCore(await rockfragUnpacked(modules.core));
   const made = answer(data, core);
   const form = objects(data, core);
   tools = {
@@ -26,7 +20,7 @@ async function begin({ data, modules, samples }) {
     count: made.counter(
       ensemble,
       motions,
-      await rockfragSpace(await unpacked(modules.space)),
+      await rockfragSpace(await rockfragUnpacked(modules.space)),
     ),
     plans: new Map(),
   };

@@ -109,8 +109,12 @@ def as_declared(kind: type[Standing]) -> dict[str, Any] | None:
         {"name": way.name, "change": way.change, "steps": _named(way.steps)}
         for way in kind.others
     ]
-    about = {"assumption": kind.assumption, "plane": kind.plane_text}
-    return {**about, "steps": _named(kind.steps), "others": others}
+    return {
+        "assumption": kind.assumption,
+        "plane": kind.plane_text,
+        "steps": _named(kind.steps),
+        "others": others,
+    }
 
 
 def _named(steps: Sequence[Step]) -> list[list[Any]]:

@@ -40,3 +40,11 @@ function rockfragSayer(texts) {
   return (id, values = {}) =>
     texts[id].replace(/\{(\w+)\}/g, (_, place) => values[place]);
 }
+// what a bar of outcomes says where it is not seen: a 1 for each amplitude that
+// topples, and the least of these
+function rockfragBarLabel(say, row, least) {
+  "use strict";
+  const fell = [...row].filter((one) => one === "1").length;
+  const count = row.length;
+  return fell ? say("bar_some", { fell, count, least }) : say("bar_none", { count });
+}

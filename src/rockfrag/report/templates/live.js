@@ -12,15 +12,9 @@
     ["mass", "mass", "kg"],
   ];
 
-  function bytesOf(text) {
-    const found = atob(text);
-    const bytes = new Uint8Array(found.length);
-    for (let i = 0; i < found.length; i++) bytes[i] = found.charCodeAt(i);
-    return bytes;
-  }
   const motions = data.motions.map((one) => ({
     ...one,
-    samples: new Float64Array(bytesOf(one.samples).buffer),
+    samples: new Float64Array(rockfragBytes(one.samples).buffer),
   }));
 
   // ---- what is shown: the case, and its response
@@ -444,17 +438,8 @@
     context.lineTo(x(chosen.amplitude), height - 14);
     context.stroke();
     context.lineWidth = 1;
-    const fell = [...row].filter((one) => one === "1").length;
-    find("bar").setAttribute(
-      "aria-label",
-      fell
-        ? say("bar_some", {
-            fell,
-            count: row.length,
-            least: shown(data.amplitudes[row.indexOf("1")], 3),
-          })
-        : say("bar_none", { count: row.length }),
-    );
+    const least = shown(data.amplitudes[row.indexOf("1")] ?? 0, 3);
+    find("bar").setAttribute("aria-label", rockfragBarLabel(say, row, least));
   }
   // outcomes of changed dimensions over the amplitudes, a few in each idle moment
   let computing = 0;
@@ -615,7 +600,7 @@
   }
 
   async function begin() {
-    kernel = await rockfragKernel(bytesOf(data.module));
+    kernel = await rockfragKernel(rockfragBytes(data.module));
     root.kernel = kernel;
     colours = rockfragColours();
     for (const [name, list] of [

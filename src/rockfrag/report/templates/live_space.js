@@ -11,17 +11,7 @@
     ["cgHeight", "cg_height", "cm"],
     ["mass", "mass", "kg"],
   ];
-  const bytesOf = (text) =>
-    Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
-  const unpacked = async (text) =>
-    new Uint8Array(
-      await new Response(
-        new Blob([bytesOf(text)])
-          .stream()
-          .pipeThrough(new DecompressionStream("deflate")),
-      ).arrayBuffer(),
-    );
-  const numbers = (text) => new Float64Array(bytesOf(text).buffer);
+  const numbers = (text) => new Float64Array(rockfragBytes(text).buffer);
   const motions = data.motions.map((one) => ({
     ...one,
     samples: one.samples.map(numbers),
@@ -244,17 +234,8 @@
     context.lineWidth = 2;
     context.strokeRect(x(chosen.peak), 0, 0.1, height - 15);
     context.lineWidth = 1;
-    const fell = [...bar].filter((one) => one === "1").length;
-    find("bar").setAttribute(
-      "aria-label",
-      fell
-        ? say("bar_some", {
-            fell,
-            count: bar.length,
-            least: shown(data.amplitudes[bar.indexOf("1")], 3),
-          })
-        : say("bar_none", { count: bar.length }),
-    );
+    const least = shown(data.amplitudes[bar.indexOf("1")] ?? 0, 3);
+    find("bar").setAttribute("aria-label", rockfragBarLabel(say, bar, least));
   }
   function redraw() {
     drawScene();
@@ -370,7 +351,7 @@
     requestAnimationFrame(frame);
   }
   async function begin() {
-    space = await rockfragSpace(await unpacked(data.module));
+    space = await rockfragSpace(await rockfragUnpacked(rockfragBytes(data.module)));
     root.space = space;
     colours = rockfragColours();
     view = rockfragView(find("scene"), drawScene);
