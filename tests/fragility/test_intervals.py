@@ -103,6 +103,12 @@ def test_capacities_in_one_step_give_limits_of_the_step_and_a_beta_from_zero():
     assert "in one step of the amplitude" in row["warnings"]
 
 
+def test_limits_of_tests_that_fall_in_one_step_are_the_ends_of_the_step():
+    data = observations_from_table(ida_of([0.3, 0.3, 0.3, 0.3], STEPS), "amplitude_g")
+    step = STEPS[STEPS <= 0.3].max(), STEPS[STEPS > 0.3].min()
+    assert interval_over_motions(data).theta == pytest.approx(step)
+
+
 def without_limits(groups, slope, said=("There are no limits.",)):
     """Interval of groups that agree within a step, of a curve with a slope."""
     return Interval(
