@@ -50,7 +50,7 @@ def _eliminate_contact(p, w, k, on_body):
 
     Equation 3' of ``docs/contact.md``: A λ = r - C e - C' M⁻¹ F, with K the compliance of body k and all above, e
     its motion by forces above, M the mass below, F the force at its base, C and D rows and columns at body k, C'
-    and D' at the body below. ``w.gain`` has g = A⁻¹ (r - C e) and ``w.shared`` H = A⁻¹ C' M⁻¹, by which λ = g - H F.
+    and D' at the body below. So λ = g - H F: ``w.gain`` has g = A⁻¹ (r - C e), ``w.shared`` H = A⁻¹ C' M⁻¹.
     """
     size = w.unknowns[k]
     if k == p.count - 1:
@@ -133,9 +133,9 @@ def _hang_on_below(p, w, k):
 def _reduce(a, size, width):
     """Solve at most three equations by Gauss's elimination; False if they are singular.
 
-    Row i of ``a`` has the coefficients of equation i in columns 0 to 2 and its right-hand sides from column 3 to
-    ``width`` - 1, which become the solutions. One and two equations exchange rows for the larger pivot; three do not:
-    they are those of a contact that sticks, symmetric but for what slides above.
+    Row i of ``a`` has the coefficients of equation i in columns 0 to 2, and its right-hand sides from column 3 to
+    ``width`` - 1, which become the solutions. Two equations exchange rows for the larger pivot; three do not: they
+    are those of a contact that sticks, symmetric but for what slides above.
     """
     if size == 1:
         return _reduce_one(a, width)
@@ -159,7 +159,7 @@ def _reduce_one(a, width):
 
 @inlined_kernel
 def _reduce_two(a, width):
-    """Solve two equations as :func:`_reduce` does: row i has the larger pivot, and row j loses its first unknown."""
+    """Solve two equations as :func:`_reduce` does; row i has the larger pivot."""
     swap = abs(a[1, 0]) > abs(a[0, 0])
     i, j = (1, 0) if swap else (0, 1)
     b00, b01, b10, b11 = a[i, 0], a[i, 1], a[j, 0], a[j, 1]

@@ -266,8 +266,8 @@ def _step(p, w, interval, closing, kept):
     if w.idle <= MOST_IDLE or at_end < -LARGEST_FAILURE:
         when = _contact_event_in_step(p, w, at_end, stretch)
     if w.idle > MOST_IDLE:
-        # contact events that do not let time go on: leave them behind, or end them by an impulse where a step would
-        # not be a small one; if many do not help, the step is taken all the same
+        # contact events that do not let time go on: leave them behind, or end them by an impulse where a step
+        # would not be a small one; if many do not help, the step is taken all the same
         w.idle = 0
         w.forced += 1
         if w.jolts == MOST_JOLTS:
@@ -343,7 +343,7 @@ def _accurate_step(p, w, interval, keeps):
 
 @kernel
 def _end_step(p, w, part):
-    """Take the end of a step without a contact event as the state; ``part``: the step's fraction of the interval."""
+    """Take the end of a step without a contact event as the state; the step is ``part`` of the interval."""
     copy(p, w.q1, w.q)
     copy(p, w.v1, w.v)
     copy(p, w.a1, w.a)
@@ -593,7 +593,7 @@ def _change_contact(p, w, k, now):
 
 @kernel
 def _read_touching(p, w, k, leaves):
-    """Read which ends of contact k touch: closed ones and those whose gap is shut, but for the end that ``leaves``."""
+    """Read which ends of contact k touch: closed ones and those without a gap, but for the end ``leaves``."""
     for end in range(2):
         w.touching[k, end] = w.closed[k, end]
         if w.closed[k, end] == 0:

@@ -109,7 +109,7 @@ OUTCOME = np.dtype(
         *fields("largest_impulse largest_force breaking_time stroke", MOST_CONSTRAINTS),
     ]
 )
-"""What is told of a case."""
+"""What became of a case."""
 
 WORK = np.dtype(
     [
@@ -323,7 +323,17 @@ def working_memory() -> np.void:
 def posed(
     p: np.void, theta: Sequence[float], omega: Sequence[float]
 ) -> NDArray[np.float64]:
-    """Coordinates and velocities, shape (2, 3 MOST), of bodies turned about the corners that this leaves them."""
+    """Coordinates and velocities of a column each of whose bodies is turned about a corner on the body below.
+
+    Parameters
+    ----------
+    p : record ``BODY`` of the column
+    theta, omega : rotation [rad] and angular velocity [rad/s] of each body, clockwise; their sign sets the corner
+
+    Returns
+    -------
+    x, y [m] and θ [rad] of each body, and their rates, shape (2, 3 MOST).
+    """
     start = np.zeros((2, 3 * MOST))
     standing = p["standing"]
 
