@@ -7,9 +7,9 @@ large ones.
 In: masses [kg], stiffnesses [N/m], a motion of the ground [m/s²]. Out: modes, and motions of floors.
 Theory: ``docs/building.md``, "Elastic model"; Chopra, ch. 10 and 13.
 
-The functions without an underscore are entries of the page's module, which takes numbers and arrays by their place
-and gives nothing back: they fill what they are given. In Python call :func:`rockfrag.building.response.find_modes`,
-:func:`rockfrag.building.response.respond_elastically` or :func:`rockfrag.building.stiffnesses_for_period`.
+The functions without an underscore are entries of the page's module. It takes numbers and arrays by their place
+and gives nothing back, so they fill what they are given. In Python call ``find_modes`` and ``respond_elastically``
+of :mod:`rockfrag.building.response`, or :func:`rockfrag.building.stiffnesses_for_period`.
 """
 
 import math
@@ -27,7 +27,7 @@ SMALL = 1e-17  # Of the root of both diagonal numbers: what is beside them is no
 def _rotate(a: Floats, v: Floats, p: int, q: int) -> None:
     """Turn rows and columns p and q of a symmetric matrix ``a`` so that a[p, q] vanishes.
 
-    The columns of ``v`` turn likewise. The smaller angle is taken (Golub and Van Loan, Matrix Computations, 8.5.2).
+    The columns of ``v`` turn likewise, by the smaller of both angles (Golub and Van Loan, 8.5.2).
     """
     theta = (a[q, q] - a[p, p]) / (2.0 * a[p, q])
     t = 1.0 / (abs(theta) + math.sqrt(1.0 + theta * theta))
