@@ -572,7 +572,7 @@ def _arrangements(object_: Standing, plan: Plan) -> dict[str, Body]:
 def _changes_alike(
     object_: Standing, arranged: Mapping[str, Body]
 ) -> dict[Finding, str]:
-    """Changes that make of the object what one of its arrangements is, with the name of that arrangement."""
+    """Changes after which the object stands as one of its arrangements does, with that arrangement's name."""
     return {
         name: arrangement
         for name, body in object_.changes().items()

@@ -183,11 +183,17 @@ class SiteVelocity:
     line: Floats | None = None
 
     @classmethod
-    def given(cls, level: Level, between_earthquakes: float) -> "SiteVelocity":
-        """PGV that is given with a level; of levels that are not known exactly that which comes with each.
+    def from_level(cls, level: Level, between_earthquakes: float) -> "SiteVelocity":
+        """Take the PGV that a level states, as it comes with the stated value of the measure.
 
-        Of two normal logarithms the one has, where the other is known, a mean that is linear in it and a smaller
-        spread.
+        A level that is not known exactly has ln measure and ln PGV that are normal and correlated. At another
+        level of the measure the mean of ln PGV is then moved in proportion to ln measure, and its standard
+        deviation is √(1 - ρ²) of the stated one.
+
+        Parameters
+        ----------
+        level : value of the measure, its PGV [cm/s], and how well both are known
+        between_earthquakes : standard deviation of ln PGV from one earthquake to the next [-]
         """
         ratio = math.log(level.pgv / level.value / VELOCITY_PER_G)
         about = level.spread
@@ -200,28 +206,32 @@ class SiteVelocity:
         return cls(math.hypot(between_earthquakes, left), ratio, slope, level.value)
 
     def log_ratio(self, levels: Floats) -> Floats:
-        """Mean of ln ratio at levels of the measure, of their shape.
-
-        If ln PGV is normal about a line in ln measure with the standard deviation s, and the rate of PGV falls
-        with the exponent k, the level of PGV at a rate lies k s²/2 above the mean of ln PGV at the measure's level
-        of that rate.
-        """
+        """Mean of ln (PGV over the measure [s]) at levels of the measure, of their shape."""
         if self.line is not None:
             wanted = np.zeros(levels.size)
             fill_wanted(levels, self.line, wanted)
             return wanted
-        if not self.curves:
-            return self.constant + self.slope * np.log(levels / self.at)
+        if self.curves:
+            return self._log_ratio_by_curves(levels)
+        return self.constant + self.slope * np.log(levels / self.at)
+
+    def _log_ratio_by_curves(self, levels: Floats) -> Floats:
+        """Mean of ln (PGV over the measure [s]) with which both hazard curves agree.
+
+        If ln PGV is normal with the standard deviation s at a given level of the measure, and the rate of PGV
+        falls as PGV⁻ᵏ, the PGV of a rate lies k s²/2 above that mean, by logarithm (``docs/assess.md``, "Two
+        measures").
+        """
         first, velocity = self.curves
         rates = first.rate(levels)
         logs = [
             np.log([velocity.level(rate * factor) for rate in rates])
             for factor in (1.0, math.exp(-1), math.e)
         ]
-        slope = 2.0 / (logs[1] - logs[2])
-        return np.asarray(
-            logs[0] - slope * self.spread**2 / 2 - np.log(levels * VELOCITY_PER_G)
-        )
+        # k, from PGV at a rate e times smaller and e times larger
+        exponent = 2.0 / (logs[1] - logs[2])
+        mean = logs[0] - exponent * self.spread**2 / 2
+        return np.asarray(mean - np.log(levels * VELOCITY_PER_G))
 
 
 @dataclass(frozen=True)
@@ -356,7 +366,9 @@ def find_conversion(
         return None
     logs = motions.log_ratios(measure)
     known, spread = _site_velocity(motions, measure, site)
-    weight, error, *coefficients = _weight(outcomes, logs, jackknifes=known is not None)
+    weight, error, *coefficients = _fit_of_velocity(
+        outcomes, logs, jackknifes=known is not None
+    )
     if math.isnan(weight):
         return None
     shift = weight * spread
@@ -402,7 +414,7 @@ def _site_velocity(
         return SiteVelocity(relation.scatter, curves=curves), 0.0
     if math.isfinite(level.pgv):
         # of a hazard curve other levels count too, with velocities of their own
-        return SiteVelocity.given(level, own if curves else 0.0), 0.0
+        return SiteVelocity.from_level(level, own if curves else 0.0), 0.0
     if math.isfinite(level.sa_1s):
         spectrum = VelocityBySpectrum.of(motions, measure)
         within = math.sqrt(1 - OF_THE_SITE) * spectrum.scatter
@@ -422,8 +434,13 @@ def _site_velocity(
     return SiteVelocity(own, relation.mean(given)), relation.unknown(given)
 
 
-def _weight(outcomes: ObjectOutcomes, logs: Floats, *, jackknifes: bool) -> list[float]:
-    """Weight of ln ratio, its standard error, and the coefficients; a weight of NaN where nothing follows."""
+def _fit_of_velocity(
+    outcomes: ObjectOutcomes, logs: Floats, *, jackknifes: bool
+) -> list[float]:
+    """Weight of ln ratio, its standard error if ``jackknifes``, and three coefficients (``fill_weight``) [-].
+
+    The weight is NaN where the outcomes allow no fit.
+    """
     levels = outcomes.intensity_levels
     numbers = earthquake_numbers(outcomes.earthquakes).astype(np.int64)
     tests, found = np.zeros((logs.size * MOST_LEVELS, MEMORY)), np.zeros(5)

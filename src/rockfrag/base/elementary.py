@@ -171,14 +171,17 @@ def acos(x: float) -> float:
     """
     if not abs(x) <= 1.0:
         return math.nan
+    # 1 - x² = rest + low_rest, rounded and what rounding leaves
     square, low = _product(x, x)
-    rest, e = _sum(1.0, -square)
+    rest, low_rest = _sum(1.0, -square)
     if rest <= 0.0:
         return 0.0 if x > 0.0 else _PI
-    e -= low
-    side = math.sqrt(rest)
-    square, low = _product(side, side)
-    return _direction(side, ((rest - square) - low + e) / (2.0 * side), x, 1.0)
+    low_rest -= low
+    # the sine is its root; one step of Newton's gives what rounding leaves of that
+    sine = math.sqrt(rest)
+    square, low = _product(sine, sine)
+    low_sine = ((rest - square) - low + low_rest) / (2.0 * sine)
+    return _direction(sine, low_sine, x, 1.0)
 
 
 def _direction(up: float, up_low: float, x: float, side: float) -> float:

@@ -6,6 +6,10 @@ large ones.
 
 In: masses [kg], stiffnesses [N/m], a motion of the ground [m/s²]. Out: modes, and motions of floors.
 Theory: ``docs/building.md``, "Elastic model"; Chopra, ch. 10 and 13.
+
+The functions without an underscore are entries of the page's module. It takes numbers and arrays by their place
+and gives nothing back, so they fill what they are given. In Python call ``find_modes`` and ``respond_elastically``
+of :mod:`rockfrag.building.response`, or :func:`rockfrag.building.stiffnesses_for_period`.
 """
 
 import math
@@ -21,7 +25,10 @@ SMALL = 1e-17  # Of the root of both diagonal numbers: what is beside them is no
 
 @register_jitable
 def _rotate(a: Floats, v: Floats, p: int, q: int) -> None:
-    """Turn rows and columns p and q of a symmetric matrix so that nothing stands where they cross."""
+    """Turn rows and columns p and q of a symmetric matrix ``a`` so that a[p, q] vanishes.
+
+    The columns of ``v`` turn likewise, by the smaller of both angles (Golub and Van Loan, 8.5.2).
+    """
     theta = (a[q, q] - a[p, p]) / (2.0 * a[p, q])
     t = 1.0 / (abs(theta) + math.sqrt(1.0 + theta * theta))
     if theta < 0.0:
@@ -40,9 +47,17 @@ def _rotate(a: Floats, v: Floats, p: int, q: int) -> None:
 
 
 @register_jitable
-def _solve(masses: Floats, stiffnesses: Floats, a: Floats, v: Floats) -> None:
-    """Leave the eigenvalues of M^-1/2 K M^-1/2 on the diagonal of a matrix, and its vectors in columns."""
+def _solve_chain(masses: Floats, stiffnesses: Floats, a: Floats, v: Floats) -> None:
+    """Solve the undamped eigenproblem of a chain by Jacobi's rotations.
+
+    Parameters
+    ----------
+    masses, stiffnesses : of each floor [kg] and storey [N/m] from below, shape (n,)
+    a : squared circular frequencies on its diagonal, in no order [1/s²], shape (n, n)
+    v : in its columns their shapes times the root of the masses, shape (n, n)
+    """
     n = masses.size
+    # M^-1/2 K M^-1/2, with K of three diagonals
     for i in range(n):
         for j in range(n):
             v[i, j] = 1.0 if i == j else 0.0
@@ -80,7 +95,7 @@ def fill_modes(
     found : Γ of each mode, and its effective mass over the total mass [-], shape (2, n)
     """
     n, total = masses.size, 0.0
-    _solve(masses, stiffnesses, a, v)
+    _solve_chain(masses, stiffnesses, a, v)
     for mode in range(n):
         # the least of those that are left
         least = -1
@@ -120,7 +135,7 @@ def fill_stiffnesses(
     """
     for i in range(found.size):
         found[i] = 1.0 / heights[i]
-    _solve(masses, found, a, v)
+    _solve_chain(masses, found, a, v)
     least = a[0, 0]
     for i in range(found.size):
         least = min(least, a[i, i])

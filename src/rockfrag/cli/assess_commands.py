@@ -332,13 +332,17 @@ def settings_of(options: argparse.Namespace) -> dict[str, Any]:
                 "and --material."
             )
         if name == "storey-height":
-            part, value = ("storey_heights", value) if value[1:] else (part, value[0])
-        found.setdefault(whole, {})[part] = _MADE.get(name, lambda given: given)(value)
+            # one height is that of every storey
+            is_list = len(value) > 1
+            part, value = ("storey_heights", value) if is_list else (part, value[0])
+        if name in _MADE:
+            value = _MADE[name](value)
+        found.setdefault(whole, {})[part] = value
     return found
 
 
 _WHOLE = {"mesh": "mesh", "records": "record"}
-"""Options without which there is nothing of which the others of their key tell more."""
+"""The option that each of these keys needs before its other options say anything."""
 
 
 def _seconds(period: str) -> float:
@@ -351,7 +355,7 @@ _MADE: dict[str, Callable[[Any], Any]] = {
     "on-floor": lambda _: "floor",
     "period": _seconds,
 }
-"""Values as a file has them, of options whose values are others."""
+"""What turns the value of an option into that of a file, where they differ."""
 
 
 def _pedestals(given: Sequence[Sequence[str]]) -> Any:

@@ -436,13 +436,16 @@ def _how_specific(part: str) -> int:
 
 
 def _names_all(phrases: Sequence[_Phrase], part: str) -> bool:
-    """Whether a part that is named last is that of all: H 180 cm; W 60 cm (with base)."""
-    named = [each.word for phrase in phrases if phrase.part for each in phrase.lengths]
-    before = [
-        each.word for phrase in phrases if not phrase.part for each in phrase.lengths
-    ]
-    of_whole = {phrase.part for phrase in phrases} == {"", part} and part not in EACH
-    return of_whole and part not in PIECES_OF_IT and not set(named) & set(before)
+    """Whether a part that only the last lengths name is that of all lengths: H 180 cm; W 60 cm (with base).
+
+    It is not where these lengths repeat one of those before: H 180 cm; H 190 cm (with base).
+    """
+    words: dict[bool, set[str]] = {True: set(), False: set()}
+    for phrase in phrases:
+        words[bool(phrase.part)].update(each.word for each in phrase.lengths)
+    is_only_part = {phrase.part for phrase in phrases} == {"", part}
+    is_whole = part not in EACH and part not in PIECES_OF_IT
+    return is_only_part and is_whole and words[True].isdisjoint(words[False])
 
 
 def _rank_of_part(part: str) -> int:

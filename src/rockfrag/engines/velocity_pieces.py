@@ -81,7 +81,15 @@ def _between(now: float, end: float, dt: float) -> Iterator[tuple[float, float]]
 def _piece(
     case: Case, begin: float, end: float, jump: Jump | None, free: int = 0
 ) -> Piece:
-    """A part of the motion; more than one sampling interval holds whole samples."""
+    """A part of the motion of a case; if it is longer than a sampling interval, it holds whole samples.
+
+    Parameters
+    ----------
+    case : the case
+    begin, end : of the part [s]
+    jump : of the base's velocity at its beginning, if there is one
+    free : samples without shaking that follow it
+    """
     motion = case.motion
     count = max(1, round((end - begin) / motion.dt))
     at = np.linspace(begin, end, count + 1)

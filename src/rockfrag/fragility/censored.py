@@ -173,7 +173,7 @@ def bracket_interval(
     -------
     The :class:`rockfrag.fragility.intervals.Interval`.
     """
-    over, notes = intervals.population(brackets, over)
+    over, notes = intervals.choose_groups(brackets, over)
     codes, names = pd.factorize(pd.Series(brackets.groups(over)))
     low, high = _logs(brackets)
     groups = len(names)
@@ -330,7 +330,7 @@ def _newton(low: Floats, high: Floats, weights: Floats) -> _Fits:
     low, high : logarithms of the bounds, shape (n,)
     weights : shape (batch, n)
     """
-    coefficients = _moments(low, high, weights)
+    coefficients = _first_coefficients(low, high, weights)
     at = _likelihood(low, high, weights, coefficients)
     active = np.arange(len(weights))
     for _ in range(_MOST_STEPS):
@@ -363,8 +363,16 @@ def _newton(low: Floats, high: Floats, weights: Floats) -> _Fits:
     return _Fits(coefficients, -at.hessian, at.value)
 
 
-def _moments(low: Floats, high: Floats, weights: Floats) -> Floats:
-    """Start of Newton's method, (batch, 2): mean and spread of the middles, or of the finite ends."""
+def _first_coefficients(low: Floats, high: Floats, weights: Floats) -> Floats:
+    """Coefficients from which Newton's method starts, -mean/spread and 1/spread, shape (batch, 2).
+
+    Mean and spread are those of the middles of the intervals, or of the finite end of half-open ones.
+
+    Parameters
+    ----------
+    low, high : ends of the intervals of ln capacity, infinite ones too, shape (tests,)
+    weights : of each test in each sample of the bootstrap, shape (batch, tests)
+    """
     finite_low, finite_high = np.isfinite(low), np.isfinite(high)
     middle = np.where(
         finite_low & finite_high, 0.5 * (low + high), np.where(finite_low, low, high)

@@ -164,9 +164,16 @@ def count_ida(
 class _Counts:
     """Tests and those that overturned, by block and cell of one measure.
 
-    ``block`` is of each motion or earthquake, whichever is resampled, shape (groups,); ``edges`` are the ends of
-    the cells in ln IM, (cells + 1,); ``scale`` is ln IM of each motion at 1 g, (motions,), to which each amplitude
-    adds its ``rise``, (n,).
+    Attributes
+    ----------
+    column, here : the measure, and the motions of the floor by their rows, shape (used,)
+    of_motion : place of each motion among those used, -1 for others, shape (motions,)
+    scale : ln IM of each motion used at a peak of 1 g, shape (used,)
+    rise : what each amplitude adds to it, shape (amplitudes,)
+    block, row : of each group that is resampled, a motion or an earthquake, shape (groups,); of each motion used
+    edges : ends of the cells in ln IM, shape (cells + 1,)
+    trials, fell : numbers of tests, and of those that overturned, shape (blocks, cells)
+    total : sum of ln IM of the tests of each cell, shape (cells,)
     """
 
     def __init__(
@@ -196,7 +203,7 @@ class _Counts:
         self.row = self.block[group]
         low = self.scale.min() + self.rise[0]
         high = self.scale.max() + self.rise[-1]
-        # a hair more on either side, so that rounding puts no test outside
+        # a little more on either side, so that rounding puts no test outside
         self.edges = np.linspace(low - 1e-9, high + 1e-9, CELLS + 1)
         shape = int(self.block.max()) + 1, CELLS
         self.trials, self.fell = np.zeros(shape), np.zeros(shape)
@@ -212,7 +219,7 @@ class _Counts:
         flat = self.row[own, np.newaxis] * CELLS + cell
         self.trials += self._by_cell(flat.ravel())
         self.fell += self._by_cell(flat[overturned[used]])
-        # one after the other, so that parts give the sum of the whole
+        # ln IM are added to the sum so far one by one, so that parts of a table give the bits of the whole
         terms = np.append(self.total, log_im)
         self.total[:] = np.bincount(np.append(np.arange(CELLS), cell), terms)
 

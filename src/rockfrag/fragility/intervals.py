@@ -79,8 +79,18 @@ class Interval:
         return special.ndtr(centre - half), special.ndtr(centre + half)
 
 
-def population(tests: Grouped, over: Over | None) -> tuple[Over, tuple[str, ...]]:
-    """Choose what to leave out, and warn where motions stand in for the few earthquakes they share."""
+def choose_groups(tests: Grouped, over: Over | None) -> tuple[Over, tuple[str, ...]]:
+    """Choose whether motions or earthquakes are left out, one at a time, to see how far estimates vary.
+
+    Parameters
+    ----------
+    tests : with their motions and earthquakes
+    over : what the user asks for; None: earthquakes, where some have several motions
+
+    Returns
+    -------
+    ``motion`` or ``earthquake``, and warnings: that motions which share an earthquake vary too little.
+    """
     motions, earthquakes = tests.n_motions, tests.n_earthquakes
     if over is None:
         over = "earthquake" if earthquakes < motions else "motion"
@@ -147,7 +157,7 @@ def interval_over_motions(
     -------
     The :class:`Interval`, with limits of median and dispersion.
     """
-    over, notes = population(outcomes, over)
+    over, notes = choose_groups(outcomes, over)
     fit, groups = outcome_fitter(outcomes, over)
     found = resampled_interval(fit, groups, over=over, notes=notes, level=level)
     apart = separated(

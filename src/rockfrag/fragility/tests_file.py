@@ -62,6 +62,31 @@ def read_tests(
     A table with ``motion``, ``earthquake`` (text), ``overturned`` (0 or 1), the measures (above zero) and the
     numbers ``given``.
     """
+    recipes = _recipes_of(measures)
+    labels = [name for name in (motion, earthquake) if name is not None]
+    kinds = dict.fromkeys(labels, "label") | {overturned: "outcome"}
+    for recipe in recipes.values():
+        kinds |= {part: "positive" for part in recipe if isinstance(part, str)}
+    kinds |= {name: "number" for name in given if name not in kinds}
+    raw = read_columns(path, kinds)
+    motions = (
+        raw[motion] if motion is not None else [f"row {row + 2}" for row in raw.index]
+    )
+    columns: dict[str, object] = {
+        "motion": motions,
+        "earthquake": motions if earthquake is None else raw[earthquake],
+        "overturned": raw[overturned],
+    }
+    columns |= {name: product_of(raw, recipe) for name, recipe in recipes.items()}
+    columns |= {name: raw[name] for name in given}
+    table = pd.DataFrame(columns)
+    for name in recipes:
+        _warn_of_peaks(table, name, Path(path).name)
+    return table
+
+
+def _recipes_of(measures: Measures) -> dict[str, Sequence[str | float]]:
+    """Columns and numbers whose product is each measure; names without a unit are refused."""
     recipes: dict[str, Sequence[str | float]] = (
         dict(measures)
         if isinstance(measures, Mapping)
@@ -79,29 +104,7 @@ def read_tests(
                 f"measures, {name!r}: the name does not tell a unit; end it with one, such as pga_g, "
                 f"pgv_cm_s or sa_0_3s_g (write {name}_g: [{name}] for a column of the file in g)."
             )
-    factors = [
-        part for recipe in recipes.values() for part in recipe if isinstance(part, str)
-    ]
-    labels = [name for name in (motion, earthquake) if name is not None]
-    kinds = dict.fromkeys(labels, "label") | {overturned: "outcome"}
-    kinds |= dict.fromkeys(factors, "positive")
-    raw = read_columns(
-        path, kinds | {name: "number" for name in given if name not in kinds}
-    )
-    motions = (
-        raw[motion] if motion is not None else [f"row {row + 2}" for row in raw.index]
-    )
-    earthquakes = motions if earthquake is None else raw[earthquake]
-    about = {
-        "motion": motions,
-        "earthquake": earthquakes,
-        "overturned": raw[overturned],
-    }
-    products = {name: product_of(raw, recipe) for name, recipe in recipes.items()}
-    table = pd.DataFrame({**about, **products, **{name: raw[name] for name in given}})
-    for name in recipes:
-        _warn_of_peaks(table, name, Path(path).name)
-    return table
+    return recipes
 
 
 def _warn_of_peaks(table: pd.DataFrame, name: str, source: str) -> None:

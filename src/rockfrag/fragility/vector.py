@@ -388,25 +388,41 @@ def check_vector(
     bins, values = observations.cells(eta, BINS)
     bins = bins if values.size > 1 else np.zeros(eta.size, dtype=np.intp)
     motions = pd.factorize(pd.Series(observations.labels(table, motion, "table")))[0]
+    fell = np.bincount(bins, outcome).astype(np.float64)
+    expected = np.bincount(bins, special.ndtr(eta)).astype(np.float64)
+    number = np.bincount(bins).astype(np.float64)
+    own = binned_deviance(fell, expected, number)
+    # each motion has one capacity, in standard deviations of ln capacity, by which all of its tests fall or stand
     capacity = np.random.default_rng(seed).normal(
         size=(replicates, int(motions.max()) + 1)
     )
-    ones = np.ones(eta.size)
-
-    def by_bin(values: Floats) -> Floats:
-        return np.asarray(np.bincount(bins, values), dtype=np.float64)
-
-    own = binned_deviance(by_bin(outcome), by_bin(special.ndtr(eta)), by_bin(ones))
-    at_once = max(MOST_DRAWN // eta.size, 1)
-    parts = np.split(capacity, range(at_once, replicates, at_once))
-    simulated = np.concatenate(
-        [
-            refitted_deviance(design, 1.0 * (eta > part[:, motions]), ones, bins)
-            for part in parts
-        ]
-    )
+    simulated = _simulated_deviances(design, eta, bins, capacity, motions)
     p_fit = float((1 + np.sum(simulated >= own - 1e-9)) / (1 + simulated.size))
     return VectorChecks(p_fit, _surface_table(fit, logs, outcome))
+
+
+def _simulated_deviances(
+    design: Floats,
+    eta: Floats,
+    bins: NDArray[np.intp],
+    capacity: Floats,
+    motions: NDArray[np.intp],
+) -> Floats:
+    """Deviances of the bins when the fit is true, each after a fit of its own, shape (replicates,).
+
+    Parameters
+    ----------
+    design, eta : design matrix, shape (tests, coefficients), and fitted probit of each test [-]
+    bins, motions : of each test
+    capacity : of each motion in standard deviations, shape (replicates, motions)
+    """
+    at_once = max(MOST_DRAWN // eta.size, 1)
+    found = []
+    for begin in range(0, len(capacity), at_once):
+        falls = eta > capacity[begin : begin + at_once, motions]
+        overturned = falls.astype(np.float64)
+        found.append(refitted_deviance(design, overturned, np.ones(eta.size), bins))
+    return np.concatenate(found)
 
 
 def _surface_table(

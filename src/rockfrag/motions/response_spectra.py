@@ -483,7 +483,18 @@ def _integrate(
     parts: int,
     x: Floats,
 ) -> None:
-    """Take all lanes through a motion and ``quiet`` samples after it; the peaks are in the table then."""
+    """Take all lanes through a motion and the quiet time after it, and leave their peaks in their table.
+
+    A first pass notes the largest displacement at the ends of steps, by stretches of ``LOOK_EVERY`` samples. A
+    second one goes again through the stretches that may hold the peak, and looks for it between the ends too.
+
+    Parameters
+    ----------
+    acceleration, to_come : of the ground, and its largest magnitude from each sample on [m/s²], shape (n,)
+    quiet : samples after the motion
+    step, parts : length of a step [s], and how many a sample has
+    x : table of the oscillators (:func:`_column`), shape (rows × LANES,)
+    """
     end = acceleration.size - 1 + quiet
     ground = np.empty((2, LOOK_EVERY * parts))
     # of each stretch the state at its beginning and its largest displacement

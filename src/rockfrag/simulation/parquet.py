@@ -120,18 +120,21 @@ def stream_overturns(
 
 
 def _groups(most: int, shape: tuple[int, int, int]) -> Iterator[tuple[slice, ...]]:
-    """Cut systems × motions × scales, in this order, into boxes of at most so many cases."""
+    """Cut cases of a shape (systems, motions, scales) into boxes of at most ``most`` cases, in their order.
+
+    A box has all scales of a motion if these fit, then as many motions, then as many systems as fit.
+    """
     _, n_motions, n_scales = shape
-    motions, systems = most // max(1, n_scales), most // max(1, n_motions * n_scales)
-    steps = (
-        max(1, each) for each in (systems, min(motions, n_motions), min(most, n_scales))
+    sizes = (
+        max(1, most // max(1, n_motions * n_scales)),
+        max(1, min(n_motions, most // max(1, n_scales))),
+        max(1, min(n_scales, most)),
     )
-    return itertools.product(
-        *(
-            [slice(i, i + step) for i in range(0, count, step)]
-            for count, step in zip(shape, steps, strict=True)
-        )
-    )
+    sides = [
+        [slice(i, i + size) for i in range(0, count, size)]
+        for count, size in zip(shape, sizes, strict=True)
+    ]
+    return itertools.product(*sides)
 
 
 # --------------------------------------------------------------------------- histories

@@ -34,7 +34,7 @@ WRITTEN = "motions/written"
 def run(job: Job[Study]) -> Results:
     """Yield the motions as read, on the ground and on every floor, and their intensity measures."""
     study = job.study
-    rows, felt, left_out = _felt(job)
+    rows, felt, left_out = _usable_motions(job)
     floors = felt["floors"]
     yield from ((f"motions/{name}", motions) for name, motions in felt.items())
     yield LEFT_OUT, pd.DataFrame(left_out, columns=["motion", "reason"], dtype=str)
@@ -42,7 +42,9 @@ def run(job: Job[Study]) -> Results:
     if study.write_motions is not None:
         write_motions(floors, job.folder / WRITTEN, study.write_motions)
     table = measure_motions(floors, processes=job.threads)
-    pairs = measure_records(rows, *_place(study), study.processing)
+    pairs = measure_records(
+        rows, study.catalogue_file.parent, Path(RECORDS_FOLDER), study.processing
+    )
     if len(pairs):
         # what no direction decides is known of the ground alone
         grounds = {
@@ -64,16 +66,15 @@ def run(job: Job[Study]) -> Results:
     )
 
 
-def _felt(
+def _usable_motions(
     job: Job[Study],
 ) -> tuple[list[dict[str, Any]], dict[str, list[Motion]], list[dict[str, str]]]:
     """Rows of the catalogue that can be used, their motions by kind, and which were left out and why.
 
-    Kinds are ``records`` as read, ``ground`` as they shake it, ``floors`` as every floor feels them, and with
-    vertical motion ``vertical``, as they shake it up and down.
+    Kinds are those of :func:`_motions_by_kind`.
     """
     study = job.study
-    felt: dict[str, list[Motion]] = defaultdict(list)
+    usable: dict[str, list[Motion]] = defaultdict(list)
     rows, left_out = [], []
     unfetched: dict[str, NotFetched] = {}
     for named in cast("list[dict[str, Any]]", study.catalogue.to_dict("records")):
@@ -82,27 +83,13 @@ def _felt(
             if source in unfetched:
                 # asked for once in a run, which takes a minute where there is no network
                 raise unfetched[source]
-            record, *up = motions_of_row(named, *_place(study), study.vertical)
-            if record.pga == 0:
-                raise InputError(
-                    f"{record.name}: the record is zero throughout; leave it out."
-                )
-            ground = process(record, study.processing)
-            found = {
-                "records": [record],
-                "ground": [ground],
-                "floors": _floors(study, ground),
-            }
-            if up:
-                found["vertical"] = _floors(
-                    study, process(up[0], study.processing), vertical=True
-                )
+            found = _motions_by_kind(study, named)
             if weak := too_weak(study, found["floors"]):
                 left_out.append({"motion": str(named["name"]), "reason": f"{weak}."})
                 job.log.warning("left out: %s: %s", named["name"], weak)
                 continue
             for kind, motions in found.items():
-                felt[kind] += motions
+                usable[kind] += motions
             rows.append(named)
         except InputError as error:
             if not study.keep_going:
@@ -115,11 +102,29 @@ def _felt(
         raise InputError(
             f"{study.catalogue_file}: no record can be used; {left_out[0]['reason']}"
         )
-    return rows, felt, left_out
+    return rows, usable, left_out
 
 
-def _place(study: Study) -> tuple[Path, Path]:
-    return study.catalogue_file.parent, Path(RECORDS_FOLDER)
+def _motions_by_kind(study: Study, row: dict[str, Any]) -> dict[str, list[Motion]]:
+    """Motions of a row of the catalogue, by kind.
+
+    ``records`` has the motion as read, ``ground`` as the study processes it, ``floors`` that of every floor, and
+    with vertical motion ``vertical`` the vertical one of every floor.
+    """
+    folder, records = study.catalogue_file.parent, Path(RECORDS_FOLDER)
+    record, *up = motions_of_row(row, folder, records, study.vertical)
+    if record.pga == 0:
+        raise InputError(f"{record.name}: the record is zero throughout; leave it out.")
+    ground = process(record, study.processing)
+    found = {
+        "records": [record],
+        "ground": [ground],
+        "floors": _floors(study, ground),
+    }
+    if up:
+        vertical = process(up[0], study.processing)
+        found["vertical"] = _floors(study, vertical, vertical=True)
+    return found
 
 
 def _floors(study: Study, ground: Motion, vertical: bool = False) -> list[Motion]:

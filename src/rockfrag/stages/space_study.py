@@ -7,6 +7,7 @@ In: a study of bodies in space. Out: the table of medians [g]. Theory: ``docs/sp
 
 import math
 from collections.abc import Sequence
+from functools import partial
 from pathlib import Path
 from typing import Any, cast
 
@@ -130,10 +131,19 @@ def medians(
 ) -> tuple[pd.DataFrame, pd.DataFrame]:
     """Return medians in space and in the plane of one body, and the fractions they come from.
 
-    A row for each loss of planar impacts: ``space_g`` with ``space_lower`` and ``space_upper``; the ratio of that
-    median over each of :data:`PLANAR`, with its limits, 90 % of resampled earthquakes; ``flip_rate``, the fraction
-    of outcomes at the level next to the median that a perturbation of 1e-6 turns round. And a row for each level
-    with the fraction toppled in space and in each planar answer.
+    Parameters
+    ----------
+    study : levels, directions and resamples
+    base, slenderness, height : as of :func:`body_of`
+    pairs, earthquakes : horizontal components of each record, and the earthquake it is of
+    threads : of the computation
+
+    Returns
+    -------
+    Medians, a row for each loss of planar impacts: ``space_g`` with ``space_lower`` and ``space_upper``; the ratio
+    of that median over each of :data:`PLANAR` with its limits, 90 % of resampled earthquakes; ``flip_rate``, the
+    fraction of outcomes at the level next to the median that a perturbation of 1e-6 changes. And fractions, a row
+    for each level: those toppled in space and in each planar answer.
     """
     body, sweep = body_of(base, slenderness, height), study.sweep
     levels = (
@@ -141,41 +151,51 @@ def medians(
     )
     peaks = np.array([np.sqrt(first.pga * other.pga) for first, other in pairs])
     scales = levels * GRAVITY / peaks[:, np.newaxis]
-    shaking = [GroundMotion(first, other) for first, other in pairs]
-    spread = float(sweep["base_spread"])
-
-    def toppled(factors: Floats, spread: float) -> Flags:
-        """Whether each pair at each factor topples the body, shape (pairs, factors)."""
-        found = overturns(
-            [body],
-            shaking,
-            scales=factors,
-            spread=spread,
-            seed=study.seed,
-            threads=threads,
-        )
-        return np.asarray(found.overturned[0])
-
-    space = toppled(scales, spread)
+    toppled = partial(_toppled_in_space, study, body, pairs, threads=threads)
+    space = toppled(scales)
     half = median(space.mean(axis=0), levels)
     near = 0 if math.isnan(half) else int(np.abs(np.log(levels / half)).argmin())
-    other = toppled(scales[:, [near]], spread + PERTURBATION)
+    perturbed = toppled(scales[:, [near]], perturbation=PERTURBATION)[:, 0]
+    flip_rate = float((perturbed != space[:, near]).mean())
     rows, fractions = [], []
-    about = {"base": base, "slenderness": slenderness, "height_m": height}
     for loss in (LOSS, NO_LOSS) if base == ROUND else (LOSS,):
+        about = {
+            "base": base,
+            "slenderness": slenderness,
+            "height_m": height,
+            "planar_impacts": loss,
+        }
         planar = _in_plane(body, pairs, scales, sweep["directions"], loss)
         found = {"space": space.astype(float)} | planar
-        row = (
-            about
-            | {"planar_impacts": loss}
-            | _ratios(found, earthquakes, levels, study)
-        )
-        rows.append(row | {"flip_rate": float((other[:, 0] != space[:, near]).mean())})
+        ratios = _ratios(found, earthquakes, levels, study)
+        rows.append(about | ratios | {"flip_rate": flip_rate})
         means = {name: fell.mean(axis=0) for name, fell in found.items()}
-        fractions.append(
-            pd.DataFrame(about | {"planar_impacts": loss, "level_g": levels} | means)
-        )
+        fractions.append(pd.DataFrame(about | {"level_g": levels} | means))
     return pd.DataFrame(rows), pd.concat(fractions, ignore_index=True)
+
+
+def _toppled_in_space(
+    study: SpaceStudy,
+    body: Block,
+    pairs: Sequence[Pair],
+    factors: Floats,
+    *,
+    threads: int,
+    perturbation: float = 0.0,
+) -> Flags:
+    """Whether each record at each factor topples the body, shape (records, factors).
+
+    ``perturbation`` is added to the spread of the bases [-].
+    """
+    found = overturns(
+        [body],
+        [GroundMotion(first, other) for first, other in pairs],
+        scales=factors,
+        spread=float(study.sweep["base_spread"]) + perturbation,
+        seed=study.seed,
+        threads=threads,
+    )
+    return np.asarray(found.overturned[0])
 
 
 def _in_plane(

@@ -109,7 +109,7 @@ def read_configurations(
         with errors_of(f"{row.path}, line {row.line}"):
             system = configuration_of(name, (*reversed(below), object_name), blocks)
             support = isolators[isolator] if isolator else None
-            stated = holding.stated_by(row)
+            stated = holding.read_holders(row)
             found[name] = holding.held_as_stated(system, stated, support)
             distinct_file_names([name], checked)
         if row.has("counterpart"):

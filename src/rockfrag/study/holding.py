@@ -86,8 +86,8 @@ def _isolator(row: Row) -> Support:
     )
 
 
-def stated_by(row: Row) -> dict[str, float | str]:
-    """Read what a row of ``arrangements.csv`` says that holds it.
+def read_holders(row: Row) -> dict[str, float | str]:
+    """Read the columns of ``arrangements.csv`` that state what holds an arrangement.
 
     Parameters
     ----------

@@ -231,10 +231,10 @@ def shaking_posterior(
 
 
 def smoothed(x: Floats, values: Floats, spread: float) -> Floats:
-    """Mean of values of each level over levels that are lognormal about it.
+    """Mean of the values of a motion at levels that are lognormally distributed about each level.
 
-    Of whether a motion topples an object it is the probability that it topples one of a group whose capacities
-    are lognormal.
+    Where the values say whether the motion topples one object, the mean is the probability that it topples an
+    object of a group whose capacities are lognormally distributed about that object's.
 
     Parameters
     ----------

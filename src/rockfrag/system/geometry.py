@@ -528,28 +528,24 @@ def fill_block(body: Any, block: Shape) -> None:
 def pivot_constants(
     shape: Shape, pivot: int, restitution: float, g: float
 ) -> tuple[float, float, float, float, float, float, float, float]:
-    """What lanes know of a block on a pivot (``kernels.lanes.block.PIVOT``), with p² where p² dt² belongs.
-
-    ``restitution`` is that of the impact that ends rocking on this pivot and comes down on the other.
+    """Constants of a block on a pivot for lanes (``kernels.lanes.block.PIVOT``), with p² in place of p² dt².
 
     Parameters
     ----------
     shape : a block as it stands
     pivot : +1 right, -1 left
-    restitution : as said above [-]
+    restitution : of the impact that ends rocking on this pivot and begins it on the other [-]
     g : acceleration of gravity [m/s²]
 
     Returns
     -------
     Eight numbers, in the order of the record ``PIVOT``: angles [rad], ratios [-] and p² [1/s²].
     """
-    alpha, (x, y), p = (
-        critical_angle(shape, pivot),
-        arm(shape, pivot),
-        frequency(shape, pivot, g),
-    )
-    aside, length, p_squared = -pivot * x, radius(shape, pivot), p * p
-    ends = 1 / alpha, 1 / (p_squared * alpha * alpha)
+    alpha, length = critical_angle(shape, pivot), radius(shape, pivot)
+    x, y = arm(shape, pivot)
+    aside = -pivot * x
+    p = frequency(shape, pivot, g)
+    p_squared = p * p
     return (
         alpha,
         aside / y,
@@ -557,8 +553,8 @@ def pivot_constants(
         y / length,
         p_squared,
         restitution,
-        ends[0],
-        ends[1],
+        1 / alpha,
+        1 / (p_squared * alpha * alpha),
     )
 
 

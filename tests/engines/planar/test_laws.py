@@ -35,7 +35,7 @@ def hit(p, w):
     """Strike, and give the energy before and after."""
     look_at(p, w, w.q)
     before = kinetic_energy(p, w.v)
-    strike(p, w, 0.0, 0.0, 0.0, False)
+    strike(p, w, 0.0, 0.0, 0.0)
     return before, kinetic_energy(p, w.v)
 
 

@@ -21,7 +21,7 @@ from .cases import G, random_column, with_contacts
 def hit(p, w):
     """Strike; the number of impacts that had no outcome."""
     look_at(p, w, w.q)
-    strike(p, w, 0.0, 0.0, 0.0, False)
+    strike(p, w, 0.0, 0.0, 0.0)
     return w.outcome.paradoxes
 
 

@@ -18,7 +18,12 @@ from rockfrag.engines.planar.search import (
     take_mode,
     try_mode,
 )
-from rockfrag.engines.planar.solve import look_at, solve, solve_generally
+from rockfrag.engines.planar.solve import (
+    Sought,
+    look_at,
+    solve_generally,
+    solve_motion,
+)
 from rockfrag.simulation.options import system_of
 
 from .cases import G, random_block, random_column, random_stack, with_contacts
@@ -148,13 +153,13 @@ def search_quickly(p, w, trial):
 @entry_kernel
 def by_formulas(p, w, ah, av):
     look_at(p, w, w.q)
-    solve(p, w, w.q, w.v, ah, av, False)
+    solve_motion(p, w, w.q, w.v, ah, av)
 
 
 @entry_kernel
 def by_elimination(p, w, ah, av):
     look_at(p, w, w.q)
-    solve_generally(p, w, w.q, w.v, ah, av, False, True, 0)
+    solve_generally(p, w, w.q, w.v, Sought(ah, av, False, True), 0)
 
 
 @pytest.mark.parametrize("stacks", [False, True], ids=["blocks", "stacks"])

@@ -216,7 +216,14 @@ def _mean_of_bin(values, bins, wanted):
 
 @entry_kernel
 def fill_sides(values, bins, found):
-    """Mean of the values with a source one standard deviation low and high, shape (2,)."""
+    """Mean of the values with a source one standard deviation low and high.
+
+    Parameters
+    ----------
+    values : of each draw, shape (draws,)
+    bins : of each draw by the source, shape (draws,)
+    found : both means, each over the bin there and its two neighbours, shape (2,)
+    """
     for side in range(2):
         total = 0.0
         for b in range(_ONE_AWAY[side] - 1, _ONE_AWAY[side] + 2):
@@ -236,19 +243,19 @@ LEAST_CHANCE = 0.2
 def fill_decision(
     values, bins, sources, left, middle, accepted, means, turned, found
 ):  # fmt: skip
-    """What to do: leave it, secure it, or measure first what may turn that round, the cheapest first.
+    """Decide what to do: leave the object, secure it, or first measure what may change that decision.
 
     Parameters
     ----------
     values : of each draw, shape (draws,)
     bins : of each draw by each source, shape (sources, draws)
-    sources : places of the sources that can be measured, the cheapest first, shape (measurements,)
-    left : what measuring each leaves of its standard deviation [-], shape (measurements,)
-    middle : mean of the values, by which it is decided
-    accepted : largest mean with which it is left
+    sources : numbers of the sources that can be measured, the cheapest first, shape (measurements,)
+    left : fraction of its standard deviation that each measurement leaves [-], shape (measurements,)
+    middle : mean of the values, which decides
+    accepted : largest mean with which the object is left
     means : memory, shape (``BINS``,)
-    turned : chance that each turns the decision round, and the mean where it does, shape (measurements, 2)
-    found : the decision, shape (3,)
+    turned : chance that each measurement changes the decision, and the mean where it does, shape (measurements, 2)
+    found : what to do, what to do if nothing is measured, and the first measurement, shape (3,)
     """
     found[OTHERWISE] = SECURE if middle > accepted else LEAVE
     found[FIRST] = -1

@@ -59,15 +59,24 @@ _STATES = np.array([FLIGHT, -1, +1, 0])
 """Contact state of an interface whose closed ends are the bits (left, right) of a number."""
 
 _OF_CASES = (
-    *("overturned_body", "overturning_time", "impacts", "paradoxes", "given_way"),
-    *("parted_contact", "several_modes"),
+    "overturned_body",
+    "overturning_time",
+    "impacts",
+    "paradoxes",
+    "given_way",
+    "parted_contact",
+    "several_modes",
 )
-"""Columns of cases that the kernels tell under the same names."""
+"""Columns of cases that records ``OUTCOME`` have under the same names."""
 
 _OF_CONSTRAINTS = (
-    *("hits", "largest_impulse", "largest_force", "breaking_time", "stroke"),
+    "hits",
+    "largest_impulse",
+    "largest_force",
+    "breaking_time",
+    "stroke",
 )
-"""Columns of constraints likewise."""
+"""Columns of constraints that they have."""
 
 
 def run(cases: Cases) -> Outcomes:
@@ -102,14 +111,22 @@ def _pure(system: System, motion: GroundMotion, request: Request) -> Engine | No
     )
 
 
-_OF_BODIES = (
-    *("peak_rotation", "peak_velocity", "peak_slip", "slip", "slid", "flights"),
-)
-"""What is told of each body or the contact under it."""
+_OF_BODIES = ("peak_rotation", "peak_velocity", "peak_slip", "slip", "slid", "flights")
+"""What the kernels write of each body or of the contact under it."""
 
 
 def without_plate(outcome: NDArray[np.void], system: System) -> NDArray[np.void]:
-    """Outcomes of a system, of whose lowest body nothing is told if it is the plate of an isolator."""
+    """Outcomes whose lowest body is that of the system: the kernels count the plate of an isolator as a body.
+
+    Parameters
+    ----------
+    outcome : records ``OUTCOME`` of the kernels, of any shape
+    system : of which they are
+
+    Returns
+    -------
+    The records, of that shape, with bodies numbered without the plate.
+    """
     if system.support is None:
         return outcome
     own = outcome.copy()

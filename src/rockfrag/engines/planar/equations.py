@@ -48,18 +48,39 @@ def _is_chain(p, w):
 def _eliminate_contact(p, w, k, on_body):
     """Eliminate the forces of contact k, under all that hangs on its body; False if singular.
 
-    With K the compliance of body k and all above, e its motion by forces above, M the mass below, C, D rows and
-    columns at body k and C', D' below: A = C K D + C' M⁻¹ D', g = A⁻¹ (r - C e), H = A⁻¹ C' M⁻¹.  Below, the
-    compliance is M⁻¹ (1 - D' H), and the motion M⁻¹ D' g.
+    Equation 3' of ``docs/contact.md``: A λ = r - C e - C' M⁻¹ F, with K the compliance of body k and all above, e
+    its motion by forces above, M the mass below, F the force at its base, C and D rows and columns at body k, C'
+    and D' at the body below. So λ = g - H F: ``w.gain`` has g = A⁻¹ (r - C e), ``w.shared`` H = A⁻¹ C' M⁻¹.
     """
-    size, first, upper, lower = w.unknowns[k], 3 * k, 3 * k, 3 * k - 3
+    size = w.unknowns[k]
     if k == p.count - 1:
-        for d in range(3):
-            w.hanging[k, d] = 0.0
-            for e in range(3):
-                w.compliance[k, d, e] = p.inverse[upper + d] if d == e else 0.0
+        _hang_nothing(p, w, k)
+    _fill_small(p, w, k, on_body)
+    if not _reduce(w.small, size, 7 if on_body else 4):
+        return False
+    for i in range(size):
+        w.gain[3 * k + i] = w.small[i, 3]
+    if on_body:
+        _hang_on_below(p, w, k)
+    return True
+
+
+@inlined_kernel
+def _hang_nothing(p, w, k):
+    """Fill compliance and motion of the uppermost body: its own, and none."""
+    for d in range(3):
+        w.hanging[k, d] = 0.0
+        for e in range(3):
+            w.compliance[k, d, e] = p.inverse[3 * k + d] if d == e else 0.0
+
+
+@inlined_kernel
+def _fill_small(p, w, k, on_body):
+    """Fill A, r - C e and, on a body, C' M⁻¹ of contact k side by side, in columns 0 to 2, 3 and 4 to 6."""
+    size, first, lower = w.unknowns[k], 3 * k, 3 * k - 3
     small = w.small
     for j in range(size):
+        # K D
         at = first + j
         x, y, turn = w.column[at, 3], w.column[at, 4], w.column[at, 5]
         for d in range(3):
@@ -82,38 +103,39 @@ def _eliminate_contact(p, w, k, on_body):
             for j in range(size):
                 for d in range(3):
                     small[i, j] += small[i, 4 + d] * w.column[first + j, d]
-    if not _reduce(small, size, 7 if on_body else 4):
-        return False
-    for i in range(size):
-        w.gain[first + i] = small[i, 3]
-    if not on_body:
-        return True
+
+
+@inlined_kernel
+def _hang_on_below(p, w, k):
+    """Keep H, and hang body k on the body below: compliance M⁻¹ (1 - D' H), motion M⁻¹ D' g."""
+    size, first = w.unknowns[k], 3 * k
+    small = w.small
     for i in range(size):
         for d in range(3):
             w.shared[first + i, d] = small[i, 4 + d]
     for d in range(3):
-        light = p.inverse[lower + d]
-        hangs, first_part, second, third = 0.0, 0.0, 0.0, 0.0
+        light = p.inverse[first - 3 + d]
+        hangs, by_x, by_y, by_turn = 0.0, 0.0, 0.0, 0.0
         for j in range(size):
             by = light * w.column[first + j, d]
             hangs += by * small[j, 3]
-            first_part -= by * small[j, 4]
-            second -= by * small[j, 5]
-            third -= by * small[j, 6]
+            by_x -= by * small[j, 4]
+            by_y -= by * small[j, 5]
+            by_turn -= by * small[j, 6]
         w.hanging[k - 1, d] = hangs
-        w.compliance[k - 1, d, 0] = first_part
-        w.compliance[k - 1, d, 1] = second
-        w.compliance[k - 1, d, 2] = third
+        w.compliance[k - 1, d, 0] = by_x
+        w.compliance[k - 1, d, 1] = by_y
+        w.compliance[k - 1, d, 2] = by_turn
         w.compliance[k - 1, d, d] += light
-    return True
 
 
 @inlined_kernel
 def _reduce(a, size, width):
-    """Solve at most three equations with right-hand sides from column 3 on, in place; False if singular.
+    """Solve at most three equations by Gauss's elimination; False if they are singular.
 
-    One and two by formulas, three without exchange where pivots are large: such equations are those of a contact
-    that sticks, symmetric but for what slides above.
+    Row i of ``a`` has the coefficients of equation i in columns 0 to 2, and its right-hand sides from column 3 to
+    ``width`` - 1, which become the solutions. Two equations exchange rows for the larger pivot; three do not: they
+    are those of a contact that sticks, symmetric but for what slides above.
     """
     if size == 1:
         return _reduce_one(a, width)
@@ -126,7 +148,7 @@ def _reduce(a, size, width):
 
 @inlined_kernel
 def _reduce_one(a, width):
-    """Solve one equation."""
+    """Solve one equation as :func:`_reduce` does."""
     if a[0, 0] == 0.0:
         return False
     pivot = 1.0 / a[0, 0]
@@ -137,7 +159,7 @@ def _reduce_one(a, width):
 
 @inlined_kernel
 def _reduce_two(a, width):
-    """Solve two equations, the larger pivot first."""
+    """Solve two equations as :func:`_reduce` does; row i has the larger pivot."""
     swap = abs(a[1, 0]) > abs(a[0, 0])
     i, j = (1, 0) if swap else (0, 1)
     b00, b01, b10, b11 = a[i, 0], a[i, 1], a[j, 0], a[j, 1]
@@ -158,7 +180,7 @@ def _reduce_two(a, width):
 
 @inlined_kernel
 def _reduce_three(a, width):
-    """Solve three equations without exchange; False where a pivot is small."""
+    """Solve three equations as :func:`_reduce` does, without exchange; False where a pivot is small."""
     b00, b01, b02 = a[0, 0], a[0, 1], a[0, 2]
     b10, b11, b12 = a[1, 0], a[1, 1], a[1, 2]
     b20, b21, b22 = a[2, 0], a[2, 1], a[2, 2]

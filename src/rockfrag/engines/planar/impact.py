@@ -24,7 +24,9 @@ from rockfrag.engines.planar.solve import (
     end_of,
     look_at,
     rate,
-    solve,
+    solve_impact,
+    solve_motion,
+    solve_nearest,
     standing_bodies,
 )
 from rockfrag.engines.planar.walls import any_closed, note_impulses
@@ -39,6 +41,7 @@ MANY_CONTACT_EVENTS = 100
 """Contact events within a sample after which speeds below the closing speed count as none, whatever pulls."""
 PULLS = 1e-9  # acceleration over g towards a wall above which it is none of rounding
 UNREACHED = 1e-7  # violation above which an impact has no outcome under a law
+VANISHING = 1e-7  # speed of approach over √(g b) that stands for none [-]
 STILL = 1e-11  # fraction of √(g b) below which a speed is rounding
 
 
@@ -85,13 +88,13 @@ def _project_jointly(p, w):
             if w.closed[k, end] == 1:
                 _, _, _, _, gap, _, _ = end_of(p, w, w.q, k, end, w.kind[k, end])
                 w.back[k, end] = -gap
-    solved = solve(p, w, w.q, w.zero, 0.0, 0.0, True, False)
+    solved = solve_nearest(p, w, w.zero)
     w.back[:] = 0.0
     if solved:
         for d in range(3 * p.count):
             w.q[d] += w.out[d]
         look_at(p, w, w.q)
-    if solve(p, w, w.q, w.v, 0.0, 0.0, True, False):
+    if solve_nearest(p, w, w.v):
         copy(p, w.out, w.v)
 
 
@@ -108,8 +111,8 @@ def slip_speed(p, w, v, k, trial):
 
 
 @kernel
-def approach(p, w, k, end):
-    """Speed at which an end parts [m/s]."""
+def parting_speed(p, w, k, end):
+    """Speed at which an end of contact k opens [m/s], negative if it closes."""
     kind = w.kind[k, end] if w.closed[k, end] == 1 or w.touching[k, end] == 1 else -1
     x, y, tx, ty, _, _, _ = end_of(p, w, w.q, k, end, kind)
     return rate(p, w.q, w.v, k, x, y, -ty, tx)
@@ -128,7 +131,7 @@ def settle(p, w, ah, av, exclude):
         w.along[k] = static
         for end in range(2):
             parts = w.whole[k] == 0 and w.touching[k, end] == 1
-            if parts and approach(p, w, k, end) >= STILL * p.speed:
+            if parts and parting_speed(p, w, k, end) >= STILL * p.speed:
                 w.touching[k, end] = 0
             all_touch = all_touch and w.old_closed[k, end] <= w.touching[k, end]
         speed = slip_speed(p, w, w.v, k, True)
@@ -147,7 +150,7 @@ def settle(p, w, ah, av, exclude):
             take_mode(p, w, found)
     remember_slides(p, w)
     project(p, w)
-    solve(p, w, w.q, w.v, ah, av, False)
+    solve_motion(p, w, w.q, w.v, ah, av)
     return wrong < 1e-6
 
 
@@ -168,42 +171,78 @@ def kinetic_energy(p, v):
 
 
 @kernel
-def strike(p, w, ah, av, closing, push):
-    """Impulses at the touching ends; sets mode and velocities, and lets what closes be what touches.
+def strike(p, w, ah, av, closing):
+    """Give the touching ends that approach their impulses (``docs/contact.md``, 7 to 9).
 
-    ``closing``: speed [m/s] below which a contact that parts and would fall shut again stays closed.  ``push``:
-    nothing approaches, but no mode was consistent; see ``docs/contact.md``, 7.
+    Mode and velocities are then those after the impact, and the ends that touch are those that are closed.
+
+    Parameters
+    ----------
+    p, w : records ``BODY`` and ``WORK``
+    ah, av : accelerations of the ground, to the right and upwards [m/s²]
+    closing : speed below which an end that parts and would fall shut again stays closed [m/s]
     """
     before = kinetic_energy(p, w.v)
-    lawful = _read_laws(p, w, push)
+    has_laws = _read_laws(p, w)
+    _read_slips(p, w)
+    _give_impulses(p, w, has_laws)
+    _end_impact(p, w, ah, av, closing, before)
+
+
+@kernel
+def strike_unapproached(p, w, ah, av, closing):
+    """Give impulses where nothing approaches but no mode is consistent (``docs/contact.md``, "Painlevé's cases").
+
+    They are those that a vanishing speed of approach calls forth. In and out as of :func:`strike`.
+    """
+    before = kinetic_energy(p, w.v)
+    _forget_laws(p, w)
+    _read_slips(p, w)
+    for k in range(p.count):
+        w.v[3 * k + 1] -= VANISHING * p.speed
+    _give_impulses(p, w, False)
+    _end_impact(p, w, ah, av, closing, before)
+
+
+@kernel
+def _read_slips(p, w):
+    """Read the sign of the slip of each contact before an impact, and its coefficients of friction in it."""
     for k in range(p.contacts):
         slip = slip_speed(p, w, w.v, k, True)
         w.moves[k], w.slid[k] = 0, 1 if slip > 0.0 else (-1 if slip < 0.0 else 0)
         w.along[k] = p.static[k]
         w.against[k] = p.static[k] if slip == 0.0 else p.kinetic[k]
-    if push:
-        for k in range(p.count):
-            w.v[3 * k + 1] -= 1e-7 * p.speed
-    scale = 1e-300
+
+
+@kernel
+def _give_impulses(p, w, has_laws):
+    """Find mode, impulses and velocities after an impact, bonds that it breaks left out."""
+    # units of what is found: the fastest corner's speed, more than zero, and the mass
+    speed = 1e-300
     mass = 0.0
     for k in range(p.count):
         mass += p.mass[k]
-        scale = max(
-            scale, abs(w.v[3 * k]), abs(w.v[3 * k + 1]), p.size * abs(w.v[3 * k + 2])
+        speed = max(
+            speed, abs(w.v[3 * k]), abs(w.v[3 * k + 1]), p.size * abs(w.v[3 * k + 2])
         )
-    trial = Trial(ah, av, True, mass * scale, scale)
-    _find_impulses(p, w, trial, lawful)
+    trial = Trial(0.0, 0.0, True, mass * speed, speed)
+    _find_impulses(p, w, trial, has_laws)
     while p.is_held == 1 and break_pulled(p, w, trial.force):
-        _find_impulses(p, w, trial, lawful)
+        _find_impulses(p, w, trial, has_laws)
     note_impulses(p, w)
     _let_bounce(p, w)
     lift_laws(p, w)
     remember_slides(p, w)
     copy(p, w.out, w.v)
+
+
+@kernel
+def _end_impact(p, w, ah, av, closing, before):
+    """Shut what parts too slowly, and write down what the impact has lost of the kinetic energy ``before`` [J]."""
     for k in range(p.contacts):
         read_slip(p, w, k, 0.0)
     while _shut_weak(p, w, ah, av, closing):
-        solve(p, w, w.q, w.v, ah, av, True, False)
+        solve_nearest(p, w, w.v)
         copy(p, w.out, w.v)
     project(p, w)
     touch_closed(p, w)
@@ -212,11 +251,11 @@ def strike(p, w, ah, av, closing, push):
 
 
 @kernel
-def _find_impulses(p, w, trial, lawful):
+def _find_impulses(p, w, trial, has_laws):
     """Impulses and velocities after an impact, plastic or as far as its laws have an outcome."""
     search(p, w, trial, NONE)
-    solve(p, w, w.q, w.v, trial.ah, trial.av, True)
-    if lawful:
+    solve_impact(p, w)
+    if has_laws:
         _obey(p, w, trial)
         return
     k, end = contact_alone(p, w)
@@ -239,7 +278,7 @@ def touch_closed(p, w):
     for k in range(p.contacts):
         for end in range(2):
             stays = p.contacts > p.count and w.touching[k, end] == 1
-            if not stays or approach(p, w, k, end) >= STILL * p.speed:
+            if not stays or parting_speed(p, w, k, end) >= STILL * p.speed:
                 w.touching[k, end] = w.closed[k, end]
 
 
@@ -252,27 +291,36 @@ def lift_laws(p, w):
 
 
 @kernel
-def _read_laws(p, w, push):
-    """Note which interfaces come down on one end while the other is closed; whether any of them has a law."""
-    lawful = False
+def _forget_laws(p, w):
+    """Let no contact come down by a law."""
     for k in range(p.count):
         w.falls[k] = -1
-        for end in range(2):
-            other_holds = w.touching[k].all() and w.old_closed[k, 1 - end] == 1
-            if push or not other_holds or w.old_closed[k, end] == 1:
-                continue
-            speed = approach(p, w, k, end)
-            if speed < 0.0 and p.law[k, end] != MOMENTUM:
-                w.falls[k] = end
-                w.goal[k, 1] = -speed
-                lawful = True
     for k in range(p.count, p.contacts):
         for end in range(2):
             w.came[k, end] = 0.0
-            if w.touching[k, end] == 1 and not push:
-                w.came[k, end] = max(0.0, -approach(p, w, k, end))
-                lawful = lawful or w.came[k, end] * p.bounce[k] > 0.0
-    return lawful
+
+
+@kernel
+def _read_laws(p, w):
+    """Note which interfaces come down on one end while the other is closed; whether any of them has a law."""
+    _forget_laws(p, w)
+    has_laws = False
+    for k in range(p.count):
+        for end in range(2):
+            other_holds = w.touching[k].all() and w.old_closed[k, 1 - end] == 1
+            if not other_holds or w.old_closed[k, end] == 1:
+                continue
+            speed = parting_speed(p, w, k, end)
+            if speed < 0.0 and p.law[k, end] != MOMENTUM:
+                w.falls[k] = end
+                w.goal[k, 1] = -speed
+                has_laws = True
+    for k in range(p.count, p.contacts):
+        for end in range(2):
+            if w.touching[k, end] == 1:
+                w.came[k, end] = max(0.0, -parting_speed(p, w, k, end))
+                has_laws = has_laws or w.came[k, end] * p.bounce[k] > 0.0
+    return has_laws
 
 
 @kernel
@@ -324,7 +372,7 @@ def _outcome(p, w, trial, part, before):
         for end in range(2):
             w.back[k, end] = part * p.bounce[k] * w.came[k, end]
     wrong = search(p, w, trial, NONE)
-    solve(p, w, w.q, w.v, trial.ah, trial.av, True)
+    solve_impact(p, w)
     return wrong <= UNREACHED and kinetic_energy(p, w.out) <= before * (1.0 + NO_GAIN)
 
 
@@ -337,7 +385,7 @@ def _can_hold(p, w, still):
     """
     if not any_closed(p, w):
         return True
-    if not solve(p, w, w.q, w.v, 0.0, 0.0, True, False):
+    if not solve_nearest(p, w, w.v):
         return False
     most = SHUT * max(still, STILL * p.speed)
     for d in range(3 * p.count):
@@ -366,7 +414,7 @@ def _any_slow_end(p, w, closing):
     for k in range(p.contacts):
         for end in range(2):
             is_open = w.touching[k, end] == 1 and w.closed[k, end] == 0
-            if is_open and approach(p, w, k, end) < closing:
+            if is_open and parting_speed(p, w, k, end) < closing:
                 return True
     return False
 
@@ -381,7 +429,7 @@ def _shut_weak(p, w, ah, av, closing):
     """
     found = False
     if _any_slow_end(p, w, closing):
-        solve(p, w, w.q, w.v, ah, av, False)
+        solve_motion(p, w, w.q, w.v, ah, av)
     for k in range(p.contacts):
         at_wall = k >= p.count or any_closed(p, w)
         are_many = w.met > MANY_CONTACT_EVENTS and not at_wall
@@ -407,7 +455,7 @@ def _shut_weak(p, w, ah, av, closing):
                     if _can_hold(p, w, closing):
                         return True
                     w.closed[k, end] = 0
-                    solve(p, w, w.q, w.v, ah, av, False)
+                    solve_motion(p, w, w.q, w.v, ah, av)
         if was_open or w.slides[k] != 0:
             slid = w.slides[k] != 0
             read_slip(p, w, k, closing)

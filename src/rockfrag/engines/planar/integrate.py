@@ -25,7 +25,13 @@ from rockfrag.engines.planar.bonds import (
 )
 from rockfrag.engines.planar.records import MOST
 from rockfrag.engines.planar.search import BONDED, mode_number, wall_number
-from rockfrag.engines.planar.solve import copy, end_of, look_at, solve
+from rockfrag.engines.planar.solve import (
+    copy,
+    end_of,
+    look_at,
+    solve_motion,
+    solve_nearest,
+)
 from rockfrag.engines.planar.support import GUIDED, change_spring, note_stroke, slope
 from rockfrag.engines.planar.ties import (
     change_ties,
@@ -49,6 +55,7 @@ MOST_JOLTS = 60
 LARGEST_FAILURE = 1e-3
 BURST = 100.0  # margin at the end of a step beyond which a shorter one is taken [-] ...
 LEAST_STEP = 1e-9  # ... down to this part of a sample
+SHUT_GAP = 1e-11  # gap over the half width below which an end touches [-]
 AT_REST = 1e-3  # speed over √(g b) below which what leans is at rest [-]
 SPRUNG = 0.01  # error of a step with a taut tie over that of others [-]
 
@@ -124,6 +131,16 @@ class Instant(NamedTuple):
     av: float
 
 
+class Interval(NamedTuple):
+    """From one sample of a motion to the next."""
+
+    number: int  # of the first sample
+    now: Instant
+    late: Instant
+    ground: stepping.Stretch
+    substeps: int  # no step is longer than one of them
+
+
 @entry_kernel
 def integrate_cases(numbers, cases, nothing, w, outcomes):
     """Integrate the cases of some ``numbers``, and keep their outcomes; ``nothing`` is a KEPT without rows."""
@@ -168,146 +185,190 @@ def integrate(p, shaking, start, closing, kept, w):
     Number of samples done.
     """
     _begin(p, w, start)
-    dt, substeps = shaking.dt, shaking.substeps
-    n = shaking.samples.size
-    energy_balance = kept.history.shape[0] > 0
+    keeps = kept.history.shape[0] > 0
     now = _now(shaking, 0)
     _handle(p, w, now, closing, False, kept)
-    fresh = True  # the acceleration in w.a is not that of this state and mode
-    if energy_balance:
+    if keeps:
         _keep(p, w, kept.history[0], now)
-    known_rest = False
     done = 1
-    idle = 0
-    jolts = 0
-    for i in range(n - 1 + shaking.free_samples):
+    shaken = shaking.samples.size - 1
+    for i in range(shaken + shaking.free_samples):
         late = _now(shaking, i + 1)
-        sample = stepping.Stretch(
-            dt, now.ah, now.av, late.ah - now.ah, late.av - now.av
+        ground = stepping.Stretch(
+            shaking.dt, now.ah, now.av, late.ah - now.ah, late.av - now.av
         )
-        tau = 0.0
-        w.met = 0
-        while tau < 1.0:
-            if w.resting == 1:
-                if not known_rest:
-                    _rest_margins(p, w)
-                    known_rest = True
-                tau = _rest_ends(p, w, tau, now, late)
-                if tau > 1.0:
-                    note_rest_loads(p, w, late)
-                    break
-                known_rest = False
-                fresh = True
-                ah, av = stepping.ground_at(sample, tau)
-                instant = Instant((i + tau) * dt, ah, av)
-                # what fails is that all rests
-                w.fails[:] = 0
-                w.tie_fails[:] = w.spring_fails = 0
-                first = w.row_of_rest // 4
-                broken = w.whole[first] == BONDED
-                w.fails[first, stepping.BREAK] = 1 if broken else 0
-                _handle(p, w, instant, closing, not broken, kept)
-                w.met += 1
-                if w.resting == 1:
-                    # it failed by rounding only
-                    tau += 1e-9
-                continue
-            known_rest = False
-            step = (math.floor(tau * substeps + 1e-9) + 1.0) / substeps - tau
-            ah, av = stepping.ground_at(sample, tau)
-            if fresh:
-                look_at(p, w, w.q)
-                solve(p, w, w.q, w.v, ah, av, False)
-                copy(p, w.out, w.a)
-            stepping.start_step(p, w)
-            accuracy = stepping.ERROR
-            if p.is_held == 1 and is_any_taut(p, w):
-                # springs are stiff, and their energy is told
-                accuracy *= SPRUNG
-            while True:
-                stretch = stepping.Stretch(
-                    step * dt, ah, av, step * sample.rise_h, step * sample.rise_v
-                )
-                work, friction_loss, tied = stepping.take_step(
-                    p, w, stretch, energy_balance
-                )
-                error = stepping.step_error(p, w, stretch.length)
-                if step < stepping.SHORTEST or error <= accuracy:
-                    break
-                step *= 0.5
-            at_end = stepping.least_margin(p, w, w.q1, w.v1, True)
-            while not at_end >= -BURST and step > LEAST_STEP:
-                # sliding that jams: forces grow faster than the step sees
-                step *= 0.125
-                stretch = stepping.beginning(stretch, 0.125)
-                work, friction_loss, tied = stepping.take_step(
-                    p, w, stretch, energy_balance
-                )
-                at_end = stepping.least_margin(p, w, w.q1, w.v1, True)
-            when = 2.0
-            if idle <= MOST_IDLE or at_end < -LARGEST_FAILURE:
-                when = _contact_event_in_step(p, w, at_end, stretch)
-            if idle > MOST_IDLE:
-                # contact events that do not let time go on: leave them behind, or end them by an impulse
-                # where a step would not be a small one; if many do not help, the step is taken all the same
-                idle = 0
-                w.forced += 1
-                if jolts == MOST_JOLTS:
-                    when = 2.0
-                if when <= 1.0:
-                    jolts += 1
-                    instant = Instant((i + tau) * dt, ah, av)
-                    _jolt(p, w, instant, closing, kept)
-                    fresh = True
-                    continue
-            if when > 1.0:
-                copy(p, w.q1, w.q)
-                copy(p, w.v1, w.v)
-                copy(p, w.a1, w.a)
-                fresh = False
-                jolts = 0
-                if p.is_held == 1:
-                    _note_holding(p, w)
-                impact.project(p, w)
-                tau += step
-                if 1.0 - tau < 1e-12:
-                    tau = 1.0
-            else:
-                if energy_balance:
-                    shorter = stepping.beginning(stretch, when)
-                    work, friction_loss, tied = stepping.take_step(p, w, shorter, True)
-                impact.project(p, w)
-                tau += when * step
-                idle = idle + 1 if when < 1e-9 else 0
-                jolts = jolts if idle > 0 else 0
-                w.met += 1
-                coarser = closing * 10.0 ** (w.met // MOST_CONTACT_EVENTS)
-                if w.met >= MOST_CONTACT_EVENTS:
-                    w.forced += 1
-                ah, av = stepping.ground_at(sample, tau)
-                instant = Instant((i + tau) * dt, ah, av)
-                _handle(p, w, instant, coarser, False, kept)
-                copy(p, w.out, w.a)
-                fresh = False
-                if w.met > 10 * MOST_CONTACT_EVENTS:
-                    tau = 1.0
-            w.work += work
-            w.friction_loss += friction_loss
-            w.tied += tied
-            _track(p, w)
-            if w.outcome.overturned_body > 0:
-                w.outcome.overturning_time = (i + tau) * dt
-                break
+        interval = Interval(i, now, late, ground, shaking.substeps)
+        _cross_interval(p, w, interval, closing, kept)
         done = i + 2
         now = late
-        if energy_balance:
+        if keeps:
             _keep(p, w, kept.history[i + 1], now)
         if w.outcome.overturned_body > 0:
             break
-        if i >= n - 1 and (w.resting == 1 or (not fresh and _lies_still(p, w))):
+        stays = w.resting == 1 or (w.is_stale == 0 and _lies_still(p, w))
+        if i >= shaken and stays:
             break
     w.outcome.leaning = 1 if _leans(p, w) else 0
     return done
+
+
+@kernel
+def _cross_interval(p, w, interval, closing, kept):
+    """Take a column from one sample of its motion to the next, or to its fall."""
+    w.tau = 0.0
+    w.met = 0
+    while w.tau < 1.0 and w.outcome.overturned_body == 0:
+        if w.resting == 1:
+            _rest(p, w, interval, closing, kept)
+        else:
+            w.knows_rest = 0
+            _step(p, w, interval, closing, kept)
+
+
+@kernel
+def _instant(interval, tau):
+    """Instant at a fraction of an interval."""
+    ah, av = stepping.ground_at(interval.ground, tau)
+    return Instant((interval.number + tau) * interval.ground.length, ah, av)
+
+
+@kernel
+def _rest(p, w, interval, closing, kept):
+    """Take a column that rests to the end of an interval, or to the instant at which its rest ends."""
+    if w.knows_rest == 0:
+        _rest_margins(p, w)
+        w.knows_rest = 1
+    w.tau = _rest_ends(p, w, w.tau, interval.now, interval.late)
+    if w.tau > 1.0:
+        note_rest_loads(p, w, interval.late)
+        return
+    w.knows_rest = 0
+    w.is_stale = 1
+    # what fails is that all rests
+    w.fails[:] = 0
+    w.tie_fails[:] = w.spring_fails = 0
+    first = w.row_of_rest // 4
+    broken = w.whole[first] == BONDED
+    w.fails[first, stepping.BREAK] = 1 if broken else 0
+    _handle(p, w, _instant(interval, w.tau), closing, not broken, kept)
+    w.met += 1
+    if w.resting == 1:
+        # it failed by rounding only
+        w.tau += 1e-9
+
+
+@kernel
+def _step(p, w, interval, closing, kept):
+    """Take one step within an interval, which ends with its first contact event if it meets one."""
+    keeps = kept.history.shape[0] > 0
+    part, stretch, energies, at_end = _accurate_step(p, w, interval, keeps)
+    when = 2.0
+    if w.idle <= MOST_IDLE or at_end < -LARGEST_FAILURE:
+        when = _contact_event_in_step(p, w, at_end, stretch)
+    if w.idle > MOST_IDLE:
+        # contact events that do not let time go on: leave them behind, or end them by an impulse where a step
+        # would not be a small one; if many do not help, the step is taken all the same
+        w.idle = 0
+        w.forced += 1
+        if w.jolts == MOST_JOLTS:
+            when = 2.0
+        if when <= 1.0:
+            w.jolts += 1
+            _end_repeating(p, w, _instant(interval, w.tau), closing, kept)
+            return
+    if when > 1.0:
+        _end_step(p, w, part)
+    else:
+        if keeps:
+            shorter = stepping.beginning(stretch, when)
+            energies = stepping.take_step(p, w, shorter, True)
+        impact.project(p, w)
+        w.tau += when * part
+        w.idle = w.idle + 1 if when < 1e-9 else 0
+        w.jolts = w.jolts if w.idle > 0 else 0
+        _meet(p, w, interval, closing, kept)
+    work, friction_loss, tied = energies
+    w.work += work
+    w.friction_loss += friction_loss
+    w.tied += tied
+    _track(p, w)
+    if w.outcome.overturned_body > 0:
+        w.outcome.overturning_time = _instant(interval, w.tau).time
+
+
+@kernel
+def _accurate_step(p, w, interval, keeps):
+    """Take a step that is short enough for its error, and for forces that grow within it.
+
+    Parameters
+    ----------
+    p, w, interval : records, and the interval that the step lies in from ``w.tau`` on
+    keeps : whether energies are added up
+
+    Returns
+    -------
+    Its length as a fraction of the interval, its stretch, energies as of :func:`step.take_step` [J], and the least
+    margin at its end [-].
+    """
+    tau, substeps, ground = w.tau, interval.substeps, interval.ground
+    part = (math.floor(tau * substeps + 1e-9) + 1.0) / substeps - tau
+    ah, av = stepping.ground_at(ground, tau)
+    if w.is_stale == 1:
+        look_at(p, w, w.q)
+        solve_motion(p, w, w.q, w.v, ah, av)
+        copy(p, w.out, w.a)
+    stepping.start_step(p, w)
+    accuracy = stepping.ERROR
+    if p.is_held == 1 and is_any_taut(p, w):
+        # springs are stiff, and their energy is given in the ledger
+        accuracy *= SPRUNG
+    while True:
+        stretch = stepping.Stretch(
+            part * ground.length, ah, av, part * ground.rise_h, part * ground.rise_v
+        )
+        energies = stepping.take_step(p, w, stretch, keeps)
+        error = stepping.step_error(p, w, stretch.length)
+        if part < stepping.SHORTEST or error <= accuracy:
+            break
+        part *= 0.5
+    at_end = stepping.least_margin(p, w, w.q1, w.v1, True)
+    while not at_end >= -BURST and part > LEAST_STEP:
+        # sliding that jams: forces grow faster than the step sees
+        part *= 0.125
+        stretch = stepping.beginning(stretch, 0.125)
+        energies = stepping.take_step(p, w, stretch, keeps)
+        at_end = stepping.least_margin(p, w, w.q1, w.v1, True)
+    return part, stretch, energies, at_end
+
+
+@kernel
+def _end_step(p, w, part):
+    """Take the end of a step without a contact event as the state; the step is ``part`` of the interval."""
+    copy(p, w.q1, w.q)
+    copy(p, w.v1, w.v)
+    copy(p, w.a1, w.a)
+    w.is_stale = 0
+    w.jolts = 0
+    if p.is_held == 1:
+        _note_holding(p, w)
+    impact.project(p, w)
+    w.tau += part
+    if 1.0 - w.tau < 1e-12:
+        w.tau = 1.0
+
+
+@kernel
+def _meet(p, w, interval, closing, kept):
+    """Take a column through a contact event; many of them in one interval are ended more and more coarsely."""
+    w.met += 1
+    coarser = closing * 10.0 ** (w.met // MOST_CONTACT_EVENTS)
+    if w.met >= MOST_CONTACT_EVENTS:
+        w.forced += 1
+    _handle(p, w, _instant(interval, w.tau), coarser, False, kept)
+    copy(p, w.out, w.a)
+    w.is_stale = 0
+    if w.met > 10 * MOST_CONTACT_EVENTS:
+        w.tau = 1.0
 
 
 @kernel
@@ -378,7 +439,7 @@ def _begin(p, w, start):
     for k in range(p.contacts):
         for end in range(2):
             _, _, _, _, gap, _, w.kind[k, end] = end_of(p, w, w.q, k, end, -1)
-            w.closed[k, end] = 1 if gap < 1e-11 * p.size else 0
+            w.closed[k, end] = 1 if gap < SHUT_GAP * p.size else 0
     w.work = w.friction_loss = w.impact_loss = w.tied = 0.0
     outcome = w.outcome
     outcome.leaning = 0
@@ -403,6 +464,8 @@ def _begin(p, w, start):
     outcome.several_modes = outcome.given_way = w.forced = w.met = w.resting = (
         w.noted
     ) = 0
+    w.idle = w.jolts = w.knows_rest = 0
+    w.is_stale = 1
     outcome.overturning_time = math.nan
 
 
@@ -447,71 +510,34 @@ def _contact_event_in_step(p, w, at_end, stretch):
 def _handle(p, w, now, closing, exclude, kept):
     """Change the mode at a contact event, whose failing channels are in ``w.fails``.
 
-    ``exclude``: the old mode is known to fail.
+    Parameters
+    ----------
+    p, w : records ``BODY`` and ``WORK``
+    now : its :class:`Instant`
+    closing : as in :func:`integrate`
+    exclude : whether the old mode is known to fail
+    kept : a :class:`Kept`
     """
     _remember(p, w)
-    for k in range(p.contacts):
-        if w.fails[k, stepping.FALL] == 1:
-            w.outcome.overturned_body = p.upper[k] + 1
-            w.outcome.parted_contact = _parted(w, p.upper[k])
-            _note(p, w, now.time, FALLEN, kept)
-            return
+    if _falls(p, w):
+        _note(p, w, now.time, FALLEN, kept)
+        return
     look_at(p, w, w.q)
     broken = count_broken(p, w)
-    is_tied = change_ties(p, w, now.time)
+    kind = TIED if change_ties(p, w, now.time) else CHANGE
     change_spring(p, w)
-    passes = False
     for k in range(p.contacts):
-        leaves = -1
-        if w.fails[k, stepping.BREAK] == 1 and w.whole[k] == BONDED:
-            solve(p, w, w.q, w.v, now.ah, now.av, False)
-            note_loads(p, w)
-            w.whole[k] = 0
-        for end in range(2):
-            if w.closed[k, end] == 1 and w.fails[k, stepping.GAP + end] == 1:
-                exclude = True
-            if w.closed[k, end] == 1 and w.fails[k, stepping.EDGE + end] == 1:
-                passes = True
-                if w.closed[k, 1 - end] == 1:
-                    w.kind[k, end] = 1 - w.kind[k, end]
-                else:
-                    leaves = end
-        if w.fails[k, stepping.FRICTION] == 1 and w.slides[k] == 0:
-            exclude = True
-        elif w.fails[k, stepping.FRICTION] == 1:
-            w.slides[k] = 0
-            # what slip speed the step has left goes by an impulse: a shift of the speed could add energy
-            solve(p, w, w.q, w.v, now.ah, now.av, True, False)
-            copy(p, w.out, w.v)
-            impact.project(p, w)
-            w.resting = 0
-        for end in range(2):
-            w.touching[k, end] = w.closed[k, end]
-            if w.closed[k, end] == 0:
-                _, _, _, _, gap, _, kind = end_of(p, w, w.q, k, end, -1)
-                if w.fails[k, stepping.GAP + end] == 1 or gap < 1e-11 * p.size:
-                    w.touching[k, end], w.kind[k, end] = 1, kind
-        if leaves >= 0:
-            w.touching[k, leaves] = 0
-        if w.fails[k, stepping.BREAK] == 1 and k >= p.count:
-            w.touching[k, :] = 0
+        fails, passes = _change_contact(p, w, k, now)
+        exclude = exclude or fails
+        kind = PASSING if passes else kind
     _shut(p, w)
-    kind = PASSING if passes else (TIED if is_tied else CHANGE)
-    hit = False
-    for k in range(p.contacts):
-        for end in range(2):
-            if (
-                w.touching[k, end] == 1
-                and impact.approach(p, w, k, end) < -1e-13 * p.speed
-            ):
-                hit = True
-    if hit:
-        impact.strike(p, w, now.ah, now.av, closing * p.speed, False)
+    if _is_hit(p, w):
+        impact.strike(p, w, now.ah, now.av, closing * p.speed)
         kind = IMPACT
         exclude = False
     if not impact.settle(p, w, now.ah, now.av, exclude):
         w.outcome.paradoxes += 1
-        impact.strike(p, w, now.ah, now.av, closing * p.speed, True)
+        impact.strike_unapproached(p, w, now.ah, now.av, closing * p.speed)
         impact.settle(p, w, now.ah, now.av, False)
         kind = PARADOX
     if kind == IMPACT and _is_unlawful(p, w, closing):
@@ -522,6 +548,73 @@ def _handle(p, w, now, closing, exclude, kept):
     for k in range(p.count):
         w.outcome.flights[k] += w.old_closed[k].any() and not w.closed[k].any()
     _note(p, w, now.time, kind, kept)
+
+
+@kernel
+def _falls(p, w):
+    """Whether a body falls; the first one, and the interface that is open furthest, are then written down."""
+    for k in range(p.contacts):
+        if w.fails[k, stepping.FALL] == 1:
+            w.outcome.overturned_body = p.upper[k] + 1
+            w.outcome.parted_contact = _parted(w, p.upper[k])
+            return True
+    return False
+
+
+@kernel
+def _change_contact(p, w, k, now):
+    """Change what fails at contact k; whether the old mode cannot go on, and whether a corner passes an edge."""
+    if w.fails[k, stepping.BREAK] == 1 and w.whole[k] == BONDED:
+        solve_motion(p, w, w.q, w.v, now.ah, now.av)
+        note_loads(p, w)
+        w.whole[k] = 0
+    fails, passes, leaves = False, False, -1
+    for end in range(2):
+        if w.closed[k, end] == 1 and w.fails[k, stepping.GAP + end] == 1:
+            fails = True
+        if w.closed[k, end] == 1 and w.fails[k, stepping.EDGE + end] == 1:
+            passes = True
+            if w.closed[k, 1 - end] == 1:
+                w.kind[k, end] = 1 - w.kind[k, end]
+            else:
+                leaves = end
+    if w.fails[k, stepping.FRICTION] == 1 and w.slides[k] == 0:
+        fails = True
+    elif w.fails[k, stepping.FRICTION] == 1:
+        w.slides[k] = 0
+        # what slip speed the step has left goes by an impulse: a shift of the speed could add energy
+        solve_nearest(p, w, w.v)
+        copy(p, w.out, w.v)
+        impact.project(p, w)
+        w.resting = 0
+    _read_touching(p, w, k, leaves)
+    return fails, passes
+
+
+@kernel
+def _read_touching(p, w, k, leaves):
+    """Read which ends of contact k touch: closed ones and those without a gap, but for the end ``leaves``."""
+    for end in range(2):
+        w.touching[k, end] = w.closed[k, end]
+        if w.closed[k, end] == 0:
+            _, _, _, _, gap, _, kind = end_of(p, w, w.q, k, end, -1)
+            if w.fails[k, stepping.GAP + end] == 1 or gap < SHUT_GAP * p.size:
+                w.touching[k, end], w.kind[k, end] = 1, kind
+    if leaves >= 0:
+        w.touching[k, leaves] = 0
+    if w.fails[k, stepping.BREAK] == 1 and k >= p.count:
+        w.touching[k, :] = 0
+
+
+@kernel
+def _is_hit(p, w):
+    """Whether an end that touches comes closer."""
+    for k in range(p.contacts):
+        for end in range(2):
+            touches = w.touching[k, end] == 1
+            if touches and impact.parting_speed(p, w, k, end) < -1e-13 * p.speed:
+                return True
+    return False
 
 
 @kernel
@@ -536,17 +629,21 @@ def _is_unlawful(p, w, closing):
 
 
 @kernel
-def _jolt(p, w, now, closing, kept):
-    """End by an impulse, as where no mode is consistent, what repeats on the spot as a step begins."""
+def _end_repeating(p, w, now, closing, kept):
+    """End contact events that repeat at the beginning of a step by an impulse, as where no mode is consistent.
+
+    Coordinates and velocities are those with which the step began; ``closing`` as in :func:`integrate`.
+    """
     copy(p, w.q0, w.q)
     copy(p, w.v0, w.v)
     _remember(p, w)
     impact.touch_closed(p, w)
     look_at(p, w, w.q)
-    impact.strike(p, w, now.ah, now.av, closing * p.speed, True)
+    impact.strike_unapproached(p, w, now.ah, now.av, closing * p.speed)
     impact.settle(p, w, now.ah, now.av, False)
     note_breaking(p, w, now.time)
     w.met += 1
+    w.is_stale = 1
     _note(p, w, now.time, PARADOX, kept)
 
 
@@ -601,7 +698,7 @@ def _rest_margins(p, w):
     for load in range(3):
         ah = 1.0 if load == 1 else 0.0
         av = 1.0 if load == 2 else 0.0
-        solve(p, w, w.q, w.v, ah, av, False)
+        solve_motion(p, w, w.q, w.v, ah, av)
         for k in range(p.count):
             if w.whole[k] == BONDED:
                 fill_rest_margins(p, w, k, load)
@@ -696,7 +793,7 @@ def _parted(w, body):
 def _keep(p, w, sample, now):
     """Fill a sample of the history."""
     look_at(p, w, w.q)
-    solve(p, w, w.q, w.v, now.ah, now.av, False)
+    solve_motion(p, w, w.q, w.v, now.ah, now.av)
     copy(p, w.q, sample.q)
     copy(p, w.v, sample.v)
     for k in range(p.count):

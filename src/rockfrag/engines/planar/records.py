@@ -9,6 +9,7 @@ Theory: ``docs/contact.md``, "Coordinates and contacts", equations 1 and 2.
 
 import math
 from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -101,15 +102,14 @@ OUTCOME = np.dtype(
         # from 1 below, 0 none: the body that fell first, and the interface that is open furthest as it falls
         *whole("overturned_body parted_contact"),
         *fields("overturning_time"),  # [s], NaN without a fall
-        *whole(
-            "leaning"
-        ),  # whether what has not fallen rests against a wall or in a tie beyond its balance
+        # whether what has not fallen rests against a wall or in a tie beyond its balance
+        *whole("leaning"),
         # of each constraint
         *whole("hits", MOST_CONSTRAINTS),
         *fields("largest_impulse largest_force breaking_time stroke", MOST_CONSTRAINTS),
     ]
 )
-"""What is told of a case."""
+"""What became of a case."""
 
 WORK = np.dtype(
     [
@@ -201,58 +201,98 @@ WORK = np.dtype(
         *fields("outcome", of=OUTCOME),
         # forced, resting; contact events: met within the sample, noted in all
         *whole("forced resting met noted"),
+        *fields("tau"),  # part of the interval between two samples that is done
+        # whether ``a`` is of another state or mode, whether ``rest`` is of this one
+        *whole("is_stale knows_rest"),
+        # contact events, and impulses without an approach, since time last went on
+        *whole("idle jolts"),
     ]
 )
 
 
+class _Standing(NamedTuple):
+    """A body of a column as all stand; places are (x, y) from the middle of the lowest base [m]."""
+
+    shape: geometry.Shape  # in the direction of the face below, its base no wider than what lies on that face
+    tilt: float  # of its base and of the face below, clockwise [rad]
+    base: Array  # middle of its base
+    right_end: Array  # right end of the part of its base that lies on the face below
+    # the face below: its middle from the centre of the body below, and its half width [m]
+    face: Array
+    half: float
+
+
+def _standing_on_ground(system: System) -> _Standing:
+    """Lowest body, whose base carries on its whole width."""
+    shape = system.shapes[0]
+    middle = np.zeros(2)
+    return _Standing(shape, 0.0, middle, middle, middle, math.inf)
+
+
+def _standing_on_body(system: System, k: int, below: _Standing) -> _Standing:
+    """Body k of a column on the body below, which is there already."""
+    bodies = system.in_plane().bodies
+    carrier, lean = bodies[k - 1], system.contacts[k - 1].tilt
+    base, face = carrier.ends
+    # the face's middle from that of the base below it, and this body's base from the face's middle
+    aside = face.middle - base.middle
+    own_middle = system.contacts[k].offset[0] + bodies[k].ends[0].middle
+    offset = own_middle - (aside + base.middle)
+    lower = system.shapes[k - 1]._replace(b=(face.right - face.left) / 2)
+    pile = geometry.pile_of(lower, system.shapes[k], carrier.height, lean, offset)
+    shift = _turned(np.array((aside, 0.0)), lean)
+    top = _turned(np.array((0.0, carrier.height)), lean) + shift
+    own = _turned(np.array((offset, carrier.height)), lean)
+    return _Standing(
+        shape=pile.upper,
+        tilt=below.tilt + lean,
+        base=below.base + _turned(own + shift, below.tilt),
+        right_end=below.base + _turned(np.array(pile.right) + shift, below.tilt),
+        face=_turned(top - (lower.x, lower.y), below.tilt),
+        half=lower.b,
+    )
+
+
+def _fill_body(p: np.void, k: int, body: _Standing) -> None:
+    """Fill body k, and the face below it, into the record of its column."""
+    mass, inertia = body.shape.mass, body.shape.inertia
+    p["mass"][k], p["inertia"][k] = mass, inertia
+    p["inverse"][3 * k : 3 * k + 3] = 1 / mass, 1 / mass, 1 / inertia
+    p["face"][k], p["half"][k] = body.face, body.half
+    if k > 0:
+        p["tilt_sin"][k], p["tilt_cos"][k] = sin_cos(body.tilt)
+    for end, pivot in enumerate((-1, 1)):
+        # from the corner to the centre of gravity
+        x, y = geometry.turned(*geometry.arm(body.shape, pivot), body.tilt)
+        p["corner"][k, end] = -x, -y
+        p["critical"][k, end] = atan2(-pivot * x, y)
+    if k == 0:
+        p["standing"][:2] = body.shape.x, body.shape.y
+    else:
+        p["standing"][3 * k : 3 * k + 2] = body.right_end - p["corner"][k, 1]
+
+
 def fill_geometry(p: np.void, system: System) -> None:
-    """Fill geometry and masses of a column into its record; a base is as wide as what lies on the face below."""
-    bodies, contacts, shapes = system.in_plane().bodies, system.contacts, system.shapes
+    """Fill geometry and masses of a column, from the ground up, into its record.
+
+    Parameters
+    ----------
+    p : record ``BODY`` with gravity
+    system : planar bodies on each other
+    """
     p["count"], p["weight"] = system.count, p["g"] * system.mass
-    p["half"][0], p["tilt_cos"][:] = math.inf, 1.0
-    # of the face under a body, from the middle of the lowest base
-    middle, tilt = np.zeros(2), 0.0
-    for k, shape in enumerate(shapes):
-        foot, base = middle, middle
-        if k > 0:
-            below, (stand, face) = bodies[k - 1], bodies[k - 1].ends
-            lean = contacts[k - 1].tilt
-            wide = shapes[k - 1]._replace(b=(face.right - face.left) / 2)
-            right = face.middle - stand.middle
-            offset = (
-                contacts[k].offset[0]
-                + bodies[k].ends[0].middle
-                - (right + stand.middle)
-            )
-            pile = geometry.pile_of(wide, shape, below.height, lean, offset)
-            shape = pile.upper
-            aside = np.array(geometry.turned(right, 0.0, lean))
-            top = np.array(geometry.turned(0.0, below.height, lean)) + aside
-            foot = middle + _turned(np.array(pile.right) + aside, tilt)
-            p["face"][k] = _turned(top - (wide.x, wide.y), tilt)
-            p["half"][k] = wide.b
-            own = np.array(geometry.turned(offset, below.height, lean))
-            base = middle + _turned(own + aside, tilt)
-            tilt += lean
-            p["tilt_sin"][k], p["tilt_cos"][k] = sin_cos(tilt)
-        p["mass"][k], p["inertia"][k] = shape.mass, shape.inertia
-        p["inverse"][3 * k : 3 * k + 3] = (
-            1 / shape.mass,
-            1 / shape.mass,
-            1 / shape.inertia,
-        )
-        for end, pivot in enumerate((-1, 1)):
-            x, y = geometry.turned(*geometry.arm(shape, pivot), tilt)
-            p["corner"][k, end] = -x, -y
-            p["critical"][k, end] = atan2(-pivot * x, y)
-        # x, y: arm of the right end
-        stands = (foot[0] + x, foot[1] + y) if k else (shape.x, shape.y)
-        p["standing"][3 * k : 3 * k + 2] = stands
-        middle = base
-    p["size"], p["speed"] = shape.b, math.sqrt(p["g"] * shape.b)
+    p["tilt_cos"][:] = 1.0
+    body = _standing_on_ground(system)
+    _fill_body(p, 0, body)
+    for k in range(1, system.count):
+        body = _standing_on_body(system, k, body)
+        _fill_body(p, k, body)
+    half = body.shape.b
+    p["size"], p["speed"] = half, math.sqrt(p["g"] * half)
 
 
 def _turned(vector: Array, angle: float) -> Array:
+    """Vector (x, y) turned clockwise by an angle [rad]."""
     return np.array(geometry.turned(float(vector[0]), float(vector[1]), angle))
 
 
@@ -283,7 +323,17 @@ def working_memory() -> np.void:
 def posed(
     p: np.void, theta: Sequence[float], omega: Sequence[float]
 ) -> NDArray[np.float64]:
-    """Coordinates and velocities, shape (2, 3 MOST), of bodies turned about the corners that this leaves them."""
+    """Coordinates and velocities of a column each of whose bodies is turned about a corner on the body below.
+
+    Parameters
+    ----------
+    p : record ``BODY`` of the column
+    theta, omega : rotation [rad] and angular velocity [rad/s] of each body, clockwise; their sign sets the corner
+
+    Returns
+    -------
+    x, y [m] and θ [rad] of each body, and their rates, shape (2, 3 MOST).
+    """
     start = np.zeros((2, 3 * MOST))
     standing = p["standing"]
 

@@ -5,6 +5,7 @@ and forces [N] of the closed ends, or velocities and impulses [N s] of an impact
 """
 
 import math
+from typing import NamedTuple
 
 from rockfrag.base.elementary import sin_cos
 from rockfrag.engines.compile.jit import inlined_kernel, kernel
@@ -14,10 +15,8 @@ from rockfrag.engines.planar.support import rubbing
 from rockfrag.engines.planar.ties import fill_tie_accelerations, is_any_taut
 from rockfrag.engines.planar.walls import any_closed, wall_end
 
-SHEAR, COUPLE = (
-    2,
-    3,
-)  # what an unknown of an interface is, besides the normal force at its ends 0 and 1
+SHEAR, COUPLE = 2, 3
+"""What an unknown of an interface is, besides the normal force at its ends 0 and 1."""
 
 
 @inlined_kernel
@@ -115,7 +114,11 @@ def bias(p, q, v, k, x, y, dx, dy, kind):
 
 @inlined_kernel
 def fill_row(p, q, k, x, y, dx, dy, row):
-    """Motion at contact k relative to what is below at (x, y) along (dx, dy), per coordinate of both bodies."""
+    """Fill ``row``: what (x, y) at contact k moves along (dx, dy) per coordinate of the bodies below and above it.
+
+    It is J of ``docs/contact.md``, equation 2: in places 0 to 2 for x, y and θ of the body below, zero if that is
+    the ground, and in places 3 to 5 for those of the body above.
+    """
     b = 3 * p.upper[k]
     row[3] = dx
     row[4] = dy
@@ -127,27 +130,64 @@ def fill_row(p, q, k, x, y, dx, dy, row):
         row[2] = dy * (x - q[b - 3]) - dx * (y - q[b - 2])
 
 
-@kernel
-def solve(p, w, q, v, ah, av, impact, rough=True):
-    """Accelerations of the mode in ``w``, or velocities after an ``impact``, into ``w.out``; whether any are.
+class Sought(NamedTuple):
+    """What a mode is solved for: how a motion goes on, or the velocities after an impact."""
 
-    Without ``rough`` sliding contacts have no friction: the velocities nearest to ``v`` in kinetic energy that
-    keep the mode.  Normal forces (impulses) of closed ends go to ``w.normal``, shear of interfaces to ``w.shear``.
+    ah: float  # horizontal acceleration of the ground, of no effect in an impact [m/s²]
+    av: float  # likewise upwards
+    impact: bool
+    rubs: bool  # whether contacts that slide have friction
+
+
+@kernel
+def solve_motion(p, w, q, v, ah, av):
+    """Solve how the mode in ``w`` goes on; False if its equations are singular.
+
     ``look_at`` must have been called with ``q``.
+
+    Parameters
+    ----------
+    p, w : records ``BODY`` and ``WORK``
+    q, v : coordinates and velocities, x, y [m] and θ [rad] of each body, shape (3 MOST,)
+    ah, av : accelerations of the ground, to the right and upwards [m/s²]
+
+    Fills in ``w``
+    --------------
+    out : accelerations [m/s², rad/s²]
+    normal, shear : forces of closed ends and of interfaces [N]
     """
-    if p.is_held == 1 and (any_closed(p, w) or (is_any_taut(p, w) and not impact)):
-        return solve_generally(p, w, q, v, ah, av, impact, rough, 0)
-    standing = 0 if impact else standing_bodies(p, w)
+    sought = Sought(ah, av, False, True)
+    if p.is_held == 1 and (any_closed(p, w) or is_any_taut(p, w)):
+        return solve_generally(p, w, q, v, sought, 0)
+    standing = standing_bodies(p, w)
     if p.count < 3:
-        if not impact and (p.count == 1 or standing == 1):
+        if p.count == 1 or standing == 1:
             _solve_top(p, w, q, v, ah, av)
             return True
         standing = 0
-    if not solve_generally(p, w, q, v, ah, av, impact, rough, standing):
+    if not solve_generally(p, w, q, v, sought, standing):
         return False
     if standing > 0:
         _carry(p, w, q, ah, av, standing)
     return True
+
+
+@kernel
+def solve_impact(p, w):
+    """Solve an impact at ``w.q`` and ``w.v`` in the mode in ``w``; False if its equations are singular.
+
+    Velocities after it are then in ``w.out``, impulses [N s] in ``w.normal`` and ``w.shear``.
+    """
+    return solve_generally(p, w, w.q, w.v, Sought(0.0, 0.0, True, True), 0)
+
+
+@kernel
+def solve_nearest(p, w, v):
+    """Find in ``w.out`` the velocities that keep the mode in ``w`` and are nearest to ``v``; False if singular.
+
+    They are nearest in kinetic energy: those after an impact in which nothing rubs.
+    """
+    return solve_generally(p, w, w.q, v, Sought(0.0, 0.0, True, False), 0)
 
 
 @kernel
@@ -160,9 +200,10 @@ def standing_bodies(p, w):
 
 
 @kernel
-def _fill_equations(p, w, q, v, k, impact, rough):
-    """Fill rows, columns and right-hand sides of contact k, none if it is open."""
-    friction = rubbing(p, w, q, k) if rough else 0.0
+def _fill_equations(p, w, q, v, k, sought):
+    """Fill rows, columns and right-hand sides of contact k, none if it is open (``docs/contact.md``, 3)."""
+    impact = sought.impact
+    friction = rubbing(p, w, q, k) if sought.rubs else 0.0
     m = 3 * k
     first = True
     for end in range(2):
@@ -203,15 +244,15 @@ def _fill_equations(p, w, q, v, k, impact, rough):
 
 
 @kernel
-def solve_generally(p, w, q, v, ah, av, impact, rough, standing):
+def solve_generally(p, w, q, v, sought, standing):
     """Solve any mode by elimination above the first ``standing`` bodies (``docs/contact.md``, 3; impacts 7).
 
-    In and out as of :func:`solve`.  Three steps: motion without contact forces into ``w.out``; forces that bring
-    about what the mode asks of the motion; the motion that they add.
+    In and out as of :func:`solve_motion`.  Three steps: motion without contact forces into ``w.out``; forces that
+    bring about what the mode asks of the motion; the motion that they add.
     """
-    _fill_motion_without_forces(p, w, q, v, ah, av, impact, standing)
+    _fill_motion_without_forces(p, w, q, v, sought, standing)
     for k in range(standing, p.contacts):
-        _fill_equations(p, w, q, v, k, impact, rough)
+        _fill_equations(p, w, q, v, k, sought)
         base = 3 * p.upper[k] - 3
         # coordinates of the body below count unless it is the ground, or stands
         begin = 3 if k == standing or p.lower[k] < 0 else 0
@@ -224,19 +265,19 @@ def solve_generally(p, w, q, v, ah, av, impact, rough, standing):
         return False
     for d in range(3 * standing, 3 * p.count):
         w.out[d] += w.moved[d]
-    _keep_forces(p, w, q, impact, standing)
+    _keep_forces(p, w, q, sought.impact, standing)
     return True
 
 
 @kernel
-def _fill_motion_without_forces(p, w, q, v, ah, av, impact, standing):
+def _fill_motion_without_forces(p, w, q, v, sought, standing):
     """Fill ``w.out``: accelerations without contact forces, none of standing bodies; or velocities before."""
     for k in range(p.count):
         for d in range(3 * k, 3 * k + 3):
-            w.out[d] = v[d] if impact else 0.0
-        if not impact and k >= standing:
-            w.out[3 * k], w.out[3 * k + 1] = -ah, -(p.g + av)
-    if p.ties + p.is_sprung > 0 and not impact:
+            w.out[d] = v[d] if sought.impact else 0.0
+        if not sought.impact and k >= standing:
+            w.out[3 * k], w.out[3 * k + 1] = -sought.ah, -(p.g + sought.av)
+    if p.ties + p.is_sprung > 0 and not sought.impact:
         fill_tie_accelerations(p, w, q, v)
         for d in range(3 * p.count):
             w.out[d] += w.drift[d]
@@ -304,7 +345,7 @@ def _hold_still(p, w, q, k, push_x, push_y, moment):
 
 @inlined_kernel
 def _solve_top(p, w, q, v, ah, av):
-    """What :func:`solve` does where of at most two bodies only the upper one moves, solved by hand."""
+    """What :func:`solve_motion` does where of at most two bodies only the upper one moves, solved by hand."""
     k = p.count - 1
     fx, fy = -ah, -(p.g + av)
     light, slow = p.inverse[3 * k], p.inverse[3 * k + 2]

@@ -10,7 +10,14 @@ from typing import NamedTuple
 from rockfrag.engines.compile.jit import kernel
 from rockfrag.engines.planar.bonds import bond_margin
 from rockfrag.engines.planar.search import BONDED
-from rockfrag.engines.planar.solve import AT_EDGE, copy, end_of, look_at, rate, solve
+from rockfrag.engines.planar.solve import (
+    AT_EDGE,
+    copy,
+    end_of,
+    look_at,
+    rate,
+    solve_motion,
+)
 from rockfrag.engines.planar.support import GUIDED, least_support_margin, slope
 from rockfrag.engines.planar.ties import (
     least_tie_margin,
@@ -89,7 +96,7 @@ def take_step(p, w, stretch, energy_balance):
     work, friction_loss, tied = 0.0, 0.0, 0.0
     if energy_balance:
         look_at(p, w, w.q0)
-        solve(p, w, w.q0, w.v0, stretch.ah, stretch.av, False)
+        solve_motion(p, w, w.q0, w.v0, stretch.ah, stretch.av)
         first, two, three = _powers(p, w, w.q0, w.v0, stretch.ah, stretch.av)
         work += WEIGHTS[6, 0] * first
         friction_loss += WEIGHTS[6, 0] * two
@@ -110,7 +117,7 @@ def take_step(p, w, stretch, energy_balance):
             w.q1[d] = w.q0[d] + h * speed
         look_at(p, w, w.q1)
         ah, av = ground_at(stretch, INSTANTS[stage])
-        solve(p, w, w.q1, w.v1, ah, av, False)
+        solve_motion(p, w, w.q1, w.v1, ah, av)
         for d in range(size):
             w.kv[d, stage] = w.v1[d]
             w.ka[d, stage] = w.out[d]
@@ -125,7 +132,10 @@ def take_step(p, w, stretch, energy_balance):
 
 @kernel
 def step_error(p, w, h):
-    """Error of a step's velocities by the pair's own estimate over √(g b) [-]; large in Painlevé's cases."""
+    """Error of a step's velocities by the pair's own estimate over √(g b) [-]; large in Painlevé's cases.
+
+    The estimate is the difference of the solutions of order 5 and 4 (Dormand and Prince, 1980, table 2).
+    """
     worst = 0.0
     for d in range(3 * p.count):
         off = (
@@ -163,75 +173,104 @@ def _powers(p, w, q, v, ah, av):
 
 @kernel
 def least_margin(p, w, q, v, forces):
-    """Least of all that must stay positive; ``w.fails`` says what is negative.
+    """Least of all that must stay positive (``docs/contact.md``, 4 to 6); ``w.fails`` says what is negative.
 
     With ``forces`` those in ``w`` count, without them motions alone do: gaps, edges, slips and falls.
     """
     least = math.inf
     for k in range(p.contacts):
         pressed = 0.0
-        some = False
-        edged = k > 0 and (k < p.count or p.wall_top[k] < math.inf)
         w.fails[k, FALL] = 0
         for end in range(2):
             w.fails[k, GAP + end] = w.fails[k, EDGE + end] = 0
             if w.closed[k, end] == 1:
-                some = True
                 pressed += w.normal[k, end]
-                stiff = max(1.0, p.kinetic[k]) if w.slides[k] != 0 else 1.0
-                margin = math.inf
-                if forces and w.whole[k] == 0:
-                    margin = stiff * w.normal[k, end] / p.weight + SLACK
-                if edged and w.slides[k] != 0:
-                    _, _, _, _, _, beyond, _ = end_of(p, w, q, k, end, w.kind[k, end])
-                    inside = AT_EDGE - beyond / p.size
-                    inside = (inside if w.kind[k, end] == 1 else -inside) + TOUCH
-                    if inside < 0.0:
-                        w.fails[k, EDGE + end] = 1
-                    if inside < 0.0 and k < p.count:
-                        _, _, _, _, over, _, _ = end_of(p, w, q, k, end, 1)
-                        if over < -HANGING * p.size:
-                            w.fails[k, FALL] = 1
-                    least = min(least, inside)
+                margin = _margin_of_closed_end(p, w, q, k, end, forces)
             else:
-                _, _, _, _, gap, beyond, _ = end_of(p, w, q, k, end, -1)
-                margin = gap / p.size + TOUCH
-                if k < p.count and beyond < -2.0 * p.half[k]:
-                    least = min(least, (2.0 * p.half[k] + beyond) / p.size)
-            if margin < 0.0:
-                w.fails[k, GAP + end] = 1
+                margin = _margin_of_open_end(p, w, q, k, end)
             least = min(least, margin)
         w.fails[k, FRICTION] = 0
-        if some:
-            if w.slides[k] != 0:
-                end = 0 if w.closed[k, 0] == 1 else 1
-                x, y, tx, ty, _, _, _ = end_of(p, w, q, k, end, w.kind[k, end])
-                margin = w.slides[k] * rate(p, q, v, k, x, y, tx, ty) / p.speed + TOUCH
-            elif forces and w.whole[k] != BONDED:
-                shear = w.shear[k] + slope(p, w, q, k) * pressed
-                margin = p.static[k] * pressed - abs(shear)
-                margin = margin / (p.weight * max(p.static[k], 1.0)) + SLACK
-            else:
-                margin = math.inf
-            if margin < 0.0:
-                w.fails[k, FRICTION] = 1
-            least = min(least, margin)
-        if k >= p.count:
-            continue
-        turned = abs(q[3 * k + 2])
-        if k > 0:
-            turned = max(turned, abs(q[3 * k + 2] - q[3 * k - 1]))
-        margin = 0.5 * math.pi - turned
-        # what sticks with an end closed stays over the face until it has turned
-        holds = some and w.slides[k] == 0
-        if k > 0 and not holds and off_the_edge(p, w, q, k):
-            w.fails[k, FALL] = 1
-        if margin < 0.0:
-            w.fails[k, FALL] = 1
-        least = min(least, margin)
+        if w.closed[k].any():
+            least = min(least, _margin_of_friction(p, w, q, v, k, forces, pressed))
+        if k < p.count:
+            least = min(least, _margin_of_fall(p, w, q, k))
     if p.is_held == 1:
         least = min(least, _least_of_holding(p, w, q, v, forces))
     return least
+
+
+@kernel
+def _margin_of_closed_end(p, w, q, k, end, forces):
+    """Least margin of a closed end: its force over the weight, and how far its corner is from an edge [-]."""
+    slides = w.slides[k] != 0
+    margin = math.inf
+    if forces and w.whole[k] == 0:
+        # a force that friction multiplies counts as the shear that it brings about
+        stiff = max(1.0, p.kinetic[k]) if slides else 1.0
+        margin = stiff * w.normal[k, end] / p.weight + SLACK
+    if margin < 0.0:
+        w.fails[k, GAP + end] = 1
+    has_edge = k > 0 and (k < p.count or p.wall_top[k] < math.inf)
+    if not (has_edge and slides):
+        return margin
+    _, _, _, _, _, beyond, _ = end_of(p, w, q, k, end, w.kind[k, end])
+    inside = AT_EDGE - beyond / p.size
+    inside = (inside if w.kind[k, end] == 1 else -inside) + TOUCH
+    if inside < 0.0:
+        w.fails[k, EDGE + end] = 1
+    if inside < 0.0 and k < p.count:
+        _, _, _, _, over, _, _ = end_of(p, w, q, k, end, 1)
+        if over < -HANGING * p.size:
+            w.fails[k, FALL] = 1
+    return min(margin, inside)
+
+
+@kernel
+def _margin_of_open_end(p, w, q, k, end):
+    """Least margin of an open end: its gap, and how far the base still reaches over the face [-]."""
+    _, _, _, _, gap, beyond, _ = end_of(p, w, q, k, end, -1)
+    margin = gap / p.size + TOUCH
+    if margin < 0.0:
+        w.fails[k, GAP + end] = 1
+    if k < p.count and beyond < -2.0 * p.half[k]:
+        margin = min(margin, (2.0 * p.half[k] + beyond) / p.size)
+    return margin
+
+
+@kernel
+def _margin_of_friction(p, w, q, v, k, forces, pressed):
+    """Margin of a closed contact that slides, its slip speed, or sticks, the shear that friction has left [-].
+
+    ``pressed``: sum of the normal forces of its ends [N].
+    """
+    margin = math.inf
+    if w.slides[k] != 0:
+        end = 0 if w.closed[k, 0] == 1 else 1
+        x, y, tx, ty, _, _, _ = end_of(p, w, q, k, end, w.kind[k, end])
+        margin = w.slides[k] * rate(p, q, v, k, x, y, tx, ty) / p.speed + TOUCH
+    elif forces and w.whole[k] != BONDED:
+        shear = w.shear[k] + slope(p, w, q, k) * pressed
+        margin = p.static[k] * pressed - abs(shear)
+        margin = margin / (p.weight * max(p.static[k], 1.0)) + SLACK
+    if margin < 0.0:
+        w.fails[k, FRICTION] = 1
+    return margin
+
+
+@kernel
+def _margin_of_fall(p, w, q, k):
+    """Angle that body k, and the contact below it, have left to a right angle [rad]."""
+    turned = abs(q[3 * k + 2])
+    if k > 0:
+        turned = max(turned, abs(q[3 * k + 2] - q[3 * k - 1]))
+    margin = 0.5 * math.pi - turned
+    # what sticks with an end closed stays over the face until it has turned
+    holds = w.closed[k].any() and w.slides[k] == 0
+    if k > 0 and not holds and off_the_edge(p, w, q, k):
+        w.fails[k, FALL] = 1
+    if margin < 0.0:
+        w.fails[k, FALL] = 1
+    return margin
 
 
 @kernel
@@ -302,7 +341,7 @@ def margin_at(p, w, tau, stretch, forces):
     look_at(p, w, w.q)
     if forces:
         ah, av = ground_at(stretch, tau)
-        solve(p, w, w.q, w.v, ah, av, False)
+        solve_motion(p, w, w.q, w.v, ah, av)
     return least_margin(p, w, w.q, w.v, forces)
 
 

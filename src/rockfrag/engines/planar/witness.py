@@ -70,25 +70,26 @@ def _speed(q, v, k, point, direction):
 
 @kernel
 def breaks_a_law(p, w, closing, plastic):
-    """Whether the change from ``old_v`` to ``v`` breaks a law of impacts by more than shutting slow ends asks.
+    """Whether the impact from ``old_v`` to ``v`` breaks a law, by more than shutting slow ends asks.
 
-    P_n ≥ 0 at each end, nothing at ends that part, |P_t| ≤ µ ΣP_n, kinetic for a shear against the old slip, and
-    no gain of energy.  Where laws of restitution act, impacts are not ``plastic``: ends may be pushed and part.
+    The laws are 8 to 10 of ``docs/contact.md``: P_n ≥ 0 at each end, nothing at ends that part, |P_t| ≤ µ ΣP_n
+    with µ the kinetic coefficient for a shear against the old slip, and no gain of energy.
+
+    Parameters
+    ----------
+    p, w : records ``BODY`` and ``WORK``
+    closing : speed over √(g b) below which ends are shut after an impact [-]
+    plastic : whether no contact has a law of restitution; with one, ends may be pushed and part
     """
-    mass = gain = 0.0
-    for d in range(3 * p.count):
-        gain += 0.5 * (w.v[d] * w.v[d] - w.old_v[d] * w.old_v[d]) / p.inverse[d]
-        mass += p.mass[d // 3] if d % 3 == 0 else 0.0
+    mass, gain = _mass_and_gain(p, w)
     slack = (SHUT * closing + ROUNDING) * p.speed
     limits = Limits(slack, slack * mass, plastic)
     broken = gain > ROUNDING * mass * p.speed * p.speed
+    # what contact k has given is the change of momentum of all bodies from k up, but for what walls have given
     push_x = push_y = turn = 0.0
     for k in range(p.count - 1, -1, -1):
-        jump_x = (w.v[3 * k] - w.old_v[3 * k]) * p.mass[k]
-        jump_y = (w.v[3 * k + 1] - w.old_v[3 * k + 1]) * p.mass[k]
-        spin = (w.v[3 * k + 2] - w.old_v[3 * k + 2]) * p.inertia[k]
-        push_x, push_y = push_x + jump_x, push_y + jump_y
-        turn += spin + jump_x * w.q[3 * k + 1] - jump_y * w.q[3 * k]
+        jump_x, jump_y, jump_turn = _momentum_change(p, w, k)
+        push_x, push_y, turn = push_x + jump_x, push_y + jump_y, turn + jump_turn
         if p.contacts > p.count:
             wall_x, wall_y, wall_turn = _given_by_walls(p, w, k)
             push_x, push_y, turn = push_x - wall_x, push_y - wall_y, turn - wall_turn
@@ -98,6 +99,26 @@ def breaks_a_law(p, w, closing, plastic):
     for k in range(p.count, p.contacts):
         broken = broken or _wall_breaks(p, w, k, limits)
     return broken
+
+
+@kernel
+def _mass_and_gain(p, w):
+    """Mass of all bodies [kg], and the kinetic energy that an impact has given to them [J]."""
+    mass = gain = 0.0
+    for k in range(p.count):
+        mass += p.mass[k]
+        for d in range(3 * k, 3 * k + 3):
+            gain += 0.5 * (w.v[d] * w.v[d] - w.old_v[d] * w.old_v[d]) / p.inverse[d]
+    return mass, gain
+
+
+@kernel
+def _momentum_change(p, w, k):
+    """Change of momentum (x, y) of body k in an impact [N s], and of its moment about the origin [N s m]."""
+    jump_x = (w.v[3 * k] - w.old_v[3 * k]) * p.mass[k]
+    jump_y = (w.v[3 * k + 1] - w.old_v[3 * k + 1]) * p.mass[k]
+    spin = (w.v[3 * k + 2] - w.old_v[3 * k + 2]) * p.inertia[k]
+    return jump_x, jump_y, spin + jump_x * w.q[3 * k + 1] - jump_y * w.q[3 * k]
 
 
 @kernel
@@ -162,6 +183,7 @@ def _contact_breaks(p, w, k, resultant, limits):
     if not left:
         x0, y0, tx, ty = x1, y1, ux, uy
     along, pressed = push_x * tx + push_y * ty, push_y * tx - push_x * ty
+    # moment about the end that touches first, from which follows what the far end has given
     off = turn - push_x * y0 + push_y * x0
     if not (left and right):
         # one end carries all
@@ -170,15 +192,23 @@ def _contact_breaks(p, w, k, resultant, limits):
         x1, y1, far = x0, y0, 0.0
     else:
         far = -off / ((x1 - x0) * tx + (y1 - y0) * ty)
-    parts = min(pressed - far, far) if left and right else pressed
-    if parts < -allowed and (plastic or pressed < -allowed):
+    least = min(pressed - far, far) if left and right else pressed
+    if least < -allowed and (plastic or pressed < -allowed):
         return True
-    for end in range(2):
-        x, y, given = (x0, y0, pressed - far) if end == 0 else (x1, y1, far)
-        speed = _speed(w.q, w.v, k, (x, y), (-ty, tx))
-        if speed < -slack or (plastic and given > allowed and speed > slack):
-            return True
+    if _end_breaks(p, w, k, (x0, y0, -ty, tx), pressed - far, limits):
+        return True
+    if _end_breaks(p, w, k, (x1, y1, -ty, tx), far, limits):
+        return True
     slid = _speed(w.q, w.old_v, k, (x0, y0), (tx, ty))
     brakes = abs(slid) > slack and slid * along < 0.0
     limit = p.kinetic[k] if brakes else p.static[k]
     return abs(along) > limit * max(0.0, pressed) + allowed
+
+
+@kernel
+def _end_breaks(p, w, k, end, given, limits):
+    """Whether an end (x, y and its normal) comes closer after an impact, or parts although it was pushed."""
+    x, y, nx, ny = end
+    speed = _speed(w.q, w.v, k, (x, y), (nx, ny))
+    parts = limits.plastic and given > limits.impulse and speed > limits.speed
+    return speed < -limits.speed or parts

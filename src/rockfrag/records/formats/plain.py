@@ -386,21 +386,22 @@ def _is_timed(values: NDArray[np.float64], columns: int) -> bool:
 def _are_channels(
     layout: _Layout, values: NDArray[np.float64], widths: NDArray[np.int64]
 ) -> bool:
-    """Tell columns of channels side by side from one series that goes on row after row.
+    """Whether columns are channels side by side, and not one series that goes on row after row.
 
-    Components that are named and a count of rows tell it. Else the samples do: those of one channel
-    differ less from one to the next than those of two.
+    A stated count of samples decides it, then as many named components as there are columns, or a last row that
+    is shorter. Else the samples do (:func:`_smoother_directions`), and the steps of the layout say so.
+
+    Parameters
+    ----------
+    layout, values : of the table, and all its numbers row after row
+    widths : how many numbers each row has
     """
     columns = layout.table.columns
     if layout.npts in (widths.size, values.size):
         return layout.npts == widths.size
     if len(layout.facts.components) == columns or widths[-1] != columns:
         return len(layout.facts.components) == columns
-    rows = values.reshape(-1, columns)
-    down = float(np.median(np.abs(np.diff(rows, axis=0))))
-    along = float(np.median(np.abs(np.diff(rows, axis=1))))
-    side_by_side = down < _SMOOTHER * along
-    in_rows = along < (_SMOOTHER if columns <= 3 else _SMOOTHER_IN_ROWS) * down
+    side_by_side, in_rows = _smoother_directions(values.reshape(-1, columns))
     if (side_by_side and columns > 3) or not (side_by_side or in_rows):
         layout.text.fail(
             f"{columns} numbers a row may be {columns} columns side by side or one series row after row; "
@@ -411,6 +412,17 @@ def _are_channels(
         {"step": "take numbers as " + ("columns" if side_by_side else "rows")}
     )
     return side_by_side
+
+
+def _smoother_directions(rows: NDArray[np.float64]) -> tuple[bool, bool]:
+    """Whether samples change clearly less from row to row than along a row, and the other way round.
+
+    Those of one channel differ less from one to the next than those of two channels do.
+    """
+    down = float(np.median(np.abs(np.diff(rows, axis=0))))
+    along = float(np.median(np.abs(np.diff(rows, axis=1))))
+    most = _SMOOTHER if rows.shape[1] <= 3 else _SMOOTHER_IN_ROWS
+    return down < _SMOOTHER * along, along < most * down
 
 
 def _series(layout: _Layout, values: NDArray[np.float64]) -> Channel:

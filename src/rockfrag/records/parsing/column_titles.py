@@ -247,25 +247,29 @@ def _has_direction_beside_word(column: Column) -> bool:
 
 
 def _with_doubtful_letters(columns: list[Column]) -> list[Column]:
-    """Say of columns such as ``Acc (V)`` that V may be volts: where it is alone, or stands beside a direction."""
+    """Columns with a problem where a letter, as in ``Acc (V)``, may be a unit (volts) or a direction (vertical).
+
+    It may where no other column names a direction, where several have the same letter, where the title names a
+    direction beside it, and of velocity.
+    """
     named = sum(
         names_direction(c.component) or is_direction(c.component) for c in columns
     )
     letters = [_DOUBTFUL.search(c.title) for c in columns]
     every = [match[1] for match in letters if match]
-    return [
-        replace(c, problem=f"({match[1]}) may be a unit or a direction")
-        if match
-        and not c.unit
-        and (
+    found = []
+    for column, match in zip(columns, letters, strict=True):
+        is_doubtful = match is not None and (
             named == 1
             or every.count(match[1]) > 1
-            or " " in c.component
-            or c.quantity == "velocity"
+            or " " in column.component
+            or column.quantity == "velocity"
         )
-        else c
-        for c, match in zip(columns, letters, strict=True)
-    ]
+        if match and is_doubtful and not column.unit:
+            problem = f"({match[1]}) may be a unit or a direction"
+            column = replace(column, problem=problem)
+        found.append(column)
+    return found
 
 
 @dataclass(frozen=True)

@@ -146,7 +146,15 @@ def _without_marks(line: str) -> str:
 
 
 def _first_run(lines: list[str], rows: dict[int, list[str]]) -> int | None:
-    """Return the first of some rows of one width, one below the other, or of those that go on to the last."""
+    """Return the line at which ``_RUN`` rows of as many numbers follow each other; None if there are none.
+
+    Fewer rows count where they go on to the last row, which may be shorter.
+
+    Parameters
+    ----------
+    lines : of the file; blank ones between rows do not count
+    rows : numbers of each row by the number of its line, from 0
+    """
     last = max(rows, default=-1)
     run: list[int] = []
     for number in range(last + 1):

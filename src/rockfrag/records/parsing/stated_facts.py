@@ -347,16 +347,25 @@ def _units_in(words: str) -> list[Unit]:
         tokens = part.strip(" .:=\"'").split()
         start = 0
         while start < len(tokens):
-            ends = range(len(tokens), start, -1)
-            every = ((read_unit(" ".join(tokens[start:end])), end) for end in ends)
-            known = next((pair for pair in every if pair[0].quantity), None)
-            if known and start and NUMBER.fullmatch(tokens[start - 1]):
-                # a number before a unit is a factor that was not understood
-                words = " ".join(tokens[start - 1 : known[1]])
-                known = Unit(words, known[0].quantity, factor=words), known[1]
-            start = known[1] if known else start + 1
-            found += [known[0]] if known else []
+            unit, end = _unit_at(tokens, start)
+            if unit is not None:
+                found.append(unit)
+            start = end
     return found
+
+
+def _unit_at(tokens: list[str], start: int) -> tuple[Unit | None, int]:
+    """Return the longest unit that begins with a token, None if none does, and the place behind it."""
+    for end in range(len(tokens), start, -1):
+        unit = read_unit(" ".join(tokens[start:end]))
+        if not unit.quantity:
+            continue
+        if start and NUMBER.fullmatch(tokens[start - 1]):
+            # a number before a unit is a factor that was not understood
+            words = " ".join(tokens[start - 1 : end])
+            return Unit(words, unit.quantity, factor=words), end
+        return unit, end
+    return None, start + 1
 
 
 def _unit_in_so_many_words(line: str) -> str:

@@ -97,7 +97,7 @@ def _element(
     amplitudes = by_case.columns.to_numpy()
     fell = by_case.astype(int).astype(str).agg("".join, axis=1)
     rows = [[str(fell[name, motion.name]) for motion in motions] for name in bodies]
-    body, motion = _start(bodies, rows)
+    body, motion = _first_shown(bodies, rows)
     first = rows[body][motion].find("1")
     shown = first if first >= 0 else len(amplitudes) - 1
     data = {
@@ -152,13 +152,26 @@ def swept(bodies: Mapping[str, System], motions: Sequence[Motion]) -> pd.DataFra
     return pd.DataFrame({"overturned": fell.ravel()}, index=index).reset_index()
 
 
-def _start(bodies: Mapping[str, System], rows: list[list[str]]) -> tuple[int, int]:
-    """Place of the body and of the motion that are shown first."""
-    kinds = list(bodies.values())
-    order = sorted(range(len(kinds)), key=lambda number: -kinds[number].count)
-    places = ((body, motion) for body in order for motion in range(len(rows[body])))
-    falls = (at for at in places if rows[at[0]][at[1]].find("1") > 0)
-    return next(falls, (order[0], 0))
+def _first_shown(
+    bodies: Mapping[str, System], rows: list[list[str]]
+) -> tuple[int, int]:
+    """Numbers of the body and of the motion that a page shows first.
+
+    They are the first ones of which the body survives weak shaking and falls in stronger one, bodies on pedestals
+    before others; the first body and motion if there are none.
+
+    Parameters
+    ----------
+    bodies : by their names
+    rows : of each body and motion the outcomes at rising levels, a letter each, 1 where it falls
+    """
+    counts = [body.count for body in bodies.values()]
+    order = sorted(range(len(counts)), key=lambda number: counts[number], reverse=True)
+    for body in order:
+        for motion, outcomes in enumerate(rows[body]):
+            if outcomes.find("1") > 0:
+                return body, motion
+    return order[0], 0
 
 
 def _motion(motion: Motion) -> dict[str, Any]:

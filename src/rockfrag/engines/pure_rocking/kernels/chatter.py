@@ -62,7 +62,7 @@ RESTORING = np.dtype(
         *fields("frequency2 fastest"),
     ]
 )
-"""With what chatter of a body at θ1 = θ2 = 0 is closed."""
+"""What closes the chatter of a body at θ1 = θ2 = 0."""
 
 
 @kernel
@@ -79,20 +79,28 @@ def fill_restoring(body, restoring, scratch):
     # p² of a ground that does not move vertically
     frequency2 = body.gravity * hypot(vx, vy) / inertia
     restoring.frequency2 = frequency2
-    restoring.fastest = 0.2 * _least(restoring, 0.0, 1.0) / math.sqrt(frequency2)
+    restoring.fastest = (
+        0.2 * _least_restoring(restoring, 0.0, 1.0) / math.sqrt(frequency2)
+    )
 
 
 @kernel
 def _restoring(body, c1, c2, ground, scratch):
-    """Angular acceleration that brings pattern 3 or 4 back, at rest on its way out."""
+    """Angular acceleration [rad/s²] that closes the one contact (c1 or c2) on which a body has begun to rock.
+
+    The body is still where it rests, under an acceleration of the ground [m/s²]; ``scratch`` is a STATE.
+    """
     at_rest(scratch, ground, body.gravity)
     alpha1, alpha2 = accelerations(body, c1, c2, scratch)
     return -c2 * alpha2 if c1 == 0 else -c1 * alpha1
 
 
 @kernel
-def _least(restoring, a, weight):
-    """Least restoring acceleration [rad/s²] over the ways to leave rest, at a ``weight`` over the usual."""
+def _least_restoring(restoring, a, weight):
+    """Least of the four restoring accelerations [rad/s²] under an acceleration of the ground ``a`` [m/s²].
+
+    ``weight``: gravity over that of a ground that does not move vertically [-].
+    """
     still, per = restoring.still, restoring.per_ground
     return min(
         min(weight * still[0] + per[0] * a, weight * still[1] + per[1] * a),
@@ -121,7 +129,7 @@ def dies_out(speed, fraction, safety, restoring, drop, ahead):
     for n in range(MOST_AHEAD + 1):
         i = ahead.k + n
         a = ahead.samples[i] * ahead.factor if i <= ahead.last else 0.0
-        least = min(least, _least(restoring, a, weight_at(ahead, i)))
+        least = min(least, _least_restoring(restoring, a, weight_at(ahead, i)))
         if least <= 0.0 or speed * speed * restoring.frequency2 > 0.04 * least * least:
             return False
         if speed * speed > 2.0 * drop * least:

@@ -37,7 +37,10 @@ def at_rest(state, ground, gravity):
 
 @kernel
 def rest_interval(body, scratch):
-    """Ground accelerations between which a body rests (Psycharis, 1990) [m/s²]; they grow as gravity does."""
+    """Lowest and highest acceleration of the ground under which a body rests [m/s²] (Psycharis, 1990).
+
+    Both are in proportion to gravity; ``scratch`` is a STATE.
+    """
     low = -math.inf
     high = math.inf
     for contact in (GROUND, INTERFACE):
@@ -46,6 +49,7 @@ def rest_interval(body, scratch):
         for c in (1, -1):
             still = _rest_moment(body, contact, c, 0.0, scratch)
             pushed = _rest_moment(body, contact, c, 1.0, scratch)
+            # the moment is linear in the ground's acceleration, and the contact opens where it vanishes
             limit = still / (still - pushed)
             if still > pushed:
                 high = min(high, limit)

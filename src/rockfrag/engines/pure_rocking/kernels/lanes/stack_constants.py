@@ -65,15 +65,15 @@ def fill_constants(body, h, lanes_of_one, two, impacts, scratch):
         for c2 in (-1, 0, 1):
             at = equations.number_of(c1, c2)
             if c1 != 0 and c2 != 0:
-                _both_rotate(body, c1, c2, hh, two[at])
-                _closing(body, c1, c2, impacts[at])
+                _fill_both_rotating(body, c1, c2, hh, two[at])
+                _fill_closing(body, c1, c2, impacts[at])
             elif c1 != 0 or c2 != 0:
-                _one_rotates(body, c1, c2, hh, lanes_of_one[at])
-                _impact(body, c1, c2, impacts[at], scratch)
+                _fill_one_rotating(body, c1, c2, hh, lanes_of_one[at])
+                _fill_landing(body, c1, c2, impacts[at], scratch)
 
 
 @kernel
-def _one_rotates(body, c1, c2, hh, lanes_of_one):
+def _fill_one_rotating(body, c1, c2, hh, lanes_of_one):
     """Fill the constants of a contact state in which one part rotates; ``hh``: step squared [s²]."""
     critical, vx, vy, inertia = equations.balance(body, c1, c2)
     for corner in (1.0, -1.0):
@@ -81,9 +81,9 @@ def _one_rotates(body, c1, c2, hh, lanes_of_one):
         for n in range(HOLD):
             hold[n, 0] = 0.0
         if c1 != 0:
-            _interface_hold(body, equations.pivot(c1), corner, hh, hold)
+            _fill_interface_hold(body, equations.pivot(c1), corner, hh, hold)
         else:
-            _ground_hold(body, corner, equations.pivot(c2), hh, hold)
+            _fill_ground_hold(body, corner, equations.pivot(c2), hh, hold)
     per = hh * body.gravity / inertia
     lanes_of_one.gx, lanes_of_one.gy = per * vx, per * vy
     lanes_of_one.per_angle = (c1 + c2) / critical
@@ -91,7 +91,7 @@ def _one_rotates(body, c1, c2, hh, lanes_of_one):
 
 
 @kernel
-def _both_rotate(body, c1, c2, hh, two):
+def _fill_both_rotating(body, c1, c2, hh, two):
     """Fill the constants of a contact state in which both blocks rotate; ``hh``: step squared [s²]."""
     s1, s2 = equations.pivot(c1), equations.pivot(c2)
     two.m11, two.m22 = equations.inertia1(body, s1, s2), equations.inertia2(body, s2)
@@ -108,8 +108,8 @@ def _both_rotate(body, c1, c2, hh, two):
 
 
 @kernel
-def _ground_hold(body, s1, s2, hh, hold):
-    """Moment of the ground on a standing pedestal in pattern 4 (``equations.hold``)."""
+def _fill_ground_hold(body, s1, s2, hh, hold):
+    """Fill coefficients of the ground's moment on a standing pedestal in pattern 4 (``equations.hold``)."""
     e, f = equations.coupling(body, s1, s2)
     vx, vy = equations.first_moment1(body, s1, s2)
     # (e cos θ + f sin θ) θ'' + (f cos θ - e sin θ) θ'² + a vy - g vx
@@ -120,8 +120,8 @@ def _ground_hold(body, s1, s2, hh, hold):
 
 
 @kernel
-def _interface_hold(body, s1, s2, hh, hold):
-    """Moment of the interface on the statue that turns with its pedestal (``equations.hold``)."""
+def _fill_interface_hold(body, s1, s2, hh, hold):
+    """Fill coefficients of the interface's moment on a statue that turns with its pedestal (``hold``)."""
     e, f = equations.coupling(body, s1, s2)
     vx, vy = equations.first_moment2(body, s2)
     # (e + m22) θ'' - f θ'² + a (vy cos θ - vx sin θ) - g (vx cos θ + vy sin θ)
@@ -133,23 +133,22 @@ def _interface_hold(body, s1, s2, hh, hold):
 
 
 @kernel
-def _closing(body, c1, c2, products):
-    """Closing of one contact while the other stays open."""
+def _fill_closing(body, c1, c2, products):
+    """Fill what the closing of one contact, while the other stays open, takes of the velocities before it."""
     s1, s2 = equations.pivot(c1), equations.pivot(c2)
     old, level = (s1, s2), (1.0, 0.0)
     products.ground, _, _, _ = equations.metric(body, (-s1, s2), old, level)
     k11, k12, k21, k22 = equations.metric(body, (s1, -s2), old, level)
-    products.both11, products.both12, products.both21, products.both22 = (
-        k11,
-        k12,
-        k21,
-        k22,
-    )
+    products.both11, products.both12 = k11, k12
+    products.both21, products.both22 = k21, k22
 
 
 @kernel
-def _impact(body, c1, c2, products, scratch):
-    """Landing of the one part that rocks: the outcome is the same for every speed but for its size."""
+def _fill_landing(body, c1, c2, products, scratch):
+    """Fill the outcome of the impact in which the one part that rocks lands, at unit speed.
+
+    That of another speed is in proportion to it. ``scratch`` is a STATE.
+    """
     scratch.c1, scratch.c2, scratch.theta1, scratch.theta2 = c1, c2, 0.0, 0.0
     scratch.omega1, scratch.omega2 = -1.0 * c1, -1.0 * (c1 + c2)
     n1, n2, w1, w2, gives_way = impact(body, scratch, c1 != 0, c2 != 0)

@@ -17,7 +17,21 @@ from rockfrag.engines.pure_rocking.kernels.lanes.case import (
     QUIET,
     RELEASE,
 )
-from rockfrag.engines.pure_rocking.kernels.lanes.stack_constants import HOLD
+from rockfrag.engines.pure_rocking.kernels.lanes.stack_constants import (
+    HOLD,
+    OF_GRAVITY,
+    OF_GRAVITY_COS,
+    OF_GRAVITY_SIN,
+    OF_GROUND,
+    OF_GROUND_COS,
+    OF_GROUND_SIN,
+    OF_ROTATION,
+    OF_ROTATION_COS,
+    OF_ROTATION_SIN,
+    OF_SQUARE,
+    OF_SQUARE_COS,
+    OF_SQUARE_SIN,
+)
 
 LANE = np.dtype(
     [
@@ -54,13 +68,40 @@ LANE = np.dtype(
 
 @inlined_kernel
 def _moment(hold, i, turn, alpha, square, ground_and_weight):
-    """Contact moment of a closed contact at one corner; ``turn``: sine and cosine of θ."""
+    """Moment that closes a contact at one of its corners, negative if the contact would have to pull.
+
+    Parameters
+    ----------
+    hold : coefficients by row (``stack_constants.HOLD``), shape (HOLD, lanes)
+    i : number of the lane
+    turn : sine and cosine of θ
+    alpha, square : θ'' and θ'² per sample²
+    ground_and_weight : acceleration of the ground [m/s²], and gravity over that of a ground that stays level [-]
+
+    Returns
+    -------
+    The moment [kg m² per sample²].
+    """
     ground, weight = ground_and_weight
     s, c = turn
-    moment = (hold[0, i] + hold[1, i] * s + hold[2, i] * c) * alpha
-    moment += (hold[3, i] + hold[4, i] * s + hold[5, i] * c) * square
-    moment += (hold[6, i] + hold[7, i] * s + hold[8, i] * c) * ground
-    return moment + weight * (hold[9, i] + hold[10, i] * s + hold[11, i] * c)
+    by_rotation = (
+        hold[OF_ROTATION, i]
+        + hold[OF_ROTATION_SIN, i] * s
+        + hold[OF_ROTATION_COS, i] * c
+    )
+    by_square = (
+        hold[OF_SQUARE, i] + hold[OF_SQUARE_SIN, i] * s + hold[OF_SQUARE_COS, i] * c
+    )
+    by_ground = (
+        hold[OF_GROUND, i] + hold[OF_GROUND_SIN, i] * s + hold[OF_GROUND_COS, i] * c
+    )
+    by_gravity = (
+        hold[OF_GRAVITY, i] + hold[OF_GRAVITY_SIN, i] * s + hold[OF_GRAVITY_COS, i] * c
+    )
+    moment = by_rotation * alpha
+    moment += by_square * square
+    moment += by_ground * ground
+    return moment + weight * by_gravity
 
 
 @inlined_kernel
@@ -87,67 +128,67 @@ def _advance(lane, g, upward):
     down = -1.0 / g
     for i in range(LANES):
         left = lane.part_left[i]
-        theta = lane.theta[i]
-        omega = lane.omega[i]
-        a = lane.ground[i]
-        a_end = lane.ground_end[i]
+        theta, omega = lane.theta[i], lane.omega[i]
+        a, a_end = lane.ground[i], lane.ground_end[i]
         per = 1.0 / left
-        w = omega * left
+        # angular velocity per step
+        turning = omega * left
         turn = taylor.quick_sine_cosine(theta)
         u = lane.weight[i] if upward else 1.0
         u_end = lane.weight_end[i] if upward else 1.0
         ground = a * down, (a_end - a) * down
         weight = u, u_end - u, upward
-        rates = _rates((lane.gx[i], lane.gy[i]), turn, w, left, ground, weight)
+        rates = _rates((lane.gx[i], lane.gy[i]), turn, turning, left, ground, weight)
         taylor.keep_rates(lane.rates, i, rates)
         end = theta + taylor.travel(rates, 1.0)
-        z = taylor.rate_at(rates, 1.0)
-        # the contact closes, nearly closes, or may close and open again
-        side = lane.side[i]
-        gap = side * theta
-        out = side * w
-        out_end = side * z
-        near = roots.dips(gap, out, out_end) | roots.hops(
-            gap, out, out_end, side * rates[1]
-        )
-        flag = NEARS if near | (abs(end) >= HALF_TURN) else QUIET
-        flag = CLOSES if side * end < 0.0 else flag
+        end_turning = taylor.rate_at(rates, 1.0)
+        flag = _flag(lane.side[i], (theta, turning, rates[1]), (end, end_turning))
         # the closed contact would have to be pulled
         square = omega * omega
         alpha = rates[1] * per * per
         right = _moment(lane.right, i, turn, alpha, square, (a, u))
         other = _moment(lane.left, i, turn, alpha, square, (a, u))
         lane.flag[i] = RELEASE if (right < 0.0) | (other < 0.0) else flag
-        lane.before_theta[i] = lane.was_theta[i]
-        lane.before_omega[i] = lane.was_omega[i]
-        lane.before_ground[i] = lane.was_ground[i]
-        lane.before_left[i] = lane.was_left[i]
-        lane.has_before[i] = lane.has_step[i]
-        lane.has_step[i] = 1.0
-        lane.was_theta[i] = theta
-        lane.was_omega[i] = omega
-        lane.was_ground[i] = a
-        lane.was_left[i] = left
-        lane.theta[i] = end
-        z = z * per
-        lane.omega[i] = z
+        _keep_steps(lane, i, theta, omega)
+        lane.was_ground[i], lane.was_left[i] = a, left
+        end_omega = end_turning * per
+        lane.theta[i], lane.omega[i] = end, end_omega
         lane.ground[i] = a_end
         if upward:
             lane.before_weight[i] = lane.was_weight[i]
             lane.was_weight[i] = u
             lane.weight[i] = u_end
         lane.part_left[i] = 1.0
-        was_ratio, was_fast, was_near = lane.ratio[i], lane.fast[i], lane.near[i]
-        lane.was_ratio[i], lane.was_fast[i], lane.was_near[i] = (
-            was_ratio,
-            was_fast,
-            was_near,
-        )
-        ratio = lane.per_angle[i] * end
-        away = (1.0 - ratio) * (1.0 - ratio) + lane.per_speed[i] * z * z
-        lane.ratio[i] = max(was_ratio, ratio)
-        lane.fast[i] = max(was_fast, abs(z))
-        lane.near[i] = min(was_near, away)
+        lane.was_ratio[i], lane.was_fast[i] = lane.ratio[i], lane.fast[i]
+        lane.was_near[i] = lane.near[i]
+        lane.ratio[i], lane.fast[i], lane.near[i] = nearest(lane, i, end, end_omega)
+
+
+@inlined_kernel
+def _flag(side, begin, end):
+    """Flag of a step: the contact CLOSES, NEARS (it may close and open again, or a body lies), or QUIET.
+
+    ``begin`` has the angle and its first and second derivative, ``end`` angle and first one, by time in steps.
+    """
+    theta, turning, bend = begin
+    theta_end, turning_end = end
+    gap, out, out_end = side * theta, side * turning, side * turning_end
+    near = roots.dips(gap, out, out_end) | roots.hops(gap, out, out_end, side * bend)
+    flag = NEARS if near | (abs(theta_end) >= HALF_TURN) else QUIET
+    return CLOSES if side * theta_end < 0.0 else flag
+
+
+@inlined_kernel
+def _keep_steps(lane, i, theta, omega):
+    """Store where this step of lane i began, but for ground and length, and all of where the one before did."""
+    lane.before_theta[i] = lane.was_theta[i]
+    lane.before_omega[i] = lane.was_omega[i]
+    lane.before_ground[i] = lane.was_ground[i]
+    lane.before_left[i] = lane.was_left[i]
+    lane.has_before[i] = lane.has_step[i]
+    lane.has_step[i] = 1.0
+    lane.was_theta[i] = theta
+    lane.was_omega[i] = omega
 
 
 @inlined_kernel
@@ -267,7 +308,7 @@ def _release_time(lanes_of_one, lane, i, series, end, g):
 
 @inlined_kernel
 def nearest(lane, i, theta, omega):
-    """Largest θ/θcritical, |θ'| and least distance from balance squared, up to a contact event at θ, θ'."""
+    """Extremes of lane i up to θ, θ': largest θ/θcritical, |θ'|, and the least distance from balance squared."""
     ratio = lane.per_angle[i] * theta
     near = (1.0 - ratio) * (1.0 - ratio) + lane.per_speed[i] * omega * omega
     return (

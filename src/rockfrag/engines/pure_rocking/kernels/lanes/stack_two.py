@@ -72,89 +72,105 @@ def advance(lane, g, upward):
 
 @inlined_kernel
 def _advance(lane, g, upward):
-    """Advance every lane by a step: to the end of its sample (QUIET), or WITHIN it; see ``stack_one._advance``."""
+    """Advance every lane by a step and store everything in each: conditional stores cost many times as much.
+
+    Pairs are of pedestal and statue; times are in samples up to :func:`_rates`, and in steps within it.
+    """
     for i in range(LANES):
         left = lane.part_left[i]
         span = span_of(left, lane.part[i])
-        scale = span * span
-        t1 = lane.theta1[i]
-        t2 = lane.theta2[i]
-        omega1 = lane.omega1[i]
-        omega2 = lane.omega2[i]
-        w1 = omega1 * span
-        w2 = omega2 * span
-        a = lane.ground[i]
-        a_end = lane.ground_end[i]
+        angles = lane.theta1[i], lane.theta2[i]
+        # angular velocities per sample and per step
+        velocities = lane.omega1[i], lane.omega2[i]
+        turns = velocities[0] * span, velocities[1] * span
+        a, a_end = lane.ground[i], lane.ground_end[i]
         u = lane.weight[i] if upward else 1.0
         u_end = lane.weight_end[i] if upward else 1.0
-        rise = (a_end - a) * (span / left)
-        lift = (u_end - u) * (span / left)
-        s1, c1 = taylor.quick_sine_cosine(t1)
-        s2, c2 = taylor.quick_sine_cosine(t2)
-        sd = s2 * c1 - c2 * s1
-        cd = c2 * c1 + s2 * s1
-        e = lane.e[i]
-        f = lane.f[i]
-        v1x = scale * lane.v1x[i]
-        v1y = scale * lane.v1y[i]
-        v2x = scale * lane.v2x[i]
-        v2y = scale * lane.v2y[i]
-        rates1, rates2 = taylor.rates_of_two(
-            (lane.m11[i], lane.m22[i], e * cd + f * sd, f * cd - e * sd),
-            (v1y * c1 - v1x * s1, v1x * c1 + v1y * s1),
-            (v2y * c2 - v2x * s2, v2x * c2 + v2y * s2),
-            (w1, w2), (a, rise), (g * u, g * lift, upward),
-        )  # fmt: skip
-        n1 = t1 + taylor.travel(rates1, 1.0)
-        n2 = t2 + taylor.travel(rates2, 1.0)
-        z1 = taylor.rate_at(rates1, 1.0)
-        z2 = taylor.rate_at(rates2, 1.0)
+        rise, lift = (a_end - a) * (span / left), (u_end - u) * (span / left)
+        gravity = g * u, g * lift, upward
+        rates1, rates2 = _rates(lane, i, span, angles, turns, (a, rise), gravity)
         taylor.keep_rates(lane.rates1, i, rates1)
         taylor.keep_rates(lane.rates2, i, rates2)
-        # a contact closes, nearly closes, or may close and open again
-        side1 = lane.side1[i]
-        side2 = lane.side2[i]
-        gap1, out1, end1, bend1 = side1 * t1, side1 * w1, side1 * z1, side1 * rates1[1]
-        gap2, out2, end2 = side2 * (t2 - t1), side2 * (w2 - w1), side2 * (z2 - z1)
-        bend2 = side2 * (rates2[1] - rates1[1])
-        closes = (side1 * n1 < 0.0) | (side2 * (n2 - n1) < 0.0)
-        near = dips(gap1, out1, end1) | hops(gap1, out1, end1, bend1)
-        near |= dips(gap2, out2, end2) | hops(gap2, out2, end2, bend2)
-        lies = (max(abs(n1), abs(n2)) >= HALF_TURN) | (abs(n2 - n1) >= HALF_TURN)
-        flag = WITHIN if span < left else QUIET
-        flag = CLOSES if closes else flag
-        flag = NEARS if near | lies else flag
-        lane.flag[i] = flag
-        lane.was_theta1[i] = t1
-        lane.was_omega1[i] = omega1
-        lane.was_theta2[i] = t2
-        lane.was_omega2[i] = omega2
+        ends = (
+            angles[0] + taylor.travel(rates1, 1.0),
+            angles[1] + taylor.travel(rates2, 1.0),
+        )
+        end_turns = taylor.rate_at(rates1, 1.0), taylor.rate_at(rates2, 1.0)
+        bends = rates1[1], rates2[1]
+        flag = _flag(lane, i, (angles, turns, bends), (ends, end_turns))
+        lane.flag[i] = WITHIN if (flag == QUIET) & (span < left) else flag
+        _keep_start(lane, i, angles, velocities)
         lane.was_ground[i] = a
         lane.was_left[i] = left
         per = 1.0 / span
-        z1 = z1 * per
-        z2 = z2 * per
-        lane.theta1[i] = n1
-        lane.omega1[i] = z1
-        lane.theta2[i] = n2
-        lane.omega2[i] = z2
+        end_velocities = end_turns[0] * per, end_turns[1] * per
+        lane.theta1[i], lane.theta2[i] = ends
+        lane.omega1[i], lane.omega2[i] = end_velocities
         lane.ground[i] = a + rise if span < left else a_end
         if upward:
             lane.was_weight[i] = u
             lane.weight[i] = u + lift if span < left else u_end
         lane.part_left[i] = left - span if span < left else 1.0
-        was_ratio1, was_ratio2 = lane.ratio1[i], lane.ratio2[i]
-        was_fast, was_near = lane.fast[i], lane.near[i]
-        lane.was_ratio1[i], lane.was_ratio2[i] = was_ratio1, was_ratio2
-        lane.was_fast[i], lane.was_near[i] = was_fast, was_near
-        ratio1 = lane.per_angle1[i] * n1
-        ratio2 = lane.per_angle2[i] * n2
-        away1 = (1.0 - ratio1) * (1.0 - ratio1) + lane.per_speed1[i] * z1 * z1
-        away2 = (1.0 - ratio2) * (1.0 - ratio2) + lane.per_speed2[i] * z2 * z2
-        lane.ratio1[i] = max(was_ratio1, ratio1)
-        lane.ratio2[i] = max(was_ratio2, ratio2)
-        lane.fast[i] = max(was_fast, abs(z2))
-        lane.near[i] = min(was_near, min(away1, away2))
+        _keep_extremes(lane, i, ends, end_velocities)
+
+
+@inlined_kernel
+def _rates(lane, i, span, angles, turns, ground, gravity):
+    """Taylor coefficients of both rotations over a step of lane i, ``span`` long, time counted in steps.
+
+    ``turns``: θ1' and θ2' as it begins; ``ground`` and ``gravity`` as of :func:`taylor.rates_of_two`.
+    """
+    scale = span * span
+    s1, c1 = taylor.quick_sine_cosine(angles[0])
+    s2, c2 = taylor.quick_sine_cosine(angles[1])
+    # sine and cosine of θ2 - θ1
+    sd = s2 * c1 - c2 * s1
+    cd = c2 * c1 + s2 * s1
+    e, f = lane.e[i], lane.f[i]
+    v1x, v1y = scale * lane.v1x[i], scale * lane.v1y[i]
+    v2x, v2y = scale * lane.v2x[i], scale * lane.v2y[i]
+    mass = lane.m11[i], lane.m22[i], e * cd + f * sd, f * cd - e * sd
+    weight1 = v1y * c1 - v1x * s1, v1x * c1 + v1y * s1
+    weight2 = v2y * c2 - v2x * s2, v2x * c2 + v2y * s2
+    return taylor.rates_of_two(mass, weight1, weight2, turns, ground, gravity)
+
+
+@inlined_kernel
+def _flag(lane, i, begin, end):
+    """Flag of a step of lane i: a contact CLOSES, NEARS (it may close and open again, or a body lies), or QUIET.
+
+    ``begin`` has angles and their first and second derivatives, ``end`` angles and first ones, by time in steps.
+    """
+    (t1, t2), (w1, w2), (bend1, bend2) = begin
+    (n1, n2), (z1, z2) = end
+    side1, side2 = lane.side1[i], lane.side2[i]
+    gap1, out1, out1_end = side1 * t1, side1 * w1, side1 * z1
+    gap2, out2, out2_end = side2 * (t2 - t1), side2 * (w2 - w1), side2 * (z2 - z1)
+    closes = (side1 * n1 < 0.0) | (side2 * (n2 - n1) < 0.0)
+    near = dips(gap1, out1, out1_end) | hops(gap1, out1, out1_end, side1 * bend1)
+    near |= dips(gap2, out2, out2_end)
+    near |= hops(gap2, out2, out2_end, side2 * (bend2 - bend1))
+    lies = (max(abs(n1), abs(n2)) >= HALF_TURN) | (abs(n2 - n1) >= HALF_TURN)
+    flag = CLOSES if closes else QUIET
+    return NEARS if near | lies else flag
+
+
+@inlined_kernel
+def _keep_start(lane, i, angles, velocities):
+    """Store the angles and the velocities, per sample, with which a step of lane i began."""
+    lane.was_theta1[i], lane.was_theta2[i] = angles
+    lane.was_omega1[i], lane.was_omega2[i] = velocities
+
+
+@inlined_kernel
+def _keep_extremes(lane, i, angles, velocities):
+    """Store the extremes so far of lane i before its step, and take the end of the step into them."""
+    lane.was_ratio1[i], lane.was_ratio2[i] = lane.ratio1[i], lane.ratio2[i]
+    lane.was_fast[i], lane.was_near[i] = lane.fast[i], lane.near[i]
+    state = angles[0], velocities[0], angles[1], velocities[1]
+    ratio1, ratio2, fast, near = nearest(lane, i, state)
+    lane.ratio1[i], lane.ratio2[i] = ratio1, ratio2
+    lane.fast[i], lane.near[i] = fast, near
 
 
 @inlined_kernel
@@ -186,7 +202,10 @@ def next_contact_event(c1, c2, flag, series):
 
 @inlined_kernel
 def nearest(lane, i, state):
-    """Largest θ/θcritical of both, |θ2'|, least distance from balance squared, up to a contact event."""
+    """Extremes of lane i up to a state: largest θ/θcritical of both, |θ2'|, least distance from balance squared.
+
+    ``state``: θ1, θ1', θ2, θ2' [rad, rad per sample], at a contact event or at the end of a step.
+    """
     theta1, omega1, theta2, omega2 = state
     ratio1 = lane.per_angle1[i] * theta1
     ratio2 = lane.per_angle2[i] * theta2
