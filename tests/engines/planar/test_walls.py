@@ -1,6 +1,7 @@
 """Walls and kerbs: closed forms of leaning, hitting and tripping, symmetry, and walls that are not met."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -12,6 +13,7 @@ from rockfrag.engines.planar.integrate import IMPACT
 from rockfrag.simulation.inputs import ground_motion
 from rockfrag.simulation.options import system_of
 from rockfrag.system import Wall, as_system, hold
+from rockfrag.system.body import Interval
 from rockfrag.system.mounts import ROLLING, on_casters
 from rockfrag.system.system import corners, standing_centres
 
@@ -93,6 +95,29 @@ def test_between_two_smooth_walls_at_no_distance_nothing_turns() -> None:
     found = shaken_block(Wall(B), Wall(B, LEFT), scale=4.0)
     assert np.abs(found.theta).max() < 1e-13
     assert found.constraints["largest_force_n"].min() > 0.1 * M * G
+
+
+@pytest.mark.parametrize("aside", [0.25, -0.4])
+def test_a_wall_stands_at_its_distance_from_the_origin_wherever_the_base_lies(
+    aside: float,
+) -> None:
+    """A block whose frame begins beside its base leans at the angle of its corner."""
+    (block,) = as_system(BLOCK).bodies
+    x, y, z = block.centre
+    moved = replace(
+        block,
+        centre=(x + aside, y, z),
+        base=Interval(block.base.left + aside, block.base.right + aside),
+        face=None,
+    )
+    system = hold(
+        replace(as_system(BLOCK), bodies=(moved,)), Wall(touching(0.3) + aside)
+    )
+    start = system_of(system, 2.0, theta0=0.3)
+    found = ContactRun(Case(start, ground_motion(STILL, DT), request=Request()))
+    assert found.work["outcome"]["leaning"] == 1
+    assert np.ptp(found.history["q"][:, 2]) < 1e-9
+    assert found.response().constraints["largest_force_n"][0] > 0
 
 
 @pytest.mark.parametrize("ratio", [0.0, 0.5])
