@@ -1,12 +1,13 @@
 """Confidence limits by resampling whole motions."""
 
+import inspect
 import math
 
 import numpy as np
 import pandas as pd
 import pytest
 
-from rockfrag.fragility import censored
+from rockfrag.fragility import censored, estimators, intervals
 from rockfrag.fragility.censored import Brackets, _fit_weighted, bracket_interval
 from rockfrag.fragility.empirical import TableIda
 from rockfrag.fragility.estimators import fit_cloud
@@ -243,3 +244,16 @@ def test_without_a_curve_or_a_band_there_are_outcomes():
         and of_one_motion["probability"].notna().all()
     )
     assert np.isfinite(of_one_motion["local"]).any()
+
+
+def test_limits_are_those_of_ninety_percent_where_no_level_is_asked_for():
+    asked = [
+        parameter.default
+        for module in (censored, estimators, intervals)
+        for function in vars(module).values()
+        if inspect.isfunction(function) and function.__module__ == module.__name__
+        for name, parameter in inspect.signature(function).parameters.items()
+        if name == "level" and parameter.default is not inspect.Parameter.empty
+    ]
+    assert len(asked) > 5
+    assert set(asked) == {0.90}
