@@ -166,18 +166,17 @@ def later_peaks(acceleration: Floats) -> Floats:
 
     The last two columns are those of the next WINDOW intervals alone.
     """
-    x, y = acceleration[:, 0], acceleration[:, 1]
-    level = np.sqrt(x * x + y * y)
-    both = np.stack([level, np.abs(acceleration[:, 2])], axis=1)
-    later = np.maximum.accumulate(both[::-1], axis=0)[::-1]
-    soon = np.pad(both, ((0, WINDOW), (0, 0)))
+    x, y, z = np.ascontiguousarray(acceleration.T)
+    both = np.stack([np.sqrt(x * x + y * y), np.abs(z)])
+    later = np.maximum.accumulate(both[:, ::-1], axis=1)[:, ::-1]
+    soon = np.pad(both, ((0, 0), (0, WINDOW)))
     part = 1
     while part < WINDOW:
         # the largest of twice as many samples
-        soon = np.maximum(soon[:-part], soon[part:])
+        soon = np.maximum(soon[:, :-part], soon[:, part:])
         part *= 2
-    soon = np.maximum(soon[:-1], soon[1:])
-    return np.ascontiguousarray(np.hstack([later, soon]))
+    soon = np.maximum(soon[:, :-1], soon[:, 1:])
+    return np.ascontiguousarray(np.vstack([later, soon]).T)
 
 
 def perturbed(
