@@ -1,4 +1,8 @@
-"""What is kept of one history: its summary, its samples and its contact events."""
+"""What is kept of one history: its summary, its samples and its contact events.
+
+In: a body and its state in each step. Out: records of samples, of contact events and of the summary. Docs:
+``docs/rocking.md``, "What a response says about itself".
+"""
 
 import math
 

@@ -1,6 +1,8 @@
 """Instants within a step: when a contact closes, when a closed one lets go, when a rotation turns.
 
 Time τ runs from 0 to 1 over a step.  A series q stands for q(τ) = Σ q[k] τᵏ.
+
+In: coefficients of series. Out: times in steps. Theory: ``docs/kernels.md``, "Series".
 """
 
 import math
