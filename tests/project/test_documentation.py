@@ -147,6 +147,16 @@ def at_home(tmp_path, monkeypatch, default_records, record_folder):
     return tmp_path
 
 
+def test_tests_that_a_page_names_exist():
+    pages = (page.read_text(encoding="utf-8") for page in sorted(DOCS.glob("*.md")))
+    named = re.findall(r"`([\w/]+\.py)::(test_\w+)`", "\n".join(pages))
+    assert len(named) > 20
+    for file, test in named:
+        package = "thesis" if file.startswith("thesis/") else ""
+        path = ROOT / package / "tests" / file.removeprefix("thesis/")
+        assert f"def {test}(" in path.read_text(encoding="utf-8"), f"{file}::{test}"
+
+
 @pytest.mark.slow
 @pytest.mark.skipif(os.name == "nt", reason="symbolic links are those of POSIX")
 def test_the_tutorial_works_as_it_stands_there(at_home, capsys):

@@ -9,7 +9,18 @@ import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
 SOURCE = ROOT / "src" / "rockfrag"
-ROOMS = ("engines/planar", "engines/spatial", "fragility", "assess")
+ROOMS = (
+    "engines/planar",
+    "engines/pure_rocking",
+    "engines/spatial",
+    "simulation",
+    "fragility",
+    "campaign",
+    "effects",
+    "building",
+    "assess",
+    "survival",
+)
 """Rooms where computing is hard to follow without knowing what it is for."""
 
 FIRST_LINES = 20

@@ -445,6 +445,7 @@ def plan_for(
     level = _site_level(request, hazard)
     measure = hazard.measure if hazard else level.measure if level else PGA
     asked = [level.value] if level else []
+    # simulations of columns and in space take milliseconds: every second motion compares changes, or every fourth
     coarse = brief or objects.many
     few = coarse or motions.both
     fewer = motions.thinned() if few else motions
@@ -455,7 +456,7 @@ def plan_for(
     compared = outcomes.make_intensity_levels(fewer, measure, asked, least)
     moved = compared
     if motions.both:
-        # a simulation takes milliseconds, and of what a property moves its median alone counts
+        # of outcomes with a property moved the median alone counts, for which the fewest levels do
         moved = outcomes.make_intensity_levels(
             fewer, measure, asked, outcomes.FEWEST_LEVELS
         )

@@ -13,6 +13,9 @@ envelope that is the same on both sides:
 3. Reloading starts where the force is zero, and goes in two straight lines through the pinching point to the
    envelope at the aim: the largest displacement reached on that side, enlarged by damage at each reversal from
    beyond cracking on the other side. It is nowhere steeper than unloading.
+
+In: a building, and a motion of the ground [m/s²]. Out: histories of floors and storeys, with energies [J].
+Theory: ``docs/building.md``, "Masonry model".
 """
 
 from typing import Any

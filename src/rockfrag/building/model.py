@@ -1,4 +1,8 @@
-"""A building as a chain of floor masses and storey springs, and what it assumes."""
+"""A building as a chain of floor masses and storey springs, and what it assumes.
+
+In: masses [kg], stiffnesses [N/m] or a first period [s], damping. Out: a checked :class:`ShearBuilding`.
+Theory: ``docs/building.md``, "Elastic model".
+"""
 
 import math
 from collections.abc import Mapping, Sequence

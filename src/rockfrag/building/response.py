@@ -1,4 +1,8 @@
-"""Modes of a building, its histories under a ground motion, and the elastic ones solved exactly."""
+"""Modes of a building, its histories under a ground motion, and the elastic ones solved exactly.
+
+In: a building, and a motion of the ground [m/s²]. Out: modes, and histories of floors [m/s²] and drifts [-].
+Theory: ``docs/building.md``, "Elastic model".
+"""
 
 from dataclasses import dataclass
 

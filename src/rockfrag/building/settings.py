@@ -1,4 +1,7 @@
-"""Buildings from YAML, refused with one sentence where they make no sense."""
+"""Buildings from YAML, refused with one sentence where they make no sense.
+
+In: the key ``building`` of a configuration. Out: a building, SI units. Docs: ``docs/building.md``.
+"""
 
 import os
 from collections.abc import Mapping

@@ -1,7 +1,7 @@
 """Proper scores of probabilities that were said of tests before their outcomes were used, and who scores better.
 
 In: probabilities of overturning and outcomes, shape (tests,). Out: Brier and logarithmic scores, with the
-difference to ours and its interval. Source: Brier (1950), Good (1952); docs/scores.md.
+difference to ours and its interval. Source: Brier (1950), Good (1952). Docs: ``docs/scores.md``.
 """
 
 from collections.abc import Mapping

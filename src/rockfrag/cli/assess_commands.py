@@ -450,17 +450,22 @@ _KEY = re.compile(
 
 
 def on_command_line(words: str, given: Collection[str] | None = None) -> str:
-    """A message with options for keys of ``statue.yaml``, written ``key pga``, of those given or of all."""
+    """A message about ``statue.yaml``, with the option ``--pga`` wherever it has the key, as in ``key pga``.
+
+    Parameters
+    ----------
+    words : of the message
+    given : keys that the command line gave, which alone become options; None for all keys
+    """
     names = {_UNITS.sub("", key): name for name, key, *_ in _all_options()}
     names |= {"records": "record", "building.storey_heights": "storey-height"}
+    replaced = None if given is None else {_UNITS.sub("", key) for key in given}
 
     def option(found: re.Match[str]) -> str:
         """The option that stands for a key in a message."""
         key = _UNITS.sub("", found[1])
         whole = key.split(".")[0]
-        if given is not None and whole not in {
-            _UNITS.sub("", other) for other in given
-        }:
+        if replaced is not None and whole not in replaced:
             return found[0]
         name = names.get(key, whole.replace("_", "-"))
         # a flag takes no value, and an axis stands beside its option

@@ -39,18 +39,10 @@ def add_export_command(commands: Any) -> None:
 # imported when it runs: `rockfrag --help` should not wait for numba
 def _export(options: argparse.Namespace) -> int:
     """Run ``export``: write fragilities of objects for other programs."""
-    from rockfrag.aftermath.component_tables import (
-        fragility_rows,
-        ned_reference,
-        ned_table,
-    )
     from rockfrag.aftermath.object_fragility import object_fragilities
-    from rockfrag.aftermath.shakecast import shakecast_tables, shakecast_xml
     from rockfrag.assess.hazard.curve import read_measure
     from rockfrag.assess.inventory import FaultyRows, read_inventory
     from rockfrag.assess.motions import motion_set
-    from rockfrag.base.files import write_table, write_text
-    from rockfrag.fragility.exports import write_simcenter
     from rockfrag.runtime.progress import progress_line
 
     shared = {"floor": options.floor} if options.floor else {}
@@ -78,24 +70,12 @@ def _export(options: argparse.Namespace) -> int:
             file=sys.stderr,
         )
     if on_floor:
-        write_table(ned_table(on_floor, options.ned_component), folder / "ned.csv")
-        write_table(ned_reference(), folder / "ned_reference.csv")
-        write_simcenter(
-            fragility_rows(on_floor),
-            folder / "fragility.csv",
-            folder / "fragility.json",
-            # beta holds the error of the model already
-            model_error=False,
-        )
+        _write_on_floors(on_floor, options.ned_component, folder)
     placed = [each for each in requests if each.coordinates is not None]
     if placed:
         say = progress_line("objects in the motion of the ground")
         of_ground, _ = object_fragilities(placed, motions, measure, progress=say)
-        kind = options.facility_type
-        facilities, curves = shakecast_tables(of_ground, kind)
-        write_text(shakecast_xml(of_ground, kind), folder / "shakecast.xml")
-        write_table(facilities, folder / "shakecast_facilities.csv")
-        write_table(curves, folder / "shakecast_fragility.csv")
+        _write_on_ground(of_ground, options.facility_type, folder)
     else:
         print(
             "warning: no object has a place; ShakeCast's files are left out.",
@@ -103,3 +83,35 @@ def _export(options: argparse.Namespace) -> int:
         )
     print(f"{len(on_floor)} of {len(requests)} objects in {folder}")
     return 0
+
+
+def _write_on_floors(found: list[Any], component: str, folder: Path) -> None:
+    """Write the files of NED and SimCenter, of objects in the motion of their floors."""
+    from rockfrag.aftermath.component_tables import (
+        fragility_rows,
+        ned_reference,
+        ned_table,
+    )
+    from rockfrag.base.files import write_table
+    from rockfrag.fragility.exports import write_simcenter
+
+    write_table(ned_table(found, component), folder / "ned.csv")
+    write_table(ned_reference(), folder / "ned_reference.csv")
+    write_simcenter(
+        fragility_rows(found),
+        folder / "fragility.csv",
+        folder / "fragility.json",
+        # beta holds the error of the model already
+        model_error=False,
+    )
+
+
+def _write_on_ground(found: list[Any], kind: str, folder: Path) -> None:
+    """Write the files of ShakeCast, of objects in the motion of the ground, which are facilities of a kind."""
+    from rockfrag.aftermath.shakecast import shakecast_tables, shakecast_xml
+    from rockfrag.base.files import write_table, write_text
+
+    facilities, curves = shakecast_tables(found, kind)
+    write_text(shakecast_xml(found, kind), folder / "shakecast.xml")
+    write_table(facilities, folder / "shakecast_facilities.csv")
+    write_table(curves, folder / "shakecast_fragility.csv")

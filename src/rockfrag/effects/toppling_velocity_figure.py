@@ -1,4 +1,7 @@
-"""The figure of docs/toppling-velocity.md: medians over height, and their ratio over Kaneko's curve."""
+"""The figure of ``docs/toppling-velocity.md``: medians over height, and their ratio over Kaneko's curve.
+
+In: tables of medians [m/s]. Out: a figure.
+"""
 
 import numpy as np
 import pandas as pd

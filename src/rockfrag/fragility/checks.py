@@ -85,37 +85,29 @@ def goodness_of_fit(
     probability = fit.probability(outcomes.im)
 
     def by_bin(values: Floats) -> Floats:
+        """Sums of values of the tests by bin."""
         return np.asarray(np.bincount(code, values))
 
     trials = by_bin(outcomes.trials)
     expected = by_bin(outcomes.trials * probability)
     observed = by_bin(outcomes.overturned)
     deviance = float(binned_deviance(observed, expected, trials))
-    rng = np.random.default_rng(seed)
-    # cells within the bins: what is simulated and refitted, however many tests there are
-    shifted = outcomes.log_im + code * 1e3
-    cell, values = cells(shifted, CELLS)
-    apart = np.unique(code * values.size + cell, return_inverse=True)[1]
-    if apart.max() >= values.size:
-        # a cell reached over the end of a bin
-        cell, values = apart, np.bincount(apart, shifted) / np.bincount(apart)
-    home = np.asarray(np.rint(values / 1e3), dtype=np.intp)
-    tests = np.asarray(np.bincount(cell, outcomes.trials), dtype=np.float64)
-    if dependence == "tests":
-        fraction = np.bincount(cell, outcomes.trials * probability) / tests
-        drawn = rng.binomial(
-            tests.astype(np.int64),
-            np.minimum(fraction, 1.0),
-            size=(replicates, fraction.size),
-        ).astype(np.float64)
-    else:
-        law = rng.normal if fit.link == "probit" else rng.logistic
-        draw = law(size=(replicates, outcomes.n_motions))
-        drawn = outcomes.drawn(np.log(fit.theta) + fit.beta * draw, cell)
-    design = np.column_stack([np.ones(values.size), values - 1e3 * home])
-    start = np.array(fit.coefficients)
+    cell, log_im, home = _cells_within(code, outcomes.log_im)
+    drawn = _drawn_outcomes(
+        outcomes,
+        fit,
+        cell,
+        replicates=replicates,
+        rng=np.random.default_rng(seed),
+        dependence=dependence,
+    )
     simulated = refitted_deviance(
-        design, drawn, tests, home, link=fit.link, start=start
+        np.column_stack([np.ones(log_im.size), log_im]),
+        drawn,
+        np.asarray(np.bincount(cell, outcomes.trials), dtype=np.float64),
+        home,
+        link=fit.link,
+        start=np.array(fit.coefficients),
     )
     p_value = float((1 + np.sum(simulated >= deviance - 1e-9)) / (1 + simulated.size))
     columns = {
@@ -137,6 +129,61 @@ def goodness_of_fit(
     brier = float(miss.sum() / outcomes.n)
     words = goodness_text(deviance, len(calibration), p_value, dependence)
     return GoodnessOfFit(deviance, p_value, dependence, brier, calibration, words)
+
+
+_BETWEEN_BINS = 1e3
+"""Distance of bins in ln IM that keeps their values apart."""
+
+
+def _cells_within(
+    code: NDArray[np.intp], log_im: Floats
+) -> tuple[NDArray[np.intp], Floats, NDArray[np.intp]]:
+    """Cells that tests are simulated and refitted by, however many there are; none reaches over the end of a bin.
+
+    Parameters
+    ----------
+    code, log_im : bin and ln IM of each test, shape (tests,)
+
+    Returns
+    -------
+    Cell of each test, shape (tests,); ln IM and bin of each cell, shape (cells,).
+    """
+    shifted = log_im + code * _BETWEEN_BINS
+    cell, values = cells(shifted, CELLS)
+    apart = np.unique(code * values.size + cell, return_inverse=True)[1]
+    if apart.max() >= values.size:
+        # a cell reached over the end of a bin
+        cell, values = apart, np.bincount(apart, shifted) / np.bincount(apart)
+    home = np.asarray(np.rint(values / _BETWEEN_BINS), dtype=np.intp)
+    return cell, values - _BETWEEN_BINS * home, home
+
+
+def _drawn_outcomes(
+    outcomes: Observations,
+    fit: FragilityFit,
+    cell: NDArray[np.intp],
+    *,
+    replicates: int,
+    rng: np.random.Generator,
+    dependence: str,
+) -> Floats:
+    """Numbers that overturn in each cell when the fit is true, shape (replicates, cells).
+
+    ``dependence`` as in :func:`goodness_of_fit`.
+    """
+    if dependence == "motions":
+        law = rng.normal if fit.link == "probit" else rng.logistic
+        draw = law(size=(replicates, outcomes.n_motions))
+        return outcomes.drawn(np.log(fit.theta) + fit.beta * draw, cell)
+    tests = np.asarray(np.bincount(cell, outcomes.trials), dtype=np.float64)
+    expected = outcomes.trials * fit.probability(outcomes.im)
+    fraction = np.bincount(cell, expected) / tests
+    drawn = rng.binomial(
+        tests.astype(np.int64),
+        np.minimum(fraction, 1.0),
+        size=(replicates, fraction.size),
+    )
+    return drawn.astype(np.float64)
 
 
 def binned_deviance(observed: Floats, expected: Floats, trials: Floats) -> Floats:

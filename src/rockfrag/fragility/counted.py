@@ -1,4 +1,4 @@
-"""Outcomes of large analyses as counts, to which curves are fitted in memory that amplitudes do not fill.
+"""Outcomes of large analyses as counts, so that fitting curves takes no more memory for more amplitudes.
 
 Estimates and their limits need only how many outcomes lie in each narrow cell of the measure and how many of those
 overturned, by what is resampled together; the goodness of fit needs the motions' own scales as well.

@@ -3,6 +3,9 @@
 Unless it says otherwise a formula belongs to the slender linearised equation (Housner, 1963),
 θ'' = p² (θ - s θc) - p² a/g, in which only the frequency parameter p [1/s], the critical angle θc [rad]
 and g [m/s²] appear.  Amplitudes of pulses are given as x = a / (θc g), dimensionless.
+
+In: a slender block, or its p [1/s] and θc [rad], and a pulse. Out: thresholds, amplitudes and times.
+Theory: ``docs/rocking.md``, "What the model is"; of jumps of the base ``docs/velocity-steps.md``, "Closed forms".
 """
 
 import math

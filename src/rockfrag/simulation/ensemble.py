@@ -239,7 +239,17 @@ def shaken(cases: Cases) -> Outcomes:
 def overturned_cases(
     cases: Cases, system: Index, motion: Index, scale: Floats
 ) -> NDArray[np.bool_]:
-    """Say of case i, system ``system[i]`` under ``scale[i]`` × motion ``motion[i]``, whether it overturns."""
+    """Whether system ``system[i]`` overturns under ``scale[i]`` times motion ``motion[i]``, for each case i.
+
+    Parameters
+    ----------
+    cases : systems, motions and settings; its scales are not used
+    system, motion, scale : of each case, shape (n,)
+
+    Returns
+    -------
+    Outcomes, shape (n,).
+    """
     overturned = np.zeros(len(system), dtype=bool)
 
     def run(number: int) -> None:

@@ -4,6 +4,8 @@ A block of mass m stands on two edges, its centre of gravity at the height h ove
 its middle.  The ground accelerates by a to the right and by a_v upwards.  All of it is about one instant, at rest
 or as the block turns by a small angle; what follows is simulated.  Derived in ``docs/holding.md``, whose equations
 are named at each function.
+
+In: a block, accelerations [m/s²], and places of what holds it [m]. Out: forces [N] and speeds [m/s].
 """
 
 import math

@@ -1,4 +1,4 @@
-"""Options of every door as people write them, and the system that they make of a body.
+"""Options of ``simulate`` and ``overturns`` as people write them, and the system that these make of a body.
 
 In: friction, restitution and starts, in all forms that people use. Out: a system with them. Theory:
 ``docs/contact.md``, ``docs/restitution.md``.

@@ -4,6 +4,7 @@ As a response spectrum shows oscillators of one damping over their period, a roc
 of one slenderness over 2π/p (Makris and Konstantinidis 2003, Earthquake Eng. Struct. Dyn. 32, 265-289).
 
 In: a motion, periods 2π/p [s] and angles [rad]. Out: rotations over the critical angle and velocities over p.
+Docs: ``docs/rocking.md``, "Rocking spectra".
 """
 
 from __future__ import annotations

@@ -236,7 +236,7 @@ NAMES = {"plane": "plane", "square": "square", "oblong": "1 to 2", "round": "rou
 
 
 def page_tables(tables: Mapping[str, pd.DataFrame]) -> str:
-    """Write the tables of ``docs/toppling_velocity.md`` in Markdown, a blank line between them.
+    """Write the tables of ``docs/toppling-velocity.md`` in Markdown, a blank line between them.
 
     Parameters
     ----------

@@ -106,12 +106,7 @@ def campaign_from(content: Mapping[str, Any], source: Path) -> CampaignStudy:
             )
         return path
 
-    for key, (low, high) in content["unknowns"].items():
-        above = ", above 0" if key == "contact_tolerance_mm" else ""
-        if low > high or (above and low <= 0):
-            raise InputError(
-                f"{source}: key unknowns.{key}: expected the lowest value first{above}, found [{low}, {high}]."
-            )
+    _check_unknowns(content, source)
     conditioning = checked_steps(
         source, "conditioning", content.get("conditioning", ())
     )
@@ -119,27 +114,14 @@ def campaign_from(content: Mapping[str, Any], source: Path) -> CampaignStudy:
         name: checked_steps(source, f"varied_conditioning.{name}", steps)
         for name, steps in content.get("varied_conditioning", {}).items()
     }
-    if "size" in content["unknowns"] and not {"mesh", "pedestal"}.isdisjoint(thing):
-        raise InputError(
-            f"{source}: key unknowns.size: is of a block by hand that stands alone; leave it out."
-        )
-    motions, pulse_cycles, is_stepped = "", 0, False
-    if isinstance(campaign["motions"], Mapping):
-        is_stepped = "steps" in campaign["motions"]
-        pulse_cycles = 0 if is_stepped else campaign["motions"].get("cycles", 1)
-    else:
-        motions = str(beside(source, campaign["motions"]))
+    motions, pulse_cycles, is_stepped = _motions_of(campaign["motions"], source)
     if motions.endswith(".npz"):
         existing("campaign.motions", campaign["motions"])
-    tests, other, mesh = (
-        campaign["tests"],
-        campaign.get("other_codes"),
-        thing.get("mesh"),
-    )
+    other, mesh = campaign.get("other_codes"), thing.get("mesh")
     return CampaignStudy(
         **heading_of(content, source),
         fetch=fetch,
-        tests=existing("campaign.tests", tests),
+        tests=existing("campaign.tests", campaign["tests"]),
         columns=dict(campaign["columns"]),
         other_codes=None if other is None else existing("campaign.other_codes", other),
         motions=motions,
@@ -163,6 +145,33 @@ def campaign_from(content: Mapping[str, Any], source: Path) -> CampaignStudy:
         confidence=content.get("confidence", 0.9),
         mesh=None if mesh is None else existing("object.mesh", mesh),
     )
+
+
+def _check_unknowns(content: Mapping[str, Any], source: Path) -> None:
+    """Refuse ranges of unknowns that end before they begin, and a size of what has one of its own."""
+    for key, (low, high) in content["unknowns"].items():
+        above = ", above 0" if key == "contact_tolerance_mm" else ""
+        if low > high or (above and low <= 0):
+            raise InputError(
+                f"{source}: key unknowns.{key}: expected the lowest value first{above}, found [{low}, {high}]."
+            )
+    has_own_size = not {"mesh", "pedestal"}.isdisjoint(content["object"])
+    if "size" in content["unknowns"] and has_own_size:
+        raise InputError(
+            f"{source}: key unknowns.size: is of a block by hand that stands alone; leave it out."
+        )
+
+
+def _motions_of(given: str | Mapping[str, Any], source: Path) -> tuple[str, int, bool]:
+    """Path or pattern of the files of motions, cycles of pulses by formula, and whether the base's velocity jumps.
+
+    The path is empty where motions are pulses or jumps, and cycles are 0 where they are not pulses.
+    """
+    if not isinstance(given, Mapping):
+        return str(beside(source, given)), 0, False
+    if "steps" in given:
+        return "", 0, True
+    return "", given.get("cycles", 1), False
 
 
 def _kept(source: Path, number: int, name: str) -> Path:

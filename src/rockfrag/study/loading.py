@@ -81,8 +81,61 @@ def any_study(content: Mapping[str, Any], path: str | os.PathLike[str]) -> AnySt
 
 def _study(content: Mapping[str, Any], source: Path) -> Study:
     """Make a study of a checked configuration, and check what it refers to."""
-    bodies, motions = content["bodies"], content["motions"]
-    measures = content["fragility"]["measures"]
+    motions = content["motions"]
+    building_file = _optional_file(content, "building", source)
+    shaker_file = _optional_file(content, "shaker", source)
+    bodies = _bodies_of(content, source)
+    with errors_of(f"{source}"):
+        amplitudes = Amplitudes(**content["amplitudes"])
+    study = Study(
+        **heading_of(content, source),
+        **bodies,
+        **_catalogue_of(motions, source),
+        processing=checked_steps(
+            source, "motions.processing", motions.get("processing", ())
+        ),
+        building_file=building_file,
+        building=None if building_file is None else read_building(building_file),
+        amplitudes=amplitudes,
+        protocol_step_percent=float(content["protocol"]["step_percent"]),
+        fragility=_fragility_of(content["fragility"]),
+        keep_going=content.get("keep_going", False),
+        largest_factor=_largest_factor(motions),
+        slides="friction" in content
+        or any(each.loose for each in bodies["configurations"]),
+        vertical=content.get("vertical", False),
+        write_motions=content.get("write_motions"),
+        shaker_file=shaker_file,
+        shaker=None if shaker_file is None else read_shaker(shaker_file),
+        measured_tests=_optional_file(content, "measured_tests", source),
+    )
+    asked = plugins_asked(content)
+    added = {name: plugin.settings(content, study) for name, plugin in asked.items()}
+    study = replace(study, added=added)
+    _check_study(study)
+    return study
+
+
+def _check_study(study: Study) -> None:
+    """Check names, records, measured tests and vertical components of a study."""
+    _check_names(study)
+    for path in study.own_records:
+        if is_file(path) or not study.keep_going:
+            check_file(path, f"{study.catalogue_file}: column file")
+    if study.measured_tests is not None:
+        _check_measured_tests(study, study.measured_tests)
+    _check_vertical(study)
+
+
+def _optional_file(content: Mapping[str, Any], key: str, source: Path) -> Path | None:
+    """Path of the file that a key names; None without the key."""
+    name = content.get(key)
+    return None if name is None else existing_file(source, key, name)
+
+
+def _bodies_of(content: Mapping[str, Any], source: Path) -> dict[str, Any]:
+    """Attributes of a study that its key ``bodies`` gives: specimens, configurations and counterparts."""
+    bodies = content["bodies"]
     specimens_file = existing_file(source, "bodies.specimens", bodies["specimens"])
     specimens = arrangements.read_specimens(specimens_file)
     configurations_file, known = None, arrangements.each_alone(specimens)
@@ -97,74 +150,46 @@ def _study(content: Mapping[str, Any], source: Path) -> Study:
         known, counterparts = arrangements.read_configurations(
             configurations_file, specimens, isolators
         )
-
-    def optional_file(key: str) -> Path | None:
-        if content.get(key) is None:
-            return None
-        return existing_file(source, key, content[key])
-
-    building_file = optional_file("building")
-    shaker_file = optional_file("shaker")
-    measured_tests = optional_file("measured_tests")
-    catalogue_file = existing_file(source, "motions.catalogue", motions["catalogue"])
     by_name = {configuration.name: configuration for configuration in known}
     tested = _used(source, "bodies", bodies.get("use"), list(by_name), "configurations")
     chosen = [by_name[name] for name in tested]
-    configurations = arrangements.with_contacts(chosen, specimens, content, str(source))
-    with errors_of(f"{source}"):
-        amplitudes = Amplitudes(**content["amplitudes"])
-    catalogue = read_catalogue(catalogue_file).set_index("name", drop=False)
-    shaken = _used(
-        source, "motions", motions.get("use"), list(catalogue.index), "motions"
-    )
-    study = Study(
-        **heading_of(content, source),
-        catalogue_file=catalogue_file,
-        catalogue=catalogue.loc[shaken].reset_index(drop=True),
-        processing=checked_steps(
-            source, "motions.processing", motions.get("processing", ())
+    return {
+        "specimens_file": specimens_file,
+        "specimens": specimens,
+        "configurations_file": configurations_file,
+        "configurations": arrangements.with_contacts(
+            chosen, specimens, content, str(source)
         ),
-        building_file=building_file,
-        building=None if building_file is None else read_building(building_file),
-        specimens_file=specimens_file,
-        configurations_file=configurations_file,
-        specimens=specimens,
-        configurations=configurations,
-        amplitudes=amplitudes,
-        protocol_step_percent=float(content["protocol"]["step_percent"]),
-        fragility=FragilitySettings(
-            measures=tuple(measure for measure in measures if isinstance(measure, str)),
-            pairs=tuple(
-                (pair[0], pair[1]) for pair in measures if isinstance(pair, list)
-            ),
-            confidence=content["fragility"]["confidence"],
-            model_error=content["fragility"].get("model_error", True),
-        ),
-        keep_going=content.get("keep_going", False),
-        largest_factor=_largest_factor(motions),
-        slides="friction" in content or any(each.loose for each in configurations),
-        vertical=content.get("vertical", False),
-        write_motions=content.get("write_motions"),
-        shaker_file=shaker_file,
-        shaker=None if shaker_file is None else read_shaker(shaker_file),
-        measured_tests=measured_tests,
-        counterparts={
+        "counterparts": {
             name: other
             for name in tested
             if (other := counterparts.get(name, "")) in tested
         },
+    }
+
+
+def _catalogue_of(motions: Mapping[str, Any], source: Path) -> dict[str, Any]:
+    """Attributes of a study that its key ``motions`` gives: the catalogue, and its rows that are used."""
+    file = existing_file(source, "motions.catalogue", motions["catalogue"])
+    catalogue = read_catalogue(file).set_index("name", drop=False)
+    used = _used(
+        source, "motions", motions.get("use"), list(catalogue.index), "motions"
     )
-    asked = plugins_asked(content)
-    added = {name: plugin.settings(content, study) for name, plugin in asked.items()}
-    study = replace(study, added=added)
-    _check_names(study)
-    for path in study.own_records:
-        if is_file(path) or not study.keep_going:
-            check_file(path, f"{study.catalogue_file}: column file")
-    if study.measured_tests is not None:
-        _check_measured_tests(study, study.measured_tests)
-    _check_vertical(study)
-    return study
+    return {
+        "catalogue_file": file,
+        "catalogue": catalogue.loc[used].reset_index(drop=True),
+    }
+
+
+def _fragility_of(settings: Mapping[str, Any]) -> FragilitySettings:
+    """Settings of the key ``fragility``: names of measures, and pairs of them."""
+    measures = settings["measures"]
+    return FragilitySettings(
+        measures=tuple(measure for measure in measures if isinstance(measure, str)),
+        pairs=tuple((pair[0], pair[1]) for pair in measures if isinstance(pair, list)),
+        confidence=settings["confidence"],
+        model_error=settings.get("model_error", True),
+    )
 
 
 def _largest_factor(motions: Mapping[str, Any]) -> float:

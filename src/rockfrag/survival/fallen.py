@@ -3,6 +3,8 @@
 A row is an object or a group of like ones: its sizes as in an inventory of ``rockfrag assess``, and ``fell``,
 which is yes or no, or how many of how many (``31 of 60``). Azimuths of falls may stand beside it. Each group is
 shaken by the motions of ``rockfrag assess``; :mod:`rockfrag.survival.shaking_posterior` does the rest.
+
+In: the text of a table. Out: groups of objects with what fell of them. Docs: ``docs/constrain-shaking.md``.
 """
 
 import math

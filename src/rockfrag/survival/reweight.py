@@ -6,7 +6,10 @@ The probability that all objects stand if branch i is true is
 
 with the product over the objects k that stood at time t, and the expectation over their ages and the errors of
 their fragilities. Rates of objects that feel different earthquakes add up. Weights afterwards are
-w_i S_i / Σ w_j S_j (Bayes; Baker and others 2013, eq. 8; docs/survival.md).
+w_i S_i / Σ w_j S_j (Bayes; Baker and others 2013, eq. 8).
+
+In: a site with branches and objects. Out: weights and curves after. Theory: ``docs/survival.md``, "How it is
+calculated".
 """
 
 from collections.abc import Sequence

@@ -13,6 +13,8 @@ are given, and the likelihood is the mean over both,
 
 so that what all objects share does not average out, however many they are. The acceleration that goes with v is
 that of each motion, weighted by what is known of PGV/PGA. ``docs/constrain-shaking.md`` derives and tests it.
+
+In: fractions toppled at each level by motion, and counts. Out: probabilities of levels of PGV [cm/s] and PGA [g].
 """
 
 from collections.abc import Sequence

@@ -2,6 +2,9 @@
 
 Branches are a logic tree's end branches, each with its weight and a hazard curve a measure: OpenQuake's exports or
 tables of levels with the columns ``branch`` and ``weight``.
+
+In: ``site.yaml``, and the files that it names. Out: a site, SI units. Docs: ``docs/survival.md``, "What a site
+file holds".
 """
 
 import math

@@ -1,6 +1,6 @@
 """A hazard curve: how often each level of shaking is exceeded at a site, and how files say so.
 
-Of a file it is told which kind it is; of several the mean with its quantiles is put together.
+The kind of a file is recognised from its content; several files become one curve, the mean with its quantiles.
 
 In: text of a file, or points. Out: a curve, levels in the unit of its measure and annual rates [1/a].
 Docs: ``docs/assess.md``, "How likely, and what to do".

@@ -1,4 +1,8 @@
-"""Engines of ensembles in pure rocking, from rest, and what all engines of pure rocking share."""
+"""Engines of ensembles in pure rocking, from rest, and what all engines of pure rocking share.
+
+In: :class:`rockfrag.engines.contract.Cases`. Out: :class:`rockfrag.outcomes.Outcomes`. Theory:
+``docs/rocking.md``; the kernels: ``docs/kernels.md``.
+"""
 
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor

@@ -1,4 +1,8 @@
-"""Engine of single histories in pure rocking: one or two bodies, every impact, everything about the response."""
+"""Engine of single histories in pure rocking: one or two bodies, every impact, everything about the response.
+
+In: a :class:`rockfrag.engines.contract.Case`. Out: its :class:`rockfrag.outcomes.response.Response`. Theory:
+``docs/rocking.md``; the kernels: ``docs/kernels.md``.
+"""
 
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor

@@ -1,6 +1,9 @@
 """Series of impacts that accumulate, ended at once where that is proved to change nothing.
 
 The proofs, at rest and on a body that rocks on, with D, e, w and T: ``docs/kernels.md``, "Accumulating impacts".
+
+In: a body that has just had an impact, and the ground ahead of it. Out: whether the impacts that follow may be
+ended at once, and the velocities then.
 """
 
 import math

@@ -2,6 +2,8 @@
 
 A full contact pushes and never pulls.  States are tried from all contacts closed to all open, and the first
 consistent one is taken, so that every transition that the mechanics allows occurs.
+
+In: a record BODY and a STATE. Out: the contact state (c1, c2) that follows.
 """
 
 import math

@@ -2,6 +2,9 @@
 
 F2 = m2 (x2'', g + y2'') on the statue, F1 = F2 + m1 (x1'', g + y1'') on the pedestal; N and T are their components
 across and along the face that carries, and impulses follow from velocities likewise.
+
+In: a record BODY and a STATE, or velocities before and after an impact. Out: forces [N] and impulses [N s] along
+the faces. Theory: ``docs/kernels.md``, "What a response asks of its contacts".
 """
 
 import math

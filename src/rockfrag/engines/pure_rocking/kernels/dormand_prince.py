@@ -1,4 +1,7 @@
-"""Stages of Dormand and Prince's pair of order 5 (1980), and what each takes of the rates of those before it."""
+"""Stages of Dormand and Prince's pair of order 5 (1980), and what each takes of the rates of those before it.
+
+In: nothing. Out: tables of numbers. Used in ``docs/contact.md``, "Modes, accelerations and forces".
+"""
 
 import numpy as np
 

@@ -3,6 +3,8 @@
 Block 1 is the pedestal, block 2 the statue, or a lone block on a block 1 that cannot move (``fixed``).  c1
 (ground) and c2 (interface) are +1 or -1 for rocking on the right or left pivot, σ = ±1 along the interface, and 0
 for full contact.  M θ'' + f = τ, with τ zero at a rocking pivot (Spanos, Roussis and Politis, 2001).
+
+In: a record BODY, pivots and a STATE. Out: masses, forces, accelerations [rad/s²], moments [N m] and energies [J].
 """
 
 import math

@@ -2,6 +2,8 @@
 
 Momentum decides first, M(new) ω⁺ = B(new, old) ω⁻ (Housner, 1963; Spanos, Roussis and Politis, 2001); a measured
 restitution then says at which rate the closing contact comes off, as far as energy does not grow.
+
+In: a record BODY, a STATE before the impact, and the contacts that close. Out: contact state and velocities after.
 """
 
 from rockfrag.engines.compile.jit import inlined_kernel, kernel

@@ -1,4 +1,8 @@
-"""The laws of impacts (``rockfrag.laws``) as the kernels call them: chosen by number, and inlined."""
+"""The laws of impacts (``rockfrag.laws``) as the kernels call them: chosen by number, and inlined.
+
+In: the number of a law, its value, and rates before the impact. Out: the rate at which the contact comes off.
+Theory: ``docs/restitution.md``, "The laws".
+"""
 
 from collections.abc import Iterable
 from functools import reduce

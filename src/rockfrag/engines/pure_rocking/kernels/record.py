@@ -1,4 +1,8 @@
-"""What is kept of one history: its summary, its samples and its contact events."""
+"""What is kept of one history: its summary, its samples and its contact events.
+
+In: a body and its state in each step. Out: records of samples, of contact events and of the summary. Docs:
+``docs/rocking.md``, "What a response says about itself".
+"""
 
 import math
 
@@ -150,12 +154,11 @@ def track(balances, state, summary):
 
 @kernel
 def note_demand(body, step, series, end, work, summary):
-    """Note what the forces of a step ask of its contacts, up to an instant ``end`` that its state has reached.
+    """Note which friction and normal forces a step demands of its contacts, up to the instant ``end`` in it.
 
-    A step is looked at in its middle and at its end, and at its beginning if the contacts have just changed;
-    between them forces are nearly parabolas, and steps are short.  What is asked beyond balance counts only if the
-    block comes back.  Returned is the time in the step at which a normal force first was none; NEVER if they push,
-    or beyond balance.
+    Forces are computed at the beginning, in the middle and at the end; between these they are nearly parabolas,
+    and steps are short. Demands of a block beyond its balance are kept apart, and count once it has come back.
+    Returned is the time in the step at which a normal force first vanished; NEVER if all push, or beyond balance.
     """
     state, trial = work.state, work.trial
     # what has come back from beyond balance was not yet a fall

@@ -1,6 +1,8 @@
 """Instants within a step: when a contact closes, when a closed one lets go, when a rotation turns.
 
 Time τ runs from 0 to 1 over a step.  A series q stands for q(τ) = Σ q[k] τᵏ.
+
+In: coefficients of series. Out: times in steps. Theory: ``docs/kernels.md``, "Series".
 """
 
 import math
@@ -53,8 +55,9 @@ def dips(gap, out, out_at_end):
 def hops(gap, out, out_at_end, bend):
     """Whether a contact that opens, and still opens at the end, may have closed in between.
 
-    The cubic through rate and acceleration at the start and rate at the end, over time, is
-    out + bend τ / 2 + c τ² / 3; it must have a minimum within the step that is negative, either by half.
+    By its rate and acceleration at the start and its rate at the end the gap is gap + τ (out + bend τ/2 + c τ²/3).
+    It can close only where that parabola has a negative minimum within the step, bend² > 16/3 out c and -3/4 bend
+    < c. So that no closing is missed, 3.5 and 1/2 stand for 16/3 and 3/4.
     """
     c = out_at_end - out - bend
     return (

@@ -1,6 +1,9 @@
 """One history: integrate one body through an acceleration, contact event by contact event.
 
 Every step size, root and decision depends on this one case alone, and nothing needs what a web page does not have.
+
+In: a record BODY, a STATE to begin with and a motion. Out: samples, contact events and a summary. Theory:
+``docs/derivation.md``; the life of a case: ``docs/kernels.md``.
 """
 
 import math

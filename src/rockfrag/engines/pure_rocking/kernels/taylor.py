@@ -2,6 +2,8 @@
 
 ``fill_series`` is for both rotations of any body in any contact state, linearised or not; ``rates_of_one`` and
 ``rates_of_two`` are the same written out, so that the compiler can work on several cases at once.
+
+In: a body, its state and the ground over a step. Out: coefficients of its angles by time in steps.
 """
 
 from typing import NamedTuple

@@ -2,6 +2,8 @@
 
 With ψ = θc - |θ|, A the ground acceleration over g, positive where it pushes the block back down, and W gravity
 over g, ψ'' = p² (W sin ψ + A cos ψ) on either pivot (Housner, 1963).  Time is counted in samples.
+
+In: cases, and motions over g. Out: records OUTCOME. Theory: ``docs/kernels.md``, "A certain fall" and "Series".
 """
 
 import math

@@ -1,4 +1,7 @@
-"""Cases: a body × motion × scale each, what they are taken from, and what remains of them."""
+"""Cases: a body × motion × scale each, what they are taken from, and what remains of them.
+
+In: bodies, motions over g and scales. Out: records OUTCOME. Docs: ``docs/kernels.md``, "The life of a case".
+"""
 
 from typing import Any, NamedTuple
 

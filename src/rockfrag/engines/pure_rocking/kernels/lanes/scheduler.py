@@ -2,6 +2,8 @@
 
 One pass advances all lanes of a kind; contact events, rest, outcomes and the next case are handled case by case
 between passes.  A case whose contact event changes its kind waits for a lane of the other.
+
+In: an ensemble, and motions. Out: records OUTCOME of all cases.
 """
 
 from rockfrag.engines.compile.jit import entry_kernel, inlined_kernel, lowest_bit

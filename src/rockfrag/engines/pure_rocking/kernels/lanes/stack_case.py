@@ -1,6 +1,9 @@
 """The life of a stack's case, a CASE record: taken, at rest, in a lane, through its contact events, and put down.
 
 ``place_one``, ``store_one`` and their like carry it in and out of lanes of one rotation and of two.
+
+In: records CASE, and the lanes. Out: the same after a step or a contact event. Docs: ``docs/kernels.md``, "One
+impact of one stack, from `overturns` to the outcome".
 """
 
 import math

@@ -2,6 +2,9 @@
 
 One pass advances every lane from where it is within a sample to the end of that sample.  Time is counted in
 samples.
+
+In: lanes with their states. Out: their states a sample later, and a flag for each that has a contact event.
+Theory: ``docs/kernels.md``, "Series".
 """
 
 import numpy as np

@@ -2,6 +2,9 @@
 
 One pass advances every lane by one step, which ends with its sample or takes the largest part of it that is
 allowed. Time is counted in samples.
+
+In: lanes with their states. Out: their states a step later, and a flag for each that has a contact event.
+Theory: ``docs/kernels.md``, "Series".
 """
 
 import numpy as np
