@@ -281,7 +281,11 @@ def integrate(p, shaking, start, closing, kept, w):
                 idle = idle + 1 if when < 1e-9 else 0
                 jolts = jolts if idle > 0 else 0
                 w.met += 1
-                coarser = closing * 10.0 ** (w.met // MOST_CONTACT_EVENTS)
+                # by products: a page has no powers
+                tens = 1.0
+                for _ in range(w.met // MOST_CONTACT_EVENTS):
+                    tens *= 10.0
+                coarser = closing * tens
                 if w.met >= MOST_CONTACT_EVENTS:
                     w.forced += 1
                 ah, av = stepping.ground_at(sample, tau)

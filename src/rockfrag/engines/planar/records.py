@@ -7,17 +7,15 @@ In: a :class:`rockfrag.system.system.System`, SI units. Out: records ``BODY``, `
 Theory: ``docs/contact.md``, "Coordinates and contacts", equations 1 and 2.
 """
 
-import math
 from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
-from rockfrag.base.arrays import fields, whole
-from rockfrag.base.elementary import atan2, sin_cos
+from rockfrag.base.arrays import fields, whole, with_attributes
+from rockfrag.engines.planar import _describe
 from rockfrag.engines.planar.holding import fill_holding, with_plate
 from rockfrag.engines.pure_rocking.ensembles import after_impact
-from rockfrag.system import geometry
 from rockfrag.system.contact import ROUGHEST
 from rockfrag.system.system import System
 
@@ -209,51 +207,22 @@ def fill_geometry(p: np.void, system: System) -> None:
     """Fill geometry and masses of a column into its record; a base is as wide as what lies on the face below."""
     bodies, contacts, shapes = system.in_plane().bodies, system.contacts, system.shapes
     p["count"], p["weight"] = system.count, p["g"] * system.mass
-    p["half"][0], p["tilt_cos"][:] = math.inf, 1.0
-    # of the face under a body, from the middle of the lowest base
-    middle, tilt = np.zeros(2), 0.0
-    for k, shape in enumerate(shapes):
-        foot, base = middle, middle
-        if k > 0:
-            below, (stand, face) = bodies[k - 1], bodies[k - 1].ends
-            lean = contacts[k - 1].tilt
-            wide = shapes[k - 1]._replace(b=(face.right - face.left) / 2)
-            right = face.middle - stand.middle
-            offset = (
-                contacts[k].offset[0]
-                + bodies[k].ends[0].middle
-                - (right + stand.middle)
-            )
-            pile = geometry.pile_of(wide, shape, below.height, lean, offset)
-            shape = pile.upper
-            aside = np.array(geometry.turned(right, 0.0, lean))
-            top = np.array(geometry.turned(0.0, below.height, lean)) + aside
-            foot = middle + _turned(np.array(pile.right) + aside, tilt)
-            p["face"][k] = _turned(top - (wide.x, wide.y), tilt)
-            p["half"][k] = wide.b
-            own = np.array(geometry.turned(offset, below.height, lean))
-            base = middle + _turned(own + aside, tilt)
-            tilt += lean
-            p["tilt_sin"][k], p["tilt_cos"][k] = sin_cos(tilt)
-        p["mass"][k], p["inertia"][k] = shape.mass, shape.inertia
-        p["inverse"][3 * k : 3 * k + 3] = (
-            1 / shape.mass,
-            1 / shape.mass,
-            1 / shape.inertia,
+    p["tilt_cos"][:] = 1.0
+    body = with_attributes(p)
+    foot = _describe.place_lowest(body, shapes[0])
+    for k in range(1, system.count):
+        below, (stand, face) = bodies[k - 1], bodies[k - 1].ends
+        right = face.middle - stand.middle
+        aside = contacts[k].offset[0] + bodies[k].ends[0].middle
+        carries = _describe.Face(
+            half=(face.right - face.left) / 2,
+            height=below.height,
+            lean=contacts[k - 1].tilt,
+            right=right,
+            offset=aside - (right + stand.middle),
         )
-        for end, pivot in enumerate((-1, 1)):
-            x, y = geometry.turned(*geometry.arm(shape, pivot), tilt)
-            p["corner"][k, end] = -x, -y
-            p["critical"][k, end] = atan2(-pivot * x, y)
-        # x, y: arm of the right end
-        stands = (foot[0] + x, foot[1] + y) if k else (shape.x, shape.y)
-        p["standing"][3 * k : 3 * k + 2] = stands
-        middle = base
-    p["size"], p["speed"] = shape.b, math.sqrt(p["g"] * shape.b)
-
-
-def _turned(vector: Array, angle: float) -> Array:
-    return np.array(geometry.turned(float(vector[0]), float(vector[1]), angle))
+        pair = shapes[k - 1], shapes[k]
+        foot = _describe.place_above(body, k, pair, carries, foot)
 
 
 def system_record(system: System, g: float) -> np.void:
@@ -285,21 +254,5 @@ def posed(
 ) -> NDArray[np.float64]:
     """Coordinates and velocities, shape (2, 3 MOST), of bodies turned about the corners that this leaves them."""
     start = np.zeros((2, 3 * MOST))
-    standing = p["standing"]
-
-    for k in range(int(p["count"])):
-        below = (theta[k - 1], omega[k - 1]) if k else (0.0, 0.0)
-        end = 1 if ((theta[k] - below[0]) or (omega[k] - below[1])) >= 0 else 0
-        corner = p["corner"][k, end]
-        pivot = standing[3 * k : 3 * k + 2] + corner
-        speed = np.zeros(2)
-        if k:
-            at = slice(3 * k - 3, 3 * k - 1)
-            arm = _turned(pivot - standing[at], below[0])
-            pivot = start[0, at] + arm
-            speed = start[1, at] + below[1] * np.array([arm[1], -arm[0]])
-        arm = -_turned(corner, theta[k])
-        start[0, 3 * k : 3 * k + 2] = pivot + arm
-        start[1, 3 * k : 3 * k + 2] = speed + omega[k] * np.array([arm[1], -arm[0]])
-        start[0, 3 * k + 2], start[1, 3 * k + 2] = theta[k], omega[k]
+    _describe.fill_start(with_attributes(p), theta, omega, start)
     return start
