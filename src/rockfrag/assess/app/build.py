@@ -108,6 +108,7 @@ PLAIN: dict[Any, tuple[Any, ...]] = {
     choices.over_years: _LIMITS,
     choices.needs_change: (_FLOAT, False, False),
     choices.reduces: (_FLOAT, False),
+    choices.change_alone: (_FLOAT, False, False),
     choices.tell_reduction: (*_LIMITS, _ROW),
     choices.names_source: (_FLOAT,),
     choices.lists_measurement: (_FLOAT,),

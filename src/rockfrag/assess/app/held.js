@@ -7,7 +7,8 @@
  */
 const holding = (data, core, spatial) => {
   "use strict";
-  const { UNBROKEN, PADS_AT, PLATE, RADIUS, SLIDES_AT, ROLLS_AT, LOCKED_AT } = data.constants;
+  const { UNBROKEN, PADS_AT, PLATE, RADIUS, SLIDES_AT, ROLLS_AT, LOCKED_AT } =
+    data.constants;
   const { kinds, motions } = data.holding;
 
   // what holds a body in a plane, as the module of the contact kernels takes it
@@ -39,14 +40,13 @@ const holding = (data, core, spatial) => {
     casters: (locked) => ({ friction: locked ? LOCKED_AT : ROLLS_AT }),
   };
   const IN_SPACE = {
-    putty: (bears) => ({ bond: { tension: bears, shear: UNBROKEN, padsAt: PADS_AT },
-    }),
+    putty: (bears) => ({ bond: { tension: bears, shear: UNBROKEN, padsAt: PADS_AT } }),
     wall: (distance) => ({ wall: distance }),
     casters: (locked) => ({ friction: locked ? LOCKED_AT : ROLLS_AT }),
   };
 
   // what holds it beside what it stands at, and what it stands at without that
-  const unbroken = (kind) => (kinds[kind].times ? kinds[kind].unbroken : null);
+  const unbroken = (kind) => kinds[kind].unbroken ?? Infinity;
   function holdersOf({ there, kind }, role, bears) {
     const known = there ? [there] : [];
     if (role === "free") return kind ? known : [];
@@ -63,20 +63,22 @@ const holding = (data, core, spatial) => {
   };
   // runs of a trial, of the object as it stands and with what the sliders change
   function runsOf(hold, stands, changed) {
+    const { times = 0, slow } = kinds[hold.kind] ?? {};
+    const askedBy = slow ? "slow" : null;
+    const chosenBy = (role) => (role === "asked" ? askedBy : "few");
     const run = (role, { body, solid }) => ({
       role,
       hold,
       body: { ...body, rolling: null },
       solid: inSpace(hold, solid) ? solid : null,
-      chosen: role === "asked" && !kinds[hold.kind].slow ? null : chosenBy(role),
+      chosen: chosenBy(role),
     });
     return [
-      ...(kinds[hold.kind]?.times ? [run("asked", changed)] : []),
+      ...(times ? [run("asked", changed)] : []),
       run("free", stands),
       run("held", changed),
     ];
   }
-  const chosenBy = (role) => (role === "asked" ? "slow" : "few");
   // places of the motions of a run; all if null
   const motionsOf = (request, { chosen }) =>
     chosen && motions[request.solid ? "space" : "plane"][chosen];
@@ -87,8 +89,8 @@ const holding = (data, core, spatial) => {
   // what each motion asks of what holds it beside. `shaken` gives a motion on the floor,
   // `scalesOf` levels and which are allowed, `factorsOf` the factors on what shakes
   function counter(ensemble, plane, space) {
-    return function count(run, places, bears, shaken, { scalesOf, factorsOf }) {
-      const holders = holdersOf(run.hold, run.role, bears);
+    return function count(run, places, shaken, { scalesOf, factorsOf }) {
+      const holders = holdersOf(run.hold, run.role, run.bears);
       const own = scalesOf(places);
       const make = run.solid ? inSpaceOf : inPlaneOf;
       const { countOf, lifting } = make(run, holders, { ensemble, plane, space });
