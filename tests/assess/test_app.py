@@ -24,22 +24,10 @@ from rockfrag.cli.assess_commands import form_of
 from rockfrag.cli.main import main
 from rockfrag.words.findings import as_data
 
-from ..app_forms import settings_of, some_form
+from ..app_forms import settings_of, some_form, some_form_in_space
 from ..case_tables import case_tables
 from .in_node import check_all, check_figures, in_node, needs_node, same
 from .samples import quantile_files
-
-
-def some_form_in_space(rng: random.Random) -> dict[str, str]:
-    """A random box or round object, without a measured restitution, on pedestals too."""
-    form = some_form(rng)
-    form.pop("restitution", None)
-    if rng.random() < 0.3:
-        return form | {"round": True}
-    form["depth"] = f"{float(form['width'].split()[0]) * rng.uniform(0.6, 2):.3g} cm"
-    if rng.random() < 0.5:
-        form["facing"] = f"{rng.uniform(0, 360):.1f}"
-    return form
 
 
 def some_round_form_on_a_pedestal(rng: random.Random) -> dict[str, str]:

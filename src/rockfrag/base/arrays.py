@@ -43,5 +43,14 @@ def whole(names: str, *shape: int) -> Fields:
 
 
 def with_attributes(record: np.void) -> Any:
-    """Return a record whose fields are attributes, as those of records are in kernels; it shares its memory."""
+    """Return a record whose fields are attributes, as those of records are in kernels; it shares its memory.
+
+    Parameters
+    ----------
+    record : of any type
+
+    Returns
+    -------
+    The same record.
+    """
     return np.asarray(record).reshape(1).view(np.recarray)[0]

@@ -213,7 +213,8 @@ def _fill_walls(call, first, lower, upper, raised):
         p.wall_top[contact] = np.inf
         x, y = own.width / 2 - shape.x, origin + shape.y
         low, high = (x, origin - y), (x, (origin + own.height) - y)
-        _describe.fill_wall(p, contact, 1, base / 2 + call.wall, low, high)
+        side = _describe.Side(1, low, high)
+        _describe.fill_wall(p, contact, base / 2 + call.wall, side)
 
 
 @kernel

@@ -85,8 +85,8 @@ const holding = (data, core, spatial) => {
   const levelsOf = ({ solid, measure }) =>
     motions[solid ? "space" : "plane"].measures[measure];
 
-  // a worker's part of a run, of motions at some places, as spatial.counter counts one;
-  // what each motion asks of what holds it beside. `shaken` gives a motion on the floor,
+  // a worker's part of a run, of motions at some places, as spatial.counter counts one,
+  // and what each motion asks of what holds it; `shaken` gives a motion on the floor,
   // `scalesOf` levels and which are allowed, `factorsOf` the factors on what shakes
   function counter(ensemble, plane, space) {
     return function count(run, places, shaken, { scalesOf, factorsOf }) {

@@ -487,7 +487,7 @@
     find("sliders").append(
       choiceOf("fixed", ["not_fixed", "to_pedestal", "to_floor"], say),
       choiceOf("there", THERE, whereOf),
-      choiceOf("hold", HOLDS, (kind) => say(`held_${kind || "nothing"}`)),
+      choiceOf("hold", HOLDS, (kind) => say(`slide_held_${kind || "nothing"}`)),
       bearsField(),
     );
   }

@@ -35,7 +35,17 @@ class Face(NamedTuple):
 
 
 def place_lowest(p: Any, shape: Shape) -> Foot:
-    """Place the body that stands on the ground; where it stands."""
+    """Place the body that stands on the ground.
+
+    Parameters
+    ----------
+    p : record
+    shape : of the body as it stands
+
+    Returns
+    -------
+    Where it stands.
+    """
     p.half[0] = math.inf
     _place(p, 0, shape, (shape.x, shape.y), 0.0)
     return Foot(0.0, 0.0, 0.0)
@@ -126,24 +136,40 @@ def fill_start(p: Any, theta: Any, omega: Any, start: Any) -> None:
 
 
 def fill_contacts(p: Any) -> None:
-    """Number the contacts of bodies with each other, before walls and stops follow them."""
+    """Number the contacts of bodies with each other, before walls and stops follow them.
+
+    Parameters
+    ----------
+    p : record
+    """
     p.contacts = p.count
     for k in range(p.count):
         p.upper[k], p.lower[k] = k, k - 1
 
 
-def fill_wall(
-    p: Any,
-    k: int,
-    side: int,
-    x: float,
-    low: tuple[float, float],
-    high: tuple[float, float],
-) -> None:
-    """Fill where a wall of a contact stands, and the corners of the body that may meet it, from its centre."""
-    p.side[k], p.wall_x[k] = side, x
+class Side(NamedTuple):
+    """What of a body may meet a wall."""
+
+    way: int  # towards the wall: +1 right, -1 left
+    # corners from its centre of gravity [m]
+    low: tuple[float, float]
+    high: tuple[float, float]
+
+
+def fill_wall(p: Any, k: int, x: float, side: Side) -> None:
+    """Fill where the wall of a contact stands, and what of the body may meet it.
+
+    Parameters
+    ----------
+    p, k : record, and number of the contact
+    x : of the wall [m]
+    side : of the body
+    """
+    p.side[k], p.wall_x[k] = side.way, x
     # in the order in which the wall's tangent meets them
-    first, last = (low, high) if side > 0 else (high, low)
+    first, last = side.low, side.high
+    if side.way < 0:
+        first, last = side.high, side.low
     across, up = last[0] - first[0], last[1] - first[1]
     length = hypot(across, up)
     p.edge[k, 0, 0], p.edge[k, 0, 1] = first

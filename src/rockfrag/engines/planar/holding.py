@@ -91,9 +91,10 @@ def _fill_walls(p: np.void, system: System, shift: int) -> None:
             p["static"][k], p["kinetic"][k] = wall.friction or SMOOTH
             first = 4 * body + (2 if wall.side > 0 else 0)
             x, z = centres[body]
-            low, high = [(a - x, b - z) for a, b in standing[first : first + 2]]
+            (right, low), (top, high) = standing[first], standing[first + 1]
+            side = _describe.Side(wall.side, (right - x, low - z), (top - x, high - z))
             at = wall.side * wall.distance - middle
-            _describe.fill_wall(with_attributes(p), k, wall.side, at, low, high)
+            _describe.fill_wall(with_attributes(p), k, at, side)
 
 
 def _origin(system: System) -> float:

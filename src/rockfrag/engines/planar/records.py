@@ -19,8 +19,6 @@ from rockfrag.engines.pure_rocking.ensembles import after_impact
 from rockfrag.system.contact import ROUGHEST
 from rockfrag.system.system import System
 
-Array = NDArray[np.float64]
-
 MOST = 12  # bodies of the longest column
 MOST_WALLED = 12  # contacts of bodies with walls
 ALL = MOST + MOST_WALLED  # contacts
