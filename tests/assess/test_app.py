@@ -98,10 +98,14 @@ def of_holder(holder: str, mitigations):
 @pytest.mark.parametrize(
     ("more", "kinds"),
     [
-        ({}, TRIED),
-        ({"depth": "30 cm"}, ("putty", "bracket")),
-        ({"pedestal_width": "40 cm", "pedestal_height": "50 cm"}, ("cord",)),
-        ({"round": True}, ("putty", "cord")),
+        ({}, ("putty", "bracket", "isolator")),
+        ({"depth": "30 cm"}, ("putty", "cord")),
+        pytest.param({}, TRIED, marks=pytest.mark.slow),
+        pytest.param(
+            {"pedestal_width": "40 cm", "pedestal_height": "50 cm"},
+            TRIED,
+            marks=pytest.mark.slow,
+        ),
         pytest.param(
             {"pedestal_width": "40 cm", "pedestal_height": "50 cm", "floor": "2/4"},
             TRIED,
@@ -113,8 +117,8 @@ def of_holder(holder: str, mitigations):
 )
 def test_what_holds_it_is_tried_live_as_assess_tries_it(tmp_path, motions, more, kinds):
     """The same demand, in as many motions, the same factor with its limits, and the same words."""
-    ground = motions.ground[:24]
-    motions = MotionSet(ground, ground, motions.pairs[:12], "made motions")
+    ground = motions.ground[:12]
+    motions = MotionSet(ground, ground, motions.pairs[:6], "made motions")
     form = HELD | more | {"measure": "PGA", "level": "0.5 g", "years": "475"}
     tries = [{"there": None, "kind": kind, "bears": None} for kind in kinds]
     (said,) = in_node(tmp_path, motions, [form | {"hold": tries}])
@@ -138,11 +142,14 @@ def test_what_holds_it_is_tried_live_as_assess_tries_it(tmp_path, motions, more,
 
 
 @needs_node
+@pytest.mark.parametrize(
+    "more", [{}, pytest.param({"depth": "30 cm"}, marks=pytest.mark.slow)]
+)
 def test_what_stands_at_a_wall_or_rolls_is_shaken_live_as_the_engine_does(
-    tmp_path, motions
+    tmp_path, motions, more
 ):
-    ground = motions.ground[:16]
-    motions = MotionSet(ground, ground, motions.pairs[:8], "made motions")
+    ground = motions.ground[:12]
+    motions = MotionSet(ground, ground, motions.pairs[:6], "made motions")
     wall, rolls = {"kind": "wall", "value": 0.02}, {"kind": "casters", "value": False}
     tries = [
         {"there": wall, "kind": None, "bears": None},
@@ -156,24 +163,24 @@ def test_what_stands_at_a_wall_or_rolls_is_shaken_live_as_the_engine_does(
         ([Casters()], [Casters(locked=True)]),
         ([Beside(0.02)], [Beside(0.02), Putty(250.0)]),
     ]
-    for more in ({}, {"depth": "30 cm"}):
-        form = HELD | more | {"measure": "PGA", "level": "0.5 g"}
-        (said,) = in_node(tmp_path, motions, [form | {"hold": tries}])
-        objects = make_request(settings_of(form), "test").objects
-        both = motions.with_both_components() if more else motions
-        few = both.thinned() if more else both.thinned().thinned()
-        shaking = make_intensity_levels(few, PGA, [0.5], LEVELS_OF_HOLDERS)
-        body = objects.body
-        system = objects.solid(body) if more else objects.system_of(body)
-        for pair, live in zip(holders, said["held"], strict=True):
-            for name, there in zip(("free", "held"), pair, strict=True):
-                held = system
-                for holder in there:
-                    held = holder.on(held)
-                found, _ = shaking.outcomes_of_system(held)
-                rows = np.array(live["outcomes"][name]["motions"])
-                fell = np.reshape(live["outcomes"][name]["overturned"], (16, -1))[rows]
-                np.testing.assert_array_equal(fell > 0, found.overturned)
+    form = HELD | more | {"measure": "PGA", "level": "0.5 g"}
+    (said,) = in_node(tmp_path, motions, [form | {"hold": tries}])
+    assert "held" in said, said
+    objects = make_request(settings_of(form), "test").objects
+    both = motions.with_both_components() if more else motions
+    few = both.thinned() if more else both.thinned().thinned()
+    shaking = make_intensity_levels(few, PGA, [0.5], LEVELS_OF_HOLDERS)
+    body = objects.body
+    system = objects.solid(body) if more else objects.system_of(body)
+    for pair, live in zip(holders, said["held"], strict=True):
+        for name, there in zip(("free", "held"), pair, strict=True):
+            held = system
+            for holder in there:
+                held = holder.on(held)
+            found, _ = shaking.outcomes_of_system(held)
+            rows = np.array(live["outcomes"][name]["motions"])
+            fell = np.reshape(live["outcomes"][name]["overturned"], (12, -1))[rows]
+            np.testing.assert_array_equal(fell > 0, found.overturned)
         # what 250 N hold in as many motions
         assert (
             0 <= said["held"][3]["asked"]["held"] <= said["held"][3]["asked"]["total"]
