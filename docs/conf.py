@@ -95,6 +95,10 @@ SUBPACKAGES = {
     ),
     "rockfrag.effects": ("Paired comparisons", "the effect of a pedestal, tested"),
     "rockfrag.shaketable": ("Shaking tables", "limits, protocols and tables of tests"),
+    "rockfrag.collections": (
+        "Collections",
+        "tables of museums as inventories: dimensions in words, units, six languages",
+    ),
     "rockfrag.assess": (
         "One object at one place",
         "what the command `rockfrag assess` does",

@@ -341,7 +341,8 @@ def test_the_first_screen_has_at_most_sixty_words_and_says_nothing_twice(on_pede
     ):
         first = Decision(Action.MEASURE, Action.LEAVE, source, 0.3)
         request = replace(longest.request, name="the object")
-        shown = replace(found, request=request, level=both, decision=first)
+        plan = replace(found.plan, level=both)
+        shown = replace(found, request=request, plan=plan, decision=first)
         lines = lines_of(shown, language)
         assert len(" ".join(lines).split()) <= 60, lines
         assert len(lines) == len(set(lines)) == 4

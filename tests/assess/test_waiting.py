@@ -8,11 +8,14 @@ import pytest
 from rockfrag.assess import answer
 from rockfrag.assess.answer import (
     COMPILING_S,
+    assess_with,
     plan_for,
     seconds_of,
+    seconds_of_holders,
     shake_all,
     waiting_for,
 )
+from rockfrag.assess.findings import lines_of
 from rockfrag.assess.inventory import assess_each
 from rockfrag.assess.outcomes import Shaking
 from rockfrag.cli.main import main
@@ -75,9 +78,19 @@ def test_what_holds_a_column_is_expected_to_take_longer_than_what_holds_a_block(
     for settings in (BLOCK, COLUMN):
         request = asked(**settings)
         plan = plan_for(request, few, brief=False, holds=True)
-        free = replace(plan, holds=False)
-        added.append(seconds_of([request], plan) - seconds_of([request], free))
+        assert seconds_of_holders(request, replace(plan, holds=False)) == 0
+        added.append(seconds_of_holders(request, plan))
     assert added[1] > 20 * added[0] > 0
+
+
+def test_lines_do_not_wait_for_what_may_hold_an_object(few):
+    """It takes longer than all else, and no line says it."""
+    tried = []
+    with patch.object(answer, "try_holders", lambda *_: tried.append(1) or []):
+        found = assess_with(asked(**BLOCK), few)
+        assert lines_of(found) and not tried
+        assert found.mitigations and tried
+        assert set(found.mitigations) == set(found.changes)
 
 
 def test_a_list_says_objects_also_where_they_are_shaken_at_once(few):

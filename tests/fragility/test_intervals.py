@@ -103,24 +103,72 @@ def test_capacities_in_one_step_give_limits_of_the_step_and_a_beta_from_zero():
     assert "in one step of the amplitude" in row["warnings"]
 
 
+def without_limits(groups, slope, said=("There are no limits.",)):
+    """Interval of groups that agree within a step, of a curve with a slope."""
+    return Interval(
+        theta=(math.nan, math.nan),
+        beta=(math.nan, math.nan),
+        level=0.9,
+        method="none",
+        groups=groups,
+        over="motion",
+        estimate=(0.0, slope),
+        replicates=np.zeros((0, 2)),
+        warnings=said,
+    )
+
+
+@pytest.mark.parametrize("groups", [4, 7, 20])
+def test_all_capacities_fall_in_one_step_as_rarely_as_the_level_allows(groups):
+    """By simulated capacities of the dispersion that the limit names, and of medians beside the step."""
+    found = step_limits(without_limits(groups, slope=50.0), 1.0, 1.5)
+    rng = np.random.default_rng(groups)
+    capacities = rng.normal(0.0, found.beta[1], (200_000, groups))
+    within = (np.abs(capacities) < 0.5 * np.log(1.5)).all(axis=1)
+    assert within.mean() == pytest.approx(0.1, abs=0.004)
+    # the step holds the median unless all capacities are on one side of it
+    held = (capacities.min(axis=1) < 0) & (capacities.max(axis=1) > 0)
+    assert f"with {100 * held.mean():.0f} % confidence" in found.warnings[-1]
+
+
+def test_no_dispersion_is_left_out_that_the_curve_itself_has():
+    found = step_limits(without_limits(4, slope=0.5), 1.0, 1.5)
+    assert found.beta == (0.0, pytest.approx(2.0))
+
+
+def test_of_groups_that_all_fall_or_all_stand_there_is_no_curve():
+    table = swept_motions(5)
+    data = observations_from_table(
+        table.assign(overturned=table["motion"].isin(["m0", "m1"]).astype(int)),
+        "amplitude_g",
+    )
+    fit, groups = outcome_fitter(data, "motion")
+    weights = np.eye(groups)
+    found = fit(weights)[:, 0]
+    fell = np.arange(groups) < 2
+    assert (found[fell] == np.inf).all()
+    assert (found[~fell] == -np.inf).all()
+
+
+def test_limits_of_beta_lie_about_the_true_one_and_not_about_the_small_one_of_few():
+    """Eight capacities make β a tenth too small; its limits are those of what is not."""
+    true, alone, middle = 0.4, [], []
+    for seed in range(60):
+        data = observations_from_table(swept_motions(8, seed=seed), "amplitude_g")
+        found = interval_over_motions(data)
+        alone.append(1.0 / found.estimate[1])
+        middle.append(math.sqrt(found.beta[0] * found.beta[1]))
+    assert np.mean(alone) < 0.93 * true
+    assert np.median(middle) == pytest.approx(true, rel=0.07)
+
+
 def test_limits_of_a_step_replace_the_reason_for_none_and_keep_all_else_that_was_said():
     said = (
         "Motions come from 4 earthquakes.",
         "Two are alike.",
         "There are no limits.",
     )
-    nothing = Interval(
-        theta=(math.nan, math.nan),
-        beta=(math.nan, math.nan),
-        level=0.9,
-        method="none",
-        groups=4,
-        over="motion",
-        estimate=(0.0, 5.0),
-        replicates=np.zeros((0, 2)),
-        warnings=said,
-    )
-    found = step_limits(nothing, 0.2, 0.3)
+    found = step_limits(without_limits(4, slope=5.0, said=said), 0.2, 0.3)
     assert found.warnings[:2] == said[:2]
     assert len(found.warnings) == 3
     assert "in one step of the amplitude" in found.warnings[2]

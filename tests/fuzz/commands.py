@@ -10,6 +10,7 @@ import csv
 import io
 import random
 import re
+import warnings
 from collections.abc import Callable
 from pathlib import Path
 from tempfile import mkdtemp
@@ -26,9 +27,14 @@ GRAVITY = 9.81
 
 
 def called(*words: object) -> tuple[int, str, str]:
-    """Status, output and error stream of a call."""
+    """Status, output and error stream of a call, on which warnings are sentences and no errors."""
     out, err = io.StringIO(), io.StringIO()
-    with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
+    with (
+        contextlib.redirect_stdout(out),
+        contextlib.redirect_stderr(err),
+        warnings.catch_warnings(),
+    ):
+        warnings.simplefilter("default")
         try:
             status = main([str(word) for word in words])
         except SystemExit as error:

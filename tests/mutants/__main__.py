@@ -129,8 +129,9 @@ def trials(
     with ThreadPoolExecutor(processes) as pool:
         for group, own in mutants.items():
             tests = quick_tests(group)
-            print(f"{', '.join(group.files)}: {len(tests)} quick tests", flush=True)
-            if not tests:
+            names = ", ".join(group.files)
+            print(f"{names}: {len(tests.seconds)} quick tests", flush=True)
+            if not tests.seconds:
                 continue
             found = pool.map(partial(noticed_by, group=group, tests=tests), own)
             yield from zip(own, found, strict=True)

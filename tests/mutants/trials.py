@@ -1,11 +1,10 @@
 """Asking tests about one mutant: in a process of its own, forked from one that has loaded the libraries."""
 
-import importlib.abc
-import importlib.machinery
-import importlib.util
+import ast
 import json
 import os
 import resource
+import shutil
 import signal
 import sys
 import threading
@@ -15,7 +14,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from types import FrameType, ModuleType
+from types import FrameType
 from typing import Any
 
 import pytest
@@ -55,29 +54,18 @@ class Mutant:
         return f"{where} '{self.change.old}' -> '{self.change.new}': {line.strip()}"
 
 
-class _Changed(importlib.abc.MetaPathFinder, importlib.machinery.SourceFileLoader):
-    """Finds and loads the changed file in the place of what lies on the disk."""
+def changed_library(mutant: Mutant, scratch: str) -> str:
+    """Put the library with the change into a folder; return it, to be looked in first.
 
-    def __init__(self, mutant: Mutant, scratch: str) -> None:
-        parts = mutant.path.relative_to(SOURCE.parent).with_suffix("").parts
-        super().__init__(".".join(parts).removesuffix(".__init__"), str(mutant.path))
-        self.mutant = mutant
-        self.place = Path(scratch) / mutant.path.name
-
-    def find_spec(
-        self, name: str, path: Any = None, target: ModuleType | None = None
-    ) -> Any:
-        """Say that it has the changed file, and nothing else."""
-        if name != self.name:
-            return None
-        return importlib.util.spec_from_file_location(name, self.path, loader=self)
-
-    def get_code(self, fullname: str) -> Any:
-        """Compile the changed source; it has a place of its own, where no machine code of the other lies."""
-        source = self.mutant.path.read_text(encoding="utf-8")
-        changed = self.mutant.change.applied(source)
-        self.place.write_text(changed, encoding="utf-8")
-        return compile(changed, self.place, "exec")
+    All other files, machine code among them, are those of the library, with their times.
+    """
+    folder = Path(scratch) / "library"
+    shutil.copytree(SOURCE, folder / SOURCE.name)
+    place = folder / SOURCE.name / mutant.path.relative_to(SOURCE)
+    changed = mutant.change.applied(mutant.path.read_text(encoding="utf-8"))
+    place.unlink()
+    place.write_text(changed, encoding="utf-8")
+    return str(folder)
 
 
 _FORKING = threading.Lock()
@@ -90,8 +78,10 @@ class TooSlow(BaseException):
 class _Watch:
     """Notes what each test did and how long it took, and ends the slow ones."""
 
-    def __init__(self) -> None:
+    def __init__(self, *, notes_calls: bool) -> None:
+        self.notes_calls = notes_calls
         self.seconds: dict[str, float] = {}
+        self.reached: dict[str, list[str]] = {}
         self.failed: list[str] = []
         self.bad: set[str] = set()
 
@@ -110,6 +100,9 @@ class _Watch:
 
         signal.signal(signal.SIGPROF, end)
         signal.setitimer(signal.ITIMER_PROF, LONGEST_TEST_S)
+        calls: set[tuple[str, int]] = set()
+        if self.notes_calls:
+            _note_calls(calls)
         try:
             return (yield)
         except TooSlow:
@@ -117,6 +110,12 @@ class _Watch:
             pytest.skip("too slow")
         finally:
             signal.setitimer(signal.ITIMER_PROF, 0)
+            sys.setprofile(None)
+            self.reached[item.nodeid] = sorted(
+                place_of(file, line)
+                for file, line in calls
+                if file.startswith(f"{SOURCE}{os.sep}")
+            )
 
     def pytest_exception_interact(self, node: Any, call: Any, report: Any) -> None:
         self.failed.append(report.nodeid)
@@ -124,6 +123,22 @@ class _Watch:
     def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
         if not report.passed:
             self.bad.add(report.nodeid)
+
+
+def _note_calls(calls: set[tuple[str, int]]) -> None:
+    """Note from now on each function that is called in this thread or one that it starts, by file and line."""
+
+    def note(frame: FrameType, event: str, _: object) -> None:
+        if event == "call":
+            calls.add((frame.f_code.co_filename, frame.f_code.co_firstlineno))
+
+    threading.setprofile(note)
+    sys.setprofile(note)
+
+
+def place_of(file: str | Path, line: int) -> str:
+    """A function by its file under the library and its first line."""
+    return f"{Path(file).relative_to(SOURCE).as_posix()}:{line}"
 
 
 @contextmanager
@@ -137,7 +152,13 @@ def _silent() -> Iterator[None]:
 def run_tests(
     names: Sequence[str], plain: bool, mutant: Mutant | None = None
 ) -> dict[str, Any]:
-    """Run tests in a fork: (times of those that passed, first that failed or what became of the process)."""
+    """Run tests in a fork.
+
+    Returns
+    -------
+    Without a mutant ``seconds`` of the tests that passed and the functions that each ``reached``; with one the
+    first test that ``failed``, or what became of the process.
+    """
     with TemporaryDirectory(prefix="mutant ") as scratch:
         # a fork of another thread in between would hold this one's pipe open
         with _FORKING:
@@ -158,7 +179,11 @@ def run_tests(
     if said:
         return dict(json.loads(said))
     ended = os.waitstatus_to_exitcode(status)
-    return {"seconds": {}, "failed": f"the process ended with {ended}"}
+    return {
+        "seconds": {},
+        "reached": {},
+        "failed": f"the process ended with {ended}",
+    }
 
 
 def _run_here(
@@ -178,8 +203,8 @@ def _run_here(
 
         without_compiling()
     if mutant is not None:
-        sys.meta_path.insert(0, _Changed(mutant, scratch))
-    watch = _Watch()
+        sys.path.insert(0, changed_library(mutant, scratch))
+    watch = _Watch(notes_calls=mutant is None)
     options = ["-q", "-p", "no:cacheprovider", "-m", "not slow", "--hypothesis-seed=1"]
     options += ["--continue-on-collection-errors"]
     if plain:
@@ -195,24 +220,53 @@ def _run_here(
         for name, seconds in watch.seconds.items()
         if name not in watch.bad
     }
-    os.write(write, json.dumps({"seconds": passed, "failed": failed}).encode())
-    os.close(write)
+    said = {"seconds": passed, "reached": watch.reached, "failed": failed}
+    with os.fdopen(write, "w") as answer:
+        json.dump(said, answer)
 
 
-def quick_tests(group: Group) -> list[str]:
-    """Tests of a group that pass on what is not changed, the shortest first, as many as may be asked."""
-    seconds = run_tests([f"tests/{name}" for name in group.tests], group.plain)[
-        "seconds"
+@dataclass(frozen=True)
+class QuickTests:
+    """Tests of a group that pass on what is not changed."""
+
+    seconds: dict[str, float]  # Time of the processor of each
+    reached: dict[str, list[str]]  # Functions that each calls, by :func:`place_of`
+
+    def of(self, mutant: Mutant) -> list[str]:
+        """Tests that call the changed function, the shortest first, as many as may be asked.
+
+        What stands outside of functions concerns all tests, and so does what only machine code calls.
+        """
+        function = function_of(mutant)
+        calling = [name for name in self.seconds if function in self.reached[name]]
+        chosen, total = [], 0.0
+        for name in sorted(calling or self.seconds, key=self.seconds.__getitem__):
+            total += self.seconds[name]
+            if total > LONGEST_TRIAL_S:
+                break
+            chosen.append(name)
+        return chosen
+
+
+def function_of(mutant: Mutant) -> str:
+    """The innermost function in which a mutant's line stands, by :func:`place_of`; empty outside of functions."""
+    tree = ast.parse(mutant.path.read_text(encoding="utf-8"))
+    around = [
+        # where its code begins: at its first decorator
+        min(each.lineno for each in (node, *node.decorator_list))
+        for node in ast.walk(tree)
+        if isinstance(node, ast.FunctionDef)
+        and node.body[0].lineno <= mutant.change.line <= (node.end_lineno or 0)
     ]
-    chosen, total = [], 0.0
-    for name in sorted(seconds, key=lambda name: seconds[name]):
-        total += seconds[name]
-        if total > LONGEST_TRIAL_S:
-            break
-        chosen.append(name)
-    return chosen
+    return place_of(mutant.path, max(around)) if around else ""
 
 
-def noticed_by(mutant: Mutant, group: Group, tests: Sequence[str]) -> str:
+def quick_tests(group: Group) -> QuickTests:
+    """Tests of a group that are quick and pass on what is not changed."""
+    found = run_tests([f"tests/{name}" for name in group.tests], group.plain)
+    return QuickTests(found["seconds"], found["reached"])
+
+
+def noticed_by(mutant: Mutant, group: Group, tests: QuickTests) -> str:
     """First test that fails on a mutant, or what became of its process; empty if nothing was noticed."""
-    return str(run_tests(tests, group.plain, mutant)["failed"])
+    return str(run_tests(tests.of(mutant), group.plain, mutant)["failed"])

@@ -74,8 +74,7 @@ class Assessment:
     ----------
     request : what was asked
     motions : the motions
-    level : level of shaking at the site; None if neither level nor hazard was given
-    hazard : the hazard curve that was used; None if none was given
+    plan : under which levels of which motions it was shaken
     counted : what each motion as recorded does to the object as it stands
     arrangements : outcomes of each way to stand, its own first, under motions with the velocity of the site
     rocking : fraction of the motions at the level that make it rock; None without a level
@@ -87,20 +86,16 @@ class Assessment:
     by_arrangement : what is estimated of each arrangement
     shown_safer : arrangements that the motions show to be safer than the others
     evidence : what estimates rest on
-    shaking : motions at the levels that were tried
-    brief : whether directions, changes and what only a page shows are left out
     decision : what to do by an accepted risk; None without a level
     conversion : what hazard in another measure than PGV leaves open; None in PGV
     planar : what is estimated in one plane, beside the answer in space, which counts; None where there is none
-    mitigations : what helps, most helpful first
+    changes : what each change of the object itself does
     spreads : relative standard deviation of each property that was moved
-    holders_tried : whether what may hold it was tried
     """
 
     request: Request
     motions: MotionSet
-    level: Level | None
-    hazard: HazardCurve | None
+    plan: "Plan"
     counted: ObjectOutcomes
     arrangements: Mapping[str, ObjectOutcomes]
     rocking: Estimate | None
@@ -112,16 +107,33 @@ class Assessment:
     by_arrangement: Mapping[str, float]
     shown_safer: frozenset[str]
     evidence: risk.Evidence
-    shaking: Shaking
-    brief: bool
     decision: Decision | None
     conversion: Conversion | None
     planar: float | None
-    mitigations: tuple[Mitigation, ...]
+    changes: tuple[Mitigation, ...]
     spreads: Mapping[str, float]
-    holders_tried: bool = False
 
     __repr__ = short_repr
+
+    @property
+    def level(self) -> Level | None:
+        """Level of shaking at the site; None if neither level nor hazard was given."""
+        return self.plan.level
+
+    @property
+    def hazard(self) -> HazardCurve | None:
+        """The hazard curve that was used; None if none was given."""
+        return self.plan.hazard
+
+    @property
+    def shaking(self) -> Shaking:
+        """Motions at the levels that were tried."""
+        return self.plan.shaking
+
+    @property
+    def brief(self) -> bool:
+        """Whether directions, arrangements and what only a page shows are left out."""
+        return self.plan.brief
 
     @property
     def measure(self) -> IntensityMeasure:
@@ -140,6 +152,35 @@ class Assessment:
         return choices.stays(limit)
 
     # ---- what no line says is computed where a page or a file shows it
+
+    @property
+    def tries_holders(self) -> bool:
+        """Whether what may hold it is tried."""
+        return self.plan.holds and self.level is not None
+
+    @cached_property
+    def mitigations(self) -> tuple[Mitigation, ...]:
+        """What helps, the most helpful first; what may hold it is tried for it, which takes the longest."""
+        found = list(self.changes)
+        compared = _compared(self.evidence)
+        for trial in self._trials():
+            tried = compare(
+                self.target, compared, trial.before, {trial.change: trial.after}
+            )
+            cost = self.request.costs.get(trial.key, math.nan)
+            found += [replace(each, cost=cost) for each in tried]
+        return _most_helpful_first(found, self.target)
+
+    def _trials(self) -> list[Trial]:
+        """What may hold it, tried, under motions with the velocity of the site."""
+        plan = self.plan
+        if not self.tries_holders:
+            return []
+        few = _few_levels(plan)
+        trials = try_holders(self.request.objects, plan.shaking, few, plan.level)
+        if self.conversion is None or self.conversion.known is None:
+            return trials
+        return [trial.turned(_at_site_of(self.conversion)) for trial in trials]
 
     @cached_property
     def predicted(self) -> PredictedCurve:
@@ -272,8 +313,6 @@ class Shaken:
     changed: Mapping[Finding, ObjectOutcomes]
     # Mitigations that give one of the arrangements, and its name
     alike: Mapping[Finding, str]
-    # What may hold it, tried
-    trials: Sequence[Trial] = ()
     # Whether the object slides off what it stands on, on the pad that is tried
     slides_off: bool = False
     # Outcomes with less and more spread of velocities at a given level; None where that is not open
@@ -349,7 +388,8 @@ def waiting_for(request: Request, plan: Plan) -> list[str]:
     if new:
         compiling = sum(map(COMPILING_S.__getitem__, new))
         said.append(f"compiling once on this machine, about {in_words(compiling)}")
-    seconds = seconds_of([request], plan) / (os.cpu_count() or 1)
+    seconds = seconds_of([request], plan) + seconds_of_holders(request, plan)
+    seconds /= os.cpu_count() or 1
     if seconds > LONG:
         said.append(
             f"this takes about {in_words(seconds)}; fewer records or fewer pedestals take less"
@@ -453,11 +493,25 @@ def seconds_of(requests: Sequence[Request], plan: Plan) -> float:
         total += plan.shaking.seconds_of(object_) * len(arranged)
         total += plan.comparing.seconds_of(object_) * len(compared)
         total += plan.fewest.seconds_of(object_) * moved
-        if plan.holds and plan.level is not None:
-            tried = len(object_.holders_to_try())
-            few = _few_levels(plan)
-            total += tried * seconds_of_a_holder(object_, plan.shaking, few)
     return total
+
+
+def seconds_of_holders(request: Request, plan: Plan) -> float:
+    """About how long a core tries what may hold an object.
+
+    Parameters
+    ----------
+    request, plan : what is asked, and under which motions
+
+    Returns
+    -------
+    The time, within a factor of about two; 0 where nothing is tried [s].
+    """
+    if not plan.holds or plan.level is None:
+        return 0.0
+    objects = request.objects
+    each = seconds_of_a_holder(objects, plan.shaking, _few_levels(plan))
+    return len(objects.holders_to_try()) * each
 
 
 def shake_all(
@@ -501,11 +555,8 @@ def shake_all(
             before = change.pop(_AS_IT_STANDS)
         slides_off = _add_pad(change, object_, plan)
         planar = _in_one_plane(object_, plan)
-        trials = _trials(object_, plan, meter)
         found.append(
-            Shaken(
-                arrangement, sides, before, planar, change, known, trials, slides_off
-            )
+            Shaken(arrangement, sides, before, planar, change, known, slides_off)
         )
     if progress is not None:
         progress(1.0)
@@ -562,14 +613,6 @@ def _in_one_plane(objects: Standing, plan: Plan) -> ObjectOutcomes | None:
     return plan.shaking.outcomes_of([flat])[0]
 
 
-def _trials(objects: Standing, plan: Plan, meter: Meter | None) -> list[Trial]:
-    """What may hold an object, tried."""
-    if not plan.holds or plan.level is None:
-        return []
-    few = _few_levels(plan)
-    return try_holders(objects, plan.shaking, few, plan.level, meter=meter)
-
-
 def _few_levels(plan: Plan) -> Shaking:
     """Few motions at few levels, by which holders are compared, as each simulation takes milliseconds."""
     assert plan.level is not None
@@ -622,7 +665,6 @@ def assessed(request: Request, plan: Plan, shaken: Shaken) -> Assessment:
     shaken = _at_site(shaken, plan, conversion)
     arrangements = shaken.arrangements
     evidence = _evidence(objects, shaken, plan, conversion)
-    compared = replace(evidence, members=FEW_MEMBERS)
     probability, rocking, fraction, decision = None, None, None, None
     if level:
         rocking = evidence.estimate(_fraction_at(level, state=ROCKS))
@@ -636,13 +678,12 @@ def assessed(request: Request, plan: Plan, shaken: Shaken) -> Assessment:
         name: evidence.mean(target, arrangement)
         for name, arrangement in arrangements.items()
     }
-    helps = _mitigations(target, compared, shaken, request.costs)
+    changes = _changes(target, _compared(evidence), shaken)
     lifts_from = objects.least_uplift if exact else counted.lifts_from().min()
     return Assessment(
         request=request,
         motions=motions,
-        level=level,
-        hazard=hazard,
+        plan=plan,
         counted=counted,
         arrangements=arrangements,
         rocking=rocking,
@@ -652,16 +693,13 @@ def assessed(request: Request, plan: Plan, shaken: Shaken) -> Assessment:
         counts=_counts(counted, level),
         amplitudes={p: evidence.estimate(risk.amplitude_target(p)) for p in (0.1, 0.5)},
         by_arrangement=values,
-        shown_safer=_shown_safer(shaken, helps),
+        shown_safer=_shown_safer(shaken, changes),
         evidence=evidence,
-        shaking=plan.shaking,
-        brief=plan.brief,
         decision=decision,
         conversion=conversion,
         planar=None if shaken.planar is None else evidence.mean(target, shaken.planar),
-        mitigations=helps,
+        changes=changes,
         spreads={change.name: change.spread for change in shaken.moved},
-        holders_tried=plan.holds and level is not None,
     )
 
 
@@ -731,7 +769,6 @@ def _at_site(shaken: Shaken, plan: Plan, conversion: Conversion | None) -> Shake
         changed={
             name: compared.at_site(changed) for name, changed in shaken.changed.items()
         },
-        trials=[trial.turned(_at_site_of(conversion)) for trial in shaken.trials],
     )
 
 
@@ -832,29 +869,33 @@ def _of_quantiles(now: ObjectOutcomes, hazard: HazardCurve) -> dict[str, float]:
     return {} if math.isnan(spread) else {"hazard": float(spread)}
 
 
-def _mitigations(
-    target: risk.Target,
-    evidence: risk.Evidence,
-    shaken: Shaken,
-    costs: Mapping[str, float],
+def _compared(evidence: risk.Evidence) -> risk.Evidence:
+    """What comparisons rest on: the same, by fewer draws."""
+    return replace(evidence, members=FEW_MEMBERS)
+
+
+def _changes(
+    target: risk.Target, evidence: risk.Evidence, shaken: Shaken
 ) -> tuple[Mitigation, ...]:
-    """What each change does, the most helpful first."""
+    """What each change of the object itself does."""
     known = {change: shaken.arrangements[own] for change, own in shaken.alike.items()}
     found = [
         *compare(target, evidence, shaken.before, shaken.changed),
         *compare(target, evidence, evidence.outcomes, known),
     ]
-    for trial in shaken.trials:
-        cost = costs.get(trial.key, math.nan)
-        tried = compare(target, evidence, trial.before, {trial.change: trial.after})
-        found += [replace(each, cost=cost) for each in tried]
     if shaken.slides_off:
         pads = (Text.PAD, Text.PAD_SLIDES)
         found = [
             replace(each, shown=False) if each.change.id in pads else each
             for each in found
         ]
-    # changes are ranked by what they do to the same motions, and by what is left where none topples the object
+    return tuple(found)
+
+
+def _most_helpful_first(
+    found: list[Mitigation], target: risk.Target
+) -> tuple[Mitigation, ...]:
+    """Changes by what they do to the same motions, and by what is left where none topples the object."""
     factors = np.array([each.factor for each in found])
     values = np.array([each.value for each in found])
     order = np.zeros(len(found), dtype=np.int64)
@@ -863,10 +904,12 @@ def _mitigations(
     return tuple(found[place] for place in order)
 
 
-def _shown_safer(shaken: Shaken, helps: Sequence[Mitigation]) -> frozenset[str]:
+def _shown_safer(shaken: Shaken, changes: Sequence[Mitigation]) -> frozenset[str]:
     """Arrangements that the motions show to be safer than its own, or its own if safer than all others."""
     known = {
-        shaken.alike[each.change]: each for each in helps if each.change in shaken.alike
+        shaken.alike[each.change]: each
+        for each in changes
+        if each.change in shaken.alike
     }
     better = {way for way, each in known.items() if each.shown}
     own = next(iter(shaken.arrangements))

@@ -407,7 +407,7 @@ def helps(found: Assessment) -> list[Finding]:
         return [finding(Text.NO_CHANGE_NEEDED)]
     shown = [change for change in found.mitigations if change.shown][:MOST_CHANGES]
     said = [mitigation(found, change) for change in shown]
-    left_out = [] if found.holders_tried else [finding(Text.HOLDERS_NOT_TRIED)]
+    left_out = [] if found.tries_holders else [finding(Text.HOLDERS_NOT_TRIED)]
     return (said or [finding(Text.NO_CHANGE_SHOWN)]) + left_out
 
 

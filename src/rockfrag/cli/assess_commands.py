@@ -155,6 +155,9 @@ def add_records_option(parser: Any, words: str = "folder of fetched records") ->
     )
 
 
+_STILL = "still trying what may hold it, and writing the page"
+
+
 # imported when it runs: `rockfrag --help` should not wait for numba
 def _assess(options: argparse.Namespace) -> int:
     """Run ``assess`` on one object, an inventory, or a large table."""
@@ -222,10 +225,10 @@ def _refuse_unused(options: argparse.Namespace) -> None:
 
 def _one(options: argparse.Namespace, given: dict[str, Any]) -> int:
     """Answer for one object: print it, and write what was asked for."""
-    from rockfrag.assess.answer import assess
+    from rockfrag.assess.answer import assess, seconds_of_holders
     from rockfrag.assess.export import as_json
     from rockfrag.assess.findings import quality_flags
-    from rockfrag.runtime.progress import progress_line, sign_of_life
+    from rockfrag.runtime.progress import SILENT, progress_line, sign_of_life
     from rockfrag.words.catalogue import catalogue
 
     texts = catalogue(options.language)
@@ -246,7 +249,8 @@ def _one(options: argparse.Namespace, given: dict[str, Any]) -> int:
         print(f"warning: {quality_flag}", file=sys.stderr)
     from rockfrag.assess.page import write_answer
 
-    with sign_of_life("still writing the page, with directions and rules"):
+    seconds = seconds_of_holders(request, found.plan)
+    with sign_of_life(_STILL, expected=seconds if seconds > SILENT else None):
         place = write_answer(found, options.output, options.language)
     if options.pdf:
         from rockfrag.report.pdf import print_page
