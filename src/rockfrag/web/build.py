@@ -21,16 +21,18 @@ import numpy as np
 from rockfrag.base.units import GRAVITY
 from rockfrag.engines.compile._numba import whole_ir
 from rockfrag.engines.compile.jit import KNOWN, TESTED_NUMBA
+from rockfrag.engines.planar import integrate as planar
 from rockfrag.engines.pure_rocking.kernels.equations import BODY
 from rockfrag.engines.pure_rocking.kernels.lanes.block import PIVOT
 from rockfrag.engines.pure_rocking.kernels.lanes.case import BLOCK, OUTCOME
 from rockfrag.engines.pure_rocking.kernels.record import CONTACT_EVENT, SAMPLE
 from rockfrag.engines.spatial import _integrate as spatial
-from rockfrag.engines.spatial._body import MOST_VERTICES
+from rockfrag.engines.spatial._body import BOND, MOST_VERTICES
 from rockfrag.engines.spatial.body import NEVER_SLIDES
 from rockfrag.engines.spatial.engine import AFTER, CUT_OFF, RESTS, TOLERANCE
 from rockfrag.engines.steps import FREE_TIME, STACK_STEP, STEP
 from rockfrag.web import ensemble_entry as ensemble
+from rockfrag.web import plane_entry as plane
 from rockfrag.web.entry import CALL, describe, integrate_call, jump_call
 from rockfrag.web.space_entry import SPACE, describe_solid, integrate_solid
 
@@ -120,11 +122,32 @@ def build_space() -> bytes:
         "columns": spatial.COLUMNS, "outcome": spatial.OUTCOME, "most": MOST_VERTICES,
         "sticks": NEVER_SLIDES, "fell": spatial.FELL, "certain": spatial.CERTAIN_TIME,
         "azimuth": spatial.FALL_AZIMUTH, "peak": spatial.PEAK_RATIO, "tilt": spatial.PEAK_TILT,
-        "turned": spatial.TURN, "walk": spatial.WALK_X,
+        "turned": spatial.TURN, "walk": spatial.WALK_X, "held": spatial.HELD, "bond": BOND,
     }  # fmt: skip
     return module_of(
         entries, {"call": SPACE}, constants, fused=None, inlining=SPACE_INLINING
     )
+
+
+def build_plane() -> bytes:
+    """Return the bytes of the module of bodies in a plane that something holds."""
+    call = np.zeros(1, plane.HELD)[0]
+    kept = np.zeros(1, planar.SAMPLE), np.zeros(1, planar.CONTACT_EVENT)
+    shaken = (call, np.zeros(1), np.zeros(1), np.zeros((1, 1)), *kept)
+    entries: Entries = {
+        "describe": (plane.describe_held, (call,)),
+        "shake": (plane.shake_held, shaken),
+    }
+    constants = {
+        "gravity": GRAVITY, "fell": plane.FELL, "rocked": plane.ROCKED, "loose": plane.LOOSE,
+        "force": plane.FORCE, "stroke": plane.STROKE,
+    }  # fmt: skip
+    records = {
+        "call": plane.HELD,
+        "sample": planar.SAMPLE,
+        "event": planar.CONTACT_EVENT,
+    }
+    return module_of(entries, records, constants, fused=None)
 
 
 _VECTORS = {None: "", False: ",+simd128", True: ",+simd128,+relaxed-simd"}
@@ -133,6 +156,7 @@ _VECTORS = {None: "", False: ",+simd128", True: ",+simd128,+relaxed-simd"}
 MODULES: Mapping[str, Callable[[], bytes]] = {
     "integrate": build_integrate,
     "space": build_space,
+    "plane": build_plane,
     "ensemble": partial(build_ensemble, fused=False),
     "ensemble-fused": partial(build_ensemble, fused=True),
 }

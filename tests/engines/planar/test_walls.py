@@ -6,13 +6,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from rockfrag import Block, Column, Stack
+from rockfrag import Block, Column, Motion, Stack, overturns
 from rockfrag.engines.contract import Case, Request
 from rockfrag.engines.planar.engine import ContactRun
 from rockfrag.engines.planar.integrate import IMPACT
 from rockfrag.simulation.inputs import ground_motion
 from rockfrag.simulation.options import system_of
-from rockfrag.system import Wall, as_system, hold
+from rockfrag.system import SlidingPendulum, Wall, as_system, hold
 from rockfrag.system.body import Interval
 from rockfrag.system.mounts import ROLLING, on_casters
 from rockfrag.system.system import corners, standing_centres
@@ -361,3 +361,15 @@ def test_a_cart_on_free_casters_never_rocks_until_it_meets_the_kerb() -> None:
     assert np.abs(meets.theta[meets.time < hit]).max() == 0.0
     assert np.abs(meets.theta[meets.time > hit]).max() > 0.0
     assert meets.constraints["hits"][0] > 0
+
+
+def test_what_a_wall_bears_is_what_presses_on_it_whatever_was_shaken_before() -> None:
+    """Forces of a bracket or impulses of a stop that were left in the memory were told as forces of a wall."""
+    stopped = hold(as_system(BLOCK), support=SlidingPendulum(mass=10.0, stroke=0.02))
+    free = walled(Block(0.3, 0.9, 60.0), Wall(0.17))
+    motion = Motion(random_motion(np.random.default_rng(5)), DT)
+    scales = np.array([[1.0, 2.0, 3.0]])
+    beside = overturns([stopped, free], [motion], scales=scales, threads=1)
+    alone = overturns([free], [motion], scales=scales, threads=1)
+    assert beside.largest_impulse[1, ..., 0].max() > 0
+    np.testing.assert_array_equal(beside.largest_force[1], alone.largest_force[0])

@@ -9,7 +9,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from rockfrag.base.arrays import Floats
+from rockfrag.base.arrays import Floats, with_attributes
 from rockfrag.base.errors import InputError
 from rockfrag.base.units import GRAVITY
 from rockfrag.engines.spatial._body import (
@@ -18,7 +18,7 @@ from rockfrag.engines.spatial._body import (
     MOST_VERTICES,
     SIZE,
 )
-from rockfrag.engines.spatial._describe import fill_body
+from rockfrag.engines.spatial._describe import fill_body, fill_wall
 from rockfrag.engines.spatial._integrate import WINDOW
 from rockfrag.system.body import Circle, Polygon, RigidBody
 from rockfrag.system.bond import Bond
@@ -100,17 +100,15 @@ def _fill_wall(body: np.void, i: int, given: RigidBody, wall: Wall) -> None:
     corners = _corners(given)
     body["walls"] = 1
     body["corners"], body["corner"][: len(corners)] = len(corners), corners
-    away = -np.array([math.cos(wall.direction), math.sin(wall.direction)])
-    body["away"][i] = away
-    body["distance"][i] = wall.distance + float(away @ given.centre[:2])
-    gaps = body["distance"][i] + corners[:, :2] @ away
-    if gaps.min() < -1e-9:
+    east, north, _ = given.centre
+    gap = fill_wall(
+        with_attributes(body), i, wall.direction, wall.distance, (east, north)
+    )
+    if gap < -1e-9:
         raise InputError(
             f"Wall: at {wall.distance:g} m it stands where the body is, which reaches to "
-            f"{wall.distance - gaps.min():.6g} m."
+            f"{wall.distance - gap:.6g} m."
         )
-    # what touches by rounding touches
-    body["distance"][i] += max(-float(gaps.min()), 0.0)
     static, kinetic = wall.friction or (0.0, 0.0)
     body["wall_static"][i] = min(static, NEVER_SLIDES)
     body["wall_kinetic"][i] = min(kinetic, NEVER_SLIDES)
