@@ -161,3 +161,15 @@ def test_every_impact_obeys_its_friction_and_none_gains(cases, least):
             assert outcome.beyond_friction < 1e-3
         assert outcome.gained < 1e-5
     assert impacts > least
+
+
+def test_an_edge_of_which_one_end_begins_to_slip_never_jams():
+    """Friction of 20 holds nearly all; where one end of an edge hardly presses, it slips."""
+    body = box(0.35, 0.35, 1.2)
+    slidings = 0
+    for seed in range(6):
+        motion = synthetic_motion(np.random.default_rng(seed), 3) * 0.6
+        outcome, _ = run_case(body, motion, DT)
+        slidings += outcome.slidings
+        assert outcome.paradoxes == 0
+    assert slidings > 6

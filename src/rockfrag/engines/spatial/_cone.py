@@ -18,19 +18,17 @@ import numpy as np
 from rockfrag.base.elementary import sin_cos
 from rockfrag.engines.compile.jit import kernel
 from rockfrag.engines.spatial._algebra import (
-    dot,
     factor,
     norm,
-    plus,
-    scaled,
-    solve_symmetric,
     substitute,
 )
 from rockfrag.engines.spatial._forces import (
     MOST,
     in_set,
     largest_compliance,
+    push_by_two,
     stick_together,
+    stop_at,
 )
 
 ORDER = (0, 1, 2, 4, 8, 3, 5, 6, 9, 10, 12, 7, 11, 13, 14, 15)
@@ -376,16 +374,8 @@ def slide_one_end(s, n, small):
 @kernel
 def slides_to(s, n, sticks, slides, way, small):
     """Solve for a contact that sticks and one that slides the given way; whether both do so within their cones."""
-    w, a, b = s.delassus, 3 * sticks, 3 * slides
-    # a unit of normal impulse at the one that slides, with its friction, and what it does to the other
-    grip = s.grip[slides]
-    unit = (-grip * way[0], -grip * way[1], 1.0)
-    without = stop_at(w, a, (s.free[a], s.free[a + 1], s.free[a + 2]))
-    by_unit = stop_at(w, a, effect(w, a, b, unit))
-    left = s.free[b + 2] + dot(row_of(w, b + 2, a), without)
-    gives = dot(row_of(w, b + 2, b), unit) + dot(row_of(w, b + 2, a), by_unit)
-    normal = -left / gives
-    push = plus(without, scaled(normal, by_unit))
+    a, b = 3 * sticks, 3 * slides
+    push, normal, unit = push_by_two(s, sticks, slides, way, s.grip[slides])
     shear = norm(push[0], push[1])
     if not (normal >= 0.0 and push[2] >= 0.0 and shear <= s.grip[sticks] * push[2]):
         return False
@@ -397,31 +387,6 @@ def slides_to(s, n, sticks, slides, way, small):
     along = s.after[b] * way[0] + s.after[b + 1] * way[1]
     off = s.after[b] * way[1] - s.after[b + 1] * way[0]
     return along >= 0.0 and abs(off) <= small
-
-
-@kernel
-def row_of(w, i, b):
-    """Return what impulses at the contact whose first row is b do to one velocity."""
-    return (w[i, b], w[i, b + 1], w[i, b + 2])
-
-
-@kernel
-def effect(w, a, b, push):
-    """Velocity of the contact whose first row is a, by an impulse at that of row b."""
-    return (
-        dot(row_of(w, a, b), push),
-        dot(row_of(w, a + 1, b), push),
-        dot(row_of(w, a + 2, b), push),
-    )
-
-
-@kernel
-def stop_at(w, a, velocity):
-    """Impulse at the contact whose first row is a that takes a velocity of it away."""
-    return solve_symmetric(
-        w[a, a], w[a, a + 1], w[a, a + 2], w[a + 1, a + 1], w[a + 1, a + 2],
-        w[a + 2, a + 2], scaled(-1.0, velocity),
-    )  # fmt: skip
 
 
 @kernel

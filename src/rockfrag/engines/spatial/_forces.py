@@ -492,6 +492,47 @@ def stick_together(s, n, mask, soft):
 
 
 @kernel
+def push_by_two(s, sticks, slides, way, grip):
+    """Solve for the impulse at which one contact sticks, beside one that slides a given way.
+
+    Returned is also the normal impulse at the second, and what goes with a unit of it by friction.
+    """
+    w, a, b = s.delassus, 3 * sticks, 3 * slides
+    unit = (-grip * way[0], -grip * way[1], 1.0)
+    without = stop_at(w, a, (s.free[a], s.free[a + 1], s.free[a + 2]))
+    by_unit = stop_at(w, a, effect(w, a, b, unit))
+    left = s.free[b + 2] + dot(row_of(w, b + 2, a), without)
+    gives = dot(row_of(w, b + 2, b), unit) + dot(row_of(w, b + 2, a), by_unit)
+    normal = -left / gives
+    return plus(without, scaled(normal, by_unit)), normal, unit
+
+
+@kernel
+def row_of(w, i, b):
+    """Return what impulses at the contact whose first row is b do to one velocity."""
+    return (w[i, b], w[i, b + 1], w[i, b + 2])
+
+
+@kernel
+def effect(w, a, b, push):
+    """Velocity of the contact whose first row is a, by an impulse at that of row b."""
+    return (
+        dot(row_of(w, a, b), push),
+        dot(row_of(w, a + 1, b), push),
+        dot(row_of(w, a + 2, b), push),
+    )
+
+
+@kernel
+def stop_at(w, a, velocity):
+    """Impulse at the contact whose first row is a that takes a velocity of it away."""
+    return solve_symmetric(
+        w[a, a], w[a, a + 1], w[a, a + 2], w[a + 1, a + 1], w[a + 1, a + 2],
+        w[a + 2, a + 2], scaled(-1.0, velocity),
+    )  # fmt: skip
+
+
+@kernel
 def spread(s, n, mask):
     """Write the unknowns of a set to the impulses."""
     row = 0
@@ -517,6 +558,13 @@ def solve_general(body, y, rows, n, rubs, s):
         s.given[i], s.friction[i] = s.slides[i], 0.0
         if rubs:
             s.friction[i] = solid.kinetic_of(body, s.closed[i])
+    if n == 2 and s.slides[0] + s.slides[1] == SLIDES:
+        slides = 0 if s.slides[0] == SLIDES else 1
+        way = (s.way[slides, 0], s.way[slides, 1])
+        push, normal, unit = push_by_two(s, 1 - slides, slides, way, s.friction[slides])
+        for k in range(3):
+            s.lam[1 - slides, k], s.lam[slides, k] = push[k], normal * unit[k]
+        return
     stick_together(s, n, (1 << n) - 1, SOFTNESS * largest_compliance(s, n))
     for i in range(n):
         for k in range(3):

@@ -680,12 +680,14 @@ def integrate_scales(
 
     Parameters
     ----------
-    body, acceleration, peaks, dt, g, extra, tolerance, cut, history, s : as there
+    body, acceleration, dt, g, extra, tolerance, cut, history, s : as there
+    peaks : takes what is asked for there, shape (n, 4)
     scales : of the motion, shape (scales,) [-]
     ends : states to begin with, and then those at the end, shape (scales, SIZE)
     outs : takes the outcomes, shape (scales, OUTCOME)
     counts : takes the counters, shape (scales, COUNTERS)
     """
+    fill_peaks(acceleration, peaks)
     for k in range(scales.shape[0]):
         integrate(
             body,
@@ -704,6 +706,31 @@ def integrate_scales(
         )
         for i in range(modes.COUNTERS):
             counts[k, i] = s.counters[i]
+
+
+@kernel
+def fill_peaks(acceleration, peaks):
+    """Fill in the largest horizontal and vertical acceleration from each sample on, and of the next WINDOW."""
+    level, lift = 0.0, 0.0
+    for k in range(acceleration.shape[0] - 1, -1, -1):
+        across = algebra.norm(acceleration[k, 0], acceleration[k, 1])
+        along = abs(acceleration[k, 2])
+        level, lift = max(level, across), max(lift, along)
+        peaks[k, 0], peaks[k, 1], peaks[k, 2], peaks[k, 3] = level, lift, across, along
+    part = 1
+    while part < WINDOW:
+        # the largest of twice as many samples
+        look_ahead(peaks, part)
+        part *= 2
+    look_ahead(peaks, 1)
+
+
+@kernel
+def look_ahead(peaks, part):
+    """Let each of the last two columns be at least what it is so many samples later."""
+    for k in range(peaks.shape[0] - part):
+        for i in range(2, 4):
+            peaks[k, i] = max(peaks[k, i], peaks[k + part, i])
 
 
 @kernel

@@ -11,7 +11,7 @@ from rockfrag.engines.spatial import _forces as forces
 from rockfrag.engines.spatial import _hinge as hinge
 from rockfrag.engines.spatial import _modes as modes
 from rockfrag.engines.spatial import _pivot as pivot
-from rockfrag.engines.spatial._algebra import norm, normalise, rotation
+from rockfrag.engines.spatial._algebra import cross, dot, norm, normalise, rotation
 from rockfrag.engines.spatial._forces import (
     SLIDES,
     STAGES,
@@ -175,11 +175,13 @@ def margin(body, y, s):
     """Return the least of all that must not be negative, and what it belongs to."""
     rows = rotation(y)
     least, what = 1e300, modes.NOTHING
+    turns = cross(rows[2], solid.omega_of(y))
     for i in solid.candidates(body):
         if not is_closed(s, i):
-            value = solid.gap(body, y, rows[2], i) + 0.5 * modes.TOUCH
+            p = solid.arm(body, rows[2], i)
+            value = y[2] + dot(rows[2], p) + 0.5 * modes.TOUCH
             # an open point that moves down, and not by rounding alone
-            sinks = solid.velocity_of(body, y, rows, i)[2] < -1e-10
+            sinks = y[9] + dot(turns, p) < -1e-10
             if value < 0.5 * modes.TOUCH and not sinks:
                 value += modes.TOUCH
             if value < least:
@@ -254,23 +256,31 @@ def dips(body, y, h, s):
     """Whether a point that is open at both ends of a step may have touched inside it."""
     new = s.new
     before, after = rotation(y), rotation(new)
+    turns, turns_then = (
+        cross(before[2], solid.omega_of(y)),
+        cross(after[2], solid.omega_of(new)),
+    )
     for i in solid.candidates(body):
-        if not is_closed(s, i) and point_dips(body, y, new, h, (before, after), i):
-            return True
+        if not is_closed(s, i):
+            p = solid.arm(body, before[2], i)
+            sinking = y[9] + dot(turns, p)
+            rising = new[9] + dot(turns_then, solid.arm(body, after[2], i))
+            if touches_between(y[2] + dot(before[2], p), sinking, rising, h):
+                return True
     for i in solid.wall_candidates(body):
-        meets = solid.may_meet(body, i) and not is_closed(s, i)
-        if meets and point_dips(body, y, new, h, (before, after), i):
-            return True
+        if solid.may_meet(body, i) and not is_closed(s, i):
+            sinking = solid.approach_of(body, y, before, i)
+            rising = solid.approach_of(body, new, after, i)
+            gap = solid.gap_of(body, y, before, i)
+            if touches_between(gap, sinking, rising, h):
+                return True
     return False
 
 
 @kernel
-def point_dips(body, y, new, h, rows, i):
-    """Whether point i, open at both ends of a step, may have touched inside it."""
-    sinking = solid.approach_of(body, y, rows[0], i)
-    rising = solid.approach_of(body, new, rows[1], i)
+def touches_between(gap, sinking, rising, h):
+    """Whether a point that sinks at the beginning of a step and rises at its end may have touched inside it."""
     if not sinking < 0 < rising:
         return False
-    lowest = solid.gap_of(body, y, rows[0], i)
-    lowest -= 0.5 * h * sinking**2 / (rising - sinking)
+    lowest = gap - 0.5 * h * sinking**2 / (rising - sinking)
     return lowest - 0.02 * h * (rising - sinking) < -0.5 * modes.TOUCH

@@ -19,7 +19,6 @@ from rockfrag.engines.spatial._body import (
     SIZE,
 )
 from rockfrag.engines.spatial._describe import fill_body, fill_wall
-from rockfrag.engines.spatial._integrate import WINDOW
 from rockfrag.system.body import Circle, Polygon, RigidBody
 from rockfrag.system.bond import Bond
 from rockfrag.system.constraints import Tie, Wall
@@ -157,24 +156,6 @@ def standing(body: np.void, turned: float = 0.0) -> Floats:
     y[2] = body["height"]
     y[3], y[6] = math.cos(turned / 2), math.sin(turned / 2)
     return y
-
-
-def later_peaks(acceleration: Floats) -> Floats:
-    """Return the largest horizontal and vertical acceleration from each sample on, shape (n, 4) [m/s²].
-
-    The last two columns are those of the next WINDOW intervals alone.
-    """
-    x, y, z = np.ascontiguousarray(acceleration.T)
-    both = np.stack([np.sqrt(x * x + y * y), np.abs(z)])
-    later = np.maximum.accumulate(both[:, ::-1], axis=1)[:, ::-1]
-    soon = np.pad(both, ((0, 0), (0, WINDOW)))
-    part = 1
-    while part < WINDOW:
-        # the largest of twice as many samples
-        soon = np.maximum(soon[:, :-part], soon[:, part:])
-        part *= 2
-    soon = np.maximum(soon[:, :-1], soon[:, 1:])
-    return np.ascontiguousarray(np.vstack([later, soon]).T)
 
 
 def perturbed(

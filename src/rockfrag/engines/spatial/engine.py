@@ -25,7 +25,6 @@ from rockfrag.engines.spatial._forces import CASE
 from rockfrag.engines.spatial.body import (
     acting,
     kernel_body,
-    later_peaks,
     perturbed,
     standing,
 )
@@ -132,12 +131,9 @@ def run(cases: Cases) -> Outcomes:
         if cases.request.spread > 0:
             body, start = _spread(cases.systems[i], cases.request, task)
         ground = motion.accelerations
-        later = later_peaks(ground)
         # a copy: an array that may not be written would be a type of its own to the kernel
         scales = np.array(cases.scales[j])
-        found = run_scales(
-            body, ground, motion.dt, scales, g=g, peaks=later, start=start
-        )
+        found = run_scales(body, ground, motion.dt, scales, g=g, start=start)
         result.minimum_gravity_ratio[i, j] = (
             1.0 + scales * float(ground[:, 2].min()) / g
         )
@@ -194,15 +190,14 @@ def run_case(
     scale: float = 1.0,
     *,
     g: float = GRAVITY,
-    peaks: Floats | None = None,
     samples: int = 0,
     tolerance: float = TOLERANCE,
     start: Floats | None = None,
 ) -> tuple[SpatialOutcome, Floats]:
     """Integrate one analysis; the outcome, and the history, shape (m, COLUMNS), of at most so many samples.
 
-    ``acceleration`` is the ground's (x, y, up), shape (n, 3) [m/s²], ``peaks`` those of :func:`later_peaks`, and
-    ``start`` a state to begin with, shape (SIZE,).
+    ``acceleration`` is the ground's (x, y, up), shape (n, 3) [m/s²], and ``start`` a
+    state to begin with, shape (SIZE,).
     """
     history = np.full((samples, kernel.COLUMNS), math.nan)
     found = run_scales(
@@ -211,7 +206,6 @@ def run_case(
         dt,
         np.array([scale]),
         g=g,
-        peaks=peaks,
         tolerance=tolerance,
         start=start,
         history=history,
@@ -236,14 +230,13 @@ def run_scales(
     scales: Floats,
     *,
     g: float = GRAVITY,
-    peaks: Floats | None = None,
     tolerance: float = TOLERANCE,
     start: Floats | None = None,
     history: Floats | None = None,
 ) -> Found:
     """Integrate one analysis a scale, all from the same state; arguments are those of :func:`run_case`."""
     acceleration = np.ascontiguousarray(acceleration)
-    later = later_peaks(acceleration) if peaks is None else peaks
+    peaks = np.empty((len(acceleration), 4))
     begins = standing(body) if start is None else start
     found = Found(
         np.zeros((len(scales), kernel.OUTCOME)),
@@ -255,7 +248,7 @@ def run_scales(
     case: Any = np.zeros(1, CASE)[0]
     with compiling_alone(kernel.integrate_scales):
         kernel.integrate_scales(
-            body, acceleration, later, scales, dt, g, extra, tolerance, CUT_OFF,
+            body, acceleration, peaks, scales, dt, g, extra, tolerance, CUT_OFF,
             found.ends, rows, found.outs, found.counts, case,
         )  # fmt: skip
     return found
