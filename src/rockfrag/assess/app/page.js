@@ -507,7 +507,6 @@
       inputMode: "decimal",
       maxLength: 20,
       id: "slide-bears",
-      placeholder: say("bears_enough"),
     });
     input.setAttribute("aria-describedby", "slide-bears-error");
     let timer = 0;
