@@ -82,11 +82,11 @@ def mujoco_falls(ground: Array, kind: str = "box", friction: float = 1.0) -> boo
     return False
 
 
-def grown(work: Callable[[list[float]], object]) -> float:
+def grown(work: Callable[..., object]) -> float:
     """Peak memory by which many cases take more than one, in a process of their own [MiB]."""
-    work([0.2])
+    work(scales=[0.2])
     before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
-    work([0.1 + 0.6 * k / MANY for k in range(MANY)])
+    work(scales=[0.1 + 0.6 * k / MANY for k in range(MANY)])
     return (resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before) / 1024
 
 
@@ -95,7 +95,7 @@ def memory(body: Block, motion: GroundMotion) -> None:
     flat = Block(body.width, body.height, body.mass)
     works = (
         partial(overturns, [body], [motion]),
-        partial(overturns, [flat], [motion.x], None),
+        partial(overturns, [flat], [motion.x]),
     )
     with multiprocessing.get_context("spawn").Pool(1, maxtasksperchild=1) as pool:
         space, plane = pool.map(grown, works, chunksize=1)

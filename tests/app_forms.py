@@ -1,7 +1,7 @@
 """Random objects as they are typed into the page of ``rockfrag app``, and as ``rockfrag assess`` takes them."""
 
 import random
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 
@@ -37,6 +37,29 @@ def some_form(rng: random.Random) -> dict[str, str]:
     return form
 
 
+def some_form_in_space(rng: random.Random) -> dict[str, str]:
+    """A random box or round object, without a measured restitution, on pedestals too."""
+    form = some_form(rng)
+    form.pop("restitution", None)
+    if rng.random() < 0.3:
+        return form | {"round": True}
+    form["depth"] = f"{float(form['width'].split()[0]) * rng.uniform(0.6, 2):.3g} cm"
+    if rng.random() < 0.5:
+        form["facing"] = f"{rng.uniform(0, 360):.1f}"
+    return form
+
+
+def some_form_of_any_kind(rng: random.Random, kinds: Sequence[str]) -> dict[str, str]:
+    """A random object that rocks in a plane or in space, or stands as a kind of one's own does."""
+    draw = rng.random()
+    if draw < 0.4:
+        return some_form_in_space(rng)
+    form = some_form(rng)
+    if kinds and draw < 0.55:
+        form["stands"] = rng.choice(kinds)
+    return form
+
+
 def settings_of(form: Mapping[str, str]) -> dict[str, Any]:
     """What ``rockfrag assess`` is told of a form."""
     plain = (
@@ -48,6 +71,7 @@ def settings_of(form: Mapping[str, str]) -> dict[str, Any]:
         "floor",
         "depth",
         "round",
+        "stands",
     )
     settings: dict[str, Any] = {key: form[key] for key in plain if key in form}
     for key, name in (("restitution", "restitution"), ("facing", "facing_deg")):
@@ -68,6 +92,9 @@ def options_of(form: Mapping[str, str]) -> list[str]:
     settings = {
         key: value for key, value in settings_of(form).items() if key != "pedestal"
     }
-    options = [f"--{key.replace('_', '-')}={value}" for key, value in settings.items()]
+    options = [
+        f"--{key.replace('_', '-')}" + ("" if value is True else f"={value}")
+        for key, value in settings.items()
+    ]
     pedestal = settings_of(form).get("pedestal", {})
     return options + (["--pedestal", *pedestal.values()] if pedestal else [])

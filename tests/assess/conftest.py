@@ -10,6 +10,8 @@ from rockfrag.assess.motions import MotionSet
 from rockfrag.assess.outcomes import IntensityLevels, ObjectOutcomes
 from rockfrag.assess.request import Request, make_request
 
+from ..own_kinds import cabinet as cabinet
+
 
 @pytest.fixture(scope="session")
 def motions(made_motions) -> MotionSet:

@@ -39,14 +39,44 @@ begin({ data, modules, samples: bytes(data.packed) }).then(() => {
         });
       };
       const fixed = request.pedestal ? ["to_pedestal", "to_floor"].map(fix) : null;
-      const stick = (putty) => {
-        const task = { id: `${id} ${putty}`, request: { ...request, putty } };
-        return [...TASKS.count({ ...task, run: 0, first: 0, last: count }).overturned];
+      // what may hold it, tried as the page tries it; in two parts
+      const tried = (hold) => {
+        const task = {
+          id: `${id} ${JSON.stringify(hold)}`,
+          request: { ...request, hold },
+        };
+        const roles = TASKS.plan(task).roles.map(({ role }) => role);
+        const countOf = (run, given = {}) =>
+          [
+            [0, 7],
+            [7, count],
+          ].map(([first, last]) => ({
+            first,
+            ...TASKS.count({ ...task, run, given, first, last }),
+          }));
+        const asks = roles[0] === "asked";
+        const { bears } = hold;
+        const asked = asks ? TASKS.asked({ ...task, parts: countOf(0), bears }) : null;
+        if (asked && !(asked.bears > 0)) return { asked };
+        const given = { bears: asked?.bears };
+        const last = roles.length - 1;
+        const parts = [last - 1, last].map((run) => countOf(run, given));
+        // with what each motion did at each level
+        const outcomes = Object.fromEntries(
+          ["free", "held"].map((name, i) => {
+            const run = planOf(task)[last - 1 + i];
+            const { motions, overturned } = tools.made.joined(
+              task.request,
+              run,
+              parts[i],
+            );
+            return [name, { motions, overturned: [...overturned] }];
+          }),
+        );
+        const found = TASKS.tried({ ...task, parts, asked, answered: answer });
+        return { asked, outcomes, ...found };
       };
-      const held =
-        request.pedestal || request.solid || !form.putty
-          ? null
-          : stick(Number(form.putty));
+      const held = (form.hold ?? []).map(tried).map(plain);
       const { first, details } = answer.said;
       return {
         answer: plain(answer),

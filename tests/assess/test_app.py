@@ -10,32 +10,24 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from rockfrag import overturns
-from rockfrag.assess.answer import assess_with, plan_for
+from rockfrag.assess.answer import LEVELS_OF_HOLDERS, assess_with, plan_for
 from rockfrag.assess.app.build import PATH
+from rockfrag.assess.findings import mitigation_cell
+from rockfrag.assess.hazard.curve import PGA
 from rockfrag.assess.motions import MotionSet
+from rockfrag.assess.outcomes import make_intensity_levels
 from rockfrag.assess.request import make_request
-from rockfrag.assess.standing.holders import Putty
+from rockfrag.assess.standing.holders import Beside, Casters, Putty
+from rockfrag.assess.texts import Text
 from rockfrag.base.errors import InputError
 from rockfrag.cli.assess_commands import form_of
 from rockfrag.cli.main import main
+from rockfrag.words.findings import as_data
 
-from ..app_forms import settings_of, some_form
+from ..app_forms import settings_of, some_form, some_form_in_space
 from ..case_tables import case_tables
-from .in_node import check_all, check_figures, in_node, needs_node
+from .in_node import check_all, check_figures, in_node, needs_node, same
 from .samples import quantile_files
-
-
-def some_form_in_space(rng: random.Random) -> dict[str, str]:
-    """A random box or round object, without a measured restitution, on pedestals too."""
-    form = some_form(rng)
-    form.pop("restitution", None)
-    if rng.random() < 0.3:
-        return form | {"round": True}
-    form["depth"] = f"{float(form['width'].split()[0]) * rng.uniform(0.6, 2):.3g} cm"
-    if rng.random() < 0.5:
-        form["facing"] = f"{rng.uniform(0, 360):.1f}"
-    return form
 
 
 def some_round_form_on_a_pedestal(rng: random.Random) -> dict[str, str]:
@@ -91,29 +83,108 @@ USUAL = {
 }
 
 
+TRIED = ("putty", "bracket", "cord", "isolator")
+HELD = {"width": "20 cm", "height": "80 cm", "mass": "60 kg"}
+
+
+def of_holder(holder: str, mitigations):
+    """The mitigation of a holder that was tried."""
+    name = f"hold_{holder}".replace("cord", "cords")
+    found = [each for each in mitigations if each.change.id == Text.HOLDS]
+    return next(each for each in found if each.change["change"].id == name)
+
+
 @needs_node
-def test_putty_that_is_tried_live_does_what_the_engine_with_a_bond_says(
-    tmp_path, motions
+@pytest.mark.parametrize(
+    ("more", "kinds"),
+    [
+        ({}, ("putty", "bracket", "isolator")),
+        ({"depth": "30 cm"}, ("putty", "cord")),
+        pytest.param({}, TRIED, marks=pytest.mark.slow),
+        pytest.param(
+            {"pedestal_width": "40 cm", "pedestal_height": "50 cm"},
+            TRIED,
+            marks=pytest.mark.slow,
+        ),
+        pytest.param(
+            {"pedestal_width": "40 cm", "pedestal_height": "50 cm", "floor": "2/4"},
+            TRIED,
+            marks=pytest.mark.slow,
+        ),
+        pytest.param({"depth": "30 cm", "facing": "25"}, TRIED, marks=pytest.mark.slow),
+        pytest.param({"round": True}, TRIED, marks=pytest.mark.slow),
+    ],
+)
+def test_what_holds_it_is_tried_live_as_assess_tries_it(tmp_path, motions, more, kinds):
+    """The same demand, in as many motions, the same factor with its limits, and the same words."""
+    ground = motions.ground[:12]
+    motions = MotionSet(ground, ground, motions.pairs[:6], "made motions")
+    form = HELD | more | {"measure": "PGA", "level": "0.5 g", "years": "475"}
+    tries = [{"there": None, "kind": kind, "bears": None} for kind in kinds]
+    (said,) = in_node(tmp_path, motions, [form | {"hold": tries}])
+    assert "failed" not in said, said
+    request = make_request(settings_of(form), "test")
+    found = assess_with(request, motions.at(request.place))
+    for kind, live in zip(kinds, said["held"], strict=True):
+        tried = of_holder(kind, found.mitigations)
+        assert live["asked"]["held"] == tried.change["held"]
+        for name in ("value", "factor", "lower", "upper"):
+            number = getattr(tried, name)
+            known = number if np.isfinite(number) else None
+            assert live["does"][name] == known, (kind, name)
+        assert (live["does"]["helps"], live["does"]["shown"]) == (
+            tried.helps,
+            tried.shown,
+        )
+        assert same(live["said"]["values"]["change"], as_data(tried.change))
+        does = as_data(mitigation_cell(found, tried))
+        assert same(live["said"]["values"]["does"], does)
+
+
+@needs_node
+@pytest.mark.parametrize(
+    "more", [{}, pytest.param({"depth": "30 cm"}, marks=pytest.mark.slow)]
+)
+def test_what_stands_at_a_wall_or_rolls_is_shaken_live_as_the_engine_does(
+    tmp_path, motions, more
 ):
-    pulls = (20.0, 300.0, 1500.0, 1e6)
-    form = {"width": "20 cm", "height": "80 cm", "mass": "60 kg"}
-    form |= {"measure": "PGA", "level": "0.5 g"}
-    forms = [form | {"putty": str(pull)} for pull in pulls]
-    settings = {key: form[key] for key in ("width", "height", "mass")}
-    request = make_request(settings | {"pga": "0.5 g"}, "test")
-    levels = assess_with(request, motions, holders=False).counted.intensity_levels
-    scales = np.where(levels.allowed, levels.scales, 1e-3)
-    body = request.objects.system_of(request.objects.body)
-    fell = []
-    for pull, said in zip(pulls, in_node(tmp_path, motions, forms), strict=True):
-        assert "failed" not in said, said
-        system = Putty(pull).on(body)
-        found = overturns([system], motions.base, scales=scales).overturned[0]
-        live = np.reshape(said["held"], found.shape).astype(bool)
-        # it breaks at the next sample there
-        assert (live == found)[levels.allowed].mean() > 0.97
-        fell.append(live[levels.allowed].mean())
-    assert fell[0] > fell[1] > fell[2] > fell[3] == 0
+    ground = motions.ground[:12]
+    motions = MotionSet(ground, ground, motions.pairs[:6], "made motions")
+    wall, rolls = {"kind": "wall", "value": 0.02}, {"kind": "casters", "value": False}
+    tries = [
+        {"there": wall, "kind": None, "bears": None},
+        {"there": wall, "kind": "off_wall", "bears": None},
+        {"there": rolls, "kind": "locked", "bears": None},
+        {"there": wall, "kind": "putty", "bears": 250.0},
+    ]
+    holders = [
+        ([], [Beside(0.02)]),
+        ([Beside(0.02)], []),
+        ([Casters()], [Casters(locked=True)]),
+        ([Beside(0.02)], [Beside(0.02), Putty(250.0)]),
+    ]
+    form = HELD | more | {"measure": "PGA", "level": "0.5 g"}
+    (said,) = in_node(tmp_path, motions, [form | {"hold": tries}])
+    assert "held" in said, said
+    objects = make_request(settings_of(form), "test").objects
+    both = motions.with_both_components() if more else motions
+    few = both.thinned() if more else both.thinned().thinned()
+    shaking = make_intensity_levels(few, PGA, [0.5], LEVELS_OF_HOLDERS)
+    body = objects.body
+    system = objects.solid(body) if more else objects.system_of(body)
+    for pair, live in zip(holders, said["held"], strict=True):
+        for name, there in zip(("free", "held"), pair, strict=True):
+            held = system
+            for holder in there:
+                held = holder.on(held)
+            found, _ = shaking.outcomes_of_system(held)
+            rows = np.array(live["outcomes"][name]["motions"])
+            fell = np.reshape(live["outcomes"][name]["overturned"], (12, -1))[rows]
+            np.testing.assert_array_equal(fell > 0, found.overturned)
+        # what 250 N hold in as many motions
+        assert (
+            0 <= said["held"][3]["asked"]["held"] <= said["held"][3]["asked"]["total"]
+        )
 
 
 @needs_node

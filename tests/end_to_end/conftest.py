@@ -10,6 +10,7 @@ from rockfrag.assess.motions import MotionSet
 from rockfrag.report.play_page import write_play_page
 
 from ..conftest import wave
+from ..own_kinds import cabinet as cabinet
 from .browsers import BROWSERS, Browser
 from .studies import STUDIES, run
 

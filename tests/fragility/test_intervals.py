@@ -1,12 +1,13 @@
 """Confidence limits by resampling whole motions."""
 
+import inspect
 import math
 
 import numpy as np
 import pandas as pd
 import pytest
 
-from rockfrag.fragility import censored
+from rockfrag.fragility import censored, estimators, intervals
 from rockfrag.fragility.censored import Brackets, _fit_weighted, bracket_interval
 from rockfrag.fragility.empirical import TableIda
 from rockfrag.fragility.estimators import fit_cloud
@@ -101,6 +102,12 @@ def test_capacities_in_one_step_give_limits_of_the_step_and_a_beta_from_zero():
     assert row["beta_lower"] == 0 < row["beta"] <= row["beta_upper"] < 0.3
     assert row["interval_method"] == "common step"
     assert "in one step of the amplitude" in row["warnings"]
+
+
+def test_limits_of_tests_that_fall_in_one_step_are_the_ends_of_the_step():
+    data = observations_from_table(ida_of([0.3, 0.3, 0.3, 0.3], STEPS), "amplitude_g")
+    step = STEPS[STEPS <= 0.3].max(), STEPS[STEPS > 0.3].min()
+    assert interval_over_motions(data).theta == pytest.approx(step)
 
 
 def without_limits(groups, slope, said=("There are no limits.",)):
@@ -237,3 +244,16 @@ def test_without_a_curve_or_a_band_there_are_outcomes():
         and of_one_motion["probability"].notna().all()
     )
     assert np.isfinite(of_one_motion["local"]).any()
+
+
+def test_limits_are_those_of_ninety_percent_where_no_level_is_asked_for():
+    asked = [
+        parameter.default
+        for module in (censored, estimators, intervals)
+        for function in vars(module).values()
+        if inspect.isfunction(function) and function.__module__ == module.__name__
+        for name, parameter in inspect.signature(function).parameters.items()
+        if name == "level" and parameter.default is not inspect.Parameter.empty
+    ]
+    assert len(asked) > 5
+    assert set(asked) == {0.90}

@@ -14,6 +14,7 @@ from rockfrag.fragility.estimators import fragility_of
 from rockfrag.fragility.ida_curves import fragility_table, with_measures
 from rockfrag.fragility.lognormal import fit_lognormal
 from rockfrag.fragility.measure_selection import (
+    _select,
     area_under_curve,
     recommend_ida_measure,
     recommend_measure,
@@ -33,6 +34,33 @@ def cloud(n, seed, probability):
 
 def lognormal(im):
     return stats.norm.cdf(np.log(im / 0.35) / 0.4)
+
+
+def test_a_measure_that_cannot_be_scored_is_never_the_best():
+    """Its curve rises, but held out it gives no number: others are compared among themselves."""
+    rows = [
+        {
+            "measure": name,
+            "im": name,
+            "unit": "g",
+            "theta": 0.4,
+            "beta": beta,
+            "auc": 0.8,
+        }
+        for name, beta in (("unscored", 0.1), ("better", 0.3), ("worse", 0.3))
+    ]
+    scores = np.array([[np.nan] * 6, [-1.0] * 6, [-9.0, -8.0, -9.5, -8.5, -9.0, -8.8]])
+    found = _select(rows, scores, tests=6, given=[], replicates=50, seed=1)
+    assert found.recommended == "better"
+    first, second, third = found.table.itertuples()
+    assert (first.measure, second.measure, third.measure) == (
+        "better",
+        "worse",
+        "unscored",
+    )
+    assert second.p_worse < 0.01
+    assert np.isnan(third.score)
+    assert third.chosen_fraction == 0
 
 
 def test_a_wrong_shape_fails():

@@ -25,6 +25,8 @@ ROOT = Path(__file__).resolve().parents[2]
 SOURCE = ROOT / "src" / "rockfrag"
 
 LONGEST_TEST_S = 4.0  # of the processor; slower tests are not asked
+# Times that a quick test may take with a change; what then does not end is noticed
+SLOWER = 2
 LONGEST_TRIAL_S = 40.0
 """Time of the processor that all tests of a mutant may take that does not change them."""
 
@@ -99,14 +101,18 @@ class _Watch:
             raise TooSlow(item.nodeid)
 
         signal.signal(signal.SIGPROF, end)
-        signal.setitimer(signal.ITIMER_PROF, LONGEST_TEST_S)
+        is_changed = not self.notes_calls
+        longest = LONGEST_TEST_S * (SLOWER if is_changed else 1)
+        signal.setitimer(signal.ITIMER_PROF, longest)
         calls: set[tuple[str, int]] = set()
         if self.notes_calls:
             _note_calls(calls)
         try:
             return (yield)
         except TooSlow:
-            # skipped anew: of where the signal met the test nothing can be printed
+            # raised anew: of where the signal met the test nothing can be printed
+            if is_changed:
+                pytest.fail("does not end", pytrace=False)
             pytest.skip("too slow")
         finally:
             signal.setitimer(signal.ITIMER_PROF, 0)

@@ -14,8 +14,18 @@ import numpy as np
 import pytest
 
 from rockfrag import Block, GroundMotion, Motion, Stack, overturns, simulate
-from rockfrag.assess.standing.holders import Beside
+from rockfrag.assess.core import holding as core
+from rockfrag.assess.standing.changes import row_of
+from rockfrag.assess.standing.holders import (
+    Beside,
+    Bracket,
+    Casters,
+    Cords,
+    Isolator,
+    Putty,
+)
 from rockfrag.base.units import GRAVITY
+from rockfrag.engines.planar.engine import described
 from rockfrag.engines.pure_rocking.ensembles import body_record
 from rockfrag.engines.spatial.body import kernel_body
 from rockfrag.engines.spatial.engine import AFTER, run_case
@@ -24,6 +34,7 @@ from rockfrag.records.velocity_steps import bump_and_stop
 from rockfrag.simulation.options import system_of
 from rockfrag.system.body import Polygon, RigidBody
 from rockfrag.system.contact import Contact, Friction
+from rockfrag.system.mounts import ROLLING
 from rockfrag.system.system import System, turned_about_vertical
 from rockfrag.web import driver_text, module_bytes
 
@@ -252,6 +263,89 @@ def test_outcomes_are_those_of_overturns(tmp_path, made_motions):
     assert 0.1 < overturned.mean() < rocked.mean() < 0.95
 
 
+# --------------------------------------------------------------------------- what is held
+
+
+def some_held(rng, kind: str):
+    """A block or stack that something holds, as the engine and as a page have it."""
+    width = rng.uniform(0.15, 0.5)
+    size = (width, width * rng.uniform(2, 4), rng.uniform(40, 400))
+    block = Block(*size, cg_offset=0.04 * width * rng.integers(0, 2))
+    body = block
+    if rng.random() < 0.4:
+        lower = Block(width * rng.uniform(0.9, 1.6), rng.uniform(0.2, 0.9), 300.0)
+        body = Stack(lower, block)
+    ratio = 0.75 if rng.random() < 0.3 else None
+    weight = block.mass * GRAVITY
+    bears = float(weight * rng.choice([0.1, 0.3, 1.0, 1e6]))
+    mass = body.system().mass
+    bracket, cords = np.zeros(4), np.zeros(4)
+    core.tell_fastener(row_of(block), True, bracket)
+    core.tell_fastener(row_of(block), False, cords)
+    names = ("tie_height", "tie_reach", "tie_stiffness", "tie_damping")
+
+    def ties(numbers, count):
+        about = dict(zip(names, numbers.tolist(), strict=True))
+        return about | {"ties": count, "is_bracket": 2 - count, "tie_strength": bears}
+
+    stroke = float(rng.uniform(0.01, 0.3))
+    holder, held = {
+        "putty": (Putty(bears), {
+            "bond_tension": bears, "bond_shear": core.UNBROKEN, "bond_spread": core.pads_across(width),
+        }),
+        "bracket": (Bracket(bears), ties(bracket, 1)),
+        "cord": (Cords(bears), ties(cords, 2)),
+        "isolator": (Isolator(stroke), {
+            "plate": core.PLATE * mass, "dish_radius": core.RADIUS, "dish_friction": core.SLIDES_AT,
+            "stroke": stroke,
+        }),
+        "wall": (Beside(0.03), {"wall": 0.03}),
+        "casters": (Casters(), {"friction": ROLLING.kinetic}),
+    }[kind]  # fmt: skip
+    ratios = ratio if body is block or ratio is None else (ratio, ratio)
+    system = system_of(body.system(), restitution=ratios)
+    return holder.on(system), told(body, measured=ratio, held=held)
+
+
+@needs_node
+@pytest.mark.parametrize("each", [1, pytest.param(12, marks=pytest.mark.slow)])
+def test_what_is_held_in_a_plane_has_the_bits_of_overturns(
+    tmp_path, made_motions, each
+):
+    rng, motions = np.random.default_rng(31), made_motions(3)
+    kinds = ("putty", "bracket", "cord", "isolator", "wall", "casters")
+    systems, given = zip(*(some_held(rng, kind) for kind in kinds * each), strict=True)
+    scales = np.tile([0.6, 1.4, 3.0], (len(motions), 1))
+    found = overturns(systems, list(motions), scales=scales)
+    asked = {
+        "bodies": given,
+        "counts": [motion.acceleration.size for motion in motions],
+        "dts": [motion.dt for motion in motions],
+        "scales": scales.ravel().tolist(),
+    }
+    samples = np.concatenate([motion.acceleration for motion in motions])
+    records, written = in_node(tmp_path, "plane", asked, samples)
+    for record, system in zip(records, systems, strict=True):
+        body, _ = described(system_of(system), GRAVITY)
+        mine = np.frombuffer(bytes.fromhex(record), body.dtype)[0]
+        for name in body.dtype.names:
+            np.testing.assert_array_equal(mine[name], body[name], err_msg=name)
+    numbers = np.frombuffer(written).reshape(len(systems), 5, *scales.shape)
+    fell, rocked, loose, force, stroke = np.moveaxis(numbers, 1, 0)
+    for i, system in enumerate(systems):
+        # what only rolls is answered by pure rocking where it does not
+        told = np.full(scales.shape, True) if system.holding else loose[i] > 0
+        np.testing.assert_array_equal((fell[i] > 0)[told], found.overturned[i][told])
+        turned = (found.peak_rotation[i] > 0).any(axis=-1)
+        np.testing.assert_array_equal((rocked[i] > 0)[told], turned[told])
+        if system.holding:
+            for mine, his in ((force, found.largest_force), (stroke, found.stroke)):
+                np.testing.assert_array_equal(
+                    mine[i], np.nan_to_num(his[i]).max(axis=-1)
+                )
+    assert 0 < fell.mean() < 0.9 and force.max() > 0 and stroke.max() > 0
+
+
 # --------------------------------------------------------------------------- bodies in space
 
 
@@ -344,8 +438,8 @@ def test_random_bodies_in_space_have_the_bits_of_the_package(tmp_path, bodies):
 
 
 @needs_node
-def test_a_box_at_a_wall_has_the_bits_of_the_package(tmp_path):
-    """At a wall behind its narrower side, touching it or some way off: those that hit it and those that do not."""
+def test_a_body_at_a_wall_or_on_wax_has_the_bits_of_the_package(tmp_path):
+    """At a wall behind its narrower side, touching it or some way off, bonded, or both, whichever way it faces."""
     rng = np.random.default_rng(8)
     time = np.arange(700) * 0.01
     motion = np.exp(-(((time - 2) / 1.2) ** 2)) * (
@@ -353,20 +447,45 @@ def test_a_box_at_a_wall_has_the_bits_of_the_package(tmp_path):
         + 3 * np.sin(5 * time + np.array([[0.0], [1], [2]]))
     )
     cases, systems, alone = [], [], []
-    for gap in (0.0, 0.0, 0.02, 0.3, 5.0):
+    # gap of a wall [m], pull that wax holds over the weight, direction [degrees], and whether it is round
+    given = [
+        *[(gap, None, 0.0, False) for gap in (0.0, 0.02, 5.0)],
+        *[
+            (0.0, None, 33.0, False),
+            (0.01, None, -71.0, False),
+            (None, 0.3, 0.0, False),
+        ],
+        *[(None, 0.6, 25.0, False), (0.0, 0.4, 12.0, False), (None, 0.4, 0.0, True)],
+    ]
+    for gap, part, facing, is_round in given:
         width = float(rng.uniform(0.2, 0.4))
-        given = {"width": width, "depth": 1.3 * width, "height": 3 * width}
-        block = {**given, "mass": 900 * width * width}
-        systems.append(Beside(gap).on(Block(**block).system()))
-        alone.append(Block(**block).system())
+        block = {"width": width, "height": 3 * width, "mass": 900 * width * width}
+        block |= {"cg_offset": 0.02 * width}
+        block |= {"round": True} if is_round else {"depth": 1.3 * width}
+        free = turned_about_vertical(Block(**block).system(), facing)
+        held, bond = free, None
+        if gap is not None:
+            held = Beside(gap).on(held)
+        if part is not None:
+            pull = part * block["mass"] * GRAVITY
+            held = Putty(pull).on(held)
+            bond = {"tension": pull, "shear": core.UNBROKEN, "padsAt": core.PADS_AT}
+        systems.append(held)
+        alone.append(free)
+        told = {
+            "cgOffset" if key == "cg_offset" else key: v for key, v in block.items()
+        }
         cases.append({
-            "block": block, "wall": gap, "friction": None, "components": 2, "dt": 0.01,
-            "scale": 1.2,
+            "block": told | {"turn": facing * (math.pi / 180)}, "wall": gap, "bond": bond, "friction": None,
+            "components": 2, "dt": 0.01, "scale": 1.2,
         })  # fmt: skip
     said, written = in_node(tmp_path, "space", cases, motion)
-    numbers, differ = np.frombuffer(written), 0
+    numbers, differ = np.frombuffer(written), []
     shaking = np.column_stack([motion[0], motion[1], np.zeros(700)])
-    for item, system, free in zip(said, systems, alone, strict=True):
+    shaken = [GroundMotion(*(Motion(motion[k], 0.01) for k in (0, 1))).with_second()]
+    for item, system, free, (_, part, *_) in zip(
+        said, systems, alone, given, strict=True
+    ):
         body = kernel_body(system)
         assert item["record"] == body.tobytes().hex()
         samples = 700 + math.ceil(AFTER / 0.01) + 2
@@ -375,9 +494,13 @@ def test_a_box_at_a_wall_has_the_bits_of_the_package(tmp_path):
         np.testing.assert_array_equal(table.reshape(history.shape), history)
         _, numbers = np.split(numbers, [7])
         assert item["fell"] == outcome.overturned
+        if part is not None:
+            bears = overturns([system], shaken, scales=np.array([[1.2]])).largest_force
+            mass = system.bodies[0].mass
+            assert item["force"] * mass == bears[0, 0, 0, -1]
         other, _ = run_case(kernel_body(free), shaking, 0.01, 1.2, samples=samples)
-        differ += outcome.peak_rotation != other.peak_rotation
-    assert 2 <= differ <= 4
+        differ.append(outcome.peak_rotation != other.peak_rotation)
+    assert 5 <= sum(differ) < len(given)
 
 
 # --------------------------------------------------------------------------- the modules
@@ -387,7 +510,8 @@ def test_a_box_at_a_wall_has_the_bits_of_the_package(tmp_path):
     ("name", "largest"),
     [
         ("integrate", 60_000),
-        ("space", 150_000),
+        ("space", 156_000),
+        ("plane", 156_000),
         ("ensemble", 270_000),
         ("ensemble-fused", 132_000),
     ],
@@ -409,7 +533,13 @@ def test_a_module_is_small_and_needs_nothing(name, largest):
 )
 @pytest.mark.parametrize(
     ("name", "seed"),
-    [("integrate", "1"), ("space", "2"), ("ensemble", "2"), ("ensemble-fused", "1")],
+    [
+        ("integrate", "1"),
+        ("space", "2"),
+        ("plane", "1"),
+        ("ensemble", "2"),
+        ("ensemble-fused", "1"),
+    ],
 )
 def test_a_module_is_that_of_the_kernels(name, seed, tmp_path):
     again = f"from rockfrag.web.build import MODULES; made = MODULES[{name!r}]()"

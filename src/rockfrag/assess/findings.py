@@ -69,6 +69,11 @@ TEXTS: Mapping[Callable[..., int], tuple[str, ...]] = {
     choices.starts: (Text.STARTS_AT, Text.STARTS_BEYOND),
     choices.over_years: (Text.YEARS_AT_MOST, Text.YEARS_OPEN, Text.YEARS_BETWEEN),
     choices.reduces: (Text.NONE_LEFT, Text.REDUCES, Text.BEARS_MORE),
+    choices.change_alone: (
+        *(Text.CELL_UNKNOWN, Text.CELL_BEARS_LESS, Text.CELL_INCREASES),
+        *(Text.CELL_NONE_LEFT, Text.CELL_BEARS_OPEN, Text.CELL_REDUCES_OPEN),
+        *(Text.CELL_BEARS_MORE, Text.CELL_REDUCES),
+    ),
     choices.safest: (Text.SAFEST, Text.NO_SAFEST),
 }
 """Texts among which each of :mod:`rockfrag.assess.core.choices` chooses by numbers, for the page too."""
@@ -430,19 +435,15 @@ def mitigation(found: Assessment, change: Mitigation) -> Finding:
 def mitigation_cell(found: Assessment, change: Mitigation) -> Finding:
     """What any change does, for a cell of a table."""
     factor = change.factor
-    if math.isnan(factor):
-        return finding(Text.CELL_UNKNOWN)
-    if _grows(found) and factor < 1:
-        return finding(Text.CELL_BEARS_LESS, value=_whole_percent(1 - factor))
-    if not _grows(found) and factor > 1:
-        return finding(Text.CELL_INCREASES, times=two(factor))
-    if factor == 0 and change.shown:
-        return finding(Text.CELL_NONE_LEFT)
-    if not change.shown:
-        text = Text.CELL_BEARS_OPEN if _grows(found) else Text.CELL_REDUCES_OPEN
-        return finding(text, value=_whole_percent(abs(1 - factor)))
-    text = Text.CELL_BEARS_MORE if _grows(found) else Text.CELL_REDUCES
-    return finding(text, **_reduction(change))
+    text = _text(choices.change_alone, factor, _grows(found), change.shown)
+    about: dict[str, Value] = {"value": _whole_percent(abs(1 - factor))}
+    if text in (Text.CELL_UNKNOWN, Text.CELL_NONE_LEFT):
+        about = {}
+    elif text == Text.CELL_INCREASES:
+        about = {"times": two(factor)}
+    elif change.shown:
+        about = _reduction(change)
+    return finding(text, **about)
 
 
 def uncertainty(found: Assessment) -> list[Finding]:

@@ -15,6 +15,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from rockfrag.assess.core.demands import ask, count_held
 from rockfrag.assess.outcomes import SECONDS, ObjectOutcomes, Shaking, scaled_to
 from rockfrag.assess.request import Level
 from rockfrag.assess.standing import Standing
@@ -26,9 +27,6 @@ from rockfrag.records.motion import GroundMotion
 from rockfrag.runtime.progress import Meter
 from rockfrag.system.system import System
 from rockfrag.words.findings import Finding, finding
-
-PART = 0.95
-"""Part of the motions at the level in which a holder that is tried holds [-]."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -102,12 +100,12 @@ def try_holders(
             enough, change = holder, holder.called()
             if holder.demand:
                 demands = demands_of(holder, system, at_level[holder.slow])
-                asked = _asked(demands)
+                asked = ask(demands, np.zeros(demands.size))
                 if asked <= 0:
                     # hardly a motion asks anything of it
                     break
                 enough = holder.bearing(asked)
-                held = int((demands <= enough.bears * (1 + 1e-9)).sum())
+                held = int(count_held(demands, enough.bears))
                 counts = {"held": held, "total": demands.size}
                 change = finding(
                     Text.HOLDS, change=enough.called(), level=level.amount, **counts
@@ -156,14 +154,7 @@ def demands_of(holder: Holder, system: System, at_level: Shaking) -> Floats:
     largest = holder.times * np.nanmax(demands, axis=-1)
     if len(largest) != len(at_level.allowed):
         largest = largest[at_level.motions.place_of_record()]
-    return np.asarray(largest[at_level.allowed[:, 0]])
-
-
-def _asked(demands: Floats) -> float:
-    """The least demand that is enough for ``PART`` of the motions."""
-    if not demands.size:
-        return 0.0
-    return float(np.quantile(demands, PART, method="higher"))
+    return np.ascontiguousarray(largest[at_level.allowed[:, 0]], dtype=np.float64)
 
 
 def _systems(objects: Standing, shaking: Shaking) -> Iterator[System]:

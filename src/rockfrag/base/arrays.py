@@ -40,3 +40,17 @@ def whole(names: str, *shape: int) -> Fields:
     A list of (name, type, shape) as :func:`fields` returns it, of type int64.
     """
     return fields(names, *shape, of=np.int64)
+
+
+def with_attributes(record: np.void) -> Any:
+    """Return a record whose fields are attributes, as those of records are in kernels; it shares its memory.
+
+    Parameters
+    ----------
+    record : of any type
+
+    Returns
+    -------
+    The same record.
+    """
+    return np.asarray(record).reshape(1).view(np.recarray)[0]

@@ -21,21 +21,25 @@ import numpy as np
 from rockfrag.base.units import GRAVITY
 from rockfrag.engines.compile._numba import whole_ir
 from rockfrag.engines.compile.jit import KNOWN, TESTED_NUMBA
+from rockfrag.engines.planar import integrate as planar
 from rockfrag.engines.pure_rocking.kernels.equations import BODY
 from rockfrag.engines.pure_rocking.kernels.lanes.block import PIVOT
 from rockfrag.engines.pure_rocking.kernels.lanes.case import BLOCK, OUTCOME
 from rockfrag.engines.pure_rocking.kernels.record import CONTACT_EVENT, SAMPLE
 from rockfrag.engines.spatial import _integrate as spatial
-from rockfrag.engines.spatial._body import MOST_VERTICES
+from rockfrag.engines.spatial._body import BOND, MOST_VERTICES
 from rockfrag.engines.spatial.body import NEVER_SLIDES
 from rockfrag.engines.spatial.engine import AFTER, CUT_OFF, RESTS, TOLERANCE
 from rockfrag.engines.steps import FREE_TIME, STACK_STEP, STEP
 from rockfrag.web import ensemble_entry as ensemble
+from rockfrag.web import plane_entry as plane
 from rockfrag.web.entry import CALL, describe, integrate_call, jump_call
 from rockfrag.web.space_entry import SPACE, describe_solid, integrate_solid
 
 TRIPLE = "wasm32-unknown-unknown"
 FEATURES = "+bulk-memory,+sign-ext,+nontrapping-fptoint"
+SPACE_INLINING = 130
+"""Size of what LLVM copies in a body in space; by itself it makes the module a fifth larger, a tenth faster."""
 MEMORY_PAGES = 2
 """Pages of 64 KiB that the module starts with; the page asks for more as histories need them."""
 
@@ -118,9 +122,32 @@ def build_space() -> bytes:
         "columns": spatial.COLUMNS, "outcome": spatial.OUTCOME, "most": MOST_VERTICES,
         "sticks": NEVER_SLIDES, "fell": spatial.FELL, "certain": spatial.CERTAIN_TIME,
         "azimuth": spatial.FALL_AZIMUTH, "peak": spatial.PEAK_RATIO, "tilt": spatial.PEAK_TILT,
-        "turned": spatial.TURN, "walk": spatial.WALK_X,
+        "turned": spatial.TURN, "walk": spatial.WALK_X, "held": spatial.HELD, "bond": BOND,
     }  # fmt: skip
-    return module_of(entries, {"call": SPACE}, constants, fused=None)
+    return module_of(
+        entries, {"call": SPACE}, constants, fused=None, inlining=SPACE_INLINING
+    )
+
+
+def build_plane() -> bytes:
+    """Return the bytes of the module of bodies in a plane that something holds."""
+    call = np.zeros(1, plane.HELD)[0]
+    kept = np.zeros(1, planar.SAMPLE), np.zeros(1, planar.CONTACT_EVENT)
+    shaken = (call, np.zeros(1), np.zeros(1), np.zeros((1, 1)), *kept)
+    entries: Entries = {
+        "describe": (plane.describe_held, (call,)),
+        "shake": (plane.shake_held, shaken),
+    }
+    constants = {
+        "gravity": GRAVITY, "fell": plane.FELL, "rocked": plane.ROCKED, "loose": plane.LOOSE,
+        "force": plane.FORCE, "stroke": plane.STROKE,
+    }  # fmt: skip
+    records = {
+        "call": plane.HELD,
+        "sample": planar.SAMPLE,
+        "event": planar.CONTACT_EVENT,
+    }
+    return module_of(entries, records, constants, fused=None)
 
 
 _VECTORS = {None: "", False: ",+simd128", True: ",+simd128,+relaxed-simd"}
@@ -129,6 +156,7 @@ _VECTORS = {None: "", False: ",+simd128", True: ",+simd128,+relaxed-simd"}
 MODULES: Mapping[str, Callable[[], bytes]] = {
     "integrate": build_integrate,
     "space": build_space,
+    "plane": build_plane,
     "ensemble": partial(build_ensemble, fused=False),
     "ensemble-fused": partial(build_ensemble, fused=True),
 }
@@ -141,6 +169,7 @@ def module_of(
     constants: Mapping[str, float],
     *,
     fused: bool | None,
+    inlining: int | None = None,
 ) -> bytes:
     """Compile and link entries, with the layout of records in a section of their own.
 
@@ -150,6 +179,7 @@ def module_of(
     records : dtypes of records by name; ``call`` is what the page hands over
     constants : numbers that the page gets, by name
     fused : whether multiply-adds are fused; None where there are none
+    inlining : size above which LLVM calls a function rather than copying it; None as it does by itself
 
     Returns
     -------
@@ -157,7 +187,9 @@ def module_of(
     """
     llvm.initialize_all_targets()
     llvm.initialize_all_asmprinters()
-    objects = [_object(name, *entry, fused) for name, entry in entries.items()]
+    objects = [
+        _object(name, *entry, fused, inlining) for name, entry in entries.items()
+    ]
     layout = {name: _described(dtype) for name, dtype in records.items()}
     stated = json.dumps(
         layout | {"constants": dict(constants)}, separators=(",", ":")
@@ -168,7 +200,11 @@ def module_of(
 
 
 def _object(
-    name: str, function: Any, arguments: tuple[Any, ...], fused: bool | None
+    name: str,
+    function: Any,
+    arguments: tuple[Any, ...],
+    fused: bool | None,
+    inlining: int | None,
 ) -> bytes:
     """Compile a function and all that it needs; it gets this name, and all others none."""
     text, entry = whole_ir(function, tuple(map(numba.typeof, arguments)))
@@ -195,6 +231,8 @@ def _object(
             symbol.linkage = "internal"
     module.verify()
     options = llvm.create_pipeline_tuning_options(speed_level=3)
+    if inlining is not None:
+        options.inlining_threshold = inlining
     options.loop_vectorization = fused is not None
     options.slp_vectorization = fused is not None
     builder = llvm.create_pass_builder(machine, options)

@@ -23,7 +23,8 @@ async function rockfragSpace(bytes) {
   // a polygon ([x, y] anticlockwise) or a rim ({ radius, centre }), the centre of
   // gravity [x, y, z] from where the base is drawn, the tensor about it in three rows,
   // a turn about the vertical [rad], one coefficient of friction, the height of its
-  // face and how far a smooth wall stands from the edge nearest to it [m], null without
+  // face, how far a smooth wall stands from the edge nearest to it [m], and a bond of
+  // four pads: its tension and shear [N], and how far out its pads are; null without
   function bodyOf({
     mass,
     centre,
@@ -34,6 +35,7 @@ async function rockfragSpace(bytes) {
     friction = null,
     height = 0,
     wall = null,
+    bond = null,
     g = constants.gravity,
   }) {
     if (vertices.length > constants.most)
@@ -45,6 +47,11 @@ async function rockfragSpace(bytes) {
       mass,
       turn,
       gravity: g,
+      wall: wall ?? NaN,
+      tall: height,
+      tension: bond?.tension ?? NaN,
+      shear: bond?.shear ?? NaN,
+      pads_at: bond?.padsAt ?? NaN,
       body: {
         count: vertices.length,
         rim: rim?.radius ?? 0,
@@ -60,7 +67,6 @@ async function rockfragSpace(bytes) {
     const { stands, body } = read(layout.call, call);
     if (!stands) throw new Error(ROCKFRAG_FAULTS[1]);
     const points = numbers(inBody("points"), 3 * body.count);
-    if (wall !== null) setWall({ vertices, centre, height, turn }, wall);
     return {
       record: new Uint8Array(memory.buffer.slice(bodyAt, bodyAt + fields.body.size)),
       height: body.height,
@@ -73,44 +79,6 @@ async function rockfragSpace(bytes) {
         points[3 * i + 1],
       ]),
     };
-  }
-
-  // a smooth wall in the direction of the nearest edge, which corners of base and face
-  // may meet; as engines.spatial.body describes it
-  function setWall({ vertices, centre, height, turn }, gap) {
-    const [cosine, sine] = [Math.cos(turn), Math.sin(turn)];
-    const turned = ([x, y]) =>
-      turn ? [x * cosine - y * sine, x * sine + y * cosine] : [x, y];
-    const corners = vertices.map(turned);
-    const [x, y] = turned(centre);
-    const [east, north] = narrowDirection(corners);
-    const along = ([a, b]) => east * a + north * b;
-    const whole = (name, value) =>
-      reserve(0).setBigInt64(inBody(name), BigInt(value), true);
-    whole("constraints", 1);
-    whole("walls", 1);
-    whole("corners", 2 * corners.length);
-    const places = [0, height].flatMap((level) =>
-      corners.map(([a, b]) => [a - x, b - y, level - centre[2]]),
-    );
-    places.forEach((place, i) => numbers(inBody("corner") + 24 * i, 3).set(place));
-    const distance = Math.max(...corners.map(along)) + gap - along([x, y]);
-    // what touches by rounding touches
-    const nearest = Math.min(...places.map((place) => distance - along(place)));
-    numbers(inBody("away"), 2).set([-east, -north]);
-    numbers(inBody("distance"), 1).set([distance + Math.max(-nearest, 0)]);
-  }
-  // across the edge that is nearest to the origin, outwards
-  function narrowDirection(corners) {
-    const edges = corners.map(([x, y], i) => {
-      const [east, north] = corners[(i + 1) % corners.length];
-      const length = Math.hypot(east - x, north - y);
-      const across = [(north - y) / length, -(east - x) / length];
-      return { across, distance: across[0] * x + across[1] * y };
-    });
-    const least = Math.min(...edges.map(({ distance }) => distance));
-    // of two alike the first, whatever rounding says
-    return edges.find(({ distance }) => distance <= least * (1 + 1e-9)).across;
   }
 
   // largest horizontal and vertical acceleration from each sample on, and in the next
@@ -190,6 +158,8 @@ async function rockfragSpace(bytes) {
       peakTilt: out[constants.tilt],
       turn: out[constants.turned],
       walk: [out[constants.walk], out[constants.walk + 1]],
+      // that a bond bears, for a unit of mass [N/kg]
+      force: out[constants.held + 4 * constants.bond + 2],
       done,
       history: table.slice(0, done * columns),
     };

@@ -1,5 +1,6 @@
 """All that is not known drawn at once: closed forms, statics as a cap, parts of sources, decisions."""
 
+import math
 from dataclasses import replace
 from itertools import product
 from pathlib import Path
@@ -9,14 +10,14 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from rockfrag.assess.core import bodies, choices, sobol
+from rockfrag.assess.core import choices, holding, sobol
+from rockfrag.assess.core import demands as demands_of
 from rockfrag.assess.core.decisions import Action, decide
 from rockfrag.assess.core.draws import make_draws
 from rockfrag.assess.core.estimates import FRACTION, MOTIONS, fill_estimate, fill_order
 from rockfrag.assess.core.fractions import count_motions, fill_deciding
 from rockfrag.assess.core.likelihood import Likelihood, likelihood_of
 from rockfrag.assess.core.prediction import Prediction, Shift, predict
-from rockfrag.assess.core.scales import fill_torn
 from rockfrag.assess.core.sobol import sobol_points
 from rockfrag.assess.findings import TEXTS
 from rockfrag.base.units import GRAVITY
@@ -154,7 +155,7 @@ def test_likelihoods_are_those_of_the_scale():
     assert steps == list(Likelihood)
 
 
-NUMBERS = (0.0, 0.005, 0.05, 0.2, 0.5, 0.8, 0.95, 1.0, np.inf)
+NUMBERS = (0.0, 0.005, 0.05, 0.2, 0.5, 0.8, 0.95, 1.0, np.inf, np.nan)
 
 
 @pytest.mark.parametrize("choice", TEXTS, ids=lambda choice: choice.__name__)
@@ -224,24 +225,44 @@ def test_the_motion_that_is_drawn_topples_it_at_the_lowest_level():
     assert found.tolist() == [0, 0.25, 0]
 
 
-def test_pads_are_torn_off_where_the_moments_about_the_other_pad_say_so():
-    width, height, mass, aside, pull = 0.4, 1.1, 200.0, 0.03, 900.0
-    given = [width, height, mass, np.nan, np.nan, aside, np.nan]
-    limits = np.zeros(2)
-    bodies.tell_pads(np.array(given), pull, limits)
-    half = bodies.PADS_AT * width / 2
-    for acceleration, way in zip(limits, (-1, 1), strict=True):
-        # about the pad that is left: weight and half of the pull against the ground's
-        weight = mass * GRAVITY * (half + way * aside)
-        pulled = pull / 2 * 2 * half
-        assert acceleration * mass * height / 2 == pytest.approx(weight + pulled)
+def test_what_is_asked_is_enough_for_as_many_motions_as_said():
+    rng = np.random.default_rng(2)
+    for count in (1, 2, 21, 40, 100):
+        demands = rng.exponential(300.0, count)
+        least = demands_of.ask(demands, np.zeros(count))
+        assert least == np.quantile(demands, demands_of.PART, method="higher")
+        held = demands_of.count_held(demands, least)
+        assert held == (demands <= least).sum() >= demands_of.PART * (count - 1)
+    assert demands_of.ask(np.zeros(0), np.zeros(0)) == 0
 
 
-def test_a_pad_is_torn_off_at_the_first_sample_beyond_its_limit():
-    samples = np.array([0.0, 1.0, -3.0, 2.5, -4.0])
-    first = np.zeros(4, np.int64)
-    fill_torn(samples, np.array([0.5, 1.0, 1.5, 9.0]), np.array([2.2, 3.5]), first)
-    assert first.tolist() == [-1, 3, 2, 1]
+def test_a_strength_of_two_digits_is_the_least_that_is_enough():
+    rng = np.random.default_rng(4)
+    for value in 10.0 ** rng.uniform(-6, 9, 300):
+        found = holding.rounded_up(value)
+        assert float(f"{found:.1e}") == found >= value
+        assert holding.rounded_up(found) == found
+        # one step less is too little
+        step = 10.0 ** (math.floor(math.log10(value)) - 1)
+        assert found - step < value * (1 + 1e-9)
+
+
+def test_a_bracket_gives_a_millimetre_under_the_weight_and_is_damped_as_said():
+    width, height, mass = 0.4, 1.1, 200.0
+    given, found = (
+        np.array([width, height, mass, *[np.nan] * 2, 0.0, np.nan]),
+        np.zeros(4),
+    )
+    holding.tell_fastener(given, True, found)
+    at, reach, stiffness, damping = found
+    assert mass * GRAVITY / stiffness == pytest.approx(0.001)
+    assert (at, reach) == pytest.approx((0.8 * height, width / 2 + 0.1))
+    # of an oscillator that turns about the middle of its base
+    inertia = mass * (width**2 + height**2) / 12 + mass * (height / 2) ** 2
+    critical = 2 * math.sqrt(stiffness * at**2 * inertia)
+    assert damping * at**2 / critical == pytest.approx(holding.DAMPED)
+    holding.tell_fastener(given, False, found)
+    assert found[3] == 0 and mass * GRAVITY / found[2] == pytest.approx(0.01)
 
 
 @pytest.mark.parametrize(

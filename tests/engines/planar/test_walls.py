@@ -1,17 +1,19 @@
 """Walls and kerbs: closed forms of leaning, hitting and tripping, symmetry, and walls that are not met."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
-from rockfrag import Block, Column, Stack
+from rockfrag import Block, Column, Motion, Stack, overturns
 from rockfrag.engines.contract import Case, Request
 from rockfrag.engines.planar.engine import ContactRun
 from rockfrag.engines.planar.integrate import IMPACT
 from rockfrag.simulation.inputs import ground_motion
 from rockfrag.simulation.options import system_of
-from rockfrag.system import Wall, as_system, hold
+from rockfrag.system import SlidingPendulum, Wall, as_system, hold
+from rockfrag.system.body import Interval
 from rockfrag.system.mounts import ROLLING, on_casters
 from rockfrag.system.system import corners, standing_centres
 
@@ -93,6 +95,29 @@ def test_between_two_smooth_walls_at_no_distance_nothing_turns() -> None:
     found = shaken_block(Wall(B), Wall(B, LEFT), scale=4.0)
     assert np.abs(found.theta).max() < 1e-13
     assert found.constraints["largest_force_n"].min() > 0.1 * M * G
+
+
+@pytest.mark.parametrize("aside", [0.25, -0.4])
+def test_a_wall_stands_at_its_distance_from_the_origin_wherever_the_base_lies(
+    aside: float,
+) -> None:
+    """A block whose frame begins beside its base leans at the angle of its corner."""
+    (block,) = as_system(BLOCK).bodies
+    x, y, z = block.centre
+    moved = replace(
+        block,
+        centre=(x + aside, y, z),
+        base=Interval(block.base.left + aside, block.base.right + aside),
+        face=None,
+    )
+    system = hold(
+        replace(as_system(BLOCK), bodies=(moved,)), Wall(touching(0.3) + aside)
+    )
+    start = system_of(system, 2.0, theta0=0.3)
+    found = ContactRun(Case(start, ground_motion(STILL, DT), request=Request()))
+    assert found.work["outcome"]["leaning"] == 1
+    assert np.ptp(found.history["q"][:, 2]) < 1e-9
+    assert found.response().constraints["largest_force_n"][0] > 0
 
 
 @pytest.mark.parametrize("ratio", [0.0, 0.5])
@@ -336,3 +361,15 @@ def test_a_cart_on_free_casters_never_rocks_until_it_meets_the_kerb() -> None:
     assert np.abs(meets.theta[meets.time < hit]).max() == 0.0
     assert np.abs(meets.theta[meets.time > hit]).max() > 0.0
     assert meets.constraints["hits"][0] > 0
+
+
+def test_what_a_wall_bears_is_what_presses_on_it_whatever_was_shaken_before() -> None:
+    """Forces of a bracket or impulses of a stop that were left in the memory were told as forces of a wall."""
+    stopped = hold(as_system(BLOCK), support=SlidingPendulum(mass=10.0, stroke=0.02))
+    free = walled(Block(0.3, 0.9, 60.0), Wall(0.17))
+    motion = Motion(random_motion(np.random.default_rng(5)), DT)
+    scales = np.array([[1.0, 2.0, 3.0]])
+    beside = overturns([stopped, free], [motion], scales=scales, threads=1)
+    alone = overturns([free], [motion], scales=scales, threads=1)
+    assert beside.largest_impulse[1, ..., 0].max() > 0
+    np.testing.assert_array_equal(beside.largest_force[1], alone.largest_force[0])

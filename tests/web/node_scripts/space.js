@@ -8,11 +8,12 @@ const all = [part(0), part(1), part(2)];
 rockfragSpace(new Uint8Array(fs.readFileSync(wasm))).then((space) => {
   const tables = [];
   const said = JSON.parse(fs.readFileSync(cases)).map(
-    ({ block, solid, wall = null, friction, components, dt, scale }) => {
+    ({ block, solid, wall = null, bond = null, friction, components, dt, scale }) => {
       const body = space.bodyOf({
         ...(block ? rockfragSolid(block) : solid),
         friction,
         wall,
+        bond,
       });
       const [x, y, z] = all.map((own, k) => (k < components ? own : null));
       const found = space.integrate({ body, x, y, z, dt, scale, history: true });
@@ -28,6 +29,7 @@ rockfragSpace(new Uint8Array(fs.readFileSync(wasm))).then((space) => {
       tables.push(Float64Array.from([...numbers, ...rest.walk]));
       return {
         fell: rest.overturned,
+        force: rest.force,
         done,
         record: Buffer.from(body.record).toString("hex"),
         alike,

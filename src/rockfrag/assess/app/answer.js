@@ -11,14 +11,16 @@ const answer = (data, core) => {
   const spatial = inSpace(data, core);
   const building = floors(data, core);
   const wording = findings(data, core, judge);
-  const putty = puttied(core, spatial.rowOf);
+  const holders = holding(data, core, spatial);
 
   // levels of a run: the asked one among those of the measure
   function levelsOf(request, run) {
-    if (run.role === "first") return [siteLevel(request)];
+    if (["first", "asked"].includes(run.role)) return [siteLevel(request)];
     const table = tableOf(request);
     const fewness = ["fewest", "fewer", "few"].find((name) => run[name]);
-    const all = [...table[fewness ?? "levels"]];
+    const all = run.hold
+      ? [...holders.levelsOf(request)]
+      : [...table[fewness ?? "levels"]];
     const asked = siteLevel(request);
     if (!all.includes(asked)) all.push(asked);
     return all.sort((a, b) => a - b);
@@ -30,6 +32,7 @@ const answer = (data, core) => {
   const siteLevel = (request) => request.level ?? judge.levelOf(request.curve, 1 / 475);
 
   // factors to all levels of some motions, and which of them count
+  // at one level any peak is believed
   const scalesOf = (request, run, places, shaking) =>
     core.within(() => {
       const levels = levelsOf(request, run);
@@ -37,7 +40,7 @@ const answer = (data, core) => {
       const shape = [places.length, levels.length];
       const scales = core.zeros(shape);
       const allowed = core.zeros(shape, Uint8Array);
-      const peaks = shaking.map(({ peak }) => peak);
+      const peaks = shaking.map(({ peak }) => (run.role === "asked" ? 0 : peak));
       core.call(
         "fill_scales",
         core.put(levels),
@@ -65,8 +68,9 @@ const answer = (data, core) => {
     });
 
   // a worker's part: outcomes of a run under some of the motions
-  function counter(ensemble, motions, space) {
+  function counter(ensemble, motions, space, plane) {
     const solids = spatial.counter(ensemble, space);
+    const held = holders.counter(ensemble, plane, space);
     const shaken = new Map();
     let standing = "";
     function shakingOf(place, floor, part) {
@@ -93,7 +97,8 @@ const answer = (data, core) => {
       const [first, last] = part.split("-");
       return motions.slice(Number(first), Number(last));
     };
-    return function count(request, run, first, last) {
+    return function count(request, run, { first, last }) {
+      if (run.hold) return countHeld(request, run, first, last);
       if (request.solid) return countInSpace(request, run, first, last);
       const places = Array.from({ length: last - first }, (_, i) => first + i);
       const on = (floor) => shakingOf(request.place, floor, `${first}-${last}`);
@@ -103,23 +108,27 @@ const answer = (data, core) => {
       const own = scalesOf(request, run, places, on(""));
       const factors = factorsOf(own, shaking);
       const body = ensemble.bodyOf(run.body);
-      const limits = request.putty
-        ? putty.breaksFrom(run.body.statue, request.putty)
-        : null;
-      const uplift = limits
-        ? Math.min(...limits) / data.constants.GRAVITY
-        : body.uplift;
-      const outcomes = limits
-        ? putty.count(ensemble, body, limits, shaking, factors)
-        : ensemble.count(body, shaking, factors);
       return {
-        ...outcomes,
+        ...ensemble.count(body, shaking, factors),
         allowed: own.allowed,
         lifting: Float64Array.from(shaking, ({ peak }) =>
-          core.call("lifting_in_plane", uplift, peak),
+          core.call("lifting_in_plane", body.uplift, peak),
         ),
       };
     };
+    // of a trial, of the motions by which it is tried alone
+    function countHeld(request, run, first, last) {
+      const on = (m) => shakingOf(request.place, "", `${m}-${m + 1}`)[0];
+      const chosen = holders.motionsOf(request, run);
+      const every = Array.from({ length: last - first }, (_, i) => first + i);
+      const places = every.filter((m) => !chosen || chosen.includes(m));
+      if (!places.length) return { places };
+      const made = {
+        scalesOf: (some) => scalesOf(request, run, some, some.map(on)),
+        factorsOf,
+      };
+      return { places, ...held(run, places, on, made) };
+    }
     function countInSpace(request, run, first, last) {
       const on = (floor) => (m) => shakingOf(request.place, floor, `${m}-${m + 1}`)[0];
       const made = {
@@ -132,6 +141,7 @@ const answer = (data, core) => {
 
   // all parts of a run put together
   function joined(request, run, parts) {
+    if (run.hold) return joinedOfTrial(request, run, parts);
     const levels = levelsOf(request, run);
     const found = { levels, motions: run.fewer ? spatial.fewer : null };
     for (const name of ["overturned", "rocked", "allowed"]) {
@@ -146,6 +156,54 @@ const answer = (data, core) => {
       found.lifting[m] = factor * values[m];
     });
     return found;
+  }
+
+  function joinedOfTrial(request, run, parts) {
+    const levels = levelsOf(request, run);
+    const found = { levels, motions: holders.motionsOf(request, run) };
+    for (const name of ["overturned", "rocked", "allowed"])
+      found[name] = new Uint8Array(levels.length * data.earthquakes.length);
+    found.lifting = new Float64Array(data.earthquakes.length).fill(Infinity);
+    const { values } = tableOf(request);
+    for (const part of parts)
+      part.places.forEach((m, i) => {
+        for (const name of ["overturned", "rocked", "allowed"])
+          found[name].set(
+            part[name].subarray(i * levels.length, (i + 1) * levels.length),
+            m * levels.length,
+          );
+        found.lifting[m] = part.lifting[i] * values[m];
+      });
+    return found;
+  }
+  // what a holder must bear, or as much as is said of it, and in how many motions it
+  // holds then
+  const asked = (kind, parts, bears = null) =>
+    core.within(() => {
+      const demands = parts.flatMap(({ places, demand, allowed }) =>
+        places.flatMap((_, i) => (allowed[i] ? [demand[i]] : [])),
+      );
+      const given = core.put(demands);
+      const least = core.call("ask", given, core.zeros([demands.length]));
+      const enough = bears ?? core.call("rounded_up", least);
+      const held = core.call("count_held", given, enough);
+      return { kind, least, bears: enough, held, total: demands.length };
+    });
+  // a trial beside the object without what holds it: the answer's own numbers of both
+  function tried(request, { free, held, asked, answered }) {
+    const { level, site, shifts, rates } = answered;
+    const hazard = hazardOf(request);
+    const target = hazard ? judge.riskTarget(hazard, 50) : judge.fractionTarget(level);
+    const here = (outcomes) => (site ? { ...outcomes, site } : outcomes);
+    const does = judge.compared(target, shifts, rates, here(free))(here(held));
+    return {
+      does,
+      before: changed(request, free, answered),
+      after: changed(request, held, answered),
+      said: wording.ofTrial(request, { level, does, asked, hold: request.hold }),
+      motions: free.motions.length,
+      levels: free.levels.length,
+    };
   }
 
   const ESTIMATED = [
@@ -309,6 +367,6 @@ const answer = (data, core) => {
         falls: Boolean(values[FALLS]),
       };
     });
-  return { counter, joined, found, changed };
+  return { counter, joined, found, changed, asked, tried };
 };
 if (typeof module !== "undefined") module.exports = answer;

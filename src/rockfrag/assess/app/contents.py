@@ -23,9 +23,10 @@ from rockfrag.assess import (
     sources,
     standing,
 )
+from rockfrag.assess.answer import LEVELS_OF_HOLDERS
 from rockfrag.assess.app.form import GROUPS, form_fields
 from rockfrag.assess.conversion import NODES, VelocityRelation, published_velocity
-from rockfrag.assess.core import bodies, choices, draws
+from rockfrag.assess.core import bodies, choices, draws, holding
 from rockfrag.assess.hazard import curve
 from rockfrag.assess.hazard.curve import PGA, PGV
 from rockfrag.assess.motions import MotionSet
@@ -33,12 +34,23 @@ from rockfrag.assess.place import Place
 from rockfrag.assess.request import Records, Request
 from rockfrag.assess.standing import box, contract, rolling
 from rockfrag.assess.standing.declared import as_declared
+from rockfrag.assess.standing.holders import (
+    Beside,
+    Bracket,
+    Casters,
+    Cords,
+    Holder,
+    Isolator,
+    Putty,
+    WithoutWall,
+)
 from rockfrag.base import plausible, units
 from rockfrag.base.arrays import Floats
 from rockfrag.building.model import ModalDamping, ShearBuilding
 from rockfrag.building.response import find_modes
 from rockfrag.fragility.model_error import CUT, MODEL_ERRORS
 from rockfrag.motions.intensity import IntensityMeasure
+from rockfrag.system.mounts import ROLLING
 from rockfrag.web import driver_text
 from rockfrag.words.findings import as_data
 
@@ -48,9 +60,9 @@ SCRIPTS = (
     "floors",
     "space",
     "objects",
+    "held",
     "plan",
     "findings",
-    "held",
     "answer",
 )
 """Scripts that compute, in the order in which they need each other."""
@@ -64,7 +76,10 @@ def script(name: str) -> str:
 def computing() -> str:
     """Return the script that computes an answer, in a worker of a page or in Node."""
     return "\n".join(
-        [driver_text("ensemble", "space"), *(script(f"{name}.js") for name in SCRIPTS)]
+        [
+            driver_text("ensemble", "space", "plane"),
+            *(script(f"{name}.js") for name in SCRIPTS),
+        ]
     )
 
 
@@ -91,6 +106,7 @@ def data_of(motions: MotionSet, asked: Request | None = None) -> dict[str, Any]:
             measure.imt: _measure(motions, measure, given) for measure in measures
         },
         "both": in_space(motions, measures, given),
+        "holding": _holding(motions, measures),
         "onFloor": asked is not None and asked.records.on_floor,
         # curves of the hazard's quantiles, by the standard normal score of each
         "quantiles": [
@@ -199,7 +215,8 @@ def _draws(motions: MotionSet) -> dict[str, Any]:
     """Draws of sources and of the weights of so many earthquakes as there are, and as are compared."""
     count = len(set(motions.earthquakes))
     fewer = motions.with_both_components().thinned()
-    counts = {count, len(set(fewer.earthquakes))}
+    fewest = motions.thinned().thinned()
+    counts = {count, *(len(set(each.earthquakes)) for each in (fewer, fewest))}
     made = draws.make_draws(SOURCES_DRAWN, count)
     return {
         "columns": SOURCES_DRAWN,
@@ -231,6 +248,10 @@ def _constants() -> dict[str, Any]:
         **_of(sources, "SPACE"),
         **_of(plausible, "STONE", "DENSITIES", "DEPTHS"),
         **_of(bodies, "LOWER", "BALLAST"),
+        **_of(
+            holding, "UNBROKEN", "PADS_AT", "PLATE", "RADIUS", "SLIDES_AT", "LOCKED_AT"
+        ),
+        "ROLLS_AT": ROLLING.kinetic,
         **_of(
             place, "PERIOD_FACTORS", "STOREY_HEIGHT", "STOREY_MASS", "HIGHEST_BUILDING"
         ),
@@ -278,6 +299,66 @@ def in_space(
         "aside": box.ASIDE,
         "rolling": rolling.ROLLING,
     }
+
+
+HOLDERS: dict[str, tuple[Holder, str, float]] = {
+    "putty": (Putty(1.0), "force", 1.0),
+    "bracket": (Bracket(1.0), "force", 1.0),
+    "cord": (Cords(1.0), "force", 1.0),
+    "isolator": (Isolator(1.0), "stroke", 100.0),
+    "wall": (Beside(1.0), "distance", 100.0),
+    "casters": (Casters(), "", 1.0),
+    "off_wall": (WithoutWall(), "", 1.0),
+    "locked": (Casters(locked=True), "", 1.0),
+}
+"""What a page tries, and where in its text stands how much of it there is, times a factor."""
+
+
+def _holding(
+    motions: MotionSet, measures: Iterable[IntensityMeasure]
+) -> dict[str, Any]:
+    """What may hold an object, and by which motions at which levels it is tried, as ``assess.holding`` has it."""
+    both = motions.with_both_components()
+    return {
+        "kinds": {name: _tries(*about) for name, about in HOLDERS.items()},
+        "motions": {
+            "plane": _tried_by(motions, measures, motions.thinned().thinned()),
+            "space": _tried_by(both, measures, both.thinned()),
+        },
+    }
+
+
+def _tries(holder: Holder, place: str, factor: float) -> dict[str, Any]:
+    """What a page knows of something that may hold an object."""
+    unbroken = type(holder)().bears
+    return {
+        "called": as_data(holder.called()),
+        "place": place,
+        "factor": factor,
+        "demand": DEMANDS.get(holder.demand, ""),
+        "times": holder.times if holder.demand else 0.0,
+        "slow": holder.slow,
+        "unbroken": unbroken if math.isfinite(unbroken) else None,
+    }
+
+
+DEMANDS = {"largest_force": "force", "stroke": "stroke"}
+"""Columns of outcomes that say what a holder must bear, as the modules of a page name them."""
+
+
+def _tried_by(
+    motions: MotionSet, measures: Iterable[IntensityMeasure], few: MotionSet
+) -> dict[str, Any]:
+    """Places of every second motion and of few, and the levels to which the few are scaled."""
+    names = [motion.name for motion in motions.ground]
+    levels = {
+        measure.imt: _levels(few, measure, LEVELS_OF_HOLDERS) for measure in measures
+    }
+    places = {
+        name: [names.index(motion.name) for motion in some.ground]
+        for name, some in (("slow", motions.thinned()), ("few", few))
+    }
+    return {**places, "measures": levels}
 
 
 def _times(motions: MotionSet, pair: tuple[int, int]) -> list[dict[str, Any] | None]:

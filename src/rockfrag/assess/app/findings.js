@@ -33,6 +33,20 @@ const findings = (data, core, judge) => {
       : finding("on_level", { level, storeys });
   }
 
+  // what a change takes off a risk, with its limits
+  function reduction({ factor, lower, upper }) {
+    const [value, least, most] = core.within(() => {
+      const found = core.zeros([3]);
+      core.call("tell_reduction", factor, lower, upper, found);
+      return [...found.values];
+    });
+    return {
+      value: wholePercent(value),
+      lower: whole(100 * least),
+      upper: whole(100 * most),
+    };
+  }
+
   // the first screen and what stands behind it, of an answer that may not be complete
   // yet
   function of(request, found) {
@@ -228,18 +242,6 @@ const findings = (data, core, judge) => {
       return finding(id, { width: four(100 * width) });
     }
     const changeOf = ({ name, values }) => finding(name, values);
-    function reduction({ factor, lower, upper }) {
-      const [value, least, most] = core.within(() => {
-        const found = core.zeros([3]);
-        core.call("tell_reduction", factor, lower, upper, found);
-        return [...found.values];
-      });
-      return {
-        value: wholePercent(value),
-        lower: whole(100 * least),
-        upper: whole(100 * most),
-      };
-    }
     function helps() {
       if (!main) return [];
       if (!choose("needs_change", main.value, atRest, Boolean(probability)))
@@ -247,7 +249,7 @@ const findings = (data, core, judge) => {
       const shown = found.mitigations
         .filter((each) => each.shown)
         .slice(0, MOST_CHANGES);
-      // what may hold it needs an engine that a page has not
+      // what may hold it is tried when it is chosen
       const leftOut = finding("holders_not_tried");
       if (!shown.length) return [finding("no_change_shown"), leftOut];
       const said = shown.map((each) => [chosen("reduces", each.factor, false), each]);
@@ -327,7 +329,41 @@ const findings = (data, core, judge) => {
     }
     return { first: first(), details: details(), helps: helps() };
   }
-  return { of, called };
+  // what holds an object, with what it bears
+  function holderOf({ there, kind }, bears) {
+    const { called, place, factor } = data.holding.kinds[kind ?? there.kind];
+    const value = kind ? bears : there.value;
+    if (!place) return called;
+    const put = { ...called.values[place], number: factor * value };
+    return finding(called.id, { ...called.values, [place]: put });
+  }
+  // what a holder that was tried does, and in how many motions it holds
+  function ofTrial({ measure, hold }, { level, does, asked }) {
+    const { unit } = data.measures[measure];
+    const amount = finding("amount", { measure, value: three(level), unit });
+    const holder = holderOf(hold, asked?.bears);
+    const change = asked
+      ? finding("holds", {
+          change: holder,
+          level: amount,
+          held: asked.held,
+          total: asked.total,
+        })
+      : holder;
+    return finding("tried", { change, does: alone(does) });
+  }
+  function alone({ factor, lower, upper, shown }) {
+    const id = chosen("change_alone", factor, false, shown);
+    const about =
+      {
+        cell_unknown: () => ({}),
+        cell_none_left: () => ({}),
+        cell_increases: () => ({ times: two(factor) }),
+        cell_reduces: () => reduction({ factor, lower, upper }),
+      }[id] ?? (() => ({ value: wholePercent(Math.abs(1 - factor)) }));
+    return finding(id, about());
+  }
+  return { of, ofTrial };
 
   // what was not given: its text, what stands in it, and the sources that it widens;
   // the place first

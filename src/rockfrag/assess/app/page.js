@@ -148,6 +148,7 @@
       fused: rockfragBytes(data.modules.fused),
       plain: rockfragBytes(data.modules.plain),
       space: rockfragBytes(data.modules.space),
+      plane: rockfragBytes(data.modules.plane),
       core: rockfragBytes(data.modules.core),
     };
     const samples = rockfragBytes(data.packed);
@@ -444,11 +445,12 @@
     width: [0, 50, 0],
     cg: [0, 40, 0],
     ballast: [0, 100, 0],
-    putty: [0, 600, 0],
   };
-  const GRAVITY = data.constants.GRAVITY;
-  // distances of a wall behind the object [cm], and in metres
+  // distances of a wall behind the object [m], by the number of them in centimetres
   const WALLS = { 0: 0, 2: 0.02, 5: 0.05, 10: 0.1, 20: 0.2 };
+  // what it stands at, and what may hold it there
+  const THERE = ["", ...Object.keys(WALLS), "casters"];
+  const HOLDS = ["", "putty", "bracket", "cord", "isolator", "off_wall", "locked"];
   function drawSliders() {
     find("sliders").replaceChildren(
       ...Object.entries(SLIDERS).map(([id, [low, high, at]]) => {
@@ -462,8 +464,7 @@
         const output = make("output");
         input.value = at;
         const tell = () => {
-          const pull = id === "putty" ? pullInNewtons() : "";
-          output.textContent = ` ${SLIDERS[id][2]} %${pull}`;
+          output.textContent = ` ${SLIDERS[id][2]} %`;
         };
         input.addEventListener("input", () => {
           SLIDERS[id][2] = Number(input.value);
@@ -479,12 +480,15 @@
         );
       }),
     );
-    const distances = Object.keys(WALLS);
+    const whereOf = (at) => {
+      if (at === "casters") return say("there_casters");
+      return at ? say("there_wall", { distance: at }) : say("there_free");
+    };
     find("sliders").append(
       choiceOf("fixed", ["not_fixed", "to_pedestal", "to_floor"], say),
-      choiceOf("wall", ["", ...distances], (cm) =>
-        cm ? say("at_wall", { distance: cm }) : say("no_wall"),
-      ),
+      choiceOf("there", THERE, whereOf),
+      choiceOf("hold", HOLDS, (kind) => say(`slide_held_${kind || "nothing"}`)),
+      bearsField(),
     );
   }
   function choiceOf(id, values, textOf) {
@@ -496,58 +500,102 @@
     const label = make("label", { htmlFor: choice.id }, say(`slide_${id}`));
     return make("div", { className: "field" }, label, choice);
   }
-  // what putty under the object that is shown holds, its ballast being none
-  const pullOf = ({ statue }) => (SLIDERS.putty[2] / 100) * statue.mass * GRAVITY;
-  function pullInNewtons() {
-    if (!shown || !SLIDERS.putty[2]) return "";
-    return ` = ${local(pullOf(shown.run.request), 2)} N`;
+  // how much a holder bears; as much as the motions ask where nothing stands
+  function bearsField() {
+    const input = make("input", {
+      type: "text",
+      inputMode: "decimal",
+      maxLength: 20,
+      id: "slide-bears",
+      placeholder: say("bears_enough"),
+    });
+    input.setAttribute("aria-describedby", "slide-bears-error");
+    let timer = 0;
+    input.addEventListener("input", () => {
+      clearTimeout(timer);
+      timer = setTimeout(slide, 400);
+    });
+    const label = make("label", { htmlFor: input.id, id: "slide-bears-label" });
+    const error = make("small", { id: "slide-bears-error" });
+    return make("div", { className: "field", hidden: true }, label, input, error);
+  }
+  // what is chosen to hold it, and where it stands; null if nothing is
+  function holdChosen() {
+    const [there, hold] = ["there", "hold"].map((id) => find(`slide-${id}`));
+    const atWall = there.value in WALLS;
+    const possible = { off_wall: atWall, locked: there.value === "casters" };
+    for (const option of hold.options)
+      option.hidden = option.disabled = possible[option.value] === false;
+    if (hold.selectedOptions[0]?.disabled) hold.value = "";
+    const { demand, factor } = data.holding.kinds[hold.value] ?? {};
+    const bears = find("slide-bears");
+    bears.closest("div").hidden = !demand;
+    const unit = demand === "stroke" ? "slide_stroke" : "slide_bears";
+    find("slide-bears-label").textContent = say(unit);
+    const text = bears.value.trim().replace(",", ".");
+    const stated = demand && text ? Number(text) / factor : null;
+    const isWrong = stated !== null && !(stated > 0 && Number.isFinite(stated));
+    bears.setAttribute("aria-invalid", String(isWrong));
+    find("slide-bears-error").textContent = isWrong ? say("bears_refused") : "";
+    if (!there.value && !hold.value) return null;
+    const at = atWall
+      ? { kind: "wall", value: WALLS[there.value] }
+      : { kind: "casters", value: false };
+    return {
+      there: there.value ? at : null,
+      kind: hold.value || null,
+      bears: stated,
+      isWrong,
+    };
   }
   function slide() {
     if (!shown || shown.run !== current) return;
     const [width, cg, ballast] = Object.values(SLIDERS).map(([, , at]) => at / 100);
     const { found } = shown;
-    // of a pedestal or a body in space the command line tells
-    const sticks = !shown.run.request.pedestal && !shown.run.request.solid;
-    const putty = sticks ? pullOf(shown.run.request) : 0;
-    find("slide-putty").closest("div").hidden = !sticks;
     const choice = find("slide-fixed");
     const fixed = shown.run.request.pedestal ? choice.value : "not_fixed";
     choice.closest("div").hidden = !shown.run.request.pedestal;
-    // a wall is for a box in space that stands alone
-    const { solid, pedestal } = shown.run.request;
-    const behind = find("slide-wall");
-    behind.closest("div").hidden = !solid || solid.round || Boolean(pedestal);
-    const wall = behind.closest("div").hidden ? null : (WALLS[behind.value] ?? null);
+    const hold = holdChosen();
     other = null;
-    if (!(width || cg || ballast || putty || fixed !== "not_fixed" || wall !== null))
+    find("tried").textContent = "";
+    if (hold?.isWrong) return compare(found, null);
+    if (!(width || cg || ballast || hold || fixed !== "not_fixed"))
       return compare(found, null);
     const changes = { wider: 1 + width, lower: 1 - cg, ballast };
     other = {
       id: ++number,
-      request: { ...current.request, changes, fixed, putty, wall },
+      request: { ...current.request, changes, fixed, hold },
       since: performance.now(),
     };
-    shakeChanged(other, found);
+    if (hold) tryHolder(other, found);
+    else shakeChanged(other, found);
+  }
+  // a run of a plan under all motions that are of it
+  function countRun(run, i, given = {}) {
+    const { id, request } = run;
+    return Promise.all(
+      startsOf(data.earthquakes.length).map(async (first) => {
+        const message = {
+          kind: "count",
+          id,
+          request,
+          run: i,
+          given,
+          first,
+          last: Math.min(first + PART, data.earthquakes.length),
+        };
+        const { result, failure } = await ask(run, message);
+        if (failure) fail(failure);
+        return { first, ...result };
+      }),
+    );
   }
   // the object with a change under all motions, and the answer's own numbers of it
   async function shakeChanged(run, answered) {
     const { id, request } = run;
     const plan = await ask(run, { kind: "plan", id, request });
     if (plan.failure) return compare(answered, null);
-    const starts = startsOf(data.earthquakes.length);
-    const parts = await Promise.all(
-      starts.map(async (first) => {
-        const message = {
-          kind: "count",
-          id,
-          request,
-          run: 0,
-          first,
-          last: Math.min(first + PART, data.earthquakes.length),
-        };
-        return { first, ...(await ask(run, message)).result };
-      }),
-    );
+    const parts = await countRun(run, 0);
     const { result } = await ask(
       run,
       { kind: "changed", id, request, parts, answered },
@@ -556,11 +604,58 @@
     compare(answered, result);
     find("compared").dataset.took = String(performance.now() - run.since);
   }
+  // what may hold it: first what the motions ask of it, then both under few of them
+  async function tryHolder(run, answered) {
+    const { id, request } = run;
+    find("compared").classList.add("stale");
+    find("tried").textContent = say("trying");
+    const plan = await ask(run, { kind: "plan", id, request });
+    if (plan.failure) return compare(answered, null);
+    const roles = plan.result.roles.map(({ role }) => role);
+    let asked = null;
+    if (roles[0] === "asked") {
+      const parts = await countRun(run, 0);
+      const { bears } = request.hold;
+      const message = { kind: "asked", id, request, parts, bears };
+      asked = (await ask(run, message, true)).result;
+      if (!(asked.bears > 0)) {
+        compare(answered, null);
+        find("tried").textContent = say("asks_nothing");
+        return;
+      }
+    }
+    const given = { bears: asked?.bears };
+    const last = roles.length - 1;
+    const parts = await Promise.all(
+      [last - 1, last].map((i) => countRun(run, i, given)),
+    );
+    const message = { kind: "tried", id, request, parts, asked, answered };
+    const { result, failure } = await ask(run, message, true);
+    if (failure) return fail(failure);
+    compare(result.before, result.after);
+    const { said, motions, levels } = result;
+    const words = [
+      speak.sentence(said),
+      say("tried_by", { n: motions, levels }),
+      ...inPlaneAlone(request, result.inSpace, asked),
+    ];
+    find("tried").textContent = words.join(" ");
+    find("compared").dataset.took = String(performance.now() - run.since);
+  }
+  // of what moves in space and was tried in a plane, how it is had in space, if at all
+  const OPTIONS = { bracket: "--bracket", cord: "--cord" };
+  function inPlaneAlone({ solid, hold: { kind } }, inSpace, asked) {
+    if (!solid || inSpace) return [];
+    if (!OPTIONS[kind]) return [say("tried_in_plane_alone")];
+    return [say("tried_in_plane", { option: `${OPTIONS[kind]} ${asked.bears}N` })];
+  }
   function compare({ fraction, probability }, after) {
     computed("helping");
+    find("compared").classList.remove("stale");
+    const valueOf = (each) => each?.value ?? each;
     const rows = [
-      ["topples_column", fraction, after?.fraction],
-      ["risk_column", probability, after?.probability],
+      ["topples_column", valueOf(fraction), after?.fraction],
+      ["risk_column", valueOf(probability), after?.probability],
     ];
     find("compared").replaceChildren(
       ...rows.map(([title, before, now]) =>
@@ -568,7 +663,7 @@
           "tr",
           {},
           make("th", { scope: "row", textContent: say(title) }),
-          make("td", { className: "number", textContent: percent(before?.value) }),
+          make("td", { className: "number", textContent: percent(before) }),
           make("td", { className: "number", textContent: percent(now) }),
         ),
       ),
@@ -987,7 +1082,9 @@
   function tried() {
     if (!other) return [];
     const fields = [...find("sliders").querySelectorAll(".field:not([hidden])")];
-    const moved = fields.filter((field) => field.querySelector("input")?.value > 0);
+    const moved = fields.filter(
+      (field) => field.querySelector("[type=range]")?.value > 0,
+    );
     const words = moved.map((field) => field.querySelector("label").textContent);
     for (const choice of find("sliders").querySelectorAll("select"))
       if (!choice.closest("div").hidden && choice.selectedIndex > 0)
@@ -996,7 +1093,13 @@
         );
     const table = find("compared").closest("table").cloneNode(true);
     table.querySelector("tbody").removeAttribute("id");
-    return [make("p", { textContent: `${say("try")}: ${words.join("; ")}.` }), table];
+    const said = find("tried").textContent;
+    const does = said ? [make("p", { textContent: said })] : [];
+    return [
+      make("p", { textContent: `${say("try")}: ${words.join("; ")}.` }),
+      table,
+      ...does,
+    ];
   }
   function rankedSheet() {
     const table = make(

@@ -8,12 +8,20 @@ const plans = (data, core, form) => {
   const { LOWER, BALLAST, TOLERANCES } = data.constants;
   const spatial = inSpace(data, core);
   const { change } = spatial;
+  const holders = holding(data, core, spatial);
   const number = (form) => (value) => ({ number: value, form });
   const [two, three, percent] = ["two", "three", "percent"].map(number);
 
+  const UNCHANGED = { wider: 1, lower: 1, ballast: 0 };
   // roles, and bodies as the module of outcomes takes them; the object as it stands
   // first
   function planOf(request, ensemble) {
+    const { hold, changes: some } = request;
+    if (hold) {
+      const now = (more) => planOf({ ...request, hold: null, ...more }, ensemble)[0];
+      const stands = now({ changes: UNCHANGED, fixed: "not_fixed" });
+      return holders.runsOf(hold, stands, now({ changes: some ?? UNCHANGED }));
+    }
     const { pedestal, restitution: measured, place, changes } = request;
     const statue = changes ? changed(request.statue, changes) : request.statue;
     const body = (top, below = pedestal, factor = 1) => ({

@@ -42,7 +42,7 @@ const inSpace = (data, core) => {
 
   // a block as it moves in space, of an object (its own sizes); null where that is not
   // known
-  function solidOf(top, own, { round, facing, wall = null }) {
+  function solidOf(top, own, { round, facing }) {
     if (round && isSo("is_whole", top, own)) return null;
     const { width, height, mass, cgHeight, cgOffset } = top;
     const moments = core.within(() => {
@@ -57,12 +57,11 @@ const inSpace = (data, core) => {
     const solid = { width, height, mass, cgHeight, cgOffset, inertia: moments };
     if (round) return rockfragSolid({ ...solid, round });
     const turn = facing % 360 ? facing * (Math.PI / 180) : 0;
-    return { ...rockfragSolid({ ...solid, depth, turn }), wall };
+    return rockfragSolid({ ...solid, depth, turn });
   }
 
   // what is shaken in a plane, with what moves in space beside it
-  function planOf({ statue, solid: given, wall = null }, runs) {
-    const solid = { ...given, wall };
+  function planOf({ statue, solid }, runs) {
     // a round base rolls on its rim; what it is fixed to stands on another one
     const rolling = ({ height }) => (height === statue.height ? both.rolling : NaN);
     const found = runs
@@ -319,6 +318,7 @@ const inSpace = (data, core) => {
     isSo,
     rowOf,
     peakOf,
+    liftingInSpace,
     fewer: both.fewer,
   };
 };

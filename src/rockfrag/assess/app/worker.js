@@ -21,6 +21,7 @@ async function begin({ data, modules, samples }) {
       ensemble,
       motions,
       await rockfragSpace(await rockfragUnpacked(modules.space)),
+      await rockfragPlane(await rockfragUnpacked(modules.plane)),
     ),
     plans: new Map(),
   };
@@ -62,7 +63,7 @@ const TASKS = {
   },
   plan: (task) => ({ roles: planOf(task).map(({ role, name }) => ({ role, name })) }),
   count: (task) =>
-    tools.count(task.request, planOf(task)[task.run], task.first, task.last),
+    tools.count(task.request, { ...planOf(task)[task.run], ...task.given }, task),
   answer: ({ parts, earlier, ...task }) => {
     const runs = planOf(task);
     const outcomes = parts.map(
@@ -76,6 +77,15 @@ const TASKS = {
       tools.made.joined(task.request, planOf(task)[0], parts),
       answered,
     ),
+  asked: ({ parts, bears, request }) =>
+    tools.made.asked(request.hold.kind, parts, bears),
+  tried: ({ parts, ...task }) => {
+    const { made } = tools;
+    const runs = planOf(task).filter(({ role }) => role !== "asked");
+    const [free, held] = runs.map((run, i) => made.joined(task.request, run, parts[i]));
+    const inSpace = Boolean(runs[0].solid);
+    return { ...made.tried(task.request, { ...task, free, held }), inSpace };
+  },
   motion: ({ motion }) => ({
     samples: tools.motions[motion].samples,
     dt: tools.motions[motion].dt,

@@ -74,7 +74,7 @@ def page_of(
     """Return the page as HTML, which loads nothing."""
     packed, about = packed_samples(motions.ground)
     modules = {"fused": "ensemble-fused", "plain": "ensemble"}
-    modules |= {"history": "integrate", "space": "space"}
+    modules |= {"history": "integrate", "space": "space", "plane": "plane"}
     data = {
         **data_of(motions, request),
         "form": dict(form),

@@ -10,7 +10,6 @@ import math
 
 from rockfrag.base.arrays import Floats
 from rockfrag.base.plausible import STONE
-from rockfrag.base.units import GRAVITY
 from rockfrag.system.geometry import Shape, joined, pile_of, shape_of
 
 WIDTH, HEIGHT, MASS, INERTIA, CG_HEIGHT, CG_OFFSET, DEPTH = range(7)
@@ -25,14 +24,11 @@ BALLAST, BALLAST_AT = 0.25, 0.05  # Its mass and its height over those of the ob
 
 PEDESTAL_HEIGHT = 0.5  # Height of another pedestal over that of the one that is there
 
-PADS_AT = 0.8
-"""Distance of pads from the middle of the base, over that of its edge [-]."""
-
 HIGHER = 1.0 + 1e-9
 """Height of a body that is another one than the object, over that of the object."""
 
 
-def _shape(block: Floats) -> Shape:
+def shape_as_it_stands(block: Floats) -> Shape:
     """The block as it stands."""
     inertia, centre = block[INERTIA], block[CG_HEIGHT]
     return shape_of(
@@ -54,7 +50,7 @@ def stretch(
     block: Floats, width: float, height: float, mass: float, found: Floats
 ) -> None:
     """Move edges apart, raise the centre of gravity and add mass, by factors."""
-    shape = _shape(block)
+    shape = shape_as_it_stands(block)
     found[WIDTH] = block[WIDTH] * width
     found[HEIGHT] = block[HEIGHT]
     found[MASS] = block[MASS] * mass
@@ -66,7 +62,7 @@ def stretch(
 
 def add_ballast(block: Floats, part: float, found: Floats) -> None:
     """Add a part of the mass near the foot, in the middle of the base."""
-    shape = _shape(block)
+    shape = shape_as_it_stands(block)
     added = part * shape.mass
     mass = shape.mass + added
     at = BALLAST_AT * block[HEIGHT]
@@ -101,7 +97,15 @@ def make_lower(block: Floats, found: Floats) -> None:
 
 def join(lower: Floats, upper: Floats, found: Floats) -> None:
     """Both blocks as one rigid block, the upper one on the middle of the lower one."""
-    whole = joined(pile_of(_shape(lower), _shape(upper), lower[HEIGHT], 0.0, 0.0))
+    whole = joined(
+        pile_of(
+            shape_as_it_stands(lower),
+            shape_as_it_stands(upper),
+            lower[HEIGHT],
+            0.0,
+            0.0,
+        )
+    )
     found[WIDTH] = lower[WIDTH]
     found[HEIGHT] = lower[HEIGHT] + upper[HEIGHT]
     found[MASS] = whole.mass
@@ -114,22 +118,6 @@ def join(lower: Floats, upper: Floats, found: Floats) -> None:
 def carries_plate(block: Floats, below: Floats) -> bool:
     """Whether a plate under a block reaches no further than what it stands on, and so may carry it further out."""
     return bool(WIDER * block[WIDTH] <= below[WIDTH])
-
-
-def tell_pads(block: Floats, force: float, limits: Floats) -> None:
-    """Accelerations over which pads of wax or putty are torn off (docs/holding.md, equation 3) [m/s²].
-
-    Parameters
-    ----------
-    block : the object
-    force : that all pads hold together [N]
-    limits : of its left and of its right pad, shape (2,)
-    """
-    shape = _shape(block)
-    half = PADS_AT * block[WIDTH] / 2
-    held = force * half / shape.mass
-    limits[0] = (GRAVITY * (half - shape.x) + held) / shape.y
-    limits[1] = (GRAVITY * (half + shape.x) + held) / shape.y
 
 
 # ---- in space
@@ -147,7 +135,7 @@ def tell_box(top: Floats, own: Floats, moments: Floats) -> None:
     base [m], shape (4,). What it is fixed to has a square base, or one as deep as the object.
     """
     width, depth, mass = own[WIDTH], own[DEPTH], own[MASS]
-    across = _shape(top).inertia
+    across = shape_as_it_stands(top).inertia
     # moments of uniform boxes about x and y differ by what their sides do
     aside = mass * (depth * depth - width * width) / 12
     along = mass * (width * width + depth * depth) / 12
@@ -160,7 +148,7 @@ def tell_box(top: Floats, own: Floats, moments: Floats) -> None:
 
 def tell_round(top: Floats, moments: Floats) -> None:
     """Moments of inertia of an object on a round base about x, y, z [kg m²], and its diameter [m], shape (4,)."""
-    across = _shape(top).inertia
+    across = shape_as_it_stands(top).inertia
     moments[0], moments[1] = across, across
     moments[2] = top[MASS] * top[WIDTH] * top[WIDTH] / 8
     moments[3] = top[WIDTH]

@@ -142,6 +142,21 @@ def reduces(factor: float, grows: bool) -> int:
     return 2 if grows else 1
 
 
+def change_alone(factor: float, grows: bool, shown: bool) -> int:
+    """Say what one change does to a risk, or to what an object bears, whether or not it is shown to help."""
+    if math.isnan(factor):
+        return 0
+    if grows and factor < 1.0:
+        return 1
+    if not grows and factor > 1.0:
+        return 2
+    if factor == 0.0 and shown:
+        return 3
+    if not shown:
+        return 4 if grows else 5
+    return 6 if grows else 7
+
+
 def tell_reduction(factor: float, lower: float, upper: float, found: Floats) -> None:
     """What a factor takes off a risk, or adds to what an object bears, and its limits, rising [-]."""
     sign = -1.0 if factor > 1.0 else 1.0

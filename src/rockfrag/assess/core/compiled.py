@@ -13,14 +13,14 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from rockfrag.assess.core import bodies, choices
+from rockfrag.assess.core import bodies, choices, holding
 from rockfrag.base import directions, exponentials
 from rockfrag.engines.compile.jit import KNOWN, compile_for_kernels, kernel
 from rockfrag.runtime.machine_code import cached_njit
 
 __all__ = ["entry_kernel", "kernel"]
 
-for _module in (exponentials, directions, choices, bodies):
+for _module in (exponentials, directions, choices, bodies, holding):
     compile_for_kernels(_module)
 
 

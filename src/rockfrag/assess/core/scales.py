@@ -71,26 +71,6 @@ def fill_direction(first, second, cosine, sine, found):
         found[i] = in_direction(first[i], second[i], cosine, sine)
 
 
-@entry_kernel
-def fill_torn(samples, scales, limits, first):
-    """Sample of a motion at which a pad is torn off, at factors on it; -1 where none is.
-
-    Parameters
-    ----------
-    samples : of the ground or floor [m/s²]
-    scales : factors, shape (scales,)
-    limits : accelerations over which the left and the right pad are torn off [m/s²], shape (2,)
-    first : places of the samples, shape (scales,)
-    """
-    for k in range(scales.size):
-        first[k] = -1
-        for i in range(samples.size):
-            pushed = scales[k] * samples[i]
-            if pushed > limits[0] or -pushed > limits[1]:
-                first[k] = i
-                break
-
-
 # ---- statics
 
 

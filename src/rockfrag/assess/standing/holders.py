@@ -2,7 +2,8 @@
 
 A holder is part of how an object stands, or is tried by itself as a mitigation (:mod:`rockfrag.assess.holding`):
 first so strong that nothing breaks it, which says what it must bear, then as strong as that.  What each does is
-derived in ``docs/holding.md``; sizes that nobody stated are those of the constants below, and are said.
+derived in ``docs/holding.md``; sizes that nobody stated are those of :mod:`rockfrag.assess.core.holding`, and are
+said.
 
 In: settings of a holder. Out: walls, ties, bonds or supports of a system, SI units.
 """
@@ -13,9 +14,25 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, ClassVar, Self
 
-from rockfrag.assess.core.bodies import PADS_AT
+from rockfrag.assess.core.holding import (
+    BRACKET_GIVES,
+    CORD_GIVES,
+    FASTENED_AT,
+    LOCKED_AT,
+    PADS_AT,
+    PLATE,
+    RADIUS,
+    REACH,
+    SLIDES_AT,
+    UNBROKEN,
+    bracket_damping,
+    pads_across,
+    rounded_up,
+    tie_stiffness,
+)
 from rockfrag.assess.texts import Text
-from rockfrag.base.units import GRAVITY
+from rockfrag.base.elementary import atan2
+from rockfrag.system import footprint
 from rockfrag.system.body import Circle, Interval, Outline, Polygon
 from rockfrag.system.bond import Bond
 from rockfrag.system.constraints import Tie, Wall
@@ -24,17 +41,6 @@ from rockfrag.system.mounts import ROLLING
 from rockfrag.system.support import SlidingPendulum
 from rockfrag.system.system import System, hold
 from rockfrag.words.findings import Finding, finding, two
-
-UNBROKEN = 1e9  # Strength of what is tried before it is known what it must bear [N]
-FASTENED_AT = 0.8  # Height of a bracket or cord over that of the object [-]
-# Length of a bracket or cord, from the object's middle beyond its edge [m]
-REACH = 0.1
-# What a bracket and a cord give under a force as large as the object's weight [m]
-BRACKET_GIVES, CORD_GIVES = 0.001, 0.01
-DAMPED = 0.05  # Part of critical damping of a bracket, as it swings with the object [-]
-RADIUS, SLIDES_AT = 1.0, 0.05  # Of a sliding pendulum [m], and of its friction [-]
-PLATE = 0.1  # Mass of its plate over that of what stands on it [-]
-LOCKED_AT = 0.5  # Coefficient of friction of casters that are locked [-]
 
 
 @dataclass(frozen=True)
@@ -212,7 +218,7 @@ class Beside(Holder):
         """Set a wall beside the lowest body, in the direction of its narrower side."""
         base = system.bodies[0].base
         east, north = narrow_direction(base)
-        wall = Wall(reach_of(base) + self.distance, math.atan2(north, east))
+        wall = Wall(reach_of(base) + self.distance, atan2(north, east))
         return hold(system, wall)
 
     def called(self) -> Finding:
@@ -306,43 +312,20 @@ def holders_beside(there: Sequence[Holder]) -> list[Holder]:
     return found
 
 
-def rounded_up(value: float) -> float:
-    """Return a positive number rounded up to two digits; what is not finite stays."""
-    if not 0.0 < value < math.inf:
-        return value
-    step = 10.0 ** (math.floor(math.log10(value)) - 1)
-    return float(f"{math.ceil(value / step - 1e-9) * step:.6g}")
-
-
 def pads_of(base: Outline) -> tuple[float, float]:
     """Half the distances of four pads under a base along its axes [m]."""
     if isinstance(base, Interval):
-        half = PADS_AT * (base.right - base.left) / 2
+        half = pads_across(base.right - base.left)
         return half, half
     if isinstance(base, Circle):
-        half = PADS_AT * base.radius * math.sqrt(0.5)
-        return half, half
-    sides = [max(abs(vertex[k]) for vertex in base.vertices) for k in (0, 1)]
-    if len(base.vertices) == 4 and all(
-        abs(abs(x) - sides[0]) + abs(abs(y) - sides[1]) < 1e-9 for x, y in base.vertices
-    ):
-        return PADS_AT * sides[0], PADS_AT * sides[1]
-    # within the circle that touches the nearest edge
-    half = PADS_AT * nearest_edge(base)[0] * math.sqrt(0.5)
-    return half, half
+        return footprint.pads_in_circle(base.radius, PADS_AT)
+    return footprint.pads_in_polygon(base.vertices, len(base.vertices), PADS_AT)
 
 
 def nearest_edge(base: Polygon) -> tuple[float, tuple[float, float]]:
     """Distance of a polygon's nearest edge from its origin [m], and the direction across it, outwards."""
-    found = []
-    ends = zip(base.vertices, (*base.vertices[1:], base.vertices[0]), strict=True)
-    for (x, y), (east, north) in ends:
-        length = math.hypot(east - x, north - y)
-        across = ((north - y) / length, -(east - x) / length)
-        found.append((across[0] * x + across[1] * y, across))
-    # of two alike the first, whatever rounding says
-    least = min(distance for distance, _ in found)
-    return next(each for each in found if each[0] <= least * (1 + 1e-9))
+    distance, east, north = footprint.nearest_edge(base.vertices, len(base.vertices))
+    return distance, (east, north)
 
 
 def narrow_direction(base: Outline) -> tuple[float, float]:
@@ -357,7 +340,7 @@ def reach_of(base: Outline) -> float:
     if isinstance(base, Circle):
         return base.radius + base.centre[0]
     east, north = narrow_direction(base)
-    return max(east * x + north * y for x, y in base.vertices)
+    return footprint.reach(base.vertices, len(base.vertices), east, north)
 
 
 def fastened(system: System, gives: float, strength: float) -> tuple[Tie, Tie]:
@@ -390,7 +373,7 @@ def fastened(system: System, gives: float, strength: float) -> tuple[Tie, Tie]:
             Tie(
                 (x, y, height),
                 ends,
-                top.mass * GRAVITY / gives,
+                tie_stiffness(top.mass, gives),
                 strength=strength,
             )
         )
@@ -406,8 +389,8 @@ def _damping(system: System, tie: Tie) -> float:
         if isinstance(inertia, int | float)
         else max(inertia[0][0], inertia[1][1])
     )
-    swinging = (across + top.mass * top.centre[2] ** 2) / tie.point[2] ** 2
-    return 2 * DAMPED * math.sqrt(tie.stiffness * swinging)
+    height = tie.point[2]
+    return bracket_damping(top.mass, across, top.centre[2], height, tie.stiffness)
 
 
 def _height() -> dict[str, Finding]:

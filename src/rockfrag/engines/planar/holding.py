@@ -10,7 +10,9 @@ from dataclasses import replace
 
 import numpy as np
 
+from rockfrag.base.arrays import with_attributes
 from rockfrag.base.errors import InputError
+from rockfrag.engines.planar import _describe
 from rockfrag.system.body import Interval, RigidBody
 from rockfrag.system.constraints import Tie, Wall
 from rockfrag.system.contact import Contact, Friction
@@ -61,10 +63,7 @@ def with_plate(system: System) -> System:
 
 def fill_holding(p: np.void, system: System) -> None:
     """Fill what holds a system into the record of a planar one, whose bodies are there already."""
-    count = int(p["count"])
-    p["contacts"] = count
-    p["upper"][:count] = np.arange(count)
-    p["lower"][:count] = np.arange(count) - 1
+    _describe.fill_contacts(with_attributes(p))
     p["is_held"] = len(system.holding) > 0
     if not system.holding:
         return
@@ -89,14 +88,13 @@ def _fill_walls(p: np.void, system: System, shift: int) -> None:
         for body in range(system.count):
             k = _new_contact(p, body + shift, number, wall.side)
             p["wall_top"][k], p["bounce"][k] = wall.height, wall.restitution
-            p["wall_x"][k] = wall.side * wall.distance - middle
             p["static"][k], p["kinetic"][k] = wall.friction or SMOOTH
             first = 4 * body + (2 if wall.side > 0 else 0)
-            flank = np.array(standing[first : first + 2]) - centres[body]
-            # in the order in which the wall's tangent meets them
-            flank = flank if wall.side > 0 else flank[::-1]
-            p["edge"][k] = flank
-            p["flank"][k] = (flank[1] - flank[0]) / np.hypot(*(flank[1] - flank[0]))
+            x, z = centres[body]
+            (right, low), (top, high) = standing[first], standing[first + 1]
+            side = _describe.Side(wall.side, (right - x, low - z), (top - x, high - z))
+            at = wall.side * wall.distance - middle
+            _describe.fill_wall(with_attributes(p), k, at, side)
 
 
 def _origin(system: System) -> float:

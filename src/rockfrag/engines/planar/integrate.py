@@ -361,7 +361,11 @@ def _end_step(p, w, part):
 def _meet(p, w, interval, closing, kept):
     """Take a column through a contact event; many of them in one interval are ended more and more coarsely."""
     w.met += 1
-    coarser = closing * 10.0 ** (w.met // MOST_CONTACT_EVENTS)
+    # by products: a page has no powers
+    tens = 1.0
+    for _ in range(w.met // MOST_CONTACT_EVENTS):
+        tens *= 10.0
+    coarser = closing * tens
     if w.met >= MOST_CONTACT_EVENTS:
         w.forced += 1
     _handle(p, w, _instant(interval, w.tau), coarser, False, kept)

@@ -7,22 +7,17 @@ In: a :class:`rockfrag.system.system.System`, SI units. Out: records ``BODY``, `
 Theory: ``docs/contact.md``, "Coordinates and contacts", equations 1 and 2.
 """
 
-import math
 from collections.abc import Sequence
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from rockfrag.base.arrays import fields, whole
-from rockfrag.base.elementary import atan2, sin_cos
+from rockfrag.base.arrays import fields, whole, with_attributes
+from rockfrag.engines.planar import _describe
 from rockfrag.engines.planar.holding import fill_holding, with_plate
 from rockfrag.engines.pure_rocking.ensembles import after_impact
-from rockfrag.system import geometry
 from rockfrag.system.contact import ROUGHEST
 from rockfrag.system.system import System
-
-Array = NDArray[np.float64]
 
 MOST = 12  # bodies of the longest column
 MOST_WALLED = 12  # contacts of bodies with walls
@@ -210,68 +205,6 @@ WORK = np.dtype(
 )
 
 
-class _Standing(NamedTuple):
-    """A body of a column as all stand; places are (x, y) from the middle of the lowest base [m]."""
-
-    shape: geometry.Shape  # in the direction of the face below, its base no wider than what lies on that face
-    tilt: float  # of its base and of the face below, clockwise [rad]
-    base: Array  # middle of its base
-    right_end: Array  # right end of the part of its base that lies on the face below
-    # the face below: its middle from the centre of the body below, and its half width [m]
-    face: Array
-    half: float
-
-
-def _standing_on_ground(system: System) -> _Standing:
-    """Lowest body, whose base carries on its whole width."""
-    shape = system.shapes[0]
-    middle = np.zeros(2)
-    return _Standing(shape, 0.0, middle, middle, middle, math.inf)
-
-
-def _standing_on_body(system: System, k: int, below: _Standing) -> _Standing:
-    """Body k of a column on the body below, which is there already."""
-    bodies = system.in_plane().bodies
-    carrier, lean = bodies[k - 1], system.contacts[k - 1].tilt
-    base, face = carrier.ends
-    # the face's middle from that of the base below it, and this body's base from the face's middle
-    aside = face.middle - base.middle
-    own_middle = system.contacts[k].offset[0] + bodies[k].ends[0].middle
-    offset = own_middle - (aside + base.middle)
-    lower = system.shapes[k - 1]._replace(b=(face.right - face.left) / 2)
-    pile = geometry.pile_of(lower, system.shapes[k], carrier.height, lean, offset)
-    shift = _turned(np.array((aside, 0.0)), lean)
-    top = _turned(np.array((0.0, carrier.height)), lean) + shift
-    own = _turned(np.array((offset, carrier.height)), lean)
-    return _Standing(
-        shape=pile.upper,
-        tilt=below.tilt + lean,
-        base=below.base + _turned(own + shift, below.tilt),
-        right_end=below.base + _turned(np.array(pile.right) + shift, below.tilt),
-        face=_turned(top - (lower.x, lower.y), below.tilt),
-        half=lower.b,
-    )
-
-
-def _fill_body(p: np.void, k: int, body: _Standing) -> None:
-    """Fill body k, and the face below it, into the record of its column."""
-    mass, inertia = body.shape.mass, body.shape.inertia
-    p["mass"][k], p["inertia"][k] = mass, inertia
-    p["inverse"][3 * k : 3 * k + 3] = 1 / mass, 1 / mass, 1 / inertia
-    p["face"][k], p["half"][k] = body.face, body.half
-    if k > 0:
-        p["tilt_sin"][k], p["tilt_cos"][k] = sin_cos(body.tilt)
-    for end, pivot in enumerate((-1, 1)):
-        # from the corner to the centre of gravity
-        x, y = geometry.turned(*geometry.arm(body.shape, pivot), body.tilt)
-        p["corner"][k, end] = -x, -y
-        p["critical"][k, end] = atan2(-pivot * x, y)
-    if k == 0:
-        p["standing"][:2] = body.shape.x, body.shape.y
-    else:
-        p["standing"][3 * k : 3 * k + 2] = body.right_end - p["corner"][k, 1]
-
-
 def fill_geometry(p: np.void, system: System) -> None:
     """Fill geometry and masses of a column, from the ground up, into its record.
 
@@ -280,20 +213,24 @@ def fill_geometry(p: np.void, system: System) -> None:
     p : record ``BODY`` with gravity
     system : planar bodies on each other
     """
+    bodies, contacts, shapes = system.in_plane().bodies, system.contacts, system.shapes
     p["count"], p["weight"] = system.count, p["g"] * system.mass
     p["tilt_cos"][:] = 1.0
-    body = _standing_on_ground(system)
-    _fill_body(p, 0, body)
+    body = with_attributes(p)
+    foot = _describe.place_lowest(body, shapes[0])
     for k in range(1, system.count):
-        body = _standing_on_body(system, k, body)
-        _fill_body(p, k, body)
-    half = body.shape.b
-    p["size"], p["speed"] = half, math.sqrt(p["g"] * half)
-
-
-def _turned(vector: Array, angle: float) -> Array:
-    """Vector (x, y) turned clockwise by an angle [rad]."""
-    return np.array(geometry.turned(float(vector[0]), float(vector[1]), angle))
+        below, (stand, face) = bodies[k - 1], bodies[k - 1].ends
+        right = face.middle - stand.middle
+        aside = contacts[k].offset[0] + bodies[k].ends[0].middle
+        carries = _describe.Face(
+            half=(face.right - face.left) / 2,
+            height=below.height,
+            lean=contacts[k - 1].tilt,
+            right=right,
+            offset=aside - (right + stand.middle),
+        )
+        pair = shapes[k - 1], shapes[k]
+        foot = _describe.place_above(body, k, pair, carries, foot)
 
 
 def system_record(system: System, g: float) -> np.void:
@@ -335,21 +272,5 @@ def posed(
     x, y [m] and θ [rad] of each body, and their rates, shape (2, 3 MOST).
     """
     start = np.zeros((2, 3 * MOST))
-    standing = p["standing"]
-
-    for k in range(int(p["count"])):
-        below = (theta[k - 1], omega[k - 1]) if k else (0.0, 0.0)
-        end = 1 if ((theta[k] - below[0]) or (omega[k] - below[1])) >= 0 else 0
-        corner = p["corner"][k, end]
-        pivot = standing[3 * k : 3 * k + 2] + corner
-        speed = np.zeros(2)
-        if k:
-            at = slice(3 * k - 3, 3 * k - 1)
-            arm = _turned(pivot - standing[at], below[0])
-            pivot = start[0, at] + arm
-            speed = start[1, at] + below[1] * np.array([arm[1], -arm[0]])
-        arm = -_turned(corner, theta[k])
-        start[0, 3 * k : 3 * k + 2] = pivot + arm
-        start[1, 3 * k : 3 * k + 2] = speed + omega[k] * np.array([arm[1], -arm[0]])
-        start[0, 3 * k + 2], start[1, 3 * k + 2] = theta[k], omega[k]
+    _describe.fill_start(with_attributes(p), theta, omega, start)
     return start

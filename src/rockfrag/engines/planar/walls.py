@@ -102,5 +102,8 @@ def note_impulses(p, w):
 def note_forces(p, w):
     """Keep the largest forces on walls, with those of a motion in ``w``."""
     for k in range(p.count, p.contacts):
+        if not w.closed[k].any():
+            # what stands there is of an impact, or of another case
+            continue
         at, force = p.wall[k], w.normal[k, 0] + w.normal[k, 1]
         w.outcome.largest_force[at] = max(w.outcome.largest_force[at], force)

@@ -62,7 +62,12 @@ def times(matrix, a):
 @kernel
 def rotation(y):
     """Rows of R, which are the world's axes as the body sees them, from the quaternion y[3:7]."""
-    w, x, i, z = y[3], y[4], y[5], y[6]
+    return rotation_of(y[3], y[4], y[5], y[6])
+
+
+@kernel
+def rotation_of(w, x, i, z):
+    """Rows of R from the quaternion w + x i + i j + z k."""
     return (
         (1 - 2 * (i * i + z * z), 2 * (x * i - w * z), 2 * (x * z + w * i)),
         (2 * (x * i + w * z), 1 - 2 * (x * x + z * z), 2 * (i * z - w * x)),

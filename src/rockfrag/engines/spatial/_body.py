@@ -13,7 +13,7 @@ import math
 import numpy as np
 
 from rockfrag.base.arrays import fields, whole
-from rockfrag.engines.compile.jit import kernel
+from rockfrag.engines.compile.jit import inlined_kernel, kernel
 from rockfrag.engines.spatial._algebra import (
     cross,
     dot,
@@ -136,6 +136,22 @@ def bias(body, up, omega, p, i):
         x, z = turn[0] - along * u[0], turn[1] - along * u[1]
         moved = plus(moved, (-body.rim * x / sine, -body.rim * z / sine, 0.0))
     return cross(omega, moved)
+
+
+@inlined_kernel
+def arm_and_bias(body, up, omega, i):
+    """Return :func:`arm` and :func:`bias` of a contact with the ground; of a rim with one root for both."""
+    if i != rim_contact(body):
+        p = (body.points[i, 0], body.points[i, 1], body.points[i, 2])
+        return p, cross(omega, cross(omega, p))
+    per_sine = 1.0 / max(norm(up[0], up[1]), 1e-300)
+    x, y = -up[0] * per_sine, -up[1] * per_sine
+    p = (body.centre[0] + body.rim * x, body.centre[1] + body.rim * y, -body.height)
+    # how fast the lowest point goes round the rim
+    turn = cross(up, omega)
+    round_ = body.rim * (turn[0] * y - turn[1] * x) * per_sine
+    moved = plus(cross(omega, p), (-round_ * y, round_ * x, 0.0))
+    return p, cross(omega, moved)
 
 
 @kernel

@@ -17,7 +17,15 @@ import numpy as np
 
 from rockfrag.base.elementary import sin_cos
 from rockfrag.engines.compile.jit import kernel
-from rockfrag.engines.spatial._algebra import factor, norm, solve_symmetric, substitute
+from rockfrag.engines.spatial._algebra import (
+    dot,
+    factor,
+    norm,
+    plus,
+    scaled,
+    solve_symmetric,
+    substitute,
+)
 from rockfrag.engines.spatial._forces import (
     MOST,
     in_set,
@@ -309,10 +317,8 @@ def stick_alone(s, i):
             normal,
         )
     else:
-        s.impulse[a], s.impulse[b], s.impulse[c] = solve_symmetric(
-            w[a, a], w[a, b], w[a, c], w[b, b], w[b, c], w[c, c],
-            (-s.free[a], -s.free[b], -s.free[c]),
-        )  # fmt: skip
+        push = stop_at(w, a, (s.free[a], s.free[b], s.free[c]))
+        s.impulse[a], s.impulse[b], s.impulse[c] = push
 
 
 @kernel
@@ -321,6 +327,8 @@ def slide_set(s, n, mask, size, largest, scale):
     small, pace = 1e-11 * scale, 1.0 / largest
     if size == 1:
         return slide_alone(s, n, s.member[0])
+    if size == 2 and slide_one_end(s, n, small):
+        return True
     if size == 0 or not stick_together(s, n, mask, SOFT * largest):
         return False
     # shears are shortened to the cones, from which Newton's method then begins
@@ -342,6 +350,78 @@ def slide_set(s, n, mask, size, largest, scale):
     while found and slip_kinetically(s, size, 1e-9 * scale):
         found = newton(s, size, pace, CLOSE_ENOUGH * scale)
     return found
+
+
+@kernel
+def slide_one_end(s, n, small):
+    """Solve for the two contacts of a set of which one sticks and the other slides across; whether there is such.
+
+    The slip of the one is across the line between them, to one side or the other: four cases, each linear.
+    """
+    for k in range(2):
+        sticks, slides = s.member[k], s.member[1 - k]
+        edge = s.edge[sticks, slides]
+        on_one_surface = edge[0] != 0.0 or edge[1] != 0.0
+        if s.given[sticks] or s.given[slides] or not on_one_surface:
+            return False
+        s.grip[sticks] = s.friction[sticks] if s.slid[sticks] else s.holds[sticks]
+        s.grip[slides] = s.friction[slides]
+        for side in (1.0, -1.0):
+            way = (-side * edge[1], side * edge[0])
+            if slides_to(s, n, sticks, slides, way, small):
+                return True
+    return False
+
+
+@kernel
+def slides_to(s, n, sticks, slides, way, small):
+    """Solve for a contact that sticks and one that slides the given way; whether both do so within their cones."""
+    w, a, b = s.delassus, 3 * sticks, 3 * slides
+    # a unit of normal impulse at the one that slides, with its friction, and what it does to the other
+    grip = s.grip[slides]
+    unit = (-grip * way[0], -grip * way[1], 1.0)
+    without = stop_at(w, a, (s.free[a], s.free[a + 1], s.free[a + 2]))
+    by_unit = stop_at(w, a, effect(w, a, b, unit))
+    left = s.free[b + 2] + dot(row_of(w, b + 2, a), without)
+    gives = dot(row_of(w, b + 2, b), unit) + dot(row_of(w, b + 2, a), by_unit)
+    normal = -left / gives
+    push = plus(without, scaled(normal, by_unit))
+    shear = norm(push[0], push[1])
+    if not (normal >= 0.0 and push[2] >= 0.0 and shear <= s.grip[sticks] * push[2]):
+        return False
+    for i in range(3 * n):
+        s.impulse[i] = 0.0
+    for k in range(3):
+        s.impulse[a + k], s.impulse[b + k] = push[k], normal * unit[k]
+    fill_after(s, n)
+    along = s.after[b] * way[0] + s.after[b + 1] * way[1]
+    off = s.after[b] * way[1] - s.after[b + 1] * way[0]
+    return along >= 0.0 and abs(off) <= small
+
+
+@kernel
+def row_of(w, i, b):
+    """Return what impulses at the contact whose first row is b do to one velocity."""
+    return (w[i, b], w[i, b + 1], w[i, b + 2])
+
+
+@kernel
+def effect(w, a, b, push):
+    """Velocity of the contact whose first row is a, by an impulse at that of row b."""
+    return (
+        dot(row_of(w, a, b), push),
+        dot(row_of(w, a + 1, b), push),
+        dot(row_of(w, a + 2, b), push),
+    )
+
+
+@kernel
+def stop_at(w, a, velocity):
+    """Impulse at the contact whose first row is a that takes a velocity of it away."""
+    return solve_symmetric(
+        w[a, a], w[a, a + 1], w[a, a + 2], w[a + 1, a + 1], w[a + 1, a + 2],
+        w[a + 2, a + 2], scaled(-1.0, velocity),
+    )  # fmt: skip
 
 
 @kernel

@@ -117,3 +117,35 @@ def _invert(of: Any, into: Any) -> None:
     into[0, 1], into[1, 0] = xy, xy
     into[0, 2], into[2, 0] = xz, xz
     into[1, 2], into[2, 1] = yz, yz
+
+
+def fill_wall(
+    body: Any,
+    i: int,
+    direction: float,
+    distance: float,
+    centre: tuple[float, float],
+) -> float:
+    """Fill where a wall stands, of a body whose corners are there already; how far the body stands from it.
+
+    Parameters
+    ----------
+    body : record ``BODY``, changed in place
+    i : number of the wall
+    direction, distance : towards the wall, from x towards y [rad], and of its face from the base's origin [m]
+    centre : of mass, from that origin in the plan [m]
+
+    Returns
+    -------
+    The gap [m]; what touches by rounding touches.
+    """
+    sine, cosine = sin_cos(direction)
+    x, y = -cosine, -sine
+    body.away[i, 0], body.away[i, 1] = x, y
+    from_centre = distance + (x * centre[0] + y * centre[1])
+    least = math.inf
+    for k in range(body.corners):
+        at = x * body.corner[k, 0] + y * body.corner[k, 1]
+        least = min(least, from_centre + at)
+    body.distance[i] = from_centre + max(-least, 0.0)
+    return least

@@ -37,6 +37,10 @@ SLIP_FLOOR = 1e-4
 # part of the largest compliance that is added to all, so that redundant forces are the least ones [-]
 SOFTNESS = 1e-9
 STAGES = 7
+# of the series of an angle in a step
+HINGE_ORDER = 7
+# what is integrated of a body on one contact that sticks: attitude, angular velocity, place in the plan, work
+TURNING = 10
 
 CASE = np.dtype(
     [
@@ -67,6 +71,11 @@ CASE = np.dtype(
         # a step: rates at its stages, the state at its end, slip at its beginning
         *fields("slopes", STAGES, solid.SIZE),
         *fields("new", solid.SIZE),
+        # the same of a body that turns about one contact; and the state at its beginning
+        *fields("turning", STAGES, TURNING),
+        # series of the angle of a body that rocks about an edge, and of its sine and cosine
+        *fields("angle sine cosine", HINGE_ORDER + 1),
+        *fields("turned turned_before", TURNING),
         *fields("slip", MOST, 2),
         *whole("armed", MOST),
         *whole("counters", 8),
@@ -309,12 +318,33 @@ def load_on(body, y, rows, gravity, s):
 
 
 @kernel
-def pivot_acceleration(body, up, omega, weight, i, s):
-    """Angular acceleration about a sticking point, the force at it, both in the body."""
-    p = solid.arm(body, up, i)
-    load = plus(solid.bias(body, up, omega, p, i), weight)
-    moment = minus(twist_by_ties(s), cross(omega, times(body.inertia, omega)))
-    return stop_point(body, up, i, load, moment)
+def pivot_acceleration(body, p, turned, omega, weight, i, s):
+    """Angular acceleration about a sticking point, the force at it, both in the body.
+
+    ``p`` and ``turned`` are the point's arm and the part of its acceleration that comes from no acceleration.
+    """
+    load = plus(turned, weight)
+    if i == solid.rim_contact(body):
+        gyroscopic = cross(omega, times(body.inertia, omega))
+        moment = minus(minus(twist_by_ties(s), gyroscopic), cross(p, load))
+        alpha = turn_about(body, p, moment)
+    else:
+        # Euler's equation about the vertex, which is fixed in the body
+        gyroscopic = cross(omega, times(body.about[i], omega))
+        moment = minus(minus(twist_by_ties(s), gyroscopic), cross(p, weight))
+        alpha = times(body.about_inverse[i], moment)
+    return alpha, scaled(-1.0, plus(cross(alpha, p), load))
+
+
+@kernel
+def turn_about(body, p, moment):
+    """Angular velocity (or acceleration) that a moment about the body's point p gives it if that point is held."""
+    m = body.inertia
+    square = dot(p, p)
+    return solve_symmetric(
+        m[0, 0] + square - p[0] * p[0], m[0, 1] - p[0] * p[1], m[0, 2] - p[0] * p[2],
+        m[1, 1] + square - p[1] * p[1], m[1, 2] - p[1] * p[2], m[2, 2] + square - p[2] * p[2], moment,
+    )  # fmt: skip
 
 
 @kernel
@@ -326,15 +356,9 @@ def stop_point(body, up, i, load, momentum):
     """
     p = solid.arm(body, up, i)
     moment = minus(momentum, cross(p, load))
-    if i == solid.rim_contact(body):
-        m = body.inertia
-        square = dot(p, p)
-        alpha = solve_symmetric(
-            m[0, 0] + square - p[0] * p[0], m[0, 1] - p[0] * p[1], m[0, 2] - p[0] * p[2],
-            m[1, 1] + square - p[1] * p[1], m[1, 2] - p[1] * p[2], m[2, 2] + square - p[2] * p[2], moment,
-        )  # fmt: skip
-    else:
-        alpha = times(body.about_inverse[i], moment)
+    rolls = i == solid.rim_contact(body)
+    inverse = body.about_inverse[i]
+    alpha = turn_about(body, p, moment) if rolls else times(inverse, moment)
     force = scaled(-1.0, plus(cross(alpha, p), load))
     return alpha, force
 
@@ -524,7 +548,9 @@ def rates(body, tau, y, dy, s, split=True):
     kind = kind_of(s)
     lost = 0.0
     if kind == PIVOT:
-        alpha, force = pivot_acceleration(body, rows[2], omega, weight, s.closed[0], s)
+        i = s.closed[0]
+        p, turned = solid.arm_and_bias(body, rows[2], omega, i)
+        alpha, force = pivot_acceleration(body, p, turned, omega, weight, i, s)
         pushed = to_world(rows, force)
         s.lam[0, 0], s.lam[0, 1], s.lam[0, 2] = pushed
         acceleration = plus(load, pushed)

@@ -303,8 +303,7 @@ def locate(body, tau, h, y, s):
             rest = -value / rate
             middle = at + rest
             if abs(rest) < BRIEF and low < at + rest < high:
-                for i in range(solid.SIZE):
-                    s.new[i] += rest * s.slopes[forces.STAGES - 1, i]
+                step.go_on_by(body, at, rest, tau, y, s)
                 return at + rest, what
         bracket = narrowed(bracket, at, value)
         if abs(value) < 1e-12:
@@ -588,13 +587,7 @@ def slow_power(x):
 def advance(body, tau, dt, next_step, y, tolerance, cut, stuck, s, out):
     """Take one step of an interval, up to its end or to what happens first; return the time and the next step."""
     g = s.field[6]
-    if s.goes_on:
-        for i in range(solid.SIZE):
-            s.slopes[0, i] = s.slopes[forces.STAGES - 1, i]
-    else:
-        forces.rates(body, tau, y, s.slopes[0], s)
-    s.goes_on = 0
-    step.begin_slips(body, y, s)
+    step.begin(body, tau, y, s)
     h = min(next_step, dt - tau)
     while True:
         error = step.attempt(body, tau, h, y, s)
@@ -614,6 +607,9 @@ def advance(body, tau, dt, next_step, y, tolerance, cut, stuck, s, out):
         h, what = locate(body, tau, h, y, s)
     else:
         what = modes.NOTHING
+    exact = step.kind_of_step(body, s) != forces.GENERAL
+    if exact and body.rim > 0:
+        note_loss(balance(body, y, g) - balance(body, s.new, g), out)
     for i in range(solid.SIZE):
         y[i] = s.new[i]
     algebra.normalise(y)
@@ -623,15 +619,22 @@ def advance(body, tau, dt, next_step, y, tolerance, cut, stuck, s, out):
         out[CONTACT_EVENTS] += 1
         note_loss(happen(body, what, tau + h, y, cut, stuck, s), out)
         return tau + h, dt, h
-    before = solid.energy(body, y, g)
-    modes.settle(body, y, s)
-    note_loss(before - solid.energy(body, y, g), out)
+    if not exact:
+        before = solid.energy(body, y, g)
+        modes.settle(body, y, s)
+        note_loss(before - solid.energy(body, y, g), out)
+    # whether the rates at the end of a step are those at the beginning of the next
+    sticks = forces.kind_of(s) in (forces.FLIGHT, forces.PIVOT, forces.HINGE)
+    s.goes_on = exact or (sticks and body.rim == 0.0)
     if body.rim > 0:
         ahead = look_after_rim(body, y, tau + h, cut, ahead, s, out)
-    elif forces.kind_of(s) in (forces.FLIGHT, forces.PIVOT, forces.HINGE):
-        # the rates at the end of a step are those at the beginning of the next
-        s.goes_on = 1
     return tau + h, ahead, h
+
+
+@kernel
+def balance(body, y, g):
+    """Energy less the work of the ground's motion, which nothing changes while a body turns about a contact."""
+    return solid.energy(body, y, g) - y[solid.WORK]
 
 
 @kernel
@@ -648,6 +651,7 @@ def look_after_rim(body, y, tau, cut, ahead, s, out):
     before = solid.energy(body, y, s.field[6])
     passes = s.count == 1 and algebra.norm(up[0], up[1]) < FLAT_PASS
     if passes:
+        s.goes_on = 0
         pass_flat(body, y, s)
     else:
         small_rim(body, y, tau, cut, s)

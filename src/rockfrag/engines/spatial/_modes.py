@@ -405,8 +405,9 @@ def chatters(body, y, rows, gravity, i, k, leaving, s):
     up, omega = rows[2], solid.omega_of(y)
     weight = forces.load_on(body, y, rows, gravity, s)
     here, there = s.which[i], s.which[k]
-    alpha, force = forces.pivot_acceleration(body, up, omega, weight, here, s)
-    p, q = solid.arm(body, up, here), solid.arm(body, up, there)
+    p, turned = solid.arm_and_bias(body, up, omega, here)
+    alpha, force = forces.pivot_acceleration(body, p, turned, omega, weight, here, s)
+    q = solid.arm(body, up, there)
     free = algebra.plus(weight, solid.bias(body, up, omega, q, there))
     free = algebra.plus(free, algebra.plus(force, algebra.cross(alpha, q)))
     falls = -algebra.dot(up, free)
@@ -840,7 +841,7 @@ def write_mode(body, y, rows, n, found, s):
             shear = algebra.norm(s.impulse[3 * i], s.impulse[3 * i + 1])
             limit = s.grip[i] * s.impulse[3 * i + 2]
             size = algebra.norm(u, v)
-            if size > 1e-9 and shear > limit * (1 - 1e-9):
+            if size > 1e-12 and shear > limit * (1 - 1e-9):
                 s.slides[count] = forces.SLIDES
                 s.direction[count, 0], s.direction[count, 1] = u / size, v / size
                 s.counters[SLIDINGS] += 1

@@ -7,7 +7,10 @@ positive. Theory: ``docs/space.md``, "Steps".
 from rockfrag.engines.compile.jit import kernel
 from rockfrag.engines.pure_rocking.kernels.dormand_prince import INSTANTS, WEIGHTS
 from rockfrag.engines.spatial import _body as solid
+from rockfrag.engines.spatial import _forces as forces
+from rockfrag.engines.spatial import _hinge as hinge
 from rockfrag.engines.spatial import _modes as modes
+from rockfrag.engines.spatial import _pivot as pivot
 from rockfrag.engines.spatial._algebra import norm, normalise, rotation
 from rockfrag.engines.spatial._forces import (
     SLIDES,
@@ -27,8 +30,56 @@ LEAST_FORCE = 1e-9
 
 
 @kernel
+def kind_of_step(body, s):
+    """Kind of a mode that has a step of its own: one contact or an edge that sticks, or else any other."""
+    kind = forces.kind_of(s)
+    own = kind in (forces.PIVOT, forces.HINGE) and body.constraints == 0
+    return kind if own else forces.GENERAL
+
+
+@kernel
+def begin(body, tau, y, s):
+    """Fill in the rates at the beginning of a step, unless they are those at the end of the last."""
+    kind = kind_of_step(body, s)
+    if kind == forces.PIVOT:
+        if s.goes_on:
+            pivot.go_on(s)
+        else:
+            pivot.begin(body, tau, y, s)
+    elif kind == forces.GENERAL:
+        if s.goes_on:
+            for i in range(solid.SIZE):
+                s.slopes[0, i] = s.slopes[STAGES - 1, i]
+        else:
+            rates(body, tau, y, s.slopes[0], s)
+        begin_slips(body, y, s)
+    s.goes_on = 0
+
+
+@kernel
 def attempt(body, tau, h, y, s):
-    """Step from y to s.new, with rates in s.slopes and forces in s.lam at its end; the estimate of the error."""
+    """Step from y to s.new, with the forces in s.lam at its end; return the estimate of the error."""
+    kind = kind_of_step(body, s)
+    if kind == forces.PIVOT:
+        return pivot.attempt(body, tau, h, y, s)
+    if kind == forces.HINGE:
+        return hinge.attempt(body, tau, h, y, s)
+    return attempt_any(body, tau, h, y, s)
+
+
+@kernel
+def go_on_by(body, at, rest, tau, y, s):
+    """Go on by a time so short that the rates at the end of a step to ``at`` suffice, or by a step of its own."""
+    if kind_of_step(body, s) != forces.GENERAL:
+        attempt(body, tau, at + rest, y, s)
+        return
+    for i in range(solid.SIZE):
+        s.new[i] += rest * s.slopes[STAGES - 1, i]
+
+
+@kernel
+def attempt_any(body, tau, h, y, s):
+    """Step from y to s.new in any mode, with rates in s.slopes and forces in s.lam at its end; the error."""
     k, new = s.slopes, s.new
     for stage in range(1, STAGES):
         for i in range(solid.SIZE):

@@ -9,7 +9,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from rockfrag.base.arrays import Floats
+from rockfrag.base.arrays import Floats, with_attributes
 from rockfrag.base.errors import InputError
 from rockfrag.base.units import GRAVITY
 from rockfrag.engines.spatial._body import (
@@ -18,7 +18,7 @@ from rockfrag.engines.spatial._body import (
     MOST_VERTICES,
     SIZE,
 )
-from rockfrag.engines.spatial._describe import fill_body
+from rockfrag.engines.spatial._describe import fill_body, fill_wall
 from rockfrag.engines.spatial._integrate import WINDOW
 from rockfrag.system.body import Circle, Polygon, RigidBody
 from rockfrag.system.bond import Bond
@@ -100,17 +100,15 @@ def _fill_wall(body: np.void, i: int, given: RigidBody, wall: Wall) -> None:
     corners = _corners(given)
     body["walls"] = 1
     body["corners"], body["corner"][: len(corners)] = len(corners), corners
-    away = -np.array([math.cos(wall.direction), math.sin(wall.direction)])
-    body["away"][i] = away
-    body["distance"][i] = wall.distance + float(away @ given.centre[:2])
-    gaps = body["distance"][i] + corners[:, :2] @ away
-    if gaps.min() < -1e-9:
+    east, north, _ = given.centre
+    gap = fill_wall(
+        with_attributes(body), i, wall.direction, wall.distance, (east, north)
+    )
+    if gap < -1e-9:
         raise InputError(
             f"Wall: at {wall.distance:g} m it stands where the body is, which reaches to "
-            f"{wall.distance - gaps.min():.6g} m."
+            f"{wall.distance - gap:.6g} m."
         )
-    # what touches by rounding touches
-    body["distance"][i] += max(-float(gaps.min()), 0.0)
     static, kinetic = wall.friction or (0.0, 0.0)
     body["wall_static"][i] = min(static, NEVER_SLIDES)
     body["wall_kinetic"][i] = min(kinetic, NEVER_SLIDES)
@@ -166,18 +164,17 @@ def later_peaks(acceleration: Floats) -> Floats:
 
     The last two columns are those of the next WINDOW intervals alone.
     """
-    x, y = acceleration[:, 0], acceleration[:, 1]
-    level = np.sqrt(x * x + y * y)
-    both = np.stack([level, np.abs(acceleration[:, 2])], axis=1)
-    later = np.maximum.accumulate(both[::-1], axis=0)[::-1]
-    soon = np.pad(both, ((0, WINDOW), (0, 0)))
+    x, y, z = np.ascontiguousarray(acceleration.T)
+    both = np.stack([np.sqrt(x * x + y * y), np.abs(z)])
+    later = np.maximum.accumulate(both[:, ::-1], axis=1)[:, ::-1]
+    soon = np.pad(both, ((0, 0), (0, WINDOW)))
     part = 1
     while part < WINDOW:
         # the largest of twice as many samples
-        soon = np.maximum(soon[:-part], soon[part:])
+        soon = np.maximum(soon[:, :-part], soon[:, part:])
         part *= 2
-    soon = np.maximum(soon[:-1], soon[1:])
-    return np.ascontiguousarray(np.hstack([later, soon]))
+    soon = np.maximum(soon[:, :-1], soon[:, 1:])
+    return np.ascontiguousarray(np.vstack([later, soon]).T)
 
 
 def perturbed(

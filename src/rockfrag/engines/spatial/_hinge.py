@@ -1,0 +1,129 @@
+"""One step of a body that rocks about an edge of its base, whose ends both stick: one angle, as a power series.
+
+With the edge e, the effective gravity w as the body sees it at the beginning of the step and r its rate, d from
+the edge to the centre of mass and I the inertia about the edge, all for a unit of mass, the angle ϑ that the body
+turns by in the step obeys
+
+    I ϑ'' = e·(d × (w + r t)) cos ϑ + [(d·e) e - d]·(w + r t) sin ϑ
+
+In: a state and a mode with two such contacts. Out: the state at the end of a step, the forces there and the error.
+Theory: ``docs/space.md``, "Two that stick".
+"""
+
+import math
+
+from rockfrag.base.elementary import sin_cos
+from rockfrag.engines.compile.jit import kernel
+from rockfrag.engines.spatial import _body as solid
+from rockfrag.engines.spatial import _forces as forces
+from rockfrag.engines.spatial._algebra import (
+    cross,
+    dot,
+    minus,
+    normalise,
+    rotation,
+    scaled,
+    times,
+    to_body,
+    to_world,
+)
+
+ORDER = forces.HINGE_ORDER
+
+
+@kernel
+def attempt(body, tau, h, y, s):
+    """Step from y to s.new, with the forces at both ends in s.lam; return the estimate of the error."""
+    rows = rotation(y)
+    p, q = solid.arm(body, rows[2], s.closed[0]), solid.arm(body, rows[2], s.closed[1])
+    edge = minus(q, p)
+    e = scaled(1.0 / math.sqrt(dot(edge, edge)), edge)
+    inertia = dot(e, times(body.about[s.closed[0]], e))
+    field = s.field
+    weight = to_body(rows, forces.effective_gravity_at(field, tau))
+    rate = scaled(h, to_body(rows, (field[3], field[4], field[5])))
+    # moments about the edge, upright and after a quarter of a turn
+    upright = cross(p, e)
+    turned = minus(p, scaled(dot(p, e), e))
+    scale = h * h / inertia
+    fill_series(
+        s,
+        h * dot(e, solid.omega_of(y)),
+        (scale * dot(upright, weight), scale * dot(turned, weight)),
+        (scale * dot(upright, rate), scale * dot(turned, rate)),
+    )
+    angle, speed, work = sums(s)
+    write_state(body, y, e, p, (angle, speed / h), s)
+    lifted = s.field[6] * (s.new[2] - y[2])
+    s.new[solid.WORK] = y[solid.WORK] + inertia * work / (h * h) + lifted
+    end_forces(body, tau + h, s)
+    return abs(s.angle[ORDER]) * ORDER / h
+
+
+@kernel
+def fill_series(s, speed, moment, growth):
+    """Fill in the series of the angle and of its sine and cosine, for a time that runs from 0 to 1.
+
+    ``moment`` and its ``growth`` over the step are those that go with the cosine and with the sine.
+    """
+    angle, sine, cosine = s.angle, s.sine, s.cosine
+    angle[0], angle[1] = 0.0, speed
+    sine[0], cosine[0] = 0.0, 1.0
+    for k in range(ORDER - 1):
+        total = moment[0] * cosine[k] + moment[1] * sine[k]
+        if k > 0:
+            total += growth[0] * cosine[k - 1] + growth[1] * sine[k - 1]
+        angle[k + 2] = total / ((k + 1) * (k + 2))
+        rises, falls = 0.0, 0.0
+        for j in range(k + 1):
+            turns = (k + 1 - j) * angle[k + 1 - j]
+            rises += cosine[j] * turns
+            falls += sine[j] * turns
+        sine[k + 1], cosine[k + 1] = rises / (k + 1), -falls / (k + 1)
+
+
+@kernel
+def sums(s):
+    """Angle and its rate at the end of a step, and the work of the moment, over the inertia."""
+    angle = s.angle
+    turned, speed, work = 0.0, 0.0, 0.0
+    for k in range(ORDER, 0, -1):
+        turned += angle[k]
+        speed += k * angle[k]
+    for k in range(ORDER, 1, -1):
+        for j in range(1, ORDER + 2 - k):
+            # k (k - 1) angle_k is the moment's coefficient, j angle_j that of the rate
+            work += k * (k - 1) * angle[k] * j * angle[j] / (k + j - 2.0)
+    return turned, speed, work
+
+
+@kernel
+def write_state(body, y, e, p, turned, s):
+    """Write the state after a turn about the edge by an angle, with a rate, to s.new."""
+    new = s.new
+    sine, cosine = sin_cos(0.5 * turned[0])
+    a, b, c = sine * e[0], sine * e[1], sine * e[2]
+    w, x, i, z = y[3], y[4], y[5], y[6]
+    new[3] = w * cosine - (x * a + i * b + z * c)
+    new[4] = x * cosine + (w * a + i * c - z * b)
+    new[5] = i * cosine + (w * b + z * a - x * c)
+    new[6] = z * cosine + (w * c + x * b - i * a)
+    normalise(new)
+    rows = rotation(new)
+    omega = scaled(turned[1], e)
+    moved = to_world(rows, p)
+    new[0], new[1] = s.anchor[0, 0] - moved[0], s.anchor[0, 1] - moved[1]
+    new[2] = -moved[2]
+    new[7], new[8], new[9] = to_world(rows, cross(p, omega))
+    new[10], new[11], new[12] = omega
+    new[solid.FRICTION] = y[solid.FRICTION]
+
+
+@kernel
+def end_forces(body, tau, s):
+    """Fill in the forces at the ends of the edge in the state s.new."""
+    rows, omega = rotation(s.new), solid.omega_of(s.new)
+    weight = to_body(rows, forces.effective_gravity_at(s.field, tau))
+    i, j = s.closed[0], s.closed[1]
+    alpha, force, e = forces.hinge_acceleration(body, rows, omega, weight, i, j, s)
+    forces.split_force(body, rows, omega, alpha, force, e, s)
