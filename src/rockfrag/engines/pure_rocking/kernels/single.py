@@ -180,11 +180,10 @@ def _through_sample(body, shaking, k, contact_events, summary, work):
                 break
             count += 1
             state.ground, state.gravity = a0 + rise * tau, g0 + lift * tau
-            if fails == 0:
-                if closes1:
-                    state.theta1 = 0.0
-                if closes2 or state.c2 == 0:
-                    state.theta2 = state.theta1
+            if fails == 0 and closes1:
+                state.theta1 = 0.0
+            if fails == 0 and (closes2 or state.c2 == 0):
+                state.theta2 = state.theta1
             record.copy_state(state, before)
             if fails != 0:
                 kind = record.OPENING
@@ -192,31 +191,48 @@ def _through_sample(body, shaking, k, contact_events, summary, work):
                     body, state, fails, at == 0.0
                 )
             else:
-                summary.impacts += 1
-                speed = abs(state.omega1 if closes1 else state.omega2 - state.omega1)
-                summary.grazings += 1 if speed < GRAZING_SPEED else 0
-                part = (sub + tau) / substeps
-                ahead = Ahead(
-                    samples, shaking.vertical, scale, n - 1, k, part, shaking.dt
-                )
+                instant = k, (sub + tau) / substeps
                 forced = count > MAX_CONTACT_EVENTS_PER_STEP
                 closes = closes1, closes2
-                kind, gave_way = resolve_impact(
-                    body, state, closes, work.restoring, ahead, HISTORY, forced
-                )
-                summary.given_way += gave_way
-                demand = summary.beyond if work.beyond else summary.demand
-                # of a series of impacts that is ended at once, its first one asks as all do
-                after = (
-                    state
-                    if kind == record.CLOSING
-                    else _after_impact(body, before, closes, work.trial)
-                )
-                ask_impulses(body, before, after, demand)
+                kind = _land(body, shaking, instant, closes, forced, summary, work)
             clock = (k + (sub + tau) / substeps) * shaking.dt
             record.keep_contact_event(
                 body, clock, kind, before, state, contact_events, summary
             )
+
+
+@kernel
+def _land(body, shaking, instant, closes, forced, summary, work):
+    """Take the state of ``work`` through the impact of the contacts that close, and return its kind.
+
+    ``instant``: a sample and the part of the interval after it; ``forced``: contacts must stay closed, as there
+    were too many contact events.
+    """
+    state, before = work.state, work.before
+    k, part = instant
+    summary.impacts += 1
+    speed = abs(state.omega1 if closes[0] else state.omega2 - state.omega1)
+    summary.grazings += 1 if speed < GRAZING_SPEED else 0
+    ahead = Ahead(
+        shaking.samples,
+        shaking.vertical,
+        shaking.scale,
+        shaking.samples.size - 1,
+        k,
+        part,
+        shaking.dt,
+    )
+    kind, gave_way = resolve_impact(
+        body, state, closes, work.restoring, ahead, HISTORY, forced
+    )
+    summary.given_way += gave_way
+    demand = summary.beyond if work.beyond else summary.demand
+    # of a series of impacts that is ended at once the first one demands impulses as all do
+    after = state
+    if kind != record.CLOSING:
+        after = _after_impact(body, before, closes, work.trial)
+    ask_impulses(body, before, after, demand)
+    return kind
 
 
 @kernel
