@@ -558,7 +558,9 @@ def solve_general(body, y, rows, n, rubs, s):
         s.given[i], s.friction[i] = s.slides[i], 0.0
         if rubs:
             s.friction[i] = solid.kinetic_of(body, s.closed[i])
-    if n == 2 and s.slides[0] + s.slides[1] == SLIDES:
+    # a wall may hold what the ground holds already, which leaves nothing to divide by
+    on_ground = max(s.closed[0], s.closed[1]) < solid.WALLS
+    if n == 2 and on_ground and s.slides[0] + s.slides[1] == SLIDES:
         slides = 0 if s.slides[0] == SLIDES else 1
         way = (s.way[slides, 0], s.way[slides, 1])
         push, normal, unit = push_by_two(s, 1 - slides, slides, way, s.friction[slides])

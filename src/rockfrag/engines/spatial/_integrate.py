@@ -834,7 +834,8 @@ def integrate(
             stuck = stuck + 1 if h < SHORTEST else 0
             many += 1
             changes = max(out[CONTACT_EVENTS] - began, many / STIFF)
-            if changes >= patience and solid.meets_walls_alone(body):
+            goes_on = dt - tau > 1e-12 * dt
+            if goes_on and changes >= patience and solid.meets_walls_alone(body):
                 note_loss(stepping.pass_interval(body, tau, dt, y, s), out)
                 tau = dt
                 patience = AGAIN
