@@ -90,7 +90,10 @@ const inSpace = (data, core) => {
         fewest: true,
         solid: solidOf(statue, statue, { ...solid, facing: solid.facing + by }),
       });
-      found.push(facing(-both.aside), facing(both.aside));
+      // sources are drawn in this order: those of the object before those of the floor
+      const floor = found.findIndex((run) => run.floor);
+      const at = floor < 0 ? found.length : floor;
+      found.splice(at, 0, facing(-both.aside), facing(both.aside));
     }
     // of fewer motions the object as it stands, in one plane along one component, and
     // at the site's level alone, which comes first

@@ -40,6 +40,44 @@ function rockfragSayer(texts) {
   return (id, values = {}) =>
     texts[id].replace(/\{(\w+)\}/g, (_, place) => values[place]);
 }
+// what writes a number with so many decimals, by a language's sign for them
+function rockfragDecimals(decimal) {
+  "use strict";
+  return (value, digits) =>
+    value
+      .toFixed(digits)
+      .replace(/^-(?=[0.]*$)/, "")
+      .replace("-", "−")
+      .replace(".", decimal);
+}
+// where an amplitude lies between the first and the last of a rising row, by logarithm
+function rockfragAlong(amplitudes) {
+  "use strict";
+  const [low, high] = [amplitudes[0], amplitudes.at(-1)];
+  return (amplitude) => Math.log(amplitude / low) / Math.log(high / low);
+}
+// an upright line in a drawing
+function rockfragUpright(context, x, top, bottom) {
+  "use strict";
+  context.beginPath();
+  context.moveTo(x, top);
+  context.lineTo(x, bottom);
+  context.stroke();
+}
+// amplitudes below a bar, as far as it has them, and the chosen one over it
+function rockfragBarScale(drawing, chosen) {
+  "use strict";
+  const { context, width, height, along, colours } = drawing;
+  const x = (peak) => 4 + along(peak) * (width - 8);
+  context.fillStyle = colours.soft;
+  for (const peak of [0.05, 0.1, 0.2, 0.5, 1, 2, 5])
+    if (along(peak) >= 0 && along(peak) <= 1)
+      context.fillText(`${peak} g`, Math.min(x(peak), width - 30), height - 3);
+  context.strokeStyle = colours.ink;
+  context.lineWidth = 2;
+  rockfragUpright(context, x(chosen), 0, height - 14);
+  context.lineWidth = 1;
+}
 // what a bar of outcomes says where it is not seen: a 1 for each amplitude that
 // topples, and the least of these
 function rockfragBarLabel(say, row, least) {

@@ -151,12 +151,7 @@
     if (c1 === 0) return say(`object_${side(c2)}`);
     return say(c2 === 0 ? `whole_${side(c1)}` : `both_${side(c2)}_${side(c1)}`);
   }
-  const shown = (value, digits) =>
-    value
-      .toFixed(digits)
-      .replace(/^-(?=[0.]*$)/, "")
-      .replace("-", "−")
-      .replace(".", data.texts.decimal);
+  const shown = rockfragDecimals(data.texts.decimal);
 
   function outcomeOfTable() {
     if (changed()) return null;
@@ -393,17 +388,12 @@
     if (hasPixels(drawnHistory)) context.drawImage(drawnHistory, 0, 0, width, height);
     const x = 44 + (time / Math.max(duration(), motion().dt)) * (width - 52);
     context.strokeStyle = colours.accent;
-    context.beginPath();
-    context.moveTo(x, 0);
-    context.lineTo(x, height - 18);
-    context.stroke();
+    rockfragUpright(context, x, 0, height - 18);
   }
-  const logarithm = (g) =>
-    Math.log(g / data.amplitudes[0]) /
-    Math.log(data.amplitudes.at(-1) / data.amplitudes[0]);
+  const along = rockfragAlong(data.amplitudes);
   function drawBar() {
     const [context, width, height] = rockfragSized(find("bar"));
-    const x = (g) => 4 + logarithm(g) * (width - 8);
+    const x = (g) => 4 + along(g) * (width - 8);
     const row = data.outcomes[chosen.body][chosen.motion];
     const lines = [[data.amplitudes, row, changed() ? "table" : ""]];
     if (changed() && bar) lines.push([bar.amplitudes, bar.outcomes, "changed"]);
@@ -427,17 +417,7 @@
       context.fillStyle = colours.ink;
       context.fillText(title, 6, number * each + Math.min(each - 3, 11));
     });
-    context.fillStyle = colours.soft;
-    for (const g of [0.05, 0.1, 0.2, 0.5, 1, 2, 5])
-      if (g >= data.amplitudes[0] && g <= data.amplitudes.at(-1))
-        context.fillText(`${g} g`, Math.min(x(g), width - 30), height - 3);
-    context.strokeStyle = colours.ink;
-    context.lineWidth = 2;
-    context.beginPath();
-    context.moveTo(x(chosen.amplitude), 0);
-    context.lineTo(x(chosen.amplitude), height - 14);
-    context.stroke();
-    context.lineWidth = 1;
+    rockfragBarScale({ context, width, height, along, colours }, chosen.amplitude);
     const least = shown(data.amplitudes[row.indexOf("1")] ?? 0, 3);
     find("bar").setAttribute("aria-label", rockfragBarLabel(say, row, least));
   }

@@ -16,12 +16,7 @@
     ...one,
     samples: one.samples.map(numbers),
   }));
-  const shown = (value, digits) =>
-    value
-      .toFixed(digits)
-      .replace(/^-(?=[0.]*$)/, "")
-      .replace("-", "−")
-      .replace(".", data.texts.decimal);
+  const shown = rockfragDecimals(data.texts.decimal);
   const degrees = (angle) => `${shown((angle * 180) / Math.PI, 1)}°`;
 
   // ---- what is shown: the case, and its response
@@ -188,10 +183,7 @@
     }
     const now = Math.min(Math.round(time / motion().dt), response.done - 1);
     context.strokeStyle = colours.accent;
-    context.beginPath();
-    context.moveTo(at(now)[0], 8);
-    context.lineTo(at(now)[0], bottom);
-    context.stroke();
+    rockfragUpright(context, at(now)[0], 8, bottom);
     context.beginPath();
     context.arc(
       middle[0] + far * axes[now][0],
@@ -210,12 +202,10 @@
     context.fillText(`${shown(end, 1)} s`, right, height - 6);
     context.textAlign = "left";
   }
-  const place = (peak) =>
-    Math.log(peak / data.amplitudes[0]) /
-    Math.log(data.amplitudes.at(-1) / data.amplitudes[0]);
+  const along = rockfragAlong(data.amplitudes);
   function drawBar() {
     const [context, width, height] = rockfragSized(find("bar"));
-    const x = (peak) => 4 + place(peak) * (width - 8);
+    const x = (peak) => 4 + along(peak) * (width - 8);
     const { amplitudes } = data;
     [...bar].forEach((fell, k) => {
       const [from, to] = [k - 0.5, k + 0.5].map(
@@ -227,13 +217,7 @@
       context.fillStyle = fell === "1" ? colours.red : colours.band;
       context.fillRect(x(from), 0, x(to) - x(from) + 1, height - 16);
     });
-    context.fillStyle = colours.soft;
-    for (const peak of [0.05, 0.1, 0.2, 0.5, 1, 2])
-      context.fillText(`${peak} g`, Math.min(x(peak), width - 26), height - 3);
-    context.strokeStyle = colours.ink;
-    context.lineWidth = 2;
-    context.strokeRect(x(chosen.peak), 0, 0.1, height - 15);
-    context.lineWidth = 1;
+    rockfragBarScale({ context, width, height, along, colours }, chosen.peak);
     const least = shown(data.amplitudes[bar.indexOf("1")] ?? 0, 3);
     find("bar").setAttribute("aria-label", rockfragBarLabel(say, bar, least));
   }
@@ -311,7 +295,7 @@
   function setPeak(peak) {
     chosen.peak = peak;
     find("amplitude").value = String(
-      Math.round(place(peak) * (data.amplitudes.length - 1)),
+      Math.round(along(peak) * (data.amplitudes.length - 1)),
     );
     find("amplitude").setAttribute("aria-valuetext", `${shown(peak, 3)} g`);
   }
