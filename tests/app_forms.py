@@ -90,7 +90,10 @@ def settings_of(form: Mapping[str, str]) -> dict[str, Any]:
 def options_of(form: Mapping[str, str]) -> list[str]:
     """Options of the command line for a form."""
     settings = {
-        key: value for key, value in settings_of(form).items() if key != "pedestal"
+        # the option has its unit in its help
+        key.removesuffix("_deg"): value
+        for key, value in settings_of(form).items()
+        if key != "pedestal"
     }
     options = [
         f"--{key.replace('_', '-')}" + ("" if value is True else f"={value}")

@@ -96,9 +96,10 @@ def test_its_figures_are_those_of_the_command(
         capsys.readouterr()
         # a kind of one's own has a key and no option
         path = tmp_path / "statue.yaml"
-        path.write_text(yaml.safe_dump(settings_of(form)))
-        given = [str(path)] if "stands" in form else options_of(form)
-        asked = ["assess", *given, *records, "--json", "--output", str(tmp_path)]
+        own = {"records": [str(own_records / "catalogue.csv")]}
+        path.write_text(yaml.safe_dump(settings_of(form) | own))
+        given = [str(path)] if "stands" in form else [*options_of(form), *records]
+        asked = ["assess", *given, "--json", "--output", str(tmp_path)]
         if main(asked) != 0:
             continue
         said = json.loads(capsys.readouterr().out)

@@ -834,9 +834,10 @@ def _counts(now: ObjectOutcomes, level: Level | None) -> tuple[int, int, int] | 
 
 
 def _variants(request: Request, plan: Plan) -> list[Moved[Standing]]:
-    """The object with every property moved to both sides; no restitution enters in space."""
-    idle = {"restitution"} if plan.shaking.motions.both else set()
-    return [each for each in request.objects.variants() if each.name not in idle]
+    """The object with every property moved to both sides; not all enter in a plane, or in space."""
+    objects, in_space = request.objects, plan.shaking.motions.both
+    idle = {"restitution"} if in_space else objects.idle_in_plane
+    return [each for each in objects.variants() if each.name not in idle]
 
 
 def _moved(

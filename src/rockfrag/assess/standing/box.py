@@ -44,6 +44,8 @@ class Box(Standing):
     facing_deg: float = 0.0
     faces_anywhere: bool = False
 
+    idle_in_plane = frozenset({"facing"})
+
     @classmethod
     def takes(cls, settings: Mapping[str, Any]) -> bool:
         """Take what has a width and a depth."""

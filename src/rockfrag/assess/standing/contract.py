@@ -84,6 +84,8 @@ class Standing(ABC):
     in_space_text: ClassVar[Text] = Text.MOVES_IN_SPACE
     # Whether it is answered in the worst direction of each record where it rocks in a plane
     from_all_sides: ClassVar[bool] = False
+    # Names of properties that change nothing where it rocks in a plane
+    idle_in_plane: ClassVar[frozenset[str]] = frozenset()
     # By how much of its extent corners of the base lie elsewhere in space, and it is turned [rad], by record
     base_spread: float = 0.0
 
