@@ -67,10 +67,11 @@ def in_node(
     files["module.wasm"].write_bytes(module_bytes(module))
     files["cases.json"].write_text(json.dumps(cases))
     files["motions"].write_bytes(motion.tobytes())
-    text = (
-        Path(__file__).parent / "node_scripts" / f"{script or module}.js"
-    ).read_text()
-    (folder / "run.cjs").write_text(f"{driver_text(module)}\n{text}")
+    scripts = Path(__file__).parent / "node_scripts"
+    texts = [
+        (scripts / f"{name}.js").read_text() for name in ("shaking", script or module)
+    ]
+    (folder / "run.cjs").write_text("\n".join([driver_text(module), *texts]))
     done = subprocess.run(
         [NODE, folder / "run.cjs", *files.values()], capture_output=True, text=True
     )

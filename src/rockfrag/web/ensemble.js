@@ -22,27 +22,11 @@ async function rockfragEnsemble(bytes) {
   } = layout.constants;
   const { fields } = layout.call;
 
-  // a block, or one on a pedestal; `measured` restitution, none if null, and the factor
-  // `restitution_factor` on each; `rolling` is the restitution of a statue on a round
-  // base, NaN where it stands on another one
-  function bodyOf({
-    statue,
-    pedestal = null,
-    measured = null,
-    restitution_factor = 1,
-    rolling = null,
-  }) {
+  // a block, or one on a pedestal, by the names of `rockfragStanding`
+  function bodyOf(given) {
     reserve(arrays);
     new Uint8Array(memory.buffer, call, layout.call.size).fill(0);
-    write(layout.call, call, {
-      statue: rockfragBlock(statue),
-      pedestal: rockfragBlock(pedestal ?? statue),
-      stacked: pedestal ? 1 : 0,
-      has_ratios: measured !== null || restitution_factor !== 1 || rolling !== null,
-      below: measured ?? NaN,
-      above: rolling ?? measured ?? NaN,
-      restitution_factor,
-    });
+    write(layout.call, call, rockfragStanding(given));
     const gravityAt = fields.body[0] + layout.body.fields.gravity[0];
     reserve(0).setFloat64(call + gravityAt, gravity, true);
     run("describe");
@@ -53,7 +37,7 @@ async function rockfragEnsemble(bytes) {
     if (described.fault !== 0) throw new Error(ROCKFRAG_FAULTS[described.fault]);
     return {
       ...described,
-      stacked: Boolean(pedestal),
+      stacked: Boolean(given.pedestal),
       centre: [...new Float64Array(memory.buffer, call + fields.centre[0], 3)],
       record: new Uint8Array(
         memory.buffer.slice(

@@ -114,6 +114,27 @@ function rockfragBlock(block) {
   };
 }
 
+// a block, or one on a pedestal, as modules in the plane are told of it: `measured`
+// restitution, none if null, the factor `restitution_factor` on each, and `rolling`,
+// the restitution of a statue on a round base, NaN where it stands on another one
+function rockfragStanding({
+  statue,
+  pedestal = null,
+  measured = null,
+  restitution_factor = 1,
+  rolling = null,
+}) {
+  return {
+    statue: rockfragBlock(statue),
+    pedestal: rockfragBlock(pedestal ?? statue),
+    stacked: pedestal ? 1 : 0,
+    has_ratios: measured !== null || restitution_factor !== 1 || rolling !== null,
+    below: measured ?? NaN,
+    above: rolling ?? measured ?? NaN,
+    restitution_factor,
+  };
+}
+
 // why a body cannot stand, by the fault that its description leaves
 const ROCKFRAG_FAULTS = [
   "",

@@ -38,26 +38,13 @@ async function rockfragPlane(bytes) {
   // what describes a body stands before what the kernels work in
   const described = fields.work[0] ?? fields.work.at;
 
-  // one block, or one on a pedestal, as the module of outcomes takes it, and what holds
+  // one block, or one on a pedestal, by the names of `rockfragStanding`, and what holds
   // it: numbers by the names above
-  function bodyOf({
-    statue,
-    pedestal = null,
-    measured = null,
-    restitution_factor = 1,
-    rolling = null,
-    held = {},
-  }) {
+  function bodyOf({ held = {}, ...given }) {
     reserve(arrays);
     new Uint8Array(memory.buffer, call, layout.call.size).fill(0);
     write(layout.call, call, {
-      statue: rockfragBlock(statue),
-      pedestal: rockfragBlock(pedestal ?? statue),
-      stacked: pedestal ? 1 : 0,
-      has_ratios: measured !== null || restitution_factor !== 1 || rolling !== null,
-      below: measured ?? NaN,
-      above: rolling ?? measured ?? NaN,
-      restitution_factor,
+      ...rockfragStanding(given),
       gravity: constants.gravity,
       ...NOTHING,
       ...held,

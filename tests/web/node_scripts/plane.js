@@ -4,12 +4,7 @@ const [wasm, cases, motions, out] = process.argv.slice(2);
 const numbers = new Float64Array(new Uint8Array(fs.readFileSync(motions)).buffer);
 rockfragPlane(new Uint8Array(fs.readFileSync(wasm))).then((plane) => {
   const { bodies, counts, dts, scales } = JSON.parse(fs.readFileSync(cases));
-  let end = 0;
-  const shaking = counts.map((n, i) => {
-    const begin = end;
-    end += n;
-    return { samples: numbers.subarray(begin, end), dt: dts[i] };
-  });
+  const shaking = shakingOf(numbers, counts, dts);
   const factors = Float64Array.from(scales);
   const records = [];
   const found = bodies.flatMap((given) => {

@@ -20,6 +20,7 @@ from rockfrag.engines.spatial._algebra import (
     minus,
     norm,
     plus,
+    rotation,
     times,
     to_world,
 )
@@ -152,6 +153,15 @@ def arm_and_bias(body, up, omega, i):
     round_ = body.rim * (turn[0] * y - turn[1] * x) * per_sine
     moved = plus(cross(omega, p), (-round_ * y, round_ * x, 0.0))
     return p, cross(omega, moved)
+
+
+@kernel
+def weight_of_attitude(body, y):
+    """Weight of an error of the attitude: of a rim one turns the contact by itself over the tilt."""
+    if body.rim == 0.0:
+        return 1.0
+    up = rotation(y)[2]
+    return min(1.0, 1e3 * norm(up[0], up[1]) + 1e-4)
 
 
 @kernel

@@ -834,8 +834,8 @@ def integrate(
             stuck = stuck + 1 if h < SHORTEST else 0
             many += 1
             changes = max(out[CONTACT_EVENTS] - began, many / STIFF)
-            goes_on = dt - tau > 1e-12 * dt
-            if goes_on and changes >= patience and solid.meets_walls_alone(body):
+            is_left = dt - tau > 1e-12 * dt
+            if is_left and changes >= patience and solid.meets_walls_alone(body):
                 note_loss(stepping.pass_interval(body, tau, dt, y, s), out)
                 tau = dt
                 patience = AGAIN

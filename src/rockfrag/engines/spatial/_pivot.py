@@ -10,13 +10,17 @@ Theory: ``docs/space.md``, equation 4.
 import math
 
 from rockfrag.engines.compile.jit import inlined_kernel, kernel
-from rockfrag.engines.pure_rocking.kernels.dormand_prince import INSTANTS, WEIGHTS
+from rockfrag.engines.pure_rocking.kernels.dormand_prince import (
+    INSTANTS,
+    WEIGHTS,
+    error_rate,
+)
 from rockfrag.engines.spatial import _body as solid
 from rockfrag.engines.spatial._algebra import (
     cross,
     dot,
-    norm,
     plus,
+    rotation,
     rotation_of,
     scaled,
     to_body,
@@ -135,19 +139,10 @@ def write_state(body, y, rows, velocity, s):
 @kernel
 def error_of(body, h, y, s):
     """Largest error, by the step of order 4, of attitude and angular velocity, or of what they move."""
-    k = s.turning
-    worst, weight = 0.0, 1.0
-    up = rotation_of(y[3], y[4], y[5], y[6])[2]
-    p = solid.arm(body, up, s.closed[0])
-    if body.rim != 0.0:
-        # errors of the attitude turn the contact of a rim by one over the tilt
-        weight = min(1.0, 1e3 * norm(up[0], up[1]) + 1e-4)
+    worst, weight = 0.0, solid.weight_of_attitude(body, y)
+    p = solid.arm(body, rotation(y)[2], s.closed[0])
     for i in range(WORK):
-        total = (
-            71 / 57600 * k[0, i] - 71 / 16695 * k[2, i] + 71 / 1920 * k[3, i]
-            - 17253 / 339200 * k[4, i] + 22 / 525 * k[5, i] - 1 / 40 * k[6, i]
-        )  # fmt: skip
         scale = weight if i < 4 else 1.0 + abs(s.turned_before[i])
-        worst = max(worst, abs(h * total) / scale)
+        worst = max(worst, abs(h * error_rate(s.turning, i)) / scale)
     # an error of a component of the quaternion is half of that of the attitude
     return worst * max(1.0, 2.0 * math.sqrt(dot(p, p)))

@@ -5,7 +5,11 @@ positive. Theory: ``docs/space.md``, "Steps".
 """
 
 from rockfrag.engines.compile.jit import kernel
-from rockfrag.engines.pure_rocking.kernels.dormand_prince import INSTANTS, WEIGHTS
+from rockfrag.engines.pure_rocking.kernels.dormand_prince import (
+    INSTANTS,
+    WEIGHTS,
+    error_rate,
+)
 from rockfrag.engines.spatial import _body as solid
 from rockfrag.engines.spatial import _forces as forces
 from rockfrag.engines.spatial import _hinge as hinge
@@ -101,19 +105,10 @@ def attempt_any(body, tau, h, y, s):
 @kernel
 def error_of(body, h, y, s):
     """Largest component of the difference to the step of order 4, over its size."""
-    k = s.slopes
-    worst, weight = 0.0, 1.0
-    if body.rim != 0.0:
-        # errors of the attitude turn the contact of a rim by one over the tilt
-        up = rotation(y)[2]
-        weight = min(1.0, 1e3 * norm(up[0], up[1]) + 1e-4)
+    worst, weight = 0.0, solid.weight_of_attitude(body, y)
     for i in range(13):
-        total = (
-            71 / 57600 * k[0, i] - 71 / 16695 * k[2, i] + 71 / 1920 * k[3, i]
-            - 17253 / 339200 * k[4, i] + 22 / 525 * k[5, i] - 1 / 40 * k[6, i]
-        )  # fmt: skip
         scale = weight if 3 <= i < 7 else 1.0 + abs(y[i])
-        worst = max(worst, abs(h * total) / scale)
+        worst = max(worst, abs(h * error_rate(s.slopes, i)) / scale)
     return worst
 
 
