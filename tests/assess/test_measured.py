@@ -7,6 +7,7 @@ import pytest
 
 from rockfrag.assess.conversion import (
     PRIOR,
+    Conversion,
     VelocityBySpectrum,
     published_velocity,
     usual_distance,
@@ -154,3 +155,11 @@ def test_a_spectral_acceleration_beside_pga_narrows_the_velocity(motions: Motion
     assert (level.measure, level.value, level.sa_1s) == (PGA, 0.3, 0.2)
     with pytest.raises(InputError, match="period of 1 s"):
         asked(**SIZES, sa=["0.3 s", "0.2 g"])
+
+
+def test_a_set_says_the_velocity_that_its_motions_have_for_a_measure():
+    logs = np.log([0.5, 1.0, 4.0])
+    known = Conversion(PGA, (0.0, 0.0, 0.0), 1.0, 0.0, logs, None, 0.0, 0.0, True)
+    assert known.of_set == pytest.approx(VELOCITY_PER_G)
+    low, high = known.ends
+    assert (low, high) == pytest.approx((0.5 * VELOCITY_PER_G, 4 * VELOCITY_PER_G))

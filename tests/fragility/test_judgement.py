@@ -9,8 +9,10 @@ from scipy import stats
 
 from rockfrag.base.errors import InputError
 from rockfrag.fragility.checks import goodness_of_fit
+from rockfrag.fragility.curve_facts import compared_curves
 from rockfrag.fragility.empirical import TableIda
 from rockfrag.fragility.estimators import fragility_of
+from rockfrag.fragility.held_out import outcome_scores
 from rockfrag.fragility.ida_curves import fragility_table, with_measures
 from rockfrag.fragility.lognormal import fit_lognormal
 from rockfrag.fragility.measure_selection import (
@@ -258,3 +260,29 @@ def test_measure_that_decides_together_with_another_is_recommended_with_it():
     words = recommend_measure(table, ["pga_g", "pgv_cm_s"], replicates=20).words
     assert "use the surface in both" in words
     assert words.startswith("Use P")
+
+
+def test_where_one_lognormal_curve_is_rejected_all_are_compared_without_a_form():
+    rows = pd.DataFrame(
+        {
+            "configuration": ["low", "high"],
+            "theta": [0.30, 0.40],
+            "theta_isotonic": [0.32, 0.39],
+            "p_fit": [0.01, 0.50],
+        }
+    )
+    found = compared_curves(rows)
+    assert found.nonparametric and found.rejected == ["low"]
+    assert list(found.rows["theta"]) == [0.32, 0.39]
+    kept = compared_curves(rows.assign(p_fit=0.5))
+    assert not kept.nonparametric and list(kept.rows["theta"]) == [0.30, 0.40]
+
+
+def test_earthquakes_that_a_measure_parts_wholly_are_foretold_by_the_others():
+    """No finite curve is the likeliest of outcomes that a level parts, but a penalised one is finite and steep."""
+    logs = np.log(np.geomspace(0.1, 1.0, 40))[:, None]
+    fell = (logs[:, 0] > np.log(0.3)).astype(float)
+    scores = outcome_scores(logs, fell, np.ones(40), np.arange(40) % 8)
+    assert np.isfinite(scores).all()
+    # of five outcomes each a coin would score 5 ln 1/2
+    assert (scores > 5 * np.log(0.5)).all()

@@ -481,7 +481,12 @@ def earthquake_numbers(earthquakes: NDArray[np.object_]) -> NDArray[np.intp]:
 def fraction_at(
     level: float, levels: Floats, fractions: Floats, shift: float = 0.0
 ) -> float:
-    """Fraction of the motions at a level, between levels by the logarithm; all lie higher by ``shift`` in it."""
+    """Fraction of the motions at a level, between levels by the logarithm; all lie higher by ``shift`` in it.
+
+    NaN where the level is.
+    """
+    if math.isnan(level):
+        return math.nan
     # relative to the asked level: where it is one of the series its logarithm is 0 to the bit
     return float(np.interp(-shift, np.log(levels / level), fractions))
 

@@ -171,6 +171,11 @@ def test_every_choice_takes_each_of_its_texts_and_no_other(choice):
     assert {choice(*numbers) for numbers in given} == set(range(len(TEXTS[choice])))
 
 
+def test_a_change_that_leaves_nothing_is_told_apart_from_one_that_changes_nothing():
+    assert choices.reduces(0.0, grows=False) == choices.reduces(0.0, grows=True) == 0
+    assert [choices.reduces(1.0, grows) for grows in (False, True)] == [1, 2]
+
+
 def test_what_is_open_is_said_to_be_and_no_limit_is_said_twice():
     assert (
         choices.between(0.3, 0.0, 1.0) == 0 and choices.over_years(0.3, 0.0, 1.0) == 1

@@ -6,14 +6,17 @@ import numpy as np
 import pytest
 
 from rockfrag.engines.compile.jit import entry_kernel
+from rockfrag.engines.contract import Case, Request
 from rockfrag.engines.planar import integrate as contact
 from rockfrag.engines.planar import records
+from rockfrag.engines.planar.engine import ContactRun
 from rockfrag.engines.planar.witness import breaks_a_law
-from rockfrag.system import System
+from rockfrag.simulation.inputs import ground_motion
+from rockfrag.system import Block, Column, System
 
 from ...oracle import witness
 from ...simulation.reference_bodies import random_motion
-from .cases import G, random_column, with_contacts
+from .cases import DT, G, random_column, with_contacts
 from .violations import SHUT, history_of, impacts_of, worst_violations
 
 
@@ -98,3 +101,18 @@ def test_the_witness_of_every_history_sees_what_the_independent_one_sees() -> No
             broken += worst > 1
             assert judge(p, w, 1e-6) == (worst > 1), laws
     assert 100 < broken < 290
+
+
+def test_a_state_that_is_no_number_counts_as_a_fall_and_as_a_paradox() -> None:
+    """Once such a body went on as one that stands; a sample stands for what brings it about."""
+    system = with_contacts(Column([Block(0.3, 1.0, 50.0)] * 2), [0.8, 0.8])
+    moved = ground_motion(np.full(10, 3.0), DT)
+    case = Case(system, moved, request=Request(g=G))
+    stands = ContactRun(case, 1e-4).work["outcome"]
+    assert stands["overturned_body"] == 0 < stands["peak_rotation"].max()
+    # no door lets it in
+    moved.x.acceleration.setflags(write=True)
+    moved.x.acceleration[-1] = np.nan
+    lost = ContactRun(case, 1e-4).work["outcome"]
+    assert lost["overturned_body"] > 0
+    assert lost["paradoxes"] > stands["paradoxes"]

@@ -292,6 +292,9 @@ def _step(p, w, interval, closing, kept):
     w.friction_loss += friction_loss
     w.tied += tied
     _track(p, w)
+    if not _is_known(p, w):
+        w.outcome.paradoxes += 1
+        w.outcome.overturned_body = p.count
     if w.outcome.overturned_body > 0:
         w.outcome.overturning_time = _instant(interval, w.tau).time
 
@@ -471,6 +474,15 @@ def _begin(p, w, start):
     w.idle = w.jolts = w.knows_rest = 0
     w.is_stale = 1
     outcome.overturning_time = math.nan
+
+
+@kernel
+def _is_known(p, w):
+    """Whether all of a state are numbers."""
+    known = True
+    for d in range(3 * p.count):
+        known = known and math.isfinite(w.q[d]) and math.isfinite(w.v[d])
+    return known
 
 
 @kernel

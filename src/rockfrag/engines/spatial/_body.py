@@ -271,6 +271,21 @@ def energy(body, y, g):
 
 
 @kernel
+def is_known(y):
+    """Whether all of a state are numbers."""
+    known = True
+    for i in range(SIZE):
+        known = known and math.isfinite(y[i])
+    return known
+
+
+@kernel
+def balance(body, y, g):
+    """Energy less the work of the ground's motion, which nothing changes while a body turns about a contact."""
+    return energy(body, y, g) - y[WORK]
+
+
+@kernel
 def pay(body, y, gained, g):
     """Take energy that was gained [J/kg] from the velocities, as far as there is any."""
     moving = energy(body, y, g) - g * (y[2] - body.height)

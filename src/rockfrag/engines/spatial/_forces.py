@@ -95,9 +95,10 @@ CASE = np.dtype(
         *whole("broken taut", solid.MOST_CONSTRAINTS),
         *fields("hits impact force breaks", solid.HOLDERS),
         # contacts near ground and walls in time stepping; how fast each may close [m/s], its friction, what an
-        # impulse along each of its axes gives to its velocity there, and its impulse for a unit of mass
+        # impulse along each of its axes gives to its velocity there, its impulse for a unit of mass, and that by
+        # which it is put in place
         *whole("near", MOST_NEAR),
-        *fields("closes rubs", MOST_NEAR),
+        *fields("closes rubs moved", MOST_NEAR),
         *fields("gives shove", MOST_NEAR, 3),
     ],
     align=True,

@@ -347,15 +347,13 @@ def tip_over_rim(body, y, x, z, sliding, gravity, s):
     """Tilt a flat body towards a direction of the base, with the velocities that it has if it slides."""
     omega = solid.omega_of(y)
     velocity = (y[7], y[8], y[9])
-    before = solid.energy(body, y, s.field[6]) - y[solid.WORK]
+    before = solid.balance(body, y, s.field[6])
     start_rolling(body, y, x, z, gravity, s)
     if sliding == forces.SLIDES:
         s.slides[0] = forces.SLIDES
         y[10], y[11], y[12] = omega
         y[7], y[8], y[9] = velocity
-    solid.pay(
-        body, y, solid.energy(body, y, s.field[6]) - y[solid.WORK] - before, s.field[6]
-    )
+    solid.pay(body, y, solid.balance(body, y, s.field[6]) - before, s.field[6])
 
 
 @kernel
@@ -402,7 +400,7 @@ def happen(body, what, tau, y, cut, stuck, s):
     """Change velocities and mode by what ended a step (a landing, an opening, …); return the energy lost [J]."""
     g = s.field[6]
     gravity = forces.effective_gravity_at(s.field, tau)
-    before = solid.energy(body, y, g) - y[solid.WORK]
+    before = solid.balance(body, y, g)
     if what == modes.LANDS:
         modes.impact(body, y, gravity, 0, s)
         rows = algebra.rotation(y)
@@ -437,7 +435,7 @@ def happen(body, what, tau, y, cut, stuck, s):
         if not free:
             modes.jam(body, y, s)
     rim_instead_of_feet(body, y, gravity, s)
-    return before - (solid.energy(body, y, g) - y[solid.WORK])
+    return before - solid.balance(body, y, g)
 
 
 @kernel
@@ -594,7 +592,9 @@ def advance(body, tau, dt, next_step, y, tolerance, cut, stuck, s, out):
         out[STEPS] += 1
         if error <= tolerance or h <= SHORTEST:
             least, what = step.margin(body, s.new, s)
-            if least >= 0 and h > 1e-7 and step.dips(body, y, h, s):
+            # a corner that has dipped into a wall does not count at the end of a step, whatever else happens there
+            hides = least >= 0 or body.walls
+            if hides and h > 1e-7 and step.dips(body, y, h, s):
                 h *= 0.5
                 continue
             break
@@ -609,7 +609,7 @@ def advance(body, tau, dt, next_step, y, tolerance, cut, stuck, s, out):
         what = modes.NOTHING
     exact = step.kind_of_step(body, s) != forces.GENERAL
     if exact and body.rim > 0:
-        note_loss(balance(body, y, g) - balance(body, s.new, g), out)
+        note_loss(solid.balance(body, y, g) - solid.balance(body, s.new, g), out)
     for i in range(solid.SIZE):
         y[i] = s.new[i]
     algebra.normalise(y)
@@ -622,6 +622,9 @@ def advance(body, tau, dt, next_step, y, tolerance, cut, stuck, s, out):
     if not exact:
         before = solid.energy(body, y, g)
         modes.settle(body, y, s)
+        if body.walls:
+            # contacts that are wedged may be raised
+            solid.pay(body, y, solid.energy(body, y, g) - before, g)
         note_loss(before - solid.energy(body, y, g), out)
     # whether the rates at the end of a step are those at the beginning of the next
     sticks = forces.kind_of(s) in (forces.FLIGHT, forces.PIVOT, forces.HINGE)
@@ -629,12 +632,6 @@ def advance(body, tau, dt, next_step, y, tolerance, cut, stuck, s, out):
     if body.rim > 0:
         ahead = look_after_rim(body, y, tau + h, cut, ahead, s, out)
     return tau + h, ahead, h
-
-
-@kernel
-def balance(body, y, g):
-    """Energy less the work of the ground's motion, which nothing changes while a body turns about a contact."""
-    return solid.energy(body, y, g) - y[solid.WORK]
 
 
 @kernel
@@ -820,9 +817,9 @@ def integrate(
                     s.bonded, s.breaks[solid.BOND] = 0, s.began + tau
                     continue
                 s.goes_on = 0
-                standing = solid.energy(body, y, g) - y[solid.WORK]
+                standing = solid.balance(body, y, g)
                 leave_rest(body, y, tau, s)
-                note_loss(standing - (solid.energy(body, y, g) - y[solid.WORK]), out)
+                note_loss(standing - solid.balance(body, y, g), out)
                 ahead = dt
                 if forces.kind_of(s) == forces.REST:
                     break
@@ -855,6 +852,10 @@ def integrate(
                 # nothing is consistent here: let the motion go on as it is for a moment
                 tau = force_step(body, tau, dt, y, s)
                 stuck = 0
+            if not solid.is_known(y):
+                s.counters[modes.UNSOLVED] += 1
+                note_fall(y, s, (k + 1) * dt, out)
+                break
             up = note_peaks(body, y, start, out)
             before = note_turn(y, before, out)
             if up <= 0.0 or fall_is_certain(body, y, peaks[min(k, last)], scale, g):

@@ -30,6 +30,8 @@ BEYOND = 1e-3
 # contacts beyond the first four, beside a wall, that are taken in at most, one at a time; velocity [m/s] or, over
 # gravity, acceleration [-] at which they approach
 TAKEN_IN, MISSED = 8, 1e-9
+# compliance of contacts, over the largest of a body, by which gaps at walls are closed [-], and how many times
+GAP_SOFTNESS, CLOSINGS = 1e-3, 3
 LANDS, OPENS, LEAVES_CONE, SLIP_ENDS, TIE_TURNS, TIE_BREAKS = 1, 2, 3, 4, 5, 6
 NOTHING = 0
 
@@ -928,7 +930,7 @@ def close_gaps(body, y, rows, s):
     """
     n = s.count
     if forces.at_wall(s):
-        close_gaps_at_wall(body, y, rows, s)
+        close_gaps_at_wall(body, y, s)
         return
     if n >= 3:
         lay_flat(body, y)
@@ -949,34 +951,38 @@ def close_gaps(body, y, rows, s):
 
 
 @kernel
-def close_gaps_at_wall(body, y, rows, s):
-    """Move the body by what its closed points are off the ground and the walls."""
+def close_gaps_at_wall(body, y, s):
+    """Move the body by what its closed points are off the ground and the walls.
+
+    Four contacts of an upright body may say one thing twice, and contradict each other by the errors of steps.  So
+    gaps are closed as by soft contacts, which do not move it far for that, and what this leaves of them once more.
+    """
     n = s.count
-    forces.fill_delassus(body, rows, s.closed, n, s.delassus)
-    soft = forces.SOFTNESS * forces.largest_compliance(s, n)
-    for i in range(n):
-        for j in range(n):
-            s.matrix[i, j] = s.delassus[3 * i + 2, 3 * j + 2]
-        s.matrix[i, i] += soft
-        s.vector[i] = -solid.gap_of(body, y, rows, s.closed[i])
-    if not algebra.factor(s.matrix, s.order, n):
-        return
-    algebra.substitute(s.matrix, s.order, n, s.vector)
-    moved = (0.0, 0.0, 0.0)
-    turned = (0.0, 0.0, 0.0)
-    for i in range(n):
-        p = solid.arm(body, rows[2], s.closed[i])
-        push = algebra.scaled(
-            s.vector[i], forces.push_along(body, rows, s.closed[i], 2)
-        )
-        moved = algebra.plus(moved, push)
-        turned = algebra.plus(
-            turned, algebra.times(body.inverse, algebra.cross(p, push))
-        )
-    moved = algebra.to_world(rows, moved)
+    for _ in range(CLOSINGS):
+        rows = algebra.rotation(y)
+        forces.fill_delassus(body, rows, s.closed, n, s.delassus)
+        soft = GAP_SOFTNESS * forces.largest_compliance(s, n)
+        for i in range(n):
+            for j in range(n):
+                s.matrix[i, j] = s.delassus[3 * i + 2, 3 * j + 2]
+            s.matrix[i, i] += soft
+            s.vector[i] = -solid.gap_of(body, y, rows, s.closed[i])
+        if not algebra.factor(s.matrix, s.order, n):
+            return
+        algebra.substitute(s.matrix, s.order, n, s.vector)
+        for i in range(n):
+            shift_at(body, y, rows, s.closed[i], s.vector[i])
+
+
+@kernel
+def shift_at(body, y, rows, i, size):
+    """Displace the body as a small impulse would that the ground or the wall gives to contact i."""
+    p = solid.arm(body, rows[2], i)
+    push = algebra.scaled(size, forces.push_along(body, rows, i, 2))
+    moved = algebra.to_world(rows, push)
     for k in range(3):
         y[k] += moved[k]
-    algebra.turn(y, turned)
+    algebra.turn(y, algebra.times(body.inverse, algebra.cross(p, push)))
 
 
 @kernel
