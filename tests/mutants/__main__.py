@@ -58,13 +58,16 @@ GROUPS = (
     Group(
         ("engines/pure_rocking",),
         (
-            "engines/pure_rocking/test_balance.py",
-            "engines/pure_rocking/test_restitution_laws.py",
-            "engines/pure_rocking/test_taylor.py",
-            "engines/pure_rocking/test_vertical.py",
+            "engines/pure_rocking",
+            "engines/test_contract.py",
             "simulation/test_closed_forms.py",
+            "simulation/test_ensemble.py",
+            "simulation/test_response.py",
+            "simulation/test_shapes.py",
+            "simulation/test_thresholds.py",
         ),
-        True,
+        # lanes take minutes as plain Python, and 10 s to compile
+        False,
     ),
     Group(
         ("laws", "system"),

@@ -27,6 +27,8 @@ SOURCE = ROOT / "src" / "rockfrag"
 LONGEST_TEST_S = 4.0  # of the processor; slower tests are not asked
 # Times that a quick test may take with a change; what then does not end is noticed
 SLOWER = 2
+# more that a test may take which waits for changed kernels to be compiled
+COMPILING_S = 60.0
 LONGEST_TRIAL_S = 40.0
 """Time of the processor that all tests of a mutant may take that does not change them."""
 
@@ -80,8 +82,12 @@ class TooSlow(BaseException):
 class _Watch:
     """Notes what each test did and how long it took, and ends the slow ones."""
 
-    def __init__(self, *, notes_calls: bool) -> None:
+    def __init__(self, *, notes_calls: bool, plain: bool) -> None:
         self.notes_calls = notes_calls
+        self.longest = LONGEST_TEST_S
+        if not notes_calls:
+            # of a change
+            self.longest = SLOWER * LONGEST_TEST_S + (0.0 if plain else COMPILING_S)
         self.seconds: dict[str, float] = {}
         self.reached: dict[str, list[str]] = {}
         self.failed: list[str] = []
@@ -101,9 +107,7 @@ class _Watch:
             raise TooSlow(item.nodeid)
 
         signal.signal(signal.SIGPROF, end)
-        is_changed = not self.notes_calls
-        longest = LONGEST_TEST_S * (SLOWER if is_changed else 1)
-        signal.setitimer(signal.ITIMER_PROF, longest)
+        signal.setitimer(signal.ITIMER_PROF, self.longest)
         calls: set[tuple[str, int]] = set()
         if self.notes_calls:
             _note_calls(calls)
@@ -111,7 +115,7 @@ class _Watch:
             return (yield)
         except TooSlow:
             # raised anew: of where the signal met the test nothing can be printed
-            if is_changed:
+            if not self.notes_calls:
                 pytest.fail("does not end", pytrace=False)
             pytest.skip("too slow")
         finally:
@@ -210,7 +214,7 @@ def _run_here(
         without_compiling()
     if mutant is not None:
         sys.path.insert(0, changed_library(mutant, scratch))
-    watch = _Watch(notes_calls=mutant is None)
+    watch = _Watch(notes_calls=mutant is None, plain=plain)
     options = ["-q", "-p", "no:cacheprovider", "-m", "not slow", "--hypothesis-seed=1"]
     options += ["--continue-on-collection-errors"]
     if plain:
