@@ -58,7 +58,12 @@ GROUPS = (
     Group(
         ("engines/pure_rocking",),
         (
-            "engines/pure_rocking",
+            "engines/pure_rocking/test_balance.py",
+            "engines/pure_rocking/test_properties.py",
+            "engines/pure_rocking/test_restitution_laws.py",
+            "engines/pure_rocking/test_taylor.py",
+            "engines/pure_rocking/test_velocity_steps.py",
+            "engines/pure_rocking/test_vertical.py",
             "engines/test_contract.py",
             "simulation/test_closed_forms.py",
             "simulation/test_ensemble.py",

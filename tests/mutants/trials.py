@@ -84,10 +84,8 @@ class _Watch:
 
     def __init__(self, *, notes_calls: bool, plain: bool) -> None:
         self.notes_calls = notes_calls
-        self.longest = LONGEST_TEST_S
-        if not notes_calls:
-            # of a change
-            self.longest = SLOWER * LONGEST_TEST_S + (0.0 if plain else COMPILING_S)
+        self.longest = LONGEST_TEST_S * (1 if notes_calls else SLOWER)
+        self.longest += 0.0 if plain else COMPILING_S
         self.seconds: dict[str, float] = {}
         self.reached: dict[str, list[str]] = {}
         self.failed: list[str] = []
@@ -273,8 +271,17 @@ def function_of(mutant: Mutant) -> str:
 
 def quick_tests(group: Group) -> QuickTests:
     """Tests of a group that are quick and pass on what is not changed."""
-    found = run_tests([f"tests/{name}" for name in group.tests], group.plain)
-    return QuickTests(found["seconds"], found["reached"])
+    names = [f"tests/{name}" for name in group.tests]
+    if not group.plain:
+        # once to compile
+        run_tests(names, group.plain)
+    found = run_tests(names, group.plain)
+    quick = {
+        name: seconds
+        for name, seconds in found["seconds"].items()
+        if seconds < LONGEST_TEST_S
+    }
+    return QuickTests(quick, found["reached"])
 
 
 def noticed_by(mutant: Mutant, group: Group, tests: QuickTests) -> str:
