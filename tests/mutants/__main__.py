@@ -14,54 +14,45 @@ import sys
 import time
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
-from functools import partial
 from itertools import groupby
 
 from .changes import changes_of
 from .plain import load_libraries
-from .trials import SOURCE, Group, Mutant, noticed_by, quick_tests
+from .trials import SOURCE, Group, Mutant, Trials
 
 GROUPS = (
     Group(
         ("engines/planar",),
-        (
-            "engines/planar/test_balance.py",
+        plain=(
             "engines/planar/test_bonds.py",
-            "engines/planar/test_chains.py",
             "engines/planar/test_closed_forms.py",
             "engines/planar/test_images.py",
             "engines/planar/test_laws.py",
-            "engines/planar/test_pure_rocking.py",
             "engines/planar/test_routh.py",
             "engines/planar/test_search.py",
             "engines/planar/test_support.py",
             "engines/planar/test_ties.py",
-            "engines/planar/test_velocity_steps.py",
             "engines/planar/test_walls.py",
-            "engines/planar/test_witness.py",
-            "engines/test_contract.py",
         ),
-        True,
+        compiled=("engines/planar", "engines/test_contract.py"),
     ),
     Group(
         ("engines/spatial",),
-        (
-            "engines/spatial/test_balance.py",
-            "engines/spatial/test_holding.py",
+        plain=(
             "engines/spatial/test_impacts.py",
             "engines/spatial/test_physics.py",
             "engines/spatial/test_spin.py",
             "engines/spatial/test_statements.py",
         ),
-        True,
+        compiled=("engines/spatial",),
     ),
     Group(
         ("engines/pure_rocking",),
-        (
+        plain=("engines/pure_rocking/test_taylor.py",),
+        compiled=(
             "engines/pure_rocking/test_balance.py",
             "engines/pure_rocking/test_properties.py",
             "engines/pure_rocking/test_restitution_laws.py",
-            "engines/pure_rocking/test_taylor.py",
             "engines/pure_rocking/test_velocity_steps.py",
             "engines/pure_rocking/test_vertical.py",
             "engines/test_contract.py",
@@ -71,26 +62,21 @@ GROUPS = (
             "simulation/test_shapes.py",
             "simulation/test_thresholds.py",
         ),
-        # lanes take minutes as plain Python, and 10 s to compile
-        False,
     ),
     Group(
         ("laws", "system"),
-        (
-            "system",
-            "engines/planar/test_laws.py",
-            "engines/pure_rocking/test_balance.py",
+        plain=("system", "engines/planar/test_laws.py"),
+        compiled=(
             "engines/pure_rocking/test_restitution_laws.py",
             "engines/test_contract.py",
             "simulation/test_closed_forms.py",
             "simulation/test_shapes.py",
         ),
-        True,
     ),
-    Group(("assess",), ("assess",), False),
-    Group(("fragility",), ("fragility",), False),
+    Group(("assess",), plain=(), compiled=("assess",)),
+    Group(("fragility",), plain=(), compiled=("fragility",)),
 )
-"""What is changed, and the quick tests that are asked: of kernels, those that are quick as plain Python too."""
+"""What is changed, and the tests that are asked: of kernels first those that are quick as plain Python."""
 
 WORDS_ALONE = {
     # words, pages and figures are not statistics
@@ -136,13 +122,13 @@ def trials(
     """Each mutant, and what noticed it, as soon as that is known."""
     with ThreadPoolExecutor(processes) as pool:
         for group, own in mutants.items():
-            tests = quick_tests(group)
-            names = ", ".join(group.files)
-            print(f"{names}: {len(tests.seconds)} quick tests", flush=True)
-            if not tests.seconds:
-                continue
-            found = pool.map(partial(noticed_by, group=group, tests=tests), own)
-            yield from zip(own, found, strict=True)
+            asked = Trials.of(group)
+            print(
+                f"{', '.join(group.files)}: {len(asked.plain.seconds)} quick tests in plain Python, "
+                f"{len(asked.compiled.seconds)} in machine code",
+                flush=True,
+            )
+            yield from zip(own, pool.map(asked.noticed_by, own), strict=True)
 
 
 def main() -> int:

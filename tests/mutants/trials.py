@@ -15,7 +15,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from types import FrameType
-from typing import Any
+from typing import Any, Self
 
 import pytest
 
@@ -38,8 +38,10 @@ class Group:
     """Files of the library, and the tests that reach them."""
 
     files: tuple[str, ...]  # folders and files under src/rockfrag
-    tests: tuple[str, ...]  # folders and files under tests
-    plain: bool  # whether kernels run as plain Python
+    # folders and files under tests: those asked while kernels run as plain Python, and then those asked of what
+    # these have not noticed, when its kernels are compiled
+    plain: tuple[str, ...]
+    compiled: tuple[str, ...]
 
 
 @dataclass(frozen=True)
@@ -269,13 +271,15 @@ def function_of(mutant: Mutant) -> str:
     return place_of(mutant.path, max(around)) if around else ""
 
 
-def quick_tests(group: Group) -> QuickTests:
-    """Tests of a group that are quick and pass on what is not changed."""
-    names = [f"tests/{name}" for name in group.tests]
-    if not group.plain:
+def quick_tests(files: Sequence[str], plain: bool) -> QuickTests:
+    """Those of some files of tests that are quick and pass on what is not changed; none of no files."""
+    if not files:
+        return QuickTests({}, {})
+    names = [f"tests/{name}" for name in files]
+    if not plain:
         # once to compile
-        run_tests(names, group.plain)
-    found = run_tests(names, group.plain)
+        run_tests(names, plain)
+    found = run_tests(names, plain)
     quick = {
         name: seconds
         for name, seconds in found["seconds"].items()
@@ -284,6 +288,25 @@ def quick_tests(group: Group) -> QuickTests:
     return QuickTests(quick, found["reached"])
 
 
-def noticed_by(mutant: Mutant, group: Group, tests: QuickTests) -> str:
-    """First test that fails on a mutant, or what became of its process; empty if nothing was noticed."""
-    return str(run_tests(tests.of(mutant), group.plain, mutant)["failed"])
+@dataclass(frozen=True)
+class Trials:
+    """What is asked about the mutants of a group."""
+
+    plain: QuickTests
+    compiled: QuickTests
+
+    @classmethod
+    def of(cls, group: Group) -> Self:
+        """Find the quick tests of a group."""
+        return cls(
+            quick_tests(group.plain, plain=True),
+            quick_tests(group.compiled, plain=False),
+        )
+
+    def noticed_by(self, mutant: Mutant) -> str:
+        """First test that fails on a mutant, or what became of its process; empty if nothing was noticed."""
+        found = ""
+        for tests, plain in ((self.plain, True), (self.compiled, False)):
+            if tests.seconds and not found:
+                found = str(run_tests(tests.of(mutant), plain, mutant)["failed"])
+        return found
