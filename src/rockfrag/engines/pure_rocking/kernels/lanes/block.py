@@ -24,6 +24,7 @@ from rockfrag.engines.pure_rocking.kernels.chatter import Ahead, block_dies_out
 from rockfrag.engines.pure_rocking.kernels.contact_states import HALF_TURN
 from rockfrag.engines.pure_rocking.kernels.impact import block_impact
 from rockfrag.engines.pure_rocking.kernels.lanes import case as cases
+from rockfrag.engines.pure_rocking.kernels.lanes.series import rates_of_one
 from rockfrag.engines.pure_rocking.kernels.roots import NEVER, crossing, graze, hops
 from rockfrag.engines.pure_rocking.kernels.single import MAX_CONTACT_EVENTS_PER_STEP
 
@@ -114,9 +115,7 @@ def _advance(lane, upward):
         u = lane.weight[i] if upward else 1.0
         u_end = lane.weight_end[i] if upward else 1.0
         weight = u, u_end - u, upward
-        rates = taylor.rates_of_one(
-            (s, c), w, kappa * left * left, (a, a_end - a), weight
-        )
+        rates = rates_of_one((s, c), w, kappa * left * left, (a, a_end - a), weight)
         end = psi + taylor.travel(rates, 1.0)
         v = taylor.rate_at(rates, 1.0)
         taylor.keep_rates(lane.rates, i, rates)

@@ -20,6 +20,7 @@ from rockfrag.engines.pure_rocking.kernels.lanes.case import (
     QUIET,
     RELEASE,
 )
+from rockfrag.engines.pure_rocking.kernels.lanes.series import rates_of_one
 from rockfrag.engines.pure_rocking.kernels.lanes.stack_constants import (
     HOLD,
     OF_GRAVITY,
@@ -109,9 +110,9 @@ def _moment(hold, i, turn, alpha, square, ground_and_weight):
 
 @inlined_kernel
 def _rates(g_over_inertia, turn, w, left, ground, weight):
-    """Taylor coefficients of θ' over the rest of a sample; ``ground`` is over -g, ``weight`` as in ``pulled``."""
+    """Taylor coefficients of θ' over the rest of a sample; ``ground`` over -g, ``weight`` as of ``times_gravity``."""
     (gx, gy), (s, c) = g_over_inertia, turn
-    return taylor.rates_of_one(
+    return rates_of_one(
         (gx * c + gy * s, gy * c - gx * s), w, left * left, ground, weight
     )
 
