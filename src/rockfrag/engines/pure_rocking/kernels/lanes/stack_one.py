@@ -110,7 +110,7 @@ def _moment(hold, i, turn, alpha, square, ground_and_weight):
 
 @inlined_kernel
 def _rates(g_over_inertia, turn, w, left, ground, weight):
-    """Taylor coefficients of θ' over the rest of a sample; ``ground`` over -g, ``weight`` as of ``times_gravity``."""
+    """Taylor coefficients of θ' over the rest of a sample; ``ground`` is over -g, and ``weight`` as there."""
     (gx, gy), (s, c) = g_over_inertia, turn
     return rates_of_one(
         (gx * c + gy * s, gy * c - gx * s), w, left * left, ground, weight
