@@ -232,7 +232,7 @@ def _integrate(
 
     Returns
     -------
-    Total accelerations of floors [m/s²] and drifts of storeys [m], shape (storeys, samples), and energies [J], shape
+    Total accelerations of floors [m/s²] and drifts of storeys [m], shape (storeys, samples); energies [J], shape
     (5, samples): what the ground put in, kinetic, elastic, lost in damping, lost in storeys.
     """
     n, samples = matrices[0].size, ground.size
