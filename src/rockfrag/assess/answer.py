@@ -908,13 +908,17 @@ def _most_helpful_first(
 
 def _shown_safer(shaken: Shaken, changes: Sequence[Mitigation]) -> frozenset[str]:
     """Arrangements that the motions show to be safer than its own, or its own if safer than all others."""
-    known = {
-        shaken.alike[each.change]: each
-        for each in changes
-        if each.change in shaken.alike
+    by_arrangement = {
+        shaken.alike[change.change]: change
+        for change in changes
+        if change.change in shaken.alike
     }
-    better = {way for way, each in known.items() if each.shown}
-    own = next(iter(shaken.arrangements))
-    if known and all(choices.is_worse(e.lower, e.helps) for e in known.values()):
-        better.add(own)
-    return frozenset(better)
+    safer = {name for name, change in by_arrangement.items() if change.shown}
+    are_worse = [
+        choices.is_worse(change.lower, change.helps)
+        for change in by_arrangement.values()
+    ]
+    if are_worse and all(are_worse):
+        own = next(iter(shaken.arrangements))
+        safer.add(own)
+    return frozenset(safer)

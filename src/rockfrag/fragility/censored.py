@@ -179,13 +179,11 @@ def bracket_interval(
     groups = len(names)
 
     def refit(weights: Floats) -> Floats:
-        """Coefficients for weights of the groups, shape (batch, groups); of many blocks by a step each."""
+        """Intercept and slope for weights of the groups, shape (batch, groups)."""
         each = weights[:, codes]
-        if (
-            groups > MOST_BLOCKS
-            and len(weights) > 1
-            and (each.max(), each.min()) == (1, 0)
-        ):
+        leaves_out = len(weights) > 1 and (each.max(), each.min()) == (1, 0)
+        if leaves_out and groups > MOST_BLOCKS:
+            # a hundredth of the brackets changes little: one step from the fit to all is enough
             return _without_a_block(low, high, each)
         return _fit_weighted(low, high, each).coefficients
 

@@ -427,6 +427,7 @@ def peak_displacements(
         periods.tobytes(), damping, motion.dt
     ):
         x = table.copy()
+        # what the ground may add to a peak grows with its PGA
         x[_ADDED : _ADDED + LANES] *= to_come[0]
         _integrate(motion.acceleration, to_come, quiet, step, parts, x)
         peaks[which] = x[_LARGEST : _LARGEST + which.size]

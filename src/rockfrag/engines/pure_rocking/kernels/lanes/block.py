@@ -233,7 +233,11 @@ def _restore_extremes(lane, i):
 
 @inlined_kernel
 def _take_contact_event(lane, i, tally, ensemble, motions):
-    """Take a lane through the impact in its step, or to the step's end if there is none."""
+    """Take a lane through the impact in its step, or to the step's end if there is none.
+
+    Afterwards the lane stands at the part ``tau`` of the interval after sample ``k``; its ``side`` is 0 where the
+    block rests.
+    """
     k, side = lane.k[i], lane.side[i]
     _restore_extremes(lane, i)
     t, psi, w, stays = _contact_event(lane, i, tally)
@@ -250,6 +254,7 @@ def _take_contact_event(lane, i, tally, ensemble, motions):
             lane.counted_sample[i] = k
             lane.contact_events[i] = 0
         lane.contact_events[i] += 1
+        # from the pivot there to the other one, at rotation zero
         there = _pivot(lane, i, side, ensemble)
         w = block_impact(there, w)
         side = -side
@@ -259,6 +264,7 @@ def _take_contact_event(lane, i, tally, ensemble, motions):
         ahead = Ahead(
             motions.samples, motions.vertical, factor, lane.last[i], k, tau, 1.0
         )
+        # it hardly comes off, meets too often, or its impacts are sure to end
         still = w > -1e-12 or lane.contact_events[i] > MAX_CONTACT_EVENTS_PER_STEP
         if still or block_dies_out(-w, side, here, there, ahead):
             side = 0
