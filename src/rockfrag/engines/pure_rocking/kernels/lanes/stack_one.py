@@ -236,10 +236,9 @@ def next_contact_event(lanes_of_one, lane, i, series, g):
     if lane.flag[i] == CLOSES:
         when = roots.crossing_time(series.gap)
         omega = roots.slope(series.one.angle, when) / lane.was_left[i]
-        if (
-            least_hold(lanes_of_one, 0.0, omega, ground_and_weight_at(lane, i, when), g)
-            >= 0.0
-        ):
+        there = ground_and_weight_at(lane, i, when)
+        # what still holds as the other contact closes has held until then
+        if least_hold(lanes_of_one, 0.0, omega, there, g) >= 0.0:
             return when, False
     else:
         when = roots.closing_time(series.gap, 1.0)
