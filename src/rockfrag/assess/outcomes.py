@@ -459,7 +459,7 @@ class Shaking(IntensityLevels):
 
 
 def _factors(scales: Floats, allowed: Flags, shaking: Sequence[Motion]) -> Floats:
-    """Factors on what shakes, at rest what is not counted, shape (rows, levels)."""
+    """Factors that scale each motion to each level, 0 where that case is not counted, shape (rows, levels)."""
     factors = np.zeros(scales.shape)
     fill_factors(scales, allowed, peaks_of(shaking), factors)
     return factors

@@ -408,7 +408,10 @@ def _root(p, w, bracket, stretch, forces):
 
 @kernel
 def comes_near(p, w, length):
-    """Whether in a step a gap first narrowed and widens as it ends, after ``look_at`` with ``w.q1``."""
+    """Whether in a step a gap first narrowed and widens as it ends, after ``look_at`` with ``w.q1``.
+
+    ``w.early`` has the speed at which each gap opened as the step began, 0 for ends that were closed.
+    """
     if p.ties > 0 and turns_back(p, w, length):
         return True
     for k in range(p.contacts):
