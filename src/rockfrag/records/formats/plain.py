@@ -483,7 +483,7 @@ class _Leading(NamedTuple):
     """Lines above the samples of one column that hold a count and an interval [s], each if it is there."""
 
     lines: int
-    count: int | None = None
+    samples: int | None = None
     step: float | None = None
 
 
