@@ -470,6 +470,7 @@ def _fraction_terms(low: Floats, high: Floats, coefficients: Floats) -> _Terms:
 
 def _log_difference(z_low: Floats, z_high: Floats) -> Floats:
     """Return ln(Φ(z_high) - Φ(z_low)) without loss of digits; 0 where the bounds are equal."""
+    # above the middle in the other tail, where probabilities are small and keep their digits
     with np.errstate(invalid="ignore"):
         flip = z_low + z_high > 0
     lower, upper = np.where(flip, -z_high, z_low), np.where(flip, -z_low, z_high)

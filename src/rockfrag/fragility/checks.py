@@ -110,10 +110,21 @@ def goodness_of_fit(
         start=np.array(fit.coefficients),
     )
     p_value = float((1 + np.sum(simulated >= deviance - 1e-9)) / (1 + simulated.size))
+    im = np.exp(by_bin(outcomes.trials * outcomes.log_im) / trials)
+    calibration = _calibration(im, trials, expected, observed)
+    brier = _brier_score(outcomes, probability)
+    words = goodness_text(deviance, len(calibration), p_value, dependence)
+    return GoodnessOfFit(deviance, p_value, dependence, brier, calibration, words)
+
+
+def _calibration(
+    im: Floats, trials: Floats, expected: Floats, observed: Floats
+) -> pd.DataFrame:
+    """Predicted and observed fraction of each bin, with limits; numbers of tests that overturn, shape (bins,)."""
     lower, upper = wilson_interval(observed, trials)
-    calibration = pd.DataFrame(
+    return pd.DataFrame(
         {
-            "im": np.exp(by_bin(outcomes.trials * outcomes.log_im) / trials),
+            "im": im,
             "tests": trials.astype(np.int64),
             "predicted": expected / trials,
             "observed": observed / trials,
@@ -121,9 +132,6 @@ def goodness_of_fit(
             "observed_upper": upper,
         }
     ).sort_values("im", ignore_index=True)
-    brier = _brier_score(outcomes, probability)
-    words = goodness_text(deviance, len(calibration), p_value, dependence)
-    return GoodnessOfFit(deviance, p_value, dependence, brier, calibration, words)
 
 
 def _brier_score(outcomes: Observations, probability: Floats) -> float:

@@ -75,8 +75,8 @@ def _rotations(panel: Axes, response: "Response", colours: Sequence[str]) -> Non
 
 def _impacts(panel: Axes, response: "Response") -> int:
     """Mark the impacts on the zero line; return their number."""
-    events = response.contact_events
-    times = events.loc[events["kind"] == "impact", "time"]
+    contact_events = response.contact_events
+    times = contact_events.loc[contact_events["kind"] == "impact", "time"]
     style_of_marks: Any = {"color": style.BLACK, "ms": 5, "mew": 0.5}
     panel.plot(times, np.zeros(len(times)), "|", label="impact", **style_of_marks)
     return len(times)

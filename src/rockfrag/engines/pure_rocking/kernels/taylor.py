@@ -104,7 +104,11 @@ def _weight(body, moment, step, rotation, k):
 
 @kernel
 def _fill_two(body, c1, c2, step, series):
-    """Series of both rotations of patterns 1 and 2; the first two coefficients of both angles are there."""
+    """Series of both rotations of patterns 1 and 2; the first two coefficients of both angles are there.
+
+    Coefficient k of M11 θ1'' + M12 θ2'' + D θ2'² + f1 = 0 and of its counterpart gives that of both angles two
+    orders above (``lanes/series.rates_of_two``).
+    """
     hh = step.length * step.length
     s1, s2 = equations.pivot(c1), equations.pivot(c2)
     m11 = equations.inertia1(body, s1, s2)
@@ -136,27 +140,41 @@ def _fill_two(body, c1, c2, step, series):
         right1 = -hh * _weight(body, moment1, step, first, k)
         right2 = -hh * _weight(body, moment2, step, two, k)
         if not linear:
-            for j in range(k + 1):
-                # coefficient j of D times coefficient k - j of the squared rates
-                d = f * between.cosine[j] - e * between.sine[j]
-                square1 = 0.0
-                square2 = 0.0
-                for i in range(k - j + 1):
-                    weight = (i + 1) * (k - j - i + 1)
-                    square1 += weight * first.angle[i + 1] * first.angle[k - j - i + 1]
-                    square2 += weight * two.angle[i + 1] * two.angle[k - j - i + 1]
-                right1 -= d * square2
-                right2 += d * square1
-            for j in range(1, k + 1):
-                m12 = e * between.cosine[j] + f * between.sine[j]
-                i = k - j
-                factor = (i + 1) * (i + 2)
-                right1 -= m12 * factor * two.angle[i + 2]
-                right2 -= m12 * factor * first.angle[i + 2]
+            right1, right2 = _coupled(series, k, (e, f), (right1, right2))
         m12 = e * between.cosine[0] + f * between.sine[0]
         fraction = 1.0 / ((m11 * m22 - m12 * m12) * (k + 1) * (k + 2))
         first.angle[k + 2] = (m22 * right1 - m12 * right2) * fraction
         two.angle[k + 2] = (m11 * right2 - m12 * right1) * fraction
+
+
+@kernel
+def _coupled(series, k, coupling, right):
+    """Take from both right-hand sides what lower orders of the other rotation add to coefficient k.
+
+    That is D θ2'² + (M12 - m₀) θ2'' for the first, and (M12 - m₀) θ1'' - D θ1'² for the second, with
+    M12 = E cos Δ + F sin Δ and D = F cos Δ - E sin Δ; ``coupling`` is E and F.
+    """
+    (e, f), (right1, right2) = coupling, right
+    first, two, between = series.one.angle, series.two.angle, series.between
+    for j in range(k + 1):
+        # coefficient j of D times coefficient k - j of the squared rates
+        d = f * between.cosine[j] - e * between.sine[j]
+        square1 = 0.0
+        square2 = 0.0
+        for i in range(k - j + 1):
+            weight = (i + 1) * (k - j - i + 1)
+            square1 += weight * first[i + 1] * first[k - j - i + 1]
+            square2 += weight * two[i + 1] * two[k - j - i + 1]
+        right1 -= d * square2
+        right2 += d * square1
+    for j in range(1, k + 1):
+        # coefficient j of M12 times coefficient k - j of the accelerations
+        m12 = e * between.cosine[j] + f * between.sine[j]
+        i = k - j
+        factor = (i + 1) * (i + 2)
+        right1 -= m12 * factor * two[i + 2]
+        right2 -= m12 * factor * first[i + 2]
+    return right1, right2
 
 
 @kernel
