@@ -650,19 +650,15 @@ def assessed(request: Request, plan: Plan, shaken: Shaken) -> Assessment:
     """Say what follows from what the motions of a plan do to an object."""
     objects, motions, level = request.objects, plan.shaking.motions, plan.level
     hazard = plan.hazard
-    measure = plan.shaking.measure
     counted = next(iter(shaken.arrangements.values()))
     target = _fraction_at(level) if level else risk.amplitude_target(0.5)
     if hazard:
         target = risk.risk_target(hazard, request.years)
-    # rocking starts where the measure passes a number: a peak acceleration of what it stands on
-    on_ground = request.place.shakes_as_ground or request.records.on_floor
-    exact = measure == PGA and on_ground and not motions.both
-    exact = exact and not objects.under.holders
+    by_statics = _rocks_by_statics(request, plan)
     conversion = None
     if level:
         site = Site(request.records, level, plan.curves)
-        conversion = find_conversion(counted, motions, site, by_statics=exact)
+        conversion = find_conversion(counted, motions, site, by_statics=by_statics)
     shaken = _at_site(shaken, plan, conversion)
     arrangements = shaken.arrangements
     evidence = _evidence(objects, shaken, plan, conversion)
@@ -680,7 +676,7 @@ def assessed(request: Request, plan: Plan, shaken: Shaken) -> Assessment:
         for name, arrangement in arrangements.items()
     }
     changes = _changes(target, _compared(evidence), shaken)
-    lifts_from = objects.least_uplift if exact else counted.lifts_from().min()
+    lifts_from = objects.least_uplift if by_statics else counted.lifts_from().min()
     return Assessment(
         request=request,
         motions=motions,
@@ -702,6 +698,14 @@ def assessed(request: Request, plan: Plan, shaken: Shaken) -> Assessment:
         changes=changes,
         spreads={change.name: change.spread for change in shaken.moved},
     )
+
+
+def _rocks_by_statics(request: Request, plan: Plan) -> bool:
+    """Whether rocking starts where the measure passes a number: a peak acceleration of what it stands on."""
+    on_ground = request.place.shakes_as_ground or request.records.on_floor
+    in_plane = not plan.shaking.motions.both
+    is_free = not request.objects.under.holders
+    return plan.shaking.measure == PGA and on_ground and in_plane and is_free
 
 
 def _fraction_at(level: Level, *, state: str = OVERTURNS) -> risk.Target:
@@ -908,13 +912,17 @@ def _most_helpful_first(
 
 def _shown_safer(shaken: Shaken, changes: Sequence[Mitigation]) -> frozenset[str]:
     """Arrangements that the motions show to be safer than its own, or its own if safer than all others."""
-    known = {
-        shaken.alike[each.change]: each
-        for each in changes
-        if each.change in shaken.alike
+    by_arrangement = {
+        shaken.alike[change.change]: change
+        for change in changes
+        if change.change in shaken.alike
     }
-    better = {way for way, each in known.items() if each.shown}
-    own = next(iter(shaken.arrangements))
-    if known and all(choices.is_worse(e.lower, e.helps) for e in known.values()):
-        better.add(own)
-    return frozenset(better)
+    safer = {name for name, change in by_arrangement.items() if change.shown}
+    are_worse = [
+        choices.is_worse(change.lower, change.helps)
+        for change in by_arrangement.values()
+    ]
+    if are_worse and all(are_worse):
+        own = next(iter(shaken.arrangements))
+        safer.add(own)
+    return frozenset(safer)

@@ -446,6 +446,7 @@ def _joined(
     rows = [*worst, *drawn]
     table["simulated"] = math.nan
     table.loc[rows, "simulated"] = [each.probability for each in found]
+    # compared by those drawn at random, if any: the worst are so by what the coarse answer misses too
     first = len(worst) if len(drawn) else 0
     beside = table.loc[rows[first:]]
     exact = np.array([each.median for each in found[first:]])

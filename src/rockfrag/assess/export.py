@@ -43,15 +43,7 @@ def as_json(found: Assessment) -> str:
     The text, which ends with a line break.
     """
     texts = catalogue()
-    outcomes = found.outcomes
     request = found.request
-    curve: dict[str, Any] = {}
-    if found.curve is not None:
-        fit, interval = found.curve.fit, found.curve.interval
-        curve = {"theta": fit.theta, "theta_limits": interval.theta, "beta": fit.beta}
-        curve |= {"beta_limits": interval.beta, "warnings": found.curve.warnings}
-    values = found.motions.values(found.measure).tolist()
-    motions = zip(found.motions.ground, found.motions.earthquakes, values, strict=True)
     answer = {
         "rockfrag": __version__,
         "name": request.name,
@@ -73,8 +65,7 @@ def as_json(found: Assessment) -> str:
         "does_not_move": found.does_not_move,
         "accepted": request.accepted,
         "fraction_rocking": found.rocking,
-        "counts": found.counts
-        and dict(zip(("motions", "rock", "topple"), found.counts, strict=True)),
+        "counts": _counts(found),
         "fraction_toppling_with_sliding": found.sliding_fraction,
         "fraction_toppling": found.fraction,
         "probability": found.probability,
@@ -88,35 +79,71 @@ def as_json(found: Assessment) -> str:
         "mitigations": found.mitigations,
         "rules_of_thumb": found.rules,
         "effects": found.effects,
-        "fragility": {
-            "levels": outcomes.intensity_levels.levels,
-            "fraction": outcomes.fractions(),
-            "probability": found.predicted.fractions,
-            "median": found.predicted.median,
-            "beta_of_records": found.predicted.of_records,
-            "beta_of_what_is_unknown": found.predicted.of_unknown,
-            "other_states": {
-                name: outcomes.fractions(state=name) for name in outcomes.others
-            },
-            **curve,
-        },
+        "fragility": _fragility(found),
         "two_measures": _two_measures(found),
-        "hazard": found.hazard
-        and {
-            "source": found.hazard.source,
-            "levels": found.hazard.levels,
-            "annual_rates": found.hazard.rates,
-        },
-        "motions": [
-            {"name": motion.name, "earthquake": earthquake, "value": value}
-            for motion, earthquake, value in motions
-        ],
+        "hazard": _hazard(found),
+        "motions": _motions(found),
         "assumed": texts.lines(assumptions(found)),
         "quality_flags": texts.lines(quality_flags(found)),
     }
     return (
         json.dumps(_plain(answer), indent=2, ensure_ascii=False, allow_nan=False) + "\n"
     )
+
+
+def _counts(found: Assessment) -> dict[str, int] | None:
+    """Numbers of motions, of those that rock the object, and of those that topple it; None where none were run."""
+    if found.counts is None:
+        return None
+    return dict(zip(("motions", "rock", "topple"), found.counts, strict=True))
+
+
+def _fragility(found: Assessment) -> dict[str, Any]:
+    """Fractions and probabilities at the levels of the measure, by limit state, and the curve if there is one."""
+    outcomes, predicted = found.outcomes, found.predicted
+    fragility = {
+        "levels": outcomes.intensity_levels.levels,
+        "fraction": outcomes.fractions(),
+        "probability": predicted.fractions,
+        "median": predicted.median,
+        "beta_of_records": predicted.of_records,
+        "beta_of_what_is_unknown": predicted.of_unknown,
+        "other_states": {
+            name: outcomes.fractions(state=name) for name in outcomes.others
+        },
+    }
+    if found.curve is None:
+        return fragility
+    fit, interval = found.curve.fit, found.curve.interval
+    return fragility | {
+        "theta": fit.theta,
+        "theta_limits": interval.theta,
+        "beta": fit.beta,
+        "beta_limits": interval.beta,
+        "warnings": found.curve.warnings,
+    }
+
+
+def _hazard(found: Assessment) -> dict[str, Any] | None:
+    """Annual rates at which levels are exceeded [1/year], with their source; None without a hazard."""
+    if found.hazard is None:
+        return None
+    return {
+        "source": found.hazard.source,
+        "levels": found.hazard.levels,
+        "annual_rates": found.hazard.rates,
+    }
+
+
+def _motions(found: Assessment) -> list[dict[str, Any]]:
+    """Name, earthquake and value of the measure of each motion."""
+    motions = found.motions
+    values = motions.values(found.measure).tolist()
+    rows = zip(motions.ground, motions.earthquakes, values, strict=True)
+    return [
+        {"name": motion.name, "earthquake": earthquake, "value": value}
+        for motion, earthquake, value in rows
+    ]
 
 
 def _two_measures(found: Assessment) -> dict[str, Any] | None:

@@ -26,6 +26,7 @@ from rockfrag.assess.core.decisions import Action
 from rockfrag.assess.core.draws import FEW_MEMBERS
 from rockfrag.assess.core.likelihood import likelihood_of
 from rockfrag.assess.findings import estimate_of, few_earthquakes, mitigation
+from rockfrag.assess.hazard.curve import HazardCurve
 from rockfrag.assess.mitigations import Mitigation
 from rockfrag.assess.motions import MotionSet, motion_set
 from rockfrag.assess.outcomes import ObjectOutcomes
@@ -107,30 +108,37 @@ def joint_risk(found: Sequence[Assessment]) -> JointRisk | None:
     rates = np.array([_annual_rate(assessment) for assessment in found])
     names = [assessment.request.name for assessment in found]
     correlation = _correlation(fell, allowed, per_level)
-    # how often losses are exceeded, from the least object to everything
-    lost, steps = np.tensordot(worth, fell, axes=1), np.zeros(0)
+    return JointRisk(
+        _by_object(names, rates, worth),
+        _numbers(found[0], together, fell.sum(axis=0)),
+        _losses(together, np.tensordot(worth, fell, axes=1), hazard),
+        pd.DataFrame(correlation, index=pd.Index(names, name="name"), columns=names),
+    )
+
+
+def _losses(
+    together: ObjectOutcomes, lost: Floats, hazard: HazardCurve
+) -> pd.DataFrame:
+    """How often losses are exceeded [1/year], from the least object to everything.
+
+    ``lost`` is the value that each motion at each level takes, shape (motions, levels).
+    """
+    steps = np.zeros(0)
     if lost.any():
-        steps = np.geomspace(
-            max(lost[lost > 0].min(), 1e-6 * lost.max()), lost.max(), LOSSES
-        )
-    # rounding must not take away what reaches a step exactly
-    reached = [
-        replace(
+        least = max(lost[lost > 0].min(), 1e-6 * lost.max())
+        steps = np.geomspace(least, lost.max(), LOSSES)
+    exceeded = []
+    for step in steps:
+        reached = replace(
             together,
+            # rounding must not take away what reaches a step exactly
             overturned=lost >= step * (1 - 1e-12),
             rocked=np.ones_like(together.rocked),
             lifting=None,
         )
-        for step in steps
-    ]
-    exceeded = [_common(each).mean(risk_target(hazard, 1.0), each) for each in reached]
-    exceeded = [-math.log1p(-chance) for chance in exceeded]
-    return JointRisk(
-        _by_object(names, rates, worth),
-        _numbers(found[0], together, fell.sum(axis=0)),
-        pd.DataFrame({"loss": steps, "annual_rate": exceeded}),
-        pd.DataFrame(correlation, index=pd.Index(names, name="name"), columns=names),
-    )
+        chance = _common(reached).mean(risk_target(hazard, 1.0), reached)
+        exceeded.append(-math.log1p(-chance))
+    return pd.DataFrame({"loss": steps, "annual_rate": exceeded})
 
 
 def _annual_rate(found: Assessment) -> float:

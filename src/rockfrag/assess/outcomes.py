@@ -459,7 +459,7 @@ class Shaking(IntensityLevels):
 
 
 def _factors(scales: Floats, allowed: Flags, shaking: Sequence[Motion]) -> Floats:
-    """Factors on what shakes, at rest what is not counted, shape (rows, levels)."""
+    """Factors that scale each motion to each level, 0 where that case is not counted, shape (rows, levels)."""
     factors = np.zeros(scales.shape)
     fill_factors(scales, allowed, peaks_of(shaking), factors)
     return factors
@@ -548,7 +548,11 @@ def find_directions(
     measure: IntensityMeasure,
     level: float | None,
 ) -> Directions | None:
-    """Turn records of two components, of which levels are the geometric mean; None where no record has two."""
+    """Compare the directions from which records of two components may come; None where no record has two.
+
+    Every record is turned by steps of ``STEP_DEG`` about the vertical; levels are of the geometric mean of its
+    components, whatever the direction.
+    """
     if not motions.pairs:
         return None
     asked = [] if level is None else [level]
@@ -566,6 +570,7 @@ def find_directions(
     found, _ = simulated([system], shaking, _believed(scales, shaking))
     fallen = found.overturned[0]
     by_record = fallen.reshape(len(motions.pairs), len(angles), -1)
+    # fractions that topple at each level: of all directions, and of records in their worst one
     anyhow, worst = by_record.mean(axis=(0, 1)), by_record.any(axis=1).mean(axis=0)
     x = np.log(levels)
     at = math.nan if level is None else level

@@ -33,10 +33,12 @@ from rockfrag.assess.findings import (
     uncertainty,
     value_of,
 )
+from rockfrag.assess.hazard.curve import HazardCurve
 from rockfrag.assess.motions import MotionSet
 from rockfrag.assess.sources import SOURCES, parts_of
 from rockfrag.assess.standing import Standing
 from rockfrag.assess.texts import Text
+from rockfrag.base.arrays import Floats
 from rockfrag.base.figure_style import BLUE, COLUMN_WIDTH, OKABE_ITO, panels, plain_log
 from rockfrag.base.files import file_name, write_text
 from rockfrag.outcomes.limit_states import ROCKS, limit_states
@@ -413,6 +415,7 @@ def levels_table(found: Assessment) -> dict[Value, list[Value]]:
     for state in limit_states():
         if state.name in outcomes.others:
             reached[state.name] = finding(Text.LEVELS_STATE, state=state.label)
+    # every fourth level, from the first that rocks to the first that topples nearly all
     rocks = outcomes.fractions(state=ROCKS)
     shown = np.flatnonzero((rocks > 0) & (np.append(0, fractions[:-1]) < 0.99))[::4]
     measure, unit = found.measure.imt, found.measure.unit
@@ -431,16 +434,28 @@ def levels_table(found: Assessment) -> dict[Value, list[Value]]:
         for i in shown
     ]
     if found.hazard is not None:
-        reach = FURTHEST * found.hazard.levels[-1]
-        if found.request.level is not None and not found.request.hazard[0].is_read:
-            reach = FURTHEST * found.request.level.value
-        table[finding(Text.LEVELS_PERIOD)] = [
-            _years(1 / float(found.hazard.rate(level)))
-            if level <= reach
-            else finding(Text.LEVELS_BEYOND)
-            for level in levels[shown]
-        ]
+        table[finding(Text.LEVELS_PERIOD)] = _return_periods(
+            found, found.hazard, levels[shown]
+        )
     return table
+
+
+def _return_periods(
+    found: Assessment, hazard: HazardCurve, levels: Floats
+) -> list[Value]:
+    """Return period of each level, as far as the hazard says something of such levels.
+
+    A hazard that was read says it up to its last level, one made of a single level up to that, and a bit beyond.
+    """
+    furthest = FURTHEST * hazard.levels[-1]
+    if found.request.level is not None and not found.request.hazard[0].is_read:
+        furthest = FURTHEST * found.request.level.value
+    return [
+        _years(1 / float(hazard.rate(level)))
+        if level <= furthest
+        else finding(Text.LEVELS_BEYOND)
+        for level in levels
+    ]
 
 
 def _part(fraction: float) -> said.Finding:

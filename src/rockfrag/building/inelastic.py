@@ -39,6 +39,8 @@ from rockfrag.runtime.machine_code import cached_njit
 # the force was zero after unloading from the other side, direction of motion, and work done on it
 DISPLACEMENT, FORCE, AIM_POS, AIM_NEG, ZERO_POS, ZERO_NEG, DIRECTION, WORK = range(8)
 MEMORY = 8
+# rows of the floors' state: displacement, velocity and acceleration relative to the ground, force of the storeys
+PLACE, SPEED, ACCELERATION, SHEAR = range(4)
 
 
 def shear_strengths(building: ShearBuilding) -> Floats:
@@ -219,59 +221,112 @@ def _shears(u: Any, memory: Any, moved: Any, masonry: Any, force: Any) -> None:
 def _integrate(
     ground: Any, step: float, parts: int, matrices: Any, masonry: Any
 ) -> Any:
-    """Integrate the equations of motion of a building with masonry (``docs/building.md``); compiled."""
-    mass, viscous, inverse = matrices
-    corner, strength, law = masonry
-    n, samples = mass.size, ground.size
+    """Integrate the equations of motion of a building with masonry (``docs/building.md``); compiled.
+
+    Parameters
+    ----------
+    ground : acceleration at each sample [m/s²], shape (samples,)
+    step, parts : length of a step [s], and steps a sample
+    matrices : masses [kg], viscous damping [N s/m], inverse of the effective stiffness [m/N]
+    masonry : corners of the envelopes [m], their forces [N], parameters of the law
+
+    Returns
+    -------
+    Total accelerations of floors [m/s²] and drifts of storeys [m], shape (storeys, samples); energies [J], shape
+    (5, samples): what the ground put in, kinetic, elastic, lost in damping, lost in storeys.
+    """
+    n, samples = matrices[0].size, ground.size
     total, shift = np.zeros((n, samples)), np.zeros((n, samples))
     energy = np.zeros((5, samples))
-    u, v, a = np.zeros(n), np.zeros(n), -ground[0] * np.ones(n)
+    # floors and memories of storeys as a step begins and as it ends
+    now, then = np.zeros((4, n)), np.zeros((4, n))
     memory, moved = np.zeros((n, MEMORY)), np.zeros((n, MEMORY))
-    force, force1 = np.zeros(n), np.zeros(n)
-    u1, v1, a1, rest = np.zeros(n), np.zeros(n), np.zeros(n), np.zeros(n)
-    total[:, 0] = a + ground[0]
-    work_in = work_damped = work_storeys = 0.0
+    now[ACCELERATION] = -ground[0]
+    total[:, 0] = now[ACCELERATION] + ground[0]
+    work = np.zeros(3)
     for k in range(samples - 1):
+        rise = ground[k + 1] - ground[k]
         for part in range(parts):
-            g0 = ground[k] + (ground[k + 1] - ground[k]) * (part / parts)
-            g1 = ground[k] + (ground[k + 1] - ground[k]) * ((part + 1) / parts)
-            change = step * v + 0.5 * step * step * a
-            for _ in range(100):
-                for i in range(n):
-                    u1[i] = u[i] + change[i]
-                    v1[i] = 2 / step * change[i] - v[i]
-                    a1[i] = 4 / step * (change[i] / step - v[i]) - a[i]
-                _shears(u1, memory, moved, masonry, force1)
-                for i in range(n):
-                    rest[i] = -mass[i] * (g1 + a1[i]) - force1[i]
-                    for j in range(n):
-                        rest[i] -= viscous[i, j] * v1[j]
-                largest = correction = 0.0
-                for i in range(n):
-                    better = 0.0
-                    for j in range(n):
-                        better += inverse[i, j] * rest[j]
-                    change[i] += better
-                    correction = max(correction, abs(better))
-                    largest = max(largest, abs(change[i]), 1e-6 * abs(u[i]))
-                if correction <= 1e-13 * largest:
-                    break
-            for i in range(n):
-                # the work of a force over the step: its mean times the displacement
-                du = u1[i] - u[i]
-                work_in -= mass[i] * 0.5 * (g0 + g1) * du
-                work_storeys += 0.5 * (force[i] + force1[i]) * du
-                for j in range(n):
-                    work_damped += viscous[i, j] * 0.5 * (v[j] + v1[j]) * du
-            u[:], v[:], a[:], force[:] = u1, v1, a1, force1
+            begin = ground[k] + rise * (part / parts)
+            end = ground[k] + rise * ((part + 1) / parts)
+            _find_equilibrium(
+                end, step, matrices, masonry, (now, then), (memory, moved)
+            )
+            _add_work(0.5 * (begin + end), matrices, now, then, work)
+            now[:] = then
             memory[:] = moved
-        strain = kinetic = 0.0
+        kinetic, strain = _stored(matrices[0], masonry, now, memory)
+        by_ground, damped, by_storeys = work
+        energy[:, k + 1] = by_ground, kinetic, strain, damped, by_storeys - strain
         for i in range(n):
-            aim = memory[i, AIM_POS] if memory[i, FORCE] > 0 else memory[i, AIM_NEG]
-            stiffness = unloading_stiffness(aim, corner[i], strength[i], law[4])
-            strain += 0.5 * memory[i, FORCE] ** 2 / stiffness
-            kinetic += 0.5 * mass[i] * v[i] ** 2
             shift[i, k + 1] = memory[i, DISPLACEMENT]
-            total[i, k + 1] = a[i] + ground[k + 1]
-        energy[:, k + 1] = work_in, kinetic, strain, work_damped, work_storeys - strain
+            total[i, k + 1] = now[ACCELERATION, i] + ground[k + 1]
     return total, shift, energy
+
+
+@cached_njit()
+def _find_equilibrium(
+    ground: float, step: float, matrices: Any, masonry: Any, floors: Any, storeys: Any
+) -> None:
+    """Find where a step ends, by average acceleration and Newton's iteration with the elastic stiffness.
+
+    ``ground`` is its acceleration at the end; of ``floors`` and ``storeys`` the first is the beginning, and the
+    second is filled.
+    """
+    mass, viscous, inverse = matrices
+    (now, then), (memory, moved) = floors, storeys
+    n = mass.size
+    u, v, a = now[:3]
+    u1, v1, a1, force1 = then
+    rest = np.zeros(n)
+    change = step * v + 0.5 * step * step * a
+    for _ in range(100):
+        for i in range(n):
+            u1[i] = u[i] + change[i]
+            v1[i] = 2 / step * change[i] - v[i]
+            a1[i] = 4 / step * (change[i] / step - v[i]) - a[i]
+        _shears(u1, memory, moved, masonry, force1)
+        for i in range(n):
+            rest[i] = -mass[i] * (ground + a1[i]) - force1[i]
+            for j in range(n):
+                rest[i] -= viscous[i, j] * v1[j]
+        largest = correction = 0.0
+        for i in range(n):
+            better = 0.0
+            for j in range(n):
+                better += inverse[i, j] * rest[j]
+            change[i] += better
+            correction = max(correction, abs(better))
+            largest = max(largest, abs(change[i]), 1e-6 * abs(u[i]))
+        if correction <= 1e-13 * largest:
+            break
+
+
+@cached_njit()
+def _add_work(ground: float, matrices: Any, now: Any, then: Any, work: Any) -> None:
+    """Add the work of a step [J] of the ground, of damping and of storeys: mean forces times displacements.
+
+    ``ground`` is its mean acceleration in the step.
+    """
+    mass, viscous, _ = matrices
+    n = mass.size
+    for i in range(n):
+        moved = then[PLACE, i] - now[PLACE, i]
+        work[0] -= mass[i] * ground * moved
+        for j in range(n):
+            mean = 0.5 * (now[SPEED, j] + then[SPEED, j])
+            work[1] += viscous[i, j] * mean * moved
+        work[2] += 0.5 * (now[SHEAR, i] + then[SHEAR, i]) * moved
+
+
+@cached_njit()
+def _stored(mass: Any, masonry: Any, floors: Any, memory: Any) -> Any:
+    """Kinetic energy of the floors, and what the storeys would give back on unloading [J]."""
+    corner, strength, law = masonry
+    strain = kinetic = 0.0
+    for i in range(mass.size):
+        aim = memory[i, AIM_POS] if memory[i, FORCE] > 0 else memory[i, AIM_NEG]
+        stiffness = unloading_stiffness(aim, corner[i], strength[i], law[4])
+        strain += 0.5 * memory[i, FORCE] ** 2 / stiffness
+        kinetic += 0.5 * mass[i] * floors[SPEED, i] ** 2
+    return kinetic, strain

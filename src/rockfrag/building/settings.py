@@ -4,7 +4,7 @@ In: the key ``building`` of a configuration. Out: a building, SI units. Docs: ``
 """
 
 import os
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from rockfrag.base.errors import InputError, errors_of
@@ -50,23 +50,7 @@ def make_building(settings: Any, source: str = "building") -> model.ShearBuildin
 def _building(settings: Mapping[str, Any]) -> model.ShearBuilding:
     """A building of checked keys, whose numbers must be those of a building."""
     heights, masses = settings["storey_heights_m"], settings["masses_kg"]
-    if len(heights) != len(masses):
-        raise InputError(
-            f"storey_heights_m has {len(heights)} entries and masses_kg {len(masses)}; give one of "
-            "each for every storey."
-        )
-    for key, values, unit, (least, most) in (
-        ("storey_heights_m", heights, "m", STOREY_HEIGHTS),
-        ("masses_kg", masses, "kg", FLOOR_MASSES),
-    ):
-        wrong = next(
-            (i for i, value in enumerate(values) if not least <= value <= most), None
-        )
-        if wrong is not None:
-            raise InputError(
-                f"{key}[{wrong}]: {values[wrong]:g} {unit} is no building's, which have from {least:g} to "
-                f"{most:g} {unit}; check the unit."
-            )
+    _check_storeys(heights, masses)
     distinct_file_names(settings.get("floors", {}))
     if "first_period_s" in settings:
         stiffnesses = model.stiffnesses_for_period(
@@ -91,15 +75,36 @@ def _building(settings: Mapping[str, Any]) -> model.ShearBuilding:
         name=settings.get("name", "building"),
         vertical_factors=settings.get("vertical_factors", {}),
     )
-    period, (shortest, longest) = float(find_modes(building).period[0]), FIRST_PERIODS
-    if not shortest <= period <= longest:
-        key = (
-            "first_period_s"
-            if "first_period_s" in settings
-            else "storey_stiffnesses_N_m"
+    stated = "first_period_s" in settings
+    _check_period(building, "first_period_s" if stated else "storey_stiffnesses_N_m")
+    return building
+
+
+def _check_storeys(heights: Sequence[float], masses: Sequence[float]) -> None:
+    """Refuse heights [m] and masses [kg] of storeys that are not as many, or not those of a building."""
+    if len(heights) != len(masses):
+        raise InputError(
+            f"storey_heights_m has {len(heights)} entries and masses_kg {len(masses)}; give one of "
+            "each for every storey."
         )
+    for key, values, unit, (least, most) in (
+        ("storey_heights_m", heights, "m", STOREY_HEIGHTS),
+        ("masses_kg", masses, "kg", FLOOR_MASSES),
+    ):
+        for i, value in enumerate(values):
+            if not least <= value <= most:
+                raise InputError(
+                    f"{key}[{i}]: {value:g} {unit} is no building's, which have from {least:g} to "
+                    f"{most:g} {unit}; check the unit."
+                )
+
+
+def _check_period(building: model.ShearBuilding, key: str) -> None:
+    """Refuse a first period that no building has; ``key`` gave it."""
+    period = float(find_modes(building).period[0])
+    shortest, longest = FIRST_PERIODS
+    if not shortest <= period <= longest:
         raise InputError(
             f"{key}: the first period would be {period:.3g} s, and those of buildings are from {shortest:g} to "
             f"{longest:g} s; check the units."
         )
-    return building

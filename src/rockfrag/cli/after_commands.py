@@ -3,7 +3,7 @@
 import argparse
 import math
 import sys
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
@@ -94,12 +94,7 @@ def _after(options: argparse.Namespace) -> int:
         # the unit of its files, not of records by which objects are shaken
         options.unit = options.dt = None
     given = settings_of(options)
-    unfit = [key for key in UNUSED if key in given]
-    if unfit:
-        raise InputError(
-            f"--{unfit[0].replace('_', '-')}: says nothing of an earthquake that happened, or is of one object; "
-            "leave it out."
-        )
+    _check_unused(given)
     typed: dict[str, Any] = {
         key: given.pop(key) for key in ("pga", "pgv") if key in given
     }
@@ -135,6 +130,16 @@ def _after(options: argparse.Namespace) -> int:
         print("\n".join(after_lines(found, options.language)))
     print(place, file=sys.stderr)
     return 0
+
+
+def _check_unused(given: Mapping[str, Any]) -> None:
+    """Refuse settings of ``assess`` that say nothing of a collection after an earthquake."""
+    unfit = [key for key in UNUSED if key in given]
+    if unfit:
+        raise InputError(
+            f"--{unfit[0].replace('_', '-')}: says nothing of an earthquake that happened, or is of one object; "
+            "leave it out."
+        )
 
 
 def _check_sources(options: argparse.Namespace, typed: dict[str, Any]) -> None:

@@ -9,13 +9,14 @@ both sides climbed the same series of levels.  A test that never overturned boun
 """
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 import pandas as pd
 
+from rockfrag.base.arrays import Flags
 from rockfrag.base.errors import InputError
 from rockfrag.base.short_repr import short_repr
 from rockfrag.effects.notes import notes_on_left_out
@@ -85,16 +86,7 @@ def check_tests(tests: pd.DataFrame) -> pd.DataFrame:
         raise InputError(
             "Table of tests: it has no rows; give at least one test per line."
         )
-    clean = tests.reset_index(drop=True).copy()
-    for name in ("object", "pedestal", "earthquake", "floor"):
-        _refuse(clean, clean[name].isna(), name, "is empty; fill it in.")
-        clean[name] = clean[name].astype(str)
-    if "motion" not in clean:
-        clean["motion"] = clean["earthquake"] + "/" + clean["floor"]
-    for name, usual in (("censored", "none"), ("repetition", 1)):
-        if name not in clean:
-            clean[name] = usual
-    clean["censored"] = clean["censored"].fillna("none").astype(str)
+    clean = _filled_in(tests)
     for name, allowed in (
         ("pedestal", (CHANGED, PLAIN)),
         ("censored", ("none", "right", "left")),
@@ -114,16 +106,37 @@ def check_tests(tests: pd.DataFrame) -> pd.DataFrame:
         )
     _check_amplitudes(clean)
     test = [*KEY, "pedestal", "repetition"]
-    twice = np.flatnonzero(clean.duplicated(test))
+    _refuse_twice(clean, test)
+    return clean.sort_values(test, kind="stable", ignore_index=True)
+
+
+def _filled_in(tests: pd.DataFrame) -> pd.DataFrame:
+    """A copy with text in the columns that say which test it is, and the usual in columns that are absent."""
+    clean = tests.reset_index(drop=True).copy()
+    for name in ("object", "pedestal", "earthquake", "floor"):
+        _refuse(clean, clean[name].isna(), name, "is empty; fill it in.")
+        clean[name] = clean[name].astype(str)
+    if "motion" not in clean:
+        clean["motion"] = clean["earthquake"] + "/" + clean["floor"]
+    for name, usual in (("censored", "none"), ("repetition", 1)):
+        if name not in clean:
+            clean[name] = usual
+    clean["censored"] = clean["censored"].fillna("none").astype(str)
+    return clean
+
+
+def _refuse_twice(tests: pd.DataFrame, key: Sequence[str]) -> None:
+    """Refuse a test that stands in two rows, by the columns that say which one it is."""
+    test = list(key)
+    twice = np.flatnonzero(tests.duplicated(test))
     if len(twice):
-        row = clean.loc[twice[0], test]
-        first = int(np.flatnonzero((clean[test] == row).all(axis=1))[0])
+        row = tests.loc[twice[0], test]
+        first = int(np.flatnonzero((tests[test] == row).all(axis=1))[0])
         raise InputError(
             f"Table of tests, row {twice[0] + 1}: the same test as row {first + 1} "
             f"({', '.join(row[['object', 'motion', 'pedestal']])}); remove one or number them in the column "
             "repetition."
         )
-    return clean.sort_values(test, kind="stable", ignore_index=True)
 
 
 def _refuse(
@@ -275,6 +288,18 @@ def _sides(clean: pd.DataFrame) -> pd.DataFrame:
     return sides.reindex(columns=pd.MultiIndex.from_product([how, (CHANGED, PLAIN)]))
 
 
+def _open_ends(sides: pd.DataFrame) -> tuple[Flags, Flags]:
+    """Whether d = ln a_P - ln a_NP of each pair may be larger, and smaller, than its figure.
+
+    It may be larger where P lies above its figure or NP below its own, and smaller the other way round.
+    """
+    lies_above = pd.DataFrame(sides["right"]).eq(True)
+    lies_below = pd.DataFrame(sides["left"]).eq(True)
+    upward = (lies_above[CHANGED] | lies_below[PLAIN]).to_numpy()
+    downward = (lies_above[PLAIN] | lies_below[CHANGED]).to_numpy()
+    return upward, downward
+
+
 def pair_tests(
     tests: pd.DataFrame, slenderness: Mapping[str, float] | None = None
 ) -> Pairs:
@@ -295,11 +320,7 @@ def pair_tests(
     sides = _sides(clean)
     ln_a = pd.DataFrame(sides["ln_a"]).astype(float)
     width = pd.DataFrame(sides["width"]).astype(float)
-    # d = ln a_P - ln a_NP is open upwards where P lies above its figure or NP below, downwards the other way round
-    lies_above = pd.DataFrame(sides["right"]).eq(True)
-    lies_below = pd.DataFrame(sides["left"]).eq(True)
-    upward = (lies_above[CHANGED] | lies_below[PLAIN]).to_numpy()
-    downward = (lies_above[PLAIN] | lies_below[CHANGED]).to_numpy()
+    upward, downward = _open_ends(sides)
     both = ln_a.notna().all(axis=1).to_numpy()
     if not both.any():
         raise InputError(

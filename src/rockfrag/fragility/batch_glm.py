@@ -7,7 +7,7 @@ Theory: ``docs/fragility.md``, "Estimators"; Firth (1993) for the penalty.
 """
 
 from dataclasses import dataclass
-from typing import Literal
+from typing import Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -83,20 +83,15 @@ def fit_batch(
     converged = ~mixed
     active = np.flatnonzero(mixed)
     step = np.zeros((batch, columns))
-    outer = design[:, :, None] * design[:, None, :]
-    flat_outer = outer.reshape(len(design), -1)
     for _ in range(MOST_STEPS):
         if active.size == 0:
             break
         trial = coefficients[active] + step[active]
-        y, m = failures[active], trials[active]
-        eta = np.clip(trial @ design.T, -_LARGEST_PREDICTOR, _LARGEST_PREDICTOR)
-        log_p, log_q, log_density, weight_slope = log_terms(eta, link)
-        goal = (y * log_p + (m - y) * log_q).sum(axis=1)
-        weight = m * np.exp(2.0 * log_density - log_p - log_q)
-        fisher = (weight @ flat_outer).reshape(-1, columns, columns)
+        at = _evaluated(design, failures[active], trials[active], trial, link)
+        goal = at.log_likelihood
         if penalised:
-            goal = goal + 0.5 * np.linalg.slogdet(fisher)[1]
+            goal = goal + 0.5 * np.linalg.slogdet(at.information)[1]
+        # a step that makes it worse is halved; the others are taken, and the next one found
         worse = goal < objective[active] - 1e-10
         settled = (
             ~worse
@@ -109,18 +104,55 @@ def fit_batch(
         where = active[better]
         coefficients[where] = trial[better]
         objective[where] = goal[better]
-        information[where] = fisher[better]
-        score = (
-            y * np.exp(log_density - log_p) - (m - y) * np.exp(log_density - log_q)
-        )[better]
-        inverse = np.linalg.pinv(fisher[better], hermitian=True)
-        if penalised:
-            hat = weight[better] * np.einsum("ri,bij,rj->br", design, inverse, design)
-            score = score + 0.5 * hat * weight_slope[better]
-        step[where] = np.einsum("bij,bj->bi", inverse, score @ design)
+        information[where] = at.information[better]
+        step[where] = _next_steps(design, at, better, penalised=penalised)
         converged[active[settled]] = True
         active = active[~settled & ~stuck]
     return BatchFit(coefficients, information, converged)
+
+
+class _Evaluated(NamedTuple):
+    """A batch of regressions at their coefficients."""
+
+    log_likelihood: Floats  # shape (batch,)
+    information: Floats  # expected, shape (batch, k, k)
+    # slope of the log-likelihood by the predictor, weight, and slope of its logarithm, shape (batch, rows) each
+    score: Floats
+    weight: Floats
+    weight_slope: Floats
+
+
+def _evaluated(
+    design: Floats, failures: Floats, trials: Floats, coefficients: Floats, link: Link
+) -> _Evaluated:
+    """Likelihood and information of regressions at coefficients, shape (batch, k)."""
+    rows, columns = design.shape
+    eta = np.clip(coefficients @ design.T, -_LARGEST_PREDICTOR, _LARGEST_PREDICTOR)
+    log_p, log_q, log_density, weight_slope = log_terms(eta, link)
+    survived = trials - failures
+    weight = trials * np.exp(2.0 * log_density - log_p - log_q)
+    outer = (design[:, :, None] * design[:, None, :]).reshape(rows, -1)
+    return _Evaluated(
+        log_likelihood=(failures * log_p + survived * log_q).sum(axis=1),
+        information=(weight @ outer).reshape(-1, columns, columns),
+        score=failures * np.exp(log_density - log_p)
+        - survived * np.exp(log_density - log_q),
+        weight=weight,
+        weight_slope=weight_slope,
+    )
+
+
+def _next_steps(
+    design: Floats, at: _Evaluated, chosen: NDArray[np.int64], *, penalised: bool
+) -> Floats:
+    """Steps of Fisher's scoring of the ``chosen`` regressions, shape (chosen, k); Firth's if ``penalised``."""
+    inverse = np.linalg.pinv(at.information[chosen], hermitian=True)
+    score = at.score[chosen]
+    if penalised:
+        leverage = np.einsum("ri,bij,rj->br", design, inverse, design)
+        leverage = at.weight[chosen] * leverage
+        score = score + 0.5 * leverage * at.weight_slope[chosen]
+    return np.asarray(np.einsum("bij,bj->bi", inverse, score @ design))
 
 
 def separated(log_im: Floats, failures: Floats, trials: Floats) -> NDArray[np.bool_]:

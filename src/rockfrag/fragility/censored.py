@@ -179,13 +179,11 @@ def bracket_interval(
     groups = len(names)
 
     def refit(weights: Floats) -> Floats:
-        """Coefficients for weights of the groups, shape (batch, groups); of many blocks by a step each."""
+        """Intercept and slope for weights of the groups, shape (batch, groups)."""
         each = weights[:, codes]
-        if (
-            groups > MOST_BLOCKS
-            and len(weights) > 1
-            and (each.max(), each.min()) == (1, 0)
-        ):
+        leaves_out = len(weights) > 1 and (each.max(), each.min()) == (1, 0)
+        if leaves_out and groups > MOST_BLOCKS:
+            # a hundredth of the brackets changes little: one step from the fit to all is enough
             return _without_a_block(low, high, each)
         return _fit_weighted(low, high, each).coefficients
 
@@ -472,6 +470,7 @@ def _fraction_terms(low: Floats, high: Floats, coefficients: Floats) -> _Terms:
 
 def _log_difference(z_low: Floats, z_high: Floats) -> Floats:
     """Return ln(Φ(z_high) - Φ(z_low)) without loss of digits; 0 where the bounds are equal."""
+    # above the middle in the other tail, where probabilities are small and keep their digits
     with np.errstate(invalid="ignore"):
         flip = z_low + z_high > 0
     lower, upper = np.where(flip, -z_high, z_low), np.where(flip, -z_low, z_high)

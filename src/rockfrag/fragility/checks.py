@@ -110,25 +110,35 @@ def goodness_of_fit(
         start=np.array(fit.coefficients),
     )
     p_value = float((1 + np.sum(simulated >= deviance - 1e-9)) / (1 + simulated.size))
-    columns = {
-        "im": np.exp(by_bin(outcomes.trials * outcomes.log_im) / trials),
-        "tests": trials.astype(np.int64),
-        "predicted": expected / trials,
-        "observed": observed / trials,
-    }
-    limits = zip(
-        ("observed_lower", "observed_upper"),
-        wilson_interval(observed, trials),
-        strict=True,
-    )
-    calibration = pd.DataFrame(columns | dict(limits)).sort_values(
-        "im", ignore_index=True
-    )
-    miss = outcomes.overturned * (1 - probability) ** 2
-    miss += (outcomes.trials - outcomes.overturned) * probability**2
-    brier = float(miss.sum() / outcomes.n)
+    im = np.exp(by_bin(outcomes.trials * outcomes.log_im) / trials)
+    calibration = _calibration(im, trials, expected, observed)
+    brier = _brier_score(outcomes, probability)
     words = goodness_text(deviance, len(calibration), p_value, dependence)
     return GoodnessOfFit(deviance, p_value, dependence, brier, calibration, words)
+
+
+def _calibration(
+    im: Floats, trials: Floats, expected: Floats, observed: Floats
+) -> pd.DataFrame:
+    """Predicted and observed fraction of each bin, with limits; numbers of tests that overturn, shape (bins,)."""
+    lower, upper = wilson_interval(observed, trials)
+    return pd.DataFrame(
+        {
+            "im": im,
+            "tests": trials.astype(np.int64),
+            "predicted": expected / trials,
+            "observed": observed / trials,
+            "observed_lower": lower,
+            "observed_upper": upper,
+        }
+    ).sort_values("im", ignore_index=True)
+
+
+def _brier_score(outcomes: Observations, probability: Floats) -> float:
+    """Mean over tests of the squared difference between outcome, 0 or 1, and probability, shape (rows,)."""
+    miss = outcomes.overturned * (1 - probability) ** 2
+    miss += (outcomes.trials - outcomes.overturned) * probability**2
+    return float(miss.sum() / outcomes.n)
 
 
 _BETWEEN_BINS = 1e3

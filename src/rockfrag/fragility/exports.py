@@ -122,12 +122,7 @@ def curves_by_name(
             raise InputError(
                 f"{export}: {str(row[by])!r} has no lognormal curve; leave the row out."
             )
-        points = np.empty((0, 2))
-        if fractions is not None:
-            own = (fractions[by].astype(str) == str(row[by])) & (
-                fractions["state"] == state
-            )
-            points = fractions.loc[own, ["x", "fraction"]].to_numpy(dtype=np.float64)
+        points = _points_of(fractions, by, str(row[by]), state)
         added = 0.0
         if model_error and state == OVERTURNS:
             # where rocking starts is statics, which the model does not err in
@@ -140,6 +135,16 @@ def curves_by_name(
         name: {state: states[state] for state in order if state in states}
         for name, states in curves.items()
     }
+
+
+def _points_of(
+    fractions: pd.DataFrame | None, by: str, name: str, state: str
+) -> Floats:
+    """Levels and observed fractions of one object and limit state, shape (n, 2); none without fractions."""
+    if fractions is None:
+        return np.empty((0, 2))
+    own = (fractions[by].astype(str) == name) & (fractions["state"] == state)
+    return fractions.loc[own, ["x", "fraction"]].to_numpy(dtype=np.float64)
 
 
 _NODES, _WEIGHTS = np.polynomial.hermite_e.hermegauss(41)
@@ -442,12 +447,8 @@ def _component(
                 "in g, PGV or PFV in cm/s."
             )
         demands.add((known[im][0], known[im][1][unit]))
-        family: tuple[object, ...] = "lognormal", curve.theta, curve.beta, ""
-        if levels.size:
-            family = "multilinear_CDF", _multilinear(levels, fraction), "", ""
-        keys = ("Family", "Theta_0", "Theta_1", "DamageStateWeights")
         parameters |= {
-            f"LS{number}-{key}": x for key, x in zip(keys, family, strict=True)
+            f"LS{number}-{key}": value for key, value in _family(curve).items()
         }
         reached = limit_state_named(state)
         words = reached.damage or reached.label
@@ -478,6 +479,17 @@ def _component(
         "LimitStates": limit_states,
     }
     return line, note
+
+
+def _family(curve: StateCurve) -> dict[str, object]:
+    """Distribution of a curve as SimCenter's tables have it: by its points if it has any, else lognormal."""
+    if curve.levels.size:
+        points = _multilinear(curve.levels, curve.fraction)
+        parameters: tuple[object, ...] = "multilinear_CDF", points, ""
+    else:
+        parameters = "lognormal", curve.theta, curve.beta
+    keys = ("Family", "Theta_0", "Theta_1")
+    return dict(zip(keys, parameters, strict=True)) | {"DamageStateWeights": ""}
 
 
 def _multilinear(levels: Floats, fraction: Floats) -> str:

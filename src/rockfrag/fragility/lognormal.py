@@ -142,19 +142,8 @@ def fit_lognormal(outcomes: Observations, *, link: Link = "probit") -> Fragility
     """
     notes = fit_notes.notes_of_outcomes(outcomes)
     if outcomes.im.size > MOST_ROWS:
-        cell, values = cells(outcomes.log_im, 10_000)
-        whole, outcomes = outcomes, outcomes.pooled(cell, np.exp(values))
-        pooled = fit_lognormal(outcomes, link=link)
-        # cells are not tests: which of a cell's tests overturned is known
-        likelihood = pooled.log_likelihood + float(
-            whole.log_arrangements().sum() - outcomes.log_arrangements().sum()
-        )
-        return replace(
-            pooled,
-            n_motions=whole.n_motions,
-            log_likelihood=likelihood,
-            warnings=(*notes, *pooled.warnings),
-        )
+        pooled = _fit_pooled(outcomes, link)
+        return replace(pooled, warnings=(*notes, *pooled.warnings))
     curve, log_likelihood = NO_CURVE, 0.0
     if outcomes.n_overturned in (0, outcomes.n):
         method = "none: all tests agree"
@@ -168,23 +157,15 @@ def fit_lognormal(outcomes: Observations, *, link: Link = "probit") -> Fragility
         )
     else:
         found = _estimate(outcomes, link)
-        method, coefficients = found.method, found.coefficients
+        method = found.method
         notes += found.notes
-        log_p, log_q, *_ = log_terms(
-            coefficients[0] + coefficients[1] * outcomes.log_im, link
-        )
-        terms = (
-            outcomes.overturned * log_p
-            + (outcomes.trials - outcomes.overturned) * log_q
-        )
-        log_likelihood = float((terms + outcomes.log_arrangements()).sum())
-        if coefficients[1] < LEAST_SLOPE:
+        log_likelihood = _log_likelihood(outcomes, found.coefficients, link)
+        if found.coefficients[1] < LEAST_SLOPE:
             method = "none: probability does not rise"
             notes.append(fit_notes.note_of_falling(outcomes))
         else:
-            curve = curve_parameters(
-                coefficients, np.asarray(np.linalg.inv(found.information))
-            )
+            covariance = np.asarray(np.linalg.inv(found.information))
+            curve = curve_parameters(found.coefficients, covariance)
     return FragilityFit(
         theta=curve.theta,
         beta=curve.beta,
@@ -200,6 +181,32 @@ def fit_lognormal(outcomes: Observations, *, link: Link = "probit") -> Fragility
         warnings=tuple(notes),
         of_motions=outcomes.of_motions,
     )
+
+
+def _fit_pooled(outcomes: Observations, link: Link) -> FragilityFit:
+    """Fit a curve to many tests, pooled in 10⁴ cells of the measure; its likelihood is that of the tests."""
+    cell, values = cells(outcomes.log_im, 10_000)
+    pooled = outcomes.pooled(cell, np.exp(values))
+    fit = fit_lognormal(pooled, link=link)
+    # cells are not tests: which of a cell's tests overturned is known
+    arrangements = float(
+        outcomes.log_arrangements().sum() - pooled.log_arrangements().sum()
+    )
+    return replace(
+        fit,
+        n_motions=outcomes.n_motions,
+        log_likelihood=fit.log_likelihood + arrangements,
+    )
+
+
+def _log_likelihood(outcomes: Observations, coefficients: Floats, link: Link) -> float:
+    """Binomial log-likelihood of outcomes under a curve with these coefficients, (2,), in ln IM."""
+    log_p, log_q, *_ = log_terms(
+        coefficients[0] + coefficients[1] * outcomes.log_im, link
+    )
+    survived = outcomes.trials - outcomes.overturned
+    terms = outcomes.overturned * log_p + survived * log_q
+    return float((terms + outcomes.log_arrangements()).sum())
 
 
 class _Estimate(NamedTuple):

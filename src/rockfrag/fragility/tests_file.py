@@ -11,7 +11,7 @@ UTF-16 and Western European text are understood; messages name file, row (the he
 import csv
 import os
 import warnings
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -148,16 +148,7 @@ def read_columns(
     """
     source = Path(path).name
     encoding, comments, separator, titles = _head(path)
-    for name in kinds:
-        if name not in titles:
-            raise InputError(
-                f"{source}: there is no column {name!r}; the file has {', '.join(titles)}."
-            )
-        if titles.count(name) > 1:
-            raise InputError(
-                f"{source}: the title {name!r} stands over {titles.count(name)} columns; rename the one "
-                "that is not meant."
-            )
+    _check_titles(source, titles, kinds)
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("error", pd.errors.ParserWarning)
@@ -194,6 +185,20 @@ def read_columns(
             [str(value).strip() for value in values] if kind == "label" else values
         )
     return pd.DataFrame(found)
+
+
+def _check_titles(source: str, titles: Sequence[str], wanted: Iterable[str]) -> None:
+    """Refuse wanted columns that the file does not have, or has several times."""
+    for name in wanted:
+        if name not in titles:
+            raise InputError(
+                f"{source}: there is no column {name!r}; the file has {', '.join(titles)}."
+            )
+        if titles.count(name) > 1:
+            raise InputError(
+                f"{source}: the title {name!r} stands over {titles.count(name)} columns; rename the one "
+                "that is not meant."
+            )
 
 
 def product_of(raw: pd.DataFrame, recipe: Sequence[str | float]) -> Floats:

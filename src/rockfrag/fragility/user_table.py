@@ -93,21 +93,26 @@ def fit_user_table(
     )
     columns = list(measures)
     earthquake_column = "earthquake" if earthquake is not None else None
-    outcomes, fits, rows, bins = {}, {}, [], []
-    digest = table_hash(tests)
-    for column in columns:
-        data = observations_from_table(
+    outcomes = {
+        column: observations_from_table(
             tests, column, earthquake=earthquake_column, source=source
         )
-        # rows of one motion are tests at different scales, each with its own outcome
-        result = fragility_of(data, level=level, dependence="tests", seed=seed)
-        outcomes[column], fits[column] = data, result
-        rows.append(
-            fragility_row(
-                result, {"source": source, "measure": column}, "cloud", digest
-            )
-        )
-        bins.append(fraction_in_bins(data, level=level).assign(measure=column))
+        for column in columns
+    }
+    # rows of one motion are tests at different scales, each with its own outcome
+    fits = {
+        column: fragility_of(data, level=level, dependence="tests", seed=seed)
+        for column, data in outcomes.items()
+    }
+    digest = table_hash(tests)
+    rows = [
+        fragility_row(fit, {"source": source, "measure": column}, "cloud", digest)
+        for column, fit in fits.items()
+    ]
+    bins = [
+        fraction_in_bins(data, level=level).assign(measure=column)
+        for column, data in outcomes.items()
+    ]
     choice = recommend_measure(
         tests,
         columns,

@@ -171,11 +171,8 @@ def fit_vector(
     group = pd.factorize(pd.Series(observations.labels(table, earthquake, source)))[0]
     fit, interaction = _fitted(design, outcome), Interaction(np.nan, np.nan, kept=False)
     product = design_of(logs, interaction=True)
-    if (
-        try_interaction
-        and np.linalg.matrix_rank(product) == 4
-        and "penalised" not in fit.method
-    ):
+    is_estimable = np.linalg.matrix_rank(product) == 4 and "penalised" not in fit.method
+    if try_interaction and is_estimable:
         full = _fitted(product, outcome)
         interaction = _interaction(fit, full, product, outcome, group)
         if interaction.kept:

@@ -32,7 +32,11 @@ def tell(shape: Shape, restitution: float, pivot: int) -> ForKernels:
 
 
 def rate(value: float, by_momentum: float, before: float, moved: float) -> float:
-    """Rate that the moved impulse leaves."""
+    """Rate after an impact [rad/s]: the one that momentum about the place of the impulse leaves, ``moved``.
+
+    ``value``, ``by_momentum`` and ``before``, the law's number and the rates by momentum about the corner and
+    before the impact, have no part in it.
+    """
     return moved
 
 

@@ -191,9 +191,10 @@ def peak_within(
     k: float,
     h: float,
 ) -> float:
-    """Largest value of a response (see above) where it turns within a step, once or twice; 0 if it does not.
+    """Largest value of a response where it turns within a step of length h, once or twice; 0 if it does not.
 
-    ``first`` and ``last`` are its value, slope and curvature at both ends, ``start`` is (u, u', a, s).
+    ``order`` says of which response, u, u' or the total acceleration (:func:`_response`). ``first`` and ``last``
+    are its value, slope and curvature at both ends; ``start`` has u, u', the ground's acceleration and its slope.
     """
     (x0, m0, n0), (x1, m1, n1) = first, last
     if m0 * m1 < 0:
@@ -427,6 +428,7 @@ def peak_displacements(
         periods.tobytes(), damping, motion.dt
     ):
         x = table.copy()
+        # what the ground may add to a peak grows with its PGA
         x[_ADDED : _ADDED + LANES] *= to_come[0]
         _integrate(motion.acceleration, to_come, quiet, step, parts, x)
         peaks[which] = x[_LARGEST : _LARGEST + which.size]

@@ -101,17 +101,13 @@ def evolutionary(
     padded = Motion(np.pad(strong, (0, math.ceil(2 / (corner_hz * dt)))), dt)
     drift = oscillator_response(padded, 1 / corner_hz, damping=1.0)[2]
     given = {
-        **{
-            "arias_m_s": arias_m_s,
-            "d5_95_s": d5_95_s,
-            "mid_s": mid_s,
-            "mid_hz": mid_hz,
-        },
-        **{
-            "slope_hz_s": slope_hz_s,
-            "filter_damping": filter_damping,
-            "corner_hz": corner_hz,
-        },
+        "arias_m_s": arias_m_s,
+        "d5_95_s": d5_95_s,
+        "mid_s": mid_s,
+        "mid_hz": mid_hz,
+        "slope_hz_s": slope_hz_s,
+        "filter_damping": filter_damping,
+        "corner_hz": corner_hz,
     }
     source = "Rezaeian & Der Kiureghian (2008, 2010)"
     return _synthetic(
@@ -160,25 +156,14 @@ def spectrum_compatible(
     control = np.geomspace(given[0], given[-1], math.ceil(60 * decades) + 1)
     target = np.exp(np.interp(np.log(control), np.log(given), np.log(wanted)))
 
+    # the motion begins and ends with one longest period of quiet
     quiet = float(given[-1])
     strong = float(gamma.ppf(1 - 1e-3, shape, scale=spread))
-    count = whole_within(
-        who,
-        "number of samples",
-        math.ceil((strong + 2 * quiet) / dt) + 1,
-        10,
-        1_000_000,
-    )
+    samples = math.ceil((strong + 2 * quiet) / dt) + 1
+    count = whole_within(who, "number of samples", samples, 10, 1_000_000)
     noise = np.random.default_rng(seed).standard_normal(count)
-    acceleration = noise * np.sqrt(
-        gamma.pdf(np.arange(count) * dt - quiet, shape, scale=spread)
-    )
-    window = tukey(count, alpha=2 * quiet / (count * dt))
-    frequency = np.asarray(np.fft.rfftfreq(count, dt), dtype=np.float64)
-    # one above 1 / quiet, zero below half of it, half a cosine between them
-    low_cut = (
-        1 - np.cos(np.pi * np.clip(2 * frequency / (1 / quiet) - 1, 0.0, 1.0))
-    ) / 2
+    time = np.arange(count) * dt - quiet
+    acceleration = noise * np.sqrt(gamma.pdf(time, shape, scale=spread))
 
     best, best_rms, best_max = acceleration, math.inf, math.inf
     for _ in range(ITERATIONS + 1):
@@ -187,13 +172,13 @@ def spectrum_compatible(
         rms = float(np.sqrt(np.mean(error**2)))
         if rms < best_rms:
             best, best_rms, best_max = acceleration, rms, float(np.abs(error).max())
-        # periods run upwards and frequencies downwards; beyond the ends the last correction holds
-        gain = np.exp(-np.interp(frequency, 1 / control[::-1], error[::-1]))
-        corrected = np.fft.irfft(np.fft.rfft(acceleration) * gain * low_cut, count)
-        acceleration = _at_rest(corrected * window, window, dt)
+        acceleration = _corrected(acceleration, dt, control, error)
     parameters = {
-        **{"periods_s": given.tolist(), "target_g": (wanted / GRAVITY).tolist()},
-        **{"damping": damping, "d5_95_s": d5_95_s, "mid_s": mid_s},
+        "periods_s": given.tolist(),
+        "target_g": (wanted / GRAVITY).tolist(),
+        "damping": damping,
+        "d5_95_s": d5_95_s,
+        "mid_s": mid_s,
     }
     return _synthetic(
         best,
@@ -205,6 +190,26 @@ def spectrum_compatible(
         misfit_rms=best_rms,
         misfit_max=best_max,
     )
+
+
+def _corrected(
+    acceleration: Floats, dt: float, periods: Floats, error: Floats
+) -> Floats:
+    """Acceleration whose amplitude at each period is divided by actual over target, at rest at its end.
+
+    ``error`` is the logarithm of that ratio at ``periods``, increasing [s]. What is slower than twice the longest
+    period is taken out, and one longest period at both ends is tapered.
+    """
+    longest, count = float(periods[-1]), acceleration.size
+    frequency = np.asarray(np.fft.rfftfreq(count, dt), dtype=np.float64)
+    # periods run upwards and frequencies downwards; beyond the ends the last correction holds
+    gain = np.exp(-np.interp(frequency, 1 / periods[::-1], error[::-1]))
+    # one above the lowest frequency, zero below half of it, half a cosine between them
+    part = np.clip(2 * frequency / (1 / longest) - 1, 0.0, 1.0)
+    low_cut = (1 - np.cos(np.pi * part)) / 2
+    corrected = np.fft.irfft(np.fft.rfft(acceleration) * gain * low_cut, count)
+    window = tukey(count, alpha=2 * longest / (count * dt))
+    return _at_rest(corrected * window, window, dt)
 
 
 def _envelope(who: str, d5_95_s: float, mid_s: float) -> tuple[float, float]:

@@ -264,6 +264,7 @@ class Outcomes:
         names = self.rows_of(which)
         counts = [1 if whole else len(each) for each in names]
         most = max(counts, default=0)
+        # each column is spread over systems, motions, scales and rows of a case; those that are there are taken
         full = (*self.shape, most)
         made: dict[str, Any] = {
             "system": np.arange(systems)[:, np.newaxis, np.newaxis, np.newaxis],

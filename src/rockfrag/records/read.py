@@ -267,7 +267,7 @@ def motion_of(
         channel = replace(channel, steps=found[0].steps)
     factor = quantities.to_si(stored)
     acceleration = _in_si(named, samples, factor)
-    read = {
+    read: dict[str, Any] = {
         "step": "read",
         "file": printable(Path(record.name).name),
         "sha256": record.sha256,
@@ -276,13 +276,11 @@ def motion_of(
         "unit": stored,
         "unit_stated": bool(channel.unit),
         "factor_to_m_s2": factor,
-        **({"member": channel.member} if channel.member else {}),
-        **(
-            {"left_out": [name for name, _ in record.left_out]}
-            if record.left_out
-            else {}
-        ),
     }
+    if channel.member:
+        read["member"] = channel.member
+    if record.left_out:
+        read["left_out"] = [name for name, _ in record.left_out]
     steps: list[Mapping[str, Any]] = [read, *channel.steps]
     mean = float(acceleration.mean())
     # the sensor's zero, or the weight of its mass, which is not motion
@@ -291,12 +289,17 @@ def motion_of(
         steps.append({"step": "remove zero level", "offset_m_s2": mean})
     if not channel.unit and not force:
         _check_peak(named, acceleration, stored)
+    name, metadata = _name_of(record, channel), _metadata(record, channel, stored)
+    return Motion(acceleration, channel.dt, name, metadata, tuple(steps))
+
+
+def _name_of(record: Record, channel: Channel) -> str:
+    """Name of a motion: that of its file or member without its ending, and of its channel if there are several."""
     own = channel.member or record.name.rpartition("#")[2]
     name = printable(Path(own).name.removesuffix(".gz").rsplit(".", 1)[0])
-    if len(record.channels) > 1:
-        name = f"{name} {channel.code or channel.component}".strip()
-    metadata = _metadata(record, channel, stored)
-    return Motion(acceleration, channel.dt, name, metadata, tuple(steps))
+    if len(record.channels) == 1:
+        return name
+    return f"{name} {channel.code or channel.component}".strip()
 
 
 def _in_si(

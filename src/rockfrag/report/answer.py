@@ -11,6 +11,7 @@ from functools import partial
 
 import numpy as np
 import pandas as pd
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
@@ -196,30 +197,8 @@ def strength_figure(
     shown = list(names)[:MOST_ROWS]
     with panels(COLUMN_WIDTH, 0.8 + 0.33 * len(shown)) as (figure, axes):
         for y, name in enumerate(shown):
-            rows = drawn_tests(tests[tests["configuration"] == name])
-            colour = SIDE_COLOUR[str(rows["pedestal"].iloc[0])]
-            known = ~(rows["up"] | rows["down"])
-            # carets to the right and to the left for bounds
-            for own, marker, size in (
-                (known, "|", 7),
-                (rows["up"], 5, 5),
-                (rows["down"], 4, 5),
-            ):
-                x = rows.loc[own, "a"].to_numpy(dtype=float)
-                axes.plot(
-                    x,
-                    np.full(x.size, y + 0.12),
-                    ls="",
-                    marker=marker,
-                    color=colour,
-                    ms=size,
-                )
-            below = y - 0.2
-            for row in curves[curves["configuration"] == name].to_dict("records"):
-                limits = [row["theta_lower"], row["theta_upper"]]
-                if np.isfinite(limits).all() and limits[0] < limits[1]:
-                    axes.plot(limits, [below, below], color=BLACK, lw=1.2)
-                axes.plot(row["theta"], below, "D", mec=BLACK, mfc="white", ms=4)
+            _draw_tests(axes, tests[tests["configuration"] == name], y + 0.12)
+            _draw_medians(axes, curves[curves["configuration"] == name], y - 0.2)
         axes.set_ylim(len(shown) - 0.4, -0.6)
         axes.set_yticks(range(len(shown)), [shortened(name, 20) for name in shown])
         axes.tick_params(axis="y", length=0)
@@ -227,27 +206,54 @@ def strength_figure(
         low, high = axes.get_xlim()
         axes.set_xlim(min(low, 0.8 * high), high)
         plain_log(axes, "x")
-        sides = list(dict.fromkeys(tests["pedestal"]))
-        handles = []
-        for side in sides if len(sides) > 1 else []:
-            words, colour = f"tests {SIDE_NAME[side]}", SIDE_COLOUR[side]
-            handles.append(
-                Line2D([], [], ls="", marker="|", color=colour, ms=8, label=words)
-            )
-        if len(curves):
-            words = "median, interval"
-            handles.append(
-                Line2D([], [], color=BLACK, marker="D", mfc="white", ms=4, label=words)
-            )
-        if tests["amplitude_g"].isna().any():
-            handles.append(
-                Line2D([], [], ls="", marker=5, color=GREY, label="bound only")
-            )
-        if handles:
+        if handles := _marks(tests, curves):
             figure.legend(
                 handles=handles, loc="outside upper center", ncols=2, handlelength=1.4
             )
         return figure
+
+
+def _draw_tests(axes: Axes, tests: pd.DataFrame, y: float) -> None:
+    """Draw the amplitudes of one configuration at a height; carets to the right and to the left are bounds."""
+    rows = drawn_tests(tests)
+    colour = SIDE_COLOUR[str(rows["pedestal"].iloc[0])]
+    known = ~(rows["up"] | rows["down"])
+    for own, marker, size in (
+        (known, "|", 7),
+        (rows["up"], 5, 5),
+        (rows["down"], 4, 5),
+    ):
+        x = rows.loc[own, "a"].to_numpy(dtype=float)
+        heights = np.full(x.size, y)
+        axes.plot(x, heights, ls="", marker=marker, color=colour, ms=size)
+
+
+def _draw_medians(axes: Axes, curves: pd.DataFrame, y: float) -> None:
+    """Draw the medians of one configuration's curves at a height, with their intervals."""
+    for row in curves.to_dict("records"):
+        limits = [row["theta_lower"], row["theta_upper"]]
+        if np.isfinite(limits).all() and limits[0] < limits[1]:
+            axes.plot(limits, [y, y], color=BLACK, lw=1.2)
+        axes.plot(row["theta"], y, "D", mec=BLACK, mfc="white", ms=4)
+
+
+def _marks(tests: pd.DataFrame, curves: pd.DataFrame) -> list[Line2D]:
+    """Marks of the legend, for what is drawn alone: tests by pedestal, medians, bounds."""
+    handles = []
+    sides = list(dict.fromkeys(tests["pedestal"]))
+    for side in sides if len(sides) > 1 else []:
+        words, colour = f"tests {SIDE_NAME[side]}", SIDE_COLOUR[side]
+        handles.append(
+            Line2D([], [], ls="", marker="|", color=colour, ms=8, label=words)
+        )
+    if len(curves):
+        words = "median, interval"
+        handles.append(
+            Line2D([], [], color=BLACK, marker="D", mfc="white", ms=4, label=words)
+        )
+    if tests["amplitude_g"].isna().any():
+        handles.append(Line2D([], [], ls="", marker=5, color=GREY, label="bound only"))
+    return handles
 
 
 def could_change(results: Results) -> list[str]:

@@ -150,6 +150,21 @@ def amplitudes_by(by: str, tests: pd.DataFrame, means: pd.DataFrame) -> Figure:
     return figure
 
 
+def _join_pairs(axes: Axes, rows: pd.DataFrame) -> None:
+    """Join the tests of one object under one motion, with and without pedestal; ``x`` is their place."""
+    keys = ["object", "motion"]
+    without = rows[rows["pedestal"] == "NP"].drop_duplicates(keys)
+    pairs = rows[rows["pedestal"] == "P"].merge(
+        without, on=keys, suffixes=("_p", "_np")
+    )
+    ends = pairs[["x_np", "a_np", "x_p", "a_p"]].to_numpy(dtype=float)
+    axes.add_collection(
+        LineCollection(
+            list(ends.reshape(-1, 2, 2)), colors="#cccccc", linewidths=0.5, zorder=1
+        )
+    )
+
+
 def _sides_panel(
     axes: Axes, rows: pd.DataFrame, by: str, levels: Sequence[str], means: pd.DataFrame
 ) -> None:
@@ -160,19 +175,7 @@ def _sides_panel(
     x = rows[by].map(place) + rows["pedestal"].map(shift)
     are_many = len(rows) > MOST_MARKS
     if both and not are_many:
-        keys, placed = ["object", "motion"], rows.assign(x=x)
-        without = placed[placed["pedestal"] == "NP"].drop_duplicates(keys)
-        pairs = placed[placed["pedestal"] == "P"].merge(
-            without, on=keys, suffixes=("_p", "_np")
-        )
-        ends = (
-            pairs[["x_np", "a_np", "x_p", "a_p"]]
-            .to_numpy(dtype=float)
-            .reshape(-1, 2, 2)
-        )
-        axes.add_collection(
-            LineCollection(list(ends), colors="#cccccc", linewidths=0.5, zorder=1)
-        )
+        _join_pairs(axes, rows.assign(x=x))
     for side in SIDES:
         own = rows["pedestal"] == side
         if are_many and own.any():

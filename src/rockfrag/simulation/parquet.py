@@ -87,12 +87,12 @@ def stream_overturns(
                 f"columns: {name!r} is no column of {table!r}; choose among {', '.join(known)}."
             )
     cases = prepared(bodies, motions, dt, scales, forces=forces, **options)
-    chosen = [known[name] for name in known if name in columns]
     types = {
-        each.title: pa.string()
-        if each.dtype == object
-        else pa.from_numpy_dtype(each.dtype)
-        for each in chosen
+        column.title: pa.string()
+        if column.dtype == object
+        else pa.from_numpy_dtype(column.dtype)
+        for name, column in known.items()
+        if name in columns
     }
     schema = pa.schema(PLACE | WITHIN[table] | types)
     total = len(cases.systems) * cases.scales.size

@@ -153,17 +153,12 @@ def restitution_from_impacts(
         )
     pivots = [first_pivot * (-1) ** k for k in range(len(intervals))]
 
-    def flight(speed: float, pivot: int) -> float:
-        peak = peak_after(block, speed, pivot)
-        if math.isnan(peak):
-            return math.nan
-        return 2 * quarter_period(block, peak, pivot)
-
     def model(parameters: Floats) -> Floats:
+        """Times of the impacts, of the first one, the speed after it and e."""
         begin, speed, e = parameters
         found = [begin]
         for pivot in pivots:
-            found.append(found[-1] + flight(speed, pivot))
+            found.append(found[-1] + _time_between_impacts(block, speed, pivot))
             speed *= e
         return np.array(found)
 
@@ -171,26 +166,38 @@ def restitution_from_impacts(
         speed_before(block, block.critical_angle(pivot), pivot) for pivot in (+1, -1)
     )
     largest = over * (1 - 1e-12)
-
-    def speed_of(interval: float, pivot: int) -> float:
-        """Speed on a pivot after which the block is back after an interval, within what is possible."""
-        if flight(largest, pivot) <= interval:
-            return largest
-        if flight(1e-9 * largest, pivot) >= interval:
-            return 1e-9 * largest
-
-        def too_long(speed: float) -> float:
-            return flight(speed, pivot) - interval
-
-        return float(brentq(too_long, 1e-9 * largest, largest, xtol=1e-14))
-
     speeds = [
-        speed_of(float(T), pivot) for T, pivot in zip(intervals, pivots, strict=True)
+        _speed_of_interval(block, interval, pivot, largest)
+        for interval, pivot in zip(intervals.tolist(), pivots, strict=True)
     ]
     start = min(max((speeds[-1] / speeds[0]) ** (1 / (len(speeds) - 1)), 0.01), 0.9999)
     bounds = [(-np.inf, np.inf), (1e-9 * largest, largest)]
     fit = _least_squares(model, values, [values[0], speeds[0], start], bounds)
     return _summary(block, fit, len(intervals) - 1, confidence)
+
+
+def _time_between_impacts(block: Block, speed: float, pivot: int) -> float:
+    """Time that a block is on a pivot after leaving at a speed [s]; NaN where it does not come back."""
+    peak = peak_after(block, speed, pivot)
+    if math.isnan(peak):
+        return math.nan
+    return 2 * quarter_period(block, peak, pivot)
+
+
+def _speed_of_interval(
+    block: Block, interval: float, pivot: int, largest: float
+) -> float:
+    """Speed after which a block is on a pivot for an interval [s], from a billionth of ``largest`` up to that."""
+    least = 1e-9 * largest
+    if _time_between_impacts(block, largest, pivot) <= interval:
+        return largest
+    if _time_between_impacts(block, least, pivot) >= interval:
+        return least
+
+    def too_long(speed: float) -> float:
+        return _time_between_impacts(block, speed, pivot) - interval
+
+    return float(brentq(too_long, least, largest, xtol=1e-14))
 
 
 def restitution_from_history(

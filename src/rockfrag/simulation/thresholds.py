@@ -124,14 +124,8 @@ def find_thresholds(
     >>> found.table["first_overturning"].round(2).tolist()
     [2.95]
     """
-    positive_number("highest", highest)
     positive_number("tolerance", tolerance)
-    positive_number("narrowest_resurrection", narrowest_resurrection)
-    if narrowest_resurrection > highest:
-        raise InputError(
-            f"narrowest_resurrection: {narrowest_resurrection} is more than the highest scale, {highest}."
-        )
-    intervals = math.ceil(highest / narrowest_resurrection - 1e-9)
+    intervals = _intervals(highest, narrowest_resurrection)
     cases = prepared(bodies, motions, dt, (highest,), **options)
     if len(cases.systems) * len(cases.motions) * intervals > MOST_GRID_CASES:
         raise InputError(
@@ -142,12 +136,12 @@ def find_thresholds(
     # a copy of the broadcast grid would run in columns, for which kernels are compiled anew
     factors = np.tile(grid, (len(cases.motions), 1))
     fallen = shaken(replace(cases, scales=factors)).overturned
+    # each change of outcome between neighbours of the grid, bisected
     body, motion, left = np.nonzero(fallen[..., 1:] != fallen[..., :-1])
     low, high = grid[left], grid[left + 1]
     falls = fallen[body, motion, left + 1]
-    for _ in range(
-        max(0, math.ceil(math.log2(highest / intervals / tolerance) - 1e-9))
-    ):
+    halvings = math.ceil(math.log2(highest / intervals / tolerance) - 1e-9)
+    for _ in range(max(0, halvings)):
         middle = 0.5 * (low + high)
         above = overturned_cases(cases, body, motion, middle) == falls
         low, high = np.where(above, low, middle), np.where(above, middle, high)
@@ -177,6 +171,17 @@ def find_thresholds(
         tolerance=tolerance,
         highest=highest,
     )  # fmt: skip
+
+
+def _intervals(highest: float, narrowest: float) -> int:
+    """Number of intervals of a grid up to the highest scale that are no wider than the narrowest resurrection."""
+    positive_number("highest", highest)
+    positive_number("narrowest_resurrection", narrowest)
+    if narrowest > highest:
+        raise InputError(
+            f"narrowest_resurrection: {narrowest} is more than the highest scale, {highest}."
+        )
+    return math.ceil(highest / narrowest - 1e-9)
 
 
 def _read(

@@ -423,8 +423,8 @@ def print_pieces(shaken: ShakenPieces, causes: Sequence[str]) -> None:
     print("\n".join(flat_lines(pieces)))
 
 
-def main(arguments: Sequence[str] | None = None) -> int:
-    """Write tables and figure, and the surfaces where a file is named."""
+def _parser() -> argparse.ArgumentParser:
+    """Make the parser of the command."""
     parser = argparse.ArgumentParser(
         prog="python -m rockfrag.stages.toppling_velocity",
         description="Medians of the velocity that topples blocks, by width and height, beside published ones.",
@@ -442,7 +442,12 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("--cause", metavar="NAME", action="append", help=words)
     words = "pieces of your own: width_m (that rocks), height_m, fema_p58_m_s, name; print their ratios alone"
     parser.add_argument("--pieces", metavar="FILE", help=words)
-    given = parser.parse_args(arguments)
+    return parser
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Write tables and figure, and the surfaces where a file is named."""
+    given = _parser().parse_args(arguments)
     logging.basicConfig(level=logging.INFO, format="%(message)s")
     extent = QUICK if given.quick else WHOLE
     page = Path(given.page) if given.page else None
@@ -468,9 +473,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
         write_table(table, folder / f"{name}.csv")
     if given.surface:
         _write_json({"surfaces": rows}, Path(given.surface))
-    figures = [folder] if page is None else [folder, page.parent / "images"]
+    figures = [folder]
     if page is not None:
         write_page(page, tables)
+        figures.append(page.parent / "images")
     with style.figure_style():
         surface = surface_from(rows[0])
         figure = draw_toppling_velocity(tables["medians"], tables["pieces"], surface)

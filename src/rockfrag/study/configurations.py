@@ -5,7 +5,7 @@ In: two CSV files, sizes in any unit. Out: blocks [m, kg] by name, systems, and 
 """
 
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Container, Mapping, Sequence
 from dataclasses import replace
 from types import MappingProxyType
 from typing import Any
@@ -95,15 +95,10 @@ def read_configurations(
         below = tuple(behind) or under
         isolator = below[-1] if below and below[-1] in isolators else ""
         below = below[:-1] if isolator else below
-        for column, block in (
-            ("object", object_name),
-            *(("pedestal", name) for name in below),
-        ):
-            if block not in blocks:
-                known = ", ".join((*blocks, *isolators))
-                raise row.error(
-                    column, f"expected one of the specimens {known}, found {block}"
-                )
+        known = (*blocks, *isolators)
+        _check_block(row, "object", object_name, blocks, known)
+        for block in below:
+            _check_block(row, "pedestal", block, blocks, known)
         if name in found:
             raise row.error("name", f"{name} is given twice")
         with errors_of(f"{row.path}, line {row.line}"):
@@ -120,6 +115,16 @@ def read_configurations(
                     "counterpart", f"expected another arrangement, found {other}"
                 )
     return list(found.values()), counterparts
+
+
+def _check_block(
+    row: Row, column: str, name: str, blocks: Container[str], known: Sequence[str]
+) -> None:
+    """Refuse the name of a block that no specimen has; ``known`` are those of all specimens."""
+    if name not in blocks:
+        raise row.error(
+            column, f"expected one of the specimens {', '.join(known)}, found {name}"
+        )
 
 
 def names_from_above(text: str) -> tuple[str, ...]:

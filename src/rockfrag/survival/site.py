@@ -474,17 +474,8 @@ def _simulated(
         raise InputError(
             f"{given[0]} follows from the simulation of statue; leave one of them out."
         )
-    settings, where = known["statue"], "statue"
-    if isinstance(settings, str):
-        where, path = settings, folder / settings
-        settings, folder = read_yaml(path), path.parent
-    unused = [key for key in SHAKING if key in settings]
-    if unused:
-        raise InputError(
-            f"{where}: key {unused[0]} has no effect, as the branches of the hazard say how it is shaken; "
-            "leave it out."
-        )
-    request = make_request(settings, where, folder)
+    settings, where, beside = _statue_of(known["statue"], folder)
+    request = make_request(settings, where, beside)
     request = replace(request, level=Level(measure, ANY_LEVEL[measure.openquake]))
     found = assess(request, records, brief=True)
     with_velocity = measure == PGA and site.velocity is not None
@@ -495,6 +486,7 @@ def _simulated(
             coefficients = lognormal_coefficients(curve.theta, curve.beta)
     elif found.conversion:
         coefficients = found.conversion.coefficients
+    # what is not known of the median; the site's velocity is told by the branches of its hazard
     sources = dict(found.amplitudes[0.5].sources)
     if with_velocity:
         sources.pop("conversion", None)
@@ -505,6 +497,24 @@ def _simulated(
             "every level."
         )
     return coefficients, spread
+
+
+def _statue_of(
+    stated: str | Mapping[str, Any], folder: Path
+) -> tuple[Mapping[str, Any], str, Path]:
+    """Keys of an object, their name in messages and the folder of its files, from the file if one is named."""
+    settings: Any = stated
+    where = "statue"
+    if isinstance(stated, str):
+        where, path = stated, folder / stated
+        settings, folder = read_yaml(path), path.parent
+    unused = [key for key in SHAKING if key in settings]
+    if unused:
+        raise InputError(
+            f"{where}: key {unused[0]} has no effect, as the branches of the hazard say how it is shaken; "
+            "leave it out."
+        )
+    return settings, where, folder
 
 
 def _stated(

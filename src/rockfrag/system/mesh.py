@@ -285,21 +285,18 @@ def read_shape(
             "(0.001 for millimetres, 0.3048 for feet)."
         )
     volume = float(mesh.volume)
-    given = (
-        density
-        if density is not None
-        else positive_number(f"{path}: mass", mass, "kg") / volume
-    )
-    weight = positive_number(f"{path}: density", given, "kg/m³") * volume
-    if not MEAN_DENSITIES[0] <= given <= MEAN_DENSITIES[1]:
+    if density is None:
+        density = positive_number(f"{path}: mass", mass, "kg") / volume
+    mass = positive_number(f"{path}: density", density, "kg/m³") * volume
+    if not MEAN_DENSITIES[0] <= density <= MEAN_DENSITIES[1]:
         raise InputError(
-            f"{path}: {weight:.4g} kg in {volume:.4g} m³ are {given:.4g} kg/m³, which no solid object has; "
+            f"{path}: {mass:.4g} kg in {volume:.4g} m³ are {density:.4g} kg/m³, which no solid object has; "
             "check the mass and the unit of the mesh (metres_per_unit)."
         )
     return Shape(
         points=np.asarray(mesh.vertices - mesh.center_mass, dtype=np.float64),
-        mass=weight,
-        inertia=np.asarray(mesh.moment_inertia, dtype=np.float64) * (weight / volume),
+        mass=mass,
+        inertia=np.asarray(mesh.moment_inertia, dtype=np.float64) * (mass / volume),
         volume=volume,
         name=Path(path).name,
     )

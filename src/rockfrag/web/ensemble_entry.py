@@ -92,6 +92,7 @@ def describe_shaken(call):
 
 @kernel
 def _fill_law(call, after, shape, pivot, measured):
+    """Fill what follows impacts that end on a pivot: momentum, or a measured ratio scaled as the call says."""
     after.law, after.value = momentum.NUMBER, 1.0
     if call.has_ratios != 0:
         ratio = geometry.scaled_restitution(

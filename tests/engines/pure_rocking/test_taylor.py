@@ -11,6 +11,7 @@ from rockfrag.engines.pure_rocking.ensembles import body_record
 from rockfrag.engines.pure_rocking.kernels import equations as eq
 from rockfrag.engines.pure_rocking.kernels.chatter import Hop, closed
 from rockfrag.engines.pure_rocking.kernels.impact import stuck
+from rockfrag.engines.pure_rocking.kernels.lanes.series import rates_of_two
 from rockfrag.engines.pure_rocking.kernels.lanes.stack_constants import (
     IMPACT,
     ONE,
@@ -22,7 +23,6 @@ from rockfrag.engines.pure_rocking.kernels.taylor import (
     SERIES,
     Step,
     fill_series,
-    rates_of_two,
 )
 
 from .kernel_impact import state_record

@@ -74,7 +74,10 @@ def chance(value: float, lower: float, upper: float) -> int:
 
 
 def how_far(half: float, upper: float) -> int:
-    """Say a level with its limits, with the lower one alone, or that none of those tried is enough."""
+    """Say the level at which half topple with its limits, with the lower alone, or that none tried is enough.
+
+    ``half`` and its ``upper`` limit are infinite where no level that was tried reaches them.
+    """
     if not half < math.inf:
         return 2
     return 0 if upper < math.inf else 1

@@ -251,7 +251,11 @@ def fill_fractions(
     log_levels, toppled, shaken, lifted, motions, log_uplifts, next_one, weights,
     normals, shifts, toppling, rocking,
 ):  # fmt: skip
-    """Fill both tables of :func:`draw_fractions`."""
+    """Fill both tables of :func:`draw_fractions`.
+
+    In a draw the object rocks and topples at a level as it does, without what moves it, at one lower by ``lifts``
+    and by ``topples`` in ln of the measure. Between two levels fractions are straight lines.
+    """
     x, size = log_levels, log_levels.size
     draws, blocks = toppling.shape[0], weights.shape[0]
     quakes = motions.size
@@ -261,9 +265,12 @@ def fill_fractions(
         for j in range(shifts.shape[0]):
             lifts += normals[d, j] * shifts[j, 0]
             topples += normals[d, j] * shifts[j, 1]
-        own, at, place, total = w[quakes], 0, 0, 0.0
+        # weight of the next earthquake, and of the motions of those that are known
+        own, total = w[quakes], 0.0
         for e in range(quakes):
             total += w[e] * motions[e]
+        # as levels rise: number of levels of uplift that are reached, and level below that of toppling
+        place, at = 0, 0
         for k in range(size):
             y, v = x[k] - lifts, x[k] - topples
             while place < log_uplifts.size and log_uplifts[place] <= y + ROUNDING:
@@ -297,7 +304,10 @@ def _part(value, middle, spread):
 
 @kernel
 def _weighted(weights, toppled, shaken, level, place):
-    """Fraction of the weighted motions at a level that topple the object and lift it at some of the levels."""
+    """Fraction of the motions at a level, with the weights of their earthquakes, that topple the object.
+
+    Only those count that lift it at one of the first ``place`` levels of uplift.
+    """
     fell, total = 0.0, 0.0
     for e in range(shaken.shape[0]):
         total += weights[e] * shaken[e, level]

@@ -144,22 +144,7 @@ def sizes_of(settings: Mapping[str, Any]) -> Sizes:
     mass = float(mass)
     check_density(width, height, mass)
     if "depth_m" in settings:
-        volume = width * depth * height
-        density = mass / volume
-        words = f"{mass:g} kg in a box of {volume:.3g} m³ are {density:.3g} kg/m³"
-        if not DENSITIES[0] <= density <= DENSITIES[1]:
-            raise InputError(
-                f"key mass: {words}, a density that no solid has; check the units."
-            )
-        if not COMMON[0] <= density <= COMMON[1]:
-            quality_flags.append(
-                finding(
-                    Text.FLAG_DENSITY,
-                    mass=three(mass),
-                    volume=three(volume),
-                    density=three(density),
-                )
-            )
+        quality_flags += _density_flags(mass, width * depth * height)
     if "cg_height_m" not in settings:
         assumed.append(assume("cg_height", "cg_height"))
     cg_height = settings.get("cg_height_m")
@@ -174,6 +159,20 @@ def sizes_of(settings: Mapping[str, Any]) -> Sizes:
     block = _as_it_rocks(_as_it_tips(block, settings), settings)
     facing = float(settings.get("facing_deg", 0.0)) + 90.0 * across
     return Sizes(block, plane, depth, facing, tuple(assumed), tuple(quality_flags))
+
+
+def _density_flags(mass: float, volume: float) -> list[Value]:
+    """Flag an unusual density of a mass [kg] in a box of a volume [m³], and refuse one that no solid has."""
+    density = mass / volume
+    words = f"{mass:g} kg in a box of {volume:.3g} m³ are {density:.3g} kg/m³"
+    if not DENSITIES[0] <= density <= DENSITIES[1]:
+        raise InputError(
+            f"key mass: {words}, a density that no solid has; check the units."
+        )
+    if COMMON[0] <= density <= COMMON[1]:
+        return []
+    about = {"mass": three(mass), "volume": three(volume), "density": three(density)}
+    return [finding(Text.FLAG_DENSITY, **about)]
 
 
 _FORCE = re.compile(r"\s*(\d+(?:\.\d+)?)\s*(k?N)\s*(?:@|at)\s*(.+)", re.IGNORECASE)

@@ -210,7 +210,11 @@ def _reduce_three(a, width):
 
 @kernel
 def _substitute(p, w, standing):
-    """Forces and changes of motion from the lowest contact up, of what :func:`_eliminate_contact` has left."""
+    """Forces and changes of motion from the lowest contact up, of what :func:`_eliminate_contact` has left.
+
+    Each force at contact k is ``w.gain`` less ``w.shared`` times what the contact below does to the body between.
+    """
+    # force and moment of a contact on the body above it; columns 0 to 2 of ``w.column`` are of the body below
     push_x = push_y = twist = 0.0
     for k in range(standing, p.count):
         first, body = 3 * k, 3 * k

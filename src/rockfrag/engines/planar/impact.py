@@ -292,7 +292,7 @@ def lift_laws(p, w):
 
 @kernel
 def _forget_laws(p, w):
-    """Let no contact come down by a law."""
+    """Note that no contact comes down: no end of an interface, ``falls``, and no side at a speed, ``came``."""
     for k in range(p.count):
         w.falls[k] = -1
     for k in range(p.count, p.contacts):

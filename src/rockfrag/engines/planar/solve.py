@@ -349,55 +349,75 @@ def _solve_top(p, w, q, v, ah, av):
     k = p.count - 1
     fx, fy = -ah, -(p.g + av)
     light, slow = p.inverse[3 * k], p.inverse[3 * k + 2]
-    w.normal[k, 0] = w.normal[k, 1] = 0.0
-    shear, force_x, force_y, twist, moment = 0.0, 0.0, 0.0, 0.0, 0.0
-    if w.closed[k, 0] == 1 or w.closed[k, 1] == 1:
-        end = 0 if w.closed[k, 0] == 1 else 1
-        rubs = -w.slides[k] * p.kinetic[k]
-        x, y, tx, ty, _, _, kind = end_of(p, w, q, k, end, w.kind[k, end])
-        rx, ry = x - q[3 * k], y - q[3 * k + 1]
-        # arms of normal (-ty, tx) and tangent (tx, ty)
-        first, two = -ty * ry - tx * rx, tx * ry - ty * rx
-        far_x, far_y, far_push = x, y, 0.0
-        if w.closed[k, 1 - end] == 1:
-            # flat: what accelerates it apart vanishes, and it does not turn
-            far_x, far_y, _, _, _, _, _ = end_of(p, w, q, k, 1, w.kind[k, 1])
-            other = -ty * (far_y - q[3 * k + 1]) - tx * (far_x - q[3 * k])
-            push = (ty * fx - tx * fy) / light
-            shear = rubs * push if w.slides[k] != 0 else -(tx * fx + ty * fy) / light
-            far_push = (two * shear + first * push) / (first - other)
-            w.normal[k, 1] = far_push
-        else:
-            across = light + first * first * slow
-            both = first * two * slow
-            need = ty * fx - tx * fy - bias(p, q, v, k, x, y, -ty, tx, kind)
-            if w.slides[k] != 0:
-                push = need / (across + rubs * both)
-                shear = rubs * push
-            else:
-                along = light + two * two * slow
-                also = -tx * fx - ty * fy - bias(p, q, v, k, x, y, tx, ty, kind)
-                whole = across * along - both * both
-                push = (need * along - also * both) / whole
-                shear = (also * across - need * both) / whole
-            twist = first * push + two * shear
-        w.normal[k, end] = push - far_push
-        force_x, force_y = shear * tx - push * ty, push * tx + shear * ty
-        if k > 0:
-            moment = force_y * (x - q[0]) - force_x * (y - q[1])
-            moment += far_push * (tx * (far_x - x) + ty * (far_y - y))
-    w.shear[k] = shear
+    w.normal[k, 0] = w.normal[k, 1] = w.shear[k] = 0.0
+    # force and torque on the body, and the torque, clockwise, of that force on the centre of what is below
+    force_x, force_y, torque, below = 0.0, 0.0, 0.0, 0.0
+    if w.closed[k, 0] == 1 and w.closed[k, 1] == 1:
+        force_x, force_y, below = _press_flat(p, w, q, k, fx, fy)
+    elif w.closed[k, 0] == 1 or w.closed[k, 1] == 1:
+        force_x, force_y, torque, below = _press_at_end(p, w, q, v, k, fx, fy)
     w.out[3 * k] = fx + force_x * light
     w.out[3 * k + 1] = fy + force_y * light
-    w.out[3 * k + 2] = twist * slow
+    w.out[3 * k + 2] = torque * slow
     if k > 0:
         w.out[0] = w.out[1] = w.out[2] = 0.0
-        _hold_still(
-            p,
-            w,
-            q,
-            0,
-            force_x + p.mass[0] * ah,
-            force_y + p.mass[0] * (p.g + av),
-            moment,
-        )
+        push_x = force_x + p.mass[0] * ah
+        push_y = force_y + p.mass[0] * (p.g + av)
+        _hold_still(p, w, q, 0, push_x, push_y, below)
+
+
+@inlined_kernel
+def _press_flat(p, w, q, k, fx, fy):
+    """Forces of an interface closed at both ends, which keep body k level under accelerations fx, fy of its own.
+
+    Returned are the force on the body, and its moment, clockwise, about the centre of body 0.
+    """
+    light = p.inverse[3 * k]
+    x, y, tx, ty, _, _, _ = end_of(p, w, q, k, 0, w.kind[k, 0])
+    far_x, far_y, _, _, _, _, _ = end_of(p, w, q, k, 1, w.kind[k, 1])
+    rx, ry = x - q[3 * k], y - q[3 * k + 1]
+    # arms of normal (-ty, tx) and tangent (tx, ty) at the first end, and of the normal at the far one
+    near, along = -ty * ry - tx * rx, tx * ry - ty * rx
+    far = -ty * (far_y - q[3 * k + 1]) - tx * (far_x - q[3 * k])
+    # it neither parts nor turns
+    push = (ty * fx - tx * fy) / light
+    shear = -(tx * fx + ty * fy) / light
+    if w.slides[k] != 0:
+        shear = -w.slides[k] * p.kinetic[k] * push
+    far_push = (along * shear + near * push) / (near - far)
+    w.normal[k, 0], w.normal[k, 1], w.shear[k] = push - far_push, far_push, shear
+    force_x, force_y = shear * tx - push * ty, push * tx + shear * ty
+    moment = force_y * (x - q[0]) - force_x * (y - q[1])
+    moment += far_push * (tx * (far_x - x) + ty * (far_y - y))
+    return force_x, force_y, moment
+
+
+@inlined_kernel
+def _press_at_end(p, w, q, v, k, fx, fy):
+    """Forces of an interface closed at one end, about which body k turns, under accelerations fx, fy of its own.
+
+    Returned are force and torque on the body, and the force's moment, clockwise, about the centre of body 0.
+    """
+    end = 0 if w.closed[k, 0] == 1 else 1
+    light, slow = p.inverse[3 * k], p.inverse[3 * k + 2]
+    x, y, tx, ty, _, _, kind = end_of(p, w, q, k, end, w.kind[k, end])
+    rx, ry = x - q[3 * k], y - q[3 * k + 1]
+    # arms of normal (-ty, tx) and tangent (tx, ty)
+    near, along = -ty * ry - tx * rx, tx * ry - ty * rx
+    # accelerations of the end by unit forces, along the normal and crosswise, and the one that forces have to give
+    by_push, by_both = light + near * near * slow, near * along * slow
+    need = ty * fx - tx * fy - bias(p, q, v, k, x, y, -ty, tx, kind)
+    if w.slides[k] != 0:
+        rubs = -w.slides[k] * p.kinetic[k]
+        push = need / (by_push + rubs * by_both)
+        shear = rubs * push
+    else:
+        by_shear = light + along * along * slow
+        also = -tx * fx - ty * fy - bias(p, q, v, k, x, y, tx, ty, kind)
+        whole = by_push * by_shear - by_both * by_both
+        push = (need * by_shear - also * by_both) / whole
+        shear = (also * by_push - need * by_both) / whole
+    w.normal[k, end], w.shear[k] = push, shear
+    force_x, force_y = shear * tx - push * ty, push * tx + shear * ty
+    moment = force_y * (x - q[0]) - force_x * (y - q[1])
+    return force_x, force_y, near * push + along * shear, moment

@@ -154,7 +154,10 @@ def step_error(p, w, h):
 
 @kernel
 def _powers(p, w, q, v, ah, av):
-    """Power of the ground, and power lost to friction and given to ties, with the shear in ``w`` [W]."""
+    """Power of the ground, and power lost to friction and given to ties, with the forces in ``w`` [W].
+
+    What slides in a dish is pushed back by its slope too: that force is held, not lost.
+    """
     work, lost, held = 0.0, 0.0, 0.0
     for k in range(p.contacts):
         if k < p.count:
@@ -275,7 +278,10 @@ def _margin_of_fall(p, w, q, k):
 
 @kernel
 def _least_of_holding(p, w, q, v, forces):
-    """Least margin of ties, whole bonds, and sides of bodies that pass a low wall's edge."""
+    """Least margin of what holds bodies [-]: ties, supports, bonds, and low walls that a body may climb.
+
+    With ``forces`` those that bonds bear count too; ``w.fails`` says which bond breaks, and what passes a wall.
+    """
     least = min(least_tie_margin(p, w, q, v), least_support_margin(p, w, q, v))
     for k in range(p.contacts):
         w.fails[k, BREAK] = 0
@@ -284,7 +290,7 @@ def _least_of_holding(p, w, q, v, forces):
             w.fails[k, BREAK] = 1 if margin < 0.0 else 0
             least = min(least, margin)
         if k >= p.count and w.closed[k].any() and is_above(p, w, q, k):
-            # it has left the wall upwards
+            # its end has left the wall upwards, and no longer rests on it
             w.fails[k, BREAK] = 1
             least = -TOUCH
         if k >= p.count and climbs(p, w, q, k):
@@ -402,7 +408,10 @@ def _root(p, w, bracket, stretch, forces):
 
 @kernel
 def comes_near(p, w, length):
-    """Whether in a step a gap first narrowed and widens as it ends, after ``look_at`` with ``w.q1``."""
+    """Whether in a step a gap first narrowed and widens as it ends, after ``look_at`` with ``w.q1``.
+
+    ``w.early`` has the speed at which each gap opened as the step began, 0 for ends that were closed.
+    """
     if p.ties > 0 and turns_back(p, w, length):
         return True
     for k in range(p.contacts):

@@ -221,7 +221,7 @@ def write_rocking(into: Outcomes, found: NDArray[np.void], peaks: str = "peak") 
 def run_blocks(cases: Cases) -> Outcomes:
     """Return the outcomes of lone bodies."""
     g, made = cases.request.g, sampled(cases, 1.0)
-    intervals = made[2]
+    _, _, intervals = made
     pivots = np.empty((*intervals.shape, 2), block.PIVOT)
     for i, system in enumerate(cases.systems):
         pivots[i] = _pivots(system, g)
@@ -263,7 +263,8 @@ def run_stacks(cases: Cases) -> Outcomes:
     """Return the outcomes of two bodies on each other."""
     g, step = cases.request.g, STACK_STEP * cases.request.step
     made = sampled(cases, 1.0 / g)
-    each = list(zip(cases.systems, made[2], strict=True))
+    _, _, intervals = made
+    each = list(zip(cases.systems, intervals, strict=True))
     return _by_lanes(
         TWO_BLOCKS.name,
         cases,

@@ -4,7 +4,7 @@ In: a :class:`rockfrag.engines.contract.Case`. Out: its :class:`rockfrag.outcome
 ``docs/rocking.md``; the kernels: ``docs/kernels.md``.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from typing import Any
@@ -44,7 +44,10 @@ KINDS = {
 }
 """Kinds of contact events in words."""
 
+PIVOTS = (+1, -1)  # right and left pivot
+
 Records = NDArray[np.void]
+
 Link = tuple[Floats, ...]
 
 
@@ -216,40 +219,51 @@ class SingleRun:
         Of each link x, y [m] and the acceleration of its tip [m/s²], each (n,): to the lower centre, to the foot
         of the upper body, from there to its centre, and along the top of the pedestal.
         """
+        turns = self._turns(theta)
+        lower = self.system.shapes[0]
+        # number of each sample's pivots among these, shape (n, blocks)
+        number = (state < 0).astype(np.int64)
+        arms = np.array([geometry.arm(lower, pivot) for pivot in PIVOTS])
+        arm = arms[number[:, 0]]
+        links = [turns[0].link(arm)]
+        centres = [links[0][:2]]
+        if self.count == 2:
+            links += self._upper_links(turns, number)
+            (foot_x, foot_y, *_), (x, y, *_) = links[1:3]
+            centres.append((foot_x + x, foot_y + y))
+        position = np.stack([np.column_stack(each) for each in centres], axis=1)
+        # from the pivot to the middle of the ground's face
+        position[..., 0] += lower.x - arm[:, :1]
+        return position, links
+
+    def _turns(self, theta: Floats) -> list[_Turning]:
+        """Rotation of each block at the samples, of its rotations [rad], shape (n, blocks)."""
         sine, cosine = np.empty((2, *theta.shape))
         with compiling_alone(kept.fill_sines):
             # the same on every processor
             kept.fill_sines(theta, sine, cosine)
         omega, alpha = self.of("omega"), self.of("alpha")
-        turns = [
+        return [
             _Turning(sine[:, i], cosine[:, i], omega[:, i], alpha[:, i])
             for i in range(self.count)
         ]
-        lower = self.system.shapes[0]
-        pivots = (+1, -1)
-        # number of each sample's pivots among these, shape (n, blocks)
-        number = (state < 0).astype(np.int64)
-        arms = np.array([geometry.arm(lower, pivot) for pivot in pivots])
-        arm = arms[number[:, 0]]
-        links = [turns[0].link(arm)]
-        centres = [links[0][:2]]
-        if self.count == 2:
-            pile = self.system.pile
-            feet = np.array(
-                [[geometry.reach(pile, a, b) for b in pivots] for a in pivots]
-            )
-            above = np.array([geometry.upper_arm(pile, pivot) for pivot in pivots])
-            top = np.subtract(pile.right, pile.left)
-            links += [
-                turns[0].link(feet[number[:, 0], number[:, 1]]),
-                turns[1].link(above[number[:, 1]]),
-                turns[0].turned(top),
-            ]
-            (xd, yd, *_), (x, y, *_) = links[1:3]
-            centres.append((xd + x, yd + y))
-        position = np.stack([np.column_stack(each) for each in centres], axis=1)
-        position[..., 0] += lower.x - arm[:, :1]
-        return position, links
+
+    def _upper_links(
+        self, turns: Sequence[_Turning], number: NDArray[np.int64]
+    ) -> list[Link]:
+        """Links to the foot of the upper body, from there to its centre, and along the top of the pedestal.
+
+        ``number`` says of each sample which of ``PIVOTS`` both bodies rock on, shape (n, 2).
+        """
+        pile = self.system.pile
+        feet = np.array([[geometry.reach(pile, a, b) for b in PIVOTS] for a in PIVOTS])
+        above = np.array([geometry.upper_arm(pile, pivot) for pivot in PIVOTS])
+        top = np.subtract(pile.right, pile.left)
+        return [
+            turns[0].link(feet[number[:, 0], number[:, 1]]),
+            turns[1].link(above[number[:, 1]]),
+            turns[0].turned(top),
+        ]
 
     def _forces(
         self, ground: Floats, upward: Floats, links: list[Link]

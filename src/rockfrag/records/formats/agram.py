@@ -39,29 +39,30 @@ def _recognise(lines: list[str], name: str) -> bool:
 def _parse(text: TextFile) -> Iterator[Channel]:
     """Channels of a file of this format, by its header as the head of the module says it."""
     for line, following in text.parts(_RATE_LINE):
+        # the header of the next block stands above its line of the rate
         stop = following if following == len(text) else following - _ABOVE
-        values, words = (
-            _section(text, line, stop),
-            text.lines(max(0, line - _ABOVE), line),
+        channel = _section(text, line, stop)
+        yield channel.saying(_facts(text.lines(max(0, line - _ABOVE), line)))
+
+
+def _facts(words: list[str]) -> dict[str, object]:
+    """What the lines of a header above that of the rate say: start, station, component and earthquake."""
+    start, component = None, ""
+    for match in filter(None, map(_TIME.search, words)):
+        year, day, hour, minute = map(int, match.groups()[:4])
+        start = time_at(
+            float(match[5]), year=year, julday=day, hour=hour, minute=minute
         )
-        start, component = None, ""
-        for match in filter(None, map(_TIME.search, words)):
-            year, day, hour, minute = map(int, match.groups()[:4])
-            component = (
-                f"{int(match[6]):03d}" if (match[6] or "").isdigit() else match[6] or ""
-            )
-            start = time_at(
-                float(match[5]), year=year, julday=day, hour=hour, minute=minute
-            )
-        facts = {
-            "start_time": start,
-            "station": words[0].strip() if words else "",
-            "component": component,
-            "earthquake": next(
-                (x.strip() for x in words if "EARTHQUAKE" in x.upper()), ""
-            ),
-        }
-        yield values.saying(facts)
+        component = match[6] or ""
+        if component.isdigit():
+            component = f"{int(component):03d}"
+    named = (line.strip() for line in words if "EARTHQUAKE" in line.upper())
+    return {
+        "start_time": start,
+        "station": words[0].strip() if words else "",
+        "component": component,
+        "earthquake": next(named, ""),
+    }
 
 
 def _section(text: TextFile, line: int, stop: int) -> Channel:

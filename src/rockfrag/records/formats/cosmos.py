@@ -110,6 +110,7 @@ def _header(text: TextFile, first: int) -> tuple[int, float, dict[str, Any]]:
     ]
     matches = (re.search(r"unknown/unspecified:\s*(-?[\d.]+)", line) for line in words)
     unknown = next((float(match[1]) for match in matches if match), -999.0)
+    # headers that are shorter say nothing of the rest
     whole += [int(unknown)] * max(0, _AZIMUTH + 1 - len(whole))
     numbers += [unknown] * max(0, _STEP_MS + 1 - len(numbers))
     stated = numbers[_STEP_MS] != unknown

@@ -55,13 +55,26 @@ def _component(text: TextFile, first: int) -> Generator[Channel, None, int]:
         found.append(text.numbers(line, after, _WIDTH, count=count))
         line = after
     values = found[0] * float(stated(r"\bunits of\s+([\d.]+)\s*mm/s/s", words) or 1)
+    dt = text.interval(dt, at_reals + 2)
+    channel = Channel(counts[0], dt, values, "mm/s2").saying(
+        _facts(words, whole, numbers)
+    )
+    peak = StatedPeak(stated(_PEAK, words), "mm/s2")
+    yield with_checked_peak(channel, peak, text.name, text.cut_short)
+    return line
+
+
+def _facts(
+    words: list[str], whole: list[int], numbers: list[float]
+) -> dict[str, object]:
+    """What the lines of text, the whole numbers and the real numbers of a header say beside the samples."""
     (year, month), (day, hour), (minute, milliseconds) = (
         whole[8:10],
         whole[18:20],
         whole[38:40],
     )
     seconds, clock = milliseconds / 1000, {"day": day, "hour": hour, "minute": minute}
-    facts = {
+    return {
         "start_time": time_at(seconds, year=year, month=month, **clock)
         if year > 0
         else None,
@@ -74,11 +87,6 @@ def _component(text: TextFile, first: int) -> Generator[Channel, None, int]:
         "latitude": -abs(numbers[10]),
         "longitude": numbers[11],
     }
-    dt = text.interval(dt, at_reals + 2)
-    channel = Channel(counts[0], dt, values, "mm/s2").saying(facts)
-    peak = StatedPeak(stated(_PEAK, words), "mm/s2")
-    yield with_checked_peak(channel, peak, text.name, text.cut_short)
-    return line
 
 
 _PARTS = (re.compile(rf"^\s*{part}\s+\S+", re.I) for part in ("site", "component"))

@@ -206,29 +206,37 @@ def _check_whole_records(plain: Path, path: Path, cut_short: bool) -> None:
         )
 
 
+def _scaled(
+    trace: Trace, format_name: str, path: Path
+) -> tuple[NDArray[np.float64], str, list[dict[str, Any]]]:
+    """Samples of a trace, their unit, and the step that gave it; counts, without a unit, where nothing says it."""
+    counts = np.asarray(trace.data, dtype=np.float64)
+    if format_name in _SCALED_FORMATS:
+        factor = float(trace.stats.calib)
+        step = {"step": "scale counts", "m_s2_per_count": factor}
+        return counts * factor, "m/s2", [step]
+    if format_name == "MSEED":
+        found = _inventory_for(trace, path)
+        if found is not None:
+            samples, step = _physical(trace, found[0], path)
+            return samples, "m/s2", [{**step, "inventory": found[1]}]
+    elif format_name == "SAC":
+        quantity = _SAC_QUANTITIES.get(int(trace.stats.get("sac", {}).get("idep", 5)))
+        if quantity is not None:
+            raise NotAcceleration(
+                f"{path}: its header says {quantity}, not acceleration."
+            )
+    return counts, "", []
+
+
 def _channel(trace: Trace, format_name: str, path: Path, cut_short: bool) -> Channel:
     """A channel of a trace, its samples in the unit that the file states."""
     stats = trace.stats
     if np.ma.is_masked(trace.data):
         raise InputError(f"{path}: channel {trace.id} has gaps or no samples.")
     steps: list[dict[str, Any]] = _shortness(trace, format_name, path, cut_short)
-    samples = np.asarray(trace.data, dtype=np.float64)
-    unit = ""
-    if format_name in _SCALED_FORMATS:
-        samples, unit = samples * float(stats.calib), "m/s2"
-        steps.append({"step": "scale counts", "m_s2_per_count": float(stats.calib)})
-    elif format_name == "MSEED":
-        found = _inventory_for(trace, path)
-        if found is not None:
-            samples, step = _physical(trace, found[0], path)
-            unit = "m/s2"
-            steps.append({**step, "inventory": found[1]})
-    elif format_name == "SAC":
-        quantity = _SAC_QUANTITIES.get(int(stats.get("sac", {}).get("idep", 5)))
-        if quantity is not None:
-            raise NotAcceleration(
-                f"{path}: its header says {quantity}, not acceleration."
-            )
+    samples, unit, scaling = _scaled(trace, format_name, path)
+    steps += scaling
     if not np.isfinite(samples).all():
         raise InputError(
             f"{path}: channel {trace.id} has samples that are not finite numbers."

@@ -11,7 +11,7 @@ import re
 from dataclasses import dataclass, field, replace
 from itertools import combinations
 from pathlib import PurePath
-from typing import Any, NoReturn
+from typing import Any, NamedTuple, NoReturn
 
 import numpy as np
 from numpy.typing import NDArray
@@ -464,38 +464,8 @@ def _without_leading(
         for line in text.lines(layout.line, layout.line + number_fields.LOOKED_AT)
         for word in number_fields.numbers_of(line, layout.table.decimal_comma)
     ]
-    first, body = words[:2], words[2:]
-    whole = [_is_whole(word) for word in first]
-    notations = {_notation(sample) for sample in body}
-    odd = [_notation(word) not in notations for word in first]
-    # numbers of as many digits as each needs have every notation
-    unlike = odd[0] and len(notations) == 1
-    is_round = _is_interval(words[0], unlike, body)
-    count, step = _count_and_step(first) if len(first) == 2 else (None, None)
-    skip = 0
-    if count == values.size - 2 and step is not None:
-        skip = 2
-    elif _is_count(words[0]) and values[0] == values.size - 1:
-        skip, count, step = 1, int(values[0]), None
-    elif whole[0] and odd[0] and values[0] >= 1:
-        count = int(values[0]) if values[0] > 1 else None
-        skip = 2 if len(first) == 2 and _is_interval(first[1], odd[1], body) else 1
-        step = float(values[1]) if skip == 2 else None
-        if values[0] == 1 and skip == 1:
-            _fail_no_sample(layout, words[0])
-    elif len(notations) == 1 and not unlike and values[0] == dt and is_round:
-        text.fail(
-            f"{words[0]!r} above the samples may be the interval or a sample; take it out if it is the "
-            f"interval, else write 'dt = {dt:g} s' above it and leave dt= out",
-            layout.line,
-        )
-    elif is_round and (unlike or values[0] == dt):
-        skip, count, step = 1, None, float(values[0])
-        if len(first) == 2 and whole[1] and odd[1] and values[1] > 1:
-            skip, count = 2, int(values[1])
-    elif unlike and values[0] != 0:
-        _fail_no_sample(layout, words[0])
-    if not skip:
+    lines, count, step = _leading(layout, values, words)
+    if not lines:
         return values
     layout.agree(count, step, layout.line)
     if dt is not None and step is not None and abs(dt - step) > 1e-6 * dt:
@@ -504,9 +474,57 @@ def _without_leading(
             layout.line,
         )
     layout.steps.append(
-        {"step": "take first lines as header", "lines": " ".join(words[:skip])}
+        {"step": "take first lines as header", "lines": " ".join(words[:lines])}
     )
-    return values[skip:]
+    return values[lines:]
+
+
+class _Leading(NamedTuple):
+    """Lines above the samples of one column that hold a count and an interval [s], each if it is there."""
+
+    lines: int
+    samples: int | None = None
+    step: float | None = None
+
+
+def _leading(
+    layout: _Layout, values: NDArray[np.float64], words: list[str]
+) -> _Leading:
+    """Find out what the first two numbers of a column are, by their size and notation; ``words`` as they stand."""
+    text, dt = layout.text, layout.text.asked_dt
+    first, body = words[:2], words[2:]
+    are_two = len(first) == 2
+    whole = [_is_whole(word) for word in first]
+    notations = {_notation(sample) for sample in body}
+    odd = [_notation(word) not in notations for word in first]
+    # numbers of as many digits as each needs have every notation
+    unlike = odd[0] and len(notations) == 1
+    is_round = _is_interval(words[0], unlike, body)
+    count, step = _count_and_step(first) if are_two else (None, None)
+    if count == values.size - 2 and step is not None:
+        return _Leading(2, count, step)
+    if _is_count(words[0]) and values[0] == values.size - 1:
+        return _Leading(1, int(values[0]))
+    if whole[0] and odd[0] and values[0] >= 1:
+        count = int(values[0]) if values[0] > 1 else None
+        if are_two and _is_interval(first[1], odd[1], body):
+            return _Leading(2, count, float(values[1]))
+        if values[0] == 1:
+            _fail_no_sample(layout, words[0])
+        return _Leading(1, count)
+    if len(notations) == 1 and not unlike and values[0] == dt and is_round:
+        text.fail(
+            f"{words[0]!r} above the samples may be the interval or a sample; take it out if it is the "
+            f"interval, else write 'dt = {dt:g} s' above it and leave dt= out",
+            layout.line,
+        )
+    if is_round and (unlike or values[0] == dt):
+        if are_two and whole[1] and odd[1] and values[1] > 1:
+            return _Leading(2, int(values[1]), float(values[0]))
+        return _Leading(1, None, float(values[0]))
+    if unlike and values[0] != 0:
+        _fail_no_sample(layout, words[0])
+    return _Leading(0)
 
 
 def _fail_no_sample(layout: _Layout, word: str) -> NoReturn:

@@ -10,6 +10,7 @@ import re
 from collections.abc import Iterator
 from dataclasses import replace
 from itertools import accumulate, takewhile
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -70,35 +71,39 @@ def _parse(text: TextFile) -> Iterator[Channel]:
     )
     if rate == numbers[_MISSING_REAL]:
         # without a rate the values are pairs of time and acceleration
-        values = channel_of_pairs(samples, "cm/s2", text, start, count // 2)
+        channel = channel_of_pairs(samples, "cm/s2", text, start, count // 2)
     else:
         dt = float(f"{1 / rate:.9g}") if rate > 0 else 0.0
-        values = Channel(count, text.interval(dt, at_reals), samples, "cm/s2")
+        channel = Channel(count, text.interval(dt, at_reals), samples, "cm/s2")
     if left_out:
         step = {
             "step": "leave out values beyond the count of the header",
             "values": left_out,
         }
-        values = replace(values, steps=(step, *values.steps))
+        channel = replace(channel, steps=(step, *channel.steps))
+    peak = StatedPeak(stated(_PEAK, words), "cm/s2")
+    facts = _facts(words, whole, numbers) | {"corrected": held.startswith("CORRECTED")}
+    yield with_checked_peak(channel.saying(facts), peak, text.name, text.cut_short)
+
+
+def _facts(words: list[str], whole: list[int], numbers: list[float]) -> dict[str, Any]:
+    """What the lines of text, the whole numbers and the real numbers of the header say beside the samples."""
     place = {"latitude": numbers[_LATITUDE], "longitude": numbers[_LONGITUDE]}
     # a fifth character of the code names the channel
     number = "" if whole[_STATION] == whole[_MISSING] else str(whole[_STATION])
     station = re.search(r"station\s*=\s*(.*?)\s*component\s*=\s*(.*)$", words[5], re.I)
-    facts = {
+    return {
         "start_time": _start(whole),
         "station": words[2][:4].strip().strip("\x00*") or number,
         "component": _component(whole, station[2].strip() if station else ""),
         "station_name": station[1] if station else "",
         "earthquake": " ".join(words[3].split()),
-        "corrected": held.startswith("CORRECTED"),
         **{
             key: value
             for key, value in place.items()
             if value != numbers[_MISSING_REAL]
         },
     }
-    peak = StatedPeak(stated(_PEAK, words), "cm/s2")
-    yield with_checked_peak(values.saying(facts), peak, text.name, text.cut_short)
 
 
 def _without_surplus_lines(

@@ -161,7 +161,12 @@ def _by_blanks(words: str, cells: list[str]) -> bool:
 
 
 def _are_titles(columns: list[Column], by_blanks: bool) -> bool:
-    """Tell titles from a sentence that happens to have as many words as there are columns."""
+    """Tell titles from a sentence that happens to have as many words as there are columns.
+
+    A lone title needs a unit of acceleration, or words of one. Of several, separated otherwise than by single
+    blanks (``by_blanks``), one that is known is enough; of those that may be words of a sentence all have to be,
+    or most have to name directions.
+    """
     known = [column.quantity for column in columns]
     if any(_NO_TITLE.search(column.title) for column in columns):
         return False

@@ -364,7 +364,10 @@ def canonical_unit(words: str) -> str:
 
 
 def quantity_of(unit: str) -> str:
-    """Return ``acceleration``, ``velocity``, ``force``, … for a unit, or ``""`` for an unknown one."""
+    """Return ``acceleration``, ``velocity``, ``force``, … for a unit, or ``""`` for one that no samples have.
+
+    Those are unknown units, ones with a factor that may be meant either way, and units of time.
+    """
     found = read_unit(unit)
     return "" if found.factor or found.quantity == "time" else found.quantity
 

@@ -472,7 +472,11 @@ def _has_factor_outside_units(line: str) -> bool:
 
 
 def _of_named_quantity(line: str) -> tuple[str, str, str]:
-    """Return quantity, unit of acceleration and what is wrong of a line such as ``Acceleration in m/s2``."""
+    """Return quantity, unit of acceleration and what is wrong of a line such as ``Acceleration in m/s2``.
+
+    All are empty where the line says nothing of these. A bare ``in g`` or ``in mg`` may belong to a value in the
+    line, and counts only where the line names a quantity or samples.
+    """
     match = _patterns()["quantity in"].search(line) or _IN_UNIT.search(line)
     if not match:
         unit = _sure_unit(line) or _lone_unit_with_factor(line)

@@ -91,12 +91,7 @@ def _element(
     of_study = outcomes is not None
     if outcomes is None:
         outcomes = swept(bodies, motions)
-    by_case = outcomes.pivot_table(
-        "overturned", ["configuration", "motion"], "amplitude_g", aggfunc="first"
-    )
-    amplitudes = by_case.columns.to_numpy()
-    fell = by_case.astype(int).astype(str).agg("".join, axis=1)
-    rows = [[str(fell[name, motion.name]) for motion in motions] for name in bodies]
+    amplitudes, rows = _outcomes_by_case(outcomes, list(bodies), motions)
     body, motion = _first_shown(bodies, rows)
     first = rows[body][motion].find("1")
     shown = first if first >= 0 else len(amplitudes) - 1
@@ -132,6 +127,18 @@ def _element(
             script=scripts_of("canvas", "live"),
         )
     )
+
+
+def _outcomes_by_case(
+    outcomes: pd.DataFrame, names: Sequence[str], motions: Sequence[Motion]
+) -> tuple[Floats, list[list[str]]]:
+    """Amplitudes [g], and for each body and motion a text with a digit an amplitude: 1 where it overturned."""
+    by_case = outcomes.pivot_table(
+        "overturned", ["configuration", "motion"], "amplitude_g", aggfunc="first"
+    )
+    fell = by_case.astype(int).astype(str).agg("".join, axis=1)
+    rows = [[str(fell[name, motion.name]) for motion in motions] for name in names]
+    return by_case.columns.to_numpy(), rows
 
 
 def carried(motions: Sequence[Motion]) -> list[Motion]:

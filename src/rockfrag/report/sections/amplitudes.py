@@ -221,20 +221,17 @@ _OVERTURNED = "#8c2d04"
 
 
 def recorded_map(recorded: pd.DataFrame) -> Figure:
-    """Draw a row for each motion and a column for each configuration, shaded by the largest rotation."""
+    """Draw a row for each motion and a column for each configuration, shaded by the largest rotation.
+
+    Circles mark cases of which small changes of the motion overturn some and not others.
+    """
     names = list(dict.fromkeys(recorded["configuration"]))
     motions = recorded.drop_duplicates("motion")
     if len(motions) > MOST_MOTIONS:
         motions = motions.nlargest(MOST_MOTIONS, "pga_g")
     rows = list(motions["motion"])
     shown = recorded[recorded["motion"].isin(rows)]
-    rotation = np.where(
-        shown["overturned"], 2.0, shown["peak_rotation"].clip(0.0, 0.999)
-    )
-    table = shown.assign(rotation=rotation).pivot_table(
-        index="motion", columns="configuration", values="rotation", aggfunc="first"
-    )
-    table = table.reindex(index=rows, columns=names).astype(float)
+    table = _shades(shown).reindex(index=rows, columns=names).astype(float)
     sensitive = shown[shown["fraction_near"].between(0, 1, inclusive="neither")]
     with style.panels(style.WIDEST, 1.35 + 0.185 * len(rows)) as (figure, axes):
         colours = _SHADES.with_extremes(over=_OVERTURNED, bad="#ffffff")
@@ -273,6 +270,15 @@ def recorded_map(recorded: pd.DataFrame) -> Figure:
         )
         bar.set_label("Rotation / critical angle (brown: overturned)")
         return figure
+
+
+def _shades(recorded: pd.DataFrame) -> pd.DataFrame:
+    """Largest rotation over the critical angle by motion and configuration [-]; 2 where it overturned."""
+    upright = recorded["peak_rotation"].clip(0.0, 0.999)
+    rotation = np.where(recorded["overturned"], 2.0, upright)
+    return recorded.assign(rotation=rotation).pivot_table(
+        index="motion", columns="configuration", values="rotation", aggfunc="first"
+    )
 
 
 MOST_ROWS = 24  # more motions than this are not legible; the first are drawn

@@ -203,18 +203,11 @@ def two_measures_section(tables: VectorTables, confidence: float) -> Section | N
     pairs = [
         " and ".join(name_and_unit(measure)[0] for measure in pair) for pair in both
     ]
-    keys, parts = ["configuration", "first", "second"], []
-    for pair, row in zip(pairs, found[keys].to_dict("records"), strict=True):
-        of_fit = pd.Series(row)
-        own = tables.contours[(tables.contours[keys] == of_fit).all(axis=1)]
-        tests = tables.cells[(tables.cells[keys] == of_fit).all(axis=1)]
-        words = (
-            f"{row['configuration']}: probability of overturning in {pair}. Lines are fitted, the band holds the "
-            "median; squares show the fraction of tests that overturned by cell, rising in both measures."
-        )
-        name = file_name(f"two_measures_{'_'.join(map(str, row.values()))}")
-        draw = partial(two_measures_figure, own, tests)
-        parts.append(FigureSpec(name, words, words, draw))
+    rows = found[_FIT].to_dict("records")
+    parts = [
+        _two_measures_spec(tables, row, pair)
+        for pair, row in zip(pairs, rows, strict=True)
+    ]
     table = table_html(
         found.assign(pair=pairs),
         _PAIR_COLUMNS,
@@ -247,6 +240,24 @@ def two_measures_section(tables: VectorTables, confidence: float) -> Section | N
     )
 
 
+_FIT = ["configuration", "first", "second"]
+"""Columns that say which fit in two measures a row is of."""
+
+
+def _two_measures_spec(tables: VectorTables, row: Row, pair: str) -> FigureSpec:
+    """Figure of one fit in two measures, a row of the table, with its contours and the tests by cell."""
+    of_fit = pd.Series(row)
+    contours = tables.contours[(tables.contours[_FIT] == of_fit).all(axis=1)]
+    tests = tables.cells[(tables.cells[_FIT] == of_fit).all(axis=1)]
+    words = (
+        f"{row['configuration']}: probability of overturning in {pair}. Lines are fitted, the band holds the "
+        "median; squares show the fraction of tests that overturned by cell, rising in both measures."
+    )
+    name = file_name(f"two_measures_{'_'.join(map(str, row.values()))}")
+    draw = partial(two_measures_figure, contours, tests)
+    return FigureSpec(name, words, words, draw)
+
+
 _PAIR_COLUMNS = (
     column("configuration", "Object"),
     column("pair", "Measures"),
@@ -275,17 +286,6 @@ def floor_curves(results: Results) -> Section | None:
     theta = estimates(shown, "theta")
     shown = shown.assign(state_text=shown["state"].map(labels), theta_text=theta)
     fallen = shown[shown["state"] == OVERTURNS].to_dict("records")
-    weakest = min(fallen, key=lambda row: float(row["theta"]), default=None)
-    message = "No floor has a curve of overturning: too few objects overturned on a single one."
-    if weakest is not None:
-        others = [row["theta_lower"] for row in fallen if row is not weakest]
-        word = "is the most fragile"
-        if others and not weakest["theta_upper"] < min(others):
-            word = "has the least median, but intervals overlap"
-        message = (
-            f"{weakest['configuration']} on {weakest['floor']} {word}: the median of its lognormal curve is "
-            f"{weakest['theta_text']} g."
-        )
     words = [
         "Each floor by itself, as a function of the peak acceleration of that floor. Curves in other measures "
         "are in the table fragility_floors."
@@ -304,7 +304,24 @@ def floor_curves(results: Results) -> Section | None:
     ]
     caption = f"Curves by floor, with {results.level} intervals where there are any."
     table = table_html(shown, columns, caption)
-    return Section("floor_curves", "Fragility by floor", message, words, [table])
+    return Section(
+        "floor_curves", "Fragility by floor", _weakest(fallen), words, [table]
+    )
+
+
+def _weakest(fallen: Sequence[Row]) -> str:
+    """Say which object on which floor has the least median, of rows with a curve of overturning."""
+    weakest = min(fallen, key=lambda row: float(row["theta"]), default=None)
+    if weakest is None:
+        return "No floor has a curve of overturning: too few objects overturned on a single one."
+    others = [row["theta_lower"] for row in fallen if row is not weakest]
+    word = "is the most fragile"
+    if others and not weakest["theta_upper"] < min(others):
+        word = "has the least median, but intervals overlap"
+    return (
+        f"{weakest['configuration']} on {weakest['floor']} {word}: the median of its lognormal curve is "
+        f"{weakest['theta_text']} g."
+    )
 
 
 def measures(results: Results) -> Section:
@@ -373,10 +390,8 @@ def fragility_figure(
     compared with each other need the same.
     """
     rows, nonparametric, _ = compared_curves(curves, nonparametric)
-    used, lower, upper = "probability", "lower", "upper"
-    if nonparametric:
-        used, lower, upper = "fraction", "fraction_lower", "fraction_upper"
     first = curves.iloc[0]
+    range_of_measure = np.array([bands["x"].min(), bands["x"].max()])
     with style.panels(
         style.COLUMN_WIDTH,
         0.75 + 1.65 * len(curves),
@@ -393,37 +408,49 @@ def fragility_figure(
             own = str(curve["configuration"])
             draw_fractions(panel, bins[bins["configuration"] == own], colour)
             points = bands[bands["configuration"] == own]
-            x, low, high = points["x"], points[lower], points[upper]
-            panel.fill_between(x, low, high, color=colour, alpha=0.18, linewidth=0)
-            if nonparametric:
-                dotted = points["probability"]
-                panel.plot(x, dotted, ":", color=style.BLACK, linewidth=0.9)
-            panel.plot(x, points[used], color=colour)
-            probability_axis(panel, np.array([bands["x"].min(), bands["x"].max()]))
-            words = "no median"
-            if np.isfinite(curve["theta"]):
-                words = f"θ = {curve['theta']:.3g} {curve['unit']}"
-                words += (
-                    f", β = {curve['beta']:.2f}" if np.isfinite(curve["beta"]) else ""
-                )
-            panel.set_title(f"{shortened(own)}: {words}", loc="left")
+            _draw_curve(panel, points, colour, nonparametric=nonparametric)
+            probability_axis(panel, range_of_measure)
+            panel.set_title(f"{shortened(own)}: {_parameters(curve)}", loc="left")
         style.letter_panels(panels)
         panels[-1].set_xlabel(axis_label(first["im"], first["unit"]))
         figure.supylabel("Probability of overturning", fontsize=8)
-        handles = {"lognormal": Line2D([], [], color=GREY)}
-        if nonparametric:
-            rejected = Line2D([], [], color=style.BLACK, ls=":", lw=0.9)
-            handles = {
-                "nonparametric": Line2D([], [], color=GREY),
-                "lognormal (rejected)": rejected,
-            }
-        handles["analyses in bins"] = Line2D(
-            [], [], color=GREY, marker="o", ls="", ms=3.2
+        solid, dots = (
+            Line2D([], [], color=GREY),
+            Line2D([], [], color=GREY, marker="o", ls="", ms=3.2),
         )
+        handles = {"lognormal": solid}
+        if nonparametric:
+            dotted = Line2D([], [], color=style.BLACK, ls=":", lw=0.9)
+            handles = {"nonparametric": solid, "lognormal (rejected)": dotted}
+        handles["analyses in bins"] = dots
         figure.legend(
             list(handles.values()), list(handles), loc="outside upper center", ncols=2
         )
         return figure
+
+
+def _draw_curve(
+    panel: Axes, points: pd.DataFrame, colour: str, *, nonparametric: bool
+) -> None:
+    """Draw one fragility curve with its band; with the nonparametric one, the lognormal one dotted."""
+    x = points["x"]
+    used, lower, upper = "probability", "lower", "upper"
+    if nonparametric:
+        used, lower, upper = "fraction", "fraction_lower", "fraction_upper"
+    panel.fill_between(
+        x, points[lower], points[upper], color=colour, alpha=0.18, linewidth=0
+    )
+    if nonparametric:
+        panel.plot(x, points["probability"], ":", color=style.BLACK, linewidth=0.9)
+    panel.plot(x, points[used], color=colour)
+
+
+def _parameters(curve: Row) -> str:
+    """Median and dispersion of a curve in words, as far as it has them."""
+    if not np.isfinite(curve["theta"]):
+        return "no median"
+    words = f"θ = {curve['theta']:.3g} {curve['unit']}"
+    return words + (f", β = {curve['beta']:.2f}" if np.isfinite(curve["beta"]) else "")
 
 
 def draw_fractions(axes: Axes, bins: pd.DataFrame, colour: str) -> None:

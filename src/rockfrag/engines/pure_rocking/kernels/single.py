@@ -130,56 +130,72 @@ def _gravity(body, shaking, k):
     return body.gravity
 
 
-@kernel
-def _through_sample(body, shaking, k, contact_events, summary, work):
-    """Take a body from sample k to the next, through all contact events in between."""
+@inlined_kernel
+def _substep(body, shaking, k, sub):
+    """Return the step of one part of the interval after sample k."""
     samples, scale, substeps = shaking.samples, shaking.scale, shaking.substeps
     n = samples.size
     left = samples[k] * scale if k < n else 0.0
     right = samples[k + 1] * scale if k + 1 < n else 0.0
-    h = shaking.dt / substeps
     heavy, heavier = _gravity(body, shaking, k), _gravity(body, shaking, k + 1)
-    lift = (heavier - heavy) / substeps
+    return Step(
+        shaking.dt / substeps,
+        left + (right - left) * (sub / substeps),
+        (right - left) / substeps,
+        heavy + (heavier - heavy) * (sub / substeps),
+        (heavier - heavy) / substeps,
+    )
+
+
+@inlined_kernel
+def _rest_of(step, tau):
+    """Return what is left of a step after the part tau of it."""
+    left = 1.0 - tau
+    return Step(
+        step.length * left,
+        step.ground + step.rise * tau,
+        step.rise * left,
+        step.gravity + step.lift * tau,
+        step.lift * left,
+    )
+
+
+@inlined_kernel
+def _clock(shaking, k, passed):
+    """Time of an instant [s], so many substeps after sample k."""
+    return (k + passed / shaking.substeps) * shaking.dt
+
+
+@kernel
+def _through_sample(body, shaking, k, contact_events, summary, work):
+    """Take a body from sample k to the next, through all contact events in between."""
     state, series, before = work.state, work.series, work.before
     count = 0
-    for sub in range(substeps):
-        a0 = left + (right - left) * (sub / substeps)
-        g0 = heavy + (heavier - heavy) * (sub / substeps)
-        rise = (right - left) / substeps
+    for sub in range(shaking.substeps):
+        whole = _substep(body, shaking, k, sub)
         tau = 0.0
         while tau < 1.0 and count <= MAX_CONTACT_EVENTS_PER_STEP + 20:
             remaining = 1.0 - tau
-            step = Step(
-                h * remaining,
-                a0 + rise * tau,
-                rise * remaining,
-                g0 + lift * tau,
-                lift * remaining,
-            )
+            step = _rest_of(whole, tau)
             fill_series(body, state, step, series)
             when, fails, closes1, closes2 = _next_contact_event(
                 body, state, step, series, work.trial
             )
             at = min(1.0, when)
-            moves = state.c1 != 0 or state.c2 != 0
-            _move(state, series, at, step.length)
-            lifts = record.note_demand(body, step, series, at, work, summary)
+            lifts = _follow(body, step, at, summary, work)
             if lifts != roots.NEVER and math.isnan(summary.lost_contact):
-                clock = (k + (sub + tau + lifts * remaining) / substeps) * shaking.dt
+                clock = _clock(shaking, k, sub + tau + lifts * remaining)
                 summary.lost_contact, kind = clock, record.LIFTING
                 record.keep_contact_event(
                     body, clock, kind, state, state, contact_events, summary
                 )
-            if moves:
-                work.beyond = record.track(work.balances, state, summary)
-                summary.work += record.work_of(
-                    body, state.c1, state.c2, series, at, step
-                )
             tau += at * remaining
             if when > 1.0:
                 break
+
             count += 1
-            state.ground, state.gravity = a0 + rise * tau, g0 + lift * tau
+            state.ground = whole.ground + whole.rise * tau
+            state.gravity = whole.gravity + whole.lift * tau
             if fails == 0 and closes1:
                 state.theta1 = 0.0
             if fails == 0 and (closes2 or state.c2 == 0):
@@ -191,14 +207,29 @@ def _through_sample(body, shaking, k, contact_events, summary, work):
                     body, state, fails, at == 0.0
                 )
             else:
-                instant = k, (sub + tau) / substeps
+                instant = k, (sub + tau) / shaking.substeps
                 forced = count > MAX_CONTACT_EVENTS_PER_STEP
                 closes = closes1, closes2
                 kind = _land(body, shaking, instant, closes, forced, summary, work)
-            clock = (k + (sub + tau) / substeps) * shaking.dt
+            clock = _clock(shaking, k, sub + tau)
             record.keep_contact_event(
                 body, clock, kind, before, state, contact_events, summary
             )
+
+
+@kernel
+def _follow(body, step, at, summary, work):
+    """Move the state to an instant of its step, and note demands, extremes and the ground's work on the way.
+
+    Returned is the time in the step at which a normal force first vanishes (``record.note_demand``).
+    """
+    state, series = work.state, work.series
+    _move(state, series, at, step.length)
+    lifts = record.note_demand(body, step, series, at, work, summary)
+    if state.c1 != 0 or state.c2 != 0:
+        work.beyond = record.track(work.balances, state, summary)
+        summary.work += record.work_of(body, state.c1, state.c2, series, at, step)
+    return lifts
 
 
 @kernel

@@ -24,6 +24,7 @@ from rockfrag.engines.pure_rocking.kernels.chatter import Ahead, block_dies_out
 from rockfrag.engines.pure_rocking.kernels.contact_states import HALF_TURN
 from rockfrag.engines.pure_rocking.kernels.impact import block_impact
 from rockfrag.engines.pure_rocking.kernels.lanes import case as cases
+from rockfrag.engines.pure_rocking.kernels.lanes.series import rates_of_one
 from rockfrag.engines.pure_rocking.kernels.roots import NEVER, crossing, graze, hops
 from rockfrag.engines.pure_rocking.kernels.single import MAX_CONTACT_EVENTS_PER_STEP
 
@@ -114,9 +115,7 @@ def _advance(lane, upward):
         u = lane.weight[i] if upward else 1.0
         u_end = lane.weight_end[i] if upward else 1.0
         weight = u, u_end - u, upward
-        rates = taylor.rates_of_one(
-            (s, c), w, kappa * left * left, (a, a_end - a), weight
-        )
+        rates = rates_of_one((s, c), w, kappa * left * left, (a, a_end - a), weight)
         end = psi + taylor.travel(rates, 1.0)
         v = taylor.rate_at(rates, 1.0)
         taylor.keep_rates(lane.rates, i, rates)
@@ -234,7 +233,11 @@ def _restore_extremes(lane, i):
 
 @inlined_kernel
 def _take_contact_event(lane, i, tally, ensemble, motions):
-    """Take a lane through the impact in its step, or to the step's end if there is none."""
+    """Take a lane through the impact in its step, or to the step's end if there is none.
+
+    Afterwards the lane stands at the part ``tau`` of the interval after sample ``k``; its ``side`` is 0 where the
+    block rests.
+    """
     k, side = lane.k[i], lane.side[i]
     _restore_extremes(lane, i)
     t, psi, w, stays = _contact_event(lane, i, tally)
@@ -251,6 +254,7 @@ def _take_contact_event(lane, i, tally, ensemble, motions):
             lane.counted_sample[i] = k
             lane.contact_events[i] = 0
         lane.contact_events[i] += 1
+        # from the pivot there to the other one, at rotation zero
         there = _pivot(lane, i, side, ensemble)
         w = block_impact(there, w)
         side = -side
@@ -260,6 +264,7 @@ def _take_contact_event(lane, i, tally, ensemble, motions):
         ahead = Ahead(
             motions.samples, motions.vertical, factor, lane.last[i], k, tau, 1.0
         )
+        # it hardly comes off, meets too often, or its impacts are sure to end
         still = w > -1e-12 or lane.contact_events[i] > MAX_CONTACT_EVENTS_PER_STEP
         if still or block_dies_out(-w, side, here, there, ahead):
             side = 0

@@ -269,18 +269,11 @@ def contact_event_of_one(i, case, worker, ensemble, motions, g):
     constants = worker.ones[case.slot, equations.number_of(c1, c2)]
     when, fails = stack_one.next_contact_event(constants, lane, i, series, g)
     at = min(1.0, when)
-    theta, omega = value(series.one.angle, at), slope(series.one.angle, at) / left
-    peak, case.fast, case.near = stack_one.nearest(lane, i, theta, omega)
-    if c2 == 0:
-        case.peak1 = peak
-        case.theta1, case.omega1 = theta, omega
-    else:
-        case.peak2 = peak
-        case.theta1, case.omega1 = 0.0, 0.0
-    case.theta2, case.omega2 = theta, omega
+    _move_one(i, case, lane, series, at)
     case.tau = 1.0
     if when > 1.0:
         return False, False
+    # part of the sample's interval that has passed at the contact event
     case.tau -= left * (1.0 - at)
     case.ground, case.weight = stack_one.ground_and_weight_at(lane, i, at)
     body = ensemble.bodies[case.body]
@@ -297,6 +290,22 @@ def contact_event_of_one(i, case, worker, ensemble, motions, g):
     if _forced(case) or not _impact_alone(case, worker, body, g, motions):
         return c1 != 0, c2 != 0
     return False, False
+
+
+@inlined_kernel
+def _move_one(i, case, lane, series, at):
+    """Move a case in lane i of those of one rotation to an instant of its step, with its extremes so far."""
+    theta = value(series.one.angle, at)
+    omega = slope(series.one.angle, at) / lane.was_left[i]
+    peak, case.fast, case.near = stack_one.nearest(lane, i, theta, omega)
+    if case.c2 == 0:
+        # both turn as one
+        case.peak1 = peak
+        case.theta1, case.omega1 = theta, omega
+    else:
+        case.peak2 = peak
+        case.theta1, case.omega1 = 0.0, 0.0
+    case.theta2, case.omega2 = theta, omega
 
 
 @kernel

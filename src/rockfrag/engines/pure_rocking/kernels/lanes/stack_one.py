@@ -20,6 +20,7 @@ from rockfrag.engines.pure_rocking.kernels.lanes.case import (
     QUIET,
     RELEASE,
 )
+from rockfrag.engines.pure_rocking.kernels.lanes.series import rates_of_one
 from rockfrag.engines.pure_rocking.kernels.lanes.stack_constants import (
     HOLD,
     OF_GRAVITY,
@@ -109,9 +110,9 @@ def _moment(hold, i, turn, alpha, square, ground_and_weight):
 
 @inlined_kernel
 def _rates(g_over_inertia, turn, w, left, ground, weight):
-    """Taylor coefficients of θ' over the rest of a sample; ``ground`` is over -g, ``weight`` as in ``pulled``."""
+    """Taylor coefficients of θ' over the rest of a sample; ``ground`` is over -g, and ``weight`` as there."""
     (gx, gy), (s, c) = g_over_inertia, turn
-    return taylor.rates_of_one(
+    return rates_of_one(
         (gx * c + gy * s, gy * c - gx * s), w, left * left, ground, weight
     )
 
@@ -235,10 +236,9 @@ def next_contact_event(lanes_of_one, lane, i, series, g):
     if lane.flag[i] == CLOSES:
         when = roots.crossing_time(series.gap)
         omega = roots.slope(series.one.angle, when) / lane.was_left[i]
-        if (
-            least_hold(lanes_of_one, 0.0, omega, ground_and_weight_at(lane, i, when), g)
-            >= 0.0
-        ):
+        there = ground_and_weight_at(lane, i, when)
+        # what still holds as the other contact closes has held until then
+        if least_hold(lanes_of_one, 0.0, omega, there, g) >= 0.0:
             return when, False
     else:
         when = roots.closing_time(series.gap, 1.0)

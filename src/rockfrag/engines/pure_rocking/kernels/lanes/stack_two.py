@@ -24,6 +24,7 @@ from rockfrag.engines.pure_rocking.kernels.lanes.case import (
     QUIET,
     WITHIN,
 )
+from rockfrag.engines.pure_rocking.kernels.lanes.series import rates_of_two
 from rockfrag.engines.pure_rocking.kernels.roots import NEVER, crossing_time, dips, hops
 from rockfrag.engines.pure_rocking.kernels.single import fill_gap, first_closing
 
@@ -121,7 +122,7 @@ def _advance(lane, g, upward):
 def _rates(lane, i, span, angles, turns, ground, gravity):
     """Taylor coefficients of both rotations over a step of lane i, ``span`` long, time counted in steps.
 
-    ``turns``: θ1' and θ2' as it begins; ``ground`` and ``gravity`` as of :func:`taylor.rates_of_two`.
+    ``turns``: θ1' and θ2' as it begins; ``ground`` and ``gravity`` as of :func:`rates_of_two`.
     """
     scale = span * span
     s1, c1 = taylor.quick_sine_cosine(angles[0])
@@ -135,7 +136,7 @@ def _rates(lane, i, span, angles, turns, ground, gravity):
     mass = lane.m11[i], lane.m22[i], e * cd + f * sd, f * cd - e * sd
     weight1 = v1y * c1 - v1x * s1, v1x * c1 + v1y * s1
     weight2 = v2y * c2 - v2x * s2, v2x * c2 + v2y * s2
-    return taylor.rates_of_two(mass, weight1, weight2, turns, ground, gravity)
+    return rates_of_two(mass, weight1, weight2, turns, ground, gravity)
 
 
 @inlined_kernel
