@@ -450,7 +450,7 @@
   const WALLS = { 0: 0, 2: 0.02, 5: 0.05, 10: 0.1, 20: 0.2 };
   // what it stands at, and what may hold it there
   const THERE = ["", ...Object.keys(WALLS), "casters"];
-  const HOLDS = ["", "putty", "bracket", "cord", "isolator", "off_wall", "locked"];
+  const HOLDS = ["", "putty", "bracket", "cord", "isolator", "springs", "off_wall", "locked"];
   function drawSliders() {
     find("sliders").replaceChildren(
       ...Object.entries(SLIDERS).map(([id, [low, high, at]]) => {
