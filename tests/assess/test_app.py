@@ -83,7 +83,7 @@ USUAL = {
 }
 
 
-TRIED = ("putty", "bracket", "cord", "isolator")
+TRIED = ("putty", "bracket", "cord", "isolator", "springs")
 HELD = {"width": "20 cm", "height": "80 cm", "mass": "60 kg"}
 
 
@@ -98,7 +98,7 @@ def of_holder(holder: str, mitigations):
 @pytest.mark.parametrize(
     ("more", "kinds"),
     [
-        ({}, ("putty", "bracket", "isolator")),
+        ({}, ("putty", "bracket", "isolator", "springs")),
         ({"depth": "30 cm"}, ("putty", "cord")),
         pytest.param({}, TRIED, marks=pytest.mark.slow),
         pytest.param(

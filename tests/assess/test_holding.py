@@ -6,6 +6,7 @@ import math
 import numpy as np
 import pytest
 
+from rockfrag import Block, overturns
 from rockfrag.assess import holding
 from rockfrag.assess.answer import assess_with
 from rockfrag.assess.export import as_json
@@ -14,10 +15,13 @@ from rockfrag.assess.inventory import read_inventory
 from rockfrag.assess.page import page_of
 from rockfrag.assess.standing.holders import (
     PADS_AT,
+    Beside,
     Bracket,
     Casters,
     Cords,
+    Pendulum,
     Putty,
+    Springs,
     holders_beside,
     nearest_edge,
     pads_of,
@@ -26,6 +30,7 @@ from rockfrag.assess.standing.holders import (
 from rockfrag.assess.texts import Text
 from rockfrag.base.errors import InputError
 from rockfrag.base.units import GRAVITY
+from rockfrag.system import as_system
 from rockfrag.system.body import Circle, Interval, Polygon
 
 from .conftest import asked
@@ -72,7 +77,7 @@ def test_each_is_tried_and_what_holds_in_all_motions_topples_in_none(found):
         held, total = mitigation.change["held"], mitigation.change["total"]
         assert 0.95 <= held / total <= 1
         # an isolator has a stop, which topples what comes too fast
-        if name != Text.HOLD_ISOLATOR:
+        if name not in (Text.HOLD_ISOLATOR, Text.HOLD_SPRINGS):
             assert mitigation.value < found.fraction.value
             assert mitigation.helps
 
@@ -133,6 +138,70 @@ def test_a_wall_can_be_left_and_casters_be_locked():
     assert locked.contacts[0].friction.kinetic > 0.3
     with pytest.raises(InputError, match="casters"):
         asked(width="40 cm", height="120 cm", casters="loose", pga="0.3 g")
+
+
+def test_a_bilinear_isolator_that_yields_at_once_has_the_strokes_of_a_pendulum(
+    made_motions,
+):
+    """Nothing rocks, so that T = W u/R + µ W sgn u' of both.
+
+    At rest the springs swing with a speed as √u_y, which the difference follows.
+    """
+    block, motions = as_system(Block(0.8, 0.6, 300.0)), list(made_motions(3))
+    scales = np.array([[0.2 * GRAVITY / motion.pga] for motion in motions])
+
+    def strokes(isolator):
+        found = overturns([isolator.on(block)], motions, scales=scales)
+        assert not found.peak_rotation.any()
+        return np.nanmax(found.stroke, axis=-1).ravel()
+
+    expected = strokes(Pendulum())
+    late, early = (
+        np.abs(strokes(Springs(yields_at=at)) / expected - 1) for at in (1e-3, 1e-5)
+    )
+    assert late.max() < 0.1 and early.max() < 0.01
+    assert (early < late / 5).all()
+
+
+def test_what_is_known_of_a_holder_is_taken_as_it_is():
+    def holder(**given):
+        size = {"width": "40 cm", "height": "1.2 m", "pga": "0.3 g"}
+        return asked(**size, **given).objects.under.holders[0]
+
+    springs = {"isolator_stiffness": "4 kN/m", "isolator_strength": "60 N"}
+    made = holder(isolator="20 cm", isolator_yield="5 mm", **springs)
+    assert made == Springs(0.2, 4000.0, 60.0, 0.005)
+    dish = holder(isolator="20 cm", isolator_radius="2 m", isolator_friction=0.08)
+    assert dish == Pendulum(0.2, 2.0, 0.08)
+    assert holder(wall="30 cm", wall_height="10 cm") == Beside(0.3, 0.1)
+    assert holder(cord="300 N", cord_slack="5 mm").slack == 0.005
+    bracket = holder(bracket="300 N", bracket_slack="2 mm")
+    (tie,) = bracket.on(as_system(Block(0.4, 1.2, 100.0))).constraints
+    assert (tie.bracket, tie.slack, tie.strength) == (True, 0.002, 300.0)
+    # an object has one isolator
+    tries = [type(each) for each in holders_beside([made])]
+    assert Pendulum not in tries and Springs not in tries
+    for alone in ({"wall_height": "9 cm"}, {"cord_slack": "2 mm"}, springs):
+        with pytest.raises(InputError, match=r"; give keys? .* too"):
+            holder(**alone)
+    with pytest.raises(InputError, match=r"isolator_radius_m.*bilinear.*leave one out"):
+        holder(isolator="20 cm", isolator_radius="2 m", **springs)
+
+
+def test_a_kerb_trips_what_rolls_and_a_high_one_is_a_wall(made_motions):
+    """Free casters never let it rock by themselves: µ is far below b/h."""
+    block, motions = as_system(Block(0.3, 1.0, 80.0)), list(made_motions(6))
+
+    def fell(*holders):
+        system = block
+        for holder in (Casters(), *holders):
+            system = holder.on(system)
+        return overturns([system], motions, scales=[8.0]).overturned
+
+    kerb, wall = Beside(0.2, 0.05), Beside(0.02, 1e3)
+    assert not fell().any()
+    assert fell(kerb).any()
+    np.testing.assert_array_equal(fell(wall), fell(Beside(0.02)))
 
 
 def test_pads_lie_within_the_base_whichever_way_it_is_turned():

@@ -112,7 +112,8 @@ HELD = {
     "--putty": (("0.04kN",), "bond 1: largest force 40 N; broke at"),
     "--cord": (("100kN/m", "2 mm"), "tie 2: largest force"),
     "--bracket": (("1e6",), "tie 1: largest force"),
-    "--pendulum": (("2", "0.05", "0.2"), "support: largest force 0 N; stroke"),
+    "--pendulum": (("2", "0.05", "0.2"), "support: stroke"),
+    "--springs": (("0.3kN/m", "30N", "20cm"), "support: stroke"),
 }
 
 
@@ -125,6 +126,9 @@ def test_what_holds_a_body_is_told_with_what_it_had_to_bear(simulated):
     assert simulated(*case, "--casters", "locked").out == simulated(*case).out
     wrong = simulated(*case, "--pendulum", "2", status=2)
     assert wrong.err.startswith("--pendulum: expected 2 to 4 numbers, got 1.")
+    two = ("--pendulum", "2", "0.05", "--springs", "300", "30")
+    wrong = simulated(*case, *two, status=2)
+    assert wrong.err.startswith("--springs: there is a --pendulum already")
     wrong = simulated(*case, "--cord", "5kN", status=2)
     assert "expected a stiffness such as 50 kN/m in one of the units N/m" in wrong.err
 

@@ -1,6 +1,7 @@
 """Tasks of a conservator with the page of ``rockfrag app``, from opening the file to printed sheets."""
 
 import json
+import re
 import time
 from pathlib import Path
 
@@ -124,6 +125,32 @@ def test_a_vase_in_a_gallery_on_a_phone_in_italian(browser, page):
     assert after < before
     assert "Vaso" in printed(browser)
     assert browser.run(FITS)
+    assert browser.console == []
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("browser", ["chromium"], indirect=True)
+def test_a_cabinet_by_a_wall_is_fastened_and_printed_on_a_sheet(browser, page):
+    """The last two lines of the sheet stood on a second one."""
+    opened(browser, page, 390, 844, ready=ANSWERED)
+    sizes = {"width": "80 cm", "height": "1.8 m", "mass": "90 kg"}
+    for field, text in {"name": "Cabinet", **sizes, "depth": "30 cm"}.items():
+        put(browser, f"#field-{field}", text)
+    put(browser, "#field-level", "0.6 g")
+    answered(browser, of="Cabinet")
+    put(browser, "#slide-there", "2")
+    put(browser, "#slide-hold", "bracket")
+    waited(browser, "document.getElementById('before').textContent.includes('2 cm')")
+    said = browser.run("document.getElementById('tried').textContent")
+    assert "bracket to the wall that bears" in said and "without slack" in said
+    assert "is of the object standing free" in said
+    # numbers do not part from their units
+    bound = "[...document.querySelectorAll('#tried .together')].map(e => e.innerText)"
+    assert browser.run(f"{bound}.some(text => text.endsWith(' N'))")
+    assert browser.run(FITS)
+    sheet = printed(browser)
+    assert said in sheet and "Held by: a bracket" in sheet
+    assert len(re.findall(rb"/Type\s*/Page\b(?!s)", browser.printed())) == 1
     assert browser.console == []
 
 

@@ -58,6 +58,9 @@ def simulated(rng: random.Random, folder: Path) -> None:
         "--pendulum": [rng.choice(["2m", "0.5"]), "0.06", "8cm", "20kg"][
             : rng.randint(2, 4)
         ],
+        "--springs": [rng.choice(["4kN/m", "900"]), "60N", "8cm", "20kg"][
+            : rng.randint(2, 4)
+        ],
         "--casters": [rng.choice(["free", "locked"])],
     }
     for option, values in some(rng, options).items():
@@ -129,6 +132,13 @@ def trials_held(rng: random.Random, folder: Path) -> None:
             "cord_n": 300.0,
             "bracket_n_m": 1e6,
             "casters": rng.choice(["free", "locked"]),
+            "isolator": rng.choice(
+                [
+                    {"mass_kg": 9.0, "radius_m": 1.5, "friction": 0.06},
+                    {"mass_kg": 9.0, "stiffness_n_m": 900.0, "strength_n": 40.0},
+                    {"mass_kg": 9.0, "radius_m": 1.5, "strength_n": 40.0},
+                ]
+            ),
         },
     )
     unknowns = {"edge_retreat_mm": (0.0, 5.0), "restitution": (0.8, 1.0)}
@@ -143,6 +153,18 @@ def trials_held(rng: random.Random, folder: Path) -> None:
 
 def some_holders(rng: random.Random) -> dict[str, str]:
     """Keys of ``statue.yaml`` that say what holds an object."""
+    # what is known of a holder, which is refused without it
+    known = {
+        "wall_height": f"{rng.uniform(1, 90):.0f} cm",
+        "bracket_slack": "2 mm",
+        "cord_slack": "4 mm",
+        "isolator_radius": "1.5 m",
+        "isolator_friction": "0.07",
+        "isolator_stiffness": "900 N/m",
+        "isolator_strength": "60 N",
+    }
+    if rng.random() < 0.7:
+        known = {}
     return some(
         rng,
         {
@@ -152,6 +174,7 @@ def some_holders(rng: random.Random) -> dict[str, str]:
             "bracket": f"{rng.uniform(1, 90):.0f} kgf",
             "cord": "0.4 kN",
             "isolator": f"{rng.uniform(1, 25):.0f} cm",
+            **known,
         },
     )
 
@@ -170,7 +193,11 @@ def assessed(rng: random.Random, folder: Path) -> None:
 def listed(rng: random.Random, folder: Path) -> None:
     """Objects of an inventory, each held in its way."""
     write_records(folder, motions_of_noise(4))
-    columns = ("wall", "casters", "putty", "bracket", "cord", "isolator")
+    columns = (
+        *("wall", "wall_height", "casters", "putty", "bracket", "bracket_slack"),
+        *("cord", "cord_slack", "isolator", "isolator_radius", "isolator_friction"),
+        *("isolator_stiffness", "isolator_strength"),
+    )
     lines = [",".join(["name", "width_cm", "height_cm", "depth_cm", *columns])]
     for name in "AB":
         held = some_holders(rng)

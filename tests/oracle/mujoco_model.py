@@ -77,7 +77,8 @@ def falls(model, masses, acceleration, dt) -> bool:
             model, data, state, force[:, k : k + second], control_spec=int(spec)
         )
         state = states[0, -1]
-        angles = state[1 + np.arange(len(masses)) * 3 + 2]
+        # at each instant: what has tripped over a kerb comes to rest on it, perhaps before a right angle
+        angles = states[0][:, 1 + np.arange(len(masses)) * 3 + 2]
         if (np.abs(angles) > math.pi / 2).any():
             return True
     return False

@@ -21,8 +21,9 @@ from rockfrag.assess.standing.holders import (
     Bracket,
     Casters,
     Cords,
-    Isolator,
+    Pendulum,
     Putty,
+    Springs,
 )
 from rockfrag.base.units import GRAVITY
 from rockfrag.engines.planar.engine import described
@@ -267,6 +268,9 @@ def test_outcomes_are_those_of_overturns(tmp_path, made_motions):
 # --------------------------------------------------------------------------- what is held
 
 
+SPRINGS = ("spring_stiffness", "spring_strength", "spring_yield")
+
+
 def some_held(rng, kind: str):
     """A block or stack that something holds, as the engine and as a page have it."""
     width = rng.uniform(0.15, 0.5)
@@ -280,9 +284,10 @@ def some_held(rng, kind: str):
     weight = block.mass * GRAVITY
     bears = float(weight * rng.choice([0.1, 0.3, 1.0, 1e6]))
     mass = body.system().mass
-    bracket, cords = np.zeros(4), np.zeros(4)
+    bracket, cords, springs = np.zeros(4), np.zeros(4), np.zeros(3)
     core.tell_fastener(row_of(block), True, bracket)
     core.tell_fastener(row_of(block), False, cords)
+    core.tell_springs(core.PLATE * mass + mass, springs)
     names = ("tie_height", "tie_reach", "tie_stiffness", "tie_damping")
 
     def ties(numbers, count):
@@ -296,9 +301,13 @@ def some_held(rng, kind: str):
         }),
         "bracket": (Bracket(bears), ties(bracket, 1)),
         "cord": (Cords(bears), ties(cords, 2)),
-        "isolator": (Isolator(stroke), {
+        "isolator": (Pendulum(stroke), {
             "plate": core.PLATE * mass, "dish_radius": core.RADIUS, "dish_friction": core.SLIDES_AT,
             "stroke": stroke,
+        }),
+        "springs": (Springs(stroke), {
+            "plate": core.PLATE * mass, "dish_friction": 0.0, "stroke": stroke,
+            **dict(zip(SPRINGS, springs.tolist(), strict=True)),
         }),
         "wall": (Beside(0.03), {"wall": 0.03}),
         "casters": (Casters(), {"friction": ROLLING.kinetic}),
@@ -314,7 +323,7 @@ def test_what_is_held_in_a_plane_has_the_bits_of_overturns(
     tmp_path, made_motions, each
 ):
     rng, motions = np.random.default_rng(31), made_motions(3)
-    kinds = ("putty", "bracket", "cord", "isolator", "wall", "casters")
+    kinds = ("putty", "bracket", "cord", "isolator", "springs", "wall", "casters")
     systems, given = zip(*(some_held(rng, kind) for kind in kinds * each), strict=True)
     scales = np.tile([0.6, 1.4, 3.0], (len(motions), 1))
     found = overturns(systems, list(motions), scales=scales)

@@ -207,8 +207,12 @@ def _correlation(fell: Flags, allowed: Flags, per_level: Floats) -> Floats:
 
 
 SIZES = ("width_m", "height_m", "depth_m", "mass_kg", "cg_height_m")
-HELD_BY = ("wall_m", "isolator_m", "putty_n", "bracket_n", "cord_n")
-"""Lengths and strengths of what holds it."""
+HELD_BY = (
+    *("wall_m", "wall_height_m", "putty_n", "bracket_n", "bracket_slack_m"),
+    *("cord_n", "cord_slack_m", "isolator_m", "isolator_radius_m"),
+    *("isolator_stiffness_n_m", "isolator_strength_n", "isolator_yield_m"),
+)
+"""Lengths, strengths and stiffness of what holds it."""
 PEDESTAL = (
     "pedestal_width_m",
     "pedestal_height_m",
@@ -547,7 +551,7 @@ _above_0 = partial(Row.number, above=0)
 OTHERS: Mapping[str, Callable[[Row, str], Any]] = {
     "floor": Row.text, "restitution": _above_0, "round": _yes, "value": _above_0,
     "latitude": Row.number, "longitude": Row.number,
-    "casters": Row.text,
+    "casters": Row.text, "isolator_friction": Row.number,
 }  # fmt: skip
 """What else a column may say, and how it is read."""
 

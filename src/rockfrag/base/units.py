@@ -178,13 +178,21 @@ def split_name(name: str) -> tuple[str, str]:
 
     Parameters
     ----------
-    name : of a key or column that ends in a unit of length, mass, moment of inertia, force or time
+    name : of a key or column that ends in a unit of stiffness, length, mass, moment of inertia, force or time
 
     Returns
     -------
     The name without its unit, and the unit.
     """
-    for dimension in ("moment of inertia", "mass", "length", "force", "time"):
+    # what ends in N/m ends in m too
+    for dimension in (
+        "stiffness",
+        "moment of inertia",
+        "mass",
+        "length",
+        "force",
+        "time",
+    ):
         for unit in DIMENSIONS[dimension]:
             ending = f"_{unit.lower()}"
             if name.endswith(ending):

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from rockfrag.assess.inventory import FaultyRows
 
 _INVENTORY = ".csv"
-_UNITS = re.compile("_(kg_m2|years|km|kg|deg|m|n|s)$")
+_UNITS = re.compile("_(kg_m2|n_m|years|km|kg|deg|m|n|s)$")
 
 
 class _Once(argparse.Action):

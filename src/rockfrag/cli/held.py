@@ -11,6 +11,7 @@ from rockfrag.base.errors import InputError
 from rockfrag.base.units import quantity
 
 if TYPE_CHECKING:
+    from rockfrag.system.support import Support
     from rockfrag.system.system import System
 
 RATIO = ""
@@ -22,6 +23,7 @@ UNITS: dict[str, tuple[int, tuple[str, ...]]] = {
     "cord": (1, ("N_m", "m", "N")),
     "bracket": (1, ("N_m", "m", "N")),
     "pendulum": (2, ("m", RATIO, "m", "kg")),
+    "springs": (2, ("N_m", "N", "m", "kg")),
 }
 OPTIONS = (*UNITS, "casters")
 
@@ -61,6 +63,11 @@ def add_holding_options(command: argparse.ArgumentParser) -> None:
         "20cm, and mass of its plate, such as 30kg",
     )  # fmt: skip
     command.add_argument(
+        "--springs", **several, metavar="STIFFNESS",
+        help="bilinear isolator under it: stiffness after it yields, such as 4kN/m, force at which it yields, "
+        "such as 60N, perhaps stroke to its stop, and mass of its plate",
+    )  # fmt: skip
+    command.add_argument(
         "--casters", choices=("locked", "free"), help="casters under the lowest body"
     )
 
@@ -81,8 +88,7 @@ def held(options: argparse.Namespace, system: "System") -> "System":
     -------
     The system.
     """
-    from rockfrag.system import SlidingPendulum, hold, mounts
-    from rockfrag.system.contact import checked_friction
+    from rockfrag.system import hold, mounts
 
     constraints: list[Any] = []
     for gap, side in zip(_given(options, "wall"), (1, -1), strict=False):
@@ -97,19 +103,31 @@ def held(options: argparse.Namespace, system: "System") -> "System":
         constraints.append(mounts.bracket_at_top(system, *springs))
     putty = _given(options, "putty")
     bond = mounts.putty_under(system, *putty) if putty else None
-    support = None
-    if options.pendulum is not None:
-        radius, mu, *more = _given(options, "pendulum")
-        stroke, mass = (*more, *(math.inf, 0.1 * system.mass)[len(more) :])
-        support = SlidingPendulum(
-            mass=mass,
-            radius=radius,
-            friction=checked_friction("--pendulum", mu),
-            stroke=stroke,
-        )
     if options.casters is not None:
         system = mounts.on_casters(system, options.casters)
+    support = _isolator(options, system.mass)
     return hold(system, *constraints, bonds=bond, support=support)
+
+
+def _isolator(options: argparse.Namespace, carried: float) -> "Support | None":
+    """Return the isolator of the options under a mass [kg], if there is one."""
+    from rockfrag.system import BilinearIsolator, SlidingPendulum
+    from rockfrag.system.contact import checked_friction
+
+    if options.pendulum is not None and options.springs is not None:
+        raise InputError("--springs: there is a --pendulum already; leave out one.")
+    for name in ("pendulum", "springs"):
+        if getattr(options, name) is None:
+            continue
+        first, second, *more = _given(options, name)
+        stroke, mass = (*more, *(math.inf, 0.1 * carried)[len(more) :])
+        if name == "springs":
+            return BilinearIsolator(
+                mass=mass, stroke=stroke, stiffness=first, strength=second
+            )
+        mu = checked_friction("--pendulum", second)
+        return SlidingPendulum(mass=mass, stroke=stroke, radius=first, friction=mu)
+    return None
 
 
 def _given(options: argparse.Namespace, name: str) -> list[float]:
@@ -153,14 +171,16 @@ def lines_on_holding(response: Any) -> list[str]:
     lines = []
     table = response.constraints
     for row in () if table is None else table.to_dict("records"):
-        parts = [f"largest force {row['largest_force_n']:.0f} N"]
+        # of an isolator the displacement counts, and no force is kept
+        is_support = not math.isnan(row["stroke_m"])
+        parts = [] if is_support else [f"largest force {row['largest_force_n']:.0f} N"]
         if row["hits"]:
             parts.append(
                 f"{row['hits']} hits, the hardest {row['largest_impulse_n_s']:.1f} N s"
             )
         if not math.isnan(row["breaking_time_s"]):
             parts.append(f"broke at {row['breaking_time_s']:.3f} s")
-        if not math.isnan(row["stroke_m"]):
+        if is_support:
             parts.append(f"stroke {1000 * row['stroke_m']:.1f} mm")
         lines.append(f"{row['name']}: {'; '.join(parts)}")
     return lines

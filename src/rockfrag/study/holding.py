@@ -9,12 +9,17 @@ import os
 from collections.abc import Mapping
 from typing import Any
 
-from rockfrag.base.errors import errors_of
+from rockfrag.base.errors import InputError, errors_of
 from rockfrag.base.tabular import Row, read_rows
 from rockfrag.system import mounts
 from rockfrag.system.constraints import Constraint, Wall
 from rockfrag.system.contact import Friction
-from rockfrag.system.support import BilinearIsolator, SlidingPendulum, Support
+from rockfrag.system.support import (
+    YIELDS_AT,
+    BilinearIsolator,
+    SlidingPendulum,
+    Support,
+)
 from rockfrag.system.system import System, hold
 
 LENGTHS = (
@@ -55,34 +60,52 @@ def read_isolators(path: str | os.PathLike[str]) -> dict[str, Support]:
         name = row.text("name")
         if name in found:
             raise row.error("name", f"{name} is given twice")
+        stated = {"mass_kg": row.quantity("mass_kg", above=0)}
+        for column in _ISOLATOR:
+            if row.has(column):
+                is_length = column in _ISOLATOR_LENGTHS
+                stated[column] = (row.quantity if is_length else row.number)(column)
         with errors_of(f"{row.path}, line {row.line}"):
-            found[name] = _isolator(row)
+            found[name] = isolator_of(stated)
     return found
 
 
-def _isolator(row: Row) -> Support:
-    """Return the isolator of a row."""
-    mass = row.quantity("mass_kg", above=0)
-    stroke = _length(row, "stroke_m", math.inf)
-    restitution = _number(row, "restitution", 0.0)
-    if row.has("stiffness_n_m"):
-        for column in ("radius_m", "friction"):
-            if row.has(column):
-                raise row.error(column, "a bilinear isolator has none; leave it empty")
+def isolator_of(stated: Mapping[str, float]) -> Support:
+    """Isolator of what is stated of it.
+
+    Parameters
+    ----------
+    stated : values in SI units by the names of the columns of :func:`read_isolators`
+
+    Returns
+    -------
+    A bilinear one where its stiffness is stated, a sliding pendulum otherwise.
+    """
+    about = {
+        "mass": stated["mass_kg"],
+        "stroke": stated.get("stroke_m", math.inf),
+        "restitution": stated.get("restitution", 0.0),
+    }
+    if "stiffness_n_m" in stated:
+        for name in ("radius_m", "friction"):
+            if name in stated:
+                raise InputError(f"{name}: a bilinear isolator has none; leave it out.")
         return BilinearIsolator(
-            mass=mass,
-            stroke=stroke,
-            restitution=restitution,
-            stiffness=row.number("stiffness_n_m"),
-            strength=_number(row, "strength_n", 0.0),
-            yield_displacement=_length(row, "yield_m", 0.001),
+            **about,
+            stiffness=stated["stiffness_n_m"],
+            strength=stated.get("strength_n", 0.0),
+            yield_displacement=stated.get("yield_m", YIELDS_AT),
         )
+    for name in ("strength_n", "yield_m"):
+        if name in stated:
+            raise InputError(
+                f"{name}: is of a bilinear isolator; give its stiffness_n_m too."
+            )
+    mu = stated.get("friction", 0.0)
     return SlidingPendulum(
-        mass=mass,
-        stroke=stroke,
-        restitution=restitution,
-        radius=_length(row, "radius_m", math.inf),
-        friction=_friction(row, "friction"),
+        **about,
+        radius=stated.get("radius_m", math.inf),
+        friction=Friction(mu, mu) if mu else None,
     )
 
 
@@ -117,8 +140,9 @@ def held_as_stated(
 
     Parameters
     ----------
-    system, stated : what stands there, and values in SI units by the names of :data:`COLUMNS`
-    support : isolator under it; None: it stands on the ground
+    system, stated : what stands there, and values in SI units by the names of :data:`COLUMNS`; under
+        ``isolator`` perhaps what :func:`isolator_of` takes
+    support : isolator under it; None: that which is stated, or the ground
 
     Returns
     -------
@@ -144,6 +168,8 @@ def held_as_stated(
             stated.get("putty_shear_n"),
             stated.get("putty_spread_m"),
         )
+    if "isolator" in stated:
+        support = isolator_of(stated["isolator"])
     return hold(system, *constraints, bonds=bond, support=support)
 
 
@@ -164,16 +190,3 @@ def _springs(stated: Mapping[str, Any], name: str) -> tuple[float, float, float]
     """Return stiffness [N/m], slack [m] and strength [N] of cords or a bracket."""
     slack, strength = stated.get(f"{name}_slack_m", 0.0), stated.get(f"{name}_n")
     return stated[f"{name}_n_m"], slack, math.inf if strength is None else strength
-
-
-def _length(row: Row, column: str, default: float) -> float:
-    return row.quantity(column) if row.has(column) else default
-
-
-def _number(row: Row, column: str, default: float) -> float:
-    return row.number(column) if row.has(column) else default
-
-
-def _friction(row: Row, column: str) -> Friction | None:
-    mu = _number(row, column, 0.0)
-    return Friction(mu, mu) if mu else None

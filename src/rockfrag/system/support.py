@@ -11,6 +11,10 @@ from rockfrag.base.input_checks import (
 )
 from rockfrag.system.contact import Friction, checked_friction
 
+YIELDS_AT = (
+    0.001  # displacement of a bilinear isolator at yield, where none is stated [m]
+)
+
 
 @dataclass(frozen=True, kw_only=True)
 class Support:
@@ -73,7 +77,7 @@ class BilinearIsolator(Support):
 
     stiffness: float
     strength: float = 0.0
-    yield_displacement: float = 0.001
+    yield_displacement: float = YIELDS_AT
 
     def __post_init__(self) -> None:
         super().__post_init__()

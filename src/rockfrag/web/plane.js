@@ -34,6 +34,9 @@ async function rockfragPlane(bytes) {
     dish_radius: NaN,
     dish_friction: NaN,
     stroke: NaN,
+    spring_stiffness: NaN,
+    spring_strength: NaN,
+    spring_yield: NaN,
   };
   // what describes a body stands before what the kernels work in
   const described = fields.work[0] ?? fields.work.at;

@@ -40,8 +40,10 @@ HELD = np.dtype(
         ("tie_stiffness", _F), ("tie_damping", _F), ("tie_strength", _F),
         # distance of a wall to the right of the lowest base, NaN: none
         ("wall", _F),
-        # a sliding pendulum under all: mass of its plate (NaN: none), radius, friction, and where its stops are
+        # an isolator under all: mass of its plate (NaN: none), radius and friction of its dish, where its stops
+        # are; of a bilinear one (NaN: it is a dish) stiffness, strength and displacement at yield of its springs
         ("plate", _F), ("dish_radius", _F), ("dish_friction", _F), ("stroke", _F),
+        ("spring_stiffness", _F), ("spring_strength", _F), ("spring_yield", _F),
         # what it leaves: whether the body stands (``geometry``), and its frequency parameters [1/s]
         ("fault", _I), ("fastest", _F), ("slowest", _F),
         # what shake reads and works in
@@ -182,6 +184,11 @@ def _fill_holding(call, first, top, lower, upper):
     if first == 1:
         p.is_supported, p.support_number = 1, number
         p.dish_radius = call.dish_radius
+        if not math.isnan(call.spring_stiffness):
+            p.dish_radius = np.inf
+            p.is_sprung, p.spring_stiffness = 1, call.spring_stiffness
+            p.spring_strength = call.spring_strength
+            p.spring_rise = call.spring_strength / call.spring_yield
         if call.stroke < np.inf:
             for side in (-1, 1):
                 k = _new_contact(p, 0, number)

@@ -4,12 +4,14 @@ import math
 
 import numpy as np
 import pytest
+from scipy import signal
 
 from rockfrag import Block, Stack
 from rockfrag.system import BilinearIsolator, SlidingPendulum, as_system, hold
+from rockfrag.system.support import Support
 
 from ...simulation.reference_bodies import random_motion
-from .cases import G, run
+from .cases import DT, G, run
 
 B, H, M = 0.3, 0.6, 100.0  # half width, half height [m], mass [kg]
 BLOCK = Block(2 * B, 2 * H, M)
@@ -130,6 +132,48 @@ def test_a_bilinear_isolator_is_a_spring_until_it_yields_and_its_loop_is_lost() 
     assert strong.energy["held"].iloc[-1] > 0.0
     for each in (found, strong):
         assert each.energy["residual"].abs().max() < 1e-7 * M * G * H
+
+
+@pytest.mark.parametrize("strength", [0.0, 1e5])
+def test_springs_that_never_yield_are_a_linear_oscillator(strength: float) -> None:
+    """Those without strength from the start, those of much strength until they yield."""
+    stiffness, yields, plate = 2000.0, 50.0, 20.0
+    support = BilinearIsolator(
+        mass=plate, stiffness=stiffness, strength=strength, yield_displacement=yields
+    )
+    motion = random_motion(np.random.default_rng(8))
+    motion *= 0.3 * G / np.abs(motion).max()
+    found = run(isolated(support), motion, friction=0.9)
+    squared = (stiffness + strength / yields) / (M + plate)
+    # u'' + ω² u = -a, a linear between samples
+    system = ([[0, 1], [-squared, 0]], [[0], [-1]], [[1, 0]], [[0]])
+    time = DT * np.arange(motion.size)
+    _, expected, _ = signal.lsim(system, motion, time, interp=True)
+    assert np.abs(found.theta).max() == 0.0
+    size = np.abs(expected).max()
+    shown = found.plate[: expected.size]
+    assert size > 0.01
+    assert shown == pytest.approx(expected, abs=1e-6 * size)
+
+
+@pytest.mark.parametrize("kind", ["dish", "springs"])
+def test_a_stop_that_is_never_met_changes_no_bit(kind: str) -> None:
+    def isolator(stroke: float) -> Support:
+        if kind == "dish":
+            return SlidingPendulum(mass=20.0, radius=1.0, friction=0.05, stroke=stroke)
+        return BilinearIsolator(
+            mass=20.0, stiffness=900.0, strength=60.0, stroke=stroke
+        )
+
+    # it rocks on the plate too
+    motion = 4 * random_motion(np.random.default_rng(3))
+    free, far = (
+        run(isolated(isolator(stroke)), motion, friction=0.9)
+        for stroke in (math.inf, 1e3)
+    )
+    assert np.abs(free.theta).max() > 0.01
+    assert np.array_equal(free.plate, far.plate)
+    assert np.array_equal(free.theta, far.theta)
 
 
 def test_the_mirror_image_of_an_isolated_stack_moves_as_its_mirror_image() -> None:

@@ -116,6 +116,7 @@ PLAIN: dict[Any, tuple[Any, ...]] = {
     choices.safest: (False,),
     bodies.solid_mass: (*_LIMITS, False),
     holding.tell_fastener: (_ROW, False, _ROW),
+    holding.tell_springs: (_FLOAT, _ROW),
     holding.pads_across: (_FLOAT,),
     holding.rounded_up: (_FLOAT,),
     bodies.usual_period: (_FLOAT, _FLOAT),

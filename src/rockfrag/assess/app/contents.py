@@ -40,8 +40,9 @@ from rockfrag.assess.standing.holders import (
     Casters,
     Cords,
     Holder,
-    Isolator,
+    Pendulum,
     Putty,
+    Springs,
     WithoutWall,
 )
 from rockfrag.base import plausible, units
@@ -305,7 +306,8 @@ HOLDERS: dict[str, tuple[Holder, str, float]] = {
     "putty": (Putty(1.0), "force", 1.0),
     "bracket": (Bracket(1.0), "force", 1.0),
     "cord": (Cords(1.0), "force", 1.0),
-    "isolator": (Isolator(1.0), "stroke", 100.0),
+    "isolator": (Pendulum(1.0), "stroke", 100.0),
+    "springs": (Springs(1.0), "stroke", 100.0),
     "wall": (Beside(1.0), "distance", 100.0),
     "casters": (Casters(), "", 1.0),
     "off_wall": (WithoutWall(), "", 1.0),

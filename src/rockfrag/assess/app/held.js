@@ -22,6 +22,18 @@ const holding = (data, core, spatial) => {
       const is_bracket = kind === "bracket" ? 1 : 0;
       return { ...about, ties: FASTENERS[kind], is_bracket, tie_strength: bears };
     });
+  const plateOf = ({ statue, pedestal }) =>
+    PLATE * ((pedestal?.mass ?? 0) + statue.mass);
+  const sprung = (stroke, body) =>
+    core.within(() => {
+      const plate = plateOf(body);
+      const carried = (body.pedestal?.mass ?? 0) + body.statue.mass;
+      const found = core.zeros([3]);
+      core.call("tell_springs", plate + carried, found);
+      const [spring_stiffness, spring_strength, spring_yield] = found.values;
+      const springs = { spring_stiffness, spring_strength, spring_yield };
+      return { plate, dish_friction: 0, stroke, ...springs };
+    });
   const IN_PLANE = {
     putty: (bears, { statue: { width } }) => ({
       bond_tension: bears,
@@ -30,12 +42,13 @@ const holding = (data, core, spatial) => {
     }),
     bracket: (bears, body) => fastened("bracket", bears, body),
     cord: (bears, body) => fastened("cord", bears, body),
-    isolator: (bears, { statue, pedestal }) => ({
-      plate: PLATE * ((pedestal?.mass ?? 0) + statue.mass),
+    isolator: (bears, body) => ({
+      plate: plateOf(body),
       dish_radius: RADIUS,
       dish_friction: SLIDES_AT,
       stroke: bears,
     }),
+    springs: (bears, body) => sprung(bears, body),
     wall: (distance) => ({ wall: distance }),
     casters: (locked) => ({ friction: locked ? LOCKED_AT : ROLLS_AT }),
   };

@@ -8,6 +8,15 @@
     element.append(...children);
     return element;
   };
+  // a text whose numbers stay on a line with their units, and options with what they say
+  const TOGETHER =
+    /(\d (?:%|g|s|m|cm|mm|kg|N|N\/m|cm\/s|m\/s)(?![\p{L}\d])|--\S+ \S+)/u;
+  const bound = (text) =>
+    text
+      .split(TOGETHER)
+      .map((part, i) =>
+        i % 2 ? make("span", { className: "together", textContent: part }) : part,
+      );
   const FIELDS = Object.fromEntries(
     data.groups.map((group) => [
       group,
@@ -353,7 +362,8 @@
     document.body.dataset.stage = "refused";
   }
   function headline(words) {
-    for (const place of ["headline", "bar"]) find(place).textContent = words;
+    for (const place of ["headline", "bar"])
+      find(place).replaceChildren(...bound(words));
   }
   function progress(done, all) {
     find("progress").max = all;
@@ -373,7 +383,7 @@
     const said = saidOf(found, answer);
     for (const place of ["screen", "state", "behind"]) find(place).hidden = false;
     headline(said.headline);
-    find("screen").textContent = said.screen;
+    find("screen").replaceChildren(...bound(said.screen));
     find("lines").replaceChildren(...linesAs(said));
     if (answer.last) find("done").textContent = say("ready");
     const stage = stageOf(answer);
@@ -413,7 +423,7 @@
   function linesAs({ lines }) {
     return lines.flatMap(([title, text]) => [
       make("dt", { textContent: title }),
-      make("dd", { textContent: text }),
+      make("dd", {}, ...bound(text)),
     ]);
   }
   // what was typed, in a line
@@ -450,7 +460,16 @@
   const WALLS = { 0: 0, 2: 0.02, 5: 0.05, 10: 0.1, 20: 0.2 };
   // what it stands at, and what may hold it there
   const THERE = ["", ...Object.keys(WALLS), "casters"];
-  const HOLDS = ["", "putty", "bracket", "cord", "isolator", "off_wall", "locked"];
+  const HOLDS = [
+    "",
+    "putty",
+    "bracket",
+    "cord",
+    "isolator",
+    "springs",
+    "off_wall",
+    "locked",
+  ];
   function drawSliders() {
     find("sliders").replaceChildren(
       ...Object.entries(SLIDERS).map(([id, [low, high, at]]) => {
@@ -631,14 +650,17 @@
     const message = { kind: "tried", id, request, parts, asked, answered };
     const { result, failure } = await ask(run, message, true);
     if (failure) return fail(failure);
-    compare(result.before, result.after);
+    // what holds it is tried where it was chosen to stand
+    const { there, kind } = request.hold;
+    const stands = there && kind ? find("slide-there").selectedOptions[0] : null;
+    compare(result.before, result.after, stands?.textContent);
     const { said, motions, levels } = result;
     const words = [
       speak.sentence(said),
-      say("tried_by", { n: motions, levels }),
+      say(stands ? "tried_there_by" : "tried_by", { n: motions, levels }),
       ...inPlaneAlone(request, result.inSpace, asked),
     ];
-    find("tried").textContent = words.join(" ");
+    find("tried").replaceChildren(...bound(words.join(" ")));
     find("compared").dataset.took = String(performance.now() - run.since);
   }
   // of what moves in space and was tried in a plane, how it is had in space, if at all
@@ -648,8 +670,9 @@
     if (!OPTIONS[kind]) return [say("tried_in_plane_alone")];
     return [say("tried_in_plane", { option: `${OPTIONS[kind]} ${asked.bears}N` })];
   }
-  function compare({ fraction, probability }, after) {
+  function compare({ fraction, probability }, after, stands = say("before")) {
     computed("helping");
+    find("before").replaceChildren(...bound(stands));
     find("compared").classList.remove("stale");
     const valueOf = (each) => each?.value ?? each;
     const rows = [
@@ -783,7 +806,7 @@
   }
   function titled(turned = "") {
     computed("drawing");
-    find("scene-words").textContent = scene.words() + turned;
+    find("scene-words").replaceChildren(...bound(scene.words() + turned));
     find("scene-title").textContent = scene.title();
     find("scene").setAttribute("aria-label", scene.words() + turned);
   }
@@ -1054,9 +1077,9 @@
       const sheet = make(
         "section",
         { className: "sheet" },
-        make("h2", { textContent: said.headline }),
-        make("p", { textContent: said.screen }),
-        make("p", { textContent: typedIn(form) }),
+        make("h2", {}, ...bound(said.headline)),
+        make("p", {}, ...bound(said.screen)),
+        make("p", {}, ...bound(typedIn(form))),
         make("dl", {}, ...linesAs(said)),
       );
       if (!kept.length) sheet.append(...tried());
@@ -1067,7 +1090,7 @@
             "figure",
             {},
             canvas,
-            make("figcaption", { textContent: `${still.title()}: ${still.words()}` }),
+            make("figcaption", {}, ...bound(`${still.title()}: ${still.words()}`)),
           ),
         );
         paint(still, canvas);
@@ -1093,7 +1116,7 @@
     const table = find("compared").closest("table").cloneNode(true);
     table.querySelector("tbody").removeAttribute("id");
     const said = find("tried").textContent;
-    const does = said ? [make("p", { textContent: said })] : [];
+    const does = said ? [make("p", {}, ...bound(said))] : [];
     return [
       make("p", { textContent: `${say("try")}: ${words.join("; ")}.` }),
       table,
@@ -1160,7 +1183,7 @@
     if (document.body.dataset.stage === "refused") update();
     if (!shown) return;
     show(shown);
-    if (scene.words) find("scene-words").textContent = scene.words();
+    if (scene.words) find("scene-words").replaceChildren(...bound(scene.words()));
     if (scene.title) find("scene-title").textContent = scene.title();
   }
   begin();

@@ -12,6 +12,7 @@ import math
 from rockfrag.assess.core.bodies import HEIGHT, MASS, WIDTH, shape_as_it_stands
 from rockfrag.base.arrays import Floats
 from rockfrag.base.units import GRAVITY
+from rockfrag.system.support import YIELDS_AT
 
 UNBROKEN = 1e9  # Strength of what is tried before it is known what it must bear [N]
 PADS_AT = 0.8
@@ -22,7 +23,9 @@ REACH = 0.1
 # What a bracket and a cord give under a force as large as the object's weight [m]
 BRACKET_GIVES, CORD_GIVES = 0.001, 0.01
 DAMPED = 0.05  # Part of critical damping of a bracket, as it swings with the object [-]
-RADIUS, SLIDES_AT = 1.0, 0.05  # Of a sliding pendulum [m], and of its friction [-]
+RADIUS, SLIDES_AT = 1.0, 0.05
+"""Of a sliding pendulum [m], and its friction [-]; a bilinear isolator has its period, and yields at that part of
+the weight."""
 PLATE = 0.1  # Mass of its plate over that of what stands on it [-]
 LOCKED_AT = 0.5  # Coefficient of friction of casters that are locked [-]
 
@@ -55,6 +58,18 @@ def tell_fastener(block: Floats, is_bracket: bool, found: Floats) -> None:
         found[3] = bracket_damping(
             block[MASS], shape.inertia, shape.y, found[0], found[2]
         )
+
+
+def tell_springs(mass: float, found: Floats) -> None:
+    """What springs of a bilinear isolator are under a mass, its plate's among it.
+
+    Parameters
+    ----------
+    mass : that they carry [kg]
+    found : gets their stiffness after yielding [N/m], strength [N] and displacement at yield [m], shape (3,)
+    """
+    weight = mass * GRAVITY
+    found[0], found[1], found[2] = weight / RADIUS, SLIDES_AT * weight, YIELDS_AT
 
 
 def pads_across(width: float) -> float:

@@ -14,6 +14,8 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, ClassVar, Self
 
+import numpy as np
+
 from rockfrag.assess.core.holding import (
     BRACKET_GIVES,
     CORD_GIVES,
@@ -28,19 +30,26 @@ from rockfrag.assess.core.holding import (
     bracket_damping,
     pads_across,
     rounded_up,
+    tell_springs,
     tie_stiffness,
 )
 from rockfrag.assess.texts import Text
 from rockfrag.base.elementary import atan2
+from rockfrag.base.units import GRAVITY
 from rockfrag.system import footprint
 from rockfrag.system.body import Circle, Interval, Outline, Polygon
 from rockfrag.system.bond import Bond
 from rockfrag.system.constraints import Tie, Wall
 from rockfrag.system.contact import Friction
 from rockfrag.system.mounts import ROLLING
-from rockfrag.system.support import SlidingPendulum
+from rockfrag.system.support import (
+    YIELDS_AT,
+    BilinearIsolator,
+    SlidingPendulum,
+    Support,
+)
 from rockfrag.system.system import System, hold
-from rockfrag.words.findings import Finding, finding, two
+from rockfrag.words.findings import Finding, Value, finding, two
 
 
 @dataclass(frozen=True)
@@ -114,9 +123,11 @@ class Fastener(Holder):
     Attributes
     ----------
     strength : at which each breaks [N]
+    slack : by which it gives before it holds [m]
     """
 
     strength: float = UNBROKEN
+    slack: float = 0.0
     demand: ClassVar[str] = "largest_force"
     slow: ClassVar[bool] = True
 
@@ -129,42 +140,50 @@ class Fastener(Holder):
         """Return fasteners that bear a force each [N]."""
         return replace(self, strength=rounded_up(demand))
 
+    def _words(self) -> dict[str, Value]:
+        """What its text names: force, slack and height."""
+        slack = finding(Text.NO_SLACK)
+        if self.slack > 0:
+            slack = finding(Text.SLACK, size=two(1000 * self.slack))
+        height = finding("whole_percent", value=two(100 * FASTENED_AT))
+        return {"force": two(self.strength), "slack": slack, "height": height}
+
 
 @dataclass(frozen=True)
 class Bracket(Fastener):
-    """A bracket between the object and a wall that stands like the ground: it holds both ways, without slack."""
+    """A bracket between the object and a wall that stands like the ground: it holds both ways."""
 
     key: ClassVar[str] = "bracket"
 
     def on(self, system: System) -> System:
         """Fasten the uppermost body in the direction of its narrower side."""
-        made = fastened(system, BRACKET_GIVES, self.strength)
+        made = fastened(system, BRACKET_GIVES, self)
         bracket = replace(made[0], bracket=True, damping=_damping(system, made[0]))
         return hold(system, bracket)
 
     def called(self) -> Finding:
         """Such as a bracket that bears 300 N."""
-        return finding(Text.HOLD_BRACKET, force=two(self.strength), **_height())
+        return finding(Text.HOLD_BRACKET, **self._words())
 
 
 @dataclass(frozen=True)
 class Cords(Fastener):
-    """Cords to both sides of the object, without slack."""
+    """Cords to both sides of the object."""
 
     key: ClassVar[str] = "cord"
 
     def on(self, system: System) -> System:
         """Fasten the uppermost body to both sides in the direction of its narrower side."""
-        return hold(system, *fastened(system, CORD_GIVES, self.strength))
+        return hold(system, *fastened(system, CORD_GIVES, self))
 
     def called(self) -> Finding:
         """Such as cords that bear 300 N each."""
-        return finding(Text.HOLD_CORDS, force=two(self.strength), **_height())
+        return finding(Text.HOLD_CORDS, **self._words())
 
 
 @dataclass(frozen=True)
 class Isolator(Holder):
-    """A sliding pendulum under all that stands there.
+    """An isolator under all that stands there, on a plate of its own.
 
     Attributes
     ----------
@@ -178,19 +197,11 @@ class Isolator(Holder):
 
     def on(self, system: System) -> System:
         """Put a plate under the lowest body."""
-        friction = Friction(SLIDES_AT, SLIDES_AT)
-        dish = SlidingPendulum(
-            mass=PLATE * system.mass,
-            stroke=self.stroke,
-            radius=RADIUS,
-            friction=friction,
-        )
-        return hold(system, support=dish)
+        return hold(system, support=self._support(PLATE * system.mass, system.mass))
 
-    def called(self) -> Finding:
-        """Such as an isolator with 18 cm to both sides."""
-        about = {"radius": two(RADIUS), "friction": two(SLIDES_AT)}
-        return finding(Text.HOLD_ISOLATOR, stroke=two(100 * self.stroke), **about)
+    @abstractmethod
+    def _support(self, plate: float, carried: float) -> Support:
+        """Return what is under the lowest body, of a plate and of all that it carries [kg]."""
 
     @property
     def bears(self) -> float:
@@ -203,27 +214,98 @@ class Isolator(Holder):
 
 
 @dataclass(frozen=True)
+class Pendulum(Isolator):
+    """A sliding pendulum.
+
+    Attributes
+    ----------
+    radius : of its dish [m]
+    friction : of its plate in the dish [-]
+    """
+
+    radius: float = RADIUS
+    friction: float = SLIDES_AT
+
+    def _support(self, plate: float, carried: float) -> Support:
+        """Return the dish, in which friction and fall go with the weight."""
+        friction = Friction(self.friction, self.friction)
+        return SlidingPendulum(
+            mass=plate, stroke=self.stroke, radius=self.radius, friction=friction
+        )
+
+    def called(self) -> Finding:
+        """Such as an isolator with 18 cm to both sides."""
+        about = {"radius": two(self.radius), "friction": two(self.friction)}
+        return finding(Text.HOLD_ISOLATOR, stroke=two(100 * self.stroke), **about)
+
+
+@dataclass(frozen=True)
+class Springs(Isolator):
+    """A bilinear isolator, of the period of a usual pendulum where its springs are not stated.
+
+    Attributes
+    ----------
+    stiffness : after yielding [N/m]; None: that of the usual period
+    strength : of the part that yields [N]; None: the usual part of the weight
+    yields_at : displacement at which it does [m]
+    """
+
+    stiffness: float | None = None
+    strength: float | None = None
+    yields_at: float = YIELDS_AT
+
+    def _support(self, plate: float, carried: float) -> Support:
+        """Return the springs."""
+        usual = np.zeros(3)
+        tell_springs(plate + carried, usual)
+        return BilinearIsolator(
+            mass=plate,
+            stroke=self.stroke,
+            stiffness=usual[0] if self.stiffness is None else self.stiffness,
+            strength=usual[1] if self.strength is None else self.strength,
+            yield_displacement=self.yields_at,
+        )
+
+    def called(self) -> Finding:
+        """Such as an isolator with 18 cm to both sides."""
+        stroke = two(100 * self.stroke)
+        if self.stiffness is not None and self.strength is not None:
+            springs = {"stiffness": two(self.stiffness), "strength": two(self.strength)}
+            return finding(Text.HOLD_SPRINGS_STATED, stroke=stroke, **springs)
+        part = finding("whole_percent", value=two(100 * SLIDES_AT))
+        period = two(2 * math.pi * math.sqrt(RADIUS / GRAVITY))
+        return finding(Text.HOLD_SPRINGS, stroke=stroke, period=period, part=part)
+
+
+@dataclass(frozen=True)
 class Beside(Holder):
-    """A wall behind the object.
+    """A wall behind the object; a low one is a kerb.
 
     Attributes
     ----------
     distance : from its base [m]
+    height : of its upper edge over the floor [m]
     """
 
     distance: float = math.inf
+    height: float = math.inf
     key: ClassVar[str] = "wall"
 
     def on(self, system: System) -> System:
         """Set a wall beside the lowest body, in the direction of its narrower side."""
         base = system.bodies[0].base
         east, north = narrow_direction(base)
-        wall = Wall(reach_of(base) + self.distance, atan2(north, east))
+        at = reach_of(base) + self.distance
+        wall = Wall(at, atan2(north, east), height=self.height)
         return hold(system, wall)
 
     def called(self) -> Finding:
         """Such as a wall 5 cm behind it."""
-        return finding(Text.HOLD_WALL, distance=two(100 * self.distance))
+        distance = two(100 * self.distance)
+        if self.height < math.inf:
+            high = two(100 * self.height)
+            return finding(Text.HOLD_LOW_WALL, distance=distance, height=high)
+        return finding(Text.HOLD_WALL, distance=distance)
 
 
 @dataclass(frozen=True)
@@ -266,15 +348,41 @@ class WithoutWall(Holder):
         return finding(Text.HOLD_OFF_WALL)
 
 
-GIVEN: Mapping[str, Callable[[Any], Holder]] = {
-    "putty_n": Putty,
-    "bracket_n": Bracket,
-    "cord_n": Cords,
-    "isolator_m": Isolator,
-    "wall_m": Beside,
-    "casters": lambda word: Casters(word == "locked"),
+def _bracket(given: Mapping[str, Any]) -> Holder:
+    return Bracket(given["bracket_n"], given.get("bracket_slack_m", 0.0))
+
+
+def _cords(given: Mapping[str, Any]) -> Holder:
+    return Cords(given["cord_n"], given.get("cord_slack_m", 0.0))
+
+
+def _wall(given: Mapping[str, Any]) -> Holder:
+    return Beside(given["wall_m"], given.get("wall_height_m", math.inf))
+
+
+def _isolator(given: Mapping[str, Any]) -> Holder:
+    """Make springs where their stiffness is stated, a pendulum otherwise."""
+    stroke = given["isolator_m"]
+    if "isolator_stiffness_n_m" in given:
+        return Springs(
+            stroke,
+            given["isolator_stiffness_n_m"],
+            given["isolator_strength_n"],
+            given.get("isolator_yield_m", YIELDS_AT),
+        )
+    radius = given.get("isolator_radius_m", RADIUS)
+    return Pendulum(stroke, radius, given.get("isolator_friction", SLIDES_AT))
+
+
+GIVEN: Mapping[str, Callable[[Mapping[str, Any]], Holder]] = {
+    "putty_n": lambda given: Putty(given["putty_n"]),
+    "bracket_n": _bracket,
+    "cord_n": _cords,
+    "isolator_m": _isolator,
+    "wall_m": _wall,
+    "casters": lambda given: Casters(given["casters"] == "locked"),
 }
-"""Keys of ``statue.yaml`` that say what holds an object as it stands, and the holder of what they give."""
+"""Keys of ``statue.yaml`` that say what holds an object as it stands, and its holder, made of all keys."""
 
 
 def holders_of(settings: Mapping[str, Any]) -> tuple[Holder, ...]:
@@ -288,7 +396,7 @@ def holders_of(settings: Mapping[str, Any]) -> tuple[Holder, ...]:
     -------
     The holders, in the order of ``GIVEN``.
     """
-    return tuple(make(settings[key]) for key, make in GIVEN.items() if key in settings)
+    return tuple(make(settings) for key, make in GIVEN.items() if key in settings)
 
 
 def holders_beside(there: Sequence[Holder]) -> list[Holder]:
@@ -303,7 +411,7 @@ def holders_beside(there: Sequence[Holder]) -> list[Holder]:
     Those of other kinds, and what may be done about a wall and about casters that roll.
     """
     kinds = {holder.key for holder in there}
-    usual: list[Holder] = [Putty(), Bracket(), Cords(), Isolator()]
+    usual: list[Holder] = [Putty(), Bracket(), Cords(), Pendulum(), Springs()]
     found = [holder for holder in usual if holder.key not in kinds]
     if "wall" in kinds:
         found.append(WithoutWall())
@@ -343,14 +451,14 @@ def reach_of(base: Outline) -> float:
     return footprint.reach(base.vertices, len(base.vertices), east, north)
 
 
-def fastened(system: System, gives: float, strength: float) -> tuple[Tie, Tie]:
+def fastened(system: System, gives: float, fastener: Fastener) -> tuple[Tie, Tie]:
     """Ties of the uppermost body to both sides, along its narrower side, a given way up.
 
     Parameters
     ----------
     system : whose uppermost body is held
     gives : what a tie gives under a force as large as that body's weight [m]
-    strength : at which each breaks [N]
+    fastener : whose strength and slack each has
 
     Returns
     -------
@@ -374,7 +482,8 @@ def fastened(system: System, gives: float, strength: float) -> tuple[Tie, Tie]:
                 (x, y, height),
                 ends,
                 tie_stiffness(top.mass, gives),
-                strength=strength,
+                slack=fastener.slack,
+                strength=fastener.strength,
             )
         )
     return found[0], found[1]
@@ -391,7 +500,3 @@ def _damping(system: System, tie: Tie) -> float:
     )
     height = tie.point[2]
     return bracket_damping(top.mass, across, top.centre[2], height, tie.stiffness)
-
-
-def _height() -> dict[str, Finding]:
-    return {"height": finding("whole_percent", value=two(100 * FASTENED_AT))}
