@@ -33,7 +33,7 @@ from rockfrag.base.files import write_table, write_text
 from rockfrag.report.page import Column, Page, table_html
 from rockfrag.report.part import Answer, FigureSpec, Finding, Section
 from rockfrag.words.catalogue import FIRST, Catalogue, catalogue
-from rockfrag.words.findings import finding, limit, percent, three, two
+from rockfrag.words.findings import Value, finding, limit, percent, three, two
 
 MOST_DRAWN = 40  # Objects of which the correlation is drawn: those that add most
 
@@ -161,8 +161,8 @@ class _Layout:
 
     def _ranking(self) -> Section:
         """Which objects add most to the expected loss, and what helps each."""
-        texts, objects = self.texts, self.joint.objects
-        parts = objects.set_index("name")["contribution"]
+        texts = self.texts
+        parts = self.joint.objects.set_index("name")["contribution"]
         rows = []
         for found in self.inventory.found:
             best, request = best_change(found), found.request
@@ -198,14 +198,17 @@ class _Layout:
             "inventory.csv",
             language=texts.language,
         )
-        top = objects.iloc[0]
-        message = finding(Text.ADDS_MOST, name=str(top["name"]))
-        if math.isfinite(top["contribution"]):
-            text = Text.ADDS_MOST_LOSS if self.valued else Text.ADDS_MOST_NUMBER
-            part = percent(top["contribution"])
-            message = finding(text, name=str(top["name"]), part=part)
-        title = texts.text(Text.RANKING_TITLE)
-        return Section("ranking", title, texts.say(message), (), [table])
+        title, message = texts.text(Text.RANKING_TITLE), texts.say(self._adds_most())
+        return Section("ranking", title, message, (), [table])
+
+    def _adds_most(self) -> Value:
+        """The object that adds most to the expected loss or number, and its part of it where that is known."""
+        top = self.joint.objects.iloc[0]
+        name = str(top["name"])
+        if not math.isfinite(top["contribution"]):
+            return finding(Text.ADDS_MOST, name=name)
+        text = Text.ADDS_MOST_LOSS if self.valued else Text.ADDS_MOST_NUMBER
+        return finding(text, name=name, part=percent(top["contribution"]))
 
     def _numbers(self, figures: Sequence[FigureSpec]) -> Section:
         """How many objects topple in one earthquake, and how often."""

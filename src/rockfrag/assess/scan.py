@@ -92,6 +92,16 @@ class Scan:
         return found
 
 
+def _known_exactly(mesh: Mapping[str, Any]) -> dict[str, float]:
+    """What of the ways to stand is stated, and not drawn: how far edges retreat [mm], and the direction [°]."""
+    exact = {}
+    if "edge_retreat_m" in mesh:
+        exact["edge_retreat_mm"] = 1e3 * mesh["edge_retreat_m"]
+    if "direction_deg" in mesh:
+        exact["direction_deg"] = float(mesh["direction_deg"])
+    return exact
+
+
 def make_scan(
     shape: Shape, mesh: Mapping[str, Any], contact_spread: float | None
 ) -> tuple[Scan, list[Assumption]]:
@@ -104,11 +114,7 @@ def make_scan(
     unknowns = unknowns_of(SCAN, None if accuracy is None else 1e3 * accuracy)
     median = unknowns["contact_tolerance_mm"](0.5)
     del unknowns["restitution_ratio"]
-    exact = {}
-    if "edge_retreat_m" in mesh:
-        exact["edge_retreat_mm"] = 1e3 * mesh["edge_retreat_m"]
-    if "direction_deg" in mesh:
-        exact["direction_deg"] = float(mesh["direction_deg"])
+    exact = _known_exactly(mesh)
     given = mesh.get("contact_tolerance_m")
     if given is not None or contact_spread is not None:
         middle = median if given is None else 1e3 * given
@@ -129,6 +135,7 @@ def make_scan(
         for source in map(SOURCE_OF.__getitem__, open_ones)
         if source != "contact" or given is None
     ]
+    # in space it turns about any edge, and its direction is no source
     upright = arrangements[arrangements["least_deg"] >= LEAST_ANGLE_DEG]
     carries = [name for name in open_ones if name != "direction_deg"]
     space = _ordered(shape, upright, carries, "least_deg") if len(upright) else None

@@ -37,6 +37,11 @@ def add_export_command(commands: Any) -> None:
 
 
 # imported when it runs: `rockfrag --help` should not wait for numba
+def _warn(words: str) -> None:
+    """Print what is left out, beside the results."""
+    print(f"warning: {words}", file=sys.stderr)
+
+
 def _export(options: argparse.Namespace) -> int:
     """Run ``export``: write fragilities of objects for other programs."""
     from rockfrag.aftermath.object_fragility import object_fragilities
@@ -65,10 +70,7 @@ def _export(options: argparse.Namespace) -> int:
         progress=progress_line("objects in the motion of their floors"),
     )
     for name in without:
-        print(
-            f"warning: left out: {name}: half of the motions topple it at no level.",
-            file=sys.stderr,
-        )
+        _warn(f"left out: {name}: half of the motions topple it at no level.")
     if on_floor:
         _write_on_floors(on_floor, options.ned_component, folder)
     placed = [each for each in requests if each.coordinates is not None]
@@ -77,10 +79,7 @@ def _export(options: argparse.Namespace) -> int:
         of_ground, _ = object_fragilities(placed, motions, measure, progress=say)
         _write_on_ground(of_ground, options.facility_type, folder)
     else:
-        print(
-            "warning: no object has a place; ShakeCast's files are left out.",
-            file=sys.stderr,
-        )
+        _warn("no object has a place; ShakeCast's files are left out.")
     print(f"{len(on_floor)} of {len(requests)} objects in {folder}")
     return 0
 

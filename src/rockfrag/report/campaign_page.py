@@ -4,7 +4,7 @@ In: the tables of the stages of a campaign (``rockfrag.stages.campaign.TABLES``)
 with its figures. Docs: ``docs/campaigns.md``.
 """
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from functools import partial
 
 import numpy as np
@@ -219,6 +219,36 @@ def _with_unit(measure: str) -> str:
     return f"{name} [{unit}]"
 
 
+def _regions_table(regions: pd.DataFrame, names: Sequence[str]) -> Markup:
+    """Table of the tests by thirds of the measures, with how many are predicted as they happened."""
+    shown = regions[regions["tests"] > 0].assign(right=100 * regions["right"])
+    for name in names:
+        ends = zip(shown[f"{name}_from"], shown[f"{name}_to"], strict=True)
+        shown[name] = [f"{low:.3g} to {high:.3g}" for low, high in ends]
+    columns = [
+        *(column(name, _with_unit(name), numeric=True) for name in names),
+        column("tests", decimals=0),
+        column("overturned", decimals=0),
+        column("simulated", decimals=0),
+        column("right", "Right [%]", decimals=0),
+    ]
+    return table_html(shown, columns, "Tests by thirds of two measures.")
+
+
+def _wrong_table(tests: pd.DataFrame, measures: Sequence[str]) -> Markup:
+    """Table of the tests that are predicted otherwise than they happened."""
+    wrong = tests[~tests["right"]].assign(votes=lambda t: 100 * t["votes_to_overturn"])
+    columns = [
+        column("test"),
+        column("group", "Input motion"),
+        *(column(name, _with_unit(name), decimals=3) for name in measures),
+        column("overturned"),
+        column("votes", "Votes to overturn [%]", decimals=0),
+        column("near_critical", "Near-critical"),
+    ]
+    return table_html(wrong, columns, "Tests predicted wrong.")
+
+
 def _tests(study: CampaignStudy, tables: Tables) -> Section:
     """All tests, with the range of each motion's scales that overturns."""
     tests, regions = tables["tests"], tables["regions"]
@@ -227,11 +257,6 @@ def _tests(study: CampaignStudy, tables: Tables) -> Section:
         for name in map(str, regions)
         if name.endswith("_from")
     ]
-    shown = regions[regions["tests"] > 0].assign(right=100 * regions["right"])
-    for name in names:
-        ends = zip(shown[f"{name}_from"], shown[f"{name}_to"], strict=True)
-        shown[name] = [f"{low:.3g} to {high:.3g}" for low, high in ends]
-    wrong = tests[~tests["right"]].assign(votes=lambda t: 100 * t["votes_to_overturn"])
     message = (
         f"{int(tests['right'].sum())} of {len(tests)} tests are predicted as they happened, each by the majority "
         "of all repeats."
@@ -244,24 +269,8 @@ def _tests(study: CampaignStudy, tables: Tables) -> Section:
             "Every test by the intensity of its motion; crosses are wrong predictions."
         )
         parts.append(FigureSpec("tests", message, caption, draw))
-    columns = [
-        *(column(name, _with_unit(name), numeric=True) for name in names),
-        column("tests", decimals=0),
-        column("overturned", decimals=0),
-        column("simulated", decimals=0),
-        column("right", "Right [%]", decimals=0),
-    ]
-    parts.append(table_html(shown, columns, "Tests by thirds of two measures."))
-    measures = study.measures or names
-    columns = [
-        column("test"),
-        column("group", "Input motion"),
-        *(column(name, _with_unit(name), decimals=3) for name in measures),
-        column("overturned"),
-        column("votes", "Votes to overturn [%]", decimals=0),
-        column("near_critical", "Near-critical"),
-    ]
-    parts.append(table_html(wrong, columns, "Tests predicted wrong."))
+    parts.append(_regions_table(regions, names))
+    parts.append(_wrong_table(tests, list(study.measures or names)))
     words = (
         "Votes are the fraction of plausible ways to set up the object under which it overturns. Here each test "
         "has one answer, by the votes of all repeats together; the fraction on the first page is a mean over "

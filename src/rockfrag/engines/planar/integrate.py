@@ -538,6 +538,7 @@ def _handle(p, w, now, closing, exclude, kept):
     if _falls(p, w):
         _note(p, w, now.time, FALLEN, kept)
         return
+    # what fails in ties, in a spring and in each contact, and which ends touch therefore
     look_at(p, w, w.q)
     broken = count_broken(p, w)
     kind = TIED if change_ties(p, w, now.time) else CHANGE
@@ -547,11 +548,13 @@ def _handle(p, w, now, closing, exclude, kept):
         exclude = exclude or fails
         kind = PASSING if passes else kind
     _shut(p, w)
+    # ends that come down meet; then the mode that the forces allow is searched for
     if _is_hit(p, w):
         impact.strike(p, w, now.ah, now.av, closing * p.speed)
         kind = IMPACT
         exclude = False
     if not impact.settle(p, w, now.ah, now.av, exclude):
+        # no mode is consistent (Painlevé): an impact without approach
         w.outcome.paradoxes += 1
         impact.strike_unapproached(p, w, now.ah, now.av, closing * p.speed)
         impact.settle(p, w, now.ah, now.av, False)
@@ -745,6 +748,7 @@ def _rest_ends(p, w, tau, early, late):
             slope = w.rest[row, 1] * (late.ah - early.ah) + w.rest[row, 2] * (
                 late.av - early.av
             )
+            # accelerations, and so the margin, are linear: it vanishes at 1 - margin / slope
             if slope < 0.0 and max(tau, 1.0 - margin / slope) < when:
                 when = max(tau, 1.0 - margin / slope)
                 w.row_of_rest = row

@@ -24,33 +24,38 @@ _MAX_TITLES = 10
 _HALF_A_DAY = 12 * 3600
 
 
+def _interval_and_count(
+    text: TextFile, facts: dict[str, str], channels: int
+) -> tuple[float, int]:
+    """Return interval [s] and number of samples, which the header states once for each channel."""
+    intervals = _list(facts, "intervalo de muestreo")
+    counts = _list(facts, "num. total de muestras")
+    if len(set(intervals)) != 1 or not len(intervals) == len(counts) == channels:
+        text.fail("the channels of the header have no common sampling interval")
+    try:
+        return float(intervals[0]), int(counts[0])
+    except ValueError:
+        text.fail("sampling interval or number of samples is not a number")
+
+
 def _parse(text: TextFile) -> list[form.Channel]:
     """Channels of a file of this format, by its header as the head of the module says it."""
     at_data = text.find(_DATA, 0, _MAX_HEADER)
     if at_data < 0:
         text.fail("no line DATOS DE ACELERACION; the file is cut short")
     facts = form.header_keys(text.lines(0, at_data))
-    intervals, counts = (
-        _list(facts, "intervalo de muestreo"),
-        _list(facts, "num. total de muestras"),
-    )
     orientations = _list(facts, "orientacion")
-    sizes = {len(intervals), len(counts), len(orientations)}
-    if len(set(intervals)) != 1 or len(sizes) != 1:
-        text.fail("the channels of the header have no common sampling interval")
-    try:
-        dt, promised = float(intervals[0]), int(counts[0])
-    except ValueError:
-        text.fail("sampling interval or number of samples is not a number")
+    dt, promised = _interval_and_count(text, facts, len(orientations))
     dt = text.interval(dt, at_data)
     width = next(
         (value for key, value in facts.items() if key.startswith("formato datos")), ""
     )
     start = _first_row(text, at_data + 1)
     values = text.numbers(start, None, form.field_width(f"({width})"))
+    channels = len(orientations)
     if text.cut_short:
-        values = values[: values.size // len(intervals) * len(intervals)]
-    table = text.in_rows(values, len(intervals), start)
+        values = values[: values.size // channels * channels]
+    table = text.in_rows(values, channels, start)
     extra = table.shape[0] - promised
     if not 0 <= extra < 1 / dt:
         text.check_count(promised, table.shape[0], start)

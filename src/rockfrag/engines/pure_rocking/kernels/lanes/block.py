@@ -98,7 +98,8 @@ def advance(lane, upward):
 def _advance(lane, upward):
     """Advance every lane; ``upward`` is known where this is compiled into ``advance``.
 
-    Everything is stored in every lane: conditional stores cost many times as much.
+    Everything is stored in every lane: conditional stores cost many times as much. ψ = θc - |θ| is the angle to
+    balance, of which an impact at ψ = θc begins anew; ``w`` and ``v`` are its rates per step, at both ends of it.
 
     When a fall is certain, whatever the ground does: ``docs/kernels.md``, "A certain fall".
     """
@@ -119,6 +120,7 @@ def _advance(lane, upward):
         end = psi + taylor.travel(rates, 1.0)
         v = taylor.rate_at(rates, 1.0)
         taylor.keep_rates(lane.rates, i, rates)
+        # what may happen in the step
         barrier = lane.barrier[i] - lane.heavy[i] * c + lane.bound[i] * s
         certain = (w < 0.0) & (0.5 * omega * omega >= kappa * barrier)
         grazes = (w > 0.0) & (v < 0.0)
@@ -129,7 +131,7 @@ def _advance(lane, upward):
         flag = TOUCHES if touches | grazes | lies | falls_back else cases.QUIET
         flag = FALLS if certain else flag
         lane.flag[i] = flag
-        # the turning point of a parabola lies between the samples
+        # extremes so far; the turning point of a parabola lies between the samples
         turn = psi + 0.5 * w * w / min(w - v, -1e-300)
         low = (turn if (w < 0.0) & (v > 0.0) else end) * lane.per_angle[i]
         v = v / left
@@ -143,6 +145,7 @@ def _advance(lane, upward):
         lane.low[i] = min(was_low, low)
         lane.fast[i] = max(was_fast, abs(v))
         lane.near[i] = min(was_near, near)
+        # where the step began and where it ends
         lane.was_psi[i], lane.was_omega[i], lane.was_left[i] = psi, omega, left
         lane.psi[i] = end
         lane.omega[i] = v

@@ -94,9 +94,8 @@ def begin(worker):
     for i in range(lanes.LANES):
         worker.one.slot[i] = worker.two.slot[i] = -1
         # these are written only where the ground moves vertically
-        worker.one.was_weight[i] = worker.one.before_weight[i] = worker.two.was_weight[
-            i
-        ] = 1.0
+        worker.one.was_weight[i] = worker.one.before_weight[i] = 1.0
+        worker.two.was_weight[i] = 1.0
     for slot in range(SLOTS):
         case = worker.cases[slot]
         case.number, case.body, case.slot = -1, -1, slot
