@@ -67,6 +67,7 @@ def fill_rate_weights(levels, shift, curve_levels, curve_rates, weights):
                 end = curve_levels[i]
                 if not low < end < high:
                     continue
+            # between two levels the fraction is a straight line in ln of the level, the rate one in logarithms
             along = 1.0 if end == high else log(end / low) / width
             after = rate_at(curve_levels, curve_rates, end)
             mean = _mean_rate(before, after)

@@ -218,6 +218,7 @@ def _with_rates(body, state, closes, others, ground, interface):
     turn = turn_between(body, state)
     old = pivot(state.c1), pivot(state.c2)
     tiny = 1e-13 * (abs(state.omega1) + abs(state.omega2))
+    # of the contact without a given rate: its state before, whether it closes too, and its state by momentum
     c, shuts, n = (
         (state.c2, closes[1], others[1]) if given1 else (state.c1, closes[0], others[0])
     )
@@ -232,6 +233,7 @@ def _with_rates(body, state, closes, others, ground, interface):
             if c != 0:
                 break
             n = -n
+        # one momentum about the new pivots, l1 and l2 by the velocities before, gives the rate that is left
         pivots = (pivot(m1), pivot(n)) if given1 else (pivot(n), pivot(m2))
         k11, k12, k21, k22 = metric(body, pivots, pivots, turn)
         b11, b12, b21, b22 = metric(body, pivots, old, turn)
@@ -245,6 +247,7 @@ def _with_rates(body, state, closes, others, ground, interface):
             w1 = (l1 + l2 - (k12 + k22) * rate2) / (k11 + k12 + k21 + k22)
             if stays or n * w1 > tiny:
                 return n, m2, w1, w1 + rate2
+    # on neither side does it come off: it stays closed
     if given1:
         return m1, 0, rate1, rate1
     return 0, m2, 0.0, rate2
