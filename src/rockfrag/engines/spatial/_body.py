@@ -26,7 +26,9 @@ from rockfrag.engines.spatial._algebra import (
 )
 
 SIZE = 15
-WORK, FRICTION = 13, 14
+# where a state has the centre of mass, the attitude (a quaternion), its velocity, the angular velocity in the
+# body, the work of the ground's motion and what friction has taken
+PLACE, ATTITUDE, VELOCITY, SPIN, WORK, FRICTION = 0, 3, 7, 10, 13, 14
 MOST_VERTICES = 64
 MOST_CONSTRAINTS = 8  # walls and ties
 BOND = MOST_CONSTRAINTS  # row of a bond among what holds a body
@@ -157,7 +159,11 @@ def arm_and_bias(body, up, omega, i):
 
 @kernel
 def weight_of_attitude(body, y):
-    """Weight of an error of the attitude: of a rim one turns the contact by itself over the tilt."""
+    """Size of an error of the attitude that counts as an error of one of other numbers [-].
+
+    Of a rim an error δ turns the contact round it by δ over the tilt, so that the flatter the body the less it may
+    be: 1e3 times the tilt, and 1e-4 at least.
+    """
     if body.rim == 0.0:
         return 1.0
     up = rotation(y)[2]

@@ -321,7 +321,15 @@ def stick_alone(s, i):
 
 @kernel
 def slide_set(s, n, mask, size, largest, scale):
-    """Solve for one set of which some slides; return whether a solution within the cones was found."""
+    """Solve for one set of contacts of which some slides; return whether a solution within the cones was found.
+
+    One alone, and two of which one sticks, are found in closed form. Others begin with what would let all stick,
+    its shears shortened to the cones, and go on by Newton's method; where that leads nowhere, slips in four
+    directions at right angles are tried. Contacts that then slip have kinetic friction.
+
+    In: set ``mask`` of ``size`` contacts among n, the largest compliance and the scale of velocities. Out: the
+    impulses in s.impulse.
+    """
     small, pace = 1e-11 * scale, 1.0 / largest
     if size == 1:
         return slide_alone(s, n, s.member[0])
@@ -329,16 +337,7 @@ def slide_set(s, n, mask, size, largest, scale):
         return True
     if size == 0 or not stick_together(s, n, mask, SOFT * largest):
         return False
-    # shears are shortened to the cones, from which Newton's method then begins
-    for i in range(n):
-        if in_set(mask, i) and not s.given[i]:
-            a = 3 * i
-            s.grip[i] = s.friction[i] if s.slid[i] else s.holds[i]
-            limit = s.grip[i] * max(s.impulse[a + 2], 0.0)
-            shear = norm(s.impulse[a], s.impulse[a + 1])
-            if shear > limit:
-                s.impulse[a] *= limit / shear
-                s.impulse[a + 1] *= limit / shear
+    shorten_to_cones(s, n, mask)
     found = newton(s, size, pace, CLOSE_ENOUGH * scale)
     for k in range(4):
         if found and cones_hold(s, n, mask, small / largest):
@@ -348,6 +347,20 @@ def slide_set(s, n, mask, size, largest, scale):
     while found and slip_kinetically(s, size, 1e-9 * scale):
         found = newton(s, size, pace, CLOSE_ENOUGH * scale)
     return found
+
+
+@kernel
+def shorten_to_cones(s, n, mask):
+    """Shorten the shear of each contact of a set to what friction allows under its normal impulse."""
+    for i in range(n):
+        if in_set(mask, i) and not s.given[i]:
+            a = 3 * i
+            s.grip[i] = s.friction[i] if s.slid[i] else s.holds[i]
+            limit = s.grip[i] * max(s.impulse[a + 2], 0.0)
+            shear = norm(s.impulse[a], s.impulse[a + 1])
+            if shear > limit:
+                s.impulse[a] *= limit / shear
+                s.impulse[a + 1] *= limit / shear
 
 
 @kernel
@@ -515,7 +528,11 @@ def solve_cones(s, n, least):
 
 @kernel
 def fewest(s, n, least, slide):
-    """Find the smallest set that sticks (or slides), with the least energy left, and how many are as small."""
+    """Find the smallest set of contacts that sticks (or slides); of several the one that leaves the least energy.
+
+    Returned are the set, as bits, -1 if there is none, and how many sets of that size there are; s.best has its
+    impulses. Sets are tried by size, so that larger ones are left out as soon as one is found.
+    """
     largest, scale = largest_compliance(s, n), 1e-300
     for i in range(3 * n):
         # the largest velocity (or acceleration) that there is to stop
@@ -539,14 +556,26 @@ def fewest(s, n, least, slide):
             and others_open(s, n, mask, small)
         ):
             solutions += 1
-            # change of kinetic energy by the impulses: P·b + P·W P / 2
-            change = 0.0
-            for i in range(3 * n):
-                change += 0.5 * s.impulse[i] * (s.free[i] + s.after[i])
+            change = change_of_energy(s, n)
             if chosen < 0 or change < lowest - 1e-12 * scale * scale:
                 chosen, lowest, size_found = mask, change, size
-                for i in range(3 * n):
-                    s.best[i] = s.impulse[i]
-                for i in range(n):
-                    s.best_grip[i] = s.grip[i]
+                keep_best(s, n)
     return chosen, solutions
+
+
+@kernel
+def change_of_energy(s, n):
+    """Change of kinetic energy by the impulses: P·b + P·W P / 2."""
+    change = 0.0
+    for i in range(3 * n):
+        change += 0.5 * s.impulse[i] * (s.free[i] + s.after[i])
+    return change
+
+
+@kernel
+def keep_best(s, n):
+    """Keep impulses and friction of a set."""
+    for i in range(3 * n):
+        s.best[i] = s.impulse[i]
+    for i in range(n):
+        s.best_grip[i] = s.grip[i]

@@ -369,7 +369,12 @@ def stop_edge(body, up, i, j, first, second, momentum, small):
     """Angular velocity after an impact that stops points i and j, and its impulse.
 
     Returned are also the impulse at j but for its part along the edge, the edge's direction, and whether both can
-    be stopped.  ``first`` and ``second`` are the loads of :func:`stop_point`.
+    be stopped.  ``first`` and ``second`` are the loads of :func:`stop_point`: velocities at i and j but for those
+    of rotation. With ω after the impact, the edge L e from i to j and the inertia J about i,
+
+    - both stop if (first - second)·e = 0 and ω = e × (first - second) / L + σ e;
+    - σ follows from the moment about the edge, e·J ω = e·(momentum - p × first);
+    - the impulse is -(ω × p + first), and what turns the body otherwise is that at j, (J ω - moment) × e / L.
     """
     p, q = solid.arm(body, up, i), solid.arm(body, up, j)
     edge = minus(q, p)

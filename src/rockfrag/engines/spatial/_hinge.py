@@ -99,8 +99,13 @@ def sums(s):
 
 @kernel
 def write_state(body, y, e, p, turned, s):
-    """Write the state after a turn about the edge by an angle, with a rate, to s.new."""
+    """Write the state after a turn about the edge to s.new.
+
+    ``e`` and ``p`` are the edge's direction and its first end from the centre of mass, in the body, and ``turned``
+    the angle of the turn and its rate.
+    """
     new = s.new
+    # the attitude before, times the quaternion of the turn
     sine, cosine = sin_cos(0.5 * turned[0])
     a, b, c = sine * e[0], sine * e[1], sine * e[2]
     w, x, i, z = y[3], y[4], y[5], y[6]
@@ -111,6 +116,7 @@ def write_state(body, y, e, p, turned, s):
     normalise(new)
     rows = rotation(new)
     omega = scaled(turned[1], e)
+    # the edge stays where it is
     moved = to_world(rows, p)
     new[0], new[1] = s.anchor[0, 0] - moved[0], s.anchor[0, 1] - moved[1]
     new[2] = -moved[2]

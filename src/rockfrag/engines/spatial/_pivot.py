@@ -33,17 +33,19 @@ from rockfrag.engines.spatial._forces import (
     pivot_acceleration,
 )
 
-WORK = TURNING - 1  # place of the work among what is integrated
+# where what is integrated has the attitude, the angular velocity, the place in the plan and the work
+ATTITUDE, SPIN, PLAN, WORK = 0, 4, 7, TURNING - 1
 
 
 @kernel
 def fill_turning(y, turned):
     """Fill in what is integrated of a state: attitude, angular velocity, work, and the place in the plan."""
     for i in range(4):
-        turned[i] = y[3 + i]
+        turned[ATTITUDE + i] = y[solid.ATTITUDE + i]
     for i in range(3):
-        turned[4 + i] = y[10 + i]
-    turned[7], turned[8] = y[0], y[1]
+        turned[SPIN + i] = y[solid.SPIN + i]
+    for i in range(2):
+        turned[PLAN + i] = y[solid.PLACE + i]
     turned[WORK] = y[solid.WORK]
 
 
@@ -125,14 +127,17 @@ def write_state(body, y, rows, velocity, s):
     new, turned = s.new, s.turned
     contact = s.closed[0]
     moved = to_world(rows, solid.arm(body, rows[2], contact))
-    new[0], new[1], new[2] = turned[7], turned[8], -moved[2]
-    if contact != solid.rim_contact(body):
-        new[0], new[1] = s.anchor[0, 0] - moved[0], s.anchor[0, 1] - moved[1]
+    rolls, forwards = contact == solid.rim_contact(body), to_world(rows, velocity)
+    for i in range(2):
+        # a rim goes where it rolls, a vertex stays
+        stays = s.anchor[0, i] - moved[i]
+        new[solid.PLACE + i] = turned[PLAN + i] if rolls else stays
+    new[solid.PLACE + 2] = -moved[2]
     for i in range(4):
-        new[3 + i] = turned[i]
-    new[7], new[8], new[9] = to_world(rows, velocity)
+        new[solid.ATTITUDE + i] = turned[ATTITUDE + i]
     for i in range(3):
-        new[10 + i] = turned[4 + i]
+        new[solid.VELOCITY + i] = forwards[i]
+        new[solid.SPIN + i] = turned[SPIN + i]
     new[solid.WORK], new[solid.FRICTION] = turned[WORK], y[solid.FRICTION]
 
 

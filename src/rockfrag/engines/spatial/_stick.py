@@ -209,7 +209,10 @@ def stick_alone_or_by_two(body, rows, n, least, moment, s):
 
 @kernel
 def hold_edge(body, up, i, j, moment, small, s):
-    """Stop contacts i and j: angular velocity after it, impulses of both and of each, and whether friction can."""
+    """Stop contacts i and j: angular velocity after it, impulses of both and of each, and whether friction can.
+
+    What pushes along the edge between them may act at either, and is shared so that friction holds at both.
+    """
     turn, push, far, e, fits = stop_edge(
         body,
         up,
