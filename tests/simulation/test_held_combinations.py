@@ -33,6 +33,8 @@ from rockfrag.system.mounts import (
 from .reference_bodies import random_motion
 
 LONGEST = 240  # letters of a refusal
+NUMBERS, PLANAR = ("peak_rotation", "hits"), ("peak_velocity", "peak_slip", "slip")
+"""Columns that are numbers whatever became of a body, infinite where it fell, and more of one in a plane."""
 
 
 def some_body(rng: np.random.Generator) -> System:
@@ -104,6 +106,10 @@ def asked_at_some_door(rng: np.random.Generator, system: System) -> None:
         table = outcomes.table("constraints")
         assert len(table) == 2 * len(system.holding)
         assert (table["largest_force_n"].fillna(0.0) >= 0.0).all()
+        for name in (*NUMBERS, *(PLANAR if system.planar else ())):
+            assert not np.isnan(getattr(outcomes, name)).any(), name
+        if system.support is not None:
+            assert np.isfinite(outcomes.stroke[..., -1]).all()
     else:
         width = {"tolerance": 0.5, "narrowest_resurrection": 1.0}
         found = find_thresholds([system], [ground], highest=2.0, **width, **options)

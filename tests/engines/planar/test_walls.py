@@ -373,3 +373,29 @@ def test_what_a_wall_bears_is_what_presses_on_it_whatever_was_shaken_before() ->
     alone = overturns([free], [motion], scales=scales, threads=1)
     assert beside.largest_impulse[1, ..., 0].max() > 0
     np.testing.assert_array_equal(beside.largest_force[1], alone.largest_force[0])
+
+
+def between_rough_walls(seed: int, number: int):
+    """A block that rocks and slides between two rough walls from which it bounces, drawn as one of a row."""
+    rng = np.random.default_rng(seed)
+    for _ in range(number + 1):
+        width = rng.uniform(0.15, 0.6)
+        block = Block(width, width * rng.uniform(1.5, 5), rng.uniform(20, 200))
+        mu, at_wall = rng.uniform(0.2, 0.9), rng.uniform(0.0, 0.9)
+        bounces = float(rng.choice([0.0, 0.3, 0.8]))
+        gap = rng.uniform(0.01, 0.3) * width
+        motion = rng.uniform(1, 5) * random_motion(rng)[:400]
+    sides = [
+        Wall(width / 2 + gap, way, friction=(at_wall, at_wall), restitution=bounces)
+        for way in (0.0, LEFT)
+    ]
+    return run(walled(block, *sides), motion, friction=mu, closing=1e-4)
+
+
+@pytest.mark.parametrize("number", [6, 16, 60, 99, 159])
+def test_between_rough_walls_time_goes_on(number: int) -> None:
+    """Two contacts hold a slip at once (6, 16), an end is shut and opened (60), pressed to a wall it bounces."""
+    found = between_rough_walls(3, number)
+    assert found.forced == 0
+    assert np.isfinite(found.theta).all()
+    assert found.energy["residual"].abs().max() < 1e-6 * found.energy["potential"][0]

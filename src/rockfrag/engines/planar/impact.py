@@ -183,7 +183,7 @@ def strike(p, w, ah, av, closing):
     closing : speed below which an end that parts and would fall shut again stays closed [m/s]
     """
     before = kinetic_energy(p, w.v)
-    has_laws = _read_laws(p, w)
+    has_laws = _read_laws(p, w, closing)
     _read_slips(p, w)
     _give_impulses(p, w, has_laws)
     _end_impact(p, w, ah, av, closing, before)
@@ -301,8 +301,11 @@ def _forget_laws(p, w):
 
 
 @kernel
-def _read_laws(p, w):
-    """Note which interfaces come down on one end while the other is closed; whether any of them has a law."""
+def _read_laws(p, w, closing):
+    """Note which interfaces come down on one end while the other is closed; whether any of them has a law.
+
+    What would leave a wall more slowly than ``closing`` [m/s] does not bounce: pressed to it, it would for ever.
+    """
     _forget_laws(p, w)
     has_laws = False
     for k in range(p.count):
@@ -317,9 +320,11 @@ def _read_laws(p, w):
                 has_laws = True
     for k in range(p.count, p.contacts):
         for end in range(2):
+            came = 0.0
             if w.touching[k, end] == 1:
-                w.came[k, end] = max(0.0, -parting_speed(p, w, k, end))
-                has_laws = has_laws or w.came[k, end] * p.bounce[k] > 0.0
+                came = max(0.0, -parting_speed(p, w, k, end))
+            w.came[k, end] = came if came * p.bounce[k] >= closing else 0.0
+            has_laws = has_laws or w.came[k, end] * p.bounce[k] > 0.0
     return has_laws
 
 
@@ -443,6 +448,7 @@ def _shut_weak(p, w, ah, av, closing):
                 parting = rate(p, w.q, w.out, k, x, y, -ty, tx)
                 parting += bias(p, w.q, w.v, k, x, y, -ty, tx, kind)
                 if parting < least or are_many:
+                    slid = w.slides[k]
                     w.closed[k, end] = 1
                     if not any_closed(p, w):
                         found = True
@@ -454,10 +460,11 @@ def _shut_weak(p, w, ah, av, closing):
                         w.slides[k] = 1
                     if _can_hold(p, w, closing):
                         return True
-                    w.closed[k, end] = 0
+                    # as it was: what is changed here and again below never ends
+                    w.closed[k, end], w.slides[k] = 0, slid
                     solve_motion(p, w, w.q, w.v, ah, av)
         if was_open or w.slides[k] != 0:
-            slid = w.slides[k] != 0
+            slides = w.slides[k] != 0
             read_slip(p, w, k, closing)
-            found = found or (slid and w.slides[k] == 0)
+            found = found or (slides and w.slides[k] == 0)
     return found

@@ -25,12 +25,15 @@ from rockfrag.engines.planar.ties import (
     start_ties,
     turns_back,
 )
-from rockfrag.engines.planar.walls import climbs, is_above
+from rockfrag.engines.planar.walls import any_closed, climbs, is_above
 from rockfrag.engines.pure_rocking.kernels.dormand_prince import INSTANTS, WEIGHTS
 
 # slack before a contact event is seen, so that what has just begun is not taken for its end [-]: forces over
 # weight; speeds over √(g b) and lengths over b
 SLACK, TOUCH = 1e-12, 1e-13
+UNSLIPPED = 2e-11
+"""Slack of slips where a wall presses: more than what counts as no slip as a mode is sought (``impact.STILL``).
+Two contacts may hold what is so slow at once, so that no impulse stops it, and it would fail again on the spot."""
 ERROR = 1e-7  # error of a step above which it is taken again, half as long [-]
 # fraction of a sampling interval below which a step is not made shorter
 SHORTEST = 1e-7
@@ -250,7 +253,8 @@ def _margin_of_friction(p, w, q, v, k, forces, pressed):
     if w.slides[k] != 0:
         end = 0 if w.closed[k, 0] == 1 else 1
         x, y, tx, ty, _, _, _ = end_of(p, w, q, k, end, w.kind[k, end])
-        margin = w.slides[k] * rate(p, q, v, k, x, y, tx, ty) / p.speed + TOUCH
+        slack = UNSLIPPED if any_closed(p, w) else TOUCH
+        margin = w.slides[k] * rate(p, q, v, k, x, y, tx, ty) / p.speed + slack
     elif forces and w.whole[k] != BONDED:
         shear = w.shear[k] + slope(p, w, q, k) * pressed
         margin = p.static[k] * pressed - abs(shear)
