@@ -735,10 +735,14 @@ def _evidence(
 def _decision(
     value: float, evidence: risk.Evidence, target: risk.Target, request: Request
 ) -> Decision:
-    """What to do by a probability; of one in some years by its rate, of which means are taken."""
+    """Decide by a value against the probability that is accepted.
+
+    If the target is a rate both are annual rates, as means over what is not known are taken of rates.
+    """
     drawn, accepted = evidence.drawn(target), request.accepted
     if target.is_rate:
         value, accepted = drawn.middle, rate_of(accepted, request.years)
+    # part of each source that is left when it has been measured
     left = {name: source.left for name, source in MEASUREMENTS.items()}
     return decide(value, drawn.values, drawn.prediction, left, accepted)
 

@@ -289,9 +289,13 @@ class Shaking(IntensityLevels):
         planar = [
             i for i, solid in enumerate(solids) if solid is None or systems[i].count > 1
         ]
-        worst = any(object_.from_all_sides for object_, _ in every)
-        shake = self._from_all_sides if worst else self._in_plane
-        found = dict(zip(planar, shake([systems[i] for i in planar]), strict=True))
+        found: dict[int, ObjectOutcomes] = {}
+        for all_sides, shake in (
+            (True, self._from_all_sides),
+            (False, self._in_plane),
+        ):
+            some = [i for i in planar if every[i][0].from_all_sides is all_sides]
+            found |= zip(some, shake([systems[i] for i in some]), strict=True)
         for i, body in enumerate(solids):
             if body is not None:
                 solid = self.in_space(body, every[i][0].base_spread)

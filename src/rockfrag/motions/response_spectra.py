@@ -437,7 +437,11 @@ def peak_displacements(
 
 @lru_cache(maxsize=64)
 def _groups(periods: bytes, damping: float, dt: float) -> tuple[_Group, ...]:
-    """Oscillators grouped by their steps."""
+    """Oscillators in groups of one step length, which are integrated side by side.
+
+    ``periods`` are those of the oscillators [s], as bytes of float64, since a cache needs keys; ``dt`` is the
+    interval of the samples [s].
+    """
     each = np.frombuffer(periods)
     parts = np.array([steps_within(dt, float(period), damping) for period in each])
     # undamped vibration does not get smaller, and so each such oscillator must end at its own time
@@ -447,6 +451,7 @@ def _groups(periods: bytes, damping: float, dt: float) -> tuple[_Group, ...]:
         (which,) = np.nonzero(parts == count)
         for i in range(0, which.size, lanes):
             some = which[i : i + lanes]
+            # samples of a whole longest period, after which each oscillator has shown a peak
             quiet = math.ceil(each[some].max() / dt) + 1
             table = np.zeros((_ROWS, LANES))
             for lane, period in enumerate(each[some]):

@@ -277,7 +277,11 @@ def overturned_cases(
 def _light_words(
     cases: Cases, outcomes: Outcomes, stuck: NDArray[np.bool_]
 ) -> Iterator[str]:
-    """Say in how many cases bodies may leave the ground: it drops, or squat ones rock in strong motions."""
+    """Say in how many cases bodies may leave the ground: it drops, or squat ones rock in strong motions.
+
+    ``stuck`` says which systems pure rocking holds to the ground, shape (systems,); what is counted has the shape
+    (systems, motions, scales).
+    """
     ratio = outcomes.minimum_gravity_ratio[stuck]
     light, none = int((ratio < LIGHT).sum()), int((ratio <= 0).sum())
     if light:

@@ -114,9 +114,10 @@ def system_of(
 
 
 def _rough_where_held(system: System) -> System:
-    """Return it with a finite friction of contacts without any, where bodies on each other are held.
+    """Let contacts that never slide have a coefficient of 20 instead, where bodies on each other are held.
 
-    Of two contacts that may not slide at all, one that was shut while it slipped jams under the other one.
+    What holds them may make a contact slip in an impact. If another one above it may not slide at all, neither can
+    move any more, and the bodies jam.
     """
     on_each_other = system.count > 1 or system.support is not None
     if not (system.planar and system.holding and on_each_other):

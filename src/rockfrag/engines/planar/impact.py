@@ -252,12 +252,16 @@ def _end_impact(p, w, ah, av, closing, before):
 
 @kernel
 def _find_impulses(p, w, trial, has_laws):
-    """Impulses and velocities after an impact, plastic or as far as its laws have an outcome."""
+    """Fill in impulses (w.normal, w.shear) and velocities (w.out) after an impact.
+
+    It follows the laws of its contacts if they have an outcome. ``trial`` is the mode that the search begins with.
+    """
     search(p, w, trial, NONE)
     solve_impact(p, w)
     if has_laws:
         _obey(p, w, trial)
         return
+    # of one contact alone the whole course of an impact is known: how long it slips and when it turns round
     k, end = contact_alone(p, w)
     if k >= 0:
         strike_alone(p, w, k, end)

@@ -329,8 +329,9 @@ def force_fails(p, w):
 
 @kernel
 def margin_at(p, w, tau, stretch, forces):
-    """Least margin at the fraction ``tau`` of the step, where ``q`` and ``v`` are on the quintic through it.
+    """Least margin at the fraction ``tau`` of the step; w.q and w.v are then those of that instant.
 
+    They lie on the quintic that has the coordinates, velocities and accelerations of both ends of the step.
     Without ``forces`` it is that of motions alone, which needs no equations to be solved.
     """
     h, t2 = stretch.length, tau * tau

@@ -53,7 +53,11 @@ def spring_force(p, w, q):
 
 @kernel
 def least_support_margin(p, w, q, v):
-    """What must stay positive lest the hysteretic part change: its strength, or its speed once it yields."""
+    """Margin [-] that is negative where the hysteretic part of a spring changes, which w.spring_fails then says.
+
+    While it is elastic, strength that is left over the weight; once it yields, the plate's speed (v[0]) the way
+    that it yields over √(g b). Infinite without a spring.
+    """
     if p.is_sprung == 0:
         return math.inf
     if w.yields == 0:

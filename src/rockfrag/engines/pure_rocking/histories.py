@@ -268,7 +268,11 @@ class SingleRun:
     def _forces(
         self, ground: Floats, upward: Floats, links: list[Link]
     ) -> tuple[Floats, Floats]:
-        """Normal and friction force of each interface, across and along the face that carries [N], (n, blocks)."""
+        """Normal and friction force of each interface, across and along the face that carries [N], (n, blocks).
+
+        ``ground`` is the acceleration of the ground [m/s²], ``upward`` its vertical one over gravity, both (n,). A
+        link is x and y of a point as seen from the one below [m], and their accelerations [m/s²].
+        """
         still = float(self.record["gravity"])
         gravity = still + still * upward
         mass, (_, _, ax, ay) = self.system.shapes[0].mass, links[0]

@@ -66,12 +66,12 @@ def rotation(y):
 
 
 @kernel
-def rotation_of(w, x, i, z):
-    """Rows of R from the quaternion w + x i + i j + z k."""
+def rotation_of(w, x, y, z):
+    """Rows of R from the quaternion w + x i + y j + z k, whose length is one."""
     return (
-        (1 - 2 * (i * i + z * z), 2 * (x * i - w * z), 2 * (x * z + w * i)),
-        (2 * (x * i + w * z), 1 - 2 * (x * x + z * z), 2 * (i * z - w * x)),
-        (2 * (x * z - w * i), 2 * (i * z + w * x), 1 - 2 * (x * x + i * i)),
+        (1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)),
+        (2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)),
+        (2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)),
     )
 
 

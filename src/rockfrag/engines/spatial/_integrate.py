@@ -397,7 +397,11 @@ def note_soon(s, peaks, k, scale, dt):
 
 @kernel
 def happen(body, what, tau, y, cut, stuck, s):
-    """Change velocities and mode by what ended a step (a landing, an opening, …); return the energy lost [J]."""
+    """Change velocities and mode by what ended a step (a landing, an opening, …); return the energy lost [J/kg].
+
+    ``tau`` is the time in the interval [s], ``cut`` the energy at which a body rests over what a fall takes, and
+    ``stuck`` how many steps in a row had hardly any length.
+    """
     g = s.field[6]
     gravity = forces.effective_gravity_at(s.field, tau)
     before = solid.balance(body, y, g)
@@ -429,7 +433,7 @@ def happen(body, what, tau, y, cut, stuck, s):
         s.counters[modes.JAMS] += 1
         free = slides_any(s)
         if free:
-            # an impact without a collision
+            # an impact without a collision, which at least one contact takes part in
             modes.impact(body, y, gravity, 1, s)
             free = modes.choose_mode(body, tau, y, s)
         if not free:

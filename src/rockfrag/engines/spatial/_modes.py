@@ -303,7 +303,11 @@ def approaches(body, y, rows, n, i, load, spin, pushed, s):
 
 @kernel
 def least_needed(n, found, s):
-    """Which of the contacts s.which does not push and parts fastest; -1 if all push."""
+    """The contact that another one may take the place of: it does not push, and parts fastest.
+
+    In: the set ``found`` that pushes, as bits, and s.after, the velocities along both ways and across, three a
+    contact. Out: the place in s.which, -1 if all push.
+    """
     best = -1
     for k in range(n):
         apart = s.after[3 * k + 2]
@@ -349,9 +353,14 @@ def note_impulses(body, n, found, s):
 
 @kernel
 def witness(body, y, before, s):
-    """Note, and count, what the whole change of momentum asks of friction beyond what it can give."""
-    shear = algebra.norm(y[7] - before[0], y[8] - before[1])
-    beyond = shear - body.static * (y[9] - before[2])
+    """Note, and count, what the whole change of momentum asks of friction beyond what it can give.
+
+    ``before`` is the velocity of the centre of mass before the impact; its change is the impulse of all contacts
+    for a unit of mass [m/s], of which static friction bears so much of the normal part.
+    """
+    x, z, up = solid.VELOCITY, solid.VELOCITY + 1, solid.VELOCITY + 2
+    shear = algebra.norm(y[x] - before[0], y[z] - before[1])
+    beyond = shear - body.static * (y[up] - before[2])
     s.beyond = max(s.beyond, beyond)
     s.counters[UNSOLVED] += beyond > BEYOND
 
@@ -483,10 +492,11 @@ def bond_tension(body, rows, gravity):
 
 @kernel
 def pulled_by_ties(body, y, rows, s):
-    """Whether a tie pulls at a body as it stands."""
+    """Whether ties pull at a body as it stands with more than rounding; their force stays in s.pulled [N/kg]."""
     forces.fill_tie_forces(body, y, rows, s)
     pulled = abs(s.pulled[0]) + abs(s.pulled[1]) + abs(s.pulled[2])
-    return pulled > 1e-9 * s.field[6]
+    gravity = s.field[6]
+    return pulled > 1e-9 * gravity
 
 
 @kernel
@@ -786,7 +796,12 @@ def note_slip(body, k, u, slow, s):
 
 @kernel
 def solve_forces(body, y, rows, gravity, n, slow, s):
-    """Solve for the forces at the contacts s.which; return the set that pushes, and how many would do."""
+    """Solve for the forces at the contacts s.which; return the set that pushes, and how many would do.
+
+    Beside walls more contacts may touch than are solved for at once. A round at a time, what would be passed
+    through takes the place of the contact that is least needed, until none would be. ``n`` is the number of
+    contacts, and ``slow`` the velocity above which they slip [m/s].
+    """
     weight = forces.load_on(body, y, rows, gravity, s)
     moment = stick.fill_accelerations(body, y, rows, weight, n, s)
     if not picks_wall(n, s):

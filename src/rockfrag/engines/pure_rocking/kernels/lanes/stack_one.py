@@ -231,18 +231,18 @@ def go_back(lane, i, g, upward):
 
 
 @inlined_kernel
-def next_contact_event(lanes_of_one, lane, i, series, g):
+def next_contact_event(constants, lane, i, series, g):
     """Time in the lane's step of its next contact event, or NEVER; whether the closed contact opens."""
     if lane.flag[i] == CLOSES:
         when = roots.crossing_time(series.gap)
         omega = roots.slope(series.one.angle, when) / lane.was_left[i]
         there = ground_and_weight_at(lane, i, when)
         # what still holds as the other contact closes has held until then
-        if least_hold(lanes_of_one, 0.0, omega, there, g) >= 0.0:
+        if least_hold(constants, 0.0, omega, there, g) >= 0.0:
             return when, False
     else:
         when = roots.closing_time(series.gap, 1.0)
-    time = _release_time(lanes_of_one, lane, i, series, min(1.0, when), g)
+    time = _release_time(constants, lane, i, series, min(1.0, when), g)
     if time < when:
         return time, True
     return when, False
@@ -259,32 +259,32 @@ def ground_and_weight_at(lane, i, tau):
 
 
 @kernel
-def least_hold(lanes_of_one, theta, omega, ground_and_weight, g):
+def least_hold(constants, theta, omega, ground_and_weight, g):
     """Least contact moment of the closed contact, negative if it has to pull."""
     ground, weight = ground_and_weight
     turn = taylor.quick_sine_cosine(theta)
     s, c = turn
-    alpha = weight * (lanes_of_one.gx * c + lanes_of_one.gy * s) - ground / g * (
-        lanes_of_one.gy * c - lanes_of_one.gx * s
+    alpha = weight * (constants.gx * c + constants.gy * s) - ground / g * (
+        constants.gy * c - constants.gx * s
     )
     return min(
-        _moment(lanes_of_one.right, 0, turn, alpha, omega * omega, ground_and_weight),
-        _moment(lanes_of_one.left, 0, turn, alpha, omega * omega, ground_and_weight),
+        _moment(constants.right, 0, turn, alpha, omega * omega, ground_and_weight),
+        _moment(constants.left, 0, turn, alpha, omega * omega, ground_and_weight),
     )
 
 
 @kernel
-def _release_time(lanes_of_one, lane, i, series, end, g):
+def _release_time(constants, lane, i, series, end, g):
     """Time up to ``end`` at which the closed contact lets go; NEVER if it holds."""
     angle, left = series.one.angle, lane.was_left[i]
     at_low = least_hold(
-        lanes_of_one, angle[0], angle[1] / left, ground_and_weight_at(lane, i, 0.0), g
+        constants, angle[0], angle[1] / left, ground_and_weight_at(lane, i, 0.0), g
     )
     if at_low < 0.0:
         return 0.0
     omega = roots.slope(angle, end) / left
     at_high = least_hold(
-        lanes_of_one,
+        constants,
         roots.value(angle, end),
         omega,
         ground_and_weight_at(lane, i, end),
@@ -299,7 +299,7 @@ def _release_time(lanes_of_one, lane, i, series, end, g):
         tau = roots.guess_between(bracket)
         omega = roots.slope(angle, tau) / left
         hold = least_hold(
-            lanes_of_one,
+            constants,
             roots.value(angle, tau),
             omega,
             ground_and_weight_at(lane, i, tau),
