@@ -213,7 +213,7 @@ class Drawn:
 
     @property
     def shown(self) -> Floats:
-        """The numbers as they are shown, shape (draws,)."""
+        """The numbers as they are shown, shape (draws,): of an annual rate the probability in the years [-]."""
         return self.target.shown(self.values)
 
     @property
@@ -267,7 +267,7 @@ class Evidence:
         return self.of(self.outcomes)
 
     def of(self, outcomes: ObjectOutcomes) -> Prediction:
-        """The same of other outcomes, of which as much is not known."""
+        """Fractions of motions under each draw by other outcomes, of which as much is not known."""
         levels = outcomes.intensity_levels
         counts = count_motions(
             levels.levels,
@@ -276,6 +276,7 @@ class Evidence:
             outcomes.lifts_from(),
             earthquake_numbers(outcomes.earthquakes),
         )
+        # what moves rates moves no fraction, but is drawn with the rest
         unknown = {**self.shifts, **{name: Shift(0.0, 0.0) for name in self.rates}}
         return predict(levels.levels, counts, unknown, members=self.members)
 

@@ -109,7 +109,7 @@ class ShakenPieces:
     def changed(
         self, *, friction: float | None = None, restitution: float = 1.0
     ) -> Floats:
-        """Planar medians with friction, or another restitution."""
+        """Planar medians [m/s] with a friction [-], or restitutions so many times those that conserve momentum."""
         found = shaken_in_plane(
             self.sizes,
             self.records.motions,

@@ -70,8 +70,9 @@ class CountedObservations(Observations):
         return found
 
     def independent(self, inside: NDArray[np.bool_]) -> tuple[int, float]:
-        """Number of motions with a test in the rows ``inside``, which are neighbouring cells.
+        """How many motions have tests in the rows ``inside``, which are neighbouring cells, and how much they count.
 
+        As in :meth:`Observations.independent`; here the tests of a motion count once, so both are the same.
         Motion i has tests at ``rise`` + ``scale[i]`` in ln of the measure: it counts where one of them lies from
         the lower edge of the first cell to the upper edge of the last.
         """

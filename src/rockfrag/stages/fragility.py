@@ -154,7 +154,11 @@ def rows_of(parts: Iterable[Swept], most_levels: int | None = None) -> pd.DataFr
 def _ida_curves(
     job: Job[Study], measures: pd.DataFrame
 ) -> tuple[dict[str, TableIda], StateIdaCurves, pd.DataFrame]:
-    """IDA curves by configuration, and by limit state, configuration and floor; resurrections of all."""
+    """IDA curves by configuration, and by limit state, configuration and floor; resurrections of all.
+
+    Those by configuration alone are of overturning on all floors together, whose name is empty. Large studies
+    count outcomes, others keep a row an outcome.
+    """
     study = job.study
     floors = {name: floor_measures(level) for name, level in study.floors.items()}
     wanted = {

@@ -107,11 +107,14 @@ def describe_held(call):
 
 
 @kernel
-def _place(p, k, shape, under, carries, foot):
-    """Place body k: on the ground, or on what is under it."""
+def _place(p, k, shape, under, face, below):
+    """Place body k, on the ground or on the face of what is under it, which stands at ``below``.
+
+    Returned is where it stands itself.
+    """
     if k == 0:
         return _describe.place_lowest(p, shape)
-    return _describe.place_above(p, k, (under, shape), carries, foot)
+    return _describe.place_above(p, k, (under, shape), face, below)
 
 
 @kernel

@@ -159,9 +159,11 @@ def step_error(p, w, h):
 def _powers(p, w, q, v, ah, av):
     """Power of the ground, and power lost to friction and given to ties, with the forces in ``w`` [W].
 
-    What slides in a dish is pushed back by its slope too: that force is held, not lost.
+    ``q`` and ``v`` are coordinates and velocities, three a body, ``ah`` and ``av`` the ground's accelerations
+    [m/s²]. What slides in a dish is pushed back by its slope too: that force is held, not lost.
     """
     work, lost, held = 0.0, 0.0, 0.0
+    # contacts of bodies first, one under each, and then those of walls
     for k in range(p.contacts):
         if k < p.count:
             work -= p.mass[k] * (ah * v[3 * k] + av * v[3 * k + 1])

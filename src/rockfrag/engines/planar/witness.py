@@ -123,7 +123,11 @@ def _momentum_change(p, w, k):
 
 @kernel
 def _wall_tangent(p, w, k, end):
-    """Point and tangent of end ``end`` of contact k with a wall, from the corners of the body's side."""
+    """Point and tangent of end ``end`` of contact k with a wall, from the corners of the body's side.
+
+    Either a corner of the side is on the face of the wall, or the upper edge of the wall on the side. w.q has x, y
+    and the rotation of each body, one after the other.
+    """
     body = p.upper[k]
     x, y = _turned(p.edge[k, end, 0], p.edge[k, end, 1], w.q[3 * body + 2])
     x, y = x + w.q[3 * body], y + w.q[3 * body + 1]

@@ -233,8 +233,12 @@ def twist_of(body, s):
 
 @kernel
 def slip_of(body, y, rows, k, s):
-    """Velocity of where the friction of the closed point number k acts, along its contact and across."""
+    """Velocity of where friction acts on the closed point number k: two along its contact, one away from it [m/s].
+
+    ``rows`` are the world's axes as the body sees them; ``rows[2]`` is the upward one.
+    """
     p = solid.arm(body, rows[2], s.closed[k])
+    # friction of a flat face acts nearer its centre, at the mean distance of its points
     if s.count >= 3:
         p = solid.towards_centre(body, p, twist_of(body, s))
     return solid.in_frame(body, s.closed[k], solid.point_velocity(y, rows, p))
@@ -267,7 +271,11 @@ def fill_delassus(body, rows, which, n, delassus, twist=1.0):
 
 @kernel
 def fill_velocities(body, y, rows, which, n, out, twist=1.0):
-    """Fill in the velocities of contacts."""
+    """Fill in the velocities of n contacts ``which``: for each two along it and one away from it [m/s], (3 n,).
+
+    Those along the ground are at the part ``twist`` of a contact's distance from the centre, where friction of a
+    face that turns about the vertical acts.
+    """
     for i in range(n):
         p = solid.arm(body, rows[2], which[i])
         u = solid.in_frame(body, which[i], solid.point_velocity(y, rows, p))

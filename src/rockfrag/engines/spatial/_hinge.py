@@ -62,9 +62,11 @@ def attempt(body, tau, h, y, s):
 
 @kernel
 def fill_series(s, speed, moment, growth):
-    """Fill in the series of the angle and of its sine and cosine, for a time that runs from 0 to 1.
+    """Fill in the series of the angle and of its sine and cosine, for a time t that runs from 0 to 1.
 
-    ``moment`` and its ``growth`` over the step are those that go with the cosine and with the sine.
+    angle'' = (m₀ + g₀ t) cosine + (m₁ + g₁ t) sine, sine' = cosine angle', cosine' = -sine angle'; element k of
+    each is the coefficient of tᵏ. ``speed`` is the angular velocity times the step h [rad], and ``moment``, m, and
+    its ``growth``, g, are moments times h² over the inertia [rad].
     """
     angle, sine, cosine = s.angle, s.sine, s.cosine
     angle[0], angle[1] = 0.0, speed

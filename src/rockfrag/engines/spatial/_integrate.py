@@ -496,8 +496,9 @@ def reach_towards_tilt(body, rows):
 
 @kernel
 def heading(y):
-    """Turn about the vertical, of the attitude's part about it."""
-    return 2.0 * atan2(y[6], y[3])
+    """Angle by which a body is turned about the vertical [rad]: the twist of its quaternion about that axis."""
+    real, upright = y[solid.ATTITUDE], y[solid.ATTITUDE + 3]
+    return 2.0 * atan2(upright, real)
 
 
 @kernel

@@ -676,16 +676,19 @@ def slide_flat(body, y, rows, gravity, s):
 
 @kernel
 def edge_margin(body, y, rows, gravity, i, j):
-    """Margin of rest against tipping over the edge from point i to the next point j that touches."""
+    """Margin of rest against tipping over the edge from point i to the next point j that touches [m/s²].
+
+    It is the moment about the edge of the effective gravity, over the mass and the height of the centre of mass,
+    positive while it holds the body down.
+    """
     p = solid.position_of_base(y, rows, solid.arm(body, rows[2], i))
     q = solid.position_of_base(y, rows, solid.arm(body, rows[2], j))
     length = algebra.norm(q[0] - p[0], q[1] - p[1])
+    # outwards in the plan; how far the edge lies out there, and what pulls that way
     normal = ((q[1] - p[1]) / length, -(q[0] - p[0]) / length)
     reach = normal[0] * (p[0] - y[0]) + normal[1] * (p[1] - y[1])
-    return (
-        -(y[2] * (normal[0] * gravity[0] + normal[1] * gravity[1]) + reach * gravity[2])
-        / y[2]
-    )
+    pull, height = normal[0] * gravity[0] + normal[1] * gravity[1], y[2]
+    return -(height * pull + reach * gravity[2]) / height
 
 
 @kernel

@@ -73,7 +73,11 @@ def attempt(body, tau, h, y, s):
 
 @kernel
 def go_on_by(body, at, rest, tau, y, s):
-    """Go on by a time so short that the rates at the end of a step to ``at`` suffice, or by a step of its own."""
+    """Go on from s.new, the state at ``at`` after ``tau`` [s], by a time ``rest`` of either sign.
+
+    It is so short that the rates at the end of the step to ``at`` suffice; modes with a step of their own take it
+    anew.
+    """
     if kind_of_step(body, s) != forces.GENERAL:
         attempt(body, tau, at + rest, y, s)
         return

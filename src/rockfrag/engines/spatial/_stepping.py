@@ -51,7 +51,11 @@ def loss_since(body, before, y, s):
 
 @kernel
 def take_step(body, tau, h, y, s):
-    """Take one step; return how many contacts were near."""
+    """Take one step of h from ``tau`` in the interval [s]; return how many contacts were near.
+
+    The state y is changed in place: velocities by gravity, ties and the impulses of contacts, and then places by
+    these velocities.
+    """
     rows = algebra.rotation(y)
     weight = forces.load_on(
         body, y, rows, forces.effective_gravity_at(s.field, tau + 0.5 * h), s
@@ -59,19 +63,20 @@ def take_step(body, tau, h, y, s):
     load = algebra.to_world(rows, weight)
     spin = solid.free_spin(body, solid.omega_of(y), forces.twist_by_ties(s))
     for k in range(3):
-        y[7 + k] += h * load[k]
-        y[10 + k] += h * spin[k]
+        y[solid.VELOCITY + k] += h * load[k]
+        y[solid.SPIN + k] += h * spin[k]
     n = find_near(body, y, rows, h, s)
     for _ in range(SWEEPS):
         if n == 0 or sweep(body, y, rows, n, s) < SETTLED:
             break
     note_pushes(body, n, s)
+    # of the ground's motion, in the effective gravity less gravity itself, and of ties
     y[solid.WORK] += h * (
         load[0] * y[7] + load[1] * y[8] + (load[2] + s.field[6]) * y[9]
     )
     y[solid.WORK] += h * algebra.dot(forces.twist_by_ties(s), solid.omega_of(y))
     for k in range(3):
-        y[k] += h * y[7 + k]
+        y[solid.PLACE + k] += h * y[solid.VELOCITY + k]
     algebra.turn(y, algebra.scaled(h, solid.omega_of(y)))
     put_in_place(body, y, n, s)
     return n

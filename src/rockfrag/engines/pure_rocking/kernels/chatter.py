@@ -236,7 +236,14 @@ def _opening(two, hop, side, g):
 
 @inlined_kernel
 def may_close(hop, before, after, longest, g, ahead):
-    """Whether a contact that hops, at most ``longest`` [samples], may stay closed, while the other is open."""
+    """Whether a contact that hops, at most ``longest`` [samples], may stay closed, while the other is open.
+
+    Hops on both sides get slower by a part ``left`` of two impacts, so that all of them together last at most
+    hops (1 / least + back / other), where ``least`` and ``other`` are the least accelerations that close the
+    contact on either side. These are looked for over twice the time that those of now would give; if what they
+    give is within that time, and short enough, the contact may stay closed (``docs/kernels.md``, "On a body that
+    rocks on").
+    """
     h, k, tau, last, factor = ahead.dt, ahead.k, ahead.tau, ahead.last, ahead.factor
     samples = ahead.samples
     speed = abs(hop.omega1) if hop.ground else abs(hop.omega2 - hop.omega1)

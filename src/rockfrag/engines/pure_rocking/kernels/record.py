@@ -158,7 +158,8 @@ def note_demand(body, step, series, end, work, summary):
 
     Forces are computed at the beginning, in the middle and at the end; between these they are nearly parabolas,
     and steps are short. Demands of a block beyond its balance are kept apart, and count once it has come back.
-    Returned is the time in the step at which a normal force first vanished; NEVER if all push, or beyond balance.
+    Times in the step are parts of its length [-]. Returned is the one at which a normal force first vanished;
+    NEVER if all push, or beyond balance.
     """
     state, trial = work.state, work.trial
     # what has come back from beyond balance was not yet a fall
