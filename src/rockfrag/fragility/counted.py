@@ -70,7 +70,7 @@ class CountedObservations(Observations):
         return found
 
     def independent(self, inside: NDArray[np.bool_]) -> tuple[int, float]:
-        """How many motions have tests in the rows ``inside``, which are neighbouring cells, and how much they count.
+        """How many motions have tests in the rows ``inside``, neighbouring cells, and how much they count.
 
         As in :meth:`Observations.independent`; here the tests of a motion count once, so both are the same.
         Motion i has tests at ``rise`` + ``scale[i]`` in ln of the measure: it counts where one of them lies from
