@@ -684,11 +684,11 @@ def edge_margin(body, y, rows, gravity, i, j):
     p = solid.position_of_base(y, rows, solid.arm(body, rows[2], i))
     q = solid.position_of_base(y, rows, solid.arm(body, rows[2], j))
     length = algebra.norm(q[0] - p[0], q[1] - p[1])
-    # outwards in the plan; how far the edge lies out there, and what pulls that way
+    # outwards in the plan; how far the edge lies out there, and what acts that way
     normal = ((q[1] - p[1]) / length, -(q[0] - p[0]) / length)
     reach = normal[0] * (p[0] - y[0]) + normal[1] * (p[1] - y[1])
-    pull, height = normal[0] * gravity[0] + normal[1] * gravity[1], y[2]
-    return -(height * pull + reach * gravity[2]) / height
+    outward, height = normal[0] * gravity[0] + normal[1] * gravity[1], y[2]
+    return -(height * outward + reach * gravity[2]) / height
 
 
 @kernel
