@@ -243,15 +243,13 @@ def _integrate(
     memory, moved = np.zeros((n, MEMORY)), np.zeros((n, MEMORY))
     now[ACCELERATION] = -ground[0]
     total[:, 0] = now[ACCELERATION] + ground[0]
-    work = np.zeros(3)
+    work, building = np.zeros(3), (matrices, masonry)
     for k in range(samples - 1):
         rise = ground[k + 1] - ground[k]
         for part in range(parts):
             begin = ground[k] + rise * (part / parts)
             end = ground[k] + rise * ((part + 1) / parts)
-            _find_equilibrium(
-                end, step, matrices, masonry, (now, then), (memory, moved)
-            )
+            _find_equilibrium(end, step, building, (now, then), (memory, moved))
             _add_work(0.5 * (begin + end), matrices, now, then, work)
             now[:] = then
             memory[:] = moved
@@ -266,14 +264,14 @@ def _integrate(
 
 @cached_njit()
 def _find_equilibrium(
-    ground: float, step: float, matrices: Any, masonry: Any, floors: Any, storeys: Any
+    ground: float, step: float, building: Any, floors: Any, storeys: Any
 ) -> None:
     """Find where a step ends, by average acceleration and Newton's iteration with the elastic stiffness.
 
-    ``ground`` is its acceleration at the end; of ``floors`` and ``storeys`` the first is the beginning, and the
-    second is filled.
+    ``ground`` is its acceleration at the end, and ``building`` the matrices and the masonry of :func:`_integrate`;
+    of ``floors`` and ``storeys`` the first is the beginning, and the second is filled.
     """
-    mass, viscous, inverse = matrices
+    (mass, viscous, inverse), masonry = building
     (now, then), (memory, moved) = floors, storeys
     n = mass.size
     u, v, a = now[:3]

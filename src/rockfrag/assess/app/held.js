@@ -22,14 +22,13 @@ const holding = (data, core, spatial) => {
       const is_bracket = kind === "bracket" ? 1 : 0;
       return { ...about, ties: FASTENERS[kind], is_bracket, tie_strength: bears };
     });
-  const plateOf = ({ statue, pedestal }) =>
-    PLATE * ((pedestal?.mass ?? 0) + statue.mass);
+  const carriedOf = ({ statue, pedestal }) => (pedestal?.mass ?? 0) + statue.mass;
+  const plateOf = (body) => PLATE * carriedOf(body);
   const sprung = (stroke, body) =>
     core.within(() => {
       const plate = plateOf(body);
-      const carried = (body.pedestal?.mass ?? 0) + body.statue.mass;
       const found = core.zeros([3]);
-      core.call("tell_springs", plate + carried, found);
+      core.call("tell_springs", plate + carriedOf(body), found);
       const [spring_stiffness, spring_strength, spring_yield] = found.values;
       const springs = { spring_stiffness, spring_strength, spring_yield };
       return { plate, dish_friction: 0, stroke, ...springs };
@@ -48,7 +47,7 @@ const holding = (data, core, spatial) => {
       dish_friction: SLIDES_AT,
       stroke: bears,
     }),
-    springs: (bears, body) => sprung(bears, body),
+    springs: sprung,
     wall: (distance) => ({ wall: distance }),
     casters: (locked) => ({ friction: locked ? LOCKED_AT : ROLLS_AT }),
   };

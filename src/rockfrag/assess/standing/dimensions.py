@@ -171,8 +171,14 @@ def _density_flags(mass: float, volume: float) -> list[Value]:
         )
     if COMMON[0] <= density <= COMMON[1]:
         return []
-    about = {"mass": three(mass), "volume": three(volume), "density": three(density)}
-    return [finding(Text.FLAG_DENSITY, **about)]
+    return [
+        finding(
+            Text.FLAG_DENSITY,
+            mass=three(mass),
+            volume=three(volume),
+            density=three(density),
+        )
+    ]
 
 
 _FORCE = re.compile(r"\s*(\d+(?:\.\d+)?)\s*(k?N)\s*(?:@|at)\s*(.+)", re.IGNORECASE)

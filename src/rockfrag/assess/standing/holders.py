@@ -235,8 +235,12 @@ class Pendulum(Isolator):
 
     def called(self) -> Finding:
         """Such as an isolator with 18 cm to both sides."""
-        about = {"radius": two(self.radius), "friction": two(self.friction)}
-        return finding(Text.HOLD_ISOLATOR, stroke=two(100 * self.stroke), **about)
+        return finding(
+            Text.HOLD_ISOLATOR,
+            stroke=two(100 * self.stroke),
+            radius=two(self.radius),
+            friction=two(self.friction),
+        )
 
 
 @dataclass(frozen=True)
