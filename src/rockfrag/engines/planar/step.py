@@ -25,7 +25,7 @@ from rockfrag.engines.planar.ties import (
     start_ties,
     turns_back,
 )
-from rockfrag.engines.planar.walls import any_closed, climbs, is_above
+from rockfrag.engines.planar.walls import any_closed, climbs, has_left
 from rockfrag.engines.pure_rocking.kernels.dormand_prince import INSTANTS, WEIGHTS
 
 # slack before a contact event is seen, so that what has just begun is not taken for its end [-]: forces over
@@ -295,8 +295,8 @@ def _least_of_holding(p, w, q, v, forces):
             margin = bond_margin(p, w, k)
             w.fails[k, BREAK] = 1 if margin < 0.0 else 0
             least = min(least, margin)
-        if k >= p.count and w.closed[k].any() and is_above(p, w, q, k):
-            # its end has left the wall upwards, and no longer rests on it
+        if k >= p.count and w.closed[k].any() and has_left(p, w, q, k):
+            # it no longer rests on the wall
             w.fails[k, BREAK] = 1
             least = -TOUCH
         if k >= p.count and climbs(p, w, q, k):

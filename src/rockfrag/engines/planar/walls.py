@@ -28,6 +28,15 @@ def _flank_corner(p, w, q, k, end):
     return q[3 * body] + dx * c + dy * s, q[3 * body + 1] - dx * s + dy * c
 
 
+@inlined_kernel
+def _along_side(p, w, k):
+    """Direction (x, y) of a body's side, from its end 0 to its end 1, at its contact k with a wall."""
+    body = p.upper[k]
+    c, s = w.cos[body], w.sin[body]
+    dx, dy = p.flank[k, 0], p.flank[k, 1]
+    return dx * c + dy * s, -dx * s + dy * c
+
+
 @kernel
 def wall_end(p, w, q, k, end, kind):
     """End of contact k with a wall in the configuration ``q``, as :func:`rockfrag.engines.planar.solve.end_of`."""
@@ -44,17 +53,14 @@ def wall_end(p, w, q, k, end, kind):
     if end == upper and -gap > ACROSS * p.size:
         # the body lies across the wall's edge, and its corner is behind it
         beyond = max(beyond, -gap)
-    if is_above(p, w, q, k):
+    if kind < 0 and is_above(p, w, q, k):
         # past the wall, or clear of it: nothing of the side is beside it
         return x, y, tx, ty, math.inf, beyond, 1
     if kind < 0:
         kind = 1 if beyond <= AT_EDGE * p.size else 0
     if kind == 1:
         return x, y, tx, ty, gap, beyond, 1
-    body = p.upper[k]
-    c, s = w.cos[body], w.sin[body]
-    dx, dy = p.flank[k, 0], p.flank[k, 1]
-    tx, ty = dx * c + dy * s, -dx * s + dy * c
+    tx, ty = _along_side(p, w, k)
     ex, ey = p.wall_x[k], top
     return ex, ey, tx, ty, -ty * (x - ex) + tx * (y - ey), beyond, 0
 
@@ -64,6 +70,22 @@ def is_above(p, w, q, k):
     """Whether the lower corner of the side of a body is above the upper edge of the wall."""
     _, y = _flank_corner(p, w, q, k, 0 if p.side[k] > 0 else 1)
     return y > p.wall_top[k] + AT_EDGE * p.size
+
+
+@kernel
+def has_left(p, w, q, k):
+    """Whether a contact that is closed has left a low wall upwards.
+
+    Its corner is above the wall's face then, or the wall's edge below the lower corner of the side, along the side:
+    one that lies on the edge may have its lower corner above it.
+    """
+    upper = 1 if p.side[k] > 0 else 0
+    if w.closed[k, upper] == 0 or w.kind[k, upper] == 1:
+        return is_above(p, w, q, k)
+    x, y = _flank_corner(p, w, q, k, 1 - upper)
+    tx, ty = _along_side(p, w, k)
+    up = p.side[k] * ((p.wall_x[k] - x) * tx + (p.wall_top[k] - y) * ty)
+    return up < -AT_EDGE * p.size
 
 
 @kernel
