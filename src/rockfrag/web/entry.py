@@ -134,7 +134,12 @@ def _check_restitution(call, block, restitution):
 
 @kernel
 def jump_call(call):
-    """Let the base's velocity jump under the lone block that was described last: its state follows."""
+    """Let the velocity of the base jump under the lone block that was described last (``geometry.jumped``).
+
+    The jump, ``call.right`` and ``call.up`` [m/s], changes the angular velocity ``omega2`` [rad/s] and the pivot
+    ``c2`` of ``call.initial``, where a lone block is body 2; its angle stays.  A block that stood flat and was not
+    turned by the jump keeps standing, without a pivot.
+    """
     state = call.initial
     jump = call.right, call.up
     pivot, rate = geometry.jumped(

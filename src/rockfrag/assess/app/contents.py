@@ -209,11 +209,22 @@ def _variants(period: float) -> dict[str, Any]:
     return found
 
 
-SOURCES_DRAWN = 10  # Sources of an object of the form at most
+# sources of uncertainty that an object of the form has at most (``answer.sources``)
+SOURCES_DRAWN = 10
 
 
 def _draws(motions: MotionSet) -> dict[str, Any]:
-    """Draws of sources and of the weights of so many earthquakes as there are, and as are compared."""
+    """Random draws of an answer's members, made beforehand so that the page and the command use the same ones.
+
+    Weights of earthquakes are drawn for as many of them as all motions have, those of which every second motion is
+    left in space, and those of which every fourth is left in the plane.
+
+    Returns
+    -------
+    ``columns`` and ``size``: sources of uncertainty, and draws. ``normals``: standard normal numbers, float64,
+    (size, columns). ``bins``: the bin of each among its source's, bytes, (columns, size). ``weights``: by the
+    number n of earthquakes, float64, (BLOCKS, n). Arrays are in base 64, row by row.
+    """
     count = len(set(motions.earthquakes))
     fewer = motions.with_both_components().thinned()
     fewest = motions.thinned().thinned()
@@ -351,16 +362,21 @@ DEMANDS = {"largest_force": "force", "stroke": "stroke"}
 def _tried_by(
     motions: MotionSet, measures: Iterable[IntensityMeasure], few: MotionSet
 ) -> dict[str, Any]:
-    """Places of every second motion and of few, and the levels to which the few are scaled."""
+    """Which motions holders are tried with, and the levels to which these are scaled.
+
+    Returned are the indices into ``motions.ground`` of every second motion (``slow``: for holders whose histories
+    take long) and of the ``few`` (for all others), and ``measures``: by the name of a measure the levels of the
+    few in its own unit, as of :func:`_levels`.
+    """
     names = [motion.name for motion in motions.ground]
     levels = {
         measure.imt: _levels(few, measure, LEVELS_OF_HOLDERS) for measure in measures
     }
-    places = {
+    indices = {
         name: [names.index(motion.name) for motion in some.ground]
         for name, some in (("slow", motions.thinned()), ("few", few))
     }
-    return {**places, "measures": levels}
+    return {**indices, "measures": levels}
 
 
 def _times(motions: MotionSet, pair: tuple[int, int]) -> list[dict[str, Any] | None]:
