@@ -76,8 +76,8 @@ def is_above(p, w, q, k):
 def has_left(p, w, q, k):
     """Whether a contact that is closed has left a low wall upwards.
 
-    Its corner is above the wall's face then, or the wall's edge below the lower corner of the side, along the side:
-    one that lies on the edge may have its lower corner above it.
+    Its corner is above the wall's face then, or the wall's edge is below the lower corner of the side, along the
+    side: a side that lies on the edge may have its lower corner above it.
     """
     upper = 1 if p.side[k] > 0 else 0
     if w.closed[k, upper] == 0 or w.kind[k, upper] == 1:
