@@ -18,6 +18,7 @@ SHUT = 30.0
 """What shutting slow ends asks of impulses at most, over mass and closing speed [-]."""
 ROUNDING = 1e-6  # fraction of mass times √(g b) below which an impulse is none
 TOUCHES = 1e-12  # gap over the half width below which an end touches [-]
+ACROSS = 1e-6  # distance behind a low wall's face over the half width from which a corner is across its edge [-]
 
 
 class Limits(NamedTuple):
@@ -131,7 +132,8 @@ def _wall_tangent(p, w, k, end):
     body = p.upper[k]
     x, y = _turned(p.edge[k, end, 0], p.edge[k, end, 1], w.q[3 * body + 2])
     x, y = x + w.q[3 * body], y + w.q[3 * body + 1]
-    if p.side[k] * (x - p.wall_x[k]) > -TOUCHES * p.size and y <= p.wall_top[k]:
+    behind = p.side[k] * (x - p.wall_x[k])
+    if y <= p.wall_top[k] and behind < ACROSS * p.size:
         return x, y, 0.0, float(p.side[k])
     # the wall's edge is against the side
     tx, ty = _turned(p.flank[k, 0], p.flank[k, 1], w.q[3 * body + 2])
