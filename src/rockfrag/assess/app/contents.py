@@ -209,13 +209,26 @@ def _variants(period: float) -> dict[str, Any]:
     return found
 
 
-SOURCES_DRAWN = 10  # Sources of an object of the form at most
+SOURCES_DRAWN = 10  # Uncertain properties of an object of the form, at most
 
 
 def _draws(motions: MotionSet) -> dict[str, Any]:
-    """Draws of sources and of the weights of so many earthquakes as there are, and as are compared."""
+    """Draws of all that is uncertain, as numbers in base 64, for the page to combine with what it counts.
+
+    Weights are those of whole sets, one a number of earthquakes: of all motions, of every second record with both
+    components, and of a quarter of the motions, which the page takes where it compares.
+
+    Returns
+    -------
+    columns : number of uncertain properties drawn for, at most
+    size : number of draws
+    normals : standard normal values, float64, shape (columns, size)
+    bins : of equally many draws by each rising property, uint8, shape (columns, size)
+    weights : by number n of earthquakes, of each and of the next one, float64, shape (blocks, n + 1)
+    """
     count = len(set(motions.earthquakes))
     fewer = motions.with_both_components().thinned()
+    # every fourth motion
     fewest = motions.thinned().thinned()
     counts = {count, *(len(set(each.earthquakes)) for each in (fewer, fewest))}
     made = draws.make_draws(SOURCES_DRAWN, count)
@@ -229,7 +242,7 @@ def _draws(motions: MotionSet) -> dict[str, Any]:
 
 
 def _packed(values: Floats) -> str:
-    """Numbers as bytes in base 64, for the page's typed arrays."""
+    """Numbers as little-endian float64 in base 64, rows one after the other, for the typed arrays of the page."""
     return b64encode(np.ascontiguousarray(values, dtype="<f8").tobytes()).decode()
 
 
@@ -351,7 +364,14 @@ DEMANDS = {"largest_force": "force", "stroke": "stroke"}
 def _tried_by(
     motions: MotionSet, measures: Iterable[IntensityMeasure], few: MotionSet
 ) -> dict[str, Any]:
-    """Places of every second motion and of few, and the levels to which the few are scaled."""
+    """Motions and levels by which the page tries holders.
+
+    Returns
+    -------
+    slow : numbers, in ``motions.ground``, of every second motion, for holders whose simulation takes long
+    few : numbers of the ``few`` motions that all others are tried by
+    measures : by name of a measure, levels to which the few are scaled, in the unit of the measure
+    """
     names = [motion.name for motion in motions.ground]
     levels = {
         measure.imt: _levels(few, measure, LEVELS_OF_HOLDERS) for measure in measures
